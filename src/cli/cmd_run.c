@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/profile.h"
 #include "cli/save.h"
+#include "cli/scene_designs.h"
 #include "cli/watch.h"
 #include "cli/work.h"
 #include "report/result_tables.h"
@@ -42,7 +43,7 @@ static mt_status keep(void *context, mt_result *so_far, mt_err *err)
     char sha256[MT_SHA256_TEXT] = "";
     (void)err;
     mt_watch_hold();
-    (void)mt_save(j->args, j->path, so_far, mt_terminal_seconds() - j->start, sha256);
+    (void)mt_save(j->args, j->path, so_far, NULL, mt_terminal_seconds() - j->start, sha256);
     mt_watch_go_on();
     return MT_OK;
 }
@@ -129,8 +130,16 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
     if (j->args->part > 0) { /* its journal is what it leaves */
         return j->stopped ? MT_EXIT_INTERRUPTED : MT_EXIT_DONE;
     }
-    mt_save_print(j->args, j->result, w, out);
-    const int saved = mt_save(j->args, j->path, j->result, j->seconds, j->sha256);
+    mt_text scene = {.s = NULL};
+    j->study->model->profile = NULL; /* it was asked of the answer */
+    const mt_status rc = mt_scene_of_result(j->study->model, j->result, &scene, &j->err);
+    if (rc != MT_OK) { /* no other answer than with memory */
+        mt_text_free(&scene);
+        return mt_cli_failed(rc, &j->err);
+    }
+    mt_save_print(j->args, j->result, scene.s, w, out);
+    const int saved = mt_save(j->args, j->path, j->result, scene.s, j->seconds, j->sha256);
+    mt_text_free(&scene);
     j->complete = saved == MT_EXIT_DONE && j->result->status != MT_RESULT_INTERRUPTED;
     return mt_exit_worse(outcome(j, verify),
                          mt_exit_worse(saved, mt_cli_profile_print(j->profile)));

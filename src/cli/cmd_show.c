@@ -100,6 +100,9 @@ static int load(const mt_args *args, subject *o)
     rc = code == MT_EXIT_DONE
              ? mt_scene_designs(o->s.model, o->result, &o->s.mem, &o->asks, &o->n, &err)
              : MT_OK;
+    if (code == MT_EXIT_DONE && rc == MT_OK && configuration == NULL) {
+        (void)mt_scene_order(o->s.model, o->result, o->s.configurations); /* all of them */
+    }
     (void)mt_err_in(&err, rc, "%s", operand);
     return rc == MT_OK ? code : mt_cli_failed(rc, &err);
 }
@@ -225,7 +228,8 @@ int mt_cmd_show(const mt_args *args, mt_text *out)
     }
     /* a picture is of one configuration and one design */
     const int n = args->given[MT_OPT_SVG] ? 1 : o.s.n_configurations;
-    rc = mt_scene_new(o.s.model, o.n, o.asks, n, o.s.configurations, &scene, &err);
+    rc = mt_scene_new(o.s.model, o.n, o.asks, n, o.s.configurations, MT_SCENE_WORK, &scene,
+                      &err);
     if (rc == MT_OK) {
         warn(scene, o.s.path);
         rc = write(args, &o, scene, out, &err);

@@ -205,8 +205,9 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "what a result says, as text, CSV or HTML",
         "Prints the summary that run printed (--format csv: recommendations.csv, html: "
         "report.html, json: the result), from the result, or the folder that holds it, alone: "
-        "neither study nor model is looked for, and nothing is solved. With --output the files "
-        "are written anew into "
+        "no study is looked for, and nothing is solved; only the page's view of the mechanism "
+        "needs the model, and is left out where apply would not find it. With --output the "
+        "files are written anew into "
         "DIR/<study file name without .json>/, as run does; how long the solution took is "
         "not known to a result, so timing.json is only taken over where it stands beside it. "
         "A result.json is refused where the files beside it are of another run or were "

@@ -181,6 +181,7 @@ int mt_save_plan(const mt_args *args)
 /* A result on its way into its folder. */
 typedef struct saving {
     const char *study_path; /* or file name: names the folder */
+    const char *scene;      /* NULL: none */
     char *folder;
     mt_text texts[MT_RESULT_FILE_COUNT];
     char sha256[MT_SHA256_TEXT];
@@ -208,16 +209,17 @@ static mt_status write_timing(const mt_args *args, const mt_result *result, doub
     return mt_json_done(&w) ? MT_OK : mt_fail_memory(&s->err);
 }
 
-static void write_page(const mt_result *result, mt_text *out)
+static void write_page(const mt_result *result, const char *scene, mt_text *out)
 {
     mt_text json = {.s = NULL};
     out->failed = mt_result_write_alone(result, &json, NULL) != MT_OK || out->failed;
-    mt_report_html(result, json.s, NULL, out);
+    mt_report_html(result, json.s, scene, out);
     mt_text_free(&json);
 }
 
 /* The tables and the page; empty where the result has none of the kind. */
-static void write_output(const mt_result *result, mt_result_file which, mt_text *out)
+static void write_output(const mt_result *result, const char *scene, mt_result_file which,
+                         mt_text *out)
 {
     mt_table table = {0};
     switch (which) {
@@ -234,7 +236,7 @@ static void write_output(const mt_result *result, mt_result_file which, mt_text 
         }
         break;
     case MT_RESULT_FILE_REPORT:
-        write_page(result, out);
+        write_page(result, scene, out);
         break;
     case MT_RESULT_FILE_TIMING:
     case MT_RESULT_FILE_RESULT:
@@ -243,18 +245,18 @@ static void write_output(const mt_result *result, mt_result_file which, mt_text 
     }
 }
 
-void mt_save_print(const mt_args *args, const mt_result *result, mt_json_writer *w,
-                   mt_text *out)
+void mt_save_print(const mt_args *args, const mt_result *result, const char *scene,
+                   mt_json_writer *w, mt_text *out)
 {
     switch (args->format) {
     case MT_FORMAT_JSON:
         mt_result_put(w, NULL, result);
         break;
     case MT_FORMAT_CSV:
-        write_output(result, MT_RESULT_FILE_DESIGNS, out);
+        write_output(result, scene, MT_RESULT_FILE_DESIGNS, out);
         break;
     case MT_FORMAT_HTML:
-        write_output(result, MT_RESULT_FILE_REPORT, out);
+        write_output(result, scene, MT_RESULT_FILE_REPORT, out);
         break;
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
@@ -272,7 +274,7 @@ static mt_status write_texts(mt_result *result, saving *s)
     int n = 0;
     for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
         const mt_result_file which = (mt_result_file)i;
-        write_output(result, which, &s->texts[i]);
+        write_output(result, s->scene, which, &s->texts[i]);
         MT_TRY(s->texts[i].failed ? mt_fail_memory(&s->err) : MT_OK);
         if (s->texts[i].s != NULL) {
             names[n] = mt_result_file_name(which);
@@ -312,10 +314,10 @@ static int end(const mt_args *args, mt_status rc, const char *told, saving *s)
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &s->err);
 }
 
-int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds,
-            char sha256[MT_SHA256_TEXT])
+int mt_save(const mt_args *args, const char *study_path, mt_result *result, const char *scene,
+            double seconds, char sha256[MT_SHA256_TEXT])
 {
-    saving s = {.study_path = study_path};
+    saving s = {.study_path = study_path, .scene = scene};
     mt_text told = {.s = NULL};
     mt_status rc = begin(args, result, &s);
     rc = rc == MT_OK ? write_timing(args, result, seconds, &s) : rc;
@@ -329,9 +331,10 @@ int mt_save(const mt_args *args, const char *study_path, mt_result *result, doub
     return code;
 }
 
-int mt_save_again(const mt_args *args, const char *result_path, mt_result *result)
+int mt_save_again(const mt_args *args, const char *result_path, mt_result *result,
+                  const char *scene)
 {
-    saving s = {.study_path = result->study.file};
+    saving s = {.study_path = result->study.file, .scene = scene};
     if (is_no_file(s.study_path)) {
         mt_terminal_error("%s: /study/file: \"%s\" is not the name of a file", result_path,
                           s.study_path);

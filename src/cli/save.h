@@ -20,15 +20,17 @@ enum { MT_INDEX_FILES = 2 };
 extern const char *const mt_index_names[MT_INDEX_FILES];
 
 /* Write all files of a result into its folder, as one; notes them in result->run. Returns the
- * exit status, everything said; sha256: of result.json, "" where it was not written. */
-int mt_save(const mt_args *args, const char *study_path, mt_result *result, double seconds,
-            char sha256[MT_SHA256_TEXT]);
+ * exit status, everything said. scene: of its mechanism, as JSON for the report; NULL: none.
+ * sha256: of result.json, "" where it was not written. */
+int mt_save(const mt_args *args, const char *study_path, mt_result *result, const char *scene,
+            double seconds, char sha256[MT_SHA256_TEXT]);
 /* The same of a result that was read; timing.json is taken over where the one beside
  * result_path names what is written. */
-int mt_save_again(const mt_args *args, const char *result_path, mt_result *result);
+int mt_save_again(const mt_args *args, const char *result_path, mt_result *result,
+                  const char *scene);
 /* What goes to standard output: summary (with published values where --verify asks), table,
  * page, or, as a value of w, the result. */
-void mt_save_print(const mt_args *args, const mt_result *result, mt_json_writer *w,
-                   mt_text *out);
+void mt_save_print(const mt_args *args, const mt_result *result, const char *scene,
+                   mt_json_writer *w, mt_text *out);
 
 #endif

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/write_scene.h"
 #include "model/judge.h"
 
 mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_ask *ask, mt_err *err)
@@ -115,7 +116,65 @@ mt_status mt_scene_designs(const mt_model *model, const mt_result *result, mt_ar
     const mt_recommendation *const first = count > 0 ? &result->recommendations[0] : &none;
     MT_TRY(fill(&s, first, true, *asks, err));
     for (*n = 1; *n <= count; (*n)++) {
-        MT_TRY(fill(&s, &result->recommendations[*n - 1], false, *asks + *n, err));
+        mt_scene_ask *const ask = *asks + *n;
+        MT_TRY(fill(&s, &result->recommendations[*n - 1], false, ask, err));
+        ask->label = count == 1 ? "recommended"
+                                : mt_arena_printf(mem, "recommended, rank %d", ask->rank);
     }
-    return MT_OK;
+    return mt_arena_check(mem, err);
+}
+
+int mt_scene_order(const mt_model *model, const mt_result *result, int *configurations)
+{
+    const mt_recommendation *const r = &result->baseline;
+    const int all = model->n_configurations;
+    int n = 0;
+    int asked = 0;
+    for (int i = 0; i < r->n_frequencies + all; i++) {
+        const int c = i < r->n_frequencies
+                          ? mt_model_find_configuration(model, r->frequencies[i].configuration)
+                          : i - r->n_frequencies;
+        bool known = c == MT_ABSENT;
+        for (int k = 0; k < n && !known; k++) {
+            known = configurations[k] == c;
+        }
+        if (!known) {
+            configurations[n++] = c;
+        }
+        asked = i < r->n_frequencies ? n : asked;
+    }
+    return asked;
+}
+
+static mt_status look(const mt_model *model, const mt_result *result, mt_arena *mem,
+                      mt_scene **out, mt_err *err)
+{
+    const int all = model->n_configurations;
+    int *const configurations = mt_arena_int(mem, (size_t)all);
+    mt_scene_ask *asks = NULL;
+    int n = 0;
+    MT_TRY(mt_arena_check(mem, err));
+    const int asked = mt_scene_order(model, result, configurations);
+    MT_TRY(mt_scene_designs(model, result, mem, &asks, &n, err));
+    return mt_scene_new(model, n, asks, asked > 0 ? asked : all, configurations,
+                        MT_SCENE_WORK_ALONG, out, err);
+}
+
+mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, mt_text *json,
+                             mt_err *err)
+{
+    mt_scene *scene = NULL;
+    mt_arena mem;
+    mt_err why = {.code = MT_OK};
+    if (model == NULL) {
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    mt_status rc = look(model, result, &mem, &scene, &why);
+    if (rc == MT_OK && scene->size > 0.0) {
+        rc = mt_scene_write(scene, json, &why);
+    }
+    mt_scene_delete(scene);
+    mt_arena_free(&mem);
+    return mt_pass_final(rc, &why, err);
 }

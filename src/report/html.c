@@ -4,6 +4,7 @@
 #include "report/html.h"
 
 #include "base/base.h"
+#include "report/gist.h"
 #include "report/page.h"
 #include "report/summary.h"
 #include "report/table.h"
@@ -28,10 +29,8 @@ static void add_footer(const mt_result_run *run, mt_text *out)
 
 void mt_report_html_told(const mt_result *result, mt_text *out)
 {
-    const char *const status = mt_result_status_name(result->status);
-    mt_text_addf(out, "<p class=\"status %s\"><b>%s</b>. ", status, status);
-    mt_html_escape(result->status_text == NULL ? "" : result->status_text, out);
-    mt_text_add(out, "</p>\n<noscript><p>Figures are drawn by the page's own script, which is "
+    mt_report_gist(result, out);
+    mt_text_add(out, "<noscript><p>Figures are drawn by the page's own script, which is "
                      "switched off here.</p></noscript>\n");
     mt_tell_page(out, result);
     add_footer(&result->run, out);

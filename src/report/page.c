@@ -12,7 +12,24 @@
 enum { HASH_TEXT = 45 }; /* 32 bytes in base 64, and the terminator */
 
 /* What the script of a page is made of, in this order; the last one begins to draw. */
-static const char *const report_scripts[] = {"d3.js",
+static const char *const report_scripts[] = {"d3-array.js",
+                                             "d3-color.js",
+                                             "d3-format.js",
+                                             "d3-interpolate.js",
+                                             "d3-path.js",
+                                             "d3-time.js",
+                                             "d3-time-format.js",
+                                             "d3-scale.js",
+                                             "d3-scale-chromatic.js",
+                                             "d3-shape.js",
+                                             "d3-dsv.js",
+                                             "d3-dispatch.js",
+                                             "d3-timer.js",
+                                             "d3-ease.js",
+                                             "d3-selection.js",
+                                             "d3-transition.js",
+                                             "d3-drag.js",
+                                             "d3-brush.js",
                                              "base.js",
                                              "text.js",
                                              "figure.js",
@@ -104,7 +121,7 @@ static void add_script(mt_page_kind kind, mt_text *out)
         if (kind == MT_PAGE_REPORT && is_view(list[i])) {
             continue;
         }
-        if (strcmp(list[i], "d3.js") == 0) {
+        if (strncmp(list[i], "d3-", 3) == 0) {
             mt_text_add(out, file(list[i])); /* with its notice of copyright */
             mt_text_add(out, "\n");
         } else {

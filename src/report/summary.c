@@ -176,14 +176,50 @@ void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
     mt_text_addf(out, "%s", d->text);
 }
 
-static void add_doubts(const mt_teller *to, const char *title, int n, const mt_doubt *items,
-                       bool with_place)
+static void add_doubts(const mt_teller *to, const char *title, int n, const mt_doubt *items)
 {
     if (open_list(to, title, n)) {
         for (int i = 0; i < n; i++) {
             mt_text text = {.s = NULL};
-            mt_report_doubt(&items[i], with_place, &text);
+            mt_report_doubt(&items[i], true, &text);
             add_made(to, &text);
+        }
+        close_list(to);
+    }
+}
+
+/* Do both say the same, of whatever configuration? */
+static bool is_same_fact(const mt_doubt *a, const mt_doubt *b)
+{
+    return a->configuration != NULL && b->configuration != NULL &&
+           strcmp(a->text, b->text) == 0;
+}
+
+/* Fact i, with all configurations that it holds in; empty where an earlier one has told it. */
+static void write_fact(int i, int n, const mt_doubt *items, mt_text *text)
+{
+    for (int k = 0; k < i; k++) {
+        if (is_same_fact(&items[k], &items[i])) {
+            return;
+        }
+    }
+    for (int k = i; k < n && items[i].configuration != NULL; k++) {
+        if (k == i || is_same_fact(&items[i], &items[k])) {
+            mt_text_addf(text, "%s%s", k == i ? "" : ", ", items[k].configuration);
+        }
+    }
+    mt_text_addf(text, "%s%s", items[i].configuration == NULL ? "" : ": ", items[i].text);
+}
+
+static void tell_facts(const mt_teller *to, int n, const mt_doubt *items)
+{
+    if (open_list(to, "Facts of the model", n)) {
+        for (int i = 0; i < n; i++) {
+            mt_text text = {.s = NULL};
+            write_fact(i, n, items, &text);
+            if (text.s != NULL || text.failed) {
+                add_made(to, &text);
+            }
         }
         close_list(to);
     }
@@ -194,11 +230,13 @@ void mt_tell_doubts(const mt_teller *to, const mt_result *result)
     if (result->n_doubts > 0 && to->html) {
         mt_text_add(to->out, "<div class=\"doubts\">\n");
     }
-    add_doubts(to, "Doubts", result->n_doubts, result->doubts, true);
+    add_doubts(to, "Doubts", result->n_doubts, result->doubts);
     if (result->n_doubts > 0 && to->html) {
         mt_text_add(to->out, "</div>\n");
     }
-    add_doubts(to, "Facts of the model", result->n_facts, result->facts, false);
+    if (!to->html) { /* a page tells them with its warnings */
+        tell_facts(to, result->n_facts, result->facts);
+    }
 }
 
 void mt_tell_objectives(const mt_teller *to, const mt_recommendation *r)
@@ -450,6 +488,8 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     mt_tell_uncertainty(&to, result);
     tell_certificates(&to, result);
     add_sentences(&to, "Warnings", result->n_warnings, result->warnings);
+    tell_facts(&to, result->n_facts, result->facts);
+    keep_place(&to, "place-mechanism");
     keep_place(&to, "figures");
     mt_text_add(out, "<details id=\"told\">\n<summary>All numbers as tables</summary>\n");
     tell_each(&to, result, tell_numbers);

@@ -355,13 +355,13 @@ static mt_status fill(mt_scene *scene, question *q, int n_designs, const mt_scen
 }
 
 mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask *designs,
-                       int n_configurations, const int *configurations, mt_scene **out,
-                       mt_err *err)
+                       int n_configurations, const int *configurations, double work,
+                       mt_scene **out, mt_err *err)
 {
     question q = {.model = model,
                   .n_configurations = n_configurations,
                   .configurations = configurations,
-                  .left = {MT_SCENE_ALL_ITEMS, MT_SCENE_POSES, MT_SCENE_WORK}};
+                  .left = {MT_SCENE_ALL_ITEMS, MT_SCENE_POSES, work}};
     mt_scene *const scene = calloc(1, sizeof *scene);
     *out = NULL;
     if (scene == NULL) {

@@ -20,10 +20,12 @@ enum { MT_SCENE_MODES = 12, MT_SCENE_POSITIONS = 21 };
  * one configuration; those of all configurations and designs; and bodies times the positions of
  * their drives. What exceeds this is left out, and says so. */
 enum { MT_SCENE_ITEMS = 3000, MT_SCENE_ALL_ITEMS = 9000, MT_SCENE_POSES = 40000 };
-/* What looking may cost in all, in operations: about a minute. Beyond it drives are not
+/* What looking may cost in all, in operations: about a minute where somebody asks to see a
+ * mechanism, a few seconds where it goes along with an answer. Beyond it drives are not
  * followed, and of large mechanisms without a short way to their lowest modes no modes are
  * sought. */
-#define MT_SCENE_WORK 2e11
+#define MT_SCENE_WORK       2e11
+#define MT_SCENE_WORK_ALONG 1e10
 
 typedef enum mt_scene_kind { MT_SCENE_GROUND, MT_SCENE_BODY, MT_SCENE_LINK } mt_scene_kind;
 
@@ -203,13 +205,14 @@ typedef struct mt_scene_ask {
 
 /**
  * @param[in]  configurations  [n_configurations]
+ * @param[in]  work            what it may cost
  * @param[out] out             the caller's (mt_scene_delete); its texts are copies
  * What fails in one configuration is said there. Fails: MT_E_MEMORY, MT_E_INTERRUPTED,
  * MT_E_INTERNAL.
  */
 mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask *designs,
-                       int n_configurations, const int *configurations, mt_scene **out,
-                       mt_err *err);
+                       int n_configurations, const int *configurations, double work,
+                       mt_scene **out, mt_err *err);
 /* Accepts NULL. */
 void mt_scene_delete(mt_scene *scene);
 

@@ -49,6 +49,49 @@ document.querySelectorAll('svg').forEach((svg) => {
 return bad.slice(0, 8);
 """
 
+# Pairs of pieces of text of the page itself, outside figures, that cover more than the given share of the smaller one.
+HIDDEN = """
+const rects = [];
+const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const parent = node.parentElement;
+    if (node.textContent.trim() === '' || parent.closest('svg, script, style, .choice, .tip, option')
+        || (parent.closest('details:not([open])') && !parent.closest('summary'))) continue;
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    for (const r of range.getClientRects()) if (r.width > 1 && r.height > 1) rects.push([r, node.textContent.trim().slice(0, 30), node]);
+}
+rects.sort((a, b) => a[0].top - b[0].top);
+const cut = (node, r) => { for (let p = node.parentElement; p; p = p.parentElement) {
+    if (getComputedStyle(p).overflowX !== 'visible') { const q = p.getBoundingClientRect(); if (r.left >= q.right || r.right <= q.left) return true; } }
+    return false; };
+const bad = [];
+rects.forEach(([p, a, n], i) => {
+    for (let k = i + 1; k < rects.length && rects[k][0].top < p.bottom; k++) {
+        const [q, b, m] = rects[k];
+        const w = Math.min(p.right, q.right) - Math.max(p.left, q.left);
+        const h = Math.min(p.bottom, q.bottom) - q.top;
+        if (w > 0 && h > 0 && w * h > arguments[0] * Math.min(p.width * p.height, q.width * q.height) && !cut(n, p) && !cut(m, q))
+            bad.push('"' + a + '" on "' + b + '" in the page');
+    }
+});
+return bad.slice(0, 8);
+"""
+
+# What paper cannot scroll.
+CUT = """
+return [...document.querySelectorAll('main *')].filter((e) => !e.closest('svg') && e.clientWidth > 0 && e.scrollWidth > e.clientWidth + 1
+    && getComputedStyle(e).overflowX !== 'visible').slice(0, 5).map((e) => e.tagName + ' is cut on paper: ' + e.textContent.slice(0, 40))
+    .concat(document.documentElement.scrollWidth > document.documentElement.clientWidth ? ['wider than paper'] : []);
+"""
+# Numbers that are none, wherever they show.
+NO_NUMBERS = r"""
+const told = [...document.querySelectorAll('main *')].flatMap((e) => [...e.attributes].map((a) => a.value)
+    .concat([...e.childNodes].filter((n) => n.nodeType === Node.TEXT_NODE).map((n) => n.textContent)));
+return told.filter((text) => /\b(NaN|Infinity|undefined)\b|\[object/.test(text)).slice(0, 5);
+"""
+PAPER = 680  # px: A4 without its margins, at 96 to the inch
+
 
 class Browser:
     """One Chromium for many pages: starting it takes longer than any of them."""
@@ -62,7 +105,7 @@ class Browser:
         options.binary_location = shutil.which("chromium") or "/usr/bin/chromium"
         service = Service(shutil.which("chromedriver") or "/usr/bin/chromedriver")
         self.driver = webdriver.Chrome(service=service, options=options)
-        self.driver.set_script_timeout(20)
+        self.driver.set_script_timeout(60)
 
     def close(self):
         self.driver.quit()
@@ -75,7 +118,7 @@ class Browser:
         wishes = {"prefers-color-scheme": "dark" if dark else "light",
                   "prefers-reduced-motion": "reduce" if still else "no-preference"}
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
-            "features": [{"name": name, "value": value} for name, value in wishes.items()]})
+            "media": "", "features": [{"name": name, "value": value} for name, value in wishes.items()]})
 
     def open(self, path):
         """Opens a file and waits until it has drawn."""
@@ -110,7 +153,21 @@ class Browser:
 
     def layout(self, share=0.2):
         """What reaches beyond the window, and texts of figures that hide each other."""
-        return self.run(OVERFLOW) + self.run(OVERLAPS, share)
+        return self.run(OVERFLOW) + self.run(OVERLAPS, share) + self.run(HIDDEN, share)
+
+    def numbers(self):
+        """What shows instead of a number."""
+        return ["shows " + text for text in self.run(NO_NUMBERS)]
+
+    def paper(self):
+        """What is wrong with the page as it would be printed; it stays on paper until `screen`."""
+        self.screen(PAPER, 1000)
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        self.run("window.dispatchEvent(new Event('beforeprint'))")
+        self.settle()
+        found = self.layout() + self.run(CUT)
+        self.run("window.dispatchEvent(new Event('afterprint'))")
+        return found
 
     def problems(self):
         """All of it, of the page as it is."""
@@ -121,6 +178,7 @@ class Browser:
         printed = self.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
         return base64.b64decode(printed["data"])
 
-    def picture(self, path):
-        """For people who look at what a test sees."""
-        path.write_bytes(self.driver.get_screenshot_as_png())
+    def picture(self, path, clip=None):
+        """For people who look at what a test sees; clip: x, y, width, height on the page."""
+        asked = {} if clip is None else {"clip": dict(zip(("x", "y", "width", "height"), clip), scale=1), "captureBeyondViewport": True}
+        path.write_bytes(base64.b64decode(self.driver.execute_cdp_cmd("Page.captureScreenshot", asked)["data"]))

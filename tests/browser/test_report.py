@@ -1,20 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reports of all shipped studies, as a browser has them: their figures carry the result's numbers and follow the choice."""
-import json
-import os
 import re
-import subprocess
-import tempfile
 import unittest
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-from browser import Browser
+from common_pages import SIZES, Answers
+from selenium.webdriver.common.keys import Keys
 
-SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
-STUDIES = sorted((SOURCE / "studies").glob("*.json"))
-SIZES = [(390, 844), (1280, 900), (1920, 1080)]
 MOST_BYTES = 700_000
 HALF = 0.6e-3  # of the fourth digit, and a little
 # Words of the frequency chart's lanes by configuration and mode; values of the chart of parameters by name.
@@ -25,6 +16,11 @@ return Object.fromEntries([...document.querySelectorAll('#figure-frequencies tex
 VALUES = """
 return Object.fromEntries([...document.querySelectorAll('#figure-parameters text[data-parameter]')]
     .map((t) => [t.dataset.parameter, t.textContent]));
+"""
+# Modes of the last design that the mechanism is shown at: index and Hz.
+MECHANISM = """
+return [...document.querySelectorAll('.modes tbody tr')].map((row) => [row.querySelector('label').textContent.trim(),
+    [...row.querySelectorAll('td[data-hz]')].map((cell) => cell.dataset.hz).pop()]).filter(([mode, hz]) => /^[0-9]+$/.test(mode) && hz);
 """
 FIGURES = "return [...document.querySelectorAll('.figure')].filter((f) => !f.hidden).map((f) => f.id.slice(7))"
 # What is saved, instead of files: names and contents.
@@ -39,28 +35,7 @@ def number(text):
     return float(text.replace("\u2212", "-"))
 
 
-def run(study, folder):
-    subprocess.run([PROGRAM, "run", study, "--quiet", "-o", folder], capture_output=True, timeout=300, check=False)
-    return folder / study.stem
-
-
-class Report(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
-        with ThreadPoolExecutor(2) as pool:
-            folders = list(pool.map(lambda study: run(study, Path(holder.name)), STUDIES))
-        cls.reports = {f.name: (f / "report.html", json.loads((f / "result.json").read_text(encoding="utf-8"))) for f in folders}
-
-    def open(self, name, **wishes):
-        path, result = self.reports[name]
-        self.browser.screen(**wishes)
-        self.browser.open(path)
-        return result
-
+class Report(Answers):
     def near(self, text, value, where):
         self.assertLessEqual(abs(number(text) - value), HALF * abs(value) + 1e-12, f"{where}: {text} for {value}")
 
@@ -89,14 +64,28 @@ class Report(unittest.TestCase):
                                  ".map((s) => Number(s.dataset.rank))")
         self.assertEqual(set(ranks) - {rank}, set())
 
+    def check_mechanism(self, design):
+        """The mechanism that is shown is the design's, in the first configuration of the result."""
+        first = design["frequencies"][0]["configuration"]
+        hertz = {f["mode"]: f["recommended_hz"] for f in design["frequencies"] if f["configuration"] == first}
+        told = self.browser.run(MECHANISM)
+        self.assertGreater(len(told), 0)
+        for mode, hz in told:
+            if int(mode) in hertz:
+                self.assertAlmostEqual(float(hz) / hertz[int(mode)], 1, places=6)
+
     def test_every_report_in_every_window(self):
         for name, (path, _) in self.reports.items():
             self.assertLess(path.stat().st_size, MOST_BYTES, name)
+            self.open(name)
             for width, height in SIZES:
                 for dark in (False, True):
                     with self.subTest(report=name, width=width, dark=dark):
-                        self.open(name, width=width, height=height, dark=dark)
-                        self.assertEqual(self.browser.problems(), [])
+                        self.browser.screen(width, height, dark)
+                        self.browser.settle()
+                        found = self.browser.console() if dark else self.browser.problems() + self.browser.numbers()
+                        self.assertEqual(found, [])
+            self.assertEqual(self.browser.requests(), [])
 
     def test_figures_carry_the_numbers_of_the_design_that_is_chosen(self):
         for name, (_, result) in self.reports.items():
@@ -112,6 +101,7 @@ class Report(unittest.TestCase):
                     self.check_frequencies(design)
                     self.check_parameters(design)
                     self.check_told(design["rank"])
+                    self.check_mechanism(design)
                 self.assertEqual(self.browser.problems(), [])
 
     def test_there_is_a_figure_of_all_that_a_result_has(self):
@@ -160,10 +150,65 @@ class Report(unittest.TestCase):
         self.assertNotEqual(self.browser.run(VALUES), first)
         self.assertTrue(self.browser.run("return document.querySelectorAll('.alternatives input')[1].checked"))
 
+    def test_the_drive_is_there(self):
+        result = self.open("inceptor_rotor")
+        self.assertIn("drive-1", self.browser.run(FIGURES))
+        slider = self.browser.one("#drive")
+        slider.send_keys(Keys.END)
+        self.assertEqual(self.browser.one("#figure-mechanism output").text, "10\u00b0")
+        slider.send_keys(Keys.HOME, Keys.ARROW_RIGHT)
+        self.assertEqual(self.browser.one("#figure-mechanism output").text, "\u22129\u00b0")
+        self.assertEqual(len(result["recommendations"]), 3)
+        self.browser.all(".modes input")[2].click()
+        self.browser.run("mt.choose(2)")
+        self.assertEqual(self.browser.one("#figure-mechanism output").text, "\u22129\u00b0")  # and the mode stay as they were
+        self.assertTrue(self.browser.run("return document.querySelectorAll('.modes input')[2].checked"))
+        self.assertEqual(self.browser.all(".view3d figcaption")[-1].text, "recommended, rank 3")
+        self.assertEqual(self.browser.problems(), [])
+
+    def test_what_is_not_drawn_is_told(self):
+        self.open("inceptor_trade")
+        note = self.browser.one("#figure-mechanism .lead")
+        self.assertFalse(note.is_displayed())
+        self.browser.run("mt.choose(10)")
+        self.assertTrue(note.is_displayed())
+        self.assertRegex(note.text, r"^Trade point: .* is not drawn; here is recommended, rank 1\.$")
+
+    def test_the_gist_comes_first(self):
+        for name, words in (("inceptor_rotor", ["k_servo +8.21 %", "Graded feasible;", "all 4 are met", "Of 10 gap assignments"]),
+                            ("six_masses_infeasible", ["Infeasible", "the goal is missed by", "No design within the bounds"]),
+                            ("beam_identification", ["and 4 others", "nothing; designs were found by local searches"])):
+            self.open(name)
+            told = self.browser.one("main").text[:1200]
+            for part in words:
+                self.assertIn(part, told, name)
+
+    def test_keys_reach_everything(self):
+        self.open("inceptor_trade")
+        reached = []
+        for _ in range(12):
+            self.browser.one("html").send_keys(Keys.TAB) if not reached else self.browser.driver.switch_to.active_element.send_keys(Keys.TAB)
+            reached.append(self.browser.run("const e = document.activeElement; const r = e.getBoundingClientRect(); return [e.tagName, "
+                                            "getComputedStyle(e).outlineStyle, r.bottom > 0 && r.top < innerHeight]"))
+        self.assertEqual([r for r in reached if r[1] == "none" or not r[2]], [])
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('button, select, input, summary, canvas, [data-at]')]"
+                                          ".filter((e) => e.tabIndex < 0).length"), 0)
+
     def test_reports_are_printed(self):
+        for name in self.reports:
+            with self.subTest(report=name):
+                self.open(name)
+                self.assertEqual(self.browser.paper(), [])
         for name in ("inceptor_trade", "beam_identification"):
             self.open(name, dark=True)
-            self.assertTrue(self.browser.pdf().startswith(b"%PDF"))
+            printed = self.browser.pdf()
+            self.assertTrue(printed.startswith(b"%PDF"))
+            self.assertIn(printed.count(b"/Type /Page\n"), range(4, 20))
+
+    def test_what_paper_cuts_is_found(self):
+        self.open("inceptor_rotor")
+        self.browser.run("document.querySelector('.gist').style.cssText = 'white-space: nowrap; overflow: hidden'")
+        self.assertIn("UL is cut on paper", " ".join(self.browser.paper()))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pages of `modetune show`, of every shipped model and of what studies answer, as a browser has them."""
 import json
-import os
 import subprocess
 import tempfile
 import unittest
@@ -9,17 +8,15 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from browser import Browser
+from common_pages import EVERY, PROGRAM, SIZES, SOURCE
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
-SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
 MODELS = sorted(path for path in (SOURCE / "problems").glob("*.json") if path.name != "aircraft.json")
 # One of each model, what has no answer, and what has many; MT_EVERY=1: all.
 SAMPLE = {"beam_identification", "engine_orders", "inceptor_catalogue", "inceptor_tuning_1", "six_masses_bands",
           "six_masses_infeasible", "truss_10bar_E68_9", "truss_72bar"}
-STUDIES = sorted(path for path in (SOURCE / "studies").glob("*.json") if "MT_EVERY" in os.environ or path.stem in SAMPLE)
-SIZES = [(390, 844), (1280, 900), (1920, 1080)]
+STUDIES = sorted(path for path in (SOURCE / "studies").glob("*.json") if EVERY or path.stem in SAMPLE)
 DIGITS = 1e-7  # a page has nine, of a design with seventeen
 # All that a page says of the modes of the chosen configuration: one list per design, null where it says nothing.
 HERTZ = """
@@ -141,6 +138,7 @@ class Show(unittest.TestCase):
         path = next(iter(self.pages))
         self.browser.screen(dark=True)
         self.browser.open(path)
+        self.assertEqual(self.browser.paper(), [])
         self.assertTrue(self.browser.pdf().startswith(b"%PDF"))
 
 

@@ -227,7 +227,7 @@ class Show(CliTest):
         scene = parse(self.expect(0, "show", "--format", "json", "-c", "held", "results/two/result.json").stdout)
         self.assertEqual([error.message for error in SCHEMA.iter_errors(scene)], [])
         ranks = [r["rank"] for r in result["recommendations"]]
-        self.assertEqual([(d["label"], d["rank"]) for d in scene["designs"]], [("original", 0)] + [("recommended", r) for r in ranks])
+        self.assertEqual([(d["label"], d["rank"]) for d in scene["designs"]], [("original", 0)] + [(f"recommended, rank {r}", r) for r in ranks])
         self.assertEqual(list(faults(scene)), [])
         for design, recommended in zip(scene["designs"][1:], result["recommendations"]):
             self.assertEqual([p["name"] for p in design["parameters"]], [p["name"] for p in recommended["parameters"]])

@@ -344,7 +344,12 @@ class Page(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([os.environ["MODETUNE"], "run", "--quiet", "-o", folder, TUNING], check=True, capture_output=True)
             (written,) = Path(folder).glob("*/result.json")
-            self.assertEqual(modetune.report(written).html, written.with_name("report.html").read_text(encoding="utf-8"))
+            alone = Path(folder) / "alone"  # where the model is not found: a page without the mechanism
+            alone.mkdir()
+            (alone / "result.json").write_bytes(written.read_bytes())
+            told = subprocess.run([os.environ["MODETUNE"], "report", "--format", "html", alone / "result.json"], check=True, capture_output=True,
+                                  cwd=alone, text=True).stdout
+            self.assertEqual(modetune.report(written).html, told)
             self.assertEqual(modetune.report(json.loads(written.read_text(encoding="utf-8"))).html,
                              modetune.report(str(written)).html)
             to = page.save(Path(folder) / "page.html")

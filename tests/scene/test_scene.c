@@ -27,8 +27,8 @@ static mt_scene *scene_of(mt_test *t, mt_model *model)
     for (int i = 0; i < model->n_configurations; i++) {
         configurations[i] = i;
     }
-    if (!CHECK(t, mt_scene_new(model, 1, &ask, model->n_configurations, configurations, &scene,
-                               &err) == MT_OK)) {
+    if (!CHECK(t, mt_scene_new(model, 1, &ask, model->n_configurations, configurations,
+                               MT_SCENE_WORK, &scene, &err) == MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);
     }
     mt_model_delete(model);
@@ -249,7 +249,7 @@ static void scene__places_are_those_of_the_file(mt_test *t)
     const int first = 1; /* "installed" */
     double *const value = mt_arena_f64(&mem, (size_t)model->n_nums, 1);
     CHECK(t, mt_model_numbers(model, first, 0, NULL, NULL, &mem, value, &err) == MT_OK);
-    CHECK(t, mt_scene_new(model, 1, &ask, 1, &first, &scene, &err) == MT_OK);
+    CHECK(t, mt_scene_new(model, 1, &ask, 1, &first, MT_SCENE_WORK, &scene, &err) == MT_OK);
     int seen = 0;
     for (int i = 0; scene != NULL && i < view_of(scene, 0)->n_points; i++) {
         const mt_scene_point *const p = &view_of(scene, 0)->points[i];

@@ -4,9 +4,25 @@
   'use strict';
   const mt = (window.mt = window.mt || {});
 
+  // What shows nothing of itself but changes how others are read (base/visible.c), and what
+  // JSON escapes.
+  const HIDDEN = new RegExp('[\\u007f-\\u009f\\u00ad\\u061c\\u180e\\u200b-\\u200f' +
+    '\\u2028-\\u202e\\u2060-\\u206f\\ufeff\\ufff9-\\ufffb]');
+  const ANY = new RegExp(HIDDEN.source + '|\\\\(?:u[0-9a-fA-F]{4}|.)', 'g');
+
+  // Of JSON text: hidden characters become their numbers, to be seen.
+  function visible(json) {
+    return json.replace(ANY, (found) => {
+      const escaped = found.length === 6;
+      const code = escaped ? parseInt(found.slice(2), 16) : found.charCodeAt(0);
+      return (escaped || found.length === 1) && HIDDEN.test(String.fromCharCode(code))
+        ? '\\\\u' + code.toString(16).padStart(4, '0') : found;
+    });
+  }
+
   function block(id) {
     const element = document.getElementById(id);
-    return element ? JSON.parse(element.textContent) : null;
+    return element ? JSON.parse(visible(element.textContent)) : null;
   }
 
   // The result of a report; the scene of a report (null: it has none) or of a show.

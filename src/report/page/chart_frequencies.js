@@ -330,11 +330,12 @@
     }
     const c = all.reduce((a, b) => beyond(b) < beyond(a) ? b : a);
     const where = c.configuration + ' mode ' + c.mode + ' (' + T.sig(c.hz) + ' Hz), ';
-    if (c.side === 'inside') {
-      return where + 'inside ' + D.bandName(c) + '.';
-    }
     const asked = c.margin_percent > 0
       ? T.short(c.margin_percent, 3) + ' % are asked for.' : '';
+    if (c.side === 'inside') {
+      return 'Deepest inside a band: ' + where + T.short(-c.percent, 3) + ' % within ' +
+        D.bandName(c) + '.';
+    }
     return 'Nearest to a band: ' + where + (c.percent > 1e-6 ? T.short(c.percent, 3) + ' % ' +
       c.side + ' ' : 'at the edge of ') + D.bandName(c) + (asked ? '; ' + asked : '.');
   }

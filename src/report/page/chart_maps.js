@@ -24,12 +24,14 @@
   // Per cent of frequency for one per cent of the parameter.
   function elasticity(f, p) {
     const slope = f.sensitivity[p.name];
-    return T.isNumber(slope) && T.isNumber(p.recommended)
+    const value = T.isNumber(slope) && T.isNumber(p.recommended)
       ? slope * p.recommended / f.recommended_hz : null;
+    return T.isNumber(value) ? value : null;
   }
 
-  const shown = (x) => Math.abs(x) < 0.0005 ? '0' : x.toFixed(Math.abs(x) < 0.1 ? 3 : 2)
-    .replace('-', '\u2212');
+  const WHOLE = 1000; // elasticities are about 1; what is that large has no room for decimals
+  const shown = (x) => Math.abs(x) < 0.0005 ? '0' : Math.abs(x) >= WHOLE ? T.short(x, 2)
+    : x.toFixed(Math.abs(x) < 0.1 ? 3 : 2).replace('-', '\u2212');
 
   function inkOn(fill) {
     const c = d3.rgb(fill);
@@ -66,8 +68,9 @@
         F.rect(g, x + 1, y + 1, wide - 2, CELL.height - 2, fill).append('title').text(
           `${f.configuration} mode ${D.modeName(f)}: ` + (e === null ? 'no single slope'
             : `${T.sig(e)} % per % of ${p.name}`));
-        F.text(g, x + wide / 2, y + 17, e === null ? '\u2013' : shown(e), { anchor: 'middle',
-          size: 11, colour: e === null ? C.soft : inkOn(fill) }).attr('pointer-events', 'none');
+        F.text(g, x + wide / 2, y + 17, e === null ? '\u2013' : T.fit(shown(e), wide, 11),
+          { anchor: 'middle', size: 11, colour: e === null ? C.soft : inkOn(fill) })
+          .attr('pointer-events', 'none');
       });
     });
     return top + rows.length * CELL.height + 10;
@@ -158,7 +161,7 @@
         F.mark(g, 'circle', x(originalMac(f)), y, { colour: C.before, filled: false });
       }
       F.mark(g, 'diamond', x(f.mac), y);
-      F.text(g, right + 12, y + 4, T.sig(f.mac, 5));
+      F.text(g, right + 12, y + 4, T.fit(T.sig(f.mac, 5), w - right - 12));
     });
     const items = [{ words: changed ? mt.choice().short : 'MAC', draw: (k, a, b) =>
       F.mark(k, 'diamond', a, b) }];

@@ -31,8 +31,9 @@
       const high = Math.max(p.upper, p.original ?? p.upper, p.recommended ?? p.upper);
       const scale = (isLogarithmic(p) && low > 0 ? d3.scaleLog : d3.scaleLinear)(
         [low, high], range);
+      const place = (v) => T.isNumber(v) ? scale(v) : null;
       return { from: scale(p.lower), to: scale(p.upper),
-        before: scale(p.original), after: scale(p.recommended) };
+        before: place(p.original), after: place(p.recommended) };
     }
     return { from: null, to: null, before: changes(0), after: changes(p.change_percent ?? 0) };
   }
@@ -41,13 +42,43 @@
   const valueWords = (p, changed) => changed && !isSame(p)
     ? T.short(p.original) + ' \u2192 ' + T.short(p.recommended) : T.short(p.recommended);
 
-  // Is there room for the values between the bounds' numbers?
-  const isTight = (p, box) => hasBounds(p) && T.width(valueWords(p, box.changed), 11) +
-    T.width(T.short(p.lower), 11) + T.width(T.short(p.upper), 11) + 16 > box.right - box.left;
+  // The numbers of the bounds under their marks, as one text where these are close. Returns
+  // how much room both leave between them.
+  function drawBounds(g, p, y, m, box) {
+    const look = { size: 11, colour: C.soft };
+    const words = [T.short(p.lower), T.short(p.upper)];
+    const widths = words.map((t) => T.width(t, 11));
+    if (m.to - m.from > widths[0] + widths[1] + 8) {
+      F.text(g, m.from, y + 35, words[0], look);
+      F.text(g, m.to, y + 35, words[1], Object.assign({ anchor: 'end' }, look));
+      return { from: m.from + widths[0] + 8, to: m.to - widths[1] - 8 };
+    }
+    const both = T.fit(words.join(' to '), box.right - box.left, 11);
+    const half = T.width(both, 11) / 2;
+    const x = Math.max(box.left + half, Math.min(box.right - half, (m.from + m.to) / 2));
+    F.text(g, x, y + 35, both, Object.assign({ anchor: 'middle' }, look));
+    return { from: 0, to: 0 };
+  }
+
+  // The values under their mark: between the bounds' numbers, or in a line of their own.
+  // Returns the height that this takes.
+  function drawValues(g, p, y, m, box, inside) {
+    const words = valueWords(p, box.changed);
+    const half = T.width(words, 11) / 2;
+    const own = inside.to - inside.from < 2 * half;
+    const from = own ? box.left : inside.from;
+    const to = Math.max(from + 2 * half, own ? box.right : inside.to);
+    const at = m.after === null ? (from + to) / 2 : m.after;
+    const x = Math.max(from + half, Math.min(to - half, at));
+    F.text(g, Math.min(x, box.end - half), y + 35 + (own ? LINE : 0), words,
+      { anchor: 'middle', size: 11, halo: true }).attr('data-parameter', p.name);
+    return own ? LINE : 0;
+  }
 
   function drawRow(g, p, y, box, changes) {
     const m = marksOf(p, [box.left, box.right], changes);
     const middle = y + 14;
+    let inside = { from: box.left, to: box.right };
     if (m.from !== null) {
       F.rect(g, m.from, middle - BAR / 2, m.to - m.from, BAR, C.range);
       F.line(g, m.from, middle - 9, m.from, middle + 9,
@@ -55,28 +86,21 @@
         { 'stroke-width': p.at_bound === 'lower' ? 5 : 1.5 });
       F.line(g, m.to, middle - 9, m.to, middle + 9, p.at_bound === 'upper' ? C.bad : C.soft,
         { 'stroke-width': p.at_bound === 'upper' ? 5 : 1.5 });
-      F.text(g, m.from, y + 35, T.short(p.lower), { size: 11, colour: C.soft });
-      F.text(g, m.to, y + 35, T.short(p.upper), { size: 11, colour: C.soft, anchor: 'end' });
+      inside = drawBounds(g, p, y, m, box);
     } else {
       F.line(g, box.left, middle, box.right, middle, C.line);
     }
-    if (box.changed) {
-      F.arrow(g, m.before, m.after, middle, C.after);
+    if (box.changed && m.before !== null) {
+      if (m.after !== null) {
+        F.arrow(g, m.before, m.after, middle, C.after);
+      }
       F.mark(g, 'circle', m.before, middle, { colour: C.before, filled: false })
         .append('title').text('originally ' + T.sig(p.original, 6));
     }
-    F.mark(g, 'diamond', m.after, middle).append('title').text(T.sig(p.recommended, 6));
-    const values = valueWords(p, box.changed);
-    const tight = isTight(p, box);
-    const inner = m.from === null || tight ? 0 : Math.max(T.width(T.short(p.lower), 11),
-      T.width(T.short(p.upper), 11)) + 8;
-    const need = T.width(values, 11) / 2;
-    const from = m.from === null ? box.left : m.from;
-    const to = m.from === null ? box.right : m.to;
-    const x = Math.max(from + inner + need, Math.min(to - inner - need, m.after));
-    F.text(g, x, y + 35 + (tight ? LINE : 0), values, { anchor: 'middle', size: 11,
-      halo: true }).attr('data-parameter', p.name);
-    return y + ROW + (tight ? LINE : 0);
+    if (m.after !== null) {
+      F.mark(g, 'diamond', m.after, middle).append('title').text(T.sig(p.recommended, 6));
+    }
+    return y + ROW + drawValues(g, p, y, m, box, inside);
   }
 
   function drawWords(g, p, y, box) {
@@ -99,7 +123,7 @@
     const names = parameters.map((p) => T.width(T.titled(p.name, p.unit)));
     const words = T.width('at upper bound', 11) + 12;
     const box = { left: Math.min(Math.max(...names) + 14, w * 0.3), right: w - words - 4,
-      changed };
+      end: w, changed };
     const changes = changeScale(parameters, [box.left + 8, box.right - 8]);
     if (changed) {
       F.text(g, box.right + 12, 11, 'change [%]', { size: 11, colour: C.soft });

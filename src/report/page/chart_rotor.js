@@ -51,7 +51,7 @@
     box.top = 10 + box.topLines * 15;
     box.bottom = box.top + Math.max(240, Math.min(430, w * 0.48));
     const y = d3.scaleLinear([0, high], [box.bottom, box.top]);
-    return { e, box, x, y, ends, top, high, speed };
+    return { e, w, box, x, y, ends, top, high, speed };
   }
 
   function shade(g, p) {
@@ -89,7 +89,8 @@
     T.spread(side, 14, box.top + 4, box.bottom - 4);
     for (const l of side) {
       F.line(g, box.right, l.y, box.right + 8, l.at, C.bad, { 'stroke-width': 0.8 });
-      F.text(g, box.right + 10, l.at + 4, T.fit(l.o.label, 110), { colour: C.bad });
+      F.text(g, box.right + 10, l.at + 4, T.fit(l.o.label, Math.min(110, p.w - box.right - 10)),
+        { colour: C.bad });
     }
     for (const l of p.top) {
       const base = box.top - 5 - (box.topLines - 1 - l.lane) * 15;
@@ -136,13 +137,14 @@
           room, 11) });
       }
     }
-    T.spread(labels, 13, box.top + 7, box.bottom - 5);
+    const higher = shown.filter((f) => f.recommended_hz > high); // told above the labels
+    T.spread(labels, 13, box.top + (higher.length > 0 ? 26 : 7), box.bottom - 5);
     for (const l of labels) { // lines pass behind them
       F.rect(g, column - 2, l.at - 6, T.width(l.words, 11) + 4, 13, C.paper)
         .attr('fill-opacity', 0.85);
       F.text(g, column, l.at + 4, l.words, { size: 11 });
     }
-    return shown.filter((f) => f.recommended_hz > high);
+    return higher;
   }
 
   function legendItems(e, changed) {
@@ -181,7 +183,7 @@
       box.bottom - box.top, C.paper);
     const inside = g.append('g').attr('clip-path', `url(#${id})`);
     shade(inside, p);
-    F.axisBelow(g, x, [box.left, box.right], 'rotor speed [1/min]', box);
+    F.axisBelow(g, x, [box.left, box.right], 'speed [1/min]', box);
     F.axisLeft(g, y, [box.bottom, box.top].reverse(), 'frequency [Hz]', box);
     orders(g.append('g').attr('clip-path', `url(#${id})`), p);
     const higher = modes(g, p, changed);

@@ -19,6 +19,9 @@
       D.clean(b.per_variable)).filter((r) => T.isNumber(r.percent));
   }
 
+  // What there is to draw: of a design that stands on an edge one row says it all.
+  const drawn = () => rows().some((r) => r.percent > 0) ? rows() : rows().slice(0, 1);
+
   function drawRow(g, r, y, x, frame) {
     const tint = r.all ? C.after : C.good;
     const from = x(-r.percent);
@@ -35,17 +38,19 @@
     const outside = to + need <= frame.right;
     F.text(g, outside ? to + 6 : x(0), y + 14, words, { bold: true, halo: true,
       anchor: outside ? 'start' : 'middle' });
-    const lines = r.edge ? T.wrap('then: ' + r.edge, frame.right - frame.left, 11) : [];
+    // most often it is one edge for all of them
+    const told = r.edge && (r.all || r.edge !== box().edge);
+    const lines = told ? T.wrap('then: ' + r.edge, frame.right - frame.left, 11) : [];
     lines.forEach((line, i) => F.text(g, frame.left, y + BAR + 13 + i * LINE, line,
       { size: 11, colour: C.soft, halo: true }));
     return y + BAR + 8 + lines.length * LINE + 6;
   }
 
   function draw(g, w) {
-    const list = rows();
+    const list = drawn();
     const names = list.map((r) => T.width(r.name, 12, r.all));
     const frame = { left: Math.min(Math.max(...names) + 14, w * 0.32), right: w - 14 };
-    const most = Math.max(...list.map((r) => r.percent), 1e-9);
+    const most = Math.max(...list.map((r) => r.percent)) || 1;
     const x = d3.scaleLinear([-most * 1.04, most * 1.04], [frame.left, frame.right]);
     const grid = g.append('g');
     let y = 4;

@@ -40,7 +40,7 @@
     // A number with six digits that count; the page is read by people.
     function digits(value, count) {
         return typeof value === 'number' && isFinite(value)
-            ? String(Number(value.toPrecision(count || 6))).replace('-', '\u2212') : '–';
+            ? window.mt.number(value, count || 6).replace(/-/g, '\u2212') : '–';
     }
 
     window.mt = window.mt || {};

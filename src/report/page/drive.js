@@ -5,7 +5,7 @@
     const { make, digits } = window.mt.dom;
 
     const SVG = 'http://www.w3.org/2000/svg';
-    const LEFT = 52;
+    const LEFT = 60;
     const TOP = 12;
     const RIGHT = 26;
     const BOTTOM = 34;
@@ -78,7 +78,7 @@
         y.marks.forEach((hz) => {
             root.append(svg('line', { x1: LEFT, x2: width - RIGHT, y1: y.of(hz), y2: y.of(hz),
                 stroke: 'currentColor', 'stroke-opacity': 0.15 }));
-            text(digits(hz), LEFT - 6, y.of(hz) + 4, 'end');
+            text(digits(hz, 3), LEFT - 6, y.of(hz) + 4, 'end');
         });
         marks(low, high).forEach((value) =>
             text(digits(value) + degree, x(value), height - BOTTOM + 15, 'middle'));
@@ -142,8 +142,11 @@
     }
 
     // Tells choose(k or null) which position was chosen; null: as drawn.
-    function drivePanel(container, choose) {
-        function show(designs, configurations) {
+    function drivePanel(container, choose, heading) {
+        let last = null; // position that was chosen
+
+        // keep: that position, as for another design of the same configuration
+        function show(designs, configurations, keep) {
             const all = configurations.map((configuration) => configuration.drive);
             const driven = all.find((drive) => drive);
             const kept = all.map((drive, d) => ({ drive, label: designs[d].label }))
@@ -151,7 +154,7 @@
             container.replaceChildren();
             container.hidden = !driven;
             if (driven) {
-                container.append(make('h2', {}, 'Drive: ' + driven.joint));
+                container.append(make(heading, {}, 'Drive: ' + driven.joint));
             }
             if (kept.length === 0) {
                 container.append(make('p', { class: 'note' }, (driven && driven.error) || ''));
@@ -165,7 +168,7 @@
             const nearest = positions.reduce((k, _, i) => (off(i) < off(k) ? i : k), 0);
             const out = make('output', { class: 'place' });
             const told = make('p', { class: 'note', 'aria-live': 'polite' });
-            const picture = make('div', { class: 'figure' });
+            const picture = make('div', { class: 'picture' });
             const slider = make('input', { type: 'range', id: 'drive', min: 0,
                 max: positions.length - 1, step: 1, '.value': nearest,
                 'aria-label': 'position of ' + drives[0].joint,
@@ -186,6 +189,7 @@
 
             function set(k) {
                 chosen = k;
+                last = k;
                 const here = k === null ? drives[0].at : positions[k].at;
                 const text = here === null ? 'as drawn'
                     : digits(shownAt(drives[0], here), 4) + unitOf(drives[0])
@@ -205,7 +209,9 @@
                     paint();
                 }
             }).observe(container);
-            set(null);
+            const same = keep && last !== null && last < positions.length ? last : null;
+            slider.value = same === null ? nearest : same;
+            set(same);
         }
         return { show };
     }

@@ -16,8 +16,10 @@
   const LEAST_WIDTH = 260;
   const MOST_WIDTH = 1184;
   const PAPER_WIDTH = 680; // of A4 without its margins
+  const MANY_COLUMNS = 9; // more of them need small letters on paper
   const TITLE_SIZE = 15;
   const PNG_SCALE = 2;
+  const BESIDE = 10; // px that every figure leaves right of its scale
   const figures = [];
 
   const SHAPES = {
@@ -110,10 +112,11 @@
     for (const t of shown) {
       const half = T.width(t.words, 11) / 2;
       line(g, t.x, o.top, t.x, o.bottom, colour.line);
-      if (t.x - half > end + 6) {
-        text(g, t.x, o.bottom + 15, t.words,
+      const x = Math.max(half, Math.min(range[1] + BESIDE - half, t.x));
+      if (x - half > end + 6) {
+        text(g, x, o.bottom + 15, t.words,
           { anchor: 'middle', size: 11, colour: colour.soft });
-        end = t.x + half;
+        end = x + half;
       }
     }
     line(g, range[0], o.bottom, range[1], o.bottom, colour.soft);
@@ -304,6 +307,10 @@
     const told = document.getElementById('told');
     if (told) {
       told.open = now;
+    }
+    for (const table of document.querySelectorAll('main table')) {
+      table.classList.toggle('dense', now && table.rows.length > 0 &&
+        table.rows[0].cells.length > MANY_COLUMNS);
     }
     figures.forEach(update);
   }

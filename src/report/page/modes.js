@@ -90,6 +90,7 @@
         container.append(list, energy);
         let group = 0;
         let shown = { designs: [], configurations: [], rows: [] };
+        let chosen = 0;
 
         function showEnergy(row) {
             const { designs, configurations } = shown;
@@ -121,13 +122,15 @@
                 return;
             }
             input.checked = true;
+            chosen = k;
             list.querySelectorAll('tbody tr')
                 .forEach((row, i) => row.classList.toggle('chosen', i === k));
             showEnergy(shown.rows[k]);
             choose(shown.rows[k]);
         }
 
-        function show(designs, configurations) {
+        // keep: the mode that was chosen, as for another design of the same configuration
+        function show(designs, configurations, keep) {
             const rows = pairs(configurations.map((configuration) => configuration.modes));
             shown = { designs, configurations, rows };
             group += 1;
@@ -163,7 +166,7 @@
                 const mode = configurations[0].modes[row[0]];
                 return mode && mode.mode > 0;
             });
-            select(Math.max(start, 0));
+            select(keep && chosen < rows.length ? chosen : Math.max(start, 0));
         }
         return { show, select };
     }

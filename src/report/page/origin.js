@@ -26,6 +26,19 @@
     return rows;
   }
 
+  // What gives the same answer, as somebody would type it in the folder of the study.
+  function command(result) {
+    const quoted = (text) => /^[\w./+=-]+$/.test(text) ? text
+      : "'" + text.replace(/'/g, "'\\''") + "'";
+    const options = { seed: '--seed', starts: '--starts', max_evaluations: '--max-evaluations',
+      proof_s: '--proof' };
+    const asked = D.clean(result.run.overrides).map((o) => o.kind === 'parameter'
+      ? ' --set ' + quoted(o.name + '=' + o.value)
+      : options[o.name] ? ' ' + options[o.name] + ' ' + o.value : '');
+    return result.study && result.study.file
+      ? 'modetune run ' + quoted(result.study.file) + asked.join('') : null;
+  }
+
   function origin(result) {
     const r = result.run;
     const rows = [
@@ -33,7 +46,7 @@
       ['compiler', r.build ? r.build.compiler : null],
       ['libraries', [r.blas, r.nlopt && 'NLopt ' + r.nlopt, r.gsl && 'GSL ' + r.gsl]
         .filter(Boolean).join('; ')],
-      ['command', r.command],
+      ['command', command(result)],
       ['seed, local searches', `${r.seed}, ${r.starts}`],
       ['evaluations', String(r.evaluations)],
       ['cut by', r.cut_by],

@@ -42,7 +42,17 @@
     if (scene && mt.show) {
       const section = mt.element(into, 'section', { id: 'figure-mechanism' });
       mt.element(section, 'h2', {}, 'The mechanism');
-      mt.shown = mt.show(section, scene);
+      const note = mt.element(section, 'p', { class: 'lead', 'aria-live': 'polite' });
+      mt.shown = mt.show(section, scene, { heading: 'h3', follows: true });
+      const follow = () => {
+        const { kind, rank, label } = mt.choice();
+        const there = mt.shown.compare(kind === 'trade' ? null : rank);
+        note.textContent = there ? '' : label + ' is not drawn; here is ' +
+          mt.shown.compared() + '.';
+        note.hidden = there;
+      };
+      mt.onChoice(follow);
+      follow();
     }
   }
 

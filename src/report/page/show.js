@@ -62,7 +62,7 @@
         return make('ul', { class: 'legend', 'aria-label': 'symbols' }, list);
     }
 
-    function parameterTable(designs) {
+    function parameterTable(designs, heading) {
         const [first, second] = designs;
         const lists = designs.map((design) => design.parameters || []);
         if (lists[0].length === 0) {
@@ -78,11 +78,11 @@
         });
         const heads = second ? [first.label, second.label, 'change'] : ['value'];
         return make('details', { open: rows.length <= LONG },
-            make('summary', {}, make('h2', {}, 'Parameters')),
+            make('summary', {}, make(heading, {}, 'Parameters')),
             table(['parameter', ...heads, 'unit'], rows, second ? [1, 2, 3] : [1]));
     }
 
-    function jointTable(scene) {
+    function jointTable(scene, heading) {
         const far = mt.farShare * scene.size;
         const all = scene.designs[0].configurations.length;
         const alike = new Map(); // the same in several configurations is told once
@@ -114,14 +114,17 @@
                 where(same));
         });
         return make('section', {},
-            make('h2', {}, 'Joints, by their distance from what they join'),
+            make(heading, {}, 'Joints, by their distance from what they join'),
             make('p', { class: 'note' }, 'The distance is that of the joint\u2019s point from '
                 + 'what is drawn of the body that is farther. More than '
                 + `${quantity(far, 'm')} is marked: a coordinate may be wrong there.`),
             table(['joint', 'type', 'from body', 'distance', '', 'configurations'], rows, [3]));
     }
 
-    function show(container, scene) {
+    // options: heading (the element of headings); follows (somebody else says which design is
+    // compared with the original one: compare(rank), true where the scene has it).
+    function show(container, scene, options) {
+        const { heading, follows } = { heading: 'h2', follows: false, ...options };
         const camera = mt.camera(scene);
         const clock = mt.clock();
         const state = { configuration: 0, second: scene.designs.length > 1 ? 1 : null };
@@ -144,7 +147,7 @@
                 update(true);
             }));
         }
-        if (scene.designs.length > 2) {
+        if (scene.designs.length > 2 && !follows) {
             const labels = scene.designs.slice(1).map((design) => design.label);
             selects.append(choice('Compared with', labels, 0, (i) => {
                 state.second = i + 1;
@@ -156,11 +159,13 @@
             { camera, clock, design: i, caption: scene.designs[i].label }));
         place.classList.toggle('two', views.length > 1);
         container.append(mt.viewControls(views), key, drive,
-            make('h2', {}, 'Modes'), modes, ...[jointTable(scene)].filter((part) => part),
+            make(heading, {}, 'Modes'), modes,
+            ...[jointTable(scene, heading)].filter((part) => part),
             parameters);
         const panel = mt.modesPanel(modes,
             (row) => views.forEach((view, d) => view.setMode(row[d])));
-        const drives = mt.drivePanel(drive, (k) => views.forEach((view) => view.setDrive(k)));
+        const drives = mt.drivePanel(drive, (k) => views.forEach((view) => view.setDrive(k)),
+            heading);
 
         function update(fit) {
             facts.textContent = summary(configurations()[0]);
@@ -171,9 +176,10 @@
                     : names[state.configuration]);
             });
             key.replaceChildren(legend(configurations()[0]));
-            drives.show(designs(), configurations());
-            panel.show(designs(), configurations());
-            parameters.replaceChildren(...[parameterTable(designs())].filter((part) => part));
+            drives.show(designs(), configurations(), !fit);
+            panel.show(designs(), configurations(), !fit);
+            parameters.replaceChildren(
+                ...[parameterTable(designs(), heading)].filter((part) => part));
             if (fit) {
                 camera.home();
             }
@@ -183,7 +189,17 @@
         clock.startUnlessStill();
         window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change',
             () => key.replaceChildren(legend(configurations()[0])));
-        return { views, camera, clock, panel };
+        function compare(rank) {
+            const i = scene.designs.findIndex((design) => design.rank === rank);
+            if (i > 0 && i !== state.second) {
+                state.second = i;
+                update(false);
+            }
+            return i >= 0;
+        }
+
+        const compared = () => designs()[designs().length - 1].label;
+        return { views, camera, clock, panel, compare, compared };
     }
 
     mt.show = show;

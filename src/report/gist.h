@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_GIST_H
+#define REPORT_GIST_H
+
+#include "base/text.h"
+#include "result/result.h"
+
+/* The first thing on a page: the status, then in a few lines what the best design changes, how
+ * it meets the goals, what is proven and what else there is. Memory running out shows in
+ * out->failed. */
+void mt_report_gist(const mt_result *result, mt_text *out);
+
+#endif
