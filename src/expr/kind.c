@@ -198,7 +198,7 @@ static part leaf(const mt_code *c, mt_kind_lookup lookup, const void *context)
 
 mt_kind_found mt_expr_kind(const mt_expr *e, mt_kind_lookup lookup, const void *context)
 {
-    part stack[MT_EXPR_MAX_CODE] = {{0.0}};
+    part stack[MT_EXPR_MAX_CODE] = {{.kind = MT_KIND_NUMBER}};
     int top = 0;
     for (int i = 0; i < e->length; i++) {
         const mt_code *const c = &e->code[i];
