@@ -36,7 +36,9 @@ MT_API int mt_model_dimension(const mt_model *model);
 /* Number of parameters, and the name of each (NULL beyond the last). */
 MT_API int mt_model_parameter_count(const mt_model *model);
 MT_API const char *mt_model_parameter_name(const mt_model *model, int parameter);
-/* Its unit, as the file has it; NULL where it says none, and beyond the last. */
+/* The unit of its values everywhere in this library, which are in SI: "m" also where the file
+ * gives the number in "mm", "cm", "in" or "ft", "rad" for "deg", "Hz" for "rpm"; NULL where it
+ * says none, and beyond the last. */
 MT_API const char *mt_model_parameter_unit(const mt_model *model, int parameter);
 /* 1: it is an expression of others and follows them; 0: it is a number, or beyond the last. */
 MT_API int mt_model_parameter_follows(const mt_model *model, int parameter);

@@ -80,8 +80,9 @@ typedef struct mt_read_options {
     /* emptied, then filled with every error and warning, also where the call succeeds; NULL */
     mt_diagnostics *diagnostics;
     /* [n_sets] "NAME=VALUE" each: what parameters get instead of their values, of a study
-     * those of its own model that it does not vary. A value may be an expression of the
-     * file's values ("k=1.1*k"). NULL with 0 */
+     * those of its own model that it does not vary. A value is a number in the unit that the
+     * file gives the parameter in, or an expression of the file's values, in SI ("k=1.1*k").
+     * NULL with 0 */
     const char *const *sets;
     int n_sets;
     /* what a study's search draws its starts from instead of what it says, at least 0; NULL */

@@ -67,8 +67,10 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
         const char *text = "";
         mt_case_x(&a->asked, a->found.solutions[i].t, x);
         for (int k = 0; k < p->n; k++) {
-            text = mt_arena_printf(mem, "%s%s%s = %.17g", text, k > 0 ? ", " : "",
-                                   p->study->variables[k].parameter_name.s, x[k]);
+            const mt_variable *const v = &p->study->variables[k];
+            text = mt_arena_printf(mem, "%s%s%s = %.17g%s%s", text, k > 0 ? ", " : "",
+                                   v->parameter_name.s, mt_unit_written(v->shown, x[k]),
+                                   v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""));
         }
         MT_TRY(mt_arena_check(mem, err));
         MT_TRY(mt_describe_warn(a->result, err,

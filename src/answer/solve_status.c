@@ -41,8 +41,11 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
         if (v->original < v->lower || v->original > v->upper) {
             MT_TRY(mt_describe_warn(a->result, err,
                                     "the original value of %s, %.6g, lies outside its bounds "
-                                    "(%.6g to %.6g)",
-                                    v->parameter_name.s, v->original, v->lower, v->upper));
+                                    "(%.6g to %.6g%s%s)",
+                                    v->parameter_name.s, mt_unit_from_si(v->shown, v->original),
+                                    mt_unit_from_si(v->shown, v->lower),
+                                    mt_unit_from_si(v->shown, v->upper),
+                                    v->shown == NULL ? "" : " ", mt_unit_name(v->shown, "")));
         }
     }
     if (a->found.stop == MT_STOP_MAX_EVALS) {

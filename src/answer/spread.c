@@ -44,6 +44,8 @@ static mt_status start(spread *s, mt_err *err)
         r->spread[i] = (mt_result_spread){
             .parameter = mt_arena_strdup(&r->mem, parameter->name.s),
             .unit = parameter->unit == NULL ? NULL : mt_arena_strdup(&r->mem, parameter->unit),
+            .display_unit = mt_unit_name(s->w->p->study->variables[i].shown, NULL),
+            .display_factor = mt_unit_display(s->w->p->study->variables[i].shown),
             .value = s->x[i],
             .low = s->x[i],
             .high = s->x[i],

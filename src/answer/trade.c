@@ -55,15 +55,32 @@ static const mt_result *answer_of(const point *p)
     return p->again != NULL ? p->again : p->first;
 }
 
+/* What the values of a parameter or a bound are shown in; NULL: SI, or it is neither. */
+static const mt_unit *shown_in(const mt_study *study, const mt_vary *v)
+{
+    return v->kind == MT_VARY_PARAMETER ? mt_study_unit(study, v->parameter)
+           : v->kind == MT_VARY_BOUND   ? study->variables[v->variable].shown
+                                        : NULL;
+}
+
+/* "upper bound of L = 170 mm" */
+static const char *value_text(const trade *t, int k, int i, mt_arena *mem)
+{
+    const mt_vary *const v = &t->study->trade.vary[i];
+    const mt_unit *const shown = shown_in(t->study, v);
+    return mt_arena_printf(mem, "%s = %.6g%s%s", v->text,
+                           mt_unit_from_si(shown, t->points[k].values[i]),
+                           shown == NULL ? "" : " ", mt_unit_name(shown, ""));
+}
+
 static const char *point_text(const trade *t, int k, mt_arena *mem)
 {
-    const char *const first =
-        mt_arena_printf(mem, "%s = %.6g", t->study->trade.vary[0].text, t->points[k].values[0]);
+    const char *const first = value_text(t, k, 0, mem);
     if (t->study->trade.n_vary == 1 || first == NULL) {
         return first;
     }
-    return mt_arena_printf(mem, "%s, %s = %.6g", first, t->study->trade.vary[1].text,
-                           t->points[k].values[1]);
+    const char *const second = value_text(t, k, 1, mem);
+    return second == NULL ? NULL : mt_arena_printf(mem, "%s, %s", first, second);
 }
 
 /* What happened at point k; that it was interrupted the interrupt knows. */
@@ -390,7 +407,7 @@ static const char *unit_of(const mt_study *study, const mt_vary *v)
     if (v->kind == MT_VARY_BOUND) {
         return study->model->parameters[study->variables[v->variable].parameter].unit;
     }
-    const char *const unit = mt_goal_kind_of(study->goals[v->goal].type)->unit;
+    const char *const unit = mt_study_goal_unit(study, &study->goals[v->goal]);
     return v->slot == MT_SLOT_MARGIN ? "%" : unit[0] != '\0' ? unit : NULL;
 }
 
@@ -404,10 +421,12 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < asked->n_vary; i++) {
         const char *const unit = unit_of(t->study, &asked->vary[i]);
-        out->vary[i] =
-            (mt_trade_vary){.text = mt_arena_strdup(mem, asked->vary[i].text),
-                            .pointer = mt_arena_printf(mem, "/trade/vary/%d", i),
-                            .unit = unit == NULL ? NULL : mt_arena_strdup(mem, unit)};
+        const mt_unit *const shown = shown_in(t->study, &asked->vary[i]);
+        out->vary[i] = (mt_trade_vary){.text = mt_arena_strdup(mem, asked->vary[i].text),
+                                       .pointer = mt_arena_printf(mem, "/trade/vary/%d", i),
+                                       .unit = unit == NULL ? NULL : mt_arena_strdup(mem, unit),
+                                       .display_unit = mt_unit_name(shown, NULL),
+                                       .display_factor = mt_unit_display(shown)};
     }
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < asked->n_objectives; i++) {

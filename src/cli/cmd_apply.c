@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * modetune apply: the model's own text with the recommended numbers put in, and those that the
- * study was asked with instead of the model's own.
+ * study was asked with instead of the model's own, each in the unit that the model gives it in:
+ * a number that reads as the same value, or as one next to it (expr/units.h).
  */
 #include "modetune/version.h"
 
@@ -26,17 +27,26 @@ static int by_place(const void *a, const void *b)
     return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
-/* The text of a parameter's value in the model. The result is a file, too: it may name what is
- * not there (that it names nothing twice its reader has seen). */
+/* What the model gives the number of this parameter in; NULL: SI, or it says nothing. */
+static const mt_unit *unit_of(const mt_json *doc, mt_addr parameter)
+{
+    const mt_addr unit = mt_json_member(doc, parameter, "unit");
+    const bool is_text = unit != MT_NO_ADDR && mt_json_type_of(doc, unit) == MT_JSON_STRING;
+    return is_text ? mt_unit_find(mt_json_string(doc, unit)) : NULL;
+}
+
+/* The text of a parameter's value in the model, and the number for it. The result is a file,
+ * too: it may name what is not there (that it names nothing twice its reader has seen). */
 static mt_status find_place(const mt_json *doc, const char *path, const char *name,
                             double value, replacement *out, mt_err *err)
 {
     const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
     mt_addr at = parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
+    out->value = value;
     if (at != MT_NO_ADDR && mt_json_type_of(doc, at) == MT_JSON_OBJECT) {
+        out->value = mt_unit_written(unit_of(doc, at), value);
         at = mt_json_member(doc, at, "value");
     }
-    out->value = value;
     if (at == MT_NO_ADDR || !mt_json_span(doc, at, &out->begin, &out->end)) {
         return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path, name);
     }

@@ -24,12 +24,39 @@ typedef struct view {
     mt_doubt_list doubts;
 } view;
 
+static void json_units(mt_json_writer *w, const mt_subject *s)
+{
+    const mt_model *const m = s->model;
+    mt_json_open_flat(w, "units", '{');
+    for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
+        mt_json_put_string(w, mt_dimension_name((mt_dimension)d),
+                           m->units[d] == NULL ? mt_dimension_si((mt_dimension)d)
+                                               : m->units[d]->name);
+    }
+    mt_json_close(w);
+    mt_json_open(w, "converted", '[');
+    for (int i = 0; i < m->n_parameters; i++) {
+        const mt_parameter *const p = &m->parameters[i];
+        if (p->written != NULL) {
+            mt_json_open_flat(w, NULL, '{');
+            mt_json_put_string(w, "parameter", p->name.s);
+            mt_json_put_number(w, "number", mt_unit_from_si(p->written, s->original[i]));
+            mt_json_put_string(w, "number_unit", p->written->name);
+            mt_json_put_number(w, "value", s->original[i]);
+            mt_json_put_string(w, "unit", p->unit);
+            mt_json_close(w);
+        }
+    }
+    mt_json_close(w);
+}
+
 static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
 {
     const mt_info *const i = &v->info;
     const bool planar = v->s->model->dimension == 2;
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    json_units(w, v->s);
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
     mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
     mt_json_put_number(w, "mass_kg", i->mass_kg);
@@ -97,6 +124,30 @@ static void write_text(mt_text *out, const view *v)
                      i->residual, i->gap_m);
     }
     mt_text_add(out, "\n");
+}
+
+/* "170 mm = 0.17 m": of every parameter that the file gives in a unit other than SI. */
+static void write_units(mt_text *out, const mt_subject *s)
+{
+    const mt_model *const m = s->model;
+    int told = 0;
+    for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
+        if (m->units[d] != NULL) {
+            mt_text_addf(out, "%s%s in %s", told++ == 0 ? "Units: " : ", ",
+                         mt_dimension_name((mt_dimension)d), m->units[d]->name);
+        }
+    }
+    mt_text_add(out, told > 0 ? "; expressions in SI units\n" : "");
+    for (int i = 0; i < m->n_parameters; i++) {
+        const mt_parameter *const p = &m->parameters[i];
+        if (p->written != NULL) {
+            mt_text_addf(out, "%s  %s: %.10g %s = %.10g %s\n",
+                         told++ == 0 ? "Parameters in other units than SI\n" : "", p->name.s,
+                         mt_unit_from_si(p->written, s->original[i]), p->written->name,
+                         s->original[i], p->unit);
+        }
+    }
+    mt_text_add(out, told > 0 ? "\n" : "");
 }
 
 static mt_table table_new(void)
@@ -174,6 +225,9 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
     }
     if (list) {
         mt_json_open(&w, NULL, '[');
+    }
+    if (args->format == MT_FORMAT_TEXT) {
+        write_units(out, &s);
     }
     for (int i = 0; i < s.n_configurations; i++) {
         view v = {.s = &s, .c = s.configurations[i]};

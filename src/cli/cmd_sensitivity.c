@@ -12,6 +12,12 @@ static const char *unit_of(const mt_survey *v, int k)
     return v->s->model->parameters[v->parameter[k]].unit;
 }
 
+/* What people see its value in; NULL: SI. */
+static const mt_unit *shown_in(const mt_survey *v, int k)
+{
+    return v->s->model->parameters[v->parameter[k]].written;
+}
+
 static const char *name_of(const mt_survey *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].name.s;
@@ -114,8 +120,8 @@ static void write_text(mt_text *out, const mt_survey *v)
     }
     for (int k = 0; k < v->n; k++) {
         mt_table_text(&t, name_of(v, k));
-        mt_table_number(&t, v->value[k], HZ_DIGITS);
-        mt_table_text(&t, unit_of(v, k));
+        mt_table_number(&t, mt_unit_from_si(shown_in(v, k), v->value[k]), HZ_DIGITS);
+        mt_table_text(&t, mt_unit_name(shown_in(v, k), unit_of(v, k)));
         for (int i = 0; i < v->modes; i++) {
             mt_table_change(&t, mt_survey_per_percent(v, i, k), DIGITS);
         }

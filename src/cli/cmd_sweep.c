@@ -7,26 +7,30 @@
 
 #include "cli/sweep.h"
 #include "mechanics/drive.h"
-#include "model/values.h"
+#include "model/joint.h"
+#include "model/setting.h"
 
 enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
 
-/* One bound: an expression of the model's values. */
-static mt_status read_bound(mt_subject *s, const char *text, size_t length, double *out,
-                            mt_err *err)
+/* What the model says of angles or displacements, whichever the joint has; a hinge of a link
+ * turns. */
+static const mt_unit *unit_of(const mt_model *model, const char *name)
 {
-    const int n = s->model->n_parameters;
-    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
+    const int joint = mt_model_find_joint(model, name);
+    const mt_coordinate coordinate =
+        joint < 0 ? MT_COORDINATE_ANGLE
+                  : mt_joint_kind_of(model->joints[joint].type)->coordinate;
+    return model->units[coordinate == MT_COORDINATE_DISPLACEMENT ? MT_LENGTH : MT_ANGLE];
+}
+
+/* One bound: a number in the model's unit, or an expression of its values. */
+static mt_status read_bound(mt_subject *s, const mt_unit *unit, const char *text, size_t length,
+                            double *out, mt_err *err)
+{
     const char *const copy = mt_arena_strndup(&s->mem, text, length);
-    mt_expr e;
-    MT_TRY(mt_arena_check(&s->mem, err));
-    for (int i = 0; i < n; i++) {
-        names[i] = s->model->parameters[i].name.s;
-    }
-    mt_status rc = mt_expr_parse(copy, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
-    if (rc == MT_OK) {
-        rc = mt_model_expr_value(s->model, s->values, &e, &s->mem, out, err);
-    }
+    mt_typing with;
+    MT_TRY(mt_typing_new(s->model, s->values, &s->mem, &with, err));
+    const mt_status rc = mt_model_read_typed(&with, copy, unit, unit, out, err);
     return rc == MT_OK
                ? rc
                : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--drive: %s", copy);
@@ -70,8 +74,9 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
     out->drive.spring = args->value[MT_OPT_HOLD];
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(read_bound(s, equals + 1, (size_t)(first - equals - 1), &range[0], err));
-    MT_TRY(read_bound(s, first + 1, (size_t)(second - first - 1), &range[1], err));
+    const mt_unit *const unit = unit_of(s->model, out->drive.joint);
+    MT_TRY(read_bound(s, unit, equals + 1, (size_t)(first - equals - 1), &range[0], err));
+    MT_TRY(read_bound(s, unit, first + 1, (size_t)(second - first - 1), &range[1], err));
     MT_TRY(read_points(second + 1, range, &out->n, err));
     out->positions = mt_arena_f64(&s->mem, (size_t)out->n, 1);
     MT_TRY(mt_arena_check(&s->mem, err));

@@ -20,9 +20,11 @@
 const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_CONFIGURATION, 'c', "configuration", "CONFIGURATION", ON_MODELS,
            "only this configuration (default: all)"),
-    OPTION(MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS | ON_STUDIES,
-           "give a parameter another value; an expression may use the model's own values "
-           "(\"k=1.1*k\"); may be repeated; of a study: one that it does not vary"),
+    OPTION(
+        MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS | ON_STUDIES,
+        "give a parameter another value, a number in its unit, or an expression in SI units, "
+        "which may use the model's own values (\"k=1.1*k\"); may be repeated; of a study: one "
+        "that it does not vary"),
     OPTION(
         MT_OPT_COUNT, '\0', "count", "N",
         BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
@@ -34,9 +36,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
         MT_OPT_DAMPED, '\0', "damped", NULL, BIT(MT_CMD_MODES),
         "modes with the model's dampers, too: natural and damped frequencies, damping ratios; "
         "real roots are overdamped (as CSV these modes alone)"),
-    OPTION(MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
-           "the joint (or a link's hinge) and N positions of it from the reference position, "
-           "rad or m; FROM and TO may be expressions (\"pivot=-10*deg:10*deg:21\")"),
+    OPTION(
+        MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
+        "the joint (or a link's hinge) and N positions of it from the reference position, "
+        "numbers in rad or m, or in the model's units where it names some; FROM and TO may be "
+        "expressions (\"pivot=-10*deg:10*deg:21\")"),
     OPTION(MT_OPT_HOLD, '\0', "hold", "SPRING", BIT(MT_CMD_SWEEP),
            "trim this spring so that it holds the joint (default: the joint is locked)"),
     OPTION(MT_OPT_MODES, '\0', "modes", NULL, BIT(MT_CMD_SWEEP),

@@ -51,6 +51,8 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
         rec->parameters[i] = (mt_result_parameter){
             .name = parameter->name.s,
             .unit = parameter->unit,
+            .display_unit = mt_unit_name(v->shown, NULL),
+            .display_factor = mt_unit_display(v->shown),
             .original = original,
             .recommended = x[i],
             .change_percent =

@@ -22,10 +22,10 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
 
 /* " from a to b Hz", " at least a Hz", " at most b Hz", " at a Hz as mode 2 of \"fe\"", or
  * nothing. */
-static const char *interval_text(const mt_demand *d, mt_arena *mem)
+static const char *interval_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
 {
     const mt_goal *const g = d->goal;
-    const char *const name = mt_goal_kind_of(g->type)->unit;
+    const char *const name = mt_study_goal_unit(p->study, g);
     const char *const unit = mt_arena_printf(mem, "%s%s", name[0] != '\0' ? " " : "", name);
     const bool least = MT_HAS(g->at_least);
     const double number = least ? g->at_least : g->at_most;
@@ -55,7 +55,7 @@ static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena
     const char *const subject = quantity == NULL || d->ops->subject == NULL
                                     ? quantity
                                     : d->ops->subject(d, quantity, mem);
-    const char *const interval = interval_text(d, mem);
+    const char *const interval = interval_text(p, d, mem);
     return subject == NULL || interval == NULL
                ? NULL
                : mt_arena_printf(mem, "%s%s", subject, interval);
@@ -141,7 +141,8 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     const mt_goal *const asked = d->goal;
     const mt_goal_kind *const kind = mt_goal_kind_of(asked->type);
     g->type = kind->name;
-    g->unit = d->view < 0 ? NULL : kind->unit;
+    const char *const unit = mt_study_goal_unit(p->study, asked);
+    g->unit = d->view < 0 && unit[0] == '\0' ? NULL : unit;
     g->expression = d->view < 0 ? asked->expression_text : NULL;
     g->reference = asked->reference_name.s;
     if (d->view >= 0) {

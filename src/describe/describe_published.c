@@ -125,6 +125,12 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
     return rc;
 }
 
+/* What the numbers of a parameter are shown in; NULL: as they are. */
+static const mt_unit *shown_in(const mt_problem *p, const mt_published *pub)
+{
+    return pub->kind == MT_PUBLISHED_PARAMETER ? mt_study_unit(p->study, pub->parameter) : NULL;
+}
+
 static const char *label_of(const mt_problem *p, const mt_published *pub, mt_arena *mem)
 {
     const mt_model *const model = p->study->model;
@@ -133,9 +139,15 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
     }
     switch (pub->kind) {
     case MT_PUBLISHED_PARAMETER:
-        return pub->parameter_name.s;
-    case MT_PUBLISHED_QUANTITY:
-        return pub->quantity_text;
+        return shown_in(p, pub) == NULL ? pub->parameter_name.s
+                                        : mt_arena_printf(mem, "%s [%s]", pub->parameter_name.s,
+                                                          mt_unit_name(shown_in(p, pub), ""));
+    case MT_PUBLISHED_QUANTITY: {
+        const mt_unit *const other = mt_study_demand_unit(p->study, &pub->quantity);
+        return other == NULL ? pub->quantity_text
+                             : mt_arena_printf(mem, "%s [%s]", pub->quantity_text,
+                                               mt_dimension_si(other->dimension));
+    }
     case MT_PUBLISHED_FREQUENCY:
     case MT_PUBLISHED_MAC: {
         const char *const what = pub->kind == MT_PUBLISHED_MAC ? "MAC of " : "";
@@ -155,23 +167,25 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
 }
 
 /* A limit beside a published value is told; alone it stands in the value's place. */
-static const char *demand_of(const mt_published *pub, mt_arena *mem)
+static const char *demand_of(const mt_published *pub, const mt_unit *unit, mt_arena *mem)
 {
     const bool shown = MT_HAS(pub->value);
+    const double at_least = mt_unit_from_si(unit, pub->at_least);
+    const double at_most = mt_unit_from_si(unit, pub->at_most);
     if (MT_HAS(pub->tolerance)) {
-        return mt_arena_printf(mem, "within %g", pub->tolerance);
+        return mt_arena_printf(mem, "within %g", mt_unit_from_si(unit, pub->tolerance));
     }
     if (MT_HAS(pub->tolerance_percent)) {
         return mt_arena_printf(mem, "within %g %%", pub->tolerance_percent);
     }
     if (MT_HAS(pub->at_least) && MT_HAS(pub->at_most)) {
-        return mt_arena_printf(mem, "from %.10g to %.10g", pub->at_least, pub->at_most);
+        return mt_arena_printf(mem, "from %.10g to %.10g", at_least, at_most);
     }
     if (MT_HAS(pub->at_least)) {
-        return shown ? mt_arena_printf(mem, "at least %.10g", pub->at_least) : "at least";
+        return shown ? mt_arena_printf(mem, "at least %.10g", at_least) : "at least";
     }
     if (MT_HAS(pub->at_most)) {
-        return shown ? mt_arena_printf(mem, "at most %.10g", pub->at_most) : "at most";
+        return shown ? mt_arena_printf(mem, "at most %.10g", at_most) : "at most";
     }
     return "reported";
 }
@@ -205,7 +219,9 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
     out->role = mt_role_name(pub->role);
     out->kind = mt_published_kind_name(pub->kind);
     out->source = pub->source;
-    out->demand = demand_of(pub, mem);
+    out->display_unit = mt_unit_name(shown_in(j->p, pub), NULL);
+    out->display_factor = mt_unit_display(shown_in(j->p, pub));
+    out->demand = demand_of(pub, shown_in(j->p, pub), mem);
     MT_TRY(mt_arena_check(mem, err));
     if (pub->kind == MT_PUBLISHED_STATUS) {
         out->published_text = pub->status;

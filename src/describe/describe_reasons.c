@@ -43,15 +43,18 @@ static bool unchanged(const mt_result_parameter *p)
 
 static void say_change(mt_sentences *s, const mt_result_parameter *p)
 {
-    const char *const unit = p->unit != NULL ? p->unit : "";
-    const char *const space = p->unit != NULL ? " " : "";
+    const char *const name = p->display_unit != NULL ? p->display_unit : p->unit;
+    const char *const unit = name != NULL ? name : "";
+    const char *const space = name != NULL ? " " : "";
+    const double original = mt_result_shown(p->original, p->display_factor);
+    const double recommended = mt_result_shown(p->recommended, p->display_factor);
     mt_say_of(s, "change", p->name);
     if (isfinite(p->change_percent)) { /* not of what was 0, or next to it */
         mt_say(s, "%s %s by %.3g %%, from %.6g to %.6g%s%s.", p->name,
                p->recommended > p->original ? "rises" : "falls", fabs(p->change_percent),
-               p->original, p->recommended, space, unit);
+               original, recommended, space, unit);
     } else {
-        mt_say(s, "%s goes from %.6g to %.6g%s%s.", p->name, p->original, p->recommended, space,
+        mt_say(s, "%s goes from %.6g to %.6g%s%s.", p->name, original, recommended, space,
                unit);
     }
     if (p->at_bound != NULL) {

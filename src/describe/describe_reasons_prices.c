@@ -93,8 +93,10 @@ static void say_edges(mt_sentences *s)
 /* "0.1 kg more allowed on M_SAU" */
 static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
-    return mt_arena_printf(&s->result->mem, "%.6g%s%s %s allowed on %s", amount,
-                           p->unit != NULL ? " " : "", p->unit != NULL ? p->unit : "",
+    const char *const unit = p->display_unit != NULL ? p->display_unit : p->unit;
+    return mt_arena_printf(&s->result->mem, "%.6g%s%s %s allowed on %s",
+                           mt_result_shown(amount, p->display_factor), unit != NULL ? " " : "",
+                           unit != NULL ? unit : "",
                            strcmp(p->at_bound, "upper") == 0 ? "more" : "less", p->name);
 }
 

@@ -19,7 +19,8 @@ static void name_goal(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_r
     const char *const member = mt_goal_member_name(kind, slot);
     out->kind = "goal";
     out->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
-    out->unit = kind->unit[0] != '\0' ? kind->unit : NULL;
+    const char *const unit = mt_study_goal_unit(p->study, d->goal);
+    out->unit = unit[0] != '\0' ? unit : NULL;
     out->what = d->view < 0
                     ? mt_arena_printf(mem, "%s of goal %s", member, out->pointer)
                     : mt_arena_printf(mem, "%s of goal %s (\"%s\")", member, out->pointer,
@@ -46,6 +47,8 @@ static void name_bound(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_
     out->kind = "bound";
     out->pointer = mt_arena_printf(mem, "/variables/%d", m->variable);
     out->unit = p->study->model->parameters[v->parameter].unit;
+    out->display_unit = mt_unit_name(v->shown, NULL);
+    out->display_factor = mt_unit_display(v->shown);
     out->what = mt_arena_printf(mem, "%s bound of %s", m->upper ? "upper" : "lower",
                                 v->parameter_name.s);
 }
@@ -55,8 +58,10 @@ static const char *design_text(const mt_problem *p, const double *x, mt_arena *m
 {
     const char *text = "";
     for (int i = 0; i < p->n; i++) {
-        text = mt_arena_printf(mem, "%s%s%s = %.6g", text, i > 0 ? ", " : "",
-                               p->study->variables[i].parameter_name.s, x[i]);
+        const mt_variable *const v = &p->study->variables[i];
+        text = mt_arena_printf(mem, "%s%s%s = %.6g%s%s", text, i > 0 ? ", " : "",
+                               v->parameter_name.s, mt_unit_from_si(v->shown, x[i]),
+                               v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""));
     }
     return text;
 }
@@ -64,7 +69,7 @@ static const char *design_text(const mt_problem *p, const double *x, mt_arena *m
 static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
                           mt_relaxation *out, mt_err *err)
 {
-    *out = (mt_relaxation){.from = m->from, .to = m->to};
+    *out = (mt_relaxation){.from = m->from, .to = m->to, .display_factor = nan("")};
     out->change_percent =
         fabs(m->from) > 0.0 ? PERCENT * (m->to - m->from) / fabs(m->from) : nan("");
     switch (m->kind) {
@@ -80,6 +85,8 @@ static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
     }
     out->design = mt_arena_f64(mem, (size_t)p->n, 1);
     const char *const design = design_text(p, m->x, mem);
+    const char *const unit = out->display_unit != NULL ? out->display_unit : out->unit;
+    const double factor = out->display_unit != NULL ? out->display_factor : 1.0;
     MT_TRY(mt_arena_check(mem, err));
     memcpy(out->design, m->x, (size_t)p->n * sizeof *out->design);
     const char *const percent =
@@ -88,8 +95,8 @@ static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
         mt_arena_printf(mem,
                         "With the %s at %.6g%s%s instead of %.6g%s and nothing else changed, a "
                         "design meets all goals: %s.",
-                        out->what, m->to, out->unit != NULL ? " " : "",
-                        out->unit != NULL ? out->unit : "", m->from, percent, design);
+                        out->what, m->to / factor, unit != NULL ? " " : "",
+                        unit != NULL ? unit : "", m->from / factor, percent, design);
     return mt_arena_check(mem, err);
 }
 

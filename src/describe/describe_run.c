@@ -63,8 +63,15 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     run->n_overrides = study->n_asked;
     for (int i = 0; i < study->n_asked; i++) {
         const mt_asked_number *const a = &study->asked[i];
-        run->overrides[i] =
-            (mt_result_override){a->kind, a->name, a->unit, a->value, a->original};
+        run->overrides[i] = (mt_result_override){
+            .kind = a->kind,
+            .name = a->name,
+            .unit = a->unit,
+            .display_unit = mt_unit_name(a->shown, NULL),
+            .display_factor = mt_unit_display(a->shown),
+            .value = a->value,
+            .original = a->original,
+        };
     }
     result->n_variables = study->n_variables;
     for (int i = 0; i < study->n_variables; i++) {

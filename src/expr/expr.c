@@ -200,6 +200,29 @@ static mt_status parse_call(parser *p, size_t from, size_t length)
     return emit_op(p, op);
 }
 
+/* A unit that multiplies nothing. */
+static mt_status lone_unit(parser *p, size_t from, size_t length)
+{
+    const char *const name = p->text + from;
+    return mt_fail(p->err, MT_E_INPUT,
+                   "at character %d: \"%.*s\" is a unit: write how many of it, as \"5*%.*s\"",
+                   character(p, from), (int)length, name, (int)length, name);
+}
+
+/* Is the name that began at `from`, and has just been read, multiplied, divided or raised? A
+ * unit of length that is not is a slip of somebody who has a parameter of nearly that name. */
+static bool is_factor(parser *p, size_t from)
+{
+    const char next = peek(p);
+    while (from > 0 && strchr(" \t\n\r", p->text[from - 1]) != NULL) {
+        from--;
+    }
+    if (from > 0 && (p->text[from - 1] == '*' || p->text[from - 1] == '/')) {
+        return true;
+    }
+    return next == '*' || next == '/' || next == '^';
+}
+
 static mt_status parse_name(parser *p)
 {
     const size_t from = p->at;
@@ -212,8 +235,12 @@ static mt_status parse_name(parser *p)
         return parse_call(p, from, length);
     }
     double value = 0.0;
-    if (mt_expr_find_constant(name, length, &value)) {
-        return emit(p, MT_OP_CONST, -1, value);
+    mt_kind kind = MT_KIND_NUMBER;
+    if (mt_expr_find_constant(name, length, &value, &kind)) {
+        if (kind == MT_KIND_LENGTH && !is_factor(p, from)) {
+            return lone_unit(p, from, length);
+        }
+        return emit(p, MT_OP_CONST, (int)kind, value);
     }
     mt_op op = MT_OP_CONST;
     if (mt_expr_find_function(name, length, &op)) {
@@ -286,7 +313,7 @@ static mt_status parse_number(parser *p)
     }
     p->number = from;
     p->number_end = p->at;
-    return emit(p, MT_OP_CONST, -1, value);
+    return emit(p, MT_OP_CONST, (int)MT_KIND_NUMBER, value);
 }
 
 static mt_status parse_atom(parser *p)
@@ -407,7 +434,7 @@ mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err)
 {
     mt_code *const code = mt_arena_alloc(mem, 1, sizeof *code);
     MT_TRY(mt_arena_check(mem, err));
-    *code = (mt_code){.op = MT_OP_CONST, .param = -1, .value = value};
+    *code = (mt_code){.op = MT_OP_CONST, .param = (int)MT_KIND_NUMBER, .value = value};
     *out = (mt_expr){.code = code, .length = 1};
     return MT_OK;
 }

@@ -19,7 +19,8 @@
  * hexadecimal, no inf and no nan. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan
  * asin acos atan sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 =
  * 1 for every x; a negative number has powers with integer exponents only. Constants: pi, deg
- * (pi/180), rpm (1/60: "258*rpm" is a speed in Hz); e is not a constant. A parameter name is
+ * (pi/180), rpm (1/60: "258*rpm" is a speed in Hz), mm, cm, inch and ft (in metres); e is not a
+ * constant. A parameter name is
  * [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved. Limits, so that no
  * text can exhaust anything: bytes of text; levels of parentheses, arguments, signs and
  * exponents; parts of the code.
@@ -59,7 +60,7 @@ typedef enum mt_op {
 
 typedef struct mt_code {
     mt_op op;
-    int param;    /* MT_OP_PARAM: which */
+    int param;    /* MT_OP_PARAM: which; MT_OP_CONST: its mt_kind (expr/kind.h) */
     double value; /* MT_OP_CONST */
 } mt_code;
 

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "expr/kind.h"
+
 /* One list makes the table of functions, that of constants and the names that are reserved. */
 #define FUNCTION_LIST(X)    \
     X("sqrt", MT_OP_SQRT)   \
@@ -25,11 +27,15 @@
     X("max", MT_OP_MAX)     \
     X("hypot", MT_OP_HYPOT) \
     X("pow", MT_OP_POW)
-/* pi and pi/180 rounded to a double; 1 rpm = 1/60 turns per second */
-#define CONSTANT_LIST(X)             \
-    X("pi", 3.14159265358979323846)  \
-    X("deg", 0.01745329251994329577) \
-    X("rpm", 1.0 / 60.0)
+/* The constants that are units are worth what expr/units.h says; pi is its own. */
+#define CONSTANT_LIST(X) \
+    X("pi", NULL)        \
+    X("deg", "deg")      \
+    X("rpm", "rpm")      \
+    X("mm", "mm")        \
+    X("cm", "cm")        \
+    X("inch", "in")      \
+    X("ft", "ft")
 
 #define NAME_ENTRY(name, value)  name,
 #define VALUE_ENTRY(name, value) value,
@@ -37,7 +43,7 @@
 static const char *const reserved_names[] = {FUNCTION_LIST(NAME_ENTRY)
                                                  CONSTANT_LIST(NAME_ENTRY)};
 static const mt_op function_ops[] = {FUNCTION_LIST(VALUE_ENTRY)};
-static const double constant_values[] = {CONSTANT_LIST(VALUE_ENTRY)};
+static const char *const constant_units[] = {CONSTANT_LIST(VALUE_ENTRY)};
 
 enum {
     N_NAMES = MT_COUNT(reserved_names),
@@ -60,11 +66,15 @@ bool mt_expr_find_function(const char *name, size_t length, mt_op *op)
     return false;
 }
 
-bool mt_expr_find_constant(const char *name, size_t length, double *value)
+bool mt_expr_find_constant(const char *name, size_t length, double *value, mt_kind *kind)
 {
+    static const double pi = 3.14159265358979323846;
     for (int i = N_FUNCTIONS; i < N_NAMES; i++) {
         if (same(name, length, reserved_names[i])) {
-            *value = constant_values[i - N_FUNCTIONS];
+            const char *const of = constant_units[i - N_FUNCTIONS];
+            const mt_unit *const unit = of == NULL ? NULL : mt_unit_find(of);
+            *value = unit == NULL ? pi : mt_unit_factor(unit);
+            *kind = unit == NULL ? MT_KIND_PI : mt_kind_of_dimension(unit->dimension);
             return true;
         }
     }

@@ -5,39 +5,78 @@
 
 #include "base/base.h"
 #include "base/format.h"
+#include "expr/units.h"
 
+/* Units that no constant of the language is (expr/units.h has those). */
 typedef struct unit_word {
     const char *word;
     const char *factor; /* "": 1 */
-    const char *si;     /* NULL: the factor is a constant of the language */
+    const char *si;
 } unit_word;
 
-static const unit_word words[] = {{"deg", "deg", NULL},     {"degree", "deg", NULL},
-                                  {"degrees", "deg", NULL}, {"rpm", "rpm", NULL},
-                                  {"mm", "1e-3", "m"},      {"cm", "1e-2", "m"},
-                                  {"um", "1e-6", "m"},      {"km", "1e3", "m"},
-                                  {"in", "0.0254", "m"},    {"inch", "0.0254", "m"},
-                                  {"ft", "0.3048", "m"},    {"m", "", "m"},
-                                  {"g", "1e-3", "kg"},      {"kg", "", "kg"},
-                                  {"t", "1e3", "kg"},       {"lb", "0.45359237", "kg"},
-                                  {"N", "", "N"},           {"kN", "1e3", "N"},
-                                  {"Nm", "", "N m"},        {"Nmm", "1e-3", "N m"},
-                                  {"Pa", "", "Pa"},         {"MPa", "1e6", "Pa"},
-                                  {"GPa", "1e9", "Pa"},     {"Hz", "", "Hz"},
-                                  {"kHz", "1e3", "Hz"},     {"rad", "", "rad"},
-                                  {"mrad", "1e-3", "rad"},  {"s", "", "s"},
+static const unit_word words[] = {{"um", "1e-6", "m"},
+                                  {"km", "1e3", "m"},
+                                  {"m", "", "m"},
+                                  {"g", "1e-3", "kg"},
+                                  {"kg", "", "kg"},
+                                  {"t", "1e3", "kg"},
+                                  {"lb", "0.45359237", "kg"},
+                                  {"N", "", "N"},
+                                  {"kN", "1e3", "N"},
+                                  {"Nm", "", "N m"},
+                                  {"Nmm", "1e-3", "N m"},
+                                  {"Pa", "", "Pa"},
+                                  {"MPa", "1e6", "Pa"},
+                                  {"GPa", "1e9", "Pa"},
+                                  {"Hz", "", "Hz"},
+                                  {"kHz", "1e3", "Hz"},
+                                  {"rad", "", "rad"},
+                                  {"mrad", "1e-3", "rad"},
+                                  {"s", "", "s"},
                                   {"ms", "1e-3", "s"}};
+
+/* Other words for the constants. */
+static const char *const other_words[][2] = {
+    {"degree", "deg"}, {"degrees", "deg"}, {"in", "inch"},       {"inches", "inch"},
+    {"feet", "ft"},    {"foot", "ft"},     {"millimetre", "mm"}, {"RPM", "rpm"}};
+
+static bool same(const char *word, size_t n_word, const char *s)
+{
+    return strlen(s) == n_word && memcmp(s, word, n_word) == 0;
+}
+
+/* The constant that the word is, or stands for; NULL: none. */
+static const char *constant_of(const char *word, size_t n_word)
+{
+    int n = 0;
+    const mt_unit *const units = mt_units(&n);
+    for (int i = 0; i < n; i++) {
+        if (units[i].constant != NULL && same(word, n_word, units[i].constant)) {
+            return units[i].constant;
+        }
+    }
+    for (int i = 0; i < MT_COUNT(other_words); i++) {
+        if (same(word, n_word, other_words[i][0])) {
+            return other_words[i][1];
+        }
+    }
+    return NULL;
+}
 
 bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t n_word,
                    char *out, size_t size)
 {
+    const char *const constant = constant_of(word, n_word);
+    if (constant != NULL) {
+        (void)mt_snprintf(out, size, "\"%.*s*%s\"", (int)n_number, number, constant);
+        return true;
+    }
     for (int i = 0; i < MT_COUNT(words); i++) {
         const unit_word *const w = &words[i];
-        if (strlen(w->word) == n_word && memcmp(w->word, word, n_word) == 0) {
-            (void)mt_snprintf(out, size, "\"%.*s%s%s\"%s%s%s", (int)n_number, number,
-                              w->factor[0] == '\0' ? "" : "*", w->factor,
-                              w->si == NULL ? "" : " (numbers are in SI units, here ",
-                              w->si == NULL ? "" : w->si, w->si == NULL ? "" : ")");
+        if (same(word, n_word, w->word)) {
+            (void)mt_snprintf(out, size, "\"%.*s%s%s\" (expressions are in SI units, here %s)",
+                              (int)n_number, number, w->factor[0] == '\0' ? "" : "*", w->factor,
+                              w->si);
             return true;
         }
     }

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 /* What a number with a unit behind it, as "15 deg" or "2 mm", may have meant: "15*deg",
- * "2*1e-3 (m)", in out[size]. number and word with their lengths in bytes. False: the word is
+ * "2*1e3 (m)", in out[size]. number and word with their lengths in bytes. False: the word is
  * no unit. */
 bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t n_word,
                    char *out, size_t size);

@@ -12,6 +12,7 @@
 #include "expr/names.h"
 #include "io/file.h"
 #include "io/json_print.h"
+#include "io/read_units.h"
 #include "model/finish.h"
 #include "model/names.h"
 #include "model/setting.h"
@@ -23,6 +24,7 @@
     X(MODEL_NAME, "name", TEXT, false)                \
     X(MODEL_DESCRIPTION, "description", TEXT, false)  \
     X(MODEL_SOURCE, "source", TEXT, false)            \
+    X(MODEL_UNITS, "units", OBJECT, false)            \
     X(MODEL_DIMENSION, "dimension", COUNT, true)      \
     X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false) \
     X(MODEL_PARAMETERS, "parameters", OBJECT, false)  \
@@ -66,7 +68,7 @@ const mt_key_table *const *mt_model_key_tables(int *n)
         &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,  &mt_link_keys,
         &mt_section_keys, &mt_shear_keys,     &mt_joint_keys, &mt_spring_keys,
         &mt_damper_keys,  &mt_sensor_keys,    &mt_mode_keys,  &mt_configuration_keys,
-        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,
+        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,  &mt_units_keys,
     };
     *n = MT_COUNT(tables);
     return tables;
@@ -79,10 +81,23 @@ static mt_origin read_origin(mt_model_reader *mr, mt_addr value)
     return (mt_origin)(mt_reader_choice(&mr->r, value, "origin", names, MT_COUNT(names)) + 1);
 }
 
-static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
+/* The unit of a parameter's number, and that of its value, which is of SI. */
+static void read_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p)
 {
     int n = 0;
-    const char *const *const units = mt_model_units(&n);
+    const char *const *const names = mt_model_units(&n);
+    const int which = mt_reader_choice(&mr->r, value, "unit", names, n);
+    if (which == MT_ABSENT) {
+        return;
+    }
+    const mt_unit *const unit = mt_unit_find(names[which]);
+    const bool other = unit != NULL && !mt_unit_is_si(unit);
+    p->written = other ? unit : NULL;
+    p->unit = other ? mt_dimension_si(unit->dimension) : names[which];
+}
+
+static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
+{
     mt_addr at[PARAMETER_COUNT];
     if (!mt_reader_type(&mr->r, value, MT_KEY_NUMBER_OR_OBJECT)) {
         return;
@@ -92,12 +107,25 @@ static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
         return;
     }
     (void)mt_reader_object(&mr->r, value, &mt_parameter_keys, at);
-    p->value = mt_read_num(mr, at[PARAMETER_VALUE]);
-    const int unit = mt_reader_choice(&mr->r, at[PARAMETER_UNIT], "unit", units, n);
-    p->unit = unit == MT_ABSENT ? NULL : units[unit];
+    read_unit(mr, at[PARAMETER_UNIT], p);
+    p->value = mt_read_num_in(mr, at[PARAMETER_VALUE], p->written);
     p->description = mt_reader_text(&mr->r, at[PARAMETER_DESCRIPTION]);
     p->source = mt_reader_text(&mr->r, at[PARAMETER_SOURCE]);
     p->origin = read_origin(mr, at[PARAMETER_ORIGIN]);
+}
+
+/* Expressions of lengths, angles and speeds, when all parameters are known: a parameter without
+ * a unit is what its expression makes it. */
+static void check_kinds(mt_model_reader *mr)
+{
+    const mt_model *const m = mr->m;
+    for (int i = 0; i < m->n_parameters; i++) {
+        if (m->parameters[i].value != MT_ABSENT) {
+            const mt_number *const number = &m->nums[m->parameters[i].value];
+            mt_reader_check_kind(&mr->r, number->addr, &number->expr,
+                                 mt_model_number_unit(m, i));
+        }
+    }
 }
 
 /* Parameters are entered by name first: expressions may look ahead. */
@@ -134,6 +162,9 @@ static void read_parameters(mt_model_reader *mr, mt_addr object)
     for (int k = 0; !mt_arena_failed(&m->mem) && mt_items_next(&items); k++) {
         read_parameter(mr, items.at, &m->parameters[k]);
     }
+    mt_model_find_kinds(m);
+    mr->r.kinds = mt_model_kind;
+    check_kinds(mr);
 }
 
 static void read_points(mt_model_reader *mr, mt_addr object)
@@ -144,7 +175,7 @@ static void read_points(mt_model_reader *mr, mt_addr object)
     while (mt_items_next(&i)) {
         mt_point *const p = &m->points[m->n_points++];
         p->name = mt_reader_member_name(&mr->r, i.at, MT_NAME_ITEM);
-        (void)mt_read_vector(mr, i.at, p->x);
+        (void)mt_read_coordinates(mr, i.at, p->x);
     }
     mt_model_index_points(m);
 }
@@ -201,6 +232,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     m->description = mt_reader_text(&mr->r, at[MODEL_DESCRIPTION]);
     m->dimension = mt_reader_count(&mr->r, at[MODEL_DIMENSION], 2, 3, 0);
     m->dimension_addr = at[MODEL_DIMENSION];
+    mt_read_units(&mr->r, at[MODEL_UNITS], m->units);
     read_parameters(mr, at[MODEL_PARAMETERS]);
     if (mt_arena_failed(&m->mem)) {
         return;

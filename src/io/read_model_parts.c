@@ -5,13 +5,19 @@
 
 #include <string.h>
 
+#include "io/read_units.h"
 #include "model/names.h"
+
+mt_num mt_read_num_in(mt_model_reader *mr, mt_addr value, const mt_unit *unit)
+{
+    mt_expr expr;
+    return mt_reader_expr_in(&mr->r, value, unit, &expr) ? mt_model_add_num(mr->m, expr, value)
+                                                         : MT_ABSENT;
+}
 
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value)
 {
-    mt_expr expr;
-    return mt_reader_expr(&mr->r, value, &expr) ? mt_model_add_num(mr->m, expr, value)
-                                                : MT_ABSENT;
+    return mt_read_num_in(mr, value, NULL);
 }
 
 static void wrong_length(mt_model_reader *mr, mt_addr value, int count, int least, int most)
@@ -26,8 +32,8 @@ static void wrong_length(mt_model_reader *mr, mt_addr value, int count, int leas
     }
 }
 
-mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
-                     int *n)
+static mt_num *read_nums(mt_model_reader *mr, mt_addr value, bool single, const int limits[2],
+                         const mt_unit *unit, int *n)
 {
     *n = 0;
     if (!mt_reader_type(&mr->r, value, single ? MT_KEY_NUMBER_OR_LIST : MT_KEY_LIST)) {
@@ -35,15 +41,25 @@ mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least,
     }
     const bool is_list = mt_json_type_of(mr->r.doc, value) == MT_JSON_ARRAY;
     mt_items items = mt_reader_one_or_items(&mr->r, value);
-    if (is_list && (items.count < least || items.count > most)) {
-        wrong_length(mr, value, items.count, least, most);
+    if (is_list && (items.count < limits[0] || items.count > limits[1])) {
+        wrong_length(mr, value, items.count, limits[0], limits[1]);
         return NULL;
     }
     mt_num *const nums = mt_reader_room(&mr->r, &items, sizeof *nums);
     while (mt_items_next(&items)) {
-        nums[(*n)++] = mt_read_num(mr, items.at);
+        nums[*n] = mt_read_num_in(mr, items.at, unit);
+        if (nums[*n] != MT_ABSENT) {
+            mt_reader_check_kind(&mr->r, items.at, &mr->m->nums[nums[*n]].expr, unit);
+        }
+        ++*n;
     }
     return nums;
+}
+
+mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
+                     int *n)
+{
+    return read_nums(mr, value, single, (const int[]){least, most}, NULL, n);
 }
 
 static void no_vector(mt_num x[3])
@@ -53,11 +69,11 @@ static void no_vector(mt_num x[3])
     }
 }
 
-bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3])
+static bool read_vector(mt_model_reader *mr, mt_addr value, const mt_unit *unit, mt_num x[3])
 {
     int n = 0;
     no_vector(x);
-    const mt_num *const nums = mt_read_nums(mr, value, false, 2, 3, &n);
+    const mt_num *const nums = read_nums(mr, value, false, (const int[]){2, 3}, unit, &n);
     if (nums == NULL) {
         return false;
     }
@@ -68,6 +84,16 @@ bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3])
     }
     memcpy(x, nums, (size_t)n * sizeof *nums);
     return true;
+}
+
+bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3])
+{
+    return read_vector(mr, value, NULL, x);
+}
+
+bool mt_read_coordinates(mt_model_reader *mr, mt_addr value, mt_num x[3])
+{
+    return read_vector(mr, value, mr->m->units[MT_LENGTH], x);
 }
 
 mt_position mt_read_position(mt_model_reader *mr, mt_addr value)
@@ -81,7 +107,7 @@ mt_position mt_read_position(mt_model_reader *mr, mt_addr value)
         p.point_name = mt_reader_ref(&mr->r, value);
         p.given = p.point_name.s != NULL;
     } else {
-        p.given = mt_read_vector(mr, value, p.x);
+        p.given = mt_read_coordinates(mr, value, p.x);
     }
     return p;
 }

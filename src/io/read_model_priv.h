@@ -37,12 +37,16 @@ extern const mt_key_table mt_hold_keys;
 
 /* A number or expression of the model's parameters; MT_ABSENT where absent or wrong. */
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value);
+/* The same, a bare number in this unit; NULL: SI. */
+mt_num mt_read_num_in(mt_model_reader *mr, mt_addr value, const mt_unit *unit);
 /* A list of least..most entries, each a number; *n their number (0 where absent or wrong). A
  * single number gives a list of one where `single` says so. */
 mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
                      int *n);
 /* As many numbers as the model has dimensions; false (x all absent) where absent or wrong. */
 bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3]);
+/* Such numbers in the file's unit of lengths. */
+bool mt_read_coordinates(mt_model_reader *mr, mt_addr value, mt_num x[3]);
 /* The name of a point, or coordinates. An absent one has point MT_ABSENT and given false. */
 mt_position mt_read_position(mt_model_reader *mr, mt_addr value);
 /* One position, or the pair of positions on two bodies; their number. */

@@ -5,6 +5,8 @@
 #include <limits.h>
 #include <string.h>
 
+#include "io/read_units.h"
+
 #define SENSOR_KEYS(X)                                \
     X(SENSOR_NAME, "name", TEXT, true)                \
     X(SENSOR_ON, "on", TEXT, true)                    \
@@ -150,6 +152,20 @@ static mt_drive read_drive(mt_model_reader *mr, mt_addr value)
     return d;
 }
 
+/* A bare number is in the parameter's own unit. */
+static void read_override(mt_model_reader *mr, mt_addr value, mt_override *o)
+{
+    const mt_model *const m = mr->m;
+    const char *const name = o->parameter_name.s;
+    const int parameter = name == NULL ? MT_ABSENT : mt_model_lookup(m, name, strlen(name));
+    const bool known = parameter != MT_ABSENT;
+    o->value = mt_read_num_in(mr, value, known ? m->parameters[parameter].written : NULL);
+    if (known && o->value != MT_ABSENT) {
+        mt_reader_check_kind(&mr->r, value, &m->nums[o->value].expr,
+                             mt_model_number_unit(m, parameter));
+    }
+}
+
 /* name -> number of the parameters that this configuration overrides. */
 static void read_overrides(mt_model_reader *mr, mt_addr object, mt_configuration *c)
 {
@@ -159,7 +175,7 @@ static void read_overrides(mt_model_reader *mr, mt_addr object, mt_configuration
         mt_override *const o = &c->overrides[c->n_overrides++];
         o->parameter_name = mt_reader_member_name(&mr->r, items.at, MT_NAME_PARAMETER);
         o->parameter = MT_ABSENT;
-        o->value = mt_read_num(mr, items.at);
+        read_override(mr, items.at, o);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include "io/file.h"
 #include "io/json_print.h"
+#include "io/read_units.h"
 #include "model/values.h"
 
 #define STUDY_KEYS(X)                                                \
@@ -19,6 +20,7 @@
     X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
     X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                    \
     X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                       \
+    X(STUDY_UNITS, "units", MT_KEY_OBJECT, false)                    \
     X(STUDY_VARIABLES, "variables", MT_KEY_LIST, false)              \
     X(STUDY_GOALS, "goals", MT_KEY_LIST, false)                      \
     X(STUDY_OBJECTIVE, "objective", MT_KEY_OBJECT_OR_LIST, false)    \
@@ -58,6 +60,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
 {
 #define GOAL_KEYS(id, ...) &mt_study_goal_keys[MT_GOAL_##id],
     static const mt_key_table *const tables[] = {&mt_study_keys,
+                                                 &mt_units_keys,
                                                  &mt_study_search_keys,
                                                  &mt_study_spread_keys,
                                                  &mt_study_variable_keys,
@@ -184,6 +187,7 @@ static void read_model(mt_study_reader *s, mt_addr value)
     }
     s->r.lookup = mt_model_lookup;
     s->r.context = study->model;
+    s->r.kinds = mt_model_kind;
     s->r.names = names;
     s->r.n_names = study->model->n_parameters;
     const mt_status rc =
@@ -214,6 +218,7 @@ static void note_settings(mt_study_reader *s)
         note_asked(s, &(mt_asked_number){.kind = "parameter",
                                          .name = p->name.s,
                                          .unit = p->unit,
+                                         .shown = mt_study_unit(s->study, set->parameter),
                                          .value = set->value,
                                          .original = set->original});
     }
@@ -335,6 +340,7 @@ static void read_root(mt_study_reader *s)
     study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
                                              MAX_RECOMMENDATIONS, study->recommendations);
     read_model(s, o.found[STUDY_MODEL]);
+    mt_read_units(&s->r, o.found[STUDY_UNITS], study->units);
     note_settings(s);
     read_search(s, o.found[STUDY_SEARCH]);
     ask_search(s);

@@ -181,6 +181,15 @@ static const mt_key_table *table_of(mt_study_reader *s, mt_addr value)
     return which == MT_ABSENT ? NULL : &mt_study_goal_keys[which];
 }
 
+/* Numbers that an expression is held against. */
+static void check_demands(const reading *g)
+{
+    static const mt_goal_slot slots[] = {MT_SLOT_EQUALS, MT_SLOT_AT_LEAST, MT_SLOT_AT_MOST};
+    for (int i = 0; i < MT_COUNT(slots); i++) {
+        mt_read_study_check_demand(g->s, &g->goal->expression, found(g, slots[i]));
+    }
+}
+
 /* Every member that the kind has, by where it goes. */
 static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
 {
@@ -209,6 +218,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
             read_avoid(&g);
         }
     }
+    check_demands(&g);
     return true;
 }
 

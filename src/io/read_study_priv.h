@@ -52,6 +52,17 @@ double mt_read_study_number(mt_study_reader *s, mt_addr value);
 /* A member that is a number, and its place. */
 double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
                             mt_addr *place);
+/* What is a value of a parameter of the model (of any name): a bare number in the study's unit
+ * of its kind or in its own. In SI, NaN as above. */
+double mt_read_study_value(mt_study_reader *s, mt_addr value, const char *parameter);
+/* Such a member, and its place. */
+double mt_read_study_value_member(mt_study_reader *s, const mt_study_object *o, int key,
+                                  const char *parameter, mt_addr *place);
+/* The unit that bare numbers for the parameter are in; NULL: SI, or it is not known. */
+const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *parameter);
+/* A number that an expression is held against is in SI: noted where it is bare and looks like
+ * one of another unit. */
+void mt_read_study_check_demand(mt_study_reader *s, const mt_expr *of, mt_addr value);
 /* An expression that follows the design, and its text. */
 void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
 /* "mode": a name or an index from 1. */

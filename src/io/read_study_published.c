@@ -76,10 +76,15 @@ static void read_judgement(mt_study_reader *s, const mt_study_object *o, mt_publ
     for (int i = 0; i < MT_ROLE_COUNT; i++) {
         roles[i] = mt_role_name((mt_role)i);
     }
-    p->value = mt_read_study_member(s, o, PUBLISHED_VALUE, &p->value_addr);
-    p->at_least = mt_read_study_number(s, o->found[PUBLISHED_AT_LEAST]);
-    p->at_most = mt_read_study_number(s, o->found[PUBLISHED_AT_MOST]);
-    p->tolerance = mt_read_study_member(s, o, PUBLISHED_TOLERANCE, &p->tolerance_addr);
+    const char *const name = p->parameter_name.s; /* NULL: of something else */
+    p->value = mt_read_study_value_member(s, o, PUBLISHED_VALUE, name, &p->value_addr);
+    p->at_least = mt_read_study_value(s, o->found[PUBLISHED_AT_LEAST], name);
+    p->at_most = mt_read_study_value(s, o->found[PUBLISHED_AT_MOST], name);
+    p->tolerance =
+        mt_read_study_value_member(s, o, PUBLISHED_TOLERANCE, name, &p->tolerance_addr);
+    for (int key = PUBLISHED_VALUE; key <= PUBLISHED_TOLERANCE; key++) {
+        mt_read_study_check_demand(s, &p->quantity, o->found[key]);
+    }
     p->tolerance_percent =
         mt_read_study_member(s, o, PUBLISHED_TOLERANCE_PERCENT, &p->tolerance_percent_addr);
     const int role =

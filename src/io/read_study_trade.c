@@ -34,14 +34,25 @@ enum { SPAN_KEYS(MT_STUDY_KEY_ENUM) SPAN_KEY_COUNT };
 static const mt_key SPAN[] = {SPAN_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_span_keys = {"span", SPAN, SPAN_KEY_COUNT};
 
+/* One value of what varies: of a parameter, in its unit, or of a goal, whose expression may be
+ * held against it. */
+static double read_value(mt_study_reader *s, mt_addr value, const mt_vary *v)
+{
+    if (v->kind == MT_VARY_GOAL && v->goal != MT_ABSENT) {
+        mt_read_study_check_demand(s, &s->study->goals[v->goal].expression, value);
+    }
+    return v->kind == MT_VARY_GOAL ? mt_read_study_number(s, value)
+                                   : mt_read_study_value(s, value, v->name.s);
+}
+
 static void read_span(mt_study_reader *s, mt_addr value, mt_vary *v)
 {
     mt_study_object o;
     if (!mt_read_study_object(s, value, &mt_study_span_keys, &o)) {
         return;
     }
-    const double from = mt_read_study_number(s, o.found[SPAN_FROM]);
-    const double to = mt_read_study_number(s, o.found[SPAN_TO]);
+    const double from = read_value(s, o.found[SPAN_FROM], v);
+    const double to = read_value(s, o.found[SPAN_TO], v);
     const int n = mt_reader_count(&s->r, o.found[SPAN_COUNT], 2, MT_MAX_TRADE_POINTS, 0);
     if (n < 2 || !MT_HAS(from) || !MT_HAS(to)) {
         return;
@@ -69,7 +80,7 @@ static void read_values(mt_study_reader *s, mt_addr value, mt_vary *v)
     mt_items items = mt_reader_some_items(&s->r, value, "the list of values");
     v->values = mt_reader_room(&s->r, &items, sizeof *v->values);
     while (mt_items_next(&items)) {
-        const double number = mt_read_study_number(s, items.at);
+        const double number = read_value(s, items.at, v);
         if (MT_HAS(number)) {
             v->values[v->n_values++] = number;
         }

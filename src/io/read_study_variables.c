@@ -28,7 +28,8 @@ enum { CATALOGUE_KEYS(MT_STUDY_KEY_ENUM) CATALOGUE_KEY_COUNT };
 static const mt_key CATALOGUE[] = {CATALOGUE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_catalogue_keys = {"catalogue", CATALOGUE, CATALOGUE_KEY_COUNT};
 
-/* A series or steps between two bounds. */
+/* A series or steps between two bounds, in the unit of the catalogue's numbers: a series is one
+ * of that unit's, and steps of 0.5 in are. */
 typedef struct rule {
     int series; /* MT_ABSENT: steps */
     double step;
@@ -47,6 +48,7 @@ static int expand(const rule *r, int most, double *values)
 static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule *r,
                         mt_variable *v)
 {
+    const mt_unit *const unit = mt_read_study_unit(s, v->parameter_name.s);
     mt_diags *const diags = s->r.diags;
     if (r->series == MT_ABSENT && !(r->step > 0.0)) {
         mt_diag_error(diags, o->found[CATALOGUE_STEP], "step (%g) must be above 0", r->step);
@@ -69,7 +71,17 @@ static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule
             return;
         }
         v->n_catalogue = expand(r, n, v->catalogue);
+        for (int i = 0; i < n; i++) {
+            v->catalogue[i] = mt_unit_to_si(unit, v->catalogue[i]);
+        }
     }
+}
+
+/* A value in its parameter's unit: as written, or as near as numbers come. */
+static double in_unit(mt_study_reader *s, mt_addr value, const char *parameter)
+{
+    return mt_unit_written(mt_read_study_unit(s, parameter),
+                           mt_read_study_value(s, value, parameter));
 }
 
 static void read_rule(mt_study_reader *s, mt_addr value, mt_variable *v)
@@ -81,11 +93,12 @@ static void read_rule(mt_study_reader *s, mt_addr value, mt_variable *v)
         return;
     }
     const int which = mt_read_study_one_of(s, &o, CATALOGUE_SERIES, 2);
+    const char *const name = v->parameter_name.s;
     const rule r = {
         .series = mt_reader_choice(&s->r, o.found[CATALOGUE_SERIES], "series", names, n),
-        .step = mt_read_study_number(s, o.found[CATALOGUE_STEP]),
-        .lower = mt_read_study_number(s, o.found[CATALOGUE_LOWER]),
-        .upper = mt_read_study_number(s, o.found[CATALOGUE_UPPER]),
+        .step = in_unit(s, o.found[CATALOGUE_STEP], name),
+        .lower = in_unit(s, o.found[CATALOGUE_LOWER], name),
+        .upper = in_unit(s, o.found[CATALOGUE_UPPER], name),
     };
     const bool known = which == CATALOGUE_SERIES ? r.series != MT_ABSENT : MT_HAS(r.step);
     if (which != MT_ABSENT && known && MT_HAS(r.lower) && MT_HAS(r.upper)) {
@@ -105,7 +118,7 @@ static void read_catalogue(mt_study_reader *s, mt_addr list, mt_variable *v)
     mt_items items = mt_reader_some_items(&s->r, list, "the catalogue");
     v->catalogue = mt_reader_room(&s->r, &items, sizeof *v->catalogue);
     while (mt_items_next(&items)) {
-        const double value = mt_read_study_number(s, items.at);
+        const double value = mt_read_study_value(s, items.at, v->parameter_name.s);
         if (MT_HAS(value)) {
             v->catalogue[v->n_catalogue++] = value;
         }
@@ -120,13 +133,14 @@ static void read_variable(mt_study_reader *s, mt_addr value, mt_variable *v)
         return;
     }
     v->parameter_name = mt_reader_ref(&s->r, o.found[VARIABLE_PARAMETER]);
-    v->lower = mt_read_study_member(s, &o, VARIABLE_LOWER, &v->lower_addr);
-    v->upper = mt_read_study_member(s, &o, VARIABLE_UPPER, &v->upper_addr);
+    const char *const name = v->parameter_name.s;
+    v->lower = mt_read_study_value_member(s, &o, VARIABLE_LOWER, name, &v->lower_addr);
+    v->upper = mt_read_study_value_member(s, &o, VARIABLE_UPPER, name, &v->upper_addr);
     v->catalogue_addr = mt_read_study_place(s, &o, VARIABLE_CATALOGUE);
     read_catalogue(s, o.found[VARIABLE_CATALOGUE], v);
     const double weight = mt_read_study_member(s, &o, VARIABLE_WEIGHT, &v->weight_addr);
     v->weight = MT_HAS(weight) ? weight : v->weight;
-    v->scale = mt_read_study_member(s, &o, VARIABLE_SCALE, &v->scale_addr);
+    v->scale = mt_read_study_value_member(s, &o, VARIABLE_SCALE, name, &v->scale_addr);
     v->tolerance_percent = mt_read_study_member(s, &o, VARIABLE_TOLERANCE, &v->tolerance_addr);
 }
 

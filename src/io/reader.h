@@ -23,6 +23,7 @@ typedef struct mt_reader {
     const void *context;
     const char *const *names; /* candidates for "did you mean" in expressions */
     int n_names;
+    mt_kind_lookup kinds; /* of the parameters, with the context of lookup */
 } mt_reader;
 
 /* id, JSON types, what a message calls it */

@@ -247,6 +247,8 @@ static void put_design(mt_json_writer *w, const mt_scene_design *d)
         mt_json_put_string(w, "name", d->parameters[i].name);
         mt_json_put_rounded(w, "value", d->parameters[i].value, VALUE);
         mt_json_put_string(w, "unit", d->parameters[i].unit);
+        mt_json_put_string(w, "display_unit", d->parameters[i].display_unit);
+        mt_json_put_number(w, "display_factor", d->parameters[i].display_factor);
         mt_json_close(w);
     }
     mt_json_close(w);

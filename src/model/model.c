@@ -166,13 +166,72 @@ const char *mt_spring_type_name(mt_spring_type type)
 const char *const *mt_model_units(int *n)
 {
     static const char *const units[] = {
-        "1",      "m",         "m^2",    "m^3",   "m^4", "kg",  "kg/m",  "kg/m^2",
-        "kg/m^3", "kg m",      "kg m^2", "s",     "Hz",  "rad", "rad/s", "m/s",
-        "m/s^2",  "N",         "N/m",    "N/m^2", "Pa",  "N m", "N m^2", "N m/rad",
-        "N s/m",  "N m s/rad", "m/rad",  "rad/m", "J",   "W",
+        "1",     "m",      "m^2", "m^3", "m^4",   "kg",      "kg/m",  "kg/m^2",    "kg/m^3",
+        "kg m",  "kg m^2", "s",   "Hz",  "rad",   "rad/s",   "m/s",   "m/s^2",     "N",
+        "N/m",   "N/m^2",  "Pa",  "N m", "N m^2", "N m/rad", "N s/m", "N m s/rad", "m/rad",
+        "rad/m", "J",      "W",   "mm",  "cm",    "in",      "ft",    "deg",       "rpm",
     };
     *n = MT_COUNT(units);
     return units;
+}
+
+const mt_unit *mt_parameter_si(const mt_parameter *parameter)
+{
+    return parameter->unit == NULL ? NULL : mt_unit_find(parameter->unit);
+}
+
+const mt_unit *mt_model_number_unit(const mt_model *model, int parameter)
+{
+    const mt_parameter *const p = &model->parameters[parameter];
+    for (int d = 0; d < MT_DIMENSION_COUNT && p->written == NULL; d++) {
+        if (p->kind == mt_kind_of_dimension((mt_dimension)d)) {
+            return model->units[d];
+        }
+    }
+    return p->written;
+}
+
+mt_kind mt_model_kind(const void *model, int parameter)
+{
+    return ((const mt_model *)model)->parameters[parameter].kind;
+}
+
+static mt_kind kind_of(const mt_model *m, const mt_parameter *p)
+{
+    const mt_unit *const si = mt_parameter_si(p);
+    if (si != NULL) {
+        return mt_kind_of_dimension(si->dimension);
+    }
+    if (p->unit != NULL) {
+        return strcmp(p->unit, "1") == 0 ? MT_KIND_NUMBER : MT_KIND_UNKNOWN;
+    }
+    if (p->value == MT_ABSENT) {
+        return MT_KIND_UNKNOWN;
+    }
+    /* a 0 that somebody may change is a number */
+    const mt_kind kind = mt_expr_kind(&m->nums[p->value].expr, mt_model_kind, m).kind;
+    return kind == MT_KIND_ZERO ? MT_KIND_NUMBER : kind;
+}
+
+/* Expressions may look ahead, and back: forwards and backwards in turn, as often as something
+ * changes. What a chain of parameters without units ends in that goes to and fro more often
+ * stays unknown, which nobody holds against it. */
+void mt_model_find_kinds(mt_model *model)
+{
+    enum { MOST_PASSES = 8 };
+    bool changed = true;
+    for (int i = 0; i < model->n_parameters; i++) {
+        model->parameters[i].kind = MT_KIND_UNKNOWN;
+    }
+    for (int pass = 0; changed && pass < MOST_PASSES; pass++) {
+        changed = false;
+        for (int k = 0; k < model->n_parameters; k++) {
+            const int i = pass % 2 == 0 ? k : model->n_parameters - 1 - k;
+            const mt_kind kind = kind_of(model, &model->parameters[i]);
+            changed = changed || kind != model->parameters[i].kind;
+            model->parameters[i].kind = kind;
+        }
+    }
 }
 
 const char *mt_model_title(const mt_model *model)

@@ -7,6 +7,8 @@
 #include "base/arena.h"
 #include "base/diag.h"
 #include "expr/expr.h"
+#include "expr/kind.h"
+#include "expr/units.h"
 
 /*
  * The description of one mechanism and its configurations. A reader fills the lists (names,
@@ -61,7 +63,10 @@ typedef enum mt_origin {
 typedef struct mt_parameter {
     mt_name name;
     mt_num value;
-    const char *unit; /* NULL: none given */
+    const char *unit; /* of its values, which are in SI: "m" where the file says "mm"; NULL */
+    /* what the file gives its number in, where that is none of SI ("mm"); NULL */
+    const mt_unit *written;
+    mt_kind kind; /* of its value; mt_model_find_kinds */
     const char *description;
     const char *source;
     mt_origin origin;
@@ -370,6 +375,8 @@ typedef struct mt_model {
     const char *path; /* as given to the reader; NULL */
     const char *name;
     const char *description;
+    /* what its file says of coordinates, angles and speeds; NULL: nothing, which is SI */
+    const mt_unit *units[MT_DIMENSION_COUNT];
     int dimension; /* 2 or 3 */
     mt_addr dimension_addr;
     bool has_gravity;
@@ -425,7 +432,16 @@ bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);
 const char *mt_spring_type_name(mt_spring_type type);
 
-/* The fixed list of SI unit strings that a parameter's `unit` may have; *n their number. */
+/* The fixed list of unit strings that a parameter's `unit` may have; *n their number. */
 const char *const *mt_model_units(int *n);
+/* The kinds of all parameters: that of the unit, or of the expression where none is given. */
+void mt_model_find_kinds(mt_model *model);
+/* The mt_kind_lookup of a model. */
+mt_kind mt_model_kind(const void *model, int parameter);
+/* The unit of the kind of this parameter's unit (a length's: m); NULL: it has none of those. */
+const mt_unit *mt_parameter_si(const mt_parameter *parameter);
+/* The unit that a number for this parameter would be taken to be in, by its own unit or by the
+ * file's: what its expressions are held against (mt_kind_complaint). NULL: SI. */
+const mt_unit *mt_model_number_unit(const mt_model *model, int parameter);
 
 #endif

@@ -63,8 +63,8 @@ static void add_row(mt_table *t, const mt_recommendation *r, const moved *g, int
     mt_table_text(t, p->name);
     mt_table_change(t, move(r, g, k), SHORT_DIGITS);
     mt_table_text(t, g->unit != NULL && g->unit[0] != '\0' ? g->unit : NULL);
-    mt_table_number(t, p->recommended, VALUE_DIGITS);
-    mt_table_text(t, p->unit);
+    mt_table_shown(t, p->recommended, p->display_factor, VALUE_DIGITS);
+    mt_table_unit(t, p->unit, p->display_unit);
     mt_table_text(t, p->at_bound);
     mt_table_text(t, room.s);
     t->failed = t->failed || room.failed;

@@ -87,27 +87,6 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
     return t;
 }
 
-mt_table mt_report_parameters(const mt_recommendation *r)
-{
-    mt_table t = mt_table_default();
-    mt_table_column(&t, "parameter", "name", MT_ALIGN_LEFT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
-    mt_table_column(&t, "before", "original", MT_ALIGN_POINT);
-    mt_table_column(&t, "after", "recommended", MT_ALIGN_POINT);
-    mt_table_column(&t, "change [%]", "change_percent", MT_ALIGN_POINT);
-    mt_table_column(&t, "at bound", "at_bound", MT_ALIGN_LEFT);
-    for (int i = 0; i < r->n_parameters; i++) {
-        const mt_result_parameter *const p = &r->parameters[i];
-        mt_table_text(&t, p->name);
-        mt_table_text(&t, p->unit);
-        mt_table_number(&t, p->original, VALUE_DIGITS);
-        mt_table_number(&t, p->recommended, VALUE_DIGITS);
-        mt_table_percent(&t, p->change_percent, PERCENT_DIGITS);
-        mt_table_text(&t, p->at_bound);
-    }
-    return t;
-}
-
 mt_table mt_report_objectives(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
@@ -173,25 +152,6 @@ void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_re
     if (!has_objective(result, CHANGE)) {
         mt_table_number(t, r->change, VALUE_DIGITS);
     }
-}
-
-bool mt_report_measure(const mt_result_parameter *p, mt_text *out)
-{
-    char number[MT_NUMBER_TEXT];
-    const char *const space = p->unit == NULL ? "" : " ";
-    const char *const unit = p->unit == NULL ? "" : p->unit;
-    if (p->measure_floor > 0.0) {
-        mt_text_addf(out, "The change of %s counts as ln(new/original), below %s%s%s linearly.",
-                     p->name, mt_report_number(p->measure_floor, VALUE_DIGITS, number), space,
-                     unit);
-        return true;
-    }
-    if (p->measure_scale > 0.0) {
-        mt_text_addf(out, "The change of %s counts linearly, %s%s%s as 1.", p->name,
-                     mt_report_number(p->measure_scale, VALUE_DIGITS, number), space, unit);
-        return true;
-    }
-    return false;
 }
 
 /* The target or the limit; "7.00000 to 9.00000" where there are two. */
@@ -373,15 +333,14 @@ mt_table mt_report_alternatives(const mt_result *result)
     mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
     mt_report_objective_columns(&t, result);
     mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
-    const int n = result->n_variables;
     const bool bands = result->baseline.n_gaps > 0;
     if (bands) {
         mt_report_clearance_column(&t, result);
         mt_table_column(&t, "modes below bands", "gap_assignment", MT_ALIGN_LEFT);
     }
-    for (int k = 0; k < n; k++) {
-        mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_POINT);
-    }
+    const mt_recommendation *const first =
+        result->n_recommendations > 0 ? &result->recommendations[0] : NULL;
+    mt_report_variable_columns(&t, result, first);
     for (int i = 0; i < result->n_recommendations; i++) {
         const mt_recommendation *const r = &result->recommendations[i];
         mt_table_integer(&t, r->rank);
@@ -393,10 +352,7 @@ mt_table mt_report_alternatives(const mt_result *result)
             mt_table_number(&t, r->clearance_percent, PERCENT_DIGITS);
             mt_table_text(&t, assignment(r, text, sizeof text));
         }
-        for (int k = 0; k < n; k++) {
-            mt_table_number(&t, k < r->n_parameters ? r->parameters[k].recommended : nan(""),
-                            VALUE_DIGITS);
-        }
+        mt_report_variable_cells(&t, result, r);
     }
     return t;
 }
@@ -418,49 +374,6 @@ bool mt_report_verified(const mt_result *result, int *judged)
     return all;
 }
 
-/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first demand's where it
- * has several. */
-static void weight_cell(mt_table *t, const mt_result *result, const char *goal, double factor)
-{
-    char text[WEIGHT_TEXT];
-    const char *words = goal;
-    for (int i = result->baseline.n_goals - 1; i >= 0 && goal != NULL; i--) {
-        const mt_result_goal *const g = &result->baseline.goals[i];
-        words = g->pointer != NULL && strcmp(g->pointer, goal) == 0 ? g->text : words;
-    }
-    if (words != NULL) {
-        (void)mt_snprintf(text, sizeof text, "%g x %s", factor, words);
-    }
-    mt_table_text(t, words == NULL ? NULL : text);
-}
-
-mt_table mt_report_spread(const mt_result *result)
-{
-    mt_table t = mt_table_default();
-    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
-    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
-    mt_table_column(&t, "low", "low", MT_ALIGN_POINT);
-    mt_table_column(&t, "[%]", "low_percent", MT_ALIGN_POINT);
-    mt_table_column(&t, "by weight", "low_goal", MT_ALIGN_LEFT);
-    mt_table_column(&t, "high", "high", MT_ALIGN_POINT);
-    mt_table_column(&t, "[%]", "high_percent", MT_ALIGN_POINT);
-    mt_table_column(&t, "by weight", "high_goal", MT_ALIGN_LEFT);
-    for (int i = 0; i < result->n_spread; i++) {
-        const mt_result_spread *const s = &result->spread[i];
-        mt_table_text(&t, s->parameter);
-        mt_table_text(&t, s->unit);
-        mt_table_number(&t, s->value, VALUE_DIGITS);
-        mt_table_number(&t, s->low, VALUE_DIGITS);
-        mt_table_percent(&t, s->low_percent, PERCENT_DIGITS);
-        weight_cell(&t, result, s->low_goal, s->low_factor);
-        mt_table_number(&t, s->high, VALUE_DIGITS);
-        mt_table_percent(&t, s->high_percent, PERCENT_DIGITS);
-        weight_cell(&t, result, s->high_goal, s->high_factor);
-    }
-    return t;
-}
-
 mt_table mt_report_published(const mt_result *result)
 {
     mt_table t = mt_table_default();
@@ -480,10 +393,10 @@ mt_table mt_report_published(const mt_result *result)
             mt_table_text(&t, p->published_text);
             mt_table_text(&t, p->computed_text);
         } else {
-            mt_table_quoted(&t, p->published);
-            mt_table_number(&t, p->computed, VALUE_DIGITS);
+            mt_table_quoted(&t, p->published, p->display_factor);
+            mt_table_shown(&t, p->computed, p->display_factor, VALUE_DIGITS);
         }
-        mt_table_change(&t, p->difference, PERCENT_DIGITS);
+        mt_table_change_shown(&t, p->difference, p->display_factor, PERCENT_DIGITS);
         mt_table_percent(&t, p->difference_percent, PERCENT_DIGITS);
         mt_table_text(&t, p->demand);
         mt_table_text(&t, p->role);

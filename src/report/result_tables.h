@@ -22,6 +22,11 @@ void mt_report_objective_cells(mt_table *t, const mt_result *result,
 /* The column of the least clearance from the bands without their margin, beside an objective
  * that is the one with it. */
 void mt_report_clearance_column(mt_table *t, const mt_result *result);
+/* A column for each variable, with the unit where people see another than machines (which it is
+ * at this design, the same for all; NULL: there is none); and their cells of one design. */
+void mt_report_variable_columns(mt_table *t, const mt_result *result,
+                                const mt_recommendation *of);
+void mt_report_variable_cells(mt_table *t, const mt_result *result, const mt_recommendation *r);
 /* name, unit, original, recommended, change, bound. */
 mt_table mt_report_parameters(const mt_recommendation *r);
 /* How the change of a parameter counts, as a sentence; false (and nothing) where it is the

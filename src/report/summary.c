@@ -359,12 +359,15 @@ void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)
     for (int i = 0; i < run->n_overrides; i++) {
         const mt_result_override *const o = &run->overrides[i];
         const bool parameter = strcmp(o->kind, "parameter") == 0;
+        const char *const unit = o->display_unit != NULL ? o->display_unit : o->unit;
         mt_text_addf(&line, "%s%s%s = %.10g", i == 0 ? "Asked with " : ", ",
-                     parameter ? "" : "search ", o->name, o->value);
-        mt_text_addf(&line, parameter && o->unit != NULL ? " %s" : "%s",
-                     parameter && o->unit != NULL ? o->unit : "");
+                     parameter ? "" : "search ", o->name,
+                     mt_result_shown(o->value, o->display_factor));
+        mt_text_addf(&line, parameter && unit != NULL ? " %s" : "%s",
+                     parameter && unit != NULL ? unit : "");
         if (!isnan(o->original)) {
-            mt_text_addf(&line, " (%s: %.10g)", parameter ? "model" : "study", o->original);
+            mt_text_addf(&line, " (%s: %.10g)", parameter ? "model" : "study",
+                         mt_result_shown(o->original, o->display_factor));
         }
     }
     if (run->n_overrides > 0) {

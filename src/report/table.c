@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "base/visible.h"
 #include "report/number.h"
+#include "result/result.h"
 
 enum { INTEGER_TEXT = 24 };
 
@@ -82,26 +83,45 @@ void mt_table_integer(mt_table *t, long long value)
     add_cell(t, s, s);
 }
 
-void mt_table_number(mt_table *t, double value, int digits)
+void mt_table_shown(mt_table *t, double value, double factor, int digits)
 {
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
-    add_cell(t, mt_report_number(value, digits, text), mt_report_exact(value, exact));
+    add_cell(t, mt_report_number(mt_result_shown(value, factor), digits, text),
+             mt_report_exact(value, exact));
+}
+
+void mt_table_number(mt_table *t, double value, int digits)
+{
+    mt_table_shown(t, value, 1.0, digits);
+}
+
+void mt_table_unit(mt_table *t, const char *unit, const char *display_unit)
+{
+    const char *const shown = display_unit != NULL ? display_unit : unit;
+    add_cell(t, shown == NULL ? "-" : shown, unit == NULL ? "" : unit);
+}
+
+void mt_table_change_shown(mt_table *t, double value, double factor, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    add_cell(t, mt_report_change(mt_result_shown(value, factor), digits, text),
+             mt_report_exact(value, exact));
 }
 
 void mt_table_change(mt_table *t, double value, int digits)
 {
-    char text[MT_NUMBER_TEXT];
-    char exact[MT_NUMBER_TEXT];
-    add_cell(t, mt_report_change(value, digits, text), mt_report_exact(value, exact));
+    mt_table_change_shown(t, value, 1.0, digits);
 }
 
-void mt_table_quoted(mt_table *t, double value)
+void mt_table_quoted(mt_table *t, double value, double factor)
 {
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
-    (void)mt_snprintf(text, sizeof text, "%.10g", value);
-    add_cell(t, isfinite(value) ? text : mt_report_number(value, 1, text),
+    const double shown = mt_result_shown(value, factor);
+    (void)mt_snprintf(text, sizeof text, "%.10g", shown);
+    add_cell(t, isfinite(shown) ? text : mt_report_number(shown, 1, text),
              mt_report_exact(value, exact));
 }
 

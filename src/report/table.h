@@ -48,8 +48,14 @@ void mt_table_text(mt_table *t, const char *text);
 void mt_table_integer(mt_table *t, long long value);
 void mt_table_number(mt_table *t, double value, int digits);
 void mt_table_change(mt_table *t, double value, int digits); /* with its sign */
-/* A number as a source gives it: no more digits than it has. */
-void mt_table_quoted(mt_table *t, double value);
+/* A number, and the name of its unit, that people see in another unit than machines, who get
+ * SI: for them value / factor (result/result.h); NULL, and a factor that is not above 0: as it
+ * is. */
+void mt_table_shown(mt_table *t, double value, double factor, int digits);
+void mt_table_change_shown(mt_table *t, double value, double factor, int digits);
+void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
+/* A number as a source gives it, in such a unit: no more digits than it has. */
+void mt_table_quoted(mt_table *t, double value, double factor);
 /* A percentage with its sign; for people, what is below 1e-9 % is rounding and written 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
 int mt_table_rows(const mt_table *t);

@@ -19,6 +19,8 @@ static const char *const MEASURES[] = {"logarithmic", "logarithmic with floor", 
 static const mt_field PARAMETER_FIELDS[] = {
     MT_F_TEXT("name", name),
     MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
     MT_F_NUMBER_OR_NULL("original", original),
     MT_F_NUMBER_OR_NULL("recommended", recommended),
     MT_F_NUMBER_OR_NULL("change_percent", change_percent),
@@ -227,6 +229,8 @@ static const mt_record UNDETERMINED = MT_F_RECORD_OF(UNDETERMINED_FIELDS);
 static const mt_field SPREAD_FIELDS[] = {
     MT_F_TEXT("parameter", parameter),
     MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
     MT_F_NUMBER_OR_NULL("value", value),
     MT_F_NUMBER_OR_NULL("low", low),
     MT_F_NUMBER_OR_NULL("low_percent", low_percent),
@@ -259,6 +263,8 @@ static const mt_field RELAXATION_FIELDS[] = {
     MT_F_TEXT("pointer", pointer),
     MT_F_TEXT("what", what),
     MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
     MT_F_NUMBER("from", from),
     MT_F_NUMBER("to", to),
     MT_F_NUMBER_OR_NULL("change_percent", change_percent),
@@ -273,6 +279,8 @@ static const mt_field VARY_FIELDS[] = {
     MT_F_TEXT("quantity", text),
     MT_F_TEXT("pointer", pointer),
     MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
 };
 static const mt_record VARY = MT_F_RECORD_OF(VARY_FIELDS);
 #undef THIS
@@ -333,6 +341,8 @@ static const mt_field PUBLISHED_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("difference", difference),
     MT_F_NUMBER_OR_NULL("difference_percent", difference_percent),
     MT_F_TEXT_OR_NULL("demand", demand),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
     MT_F_FLAG("holds", holds),
     MT_F_TEXT_OR_NULL("source", source),
 };
@@ -384,8 +394,12 @@ static const mt_record SPENT = MT_F_RECORD_OF(SPENT_FIELDS);
 #define THIS mt_result_override
 static const char *const OVERRIDES[] = {"parameter", "search"};
 static const mt_field OVERRIDE_FIELDS[] = {
-    MT_F_CHOICE("kind", kind, OVERRIDES),      MT_F_TEXT("name", name),
-    MT_F_TEXT_OR_NULL("unit", unit),           MT_F_NUMBER("value", value),
+    MT_F_CHOICE("kind", kind, OVERRIDES),
+    MT_F_TEXT("name", name),
+    MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
+    MT_F_NUMBER("value", value),
     MT_F_NUMBER_OR_NULL("original", original),
 };
 static const mt_record OVERRIDE = MT_F_RECORD_OF(OVERRIDE_FIELDS);
@@ -489,6 +503,11 @@ void mt_result_delete(mt_result *result)
         mt_arena_free(&result->mem);
         free(result);
     }
+}
+
+double mt_result_shown(double value, double factor)
+{
+    return factor > 0.0 ? value / factor : value;
 }
 
 mt_result_mark mt_result_get_mark(const mt_result *result)

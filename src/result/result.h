@@ -19,6 +19,10 @@
 typedef struct mt_result_parameter {
     const char *name;
     const char *unit; /* may be NULL */
+    /* what people are shown its numbers in, and how much that is in the unit: value / factor;
+     * NULL, NaN: in the unit itself */
+    const char *display_unit;
+    double display_factor;
     double original;
     double recommended;
     double change_percent; /* NaN where original is 0 */
@@ -226,9 +230,11 @@ typedef struct mt_undetermined {
  * changed. */
 typedef struct mt_result_spread {
     const char *parameter;
-    const char *unit; /* may be NULL */
-    double value;     /* with the weights as given */
-    double low; /* smallest and greatest of all solutions, the given weights' among them */
+    const char *unit;         /* may be NULL */
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
+    double value; /* with the weights as given */
+    double low;   /* smallest and greatest of all solutions, the given weights' among them */
     double high;
     double low_percent; /* of |value|; NaN where that is 0 */
     double high_percent;
@@ -250,7 +256,9 @@ typedef struct mt_result_published {
     double difference_percent;
     const char *published_text; /* status */
     const char *computed_text;
-    const char *demand; /* "within 0.1 %", "at least" */
+    const char *demand;       /* "within 0.1 %", "at least" */
+    const char *display_unit; /* of a parameter, as in mt_result_parameter */
+    double display_factor;
     bool holds;
 } mt_result_published;
 
@@ -271,6 +279,8 @@ typedef struct mt_relaxation {
     const char *pointer; /* what it belongs to: "/variables/0", "/goals/2" */
     const char *what;    /* "upper bound of k1", "lower edge of 4P of UH-60 in "installed"" */
     const char *unit;    /* may be NULL */
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
     double from;
     double to;
     double change_percent; /* of |from|; NaN where that is 0 */
@@ -290,9 +300,11 @@ typedef struct mt_trade_point {
 } mt_trade_point;
 
 typedef struct mt_trade_vary {
-    const char *text;    /* "upper bound of M_SAU" */
-    const char *pointer; /* "/trade/vary/0" */
-    const char *unit;    /* may be NULL */
+    const char *text;         /* "upper bound of M_SAU" */
+    const char *pointer;      /* "/trade/vary/0" */
+    const char *unit;         /* may be NULL */
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
 } mt_trade_vary;
 
 typedef struct mt_trade_result {
@@ -340,7 +352,9 @@ typedef struct mt_result_build {
 typedef struct mt_result_override {
     const char *kind; /* "parameter" of the model, "search": member of the study's search */
     const char *name;
-    const char *unit; /* NULL: none given */
+    const char *unit;         /* NULL: none given */
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
     double value;
     double original; /* what the files say; NaN: nothing */
 } mt_result_override;
@@ -453,6 +467,9 @@ mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
                                  mt_recommendation *out, mt_err *err);
 /* All that it has borrowed becomes its own. Fails: MT_E_MEMORY. */
 mt_status mt_result_own(mt_result *result, mt_err *err);
+
+/* A value in the unit that people are shown (display_factor). */
+double mt_result_shown(double value, double factor);
 
 /* What these structs hold, member by member as in JSON. */
 extern const mt_record mt_result_record;

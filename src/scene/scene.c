@@ -186,6 +186,8 @@ static mt_status list_parameters(const mt_model *model, const mt_scene_ask *ask,
         out->parameters[out->n_parameters++] = (mt_scene_parameter){
             .name = mt_arena_strdup(mem, from->name.s),
             .unit = from->unit == NULL ? NULL : mt_arena_strdup(mem, from->unit),
+            .display_unit = mt_unit_name(from->written, NULL),
+            .display_factor = mt_unit_display(from->written),
             .value = value[p]};
     }
     return mt_arena_check(mem, err);

@@ -150,6 +150,9 @@ typedef struct mt_scene_view {
 typedef struct mt_scene_parameter {
     const char *name;
     const char *unit; /* NULL: none given */
+    /* what the model gives its number in, value / factor; NULL, NaN: in the unit */
+    const char *display_unit;
+    double display_factor;
     double value;
 } mt_scene_parameter;
 

@@ -69,6 +69,43 @@ bool mt_study_asks(const mt_study *study, int configuration)
     return false;
 }
 
+const mt_unit *mt_study_unit(const mt_study *study, int parameter)
+{
+    const mt_parameter *const p = &study->model->parameters[parameter];
+    const mt_unit *const si = mt_parameter_si(p);
+    const mt_unit *const said = si == NULL ? NULL : study->units[si->dimension];
+    const mt_unit *const unit = said == NULL ? p->written : said;
+    return unit == NULL || mt_unit_is_si(unit) ? NULL : unit;
+}
+
+const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e)
+{
+    const mt_kind kind =
+        e->length == 0 ? MT_KIND_UNKNOWN : mt_expr_kind(e, mt_model_kind, study->model).kind;
+    for (int i = 0; i < e->length; i++) {
+        const mt_unit *const unit =
+            e->code[i].op == MT_OP_PARAM ? mt_study_unit(study, e->code[i].param) : NULL;
+        if (unit != NULL && mt_kind_of_dimension(unit->dimension) == kind) {
+            return unit;
+        }
+    }
+    for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
+        const mt_unit *const unit = study->units[d];
+        if (kind == mt_kind_of_dimension((mt_dimension)d) && unit != NULL &&
+            !mt_unit_is_si(unit)) {
+            return unit;
+        }
+    }
+    return NULL;
+}
+
+const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
+{
+    const mt_unit *const other = mt_study_demand_unit(study, &goal->expression);
+    return other != NULL ? mt_dimension_si(other->dimension)
+                         : mt_goal_kind_of(goal->type)->unit;
+}
+
 int mt_study_find_reference(const mt_study *study, const char *name)
 {
     for (int i = 0; i < study->n_references; i++) {

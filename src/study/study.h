@@ -38,6 +38,7 @@ typedef struct mt_variable {
     double range; /* scale of a change that has no logarithm; by finish */
     double tolerance_percent; /* robust search; NaN: none */
     double original;          /* the model's value; by finish */
+    const mt_unit *shown;     /* what its numbers are in for people; NULL: SI; by finish */
     mt_addr addr;
     mt_addr lower_addr; /* the addresses of what was not given equal addr */
     mt_addr upper_addr;
@@ -262,6 +263,7 @@ typedef struct mt_asked_number {
     const char *kind; /* "parameter": of the model; "search": member of the study's search */
     const char *name;
     const char *unit; /* of a parameter; NULL */
+    const mt_unit *shown;
     double value;
     double original; /* what the files say; NaN: nothing */
 } mt_asked_number;
@@ -273,6 +275,9 @@ typedef struct mt_study {
     const char *description;
     mt_name model_path;
     mt_model *model; /* owned */
+    /* what numbers for parameters are in; NULL: each in its own. Those of the study are in SI
+     * from the reader on. */
+    const mt_unit *units[MT_DIMENSION_COUNT];
     /* [model's parameters] values at the original design (model/values.h); made by finish where
      * NULL */
     double *original;
@@ -330,6 +335,16 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
  * diags holds errors, MT_E_MEMORY.
  */
 mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
+/* What a number for this parameter of the study's model is in, in its file and for people: the
+ * study's unit, else the parameter's own; NULL: SI. */
+const mt_unit *mt_study_unit(const mt_study *study, int parameter);
+/* The unit that somebody thinks in who asks for a value of an expression of a length, an angle
+ * or a speed: that of a parameter in it, else the study's. NULL: SI, or it is none of these.
+ * The expression is in SI all the same. */
+const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e);
+/* The unit of a goal's numbers, "" for none: of its kind (goal_kinds.h), or that of SI of its
+ * expression, where parameters in it are shown in another. */
+const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
 /* Is there a goal that keeps clear of bands? */

@@ -129,8 +129,9 @@ static void one_variable(corners *k, int i, bool upper)
         if (list.items[d].level == MT_LEVEL_FAULT &&
             fault_at(&k->told, list.items[d].addr) == NULL) {
             mt_diag_error(k->c->diags, v->n_catalogue > 0 ? v->catalogue_addr : own,
-                          "with %s at %g, %s", v->parameter_name.s, k->x[i],
-                          list.items[d].text);
+                          "with %s at %g%s%s, %s", v->parameter_name.s,
+                          mt_unit_from_si(v->shown, k->x[i]), v->shown == NULL ? "" : " ",
+                          mt_unit_name(v->shown, ""), list.items[d].text);
             mt_doubt_copy(&k->told, &list.items[d]);
         }
     }
@@ -160,9 +161,10 @@ static void tell_corner(corners *k, const mt_doubt *fault)
     for (int i = 0; i < k->n && where != NULL; i++) {
         const mt_variable *const v = &s->variables[i];
         if (k->x[i] != v->original) {
-            where =
-                mt_arena_printf(&k->mem, "%s%s%s at %g", where, where[0] == '\0' ? "" : " and ",
-                                v->parameter_name.s, k->x[i]);
+            where = mt_arena_printf(&k->mem, "%s%s%s at %g%s%s", where,
+                                    where[0] == '\0' ? "" : " and ", v->parameter_name.s,
+                                    mt_unit_from_si(v->shown, k->x[i]),
+                                    v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""));
             addr = addr == MT_NO_ADDR ? v->addr : addr;
         }
     }

@@ -131,8 +131,9 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
             isfinite(ratio) ? log10(ratio) : log10(v->upper) - log10(v->lower);
         at(mt_doubt_add(
                out, MT_LEVEL_DOUBT, "bounds",
-               "the bounds of %s, %g to %g, span %.0f decades: is a power of ten wrong?", name,
-               v->lower, v->upper, floor(decades)),
+               "the bounds of %s, %g to %g%s%s, span %.0f decades: is a power of ten wrong?",
+               name, mt_unit_from_si(v->shown, v->lower), mt_unit_from_si(v->shown, v->upper),
+               v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""), floor(decades)),
            v->addr);
     }
     const bool below =
@@ -142,9 +143,11 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
     if (below || above) {
         at(mt_doubt_add(
                out, MT_LEVEL_DOUBT, "bounds",
-               "the bounds of %s, %g to %g, lie far from its original value, %g: is the "
+               "the bounds of %s, %g to %g%s%s, lie far from its original value, %g: is the "
                "unit the model's?",
-               name, v->lower, v->upper, v->original),
+               name, mt_unit_from_si(v->shown, v->lower), mt_unit_from_si(v->shown, v->upper),
+               v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""),
+               mt_unit_from_si(v->shown, v->original)),
            v->addr);
     }
 }

@@ -36,7 +36,8 @@ static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *er
                       "block a motion, and its frequency is gone at once; give the joints "
                       "the freedom that they need",
                 c->model->parameters[s->variables[i].parameter].name.s,
-                s->variables[i].original, what.joints.text,
+                mt_unit_from_si(s->variables[i].shown, s->variables[i].original),
+                what.joints.text,
                 c->model->configurations[mt_linear_system(lin)->configuration].name.s);
         }
     }

@@ -50,6 +50,9 @@ static void check_sides(mt_study_check *c, const mt_vary *v)
         return; /* told at the second of them */
     }
     const bool lower = v->kind == MT_VARY_GOAL ? v->slot == MT_SLOT_AT_LEAST : !v->upper;
+    const mt_unit *const shown = v->kind == MT_VARY_BOUND && v->variable != MT_ABSENT
+                                     ? c->study->variables[v->variable].shown
+                                     : NULL;
     for (int i = 0; i < v->n_values; i++) {
         for (int k = 0; k < other->n_values; k++) {
             const double low = lower ? v->values[i] : other->values[k];
@@ -57,8 +60,8 @@ static void check_sides(mt_study_check *c, const mt_vary *v)
             if (!(low < high)) {
                 mt_diag_error(c->diags, v->values_addr,
                               "%s %g is not %s %s %g, which varies, too", side_name(v),
-                              v->values[i], lower ? "below" : "above", side_name(other),
-                              other->values[k]);
+                              mt_unit_from_si(shown, v->values[i]), lower ? "below" : "above",
+                              side_name(other), mt_unit_from_si(shown, other->values[k]));
                 return;
             }
         }
@@ -90,9 +93,10 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
     for (int i = 0; i < v->n_values && other_side(c, v) == NULL; i++) {
         if (v->upper ? v->values[i] <= other : v->values[i] >= other) {
             mt_diag_error(c->diags, v->values_addr, "%s bound %g is not %s %s bound (%g)",
-                          v->upper ? "upper" : "lower", v->values[i],
+                          v->upper ? "upper" : "lower",
+                          mt_unit_from_si(variable->shown, v->values[i]),
                           v->upper ? "above the" : "below the", v->upper ? "lower" : "upper",
-                          other);
+                          mt_unit_from_si(variable->shown, other));
         }
     }
 }

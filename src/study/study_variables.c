@@ -23,7 +23,7 @@ static void check_catalogue(mt_study_check *c, mt_variable *v)
     for (int i = 1; i < v->n_catalogue; i++) {
         if (v->catalogue[i] <= v->catalogue[i - 1]) {
             mt_diag_error(c->diags, v->catalogue_addr, "the catalogue lists %.17g twice",
-                          v->catalogue[i]);
+                          mt_unit_written(v->shown, v->catalogue[i]));
         }
     }
     v->lower = v->catalogue[0];
@@ -52,8 +52,10 @@ static void check_range(mt_study_check *c, mt_variable *v)
         mt_diag_error(c->diags, v->addr, "\"%s\" is missing: a variable needs both bounds",
                       lower ? "upper" : "lower");
     } else if (v->lower >= v->upper) {
-        mt_diag_error(c->diags, v->upper_addr, "upper (%g) is %s lower (%g)", v->upper,
-                      v->lower > v->upper ? "below" : "equal to", v->lower);
+        mt_diag_error(c->diags, v->upper_addr, "upper (%g) is %s lower (%g)",
+                      mt_unit_from_si(v->shown, v->upper),
+                      v->lower > v->upper ? "below" : "equal to",
+                      mt_unit_from_si(v->shown, v->lower));
     }
 }
 
@@ -80,9 +82,11 @@ static void check_original(mt_study_check *c, mt_variable *v)
         return; /* there is more to say about the bounds */
     }
     if (v->original < v->lower || v->original > v->upper) {
-        mt_diag_warning(c->diags, v->addr,
-                        "the original value of \"%s\" (%g) lies outside %g to %g",
-                        v->parameter_name.s, v->original, v->lower, v->upper);
+        mt_diag_warning(
+            c->diags, v->addr, "the original value of \"%s\" (%g) lies outside %g to %g%s%s",
+            v->parameter_name.s, mt_unit_from_si(v->shown, v->original),
+            mt_unit_from_si(v->shown, v->lower), mt_unit_from_si(v->shown, v->upper),
+            v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""));
     }
 }
 
@@ -96,6 +100,7 @@ void mt_study_check_variables(mt_study_check *c)
     for (int i = 0; i < s->n_variables; i++) {
         mt_variable *const v = &s->variables[i];
         v->parameter = mt_check_parameter(c, v->parameter_name);
+        v->shown = v->parameter == MT_ABSENT ? NULL : mt_study_unit(s, v->parameter);
         check_range(c, v);
         check_weights(c, v);
         if (v->parameter == MT_ABSENT) {

@@ -126,6 +126,27 @@ class Report(Answers):
             self.check_frequencies(best)
             self.check_parameters(best)
 
+    def test_parameters_are_shown_in_their_units(self):
+        """The answer in inches is drawn in inches; the data in the page stay in SI."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            model = json.loads((SOURCE / "problems/inceptor.json").read_text(encoding="utf-8"))
+            (folder / "m.json").write_text(json.dumps(model), encoding="utf-8")
+            (folder / "s.json").write_text(json.dumps({
+                "format": "modetune-study/1", "model": "m.json", "units": {"length": "in"}, "recommendations": 2,
+                "variables": [{"parameter": "l_a", "lower": 4, "upper": 6}, {"parameter": "M_SAU", "lower": 1, "upper": 4}],
+                "goals": [{"type": "limit", "expression": "l_a", "at_least": "5.5*inch"}]}), encoding="utf-8")
+            report = run(folder / "s.json", folder)
+            result = json.loads((report / "result.json").read_text(encoding="utf-8"))
+            best = result["recommendations"][0]["parameters"]
+            self.assertEqual((best[0]["unit"], best[0]["display_unit"], best[1]["display_unit"]), ("m", "in", None))
+            self.browser.screen()
+            self.browser.open(report / "report.html")
+            values = self.browser.run(VALUES)
+            self.near(values["l_a"].split(" ")[-1], best[0]["recommended"] / 0.0254, "l_a")
+            self.near(values["M_SAU"].split(" ")[-1], best[1]["recommended"], "M_SAU")
+            self.assertIn("l_a [in]", self.browser.one("#figure-parameters svg").text)
+
     def test_figures_are_saved(self):
         result = self.open("inceptor_rotor")
         figures = self.browser.run(FIGURES)

@@ -211,7 +211,7 @@ class Show(CliTest):
     def test_configuration_and_parameters_are_chosen(self):
         scene = parse(self.expect(0, "show", "--format", "json", "-c", "held", "--set", "k1=12", self.model).stdout)
         self.assertEqual([v["name"] for v in scene["designs"][0]["configurations"]], ["held"])
-        self.assertIn({"name": "k1", "value": 12, "unit": "N/m"}, scene["designs"][0]["parameters"])
+        self.assertIn({"name": "k1", "value": 12, "unit": "N/m", "display_unit": None, "display_factor": None}, scene["designs"][0]["parameters"])
         springs = {s["name"]: s["stiffness"] for s in scene["designs"][0]["configurations"][0]["springs"]}
         self.assertEqual(springs, {"s1": 12, "s2": 1})
         self.expect(2, "show", "-c", "nowhere", self.model)

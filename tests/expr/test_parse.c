@@ -299,7 +299,7 @@ static void parse__names_are_reserved_and_constants_recognised(mt_test *t)
 {
     int n = 0;
     const char *const *const names = mt_expr_names(&n);
-    CHECK_INT(t, n, 23);
+    CHECK_INT(t, n, 27);
     for (int i = 0; i < n; i++) {
         mt_test_row(t, "%s", names[i]);
         CHECK(t, mt_expr_reserved(names[i]));

@@ -52,7 +52,7 @@ static double DIRECTION[] = {0.0, 1.0};
 static const char *INCOMPLETE[] = {"trade"};
 static const char SHA256[] = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
 static mt_result_digest INPUTS[] = {{"study.json", SHA256}};
-static mt_result_override OVERRIDES[] = {{"parameter", "M_SAU", "kg", 0.5, 0.25}};
+static mt_result_override OVERRIDES[] = {{"parameter", "l", "m", "mm", 1e-3, 0.5, 0.25}};
 static mt_result_digest OUTPUTS[] = {{"report.html", SHA256}};
 static mt_doubt DOUBTS[] = {{.kind = "margin",
                              .text = "a margin of 0.1 %",
@@ -158,8 +158,8 @@ static mt_result_tolerance TOLERANCES[] = {
 };
 static double TRADE_VALUES[] = {10.0, 0.25};
 static mt_trade_vary VARY[] = {
-    {"upper bound of M_SAU", "/trade/vary/0", "kg"},
-    {"margin_percent", "/trade/vary/1", NULL},
+    {"upper bound of l", "/trade/vary/0", "m", "in", 0.0254},
+    {"margin_percent", "/trade/vary/1", NULL, NULL, 0.0},
 };
 static const char *FRONT[] = {"change", "clearance"};
 
@@ -238,8 +238,18 @@ static bool make_sample(sample *s)
     fill_design(s, &s->recommendation);
     s->recommendation.rank = 1;
     s->undetermined = (mt_undetermined){DIRECTION, "M_SAU", 1e-5};
-    s->spread = (mt_result_spread){"M_SAU", "kg",       0.4,  0.3,  0.4,    -25.0,
-                                   nan(""), "/goals/0", NULL, 0.25, nan("")};
+    s->spread = (mt_result_spread){.parameter = "M_SAU",
+                                   .unit = "kg",
+                                   .display_unit = NULL,
+                                   .display_factor = nan(""),
+                                   .value = 0.4,
+                                   .low = 0.3,
+                                   .high = 0.4,
+                                   .low_percent = -25.0,
+                                   .high_percent = nan(""),
+                                   .low_goal = "/goals/0",
+                                   .low_factor = 0.25,
+                                   .high_factor = nan("")};
     s->certificate = mt_certificate_default();
     s->certificate.kind = "range";
     s->certificate.text = "Mode 1 stays below 20 Hz.";
@@ -399,7 +409,10 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"reachable_lower_hz\": null",
         "\"reachable_upper_hz\": 19.5",
         "\"values\": [10, 0.25]",
-        "\"quantity\": \"upper bound of M_SAU\"",
+        "\"quantity\": \"upper bound of l\"",
+        "\"display_unit\": \"in\"",
+        "\"display_factor\": 0.025399999999999999",
+        "\"display_factor\": null",
         "\"pareto\": true",
         "\"published\": \"solved\"",
         "\"computed\": \"compromise\"",

@@ -139,6 +139,34 @@ def units(rng, model):
     return model, Decimal(10) ** -powers[2]
 
 
+LENGTHS = {"mm": Decimal("0.001"), "cm": Decimal("0.01"), "in": Decimal("0.0254"), "ft": Decimal("0.3048")}
+
+
+def written(rng, model):
+    """The same lengths, written in another unit than metres: coordinates by "units", parameters by their own. Nothing changes."""
+    model = copy.deepcopy(model)
+    unit = rng.choice(("mm", "mm", "cm", "in", "ft"))
+    other = rng.choice(("mm", "cm"))
+    to = lambda name: lambda x: short(number(x) / LENGTHS[name])
+    model["units"] = {"length": unit, "angle": rng.choice(("rad", "deg"))}
+    for item in items(model):
+        for member in ("centre", "at", "from", "to"):
+            if member in item:
+                item[member] = each(item[member], to(unit))
+    for name, point in model.get("points", {}).items():
+        model["points"][name] = each(point, to(unit))
+    for parameter in model.get("parameters", {}).values():
+        if parameter["unit"] == "m" and not isinstance(parameter["value"], str):
+            parameter["value"] = to(other)(parameter["value"])
+            parameter["unit"] = other
+    for configuration in (model.get("configurations") or {}).values():
+        own = configuration.get("parameters", {})
+        for name in own:
+            if model["parameters"][name]["unit"] in LENGTHS:
+                own[name] = each(own[name], to(model["parameters"][name]["unit"]))
+    return model, 1
+
+
 def _rotation(rng, dim, quarter):
     """Exact in few digits."""
     if dim == 2:
@@ -226,4 +254,4 @@ def where_exact(change):
     return tried
 
 
-CHANGES = {"order": order, "direction": direction, "units": where_exact(units), "place": where_exact(place)}
+CHANGES = {"order": order, "direction": direction, "units": where_exact(units), "written": where_exact(written), "place": where_exact(place)}

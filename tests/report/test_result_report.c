@@ -34,11 +34,21 @@ static mt_result *make(mt_test *t)
     if (!CHECK(t, mt_result_new(&r, NULL) == MT_OK)) {
         return NULL;
     }
-    parameters[0] = (mt_result_parameter){
-        "k<1>", "N/m",  50.0, 92.942, 85.884, NULL, 10.0, 100.0, "logarithmic with floor",
-        0.05,   nan("")};
-    parameters[1] = (mt_result_parameter){"m", NULL, 1.0,      0.5,     -50.0, "lower",
-                                          0.5, 2.0,  "linear", nan(""), 2.0};
+    parameters[0] = (mt_result_parameter){"k<1>",
+                                          "N/m",
+                                          NULL,
+                                          nan(""),
+                                          50.0,
+                                          92.942,
+                                          85.884,
+                                          NULL,
+                                          10.0,
+                                          100.0,
+                                          "logarithmic with floor",
+                                          0.05,
+                                          nan("")};
+    parameters[1] = (mt_result_parameter){"m",     NULL, NULL, nan(""),  1.0,     0.5, -50.0,
+                                          "lower", 0.5,  2.0,  "linear", nan(""), 2.0};
     for (int i = 0; i < 2; i++) {
         frequencies[i] = mt_result_frequency_default();
         frequencies[i].configuration = "held";

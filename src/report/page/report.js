@@ -18,7 +18,7 @@
     if (!data || !data.baseline || !document.getElementById('figures')) {
       return;
     }
-    mt.openResult(data);
+    mt.openResult(mt.displayed(data));
     mt.alternatives.bar(place('choice'));
     mt.alternatives.table(place('alternatives'));
     for (const name of ORDER) {

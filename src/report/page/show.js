@@ -72,9 +72,10 @@
             const other = second && lists[1][i];
             const percent = other && parameter.value
                 ? digits(100 * (other.value / parameter.value - 1), 3) + ' %' : '–';
-            return [parameter.name, digits(parameter.value),
-                ...(second ? [other ? digits(other.value) : '–', percent] : []),
-                parameter.unit || ''];
+            const shown = (p) => digits(p.value / (p.display_factor || 1));
+            return [parameter.name, shown(parameter),
+                ...(second ? [other ? shown(other) : '–', percent] : []),
+                parameter.display_unit || parameter.unit || ''];
         });
         const heads = second ? [first.label, second.label, 'change'] : ['value'];
         return make('details', { open: rows.length <= LONG },

@@ -7,7 +7,7 @@
     modetune.report(result).save("report.html")
 
 Models and studies are files (a path) or what such files hold (a dict); what is wrong with them
-is an Error that says where. Numbers are in SI units. The same question has the same answer, for
+is an Error that says where. Results are in SI units. The same question has the same answer, for
 any number of workers.
 """
 from __future__ import annotations

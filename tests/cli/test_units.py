@@ -1,0 +1,340 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Units of input and display: shipped files rewritten into millimetres, inches, degrees and turns per minute say the same, to the last digit;
+what is shown is in the units that were given; what looks like a number of another unit is refused."""
+import copy
+import json
+import math
+import re
+import shutil
+import struct
+from fractions import Fraction
+from pathlib import Path
+
+from common_cli import SOURCE, CliTest, main
+
+# 1 of it in SI, as the program computes it: number * numerator / denominator.
+UNITS = {"mm": (1.0, 1000.0), "cm": (1.0, 100.0), "in": (254.0, 10000.0), "ft": (3048.0, 10000.0), "deg": (math.pi / 180.0, 1.0),
+         "rpm": (1.0, 60.0)}
+SI = {"mm": "m", "cm": "m", "in": "m", "ft": "m", "deg": "rad", "rpm": "Hz"}
+DIMENSION = {"m": "length", "rad": "angle", "Hz": "speed"}
+WAYS = [{"length": "mm", "angle": "deg", "speed": "rpm"}, {"length": "in", "angle": "deg", "speed": "rpm"}, {"length": "ft"}, {"length": "cm"}]
+QUICK = ["beam_identification", "beam_table_3", "engine_orders", "inceptor_identification", "inceptor_rotor", "inceptor_stick",
+         "inceptor_tuning_1", "inceptor_tuning_2", "six_masses_bands", "truss_10bar_E68_9"]
+# What tells people, or of files, and which unit that was shown in; it may differ, all else may not.
+TOLD = {"display_unit", "display_factor", "text", "reasons", "inputs", "outputs", "demand", "label", "unit", "goal", "what", "line", "column"}
+
+
+def neighbours(x):
+    bits = struct.unpack("<q", struct.pack("<d", x))[0]
+    return [struct.unpack("<d", struct.pack("<q", bits + k))[0] for k in (0, 1, -1, 2, -2)] if x else [0.0]
+
+
+def number(value, unit):
+    """A number of this unit that means exactly this value, or None."""
+    up, down = UNITS[unit]
+    guess = float(Fraction(value) * Fraction(down) / Fraction(up))
+    return next((x for x in neighbours(guess) if x * up / down == value), None)
+
+
+def plain(x):
+    return isinstance(x, (int, float)) and not isinstance(x, bool)
+
+
+def constant(value):
+    """The number that an expression without parameters is."""
+    if isinstance(value, str) and not re.search(r"[A-Za-z_]", re.sub(r"sqrt|pi|deg", "", value)):
+        return eval(value.replace("^", "**"), {"sqrt": math.sqrt, "pi": math.pi, "deg": math.pi / 180})
+    return value
+
+
+class Rewriter:
+    """Files in other units. LookupError: a number has none in them that means exactly the same."""
+
+    def __init__(self, way):
+        self.way, self.turned = way, 0
+
+    def value(self, x, unit):
+        if not plain(x) or x == 0:
+            return x
+        out = number(x, unit)
+        if out is None:
+            raise LookupError(f"{x} has no number in {unit}")
+        self.turned += 1
+        return out
+
+    def coordinates(self, v):
+        return [self.coordinates(x) for x in v] if isinstance(v, list) else self.value(v, self.way["length"])
+
+    def model(self, model):
+        model = copy.deepcopy(model)
+        model["units"] = dict(self.way)
+        for p in model.get("parameters", {}).values():
+            dimension = DIMENSION.get(p.get("unit")) if isinstance(p, dict) else None
+            if dimension in self.way:
+                value = constant(p["value"])
+                if plain(value) and (value == 0 or number(value, self.way[dimension]) is not None):
+                    p["value"] = self.value(value, self.way[dimension])
+                    p["unit"] = self.way[dimension]
+        for point, x in model.get("points", {}).items():
+            model["points"][point] = self.coordinates(x)
+        for items, members in (("bodies", ["centre"]), ("links", ["from", "to"]), ("joints", ["at"]), ("springs", ["at"]), ("dampers", ["at"]),
+                               ("loads", ["at"]), ("sensors", ["at"])):
+            for item in model.get(items, []):
+                for member in members:
+                    if isinstance(item.get(member), list):
+                        item[member] = self.coordinates(item[member])
+        for c in model.get("configurations", {}).values():
+            for name, x in c.get("parameters", {}).items():
+                p = model["parameters"][name]
+                if isinstance(p, dict) and p.get("unit") in UNITS and plain(x):
+                    c["parameters"][name] = self.value(x, p["unit"])
+        return model
+
+    def study(self, study, model):
+        study = copy.deepcopy(study)
+        study["units"] = dict(self.way)
+
+        def unit(name):
+            p = model["parameters"].get(name)
+            own = p.get("unit") if isinstance(p, dict) else None
+            return self.way.get(DIMENSION.get(SI.get(own, own)))
+
+        def turn(o, members, name):
+            for member in members:
+                if unit(name) and plain(o.get(member)):
+                    o[member] = self.value(o[member], unit(name))
+                elif unit(name) and isinstance(o.get(member), list):
+                    o[member] = [self.value(x, unit(name)) for x in o[member]]
+
+        for v in study.get("variables", []):
+            turn(v, ["lower", "upper", "scale", "catalogue"], v["parameter"])
+        for p in study.get("published", []):
+            if "parameter" in p:
+                turn(p, ["value", "tolerance", "at_least", "at_most"], p["parameter"])
+        for v in study.get("trade", {}).get("vary", []):
+            turn(v, ["values"], v.get("variable", v.get("parameter", "")))
+            if isinstance(v.get("values"), dict):
+                turn(v["values"], ["from", "to"], v.get("variable", v.get("parameter", "")))
+        return study
+
+
+def bare(value):
+    """Without what is told to people."""
+    if isinstance(value, dict):
+        return {k: bare(v) for k, v in value.items() if k not in TOLD}
+    return [bare(v) for v in value] if isinstance(value, list) else value
+
+
+class Twins(CliTest):
+    def models(self):
+        for path in sorted((SOURCE / "problems").glob("*.json")):
+            model = json.loads(path.read_text())
+            if model.get("format") == "modetune-model/1":
+                yield path, model
+
+    def test_every_shipped_model_has_the_same_modes(self):
+        done = 0
+        for path, model in self.models():
+            self.write(f"problems/{path.name}", json.dumps(model))
+            wanted = self.run_program("modes", f"problems/{path.name}", "--format", "json")
+            for way in WAYS:
+                try:
+                    rewriter = Rewriter(way)
+                    twin = self.write(f"problems/{path.name}", json.dumps(rewriter.model(model)))
+                except LookupError:
+                    continue
+                with self.subTest(model=path.name, way=way):
+                    got = self.run_program("modes", twin, "--format", "json")
+                    self.assertEqual(got.returncode, wanted.returncode, got.stderr)
+                    self.assertEqual(bare(json.loads(got.stdout)), bare(json.loads(wanted.stdout)))
+                    done += rewriter.turned > 0
+        self.assertGreater(done, 12)
+        print(f"units: {done} twins of models")
+
+    def test_every_quick_study_has_the_same_answer(self):
+        done = 0
+        shutil.copytree(SOURCE / "problems", self.folder / "problems", dirs_exist_ok=True)
+        for name in QUICK:
+            study = json.loads((SOURCE / "studies" / f"{name}.json").read_text())
+            model = json.loads((SOURCE / "studies" / study["model"]).read_text())
+            study["model"] = f"../problems/{Path(study['model']).name}"
+            answers = []
+            for way in [None, WAYS[0], WAYS[1]]:
+                try:
+                    new = model if way is None else Rewriter(way).model(model)
+                    asked = study if way is None else Rewriter(way).study(study, new)
+                except LookupError:
+                    continue
+                self.write(f"problems/{Path(study['model']).name}", json.dumps(new))
+                path = self.write(f"studies/{name}.json", json.dumps(asked))
+                got = self.run_program("run", path, "-o", "out")
+                with self.subTest(study=name, way=way):
+                    self.assertIn(got.returncode, (0, 1, 3), got.stderr)
+                    answers.append(bare(json.loads((self.folder / "out" / name / "result.json").read_text())))
+                    self.assertEqual(answers[-1], answers[0])
+                    done += way is not None
+        self.assertGreater(done, 10)
+        print(f"units: {done} twins of studies")
+
+
+STICK = {
+    "format": "modetune-model/1", "dimension": 2, "units": {"length": "mm", "angle": "deg"},
+    "parameters": {"k": {"value": 3000, "unit": "N m/rad"}, "d": {"value": 170, "unit": "mm"}, "tilt": {"value": 3, "unit": "deg"},
+                   "n": {"value": 258, "unit": "rpm"}, "w": {"value": 0.05, "unit": "m"}, "m": 2.3},
+    "points": {"pivot": [0, 0], "grip": [0, 500]},
+    "bodies": [{"name": "stick", "mass_kg": 1.5, "inertia_kg_m2": 0.03, "centre": [0, 250]},
+               {"name": "gearbox", "mass_kg": "m", "inertia_kg_m2": 0.004, "centre": ["w*sin(tilt)", "-d"]}],
+    "joints": [{"name": "pivot", "type": "revolute", "bodies": ["ground", "stick"], "at": "pivot"},
+               {"name": "mount", "type": "fixed", "bodies": ["stick", "gearbox"], "at": [0, "-d"]}],
+    "springs": [{"name": "servo", "type": "torsion", "joint": "pivot", "stiffness_n_m_per_rad": "k"}],
+    "configurations": {"as_is": {}, "longer": {"parameters": {"d": 180}}, "longest": {"parameters": {"d": "4*w + 4*mm", "tilt": -6}}}}
+ASK = {
+    "format": "modetune-study/1", "model": "../problems/stick.json", "units": {"length": "in"},
+    "variables": [{"parameter": "d", "lower": 4, "upper": 7.5, "scale": 1}, {"parameter": "k", "lower": 2000, "upper": 4000}],
+    "goals": [{"type": "frequency", "configuration": "as_is", "mode": 1, "target_hz": 21.5},
+              {"type": "limit", "expression": "d", "at_least": "4*inch"}],
+    "spread": None, "published": [{"parameter": "d", "value": 6.7, "tolerance": 2}]}
+DIGITS = 1e-13  # a frequency is computed from the same numbers in other places of a file: some units in its last place
+
+
+def altered(base, **members):
+    out = copy.deepcopy(base)
+    out.update(members)
+    return {k: v for k, v in out.items() if v is not None}
+
+
+class Shown(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("problems/stick.json", json.dumps(STICK))
+        self.write("studies/ask.json", json.dumps(altered(ASK)))
+
+    def hz(self, *args):
+        return self.json_of("modes", "problems/stick.json", *args)["modes"][0]["frequency_hz"]
+
+    def exact(self, d, tilt):
+        """Closed form: one freedom, k/J about the pivot."""
+        x = 0.05 * math.sin(tilt * math.pi / 180)
+        return math.sqrt(3000 / (1.5 * 0.25 ** 2 + 0.03 + 2.3 * (d * d + x * x) + 0.004)) / (2 * math.pi)
+
+    def test_numbers_are_in_the_unit_beside_them(self):
+        for args, d, tilt in ((["-c", "as_is"], 0.17, 3), (["-c", "longer"], 0.18, 3), (["-c", "longest"], 0.204, -6),
+                              (["-c", "as_is", "--set", "d=120"], 0.12, 3), (["-c", "as_is", "--set", "d=+120"], 0.12, 3),
+                              (["-c", "as_is", "--set", "d=0.5*d", "--set", "tilt=-(9)"], 0.085, -9),
+                              (["-c", "as_is", "--set", "d=120*mm"], 0.12, 3), (["-c", "as_is", "--set", "tilt=pi/60"], 0.17, 3),
+                              (["-c", "as_is", "--set", "d=5*inch", "--set", "tilt=10"], 0.127, 10)):
+            with self.subTest(args=args):
+                self.assertAlmostEqual(self.hz(*args) / self.exact(d, tilt), 1, delta=DIGITS)
+
+    def test_set_refuses_what_looks_like_another_unit(self):
+        for text, why in (("d=100+20", '120 is 120 m here, as expressions are in SI units: write "120*mm"'),
+                          ("d=d+20", 'write "20*mm"'), ("d=max(d, 200)", 'write "200*mm"'), ("tilt=0.05+tilt", 'write "0.05*deg"'),
+                          ("n=2*150", 'write "300*rpm"'), ("d=3*tilt", "this is an angle, where a length belongs"),
+                          ("w=1+w", 'write "1*mm"'), ("d=20 mm", 'did you mean "20*mm"'), ("d=mm", '"mm" is a unit')):
+            with self.subTest(text=text):
+                self.assertIn(why, self.expect(2, "modes", "problems/stick.json", "--set", text).stderr)
+
+    def test_info_tells_the_conversion(self):
+        said = self.expect(0, "info", "problems/stick.json", "-c", "as_is").stdout
+        for line in ("Units: length in mm, angle in deg; expressions in SI units\n", "  d: 170 mm = 0.17 m\n",
+                     "  tilt: 3 deg = 0.05235987756 rad\n", "  n: 258 rpm = 4.3 Hz\n"):
+            self.assertIn(line, said)
+        self.assertNotIn("  w: ", said)
+        got = self.json_of("info", "problems/stick.json", "-c", "as_is")
+        self.assertEqual(got["units"], {"length": "mm", "angle": "deg", "speed": "Hz"})
+        self.assertEqual([c["parameter"] for c in got["converted"]], ["d", "tilt", "n"])
+        self.assertEqual(got["converted"][0], {"parameter": "d", "number": 170, "number_unit": "mm", "value": 0.17, "unit": "m"})
+
+    def test_sensitivity_shows_the_parameter_s_unit_and_json_si(self):
+        said = self.expect(0, "sensitivity", "problems/stick.json", "-c", "as_is", "--parameters", "d").stdout
+        self.assertRegex(said, r"d +170\.000 +mm ")
+        got = self.json_of("sensitivity", "problems/stick.json", "-c", "as_is", "--parameters", "d")["modes"][0]["sensitivities"][0]
+        self.assertEqual((got["value"], got["unit"]), (0.17, "m"))
+
+    def test_a_study_shows_its_own_units_and_keeps_si(self):
+        said = self.expect(0, "run", "studies/ask.json", "-o", "out").stdout
+        result = json.loads((self.folder / "out/ask/result.json").read_text())
+        d = result["recommendations"][0]["parameters"][0]
+        self.assertEqual((d["unit"], d["display_unit"], d["display_factor"]), ("m", "in", 0.0254))
+        self.assertEqual((d["lower"], d["upper"], d["measure_scale"]), (0.1016, 0.1905, 0.0254))
+        shown = f"{d['recommended'] / 0.0254:#.6g}"
+        self.assertRegex(said, rf"d +in +6\.69291 +{re.escape(shown)} ")
+        self.assertIn(f"from 6.69291 to {shown.rstrip('0')} in.", said)
+        self.assertIn("The change of d counts linearly, 1.00000 in as 1.", said)
+        self.assertRegex(said, r"d at least 0\.1016 m ")
+        self.assertEqual(self.expect(0, "report", "out/ask/result.json").stdout, said)
+        self.assertRegex(self.expect(0, "explain", "out/ask/result.json").stdout, rf" {re.escape(shown)} +in ")
+        self.assertRegex(self.expect(0, "compare", "studies/ask.json").stdout, r"d \[in\] +6\.7 +6\.\d+ ")
+        table = (self.folder / "out/ask/recommendations.csv").read_text()
+        self.assertIn(f"{d['recommended']:.17g}", table)
+        self.assertNotIn("[in]", table)
+        self.assertIn("<td>in</td>", (self.folder / "out/ask/report.html").read_text())
+
+    def test_the_parameter_s_unit_holds_where_the_study_says_none(self):
+        self.write("studies/own.json", json.dumps(altered(ASK, units=None, variables=[
+            {"parameter": "d", "lower": 100, "upper": 190}, {"parameter": "k", "lower": 2000, "upper": 4000}],
+            published=[{"parameter": "d", "value": 170, "tolerance": 50}])))
+        self.assertRegex(self.expect(0, "run", "studies/own.json", "-o", "out").stdout, r"d +mm +170\.000 ")
+        self.write("studies/si.json", json.dumps(altered(ASK, units={"length": "m"}, variables=[
+            {"parameter": "d", "lower": 0.1, "upper": 0.19}, {"parameter": "k", "lower": 2000, "upper": 4000}],
+            goals=[ASK["goals"][0], {"type": "limit", "expression": "d", "at_least": "100*mm"}], published=None)))
+        self.assertRegex(self.expect(0, "run", "studies/si.json", "-o", "out").stdout, r"d +m +0\.170000 ")
+        a, b = (json.loads((self.folder / f"out/{name}/result.json").read_text())["recommendations"][0]["parameters"][0]
+                for name in ("own", "si"))
+        self.assertEqual((a["recommended"], a["lower"], a["upper"]), (b["recommended"], 0.1, 0.19))
+
+    def test_catalogues_are_those_of_the_unit(self):
+        for catalogue, values in (({"step": 0.5, "lower": 5, "upper": 7}, [5, 5.5, 6, 6.5, 7]),
+                                  ({"series": "E6", "lower": 4, "upper": "8*inch"}, [4.7, 6.8]), ([4, "4.5*inch", 6.25], [4, 4.5, 6.25])):
+            study = altered(ASK, published=None, recommendations=1, goals=[{"type": "limit", "expression": "d", "at_least": "4.1*inch"}],
+                            objective={"minimise": "d"}, variables=[{"parameter": "d", "catalogue": catalogue}])
+            self.write("studies/list.json", json.dumps(study))
+            self.expect(0, "run", "studies/list.json", "-o", "out")
+            got = json.loads((self.folder / "out/list/result.json").read_text())["recommendations"][0]["parameters"][0]
+            with self.subTest(catalogue=catalogue):
+                self.assertEqual((got["lower"], got["upper"]), (values[0] * 254 / 10000, values[-1] * 254 / 10000))
+                self.assertEqual(got["recommended"], min(x for x in values if x > 4.1) * 254 / 10000)
+
+    def test_a_trade_study_and_what_would_let_a_design_exist(self):
+        study = altered(ASK, published=None, trade={"vary": [{"variable": "d", "bound": "upper", "values": [5, 7]},
+                                                             {"parameter": "w", "values": {"from": 1, "to": 2, "count": 2}}]})
+        self.write("studies/grid.json", json.dumps(study))
+        said = self.expect(0, "run", "studies/grid.json", "-o", "out").stdout
+        self.assertRegex(said, r"upper bound of d \[in\] +w \[in\] ")
+        self.assertRegex(said, r" d \[in\]")
+        points = json.loads((self.folder / "out/grid/result.json").read_text())["trade"]["points"]
+        self.assertEqual([p["values"] for p in points], [[x * 254 / 10000, y * 254 / 10000] for x in (5, 7) for y in (1, 2)])
+        self.write("studies/never.json", json.dumps(altered(ASK, published=None, variables=ASK["variables"][:1], goals=[
+            {"type": "frequency", "configuration": "as_is", "mode": 1, "target_hz": 23}])))
+        said = self.run_program("run", "studies/never.json", "-o", "out").stdout
+        self.assertRegex(said, r"With the lower bound of d at ([0-9.]+) in instead of 4 .*: d = \1 in\.")
+
+    def test_asked_with_set_is_in_the_units(self):
+        study = altered(ASK, published=None, variables=[{"parameter": "k", "lower": 1000, "upper": 9000}])
+        self.write("studies/set.json", json.dumps(study))
+        self.assertIn("Asked with d = 5.905511811 in (model: 6.692913386).",
+                      self.expect(0, "run", "studies/set.json", "--set", "d=150", "-o", "out").stdout)
+        applied = json.loads(self.expect(0, "apply", "out/set/result.json").stdout)
+        self.assertEqual(applied["parameters"]["d"], {"value": 150, "unit": "mm"})
+
+    def test_apply_writes_numbers_of_the_parameter_s_unit(self):
+        for goal in (20.5, 21.1, 21.7, 22.3):
+            self.write("studies/apply.json", json.dumps(altered(ASK, published=None, goals=[dict(ASK["goals"][0], target_hz=goal)])))
+            self.expect(0, "run", "studies/apply.json", "-o", "out")
+            best = json.loads((self.folder / "out/apply/result.json").read_text())["recommendations"][0]
+            applied = self.expect(0, "apply", "out/apply/result.json").stdout
+            self.write("problems/applied.json", applied)
+            d = json.loads(applied)["parameters"]["d"]
+            self.assertEqual(d["unit"], "mm")
+            wanted = best["parameters"][0]["recommended"]
+            self.assertLessEqual(abs(d["value"] * 1.0 / 1000.0 - wanted), math.ulp(wanted))
+            got = self.json_of("modes", "problems/applied.json", "-c", "as_is")["modes"][0]["frequency_hz"]
+            self.assertAlmostEqual(got / best["frequencies"][0]["recommended_hz"], 1, delta=DIGITS)
+
+    def test_a_parameter_of_a_unit_s_name_is_refused(self):
+        self.write("problems/old.json", json.dumps(altered(STICK, parameters=dict(STICK["parameters"], ft=3))))
+        self.assertIn('"ft" is a function or constant of expressions', self.expect(2, "modes", "problems/old.json").stderr)
+
+
+if __name__ == "__main__":
+    main()
