@@ -11,6 +11,10 @@
  * constraints, equilibrium); n x cols. After an update with gradients. */
 mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
                              double *dmy, mt_err *err);
+/* dcy = (dC_r/dp) y of the dampers and dhy = (dH_r/dp) y of the loss factors, likewise (and in
+ * the same moving coordinates: with s^2 M + s C + K + i H all derivatives go together). */
+mt_status mt_linear_damping_products(mt_linear *lin, int p, int cols, const double *y,
+                                     double *dcy, double *dhy, mt_err *err);
 /* slope[n_inputs] = y^T (dK_r/dp - lambda dM_r/dp) y for every input p, of an eigenpair K_r y =
  * lambda M_r y. O(entries of the terms that an input touches); cheaper than the products. */
 mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, double *slope,

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef LINALG_COMPLEX_H
+#define LINALG_COMPLEX_H
+
+#include <complex.h>
+
+/* re + i im: CMPLX of C11, which clang's view of the C library does not offer. */
+static inline double complex mt_complex(double re, double im)
+{
+    const union {
+        double part[2]; /* cppcheck-suppress unusedStructMember */
+        double complex z;
+    } u = {{re, im}};
+    return u.z;
+}
+
+#endif
