@@ -33,10 +33,8 @@ static int partner(const mt_term *t, int i)
     return t->pair ? (2 * t->first) + 1 - i : i;
 }
 
-/* out += scale K phi (kind STIFFNESS) or M phi (MASS), full coordinates, without the geometric
- * part. */
-static void full_product(const mt_linear *lin, int kind, double scale, const double *phi,
-                         double *out)
+void mt_linear_states_product(const mt_linear *lin, mt_term_kind kind, double scale,
+                              const double *phi, double *out)
 {
     const mt_term_list *const list = &lin->list[kind];
     const mt_rows *const rows = &lin->full[kind];
@@ -148,8 +146,8 @@ static mt_status moving_shape(mt_linear *lin, const mt_linear_tangent *t, const 
     return mt_eliminate_particular(&lin->e, v->b, v->z, &lin->scratch, err);
 }
 
-static mt_status moving_product(mt_linear *lin, int kind, int p, moving *v, double *out,
-                                mt_err *err)
+static mt_status moving_product(mt_linear *lin, mt_term_kind kind, int p, moving *v,
+                                double *out, mt_err *err)
 {
     const int nq = lin->sys->nq;
     const mt_linear_tangent *const t = &lin->tangent[p];
@@ -161,8 +159,8 @@ static mt_status moving_product(mt_linear *lin, int kind, int p, moving *v, doub
     }
     if (lin->m > 0) { /* without constraints the basis stands still */
         memset(v->kphi, 0, (size_t)nq * sizeof *v->kphi);
-        full_product(lin, kind, 1.0, v->phi, v->kphi);
-        full_product(lin, kind, 1.0, v->z, v->w);
+        mt_linear_states_product(lin, kind, 1.0, v->phi, v->kphi);
+        mt_linear_states_product(lin, kind, 1.0, v->z, v->w);
         if (geometric) {
             mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->kphi);
             mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->z, 1.0, v->w);
@@ -219,8 +217,8 @@ static double row_slope(const mt_linear *lin, int kind, int p, const double *phi
 
 void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w)
 {
-    full_product(lin, MT_TERM_STIFFNESS, 1.0, phi, w);
-    full_product(lin, MT_TERM_MASS, -lambda, phi, w);
+    mt_linear_states_product(lin, MT_TERM_STIFFNESS, 1.0, phi, w);
+    mt_linear_states_product(lin, MT_TERM_MASS, -lambda, phi, w);
 }
 
 /* v->lambda := mu, A^T mu = (K - lambda M) phi: what the joints carry in the mode. */
@@ -326,7 +324,7 @@ mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_
     MT_TRY(mt_arena_check(&lin->scratch, err));
     mt_linear_expand(lin, 1, y, phi);
     memset(w, 0, nq * sizeof *w);
-    full_product(lin, MT_TERM_MASS, 1.0, phi, w);
+    mt_linear_states_product(lin, MT_TERM_MASS, 1.0, phi, w);
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }

@@ -15,6 +15,10 @@ mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, d
  * lambda M_r y. O(entries of the terms that an input touches); cheaper than the products. */
 mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, double *slope,
                            mt_err *err);
+/* out[nq] += scale times K, C or M over the states times phi (nq), by their terms: without the
+ * geometric part of K. */
+void mt_linear_states_product(const mt_linear *lin, mt_term_kind kind, double scale,
+                              const double *phi, double *out);
 /* w[nq] += (K - lambda M) phi over the states, without the geometric part of K. */
 void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w);
 /* Values of channels channel[ns] for shapes y (n x cols): s ns x cols. */

@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Responses of mechanisms: the ground that moves, forces of springs and joints, derivatives. */
+#include "mechanics/mech.h"
+#include "response/forced_fixture.h"
+#include "response/response.h"
+#include "support/mt_slope.h"
+
+static const double TOL = 1e-10;
+
+typedef struct asked {
+    mech m;
+    mt_response r;
+    mt_sample s;
+    mt_status rc;
+} asked;
+
+static mt_analysis_options all_modes(bool gradient)
+{
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = gradient;
+    return opt;
+}
+
+static int split_words(const char *text, char *room, size_t size, const char **words, int most)
+{
+    int n = 0;
+    (void)snprintf(room, size, "%s", text);
+    for (char *p = strtok(room, " "); p != NULL && n < most; p = strtok(NULL, " ")) {
+        words[n++] = p;
+    }
+    return n;
+}
+
+/* Names separated by blanks. */
+static bool ask(mt_test *t, asked *q, const char *inputs, const char *outputs)
+{
+    char room[2][512];
+    const char *in[8];
+    const char *out[16];
+    const mt_response_request request = {
+        .n_in = split_words(inputs, room[0], sizeof room[0], in, 8),
+        .inputs = in,
+        .n_out = split_words(outputs, room[1], sizeof room[1], out, 16),
+        .outputs = out};
+    mt_err err = {.text = ""};
+    q->rc = mt_response_open(q->m.a, &request, &q->r, &err);
+    if (!CHECK(t, q->rc == MT_OK)) {
+        (void)fprintf(stderr, "%s\n", err.text);
+        return false;
+    }
+    const size_t pairs = (size_t)q->r.n_in * (size_t)q->r.n_out;
+    q->s = (mt_sample){.h = mt_arena_alloc(&q->r.mem, pairs, sizeof *q->s.h),
+                       .error = mt_arena_f64(&q->r.mem, pairs, 1)};
+    return true;
+}
+
+/* By modes; the direct way is checked against it. */
+static void at(mt_test *t, asked *q, double w)
+{
+    const size_t pairs = (size_t)q->r.n_in * (size_t)q->r.n_out;
+    mt_err err;
+    mt_sample other = {.h = mt_arena_alloc(&q->r.mem, pairs, sizeof *other.h),
+                       .error = mt_arena_f64(&q->r.mem, pairs, 1)};
+    CHECK(t, mt_transfer_at(&q->r.direct, w, &other, &q->r.mem, &err) == MT_OK);
+    CHECK(t, mt_transfer_at(&q->r.basis.t, w, &q->s, &q->r.mem, &err) == MT_OK);
+    for (size_t i = 0; i < pairs; i++) {
+        CHECK(t, cabs(q->s.h[i] - other.h[i]) <= q->s.error[i] + other.error[i]);
+        CHECK_NEAR_ABS(t, cabs(q->s.h[i] - other.h[i]), 0.0, 1e-7 * cabs(other.h[i]) + 1e-13);
+    }
+}
+
+static void done(asked *q)
+{
+    mt_response_free(&q->r);
+    mech_free(&q->m);
+}
+
+static const char MASS[] =
+    "{ \"format\": \"modetune-model/1\", \"name\": \"m\", \"dimension\": 2,"
+    "  \"bodies\": [ { \"name\": \"m\", \"mass_kg\": 2, \"inertia_kg_m2\": 1,"
+    " \"centre\": [0, 0] } ],"
+    "  \"joints\": [ { \"name\": \"slide\", \"type\": \"prismatic\", \"bodies\": [\"ground\","
+    " \"m\"], \"at\": [0, 0], \"axis\": [1, 0] } ],"
+    "  \"springs\": [ { \"name\": \"k\", \"type\": \"axial\", \"bodies\": [\"ground\", \"m\"],"
+    " \"at\": [[-1, 0], [0, 0]], \"stiffness_n_per_m\": 800 } ],"
+    "  \"dampers\": [ { \"name\": \"c\", \"type\": \"axial\", \"bodies\": [\"ground\", \"m\"],"
+    " \"at\": [[-1, 0], [0, 0]], \"damping_n_s_per_m\": 6 } ],"
+    "  \"sensors\": [ { \"name\": \"s\", \"on\": \"m\", \"directions\": [\"x\"] } ],"
+    "  \"configurations\": { \"c\": {} } }";
+
+/* Absolute and relative motion of a mass on a moving ground, in all motions. */
+static void response__moving_ground_matches_its_closed_form(mt_test *t)
+{
+    static const char *const MOTIONS[3] = {"displacement", "velocity", "acceleration"};
+    for (int in = 0; in < 3; in++) {
+        asked q = {.rc = MT_OK};
+        char input[64];
+        (void)snprintf(input, sizeof input, "base.x:%s", MOTIONS[in]);
+        if (!mech_must(t, mech_parse(t, MASS), NULL, "", &q.m) ||
+            !ask(t, &q, input,
+                 "s.x s.x:velocity s.x:acceleration s.x:relative_displacement spring.k "
+                 "damper.c joint.slide.x joint.slide.y")) {
+            done(&q);
+            continue;
+        }
+        for (double w = 0.5; w < 500.0; w *= 2.3) {
+            mt_test_row(t, "ground %s, w = %g", MOTIONS[in], w);
+            const double complex s = cx_pair(0.0, w);
+            const double complex d = 800.0 + (6.0 * s) + (2.0 * s * s);
+            const double complex moved = 1.0 / cpow(s, in); /* the ground's displacement */
+            const double complex relative = -2.0 * s * s * moved / d;
+            const double complex space = relative + moved;
+            const double complex want[8] = {
+                space, s * space, s * s * space, relative, 800.0 * relative, 6.0 * s * relative,
+                0.0,   0.0};
+            at(t, &q, w);
+            for (int o = 0; o < 8; o++) {
+                CHECK_NEAR_ABS(t, cabs(q.s.h[o] - want[o]), 0.0,
+                               TOL * fmax(cabs(want[o]), 1e-6 * cabs(relative)));
+            }
+        }
+        done(&q);
+    }
+}
+
+/* A four-bar linkage on a table: H of what stands on it over the motion of the table, whatever
+ * moves the table, is the response to a moving ground. */
+static const char TABLE[] =
+    "{ \"format\": \"modetune-model/1\", \"name\": \"t\", \"dimension\": 2,"
+    "  \"gravity_m_per_s2\": [0, -9.81], \"bodies\": ["
+    "  { \"name\": \"table\", \"mass_kg\": 3, \"inertia_kg_m2\": 1, \"centre\": [0.2, 0],"
+    "    \"in\": [\"stands\"] },"
+    "  { \"name\": \"crank\", \"mass_kg\": 1, \"inertia_kg_m2\": 0.002, \"centre\": [0.04, "
+    "0.06]},"
+    "  { \"name\": \"coupler\", \"mass_kg\": 2, \"inertia_kg_m2\": 0.02, \"centre\": [0.2, "
+    "0.2]},"
+    "  { \"name\": \"rocker\", \"mass_kg\": 0.8, \"inertia_kg_m2\": 0.005,"
+    "    \"centre\": [0.37, 0.12] } ],"
+    "  \"joints\": ["
+    "  { \"name\": \"rail\", \"type\": \"prismatic\", \"bodies\": [\"ground\", \"table\"],"
+    "    \"at\": [0, 0], \"axis\": [1, 0], \"in\": [\"stands\"] },"
+    "  { \"name\": \"jA\", \"type\": \"revolute\", \"bodies\": [\"ground\", \"crank\"],"
+    "    \"at\": [0, 0], \"in\": [\"fixed\"] },"
+    "  { \"name\": \"kA\", \"type\": \"revolute\", \"bodies\": [\"table\", \"crank\"],"
+    "    \"at\": [0, 0], \"in\": [\"stands\"] },"
+    "  { \"name\": \"jB\", \"type\": \"revolute\", \"bodies\": [\"crank\", \"coupler\"],"
+    "    \"at\": [0.08, 0.12] },"
+    "  { \"name\": \"jC\", \"type\": \"revolute\", \"bodies\": [\"coupler\", \"rocker\"],"
+    "    \"at\": [0.35, 0.25] },"
+    "  { \"name\": \"jD\", \"type\": \"revolute\", \"bodies\": [\"ground\", \"rocker\"],"
+    "    \"at\": [0.4, 0], \"in\": [\"fixed\"] },"
+    "  { \"name\": \"kD\", \"type\": \"revolute\", \"bodies\": [\"table\", \"rocker\"],"
+    "    \"at\": [0.4, 0], \"in\": [\"stands\"] } ],"
+    "  \"springs\": ["
+    "  { \"name\": \"servo\", \"type\": \"torsion\", \"joint\": \"jB\","
+    "    \"stiffness_n_m_per_rad\": 80 } ],"
+    "  \"dampers\": ["
+    "  { \"name\": \"oil\", \"type\": \"torsion\", \"joint\": \"jC\","
+    "    \"damping_n_m_s_per_rad\": 0.3 } ],"
+    "  \"sensors\": [ { \"name\": \"c\", \"on\": \"coupler\", \"directions\": [\"x\", \"y\","
+    " \"r\"] }, { \"name\": \"t\", \"on\": \"table\", \"directions\": [\"x\"] } ],"
+    "  \"configurations\": { \"fixed\": {}, \"stands\": {} } }";
+
+static void response__moving_ground_is_a_table_that_moves(mt_test *t)
+{
+    asked base = {.rc = MT_OK};
+    asked table = {.rc = MT_OK};
+    if (mech_must(t, mech_parse(t, TABLE), "fixed", "", &base.m) &&
+        mech_must(t, mech_parse(t, TABLE), "stands", "", &table.m) &&
+        ask(t, &base, "base.x",
+            "c.x:acceleration c.y:acceleration c.r:acceleration spring.servo damper.oil "
+            "joint.jB.x joint.jB.y joint.jD.x joint.jD.y") &&
+        ask(t, &table, "t.x",
+            "c.x:acceleration c.y:acceleration c.r:acceleration spring.servo damper.oil "
+            "joint.jB.x joint.jB.y joint.kD.x joint.kD.y t.x:acceleration")) {
+        for (double w = 1.0; w < 1000.0; w *= 1.7) {
+            at(t, &base, w);
+            at(t, &table, w);
+            for (int o = 0; o < 9; o++) {
+                mt_test_row(t, "w = %g, %s", w, base.r.out[o].name);
+                const double complex want = table.s.h[o] / table.s.h[9];
+                CHECK_NEAR_ABS(t, cabs(base.s.h[o] - want), 0.0, TOL * cabs(want));
+            }
+        }
+    }
+    done(&base);
+    done(&table);
+}
+
+/* Cut free, the coupler of the standing linkage: mass times acceleration is the sum of the
+ * forces on it, in all directions, with the weight that hangs in the joints. */
+static void response__joints_hold_a_body_in_equilibrium(mt_test *t)
+{
+    static const char *const CONFIGURATIONS[2] = {"loaded", "still"};
+    for (int c = 0; c < 2; c++) {
+        asked q = {.rc = MT_OK};
+        if (mech_must(t, mech_load(t, "four_bar"), CONFIGURATIONS[c], "", &q.m) &&
+            ask(t, &q, "tip.x crank.r",
+                "mid.x:acceleration mid.y:acceleration joint.jB.x joint.jB.y joint.jC.x "
+                "joint.jC.y crank.x:acceleration crank.y:acceleration joint.jA.x joint.jA.y")) {
+            for (double w = 2.0; w < 500.0; w *= 2.1) {
+                mt_test_row(t, "%s, w = %g", CONFIGURATIONS[c], w);
+                at(t, &q, w);
+                for (int axis = 0; axis < 2; axis++) {
+                    for (int i = 0; i < 2; i++) {
+                        const double complex *const h = q.s.h + ((ptrdiff_t)i * 10);
+                        const double complex crank = h[8 + axis] - h[2 + axis];
+                        CHECK_NEAR_ABS(t, cabs((1.0 * h[6 + axis]) - crank), 0.0,
+                                       TOL * (cabs(h[8 + axis]) + cabs(h[2 + axis])));
+                    }
+                }
+            }
+        }
+        done(&q);
+    }
+}
+
+/* A pendulum in its weight: the same, where all that the joint carries is known. */
+static void response__a_standing_force_turns_with_its_body(mt_test *t)
+{
+    asked q = {.rc = MT_OK};
+    if (mech_must(t, mech_load(t, "pendulum"), "hanging", "", &q.m) &&
+        ask(t, &q, "tip.x", "tip.x:acceleration joint.pivot.x joint.pivot.y")) {
+        for (double w = 1.0; w < 100.0; w *= 1.9) {
+            at(t, &q, w);
+            /* centre half way: m a_c = 1 + F_x */
+            CHECK_NEAR_ABS(t, cabs((0.5 * q.s.h[0]) - 1.0 - q.s.h[1]), 0.0, TOL);
+            CHECK_NEAR_ABS(t, cabs(q.s.h[2]), 0.0, TOL);
+        }
+    }
+    done(&q);
+}
+
+static void response__unclear_forces_are_refused(mt_test *t)
+{
+    static const struct {
+        const char *model;
+        const char *configuration;
+        const char *input;
+        const char *output;
+        const char *says;
+    } rows[] = {
+        {"pendulum", "twice", "tip.x", "joint.pivot.x", "redundant"},
+        {"pendulum", "hanging", "tip.q", "tip.x", "no input is called"},
+        {"pendulum", "hanging", "base.z", "tip.x", "did you mean \"base.x\""},
+        {"pendulum", "hanging", "tip.x", "tip.x:speed", "is not displacement"},
+        {"pendulum", "hanging", "tip.x:velocity", "tip.x", "is its force"},
+        {"pendulum", "upside_down", "tip.x", "tip.x", "unstable"},
+        {"four_bar", "still", "tip.x", "spring.servi", "did you mean \"spring.servo\""},
+        {"space_stick", "geared", "tip.x", "joint.gears.x", "no bodies of its own"},
+        {"space_stick", "weightless", "tip.x", "spring.mount", "several forces"},
+    };
+    for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
+        mt_test_row(t, "%s, %s, %s", rows[r].model, rows[r].input, rows[r].output);
+        asked q = {.rc = MT_OK};
+        if (mech_must(t, mech_load(t, rows[r].model), rows[r].configuration, "", &q.m)) {
+            mt_err err = {.text = ""};
+            const mt_response_request request = {
+                .n_in = 1, .inputs = &rows[r].input, .n_out = 1, .outputs = &rows[r].output};
+            CHECK(t, mt_response_open(q.m.a, &request, &q.r, &err) != MT_OK);
+            if (!CHECK(t, strstr(err.text, rows[r].says) != NULL)) {
+                (void)fprintf(stderr, "%s\n", err.text);
+            }
+        }
+        done(&q);
+    }
+}
+
+/* One part of one response as a function of the inputs of the analysis. */
+typedef struct slope_of {
+    mt_analysis *a;
+    const char *in;
+    const char *out;
+    double w;
+    bool imaginary;
+} slope_of;
+
+static double value_at(const void *ctx, int n, const double *x)
+{
+    const slope_of *const s = ctx;
+    const mt_analysis_options opt = all_modes(false);
+    const mt_response_request request = {
+        .n_in = 1, .inputs = &s->in, .n_out = 1, .outputs = &s->out};
+    mt_response r = {.a = NULL};
+    mt_err err;
+    double complex h = nan("");
+    const mt_sample sample = {.h = &h};
+    (void)n;
+    if (mt_analysis_solve(s->a, x, &opt, &err) != MT_OK ||
+        mt_response_open(s->a, &request, &r, &err) != MT_OK ||
+        mt_transfer_at(&r.direct, s->w, &sample, &r.mem, &err) != MT_OK) {
+        h = nan("");
+    }
+    mt_response_free(&r);
+    return s->imaginary ? cimag(h) : creal(h);
+}
+
+static void slopes_agree(mt_test *t, const char *text, const char *file,
+                         const char *configuration, const char *parameters, const char *inputs,
+                         const char *outputs, const double *ws, int n_w)
+{
+    asked q = {.rc = MT_OK};
+    const mt_analysis_options opt = all_modes(true);
+    mt_model *const model = text != NULL ? mech_parse(t, text) : mech_load(t, file);
+    if (!mech_must(t, model, configuration, parameters, &q.m)) {
+        done(&q);
+        return;
+    }
+    char room[512];
+    const char *in[8];
+    const int n_in = split_words(inputs, room, sizeof room, in, 8);
+    char out_room[512];
+    const char *out[16];
+    const int n_out = split_words(outputs, out_room, sizeof out_room, out, 16);
+    for (int k = 0; k < n_w; k++) {
+        mt_err err = {.text = ""};
+        double complex dh[8 * 16 * MECH_INPUTS];
+        CHECK(t, mt_analysis_solve(q.m.a, q.m.at, &opt, &err) == MT_OK);
+        if (!ask(t, &q, inputs, outputs) ||
+            !CHECK(t, mt_response_slopes_at(&q.r, ws[k], dh, &err) == MT_OK)) {
+            (void)fprintf(stderr, "%s\n", err.text);
+            break;
+        }
+        mt_response_free(&q.r);
+        for (int at_dh = 0; at_dh < n_in * n_out * q.m.n; at_dh++) {
+            const int p = at_dh / (n_in * n_out);
+            const int pair = at_dh % (n_in * n_out);
+            for (int imaginary = 0; imaginary < 2; imaginary++) {
+                const slope_of f = {q.m.a, in[pair / n_out], out[pair % n_out], ws[k],
+                                    imaginary == 1};
+                mt_test_row(t, "%s, w = %g, input %s, output %s, parameter %d, part %d",
+                            configuration, ws[k], f.in, f.out, p, imaginary);
+                const double size = fabs(q.m.at[p]) > 0.0 ? fabs(q.m.at[p]) : 1.0;
+                CHECK(t, mt_slope_agrees(value_at, &f, q.m.n, q.m.at, p,
+                                         imaginary ? cimag(dh[at_dh]) : creal(dh[at_dh]),
+                                         2e-4 * size, 1e-11));
+            }
+        }
+    }
+    done(&q);
+}
+
+static void response__derivatives_are_slopes(mt_test *t)
+{
+    static const double W[] = {6.0, 17.0, 90.0};
+    slopes_agree(t, NULL, "four_bar", "still", "a k m_c alpha", "tip.x base.y crank.r",
+                 "tip.y mid.x:acceleration spring.servo spring.coil joint.jB.x joint.jD.y", W,
+                 3);
+    slopes_agree(t, NULL, "four_bar", "loaded", "a k m_c g alpha", "tip.x base.x",
+                 "tip.y mid.x:velocity spring.servo spring.coil", W, 3);
+    slopes_agree(t, NULL, "four_bar", "trimmed", "a k m_c", "tip.x", "tip.y spring.coil", W, 2);
+    slopes_agree(t, NULL, "space_stick", "geared", "k tilt l m ratio kb", "tip.x",
+                 "s.x tip.y:acceleration", W, 2);
+    slopes_agree(t, NULL, "space_stick", "geared", "k tilt l m ratio kb", "base.z",
+                 "s.x plate.y wheel.rz", W, 2);
+}
+
+/* With a damper in it, through a peak. */
+static const char DAMPED[] =
+    "{ \"format\": \"modetune-model/1\", \"name\": \"d\", \"dimension\": 2,"
+    "  \"parameters\": { \"m\": 2, \"k\": 60, \"c\": 0.3, \"l\": 0.5, \"u\": 0.1 },"
+    "  \"bodies\": [ { \"name\": \"a\", \"mass_kg\": \"m\", \"inertia_kg_m2\": 0.02,"
+    "                  \"centre\": [\"l/2\", \"u\"] },"
+    "                { \"name\": \"b\", \"mass_kg\": 0.5, \"inertia_kg_m2\": 0.01,"
+    "                  \"centre\": [\"l + 0.1\", 0.2] } ],"
+    "  \"joints\": [ { \"name\": \"p\", \"type\": \"revolute\", \"bodies\": [\"ground\", "
+    "\"a\"],"
+    "                  \"at\": [0, 0] },"
+    "                { \"name\": \"q\", \"type\": \"revolute\", \"bodies\": [\"a\", \"b\"],"
+    "                  \"at\": [\"l\", \"u\"] } ],"
+    "  \"springs\": [ { \"name\": \"s\", \"type\": \"torsion\", \"joint\": \"p\","
+    "                   \"stiffness_n_m_per_rad\": \"k\" },"
+    "                 { \"name\": \"v\", \"type\": \"axial\", \"bodies\": [\"a\", \"b\"],"
+    "                   \"at\": [[\"l\", 0.3], [\"l + 0.3\", \"u\"]],"
+    "                   \"stiffness_n_per_m\": 400 } ],"
+    "  \"dampers\": [ { \"name\": \"d\", \"type\": \"axial\", \"bodies\": [\"ground\", \"b\"],"
+    "                   \"at\": [[\"l\", -0.4], [\"l + 0.2\", 0.1]],"
+    "                   \"damping_n_s_per_m\": \"c\" } ],"
+    "  \"sensors\": [ { \"name\": \"e\", \"on\": \"b\", \"at\": [\"l + 0.2\", \"2*u\"] } ],"
+    "  \"configurations\": { \"c\": {} } }";
+
+static void response__derivatives_hold_through_a_peak(mt_test *t)
+{
+    asked q = {.rc = MT_OK};
+    double w[3] = {0.0};
+    if (mech_must(t, mech_parse(t, DAMPED), "c", "", &q.m)) {
+        const double peak = 2.0 * MECH_PI * mech_hz(&q.m, 1);
+        w[0] = 0.99 * peak;
+        w[1] = 1.003 * peak;
+        w[2] = 1.02 * peak;
+    }
+    done(&q);
+    slopes_agree(t, DAMPED, NULL, "c", "m k c l u", "e.x base.y",
+                 "e.y:acceleration spring.v damper.d joint.p.x joint.q.y", w, 3);
+}
+
+MT_TEST_MAIN(MT_TEST(response__moving_ground_matches_its_closed_form),
+             MT_TEST(response__moving_ground_is_a_table_that_moves),
+             MT_TEST(response__joints_hold_a_body_in_equilibrium),
+             MT_TEST(response__a_standing_force_turns_with_its_body),
+             MT_TEST(response__unclear_forces_are_refused),
+             MT_TEST(response__derivatives_are_slopes),
+             MT_TEST(response__derivatives_hold_through_a_peak))
