@@ -83,18 +83,20 @@ static void tidy(trace *c)
     c->n = kept;
 }
 
+double mt_curve_grid(const mt_curve_options *opt, int i)
+{
+    const double part = (double)i / (double)(opt->points - 1);
+    if (i == 0 || i == opt->points - 1) {
+        return i == 0 ? opt->from : opt->to;
+    }
+    return opt->log ? opt->from * pow(opt->to / opt->from, part)
+                    : opt->from + (part * (opt->to - opt->from));
+}
+
 static mt_status add_grid(trace *c, mt_err *err)
 {
-    const double from = c->opt->from;
-    const double to = c->opt->to;
-    const int last = c->opt->points - 1;
-    for (int i = 0; i <= last; i++) {
-        const double part = (double)i / (double)last;
-        const double w = i == 0        ? from
-                         : i == last   ? to
-                         : c->opt->log ? from * pow(to / from, part)
-                                       : from + (part * (to - from));
-        MT_TRY(add_point(c, w, err));
+    for (int i = 0; i < c->opt->points; i++) {
+        MT_TRY(add_point(c, mt_curve_grid(c->opt, i), err));
     }
     return MT_OK;
 }
@@ -218,6 +220,15 @@ static mt_status note(trace *c, const mt_extreme *e, mt_err *err)
     return MT_OK;
 }
 
+/* Is a minimum next to a zero? There H is about linear, |H| at an end of the interval about |H'|
+ * times how far it is; where H turns round instead, H' is small. */
+static bool is_zero(const mt_extreme *e, const point *a, const point *b, double complex dh)
+{
+    const point *const far = b->w - e->w > e->w - a->w ? b : a;
+    const double rise = cabs(far->at.h[e->pair]) - cabs(e->h);
+    return cabs(e->h) <= e->error || cabs(dh) * fabs(far->w - e->w) > 0.5 * rise;
+}
+
 static mt_status extreme(trace *c, const point *a, const point *b, ptrdiff_t pair, mt_err *err)
 {
     if (!is_known(&a->at, pair) && !is_known(&b->at, pair)) {
@@ -237,11 +248,14 @@ static mt_status extreme(trace *c, const point *a, const point *b, ptrdiff_t pai
     const size_t pairs = (size_t)c->pairs;
     const mt_arena_mark mark = mt_arena_get_mark(c->mem);
     mt_sample at = {.h = mt_arena_alloc(c->mem, pairs, sizeof *at.h),
-                    .dh = mt_arena_alloc(c->mem, pairs, sizeof *at.dh)};
+                    .dh = mt_arena_alloc(c->mem, pairs, sizeof *at.dh),
+                    .error = mt_arena_f64(c->mem, pairs, 1)};
     double ends[2] = {a->w, b->w};
     MT_TRY(mt_arena_check(c->mem, err));
     MT_TRY(polish(c, pair, ends, rise, &at, &e.w, err));
     e.h = at.h[pair];
+    e.error = at.error[pair];
+    e.antiresonance = !e.peak && is_zero(&e, a, b, at.dh[pair]);
     mt_arena_rewind(c->mem, mark);
     return note(c, &e, err);
 }

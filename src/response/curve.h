@@ -24,11 +24,13 @@ typedef struct mt_curve_options {
 
 /* A maximum or minimum of |H| of one pair; by ascending w. */
 typedef struct mt_extreme {
-    int pair; /* output + n_out input */
-    bool peak;
-    bool infinite; /* an undamped resonance: no value */
+    int pair;           /* output + n_out input */
+    bool peak;          /* else a minimum */
+    bool infinite;      /* a peak that is an undamped resonance: no value */
+    bool antiresonance; /* a minimum next to a zero of H, where its phase turns over */
     double w;
     double complex h;
+    double error; /* |error of h| <= this */
 } mt_extreme;
 
 enum { MT_CURVE_MOST = 20000 };
@@ -43,6 +45,8 @@ typedef struct mt_curve {
     bool complete; /* MT_CURVE_MOST points did */
 } mt_curve;
 
+/* Frequency i of the grid [rad/s]. */
+double mt_curve_grid(const mt_curve_options *opt, int i);
 /* Results in mem. Fails: as mt_transfer_at, MT_E_INTERRUPTED. */
 mt_status mt_curve_trace(const mt_transfer *t, const mt_curve_options *opt, mt_arena *mem,
                          mt_curve *out, mt_err *err);

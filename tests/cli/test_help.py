@@ -16,6 +16,7 @@ OPTIONS = {
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
+    "response": {"configuration", "set", "input", "output", "from", "to", "points", "log", "modes", "direct", "sensitivity"},
     "info": {"configuration", "set"},
     "show": {"configuration", "set", "output", "svg", "mode", "model"},
     "report": {"output", "verify"},
