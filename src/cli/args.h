@@ -32,6 +32,7 @@ typedef enum mt_option_id {
     MT_OPT_LOG,
     MT_OPT_KEEP,
     MT_OPT_DIRECT,
+    MT_OPT_POLES,
     MT_OPT_SENSITIVITY,
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,

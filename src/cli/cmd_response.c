@@ -164,6 +164,25 @@ static mt_status sensitivities(job *j, mt_err *err)
     return MT_OK;
 }
 
+/* That there is no sum of poles is part of an answer. */
+static mt_status poles(job *j, mt_err *err)
+{
+    if (!j->args->given[MT_OPT_POLES]) {
+        return MT_OK;
+    }
+    mt_err own = {.code = MT_OK};
+    const size_t pairs = (size_t)j->r.n_in * (size_t)j->r.n_out;
+    mt_pole_sum *const sums = mt_arena_alloc(&j->r.mem, pairs, sizeof *sums);
+    MT_TRY(mt_arena_check(&j->r.mem, err));
+    const mt_status rc = mt_response_sums(&j->r, sums, &own);
+    if (rc != MT_OK && rc != MT_E_SINGULAR) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    j->v.sums = rc == MT_OK ? sums : NULL;
+    j->v.no_sums = rc == MT_OK ? NULL : mt_arena_strdup(&j->r.mem, own.text);
+    return mt_arena_check(&j->r.mem, err);
+}
+
 static mt_status run(job *j, mt_err *err)
 {
     const mt_response_request request = request_of(j->args);
@@ -172,6 +191,7 @@ static mt_status run(job *j, mt_err *err)
     mt_status rc = mt_response_open(j->a, &request, &j->r, err);
     rc = rc == MT_OK ? choose_range(j, err) : rc;
     rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;
+    rc = rc == MT_OK ? poles(j, err) : rc;
     rc = rc == MT_OK ? sensitivities(j, err) : rc;
     return mt_err_in(err, rc, "%s: configuration \"%s\"", j->s->path, j->v.configuration);
 }

@@ -71,6 +71,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "(default: by all of them)"),
     OPTION(MT_OPT_DIRECT, '\0', "direct", NULL, BIT(MT_CMD_RESPONSE),
            "by a factor of the dynamic stiffness at every frequency, without modes"),
+    OPTION(MT_OPT_POLES, '\0', "poles", NULL, BIT(MT_CMD_RESPONSE),
+           "poles and residues, of which every response is the sum: H(s) = sum of residue/(s - "
+           "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (in the text the poles alone)"),
     OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
            "change of every peak and antiresonance for one per cent more of these parameters"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",

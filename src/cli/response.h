@@ -14,10 +14,12 @@ typedef struct mt_response_view {
     const mt_curve *curve;
     mt_curve_options opt; /* as it was traced */
     bool direct;
-    int n;                 /* of --sensitivity */
-    const int *parameter;  /* [n] */
-    const double *value;   /* [n] */
-    const double *percent; /* n_extremes x n: of |H|, for one per cent more */
+    const mt_pole_sum *sums; /* [pairs] of --poles; NULL: not asked for, or there are none */
+    const char *no_sums;     /* why there are none; NULL */
+    int n;                   /* of --sensitivity */
+    const int *parameter;    /* [n] */
+    const double *value;     /* [n] */
+    const double *percent;   /* n_extremes x n: of |H|, for one per cent more */
 } mt_response_view;
 
 void mt_response_print(const mt_response_view *v, mt_text *out);

@@ -145,7 +145,7 @@ static void print_grid(const mt_response_view *v, mt_text *out)
     mt_table_free(&t);
 }
 
-/* Geometric mean of the errors' parts of their values. */
+/* Geometric mean of the errors' parts of their values, up to the next power of 10. */
 static double mean_error(const mt_response_view *v)
 {
     double sum = 0.0;
@@ -159,7 +159,7 @@ static double mean_error(const mt_response_view *v)
             }
         }
     }
-    return n > 0 ? exp(sum / n) : 0.0;
+    return n > 0 ? pow(10.0, ceil(sum / n / log(10.0))) : 0.0;
 }
 
 static void print_method(const mt_response_view *v, mt_text *out)
@@ -171,10 +171,11 @@ static void print_method(const mt_response_view *v, mt_text *out)
         mt_text_addf(out, "  By %d of %d modes%s.", b->n_modes, b->n_modes + b->n_left,
                      b->t.diagonal ? "" : ", coupled by their damping");
     }
-    mt_text_addf(out,
-                 " %d frequencies, %d of them of the grid; rounding is %.1g of a value on "
-                 "average.\n",
-                 v->curve->n, v->opt.points, mean_error(v));
+    mt_text_addf(
+        out,
+        " %d frequencies, %d of them of the grid; rounding is below %.0e of a value on "
+        "average.\n",
+        v->curve->n, v->opt.points, mean_error(v));
     if (!v->direct && b->n_left > 0) {
         mt_text_addf(out,
                      "  %d modes from %.5g Hz on follow statically: near and above that the "
@@ -185,6 +186,26 @@ static void print_method(const mt_response_view *v, mt_text *out)
         mt_text_add(out, "  Not all peaks are shown as fine as asked for: that takes too many "
                          "frequencies.\n");
     }
+}
+
+static void print_poles(const mt_response_view *v, mt_text *out)
+{
+    if (v->no_sums != NULL) {
+        mt_text_addf(out, "  %s.\n", v->no_sums);
+    }
+    if (v->sums == NULL) {
+        return;
+    }
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "pole: re [1/s]", "re", MT_ALIGN_POINT);
+    mt_table_column(&t, "im [rad/s]", "im", MT_ALIGN_POINT);
+    for (int k = 0; k < v->sums->n; k++) {
+        mt_table_number(&t, creal(v->sums->s[k]), HZ_DIGITS);
+        mt_table_number(&t, cimag(v->sums->s[k]), HZ_DIGITS);
+    }
+    mt_text_add(out, "\n");
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
 }
 
 void mt_response_print(const mt_response_view *v, mt_text *out)
@@ -201,6 +222,7 @@ void mt_response_print(const mt_response_view *v, mt_text *out)
         mt_text_add(out, "\n");
     }
     print_grid(v, out);
+    print_poles(v, out);
     print_method(v, out);
     if (infinite) {
         mt_text_add(out,
@@ -259,6 +281,40 @@ static void json_series(const mt_response_view *v, int pair, const char *member,
     mt_json_close(w);
 }
 
+static void json_complex(mt_json_writer *w, const char *re, const char *im, double complex z)
+{
+    mt_json_put_number(w, re, creal(z));
+    mt_json_put_number(w, im, cimag(z));
+}
+
+/* Where they were asked for. */
+static void json_poles(const mt_response_view *v, int pair, mt_json_writer *w)
+{
+    if (v->no_sums != NULL) {
+        mt_json_put_null(w, "poles");
+        mt_json_put_string(w, "no_poles", v->no_sums);
+    }
+    if (v->sums == NULL) {
+        return;
+    }
+    const mt_pole_sum *const sum = &v->sums[pair];
+    mt_json_open(w, "poles", '[');
+    for (int k = 0; k < sum->n; k++) {
+        mt_json_open_flat(w, NULL, '{');
+        json_complex(w, "re", "im", sum->s[k]);
+        json_complex(w, "residue_re", "residue_im", sum->residue[k]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_open(w, "polynomial", '[');
+    for (int k = 0; k < 3; k++) {
+        mt_json_open_flat(w, NULL, '{');
+        json_complex(w, "re", "im", sum->d[k]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
 static void json_pair(const mt_response_view *v, int pair, mt_json_writer *w)
 {
     char unit[HEADING_TEXT];
@@ -274,6 +330,7 @@ static void json_pair(const mt_response_view *v, int pair, mt_json_writer *w)
         }
     }
     mt_json_close(w);
+    json_poles(v, pair, w);
     json_series(v, pair, "re", 0, w);
     json_series(v, pair, "im", 1, w);
     json_series(v, pair, "error", 2, w);

@@ -51,7 +51,7 @@ typedef struct parts {
 
 static mt_status refuse(const char *why, mt_err *err)
 {
-    return mt_fail(err, MT_E_SINGULAR, "no sum of poles: %s", why);
+    return mt_fail(err, MT_E_SINGULAR, "There is no sum of poles: %s", why);
 }
 
 static double damping_of(const parts *k, ptrdiff_t i, ptrdiff_t j)

@@ -40,8 +40,8 @@ static double *ensure(build *k, double **x, int rows, int columns)
     return *x;
 }
 
-mt_status mt_response_damping(mt_analysis *a, mt_arena *mem, double **c, double **h,
-                              mt_err *err)
+/* What damps, of the last solve; either NULL: 0. */
+static mt_status damping_of(mt_analysis *a, mt_arena *mem, double **c, double **h, mt_err *err)
 {
     const size_t n = (size_t)mt_linear_freedoms(a->lin);
     *c = mt_arena_f64(mem, n, n);
@@ -227,7 +227,7 @@ mt_status mt_response_problem(mt_analysis *a, int n_in, const mt_port *in, int n
     k.w = mt_arena_f64(mem, (size_t)k.nq, 1);
     ways->joint = mt_arena_alloc(mem, (size_t)n_out, sizeof *ways->joint);
     MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(mt_response_damping(a, mem, &ways->c, &ways->h, err));
+    MT_TRY(damping_of(a, mem, &ways->c, &ways->h, err));
     for (int i = 0; i < n_in; i++) {
         MT_TRY(add_input(&k, i, err));
     }

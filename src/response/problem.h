@@ -25,9 +25,6 @@ typedef struct mt_response_ways {
 mt_status mt_response_problem(mt_analysis *a, int n_in, const mt_port *in, int n_out,
                               const mt_port *out, mt_arena *mem, mt_forced *f,
                               mt_response_ways *ways, mt_err *err);
-/* What damps, of the last solve: the one place that says what C and H are. Either NULL: 0. */
-mt_status mt_response_damping(mt_analysis *a, mt_arena *mem, double **c, double **h,
-                              mt_err *err);
 /* The coefficient of a spring's or damper's term, and its row. */
 double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
                           const mt_term **term);

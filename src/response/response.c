@@ -57,6 +57,11 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
     return mt_curve_trace(r->chosen, &own, &r->mem, out, err);
 }
 
+mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err)
+{
+    return mt_response_poles(&r->basis, &r->mem, out, err);
+}
+
 mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err)
 {
     const mt_slope_problem p = {

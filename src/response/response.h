@@ -45,6 +45,8 @@ void mt_response_free(mt_response *r);
 /* opt->poles and opt->interrupt are filled in here. Results in r->mem. */
 mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curve *out,
                             mt_err *err);
+/* Sums over poles out[n_out x n_in], in r->mem; fails as mt_response_poles. */
+mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err);
 /* dh as mt_response_slopes. */
 mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err);
 

@@ -118,6 +118,23 @@ class Response(CliTest):
             self.assertLess(abs(complex(float(row["re"]), float(row["im"])) - want), 1e-10 * abs(want))
             self.assertEqual(row["unit"], "m/s^2 per m/s^2")
 
+    def test_poles_and_residues_make_the_response(self):
+        model, _, _, _ = chain(7, 4)
+        path = self.write("problems/chain.json", json.dumps(model))
+        got = self.json_of("response", path, "-c", "default", "--input", "base.x", "--output", "b2.x:acceleration", "--poles")
+        entry, = got["responses"]
+        s = 2j * math.pi * numpy.array(got["frequencies_hz"])
+        value = sum(complex(d["re"], d["im"]) * s ** k for k, d in enumerate(entry["polynomial"]))
+        for pole in entry["poles"]:
+            value = value + complex(pole["residue_re"], pole["residue_im"]) / (s - complex(pole["re"], pole["im"]))
+        h = numpy.array(entry["re"]) + 1j * numpy.array(entry["im"])
+        self.assertEqual(len(entry["poles"]), 8)
+        self.assertLess(numpy.max(numpy.abs(value - h)), 1e-9 * numpy.max(numpy.abs(h)))
+        free = self.json_of("response", self.model, "-c", "free", "--input", "a.x", "--poles", "--from", "0.1")["responses"][0]
+        self.assertIsNone(free["poles"])
+        self.assertIn("like 1/s^2", free["no_poles"])
+        self.assertIn("There is no sum of poles", self.expect(0, "response", self.model, "-c", "free", "--input", "a.x", "--poles").stdout)
+
     def test_fewer_modes_are_said(self):
         text = self.expect(0, "response", self.model, "-c", "held", "--input", "a.x", "--modes", "1").stdout
         self.assertIn("By 1 of 2 modes.", text)
