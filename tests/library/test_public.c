@@ -198,8 +198,7 @@ static mt_status call_mechanism_mac(int null)
 static double part[8];
 GIVES(mechanism_sensitivities,
       mt_mechanism_sensitivities(ARG(0, mechanism), 1, ARG(1, part), ARG(2, &said)))
-static const char *const shaker = "base.x";
-static const mt_ports ports = {.n_inputs = 1, .inputs = &shaker};
+static const mt_ports ports = {.n_inputs = 1, .inputs = (const char *const[]){"base.x"}};
 GIVES(mechanism_response,
       mt_mechanism_response(ARG(0, mechanism), ARG(1, &ports), 1, ARG(2, one), ARG(3, part),
                             ARG(4, part), ARG(5, part), ARG(6, &said)))
