@@ -102,7 +102,7 @@ static mt_status slopes_with(job *j, mt_analysis *a, mt_response *r, int slot, d
 {
     const mt_response_request request = request_of(j->args);
     MT_TRY(mt_response_open(a, &request, r, err));
-    const ptrdiff_t pairs = (ptrdiff_t)r->n_in * r->n_out;
+    const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_in * r->ports.n_out;
     double complex *const dh =
         mt_arena_alloc(&r->mem, (size_t)(pairs * a->sys->n_inputs), sizeof *dh);
     MT_TRY(mt_arena_check(&r->mem, err));
@@ -171,7 +171,7 @@ static mt_status poles(job *j, mt_err *err)
         return MT_OK;
     }
     mt_err own = {.code = MT_OK};
-    const size_t pairs = (size_t)j->r.n_in * (size_t)j->r.n_out;
+    const size_t pairs = (size_t)j->r.ports.n_in * (size_t)j->r.ports.n_out;
     mt_pole_sum *const sums = mt_arena_alloc(&j->r.mem, pairs, sizeof *sums);
     MT_TRY(mt_arena_check(&j->r.mem, err));
     const mt_status rc = mt_response_sums(&j->r, sums, &own);
@@ -229,10 +229,7 @@ static int one(sink *to, mt_subject *s, int c)
             break;
         }
     } else if (to->args->format == MT_FORMAT_JSON) {
-        mt_json_open(&to->w, NULL, '{');
-        mt_json_put_string(&to->w, "configuration", j.v.configuration);
-        mt_json_put_string(&to->w, "error", err.text);
-        mt_json_close(&to->w);
+        mt_cli_json_failed(&to->w, j.v.configuration, &err);
     }
     mt_response_free(&j.r);
     mt_analysis_delete(j.a);

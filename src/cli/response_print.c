@@ -26,17 +26,17 @@ static double phase(double complex h)
 
 static const mt_port *input_of(const mt_response_view *v, int pair)
 {
-    return &v->r->in[pair / v->r->n_out];
+    return &v->r->ports.in[pair / v->r->ports.n_out];
 }
 
 static const mt_port *output_of(const mt_response_view *v, int pair)
 {
-    return &v->r->out[pair % v->r->n_out];
+    return &v->r->ports.out[pair % v->r->ports.n_out];
 }
 
 static int pairs_of(const mt_response_view *v)
 {
-    return v->r->n_in * v->r->n_out;
+    return v->r->ports.n_in * v->r->ports.n_out;
 }
 
 static double complex value_at(const mt_response_view *v, int pair, int point)
@@ -125,8 +125,8 @@ static void print_grid(const mt_response_view *v, mt_text *out)
         char unit[HEADING_TEXT];
         unit_of(v, p, unit);
         (void)mt_snprintf(heading, sizeof heading, "%s%s%s [%s]", output_of(v, p)->name,
-                          v->r->n_in > 1 ? " by " : "",
-                          v->r->n_in > 1 ? input_of(v, p)->name : "", unit);
+                          v->r->ports.n_in > 1 ? " by " : "",
+                          v->r->ports.n_in > 1 ? input_of(v, p)->name : "", unit);
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
         mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
     }
@@ -215,8 +215,8 @@ void mt_response_print(const mt_response_view *v, mt_text *out)
         infinite = infinite || v->curve->extremes[e].infinite;
     }
     mt_text_addf(out, "%s: response to %s%s, %.6g to %.6g Hz\n", v->configuration,
-                 v->r->in[0].name, v->r->n_in > 1 ? ", ..." : "", v->opt.from / TWO_PI,
-                 v->opt.to / TWO_PI);
+                 v->r->ports.in[0].name, v->r->ports.n_in > 1 ? ", ..." : "",
+                 v->opt.from / TWO_PI, v->opt.to / TWO_PI);
     if (v->curve->n_extremes > 0) {
         print_extremes(v, out);
         mt_text_add(out, "\n");
@@ -347,8 +347,8 @@ void mt_response_json(const mt_response_view *v, mt_json_writer *w)
     mt_json_put_integer(w, "modes_left_out", b->n_left);
     mt_json_put_bool(w, "coupled", !b->t.diagonal);
     mt_json_put_bool(w, "complete", v->curve->complete);
-    json_ports(w, "inputs", v->r->n_in, v->r->in);
-    json_ports(w, "outputs", v->r->n_out, v->r->out);
+    json_ports(w, "inputs", v->r->ports.n_in, v->r->ports.in);
+    json_ports(w, "outputs", v->r->ports.n_out, v->r->ports.out);
     mt_json_open_flat(w, "frequencies_hz", '[');
     for (int i = 0; i < v->curve->n; i++) {
         mt_json_put_number(w, NULL, v->curve->w[i] / TWO_PI);

@@ -397,15 +397,16 @@ static void store(ptrdiff_t n, const double complex *h, double *re, double *im)
 static mt_status respond(mt_response *r, int n, const double *hz, double *re, double *im,
                          double *error, mt_err *err)
 {
-    const ptrdiff_t pairs = (ptrdiff_t)r->n_in * r->n_out;
+    const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_in * r->ports.n_out;
     double complex *const h = mt_arena_alloc(&r->mem, (size_t)pairs, sizeof *h);
     MT_TRY(mt_arena_check(&r->mem, err));
     for (ptrdiff_t i = 0; i < n; i++) {
-        const mt_sample at = {.h = h, .error = error == NULL ? NULL : error + (i * pairs)};
+        double *const own = error == NULL ? NULL : error + (i * pairs);
+        const mt_sample at = {.h = h, .error = own};
         MT_TRY(mt_transfer_at(r->chosen, TWO_PI * hz[i], &at, &r->mem, err));
         store(pairs, h, re + (i * pairs), im + (i * pairs));
-        for (ptrdiff_t k = 0; k < pairs && error != NULL; k++) {
-            at.error[k] = isfinite(at.error[k]) ? at.error[k] : nan("");
+        for (ptrdiff_t k = 0; k < pairs && own != NULL; k++) {
+            own[k] = isfinite(own[k]) ? own[k] : nan("");
         }
     }
     return MT_OK;
@@ -451,7 +452,7 @@ mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *
     const mt_response_request request = request_of(ports);
     mt_status rc = mt_response_open(mechanism->a, &request, &r, err);
     if (rc == MT_OK) {
-        const ptrdiff_t size = (ptrdiff_t)r.n_in * r.n_out * mechanism->n_inputs;
+        const ptrdiff_t size = (ptrdiff_t)r.ports.n_in * r.ports.n_out * mechanism->n_inputs;
         double complex *const dh = mt_arena_alloc(&r.mem, (size_t)size, sizeof *dh);
         rc = mt_arena_check(&r.mem, err);
         rc = rc == MT_OK ? mt_response_slopes_at(&r, TWO_PI * hz, dh, err) : rc;

@@ -40,7 +40,7 @@ void mt_linear_states_product(const mt_linear *lin, mt_term_kind kind, double sc
     const mt_rows *const rows = &lin->full[kind];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
-        if (is_blocked(lin, kind, i, t)) {
+        if (is_blocked(lin, (int)kind, i, t)) {
             continue;
         }
         const double c = scale * lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
@@ -153,7 +153,7 @@ static mt_status moving_product(mt_linear *lin, mt_term_kind kind, int p, moving
     const mt_linear_tangent *const t = &lin->tangent[p];
     const bool geometric = kind == MT_TERM_STIFFNESS && lin->kg != NULL;
     memset(v->w, 0, (size_t)nq * sizeof *v->w);
-    full_product_derivative(lin, kind, p, v->phi, v->w);
+    full_product_derivative(lin, (int)kind, p, v->phi, v->w);
     if (geometric) {
         mt_gemv(false, nq, nq, 1.0, t->kg, nq, v->phi, 1.0, v->w);
     }

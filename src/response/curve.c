@@ -74,7 +74,9 @@ static int by_w(const void *a, const void *b)
 static void tidy(trace *c)
 {
     int kept = 0;
-    qsort(c->points, (size_t)c->n, sizeof *c->points, by_w);
+    if (c->n > 0) {
+        qsort(c->points, (size_t)c->n, sizeof *c->points, by_w);
+    }
     for (int i = 0; i < c->n; i++) {
         if (kept == 0 || c->points[i].w > c->points[kept - 1].w) {
             c->points[kept++] = c->points[i];
@@ -112,9 +114,11 @@ static mt_status add_pole(trace *c, double complex s, mt_err *err)
     if (half > NO_WIDTH * w) {
         MT_TRY(add_point(c, w, err));
     }
-    for (double step = FIRST_STEP * half; step < 0.5 * w; step *= STEP_FACTOR) {
+    double step = FIRST_STEP * half;
+    while (step < 0.5 * w) {
         MT_TRY(add_point(c, w - step, err));
         MT_TRY(add_point(c, w + step, err));
+        step *= STEP_FACTOR;
     }
     return MT_OK;
 }
@@ -149,19 +153,26 @@ static bool is_bent(const trace *c, const point *a, const point *b)
     return false;
 }
 
+/* Halve every interval that asks for it, once. */
+static mt_status halve(trace *c, mt_err *err)
+{
+    const int had = c->n;
+    for (int i = 0; i + 1 < had && c->n < MT_CURVE_MOST; i++) {
+        const double a = c->points[i].w;
+        const double b = c->points[i + 1].w;
+        if (b - a > FINEST * b && is_bent(c, &c->points[i], &c->points[i + 1])) {
+            MT_TRY(add_point(c, c->opt->log ? sqrt(a * b) : 0.5 * (a + b), err));
+        }
+    }
+    return MT_OK;
+}
+
 static mt_status refine(trace *c, mt_err *err)
 {
-    bool more = true;
-    for (int pass = 0; pass < PASSES && more && c->n < MT_CURVE_MOST; pass++) {
-        const int had = c->n;
-        for (int i = 0; i + 1 < had && c->n < MT_CURVE_MOST; i++) {
-            const double a = c->points[i].w;
-            const double b = c->points[i + 1].w;
-            if (b - a > FINEST * b && is_bent(c, &c->points[i], &c->points[i + 1])) {
-                MT_TRY(add_point(c, c->opt->log ? sqrt(a * b) : 0.5 * (a + b), err));
-            }
-        }
-        more = c->n > had;
+    int had = 0;
+    for (int pass = 0; pass < PASSES && c->n > had && c->n < MT_CURVE_MOST; pass++) {
+        had = c->n;
+        MT_TRY(halve(c, err));
         tidy(c);
     }
     return MT_OK;

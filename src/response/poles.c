@@ -12,7 +12,7 @@
  * Polynomials come from D^-1 = E_1/s + E_2/s^2 + ..., D E = 1:
  *     s^P/(s - s_k), summed:  sum_{m < P} s^m E_{P - m}.
  */
-#include "response/poles.h"
+#include "response/poles_priv.h"
 
 #include <float.h>
 #include <math.h>
@@ -21,157 +21,27 @@
 #include "linalg/complex.h"
 #include "linalg/dense.h"
 
-/* Two poles nearer than this part of their size cancel more digits than the sum is good to. */
-static const double APART = 1e-6;
 /* What the sum may differ by from a direct solve, of the largest of them. */
 static const double AGREEMENT = 1e-9;
 /* A pole with less damping than this is looked at from so far beside it: on it, how far it is
  * from w decides all digits. */
 static const double SHARP = 1e-6;
 static const double BESIDE = 1e-3;
-enum { DEGREES = 5, EXPANSION = 4 };
-
-typedef struct parts {
-    const mt_basis *b;
-    mt_arena *mem;
-    ptrdiff_t n;     /* coordinates */
-    ptrdiff_t pairs; /* n_in n_out */
-    int *coupled;    /* [n_coupled] coordinates */
-    int n_coupled;
-    int count; /* poles so far */
-    double complex *s;
-    double complex *residue; /* pairs x most, one column per pole */
-    double complex *d;       /* pairs x 3 */
-    /* of the coupled ones */
-    int order;
-    int *x_of; /* [n] -1: none */
-    int *v_of; /* [n] that of b where there is no mass; -1: none */
-    double *omega;
-} parts;
-
-static mt_status refuse(const char *why, mt_err *err)
-{
-    return mt_fail(err, MT_E_SINGULAR, "There is no sum of poles: %s", why);
-}
-
-static double damping_of(const parts *k, ptrdiff_t i, ptrdiff_t j)
-{
-    return k->b->c == NULL ? 0.0 : k->b->c[i + (j * k->n)];
-}
 
 /* Are coordinates i and j tied to each other? */
-static bool is_tied(const parts *k, ptrdiff_t i, ptrdiff_t j)
+static bool is_tied(const mt_poles *k, ptrdiff_t i, ptrdiff_t j)
 {
-    return damping_of(k, i, j) != 0.0 || k->b->g[i + (j * k->n)] != 0.0 ||
-           damping_of(k, j, i) != 0.0;
+    return mt_poles_damping(k, i, j) != 0.0 || k->b->g[i + (j * k->n)] != 0.0 ||
+           mt_poles_damping(k, j, i) != 0.0;
 }
 
-/* Coefficients of sigma_oj(s) beta_ji(s). */
-static void numerator(const parts *k, ptrdiff_t j, ptrdiff_t o, ptrdiff_t i,
-                      double complex *out)
-{
-    const mt_transfer *const t = &k->b->t;
-    memset(out, 0, DEGREES * sizeof *out);
-    for (int p = 0; p < MT_FORCED_POWERS; p++) {
-        for (int q = 0; q < MT_FORCED_POWERS && t->sigma[p] != NULL; q++) {
-            if (t->beta[q] != NULL) {
-                out[p + q] += t->sigma[p][o + (j * t->n_out)] * t->beta[q][j + (i * k->n)];
-            }
-        }
-    }
-}
-
-static double complex value_of(const double complex *poly, double complex s)
-{
-    double complex sum = 0.0;
-    for (int m = DEGREES - 1; m >= 0; m--) {
-        sum = (sum * s) + poly[m];
-    }
-    return sum;
-}
-
-/* Both roots of s^2 + c s + g. A lightly damped pair keeps its small real part: that of the
- * root of the discriminant follows from the imaginary one. */
-static void roots_of(double c, double complex g, double complex s[2])
-{
-    const double complex square = (0.25 * c * c) - g;
-    double complex root = csqrt(square);
-    if (fabs(cimag(root)) > fabs(creal(root))) {
-        root = cx_pair(cimag(square) / (2.0 * cimag(root)), cimag(root));
-    }
-    s[0] = (-0.5 * c) - root;
-    s[1] = (-0.5 * c) + root;
-    if (cabs(s[1]) < 0.5 * cabs(root) && s[0] != 0.0) {
-        s[1] = g / s[0];
-    }
-}
-
-/* A coordinate alone. */
-static mt_status alone(parts *k, ptrdiff_t j, mt_err *err)
-{
-    const ptrdiff_t n_out = k->b->t.n_out;
-    const double c = damping_of(k, j, j);
-    const double complex g = k->b->g[j + (j * k->n)];
-    const bool massless = j >= k->b->n_modes;
-    const bool free = g == 0.0 && c == 0.0;
-    double complex s[2] = {0.0, 0.0};
-    if (massless) {
-        s[0] = -g / c; /* s c + g */
-    } else if (!free) {
-        roots_of(c, g, s);
-        if (cabs(s[1] - s[0]) <= APART * cabs(s[0])) {
-            return refuse("a mode is critically damped", err);
-        }
-    }
-    const int own = massless || free ? 1 : 2;
-    bool any = false;
-    for (ptrdiff_t at = 0; at < k->pairs; at++) {
-        double complex p[DEGREES];
-        numerator(k, j, at % n_out, at / n_out, p);
-        double complex *const to = k->residue + (k->count * k->pairs) + at;
-        double complex q[3];
-        if (massless) {
-            to[0] = value_of(p, s[0]) / c;
-            for (int m = DEGREES - 1; m > 0; m--) { /* divided by c (s - s_0) */
-                p[m - 1] += s[0] * p[m];
-                p[m] = p[m] / c;
-            }
-            memcpy(q, p + 1, sizeof q);
-            if (p[4] != 0.0) {
-                return refuse("the response grows with the cube of the frequency", err);
-            }
-        } else {
-            for (int r = 0; r < own && !free; r++) {
-                to[r * k->pairs] = value_of(p, s[r]) / (s[r] - s[1 - r]);
-            }
-            q[2] = p[4];
-            q[1] = p[3] - (c * q[2]);
-            q[0] = p[2] - (c * q[1]) - (g * q[2]);
-            if (free && p[0] != 0.0) {
-                return refuse("a motion without stiffness and damping grows without bound, "
-                              "like 1/s^2",
-                              err);
-            }
-            to[0] = free ? p[1] : to[0];
-        }
-        any = any || to[0] != 0.0;
-        for (int m = 0; m < 3; m++) {
-            k->d[at + (m * k->pairs)] += q[m];
-        }
-    }
-    for (int r = 0; r < own && (any || !free); r++) {
-        k->s[k->count++] = s[r];
-    }
-    return MT_OK;
-}
-
-static bool is_rigid(const parts *k, ptrdiff_t j)
+static bool is_rigid(const mt_poles *k, ptrdiff_t j)
 {
     return j < k->b->n_modes && k->omega[j] == 0.0;
 }
 
 /* Places of the states of the coupled coordinates. */
-static mt_status place_states(parts *k, mt_err *err)
+static mt_status place_states(mt_poles *k, mt_err *err)
 {
     k->x_of = mt_arena_int(k->mem, (size_t)k->n);
     k->v_of = mt_arena_int(k->mem, (size_t)k->n);
@@ -191,7 +61,7 @@ static mt_status place_states(parts *k, mt_err *err)
 
 /* Row of the states' matrix that belongs to coordinate i, of M q'' + C q' + G q = 0 without
  * what the rates of b add: add `scale` times it to row `to`. */
-static void add_row(const parts *k, ptrdiff_t i, double complex scale, ptrdiff_t to,
+static void add_row(const mt_poles *k, ptrdiff_t i, double complex scale, ptrdiff_t to,
                     double complex *a)
 {
     for (int e = 0; e < k->n_coupled; e++) {
@@ -201,20 +71,20 @@ static void add_row(const parts *k, ptrdiff_t i, double complex scale, ptrdiff_t
             a[to + ((ptrdiff_t)k->v_of[j] * k->order)] += scale * g;
             continue;
         }
-        a[to + ((ptrdiff_t)k->v_of[j] * k->order)] += scale * damping_of(k, i, j);
+        a[to + ((ptrdiff_t)k->v_of[j] * k->order)] += scale * mt_poles_damping(k, i, j);
         if (k->x_of[j] >= 0) {
             a[to + ((ptrdiff_t)k->x_of[j] * k->order)] += scale * g / k->omega[j];
         }
     }
 }
 
-static void assemble(const parts *k, double complex *a)
+static void assemble(const mt_poles *k, double complex *a)
 {
     for (int e = 0; e < k->n_coupled; e++) {
         const ptrdiff_t j = k->coupled[e];
         const ptrdiff_t v = k->v_of[j];
         if (j >= k->b->n_modes) {
-            add_row(k, j, -1.0 / damping_of(k, j, j), v, a);
+            add_row(k, j, -1.0 / mt_poles_damping(k, j, j), v, a);
             continue;
         }
         if (k->x_of[j] >= 0) {
@@ -224,14 +94,15 @@ static void assemble(const parts *k, double complex *a)
         for (int d = 0; d < k->n_coupled; d++) {
             const ptrdiff_t b = k->coupled[d];
             if (b >= k->b->n_modes) {
-                add_row(k, b, damping_of(k, j, b) / damping_of(k, b, b), v, a);
+                add_row(k, b, mt_poles_damping(k, j, b) / mt_poles_damping(k, b, b), v, a);
             }
         }
     }
 }
 
 /* Eigenpairs; a real matrix as one, so that pairs are conjugate to the bit. */
-static mt_status eigenpairs(const parts *k, double complex *w, double complex *v, mt_err *err)
+static mt_status eigenpairs(const mt_poles *k, double complex *w, double complex *v,
+                            mt_err *err)
 {
     const size_t n = (size_t)k->order;
     double complex *const a = mt_arena_alloc(k->mem, n * n, sizeof *a);
@@ -262,7 +133,7 @@ static mt_status eigenpairs(const parts *k, double complex *w, double complex *v
 }
 
 /* y in the coordinates of the basis from states z, times s: (v, s b). */
-static void coordinates(const parts *k, double complex s, const double complex *z,
+static void coordinates(const mt_poles *k, double complex s, const double complex *z,
                         double complex *y)
 {
     memset(y, 0, (size_t)k->n * sizeof *y);
@@ -273,7 +144,7 @@ static void coordinates(const parts *k, double complex s, const double complex *
 }
 
 /* y^T (2 s M + C) y. */
-static double complex normaliser(const parts *k, double complex s, const double complex *y)
+static double complex normaliser(const mt_poles *k, double complex s, const double complex *y)
 {
     double complex sum = 0.0;
     for (int e = 0; e < k->n_coupled; e++) {
@@ -281,14 +152,15 @@ static double complex normaliser(const parts *k, double complex s, const double 
         sum += i < k->b->n_modes ? 2.0 * s * y[i] * y[i] : 0.0;
         for (int d = 0; d < k->n_coupled; d++) {
             const ptrdiff_t j = k->coupled[d];
-            sum += y[i] * damping_of(k, i, j) * y[j];
+            sum += y[i] * mt_poles_damping(k, i, j) * y[j];
         }
     }
     return sum;
 }
 
 /* The pole s with y y^T/normal. */
-static void add_pole(parts *k, double complex s, double complex normal, const double complex *y)
+static void add_pole(mt_poles *k, double complex s, double complex normal,
+                     const double complex *y)
 {
     const mt_transfer *const t = &k->b->t;
     double complex *const to = k->residue + (k->count * k->pairs);
@@ -311,84 +183,7 @@ static void add_pole(parts *k, double complex s, double complex normal, const do
     k->s[k->count++] = s;
 }
 
-/* E_1 ... E_4 over the coupled coordinates, n x n each: of the rows with mass E_{m+2} = [m = 0]
- * - C E_{m+1} - G E_m, then of the others mu E_m = [m = 1] - C E_m - G E_{m-1}. */
-static void expand(const parts *k, double complex *e)
-{
-    const ptrdiff_t n = k->n;
-    const ptrdiff_t size = n * n;
-    for (int m = 1; m <= EXPANSION; m++) {
-        double complex *const now = e + ((m - 1) * size);
-        const double complex *const before = m > 1 ? now - size : NULL;
-        const double complex *const first = m > 2 ? before - size : NULL;
-        for (int pass = 0; pass < 2; pass++) { /* with mass, then without */
-            for (int a = 0; a < k->n_coupled; a++) {
-                const ptrdiff_t i = k->coupled[a];
-                const bool massless = i >= k->b->n_modes;
-                for (int c = 0; c < k->n_coupled && massless == (pass == 1); c++) {
-                    const ptrdiff_t col = k->coupled[c];
-                    double complex sum = i == col && m == (massless ? 1 : 2) ? 1.0 : 0.0;
-                    const double complex *const by_c = massless ? now : before;
-                    const double complex *const by_g = massless ? before : first;
-                    for (int d = 0; d < k->n_coupled; d++) {
-                        const ptrdiff_t j = k->coupled[d];
-                        const bool own = massless && j >= k->b->n_modes;
-                        sum -= by_c == NULL || own ? 0.0
-                                                   : damping_of(k, i, j) * by_c[j + (col * n)];
-                        sum -= by_g == NULL ? 0.0 : k->b->g[i + (j * n)] * by_g[j + (col * n)];
-                    }
-                    now[i + (col * n)] = massless ? sum / damping_of(k, i, i) : sum;
-                }
-            }
-        }
-    }
-}
-
-/* sigma_p E beta_q of one pair. */
-static double complex between(const parts *k, int p, int q, ptrdiff_t at,
-                              const double complex *e)
-{
-    const mt_transfer *const t = &k->b->t;
-    const ptrdiff_t o = at % t->n_out;
-    const ptrdiff_t i = at / t->n_out;
-    double complex sum = 0.0;
-    for (int a = 0; a < k->n_coupled; a++) {
-        for (int c = 0; c < k->n_coupled; c++) {
-            const ptrdiff_t row = k->coupled[a];
-            const ptrdiff_t col = k->coupled[c];
-            sum += t->sigma[p][o + (row * t->n_out)] * e[row + (col * k->n)] *
-                   t->beta[q][col + (i * k->n)];
-        }
-    }
-    return sum;
-}
-
-static mt_status add_polynomials(parts *k, mt_err *err)
-{
-    const mt_transfer *const t = &k->b->t;
-    const ptrdiff_t size = k->n * k->n;
-    double complex *const e = mt_arena_alloc(k->mem, (size_t)size * EXPANSION, sizeof *e);
-    MT_TRY(mt_arena_check(k->mem, err));
-    expand(k, e);
-    for (int at = 0; at < MT_FORCED_POWERS * MT_FORCED_POWERS; at++) {
-        const int p = at % MT_FORCED_POWERS;
-        const int q = at / MT_FORCED_POWERS;
-        for (int m = 0; m < p + q && t->sigma[p] != NULL && t->beta[q] != NULL; m++) {
-            for (ptrdiff_t pair = 0; pair < k->pairs; pair++) {
-                const double complex add = between(k, p, q, pair, e + ((p + q - m - 1) * size));
-                if (m >= 3 && add != 0.0) {
-                    return refuse("the response grows with the cube of the frequency", err);
-                }
-                if (m < 3) {
-                    k->d[pair + (m * k->pairs)] += add;
-                }
-            }
-        }
-    }
-    return MT_OK;
-}
-
-static mt_status coupled(parts *k, mt_err *err)
+static mt_status coupled(mt_poles *k, mt_err *err)
 {
     MT_TRY(place_states(k, err));
     const size_t n = (size_t)k->order;
@@ -406,14 +201,14 @@ static mt_status coupled(parts *k, mt_err *err)
         const ptrdiff_t j = k->coupled[e];
         if (is_rigid(k, j)) {
             y[j] = 1.0;
-            add_pole(k, 0.0, damping_of(k, j, j), y);
+            add_pole(k, 0.0, mt_poles_damping(k, j, j), y);
             y[j] = 0.0;
         }
     }
-    return add_polynomials(k, err);
+    return mt_poles_add_polynomials(k, err);
 }
 
-static mt_status add_rest(parts *k, mt_err *err)
+static mt_status add_rest(mt_poles *k, mt_err *err)
 {
     const mt_transfer *const t = &k->b->t;
     for (int at = 0; at < MT_REST_POWERS; at++) {
@@ -431,15 +226,16 @@ static mt_status add_rest(parts *k, mt_err *err)
         if (any && power == -1) {
             k->s[k->count++] = 0.0;
         } else if (any && (power < -1 || power > 2)) {
-            return refuse(power < 0 ? "the ground's own motion grows without bound, like 1/s^2"
-                                    : "the response grows with the cube of the frequency",
-                          err);
+            return mt_poles_refuse(
+                power < 0 ? "the ground's own motion grows without bound, like 1/s^2"
+                          : "the response grows with the cube of the frequency",
+                err);
         }
     }
     return MT_OK;
 }
 
-static void hand_out(const parts *k, mt_pole_sum *out, double complex *residue)
+static void hand_out(const mt_poles *k, mt_pole_sum *out, double complex *residue)
 {
     for (ptrdiff_t pair = 0; pair < k->pairs; pair++) {
         double complex *const own = residue + (pair * k->count);
@@ -454,7 +250,7 @@ static void hand_out(const parts *k, mt_pole_sum *out, double complex *residue)
 }
 
 /* Is the sum what direct solves say, at the frequencies of all poles? */
-static mt_status verify(const parts *k, const mt_pole_sum *sum, mt_err *err)
+static mt_status verify(const mt_poles *k, const mt_pole_sum *sum, mt_err *err)
 {
     const mt_sample got = {.h = mt_arena_alloc(k->mem, (size_t)k->pairs, sizeof *got.h)};
     double *const largest = mt_arena_f64(k->mem, (size_t)k->pairs, 2);
@@ -477,18 +273,18 @@ static mt_status verify(const parts *k, const mt_pole_sum *sum, mt_err *err)
     for (ptrdiff_t p = 0; p < k->pairs; p++) {
         agree = agree && worst[p] <= AGREEMENT * largest[p];
     }
-    return agree ? MT_OK : refuse("damping turns two modes into nearly one", err);
+    return agree ? MT_OK : mt_poles_refuse("damping turns two modes into nearly one", err);
 }
 
 /* Poles that there are at most. */
-static size_t most_of(const parts *k)
+static size_t most_of(const mt_poles *k)
 {
     return (2 * (size_t)k->n) + 2;
 }
 
 /* Room for poles, and which coordinates are tied to others: the first n_coupled, the others
  * behind them. */
-static mt_status begin(parts *k, mt_err *err)
+static mt_status begin(mt_poles *k, mt_err *err)
 {
     int alone_at = (int)k->n;
     k->coupled = mt_arena_int(k->mem, (size_t)k->n);
@@ -504,7 +300,7 @@ static mt_status begin(parts *k, mt_err *err)
     return MT_OK;
 }
 
-static mt_status find(parts *k, mt_pole_sum *out, mt_err *err)
+static mt_status find(mt_poles *k, mt_pole_sum *out, mt_err *err)
 {
     const size_t pairs = (size_t)k->pairs;
     MT_TRY(begin(k, err));
@@ -512,7 +308,7 @@ static mt_status find(parts *k, mt_pole_sum *out, mt_err *err)
     k->d = mt_arena_alloc(k->mem, 3 * pairs, sizeof *k->d);
     MT_TRY(mt_arena_check(k->mem, err));
     for (ptrdiff_t j = k->n - 1; j >= k->n_coupled; j--) {
-        MT_TRY(alone(k, k->coupled[j], err));
+        MT_TRY(mt_poles_alone(k, k->coupled[j], err));
     }
     if (k->n_coupled > 0) {
         MT_TRY(coupled(k, err));
@@ -527,25 +323,25 @@ static mt_status find(parts *k, mt_pole_sum *out, mt_err *err)
 
 mt_status mt_response_poles(const mt_basis *basis, mt_arena *mem, mt_pole_sum *out, mt_err *err)
 {
-    parts k = {.b = basis,
-               .mem = mem,
-               .n = basis->t.n,
-               .pairs = (ptrdiff_t)basis->t.n_in * basis->t.n_out};
+    mt_poles k = {.b = basis,
+                  .mem = mem,
+                  .n = basis->t.n,
+                  .pairs = (ptrdiff_t)basis->t.n_in * basis->t.n_out};
     return find(&k, out, err);
 }
 
 mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
                                 double complex **s, mt_err *err)
 {
-    parts k = {.b = basis, .mem = mem, .n = basis->t.n};
+    mt_poles k = {.b = basis, .mem = mem, .n = basis->t.n};
     MT_TRY(begin(&k, err));
     for (ptrdiff_t a = k.n - 1; a >= k.n_coupled; a--) {
         const ptrdiff_t j = k.coupled[a];
         const double complex g = basis->g[j + (j * k.n)];
         if (j >= basis->n_modes) {
-            k.s[k.count++] = -g / damping_of(&k, j, j);
+            k.s[k.count++] = -g / mt_poles_damping(&k, j, j);
         } else if (g != 0.0) {
-            roots_of(damping_of(&k, j, j), g, k.s + k.count);
+            mt_poles_roots(mt_poles_damping(&k, j, j), g, k.s + k.count);
             k.count += 2;
         }
     }

@@ -35,6 +35,14 @@ typedef struct mt_port {
     const char *unit; /* "m/s^2" */
 } mt_port;
 
+/* Those of one response. */
+typedef struct mt_port_set {
+    int n_in;
+    int n_out;
+    mt_port *in;  /* [n_in] */
+    mt_port *out; /* [n_out] */
+} mt_port_set;
+
 /* Read one; the name is in mem. Fails: MT_E_USAGE (there is none of this name, with the nearest
  * one that there is; one that has no single force), MT_E_MEMORY. */
 mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,

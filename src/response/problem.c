@@ -206,41 +206,46 @@ static mt_status admit(const mt_modes *m, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_response_problem(mt_analysis *a, int n_in, const mt_port *in, int n_out,
-                              const mt_port *out, mt_arena *mem, mt_forced *f,
-                              mt_response_ways *ways, mt_err *err)
+static mt_status fill(build *k, mt_err *err)
+{
+    k->b_full = mt_arena_f64(k->mem, (size_t)k->nq, (size_t)k->n_in);
+    k->power = mt_arena_int(k->mem, (size_t)k->n_in);
+    k->w = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    k->ways->joint = mt_arena_alloc(k->mem, (size_t)k->n_out, sizeof *k->ways->joint);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(damping_of(k->a, k->mem, &k->ways->c, &k->ways->h, err));
+    for (int i = 0; i < k->n_in; i++) {
+        MT_TRY(add_input(k, i, err));
+    }
+    for (int o = 0; o < k->n_out; o++) {
+        MT_TRY(add_output(k, o, err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena *mem,
+                              mt_forced *f, mt_response_ways *ways, mt_err *err)
 {
     const mt_reduced r = mt_linear_reduced(a->lin);
     build k = {.a = a,
                .mem = mem,
                .n = r.n,
                .nq = a->sys->nq,
-               .n_in = n_in,
-               .n_out = n_out,
-               .in = in,
-               .out = out,
+               .n_in = ports->n_in,
+               .n_out = ports->n_out,
+               .in = ports->in,
+               .out = ports->out,
                .f = f,
                .ways = ways};
     MT_TRY(admit(&a->modes, err));
-    k.b_full = mt_arena_f64(mem, (size_t)k.nq, (size_t)n_in);
-    k.power = mt_arena_int(mem, (size_t)n_in);
-    k.w = mt_arena_f64(mem, (size_t)k.nq, 1);
-    ways->joint = mt_arena_alloc(mem, (size_t)n_out, sizeof *ways->joint);
-    MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(damping_of(a, mem, &ways->c, &ways->h, err));
-    for (int i = 0; i < n_in; i++) {
-        MT_TRY(add_input(&k, i, err));
-    }
-    for (int o = 0; o < n_out; o++) {
-        MT_TRY(add_output(&k, o, err));
-    }
+    MT_TRY(fill(&k, err));
     *f = (mt_forced){.n = r.n,
                      .k = r.k,
                      .m = r.m,
                      .c = ways->c,
                      .h = ways->h,
-                     .n_in = n_in,
-                     .n_out = n_out,
+                     .n_in = k.n_in,
+                     .n_out = k.n_out,
                      .e = {k.e[0], k.e[1]}};
     for (int p = 0; p < MT_FORCED_POWERS; p++) {
         f->b[p] = k.b[p];

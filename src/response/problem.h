@@ -22,9 +22,8 @@ typedef struct mt_response_ways {
  * rounding hides whether it is: about such a position nothing vibrates), as
  * mt_linear_joint_force, MT_E_MEMORY.
  */
-mt_status mt_response_problem(mt_analysis *a, int n_in, const mt_port *in, int n_out,
-                              const mt_port *out, mt_arena *mem, mt_forced *f,
-                              mt_response_ways *ways, mt_err *err);
+mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena *mem,
+                              mt_forced *f, mt_response_ways *ways, mt_err *err);
 /* The coefficient of a spring's or damper's term, and its row. */
 double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
                           const mt_term **term);

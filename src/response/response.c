@@ -10,22 +10,22 @@ void mt_response_free(mt_response *r)
 static mt_status read_ports(mt_response *r, const mt_response_request *q, mt_err *err)
 {
     const mt_system *const sys = r->a->sys;
-    r->n_in = q->n_in;
-    r->n_out = q->n_out > 0 ? q->n_out : sys->n_channels;
-    r->in = mt_arena_alloc(&r->mem, (size_t)r->n_in, sizeof *r->in);
-    r->out = mt_arena_alloc(&r->mem, (size_t)r->n_out, sizeof *r->out);
+    r->ports.n_in = q->n_in;
+    r->ports.n_out = q->n_out > 0 ? q->n_out : sys->n_channels;
+    r->ports.in = mt_arena_alloc(&r->mem, (size_t)r->ports.n_in, sizeof *r->ports.in);
+    r->ports.out = mt_arena_alloc(&r->mem, (size_t)r->ports.n_out, sizeof *r->ports.out);
     MT_TRY(mt_arena_check(&r->mem, err));
-    if (r->n_in < 1 || r->n_out < 1) {
+    if (r->ports.n_in < 1 || r->ports.n_out < 1) {
         return mt_fail(err, MT_E_USAGE,
-                       r->n_in < 1 ? "a response needs an input"
-                                   : "the configuration has no sensors: name outputs");
+                       r->ports.n_in < 1 ? "a response needs an input"
+                                         : "the configuration has no sensors: name outputs");
     }
-    for (int i = 0; i < r->n_in; i++) {
-        MT_TRY(mt_port_input(sys, q->inputs[i], &r->mem, &r->in[i], err));
+    for (int i = 0; i < r->ports.n_in; i++) {
+        MT_TRY(mt_port_input(sys, q->inputs[i], &r->mem, &r->ports.in[i], err));
     }
-    for (int o = 0; o < r->n_out; o++) {
+    for (int o = 0; o < r->ports.n_out; o++) {
         const char *const name = q->n_out > 0 ? q->outputs[o] : sys->channels[o].name;
-        MT_TRY(mt_port_output(sys, name, &r->mem, &r->out[o], err));
+        MT_TRY(mt_port_output(sys, name, &r->mem, &r->ports.out[o], err));
     }
     return MT_OK;
 }
@@ -36,8 +36,7 @@ mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, m
     *out = (mt_response){.a = a};
     MT_TRY(mt_arena_init(&out->mem, 0, err));
     MT_TRY(read_ports(out, request, err));
-    MT_TRY(mt_response_problem(a, out->n_in, out->in, out->n_out, out->out, &out->mem, &out->f,
-                               &out->ways, err));
+    MT_TRY(mt_response_problem(a, &out->ports, &out->mem, &out->f, &out->ways, err));
     const mt_basis_problem problem = {
         .f = &out->f, .mass = &a->mass, .modes = &a->modes, .keep = request->modes};
     MT_TRY(mt_basis_make(&problem, &out->mem, &out->basis, err));
@@ -65,6 +64,6 @@ mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err)
 mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err)
 {
     const mt_slope_problem p = {
-        .a = r->a, .t = &r->direct, .in = r->in, .out = r->out, .ways = &r->ways};
+        .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
     return mt_response_slopes(&p, w, dh, &r->mem, err);
 }

@@ -23,10 +23,7 @@ typedef struct mt_response_request {
 typedef struct mt_response {
     mt_analysis *a; /* not owned */
     mt_arena mem;
-    int n_in;
-    int n_out;
-    mt_port *in;
-    mt_port *out;
+    mt_port_set ports;
     mt_forced f;
     mt_response_ways ways;
     mt_basis basis;

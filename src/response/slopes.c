@@ -108,7 +108,7 @@ static int channel_row(const work *k, const mt_port *port)
 
 static mt_status open_input(work *k, int i, const double complex *x, mt_err *err)
 {
-    const mt_port *const port = &k->p->in[i];
+    const mt_port *const port = &k->p->ports->in[i];
     side *const s = &k->in[i];
     *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
     pair w = new_pair(k->mem, k->nq);
@@ -143,7 +143,7 @@ static double complex row_of(const work *k, const mt_port *port, int *row, mt_te
 
 static mt_status open_output(work *k, int o, const double complex *y, mt_err *err)
 {
-    const mt_port *const port = &k->p->out[o];
+    const mt_port *const port = &k->p->ports->out[o];
     side *const s = &k->out[o];
     *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
     pair w = new_pair(k->mem, k->nq);
@@ -198,7 +198,7 @@ static double complex row_slope(const work *k, int p, mt_term_kind kind, int row
 /* e . df. */
 static double complex force_slope(work *k, int p, int i, const pair *e)
 {
-    const mt_port *const port = &k->p->in[i];
+    const mt_port *const port = &k->p->ports->in[i];
     if (port->kind == MT_PORT_SENSOR) {
         return row_slope(k, p, MT_TERM_CHANNEL, channel_row(k, port), e);
     }
@@ -211,7 +211,7 @@ static double complex force_slope(work *k, int p, int i, const pair *e)
 /* d(sigma) . q - d(t) . l. */
 static double complex output_slope(const work *k, int p, int o, const side *in)
 {
-    const mt_port *const port = &k->p->out[o];
+    const mt_port *const port = &k->p->ports->out[o];
     if (port->kind == MT_PORT_JOINT) {
         return -cx_pair(
             mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[0]),
@@ -267,44 +267,60 @@ static mt_status admit(const mt_slope_problem *p, mt_err *err)
                        "derivatives asked for after a solve without gradient");
     }
     for (int o = 0; o < p->t->n_out; o++) {
-        if (p->out[o].kind == MT_PORT_JOINT && p->ways->joint[o].geometric != NULL) {
+        if (p->ports->out[o].kind == MT_PORT_JOINT && p->ways->joint[o].geometric != NULL) {
             return mt_fail(err, MT_E_USAGE,
                            "%s: a loaded joint's force has no derivatives here",
-                           p->out[o].name);
+                           p->ports->out[o].name);
         }
+    }
+    return MT_OK;
+}
+
+/* Solutions and adjoints of all ports; *singular: there are none. */
+static mt_status open_ports(work *k, bool *singular, mt_err *err)
+{
+    const mt_transfer *const t = k->p->t;
+    const size_t n = (size_t)t->n;
+    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)t->n_in, sizeof *x);
+    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)t->n_out, sizeof *y);
+    k->in = mt_arena_alloc(k->mem, (size_t)t->n_in, sizeof *k->in);
+    k->out = mt_arena_alloc(k->mem, (size_t)t->n_out, sizeof *k->out);
+    k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(mt_transfer_solve(t, k->w, x, y, singular, k->mem, err));
+    for (int i = 0; i < t->n_in && !*singular; i++) {
+        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * t->n), err));
+    }
+    for (int o = 0; o < t->n_out && !*singular; o++) {
+        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * t->n), err));
+    }
+    return MT_OK;
+}
+
+/* Of all pairs with respect to input p. */
+static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
+{
+    const int n_out = k->p->t->n_out;
+    for (int at = 0; at < k->p->t->n_in * n_out; at++) {
+        MT_TRY(slope(k, p, at % n_out, at / n_out, dh + at, err));
     }
     return MT_OK;
 }
 
 static mt_status slopes(work *k, double complex *dh, mt_err *err)
 {
-    const mt_transfer *const t = k->p->t;
-    const size_t n = (size_t)t->n;
-    const ptrdiff_t pairs = (ptrdiff_t)t->n_in * t->n_out;
-    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)t->n_in, sizeof *x);
-    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)t->n_out, sizeof *y);
+    const ptrdiff_t pairs = (ptrdiff_t)k->p->t->n_in * k->p->t->n_out;
+    const int n_inputs = k->p->a->sys->n_inputs;
     bool singular = false;
-    k->in = mt_arena_alloc(k->mem, (size_t)t->n_in, sizeof *k->in);
-    k->out = mt_arena_alloc(k->mem, (size_t)t->n_out, sizeof *k->out);
-    k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
-    MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(mt_transfer_solve(t, k->w, x, y, &singular, k->mem, err));
-    for (int i = 0; i < t->n_in && !singular; i++) {
-        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * t->n), err));
+    MT_TRY(open_ports(k, &singular, err));
+    for (ptrdiff_t at = 0; at < pairs * n_inputs; at++) {
+        dh[at] = nan("");
     }
-    for (int o = 0; o < t->n_out && !singular; o++) {
-        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * t->n), err));
-    }
-    for (int p = 0; p < k->p->a->sys->n_inputs; p++) {
+    for (int p = 0; p < n_inputs; p++) {
         mt_independence why = {.opens = false};
         MT_TRY(mt_linear_independence(k->lin, p, k->mem, &why, err));
-        const bool none = singular || why.opens || why.blocks;
-        for (ptrdiff_t at = 0; at < pairs; at++) {
-            double complex *const to = dh + at + (p * pairs);
-            *to = nan("");
-            if (!none) {
-                MT_TRY(slope(k, p, (int)(at % t->n_out), (int)(at / t->n_out), to, err));
-            }
+        if (!singular && !why.opens && !why.blocks) {
+            MT_TRY(slopes_by(k, p, dh + (p * pairs), err));
         }
     }
     return MT_OK;

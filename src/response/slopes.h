@@ -9,8 +9,7 @@
 typedef struct mt_slope_problem {
     mt_analysis *a; /* the last solve was with gradient */
     const mt_transfer *t;
-    const mt_port *in;  /* [t->n_in] */
-    const mt_port *out; /* [t->n_out] */
+    const mt_port_set *ports;
     const mt_response_ways *ways;
 } mt_slope_problem;
 

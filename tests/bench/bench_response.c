@@ -54,6 +54,17 @@ typedef struct chain {
     mt_transfer direct;
 } chain;
 
+/* Between mass i and the one before it, or the ground. */
+static void add_spring(ptrdiff_t n, ptrdiff_t i, double k, double *a)
+{
+    a[i + (i * n)] += k;
+    if (i > 0) {
+        a[i - 1 + ((i - 1) * n)] += k;
+        a[i + ((i - 1) * n)] -= k;
+        a[i - 1 + (i * n)] -= k;
+    }
+}
+
 static void chain_make(chain *p, int n, bool coupled)
 {
     mt_err err = {.text = ""};
@@ -67,15 +78,11 @@ static void chain_make(chain *p, int n, bool coupled)
     stop("memory", mt_arena_check(&p->mem, &err), &err);
     for (ptrdiff_t i = 0; i < n; i++) {
         const double k = 1e4 * (1.0 + (0.05 * (double)i));
-        const double c = coupled ? (i == n - 1 ? 1e-2 * k : 0.0) : 1e-4 * k;
+        const double lone = i == n - 1 ? 1e-2 * k : 0.0;
         p->m[i + (i * n)] = 1.0 + (0.1 * (double)i);
         p->s[i + (i * n)] = 1.0;
-        for (ptrdiff_t a = i > 0 ? i - 1 : i; a <= i; a++) {
-            for (ptrdiff_t b = i > 0 ? i - 1 : i; b <= i; b++) {
-                p->k[a + (b * n)] += a == b ? k : -k;
-                p->c[a + (b * n)] += a == b ? c : -c;
-            }
-        }
+        add_spring(n, i, k, p->k);
+        add_spring(n, i, coupled ? lone : 1e-4 * k, p->c);
     }
     p->f = (mt_forced){.n = n, .k = p->k, .m = p->m, .c = p->c, .n_in = 1, .n_out = n};
     p->f.b[0] = p->s + ((ptrdiff_t)(n - 1) * n);
@@ -88,7 +95,7 @@ static void chain_make(chain *p, int n, bool coupled)
 }
 
 /* The chain's D(w) x = e_n in long double: elimination from the first mass on. */
-static void exact(const chain *p, double w, long double complex *x)
+static void exact(const chain *p, long double w, long double complex *x)
 {
     const ptrdiff_t n = p->n;
     const long double complex i_unit = (long double complex)I;
@@ -98,11 +105,11 @@ static void exact(const chain *p, double w, long double complex *x)
         exit(EXIT_FAILURE);
     }
     for (ptrdiff_t i = 0; i < n; i++) {
-        d[i] = (long double)p->k[i + (i * n)] - ((long double)w * w * p->m[i + (i * n)]) +
-               (i_unit * w * p->c[i + (i * n)]);
+        d[i] = (long double)p->k[i + (i * n)] - (w * w * (long double)p->m[i + (i * n)]) +
+               (i_unit * w * (long double)p->c[i + (i * n)]);
         if (i > 0) {
-            off[i] =
-                (long double)p->k[i + ((i - 1) * n)] + (i_unit * w * p->c[i + ((i - 1) * n)]);
+            off[i] = (long double)p->k[i + ((i - 1) * n)] +
+                     (i_unit * w * (long double)p->c[i + ((i - 1) * n)]);
             d[i] -= off[i] * off[i] / d[i - 1];
         }
     }
@@ -150,13 +157,14 @@ static void bench_chain(const timing *how, int n, bool coupled)
     double error[2] = {0.0, 0.0};
     for (ptrdiff_t i = 0; i < FREQUENCIES; i++) {
         double largest = 0.0;
-        exact(&p, w[i], want);
+        exact(&p, (long double)w[i], want);
         for (int o = 0; o < n; o++) {
             largest = fmax(largest, (double)cabsl(want[o]));
         }
         for (ptrdiff_t o = 0; o < n; o++) {
             for (int way = 0; way < 2; way++) {
-                const double off = (double)cabsl(jobs[way].h[o + (i * n)] - want[o]) / largest;
+                const double off =
+                    cabs(jobs[way].h[o + (i * n)] - (double complex)want[o]) / largest;
                 error[way] = off <= error[way] ? error[way] : off;
             }
         }
@@ -184,7 +192,7 @@ static void bench_inceptor(const timing *how)
     const int c = mt_model_find_configuration(model, "installed");
     stop(path, mt_analysis_new(model, c, 0, NULL, NULL, &a, &err), &err);
     stop(path, mt_response_open(a, &request, &r, &err), &err);
-    const size_t size = (size_t)r.n_out * FREQUENCIES;
+    const size_t size = (size_t)r.ports.n_out * FREQUENCIES;
     double *const w = grid(&r.mem, 1.0, 1000.0);
     job jobs[2] = {{.t = &r.basis.t, .mem = &r.mem, .w = w},
                    {.t = &r.direct, .mem = &r.mem, .w = w}};
@@ -202,53 +210,64 @@ static void bench_inceptor(const timing *how)
         error = off <= error ? error : off;
     }
     for (int way = 0; way < 2; way++) {
-        print("inceptor", r.f.n, r.n_out, &things[way], error / largest);
+        print("inceptor", r.f.n, r.ports.n_out, &things[way], error / largest);
     }
     mt_response_free(&r);
     mt_analysis_delete(a);
     mt_model_delete(model);
 }
 
+/* The next number of a peer's file; NaN: there is none. */
+static double next(FILE *file)
+{
+    char word[64];
+    char *end = NULL;
+    if (fscanf(file, "%63s", word) != 1) {
+        return nan("");
+    }
+    const double x = strtod(word, &end);
+    return *end == '\0' ? x : nan("");
+}
+
 /* What a peer says of a chain. */
-static int judge(int n, bool coupled, const char *path)
+static void judge(int n, bool coupled, FILE *file, long double complex *want)
 {
     chain p;
     chain_make(&p, n, coupled);
-    FILE *const file = fopen(path, "r");
-    long double complex *const want = calloc((size_t)n, sizeof *want);
     double worst = 0.0;
-    double w = 0.0;
-    if (file == NULL || want == NULL) {
-        return EXIT_FAILURE;
-    }
-    while (fscanf(file, "%lf", &w) == 1) {
+    double w = next(file);
+    while (!isnan(w)) {
         double largest = 0.0;
         double most = 0.0;
-        exact(&p, w, want);
+        exact(&p, (long double)w, want);
         for (int o = 0; o < n; o++) {
-            double re = nan("");
-            double im = nan("");
-            if (fscanf(file, "%lf %lf", &re, &im) != 2) {
-                return EXIT_FAILURE;
-            }
+            const double re = next(file) - (double)creall(want[o]);
+            const double off = hypot(re, next(file) - (double)cimagl(want[o]));
             largest = fmax(largest, (double)cabsl(want[o]));
-            const double off =
-                hypot(re - (double)creall(want[o]), im - (double)cimagl(want[o]));
             most = off <= most ? most : off;
         }
         worst = most / largest <= worst ? worst : most / largest;
+        w = next(file);
     }
-    (void)fclose(file);
-    free(want);
     mt_arena_free(&p.mem);
     (void)printf("error\n%.3g\n", worst);
-    return EXIT_SUCCESS;
 }
 
 int main(int argc, char *argv[])
 {
     if (argc == 4) {
-        return judge((int)strtol(argv[1], NULL, 10), argv[2][0] == '1', argv[3]);
+        const int n = (int)strtol(argv[1], NULL, 10);
+        FILE *const file = fopen(argv[3], "r");
+        long double complex *const want = calloc(n > 0 ? (size_t)n : 1, sizeof *want);
+        const bool ready = file != NULL && want != NULL;
+        if (ready) {
+            judge(n, argv[2][0] == '1', file, want);
+        }
+        if (file != NULL) {
+            (void)fclose(file);
+        }
+        free(want);
+        return ready ? EXIT_SUCCESS : EXIT_FAILURE;
     }
     const timing *const how =
         argc > 1 && strcmp(argv[1], "--quick") == 0 ? &TIMING_QUICK : &TIMING_FULL;

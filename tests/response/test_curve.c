@@ -86,10 +86,10 @@ static void curve__lines_between_points_hold(mt_test *t)
     for (int log_scale = 0; log_scale < 2; log_scale++) {
         forced p;
         forced_all(&p, 5);
-        for (int i = 0; i < 5; i++) {
-            p.m[i * 6] = 1.0 + i;
-            forced_between(p.k, 5, i - 1, i, 1e4);
-            forced_between(p.h, 5, i - 1, i, 60.0 + (100.0 * i));
+        for (ptrdiff_t i = 0; i < 5; i++) {
+            p.m[i + (i * 5)] = 1.0 + (double)i;
+            forced_between(p.k, 5, (int)i - 1, (int)i, 1e4);
+            forced_between(p.h, 5, (int)i - 1, (int)i, 60.0 + (100.0 * (double)i));
         }
         p.f.h = p.h;
         p.f.n_in = 1;

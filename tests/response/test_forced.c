@@ -106,7 +106,8 @@ static void forced__two_masses_match_their_closed_form(mt_test *t)
         const bool made = forced_make(t, &p, 0);
         CHECK_INT(t, p.basis.t.diagonal, rows[r].diagonal);
         CHECK(t, made && mt_response_poles(&p.basis, &p.mem, sum, &p.err) == MT_OK);
-        for (double w = 1.0; w < 100.0 && made; w *= 1.13) {
+        for (int i_w = 0; i_w < 38 && made; i_w++) {
+            const double w = 1.0 * pow(1.13, i_w);
             mt_test_row(t, "%s, w = %g", rows[r].name, w);
             double complex d[4];
             for (int i = 0; i < 4; i++) {
@@ -164,7 +165,8 @@ static void forced__all_ways_agree_and_are_reciprocal(mt_test *t)
         const bool rigid = p.modes.n_rigid > 0;
         const mt_status rc = mt_response_poles(&p.basis, &p.mem, sum, &p.err);
         CHECK(t, rigid || rc == MT_OK);
-        for (double w = 0.3; w < 3000.0; w *= 1.31) {
+        for (int i_w = 0; i_w < 35; i_w++) {
+            const double w = 0.3 * pow(1.31, i_w);
             CHECK(t, mt_transfer_at(&p.direct, w, &a, &p.mem, &p.err) == MT_OK);
             CHECK(t, mt_transfer_at(&p.basis.t, w, &b, &p.mem, &p.err) == MT_OK);
             double largest = 0.0;
@@ -211,7 +213,8 @@ static void forced__directions_without_mass_are_exact(mt_test *t)
         }
         mt_sample a = forced_sample(&p, &p.mem);
         mt_sample b = forced_sample(&p, &p.mem);
-        for (double w = 0.3; w < 3000.0; w *= 1.31) {
+        for (int i_w = 0; i_w < 35; i_w++) {
+            const double w = 0.3 * pow(1.31, i_w);
             CHECK(t, mt_transfer_at(&p.direct, w, &a, &p.mem, &p.err) == MT_OK);
             CHECK(t, mt_transfer_at(&p.basis.t, w, &b, &p.mem, &p.err) == MT_OK);
             double largest = 0.0;
@@ -251,7 +254,8 @@ static void forced__free_motions_have_their_poles(mt_test *t)
         CHECK(t, forced_make(t, &p, 0) &&
                      mt_response_poles(&p.basis, &p.mem, sum, &p.err) == MT_OK);
         mt_sample a = forced_sample(&p, &p.mem);
-        for (double w = 0.01; w < 100.0; w *= 1.7) {
+        for (int i_w = 0; i_w < 18; i_w++) {
+            const double w = 0.01 * pow(1.7, i_w);
             CHECK(t, mt_transfer_at(&p.direct, w, &a, &p.mem, &p.err) == MT_OK);
             for (int i = 0; i < 4; i++) {
                 CHECK_NEAR_ABS(t, cabs(mt_pole_sum_at(&sum[i], w) - a.h[i]), 0.0,
@@ -317,7 +321,7 @@ static void forced__modes_that_are_left_out_follow_statically(mt_test *t)
         forced p;
         forced_all(&p, 10);
         for (int i = 0; i < 10; i++) {
-            p.m[i * 11] = 1.0;
+            p.m[(ptrdiff_t)i * 11] = 1.0;
             if (i > 0 || free == 0) {
                 forced_between(p.k, 10, i - 1, i, 1e4);
                 forced_between(p.h, 10, i - 1, i, 300.0);
@@ -329,7 +333,8 @@ static void forced__modes_that_are_left_out_follow_statically(mt_test *t)
         CHECK_INT(t, p.basis.n_left, 6);
         mt_sample a = forced_sample(&p, &p.mem);
         mt_sample b = forced_sample(&p, &p.mem);
-        for (double w = 1e-4; w < 30.0; w *= 3.0) {
+        for (int i_w = 0; i_w < 12; i_w++) {
+            const double w = 1e-4 * pow(3.0, i_w);
             CHECK(t, mt_transfer_at(&p.direct, w, &a, &p.mem, &p.err) == MT_OK);
             CHECK(t, mt_transfer_at(&p.basis.t, w, &b, &p.mem, &p.err) == MT_OK);
             const double part = w * w / p.basis.lowest_left;
