@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/count.h"
 #include "analysis/lowest.h"
+#include "analysis/tracking.h"
 #include "base/interrupt.h"
 #include "mechanics/energy.h"
 #include "mechanics/products.h"
@@ -35,6 +37,8 @@ void mt_analysis_delete(mt_analysis *a)
     if (a != NULL) {
         mt_arena_free(&a->mass_mem);
         mt_arena_free(&a->mem);
+        mt_arena_free(&a->damping_mem);
+        mt_arena_free(&a->first_mem);
         mt_linear_delete(a->lin);
         mt_system_delete(a->own_sys);
         free(a);
@@ -47,6 +51,28 @@ mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs
     return mt_analysis_new_lowest(model, configuration, n_inputs, inputs, at, 0, out, err);
 }
 
+/* Shapes of the modes that damping ratios name, at the first design. */
+static mt_status name_modes(mt_analysis *a, mt_err *err)
+{
+    const mt_damping_def *const d = &a->sys->damping;
+    if (d->n_named == 0) {
+        return MT_OK;
+    }
+    a->named_shape = mt_arena_alloc(&a->first_mem, (size_t)d->n_named, sizeof *a->named_shape);
+    MT_TRY(mt_arena_check(&a->first_mem, err));
+    for (int i = 0; i < d->n_named; i++) {
+        const int pos = mt_analysis_named(a, a->sys->model->modes[d->named[i]].index);
+        if (pos < 0 || mt_modal_shape(&a->modes, pos) == NULL) {
+            continue;
+        }
+        double *const w = mt_arena_f64(&a->first_mem, (size_t)a->sys->nq, 1);
+        MT_TRY(mt_arena_check(&a->first_mem, err));
+        MT_TRY(mt_track_weigh(a, pos, w, err));
+        a->named_shape[i] = w;
+    }
+    return MT_OK;
+}
+
 /* Solve for the first time; *out is a, which goes where that fails. */
 static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysis **out,
                          mt_err *err)
@@ -57,14 +83,15 @@ static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysi
     a->n_rigid = -1;
     mt_status rc = mt_linear_new(a->sys, &a->lin, err);
     rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
-    if (rc != MT_OK) {
-        mt_analysis_delete(a);
-        return mt_err_in(err, rc, "configuration \"%s\"", name);
-    }
     a->n_rigid = a->modes.n_rigid;
     a->n_null = a->modes.n_rigid;
     a->n_most = a->modes.all;
     a->graded = a->modes.from_factor;
+    rc = rc == MT_OK && a->named_shape == NULL ? name_modes(a, err) : rc;
+    if (rc != MT_OK) {
+        mt_analysis_delete(a);
+        return mt_err_in(err, rc, "configuration \"%s\"", name);
+    }
     *out = a;
     return MT_OK;
 }
@@ -141,6 +168,7 @@ mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_ana
         return mt_fail_memory(err);
     }
     a->sys = like->sys;
+    a->named_shape = like->named_shape;
     return open_at(a, at, 0, out, err);
 }
 
@@ -341,6 +369,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
 {
     a->solves++;
     a->with_gradient = false;
+    a->damping = NULL;
     const mt_status rc = solve(a, inputs, opt, err);
     if (rc != MT_OK) {
         a->modes = (mt_modes){0};

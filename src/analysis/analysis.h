@@ -57,6 +57,12 @@ typedef struct mt_analysis {
     /* n_inputs x modes: derivatives of the eigenvalues that were asked for since that solve */
     double *slopes;
     bool *sloped; /* [modes] which of them were */
+    mt_arena first_mem;
+    /* [damping.n_named of sys] weighed shapes at the first design of the modes that damping
+     * ratios name; NULL where there is no such mode */
+    const double **named_shape;
+    mt_arena damping_mem;
+    struct mt_damping_work *damping; /* of the last solve (damping.c); NULL: not asked for */
     long solves;
 } mt_analysis;
 

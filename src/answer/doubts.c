@@ -207,6 +207,45 @@ static void say_idle(const mt_linear *lin, mt_doubt_list *out)
     }
 }
 
+/* A damping ratio of a mode that there is not, given by the number `at`. */
+static void fault_ratio(const mt_model *m, mt_num at, const char *text, mt_doubt_list *out)
+{
+    int line = 0;
+    int column = 0;
+    const bool known = mt_model_place(m, m->nums[at].addr, &line, &column);
+    (void)mt_doubt_add(out, MT_LEVEL_FAULT, "damping", known ? "%s (line %d, column %d)" : "%s",
+                       text == NULL ? "" : text, line, column);
+}
+
+/* Damping ratios of more modes than there are. */
+static void fault_damping(const mt_analysis *a, mt_doubt_list *out)
+{
+    const mt_model *const m = a->sys->model;
+    const int c = a->sys->configuration;
+    const mt_damping *const d = &m->configurations[c].damping;
+    const char *const name = m->configurations[c].name.s;
+    const int most = a->n_most - a->n_null;
+    if (d->n_ratios > most) {
+        fault_ratio(m, d->ratios[most],
+                    mt_arena_printf(out->mem,
+                                    "damping has ratios of %d vibration modes, and "
+                                    "configuration \"%s\" has %d of them",
+                                    d->n_ratios, name, most),
+                    out);
+    }
+    for (int i = 0; i < d->n_named; i++) {
+        const mt_named_mode *const mode = &m->modes[d->named[i].mode];
+        if (mode->configuration == c && mode->index > most) {
+            fault_ratio(m, d->named[i].ratio,
+                        mt_arena_printf(out->mem,
+                                        "damping names mode \"%s\", vibration mode %d of "
+                                        "configuration \"%s\", which has %d of them",
+                                        mode->name.s, mode->index, name, most),
+                        out);
+        }
+    }
+}
+
 static void doubt_mass(double mass_kg, mt_doubt_list *out)
 {
     if (mass_kg > MOST_MASS_KG || (mass_kg > 0.0 && mass_kg < LEAST_MASS_KG)) {
@@ -248,6 +287,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
     const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
     say_motion(a->lin, out);
     say_free(a, out);
+    fault_damping(a, out);
     say_idle(a->lin, out);
     if (unstable > 0) {
         char name[NAME_SIZE];

@@ -10,7 +10,7 @@
 #include "report/number.h"
 #include "report/table.h"
 
-enum { DIGITS = 6, SPATIAL = 6 };
+enum { DIGITS = 6, SPATIAL = 6, MOST_RATIOS = 6 };
 
 static const char *const inertia_member[SPATIAL] = {"xx", "yy", "zz", "xy", "xz", "yz"};
 
@@ -23,6 +23,92 @@ typedef struct view {
     mt_arena mem;
     mt_doubt_list doubts;
 } view;
+
+static double number_of(const view *v, mt_node node)
+{
+    return node == MT_NO_NODE ? nan("") : mt_linear_value(v->a->lin, node);
+}
+
+static const char *named_mode(const view *v, int i)
+{
+    return v->s->model->modes[v->a->sys->damping.named[i]].name.s;
+}
+
+static void json_damping(mt_json_writer *w, const view *v)
+{
+    const mt_damping_def *const d = &v->a->sys->damping;
+    mt_json_open(w, "damping", '{');
+    mt_json_put_integer(w, "dampers", v->info.dampers);
+    mt_json_put_number(w, "least_loss_factor", v->info.least_loss);
+    mt_json_put_number(w, "most_loss_factor", v->info.most_loss);
+    mt_json_put_number(w, "ratio", number_of(v, d->ratio));
+    mt_json_open_flat(w, "ratios", '[');
+    for (int k = 0; k < d->n_ratios; k++) {
+        mt_json_put_number(w, NULL, number_of(v, d->ratios[k]));
+    }
+    mt_json_close(w);
+    mt_json_open(w, "modes", '{');
+    for (int k = 0; k < d->n_named; k++) {
+        mt_json_put_number(w, named_mode(v, k), number_of(v, d->named_ratios[k]));
+    }
+    mt_json_close(w);
+    mt_json_put_number(w, "mass_per_s", number_of(v, d->mass));
+    mt_json_put_number(w, "stiffness_s", number_of(v, d->stiffness));
+    mt_json_close(w);
+}
+
+/* One part of the line "damping": "ratio 0.02 of mode 1". */
+static void part(mt_text *out, int *n, const char *before, double x, const char *after)
+{
+    char a[MT_NUMBER_TEXT];
+    if (!isnan(x)) {
+        mt_text_addf(out, "%s%s%s%s", *n > 0 ? ", " : "  damping     ", before,
+                     mt_report_number(x, DIGITS, a), after);
+        ++*n;
+    }
+}
+
+static void text_ratios(mt_text *out, int *n, const view *v)
+{
+    const mt_damping_def *const d = &v->a->sys->damping;
+    const bool listed = d->n_ratios + d->n_named > 0;
+    for (int k = 0; k < d->n_named && k < MOST_RATIOS; k++) {
+        const char *const of = mt_arena_printf(v->doubts.mem, " of \"%s\"", named_mode(v, k));
+        part(out, n, "ratio ", number_of(v, d->named_ratios[k]), of == NULL ? "" : of);
+    }
+    for (int k = 0; k < d->n_ratios && k < MOST_RATIOS; k++) {
+        char of[32];
+        (void)mt_snprintf(of, sizeof of, " of mode %d", k + 1);
+        part(out, n, "ratio ", number_of(v, d->ratios[k]), of);
+    }
+    if (d->n_named > MOST_RATIOS || d->n_ratios > MOST_RATIOS) {
+        mt_text_add(out, ", ...");
+    }
+    part(out, n, "ratio ", number_of(v, d->ratio), listed ? " of other modes" : "");
+}
+
+/* Nothing where nothing damps. */
+static void text_damping(mt_text *out, const view *v)
+{
+    const mt_damping_def *const d = &v->a->sys->damping;
+    const int dampers = v->info.dampers;
+    char most[MT_NUMBER_TEXT + 8] = "";
+    int n = 0;
+    if (dampers > 0) {
+        mt_text_addf(out, "  damping     %d damper%s", dampers, dampers == 1 ? "" : "s");
+        n++;
+    }
+    if (v->info.most_loss > v->info.least_loss) {
+        char a[MT_NUMBER_TEXT];
+        (void)mt_snprintf(most, sizeof most, " to %s",
+                          mt_report_number(v->info.most_loss, DIGITS, a));
+    }
+    part(out, &n, "loss factors ", v->info.least_loss, most);
+    text_ratios(out, &n, v);
+    part(out, &n, "", number_of(v, d->mass), " 1/s of the mass");
+    part(out, &n, "", number_of(v, d->stiffness), " s of the stiffness");
+    mt_text_add(out, n > 0 ? "\n" : "");
+}
 
 static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
 {
@@ -51,6 +137,7 @@ static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
     MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->mem, err));
     mt_json_put_number(w, "equilibrium_residual", i->residual);
     mt_json_put_number(w, "gap_m", i->gap_m);
+    json_damping(w, v);
     mt_cli_json_dead_centre(w, &v->nearness);
     mt_json_close(w);
     return MT_OK;
@@ -91,6 +178,7 @@ static void write_text(mt_text *out, const view *v)
         mt_text_addf(out, " - %d idle spin%s", i->idle, i->idle == 1 ? "" : "s");
     }
     mt_text_add(out, "\n");
+    text_damping(out, v);
     if (mt_linear_position(v->a->lin)->equilibrium.active) {
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);

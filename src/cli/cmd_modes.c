@@ -28,7 +28,7 @@ typedef struct view {
     mt_shapes shapes;  /* n 0: not asked for */
     int count;         /* --count */
     bool with_damping;
-    mt_damped_modes damped;
+    const mt_damped_modes *damped;
     mt_doubt_list doubts;
 } view;
 
@@ -105,7 +105,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     }
     mt_json_close(w);
     if (v->with_damping) {
-        mt_damped_json(&v->damped, v->count, w);
+        mt_damped_json(v->damped, v->count, w);
     }
     if (v->a != NULL) {
         MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
@@ -278,7 +278,7 @@ static void text_view(const view *v, mt_text *out)
         print_shapes(v, out);
     }
     if (v->with_damping) {
-        mt_damped_print(&v->damped, v->count, out);
+        mt_damped_print(v->damped, v->count, out);
     }
     mt_text_add(out, "\n");
 }
@@ -297,7 +297,7 @@ static mt_status csv_view(sink *to, const view *v)
             to->table = mt_table_default();
             mt_damped_columns(&to->table, true);
         }
-        mt_damped_rows(&to->table, &v->damped, v->count, mt_subject_configuration(v->s, v->c));
+        mt_damped_rows(&to->table, v->damped, v->count, mt_subject_configuration(v->s, v->c));
         return MT_OK;
     }
     if (to->table.n_columns == 0 && !to->table.failed) {
@@ -350,7 +350,7 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
     }
     if (rc == MT_OK && to->args->given[MT_OPT_DAMPED]) {
         v.with_damping = true;
-        rc = mt_damped_of(v.a, &mem, &v.damped, err);
+        rc = mt_analysis_damped(v.a, &v.damped, err);
     }
     if (rc != MT_OK) {
         goto done;

@@ -32,8 +32,10 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "mode shapes at the sensors, or of the bodies where there are none"),
     OPTION(
         MT_OPT_DAMPED, '\0', "damped", NULL, BIT(MT_CMD_MODES),
-        "modes with the model's dampers, too: natural and damped frequencies, damping ratios; "
-        "real roots are overdamped (as CSV these modes alone)"),
+        "complex modes, too, with all that damps (dampers, damping ratios, loss factors): "
+        "natural "
+        "and damped frequencies, damping ratios; real roots are overdamped (as CSV these modes "
+        "alone)"),
     OPTION(MT_OPT_DRIVE, '\0', "drive", "JOINT=FROM:TO:N", BIT(MT_CMD_SWEEP),
            "the joint (or a link's hinge) and N positions of it from the reference position, "
            "rad or m; FROM and TO may be expressions (\"pivot=-10*deg:10*deg:21\")"),

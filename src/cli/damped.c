@@ -23,18 +23,6 @@ static const char *kind_name(mt_damped_kind kind)
     return "unstable";
 }
 
-mt_status mt_damped_of(mt_analysis *a, mt_arena *mem, mt_damped_modes *out, mt_err *err)
-{
-    const mt_reduced r = mt_linear_reduced(a->lin);
-    const size_t n = (size_t)r.n;
-    double *const c = mt_arena_f64(mem, n, n);
-    MT_TRY(mt_arena_check(mem, err));
-    mt_linear_damping(a->lin, c);
-    const mt_damped_problem p = {
-        .n = r.n, .k = r.k, .c = c, .mass = &a->mass, .modes = &a->modes};
-    return mt_modal_damped(&p, mem, out, err);
-}
-
 /* 1-based number of an oscillating mode; 0 for the others. */
 static int index_of(const mt_damped_modes *d, int i)
 {

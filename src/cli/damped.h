@@ -2,12 +2,10 @@
 #ifndef CLI_DAMPED_H
 #define CLI_DAMPED_H
 
+#include "analysis/damping.h"
 #include "cli/cli.h"
-#include "modal/damped.h"
 #include "report/table.h"
 
-/* Damped modes of an analysis, in mem. */
-mt_status mt_damped_of(mt_analysis *a, mt_arena *mem, mt_damped_modes *out, mt_err *err);
 /* Columns and rows; configuration NULL: no such column. */
 void mt_damped_columns(mt_table *t, bool with_configuration);
 void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count,

@@ -33,6 +33,7 @@
     X(MODEL_SPRINGS, "springs", LIST, false)          \
     X(MODEL_DAMPERS, "dampers", LIST, false)          \
     X(MODEL_LOADS, "loads", LIST, false)              \
+    X(MODEL_DAMPING, "damping", OBJECT, false)        \
     X(MODEL_SENSORS, "sensors", LIST, false)          \
     X(MODEL_MODES, "modes", OBJECT, false)            \
     X(MODEL_CONFIGURATIONS, "configurations", OBJECT, false)
@@ -66,7 +67,7 @@ const mt_key_table *const *mt_model_key_tables(int *n)
         &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,  &mt_link_keys,
         &mt_section_keys, &mt_shear_keys,     &mt_joint_keys, &mt_spring_keys,
         &mt_damper_keys,  &mt_sensor_keys,    &mt_mode_keys,  &mt_configuration_keys,
-        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,
+        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,  &mt_damping_keys,
     };
     *n = MT_COUNT(tables);
     return tables;
@@ -214,6 +215,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     mt_read_loads(mr, at[MODEL_LOADS]);
     mt_read_sensors(mr, at[MODEL_SENSORS]);
     mt_read_modes(mr, at[MODEL_MODES]);
+    m->damping = mt_read_damping(mr, at[MODEL_DAMPING]);
     mt_read_configurations(mr, at[MODEL_CONFIGURATIONS]);
 }
 

@@ -38,6 +38,7 @@ MT_READ_TABLE(mt_joint_keys, "joint", JOINT_KEYS);
     X(SPRING_YOUNG, "youngs_modulus_pa", NUMBER, false)              \
     X(SPRING_AREA, "area_m2", NUMBER, false)                         \
     X(SPRING_DENSITY, "density_kg_per_m3", NUMBER, false)            \
+    X(SPRING_LOSS, "loss_factor", NUMBER, false)                     \
     X(SPRING_MATRIX, "stiffness_matrix", LIST, false)
 enum { SPRING_KEYS(MT_READ_ENUM) SPRING_COUNT };
 MT_READ_TABLE(mt_spring_keys, "spring", SPRING_KEYS);
@@ -203,7 +204,8 @@ static mt_spring spring_default(bool damper)
                    .joint_link = MT_ABSENT,
                    .joint_hinge = MT_ABSENT,
                    .stiffness = MT_ABSENT,
-                   .preload = MT_ABSENT};
+                   .preload = MT_ABSENT,
+                   .loss_factor = MT_ABSENT};
     for (int k = 0; k < 3; k++) {
         s.translation[k] = MT_ABSENT;
         s.rotation[k] = MT_ABSENT;
@@ -251,6 +253,7 @@ static void read_spring(mt_model_reader *mr, mt_addr value, bool damper, mt_spri
     s->youngs_modulus = mt_read_num(mr, at[SPRING_YOUNG]);
     s->area = mt_read_num(mr, at[SPRING_AREA]);
     s->density = mt_read_num(mr, at[SPRING_DENSITY]);
+    s->loss_factor = mt_read_num(mr, at[SPRING_LOSS]);
     s->matrix = read_matrix(mr, at[SPRING_MATRIX]);
     s->in = mt_read_presence(mr, at[SPRING_IN]);
     if (mr->r.diags->errors > before) {

@@ -23,6 +23,7 @@
     X(LINK_INERTIA, "element_inertia_kg_m2", NUMBER_OR_LIST, false)   \
     X(LINK_HINGE_AXIS, "hinge_axis", LIST, false)                     \
     X(LINK_GYRATION, "radius_of_gyration_m", NUMBER, false)           \
+    X(LINK_LOSS, "loss_factor", NUMBER, false)                        \
     X(LINK_IN, "in", LIST, false)                                     \
     X(LINK_DESCRIPTION, "description", TEXT, false)                   \
     X(LINK_SOURCE, "source", TEXT, false)
@@ -130,6 +131,7 @@ static void read_link(mt_model_reader *mr, mt_addr value, mt_link *l)
         mt_read_nums(mr, at[LINK_INERTIA], true, 1, MT_MAX_ELEMENTS, &l->n_element_inertia);
     l->has_hinge_axis = mt_read_vector(mr, at[LINK_HINGE_AXIS], l->hinge_axis);
     l->radius_of_gyration = mt_read_num(mr, at[LINK_GYRATION]);
+    l->loss_factor = mt_read_num(mr, at[LINK_LOSS]);
     l->in = mt_read_presence(mr, at[LINK_IN]);
     if (mr->r.diags->errors > before) {
         l->elements = 0;

@@ -34,6 +34,7 @@ extern const mt_key_table mt_mode_keys;
 extern const mt_key_table mt_configuration_keys;
 extern const mt_key_table mt_drive_keys;
 extern const mt_key_table mt_hold_keys;
+extern const mt_key_table mt_damping_keys;
 
 /* A number or expression of the model's parameters; MT_ABSENT where absent or wrong. */
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value);
@@ -58,5 +59,7 @@ void mt_read_loads(mt_model_reader *mr, mt_addr list);
 void mt_read_sensors(mt_model_reader *mr, mt_addr list);
 void mt_read_modes(mt_model_reader *mr, mt_addr object);
 void mt_read_configurations(mt_model_reader *mr, mt_addr object);
+/* Of the model, or of a configuration; an absent one is not given. */
+mt_damping mt_read_damping(mt_model_reader *mr, mt_addr object);
 
 #endif

@@ -29,6 +29,7 @@ MT_READ_TABLE(mt_mode_keys, "mode", MODE_KEYS);
     X(CONFIGURATION_PARAMETERS, "parameters", OBJECT, false)  \
     X(CONFIGURATION_GRAVITY, "gravity_m_per_s2", LIST, false) \
     X(CONFIGURATION_DRIVE, "drive", OBJECT, false)            \
+    X(CONFIGURATION_DAMPING, "damping", OBJECT, false)        \
     X(CONFIGURATION_DESCRIPTION, "description", TEXT, false)  \
     X(CONFIGURATION_SOURCE, "source", TEXT, false)
 enum { CONFIGURATION_KEYS(MT_READ_ENUM) CONFIGURATION_COUNT };
@@ -178,5 +179,6 @@ void mt_read_configurations(mt_model_reader *mr, mt_addr object)
         read_overrides(mr, at[CONFIGURATION_PARAMETERS], c);
         c->has_gravity = mt_read_vector(mr, at[CONFIGURATION_GRAVITY], c->gravity);
         c->drive = read_drive(mr, at[CONFIGURATION_DRIVE]);
+        c->damping = mt_read_damping(mr, at[CONFIGURATION_DAMPING]);
     }
 }

@@ -4,28 +4,14 @@
 
 #include <complex.h>
 
-#include "base/arena.h"
-
-/* A = L D L^T of a complex symmetric matrix (not Hermitian), in place of its lower triangle. */
-typedef struct mt_complex_ldl {
-    int n;
-    double complex *a; /* n x n, the caller's, overwritten */
-    int *pivot;
-    double norm;   /* of A, 1-norm */
-    bool singular; /* a pivot is exactly 0 */
-} mt_complex_ldl;
-
-/* Factor the lower triangle of A. n^3/3 complex flops. zsytrf. */
-mt_status mt_complex_factor(int n, double complex *a, mt_arena *mem, mt_complex_ldl *out,
-                            mt_err *err);
-/* X in place of B, n x nrhs. Not where the factor is singular. zsytrs. */
-mt_status mt_complex_solve(const mt_complex_ldl *f, int nrhs, double complex *b, mt_err *err);
-/* Reciprocal condition in the 1-norm, estimated; 0 where singular. zsycon. */
-mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scratch,
-                           mt_err *err);
-/* All eigenvalues w[n] and right eigenvectors v (n x n, of length 1) of a general complex
- * matrix, which is destroyed. zgeev. Fails MT_E_NO_CONVERGENCE. */
-mt_status mt_eig_complex(int n, double complex *a, double complex *w, double complex *v,
-                         mt_arena *scratch, mt_err *err);
+/* re + i im: CMPLX of C11, which clang's view of the C library does not offer. */
+static inline double complex mt_complex(double re, double im)
+{
+    const union {
+        double part[2]; /* cppcheck-suppress unusedStructMember */
+        double complex z;
+    } u = {{re, im}};
+    return u.z;
+}
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "linalg/assign.h"
 #include "linalg/cholesky.h"
+#include "linalg/complex.h"
 #include "linalg/eig.h"
 #include "linalg/graded.h"
 #include "linalg/inertia.h"

@@ -259,3 +259,58 @@ mt_status mt_eig_general(int n, double *a, double *wr, double *wi, double *vr,
     mt_arena_rewind(scratch, mark);
     return rc;
 }
+
+typedef struct complex_general {
+    int n;
+    double complex *a;
+    double complex *w;
+    double complex *vr; /* or NULL */
+    double *rwork;      /* [2 n] */
+} complex_general;
+
+static lapack_int zgeev(const complex_general *g, double complex *work, lapack_int lwork)
+{
+    double complex none = 0.0;
+    return LAPACKE_zgeev_work(LAPACK_COL_MAJOR, 'N', g->vr == NULL ? 'N' : 'V', g->n, g->a,
+                              g->n, g->w, &none, 1, g->vr == NULL ? &none : g->vr,
+                              g->vr == NULL ? 1 : g->n, work, lwork, g->rwork);
+}
+
+static mt_status eig_complex(complex_general *g, mt_arena *scratch, mt_err *err)
+{
+    double complex query = 0.0;
+    g->rwork = mt_arena_f64(scratch, 2, (size_t)g->n);
+    MT_TRY(mt_arena_check(scratch, err));
+    lapack_int info = zgeev(g, &query, -1);
+    if (info != 0) {
+        return mt_lapack_bug("zgeev", info, err);
+    }
+    double *work = NULL; /* of pairs of doubles */
+    lapack_int lwork = 0;
+    MT_TRY(mt_lapack_work(scratch, 2.0 * creal(query), 4.0 * g->n, &work, &lwork, err));
+    info = zgeev(g, (double complex *)work, lwork / 2);
+    if (info < 0) {
+        return mt_lapack_bug("zgeev", info, err);
+    }
+    if (info > 0 || !mt_all_finite(2 * (ptrdiff_t)g->n, (const double *)g->w)) {
+        return mt_fail(err, MT_E_NO_CONVERGENCE, "zgeev: the eigenvalues did not converge");
+    }
+    return MT_OK;
+}
+
+/* NOLINTNEXTLINE(readability-non-const-parameter): LAPACK writes through them */
+mt_status mt_eig_complex(int n, double complex *a, double complex *w, double complex *vr,
+                         mt_arena *scratch, mt_err *err)
+{
+    if (n == 0) {
+        return MT_OK;
+    }
+    if (!mt_all_finite(2 * (ptrdiff_t)n * n, (const double *)a)) {
+        return mt_lapack_not_finite("zgeev", err);
+    }
+    complex_general g = {.n = n, .a = a, .w = w, .vr = vr};
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = eig_complex(&g, scratch, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}

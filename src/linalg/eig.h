@@ -2,6 +2,7 @@
 #ifndef LINALG_EIG_H
 #define LINALG_EIG_H
 
+#include <complex.h>
 #include <stdbool.h>
 
 #include "base/arena.h"
@@ -31,6 +32,9 @@ mt_status mt_eig_sym_lowest(const mt_tridiagonal *t, int count, const double *w,
 /* All eigenvalues of a general real matrix (destroyed): wr, wi [n]; right eigenvectors optional
  * (vr n x n in LAPACK's packed real form, may be NULL). dgeev. */
 mt_status mt_eig_general(int n, double *a, double *wr, double *wi, double *vr,
+                         mt_arena *scratch, mt_err *err);
+/* The same of a complex matrix: w [n], right eigenvectors vr n x n (may be NULL). zgeev. */
+mt_status mt_eig_complex(int n, double complex *a, double complex *w, double complex *vr,
                          mt_arena *scratch, mt_err *err);
 
 #endif

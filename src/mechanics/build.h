@@ -52,6 +52,8 @@ mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body
 /* Coordinate of the joint, or of the hinge of a link, that stands in the model under these
  * indices (MT_ABSENT: not that); -1: it is not in this configuration or has none. */
 int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle);
+/* The node of a loss factor; MT_NO_NODE where it is absent or the constant 0. */
+mt_node mt_build_loss(mt_builder *b, mt_num loss_factor);
 /* ANGLE measure about a UNIT axis vector. In two dimensions axis is the global z. */
 int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);
 
@@ -64,6 +66,7 @@ mt_status mt_build_springs(mt_builder *b);
 mt_status mt_build_loads(mt_builder *b);
 mt_status mt_build_sensors(mt_builder *b, const double *original);
 mt_status mt_build_drive(mt_builder *b);
+void mt_build_damping(mt_builder *b);
 /* shape, forces and geometry_fixed of a system whose program is finished
  * (build_inputs.c). A failure is the arena's. */
 void mt_build_inputs(mt_system *sys);

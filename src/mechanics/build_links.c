@@ -256,6 +256,7 @@ static void build_hinge(mt_builder *b, const mt_link *link, const link_geometry 
                         .stiffness = stiffness,
                         .free = MT_NO_NODE,
                         .preload = MT_NO_NODE,
+                        .loss = mt_build_loss(b, link->loss_factor),
                         .item = sys->n_items - 1};
 }
 
@@ -318,6 +319,7 @@ static void beam_spring(mt_builder *b, const mt_link *link, int element,
                         .stiffness = stiffness,
                         .free = MT_NO_NODE,
                         .preload = MT_NO_NODE,
+                        .loss = mt_build_loss(b, link->loss_factor),
                         .item = sys->n_items - 1};
 }
 

@@ -56,7 +56,7 @@ static mt_status spring_ends(mt_builder *b, const mt_spring *spring, ends *e)
     return MT_OK;
 }
 
-static mt_spring_def spring_default(const mt_builder *b, const mt_spring *spring, int measure,
+static mt_spring_def spring_default(mt_builder *b, const mt_spring *spring, int measure,
                                     mt_node stiffness)
 {
     const mt_spring_def def = {.name = spring->name.s,
@@ -64,6 +64,7 @@ static mt_spring_def spring_default(const mt_builder *b, const mt_spring *spring
                                .stiffness = stiffness,
                                .free = MT_NO_NODE,
                                .preload = MT_NO_NODE,
+                               .loss = mt_build_loss(b, spring->loss_factor),
                                .damper = spring->damper,
                                .item = b->sys->n_items - 1};
     return def;
@@ -84,19 +85,46 @@ int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge
     return at >= 0 && b->sys->joints[at].angle == angle ? b->sys->joints[at].coordinate : -1;
 }
 
+mt_node mt_build_loss(mt_builder *b, mt_num loss_factor)
+{
+    const mt_node loss = mt_build_num(b, loss_factor);
+    return loss == b->zero ? MT_NO_NODE : loss;
+}
+
+/* The displacement of a joint along its axis: its coordinate, or beside the angle of a
+ * cylindrical one what its first equation measures across the axis (on_line of build_joints.c),
+ * along it. -1: it is not in this configuration. */
+static int slide_measure(mt_builder *b, const mt_spring *spring)
+{
+    const mt_system *const sys = b->sys;
+    const int at = b->joint_at[spring->joint];
+    if (at < 0 || !sys->joints[at].angle) {
+        return mt_build_find_coordinate(b, spring->joint, MT_ABSENT, MT_ABSENT, false);
+    }
+    if (mt_arena_failed(&sys->mem)) {
+        return -1;
+    }
+    mt_measure_def def = sys->measures[sys->constraints[sys->joints[at].first].measure[0]];
+    def.dir[0] = sys->vecs[def.dir[0]].axis;
+    return mt_build_measure(b, &def);
+}
+
+static mt_status no_coordinate(mt_builder *b, const mt_spring *spring, const char *what)
+{
+    return mt_fail(b->err, MT_E_INPUT,
+                   "spring \"%s\": joint \"%s\" is not in configuration \"%s\" or has no %s",
+                   spring->name.s, spring->joint_name.s,
+                   b->model->configurations[b->sys->configuration].name.s, what);
+}
+
 static mt_status build_torsion(mt_builder *b, const mt_spring *spring)
 {
-    mt_system *const sys = b->sys;
     int measure = -1;
     if (spring->joint != MT_ABSENT || spring->joint_link != MT_ABSENT) {
         measure = mt_build_find_coordinate(b, spring->joint, spring->joint_link,
                                            spring->joint_hinge, true);
         if (measure < 0) {
-            return mt_fail(
-                b->err, MT_E_INPUT,
-                "spring \"%s\": joint \"%s\" is not in configuration \"%s\" or has no angle",
-                spring->name.s, spring->joint_name.s,
-                b->model->configurations[sys->configuration].name.s);
+            return no_coordinate(b, spring, "angle");
         }
     } else {
         ends e;
@@ -113,10 +141,19 @@ static mt_status build_torsion(mt_builder *b, const mt_spring *spring)
 
 static mt_status build_axial(mt_builder *b, const mt_spring *spring)
 {
-    ends e;
-    MT_TRY(spring_ends(b, spring, &e));
-    mt_spring_def def = spring_default(b, spring, axial_measure(b, &e),
-                                       mt_build_num_or(b, spring->stiffness, b->zero));
+    int measure = -1;
+    if (spring->joint != MT_ABSENT) {
+        measure = slide_measure(b, spring);
+        if (measure < 0) {
+            return no_coordinate(b, spring, "displacement");
+        }
+    } else {
+        ends e;
+        MT_TRY(spring_ends(b, spring, &e));
+        measure = axial_measure(b, &e);
+    }
+    mt_spring_def def =
+        spring_default(b, spring, measure, mt_build_num_or(b, spring->stiffness, b->zero));
     def.free = mt_build_num(b, spring->free_length);
     def.preload = mt_build_num(b, spring->preload);
     add_spring(b, &def);

@@ -96,16 +96,6 @@ void mt_linear_project(const mt_linear *lin, const double *w, double *out)
     mt_eliminate_project(&lin->e, w, out);
 }
 
-void mt_linear_whole_product(const mt_linear *lin, mt_term_kind kind, const double *phi,
-                             double *out)
-{
-    const int nq = lin->sys->nq;
-    mt_linear_states_product(lin, kind, 1.0, phi, out);
-    if (kind == MT_TERM_STIFFNESS && lin->kg != NULL) {
-        mt_gemv(false, nq, nq, 1.0, lin->kg, nq, phi, 1.0, out);
-    }
-}
-
 double mt_linear_row_dot(const mt_linear *lin, mt_term_kind kind, int row, const double *phi)
 {
     return mt_rows_dot(&lin->full[kind], row, phi);
@@ -126,38 +116,6 @@ double mt_linear_row_dot_slope(const mt_linear *lin, int p, mt_term_kind kind, i
                                const double *phi)
 {
     return is_moved(lin, p) ? mt_rows_dot(&lin->tangent[p].rows[kind], row, phi) : 0.0;
-}
-
-double mt_linear_between_slope(const mt_linear *lin, int p, mt_term_kind kind, const double *a,
-                               const double *b)
-{
-    const mt_term_list *const list = &lin->list[kind];
-    const mt_rows *const rows = &lin->full[kind];
-    const bool moved = is_moved(lin, p);
-    double sum = 0.0;
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        const int other = t->pair ? (2 * t->first) + 1 - i : i;
-        if (mt_rows_empty(&lin->entries[kind], i) && !t->pair) {
-            continue; /* blocked by the joints: no part in any derivative */
-        }
-        const double half = t->pair ? 0.5 : 1.0;
-        const double left = mt_rows_dot(rows, i, a);
-        const double right = mt_rows_dot(rows, other, b);
-        sum += half * mt_linear_slope(lin, t->coefficient, p) * left * right;
-        if (moved) {
-            const mt_rows *const d = &lin->tangent[p].rows[kind];
-            sum += half * lin->value[t->coefficient] *
-                   ((mt_rows_dot(d, i, a) * right) + (left * mt_rows_dot(d, other, b)));
-        }
-    }
-    if (moved && kind == MT_TERM_STIFFNESS && lin->kg != NULL) {
-        const ptrdiff_t nq = lin->sys->nq;
-        for (ptrdiff_t c = 0; c < nq; c++) {
-            sum += b[c] * mt_dot((int)nq, lin->tangent[p].kg + (c * nq), a);
-        }
-    }
-    return sum;
 }
 
 void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, double *out)

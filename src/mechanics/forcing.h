@@ -31,9 +31,6 @@ mt_status mt_linear_joint_force(mt_linear *lin, int joint, int axis, mt_arena *m
 void mt_linear_shift(const mt_linear *lin, int axis, double *r);
 /* out[n] = Z^T w. */
 void mt_linear_project(const mt_linear *lin, const double *w, double *out);
-/* out[nq] += K phi with its geometric part, C phi or M phi. */
-void mt_linear_whole_product(const mt_linear *lin, mt_term_kind kind, const double *phi,
-                             double *out);
 /* Row i of a term's rows over the states, times phi (nq). */
 double mt_linear_row_dot(const mt_linear *lin, mt_term_kind kind, int row, const double *phi);
 /* out[nq] += factor times the row. */
@@ -44,9 +41,6 @@ void mt_linear_row_add(const mt_linear *lin, mt_term_kind kind, int row, double 
 /* Of the row at fixed phi: its own motion. */
 double mt_linear_row_dot_slope(const mt_linear *lin, int p, mt_term_kind kind, int row,
                                const double *phi);
-/* a^T (dK/dp) b over the states (with its geometric part), or of C, M. */
-double mt_linear_between_slope(const mt_linear *lin, int p, mt_term_kind kind, const double *a,
-                               const double *b);
 /* out[m] = (dA/dp) phi. */
 void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, double *out);
 /* lambda[m]: A^T lambda ~ w. */

@@ -77,6 +77,25 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
     }
 }
 
+/* Dampers, each once (a bushing's directions stand together), and the range of loss factors. */
+static void count_damping(const mt_linear *lin, mt_info *out)
+{
+    const mt_system *const sys = lin->sys;
+    const char *last = NULL;
+    out->least_loss = nan("");
+    out->most_loss = nan("");
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        if (s->damper) {
+            out->dampers += s->name == last ? 0 : 1;
+            last = s->name;
+        } else if (s->loss != MT_NO_NODE) {
+            out->least_loss = fmin(out->least_loss, lin->value[s->loss]);
+            out->most_loss = fmax(out->most_loss, lin->value[s->loss]);
+        }
+    }
+}
+
 mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
 {
     if (!lin->stages.valid[MT_STAGE_REDUCTION]) {
@@ -90,6 +109,7 @@ mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
                      .redundant = mt_linear_redundant(lin),
                      .residual = lin->position.equilibrium.residual,
                      .gap_m = lin->position.gap_m};
+    count_damping(lin, out);
     rigid_energy(lin, g);
     from_energy((const double(*)[MOTIONS])g, lin->sys->dimension, out);
     return MT_OK;

@@ -18,6 +18,9 @@ typedef struct mt_info {
     double inertia_kg_m2[6];
     double residual; /* of the equilibrium, relative to the forces at work */
     double gap_m;    /* largest violation of a joint */
+    int dampers;
+    double least_loss; /* loss factors of springs and links that have one; NaN: none has */
+    double most_loss;
 } mt_info;
 
 /* After mt_linear_update. Exact for consistent bars and beams as well. Fails: MT_E_INTERNAL

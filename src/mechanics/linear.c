@@ -148,8 +148,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     return mt_singular_refuse(&lin->data, &lin->position.at, &lin->e, &lin->scratch, err);
 }
 
-/* out (n x n) += c times the term's rows, lower triangle. */
-static void add_term(const mt_linear *lin, int kind, const mt_term *t, double c, double *out)
+void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double c, double *out)
 {
     const mt_rows *const rows = &lin->entries[kind];
     if (t->pair) {
@@ -181,7 +180,7 @@ static void add_terms(const mt_linear *lin, int kind, int which, double *out)
             return;
         }
         if ((which == 2 || t->varies == (which == 1)) && c != 0.0 && !apart) {
-            add_term(lin, kind, t, c, out);
+            mt_linear_add_term(lin, kind, t, c, out);
         }
     }
 }
@@ -210,7 +209,7 @@ static void add_couplings(const mt_linear *lin, double *k)
         if (lin->coupling[i] == MT_COUPLING_WHOLE && lin->squared[i]) {
             mt_couplings_add(lin, t, k);
         } else if (lin->coupling[i] == MT_COUPLING_WHOLE) {
-            add_term(lin, MT_TERM_STIFFNESS, t, lin->value[t->coefficient], k);
+            mt_linear_add_term(lin, MT_TERM_STIFFNESS, t, lin->value[t->coefficient], k);
         }
     }
 }
@@ -284,7 +283,7 @@ static void assemble_stiffness(mt_linear *lin)
             lin->factor_c[t->first + r] = square ? c : 0.0;
         }
         if (!square) {
-            add_term(lin, MT_TERM_STIFFNESS, t, c, lin->factor_g);
+            mt_linear_add_term(lin, MT_TERM_STIFFNESS, t, c, lin->factor_g);
             lin->has_factor_g = true;
         }
     }
@@ -540,11 +539,4 @@ void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *p
 {
     mt_gemm(false, false, lin->sys->nq, cols, lin->n, 1.0, lin->e.z, lin->sys->nq, y, lin->n,
             0.0, phi, lin->sys->nq);
-}
-
-void mt_linear_damping(const mt_linear *lin, double *c)
-{
-    memset(c, 0, (size_t)lin->n * (size_t)lin->n * sizeof *c);
-    add_terms(lin, MT_TERM_DAMPING, 2, c);
-    mt_symmetrise_lower(lin->n, c);
 }

@@ -82,7 +82,11 @@ int mt_linear_idle(const mt_linear *lin, const bool **idle);
 
 /* phi = Z y: y n x cols, phi nq x cols. */
 void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi);
-/* Reduced damping matrix Z^T C Z (n x n) into c. */
+/* Reduced damping matrix Z^T C Z (n x n, both triangles) of the dampers into c. */
 void mt_linear_damping(const mt_linear *lin, double *c);
+/* Structural damping H of the springs' loss factors likewise, into h (NULL: not wanted): the
+ * dynamic stiffness is K + i H for motions with e^{i w t}. Loads and preload, whose geometric
+ * stiffness is no spring's, have no part in it. Returns whether any term is not 0. */
+bool mt_linear_structural(const mt_linear *lin, double *h);
 
 #endif

@@ -69,4 +69,10 @@ struct mt_linear {
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
 };
 
+/* out (n x n) += c times the term's rows, lower triangle. */
+void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double c,
+                        double *out);
+/* What a term has in H: loss * coefficient; 0 without a loss factor. */
+double mt_linear_loss(const mt_linear *lin, const mt_term *t);
+
 #endif

@@ -20,6 +20,34 @@
 
 #include "mechanics/tangent.h"
 
+/* A sum of terms: K, C or M by their coefficients, or H by what the loss factors make of those
+ * of K. */
+typedef struct sum {
+    int kind;
+    bool loss;
+} sum;
+static const sum STIFFNESS = {MT_TERM_STIFFNESS, false};
+static const sum MASS = {MT_TERM_MASS, false};
+static const sum DAMPING = {MT_TERM_DAMPING, false};
+static const sum STRUCTURAL = {MT_TERM_STIFFNESS, true};
+
+static double weight(const mt_linear *lin, sum s, const mt_term *t)
+{
+    return s.loss ? mt_linear_loss(lin, t) : lin->value[t->coefficient];
+}
+
+static double weight_slope(const mt_linear *lin, sum s, const mt_term *t, int p)
+{
+    const double slope = mt_linear_slope(lin, t->coefficient, p);
+    if (!s.loss) {
+        return slope;
+    }
+    return t->loss == MT_NO_NODE
+               ? 0.0
+               : (lin->value[t->loss] * slope) +
+                     (mt_linear_slope(lin, t->loss, p) * lin->value[t->coefficient]);
+}
+
 /* A row that the joints block, r = Z^T f = 0, has no part in a derivative: (r r^T)' = r' r^T +
  * r r'^T = 0. */
 static bool is_blocked(const mt_linear *lin, int kind, int row, const mt_term *t)
@@ -33,63 +61,65 @@ static int partner(const mt_term *t, int i)
     return t->pair ? (2 * t->first) + 1 - i : i;
 }
 
-void mt_linear_states_product(const mt_linear *lin, mt_term_kind kind, double scale,
-                              const double *phi, double *out)
+/* out += scale K phi (STIFFNESS), M phi (MASS) and so on, full coordinates, without the
+ * geometric part. */
+static void full_product(const mt_linear *lin, sum s, double scale, const double *phi,
+                         double *out)
 {
-    const mt_term_list *const list = &lin->list[kind];
-    const mt_rows *const rows = &lin->full[kind];
+    const mt_term_list *const list = &lin->list[s.kind];
+    const mt_rows *const rows = &lin->full[s.kind];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
-        if (is_blocked(lin, (int)kind, i, t)) {
+        if (is_blocked(lin, s.kind, i, t)) {
             continue;
         }
-        const double c = scale * lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
+        const double c = scale * weight(lin, s, t) * (t->pair ? 0.5 : 1.0);
         mt_rows_axpy(rows, i, c * mt_rows_dot(rows, partner(t, i), phi), out);
     }
 }
 
 /* out += K' phi at fixed phi. */
-static void full_product_derivative(const mt_linear *lin, int kind, int p, const double *phi,
+static void full_product_derivative(const mt_linear *lin, sum s, int p, const double *phi,
                                     double *out)
 {
-    const mt_term_list *const list = &lin->list[kind];
-    const mt_rows *const rows = &lin->full[kind];
-    const mt_rows *const drows = &lin->tangent[p].rows[kind];
+    const mt_term_list *const list = &lin->list[s.kind];
+    const mt_rows *const rows = &lin->full[s.kind];
+    const mt_rows *const drows = &lin->tangent[p].rows[s.kind];
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
-        if (is_blocked(lin, kind, i, t)) {
+        if (is_blocked(lin, s.kind, i, t)) {
             continue;
         }
         const int other = partner(t, i);
         const double half = t->pair ? 0.5 : 1.0;
-        const double c = lin->value[t->coefficient] * half;
-        const double dc = mt_linear_slope(lin, t->coefficient, p) * half;
+        const double c = weight(lin, s, t) * half;
+        const double dc = weight_slope(lin, s, t, p) * half;
         if (dc == 0.0 && mt_rows_empty(drows, i) && mt_rows_empty(drows, other)) {
             continue;
         }
-        const double s = mt_rows_dot(rows, other, phi);
-        const double ds = mt_rows_dot(drows, other, phi);
-        mt_rows_axpy(rows, i, (dc * s) + (c * ds), out);
-        mt_rows_axpy(drows, i, c * s, out);
+        const double way = mt_rows_dot(rows, other, phi);
+        const double dway = mt_rows_dot(drows, other, phi);
+        mt_rows_axpy(rows, i, (dc * way) + (c * dway), out);
+        mt_rows_axpy(drows, i, c * way, out);
     }
 }
 
 /* Fixed geometry: the sum over terms whose coefficient depends on p, in reduced coordinates. */
-static void coefficient_products(const mt_linear *lin, int kind, int p, int cols,
-                                 const double *y, double *out)
+static void coefficient_products(const mt_linear *lin, sum s, int p, int cols, const double *y,
+                                 double *out)
 {
-    const mt_term_list *const list = &lin->list[kind];
-    const mt_rows *const rows = &lin->entries[kind];
+    const mt_term_list *const list = &lin->list[s.kind];
+    const mt_rows *const rows = &lin->entries[s.kind];
     const ptrdiff_t n = lin->n;
     memset(out, 0, (size_t)n * (size_t)cols * sizeof *out);
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];
-        const double dc = t->varies ? mt_linear_slope(lin, t->coefficient, p) : 0.0;
+        const double dc = t->varies || s.loss ? weight_slope(lin, s, t, p) : 0.0;
         for (int r = t->first; r < t->first + t->count && dc != 0.0; r++) {
             for (int c = 0; c < cols; c++) {
-                const double s =
+                const double way =
                     dc * (t->pair ? 0.5 : 1.0) * mt_rows_dot(rows, partner(t, r), y + (c * n));
-                mt_rows_axpy(rows, r, s, out + (c * n));
+                mt_rows_axpy(rows, r, way, out + (c * n));
             }
         }
     }
@@ -146,21 +176,21 @@ static mt_status moving_shape(mt_linear *lin, const mt_linear_tangent *t, const 
     return mt_eliminate_particular(&lin->e, v->b, v->z, &lin->scratch, err);
 }
 
-static mt_status moving_product(mt_linear *lin, mt_term_kind kind, int p, moving *v,
-                                double *out, mt_err *err)
+static mt_status moving_product(mt_linear *lin, sum s, int p, moving *v, double *out,
+                                mt_err *err)
 {
     const int nq = lin->sys->nq;
     const mt_linear_tangent *const t = &lin->tangent[p];
-    const bool geometric = kind == MT_TERM_STIFFNESS && lin->kg != NULL;
+    const bool geometric = s.kind == MT_TERM_STIFFNESS && !s.loss && lin->kg != NULL;
     memset(v->w, 0, (size_t)nq * sizeof *v->w);
-    full_product_derivative(lin, (int)kind, p, v->phi, v->w);
+    full_product_derivative(lin, s, p, v->phi, v->w);
     if (geometric) {
         mt_gemv(false, nq, nq, 1.0, t->kg, nq, v->phi, 1.0, v->w);
     }
     if (lin->m > 0) { /* without constraints the basis stands still */
         memset(v->kphi, 0, (size_t)nq * sizeof *v->kphi);
-        mt_linear_states_product(lin, kind, 1.0, v->phi, v->kphi);
-        mt_linear_states_product(lin, kind, 1.0, v->z, v->w);
+        full_product(lin, s, 1.0, v->phi, v->kphi);
+        full_product(lin, s, 1.0, v->z, v->w);
         if (geometric) {
             mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->kphi);
             mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->z, 1.0, v->w);
@@ -177,12 +207,13 @@ static bool is_moved(const mt_linear *lin, int p)
     return lin->tangent != NULL && lin->tangent[p].moves;
 }
 
-mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
-                             double *dmy, mt_err *err)
+/* out[k] = (ds[k]/dp) y of both sums, n x cols each. */
+static mt_status products(mt_linear *lin, const sum s[2], int p, int cols, const double *y,
+                          double *const out[2], mt_err *err)
 {
     if (!is_moved(lin, p)) {
-        coefficient_products(lin, MT_TERM_STIFFNESS, p, cols, y, dky);
-        coefficient_products(lin, MT_TERM_MASS, p, cols, y, dmy);
+        coefficient_products(lin, s[0], p, cols, y, out[0]);
+        coefficient_products(lin, s[1], p, cols, y, out[1]);
         return MT_OK;
     }
     moving v;
@@ -191,11 +222,25 @@ mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, d
     for (int c = 0; c < cols; c++) {
         const ptrdiff_t at = (ptrdiff_t)c * lin->n;
         MT_TRY(moving_shape(lin, &lin->tangent[p], y + at, &v, err));
-        MT_TRY(moving_product(lin, MT_TERM_STIFFNESS, p, &v, dky + at, err));
-        MT_TRY(moving_product(lin, MT_TERM_MASS, p, &v, dmy + at, err));
+        MT_TRY(moving_product(lin, s[0], p, &v, out[0] + at, err));
+        MT_TRY(moving_product(lin, s[1], p, &v, out[1] + at, err));
     }
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
+}
+
+mt_status mt_linear_products(mt_linear *lin, int p, int cols, const double *y, double *dky,
+                             double *dmy, mt_err *err)
+{
+    return products(lin, (const sum[2]){STIFFNESS, MASS}, p, cols, y,
+                    (double *const[2]){dky, dmy}, err);
+}
+
+mt_status mt_linear_damping_products(mt_linear *lin, int p, int cols, const double *y,
+                                     double *dcy, double *dhy, mt_err *err)
+{
+    return products(lin, (const sum[2]){DAMPING, STRUCTURAL}, p, cols, y,
+                    (double *const[2]){dcy, dhy}, err);
 }
 
 /* phi^T K' phi of rows that move, coefficients as they are. */
@@ -204,21 +249,21 @@ static double row_slope(const mt_linear *lin, int kind, int p, const double *phi
     const mt_term_list *const list = &lin->list[kind];
     const mt_rows *const rows = &lin->full[kind];
     const mt_rows *const drows = &lin->tangent[p].rows[kind];
-    double sum = 0.0;
+    double total = 0.0;
     for (int i = 0; i < list->n_rows; i++) {
         const mt_term *const t = &list->terms[list->row_term[i]];
         if (!mt_rows_empty(drows, i) && !is_blocked(lin, kind, i, t)) {
             const double c = lin->value[t->coefficient] * (t->pair ? 1.0 : 2.0);
-            sum += c * mt_rows_dot(rows, partner(t, i), phi) * mt_rows_dot(drows, i, phi);
+            total += c * mt_rows_dot(rows, partner(t, i), phi) * mt_rows_dot(drows, i, phi);
         }
     }
-    return sum;
+    return total;
 }
 
 void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w)
 {
-    mt_linear_states_product(lin, MT_TERM_STIFFNESS, 1.0, phi, w);
-    mt_linear_states_product(lin, MT_TERM_MASS, -lambda, phi, w);
+    full_product(lin, STIFFNESS, 1.0, phi, w);
+    full_product(lin, MASS, -lambda, phi, w);
 }
 
 /* v->lambda := mu, A^T mu = (K - lambda M) phi: what the joints carry in the mode. */
@@ -324,7 +369,57 @@ mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_
     MT_TRY(mt_arena_check(&lin->scratch, err));
     mt_linear_expand(lin, 1, y, phi);
     memset(w, 0, nq * sizeof *w);
-    mt_linear_states_product(lin, MT_TERM_MASS, 1.0, phi, w);
+    full_product(lin, MASS, 1.0, phi, w);
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
+}
+
+static sum sum_of(mt_matrix matrix)
+{
+    static const sum *const sums[] = {[MT_MATRIX_STIFFNESS] = &STIFFNESS,
+                                      [MT_MATRIX_LOSS] = &STRUCTURAL,
+                                      [MT_MATRIX_DAMPERS] = &DAMPING,
+                                      [MT_MATRIX_MASS] = &MASS};
+    return *sums[matrix];
+}
+
+void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double scale,
+                              const double *phi, double *out)
+{
+    const int nq = lin->sys->nq;
+    full_product(lin, sum_of(matrix), scale, phi, out);
+    if (matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL) {
+        mt_gemv(false, nq, nq, scale, lin->kg, nq, phi, 1.0, out);
+    }
+}
+
+double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *a,
+                               const double *b)
+{
+    const sum s = sum_of(matrix);
+    const mt_term_list *const list = &lin->list[s.kind];
+    const mt_rows *const rows = &lin->full[s.kind];
+    const mt_rows *const drows = is_moved(lin, p) ? &lin->tangent[p].rows[s.kind] : NULL;
+    const ptrdiff_t nq = lin->sys->nq;
+    double out = 0.0;
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        if (is_blocked(lin, s.kind, i, t)) {
+            continue;
+        }
+        const int other = partner(t, i);
+        const double half = t->pair ? 0.5 : 1.0;
+        const double left = mt_rows_dot(rows, i, a);
+        const double right = mt_rows_dot(rows, other, b);
+        out += half * weight_slope(lin, s, t, p) * left * right;
+        if (drows != NULL) {
+            out += half * weight(lin, s, t) *
+                   ((mt_rows_dot(drows, i, a) * right) + (left * mt_rows_dot(drows, other, b)));
+        }
+    }
+    for (ptrdiff_t c = 0;
+         c < nq && drows != NULL && matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL; c++) {
+        out += b[c] * mt_dot((int)nq, lin->tangent[p].kg + (c * nq), a);
+    }
+    return out;
 }

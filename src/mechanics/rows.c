@@ -61,6 +61,7 @@ mt_term mt_term_of_inertia(const mt_system *sys, int i)
 {
     const mt_inertia_def *const def = &sys->inertias[i];
     return (mt_term){.coefficient = def->coefficient,
+                     .loss = MT_NO_NODE,
                      .count = inertia_rows(sys, def),
                      .pair = def->kind == MT_INERTIA_ROTATION && def->dir[0] != def->dir[1],
                      .body = {def->body[0], def->body[1]},
@@ -85,6 +86,7 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
         const bool pair = s->measure[0] != s->measure[1];
         push(&lists[s->damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS], p,
              (mt_term){.coefficient = s->stiffness,
+                       .loss = s->damper ? MT_NO_NODE : s->loss,
                        .count = pair ? 2 : 1,
                        .pair = pair,
                        .body = {m->body[0], m->body[1]},
@@ -96,6 +98,7 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
     for (int i = 0; i < sys->n_channels; i++) {
         push(&lists[MT_TERM_CHANNEL], p,
              (mt_term){.coefficient = MT_NO_NODE,
+                       .loss = MT_NO_NODE,
                        .count = 1,
                        .body = {sys->channels[i].body[0], sys->channels[i].body[1]},
                        .source = i});

@@ -8,7 +8,7 @@
 /*
  * Stiffness, damping, mass and sensors as sparse rows over the states of (at most) two bodies:
  *     K = sum_t k_t f_t f_t^T (+ geometric part),   M = sum_t m_t sum_i f_ti f_ti^T,
- *         sensor = f . dq.
+ *     C = sum_t c_t f_t f_t^T,   H = sum_t eta_t k_t f_t f_t^T,   sensor = f . dq.
  * A term's coefficient is one node of the program, its rows are geometry. That is what makes
  * repeated evaluation at fixed geometry a short sum, gives derivatives and interval bounds of K
  * and M term by term, and keeps the factor of K for badly scaled models.
@@ -23,7 +23,10 @@ typedef enum mt_term_kind {
 
 typedef struct mt_term {
     mt_node coefficient; /* MT_NO_NODE for channels */
-    int first;           /* rows first .. first + count - 1 */
+    /* of a spring: its part of the structural damping H is loss * coefficient; MT_NO_NODE:
+     * none */
+    mt_node loss;
+    int first; /* rows first .. first + count - 1 */
     int count;
     bool pair;   /* two rows a, b: coefficient * (a b^T + b a^T)/2; else the sum of squares */
     bool varies; /* does the coefficient depend on an input? */

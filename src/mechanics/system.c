@@ -161,6 +161,7 @@ static mt_status build_parts(mt_builder *b, const double *at)
     MT_TRY(mt_build_springs(b));
     MT_TRY(mt_build_loads(b));
     MT_TRY(mt_build_drive(b));
+    mt_build_damping(b);
     return mt_build_sensors(b, at);
 }
 

@@ -89,6 +89,7 @@ typedef struct mt_spring_def {
     mt_node stiffness;
     mt_node free;    /* MT_NO_NODE: unstressed in the reference position */
     mt_node preload; /* MT_NO_NODE: 0 */
+    mt_node loss;    /* loss factor; MT_NO_NODE: 0 */
     bool damper;     /* no energy, a damping coefficient */
     int item;        /* springs of one item of the model stand together */
 } mt_spring_def;
@@ -146,6 +147,20 @@ typedef struct mt_item_def { /* what `mass` counts: bodies, links, bars */
     mt_node mass; /* MT_NO_NODE: none */
 } mt_item_def;
 
+/* Damping besides dampers and loss factors (model.h: mt_damping), as nodes; MT_NO_NODE: none.
+ * */
+typedef struct mt_damping_def {
+    mt_node mass;      /* 1/s */
+    mt_node stiffness; /* s */
+    bool modal;        /* is any ratio given? Then C takes all modes (analysis/damping.h) */
+    mt_node ratio;
+    int n_ratios;
+    mt_node *ratios; /* [n_ratios] */
+    int n_named;     /* named modes of this configuration */
+    int *named;      /* [n_named] of the model's */
+    mt_node *named_ratios;
+} mt_damping_def;
+
 typedef struct mt_layout mt_layout;
 
 typedef struct mt_system {
@@ -170,6 +185,7 @@ typedef struct mt_system {
     MT_LIST_OF(mt_load_def, loads);
     MT_LIST_OF(mt_channel_def, channels);
     MT_LIST_OF(mt_item_def, items);
+    mt_damping_def damping;
     bool loaded; /* gravity, preload or free length present: equilibrium needed */
     bool driven;
     mt_node drive;        /* position of the driven joint's coordinate */

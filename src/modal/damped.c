@@ -18,7 +18,7 @@
  */
 #include "modal/damped.h"
 
-#include "modal/modal_priv.h"
+#include "modal/damped_priv.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,30 +27,8 @@
 
 static const double TWO_PI = 6.283185307179586477;
 
-/* The pieces above. r modes with mass, z directions without, of which zd are damped. */
-typedef struct parts {
-    const mt_damped_problem *p;
-    mt_arena *mem;
-    int n;
-    int r;
-    int z;
-    int zd;
-    double *y;     /* n x r, rigid-body modes turned so that their damping is diagonal */
-    double *b;     /* n x zd: columns of y for unit b_D, the static following of U in them */
-    double *omega; /* [r] signed: S Omega */
-    double *caa;   /* r x r */
-    double *cda;   /* zd x r */
-    double *mu;    /* [zd] */
-    double *kd;    /* zd x zd */
-    int *x_of;     /* [r] state of x; -1: none */
-    int *v_of;     /* [r] state of v; -1: none */
-    int order;     /* states */
-    double tol;    /* 16 n eps */
-} parts;
-
-/* out := A^T B C, A n x ra, C n x rc, B symmetric n x n. */
-static mt_status sandwich(const parts *s, const double *b, int ra, const double *a, int rc,
-                          const double *c, double *out, mt_err *err)
+mt_status mt_damped_sandwich(const mt_damped_parts *s, const double *b, int ra, const double *a,
+                             int rc, const double *c, double *out, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     double *const bc = mt_arena_f64(s->mem, (size_t)s->n, (size_t)rc);
@@ -63,7 +41,7 @@ static mt_status sandwich(const parts *s, const double *b, int ra, const double 
 
 /* Rigid-body modes (repeated, so any basis of them does) turned so that their own damping is
  * diagonal. */
-static mt_status turn_rigid(parts *s, mt_err *err)
+static mt_status turn_rigid(mt_damped_parts *s, mt_err *err)
 {
     const mt_modes *const m = s->p->modes;
     int count = 0;
@@ -78,7 +56,7 @@ static mt_status turn_rigid(parts *s, mt_err *err)
                    (size_t)s->n * sizeof *old);
         }
     }
-    MT_TRY(sandwich(s, s->p->c, count, old, count, old, c, err));
+    MT_TRY(mt_damped_sandwich(s, s->p->c, count, old, count, old, c, err));
     MT_TRY(mt_eig_sym(count, c, mu, true, s->mem, err));
     mt_gemm(false, false, s->n, count, count, 1.0, old, s->n, c, count, 0.0, turned, s->n);
     count = 0;
@@ -93,7 +71,7 @@ static mt_status turn_rigid(parts *s, mt_err *err)
 
 /* Columns of T0 in the order undamped, damped directions: those are eigenvectors of Cbb, T0
  * scaled to |Kbb| = 1 on the diagonal. *u: how many are undamped. */
-static mt_status split_massless(parts *s, double *t, double *mu, int *u, mt_err *err)
+static mt_status split_massless(mt_damped_parts *s, double *t, double *mu, int *u, mt_err *err)
 {
     const int n = s->n;
     const int z = s->z;
@@ -103,10 +81,10 @@ static mt_status split_massless(parts *s, double *t, double *mu, int *u, mt_err 
     for (int j = 0; j < z; j++) {
         double kjj = 0.0;
         const double *const tj = s->p->mass->t + ((ptrdiff_t)(s->r + j) * n);
-        MT_TRY(sandwich(s, s->p->k, 1, tj, 1, tj, &kjj, err));
+        MT_TRY(mt_damped_sandwich(s, s->p->k, 1, tj, 1, tj, &kjj, err));
         mt_axpy(n, kjj != 0.0 ? 1.0 / sqrt(fabs(kjj)) : 1.0, tj, scaled + ((ptrdiff_t)j * n));
     }
-    MT_TRY(sandwich(s, s->p->c, z, scaled, z, scaled, c, err));
+    MT_TRY(mt_damped_sandwich(s, s->p->c, z, scaled, z, scaled, c, err));
     MT_TRY(mt_eig_sym(z, c, mu, true, s->mem, err));
     mt_gemm(false, false, n, z, z, 1.0, scaled, n, c, z, 0.0, t, n);
     for (*u = 0; *u < z && !(mu[*u] > s->tol * mu[z - 1]); (*u)++) {
@@ -115,7 +93,7 @@ static mt_status split_massless(parts *s, double *t, double *mu, int *u, mt_err 
 }
 
 /* b, mu, kd: the damped directions without mass, with the undamped ones condensed. */
-static mt_status massless(parts *s, mt_err *err)
+static mt_status massless(mt_damped_parts *s, mt_err *err)
 {
     const int n = s->n;
     int u = 0;
@@ -126,6 +104,8 @@ static mt_status massless(parts *s, mt_err *err)
     MT_TRY(split_massless(s, t, mu, &u, err));
     const int zd = s->z - u;
     s->zd = zd;
+    s->zu = u;
+    s->t = t;
     s->mu = mu + u;
     s->b = t + ((ptrdiff_t)u * n);
     s->kd = mt_arena_f64(s->mem, (size_t)zd, (size_t)zd);
@@ -133,8 +113,8 @@ static mt_status massless(parts *s, mt_err *err)
     double *const kud = mt_arena_f64(s->mem, (size_t)u, (size_t)zd);
     MT_TRY(mt_arena_check(s->mem, err));
     if (zd > 0 && u > 0) {
-        MT_TRY(sandwich(s, s->p->k, u, t, u, t, kuu, err));
-        MT_TRY(sandwich(s, s->p->k, u, t, zd, s->b, kud, err));
+        MT_TRY(mt_damped_sandwich(s, s->p->k, u, t, u, t, kuu, err));
+        MT_TRY(mt_damped_sandwich(s, s->p->k, u, t, zd, s->b, kud, err));
         MT_TRY(mt_lu_solve(u, kuu, zd, kud, &rcond, s->mem, err));
         if (!(rcond > s->tol)) {
             return mt_fail(err, MT_E_SINGULAR,
@@ -142,10 +122,10 @@ static mt_status massless(parts *s, mt_err *err)
         }
         mt_gemm(false, false, n, zd, u, -1.0, t, n, kud, u, 1.0, s->b, n);
     }
-    return sandwich(s, s->p->k, zd, s->b, zd, s->b, s->kd, err);
+    return mt_damped_sandwich(s, s->p->k, zd, s->b, zd, s->b, s->kd, err);
 }
 
-static mt_status prepare(parts *s, mt_err *err)
+static mt_status prepare(mt_damped_parts *s, mt_err *err)
 {
     const mt_modes *const m = s->p->modes;
     const size_t n = (size_t)s->n;
@@ -161,8 +141,8 @@ static mt_status prepare(parts *s, mt_err *err)
     MT_TRY(massless(s, err));
     s->cda = mt_arena_f64(s->mem, (size_t)s->zd, r);
     MT_TRY(mt_arena_check(s->mem, err));
-    MT_TRY(sandwich(s, s->p->c, s->r, s->y, s->r, s->y, s->caa, err));
-    MT_TRY(sandwich(s, s->p->c, s->zd, s->b, s->r, s->y, s->cda, err));
+    MT_TRY(mt_damped_sandwich(s, s->p->c, s->r, s->y, s->r, s->y, s->caa, err));
+    MT_TRY(mt_damped_sandwich(s, s->p->c, s->zd, s->b, s->r, s->y, s->cda, err));
     const double most = mt_max_abs((ptrdiff_t)s->r * s->r, s->caa);
     for (int i = 0; i < s->r; i++) {
         const bool rigid = m->kind[i] == MT_MODE_RIGID_BODY;
@@ -176,7 +156,7 @@ static mt_status prepare(parts *s, mt_err *err)
 }
 
 /* The matrix of the states, order x order. */
-static void assemble(const parts *s, double *a)
+static void assemble(const mt_damped_parts *s, double *a)
 {
     const ptrdiff_t order = s->order;
     const int first = s->order - s->zd;
@@ -217,10 +197,26 @@ static void assemble(const parts *s, double *a)
     }
 }
 
+void mt_damped_scale(int n, double *y_re, double *y_im)
+{
+    int at = 0;
+    for (int i = 0; i < n; i++) {
+        at = hypot(y_re[i], y_im[i]) > hypot(y_re[at], y_im[at]) ? i : at;
+    }
+    const double p = y_re[at];
+    const double q = y_im[at];
+    const double size = (p * p) + (q * q);
+    for (int i = 0; i < n && size > 0.0; i++) {
+        const double x = y_re[i];
+        y_re[i] = ((x * p) + (y_im[i] * q)) / size;
+        y_im[i] = ((y_im[i] * p) - (x * q)) / size;
+    }
+}
+
 /* One eigenvector in the caller's coordinates, s y (velocities): Y v + B s b_D; part 0 real, 1
  * imaginary, of states u + i w. */
-static void shape(const parts *s, const double *u, const double *w, double re, double im,
-                  double *y_re, double *y_im)
+static void shape(const mt_damped_parts *s, const double *u, const double *w, double re,
+                  double im, double *y_re, double *y_im)
 {
     const int first = s->order - s->zd;
     for (int j = 0; j < s->r; j++) {
@@ -235,21 +231,10 @@ static void shape(const parts *s, const double *u, const double *w, double re, d
         mt_axpy(s->n, (re * b_re) - (im * b_im), s->b + ((ptrdiff_t)d * s->n), y_re);
         mt_axpy(s->n, (re * b_im) + (im * b_re), s->b + ((ptrdiff_t)d * s->n), y_im);
     }
-    int at = 0;
-    for (int i = 0; i < s->n; i++) {
-        at = hypot(y_re[i], y_im[i]) > hypot(y_re[at], y_im[at]) ? i : at;
-    }
-    const double p = y_re[at];
-    const double q = y_im[at];
-    const double size = (p * p) + (q * q);
-    for (int i = 0; i < s->n && size > 0.0; i++) { /* divided by the largest entry */
-        const double x = y_re[i];
-        y_re[i] = ((x * p) + (y_im[i] * q)) / size;
-        y_im[i] = ((y_im[i] * p) - (x * q)) / size;
-    }
+    mt_damped_scale(s->n, y_re, y_im);
 }
 
-static mt_damped_kind kind_of(double re, double im, double noise)
+mt_damped_kind mt_damped_kind_of(double re, double im, double noise)
 {
     if (re > noise) {
         return MT_DAMPED_UNSTABLE;
@@ -276,7 +261,7 @@ static int order_roots(const double *wr, const double *wi, int order, int *perm)
     return count;
 }
 
-static mt_status claim(mt_damped_modes *out, int n, int count, mt_arena *mem, mt_err *err)
+mt_status mt_damped_claim(mt_damped_modes *out, int n, int count, mt_arena *mem, mt_err *err)
 {
     const size_t m = (size_t)count;
     *out = (mt_damped_modes){.n = n, .count = count};
@@ -289,7 +274,7 @@ static mt_status claim(mt_damped_modes *out, int n, int count, mt_arena *mem, mt
     return mt_arena_check(mem, err);
 }
 
-static mt_status solve(const parts *s, mt_damped_modes *out, mt_err *err)
+static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *err)
 {
     const size_t order = (size_t)s->order;
     const int rigid = s->p->modes->n_rigid;
@@ -303,7 +288,7 @@ static mt_status solve(const parts *s, mt_damped_modes *out, mt_err *err)
     const double noise = s->tol * mt_max_abs((ptrdiff_t)(order * order), a);
     MT_TRY(mt_eig_general(s->order, a, wr, wi, vr, s->mem, err));
     const int roots = order_roots(wr, wi, s->order, perm);
-    MT_TRY(claim(out, s->n, rigid + roots, s->mem, err));
+    MT_TRY(mt_damped_claim(out, s->n, rigid + roots, s->mem, err));
     for (int i = 0; i < rigid; i++) {
         out->kind[i] = MT_DAMPED_RIGID_BODY;
     }
@@ -313,7 +298,7 @@ static mt_status solve(const parts *s, mt_damped_modes *out, mt_err *err)
         const double *const u = vr + ((ptrdiff_t)at * s->order);
         out->re[to] = wr[at];
         out->im[to] = wi[at];
-        out->kind[to] = kind_of(wr[at], wi[at], noise);
+        out->kind[to] = mt_damped_kind_of(wr[at], wi[at], noise);
         shape(s, u, wi[at] > 0.0 ? u + s->order : NULL, wr[at], wi[at],
               out->y_re + ((ptrdiff_t)to * s->n), out->y_im + ((ptrdiff_t)to * s->n));
     }
@@ -323,18 +308,18 @@ static mt_status solve(const parts *s, mt_damped_modes *out, mt_err *err)
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err)
 {
-    parts s = {.p = p,
-               .mem = mem,
-               .n = p->n,
-               .r = p->modes->count,
-               .z = p->n - p->mass->rank,
-               .tol = mt_modal_tolerance(p->n)};
+    mt_damped_parts s = {.p = p,
+                         .mem = mem,
+                         .n = p->n,
+                         .r = p->modes->count,
+                         .z = p->n - p->mass->rank,
+                         .tol = mt_modal_tolerance(p->n)};
     *out = (mt_damped_modes){.n = p->n};
     if (p->modes->shaped < p->modes->all) {
         return mt_fail(err, MT_E_USAGE, "damped modes need the undamped shapes");
     }
     MT_TRY(prepare(&s, err));
-    MT_TRY(solve(&s, out, err));
+    MT_TRY(p->h == NULL ? solve(&s, out, err) : mt_damped_structural(&s, out, err));
     return mt_damped_check(p, out, mem, err);
 }
 

@@ -5,10 +5,16 @@
 #include "modal/modal.h"
 
 /*
- * Modes with damping:  (s^2 M + s C + K) y = 0,  s = sigma +- i omega_d.
+ * Modes with damping:  (s^2 M + s C + K + i H) y = 0,  s = sigma +- i omega_d.
  *   natural frequency |s| / 2 pi, damped frequency Im s / 2 pi, damping ratio -Re s / |s|.
- * One entry for a pair of conjugate s (with Im s > 0), one for each real s: an overdamped
- * motion has two of them, a spring and a damper in a row without mass between them one.
+ * Without structural damping H one entry for a pair of conjugate s (with Im s > 0), one for
+ * each real s: an overdamped motion has two of them, a spring and a damper in a row without
+ * mass between them one.
+ *
+ * H stands for motions e^{i w t}, w > 0: with it the roots with Im s > 0 are listed alone, one
+ * for each mode, and they have no conjugates (those with Im s < 0 belong to no motion). A mass
+ * on a spring k (1 + i eta) has s = i sqrt(k (1 + i eta)/m), a damping ratio of about eta/2.
+ * Real roots of what H has no part in are listed as above.
  */
 typedef enum mt_damped_kind {
     MT_DAMPED_OSCILLATING, /* Im s > 0, Re s <= 0 (to rounding) */
@@ -23,6 +29,7 @@ typedef struct mt_damped_problem {
     int n;
     const double *k;
     const double *c; /* n x n symmetric, lower triangle read, as k [s times the unit of k] */
+    const double *h; /* n x n symmetric, lower triangle read, as k; NULL: none */
     const mt_mass_factor *mass; /* of M */
     const mt_modes *modes;      /* of K, M, all of them with vectors */
 } mt_damped_problem;
@@ -33,8 +40,8 @@ typedef struct mt_damped_modes {
     mt_damped_kind *kind; /* [count] rigid-body modes first, then ascending |s| */
     double *re;           /* [count] Re s [rad/s] */
     double *im;           /* [count] Im s >= 0 [rad/s] */
-    /* [count] ||(s^2 M + s C + K) y|| / ((|s|^2 ||M|| + |s| ||C|| + ||K||) ||y|| n eps) in
-     * coordinates scaled to m_ii = 1; 0 for rigid-body modes */
+    /* [count] ||(s^2 M + s C + K + i H) y|| / ((|s|^2 ||M|| + |s| ||C|| + ||K|| + ||H||) ||y||
+     * n eps) in coordinates scaled to m_ii = 1; 0 for rigid-body modes */
     double *residual;
     /* n x count shapes, their largest entry 1; 0 for rigid-body modes (those of the undamped
      * system) */
@@ -42,10 +49,10 @@ typedef struct mt_damped_modes {
     double *y_im;
 } mt_damped_modes;
 
-/* All damped modes. Results in mem. O(n^3), a general eigenproblem of order up to 2 n. C must
- * be positive semidefinite where there are directions without mass. Fails: MT_E_USAGE (modes
- * without vectors), MT_E_SINGULAR (a direction without mass and damping that no stiffness
- * holds), MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY. */
+/* All damped modes. Results in mem. O(n^3), a general eigenproblem of order up to 2 n, with H a
+ * complex one. C must be positive semidefinite where there are directions without mass. Fails:
+ * MT_E_USAGE (modes without vectors), MT_E_SINGULAR (a direction without mass and damping that
+ * no stiffness holds), MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY. */
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err);
 

@@ -3,14 +3,13 @@
  * Residuals of damped modes, as check.c judges undamped ones: in coordinates in which m_ii = 1,
  * in units of n eps. First each s is refined by the Rayleigh functional: the matrices are
  * symmetric, so y is its left eigenvector, too, and the root of
- *     (y^T M y) s^2 + (y^T C y) s + y^T K y = 0
+ *     (y^T M y) s^2 + (y^T C y) s + y^T (K + i H) y = 0
  * next to s has an error of second order in that of y. That matters for the slow root of a
  * heavily overdamped motion, which the eigensolver knows to n eps of the fast one. What has the
  * smaller residual stands.
  */
-#include "modal/modal_priv.h"
+#include "modal/damped_priv.h"
 
-#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -44,8 +43,9 @@ static void add_product(int n, double alpha, const double *a, const double *x, d
 
 typedef struct checker {
     const mt_damped_problem *p;
-    const double *matrix[3]; /* K, C, M */
-    double norm[3];
+    const double *matrix[4]; /* K, C, M, H */
+    double norm[4];
+    int n_matrices; /* 3 without H */
     double *d;
     double *f[2]; /* real and imaginary part of the residual */
     double *work;
@@ -55,7 +55,8 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
                        double im)
 {
     const int n = c->p->n;
-    const double factor[3][2] = {{1.0, 0.0}, {re, im}, {(re * re) - (im * im), 2.0 * re * im}};
+    const double factor[4][2] = {
+        {1.0, 0.0}, {re, im}, {(re * re) - (im * im), 2.0 * re * im}, {0.0, 1.0}};
     const double *const y[2] = {out->y_re + ((ptrdiff_t)i * n), out->y_im + ((ptrdiff_t)i * n)};
     const double size = hypot(re, im);
     double force = 0.0;
@@ -64,7 +65,7 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
         c->f[0][j] = 0.0;
         c->f[1][j] = 0.0;
     }
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < c->n_matrices; k++) {
         add_product(n, factor[k][0], c->matrix[k], y[0], c->work, c->f[0]);
         add_product(n, -factor[k][1], c->matrix[k], y[1], c->work, c->f[0]);
         add_product(n, factor[k][0], c->matrix[k], y[1], c->work, c->f[1]);
@@ -74,19 +75,10 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
         force = hypot(force, c->d[j] * hypot(c->f[0][j], c->f[1][j]));
         motion = hypot(motion, hypot(y[0][j], y[1][j]) / c->d[j]);
     }
-    const double terms = c->norm[0] + (size * c->norm[1]) + (size * size * c->norm[2]);
+    const double terms =
+        c->norm[0] + (size * c->norm[1]) + (size * size * c->norm[2]) + c->norm[3];
     const double unit = terms * motion * n * DBL_EPSILON;
     return !(force > 0.0) ? 0.0 : unit > 0.0 ? force / unit : HUGE_VAL;
-}
-
-/* CMPLX of C11, which clang's view of the C library does not offer. */
-static double complex pair(double re, double im)
-{
-    const union {
-        double part[2]; /* cppcheck-suppress unusedStructMember */
-        double complex z;
-    } u = {{re, im}};
-    return u.z;
 }
 
 /* y^T A y, not conjugated. */
@@ -101,7 +93,7 @@ static double complex form(const checker *c, const double *a, const double *re,
         add_product(n, 1.0, a, k == 0 ? re : im, c->work, f);
         part[k] = mt_dot(n, k == 2 ? im : re, f);
     }
-    return pair(part[0] - part[2], 2.0 * part[1]);
+    return mt_complex(part[0] - part[2], 2.0 * part[1]);
 }
 
 /* The root of a s^2 + b s + k next to s, both roots without cancellation. */
@@ -123,13 +115,14 @@ static double complex nearest_root(double complex a, double complex b, double co
 static void refine(const checker *c, mt_damped_modes *out, int i)
 {
     const ptrdiff_t at = (ptrdiff_t)i * c->p->n;
-    double complex part[3];
+    double complex part[4] = {0.0};
     out->residual[i] = residual(c, out, i, out->re[i], out->im[i]);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < c->n_matrices; k++) {
         part[k] = form(c, c->matrix[k], out->y_re + at, out->y_im + at);
     }
     const double complex s =
-        nearest_root(part[2], part[1], part[0], pair(out->re[i], out->im[i]));
+        nearest_root(part[2], part[1], part[0] + (mt_complex(0.0, 1.0) * part[3]),
+                     mt_complex(out->re[i], out->im[i]));
     const double im = out->im[i] > 0.0 ? cimag(s) : 0.0; /* a real root stays real */
     const double better = residual(c, out, i, creal(s), im);
     if (better < out->residual[i] && !(im < 0.0)) {
@@ -143,7 +136,8 @@ mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_a
                           mt_err *err)
 {
     const size_t n = (size_t)p->n;
-    checker c = {.p = p, .matrix = {p->k, p->c, p->mass->m}};
+    checker c = {
+        .p = p, .matrix = {p->k, p->c, p->mass->m, p->h}, .n_matrices = p->h == NULL ? 3 : 4};
     c.d = mt_arena_f64(mem, n, 1);
     c.f[0] = mt_arena_f64(mem, n, 1);
     c.f[1] = mt_arena_f64(mem, n, 1);
@@ -156,7 +150,7 @@ mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_a
         const double other = kii > 0.0 && scale > 0.0 ? fmax(sqrt(scale / kii), DBL_MIN) : 1.0;
         c.d[i] = p->mass->d[i] > 0.0 ? p->mass->d[i] : other;
     }
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < c.n_matrices; k++) {
         c.norm[k] = scaled_norm(p->n, c.matrix[k], c.d);
     }
     for (int i = 0; i < out->count; i++) {

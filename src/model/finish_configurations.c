@@ -118,6 +118,10 @@ static void inherit(mt_finish *f, mt_configuration *c, bool *overridden)
         c->drive = parent->drive;
         c->drive.inherited = true;
     }
+    if (!c->damping.given) {
+        c->damping = parent != NULL ? parent->damping : f->m->damping;
+        c->damping.inherited = true;
+    }
 }
 
 void mt_finish_configurations(mt_finish *f)
@@ -133,6 +137,11 @@ void mt_finish_configurations(mt_finish *f)
     if (mt_arena_failed(&m->mem)) {
         return;
     }
+    for (int i = 0; i < m->n_modes; i++) {
+        mt_named_mode *const mode = &m->modes[i];
+        mode->configuration = mt_finish_find(f, mode->configuration_name,
+                                             &m->tables->configurations, "configuration");
+    }
     for (int c = 0; c < m->n_configurations; c++) {
         mt_configuration *const it = &m->configurations[c];
         it->like =
@@ -142,13 +151,9 @@ void mt_finish_configurations(mt_finish *f)
         check_like(f, c, walked);
     }
     find_order(f, chain, state);
+    mt_finish_damping(f);
     for (int i = 0; i < m->n_configurations; i++) {
         inherit(f, &m->configurations[f->order[i]], overridden);
-    }
-    for (int i = 0; i < m->n_modes; i++) {
-        mt_named_mode *const mode = &m->modes[i];
-        mode->configuration = mt_finish_find(f, mode->configuration_name,
-                                             &m->tables->configurations, "configuration");
     }
 }
 

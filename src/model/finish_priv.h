@@ -56,6 +56,8 @@ mt_addr mt_finish_addr(const mt_model *m, mt_num num);
 
 /* The stages, in order. */
 void mt_finish_configurations(mt_finish *f);
+/* Of those: names in what is written of damping; before anything is inherited. */
+void mt_finish_damping(mt_finish *f);
 void mt_finish_presence(mt_finish *f);
 void mt_finish_links(mt_finish *f);
 void mt_finish_joints(mt_finish *f);

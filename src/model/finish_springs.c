@@ -37,20 +37,33 @@ bool mt_finish_hinge(mt_finish *f, mt_name name, int *at, int *number)
     return true;
 }
 
-static void check_torsion_joint(mt_finish *f, const mt_spring *s)
+/* Has the joint what the spring acts on: an angle, or a way along its axis? Of a type that
+ * could not be read nothing is known. */
+static bool has_freedom(const mt_joint *joint, bool torsion)
+{
+    if (joint->type == MT_JOINT_TYPE_COUNT) {
+        return true;
+    }
+    return torsion ? mt_joint_kind_of(joint->type)->coordinate == MT_COORDINATE_ANGLE
+                   : mt_joint_slides(joint->type);
+}
+
+static void check_joint(mt_finish *f, const mt_spring *s)
 {
     const char *const what = s->damper ? "damper" : "spring";
+    const bool torsion = s->type == MT_SPRING_TORSION;
     if (s->joint != MT_ABSENT) {
         const mt_joint *const joint = &f->m->joints[s->joint];
-        const bool turns = joint->type == MT_JOINT_TYPE_COUNT ||
-                           mt_joint_kind_of(joint->type)->coordinate == MT_COORDINATE_ANGLE;
-        if (!turns) {
-            mt_diag_error(f->d, s->joint_name.addr,
-                          "a torsion %s acts on the angle of a revolute joint; \"%s\" is %s",
-                          what, joint->name.s, mt_joint_type_name(joint->type));
+        const bool acts = has_freedom(joint, torsion);
+        if (!acts) {
+            mt_diag_error(f->d, s->joint_name.addr, "%s %s acts on the %s; \"%s\" is %s",
+                          torsion ? "a torsion" : "an axial", what,
+                          torsion ? "angle of a revolute joint"
+                                  : "displacement of a joint that slides",
+                          joint->name.s, mt_joint_type_name(joint->type));
         }
         mt_finish_needs(f, s->name, what, &s->in, &joint->in, "joint", joint->name.s);
-        for (int side = 0; side < 2 && turns; side++) {
+        for (int side = 0; side < 2 && acts && torsion; side++) {
             if (mt_finish_is_point_mass(f, &joint->bodies[side])) {
                 mt_diag_error(f->d, s->joint_name.addr,
                               "\"%s\" of joint \"%s\" is a point mass, which does not turn",
@@ -60,6 +73,12 @@ static void check_torsion_joint(mt_finish *f, const mt_spring *s)
     } else if (s->joint_link != MT_ABSENT) {
         mt_finish_needs(f, s->name, what, &s->in, &f->m->links[s->joint_link].in, "link",
                         f->m->links[s->joint_link].name.s);
+        if (!torsion) {
+            mt_diag_error(f->d, s->joint_name.addr,
+                          "an axial %s acts on the displacement of a joint that slides; \"%s\" "
+                          "is a hinge",
+                          what, s->joint_name.s);
+        }
     }
 }
 
@@ -75,7 +94,31 @@ static void check_torsion(mt_finish *f, const mt_spring *s)
                             "axis of a revolute joint; without one, a bushing holds two bodies"
                           : "either \"joint\" or \"bodies\"");
     }
-    check_torsion_joint(f, s);
+    check_joint(f, s);
+}
+
+/* Between two points, or along the axis of a joint, which has points of its own and no length
+ * that could be free. */
+static void check_axial(mt_finish *f, const mt_spring *s)
+{
+    const char *const what = s->damper ? "damper" : "spring";
+    const bool joint = s->joint_name.s != NULL;
+    if ((s->bodies[0].name.s != NULL) == joint) {
+        mt_diag_error(f->d, s->name.addr, "an axial %s needs either \"bodies\" or \"joint\"",
+                      what);
+    }
+    if (joint && s->n_at > 0) {
+        mt_diag_error(f->d, s->at[0].addr,
+                      "%s \"%s\" acts along joint \"%s\" and has no \"at\"", what, s->name.s,
+                      s->joint_name.s);
+    }
+    if (joint && s->free_length != MT_ABSENT) {
+        mt_diag_error(f->d, mt_finish_addr(f->m, s->free_length),
+                      "spring \"%s\" acts along joint \"%s\" and has no free length: give its "
+                      "\"preload_n\"",
+                      s->name.s, s->joint_name.s);
+    }
+    check_joint(f, s);
 }
 
 static void check_bodies(mt_finish *f, const mt_spring *s)
@@ -130,8 +173,12 @@ typedef struct rule {
 static const rule RULES[] = {
     [MT_SPRING_TORSION] =
         {.bodies = MAY, .joint = MAY, .coefficient = NEEDS, .free_angle = MAY, .preload = MAY},
-    [MT_SPRING_AXIAL] =
-        {.bodies = NEEDS, .at = MAY, .coefficient = NEEDS, .free_length = MAY, .preload = MAY},
+    [MT_SPRING_AXIAL] = {.bodies = MAY,
+                         .joint = MAY,
+                         .at = MAY,
+                         .coefficient = NEEDS,
+                         .free_length = MAY,
+                         .preload = MAY},
     [MT_SPRING_BAR] =
         {.bodies = NEEDS, .at = MAY, .material = NEEDS, .density = MAY, .preload = MAY},
     [MT_SPRING_BUSHING] = {.bodies = NEEDS, .at = MAY, .lists = NEEDS, .matrix = MAY},
@@ -193,7 +240,8 @@ static void check_together(mt_finish *f, const mt_spring *s)
             "spring \"%s\": a preload follows from the free length or angle; give one of them",
             s->name.s);
     }
-    if (s->n_at == 1 && (s->type == MT_SPRING_AXIAL || s->type == MT_SPRING_BAR)) {
+    if (s->n_at == 1 && s->joint_name.s == NULL &&
+        (s->type == MT_SPRING_AXIAL || s->type == MT_SPRING_BAR)) {
         mt_diag_error(f->d, s->at[0].addr,
                       "\"at\" of %s \"%s\" must be a pair: the point on each body",
                       s->damper ? "damper" : "spring", s->name.s);
@@ -225,6 +273,8 @@ void mt_finish_springs(mt_finish *f)
         check_bodies(f, s);
         if (s->type == MT_SPRING_TORSION) {
             check_torsion(f, s);
+        } else if (s->type == MT_SPRING_AXIAL) {
+            check_axial(f, s);
         }
     }
 }

@@ -80,6 +80,11 @@ const mt_joint_kind *mt_joint_kind_of(mt_joint_type type)
     return &KINDS[type];
 }
 
+bool mt_joint_slides(mt_joint_type type)
+{
+    return type == MT_JOINT_CYLINDRICAL || KINDS[type].coordinate == MT_COORDINATE_DISPLACEMENT;
+}
+
 const char *mt_joint_article(mt_joint_type type)
 {
     return KINDS[type].article != NULL ? KINDS[type].article : "a";

@@ -38,6 +38,8 @@ typedef struct mt_joint_kind {
 
 /* type: a type that there is (not MT_JOINT_TYPE_COUNT). */
 const mt_joint_kind *mt_joint_kind_of(mt_joint_type type);
+/* Does its second body move along the axis of the joint against the first? */
+bool mt_joint_slides(mt_joint_type type);
 const char *mt_joint_article(mt_joint_type type);
 
 #endif

@@ -131,6 +131,16 @@ static void thickness(mt_judge *j, const mt_item *item, mt_num num, const char *
     }
 }
 
+static void loss(mt_judge *j, const mt_item *item, mt_num num)
+{
+    static const char member[] = "loss_factor";
+    const char *const why = num == MT_ABSENT ? NULL : mt_judge_loss(j->value[num]);
+    sign(j, item, num, member, true);
+    if (why != NULL) {
+        range(j, item, num, member, "damping", why);
+    }
+}
+
 /* The tensor, positive semidefinite up to rounding of its own entries: leading and other
  * principal minors. */
 static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
@@ -242,6 +252,7 @@ static void judge_links(mt_judge *j)
         listed(j, &item, l->n_element_inertia, l->element_inertia, "element_inertia_kg_m2",
                true);
         sign(j, &item, l->radius_of_gyration, "radius_of_gyration_m", true);
+        loss(j, &item, l->loss_factor);
     }
 }
 
@@ -262,6 +273,7 @@ static void judge_springs(mt_judge *j)
         sign(j, &item, s->area, "area_m2", true); /* 0: a bar that may be added */
         density(j, &item, s->density);
         sign(j, &item, s->free_length, "free_length_m", true);
+        loss(j, &item, s->loss_factor);
     }
 }
 
@@ -321,6 +333,7 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     judge_springs(&j);
     judge_joints(&j);
     judge_drive(&j);
+    mt_judge_damping(&j);
     mt_judge_geometry(&j);
 }
 

@@ -25,6 +25,10 @@ typedef struct mt_item {
 mt_doubt *mt_judge_place(mt_judge *j, mt_doubt *doubt, mt_addr addr, const char *pointer);
 /* The pointer of the drive in force, which a configuration may have taken over. */
 const char *mt_judge_drive_pointer(const mt_judge *j, const char *member);
+/* The damping in force (judge_damping.c). */
+void mt_judge_damping(mt_judge *j);
+/* What is doubtful about a loss factor; NULL: nothing. */
+const char *mt_judge_loss(double loss_factor);
 /* Joints and springs off what they hold, pairs of points that are apart, sizes
  * (judge_geometry.c). */
 void mt_judge_geometry(mt_judge *j);

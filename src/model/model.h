@@ -178,6 +178,7 @@ typedef struct mt_link {
     bool has_hinge_axis;
     mt_num hinge_axis[3];      /* 3-D */
     mt_num radius_of_gyration; /* m, 3-D lumped: about the element's own long axis; absent: 0 */
+    mt_num loss_factor;        /* of its hinges or beam elements; absent: 0 */
     mt_presence in;
     mt_addr elements_addr;
     mt_addr stiffness_addr;
@@ -236,12 +237,12 @@ typedef enum mt_spring_type {
 #undef MT_SPRING_ENUM
 
 /* Also a damper (list `dampers`: torsion, axial, bushing; stiffness members become
- * damping_*). */
+ * damping_*). A torsion or axial one may act on the coordinate of a joint. */
 typedef struct mt_spring {
     mt_name name;
     mt_spring_type type;
     bool damper;
-    mt_attach bodies[2]; /* absent for a torsion spring that names its joint */
+    mt_attach bodies[2]; /* absent for a spring that names its joint */
     mt_name joint_name;
     int joint;      /* resolved joint, MT_ABSENT */
     int joint_link; /* or hinge joint_hinge (0-based) of this link ("beam.h3"), MT_ABSENT */
@@ -255,6 +256,7 @@ typedef struct mt_spring {
     mt_num youngs_modulus; /* bar */
     mt_num area;
     mt_num density;
+    mt_num loss_factor; /* not of a damper; absent: 0 */
     /* bushing N/m in global axes of the reference position, attached to bodies[0] */
     mt_num translation[3];
     mt_num rotation[3]; /* bushing N m/rad */
@@ -334,6 +336,34 @@ typedef struct mt_drive {
     mt_addr addr;
 } mt_drive;
 
+/* The damping ratio of a mode that the model names. */
+typedef struct mt_mode_ratio {
+    mt_name mode_name;
+    int mode; /* of the model's named modes */
+    mt_num ratio;
+} mt_mode_ratio;
+
+/*
+ * Damping of a configuration besides its dampers and the loss factors of its springs:
+ *     C = mass M + stiffness K + M Phi diag(2 ratio_j omega_j) Phi^T M,
+ * K the tangent stiffness where the mechanism is at rest (loads and preload included), Phi its
+ * mass-normalised modes. A vibration mode has the ratio that is given under its name, else
+ * ratios[index - 1], else `ratio`, else none; a rigid-body mode has none.
+ */
+typedef struct mt_damping {
+    bool given;
+    mt_num ratio;
+    int n_ratios;
+    mt_num *ratios; /* [n_ratios] of vibration modes 1 ... */
+    int n_named;
+    mt_mode_ratio *named; /* [n_named] those of other configurations count for nothing here */
+    mt_num mass;          /* 1/s */
+    mt_num stiffness;     /* s */
+    bool inherited;       /* by finish: that of the configuration it is like, or the model's */
+    mt_addr addr;
+    mt_addr ratios_addr;
+} mt_damping;
+
 typedef struct mt_configuration {
     mt_name name;
     mt_name like_name;
@@ -341,8 +371,9 @@ typedef struct mt_configuration {
     int n_overrides; /* own ones as read; after finish: all, inherited ones included */
     mt_override *overrides;
     bool has_gravity;
-    mt_num gravity[3]; /* after finish: the one in force (inherited or the model's) */
-    mt_drive drive;    /* after finish: the one in force */
+    mt_num gravity[3];  /* after finish: the one in force (inherited or the model's) */
+    mt_drive drive;     /* after finish: the one in force */
+    mt_damping damping; /* likewise */
 } mt_configuration;
 
 /* Where an address of the model's file stands, kept for messages about values: lines and
@@ -374,6 +405,7 @@ typedef struct mt_model {
     mt_addr dimension_addr;
     bool has_gravity;
     mt_num gravity[3];
+    mt_damping damping; /* of configurations that have none of their own */
     MT_LIST_OF(mt_number, nums);
     MT_LIST_OF(mt_parameter, parameters);
     MT_LIST_OF(mt_point, points);

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/complex.h"
+#include "linalg/complex_ldl.h"
 #include "linalg/dense.h"
 
 /* Roundings per coordinate in an entry Y^T C Y, in terms of its entries' sizes. */
@@ -164,7 +164,7 @@ static mt_status eliminate(parts *s, const mt_modes *m, mt_err *err)
         }
     }
     for (ptrdiff_t at = 0; at < u * u; at++) {
-        s->guu[at] = cx_pair(re[at], im[at]);
+        s->guu[at] = mt_complex(re[at], im[at]);
     }
     MT_TRY(mt_complex_factor(s->u, s->guu, s->mem, &s->factor, err));
     double rcond = 0.0;
@@ -177,7 +177,7 @@ static mt_status eliminate(parts *s, const mt_modes *m, mt_err *err)
     MT_TRY(sandwich(s, s->f->h, s->u, s->follow, s->stay, s->x, im, err));
     for (ptrdiff_t at = 0; at < u * stay; at++) {
         const bool between = at / u < s->r || at % u < m->all - s->r;
-        s->w[at] = cx_pair(between ? 0.0 : re[at], im[at]);
+        s->w[at] = mt_complex(between ? 0.0 : re[at], im[at]);
     }
     return MT_OK;
 }
@@ -201,7 +201,7 @@ static mt_status stiffness(parts *s, const mt_modes *m, double complex *g, mt_er
             const ptrdiff_t at = i + (j * stay);
             const bool mode = i < s->r || j < s->r;
             const double k = mode ? (i == j ? m->lambda[i] : 0.0) : re[at];
-            g[at] = cx_pair(k, im[at]);
+            g[at] = mt_complex(k, im[at]);
             for (ptrdiff_t a = 0; a < u; a++) {
                 g[at] -= gux[a + (i * u)] * s->w[a + (j * u)];
             }
@@ -242,7 +242,7 @@ static mt_status forces(parts *s, int cols, const double *re, const double *im, 
     double *const rest = mt_arena_f64(s->scratch, (size_t)u, (size_t)cols);
     MT_TRY(mt_arena_check(s->scratch, err));
     for (int i = 0; i < 2; i++) {
-        const double complex unit = cx_pair(i == 0 ? 1.0 : 0.0, i == 0 ? 0.0 : 1.0);
+        const double complex unit = mt_complex(i == 0 ? 1.0 : 0.0, i == 0 ? 0.0 : 1.0);
         if (part[i] == NULL) {
             continue;
         }

@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/complex.h"
+#include "linalg/complex_ldl.h"
 #include "linalg/dense.h"
 
 /* What the sum may differ by from a direct solve, of the largest of them. */
@@ -123,10 +123,10 @@ static mt_status eigenpairs(const mt_poles *k, double complex *w, double complex
     for (size_t j = 0; j < n; j++) {
         const double im = wr[n + j];
         const size_t first = im < 0.0 ? j - 1 : j;
-        w[j] = cx_pair(wr[j], im);
+        w[j] = mt_complex(wr[j], im);
         for (size_t i = 0; i < n; i++) {
             const double y_im = im == 0.0 ? 0.0 : vr[i + ((first + 1) * n)];
-            v[i + (j * n)] = cx_pair(vr[i + (first * n)], im < 0.0 ? -y_im : y_im);
+            v[i + (j * n)] = mt_complex(vr[i + (first * n)], im < 0.0 ? -y_im : y_im);
         }
     }
     return MT_OK;
@@ -360,7 +360,7 @@ mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
 
 double complex mt_pole_sum_at(const mt_pole_sum *p, double w)
 {
-    const double complex s = cx_pair(0.0, w);
+    const double complex s = mt_complex(0.0, w);
     double complex sum = p->d[0] + (s * (p->d[1] + (s * p->d[2])));
     for (int k = 0; k < p->n; k++) {
         sum += p->residue[k] / (s - p->s[k]);

@@ -53,7 +53,7 @@ void mt_poles_roots(double c, double complex g, double complex s[2])
     const double complex square = (0.25 * c * c) - g;
     double complex root = csqrt(square);
     if (fabs(cimag(root)) > fabs(creal(root))) {
-        root = cx_pair(cimag(square) / (2.0 * cimag(root)), cimag(root));
+        root = mt_complex(cimag(square) / (2.0 * cimag(root)), cimag(root));
     }
     s[0] = (-0.5 * c) - root;
     s[1] = (-0.5 * c) + root;

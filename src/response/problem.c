@@ -2,12 +2,15 @@
 /*
  * A port is a column or a row over the states (mechanics/forcing.h); Z^T of it is that of the
  * freedoms. The force of a joint, v . (M q'' + C q' + K q - f) - geometric . q with q = Z x, is
- *     S_0 = Z^T (K v - geometric),   S_1 = Z^T C v,   S_2 = Z^T M v,   D = -v . f.
+ *     S_0 = Z^T (K v + i H v - geometric),   S_1 = Z^T C v,   S_2 = Z^T M v,   D = -v . f.
+ * Modal damping ratios belong to motions that the joints allow; what they do to v is that of the
+ * matrix (M Phi) F (M Phi)^T over all states.
  */
 #include "response/problem.h"
 
 #include <string.h>
 
+#include "analysis/damping.h"
 #include "linalg/dense.h"
 
 static const char AXIS_NAMES[] = "xyz";
@@ -25,6 +28,7 @@ typedef struct build {
     mt_response_ways *ways;
     double *b[MT_FORCED_POWERS];
     double *s[MT_FORCED_POWERS];
+    double *s_im;
     double *d[MT_FORCED_POWERS];
     double *e[2];
     double *b_full; /* nq x n_in: the force itself, of the power below */
@@ -44,14 +48,19 @@ static double *ensure(build *k, double **x, int rows, int columns)
 static mt_status damping_of(mt_analysis *a, mt_arena *mem, double **c, double **h, mt_err *err)
 {
     const size_t n = (size_t)mt_linear_freedoms(a->lin);
+    bool structural = false;
     *c = mt_arena_f64(mem, n, n);
-    *h = NULL;
+    *h = mt_arena_f64(mem, n, n);
     MT_TRY(mt_arena_check(mem, err));
-    mt_linear_damping(a->lin, *c);
-    if (mt_max_abs((ptrdiff_t)(n * n), *c) == 0.0) {
-        *c = NULL;
-    }
+    MT_TRY(mt_analysis_damping(a, *c, *h, &structural, err));
+    *c = mt_max_abs((ptrdiff_t)(n * n), *c) == 0.0 ? NULL : *c;
+    *h = structural ? *h : NULL;
     return MT_OK;
+}
+
+double mt_response_node(const mt_analysis *a, mt_node node)
+{
+    return node == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, node);
 }
 
 double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
@@ -89,7 +98,7 @@ static mt_status add_input(build *k, int i, mt_err *err)
         return MT_OK;
     }
     mt_linear_shift(k->a->lin, port->index, k->w);
-    mt_linear_states_product(k->a->lin, MT_TERM_MASS, -1.0, k->w, full);
+    mt_linear_states_product(k->a->lin, MT_MATRIX_MASS, -1.0, k->w, full);
     mt_linear_project(k->a->lin, full, column);
     return MT_OK;
 }
@@ -132,18 +141,61 @@ static mt_status add_spring(build *k, int o, mt_err *err)
     const double c = mt_response_spring(k->a, port, &row, &term);
     double *const s = ensure(k, &k->s[damper ? 1 : 0], k->n, k->n_out);
     MT_TRY(mt_arena_check(k->mem, err));
-    if (row >= 0) {
-        mt_axpy(k->n, c,
-                mt_linear_row(k->a->lin, damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS, row),
-                s + ((ptrdiff_t)o * k->n));
+    if (row < 0) {
+        return MT_OK;
+    }
+    const double *const own =
+        mt_linear_row(k->a->lin, damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS, row);
+    const double loss = damper ? 0.0 : mt_response_node(k->a, term->loss);
+    mt_axpy(k->n, c, own, s + ((ptrdiff_t)o * k->n));
+    if (loss != 0.0) {
+        double *const im = ensure(k, &k->s_im, k->n, k->n_out);
+        MT_TRY(mt_arena_check(k->mem, err));
+        mt_axpy(k->n, c * loss, own, im + ((ptrdiff_t)o * k->n));
     }
     return MT_OK;
 }
 
+/* Row of output o in *s: += Z^T of w. */
+static mt_status project(build *k, int o, double **s, const double *w, mt_err *err)
+{
+    double *const row = mt_arena_f64(k->mem, (size_t)k->n, 1);
+    double *const to = ensure(k, s, k->n, k->n_out);
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_linear_project(k->a->lin, w, row);
+    mt_axpy(k->n, 1.0, row, to + ((ptrdiff_t)o * k->n));
+    return MT_OK;
+}
+
+/* Z^T (K + i H) v, Z^T C v and Z^T M v of one joint's motion v. */
+static mt_status resist(build *k, int o, const mt_joint_force *force, mt_err *err)
+{
+    const mt_damping_def *const d = &k->a->sys->damping;
+    double *const kv = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    double *const mv = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    double *const cv = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    double *const hv = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    double *const reduced = mt_arena_f64(k->mem, (size_t)k->n, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_linear_states_product(k->a->lin, MT_MATRIX_STIFFNESS, 1.0, force->v, kv);
+    mt_linear_states_product(k->a->lin, MT_MATRIX_MASS, 1.0, force->v, mv);
+    mt_linear_states_product(k->a->lin, MT_MATRIX_DAMPERS, 1.0, force->v, cv);
+    mt_linear_states_product(k->a->lin, MT_MATRIX_LOSS, 1.0, force->v, hv);
+    mt_axpy(k->nq, mt_response_node(k->a, d->mass), mv, cv);
+    mt_axpy(k->nq, mt_response_node(k->a, d->stiffness), kv, cv);
+    if (force->geometric != NULL) {
+        mt_axpy(k->nq, -1.0, force->geometric, kv);
+    }
+    MT_TRY(project(k, o, &k->s[0], kv, err));
+    MT_TRY(project(k, o, &k->s[1], cv, err));
+    MT_TRY(project(k, o, &k->s[2], mv, err));
+    MT_TRY(project(k, o, &k->s_im, hv, err));
+    mt_linear_project(k->a->lin, mv, reduced);
+    return mt_analysis_ratio_force(k->a, reduced, k->s[1] + ((ptrdiff_t)o * k->n), err);
+}
+
 static mt_status add_joint(build *k, int o, mt_err *err)
 {
-    static const mt_term_kind KINDS[MT_FORCED_POWERS] = {MT_TERM_STIFFNESS, MT_TERM_DAMPING,
-                                                         MT_TERM_MASS};
     const mt_port *const port = &k->out[o];
     mt_joint_force *const force = &k->ways->joint[o];
     bool unique = false;
@@ -155,16 +207,7 @@ static mt_status add_joint(build *k, int o, mt_err *err)
                        "not determined",
                        k->a->sys->joints[port->index].name, AXIS_NAMES[port->axis]);
     }
-    for (int p = 0; p < MT_FORCED_POWERS; p++) {
-        double *const s = ensure(k, &k->s[p], k->n, k->n_out);
-        MT_TRY(mt_arena_check(k->mem, err));
-        memset(k->w, 0, (size_t)k->nq * sizeof *k->w);
-        mt_linear_whole_product(k->a->lin, KINDS[p], force->v, k->w);
-        if (p == 0 && force->geometric != NULL) {
-            mt_axpy(k->nq, -1.0, force->geometric, k->w);
-        }
-        mt_linear_project(k->a->lin, k->w, s + ((ptrdiff_t)o * k->n));
-    }
+    MT_TRY(resist(k, o, force, err));
     for (int i = 0; i < k->n_in; i++) {
         double *const d = ensure(k, &k->d[k->power[i]], k->n_out, k->n_in);
         MT_TRY(mt_arena_check(k->mem, err));
@@ -246,6 +289,7 @@ mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena
                      .h = ways->h,
                      .n_in = k.n_in,
                      .n_out = k.n_out,
+                     .s_im = k.s_im,
                      .e = {k.e[0], k.e[1]}};
     for (int p = 0; p < MT_FORCED_POWERS; p++) {
         f->b[p] = k.b[p];

@@ -24,6 +24,8 @@ typedef struct mt_response_ways {
  */
 mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena *mem,
                               mt_forced *f, mt_response_ways *ways, mt_err *err);
+/* Value of a number that may not be there: then 0. */
+double mt_response_node(const mt_analysis *a, mt_node node);
 /* The coefficient of a spring's or damper's term, and its row. */
 double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
                           const mt_term **term);

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/damping.h"
 #include "linalg/dense.h"
 #include "mechanics/independence.h"
 
@@ -35,10 +36,13 @@ typedef struct work {
     int nq;
     int m;
     double w;
-    double complex power[3]; /* s^k */
-    side *in;                /* [n_in] */
-    side *out;               /* [n_out] */
-    double *shift;           /* [nq] */
+    double complex power[3];  /* s^k */
+    double complex factor[4]; /* of D's matrices */
+    const double complex *x;  /* n x n_in: the solutions in the freedoms */
+    const double complex *y;  /* n x n_out */
+    side *in;                 /* [n_in] */
+    side *out;                /* [n_out] */
+    double *shift;            /* [nq] */
 } work;
 
 static pair new_pair(mt_arena *mem, int n)
@@ -46,8 +50,19 @@ static pair new_pair(mt_arena *mem, int n)
     return (pair){{mt_arena_f64(mem, (size_t)n, 1), mt_arena_f64(mem, (size_t)n, 1)}};
 }
 
-/* Terms of D over the states with their factors: K + s C + s^2 M. */
-static const mt_term_kind KINDS[3] = {MT_TERM_STIFFNESS, MT_TERM_DAMPING, MT_TERM_MASS};
+/* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M. Modal
+ * ratios stand apart: their part is known in the freedoms alone. */
+enum { MATRICES = 4 };
+
+static void factors_of(work *k)
+{
+    const mt_damping_def *const d = &k->p->a->sys->damping;
+    const double complex s = k->power[1];
+    k->factor[MT_MATRIX_STIFFNESS] = 1.0 + (s * mt_response_node(k->p->a, d->stiffness));
+    k->factor[MT_MATRIX_LOSS] = mt_complex(0.0, 1.0);
+    k->factor[MT_MATRIX_DAMPERS] = s;
+    k->factor[MT_MATRIX_MASS] = k->power[2] + (s * mt_response_node(k->p->a, d->mass));
+}
 
 /* to += f x, f complex, x real. */
 static void add_real(int n, double complex f, const double *x, pair *to)
@@ -62,11 +77,11 @@ static mt_status subtract_d(work *k, const pair *x, pair *to, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
     double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
-    for (int kind = 0; kind < 3; kind++) {
+    for (int m = 0; m < MATRICES; m++) {
         for (int part = 0; part < 2; part++) {
             memset(product, 0, (size_t)k->nq * sizeof *product);
-            mt_linear_whole_product(k->lin, KINDS[kind], x->part[part], product);
-            add_real(k->nq, -k->power[kind] * cx_pair(1 - part, part), product, to);
+            mt_linear_states_product(k->lin, (mt_matrix)m, 1.0, x->part[part], product);
+            add_real(k->nq, -k->factor[m] * mt_complex(1 - part, part), product, to);
         }
     }
     mt_arena_rewind(k->mem, mark);
@@ -117,13 +132,21 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
     MT_TRY(expand(k, x, &s->states, err));
     if (port->kind == MT_PORT_BASE) {
         mt_linear_shift(k->lin, port->index, k->shift);
-        mt_linear_states_product(k->lin, MT_TERM_MASS, -1.0, k->shift, f);
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, -1.0, k->shift, f);
     } else {
         mt_linear_row_add(k->lin, MT_TERM_CHANNEL, channel_row(k, port), 1.0, f);
     }
     add_real(k->nq, k->power[port->kind == MT_PORT_BASE ? 2 - port->motion : 0], f, &w);
     MT_TRY(subtract_d(k, &s->states, &w, err));
     return balance(k, &w, &s->forces, err);
+}
+
+/* What the force of a spring or damper is of its coefficient and motion. */
+static double complex force_factor(const work *k, const mt_port *port, const mt_term *term)
+{
+    return port->kind == MT_PORT_DAMPER
+               ? k->power[1]
+               : mt_complex(1.0, mt_response_node(k->p->a, term->loss));
 }
 
 /* Row, kind of terms and factor of an output that is one row's. */
@@ -136,9 +159,9 @@ static double complex row_of(const work *k, const mt_port *port, int *row, mt_te
         *row = channel_row(k, port);
         return k->power[port->motion];
     }
+    const double c = mt_response_spring(k->p->a, port, row, term);
     *kind = port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
-    return mt_response_spring(k->p->a, port, row, term) *
-           k->power[port->kind == MT_PORT_DAMPER ? 1 : 0];
+    return *term == NULL ? 0.0 : c * force_factor(k, port, *term);
 }
 
 static mt_status open_output(work *k, int o, const double complex *y, mt_err *err)
@@ -169,30 +192,94 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
 /* a . b, both complex; no conjugate. */
 static double complex dot(int n, const pair *a, const pair *b)
 {
-    return cx_pair(mt_dot(n, a->part[0], b->part[0]) - mt_dot(n, a->part[1], b->part[1]),
-                   mt_dot(n, a->part[0], b->part[1]) + mt_dot(n, a->part[1], b->part[0]));
+    return mt_complex(mt_dot(n, a->part[0], b->part[0]) - mt_dot(n, a->part[1], b->part[1]),
+                      mt_dot(n, a->part[0], b->part[1]) + mt_dot(n, a->part[1], b->part[0]));
+}
+
+static double slope_of(const work *k, int p, mt_node node)
+{
+    return node == MT_NO_NODE ? 0.0 : mt_linear_slope(k->lin, node, p);
+}
+
+/* e . (matrix or its derivative) q. */
+static double complex between_one(const work *k, int p, mt_matrix m, const pair *e,
+                                  const pair *q)
+{
+    double part[2][2];
+    for (int at = 0; at < 4; at++) {
+        part[at / 2][at % 2] =
+            mt_linear_between_slope(k->lin, p, m, e->part[at / 2], q->part[at % 2]);
+    }
+    return mt_complex(part[0][0] - part[1][1], part[0][1] + part[1][0]);
+}
+
+/* e . M q. */
+static mt_status product(work *k, mt_matrix m, const pair *e, const pair *q,
+                         double complex *out, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    pair w = new_pair(k->mem, k->nq);
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_linear_states_product(k->lin, m, 1.0, q->part[0], w.part[0]);
+    mt_linear_states_product(k->lin, m, 1.0, q->part[1], w.part[1]);
+    *out = dot(k->nq, e, &w);
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
+}
+
+/* y . (d(ratios) x) in the freedoms, with the motion of their basis. */
+static mt_status ratios(work *k, int p, int o, int i, double complex *out, mt_err *err)
+{
+    const ptrdiff_t n = k->p->t->n;
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    double *const part = mt_arena_f64(k->mem, (size_t)n, 2);
+    double *const product_of = mt_arena_f64(k->mem, (size_t)n, 2);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t j = 0; j < n; j++) {
+        part[j] = creal(k->x[j + (i * n)]);
+        part[n + j] = cimag(k->x[j + (i * n)]);
+    }
+    MT_TRY(mt_analysis_ratio_products(k->p->a, p, 2, part, product_of, err));
+    *out = 0.0;
+    for (ptrdiff_t j = 0; j < n; j++) {
+        *out += k->y[j + (o * n)] * mt_complex(product_of[j], product_of[n + j]);
+    }
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
 }
 
 /* e . dD q. */
-static double complex between(const work *k, int p, const pair *e, const pair *q)
+static mt_status between(work *k, int p, int o, int i, double complex *out, mt_err *err)
 {
+    const mt_damping_def *const d = &k->p->a->sys->damping;
+    const pair *const e = &k->out[o].states;
+    const pair *const q = &k->in[i].states;
     double complex sum = 0.0;
-    for (int kind = 0; kind < 3; kind++) {
-        double part[2][2];
-        for (int at = 0; at < 4; at++) {
-            part[at / 2][at % 2] = mt_linear_between_slope(k->lin, p, KINDS[kind],
-                                                           e->part[at / 2], q->part[at % 2]);
-        }
-        sum += k->power[kind] * cx_pair(part[0][0] - part[1][1], part[0][1] + part[1][0]);
+    double complex part = 0.0;
+    for (int m = 0; m < MATRICES; m++) {
+        sum += k->factor[m] * between_one(k, p, (mt_matrix)m, e, q);
     }
-    return sum;
+    if (slope_of(k, p, d->mass) != 0.0) {
+        MT_TRY(product(k, MT_MATRIX_MASS, e, q, &part, err));
+        sum += k->power[1] * slope_of(k, p, d->mass) * part;
+    }
+    if (slope_of(k, p, d->stiffness) != 0.0) {
+        MT_TRY(product(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
+        sum += k->power[1] * slope_of(k, p, d->stiffness) * part;
+    }
+    if (d->modal) {
+        MT_TRY(ratios(k, p, o, i, &part, err));
+        sum += k->power[1] * part;
+    }
+    *out = sum;
+    return MT_OK;
 }
 
 /* A real function of both parts. */
 static double complex row_slope(const work *k, int p, mt_term_kind kind, int row, const pair *x)
 {
-    return cx_pair(mt_linear_row_dot_slope(k->lin, p, kind, row, x->part[0]),
-                   mt_linear_row_dot_slope(k->lin, p, kind, row, x->part[1]));
+    return mt_complex(mt_linear_row_dot_slope(k->lin, p, kind, row, x->part[0]),
+                      mt_linear_row_dot_slope(k->lin, p, kind, row, x->part[1]));
 }
 
 /* e . df. */
@@ -203,9 +290,9 @@ static double complex force_slope(work *k, int p, int i, const pair *e)
         return row_slope(k, p, MT_TERM_CHANNEL, channel_row(k, port), e);
     }
     mt_linear_shift(k->lin, port->index, k->shift);
-    const double re = mt_linear_between_slope(k->lin, p, MT_TERM_MASS, e->part[0], k->shift);
-    const double im = mt_linear_between_slope(k->lin, p, MT_TERM_MASS, e->part[1], k->shift);
-    return -k->power[2 - port->motion] * cx_pair(re, im);
+    const double re = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[0], k->shift);
+    const double im = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[1], k->shift);
+    return -k->power[2 - port->motion] * mt_complex(re, im);
 }
 
 /* d(sigma) . q - d(t) . l. */
@@ -213,7 +300,7 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
 {
     const mt_port *const port = &k->p->ports->out[o];
     if (port->kind == MT_PORT_JOINT) {
-        return -cx_pair(
+        return -mt_complex(
             mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[0]),
             mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[1]));
     }
@@ -226,10 +313,14 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
     }
     double complex sum = factor * row_slope(k, p, kind, row, &in->states);
     if (term != NULL) {
-        const double slope = mt_linear_slope(k->lin, term->coefficient, p);
-        sum += slope * k->power[port->kind == MT_PORT_DAMPER ? 1 : 0] *
-               cx_pair(mt_linear_row_dot(k->lin, kind, row, in->states.part[0]),
-                       mt_linear_row_dot(k->lin, kind, row, in->states.part[1]));
+        const double own = mt_linear_value(k->lin, term->coefficient);
+        const double loss =
+            port->kind == MT_PORT_SPRING ? slope_of(k, p, term->loss) * own : 0.0;
+        const double complex by =
+            (mt_linear_slope(k->lin, term->coefficient, p) * force_factor(k, port, term)) +
+            mt_complex(0.0, loss);
+        sum += by * mt_complex(mt_linear_row_dot(k->lin, kind, row, in->states.part[0]),
+                               mt_linear_row_dot(k->lin, kind, row, in->states.part[1]));
     }
     return sum;
 }
@@ -253,9 +344,10 @@ static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err
     pair moved_in;
     MT_TRY(jacobian(k, p, &side_out->states, &moved_out, err));
     MT_TRY(jacobian(k, p, &in->states, &moved_in, err));
-    *out = output_slope(k, p, o, in) + force_slope(k, p, i, &side_out->states) -
-           between(k, p, &side_out->states, &in->states) - dot(k->m, &moved_out, &in->forces) -
-           dot(k->m, &side_out->forces, &moved_in);
+    double complex turned = 0.0;
+    MT_TRY(between(k, p, o, i, &turned, err));
+    *out = output_slope(k, p, o, in) + force_slope(k, p, i, &side_out->states) - turned -
+           dot(k->m, &moved_out, &in->forces) - dot(k->m, &side_out->forces, &moved_in);
     mt_arena_rewind(k->mem, mark);
     return MT_OK;
 }
@@ -267,10 +359,12 @@ static mt_status admit(const mt_slope_problem *p, mt_err *err)
                        "derivatives asked for after a solve without gradient");
     }
     for (int o = 0; o < p->t->n_out; o++) {
-        if (p->ports->out[o].kind == MT_PORT_JOINT && p->ways->joint[o].geometric != NULL) {
-            return mt_fail(err, MT_E_USAGE,
-                           "%s: a loaded joint's force has no derivatives here",
-                           p->ports->out[o].name);
+        const bool modal = p->a->sys->damping.modal;
+        if (p->ports->out[o].kind == MT_PORT_JOINT &&
+            (modal || p->ways->joint[o].geometric != NULL)) {
+            return mt_fail(err, MT_E_USAGE, "%s: a joint's force has no derivatives here %s",
+                           p->ports->out[o].name,
+                           modal ? "beside modal damping ratios" : "under loads");
         }
     }
     return MT_OK;
@@ -283,6 +377,8 @@ static mt_status open_ports(work *k, bool *singular, mt_err *err)
     const size_t n = (size_t)t->n;
     double complex *const x = mt_arena_alloc(k->mem, n * (size_t)t->n_in, sizeof *x);
     double complex *const y = mt_arena_alloc(k->mem, n * (size_t)t->n_out, sizeof *y);
+    k->x = x;
+    k->y = y;
     k->in = mt_arena_alloc(k->mem, (size_t)t->n_in, sizeof *k->in);
     k->out = mt_arena_alloc(k->mem, (size_t)t->n_out, sizeof *k->out);
     k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
@@ -335,9 +431,10 @@ mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex
               .nq = p->a->sys->nq,
               .m = mt_linear_equations(p->a->lin),
               .w = w,
-              .power = {1.0, cx_pair(0.0, w), -w * w}};
+              .power = {1.0, mt_complex(0.0, w), -w * w}};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     MT_TRY(admit(p, err));
+    factors_of(&k);
     const mt_status rc = slopes(&k, dh, err);
     mt_arena_rewind(scratch, mark);
     return rc;

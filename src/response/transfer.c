@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "linalg/complex.h"
+#include "linalg/complex_ldl.h"
 
 /* Roundings that an entry of D, or a sum of products, is off by. */
 static const double ROUNDINGS = 8.0;
@@ -44,8 +44,8 @@ static void set_powers(work *k)
     for (int i = 0; i < MT_FORCED_POWERS; i++) {
         k->power[i] = p;
         k->dpower[i] = dp;
-        dp = cx_pair(0.0, (double)(i + 1)) * p;
-        p = cx_pair(0.0, k->w) * p;
+        dp = mt_complex(0.0, (double)(i + 1)) * p;
+        p = mt_complex(0.0, k->w) * p;
     }
 }
 
@@ -62,14 +62,14 @@ static double complex entry_of(const work *k, ptrdiff_t at)
 {
     const mt_transfer *const t = k->t;
     const double c = t->c == NULL ? 0.0 : t->c[at];
-    return t->g[at] - (k->w * k->w * t->m[at]) + cx_pair(0.0, k->w * c);
+    return t->g[at] - (k->w * k->w * t->m[at]) + mt_complex(0.0, k->w * c);
 }
 
 /* dD/dw. */
 static double complex entry_slope(const work *k, ptrdiff_t at)
 {
     const mt_transfer *const t = k->t;
-    return (-2.0 * k->w * t->m[at]) + cx_pair(0.0, t->c == NULL ? 0.0 : t->c[at]);
+    return (-2.0 * k->w * t->m[at]) + mt_complex(0.0, t->c == NULL ? 0.0 : t->c[at]);
 }
 
 static mt_status factor(work *k, mt_arena *mem, mt_err *err)
@@ -242,7 +242,7 @@ static void add_scaled(ptrdiff_t n, double complex f, const double complex *x,
 static void add_rest(const work *k, const mt_sample *out)
 {
     const ptrdiff_t size = (ptrdiff_t)k->t->n_in * k->t->n_out;
-    const double complex s = cx_pair(0.0, k->w);
+    const double complex s = mt_complex(0.0, k->w);
     for (int at = 0; at < MT_REST_POWERS; at++) {
         const int power = at + MT_REST_LOWEST;
         if (k->t->rest[at] == NULL) {
@@ -426,7 +426,7 @@ static const double complex *widen(size_t n, const double *re, const double *im,
     double complex *const out =
         re == NULL && im == NULL ? NULL : mt_arena_alloc(mem, n, sizeof *out);
     for (size_t i = 0; out != NULL && i < n; i++) {
-        out[i] = cx_pair(re == NULL ? 0.0 : re[i], im == NULL ? 0.0 : im[i]);
+        out[i] = mt_complex(re == NULL ? 0.0 : re[i], im == NULL ? 0.0 : im[i]);
     }
     return out;
 }
@@ -441,7 +441,7 @@ static double complex *transposed(int n, int n_out, const double *re, const doub
         for (ptrdiff_t j = 0; j < n; j++) {
             const ptrdiff_t at = j + (o * n);
             out[o + (j * n_out)] =
-                cx_pair(re == NULL ? 0.0 : re[at], im == NULL ? 0.0 : im[at]);
+                mt_complex(re == NULL ? 0.0 : re[at], im == NULL ? 0.0 : im[at]);
         }
     }
     return out;

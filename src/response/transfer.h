@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
-#include "mechanics/cx.h"
+#include "linalg/complex.h"
 #include "response/forced.h"
 
 /*

@@ -44,6 +44,12 @@
     X(REFERENCE, "reference", TEXT, true, ANY)             \
     X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
     X(AT_LEAST, "at_least", NUMBER, true, SHARE)
+#define MT_GOAL_DAMPING_MEMBERS(X)                \
+    MT_GOAL_OF_MODE(X)                            \
+    X(EQUALS, "target", NUMBER, false, SHARE)     \
+    X(AT_LEAST, "at_least", NUMBER, false, SHARE) \
+    X(AT_MOST, "at_most", NUMBER, false, SHARE)   \
+    X(WEIGHT, "weight", NUMBER, false, POSITIVE)
 #define MT_GOAL_LIMIT_MEMBERS(X)                 \
     MT_GOAL_ANY(X)                               \
     X(EXPRESSION, "expression", TEXT, true, ANY) \
@@ -67,6 +73,7 @@
     X(FREQUENCY, frequency, "Hz", RATIO) \
     X(SHAPE, shape, "", DIFFERENCE)      \
     X(MAC, mac, "", DIFFERENCE)          \
+    X(DAMPING, damping, "", PART)        \
     X(LIMIT, limit, "", PART)            \
     X(AVOID, avoid, "Hz", RATIO)
 #define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,

@@ -66,8 +66,8 @@ static void check_demands(mt_study_check *c, const mt_goal *goal, const mt_goal_
     }
     if (MT_HAS(goal->weight) && equality == NULL && (least || most)) {
         mt_diag_error(c->diags, goal->weight_addr,
-                      "only a goal with \"%s\" or \"reference\" can be part of the misfit",
-                      equals);
+                      "only a goal with \"%s\"%s can be part of the misfit", equals,
+                      refers ? " or \"reference\"" : "");
     }
 }
 

@@ -30,6 +30,7 @@ static const struct {
     {"modes -c damped --damped --set kr=900 " MODELS "space_body.json", MT_EXIT_DONE},
     {"modes --damped --format json " MODELS "space_body.json", MT_EXIT_DONE},
     {"modes --damped --format csv " MODELS "space_body.json", MT_EXIT_DONE},
+    {"modes --damped -c named " MODELS "damped_linkage.json", MT_EXIT_DONE},
     {"modes --shapes --set h=0.11 --format csv " MODELS "space_frame.json", MT_EXIT_DONE},
     {"modes " MODELS "driven_rod.json", MT_EXIT_DONE},
     {"modes " MODELS "ring.json", MT_EXIT_DONE},

@@ -7,8 +7,8 @@
 #include <math.h>
 
 #include "analysis/analysis.h"
+#include "analysis/damping.h"
 #include "answer/doubts.h"
-#include "cli/damped.h"
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "io/json_print.h"
@@ -102,20 +102,20 @@ static void use_doubts(mt_analysis *a, mt_arena *mem, const uint8_t *data, size_
     DEMAND(info.freedoms >= 0 && info.redundant >= 0 && info.mass_kg >= 0.0);
 }
 
-static void use_damping(mt_analysis *a, const double *at, mt_arena *mem)
+static void use_damping(mt_analysis *a, const double *at)
 {
     const mt_analysis_options opt = mt_analysis_options_default();
-    mt_damped_modes d;
+    const mt_damped_modes *d = NULL;
     mt_err err = {.code = MT_OK};
     mt_status rc = mt_analysis_solve(a, at, &opt, &err);
-    rc = rc == MT_OK ? mt_damped_of(a, mem, &d, &err) : rc;
+    rc = rc == MT_OK ? mt_analysis_damped(a, &d, &err) : rc;
     if (rc != MT_OK) {
         demand_failed(rc, &err);
         return;
     }
-    for (int i = 0; i < d.count; i++) {
-        DEMAND(isfinite(d.re[i]) && isfinite(d.im[i]) && d.im[i] >= 0.0);
-        DEMAND(d.kind[i] != MT_DAMPED_OSCILLATING || d.im[i] > 0.0);
+    for (int i = 0; i < d->count; i++) {
+        DEMAND(isfinite(d->re[i]) && isfinite(d->im[i]) && d->im[i] >= 0.0);
+        DEMAND(d->kind[i] != MT_DAMPED_OSCILLATING || d->im[i] > 0.0);
     }
 }
 
@@ -170,7 +170,7 @@ static void use_configuration(const mt_model *m, int c, const double *original,
     demand_modes(&a->modes);
     use_doubts(a, &mem, data, size);
     use_slopes(a, n, at);
-    use_damping(a, at, &mem);
+    use_damping(a, at);
     use_sweep(m, c, &mem);
     mt_analysis_delete(a);
     mt_arena_free(&mem);

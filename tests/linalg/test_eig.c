@@ -260,6 +260,31 @@ static void eig__inertia_says_when_a_count_is_unsure(mt_test *t)
     CHECK_INT(t, count[0] + count[1] + count[2], 0);
 }
 
+/* A = V diag(w) V^-1 with V = [1 i; i 1] (V^-1 = [1 -i; -i 1]/2) has what it was made of. */
+static void eig__complex_finds_what_the_matrix_is_made_of(mt_test *t)
+{
+    const double complex i = mt_complex(0.0, 1.0);
+    const double complex w[2] = {mt_complex(-0.5, 3.0), mt_complex(2.0, -1.0)};
+    const double complex a[4] = {(w[0] + w[1]) / 2.0, i * (w[0] - w[1]) / 2.0,
+                                 i * (w[1] - w[0]) / 2.0, (w[0] + w[1]) / 2.0};
+    double complex work[4];
+    double complex got[2];
+    double complex v[4];
+    memcpy(work, a, sizeof a);
+    CHECK_INT(t, mt_eig_complex(2, work, got, v, &mem, NULL), MT_OK);
+    for (int k = 0; k < 2; k++) {
+        const int which = cabs(got[k] - w[0]) < 1.0 ? 0 : 1;
+        CHECK_NEAR_ABS(t, cabs(got[k] - w[which]), 0.0, 1e-14);
+        for (int r = 0; r < 2; r++) {
+            const double complex av = (a[r] * v[2 * k]) + (a[r + 2] * v[(2 * k) + 1]);
+            CHECK_NEAR_ABS(t, cabs(av - (got[k] * v[r + (2 * k)])), 0.0, 1e-14);
+        }
+    }
+    CHECK(t, cabs(got[0] - got[1]) > 1.0);
+    CHECK_INT(t, mt_eig_complex(0, NULL, NULL, NULL, &mem, NULL), MT_OK);
+    CHECK_INT(t, mem.used, 0);
+}
+
 /* Every routine that LAPACK might answer with a success gets its NaN and its infinity. */
 static void eig__entries_that_are_not_finite_are_errors(mt_test *t)
 {
@@ -283,6 +308,10 @@ static void eig__entries_that_are_not_finite_are_errors(mt_test *t)
             memcpy(a, c, sizeof a);
             CHECK_INT(t, mt_eig_general(2, a, w, wi, NULL, &mem, &err), MT_E_DOMAIN);
             CHECK_STR(t, err.text, "dgeev: a matrix entry is not a finite number");
+            double complex z[4] = {c[0], c[1], mt_complex(0.0, c[2]), c[3]};
+            double complex wz[2];
+            CHECK_INT(t, mt_eig_complex(2, z, wz, NULL, &mem, &err), MT_E_DOMAIN);
+            CHECK_STR(t, err.text, "zgeev: a matrix entry is not a finite number");
         }
     }
     CHECK_INT(t, mem.used, 0);
@@ -295,6 +324,7 @@ int main(void)
         MT_TEST(eig__second_difference_matches_closed_form),
         MT_TEST(eig__graded_solutions_have_small_residuals_in_each_scale),
         MT_TEST(eig__general_finds_real_and_complex_roots),
+        MT_TEST(eig__complex_finds_what_the_matrix_is_made_of),
         MT_TEST(eig__cholesky_reproduces_and_names_the_pivot),
         MT_TEST(eig__inertia_counts_eigenvalues_below_the_shift),
         MT_TEST(eig__inertia_says_when_a_count_is_unsure),

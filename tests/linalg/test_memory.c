@@ -25,6 +25,16 @@ static mt_status run_eig_general(double *a, mt_arena *mem, mt_err *err)
     return mt_eig_general(N, a, wr, wi, NULL, mem, err);
 }
 
+static mt_status run_eig_complex(double *a, mt_arena *mem, mt_err *err)
+{
+    double complex z[N * N];
+    double complex w[N];
+    for (int i = 0; i < N * N; i++) {
+        z[i] = a[i];
+    }
+    return mt_eig_complex(N, z, w, NULL, mem, err);
+}
+
 static mt_status run_inertia(double *a, mt_arena *mem, mt_err *err)
 {
     int count[3];
@@ -104,11 +114,17 @@ static void linalg__failing_allocations_are_reported_and_scratch_is_given_back(m
         const char *name;
         routine *run;
     } rows[] = {
-        {"eig_sym", run_eig_sym},   {"eig_general", run_eig_general},
-        {"inertia", run_inertia},   {"lu_solve", run_lu},
-        {"svd with u", run_svd},    {"svd with vt", run_svd_other},
-        {"svd_jacobi", run_jacobi}, {"pinv", run_pinv},
-        {"assign", run_assign},     {"qr_factor", run_qr_factor},
+        {"eig_sym", run_eig_sym},
+        {"eig_general", run_eig_general},
+        {"eig_complex", run_eig_complex},
+        {"inertia", run_inertia},
+        {"lu_solve", run_lu},
+        {"svd with u", run_svd},
+        {"svd with vt", run_svd_other},
+        {"svd_jacobi", run_jacobi},
+        {"pinv", run_pinv},
+        {"assign", run_assign},
+        {"qr_factor", run_qr_factor},
         {"qr_solve", run_qr_solve},
     };
     for (int r = 0; r < MT_COUNT(rows); r++) {

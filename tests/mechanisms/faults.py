@@ -49,6 +49,23 @@ def rest_forgotten(model):
     return spring is not None
 
 
+def damper_lost(model):
+    return bool(model["dampers"]) and model["dampers"].pop() is not None
+
+
+def loss_off(model):
+    """By one part in ten thousand."""
+    spring = _first(model, "springs", "loss_factor")
+    if spring:
+        spring["loss_factor"] *= 1.0001
+    return spring is not None
+
+
+def proportion_lost(model):
+    return model["damping"].pop("mass_per_s", None) is not None
+
+
+DAMPING_FAULTS = [(damper_lost, 8), (loss_off, 6), (proportion_lost, 8)]  # put into damped mechanisms: as below
 FAULTS = [(no_gravity, ("loaded2", "loaded3", "hanging"), 6), (heavier, ("free2", "free3", "loaded2"), 4), (tension_reversed, ("loaded2", "loaded3"), 7),
           (spring_lost, ("loaded2", "loaded3"), 8), (joint_lost, ("loaded2", "loaded3"), 8), (joint_moved, ("loaded2", "driven3"), 5),
           (rest_forgotten, ("loaded2", "loaded3"), 7)]

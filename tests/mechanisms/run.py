@@ -21,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
 
+import damped  # noqa: E402
 import statics  # noqa: E402
 from changes import CHANGES  # noqa: E402
 from exact import binary, number  # noqa: E402
@@ -194,6 +195,21 @@ class Case:
         elif any(abs(number(a) - b) > ACCURACY * (1 + abs(b)) for a, b in zip(answer.said["centre_m"], exact)):
             yield "rest", f"the centre of mass rests at {answer.said['centre_m']}, exact {[float(x) for x in exact]}"
 
+    def damping(self, spoil=None):
+        """Complex modes with dampers, loss factors and damping ratios; spoil: a fault, put into what the program reads."""
+        if not self.hz or self.modes.massless or self.expected["unstable"]:
+            return
+        model, dampers, losses = damped.damp(self.rng, self.model, self.modes)
+        expected = damped.roots(self.modes, model, dampers, losses)
+        if expected is None or (spoil and not spoil(model)):
+            return
+        answer = Answer(self.folder, "damped", model, "modes", "--damped")
+        if answer.code:
+            yield "exit", f"modes --damped: exit code {answer.code}: {answer.words[-300:]}"
+        else:
+            wrong = damped.compare(answer.said, expected)
+            yield from [("damped", wrong)] if wrong else []
+
     def findings(self):
         """(check, sentence)."""
         answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes")
@@ -215,6 +231,7 @@ class Case:
             yield from self.shapes(answer)
             yield from self.rest()
             yield from self.slopes()
+            yield from self.damping()
 
 
 def hunt(seed, kinds, indices, tally, seconds=None, keep=None):

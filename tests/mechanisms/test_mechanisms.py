@@ -12,7 +12,7 @@ from pathlib import Path
 import exact
 import run
 import statics
-from faults import FAULTS
+from faults import DAMPING_FAULTS, FAULTS
 from known import reason
 
 SEED = "1"
@@ -93,6 +93,21 @@ class Faults(unittest.TestCase):
         for plant, kinds, least in FAULTS:
             with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
                 self.assertGreaterEqual(self._found(Path(folder), plant, kinds), least)
+
+    def test_faults_of_damping_are_found(self):
+        for plant, least in DAMPING_FAULTS:
+            with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
+                self.assertGreaterEqual(self._damped(Path(folder), plant), least)
+
+    def _damped(self, folder, plant, of=10):
+        tried, found, index = [], 0, 0
+        while len(tried) < of:
+            self.assertLess(index, 100, "the fault has no place in these mechanisms")
+            kind = ("loaded2", "loaded3")[index % 2]
+            case = run.Case(folder, kind, random.Random(f"damped:{index}"), made(kind, index))
+            index += 1
+            found += bool(list(case.damping(lambda model: plant(model) and tried.append(model) is None)))
+        return found
 
     def _found(self, folder, plant, kinds, of=10):
         tried = found = index = 0

@@ -169,5 +169,35 @@ static void named_and_repeated_modes__have_exact_gradients(mt_test *t)
     compiled_free(&s);
 }
 
-MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients),
+/* Damping ratios by index, by name and as a residual, of loops under load, of everything that
+ * damps. */
+static void damping__has_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "damped_linkage",
+                "'variables': [{'parameter': 'a', 'lower': 0.12, 'upper': 0.18},"
+                " {'parameter': 'k', 'lower': 10, 'upper': 40},"
+                " {'parameter': 'c', 'lower': 0, 'upper': 2},"
+                " {'parameter': 'eta', 'lower': 0.01, 'upper': 0.3},"
+                " {'parameter': 'zeta', 'lower': 0.001, 'upper': 0.1}],"
+                "'goals': ["
+                "{'type': 'damping', 'configuration': 'all', 'mode': 1, 'at_least': 0.05,"
+                " 'at_most': 0.2},"
+                "{'type': 'damping', 'configuration': 'all', 'mode': 4, 'target': 0.06},"
+                "{'type': 'damping', 'configuration': 'named', 'mode': 'swing',"
+                " 'at_least': 0.03},"
+                "{'type': 'damping', 'configurations': ['named', 'driven'], 'mode': 2,"
+                " 'target': 0.04, 'weight': 2}],"
+                "'objective': {'minimise': 'misfit'}",
+                &s)) {
+        double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03)};
+        CHECK_INT(t, s.p->n_eq, 1);
+        CHECK_INT(t, s.p->n_in, 3);
+        CHECK_INT(t, s.p->n_res, 2);
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
+MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
              MT_TEST(named_and_repeated_modes__have_exact_gradients))

@@ -56,8 +56,8 @@ static void forced__one_mass_matches_its_closed_form(mt_test *t)
             mt_test_row(t, "%s, w = %g", rows[r].name, W[i]);
             const double w = W[i];
             const double complex d =
-                k - (m * w * w) + cx_pair(0.0, (w * rows[r].c) + rows[r].h);
-            const double complex dd = (-2.0 * m * w) + cx_pair(0.0, rows[r].c);
+                k - (m * w * w) + mt_complex(0.0, (w * rows[r].c) + rows[r].h);
+            const double complex dd = (-2.0 * m * w) + mt_complex(0.0, rows[r].c);
             const double terms = (k + (m * w * w)) / cabs(d); /* of the denominator */
             if (terms > 1e6 && rows[r].c < 1e-6) {
                 continue;
@@ -111,7 +111,7 @@ static void forced__two_masses_match_their_closed_form(mt_test *t)
             mt_test_row(t, "%s, w = %g", rows[r].name, w);
             double complex d[4];
             for (int i = 0; i < 4; i++) {
-                d[i] = p.k[i] - (w * w * p.m[i]) + cx_pair(0.0, p.h[i] + (w * p.c[i]));
+                d[i] = p.k[i] - (w * w * p.m[i]) + mt_complex(0.0, p.h[i] + (w * p.c[i]));
             }
             const double complex det = (d[0] * d[3]) - (d[1] * d[2]);
             const double size = 1e3 * (cabs(d[0]) + cabs(d[1]) + cabs(d[3])) / cabs(det);

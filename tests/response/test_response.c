@@ -106,7 +106,7 @@ static void response__moving_ground_matches_its_closed_form(mt_test *t)
         for (int i_w = 0; i_w < 9; i_w++) {
             const double w = 0.5 * pow(2.3, i_w);
             mt_test_row(t, "ground %s, w = %g", MOTIONS[in], w);
-            const double complex s = cx_pair(0.0, w);
+            const double complex s = mt_complex(0.0, w);
             const double complex d = 800.0 + (6.0 * s) + (2.0 * s * s);
             const double complex moved = 1.0 / cpow(s, in); /* the ground's displacement */
             const double complex relative = -2.0 * s * s * moved / d;

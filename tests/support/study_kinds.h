@@ -70,6 +70,13 @@ static const struct {
                "{'type': 'shape', 'mode': 1, 'reference': 'test', 'weight': 0.5},"
                "{'type': 'frequency', 'mode': 2, 'target_hz': 0.4, 'weight': 1}],"
                "'objective': {'minimise': 'misfit'}, 'spread': {'factor': 3}"},
+    {"damping ratios",
+     ROW(", 'modes': {'first': {'configuration': 'default', 'index': 1}}, 'dampers': [{'name': "
+         "'d', 'type': 'axial', 'joint': 'r1', 'damping_n_s_per_m': 0.3}], 'damping': "
+         "{'ratio': "
+         "0.01, 'modes': {'first': 0.02}, 'stiffness_s': 0.01}"),
+     TWO QUICK "'goals': [{'type': 'damping', 'mode': 'first', 'at_least': 0.06},"
+               "{'type': 'damping', 'mode': 2, 'at_most': 0.1}]"},
     {"bands, objectives in order", ROW(""),
      TWO QUICK "'goals': [{'type': 'avoid', 'bands_hz': [[0.1, 0.14], [0.3, 0.36]], "
                "'margin_percent': 1}],"

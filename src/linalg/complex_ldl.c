@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "linalg/complex.h"
+#include "linalg/complex_ldl.h"
 
 #include "linalg/lapack_priv.h"
 
@@ -78,45 +78,4 @@ mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scr
                                                 f->pivot, f->norm, rcond, work);
     mt_arena_rewind(scratch, mark);
     return info < 0 ? mt_lapack_bug("zsycon", info, err) : MT_OK;
-}
-
-static mt_status eig_complex(int n, double complex *a, double complex *w, double complex *v,
-                             mt_arena *scratch, mt_err *err)
-{
-    double complex none = 0.0;
-    double complex query = 0.0;
-    double *const real = mt_arena_f64(scratch, 2, (size_t)n);
-    MT_TRY(mt_arena_check(scratch, err));
-    lapack_int info = LAPACKE_zgeev_work(LAPACK_COL_MAJOR, 'N', 'V', n, a, n, w, &none, 1, v, n,
-                                         &query, -1, real);
-    if (info != 0) {
-        return mt_lapack_bug("zgeev", info, err);
-    }
-    double complex *work = NULL;
-    lapack_int lwork = 0;
-    MT_TRY(work_of(scratch, creal(query), 2.0 * n, &work, &lwork, err));
-    info = LAPACKE_zgeev_work(LAPACK_COL_MAJOR, 'N', 'V', n, a, n, w, &none, 1, v, n, work,
-                              lwork, real);
-    if (info < 0) {
-        return mt_lapack_bug("zgeev", info, err);
-    }
-    if (info > 0 || !all_finite(n, w)) {
-        return mt_fail(err, MT_E_NO_CONVERGENCE, "zgeev: the eigenvalues did not converge");
-    }
-    return MT_OK;
-}
-
-mt_status mt_eig_complex(int n, double complex *a, double complex *w, double complex *v,
-                         mt_arena *scratch, mt_err *err)
-{
-    if (n == 0) {
-        return MT_OK;
-    }
-    if (!all_finite((ptrdiff_t)n * n, a)) {
-        return mt_lapack_not_finite("zgeev", err);
-    }
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = eig_complex(n, a, w, v, scratch, err);
-    mt_arena_rewind(scratch, mark);
-    return rc;
 }

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ANALYSIS_DAMPING_H
+#define ANALYSIS_DAMPING_H
+
+#include "analysis/analysis.h"
+#include "modal/damped.h"
+
+/*
+ * All that damps a configuration, in the freedoms of the last solve (linear.h):
+ *     C = dampers + mass M + stiffness K + sum_j 2 zeta_j omega_j (M phi_j)(M phi_j)^T,
+ *     H = sum over springs of loss factor times stiffness.
+ * Modal ratios zeta_j go to flexible modes as model.h says: to modes that the model names,
+ * which are followed by their shape at the first design of the analysis (tracking.h), to modes
+ * by their index, to all others. Where vibrations of equal frequency have different ratios, C
+ * depends on which of their shapes the solve has found, and it has no derivative.
+ */
+
+/*
+ * After a solve: C and H, both n x n, column-major, both triangles; either NULL: not wanted.
+ * *structural (may be NULL): is H not 0? Kept until the next solve. O(n^3) with modal ratios.
+ * Fails: MT_E_INTERNAL (modal ratios, and the solve had not all modes with vectors), MT_E_INPUT
+ * (a ratio of a mode that there is not), MT_E_DOMAIN (ratios by index or name where modes have
+ * none), MT_E_MEMORY.
+ */
+mt_status mt_analysis_damping(mt_analysis *a, double *c, double *h, bool *structural,
+                              mt_err *err);
+/* After a solve with gradient, products of their derivatives with respect to input p with
+ * x, n x cols, in the moving coordinates of mt_linear_products: dcx = (dC/dp) x and dhx =
+ * (dH/dp) x. NaN where equal frequencies with different ratios leave dC without a value. With
+ * modal ratios O(n) products with K and M besides. Fails as above, as mt_linear_products. */
+mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const double *x,
+                                       double *dcx, double *dhx, mt_err *err);
+
+/* The part of the modal ratios alone, N F N^T with N = M Phi: its derivative's product with x,
+ * dcx += (d(N F N^T)/dp) x, n x cols as above; and what it does to a motion that the joints do
+ * not allow, of which Z^T M v is given: out[n] += N F Phi^T w. */
+mt_status mt_analysis_ratio_products(mt_analysis *a, int p, int cols, const double *x,
+                                     double *dcx, mt_err *err);
+mt_status mt_analysis_ratio_force(mt_analysis *a, const double *w, double *out, mt_err *err);
+
+/* Complex modes with all of it, after a solve of all modes with vectors; valid until the next
+ * one. Fails as above and as mt_modal_damped. */
+mt_status mt_analysis_damped(mt_analysis *a, const mt_damped_modes **out, mt_err *err);
+/* Position in them of oscillating mode `index` (1-based, ascending |s|); -1 where there are
+ * fewer, or where a motion is unstable: then none has an index. */
+int mt_damped_oscillating(const mt_damped_modes *d, int index);
+/* Position of the oscillating mode that has most of the undamped mode at pos in its shape:
+ * |phi^T M y|^2/(y^H M y); -1 as above. Fails: MT_E_MEMORY. */
+mt_status mt_analysis_damped_of(mt_analysis *a, int pos, int *out, mt_err *err);
+/*
+ * After a solve with gradient: derivatives [n_inputs] of the root s at position i of
+ * mt_analysis_damped,
+ *     ds/dp = -y^T (s^2 dM + s dC + dK + i dH) y / (y^T (2 s M + C) y)
+ * (y^T, since all matrices are symmetric), re and im [rad/s per unit of the input]. NaN, and
+ * *repeated (may be NULL), where the root is repeated: a single one has none. Fails as above.
+ */
+mt_status mt_analysis_dpole(mt_analysis *a, int i, double *dre, double *dim, bool *repeated,
+                            mt_err *err);
+
+#endif

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Damping: what takes energy out is not negative, and what a slip of units makes is doubted. */
+#include "model/judge_priv.h"
+
+#include <string.h>
+
+/* A mode with this ratio does not vibrate; 2 % that were written as 2 are far above. */
+static const double CRITICAL = 1.0;
+/* Constrained layers of rubber reach 2, steel has 1e-3; per cent are far above. */
+static const double MOST_LOSS = 2.0;
+
+/* Whose damping it is: NULL the model's, else the configuration that gives it. */
+static const mt_configuration *owner_of(const mt_judge *j)
+{
+    int c = j->configuration;
+    while (c != MT_ABSENT && j->model->configurations[c].damping.inherited) {
+        c = j->model->configurations[c].like;
+    }
+    return c == MT_ABSENT ? NULL : &j->model->configurations[c];
+}
+
+/* A member of the damping, or an entry of it (a mode's name, an index). */
+typedef struct place {
+    const char *member;
+    const char *entry; /* NULL: none */
+} place;
+
+/* The entry as a JSON pointer has it. NULL where memory is out. */
+static const char *escaped(mt_arena *mem, const char *entry)
+{
+    char *const text = mt_arena_alloc(mem, (2 * strlen(entry)) + 1, 1);
+    size_t n = 0;
+    for (const char *c = entry; text != NULL && *c != '\0'; c++) {
+        const bool special = *c == '~' || *c == '/';
+        if (special) {
+            text[n++] = '~';
+        }
+        text[n++] = !special ? *c : *c == '~' ? '0' : '1';
+    }
+    return text;
+}
+
+static void say(mt_judge *j, mt_num num, const place *at, mt_doubt_level level, const char *why)
+{
+    mt_arena *const mem = j->out->mem;
+    const mt_configuration *const owner = owner_of(j);
+    const char *const slash = at->entry == NULL ? "" : "/";
+    const char *const shown = at->entry == NULL ? "" : at->entry;
+    mt_doubt *const doubt = mt_doubt_add(
+        j->out, level, level == MT_LEVEL_FAULT ? "value" : "damping",
+        "damping%s%s%s: %s%s%s (%g) %s", owner == NULL ? "" : " of configuration \"",
+        owner == NULL ? "" : owner->name.s, owner == NULL ? "" : "\"", at->member, slash, shown,
+        j->value[num], why);
+    const char *const entry = at->entry == NULL ? "" : escaped(mem, at->entry);
+    if (entry == NULL) {
+        return;
+    }
+    const char *const pointer =
+        owner == NULL ? mt_arena_printf(mem, "/damping/%s%s%s", at->member, slash, entry)
+                      : mt_arena_printf(mem, "/configurations/%s/damping/%s%s%s", owner->name.s,
+                                        at->member, slash, entry);
+    (void)mt_judge_place(j, doubt, j->model->nums[num].addr, pointer);
+}
+
+static void coefficient(mt_judge *j, mt_num num, const place *at)
+{
+    if (num != MT_ABSENT && j->value[num] < 0.0) {
+        say(j, num, at, MT_LEVEL_FAULT, "must not be negative");
+    }
+}
+
+static void ratio(mt_judge *j, mt_num num, const char *member, const char *entry)
+{
+    const place at = {member, entry};
+    coefficient(j, num, &at);
+    if (num != MT_ABSENT && j->value[num] >= CRITICAL) {
+        say(j, num, &at, MT_LEVEL_DOUBT,
+            "is critical or more, so that the mode does not vibrate: is it in percent?");
+    }
+}
+
+void mt_judge_damping(mt_judge *j)
+{
+    const mt_damping *const d = &j->model->configurations[j->configuration].damping;
+    if (!d->given) {
+        return;
+    }
+    ratio(j, d->ratio, "ratio", NULL);
+    for (int i = 0; i < d->n_ratios; i++) {
+        ratio(j, d->ratios[i], "ratios", mt_arena_printf(j->out->mem, "%d", i));
+    }
+    for (int i = 0; i < d->n_named; i++) {
+        ratio(j, d->named[i].ratio, "modes", d->named[i].mode_name.s);
+    }
+    coefficient(j, d->mass, &(const place){"mass_per_s", NULL});
+    coefficient(j, d->stiffness, &(const place){"stiffness_s", NULL});
+}
+
+const char *mt_judge_loss(double loss_factor)
+{
+    return loss_factor > MOST_LOSS ? "above 2, more than any material has: is it in percent?"
+                                   : NULL;
+}
