@@ -58,10 +58,10 @@ static void json_damping(mt_json_writer *w, const view *v)
 }
 
 /* One part of the line "damping": "ratio 0.02 of mode 1". */
-static void part(mt_text *out, int *n, const char *before, double x, const char *after)
+static void put_part(mt_text *out, int *n, const char *before, double x, const char *after)
 {
-    char a[MT_NUMBER_TEXT];
     if (!isnan(x)) {
+        char a[MT_NUMBER_TEXT];
         mt_text_addf(out, "%s%s%s%s", *n > 0 ? ", " : "  damping     ", before,
                      mt_report_number(x, DIGITS, a), after);
         ++*n;
@@ -74,17 +74,17 @@ static void text_ratios(mt_text *out, int *n, const view *v)
     const bool listed = d->n_ratios + d->n_named > 0;
     for (int k = 0; k < d->n_named && k < MOST_RATIOS; k++) {
         const char *const of = mt_arena_printf(v->doubts.mem, " of \"%s\"", named_mode(v, k));
-        part(out, n, "ratio ", number_of(v, d->named_ratios[k]), of == NULL ? "" : of);
+        put_part(out, n, "ratio ", number_of(v, d->named_ratios[k]), of == NULL ? "" : of);
     }
     for (int k = 0; k < d->n_ratios && k < MOST_RATIOS; k++) {
         char of[32];
         (void)mt_snprintf(of, sizeof of, " of mode %d", k + 1);
-        part(out, n, "ratio ", number_of(v, d->ratios[k]), of);
+        put_part(out, n, "ratio ", number_of(v, d->ratios[k]), of);
     }
     if (d->n_named > MOST_RATIOS || d->n_ratios > MOST_RATIOS) {
         mt_text_add(out, ", ...");
     }
-    part(out, n, "ratio ", number_of(v, d->ratio), listed ? " of other modes" : "");
+    put_part(out, n, "ratio ", number_of(v, d->ratio), listed ? " of other modes" : "");
 }
 
 /* Nothing where nothing damps. */
@@ -103,10 +103,10 @@ static void text_damping(mt_text *out, const view *v)
         (void)mt_snprintf(most, sizeof most, " to %s",
                           mt_report_number(v->info.most_loss, DIGITS, a));
     }
-    part(out, &n, "loss factors ", v->info.least_loss, most);
+    put_part(out, &n, "loss factors ", v->info.least_loss, most);
     text_ratios(out, &n, v);
-    part(out, &n, "", number_of(v, d->mass), " 1/s of the mass");
-    part(out, &n, "", number_of(v, d->stiffness), " s of the stiffness");
+    put_part(out, &n, "", number_of(v, d->mass), " 1/s of the mass");
+    put_part(out, &n, "", number_of(v, d->stiffness), " s of the stiffness");
     mt_text_add(out, n > 0 ? "\n" : "");
 }
 

@@ -31,11 +31,13 @@ static const char *escaped(mt_arena *mem, const char *entry)
     char *const text = mt_arena_alloc(mem, (2 * strlen(entry)) + 1, 1);
     size_t n = 0;
     for (const char *c = entry; text != NULL && *c != '\0'; c++) {
-        const bool special = *c == '~' || *c == '/';
-        if (special) {
+        if (*c == '~' || *c == '/') {
+            const char digit = *c == '~' ? '0' : '1';
             text[n++] = '~';
+            text[n++] = digit;
+        } else {
+            text[n++] = *c;
         }
-        text[n++] = !special ? *c : *c == '~' ? '0' : '1';
     }
     return text;
 }

@@ -396,17 +396,22 @@ static void structural__one_loss_factor_for_all_keeps_each_mode(mt_test *t)
 static double newton_moves(const double *m, const double *c, const double *k, const double *eta,
                            double complex s)
 {
-    const long double complex x = s;
+    const long double complex x = (long double complex)s;
     const long double complex i = csqrtl(-1.0L);
-    const long double complex a = k[0] * (1.0L + eta[0] * i);
-    const long double complex b = k[1] * (1.0L + eta[1] * i);
-    const long double complex u = m[0] * x * x + ((long double)c[0] + c[1]) * x + a + b;
-    const long double complex v = m[1] * x * x + c[1] * x + b;
-    const long double complex w = c[1] * x + b;
-    const long double complex du = 2.0L * m[0] * x + ((long double)c[0] + c[1]);
-    const long double complex dv = 2.0L * m[1] * x + c[1];
-    const long double complex p = u * v - w * w;
-    const long double complex dp = du * v + u * dv - 2.0L * c[1] * w;
+    const long double complex xx = x * x;
+    const long double c1 = (long double)c[0];
+    const long double c2 = (long double)c[1];
+    const long double m1 = (long double)m[0];
+    const long double m2 = (long double)m[1];
+    const long double complex a = (long double)k[0] * (1.0L + ((long double)eta[0] * i));
+    const long double complex b = (long double)k[1] * (1.0L + ((long double)eta[1] * i));
+    const long double complex u = (m1 * xx) + ((c1 + c2) * x) + a + b;
+    const long double complex v = (m2 * xx) + (c2 * x) + b;
+    const long double complex w = (c2 * x) + b;
+    const long double complex du = (2.0L * m1 * x) + (c1 + c2);
+    const long double complex dv = (2.0L * m2 * x) + c2;
+    const long double complex p = (u * v) - (w * w);
+    const long double complex dp = (du * v) + (u * dv) - (2.0L * c2 * w);
     return (double)(cabsl(p / dp) / cabsl(x));
 }
 
