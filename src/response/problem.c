@@ -3,8 +3,8 @@
  * A port is a column or a row over the states (mechanics/forcing.h); Z^T of it is that of the
  * freedoms. The force of a joint, v . (M q'' + C q' + K q - f) - geometric . q with q = Z x, is
  *     S_0 = Z^T (K v + i H v - geometric),   S_1 = Z^T C v,   S_2 = Z^T M v,   D = -v . f.
- * Modal damping ratios belong to motions that the joints allow; what they do to v is that of the
- * matrix (M Phi) F (M Phi)^T over all states.
+ * Modal damping ratios belong to motions that the joints allow; what they do to v is that of
+ * the matrix (M Phi) F (M Phi)^T over all states.
  */
 #include "response/problem.h"
 

@@ -50,8 +50,8 @@ static pair new_pair(mt_arena *mem, int n)
     return (pair){{mt_arena_f64(mem, (size_t)n, 1), mt_arena_f64(mem, (size_t)n, 1)}};
 }
 
-/* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M. Modal
- * ratios stand apart: their part is known in the freedoms alone. */
+/* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M.
+ * Modal ratios stand apart: their part is known in the freedoms alone. */
 enum { MATRICES = 4 };
 
 static void factors_of(work *k)

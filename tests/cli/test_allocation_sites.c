@@ -79,7 +79,7 @@ static struct {
     {"sensitivity --format csv --parameters mas " MODELS "ring.json", MT_EXIT_INPUT, FULL},
     {"response --input base.x --output tip.x:velocity --output joint.pivot.x "
      "--sensitivity m,L -c hanging " MODELS "pendulum.json",
-     MT_EXIT_INPUT, FULL},
+     MT_EXIT_DONE, FULL},
     {"response --input tip.x --format json --sensitivity a,k -c still --points 3 " MODELS
      "four_bar.json",
      MT_EXIT_DONE, FULL},
