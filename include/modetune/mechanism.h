@@ -111,6 +111,50 @@ MT_API mt_status mt_mechanism_mac(mt_mechanism *a, int modes_a, mt_mechanism *b,
 MT_API mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes,
                                             double *hz_per_unit, mt_err *err);
 
+/*
+ * What a vibration is caused by and seen in, by name, as `modetune response` takes them:
+ *   inputs   "grip.x", force (moment) along a direction of a sensor [N, N m]; "base.x",
+ *            acceleration of the ground along an axis [m/s^2], "base.x:velocity",
+ *            "base.x:displacement"
+ *   outputs  "grip.x", displacement of a sensor in space [m, rad], "grip.x:velocity",
+ *            "grip.x:acceleration", "grip.x:relative_displacement" (..._velocity, ...) against
+ *            the ground; "spring.NAME", "damper.NAME", force or torque in it [N, N m], above 0
+ *            where it pulls; "joint.NAME.x", force of the joint's first body on its second [N]
+ */
+typedef struct mt_ports {
+    int n_inputs;
+    const char *const *inputs; /* [n_inputs] */
+    int n_outputs;             /* 0: the displacements at all channels */
+    const char *const *outputs;
+} mt_ports;
+
+/**
+ * Frequency responses of the evaluated mechanism about its equilibrium, with its damping: to an
+ * input Re(u e^{i w t}) the output is Re(H u e^{i w t}).
+ * @param[in]  n      frequencies, hz[n] > 0
+ * @param[out] re, im outputs x inputs x n, column-major, H [unit of the output per unit of the
+ *   input]; NaN at the resonance of a mode that nothing damps
+ * @param[out] error  the same shape: |error of H| that rounding may have made, to first order;
+ *   may be NULL
+ * By modes, exact since all of them are used. O(n^3 + frequencies), allocates. Fails:
+ * MT_E_USAGE (a name that there is not, a frequency that is not above 0, no evaluation that
+ * succeeded, the force of a joint that is redundant with others), MT_E_EQUILIBRIUM (a mode is
+ * unstable or undecided), MT_E_NO_CONVERGENCE, MT_E_MEMORY.
+ */
+MT_API mt_status mt_mechanism_response(mt_mechanism *mechanism, const mt_ports *ports, int n,
+                                       const double *hz, double *re, double *im, double *error,
+                                       mt_err *err);
+/**
+ * Exact derivatives of the responses at one frequency with respect to all inputs of the
+ * mechanism (the parameters that it was made with).
+ * @param[out] re, im outputs x inputs x parameters, column-major [unit of H per unit of the
+ *   parameter]; NaN where there is none, as of mt_mechanism_sensitivities and
+ *   mt_mechanism_response; NULL without parameters
+ * Fails also: MT_E_USAGE (the force of a joint that loads stress).
+ */
+MT_API mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *ports,
+                                              double hz, double *re, double *im, mt_err *err);
+
 #ifdef __cplusplus
 }
 #endif

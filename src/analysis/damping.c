@@ -301,3 +301,25 @@ mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const do
     mt_arena_rewind(&a->damping_mem, mark);
     return rc;
 }
+
+mt_status mt_analysis_ratio_products(mt_analysis *a, int p, int cols, const double *x,
+                                     double *dcx, mt_err *err)
+{
+    work *w = NULL;
+    MT_TRY(prepare(a, &w, err));
+    const mt_arena_mark mark = mt_arena_get_mark(&a->damping_mem);
+    const mt_status rc = w->r > 0 ? add_modal(a, w, p, cols, x, dcx, err) : MT_OK;
+    mt_arena_rewind(&a->damping_mem, mark);
+    return rc;
+}
+
+mt_status mt_analysis_ratio_force(mt_analysis *a, const double *w, double *out, mt_err *err)
+{
+    work *k = NULL;
+    MT_TRY(prepare(a, &k, err));
+    for (ptrdiff_t j = 0; j < k->r; j++) {
+        const double force = k->f[j] * mt_dot(k->n, a->modes.y + (j * k->n), w);
+        mt_axpy(k->n, force, k->n_phi + (j * k->n), out);
+    }
+    return MT_OK;
+}

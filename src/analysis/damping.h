@@ -31,6 +31,13 @@ mt_status mt_analysis_damping(mt_analysis *a, double *c, double *h, bool *struct
 mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const double *x,
                                        double *dcx, double *dhx, mt_err *err);
 
+/* The part of the modal ratios alone, N F N^T with N = M Phi: its derivative's product with x,
+ * dcx += (d(N F N^T)/dp) x, n x cols as above; and what it does to a motion that the joints do
+ * not allow, of which Z^T M v is given: out[n] += N F Phi^T w. */
+mt_status mt_analysis_ratio_products(mt_analysis *a, int p, int cols, const double *x,
+                                     double *dcx, mt_err *err);
+mt_status mt_analysis_ratio_force(mt_analysis *a, const double *w, double *out, mt_err *err);
+
 /* Complex modes with all of it, after a solve of all modes with vectors; valid until the next
  * one. Fails as above and as mt_modal_damped. */
 mt_status mt_analysis_damped(mt_analysis *a, const mt_damped_modes **out, mt_err *err);

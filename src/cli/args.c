@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "base/workers.h"
 #include "cli/limits.h"
+#include "response/curve.h"
 #include "study/study.h"
 
 enum { SUGGESTION_TEXT = 64, MAX_THREADS = 1024 };
@@ -222,7 +223,9 @@ static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
-    if (args->given[option] && o->value != NULL && option != MT_OPT_SET) {
+    const bool repeats =
+        option == MT_OPT_SET || option == MT_OPT_INPUT || option == MT_OPT_SEEN;
+    if (args->given[option] && o->value != NULL && !repeats) {
         return mt_fail(err, MT_E_USAGE, "--%s is given twice", o->name);
     }
     args->given[option] = true;
@@ -237,6 +240,16 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     case MT_OPT_SET:
         args->sets[args->n_sets++] = value;
         return MT_OK;
+    case MT_OPT_INPUT:
+        args->inputs[args->n_inputs++] = value;
+        return MT_OK;
+    case MT_OPT_SEEN:
+        args->outputs[args->n_outputs++] = value;
+        return MT_OK;
+    case MT_OPT_POINTS:
+        return read_count(value, o->name, MT_CURVE_MOST, &args->points, err);
+    case MT_OPT_KEEP:
+        return read_count(value, o->name, INT_MAX, &args->keep, err);
     case MT_OPT_COUNT:
         return read_count(value, o->name, INT_MAX, &args->count, err);
     case MT_OPT_RANK:
@@ -365,7 +378,10 @@ mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
     *out = (mt_args){.command = MT_CMD_NONE, .rank = 1, .threads = 1};
     out->operands = calloc(room, sizeof *out->operands);
     out->sets = calloc(room, sizeof *out->sets);
-    if (out->operands == NULL || out->sets == NULL) {
+    out->inputs = calloc(room, sizeof *out->inputs);
+    out->outputs = calloc(room, sizeof *out->outputs);
+    if (out->operands == NULL || out->sets == NULL || out->inputs == NULL ||
+        out->outputs == NULL) {
         return mt_fail(err, MT_E_MEMORY, "out of memory");
     }
     for (int i = 1; i < argc; i++) {
@@ -392,5 +408,7 @@ void mt_args_free(mt_args *args)
     free((void *)args->operands);
     free((void *)args->sets);
     free(args->result_path);
+    free((void *)args->inputs);
+    free((void *)args->outputs);
     *args = (mt_args){.command = MT_CMD_NONE};
 }

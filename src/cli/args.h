@@ -24,6 +24,16 @@ typedef enum mt_option_id {
     MT_OPT_SVG,
     MT_OPT_MODE,
     MT_OPT_PARAMETERS,
+    MT_OPT_INPUT,
+    MT_OPT_SEEN,
+    MT_OPT_FROM,
+    MT_OPT_TO,
+    MT_OPT_POINTS,
+    MT_OPT_LOG,
+    MT_OPT_KEEP,
+    MT_OPT_DIRECT,
+    MT_OPT_POLES,
+    MT_OPT_SENSITIVITY,
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,
@@ -58,6 +68,7 @@ typedef enum mt_command_id {
     MT_CMD_MAC,
     MT_CMD_SWEEP,
     MT_CMD_SENSITIVITY,
+    MT_CMD_RESPONSE,
     MT_CMD_INFO,
     MT_CMD_SHOW,
     MT_CMD_REPORT,
@@ -144,7 +155,13 @@ typedef struct mt_args {
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
     int n_sets;
     const char **sets; /* --set, in order; [argc] */
-    int part;          /* --shard PART/PARTS; 0: all of it */
+    int points;        /* --points, 0: not given */
+    int keep;          /* --modes N, 0: not given */
+    int n_inputs;
+    const char **inputs; /* --input, in order; [argc] */
+    int n_outputs;
+    const char **outputs; /* --output of response, in order; [argc] */
+    int part;             /* --shard PART/PARTS; 0: all of it */
     int parts;
     int n_journals; /* of merge */
     const char *const *journals;

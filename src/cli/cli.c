@@ -61,6 +61,14 @@ int mt_cli_json_done(mt_json_writer *w)
     return MT_EXIT_NUMERICAL;
 }
 
+void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", configuration);
+    mt_json_put_string(w, "error", err->text);
+    mt_json_close(w);
+}
+
 void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out)
 {
     for (int i = 0; i < list->n; i++) {

@@ -22,6 +22,7 @@ int mt_cmd_modes(const mt_args *args, mt_text *out);
 int mt_cmd_mac(const mt_args *args, mt_text *out);
 int mt_cmd_sweep(const mt_args *args, mt_text *out);
 int mt_cmd_sensitivity(const mt_args *args, mt_text *out);
+int mt_cmd_response(const mt_args *args, mt_text *out);
 int mt_cmd_info(const mt_args *args, mt_text *out);
 int mt_cmd_show(const mt_args *args, mt_text *out);
 int mt_cmd_report(const mt_args *args, mt_text *out);
@@ -49,6 +50,8 @@ mt_io_options mt_cli_io(const mt_args *args);
 /* The recommendation that --rank asks for. Fails: MT_E_USAGE. */
 mt_status mt_cli_recommendation(const mt_args *args, const mt_result *result,
                                 const mt_recommendation **out, mt_err *err);
+/* A configuration in a list of answers, and why there is none. */
+void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_err *err);
 /* Close a JSON output: MT_EXIT_DONE, or a complaint and its exit status. */
 int mt_cli_json_done(mt_json_writer *w);
 /* Doubts and facts of a configuration, one line each, before its table. */

@@ -216,11 +216,7 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
             break; /* the same for every configuration */
         }
         if (rc != MT_OK && json) {
-            mt_json_open(&w, NULL, '{');
-            mt_json_put_string(&w, "configuration",
-                               mt_subject_configuration(&s, s.configurations[i]));
-            mt_json_put_string(&w, "error", err.text);
-            mt_json_close(&w);
+            mt_cli_json_failed(&w, mt_subject_configuration(&s, s.configurations[i]), &err);
         }
     }
     if (list) {

@@ -290,10 +290,7 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
             break;
         }
     } else if (to->args->format == MT_FORMAT_JSON) {
-        mt_json_open(&to->w, NULL, '{');
-        mt_json_put_string(&to->w, "configuration", j.v.configuration);
-        mt_json_put_string(&to->w, "error", err.text);
-        mt_json_close(&to->w);
+        mt_cli_json_failed(&to->w, j.v.configuration, &err);
     }
     if (j.a == NULL) {
         mt_linear_delete(j.lin);

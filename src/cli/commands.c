@@ -6,7 +6,7 @@
 #define BIT(command) (1U << (unsigned)(command))
 #define ON_MODELS                                                                         \
     (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO) | \
-     BIT(MT_CMD_SHOW))
+     BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SHOW))
 #define SOLVES     (BIT(MT_CMD_RUN) | BIT(MT_CMD_MERGE))
 #define ON_STUDIES (SOLVES | BIT(MT_CMD_COMPARE))
 
@@ -51,6 +51,35 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "with --svg: vibration mode N beside the shape at rest"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
+    OPTION(MT_OPT_INPUT, '\0', "input", "PORT", BIT(MT_CMD_RESPONSE),
+           "what shakes: grip.x, the force (grip.rx: moment) along a direction of a sensor, or "
+           "base.x, the acceleration of the ground (base.x:displacement, base.x:velocity); may "
+           "be repeated"),
+    OPTION(MT_OPT_SEEN, '\0', "output", "PORT", BIT(MT_CMD_RESPONSE),
+           "what is looked at: grip.x, grip.x:velocity, grip.x:acceleration, a sensor's motion "
+           "in space (grip.x:relative_acceleration: against the ground), spring.NAME or "
+           "damper.NAME, the force or torque in it, joint.NAME.x, the force of a joint's first "
+           "body on its second; may be repeated (default: the displacements of all sensors)"),
+    OPTION(MT_OPT_FROM, '\0', "from", "HZ", BIT(MT_CMD_RESPONSE),
+           "lowest frequency (default: a quarter of the first vibration mode's)"),
+    OPTION(MT_OPT_TO, '\0', "to", "HZ", BIT(MT_CMD_RESPONSE),
+           "highest frequency (default: twice that of the sixth vibration mode, or of the "
+           "last)"),
+    OPTION(MT_OPT_POINTS, '\0', "points", "N", BIT(MT_CMD_RESPONSE),
+           "frequencies of the grid (default: 50); JSON and CSV have those besides that show "
+           "every peak, and what lies between, to 1 %"),
+    OPTION(MT_OPT_LOG, '\0', "log", NULL, BIT(MT_CMD_RESPONSE),
+           "the grid in equal ratios, not in equal steps"),
+    OPTION(MT_OPT_KEEP, '\0', "modes", "N", BIT(MT_CMD_RESPONSE),
+           "by the lowest N modes, rigid-body ones included; the others follow statically "
+           "(default: by all of them)"),
+    OPTION(MT_OPT_DIRECT, '\0', "direct", NULL, BIT(MT_CMD_RESPONSE),
+           "by a factor of the dynamic stiffness at every frequency, without modes"),
+    OPTION(MT_OPT_POLES, '\0', "poles", NULL, BIT(MT_CMD_RESPONSE),
+           "poles and residues, of which every response is the sum: H(s) = sum of residue/(s - "
+           "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (in the text the poles alone)"),
+    OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
+           "change of every peak and antiresonance for one per cent more of these parameters"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
            SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES) | BIT(MT_CMD_SHOW),
            "folder for the results (default of run: results, in the current one; of report: "
@@ -186,6 +215,16 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "change of each frequency per per cent of each parameter",
             "Prints exact derivatives: Hz for one per cent more of a parameter, for the first "
             "modes (default: 6). Repeated modes have directional values, given as a set."),
+    COMMAND(
+        MT_CMD_RESPONSE, "response", "MODEL", 1, 1, "how forces and a moving ground shake it",
+        "Prints the frequency response of each output to each input, about the equilibrium, "
+        "with the model's damping: peaks and antiresonances, to all digits, then magnitude and "
+        "phase over frequency. Phases are those of the output against the input, below 0 where "
+        "it lags. At the resonance of a mode that nothing damps the response has no value, "
+        "which is said. A value's error, in JSON and CSV, bounds what rounding has made of "
+        "it.\n"
+        "A configuration that is unstable, or whose stability rounding hides, is refused, and "
+        "so is the force of a joint that is redundant with others."),
     COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
             "masses, mobility and redundancies of each configuration",
             "Prints the total mass, its centre and inertia, the freedoms, and the sets of "

@@ -17,6 +17,7 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_MAC] = mt_cmd_mac,
     [MT_CMD_SWEEP] = mt_cmd_sweep,
     [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
+    [MT_CMD_RESPONSE] = mt_cmd_response,
     [MT_CMD_INFO] = mt_cmd_info,
     [MT_CMD_SHOW] = mt_cmd_show,
     [MT_CMD_REPORT] = mt_cmd_report,

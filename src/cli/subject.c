@@ -110,6 +110,74 @@ void mt_subject_free(mt_subject *s)
     memset(s, 0, sizeof *s);
 }
 
+mt_status mt_subject_number(mt_subject *s, const char *option, const char *text, size_t length,
+                            double *out, mt_err *err)
+{
+    const int n = s->model->n_parameters;
+    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
+    const char *const copy = mt_arena_strndup(&s->mem, text, length);
+    mt_expr e;
+    MT_TRY(mt_arena_check(&s->mem, err));
+    for (int i = 0; i < n; i++) {
+        names[i] = s->model->parameters[i].name.s;
+    }
+    mt_status rc = mt_expr_parse(copy, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
+    if (rc == MT_OK) {
+        rc = mt_model_expr_value(s->model, s->values, &e, &s->mem, out, err);
+    }
+    return rc == MT_OK
+               ? rc
+               : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--%s: %s", option, copy);
+}
+
+static mt_status add_parameter(const mt_model *model, const char *option, const char *name,
+                               mt_arena *mem, int *n, int *out, mt_err *err)
+{
+    const int found = mt_model_find_parameter(model, name);
+    if (found == MT_ABSENT) {
+        const char **const names =
+            mt_arena_alloc(mem, (size_t)model->n_parameters, sizeof *names);
+        MT_TRY(mt_arena_check(mem, err));
+        for (int i = 0; i < model->n_parameters; i++) {
+            names[i] = model->parameters[i].name.s;
+        }
+        const char *const nearest = mt_text_nearest(name, names, model->n_parameters);
+        return mt_fail(err, MT_E_USAGE, "--%s: unknown parameter \"%s\"%s%s%s", option, name,
+                       nearest == NULL ? "" : "; did you mean \"",
+                       nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
+    }
+    for (int i = 0; i < *n; i++) {
+        if (out[i] == found) {
+            return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is given twice", option, name);
+        }
+    }
+    out[(*n)++] = found;
+    return MT_OK;
+}
+
+mt_status mt_subject_parameters(const mt_subject *s, const char *option, const char *list,
+                                mt_arena *mem, int *n, int **out, mt_err *err)
+{
+    const mt_model *const model = s->model;
+    *n = 0;
+    *out = mt_arena_int(mem, (size_t)model->n_parameters);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; list == NULL && i < model->n_parameters; i++) {
+        if (mt_model_parameter_follows(model, i) == 0) {
+            (*out)[(*n)++] = i;
+        }
+    }
+    while (list != NULL && *list != '\0') {
+        const size_t length = strcspn(list, ",");
+        const char *const name = mt_arena_strndup(mem, list, length);
+        MT_TRY(mt_arena_check(mem, err));
+        MT_TRY(add_parameter(model, option, name, mem, n, *out, err));
+        list += length + (list[length] == ',' ? 1 : 0);
+    }
+    return *n > 0 ? MT_OK
+                  : mt_fail(err, MT_E_INPUT, "%s: there are no parameters to vary", s->path);
+}
+
 mt_status mt_subject_analyse(const mt_subject *s, int c, int first, mt_analysis **out,
                              mt_err *err)
 {

@@ -23,53 +23,6 @@ static bool is_overridden(const mt_survey *v, int parameter)
     return false;
 }
 
-static mt_status add_parameter(mt_survey *v, const char *name, mt_err *err)
-{
-    const mt_model *const model = v->s->model;
-    const int found = mt_model_find_parameter(model, name);
-    if (found == MT_ABSENT) {
-        const char **const names =
-            mt_arena_alloc(&v->mem, (size_t)model->n_parameters, sizeof *names);
-        MT_TRY(mt_arena_check(&v->mem, err));
-        for (int i = 0; i < model->n_parameters; i++) {
-            names[i] = model->parameters[i].name.s;
-        }
-        const char *const nearest = mt_text_nearest(name, names, model->n_parameters);
-        return mt_fail(err, MT_E_USAGE, "--parameters: unknown parameter \"%s\"%s%s%s", name,
-                       nearest == NULL ? "" : "; did you mean \"",
-                       nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
-    }
-    for (int i = 0; i < v->n; i++) {
-        if (v->parameter[i] == found) {
-            return mt_fail(err, MT_E_USAGE, "--parameters: \"%s\" is given twice", name);
-        }
-    }
-    v->parameter[v->n++] = found;
-    return MT_OK;
-}
-
-static mt_status choose_parameters(mt_survey *v, const char *list, mt_err *err)
-{
-    const mt_model *const model = v->s->model;
-    v->parameter = mt_arena_int(&v->mem, (size_t)model->n_parameters);
-    MT_TRY(mt_arena_check(&v->mem, err));
-    for (int i = 0; list == NULL && i < model->n_parameters; i++) {
-        if (mt_model_parameter_follows(model, i) == 0) {
-            v->parameter[v->n++] = i;
-        }
-    }
-    while (list != NULL && *list != '\0') {
-        const size_t length = strcspn(list, ",");
-        const char *const name = mt_arena_strndup(&v->mem, list, length);
-        MT_TRY(mt_arena_check(&v->mem, err));
-        MT_TRY(add_parameter(v, name, err));
-        list += length + (list[length] == ',' ? 1 : 0);
-    }
-    return v->n > 0
-               ? MT_OK
-               : mt_fail(err, MT_E_INPUT, "%s: there are no parameters to vary", v->s->path);
-}
-
 /* Which modes, once; later analyses have the same ones. */
 static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_err *err)
 {
@@ -238,7 +191,8 @@ mt_status mt_survey_take(const mt_subject *s, int c, const char *parameters, int
     v->s = s;
     v->c = c;
     MT_TRY(mt_arena_init(&v->mem, 0, err));
-    MT_TRY(choose_parameters(v, parameters, err));
+    MT_TRY(
+        mt_subject_parameters(s, "parameters", parameters, &v->mem, &v->n, &v->parameter, err));
     MT_TRY(find_values(v, err));
     return carry_out(v, modes, err);
 }

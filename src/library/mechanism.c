@@ -11,6 +11,9 @@
 #include "base/text.h"
 #include "model/judge.h"
 #include "model/values.h"
+#include "response/response.h"
+
+static const double TWO_PI = 6.283185307179586477;
 
 struct mt_mechanism {
     mt_analysis *a; /* owned */
@@ -343,4 +346,120 @@ mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes, double 
                                        hz_per_unit + ((ptrdiff_t)p * modes), &why, err));
     }
     return MT_OK;
+}
+
+static mt_status check_ports(const mt_mechanism *m, const mt_ports *ports, const char *function,
+                             mt_err *err)
+{
+    if (ports->n_inputs < 0 || ports->n_outputs < 0) {
+        return mt_fail(err, MT_E_USAGE, "%s: a number of ports is negative", function);
+    }
+    if ((ports->n_inputs > 0 && ports->inputs == NULL) ||
+        (ports->n_outputs > 0 && ports->outputs == NULL)) {
+        return mt_fail(err, MT_E_USAGE, "%s: ports is without its names", function);
+    }
+    for (int i = 0; i < ports->n_inputs + ports->n_outputs; i++) {
+        const bool input = i < ports->n_inputs;
+        if ((input ? ports->inputs[i] : ports->outputs[i - ports->n_inputs]) == NULL) {
+            return mt_fail(err, MT_E_USAGE, "%s: the name of a port is NULL", function);
+        }
+    }
+    return m->has_none
+               ? mt_fail(err, MT_E_USAGE, "%s: the last evaluation has failed", function)
+               : MT_OK;
+}
+
+static mt_status check_hz(double hz, const char *function, mt_err *err)
+{
+    return hz > 0.0 && isfinite(TWO_PI * hz)
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE, "%s: a frequency is not above 0", function);
+}
+
+static mt_response_request request_of(const mt_ports *ports)
+{
+    return (mt_response_request){.n_in = ports->n_inputs,
+                                 .inputs = ports->inputs,
+                                 .n_out = ports->n_outputs,
+                                 .outputs = ports->outputs};
+}
+
+/* Both parts of n numbers; NaN of what has no value. */
+static void store(ptrdiff_t n, const double complex *h, double *re, double *im)
+{
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const bool has = isfinite(creal(h[i])) && isfinite(cimag(h[i]));
+        re[i] = has ? creal(h[i]) : nan("");
+        im[i] = has ? cimag(h[i]) : nan("");
+    }
+}
+
+static mt_status respond(mt_response *r, int n, const double *hz, double *re, double *im,
+                         double *error, mt_err *err)
+{
+    const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_in * r->ports.n_out;
+    double complex *const h = mt_arena_alloc(&r->mem, (size_t)pairs, sizeof *h);
+    MT_TRY(mt_arena_check(&r->mem, err));
+    for (ptrdiff_t i = 0; i < n; i++) {
+        double *const own = error == NULL ? NULL : error + (i * pairs);
+        const mt_sample at = {.h = h, .error = own};
+        MT_TRY(mt_transfer_at(r->chosen, TWO_PI * hz[i], &at, &r->mem, err));
+        store(pairs, h, re + (i * pairs), im + (i * pairs));
+        for (ptrdiff_t k = 0; k < pairs && own != NULL; k++) {
+            own[k] = isfinite(own[k]) ? own[k] : nan("");
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_mechanism_response(mt_mechanism *mechanism, const mt_ports *ports, int n,
+                                const double *hz, double *re, double *im, double *error,
+                                mt_err *err)
+{
+    MT_NOT_NULL(mechanism, err);
+    MT_NOT_NULL(ports, err);
+    MT_NOT_NULL(hz, err);
+    MT_NOT_NULL(re, err);
+    MT_NOT_NULL(im, err);
+    MT_TRY(check_ports(mechanism, ports, __func__, err));
+    for (int i = 0; i < n; i++) {
+        MT_TRY(check_hz(hz[i], __func__, err));
+    }
+    mt_response r = {.a = NULL};
+    const mt_response_request request = request_of(ports);
+    mt_status rc = mt_response_open(mechanism->a, &request, &r, err);
+    rc = rc == MT_OK ? respond(&r, n, hz, re, im, error, err) : rc;
+    mt_response_free(&r);
+    return rc;
+}
+
+mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *ports,
+                                       double hz, double *re, double *im, mt_err *err)
+{
+    MT_NOT_NULL(mechanism, err);
+    MT_NOT_NULL(ports, err);
+    if (mechanism->n_inputs > 0) {
+        MT_NOT_NULL(re, err);
+        MT_NOT_NULL(im, err);
+    }
+    MT_TRY(check_ports(mechanism, ports, __func__, err));
+    MT_TRY(check_hz(hz, __func__, err));
+    if (!mechanism->a->with_gradient) {
+        mechanism->slopes = true;
+        MT_TRY(solve(mechanism, err));
+    }
+    mt_response r = {.a = NULL};
+    const mt_response_request request = request_of(ports);
+    mt_status rc = mt_response_open(mechanism->a, &request, &r, err);
+    if (rc == MT_OK) {
+        const ptrdiff_t size = (ptrdiff_t)r.ports.n_in * r.ports.n_out * mechanism->n_inputs;
+        double complex *const dh = mt_arena_alloc(&r.mem, (size_t)size, sizeof *dh);
+        rc = mt_arena_check(&r.mem, err);
+        rc = rc == MT_OK ? mt_response_slopes_at(&r, TWO_PI * hz, dh, err) : rc;
+        if (rc == MT_OK) {
+            store(size, dh, re, im);
+        }
+    }
+    mt_response_free(&r);
+    return rc;
 }

@@ -373,3 +373,53 @@ mt_status mt_linear_mass_product(mt_linear *lin, const double *y, double *w, mt_
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }
+
+static sum sum_of(mt_matrix matrix)
+{
+    static const sum *const sums[] = {[MT_MATRIX_STIFFNESS] = &STIFFNESS,
+                                      [MT_MATRIX_LOSS] = &STRUCTURAL,
+                                      [MT_MATRIX_DAMPERS] = &DAMPING,
+                                      [MT_MATRIX_MASS] = &MASS};
+    return *sums[matrix];
+}
+
+void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double scale,
+                              const double *phi, double *out)
+{
+    const int nq = lin->sys->nq;
+    full_product(lin, sum_of(matrix), scale, phi, out);
+    if (matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL) {
+        mt_gemv(false, nq, nq, scale, lin->kg, nq, phi, 1.0, out);
+    }
+}
+
+double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *a,
+                               const double *b)
+{
+    const sum s = sum_of(matrix);
+    const mt_term_list *const list = &lin->list[s.kind];
+    const mt_rows *const rows = &lin->full[s.kind];
+    const mt_rows *const drows = is_moved(lin, p) ? &lin->tangent[p].rows[s.kind] : NULL;
+    const ptrdiff_t nq = lin->sys->nq;
+    double out = 0.0;
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        if (is_blocked(lin, s.kind, i, t)) {
+            continue;
+        }
+        const int other = partner(t, i);
+        const double half = t->pair ? 0.5 : 1.0;
+        const double left = mt_rows_dot(rows, i, a);
+        const double right = mt_rows_dot(rows, other, b);
+        out += half * weight_slope(lin, s, t, p) * left * right;
+        if (drows != NULL) {
+            out += half * weight(lin, s, t) *
+                   ((mt_rows_dot(drows, i, a) * right) + (left * mt_rows_dot(drows, other, b)));
+        }
+    }
+    for (ptrdiff_t c = 0;
+         c < nq && drows != NULL && matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL; c++) {
+        out += b[c] * mt_dot((int)nq, lin->tangent[p].kg + (c * nq), a);
+    }
+    return out;
+}

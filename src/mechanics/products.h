@@ -19,6 +19,21 @@ mt_status mt_linear_damping_products(mt_linear *lin, int p, int cols, const doub
  * lambda M_r y. O(entries of the terms that an input touches); cheaper than the products. */
 mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, double *slope,
                            mt_err *err);
+/* K with its geometric part, what the loss factors make of it without that (H), C of the
+ * dampers, M. */
+typedef enum mt_matrix {
+    MT_MATRIX_STIFFNESS,
+    MT_MATRIX_LOSS,
+    MT_MATRIX_DAMPERS,
+    MT_MATRIX_MASS
+} mt_matrix;
+/* out[nq] += scale times one of them over the states times phi (nq). */
+void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double scale,
+                              const double *phi, double *out);
+/* a^T (its derivative with respect to input p, over the states) b, after an update with
+ * gradients. */
+double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *a,
+                               const double *b);
 /* w[nq] += (K - lambda M) phi over the states, without the geometric part of K. */
 void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w);
 /* Values of channels channel[ns] for shapes y (n x cols): s ns x cols. */

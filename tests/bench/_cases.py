@@ -5,6 +5,7 @@ import math
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from _tables import PROGRAM, run
@@ -215,3 +216,24 @@ def watched(study, folder):
 
 if __name__ == "__main__":
     print(*map(repr, rigid_reference(int(sys.argv[1]))))
+
+
+def chain_response(n, coupled, frequencies=1000):
+    """The chain of bench_response.c solved by NumPy, all frequencies at once: CPU seconds, (w, responses of all masses), no memory told."""
+    import numpy  # not needed by the other tables
+
+    i = numpy.arange(n)
+    k, c = 1e4 * (1 + 0.05 * i), numpy.zeros(n)
+    c[-1 if coupled else slice(None)] = 1e-2 * k[-1] if coupled else 1e-4 * k
+
+    def banded(x):
+        return numpy.diag(x + numpy.append(x[1:], 0)) - numpy.diag(x[1:], 1) - numpy.diag(x[1:], -1)
+
+    w = 0.1 + (200.0 - 0.1) * numpy.arange(frequencies) / (frequencies - 1)
+    push = numpy.zeros((n, 1))
+    push[-1] = 1
+    mass, damping, stiffness = numpy.diag(1 + 0.1 * i), banded(c), banded(k)
+    start = time.process_time()
+    d = stiffness - (w**2)[:, None, None] * mass + 1j * w[:, None, None] * damping
+    h = numpy.linalg.solve(d, numpy.broadcast_to(push, (frequencies, n, 1)))[:, :, 0]
+    return time.process_time() - start, (w, h), 0.0

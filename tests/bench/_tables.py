@@ -29,6 +29,7 @@ COLUMNS = {
     "studies": ("study", "runs", "cpu_s", "spread_s", "peak_mib", "evaluations", "error", "status"),
     "designs": ("study", "variables", "runs", "first_cpu_s", "best_cpu_s", "proof_cpu_s", "cpu_s", "spread_s", "peak_mib", "first_evaluations",
                 "best_evaluations", "evaluations", "multiplications", "status", "proven", "error"),
+    "response": ("problem", "freedoms", "outputs", "way", "frequencies", "cpu_s", "spread_s", "error"),
     "asked": ("what", "asked", "measured", "unit", "reached", "error"),
 }
 

@@ -15,6 +15,7 @@ search      distance from the best known answer by evaluations and CPU time (ben
 studies     whole studies, from their files to their answers
 designs     studies of tests/bench/studies and shipped ones: CPU time to the first design that meets all goals, to the best, to what is
             proven of them, to the answer
+response    a thousand frequencies of forced vibration: by modes, directly, and by NumPy (bench_response)
 asked       what was to be reached beside what the other tables measured
 Times are CPU seconds of one thread, what is compared runs in turn, and each gets the median of its runs with the spread
 (largest less smallest) beside it. What is not installed is left out and named. SOURCE_DIR, BUILD_DIR and MODETUNE as in the tests.
@@ -212,6 +213,20 @@ class Bench:
                   [{k: v for k, v in {"study": name, "runs": runs, **times, **answer}.items() if v is not None and v == v}
                    for name, (times, answer) in done.items()])
 
+    def response(self):
+        rows = rows_of([PROGRAMS / "bench_response", *self.flags])
+        for n, coupled in ((10, 0), (10, 1), (40, 0), (40, 1)):
+            solved = side_by_side({"NumPy": partial(cases.chain_response, n, coupled)}, 1 if self.quick else 5)["NumPy"]
+            with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
+                w, h = solved[1]
+                for x, row in zip(w, h):
+                    file.write(" ".join([repr(float(x))] + [f"{z.real!r} {z.imag!r}" for z in map(complex, row)]) + "\n")
+                file.flush()
+                error = rows_of([PROGRAMS / "bench_response", n, coupled, file.name])[0]["error"]
+            rows.append({"problem": "coupled chain" if coupled else "chain", "freedoms": n, "outputs": n, "way": "NumPy", "frequencies": len(w),
+                         "cpu_s": solved[0]["cpu_s"], "spread_s": solved[0]["spread_s"], "error": error})
+        self.tell("response", "a thousand frequencies; errors in parts of the largest value", rows)
+
     def asked(self):
         def of(table, column, **want):
             return next((r for r in self.rows.get(table, ()) if all(r[k] == v for k, v in want.items())), {}).get(column, math.nan)
@@ -225,6 +240,8 @@ class Bench:
             ("10-bar truss answered", "truss_10bar_E69_8", 0.05), ("72-bar truss answered", "truss_72bar", 0.5),
             ("six masses ranked and proven", "six_masses_bands", 0.03), ("inceptor identified", "inceptor_identification", 1.0))]
         rows += [("designs per second and core, affine, 4 masses", ">=", 3e5, rate, "1/s", of("evaluation", "error", study="chain_4", way="values")),
+                 ("inceptor's response, 1000 frequencies, all sensors", "<=", 2e-3, of("response", "cpu_s", problem="inceptor", way="modes"), "s",
+                  of("response", "error", problem="inceptor", way="modes")),
                  ("100,000 beam elements, CalculiX's time over ours", ">=", 5, of("peers", "ratio", way="CalculiX B31", elements=100000), "",
                   of("peers", "error", way="modetune", elements=100000))]
         self.tell("asked", "asked, and measured in this run", [

@@ -120,6 +120,13 @@ static const struct {
     {"sensitivity " MODELS "ring.json", MT_EXIT_SYSTEM, SHORT},
     {"sensitivity " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
+    {"response --input tip.x " MODELS "pendulum.json -c hanging", MT_EXIT_DONE, AS_IT_IS},
+    {"response --input tip.q " MODELS "pendulum.json -c hanging", MT_EXIT_INPUT, AS_IT_IS},
+    {"response --input tip.x " MODELS "pendulum.json -c upside_down", MT_EXIT_NUMERICAL,
+     AS_IT_IS},
+    {"response --input tip.x " MODELS "pendulum.json -c hanging", MT_EXIT_SYSTEM, SHORT},
+    {"response --input tip.x " MODELS "pendulum.json -c hanging", MT_EXIT_SYSTEM, FULL},
+
     {"info " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
     {"info --set xyz=1 " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
     {"info %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
@@ -201,6 +208,7 @@ static const struct {
     [MT_CMD_MAC] = {"mac", {true, false, true, true, true, false}},
     [MT_CMD_SWEEP] = {"sweep", {true, false, true, true, true, false}},
     [MT_CMD_SENSITIVITY] = {"sensitivity", {true, false, true, true, true, false}},
+    [MT_CMD_RESPONSE] = {"response", {true, false, true, true, true, false}},
     [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
     [MT_CMD_SHOW] = {"show", {true, false, true, false, true, false}},
     [MT_CMD_REPORT] = {"report", {true, false, true, false, true, false}},

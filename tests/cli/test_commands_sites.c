@@ -44,6 +44,9 @@ static const struct {
     {"sensitivity " MODELS "space_frame.json", MT_EXIT_DONE},
     {"sensitivity --format json " MODELS "ring.json", MT_EXIT_DONE},
     {"sensitivity --format csv " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"response --input tip.x --output tip.y:velocity --sensitivity k -c still --points 3 "
+     "--from 1 --to 2 " MODELS "four_bar.json",
+     MT_EXIT_DONE},
     {"info " MODELS "space_stick.json", MT_EXIT_DONE},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},

@@ -30,6 +30,7 @@ LINES = {
     "mac": ["mac", "problems/model.json:held", "problems/model.json:twice"],
     "sweep": ["sweep", "problems/model.json", "-c", "held", "--drive", "ra=-0.1:0.1:3", "--modes"],
     "sensitivity": ["sensitivity", "problems/model.json", "-c", "held", "--format", "csv"],
+    "response": ["response", "problems/model.json", "-c", "held", "--input", "a.x", "--format", "csv"],
     "info": ["info", "problems/model.json", "--format", "json"],
     "check": ["check", "studies/two.json", "results/two/result.json"],
     "catalogue": ["check", str(SOURCE / "studies/inceptor_rotor.json")],

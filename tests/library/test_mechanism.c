@@ -297,6 +297,45 @@ static void mechanism__repeated_modes_split_along_directions(mt_test *t)
     mt_model_delete(model);
 }
 
+/* The first mass pushed: H_aa = (k2 - m w^2)/det, H_ba = k2/det, and their slopes by k2. */
+static void mechanism__responses_are_those_of_the_closed_form(mt_test *t)
+{
+    static const char *const names[] = {"k2"};
+    static const char *const input = "a.x";
+    static const mt_ports ports = {.n_inputs = 1, .inputs = &input};
+    static const double HZ[] = {0.05, 0.2, 0.7};
+    mt_model *const model = from_text(t, &two_masses);
+    mt_mechanism *m = NULL;
+    double re[6];
+    double im[6];
+    double error[6];
+    REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &m, NULL) == MT_OK);
+    CHECK_INT(t, mt_mechanism_response(m, &ports, 3, HZ, re, im, error, NULL), MT_OK);
+    for (int i = 0; i < 3; i++) {
+        const double x = 4.0 * PI * PI * HZ[i] * HZ[i];
+        const double det = ((4.0 - x) * (1.0 - x)) - 1.0;
+        const double ddet = (1.0 - x) + (4.0 - x) - 2.0;
+        double slope[2];
+        double slope_im[2];
+        mt_test_row(t, "%g Hz", HZ[i]);
+        CHECK_NEAR(t, re[2 * i], (1.0 - x) / det, 1e-12);
+        CHECK_NEAR(t, re[(2 * i) + 1], 1.0 / det, 1e-12);
+        CHECK_NEAR_ABS(t, im[2 * i], 0.0, 0.0);
+        CHECK(t, error[2 * i] > 0.0 && error[2 * i] < 1e-12);
+        CHECK_INT(t, mt_mechanism_response_slopes(m, &ports, HZ[i], slope, slope_im, NULL),
+                  MT_OK);
+        CHECK_NEAR(t, slope[0], (1.0 / det) - ((1.0 - x) * ddet / (det * det)), 1e-11);
+        CHECK_NEAR(t, slope[1], (1.0 / det) - (ddet / (det * det)), 1e-11);
+    }
+    mt_err err = {MT_OK, ""};
+    const double zero = 0.0;
+    CHECK_INT(t, mt_mechanism_response(m, &ports, 1, &zero, re, im, NULL, &err), MT_E_USAGE);
+    static const mt_ports none = {.n_inputs = 1};
+    CHECK_INT(t, mt_mechanism_response(m, &none, 1, HZ, re, im, NULL, &err), MT_E_USAGE);
+    mt_mechanism_delete(m);
+    mt_model_delete(model);
+}
+
 /* Reading from memory, making, evaluating, and asking for everything, with the k-th allocation
  * refused. */
 static mt_status use_everything(void)
@@ -308,7 +347,7 @@ static mt_status use_everything(void)
     mt_read_options opt = given;
     mt_model *model = NULL;
     mt_mechanism *m = NULL;
-    double room[4];
+    double room[8];
     mt_status rc = mt_diagnostics_new(&opt.diagnostics, NULL);
     rc = rc == MT_OK ? mt_model_read("two.json", &opt, &model, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_new(model, NULL, 2, names, &m, NULL) : rc;
@@ -316,6 +355,10 @@ static mt_status use_everything(void)
     rc = rc == MT_OK ? mt_mechanism_shape(m, 1, room, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_mac(m, 2, m, 2, room, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_sensitivities(m, 2, room, NULL) : rc;
+    static const char *const input = "a.x";
+    static const mt_ports ports = {.n_inputs = 1, .inputs = &input};
+    rc = rc == MT_OK ? mt_mechanism_response(m, &ports, 1, at, room, room + 2, NULL, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_response_slopes(m, &ports, 2.0, room, room + 4, NULL) : rc;
     mt_mechanism_delete(m);
     mt_model_delete(model);
     mt_diagnostics_delete(opt.diagnostics);
@@ -387,6 +430,7 @@ MT_TEST_MAIN(MT_TEST(mechanism__frequencies_are_those_of_the_closed_form),
              MT_TEST(mechanism__shapes_solve_the_equations),
              MT_TEST(mechanism__mac_compares_two_designs),
              MT_TEST(mechanism__sensitivities_are_those_of_the_closed_form),
+             MT_TEST(mechanism__responses_are_those_of_the_closed_form),
              MT_TEST(mechanism__repeated_modes_split_along_directions),
              MT_TEST(mechanism__every_failing_allocation_is_survived),
              MT_TEST(mechanism__threads_share_a_model))

@@ -43,6 +43,11 @@ static int finish = MT_WISH_FINISH;
 #define ARG(k, pointer) (null == (k) ? NULL : (pointer))
 /* An answer, or nothing, as a status: what is not there is MT_E_USAGE. */
 #define ANSWER(is) ((is) ? MT_OK : MT_E_USAGE)
+#define GIVES(name, call)                  \
+    static mt_status call_##name(int null) \
+    {                                      \
+        return call;                       \
+    }
 #define TELLS(name, is)                    \
     static mt_status call_##name(int null) \
     {                                      \
@@ -190,12 +195,16 @@ static mt_status call_mechanism_mac(int null)
                             ARG(3, &said));
 }
 
-static mt_status call_mechanism_sensitivities(int null)
-{
-    double slope[1];
-    return mt_mechanism_sensitivities(ARG(0, mechanism), 1, ARG(1, slope), ARG(2, &said));
-}
-
+static double part[8];
+GIVES(mechanism_sensitivities,
+      mt_mechanism_sensitivities(ARG(0, mechanism), 1, ARG(1, part), ARG(2, &said)))
+static const mt_ports ports = {.n_inputs = 1, .inputs = (const char *const[]){"base.x"}};
+GIVES(mechanism_response,
+      mt_mechanism_response(ARG(0, mechanism), ARG(1, &ports), 1, ARG(2, one), ARG(3, part),
+                            ARG(4, part), ARG(5, part), ARG(6, &said)))
+GIVES(mechanism_response_slopes,
+      mt_mechanism_response_slopes(ARG(0, mechanism), ARG(1, &ports), 0.25, ARG(2, part),
+                                   ARG(3, part), ARG(4, &said)))
 static mt_status call_study_read(int null)
 {
     mt_study *out = null == 0 ? study : NULL;
@@ -398,6 +407,8 @@ static const struct {
     ROW(mechanism_shape, "rra"),
     ROW(mechanism_mac, "rrra"),
     ROW(mechanism_sensitivities, "rra"),
+    ROW(mechanism_response, "rrrrraa"),
+    ROW(mechanism_response_slopes, "rrrra"),
     ROW(study_read, "rara"),
     ROW(study_delete, "a"),
     ROW(study_title, "n"),

@@ -124,6 +124,7 @@ def commands(rng, case):
         yield ["info", file, *form()]
         yield ["modes", file, *form(), *rng.choice(([], ["--shapes"], ["--damped"], ["--shapes", "--damped", "--count", "3"]))]
         yield ["sensitivity", file, *form()]
+        yield ["response", file, "--input", "base.x", "--points", "5", *form(), *rng.choice(([], ["--direct"], ["--modes", "2"], ["--log"]))]
         joints = _moving(case.original)
         if joints:
             yield ["sweep", file, "-c", rng.choice(configurations), "--drive", f"{rng.choice(joints)}=-0.1:0.1:3", *form(), *rng.choice(([], ["--modes"]))]

@@ -150,6 +150,7 @@ def _commands(case):
     yield ["info", file, "--format", "json"]
     yield ["modes", file, "--format", "json", "--shapes", "--damped"]
     yield ["sensitivity", file, "--format", "json"]
+    yield ["response", file, "--input", "base.x", "--points", "5", "--format", "json"]
 
 
 def changed(rng, case, change):

@@ -18,6 +18,7 @@ ALLOWED = {
     "tree": {"base", "linalg", "expr", "model", "mechanics"},
     "modal": {"base", "linalg"},
     "analysis": ENGINE | {"tree"},
+    "response": ENGINE | {"analysis"},
     "nlp": {"base", "linalg"},
     "study": {"base", "expr", "model", "mechanics"},
     "result": {"base", "study"},

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune response: how forces and a moving ground shake a mechanism. */
+#include <math.h>
+#include <string.h>
+
+#include "cli/response.h"
+
+enum { DEFAULT_POINTS = 50, DEFAULT_MODES = 6 };
+
+static const double TWO_PI = 6.283185307179586477;
+static const double PER_CENT = 0.01;
+/* The range that is looked at by default, in parts of its vibration modes' frequencies. */
+static const double BELOW_FIRST = 0.25;
+static const double ABOVE_LAST = 2.0;
+
+/* One configuration at work. */
+typedef struct job {
+    const mt_args *args;
+    mt_subject *s;
+    int c;
+    mt_analysis *a;
+    mt_response r;
+    mt_curve curve;
+    mt_response_view v;
+} job;
+
+static mt_response_request request_of(const mt_args *args)
+{
+    return (mt_response_request){.n_in = args->n_inputs,
+                                 .inputs = args->inputs,
+                                 .n_out = args->n_outputs,
+                                 .outputs = args->outputs,
+                                 .direct = args->given[MT_OPT_DIRECT],
+                                 .modes = args->keep};
+}
+
+/* An end of the range: of its option, or by vibration mode `index`. */
+static mt_status range_end(job *j, int option, int index, double part, double *w, mt_err *err)
+{
+    const char *const name = mt_options[option].name;
+    const char *const text = j->args->value[option];
+    const int at = mt_modal_flexible(&j->a->modes, index);
+    double hz = at < 0 ? nan("") : part * mt_modal_hz(&j->a->modes, at);
+    if (text != NULL) {
+        MT_TRY(mt_subject_number(j->s, name, text, strlen(text), &hz, err));
+    }
+    if (!(hz > 0.0 && isfinite(TWO_PI * hz))) {
+        return text == NULL
+                   ? mt_fail(err, MT_E_USAGE,
+                             "there is no vibration to choose frequencies by: give --%s", name)
+                   : mt_fail(err, MT_E_USAGE, "--%s: %s is not a frequency above 0", name,
+                             text);
+    }
+    *w = TWO_PI * hz;
+    return MT_OK;
+}
+
+static mt_status choose_range(job *j, mt_err *err)
+{
+    const int count = mt_modal_vibrations(&j->a->modes);
+    const int last = count < DEFAULT_MODES ? count : DEFAULT_MODES;
+    mt_curve_options *const opt = &j->v.opt;
+    *opt = (mt_curve_options){.points = j->args->points > 0 ? j->args->points : DEFAULT_POINTS,
+                              .log = j->args->given[MT_OPT_LOG]};
+    MT_TRY(range_end(j, MT_OPT_FROM, 1, BELOW_FIRST, &opt->from, err));
+    MT_TRY(range_end(j, MT_OPT_TO, last, ABOVE_LAST, &opt->to, err));
+    if (!(opt->to > opt->from)) {
+        return mt_fail(err, MT_E_USAGE, "--to: %g Hz is not above --from, %g Hz",
+                       opt->to / TWO_PI, opt->from / TWO_PI);
+    }
+    return opt->points < 2 ? mt_fail(err, MT_E_USAGE, "--points: a grid has at least 2 points")
+                           : MT_OK;
+}
+
+/* Inputs of --set, and the parameter among them: its place in *slot. */
+static mt_status inputs_with(const job *j, int parameter, mt_arena *mem, int *n, int **inputs,
+                             double **at, int *slot, mt_err *err)
+{
+    const size_t room = (size_t)j->s->n_inputs + 1;
+    *inputs = mt_arena_int(mem, room);
+    *at = mt_arena_f64(mem, room, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    *n = j->s->n_inputs;
+    *slot = *n;
+    for (int i = 0; i < *n; i++) {
+        (*inputs)[i] = j->s->inputs[i];
+        (*at)[i] = j->s->at[i];
+        *slot = (*inputs)[i] == parameter ? i : *slot;
+    }
+    if (*slot == *n) {
+        (*inputs)[*n] = parameter;
+        (*at)[*n] = j->s->values[parameter];
+        (*n)++;
+    }
+    return MT_OK;
+}
+
+/* At a maximum or minimum over frequency, how |H| there moves is how |H| moves at the same
+ * frequency: to[n_extremes]. */
+static mt_status slopes_with(job *j, mt_analysis *a, mt_response *r, int slot, double value,
+                             double *to, mt_err *err)
+{
+    const mt_response_request request = request_of(j->args);
+    MT_TRY(mt_response_open(a, &request, r, err));
+    const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_in * r->ports.n_out;
+    double complex *const dh =
+        mt_arena_alloc(&r->mem, (size_t)(pairs * a->sys->n_inputs), sizeof *dh);
+    MT_TRY(mt_arena_check(&r->mem, err));
+    for (int e = 0; e < j->curve.n_extremes; e++) {
+        const mt_extreme *const x = &j->curve.extremes[e];
+        to[e] = nan("");
+        if (x->infinite || !(cabs(x->h) > x->error)) { /* 0, which has no slope */
+            continue;
+        }
+        MT_TRY(mt_response_slopes_at(r, x->w, dh, err));
+        const double complex slope = dh[x->pair + (slot * pairs)];
+        to[e] = PER_CENT * value * creal(conj(x->h) * slope) / cabs(x->h);
+    }
+    return MT_OK;
+}
+
+static mt_status sensitivity(job *j, int parameter, double *value, double *to, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    mt_response r = {.a = NULL};
+    int n = 0;
+    int slot = 0;
+    int *inputs = NULL;
+    double *at = NULL;
+    MT_TRY(inputs_with(j, parameter, &j->r.mem, &n, &inputs, &at, &slot, err));
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true;
+    mt_status rc = mt_analysis_new(j->s->model, j->c, n, inputs, at, &a, err);
+    rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
+    if (rc == MT_OK) {
+        *value = mt_linear_value(a->lin, a->sys->parameters[parameter]);
+        rc = slopes_with(j, a, &r, slot, *value, to, err);
+    }
+    mt_response_free(&r);
+    mt_analysis_delete(a);
+    return rc;
+}
+
+static mt_status sensitivities(job *j, mt_err *err)
+{
+    const char *const list = j->args->value[MT_OPT_SENSITIVITY];
+    int *parameter = NULL;
+    if (list == NULL) {
+        return MT_OK;
+    }
+    MT_TRY(
+        mt_subject_parameters(j->s, "sensitivity", list, &j->r.mem, &j->v.n, &parameter, err));
+    const size_t n = (size_t)j->v.n;
+    double *const value = mt_arena_f64(&j->r.mem, n, 1);
+    double *const percent = mt_arena_f64(&j->r.mem, (size_t)j->curve.n_extremes, n);
+    MT_TRY(mt_arena_check(&j->r.mem, err));
+    for (int k = 0; k < j->v.n; k++) {
+        MT_TRY(sensitivity(j, parameter[k], &value[k],
+                           percent + ((ptrdiff_t)k * j->curve.n_extremes), err));
+    }
+    j->v.parameter = parameter;
+    j->v.value = value;
+    j->v.percent = percent;
+    return MT_OK;
+}
+
+/* That there is no sum of poles is part of an answer. */
+static mt_status poles(job *j, mt_err *err)
+{
+    if (!j->args->given[MT_OPT_POLES]) {
+        return MT_OK;
+    }
+    mt_err own = {.code = MT_OK};
+    const size_t pairs = (size_t)j->r.ports.n_in * (size_t)j->r.ports.n_out;
+    mt_pole_sum *const sums = mt_arena_alloc(&j->r.mem, pairs, sizeof *sums);
+    MT_TRY(mt_arena_check(&j->r.mem, err));
+    const mt_status rc = mt_response_sums(&j->r, sums, &own);
+    if (rc != MT_OK && rc != MT_E_SINGULAR) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    j->v.sums = rc == MT_OK ? sums : NULL;
+    j->v.no_sums = rc == MT_OK ? NULL : mt_arena_strdup(&j->r.mem, own.text);
+    return mt_arena_check(&j->r.mem, err);
+}
+
+static mt_status run(job *j, mt_err *err)
+{
+    const mt_response_request request = request_of(j->args);
+    MT_TRY(mt_subject_admit_dense(j->s, j->c, "a response needs all modes", err));
+    MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
+    mt_status rc = mt_response_open(j->a, &request, &j->r, err);
+    rc = rc == MT_OK ? choose_range(j, err) : rc;
+    rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;
+    rc = rc == MT_OK ? poles(j, err) : rc;
+    rc = rc == MT_OK ? sensitivities(j, err) : rc;
+    return mt_err_in(err, rc, "%s: configuration \"%s\"", j->s->path, j->v.configuration);
+}
+
+typedef struct sink {
+    const mt_args *args;
+    mt_text *out;
+    mt_json_writer w;
+    mt_table table; /* CSV */
+} sink;
+
+static int one(sink *to, mt_subject *s, int c)
+{
+    job j = {.args = to->args, .s = s, .c = c};
+    mt_err err = {.code = MT_OK};
+    j.v = (mt_response_view){.configuration = mt_subject_configuration(s, c),
+                             .s = s,
+                             .r = &j.r,
+                             .curve = &j.curve,
+                             .direct = to->args->given[MT_OPT_DIRECT]};
+    mt_subject_warn_overridden(s, c);
+    const mt_status rc = run(&j, &err);
+    if (rc == MT_OK) {
+        switch (to->args->format) {
+        case MT_FORMAT_JSON:
+            mt_response_json(&j.v, &to->w);
+            break;
+        case MT_FORMAT_CSV:
+            mt_response_csv_rows(&j.v, &to->table);
+            break;
+        case MT_FORMAT_HTML:  /* of report alone */
+        case MT_FORMAT_SARIF: /* of check alone */
+        case MT_FORMAT_TEXT:
+            mt_response_print(&j.v, to->out);
+            break;
+        }
+    } else if (to->args->format == MT_FORMAT_JSON) {
+        mt_cli_json_failed(&to->w, j.v.configuration, &err);
+    }
+    mt_response_free(&j.r);
+    mt_analysis_delete(j.a);
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+}
+
+int mt_cmd_response(const mt_args *args, mt_text *out)
+{
+    mt_subject s = {.model = NULL};
+    sink to = {.args = args,
+               .out = out,
+               .w = mt_json_writer_default(out),
+               .table = mt_response_csv_table()};
+    mt_err err = {.code = MT_OK};
+    const bool json = args->format == MT_FORMAT_JSON;
+    const bool list = json && !args->given[MT_OPT_CONFIGURATION];
+    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    if (code == MT_EXIT_DONE && args->n_inputs == 0) {
+        code = mt_cli_failed(
+            mt_fail(&err, MT_E_USAGE, "\"response\" needs --input, what shakes the mechanism"),
+            &err);
+    }
+    if (code != MT_EXIT_DONE) {
+        goto done;
+    }
+    if (list) {
+        mt_json_open(&to.w, NULL, '[');
+    }
+    for (int i = 0; i < s.n_configurations; i++) {
+        code = mt_exit_worse(code, one(&to, &s, s.configurations[i]));
+    }
+    if (list) {
+        mt_json_close(&to.w);
+    }
+    if (json) {
+        code = mt_exit_worse(code, mt_cli_json_done(&to.w));
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table_csv(&to.table, out);
+    }
+done:
+    mt_table_free(&to.table);
+    mt_subject_free(&s);
+    return code;
+}

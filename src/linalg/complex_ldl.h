@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef LINALG_COMPLEX_LDL_H
+#define LINALG_COMPLEX_LDL_H
+
+#include "base/arena.h"
+#include "linalg/complex.h"
+
+/* A = L D L^T of a complex symmetric matrix (not Hermitian), in place of its lower triangle. */
+typedef struct mt_complex_ldl {
+    int n;
+    double complex *a; /* n x n, the caller's, overwritten */
+    int *pivot;
+    double norm;   /* of A, 1-norm */
+    bool singular; /* a pivot is exactly 0 */
+} mt_complex_ldl;
+
+/* Factor the lower triangle of A. n^3/3 complex flops. zsytrf. */
+mt_status mt_complex_factor(int n, double complex *a, mt_arena *mem, mt_complex_ldl *out,
+                            mt_err *err);
+/* X in place of B, n x nrhs. Not where the factor is singular. zsytrs. */
+mt_status mt_complex_solve(const mt_complex_ldl *f, int nrhs, double complex *b, mt_err *err);
+/* Reciprocal condition in the 1-norm, estimated; 0 where singular. zsycon. */
+mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scratch,
+                           mt_err *err);
+#endif

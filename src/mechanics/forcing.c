@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/forcing.h"
+
+#include "mechanics/linear_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "mechanics/tangent.h"
+#include "model/joint.h"
+
+/* A v - t of a joint whose force is determined, in parts of t's largest entry and equations of
+ * unit length. */
+static const double DETERMINED = 1e-9;
+
+/* The body whose equations say the force, and its sign: the second, or the first where that is
+ * the ground. */
+static int side_of(const mt_system *sys, int joint, double *sign)
+{
+    const int second = sys->joints[joint].body[1];
+    *sign = second == MT_GROUND ? -1.0 : 1.0;
+    return second == MT_GROUND ? sys->joints[joint].body[0] : second;
+}
+
+/* force += the pieces of the joint's equations: what their standing forces turn. */
+static bool add_geometric(const mt_linear *lin, int joint, int dof, double sign, double *out)
+{
+    bool any = false;
+    for (int i = 0; i < lin->n_pieces && lin->kg != NULL; i++) {
+        const mt_piece *const piece = &lin->pieces[i];
+        if (piece->equation < 0 || lin->sys->constraints[piece->equation].joint != joint) {
+            continue;
+        }
+        for (int r = 0; r < MT_LOCAL; r++) {
+            for (int c = 0; c < MT_LOCAL && piece->dof[r] == dof; c++) {
+                const double add = sign * piece->force * piece->h[r + (MT_LOCAL * c)];
+                if (piece->dof[c] >= 0 && add != 0.0) {
+                    out[piece->dof[c]] += add;
+                    any = true;
+                }
+            }
+        }
+    }
+    return any;
+}
+
+mt_status mt_linear_joint_force(mt_linear *lin, int joint, int axis, mt_arena *mem,
+                                mt_joint_force *out, bool *unique, mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    double sign = 1.0;
+    const int body = side_of(sys, joint, &sign);
+    if (mt_joint_kind_of(sys->joints[joint].type)->couples || body == MT_GROUND) {
+        return mt_fail(err, MT_E_USAGE, "joint \"%s\" has no bodies of its own, and no force",
+                       sys->joints[joint].name);
+    }
+    const ptrdiff_t m = lin->m;
+    const int dof = sys->bodies[body].dof[axis];
+    double *const t = mt_arena_f64(mem, (size_t)m, 1);
+    double *const v = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    double *const geometric = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    double *const back = mt_arena_f64(mem, (size_t)m, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (ptrdiff_t i = 0; i < m && dof >= 0; i++) {
+        t[i] = sys->constraints[i].joint == joint ? sign * lin->a[i + (dof * m)] : 0.0;
+    }
+    MT_TRY(mt_eliminate_particular(&lin->e, t, v, &lin->scratch, err));
+    memcpy(back, t, (size_t)m * sizeof *back);
+    mt_gemv(false, lin->m, sys->nq, 1.0, lin->a, lin->m, v, -1.0, back);
+    double size = 0.0;
+    double off = 0.0;
+    for (ptrdiff_t i = 0; i < m; i++) {
+        size = fmax(size, lin->e.dr[i] * fabs(t[i]));
+        off = fmax(off, lin->e.dr[i] * fabs(back[i]));
+    }
+    *unique = off <= DETERMINED * size;
+    *out = (mt_joint_force){.v = v, .t = t};
+    out->geometric =
+        dof >= 0 && add_geometric(lin, joint, dof, sign, geometric) ? geometric : NULL;
+    return MT_OK;
+}
+
+void mt_linear_shift(const mt_linear *lin, int axis, double *r)
+{
+    memset(r, 0, (size_t)lin->sys->nq * sizeof *r);
+    for (int b = 0; b < lin->sys->n_bodies; b++) {
+        if (lin->sys->bodies[b].dof[axis] >= 0) {
+            r[lin->sys->bodies[b].dof[axis]] = 1.0;
+        }
+    }
+}
+
+void mt_linear_project(const mt_linear *lin, const double *w, double *out)
+{
+    mt_eliminate_project(&lin->e, w, out);
+}
+
+double mt_linear_row_dot(const mt_linear *lin, mt_term_kind kind, int row, const double *phi)
+{
+    return mt_rows_dot(&lin->full[kind], row, phi);
+}
+
+void mt_linear_row_add(const mt_linear *lin, mt_term_kind kind, int row, double factor,
+                       double *out)
+{
+    mt_rows_axpy(&lin->full[kind], row, factor, out);
+}
+
+static bool is_moved(const mt_linear *lin, int p)
+{
+    return lin->tangent != NULL && lin->tangent[p].moves;
+}
+
+double mt_linear_row_dot_slope(const mt_linear *lin, int p, mt_term_kind kind, int row,
+                               const double *phi)
+{
+    return is_moved(lin, p) ? mt_rows_dot(&lin->tangent[p].rows[kind], row, phi) : 0.0;
+}
+
+void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, double *out)
+{
+    memset(out, 0, (size_t)lin->m * sizeof *out);
+    if (is_moved(lin, p)) {
+        mt_gemv(false, lin->m, lin->sys->nq, 1.0, lin->tangent[p].a, lin->m, phi, 0.0, out);
+    }
+}
+
+mt_status mt_linear_multipliers(mt_linear *lin, const double *w, double *lambda, mt_err *err)
+{
+    return mt_eliminate_multipliers(&lin->e, w, lambda, &lin->scratch, err);
+}
+
+double mt_linear_joint_slope(const mt_linear *lin, int p, int joint, int axis,
+                             const double *lambda)
+{
+    double sign = 1.0;
+    const int dof = lin->sys->bodies[side_of(lin->sys, joint, &sign)].dof[axis];
+    double sum = 0.0;
+    for (ptrdiff_t i = 0; i < lin->m && dof >= 0 && is_moved(lin, p); i++) {
+        if (lin->sys->constraints[i].joint == joint) {
+            sum += sign * lambda[i] * lin->tangent[p].a[i + ((ptrdiff_t)dof * lin->m)];
+        }
+    }
+    return sum;
+}

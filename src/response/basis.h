@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_BASIS_H
+#define RESPONSE_BASIS_H
+
+#include "modal/modal.h"
+#include "response/transfer.h"
+
+/*
+ * A forced problem in coordinates of its undamped modes. x = Y a + T b, Y the lowest modes, T
+ * the directions without mass. What moves at once is eliminated exactly: directions without
+ * mass and damping, and statically, as K + i H says, the modes that are left out (their inertia
+ * and viscous damping count for nothing: error about (w/w_left)^2 of their part).
+ *     The first n_modes coordinates have mass 1, the others (damped directions without mass)
+ * have none; of these c is diagonal, and the stiffness between both kinds has no real part.
+ */
+typedef struct mt_basis {
+    mt_transfer t;
+    const mt_forced *f;
+    int n_modes;
+    int n_left;         /* modes left out */
+    double lowest_left; /* eigenvalue of the lowest of them [rad^2/s^2]; infinite: none */
+    double *lambda;     /* [n_modes] eigenvalues; 0 of rigid-body modes */
+    double *c;          /* t.n x t.n viscous damping; NULL: none */
+    double complex *g;  /* t.n x t.n */
+} mt_basis;
+
+/* The problem as the caller has it. */
+typedef struct mt_basis_problem {
+    const mt_forced *f;
+    const mt_mass_factor *mass; /* of f->m */
+    const mt_modes *modes;      /* of f->k and f->m, all of them, with vectors */
+    int keep;                   /* the lowest modes; 0, or more than there are: all */
+} mt_basis_problem;
+
+/* Results in mem. O(n^3). Diagonal where Y^T C Y and Y^T H Y are, to what rounding leaves of
+ * their entries. Fails: MT_E_USAGE (not all modes, or without vectors), MT_E_SINGULAR (a
+ * direction without mass and damping that no stiffness holds), MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_basis_make(const mt_basis_problem *p, mt_arena *mem, mt_basis *out, mt_err *err);
+
+#endif

@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A coordinate that nothing couples to others has N(s)/(s^2 + c s + g), N = sigma beta: two
+ * poles and the quotient of polynomials. For the others, with D(s) = s^2 M + s C + G in the
+ * coordinates of the basis,
+ *     D(s_k) y_k = 0,    D^-1 = sum_k y_k y_k^T / (y_k^T (2 s_k M + C) y_k) / (s - s_k),
+ * where D is symmetric (also complex). The s_k are eigenvalues of the states (x = Omega a, v =
+ * a', b), b the damped directions without mass, c_b = diag(mu):
+ *     x' = Omega v,     b' = -mu^-1 (C_bv v + G_ba Omega^-1 x + G_bb b),
+ *     v' = -G_aa Omega^-1 x - C_vv v - C_vb b' - G_ab b.
+ * A rigid-body mode that is damped has no x: its s = 0 is split off, y = e, with 1/mu of it.
+ * Polynomials come from D^-1 = E_1/s + E_2/s^2 + ..., D E = 1:
+ *     s^P/(s - s_k), summed:  sum_{m < P} s^m E_{P - m}.
+ */
+#include "response/poles_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "linalg/complex_ldl.h"
+#include "linalg/dense.h"
+
+/* What the sum may differ by from a direct solve, of the largest of them. */
+static const double AGREEMENT = 1e-9;
+/* A pole with less damping than this is looked at from so far beside it: on it, how far it is
+ * from w decides all digits. */
+static const double SHARP = 1e-6;
+static const double BESIDE = 1e-3;
+
+/* Are coordinates i and j tied to each other? */
+static bool is_tied(const mt_poles *k, ptrdiff_t i, ptrdiff_t j)
+{
+    return mt_poles_damping(k, i, j) != 0.0 || k->b->g[i + (j * k->n)] != 0.0 ||
+           mt_poles_damping(k, j, i) != 0.0;
+}
+
+static bool is_rigid(const mt_poles *k, ptrdiff_t j)
+{
+    return j < k->b->n_modes && k->omega[j] == 0.0;
+}
+
+/* Places of the states of the coupled coordinates. */
+static mt_status place_states(mt_poles *k, mt_err *err)
+{
+    k->x_of = mt_arena_int(k->mem, (size_t)k->n);
+    k->v_of = mt_arena_int(k->mem, (size_t)k->n);
+    k->omega = mt_arena_f64(k->mem, (size_t)k->n, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int a = 0; a < k->n_coupled; a++) {
+        const int j = k->coupled[a];
+        k->x_of[j] = -1;
+        k->omega[j] = j < k->b->n_modes ? sqrt(fabs(k->b->lambda[j])) : 0.0;
+        if (k->omega[j] > 0.0) {
+            k->x_of[j] = k->order++;
+        }
+        k->v_of[j] = k->order++;
+    }
+    return MT_OK;
+}
+
+/* Row of the states' matrix that belongs to coordinate i, of M q'' + C q' + G q = 0 without
+ * what the rates of b add: add `scale` times it to row `to`. */
+static void add_row(const mt_poles *k, ptrdiff_t i, double complex scale, ptrdiff_t to,
+                    double complex *a)
+{
+    for (int e = 0; e < k->n_coupled; e++) {
+        const ptrdiff_t j = k->coupled[e];
+        const double complex g = k->b->g[i + (j * k->n)];
+        if (j >= k->b->n_modes) {
+            a[to + ((ptrdiff_t)k->v_of[j] * k->order)] += scale * g;
+            continue;
+        }
+        a[to + ((ptrdiff_t)k->v_of[j] * k->order)] += scale * mt_poles_damping(k, i, j);
+        if (k->x_of[j] >= 0) {
+            a[to + ((ptrdiff_t)k->x_of[j] * k->order)] += scale * g / k->omega[j];
+        }
+    }
+}
+
+static void assemble(const mt_poles *k, double complex *a)
+{
+    for (int e = 0; e < k->n_coupled; e++) {
+        const ptrdiff_t j = k->coupled[e];
+        const ptrdiff_t v = k->v_of[j];
+        if (j >= k->b->n_modes) {
+            add_row(k, j, -1.0 / mt_poles_damping(k, j, j), v, a);
+            continue;
+        }
+        if (k->x_of[j] >= 0) {
+            a[k->x_of[j] + (v * k->order)] = k->omega[j];
+        }
+        add_row(k, j, -1.0, v, a);
+        for (int d = 0; d < k->n_coupled; d++) {
+            const ptrdiff_t b = k->coupled[d];
+            if (b >= k->b->n_modes) {
+                add_row(k, b, mt_poles_damping(k, j, b) / mt_poles_damping(k, b, b), v, a);
+            }
+        }
+    }
+}
+
+/* Eigenpairs; a real matrix as one, so that pairs are conjugate to the bit. */
+static mt_status eigenpairs(const mt_poles *k, double complex *w, double complex *v,
+                            mt_err *err)
+{
+    const size_t n = (size_t)k->order;
+    double complex *const a = mt_arena_alloc(k->mem, n * n, sizeof *a);
+    double *const re = mt_arena_f64(k->mem, n, n);
+    double *const vr = mt_arena_f64(k->mem, n, n);
+    double *const wr = mt_arena_f64(k->mem, n, 2);
+    MT_TRY(mt_arena_check(k->mem, err));
+    assemble(k, a);
+    bool real = true;
+    for (size_t i = 0; i < n * n; i++) {
+        real = real && cimag(a[i]) == 0.0;
+        re[i] = creal(a[i]);
+    }
+    if (!real) {
+        return mt_eig_complex(k->order, a, w, v, k->mem, err);
+    }
+    MT_TRY(mt_eig_general(k->order, re, wr, wr + n, vr, k->mem, err));
+    for (size_t j = 0; j < n; j++) {
+        const double im = wr[n + j];
+        const size_t first = im < 0.0 ? j - 1 : j;
+        w[j] = mt_complex(wr[j], im);
+        for (size_t i = 0; i < n; i++) {
+            const double y_im = im == 0.0 ? 0.0 : vr[i + ((first + 1) * n)];
+            v[i + (j * n)] = mt_complex(vr[i + (first * n)], im < 0.0 ? -y_im : y_im);
+        }
+    }
+    return MT_OK;
+}
+
+/* y in the coordinates of the basis from states z, times s: (v, s b). */
+static void coordinates(const mt_poles *k, double complex s, const double complex *z,
+                        double complex *y)
+{
+    memset(y, 0, (size_t)k->n * sizeof *y);
+    for (int e = 0; e < k->n_coupled; e++) {
+        const int j = k->coupled[e];
+        y[j] = j < k->b->n_modes ? z[k->v_of[j]] : s * z[k->v_of[j]];
+    }
+}
+
+/* y^T (2 s M + C) y. */
+static double complex normaliser(const mt_poles *k, double complex s, const double complex *y)
+{
+    double complex sum = 0.0;
+    for (int e = 0; e < k->n_coupled; e++) {
+        const ptrdiff_t i = k->coupled[e];
+        sum += i < k->b->n_modes ? 2.0 * s * y[i] * y[i] : 0.0;
+        for (int d = 0; d < k->n_coupled; d++) {
+            const ptrdiff_t j = k->coupled[d];
+            sum += y[i] * mt_poles_damping(k, i, j) * y[j];
+        }
+    }
+    return sum;
+}
+
+/* The pole s with y y^T/normal. */
+static void add_pole(mt_poles *k, double complex s, double complex normal,
+                     const double complex *y)
+{
+    const mt_transfer *const t = &k->b->t;
+    double complex *const to = k->residue + (k->count * k->pairs);
+    for (ptrdiff_t at = 0; at < k->pairs; at++) {
+        const ptrdiff_t o = at % t->n_out;
+        const ptrdiff_t i = at / t->n_out;
+        double complex left = 0.0;
+        double complex right = 0.0;
+        double complex power = 1.0;
+        for (int p = 0; p < MT_FORCED_POWERS; p++) {
+            for (ptrdiff_t j = 0; j < k->n; j++) {
+                left +=
+                    t->sigma[p] == NULL ? 0.0 : power * t->sigma[p][o + (j * t->n_out)] * y[j];
+                right += t->beta[p] == NULL ? 0.0 : power * t->beta[p][j + (i * k->n)] * y[j];
+            }
+            power *= s;
+        }
+        to[at] = left * right / normal;
+    }
+    k->s[k->count++] = s;
+}
+
+static mt_status coupled(mt_poles *k, mt_err *err)
+{
+    MT_TRY(place_states(k, err));
+    const size_t n = (size_t)k->order;
+    double complex *const w = mt_arena_alloc(k->mem, n, sizeof *w);
+    double complex *const v = mt_arena_alloc(k->mem, n * n, sizeof *v);
+    double complex *const y = mt_arena_alloc(k->mem, (size_t)k->n, sizeof *y);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(eigenpairs(k, w, v, err));
+    for (ptrdiff_t a = 0; a < (ptrdiff_t)n; a++) {
+        coordinates(k, w[a], v + (a * (ptrdiff_t)n), y);
+        add_pole(k, w[a], normaliser(k, w[a], y), y);
+    }
+    memset(y, 0, (size_t)k->n * sizeof *y);
+    for (int e = 0; e < k->n_coupled; e++) {
+        const ptrdiff_t j = k->coupled[e];
+        if (is_rigid(k, j)) {
+            y[j] = 1.0;
+            add_pole(k, 0.0, mt_poles_damping(k, j, j), y);
+            y[j] = 0.0;
+        }
+    }
+    return mt_poles_add_polynomials(k, err);
+}
+
+static mt_status add_rest(mt_poles *k, mt_err *err)
+{
+    const mt_transfer *const t = &k->b->t;
+    for (int at = 0; at < MT_REST_POWERS; at++) {
+        const int power = at + MT_REST_LOWEST;
+        bool any = false;
+        for (ptrdiff_t pair = 0; pair < k->pairs && t->rest[at] != NULL; pair++) {
+            const double complex add = t->rest[at][pair];
+            any = any || add != 0.0;
+            if (power >= 0 && power < 3) {
+                k->d[pair + (power * k->pairs)] += add;
+            } else if (power == -1) {
+                k->residue[pair + (k->count * k->pairs)] = add;
+            }
+        }
+        if (any && power == -1) {
+            k->s[k->count++] = 0.0;
+        } else if (any && (power < -1 || power > 2)) {
+            return mt_poles_refuse(
+                power < 0 ? "the ground's own motion grows without bound, like 1/s^2"
+                          : "the response grows with the cube of the frequency",
+                err);
+        }
+    }
+    return MT_OK;
+}
+
+static void hand_out(const mt_poles *k, mt_pole_sum *out, double complex *residue)
+{
+    for (ptrdiff_t pair = 0; pair < k->pairs; pair++) {
+        double complex *const own = residue + (pair * k->count);
+        for (int a = 0; a < k->count; a++) {
+            own[a] = k->residue[pair + (a * k->pairs)];
+        }
+        out[pair] = (mt_pole_sum){.n = k->count, .s = k->s, .residue = own};
+        for (int m = 0; m < 3; m++) {
+            out[pair].d[m] = k->d[pair + (m * k->pairs)];
+        }
+    }
+}
+
+/* Is the sum what direct solves say, at the frequencies of all poles? */
+static mt_status verify(const mt_poles *k, const mt_pole_sum *sum, mt_err *err)
+{
+    const mt_sample got = {.h = mt_arena_alloc(k->mem, (size_t)k->pairs, sizeof *got.h)};
+    double *const largest = mt_arena_f64(k->mem, (size_t)k->pairs, 2);
+    MT_TRY(mt_arena_check(k->mem, err));
+    double *const worst = largest + k->pairs;
+    for (int a = 0; a < k->count; a++) {
+        const bool sharp = fabs(creal(k->s[a])) <= SHARP * cabs(k->s[a]);
+        const double w = cabs(k->s[a]) * (sharp ? 1.0 + BESIDE : 1.0);
+        if (!(w > 0.0) || cimag(k->s[a]) < 0.0) {
+            continue;
+        }
+        MT_TRY(mt_transfer_at(&k->b->t, w, &got, k->mem, err));
+        for (ptrdiff_t p = 0; p < k->pairs; p++) {
+            const double off = cabs(got.h[p] - mt_pole_sum_at(&sum[p], w));
+            largest[p] = fmax(largest[p], cabs(got.h[p]));
+            worst[p] = off <= worst[p] ? worst[p] : off;
+        }
+    }
+    bool agree = true;
+    for (ptrdiff_t p = 0; p < k->pairs; p++) {
+        agree = agree && worst[p] <= AGREEMENT * largest[p];
+    }
+    return agree ? MT_OK : mt_poles_refuse("damping turns two modes into nearly one", err);
+}
+
+/* Poles that there are at most. */
+static size_t most_of(const mt_poles *k)
+{
+    return (2 * (size_t)k->n) + 2;
+}
+
+/* Room for poles, and which coordinates are tied to others: the first n_coupled, the others
+ * behind them. */
+static mt_status begin(mt_poles *k, mt_err *err)
+{
+    int alone_at = (int)k->n;
+    k->coupled = mt_arena_int(k->mem, (size_t)k->n);
+    k->s = mt_arena_alloc(k->mem, most_of(k), sizeof *k->s);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t j = 0; j < k->n; j++) {
+        bool tied = false;
+        for (ptrdiff_t i = 0; i < k->n; i++) {
+            tied = tied || (i != j && is_tied(k, i, j));
+        }
+        k->coupled[tied ? k->n_coupled++ : --alone_at] = (int)j;
+    }
+    return MT_OK;
+}
+
+static mt_status find(mt_poles *k, mt_pole_sum *out, mt_err *err)
+{
+    const size_t pairs = (size_t)k->pairs;
+    MT_TRY(begin(k, err));
+    k->residue = mt_arena_alloc(k->mem, most_of(k) * pairs, sizeof *k->residue);
+    k->d = mt_arena_alloc(k->mem, 3 * pairs, sizeof *k->d);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t j = k->n - 1; j >= k->n_coupled; j--) {
+        MT_TRY(mt_poles_alone(k, k->coupled[j], err));
+    }
+    if (k->n_coupled > 0) {
+        MT_TRY(coupled(k, err));
+    }
+    MT_TRY(add_rest(k, err));
+    double complex *const residue =
+        mt_arena_alloc(k->mem, pairs * (size_t)k->count, sizeof *residue);
+    MT_TRY(mt_arena_check(k->mem, err));
+    hand_out(k, out, residue);
+    return k->n_coupled > 0 ? verify(k, out, err) : MT_OK;
+}
+
+mt_status mt_response_poles(const mt_basis *basis, mt_arena *mem, mt_pole_sum *out, mt_err *err)
+{
+    mt_poles k = {.b = basis,
+                  .mem = mem,
+                  .n = basis->t.n,
+                  .pairs = (ptrdiff_t)basis->t.n_in * basis->t.n_out};
+    return find(&k, out, err);
+}
+
+mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
+                                double complex **s, mt_err *err)
+{
+    mt_poles k = {.b = basis, .mem = mem, .n = basis->t.n};
+    MT_TRY(begin(&k, err));
+    for (ptrdiff_t a = k.n - 1; a >= k.n_coupled; a--) {
+        const ptrdiff_t j = k.coupled[a];
+        const double complex g = basis->g[j + (j * k.n)];
+        if (j >= basis->n_modes) {
+            k.s[k.count++] = -g / mt_poles_damping(&k, j, j);
+        } else if (g != 0.0) {
+            mt_poles_roots(mt_poles_damping(&k, j, j), g, k.s + k.count);
+            k.count += 2;
+        }
+    }
+    if (k.n_coupled > 0) {
+        MT_TRY(place_states(&k, err));
+        double complex *const v =
+            mt_arena_alloc(mem, (size_t)k.order * (size_t)k.order, sizeof *v);
+        MT_TRY(mt_arena_check(mem, err));
+        MT_TRY(eigenpairs(&k, k.s + k.count, v, err));
+        k.count += k.order;
+    }
+    *n = k.count;
+    *s = k.s;
+    return MT_OK;
+}
+
+double complex mt_pole_sum_at(const mt_pole_sum *p, double w)
+{
+    const double complex s = mt_complex(0.0, w);
+    double complex sum = p->d[0] + (s * (p->d[1] + (s * p->d[2])));
+    for (int k = 0; k < p->n; k++) {
+        sum += p->residue[k] / (s - p->s[k]);
+    }
+    return sum;
+}

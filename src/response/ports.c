@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "response/ports.h"
+
+#include <string.h>
+
+#include "base/text.h"
+
+static const char *const MOTIONS[3] = {"displacement", "velocity", "acceleration"};
+static const char *const UNITS[2][3] = {{"m", "m/s", "m/s^2"}, {"rad", "rad/s", "rad/s^2"}};
+static const char *const FORCES[2] = {"N", "N m"};
+static const char AXES[] = "xyz";
+static const char RELATIVE[] = "relative_";
+static const char BASE[] = "base.";
+static const char JOINT[] = "joint.";
+static const char *const WITH_FORCE[2] = {"spring.", "damper."};
+
+static bool begins(const char *text, const char *with)
+{
+    return strncmp(text, with, strlen(with)) == 0;
+}
+
+/* Text up to the colon, and the motion behind it where there is one. */
+static mt_status split(const char *text, bool relative_too, mt_arena *mem, const char **name,
+                       mt_port *out, mt_err *err)
+{
+    const char *const colon = strchr(text, ':');
+    *name = colon == NULL ? text : mt_arena_strndup(mem, text, (size_t)(colon - text));
+    MT_TRY(mt_arena_check(mem, err));
+    if (colon == NULL) {
+        return MT_OK;
+    }
+    const char *motion = colon + 1;
+    if (relative_too && begins(motion, RELATIVE)) {
+        out->relative = true;
+        motion += strlen(RELATIVE);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (strcmp(motion, MOTIONS[k]) == 0) {
+            out->motion = k;
+            return MT_OK;
+        }
+    }
+    return mt_fail(err, MT_E_USAGE,
+                   "\"%s\": \"%s\" is not displacement, velocity or acceleration%s", text,
+                   colon + 1, relative_too ? ", nor relative_displacement, ..." : "");
+}
+
+/* The names of all ports of a kind, for "did you mean". */
+static mt_status unknown(const mt_system *sys, const char *text, bool input, mt_arena *mem,
+                         mt_err *err)
+{
+    const size_t most =
+        (size_t)sys->n_channels + (size_t)sys->n_springs + (3 * (size_t)sys->n_joints) + 3;
+    const char **const names = mt_arena_alloc(mem, most, sizeof *names);
+    MT_TRY(mt_arena_check(mem, err));
+    int n = 0;
+    for (int i = 0; i < sys->n_channels; i++) {
+        names[n++] = sys->channels[i].name;
+    }
+    for (int k = 0; k < sys->dimension && input; k++) {
+        names[n++] = mt_arena_printf(mem, "%s%c", BASE, AXES[k]);
+    }
+    for (int i = 0; i < sys->n_springs && !input; i++) {
+        names[n++] = mt_arena_printf(mem, "%s%s", WITH_FORCE[sys->springs[i].damper ? 1 : 0],
+                                     sys->springs[i].name);
+    }
+    for (int i = 0; i < sys->n_joints * sys->dimension && !input; i++) {
+        names[n++] =
+            mt_arena_printf(mem, "%s%s.%c", JOINT, sys->joints[i / sys->dimension].name,
+                            AXES[i % sys->dimension]);
+    }
+    MT_TRY(mt_arena_check(mem, err));
+    const char *const nearest = mt_text_nearest(text, names, n);
+    const char *const what = input ? "input" : "output";
+    return nearest == NULL
+               ? mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"", what, text)
+               : mt_fail(err, MT_E_USAGE, "no %s is called \"%s\"; did you mean \"%s\"?", what,
+                         text, nearest);
+}
+
+/* Axis of a single letter at the end; -1: none. */
+static int axis_of(const mt_system *sys, const char *letter)
+{
+    const char *const at = letter[0] == '\0' ? NULL : strchr(AXES, letter[0]);
+    const int axis = at == NULL || letter[1] != '\0' ? -1 : (int)(at - AXES);
+    return axis < sys->dimension ? axis : -1;
+}
+
+static void set_motion(mt_arena *mem, const char *name, mt_port *out)
+{
+    out->name = mt_arena_printf(mem, "%s:%s%s", name, out->relative ? RELATIVE : "",
+                                MOTIONS[out->motion]);
+    out->unit = UNITS[out->turns ? 1 : 0][out->motion];
+}
+
+static bool is_rotation(const mt_system *sys, int channel)
+{
+    const mt_channel_kind kind = sys->channels[channel].kind;
+    return kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+}
+
+mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
+                        mt_err *err)
+{
+    const char *name = NULL;
+    *out = (mt_port){.kind = MT_PORT_BASE, .motion = 2};
+    MT_TRY(split(text, false, mem, &name, out, err));
+    const int axis = begins(name, BASE) ? axis_of(sys, name + strlen(BASE)) : -1;
+    const int channel = mt_system_find_channel(sys, name);
+    if (axis >= 0) {
+        out->index = axis;
+        set_motion(mem, name, out);
+        return mt_arena_check(mem, err);
+    }
+    if (channel < 0) {
+        return unknown(sys, name, true, mem, err);
+    }
+    if (strchr(text, ':') != NULL) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\": the input at a sensor is its force", text);
+    }
+    *out = (mt_port){.kind = MT_PORT_SENSOR,
+                     .index = channel,
+                     .turns = is_rotation(sys, channel),
+                     .name = sys->channels[channel].name};
+    out->unit = FORCES[out->turns ? 1 : 0];
+    return MT_OK;
+}
+
+/* "spring.NAME" or "damper.NAME". */
+static mt_status find_spring(const mt_system *sys, const char *name, mt_arena *mem, bool damper,
+                             mt_port *out, mt_err *err)
+{
+    const char *const own = name + strlen(WITH_FORCE[0]);
+    int count = 0;
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        if (s->damper == damper && s->name != NULL && strcmp(s->name, own) == 0) {
+            count++;
+            out->index = i;
+        }
+    }
+    if (count == 0) {
+        return unknown(sys, name, false, mem, err);
+    }
+    if (count > 1) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\" has several forces, not one", name);
+    }
+    const mt_measure_kind kind = sys->measures[sys->springs[out->index].measure[0]].kind;
+    out->kind = damper ? MT_PORT_DAMPER : MT_PORT_SPRING;
+    out->turns = kind == MT_MEASURE_ANGLE || kind == MT_MEASURE_ROTATION;
+    out->name = mt_arena_strdup(mem, name);
+    out->unit = FORCES[out->turns ? 1 : 0];
+    return mt_arena_check(mem, err);
+}
+
+/* "joint.NAME.x". */
+static mt_status find_joint(const mt_system *sys, const char *name, mt_arena *mem, mt_port *out,
+                            mt_err *err)
+{
+    const char *const own = name + strlen(JOINT);
+    const char *const dot = strrchr(own, '.');
+    const int axis = dot == NULL ? -1 : axis_of(sys, dot + 1);
+    if (axis < 0) {
+        return unknown(sys, name, false, mem, err);
+    }
+    const char *const joint = mt_arena_strndup(mem, own, (size_t)(dot - own));
+    MT_TRY(mt_arena_check(mem, err));
+    const int index = mt_system_find_joint(sys, joint);
+    if (index < 0) {
+        return unknown(sys, name, false, mem, err);
+    }
+    *out = (mt_port){.kind = MT_PORT_JOINT,
+                     .index = index,
+                     .axis = axis,
+                     .name = mt_arena_strdup(mem, name),
+                     .unit = FORCES[0]};
+    return mt_arena_check(mem, err);
+}
+
+mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
+                         mt_err *err)
+{
+    const char *name = NULL;
+    *out = (mt_port){.kind = MT_PORT_SENSOR};
+    MT_TRY(split(text, true, mem, &name, out, err));
+    const int channel = mt_system_find_channel(sys, name);
+    if (channel >= 0) {
+        out->index = channel;
+        out->turns = is_rotation(sys, channel);
+        set_motion(mem, name, out);
+        return mt_arena_check(mem, err);
+    }
+    const bool spring = begins(name, WITH_FORCE[0]);
+    const bool damper = begins(name, WITH_FORCE[1]);
+    if (!spring && !damper && !begins(name, JOINT)) {
+        return unknown(sys, name, false, mem, err);
+    }
+    if (strchr(text, ':') != NULL) {
+        return mt_fail(err, MT_E_USAGE, "\"%s\": a force has no motion", text);
+    }
+    return spring || damper ? find_spring(sys, name, mem, damper, out, err)
+                            : find_joint(sys, name, mem, out, err);
+}

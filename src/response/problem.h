@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_PROBLEM_H
+#define RESPONSE_PROBLEM_H
+
+#include "analysis/analysis.h"
+#include "mechanics/forcing.h"
+#include "response/forced.h"
+#include "response/ports.h"
+
+/* What the ports mean over all states, kept for derivatives; see mt_joint_force. */
+typedef struct mt_response_ways {
+    mt_joint_force *joint; /* [n_out] of outputs that are joints' forces */
+    double *c;             /* n x n viscous damping; NULL: none */
+    double *h;             /* n x n structural damping; NULL: none */
+} mt_response_ways;
+
+/*
+ * The forced problem of the last solve of an analysis, which all of it refers to: of all modes
+ * with vectors, and of nothing unstable. Motions x are as seen from the ground. Under a ground
+ * acceleration along r, f = -M r; a place in space moves by r more. Results in mem.
+ * Fails: MT_E_USAGE (a redundant joint's force), MT_E_EQUILIBRIUM (a mode is unstable, or
+ * rounding hides whether it is: about such a position nothing vibrates), as
+ * mt_linear_joint_force, MT_E_MEMORY.
+ */
+mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena *mem,
+                              mt_forced *f, mt_response_ways *ways, mt_err *err);
+/* Value of a number that may not be there: then 0. */
+double mt_response_node(const mt_analysis *a, mt_node node);
+/* The coefficient of a spring's or damper's term, and its row. */
+double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
+                          const mt_term **term);
+
+#endif

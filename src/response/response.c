@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "response/response.h"
+
+void mt_response_free(mt_response *r)
+{
+    mt_arena_free(&r->mem);
+    *r = (mt_response){.a = NULL};
+}
+
+static mt_status read_ports(mt_response *r, const mt_response_request *q, mt_err *err)
+{
+    const mt_system *const sys = r->a->sys;
+    r->ports.n_in = q->n_in;
+    r->ports.n_out = q->n_out > 0 ? q->n_out : sys->n_channels;
+    r->ports.in = mt_arena_alloc(&r->mem, (size_t)r->ports.n_in, sizeof *r->ports.in);
+    r->ports.out = mt_arena_alloc(&r->mem, (size_t)r->ports.n_out, sizeof *r->ports.out);
+    MT_TRY(mt_arena_check(&r->mem, err));
+    if (r->ports.n_in < 1 || r->ports.n_out < 1) {
+        return mt_fail(err, MT_E_USAGE,
+                       r->ports.n_in < 1 ? "a response needs an input"
+                                         : "the configuration has no sensors: name outputs");
+    }
+    for (int i = 0; i < r->ports.n_in; i++) {
+        MT_TRY(mt_port_input(sys, q->inputs[i], &r->mem, &r->ports.in[i], err));
+    }
+    for (int o = 0; o < r->ports.n_out; o++) {
+        const char *const name = q->n_out > 0 ? q->outputs[o] : sys->channels[o].name;
+        MT_TRY(mt_port_output(sys, name, &r->mem, &r->ports.out[o], err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
+                           mt_err *err)
+{
+    *out = (mt_response){.a = a};
+    MT_TRY(mt_arena_init(&out->mem, 0, err));
+    MT_TRY(read_ports(out, request, err));
+    MT_TRY(mt_response_problem(a, &out->ports, &out->mem, &out->f, &out->ways, err));
+    const mt_basis_problem problem = {
+        .f = &out->f, .mass = &a->mass, .modes = &a->modes, .keep = request->modes};
+    MT_TRY(mt_basis_make(&problem, &out->mem, &out->basis, err));
+    MT_TRY(mt_response_pole_list(&out->basis, &out->mem, &out->n_poles, &out->poles, err));
+    MT_TRY(mt_transfer_direct(&out->f, &out->mem, &out->direct, err));
+    out->chosen = request->direct ? &out->direct : &out->basis.t;
+    return MT_OK;
+}
+
+mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curve *out,
+                            mt_err *err)
+{
+    mt_curve_options own = *opt;
+    own.n_poles = r->n_poles;
+    own.poles = r->poles;
+    own.interrupt = r->a->sys->model->interrupt;
+    return mt_curve_trace(r->chosen, &own, &r->mem, out, err);
+}
+
+mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err)
+{
+    return mt_response_poles(&r->basis, &r->mem, out, err);
+}
+
+mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err)
+{
+    const mt_slope_problem p = {
+        .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
+    return mt_response_slopes(&p, w, dh, &r->mem, err);
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_RESPONSE_H
+#define RESPONSE_RESPONSE_H
+
+#include "response/curve.h"
+#include "response/poles.h"
+#include "response/problem.h"
+#include "response/slopes.h"
+
+/*
+ * The forced response of one configuration, after a solve of its analysis with all modes and
+ * vectors, and until the next one: from ports by name to curves, poles and derivatives.
+ */
+typedef struct mt_response_request {
+    int n_in;
+    const char *const *inputs;
+    int n_out; /* 0: all sensors' displacements */
+    const char *const *outputs;
+    bool direct; /* D(s) factored at every frequency; else by modes */
+    int modes;   /* so many, the others statically; 0: all */
+} mt_response_request;
+
+typedef struct mt_response {
+    mt_analysis *a; /* not owned */
+    mt_arena mem;
+    mt_port_set ports;
+    mt_forced f;
+    mt_response_ways ways;
+    mt_basis basis;
+    mt_transfer direct;
+    const mt_transfer *chosen; /* &basis.t or &direct */
+    int n_poles;
+    double complex *poles;
+} mt_response;
+
+/* Zeroed before; mt_response_free in any case. Fails: MT_E_USAGE (a port, no sensors and no
+ * outputs), as mt_response_problem, mt_basis_make, mt_response_pole_list. */
+mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
+                           mt_err *err);
+/* Accepts a zeroed one. */
+void mt_response_free(mt_response *r);
+/* opt->poles and opt->interrupt are filled in here. Results in r->mem. */
+mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curve *out,
+                            mt_err *err);
+/* Sums over poles out[n_out x n_in], in r->mem; fails as mt_response_poles. */
+mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err);
+/* dh as mt_response_slopes. */
+mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err);
+
+#endif

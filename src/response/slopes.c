@@ -1,0 +1,441 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Over all states, with the equations of the joints beside them:
+ *     [D A^T; A 0] (q; l) = (f; 0),        H = sigma . q - t . l + d,
+ *     [D A^T; A 0] (e; m) = (sigma; -t),   the adjoint,
+ *     dH = d(sigma) . q - d(t) . l + e . df - e . dD q - (dA e) . l - m . (dA q),
+ * a d being the derivative with respect to one input, geometry and equilibrium with it. With x
+ * and y of the reduced problem q = Z x and e = Z y - v, A v = t; l and m balance what is left.
+ * d of the ground's own motion does not depend on any input: a rigid translation moves every
+ * sensor by 1.
+ */
+#include "response/slopes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "analysis/damping.h"
+#include "linalg/dense.h"
+#include "mechanics/independence.h"
+
+/* A complex vector. */
+typedef struct pair {
+    double *part[2];
+} pair;
+
+/* One input or output at work. */
+typedef struct side {
+    pair states; /* q, or e */
+    pair forces; /* l, or m */
+} side;
+
+typedef struct work {
+    const mt_slope_problem *p;
+    mt_linear *lin;
+    mt_arena *mem;
+    int nq;
+    int m;
+    double w;
+    double complex power[3];  /* s^k */
+    double complex factor[4]; /* of D's matrices */
+    const double complex *x;  /* n x n_in: the solutions in the freedoms */
+    const double complex *y;  /* n x n_out */
+    side *in;                 /* [n_in] */
+    side *out;                /* [n_out] */
+    double *shift;            /* [nq] */
+} work;
+
+static pair new_pair(mt_arena *mem, int n)
+{
+    return (pair){{mt_arena_f64(mem, (size_t)n, 1), mt_arena_f64(mem, (size_t)n, 1)}};
+}
+
+/* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M.
+ * Modal ratios stand apart: their part is known in the freedoms alone. */
+enum { MATRICES = 4 };
+
+static void factors_of(work *k)
+{
+    const mt_damping_def *const d = &k->p->a->sys->damping;
+    const double complex s = k->power[1];
+    k->factor[MT_MATRIX_STIFFNESS] = 1.0 + (s * mt_response_node(k->p->a, d->stiffness));
+    k->factor[MT_MATRIX_LOSS] = mt_complex(0.0, 1.0);
+    k->factor[MT_MATRIX_DAMPERS] = s;
+    k->factor[MT_MATRIX_MASS] = k->power[2] + (s * mt_response_node(k->p->a, d->mass));
+}
+
+/* to += f x, f complex, x real. */
+static void add_real(int n, double complex f, const double *x, pair *to)
+{
+    mt_axpy(n, creal(f), x, to->part[0]);
+    mt_axpy(n, cimag(f), x, to->part[1]);
+}
+
+/* to -= D x over the states. */
+static mt_status subtract_d(work *k, const pair *x, pair *to, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int m = 0; m < MATRICES; m++) {
+        for (int part = 0; part < 2; part++) {
+            memset(product, 0, (size_t)k->nq * sizeof *product);
+            mt_linear_states_product(k->lin, (mt_matrix)m, 1.0, x->part[part], product);
+            add_real(k->nq, -k->factor[m] * mt_complex(1 - part, part), product, to);
+        }
+    }
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
+}
+
+/* What the joints carry: A^T forces ~ w. */
+static mt_status balance(work *k, const pair *w, pair *forces, mt_err *err)
+{
+    for (int part = 0; part < 2; part++) {
+        MT_TRY(mt_linear_multipliers(k->lin, w->part[part], forces->part[part], err));
+    }
+    return MT_OK;
+}
+
+/* states := Z x. */
+static mt_status expand(work *k, const double complex *x, pair *states, mt_err *err)
+{
+    const int n = mt_linear_freedoms(k->lin);
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    double *const part = mt_arena_f64(k->mem, (size_t)n, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int i = 0; i < n; i++) {
+        part[i] = creal(x[i]);
+    }
+    mt_linear_expand(k->lin, 1, part, states->part[0]);
+    for (int i = 0; i < n; i++) {
+        part[i] = cimag(x[i]);
+    }
+    mt_linear_expand(k->lin, 1, part, states->part[1]);
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
+}
+
+static int channel_row(const work *k, const mt_port *port)
+{
+    return mt_linear_terms(k->lin, MT_TERM_CHANNEL)->terms[port->index].first;
+}
+
+static mt_status open_input(work *k, int i, const double complex *x, mt_err *err)
+{
+    const mt_port *const port = &k->p->ports->in[i];
+    side *const s = &k->in[i];
+    *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
+    pair w = new_pair(k->mem, k->nq);
+    double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(expand(k, x, &s->states, err));
+    if (port->kind == MT_PORT_BASE) {
+        mt_linear_shift(k->lin, port->index, k->shift);
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, -1.0, k->shift, f);
+    } else {
+        mt_linear_row_add(k->lin, MT_TERM_CHANNEL, channel_row(k, port), 1.0, f);
+    }
+    add_real(k->nq, k->power[port->kind == MT_PORT_BASE ? 2 - port->motion : 0], f, &w);
+    MT_TRY(subtract_d(k, &s->states, &w, err));
+    return balance(k, &w, &s->forces, err);
+}
+
+/* What the force of a spring or damper is of its coefficient and motion. */
+static double complex force_factor(const work *k, const mt_port *port, const mt_term *term)
+{
+    return port->kind == MT_PORT_DAMPER
+               ? k->power[1]
+               : mt_complex(1.0, mt_response_node(k->p->a, term->loss));
+}
+
+/* Row, kind of terms and factor of an output that is one row's. */
+static double complex row_of(const work *k, const mt_port *port, int *row, mt_term_kind *kind,
+                             const mt_term **term)
+{
+    *term = NULL;
+    if (port->kind == MT_PORT_SENSOR) {
+        *kind = MT_TERM_CHANNEL;
+        *row = channel_row(k, port);
+        return k->power[port->motion];
+    }
+    const double c = mt_response_spring(k->p->a, port, row, term);
+    *kind = port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
+    return *term == NULL ? 0.0 : c * force_factor(k, port, *term);
+}
+
+static mt_status open_output(work *k, int o, const double complex *y, mt_err *err)
+{
+    const mt_port *const port = &k->p->ports->out[o];
+    side *const s = &k->out[o];
+    *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
+    pair w = new_pair(k->mem, k->nq);
+    double *const sigma = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(expand(k, y, &s->states, err));
+    if (port->kind == MT_PORT_JOINT) {
+        mt_axpy(k->nq, -1.0, k->p->ways->joint[o].v, s->states.part[0]);
+    } else {
+        int row = -1;
+        mt_term_kind kind = MT_TERM_CHANNEL;
+        const mt_term *term = NULL;
+        const double complex factor = row_of(k, port, &row, &kind, &term);
+        if (row >= 0) {
+            mt_linear_row_add(k->lin, kind, row, 1.0, sigma);
+            add_real(k->nq, factor, sigma, &w);
+        }
+    }
+    MT_TRY(subtract_d(k, &s->states, &w, err));
+    return balance(k, &w, &s->forces, err);
+}
+
+/* a . b, both complex; no conjugate. */
+static double complex dot(int n, const pair *a, const pair *b)
+{
+    return mt_complex(mt_dot(n, a->part[0], b->part[0]) - mt_dot(n, a->part[1], b->part[1]),
+                      mt_dot(n, a->part[0], b->part[1]) + mt_dot(n, a->part[1], b->part[0]));
+}
+
+static double slope_of(const work *k, int p, mt_node node)
+{
+    return node == MT_NO_NODE ? 0.0 : mt_linear_slope(k->lin, node, p);
+}
+
+/* e . (matrix or its derivative) q. */
+static double complex between_one(const work *k, int p, mt_matrix m, const pair *e,
+                                  const pair *q)
+{
+    double part[2][2];
+    for (int at = 0; at < 4; at++) {
+        part[at / 2][at % 2] =
+            mt_linear_between_slope(k->lin, p, m, e->part[at / 2], q->part[at % 2]);
+    }
+    return mt_complex(part[0][0] - part[1][1], part[0][1] + part[1][0]);
+}
+
+/* e . M q. */
+static mt_status product(work *k, mt_matrix m, const pair *e, const pair *q,
+                         double complex *out, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    pair w = new_pair(k->mem, k->nq);
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_linear_states_product(k->lin, m, 1.0, q->part[0], w.part[0]);
+    mt_linear_states_product(k->lin, m, 1.0, q->part[1], w.part[1]);
+    *out = dot(k->nq, e, &w);
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
+}
+
+/* y . (d(ratios) x) in the freedoms, with the motion of their basis. */
+static mt_status ratios(work *k, int p, int o, int i, double complex *out, mt_err *err)
+{
+    const ptrdiff_t n = k->p->t->n;
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    double *const part = mt_arena_f64(k->mem, (size_t)n, 2);
+    double *const product_of = mt_arena_f64(k->mem, (size_t)n, 2);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t j = 0; j < n; j++) {
+        part[j] = creal(k->x[j + (i * n)]);
+        part[n + j] = cimag(k->x[j + (i * n)]);
+    }
+    MT_TRY(mt_analysis_ratio_products(k->p->a, p, 2, part, product_of, err));
+    *out = 0.0;
+    for (ptrdiff_t j = 0; j < n; j++) {
+        *out += k->y[j + (o * n)] * mt_complex(product_of[j], product_of[n + j]);
+    }
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
+}
+
+/* e . dD q. */
+static mt_status between(work *k, int p, int o, int i, double complex *out, mt_err *err)
+{
+    const mt_damping_def *const d = &k->p->a->sys->damping;
+    const pair *const e = &k->out[o].states;
+    const pair *const q = &k->in[i].states;
+    double complex sum = 0.0;
+    double complex part = 0.0;
+    for (int m = 0; m < MATRICES; m++) {
+        sum += k->factor[m] * between_one(k, p, (mt_matrix)m, e, q);
+    }
+    if (slope_of(k, p, d->mass) != 0.0) {
+        MT_TRY(product(k, MT_MATRIX_MASS, e, q, &part, err));
+        sum += k->power[1] * slope_of(k, p, d->mass) * part;
+    }
+    if (slope_of(k, p, d->stiffness) != 0.0) {
+        MT_TRY(product(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
+        sum += k->power[1] * slope_of(k, p, d->stiffness) * part;
+    }
+    if (d->modal) {
+        MT_TRY(ratios(k, p, o, i, &part, err));
+        sum += k->power[1] * part;
+    }
+    *out = sum;
+    return MT_OK;
+}
+
+/* A real function of both parts. */
+static double complex row_slope(const work *k, int p, mt_term_kind kind, int row, const pair *x)
+{
+    return mt_complex(mt_linear_row_dot_slope(k->lin, p, kind, row, x->part[0]),
+                      mt_linear_row_dot_slope(k->lin, p, kind, row, x->part[1]));
+}
+
+/* e . df. */
+static double complex force_slope(work *k, int p, int i, const pair *e)
+{
+    const mt_port *const port = &k->p->ports->in[i];
+    if (port->kind == MT_PORT_SENSOR) {
+        return row_slope(k, p, MT_TERM_CHANNEL, channel_row(k, port), e);
+    }
+    mt_linear_shift(k->lin, port->index, k->shift);
+    const double re = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[0], k->shift);
+    const double im = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[1], k->shift);
+    return -k->power[2 - port->motion] * mt_complex(re, im);
+}
+
+/* d(sigma) . q - d(t) . l. */
+static double complex output_slope(const work *k, int p, int o, const side *in)
+{
+    const mt_port *const port = &k->p->ports->out[o];
+    if (port->kind == MT_PORT_JOINT) {
+        return -mt_complex(
+            mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[0]),
+            mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[1]));
+    }
+    int row = -1;
+    mt_term_kind kind = MT_TERM_CHANNEL;
+    const mt_term *term = NULL;
+    const double complex factor = row_of(k, port, &row, &kind, &term);
+    if (row < 0) {
+        return 0.0;
+    }
+    double complex sum = factor * row_slope(k, p, kind, row, &in->states);
+    if (term != NULL) {
+        const double own = mt_linear_value(k->lin, term->coefficient);
+        const double loss =
+            port->kind == MT_PORT_SPRING ? slope_of(k, p, term->loss) * own : 0.0;
+        const double complex by =
+            (mt_linear_slope(k->lin, term->coefficient, p) * force_factor(k, port, term)) +
+            mt_complex(0.0, loss);
+        sum += by * mt_complex(mt_linear_row_dot(k->lin, kind, row, in->states.part[0]),
+                               mt_linear_row_dot(k->lin, kind, row, in->states.part[1]));
+    }
+    return sum;
+}
+
+static mt_status jacobian(const work *k, int p, const pair *x, pair *out, mt_err *err)
+{
+    *out = new_pair(k->mem, k->m);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int part = 0; part < 2; part++) {
+        mt_linear_jacobian_slope(k->lin, p, x->part[part], out->part[part]);
+    }
+    return MT_OK;
+}
+
+static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err *err)
+{
+    const side *const in = &k->in[i];
+    const side *const side_out = &k->out[o];
+    const mt_arena_mark mark = mt_arena_get_mark(k->mem);
+    pair moved_out;
+    pair moved_in;
+    MT_TRY(jacobian(k, p, &side_out->states, &moved_out, err));
+    MT_TRY(jacobian(k, p, &in->states, &moved_in, err));
+    double complex turned = 0.0;
+    MT_TRY(between(k, p, o, i, &turned, err));
+    *out = output_slope(k, p, o, in) + force_slope(k, p, i, &side_out->states) - turned -
+           dot(k->m, &moved_out, &in->forces) - dot(k->m, &side_out->forces, &moved_in);
+    mt_arena_rewind(k->mem, mark);
+    return MT_OK;
+}
+
+static mt_status admit(const mt_slope_problem *p, mt_err *err)
+{
+    if (!p->a->with_gradient) {
+        return mt_fail(err, MT_E_INTERNAL,
+                       "derivatives asked for after a solve without gradient");
+    }
+    for (int o = 0; o < p->t->n_out; o++) {
+        const bool modal = p->a->sys->damping.modal;
+        if (p->ports->out[o].kind == MT_PORT_JOINT &&
+            (modal || p->ways->joint[o].geometric != NULL)) {
+            return mt_fail(err, MT_E_USAGE, "%s: a joint's force has no derivatives here %s",
+                           p->ports->out[o].name,
+                           modal ? "beside modal damping ratios" : "under loads");
+        }
+    }
+    return MT_OK;
+}
+
+/* Solutions and adjoints of all ports; *singular: there are none. */
+static mt_status open_ports(work *k, bool *singular, mt_err *err)
+{
+    const mt_transfer *const t = k->p->t;
+    const size_t n = (size_t)t->n;
+    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)t->n_in, sizeof *x);
+    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)t->n_out, sizeof *y);
+    k->x = x;
+    k->y = y;
+    k->in = mt_arena_alloc(k->mem, (size_t)t->n_in, sizeof *k->in);
+    k->out = mt_arena_alloc(k->mem, (size_t)t->n_out, sizeof *k->out);
+    k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(mt_transfer_solve(t, k->w, x, y, singular, k->mem, err));
+    for (int i = 0; i < t->n_in && !*singular; i++) {
+        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * t->n), err));
+    }
+    for (int o = 0; o < t->n_out && !*singular; o++) {
+        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * t->n), err));
+    }
+    return MT_OK;
+}
+
+/* Of all pairs with respect to input p. */
+static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
+{
+    const int n_out = k->p->t->n_out;
+    for (int at = 0; at < k->p->t->n_in * n_out; at++) {
+        MT_TRY(slope(k, p, at % n_out, at / n_out, dh + at, err));
+    }
+    return MT_OK;
+}
+
+static mt_status slopes(work *k, double complex *dh, mt_err *err)
+{
+    const ptrdiff_t pairs = (ptrdiff_t)k->p->t->n_in * k->p->t->n_out;
+    const int n_inputs = k->p->a->sys->n_inputs;
+    bool singular = false;
+    MT_TRY(open_ports(k, &singular, err));
+    for (ptrdiff_t at = 0; at < pairs * n_inputs; at++) {
+        dh[at] = nan("");
+    }
+    for (int p = 0; p < n_inputs; p++) {
+        mt_independence why = {.opens = false};
+        MT_TRY(mt_linear_independence(k->lin, p, k->mem, &why, err));
+        if (!singular && !why.opens && !why.blocks) {
+            MT_TRY(slopes_by(k, p, dh + (p * pairs), err));
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex *dh,
+                             mt_arena *scratch, mt_err *err)
+{
+    work k = {.p = p,
+              .lin = p->a->lin,
+              .mem = scratch,
+              .nq = p->a->sys->nq,
+              .m = mt_linear_equations(p->a->lin),
+              .w = w,
+              .power = {1.0, mt_complex(0.0, w), -w * w}};
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    MT_TRY(admit(p, err));
+    factors_of(&k);
+    const mt_status rc = slopes(&k, dh, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_TRANSFER_H
+#define RESPONSE_TRANSFER_H
+
+#include <complex.h>
+#include <stdbool.h>
+
+#include "base/arena.h"
+#include "linalg/complex.h"
+#include "response/forced.h"
+
+/*
+ * What is solved at each frequency, in whatever coordinates q (those of the problem: direct; of
+ * its modes: basis.h):
+ *     D(s) q = beta(s) u,   D = s^2 m + s c + g,   y = sigma(s) q + rest(s) u,   s = i w.
+ * g, c, m are diagonal (vectors), or symmetric with both triangles.
+ */
+enum { MT_REST_LOWEST = -2, MT_REST_HIGHEST = 4, MT_REST_POWERS = 7 };
+
+typedef struct mt_transfer {
+    int n;
+    int n_in;
+    int n_out;
+    bool diagonal;
+    const double *m;         /* n x n, or [n] */
+    const double *c;         /* the same; NULL: 0 */
+    const double complex *g; /* n x n, or [n] */
+    /* [n] bounds of the errors of the eigenvalues that coordinates are modes of [rad^2/s^2];
+     * NULL: those of rounding entries of D */
+    const double *error;
+    const double complex *beta[MT_FORCED_POWERS];  /* n x n_in; NULL: 0 */
+    const double complex *sigma[MT_FORCED_POWERS]; /* n_out x n; NULL: 0 */
+    bool real[MT_FORCED_POWERS];                   /* has sigma[p] no imaginary part? */
+    /* n_out x n_in, of power p at p - MT_REST_LOWEST; NULL: 0 */
+    const double complex *rest[MT_REST_POWERS];
+} mt_transfer;
+
+/* At one frequency, n_out x n_in each. */
+typedef struct mt_sample {
+    /* an infinite real part: there is no value, since a motion that nothing damps resonates */
+    double complex *h;
+    double complex *dh; /* derivative with respect to w [per rad/s]; NULL: not asked for */
+    /* NULL: not asked for. |error of h| <= this, to first order: what rounding makes of D (or
+     * of its eigenpairs), and of the sums that follow. Infinite where h is. */
+    double *error;
+} mt_sample;
+
+/* The problem itself, as it stands: a factor of D(s) per frequency. Refers to f's matrices. */
+mt_status mt_transfer_direct(const mt_forced *f, mt_arena *mem, mt_transfer *out, mt_err *err);
+
+/* At w > 0 [rad/s]. O(n (n_in + n_out n_in)) where all is diagonal, else O(n^3). No heap after
+ * the first call. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_transfer_at(const mt_transfer *t, double w, const mt_sample *out,
+                         mt_arena *scratch, mt_err *err);
+/* The solutions themselves, at w: q (n x n_in), and the adjoint a (n x n_out, may be NULL), D a
+ * = sigma^T. *singular: D is, and there are none. */
+mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
+                            double complex *a, bool *singular, mt_arena *scratch, mt_err *err);
+
+/* rest[power] as an array of one's own, for who fills it. */
+double complex *mt_transfer_rest(mt_transfer *t, int power, mt_arena *mem);
+
+#endif

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""response: against SciPy, closed forms, and what it says where there is no value."""
+import csv
+import io
+import json
+import math
+import random
+
+import numpy
+from scipy import signal
+
+from common_cli import CliTest, main
+
+# 2 kg on 200 N/m and a damper c, along x.
+ONE = """{ "format": "modetune-model/1", "name": "One", "dimension": 2, "parameters": { "m": 2, "k": 200, "c": 0.4 },
+  "bodies": [ { "name": "a", "mass_kg": "m", "inertia_kg_m2": 1, "centre": [1, 0] } ],
+  "joints": [ { "name": "j", "type": "prismatic", "bodies": ["ground", "a"], "at": [1, 0], "axis": [1, 0] } ],
+  "springs": [ { "name": "s", "type": "axial", "bodies": ["ground", "a"], "at": [[0, 0], [1, 0]], "stiffness_n_per_m": "k" } ],
+  "dampers": [ { "name": "d", "type": "axial", "bodies": ["ground", "a"], "at": [[0, 0], [1, 0]], "damping_n_s_per_m": "c" } ],
+  "sensors": [ { "name": "a", "on": "a", "directions": ["x"] } ] }
+"""
+
+
+def chain(seed, n):
+    """Masses on a line, each sprung and damped against those before it: the model, and M, C, K made here."""
+    rng = random.Random(seed)
+    m, c, k = (numpy.zeros((n, n)) for _ in range(3))
+    model = {"format": "modetune-model/1", "name": "chain", "dimension": 2, "bodies": [], "joints": [], "springs": [], "dampers": [], "sensors": []}
+
+    def tie(matrix, i, j, value):
+        for a in (i, j):
+            for b in (i, j):
+                if a >= 0 and b >= 0:
+                    matrix[a, b] += value if a == b else -value
+
+    for i in range(n):
+        name, at = f"b{i}", [i + 1, 0]
+        m[i, i] = 10 ** rng.uniform(-1, 1)
+        model["bodies"].append({"name": name, "mass_kg": m[i, i], "inertia_kg_m2": 1, "centre": at})
+        model["joints"].append({"name": "j" + name, "type": "prismatic", "bodies": ["ground", name], "at": at, "axis": [1, 0]})
+        model["sensors"].append({"name": name, "on": name, "directions": ["x"]})
+        for kind, matrix, member, low, high in (("springs", k, "stiffness_n_per_m", 2, 4), ("dampers", c, "damping_n_s_per_m", -1, 0.5)):
+            to = rng.randrange(-1, i) if i and kind == "dampers" else i - 1
+            value = 10 ** rng.uniform(low, high)
+            tie(matrix, i, to, value)
+            ends = ["ground" if to < 0 else f"b{to}", name]
+            model[kind].append({"name": kind[0] + name, "type": "axial", "bodies": ends, "at": [[to + 1, 0], at], member: value})
+    return model, m, c, k
+
+
+class Response(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.one = self.write("problems/one.json", ONE)
+
+    def test_scipy_and_the_states_give_the_same(self):
+        for seed, n in ((1, 2), (2, 5), (3, 9)):
+            model, m, c, k = chain(seed, n)
+            path = self.write("problems/chain.json", json.dumps(model))
+            inverse = numpy.linalg.inv(m)
+            a = numpy.block([[numpy.zeros((n, n)), numpy.eye(n)], [-inverse @ k, -inverse @ c]])
+            b = numpy.vstack([numpy.zeros((n, 1)), inverse[:, [0]]])
+            wanted = numpy.hstack([numpy.eye(n), numpy.zeros((n, n))])
+            for way in ([], ["--direct"]):
+                got = self.json_of("response", path, "-c", "default", "--input", "b0.x", "--from", "0.5", "--to", "40", "--points", "30", *way)
+                hz = numpy.array(got["frequencies_hz"])
+                self.assertTrue(got["coupled"])
+                for o in range(n):
+                    s = 2j * math.pi * hz
+                    want = numpy.array([(wanted[o] @ numpy.linalg.solve(x * numpy.eye(2 * n) - a, b))[0] for x in s])
+                    if n < 3:  # it goes by polynomials, which lose digits
+                        _, other = signal.freqresp(signal.StateSpace(a, b, wanted[[o]], numpy.zeros((1, 1))), 2 * math.pi * hz)
+                        self.assertLess(numpy.max(numpy.abs(other - want)), 1e-10 * numpy.max(numpy.abs(want)))
+                    entry = got["responses"][o]
+                    h = numpy.array(entry["re"]) + 1j * numpy.array(entry["im"])
+                    self.assertLess(numpy.max(numpy.abs(h - want)) / numpy.max(numpy.abs(want)), 1e-10)
+                    self.assertEqual((entry["input"], entry["output"], entry["unit"]), ("b0.x", f"b{o}.x:displacement", "m per N"))
+                    self.assertTrue(numpy.all(numpy.array(entry["error"]) < 1e-9 * numpy.max(numpy.abs(want))))
+
+    def test_peak_and_its_sensitivities_have_closed_forms(self):
+        got = self.json_of("response", self.one, "-c", "default", "--input", "a.x", "--sensitivity", "m,k,c")
+        peak, = got["responses"][0]["extremes"]
+        zeta = 0.4 / (2 * math.sqrt(400))
+        top = 1 / (2 * 200 * zeta * math.sqrt(1 - zeta ** 2))
+        self.assertEqual(peak["kind"], "peak")
+        self.assertAlmostEqual(peak["frequency_hz"], 10 * math.sqrt(1 - 2 * zeta ** 2) / (2 * math.pi), delta=1e-9)
+        self.assertAlmostEqual(peak["magnitude"], top, delta=1e-12 * top)
+        for entry, name in zip(peak["sensitivities"], "mkc"):
+            def height(m=2, k=200, c=0.4):
+                z = c / (2 * math.sqrt(k * m))
+                return 1 / (2 * k * z * math.sqrt(1 - z ** 2))
+            value = entry["value"]
+            step = 1e-4 * value
+            slope = (height(**{name: value + step}) - height(**{name: value - step})) / (2 * step)
+            self.assertEqual(entry["parameter"], name)
+            self.assertAlmostEqual(entry["magnitude_per_percent"], 0.01 * value * slope, delta=1e-6 * top)
+        moved = self.json_of("response", self.one, "-c", "default", "--input", "a.x", "--set", "c=2*c")["responses"][0]["extremes"][0]
+        self.assertLess(moved["magnitude"], 0.51 * top)
+
+    def test_what_nothing_damps_has_no_value(self):
+        got = self.expect(0, "response", self.model, "-c", "held", "--input", "a.x", "--format", "json").stdout
+        self.assertNotIn("inf", got.lower().replace("infinite", ""))
+        kinds = [[e["kind"] for e in r["extremes"]] for r in json.loads(got)["responses"]]
+        self.assertEqual(kinds, [["resonance", "antiresonance", "resonance"], ["resonance", "minimum", "resonance"]])
+        text = self.expect(0, "response", self.model, "-c", "held", "--input", "a.x").stdout
+        self.assertIn("Resonances that nothing damps have no magnitude: it is infinite.", text)
+
+    def test_csv_has_a_row_per_value_and_the_ground_can_move(self):
+        rows = list(csv.DictReader(io.StringIO(self.expect(0, "response", self.one, "--input", "base.x", "--output", "a.x:acceleration", "--output",
+                                                           "joint.j.x", "--from", "0.1", "--to", "pi", "--log", "--format", "csv").stdout)))
+        self.assertEqual({r["output"] for r in rows}, {"a.x:acceleration", "joint.j.x"})
+        first = [r for r in rows if r["output"] == "a.x:acceleration"]
+        self.assertAlmostEqual(float(first[0]["frequency_hz"]), 0.1)
+        self.assertAlmostEqual(float(first[-1]["frequency_hz"]), math.pi)
+        for row in first:
+            s = 2j * math.pi * float(row["frequency_hz"])
+            want = (200 + 0.4 * s) / (2 * s * s + 0.4 * s + 200)
+            self.assertLess(abs(complex(float(row["re"]), float(row["im"])) - want), 1e-10 * abs(want))
+            self.assertEqual(row["unit"], "m/s^2 per m/s^2")
+
+    def test_poles_and_residues_make_the_response(self):
+        model, _, _, _ = chain(7, 4)
+        path = self.write("problems/chain.json", json.dumps(model))
+        got = self.json_of("response", path, "-c", "default", "--input", "base.x", "--output", "b2.x:acceleration", "--poles")
+        entry, = got["responses"]
+        s = 2j * math.pi * numpy.array(got["frequencies_hz"])
+        value = sum(complex(d["re"], d["im"]) * s ** k for k, d in enumerate(entry["polynomial"]))
+        for pole in entry["poles"]:
+            value = value + complex(pole["residue_re"], pole["residue_im"]) / (s - complex(pole["re"], pole["im"]))
+        h = numpy.array(entry["re"]) + 1j * numpy.array(entry["im"])
+        self.assertEqual(len(entry["poles"]), 8)
+        self.assertLess(numpy.max(numpy.abs(value - h)), 1e-9 * numpy.max(numpy.abs(h)))
+        free = self.json_of("response", self.model, "-c", "free", "--input", "a.x", "--poles", "--from", "0.1")["responses"][0]
+        self.assertIsNone(free["poles"])
+        self.assertIn("like 1/s^2", free["no_poles"])
+        self.assertIn("There is no sum of poles", self.expect(0, "response", self.model, "-c", "free", "--input", "a.x", "--poles").stdout)
+
+    def test_fewer_modes_are_said(self):
+        text = self.expect(0, "response", self.model, "-c", "held", "--input", "a.x", "--modes", "1").stdout
+        self.assertIn("By 1 of 2 modes.", text)
+        self.assertIn("1 modes from 0.33014 Hz on follow statically", text)
+
+    def test_wrong_use_is_named(self):
+        for args, said in (([], "needs --input"), (["--input", "a.y"], 'no input is called "a.y"; did you mean "a.x"?'),
+                           (["--input", "a.x", "--from", "5", "--to", "1"], "--to: 1 Hz is not above --from, 5 Hz"),
+                           (["--input", "a.x", "--from", "-1"], "--from: -1 is not a frequency above 0"),
+                           (["--input", "a.x", "--points", "1"], "--points: a grid has at least 2 points"),
+                           (["--input", "a.x", "--sensitivity", "k9"], '--sensitivity: unknown parameter "k9"')):
+            self.assertIn(said, self.expect(2, "response", self.model, "-c", "held", *args).stderr)
+        self.assertIn('joint "rb" is redundant', self.expect(2, "response", self.model, "-c", "twice", "--input", "a.x", "--output", "joint.rb.y").stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Responses of models between ports by name; derivatives against slopes. */
+#ifndef RESPONSE_FIXTURE_H
+#define RESPONSE_FIXTURE_H
+
+#include "mechanics/mech.h"
+#include "response/forced_fixture.h"
+#include "response/response.h"
+#include "support/mt_slope.h"
+
+typedef struct asked {
+    mech m;
+    mt_response r;
+    mt_sample s;
+    mt_status rc;
+} asked;
+
+static inline mt_analysis_options all_modes(bool gradient)
+{
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = gradient;
+    return opt;
+}
+
+static inline int split_words(const char *text, char *room, size_t size, const char **words,
+                              int most)
+{
+    int n = 0;
+    (void)snprintf(room, size, "%s", text);
+    for (char *p = strtok(room, " "); p != NULL && n < most; p = strtok(NULL, " ")) {
+        words[n++] = p;
+    }
+    return n;
+}
+
+/* Names separated by blanks. */
+static inline bool ask(mt_test *t, asked *q, const char *inputs, const char *outputs)
+{
+    char room[2][512];
+    const char *in[8];
+    const char *out[16];
+    const mt_response_request request = {
+        .n_in = split_words(inputs, room[0], sizeof room[0], in, 8),
+        .inputs = in,
+        .n_out = split_words(outputs, room[1], sizeof room[1], out, 16),
+        .outputs = out};
+    mt_err err = {.text = ""};
+    q->rc = mt_response_open(q->m.a, &request, &q->r, &err);
+    if (!CHECK(t, q->rc == MT_OK)) {
+        (void)fprintf(stderr, "%s\n", err.text);
+        return false;
+    }
+    const size_t pairs = (size_t)q->r.ports.n_in * (size_t)q->r.ports.n_out;
+    q->s = (mt_sample){.h = mt_arena_alloc(&q->r.mem, pairs, sizeof *q->s.h),
+                       .error = mt_arena_f64(&q->r.mem, pairs, 1)};
+    return true;
+}
+
+/* By modes; the direct way is checked against it. */
+static inline void response_at(mt_test *t, asked *q, double w)
+{
+    const size_t pairs = (size_t)q->r.ports.n_in * (size_t)q->r.ports.n_out;
+    mt_err err;
+    mt_sample other = {.h = mt_arena_alloc(&q->r.mem, pairs, sizeof *other.h),
+                       .error = mt_arena_f64(&q->r.mem, pairs, 1)};
+    CHECK(t, mt_transfer_at(&q->r.direct, w, &other, &q->r.mem, &err) == MT_OK);
+    CHECK(t, mt_transfer_at(&q->r.basis.t, w, &q->s, &q->r.mem, &err) == MT_OK);
+    for (size_t i = 0; i < pairs; i++) {
+        CHECK(t, cabs(q->s.h[i] - other.h[i]) <= q->s.error[i] + other.error[i]);
+        CHECK_NEAR_ABS(t, cabs(q->s.h[i] - other.h[i]), 0.0, 1e-7 * cabs(other.h[i]) + 1e-13);
+    }
+}
+
+static inline void done(asked *q)
+{
+    mt_response_free(&q->r);
+    mech_free(&q->m);
+}
+
+/* One part of one response as a function of the inputs of the analysis. */
+typedef struct slope_of {
+    mt_analysis *a;
+    const char *in;
+    const char *out;
+    double w;
+    bool imaginary;
+} slope_of;
+
+static inline double value_at(const void *ctx, int n, const double *x)
+{
+    const slope_of *const s = ctx;
+    const mt_analysis_options opt = all_modes(false);
+    const mt_response_request request = {
+        .n_in = 1, .inputs = &s->in, .n_out = 1, .outputs = &s->out};
+    mt_response r = {.a = NULL};
+    mt_err err;
+    double complex h = nan("");
+    const mt_sample sample = {.h = &h};
+    (void)n;
+    if (mt_analysis_solve(s->a, x, &opt, &err) != MT_OK ||
+        mt_response_open(s->a, &request, &r, &err) != MT_OK ||
+        mt_transfer_at(&r.direct, s->w, &sample, &r.mem, &err) != MT_OK) {
+        h = nan("");
+    }
+    mt_response_free(&r);
+    return s->imaginary ? cimag(h) : creal(h);
+}
+
+/* What is asked of a model (a text, or a file of tests/models). */
+typedef struct sloped {
+    const char *text;
+    const char *file;
+    const char *configuration;
+    const char *parameters;
+    const char *inputs;
+    const char *outputs;
+} sloped;
+
+/* Every derivative at w, both parts. */
+static inline void check_slopes(mt_test *t, const sloped *s, asked *q, double w)
+{
+    char room[2][512];
+    const char *in[8];
+    const char *out[16];
+    double complex dh[8 * 16 * MECH_INPUTS];
+    mt_err err = {.text = ""};
+    const int n_in = split_words(s->inputs, room[0], sizeof room[0], in, 8);
+    const int n_out = split_words(s->outputs, room[1], sizeof room[1], out, 16);
+    const mt_analysis_options opt = all_modes(true);
+    CHECK(t, mt_analysis_solve(q->m.a, q->m.at, &opt, &err) == MT_OK);
+    if (!ask(t, q, s->inputs, s->outputs) ||
+        !CHECK(t, mt_response_slopes_at(&q->r, w, dh, &err) == MT_OK)) {
+        (void)fprintf(stderr, "%s\n", err.text);
+        return;
+    }
+    mt_response_free(&q->r);
+    for (int k = 0; k < 2 * n_in * n_out * q->m.n; k++) {
+        const int p = k / (2 * n_in * n_out);
+        const int pair = k / 2 % (n_in * n_out);
+        const bool imaginary = k % 2 == 1;
+        const slope_of f = {q->m.a, in[pair / n_out], out[pair % n_out], w, imaginary};
+        const double size = fabs(q->m.at[p]) > 0.0 ? fabs(q->m.at[p]) : 1.0;
+        mt_test_row(t, "%s, w = %g, input %s, output %s, parameter %d, part %d",
+                    s->configuration, w, f.in, f.out, p, (int)imaginary);
+        CHECK(t, mt_slope_agrees(value_at, &f, q->m.n, q->m.at, p,
+                                 imaginary ? cimag(dh[k / 2]) : creal(dh[k / 2]), 2e-4 * size,
+                                 1e-11));
+    }
+}
+
+static inline void slopes_agree(mt_test *t, const sloped *s, const double *ws, int n_w)
+{
+    asked q = {.rc = MT_OK};
+    mt_model *const model = s->text != NULL ? mech_parse(t, s->text) : mech_load(t, s->file);
+    const bool ready = mech_must(t, model, s->configuration, s->parameters, &q.m);
+    for (int k = 0; k < n_w && ready; k++) {
+        check_slopes(t, s, &q, ws[k]);
+    }
+    done(&q);
+}
+
+#endif

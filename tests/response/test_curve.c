@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where a response is looked at: peaks and antiresonances against closed forms, what lies
+ * between points, how many there are. */
+#include "response/curve.h"
+#include "response/forced_fixture.h"
+
+/* A peak's place and height. */
+static const double PLACE = 1e-8; /* |H|^2 is flat there: half of the digits */
+static const double HEIGHT = 1e-12;
+/* What a straight line in log |H| may be off by. */
+static const double BETWEEN = 0.011;
+
+static bool trace(mt_test *t, forced *p, double from, double to, bool log, mt_curve *out)
+{
+    mt_curve_options opt = {.from = from, .to = to, .points = 20, .log = log};
+    double complex *poles = NULL;
+    mt_status rc = mt_response_pole_list(&p->basis, &p->mem, &opt.n_poles, &poles, &p->err);
+    opt.poles = poles;
+    rc = rc == MT_OK ? mt_curve_trace(&p->basis.t, &opt, &p->mem, out, &p->err) : rc;
+    return CHECK(t, rc == MT_OK) && CHECK(t, out->complete);
+}
+
+static void curve__one_mass_peaks_at_its_closed_form(mt_test *t)
+{
+    static const double ZETA[] = {0.5, 0.1, 1e-2, 1e-4, 1e-7};
+    const double k = 300.0;
+    const double m = 3.0;
+    for (size_t r = 0; r < sizeof ZETA / sizeof ZETA[0]; r++) {
+        forced p;
+        forced_all(&p, 1);
+        p.k[0] = k;
+        p.m[0] = m;
+        p.c[0] = 2.0 * ZETA[r] * sqrt(k * m);
+        p.f.c = p.c;
+        mt_test_row(t, "ratio %g", ZETA[r]);
+        mt_curve c = {.n = 0};
+        if (forced_make(t, &p, 0) && trace(t, &p, 1.0, 100.0, r % 2 == 0, &c)) {
+            const double z = ZETA[r];
+            CHECK_INT(t, c.n_extremes, 1);
+            CHECK(t, c.extremes[0].peak && !c.extremes[0].infinite);
+            CHECK_NEAR(t, c.extremes[0].w, 10.0 * sqrt(1.0 - (2.0 * z * z)), PLACE);
+            CHECK_NEAR(t, cabs(c.extremes[0].h), 1.0 / (2.0 * k * z * sqrt(1.0 - (z * z))),
+                       fmax(HEIGHT, 1e-15 / z));
+            CHECK(t, c.n < 400);
+        }
+        mt_arena_free(&p.mem);
+    }
+}
+
+/* A mass with an absorber: the antiresonance of the mass is the absorber's own frequency. */
+static void curve__an_absorber_makes_an_antiresonance(mt_test *t)
+{
+    for (int damped = 0; damped < 2; damped++) {
+        forced p;
+        forced_all(&p, 2);
+        p.m[0] = 4.0;
+        p.m[3] = 0.25;
+        forced_between(p.k, 2, -1, 0, 400.0);
+        forced_between(p.k, 2, 0, 1, 36.0);
+        forced_between(p.c, 2, -1, 0, damped ? 0.5 : 0.0);
+        p.f.c = damped ? p.c : NULL;
+        mt_test_row(t, "%s", damped ? "damped" : "undamped");
+        mt_curve c = {.n = 0};
+        if (forced_make(t, &p, 0) && trace(t, &p, 2.0, 50.0, false, &c)) {
+            int zeros = 0;
+            int infinite = 0;
+            for (int e = 0; e < c.n_extremes; e++) {
+                const mt_extreme *const x = &c.extremes[e];
+                CHECK_INT(t, x->antiresonance, x->pair % 3 == 0 && !x->peak);
+                if (x->pair == 0 && !x->peak) {
+                    zeros++;
+                    CHECK_NEAR(t, c.extremes[e].w, 12.0, PLACE);
+                    CHECK(t, cabs(c.extremes[e].h) <= c.extremes[e].error);
+                }
+                infinite += c.extremes[e].infinite ? 1 : 0;
+            }
+            CHECK_INT(t, zeros, 1);
+            CHECK_INT(t, infinite, damped ? 0 : 8);
+        }
+        mt_arena_free(&p.mem);
+    }
+}
+
+static void curve__lines_between_points_hold(mt_test *t)
+{
+    for (int log_scale = 0; log_scale < 2; log_scale++) {
+        forced p;
+        forced_all(&p, 5);
+        for (ptrdiff_t i = 0; i < 5; i++) {
+            p.m[i + (i * 5)] = 1.0 + (double)i;
+            forced_between(p.k, 5, (int)i - 1, (int)i, 1e4);
+            forced_between(p.h, 5, (int)i - 1, (int)i, 60.0 + (100.0 * (double)i));
+        }
+        p.f.h = p.h;
+        p.f.n_in = 1;
+        mt_test_row(t, "%s", log_scale ? "log" : "linear");
+        mt_curve c = {.n = 0};
+        const mt_transfer *const tr = &p.basis.t;
+        if (forced_make(t, &p, 0) && trace(t, &p, 5.0, 300.0, log_scale == 1, &c)) {
+            mt_sample s = forced_sample(&p, &p.mem);
+            CHECK(t, c.n < 500);
+            for (int i = 0; i + 1 < c.n; i++) {
+                CHECK(t, c.w[i + 1] > c.w[i]);
+                const double w =
+                    log_scale ? sqrt(c.w[i] * c.w[i + 1]) : 0.5 * (c.w[i] + c.w[i + 1]);
+                CHECK(t, mt_transfer_at(tr, w, &s, &p.mem, &p.err) == MT_OK);
+                for (int pair = 0; pair < 5; pair++) {
+                    const double line = 0.5 * (log(cabs(c.h[pair + (i * 5)])) +
+                                               log(cabs(c.h[pair + ((i + 1) * 5)])));
+                    CHECK_NEAR_ABS(t, log(cabs(s.h[pair])), line, BETWEEN);
+                }
+            }
+        }
+        mt_arena_free(&p.mem);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(curve__one_mass_peaks_at_its_closed_form),
+             MT_TEST(curve__an_absorber_makes_an_antiresonance),
+             MT_TEST(curve__lines_between_points_hold))
