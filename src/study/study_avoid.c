@@ -58,8 +58,8 @@ static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *roto
         warn_unconfirmed(c, rotor, aircraft);
     }
     if (aircraft != NULL || rotor->aircraft.addr == rotor->addr) {
-        mt_rotor_check_harmonics(rotor, aircraft,
-                                 c->diags); /* else the aircraft is wrong, which says enough */
+        /* else the aircraft is wrong, which says enough */
+        mt_rotor_check_harmonics(rotor, aircraft, c->diags);
     }
     mt_rotor_check_range(rotor, c->diags);
     check_margin(c, rotor->margin_percent, rotor->margin_addr);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * F = H conj H, F' = 2 Re(H' conj H), F'' = 2 Re(H'' conj H) + 2 |H'|^2. Over an interval of
- * half width h about c, with T_2 >= |H''| there (a sum over the poles by their distance from the
- * interval),
+ * half width h about c, with T_2 >= |H''| there (a sum over the poles by their distance from
+ * the interval),
  *     |H'| <= |H'(c)| + h T_2,   |H| <= |H(c)| + h (|H'(c)| + h T_2).
  * Intervals begin as panels, which are as narrow next to a pole as it is, and the best of their
  * centres and ends is driven to a stationary point before any is halved: of the intervals about
@@ -100,8 +100,8 @@ static void climb(search *s)
     }
 }
 
-/* The top is flat, and its place by F alone known to half the digits: the last steps of Newton's
- * method, as long as F does not tell the difference. */
+/* The top is flat, and its place by F alone known to half the digits: the last steps of
+ * Newton's method, as long as F does not tell the difference. */
 static void settle(search *s)
 {
     static const double same = 1.0 - (16.0 * DBL_EPSILON);

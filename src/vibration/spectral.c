@@ -8,8 +8,9 @@
 static const double CLOSED_ENOUGH = 1e-11;
 /* What rounding takes of one term: a quotient or product of complex numbers and the weight. */
 static const double ULPS_OF_A_TERM = 8.0;
-/* On the inner ellipse of a panel w^b is at most this times what it is at the nodes: the ellipse
- * goes beyond the panel by 0.45 of its half width, which is at most 2 / |b| of its begin. */
+/* On the inner ellipse of a panel w^b is at most this times what it is at the nodes: the
+ * ellipse goes beyond the panel by 0.45 of its half width, which is at most 2 / |b| of its
+ * begin. */
 static const double GROWTH = 4.0;
 
 double mt_spectral_ulps(const mt_frf *h)

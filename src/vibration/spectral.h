@@ -70,8 +70,7 @@ mt_status mt_spectral_slope_nodes(const mt_spectral *r, const mt_psd *input, mt_
  * The same summed up for poles and residues:
  *     d RMS = Re [ sum_k (by_s_k ds_k + by_residue_k dr_k) + sum_j by_d_j dd_j ],
  * of the pole sum, conjugates on their own.
- * @param[out] by_s, by_residue  sum->n; 0 where the residue is 0 (by_residue as well: such poles
- *                               are left out)
+ * @param[out] by_s, by_residue  sum->n; 0 of poles that are left out (undamped, residue 0)
  * @param[out] by_d              3
  */
 void mt_spectral_slopes(const mt_spectral *r, const mt_psd *input, double complex *by_s,

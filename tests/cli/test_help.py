@@ -26,6 +26,7 @@ OPTIONS = {
     "init": set(),
     "examples": {"output"},
     "schema": set(),
+    "profile": {"spectrum", "damping-ratio"},
 }
 
 

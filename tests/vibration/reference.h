@@ -17,7 +17,7 @@
 /* Of x = from + d, d with all its digits. */
 typedef long double ref_function(const void *ctx, long double from, long double d);
 
-/* Takahasi and Mori's rule on [a, b]: the integrand at a + d and b - d, with d kept as it is. */
+/* Takahasi and Mori's rule on [a, b]: the integrand at a + d and b - d, d kept as it is. */
 static inline long double ref_integral(ref_function *f, const void *ctx, long double a,
                                        long double b)
 {
