@@ -17,6 +17,7 @@ static const mt_shipped_kind profiles = {.command = "profile",
                                          .heading = "what it is"};
 
 static const double DEFAULT_DAMPING = 0.05;
+static const double LEAST_HZ = 1e-9;
 static const double MOST_HZ = 1e9;
 
 enum { DIGITS = 5, HZ_DIGITS = 6, SLOPE_DIGITS = 3, MOST_MASSES = 10000 };
@@ -63,7 +64,7 @@ static mt_status read_masses(const mt_args *args, masses *out, mt_err *err)
     }
     const bool right = second != NULL && read_number(s, first, &out->from_hz) &&
                        read_number(first + 1, second, &out->to_hz) &&
-                       read_number(second + 1, s + strlen(s), &n) && out->from_hz > 0.0 &&
+                       read_number(second + 1, s + strlen(s), &n) && out->from_hz >= LEAST_HZ &&
                        out->to_hz >= out->from_hz && out->to_hz <= MOST_HZ && n >= 1.0 &&
                        n <= MOST_MASSES && n == floor(n);
     out->n = right ? (int)n : 0;

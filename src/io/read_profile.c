@@ -293,6 +293,7 @@ static mt_status read_text(mt_read_profile *p, const mt_file *file, mt_diagnosti
     rc = others.lines.failed || (messages != NULL && messages->lines.failed)
              ? mt_fail_memory(err)
              : rc;
+    p->others = NULL;
     mt_diagnostics_free(&others);
     mt_json_delete(doc);
     return rc;

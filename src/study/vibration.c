@@ -9,6 +9,7 @@
 
 static const double DEFAULT_SIGMA = 3.0;
 static const double MOST_SIGMA = 100.0;
+static const double LEAST_HZ = 1e-9;
 static const double MOST_HZ = 1e9;
 /* Levels, of either unit: what no mechanism meets, and no square over- or underflows. */
 static const double LEAST_LEVEL = 1e-30;
@@ -49,8 +50,8 @@ void mt_vibration_delete(mt_vibration *v)
 
 static bool check_hz(mt_diags *d, double hz, mt_addr addr)
 {
-    if (hz == hz && !(hz > 0.0 && hz <= MOST_HZ)) {
-        mt_diag_error(d, addr, "a frequency (%g Hz) must be above 0 and at most %g", hz,
+    if (hz == hz && !(hz >= LEAST_HZ && hz <= MOST_HZ)) {
+        mt_diag_error(d, addr, "a frequency (%g Hz) must be within %g and %g", hz, LEAST_HZ,
                       MOST_HZ);
         return false;
     }
@@ -264,9 +265,9 @@ static void add_tone(mt_vibration *v, int source, double lower, double upper, co
                      mt_diags *d)
 {
     const mt_vibration_source *const s = &v->sources[source];
-    if (!(lower > 0.0 && upper <= MOST_HZ)) {
-        mt_diag_error(d, s->addr, "%s: a frequency (%g Hz) must be above 0 and at most %g",
-                      label, upper, MOST_HZ);
+    if (!(lower >= LEAST_HZ && upper <= MOST_HZ)) {
+        mt_diag_error(d, s->addr, "%s: its frequency (%g to %g Hz) must be within %g and %g",
+                      label, lower, upper, LEAST_HZ, MOST_HZ);
         return;
     }
     v->tones[v->n_tones++] = (mt_vibration_tone){

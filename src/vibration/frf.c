@@ -133,7 +133,7 @@ double complex mt_frf_ratio(double complex a, double complex b)
                           ((cimag(a) * creal(b)) - (creal(a) * cimag(b))) / norm);
 }
 
-static double complex times(double complex a, double complex b)
+double complex mt_frf_times(double complex a, double complex b)
 {
     return mt_frf_complex((creal(a) * creal(b)) - (cimag(a) * cimag(b)),
                           (creal(a) * cimag(b)) + (cimag(a) * creal(b)));
@@ -153,7 +153,7 @@ double complex mt_frf_value(const mt_frf *h, mt_near w, double *size)
                        : cabs(h->c[0]) + (omega * (cabs(h->c[1]) + (omega * cabs(h->c[2]))));
     for (int i = 0; i < h->n_pairs; i++) {
         const double complex below =
-            times(mt_frf_from_pole(h, 2 * i, w), mt_frf_from_pole(h, (2 * i) + 1, w));
+            mt_frf_times(mt_frf_from_pole(h, 2 * i, w), mt_frf_from_pole(h, (2 * i) + 1, w));
         sum += mt_frf_ratio(mt_frf_complex(h->constant[i], -omega * h->slope[i]), below);
         if (size != NULL) {
             sizes += (h->size[i] + (omega * fabs(h->slope[i]))) / cabs(below);
@@ -178,9 +178,9 @@ void mt_frf_jet(const mt_frf *h, mt_near w, double complex *jet)
     jet[2] = 2.0 * h->c[2];
     for (int k = 0; k < h->n; k++) {
         const double complex inverse = mt_frf_ratio(1.0, mt_frf_from_pole(h, k, w));
-        const double complex second = times(times(h->rho[k], inverse), inverse);
+        const double complex second = mt_frf_times(mt_frf_times(h->rho[k], inverse), inverse);
         jet[1] -= second;
-        jet[2] += 2.0 * times(second, inverse);
+        jet[2] += 2.0 * mt_frf_times(second, inverse);
     }
 }
 
@@ -216,6 +216,7 @@ void mt_frf_pull(const mt_frf *h, mt_near w, double complex weight, double compl
         const double complex by_r = mt_frf_ratio(weight, mt_frf_complex(-cimag(d), creal(d)));
         const double complex r = mt_frf_complex(-cimag(h->rho[k]), creal(h->rho[k]));
         by_residue[h->index[k]] += by_r;
-        by_s[h->index[k]] += mt_frf_ratio(times(by_r, r), mt_frf_complex(-cimag(d), creal(d)));
+        by_s[h->index[k]] +=
+            mt_frf_ratio(mt_frf_times(by_r, r), mt_frf_complex(-cimag(d), creal(d)));
     }
 }

@@ -68,5 +68,7 @@ static inline double complex mt_frf_complex(double re, double im)
 }
 /* a / b, |b| far from over- and underflow. */
 double complex mt_frf_ratio(double complex a, double complex b);
+/* a b, finite. */
+double complex mt_frf_times(double complex a, double complex b);
 
 #endif

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * F = H conj H, F' = 2 Re(H' conj H), F'' = 2 Re(H'' conj H) + 2 |H'|^2. Over an interval of
- * half width h about c, with T_2 >= |H''| there (a sum over the poles by their distance from
- * the interval),
- *     |H'| <= |H'(c)| + h T_2,   |H| <= |H(c)| + h (|H'(c)| + h T_2).
- * Intervals begin as panels, which are as narrow next to a pole as it is, and the best of their
- * centres and ends is driven to a stationary point before any is halved: of the intervals about
- * a maximum, only a few of each size then are.
+ * F = H conj H has, about the centre c of an interval of half width h, Taylor's coefficients
+ * f_k = sum_i a_i conj a_(k-i) of those of H, a_j = sum rho (-1)^j / (c - p)^(j + 1), and on it
+ *     F <= f_0 + max (f_1 t + f_2 t^2) + sum_{k=3}^{m-1} |f_k| h^k + R h^m,
+ *     R = sum_i A_i A_(m-i),   |H^(j) / j!| <= A_j = sum |rho| / distance^(j + 1),
+ * with the distances of the poles from the interval. About a maximum the parabola leaves an
+ * error of h^3, and where F is flat (an all-pass) one of h^m: few intervals are needed for
+ * either. Intervals begin as panels, which are as narrow next to a pole as it is, and the best
+ * of their centres and ends is driven to a stationary point before any is halved.
  */
 #include "vibration/sine.h"
 
@@ -17,7 +18,9 @@
 static const double EXCESS = 1e-10;
 /* Intervals that are looked at before the search is content with what it can prove. */
 enum { MOST_INTERVALS = 200000 };
-enum { NEWTON_STEPS = 60, LAST_STEPS = 3 };
+enum { NEWTON_STEPS = 60, LAST_STEPS = 3, ORDER = 8 };
+/* What rounding takes of one term of a sum. */
+static const double ULPS = 8.0;
 
 typedef struct search {
     const mt_frf *h;
@@ -41,30 +44,76 @@ static void slopes(const mt_frf *h, mt_near w, double *f)
                   (cimag(jet[1]) * cimag(jet[1])));
 }
 
-static double bend(const mt_frf *h, const mt_panel *p)
+/* Taylor's coefficients of H, and what rounding may take of each (times units in the last
+ * place); sizes of the coefficients anywhere on the interval. */
+typedef struct series {
+    double complex a[ORDER];
+    double rounding[ORDER];
+    double size[ORDER + 1];
+} series;
+
+static void expand(const mt_frf *h, const mt_panel *p, mt_near centre, series *s)
 {
-    double sum = 2.0 * cabs(h->c[2]);
+    const double omega = centre.anchor + centre.t;
+    const double most = p->anchor + p->b;
+    *s = (series){.a = {0.0, h->c[1] + (2.0 * omega * h->c[2]), h->c[2]},
+                  .size = {cabs(h->c[0]) + (most * (cabs(h->c[1]) + (most * cabs(h->c[2])))),
+                           cabs(h->c[1]) + (2.0 * most * cabs(h->c[2])), cabs(h->c[2])}};
+    s->a[0] = mt_frf_value(h, centre, &s->rounding[0]);
     for (int k = 0; k < h->n; k++) {
         const double d = p->anchor - h->re[k];
         const double off = d + p->a > 0.0 ? d + p->a : fmin(d + p->b, 0.0);
-        const double distance = hypot(off, h->im[k]);
-        sum += 2.0 * cabs(h->rho[k]) / (distance * distance * distance);
+        const double near = 1.0 / hypot(off, h->im[k]);
+        const double complex inverse = mt_frf_ratio(-1.0, mt_frf_from_pole(h, k, centre));
+        double complex term = -mt_frf_times(h->rho[k], inverse);
+        double size = cabs(h->rho[k]) * near;
+        s->size[0] += size;
+        for (int j = 1; j <= ORDER; j++) {
+            size *= near;
+            s->size[j] += size;
+            if (j < ORDER) {
+                term = mt_frf_times(term, inverse);
+                s->a[j] += term;
+            }
+        }
     }
-    return sum;
+    for (int j = 1; j < ORDER; j++) {
+        s->rounding[j] = s->size[j];
+    }
+}
+
+/* The largest of f_1 t + f_2 t^2 for |t| <= h. */
+static double parabola(double f1, double f2, double h)
+{
+    const double slope = fabs(f1);
+    return f2 < 0.0 && slope <= -2.0 * f2 * h ? slope * slope / (-4.0 * f2)
+                                              : h * (slope + (h * f2));
 }
 
 /* No frequency of the interval has more than that. */
 static double bound(const mt_frf *h, const mt_panel *p, mt_near centre)
 {
     const double half = 0.5 * (p->b - p->a);
-    const double t2 = bend(h, p);
-    double complex jet[3];
-    mt_frf_jet(h, centre, jet);
-    const double h1 = cabs(jet[1]) + (half * t2);
-    const double h0 = cabs(jet[0]) + (half * h1);
-    const double f = cabs(jet[0]) * cabs(jet[0]);
-    const double slope = fabs(2.0 * creal(jet[1] * conj(jet[0])));
-    return f + (half * (slope + (half * ((t2 * h0) + (h1 * h1)))));
+    double f[ORDER] = {0.0};
+    double rest = 0.0;     /* coefficients from the third on, and the remainder */
+    double rounding = 0.0; /* in units in the last place */
+    double power = 1.0;    /* of half */
+    series s;
+    expand(h, p, centre, &s);
+    for (int k = 0; k <= ORDER; k++) {
+        double most = 0.0;
+        for (int i = 0; i <= k; i++) {
+            if (k < ORDER) {
+                f[k] += creal(s.a[i] * conj(s.a[k - i]));
+                rounding += 2.0 * power * cabs(s.a[i]) * s.rounding[k - i];
+            }
+            most += s.size[i] * s.size[k - i];
+        }
+        rest += k < 3 ? 0.0 : power * (k < ORDER ? fabs(f[k]) : most);
+        power *= half;
+    }
+    return f[0] + parabola(f[1], f[2], half) + rest +
+           (DBL_EPSILON * (ULPS + (double)h->n) * rounding);
 }
 
 static void consider(search *s, const mt_panel *in, mt_near w)
@@ -89,9 +138,8 @@ static void climb(search *s)
         slopes(s->h, (mt_near){in.anchor, t}, f);
         low = f[1] > 0.0 ? t : low;
         high = f[1] > 0.0 ? high : t;
-        const double newton = t - (f[1] / f[2]);
-        const double next =
-            f[2] < 0.0 && newton >= in.a && newton <= in.b ? newton : 0.5 * (low + high);
+        const double newton = f[2] < 0.0 ? t - (f[1] / f[2]) : HUGE_VAL;
+        const double next = newton >= in.a && newton <= in.b ? newton : 0.5 * (low + high);
         if (next == t) {
             break;
         }
@@ -108,9 +156,12 @@ static void settle(search *s)
     for (int step = 0; step < LAST_STEPS; step++) {
         double f[3];
         slopes(s->h, s->at, f);
+        if (!(f[2] < 0.0)) {
+            break;
+        }
         const mt_near w = {s->at.anchor, s->at.t - (f[1] / f[2])};
         const double size = cabs(mt_frf_value(s->h, w, NULL));
-        if (!(f[2] < 0.0 && w.t > s->in.a && w.t < s->in.b && size * size >= same * s->f)) {
+        if (!(w.t > s->in.a && w.t < s->in.b && size * size >= same * s->f)) {
             break;
         }
         s->at = w;

@@ -7,12 +7,10 @@
 /*
  * The largest response to a tone whose frequency lies anywhere in a range:
  *     max |H(w)|,   lower <= w <= upper.
- * It is found by branch and bound, no grid: with F = |H|^2 and |F''| <= B on an interval of
- * centre c and half width h,
- *     F <= F(c) + |F'(c)| h + B h^2 / 2,
- * and an interval whose bound is not above the best value known is done; others are halved. B
- * follows from the distances of the poles. What is left when all are done is a proof: no
- * frequency of the range has more than value (1 + excess).
+ * It is found by branch and bound, no grid: Taylor's series about the middle of an interval,
+ * with the distances of the poles for its remainder, bound |H|^2 on it; an interval whose bound
+ * is not above the best value known is done, others are halved. What is left when all are done
+ * is a proof: no frequency of the range has more than value (1 + excess).
  */
 typedef struct mt_sine_peak {
     mt_forced_end end; /* numbers are NaN where it is not MT_FORCED_FINITE */

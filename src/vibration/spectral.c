@@ -61,6 +61,10 @@ double mt_spectral_psd(const mt_spectral *r, const mt_psd *input, double hz)
     if (!(g > 0.0)) {
         return 0.0;
     }
+    int pole = 0;
+    if (mt_frf_judge(&r->h, MT_TWO_PI * hz, MT_TWO_PI * hz, &pole) == MT_FORCED_INFINITE) {
+        return HUGE_VAL;
+    }
     const double size = cabs(mt_frf_value(&r->h, (mt_near){MT_TWO_PI * hz, 0.0}, NULL));
     return size * size * g;
 }

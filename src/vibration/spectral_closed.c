@@ -108,8 +108,9 @@ static void next_to(const mt_frf *h, int k, const piece *on, const mt_gauss *g, 
     }
     sum->j += j;
     sum->j_size += size;
-    sum->s += cimag(j) / h->im[k];
-    sum->s_size += size / fabs(h->im[k]);
+    /* without damping there is no S this way: the bound says so */
+    sum->s += h->im[k] != 0.0 ? cimag(j) / h->im[k] : 0.0;
+    sum->s_size += h->im[k] != 0.0 ? size / fabs(h->im[k]) : HUGE_VAL;
 }
 
 static void cut(piece *on, const mt_gauss *g, const mt_spectral_segment *all, double from,
@@ -215,7 +216,6 @@ mt_spectral_sum mt_spectral_closed(const mt_spectral *r, const mt_spectral_segme
         }
         from = to;
     }
-    /* a pole next to the axis has no S of its own where it has no damping */
     const double bound = t.size * DBL_EPSILON;
     return (mt_spectral_sum){t.value, bound == bound ? bound : HUGE_VAL};
 }

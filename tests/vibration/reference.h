@@ -70,54 +70,65 @@ static inline long double ref_density(const void *ctx, long double from, long do
     return size * size * s->g->level[s->i] * powl(hz / s->g->hz[s->i], b);
 }
 
-/* Integral of |H|^2 G from hz[i] to hz[i + 1], cut at every resonance and at 4^j times its half
- * width on both sides; `rounded`: the ends are 2 pi f as a double has it. */
+enum { REF_CUTS = 4096, REF_POWERS = 24 };
+
+typedef struct ref_cuts {
+    int n;
+    long double at[REF_CUTS];
+} ref_cuts;
+
+/* Put in its place, where it lies between the first and the last. */
+static inline void ref_cut(ref_cuts *c, long double x)
+{
+    int i = c->n;
+    if (c->n >= REF_CUTS || !(x > c->at[0] && x < c->at[c->n - 1])) {
+        return;
+    }
+    for (; c->at[i - 1] > x; i--) {
+        c->at[i] = c->at[i - 1];
+    }
+    c->at[i] = x;
+    c->n++;
+}
+
+/* At octaves, at every resonance, and at 4^j times its half width on both sides. */
+static inline void ref_cut_all(ref_cuts *c, const mt_pole_sum *h, long double lower,
+                               long double upper)
+{
+    *c = (ref_cuts){.n = 2, .at = {lower, upper}};
+    const int octaves = (int)log2l(upper / lower);
+    for (int i = 1; i <= octaves; i++) {
+        ref_cut(c, ldexpl(lower, i));
+    }
+    for (int k = 0; k < h->n; k++) {
+        const long double centre = cimag(h->s[k]);
+        ref_cut(c, centre);
+        for (int j = 0; j < REF_POWERS; j++) {
+            const long double width = ldexpl(fabsl((long double)creal(h->s[k])), 2 * j);
+            ref_cut(c, centre - width);
+            ref_cut(c, centre + width);
+        }
+    }
+}
+
 static inline long double ref_end(double hz, bool rounded)
 {
     return rounded ? (long double)(6.28318530717958647693 * hz) : 2.0L * REF_PI * hz;
 }
 
+/* Integral of |H|^2 G df; `rounded`: ends are 2 pi f as a double has it. */
 static inline long double ref_mean_square(const mt_pole_sum *h, const mt_psd *g, bool rounded)
 {
-    enum { MOST = 4096, POWERS = 24 };
+    static ref_cuts cuts;
     long double total = 0.0L;
     for (int i = 0; i + 1 < g->n; i++) {
-        static long double cuts[MOST];
         const ref_segment s = {h, g, i};
-        const long double lower = ref_end(g->hz[i], rounded);
-        const long double upper = ref_end(g->hz[i + 1], rounded);
-        int n = 0;
-        if (!(lower < upper)) {
-            continue;
-        }
-        cuts[n++] = lower;
-        for (long double x = 2.0L * lower; x < upper; x *= 2.0L) {
-            cuts[n++] = x;
-        }
-        cuts[n++] = upper;
-        for (int k = 0; k < h->n; k++) {
-            const long double centre = cimag(h->s[k]);
-            long double width = fabsl((long double)creal(h->s[k]));
-            for (int j = 0; j < POWERS && n < MOST - 3; j++, width *= 4.0L) {
-                const long double around[] = {centre, centre - width, centre + width};
-                for (int q = j == 0 ? 0 : 1; q < 3; q++) {
-                    if (around[q] > lower && around[q] < upper) {
-                        cuts[n++] = around[q];
-                    }
+        if (g->hz[i] < g->hz[i + 1]) {
+            ref_cut_all(&cuts, h, ref_end(g->hz[i], rounded), ref_end(g->hz[i + 1], rounded));
+            for (int k = 0; k + 1 < cuts.n; k++) {
+                if (cuts.at[k] < cuts.at[k + 1]) {
+                    total += ref_integral(ref_density, &s, cuts.at[k], cuts.at[k + 1]);
                 }
-            }
-        }
-        for (int a = 1; a < n; a++) { /* few: by insertion */
-            const long double x = cuts[a];
-            int b = a;
-            for (; b > 0 && cuts[b - 1] > x; b--) {
-                cuts[b] = cuts[b - 1];
-            }
-            cuts[b] = x;
-        }
-        for (int a = 0; a + 1 < n; a++) {
-            if (cuts[a + 1] > cuts[a]) {
-                total += ref_integral(ref_density, &s, cuts[a], cuts[a + 1]);
             }
         }
     }

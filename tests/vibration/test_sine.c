@@ -177,6 +177,32 @@ static void sine__plain_responses(mt_test *t)
     CHECK_NEAR(t, peak_of(t, &line, 0.5, 2.0).value, 2.75, 1e-14);
 }
 
+/* |H| is 1 everywhere, or almost: no frequency can be left out for being lower. */
+static void sine__flat_responses_are_proven(mt_test *t)
+{
+    static const double widths[] = {30.0, 1.0, 1e-3, 1e-6};
+    for (int i = 0; i < MT_COUNT(widths); i++) {
+        /* (s^2 - 2 d s + w^2)/(s^2 + 2 d s + w^2) = 1 - 4 d s/(...) */
+        const double complex a = -widths[i] + (100.0 * REF_I);
+        const double complex s[] = {a, conj(a)};
+        const double complex one = 4.0 * creal(a) * a / (a - conj(a));
+        const double complex r[] = {one, conj(one)};
+        const mt_pole_sum h = {.n = 2, .s = s, .residue = r, .d = {1.0}};
+        const mt_sine_peak p = peak_of(t, &h, 1.0, 1e4);
+        mt_test_row(t, "all-pass, %g", widths[i]);
+        CHECK_NEAR(t, p.value, 1.0, 1e-13 + (DBL_EPSILON * 100.0 / widths[i]));
+        CHECK(t, p.excess <= 1e-10);
+    }
+    const double complex s[] = {-1.0 + (100.0 * REF_I), -1.0 - (100.0 * REF_I)};
+    const double complex r[] = {-1e-9 * REF_I, 1e-9 * REF_I};
+    const mt_pole_sum h = {.n = 2, .s = s, .residue = r, .d = {1.0}};
+    const mt_sine_peak p = peak_of(t, &h, 1.0, 1000.0);
+    mt_test_row(t, "a ripple of 5e-10");
+    CHECK_NEAR_ABS(t, p.value, 1.0 + 5e-10, 1e-11);
+    CHECK(t, p.excess <= 1e-10);
+    CHECK_NEAR(t, p.omega, 99.0, 1e-3); /* half its width below the pole */
+}
+
 /* The envelope theorem, through a peak that moves. */
 static double peak_by(const void *ctx, int n, const double *x)
 {
@@ -221,4 +247,5 @@ MT_TEST_MAIN(MT_TEST(sine__receptance_of_one_mass), MT_TEST(sine__transmissibili
              MT_TEST(sine__range_beside_the_resonance_ends_at_its_edge),
              MT_TEST(sine__no_sample_is_above_the_bound),
              MT_TEST(sine__what_has_no_number_says_why), MT_TEST(sine__plain_responses),
+             MT_TEST(sine__flat_responses_are_proven),
              MT_TEST(sine__slope_is_that_at_a_fixed_frequency))
