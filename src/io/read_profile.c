@@ -282,7 +282,10 @@ static mt_status read_text(mt_read_profile *p, const mt_file *file, mt_diagnosti
         read_root(p);
     }
     rc = mt_reader_status(&p->r, p->v->path, err);
-    rc = rc == MT_OK && p->failed != MT_OK ? mt_fail(err, p->failed, "%s", p->why.text) : rc;
+    /* a shortage, or a disk that fails, counts whatever else is wrong */
+    if (p->failed != MT_OK && (rc == MT_OK || p->failed != MT_E_INPUT)) {
+        rc = mt_fail(err, p->failed, "%s", p->why.text);
+    }
     if (structural != NULL) {
         *structural = p->r.diags->structural;
     }

@@ -126,10 +126,12 @@ static void load(mt_read_profile *p, mt_addr place, const char *file, const mt_i
         return;
     }
     v->aircraft = (mt_aircraft_list){0};
-    if (!mt_is_final(rc) && p->others->count == told) {
+    const bool final =
+        mt_is_final(rc) || (rc == MT_E_SYSTEM && !mt_files_lack(&opt->files, file));
+    if (!final && p->others->count == told) {
         mt_diag_error(p->r.diags, place, "%s", why.text);
     }
-    p->failed = mt_is_final(rc) ? rc : MT_E_INPUT;
+    p->failed = final ? rc : MT_E_INPUT;
     p->why = why;
 }
 
