@@ -45,13 +45,20 @@ static inline long double complex ref_response(const mt_pole_sum *h, long double
 {
     const long double complex i = (long double complex)I;
     const long double complex iw = (from + d) * i;
-    long double complex sum =
-        (long double complex)h->d[0] + (iw * h->d[1]) + (iw * iw * h->d[2]);
+    long double complex sum = (long double complex)h->d[0] +
+                              (iw * (long double complex)h->d[1]) +
+                              (iw * iw * (long double complex)h->d[2]);
     for (int k = 0; k < h->n; k++) {
         const long double apart = (from - (long double)cimag(h->s[k])) + d;
         sum += (long double complex)h->residue[k] / ((apart * i) - (long double)creal(h->s[k]));
     }
     return sum;
+}
+
+/* |H(w)|. */
+static inline double ref_size(const mt_pole_sum *h, double w)
+{
+    return (double)cabsl(ref_response(h, (long double)w, 0.0L));
 }
 
 typedef struct ref_segment {
@@ -64,10 +71,12 @@ static inline long double ref_density(const void *ctx, long double from, long do
 {
     const ref_segment *const s = ctx;
     const long double hz = (from + d) / (2.0L * REF_PI);
-    const long double b = logl((long double)s->g->level[s->i + 1] / s->g->level[s->i]) /
-                          logl((long double)s->g->hz[s->i + 1] / s->g->hz[s->i]);
+    const long double f[] = {(long double)s->g->hz[s->i], (long double)s->g->hz[s->i + 1]};
+    const long double level[] = {(long double)s->g->level[s->i],
+                                 (long double)s->g->level[s->i + 1]};
+    const long double b = logl(level[1] / level[0]) / logl(f[1] / f[0]);
     const long double size = cabsl(ref_response(s->h, from, d));
-    return size * size * s->g->level[s->i] * powl(hz / s->g->hz[s->i], b);
+    return size * size * level[0] * powl(hz / f[0], b);
 }
 
 enum { REF_CUTS = 4096, REF_POWERS = 24 };
@@ -101,7 +110,7 @@ static inline void ref_cut_all(ref_cuts *c, const mt_pole_sum *h, long double lo
         ref_cut(c, ldexpl(lower, i));
     }
     for (int k = 0; k < h->n; k++) {
-        const long double centre = cimag(h->s[k]);
+        const long double centre = (long double)cimag(h->s[k]);
         ref_cut(c, centre);
         for (int j = 0; j < REF_POWERS; j++) {
             const long double width = ldexpl(fabsl((long double)creal(h->s[k])), 2 * j);
@@ -113,7 +122,8 @@ static inline void ref_cut_all(ref_cuts *c, const mt_pole_sum *h, long double lo
 
 static inline long double ref_end(double hz, bool rounded)
 {
-    return rounded ? (long double)(6.28318530717958647693 * hz) : 2.0L * REF_PI * hz;
+    return rounded ? (long double)(6.28318530717958647693 * hz)
+                   : 2.0L * REF_PI * (long double)hz;
 }
 
 /* Integral of |H|^2 G df; `rounded`: ends are 2 pi f as a double has it. */

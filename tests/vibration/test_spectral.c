@@ -190,8 +190,8 @@ static void chain_matrix(double k, double c, long double a[STATES][STATES])
         a[i][i + CHAIN] = 1.0L;
         for (int j = 0; j < CHAIN; j++) {
             const double second = i == j ? -2.0 : abs(i - j) == 1;
-            a[i + CHAIN][j] = second * k;
-            a[i + CHAIN][j + CHAIN] = second * c;
+            a[i + CHAIN][j] = (long double)(second * k);
+            a[i + CHAIN][j + CHAIN] = (long double)(second * c);
         }
     }
 }
@@ -361,7 +361,7 @@ static void spectral__density_of_the_response(mt_test *t)
     const mt_pole_sum h = ref_one_mass(100.0, 0.02, REF_ABSOLUTE, s, r);
     REQUIRE(t, mt_spectral_init(&of, &h, &mem, NULL) == MT_OK);
     for (int i = 0; i < g.n; i++) {
-        const double size = (double)cabsl(ref_response(&h, 2.0L * REF_PI * g.hz[i], 0.0L));
+        const double size = ref_size(&h, 2.0 * (double)REF_PI * g.hz[i]);
         const double level =
             fmax(g.level[i], i > 0 && g.hz[i - 1] == g.hz[i]         ? g.level[i - 1]
                              : i + 1 < g.n && g.hz[i + 1] == g.hz[i] ? g.level[i + 1]
