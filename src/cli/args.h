@@ -50,6 +50,8 @@ typedef enum mt_option_id {
     MT_OPT_RANK,
     MT_OPT_MODEL,
     MT_OPT_REL_TOL,
+    MT_OPT_SPECTRUM,
+    MT_OPT_DAMPING_RATIO,
     MT_OPT_ROOT,
     MT_OPT_FORMAT,
     MT_OPT_QUIET,
@@ -79,6 +81,7 @@ typedef enum mt_command_id {
     MT_CMD_INIT,
     MT_CMD_EXAMPLES,
     MT_CMD_SCHEMA,
+    MT_CMD_PROFILE,
     MT_CMD_IDS
 } mt_command_id;
 

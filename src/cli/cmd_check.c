@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune check: every problem of model, study, result and aircraft files. */
+/* modetune check: every problem of files, each as its format says. */
 #include <string.h>
 
 #include "answer/doubts.h"
 #include "answer/examine.h"
+#include "base/format.h"
 #include "cli/cli.h"
 #include "cli/sarif.h"
 #include "io/file.h"
@@ -17,26 +18,33 @@ typedef enum file_kind {
     KIND_STUDY,
     KIND_RESULT,
     KIND_AIRCRAFT,
+    KIND_PROFILE,
     KIND_COUNT
 } file_kind;
 
 static const char *const formats[KIND_COUNT] = {"modetune-model/1", "modetune-study/1",
-                                                "modetune-result/1", "modetune-aircraft/1"};
-static const char *const kinds[KIND_COUNT] = {"model", "study", "result", "aircraft"};
+                                                "modetune-result/1", "modetune-aircraft/1",
+                                                "modetune-profile/1"};
+static const char *const kinds[KIND_COUNT] = {"model", "study", "result", "aircraft",
+                                              "profile"};
+
+/* A text that lists them. */
+enum { ALL_FORMATS = 160 };
 
 /* What the document says it is; KIND_COUNT with a diagnostic where that cannot be told. */
 static int kind_of(mt_json *doc)
 {
     mt_diags *const diags = mt_json_diags(doc);
     const mt_addr value = mt_json_member(doc, MT_JSON_ROOT, "format");
+    char all[ALL_FORMATS];
+    (void)mt_snprintf(all, sizeof all, "one of \"%s\", \"%s\", \"%s\", \"%s\", \"%s\"",
+                      formats[0], formats[1], formats[2], formats[3], formats[4]);
     if (mt_json_type_of(doc, MT_JSON_ROOT) != MT_JSON_OBJECT) {
         mt_diag_structure(diags, MT_JSON_ROOT, "must be an object with a member \"format\"");
         return KIND_COUNT;
     }
     if (value == MT_NO_ADDR) {
-        mt_diag_structure(diags, MT_JSON_ROOT,
-                          "member \"format\" is missing: one of \"%s\", \"%s\", \"%s\", \"%s\"",
-                          formats[0], formats[1], formats[2], formats[3]);
+        mt_diag_structure(diags, MT_JSON_ROOT, "member \"format\" is missing: %s", all);
         return KIND_COUNT;
     }
     const char *const text =
@@ -47,8 +55,7 @@ static int kind_of(mt_json *doc)
         }
     }
     const char *const nearest = mt_text_nearest(text, formats, KIND_COUNT);
-    mt_diag_structure(diags, value, "must be one of \"%s\", \"%s\", \"%s\", \"%s\"%s%s%s",
-                      formats[0], formats[1], formats[2], formats[3],
+    mt_diag_structure(diags, value, "must be %s%s%s%s", all,
                       nearest == NULL ? "" : "; did you mean \"",
                       nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
     return KIND_COUNT;
@@ -132,6 +139,7 @@ typedef struct subject {
     mt_model *model;
     mt_study *study;
     mt_result *result;
+    mt_vibration *profile;
     mt_arena mem; /* of a catalogue of aircraft */
 } subject;
 
@@ -184,6 +192,9 @@ static mt_status load(int kind, mt_json *doc, const char *path, const mt_io_opti
     case KIND_AIRCRAFT:
         rc = mt_arena_init(&s->mem, 0, err);
         rc = rc == MT_OK ? mt_aircraft_load(path, opt, &s->mem, &aircraft, messages, err) : rc;
+        break;
+    case KIND_PROFILE:
+        rc = mt_vibration_load(path, opt, &s->profile, messages, err);
         break;
     case KIND_COUNT:
         break;
@@ -301,6 +312,7 @@ static int check(const mt_args *args, const char *path, output *to)
     mt_model_delete(read.model);
     mt_study_delete(read.study);
     mt_result_delete(read.result);
+    mt_vibration_delete(read.profile);
     mt_arena_free(&mem);
     return mt_cli_loaded(rc, &messages, &err);
 }

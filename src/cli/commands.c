@@ -132,6 +132,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_REL_TOL, '\0', "rel-tol", "X", BIT(MT_CMD_DIFF),
            "numbers that differ by no more than this part of them are the same (default: 0; "
            "1e-6 passes over what another machine or compiler rounds differently)"),
+    OPTION(MT_OPT_SPECTRUM, '\0', "spectrum", "FROM:TO:N", BIT(MT_CMD_PROFILE),
+           "what the profile does to one mass on a spring, for N natural frequencies [Hz] from "
+           "FROM to TO in equal quotients"),
+    OPTION(MT_OPT_DAMPING_RATIO, '\0', "damping-ratio", "X", BIT(MT_CMD_PROFILE),
+           "of --spectrum: the mass's damping ratio, between 0 and 1 (default: 0.05, Q = 10)"),
     OPTION(MT_OPT_ROOT, '\0', "root", "DIR", MT_ALL_COMMANDS,
            "files named by other files must lie beneath DIR (default: the parent of the "
            "study's folder)"),
@@ -287,7 +292,7 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "are the same, 1 when they differ, 2 or more when they cannot be compared."),
     COMMAND(
         MT_CMD_CHECK, "check", "FILE...", 1, -1,
-        "validate model, study, result and aircraft files",
+        "validate model, study, result, aircraft and profile files",
         "Reads each file as its \"format\" says, and prints every problem found as "
         "file:line:column: error: /json/pointer: message.\n"
         "JSON has all of this by members (file, line, column, pointer, severity, message), "
@@ -312,6 +317,20 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "written."),
     COMMAND(MT_CMD_SCHEMA, "schema", "[NAME]", 0, 1, "the JSON Schemas of all files",
             "Without a name: lists them. With one (model, study, result, ...): prints it."),
+    COMMAND(
+        MT_CMD_PROFILE, "profile", "[PROFILE]", 0, 1, "what a profile of vibration asks for",
+        "Prints the breakpoints of its random parts with their slopes and overall RMS, and its "
+        "tones with the harmonics of rotors resolved to Hz, each with origin and source. What "
+        "is "
+        "assumed, or not confirmed by a public document, is said on standard error, too. "
+        "PROFILE is a file, or the name of one that is part of the program; without it: lists "
+        "these.\n"
+        "--spectrum prints what the profile does to one mass on a spring that stands on the "
+        "base: RMS of its absolute acceleration, exact to the bound that is told, the tones' "
+        "largest peaks over their ranges, proven, and both combined as the profile says "
+        "(default: 3 times the RMS and the sum of all tones). --format csv has one row for "
+        "each "
+        "segment and tone, or for each natural frequency."),
 };
 
 const mt_exit mt_exits[MT_EXITS] = {

@@ -28,6 +28,7 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_INIT] = mt_cmd_init,
     [MT_CMD_EXAMPLES] = mt_cmd_examples,
     [MT_CMD_SCHEMA] = mt_cmd_schema,
+    [MT_CMD_PROFILE] = mt_cmd_profile,
 };
 
 static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)

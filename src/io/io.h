@@ -7,6 +7,7 @@
 #include "io/options.h"
 #include "io/read_aircraft.h"
 #include "io/read_model.h"
+#include "io/read_profile.h"
 #include "io/read_result.h"
 #include "io/read_study.h"
 #include "io/result_folder.h"

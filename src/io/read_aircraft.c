@@ -6,6 +6,7 @@
 
 #include "io/file.h"
 #include "io/json_print.h"
+#include "io/shipped.h"
 #include "study/bands.h"
 
 #define KEY_ENUM(id, name, type, required) id,
@@ -202,4 +203,13 @@ mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena 
     }
     mt_file_free(&file);
     return rc;
+}
+
+const char mt_aircraft_own_name[] = "aircraft.json of modetune";
+
+mt_io_options mt_aircraft_own(mt_file_text *text)
+{
+    const mt_shipped *const own = mt_shipped_find("problems/aircraft.json");
+    *text = (mt_file_text){.path = mt_aircraft_own_name, .text = own->bytes};
+    return (mt_io_options){.files = {.given = text, .n = 1, .only = true}};
 }

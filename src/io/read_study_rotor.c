@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "io/file.h"
-#include "io/shipped.h"
+#include "io/read_harmonics.h"
 
 #define ROTOR_KEYS(X)                                       \
     X(ROTOR_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)       \
@@ -96,25 +96,6 @@ static void read_tail(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
     rotor->tail_blades = mt_reader_count(&s->r, o.found[TAIL_BLADES], 1, MT_MAX_BLADES, 0);
 }
 
-static void read_harmonics(mt_study_reader *s, mt_addr list, mt_rotor *rotor)
-{
-    mt_items items = mt_reader_some_items(&s->r, list, "the list of harmonics");
-    rotor->harmonics = mt_reader_room(&s->r, &items, sizeof *rotor->harmonics);
-    while (mt_items_next(&items)) {
-        mt_harmonic *const h = &rotor->harmonics[rotor->n_harmonics];
-        const char *const text = mt_reader_text(&s->r, items.at);
-        if (text != NULL && mt_harmonic_parse(text, h)) {
-            h->addr = items.at;
-            rotor->n_harmonics++;
-        } else if (text != NULL) {
-            mt_diag_structure(s->r.diags, items.at,
-                              "\"%s\" is no harmonic: a number from 1 to 999, n (the number of "
-                              "blades) or both, then P (main rotor) or T (tail rotor)",
-                              text);
-        }
-    }
-}
-
 /* An aircraft of the catalogue brings its own numbers. */
 static void exclude(mt_study_reader *s, const mt_study_object *o, int key)
 {
@@ -144,7 +125,7 @@ void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
     rotor->blades = mt_reader_count(&s->r, o.found[ROTOR_BLADES], 1, MT_MAX_BLADES, 0);
     rotor->tail_addr = mt_read_study_place(s, &o, ROTOR_TAIL);
     read_tail(s, o.found[ROTOR_TAIL], rotor);
-    read_harmonics(s, o.found[ROTOR_HARMONICS], rotor);
+    mt_read_harmonics(&s->r, o.found[ROTOR_HARMONICS], rotor);
     rotor->range_addr = mt_read_study_place(s, &o, ROTOR_RANGE);
     if (o.found[ROTOR_RANGE] != MT_NO_ADDR &&
         mt_read_study_pair(s, o.found[ROTOR_RANGE], range)) {
@@ -200,12 +181,10 @@ static mt_name beside_model(mt_study_reader *s)
 /* The one that is part of the program. */
 static void load_own(mt_study_reader *s)
 {
-    static const char name[] = "aircraft.json of modetune";
-    const mt_shipped *const own = mt_shipped_find("problems/aircraft.json");
-    const mt_file_text text = {.path = name, .text = own->bytes};
-    const mt_io_options opt = {.files = {.given = &text, .n = 1, .only = true}};
-    const mt_name path = {.s = name, .addr = s->study->model_path.addr};
-    load(s, path, name, &opt);
+    mt_file_text text;
+    const mt_io_options opt = mt_aircraft_own(&text);
+    const mt_name path = {.s = mt_aircraft_own_name, .addr = s->study->model_path.addr};
+    load(s, path, mt_aircraft_own_name, &opt);
 }
 
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)

@@ -31,4 +31,9 @@ typedef struct mt_aircraft_list {
     const char *sha256; /* of the file, hexadecimal */
 } mt_aircraft_list;
 
+/* NULL where the catalogue has none of that name. */
+const mt_aircraft *mt_aircraft_find(const mt_aircraft_list *list, const char *name);
+/* The nearest name of the catalogue, for "did you mean"; NULL: none is near. Scratch in mem. */
+const char *mt_aircraft_nearest(const mt_aircraft_list *list, const char *name, mt_arena *mem);
+
 #endif

@@ -4,7 +4,8 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
+
+#include "study/rotor.h"
 
 static void check_margin(mt_study_check *c, double margin, mt_addr addr)
 {
@@ -28,117 +29,39 @@ static void check_intervals(mt_study_check *c, const mt_bands_source *source)
     }
 }
 
-typedef struct needs {
-    bool speed;
-    bool blades;
-} needs;
-
-/* What the harmonics ask of the main rotor or of the tail rotor. */
-static needs needs_of(const mt_rotor *rotor, bool tail)
-{
-    needs n = {false, false};
-    for (int i = 0; i < rotor->n_harmonics; i++) {
-        const mt_harmonic *const h = &rotor->harmonics[i];
-        n.speed = n.speed || h->tail == tail;
-        n.blades = n.blades || (h->tail == tail && h->blade_count);
-    }
-    return n;
-}
-
 /* A value that nobody has read in a document is used, and everybody is told. */
-static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor, const char *what,
-                             const mt_aircraft_value *value)
+static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
+                             const mt_aircraft *aircraft)
 {
-    if (value->confirmed) {
-        return;
-    }
-    mt_diag_warning(c->diags, rotor->aircraft.addr,
-                    "%s: the %s (%s) is not confirmed by a public document", rotor->aircraft.s,
-                    what, value->text);
-    mt_check_warn_result(
-        c, mt_arena_printf(&c->study->mem,
-                           "%s: the %s (%s) is not confirmed by a public document (%s)",
-                           rotor->aircraft.s, what, value->text, value->source));
-}
-
-static void use_aircraft(mt_study_check *c, mt_rotor *rotor, const mt_aircraft *aircraft)
-{
-    const needs main_rotor = needs_of(rotor, false);
-    const needs tail_rotor = needs_of(rotor, true);
-    rotor->speed_hz = aircraft->main_rotor.speed.value;
-    rotor->blades = (int)aircraft->main_rotor.blades.value;
-    if (main_rotor.speed) {
-        warn_unconfirmed(c, rotor, "rotor speed", &aircraft->main_rotor.speed);
-    }
-    if (main_rotor.blades) {
-        warn_unconfirmed(c, rotor, "number of blades", &aircraft->main_rotor.blades);
-    }
-    if (!aircraft->has_tail) {
-        return;
-    }
-    rotor->tail_speed_hz = aircraft->tail_rotor.speed.value;
-    rotor->tail_blades = (int)aircraft->tail_rotor.blades.value;
-    if (tail_rotor.speed) {
-        warn_unconfirmed(c, rotor, "tail rotor's speed", &aircraft->tail_rotor.speed);
-    }
-    if (tail_rotor.blades) {
-        warn_unconfirmed(c, rotor, "tail rotor's number of blades",
-                         &aircraft->tail_rotor.blades);
-    }
-}
-
-/* Each is compared with all others. */
-enum { MOST_ORDERS = 1000 };
-
-static bool too_many(mt_study_check *c, int n, mt_addr addr, const char *what)
-{
-    if (n > MOST_ORDERS) {
-        mt_diag_error(c->diags, addr, "more than %d %s", (int)MOST_ORDERS, what);
-    }
-    return n > MOST_ORDERS;
-}
-
-static void check_harmonics(mt_study_check *c, const mt_rotor *rotor, bool has_tail)
-{
-    if (too_many(c, rotor->n_harmonics, rotor->addr, "harmonics")) {
-        return;
-    }
-    for (int i = 0; i < rotor->n_harmonics; i++) {
-        const mt_harmonic *const h = &rotor->harmonics[i];
-        for (int k = 0; k < i; k++) {
-            if (strcmp(rotor->harmonics[k].text, h->text) == 0) {
-                mt_diag_error(c->diags, h->addr, "\"%s\" is given twice", h->text);
-                break;
-            }
-        }
-        if (h->tail && !has_tail) {
-            mt_diag_error(c->diags, h->addr, "\"%s\" needs a tail rotor, and none is known",
-                          h->text);
-        } else if (h->blade_count && (h->tail ? rotor->tail_blades : rotor->blades) < 1) {
-            mt_diag_error(c->diags, h->addr, "\"%s\" needs the number of blades", h->text);
-        }
+    mt_rotor_doubt doubts[MT_ROTOR_DOUBTS];
+    const int n = mt_rotor_doubts(rotor, aircraft, doubts);
+    for (int i = 0; i < n; i++) {
+        const mt_rotor_doubt *const d = &doubts[i];
+        mt_diag_warning(c->diags, rotor->aircraft.addr,
+                        "%s: the %s (%s) is not confirmed by a public document",
+                        rotor->aircraft.s, d->what, d->value->text);
+        mt_check_warn_result(
+            c, mt_arena_printf(&c->study->mem,
+                               "%s: the %s (%s) is not confirmed by a public document (%s)",
+                               rotor->aircraft.s, d->what, d->value->text, d->value->source));
     }
 }
 
 static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *rotor)
 {
     const mt_aircraft *const aircraft = mt_check_aircraft(c, rotor->aircraft);
-    bool has_tail = rotor->tail_addr != rotor->addr;
     mt_check_positive(c, rotor->speed_hz, rotor->speed_addr, "the rotor's speed");
     mt_check_positive(c, rotor->tail_speed_hz, rotor->tail_speed_addr,
                       "the tail rotor's speed");
     if (aircraft != NULL) {
-        use_aircraft(c, rotor, aircraft);
-        has_tail = aircraft->has_tail;
+        mt_rotor_take(rotor, aircraft);
+        warn_unconfirmed(c, rotor, aircraft);
     }
     if (aircraft != NULL || rotor->aircraft.addr == rotor->addr) {
-        check_harmonics(c, rotor, has_tail); /* else the aircraft is wrong, which says enough */
+        /* else the aircraft is wrong, which says enough */
+        mt_rotor_check_harmonics(rotor, aircraft, c->diags);
     }
-    if (!(rotor->range_lower > 0.0) || rotor->range_lower > rotor->range_upper) {
-        mt_diag_error(c->diags, rotor->range_addr,
-                      "the range of speeds (%g to %g) must be above 0 and ascending",
-                      rotor->range_lower, rotor->range_upper);
-    }
+    mt_rotor_check_range(rotor, c->diags);
     check_margin(c, rotor->margin_percent, rotor->margin_addr);
     const double margin =
         MT_HAS(rotor->margin_percent) ? rotor->margin_percent : avoid->source.margin_percent;
@@ -150,7 +73,7 @@ static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *roto
 
 static void check_orders(mt_study_check *c, const mt_order *orders, int n)
 {
-    if (n > 0 && too_many(c, n, orders[0].addr, "orders")) {
+    if (n > 0 && mt_rotor_too_many(c->diags, n, orders[0].addr, "orders")) {
         return;
     }
     for (int i = 1; i < n; i++) {

@@ -103,15 +103,11 @@ const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
     if (name.s == NULL) {
         return NULL;
     }
-    for (int i = 0; i < list->n; i++) {
-        if (strcmp(list->items[i].name.s, name.s) == 0) {
-            return &list->items[i];
-        }
-    }
-    if (list->n > 0) {
+    const mt_aircraft *const found = mt_aircraft_find(list, name.s);
+    if (found == NULL && list->n > 0) {
         unknown(c, name, "aircraft", list->items, list->n, sizeof *list->items);
     }
-    return NULL;
+    return found;
 }
 
 void mt_check_warn_result(mt_study_check *c, const char *text)

@@ -192,6 +192,15 @@ static const struct {
     {"schema modle", MT_EXIT_INPUT, AS_IT_IS},
     {"schema model", MT_EXIT_SYSTEM, SHORT},
     {"schema model", MT_EXIT_SYSTEM, FULL},
+
+    {"profile", MT_EXIT_DONE, AS_IT_IS},
+    {"profile gevs_qualification --spectrum 10:100:3", MT_EXIT_DONE, AS_IT_IS},
+    {"profile gevs_qualificatio", MT_EXIT_INPUT, AS_IT_IS},
+    {"profile --spectrum 10:1:3 white", MT_EXIT_INPUT, AS_IT_IS},
+    {"profile tests/io/wrong/profile_tones.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"profile %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
+    {"profile tests/io/good/profile.json", MT_EXIT_SYSTEM, SHORT},
+    {"profile tests/io/good/profile.json", MT_EXIT_SYSTEM, FULL},
 };
 
 /* What each command can end with. */
@@ -219,6 +228,7 @@ static const struct {
     [MT_CMD_INIT] = {"init", {true, false, true, false, true, false}},
     [MT_CMD_EXAMPLES] = {"examples", {true, false, true, false, true, false}},
     [MT_CMD_SCHEMA] = {"schema", {true, false, true, false, true, false}},
+    [MT_CMD_PROFILE] = {"profile", {true, false, true, false, true, false}},
 };
 
 static void begin(void *context)

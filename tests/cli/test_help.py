@@ -27,6 +27,7 @@ OPTIONS = {
     "init": set(),
     "examples": {"output"},
     "schema": set(),
+    "profile": {"spectrum", "damping-ratio"},
 }
 
 

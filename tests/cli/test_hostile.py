@@ -24,7 +24,7 @@ MEMORY = "1G"
 TALK = 400_000  # bytes of messages: at most 200 lines
 STATES = {0, 1, 2, 3, 4}
 FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/io/good/study_full.json", "tests/io/good/study_bands.json",
-         "tests/io/good/aircraft.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
+         "tests/io/good/aircraft.json", "tests/io/good/profile.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
          "studies/six_masses_bands.json", "tests/models/space_couplings.json"]
 COMMANDS = {"model": [("modes",), ("info",), ("sensitivity", "--count", "2")], "study": [("run", "-o", "out", "--quiet")]}
 knobs = argparse.Namespace(size=500 if INSTRUMENTED else 2000, count=6 if INSTRUMENTED else 20, seed=4)

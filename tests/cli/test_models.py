@@ -270,7 +270,7 @@ class Check(CliTest):
         self.assertEqual(done.stdout, f"{self.model}: ok (model)\n")
         lines = done.stderr.splitlines()
         self.assertEqual(lines[0], 'bad.json:1:13: error: /format: must be one of "modetune-model/1", "modetune-study/1", '
-                                   '"modetune-result/1", "modetune-aircraft/1"; did you mean "modetune-model/1"?')
+                                   '"modetune-result/1", "modetune-aircraft/1", "modetune-profile/1"; did you mean "modetune-model/1"?')
         self.assertEqual("\n".join(lines[1:3]) + "\n", FACTS)
         self.assertEqual(lines[3], 'none.json:1:1: error: must be an object with a member "format"')
         self.assertTrue(lines[4].startswith("broken.json:1:13: error: "), lines[4])
@@ -304,7 +304,7 @@ class Check(CliTest):
             with self.subTest(name):
                 done = self.expect(2, "check", self.write(name, said))
                 self.assertEqual(done.stderr, f'{name}:1:13: error: /format: must be one of "modetune-model/1", "modetune-study/1", '
-                                 '"modetune-result/1", "modetune-aircraft/1"\n')
+                                 '"modetune-result/1", "modetune-aircraft/1", "modetune-profile/1"\n')
 
 
 if __name__ == "__main__":

@@ -138,9 +138,9 @@ enum {
     AT_COUNT
 };
 
-typedef enum kind { MODEL, STUDY, AIRCRAFT, RESULT } kind;
+typedef enum kind { MODEL, STUDY, AIRCRAFT, PROFILE, RESULT } kind;
 
-static const char *const KIND_NAMES[] = {"model", "study", "aircraft", "result"};
+static const char *const KIND_NAMES[] = {"model", "study", "aircraft", "profile", "result"};
 
 typedef struct reading {
     mt_status rc;
@@ -154,6 +154,7 @@ static reading read_back(kind k, const char *path)
     mt_model *model = NULL;
     mt_study *study = NULL;
     mt_result *result = NULL;
+    mt_vibration *profile = NULL;
     mt_arena mem = {0};
     mt_aircraft_list list = {0};
     switch (k) {
@@ -166,6 +167,9 @@ static reading read_back(kind k, const char *path)
     case AIRCRAFT:
         r.rc = mt_aircraft_load(path, &opt, &mem, &list, &r.said, NULL);
         break;
+    case PROFILE:
+        r.rc = mt_vibration_load(path, &opt, &profile, &r.said, NULL);
+        break;
     case RESULT:
         r.rc = mt_result_load(path, &opt, &result, &r.said, NULL);
         break;
@@ -173,6 +177,7 @@ static reading read_back(kind k, const char *path)
     mt_model_delete(model);
     mt_study_delete(study);
     mt_result_delete(result);
+    mt_vibration_delete(profile);
     mt_arena_free(&mem);
     return r;
 }
@@ -445,6 +450,12 @@ static void node__of_a_catalogue_may_be_anything(mt_test *t)
     check_kind(t, AIRCRAFT, MT_COUNT(folders), folders);
 }
 
+static void node__of_a_profile_may_be_anything(mt_test *t)
+{
+    static const char *const folders[] = {"problems/profiles", "tests/io/good"};
+    check_kind(t, PROFILE, MT_COUNT(folders), folders);
+}
+
 /* A result of today: what a small study gives. */
 static bool write_result(const char *path)
 {
@@ -483,4 +494,5 @@ static void node__of_a_result_may_be_anything(mt_test *t)
 MT_TEST_MAIN(MT_TEST(node__of_a_model_may_be_anything),
              MT_TEST(node__of_a_study_may_be_anything),
              MT_TEST(node__of_a_catalogue_may_be_anything),
+             MT_TEST(node__of_a_profile_may_be_anything),
              MT_TEST(node__of_a_result_may_be_anything))

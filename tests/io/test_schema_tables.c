@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/read_aircraft.h"
 #include "io/read_model.h"
+#include "io/read_profile.h"
 #include "io/read_study.h"
 #include "mt_test.h"
 #include "result/result.h"
@@ -302,8 +303,16 @@ static void schema__has_the_members_of_the_aircraft_reader(mt_test *t)
     check_schema(t, MT_TEST_SOURCE_DIR "/schemas/aircraft.schema.json", tables, n);
 }
 
+static void schema__has_the_members_of_the_profile_reader(mt_test *t)
+{
+    int n = 0;
+    const mt_key_table *const *const tables = mt_profile_key_tables(&n);
+    check_schema(t, MT_TEST_SOURCE_DIR "/schemas/profile.schema.json", tables, n);
+}
+
 MT_TEST_MAIN(MT_TEST(schema__has_the_members_of_the_model_reader),
              MT_TEST(schema__has_the_members_of_the_study_reader),
              MT_TEST(schema__has_the_members_of_the_aircraft_reader),
+             MT_TEST(schema__has_the_members_of_the_profile_reader),
              MT_TEST(schema__says_what_the_tables_of_a_result_say),
              MT_TEST(tables__cover_the_structs_of_a_result))

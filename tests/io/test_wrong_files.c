@@ -2,9 +2,9 @@
 /*
  * Every tests/io/wrong/NAME.json is wrong, and NAME.expected holds the exact text that says so:
  * all problems, with the file's base name. Files study_* are studies, result_* results,
- * aircraft_* catalogues of aircraft, all others models. The files in wrong/parts are what
- * studies refer to. MT_WRONG_PRINT=1 prints what is said, for whoever writes the expected text
- * of a new file: read it, do not just copy it.
+ * aircraft_* catalogues of aircraft, profile_* profiles, all others models. The files in
+ * wrong/parts are what studies refer to. MT_WRONG_PRINT=1 prints what is said, for whoever
+ * writes the expected text of a new file: read it, do not just copy it.
  */
 #include <dirent.h>
 #include <stdio.h>
@@ -57,6 +57,7 @@ static mt_status read_wrong(const char *name, mt_diagnostics *said)
     mt_model *model = NULL;
     mt_study *study = NULL;
     mt_result *result = NULL;
+    mt_vibration *profile = NULL;
     mt_status rc = MT_OK;
     if (starts_with(name, "study_")) {
         rc = mt_study_load(name, NULL, &study, said, &err);
@@ -66,6 +67,8 @@ static mt_status read_wrong(const char *name, mt_diagnostics *said)
         rc = mt_arena_init(&mem, 0, &err);
         rc = rc == MT_OK ? mt_aircraft_load(name, NULL, &mem, &list, said, &err) : rc;
         mt_arena_free(&mem);
+    } else if (starts_with(name, "profile_")) {
+        rc = mt_vibration_load(name, NULL, &profile, said, &err);
     } else if (starts_with(name, "result_")) {
         rc = mt_result_load(name, NULL, &result, said, &err);
     } else {
@@ -77,6 +80,7 @@ static mt_status read_wrong(const char *name, mt_diagnostics *said)
     mt_model_delete(model);
     mt_study_delete(study);
     mt_result_delete(result);
+    mt_vibration_delete(profile);
     return rc;
 }
 
@@ -121,8 +125,12 @@ static void wrong_files__say_exactly_what_is_expected(mt_test *t)
  * allocation fails. */
 static void wrong_files__every_failing_allocation_is_survived(mt_test *t)
 {
-    static const char *const names[] = {"study_unknown_names.json", "study_model_wrong.json",
-                                        "drive.json", "circle_in_configuration.json",
+    static const char *const names[] = {"study_unknown_names.json",
+                                        "study_model_wrong.json",
+                                        "profile_members.json",
+                                        "profile_tones.json",
+                                        "drive.json",
+                                        "circle_in_configuration.json",
                                         "joint_members.json"};
     REQUIRE(t, chdir(MT_TEST_SOURCE_DIR "/tests/io/wrong") == 0);
     for (int i = 0; i < MT_COUNT(names); i++) {

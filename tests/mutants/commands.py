@@ -113,6 +113,10 @@ def commands(rng, case):
     study = case.target if case.kind == "study" else "studies/changed.json"
     workers = ["--threads", str(rng.choice((1, 1, 2, 3)))]
     yield ["check", file, *form()]
+    if case.kind == "profile":
+        yield ["profile", file, *form()]
+        yield ["profile", file, *form(), "--spectrum", rng.choice(("22.09:22.09:1", "5:500:4")), *rng.choice(([], ["--damping-ratio", "1e-4"]))]
+        return
     if case.kind == "result":
         yield ["report", file, "--format", rng.choice(("text", "html", "json", "csv"))]
         yield ["apply", file, "--root", "."]

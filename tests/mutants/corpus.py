@@ -12,8 +12,9 @@ import document
 SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
 BUDGET = (("starts", "2"), ("max_evaluations", "150"))  # the question is kept, its search is short
 MANY = 4  # goals
-FORMATS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-result/1": "result", "modetune-aircraft/1": "aircraft"}
-PLACES = {"model": "problems/changed.json", "aircraft": "problems/changed_aircraft.json", "study": "studies/changed.json",
+FORMATS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-result/1": "result", "modetune-aircraft/1": "aircraft",
+           "modetune-profile/1": "profile"}
+PLACES = {"model": "problems/changed.json", "aircraft": "problems/changed_aircraft.json", "profile": "problems/profiles/changed.json", "study": "studies/changed.json",
           "result": "results/changed/result.json"}
 
 
@@ -64,7 +65,7 @@ class Corpus:
     def __init__(self, program):
         self.program, self._results = program, {}
         self.trees, self.studies = {kind: {} for kind in PLACES}, {}
-        places = ["problems", "studies", "tests/models", "tests/io/good"]
+        places = ["problems", "problems/profiles", "studies", "tests/models", "tests/io/good"]
         for path in sorted(p for place in places for p in (SOURCE / place).glob("*.json")):
             tree = _read(path)
             kind = FORMATS.get(tree.get("format"))
@@ -76,7 +77,7 @@ class Corpus:
                 if tree.get(kind) is not None:
                     self.trees[kind][f"{path.relative_to(SOURCE)}#{kind}"] = tree.get(kind)
         self.values = {}  # of each member name, values that shipped files give it
-        for kind in ("model", "study", "aircraft"):
+        for kind in ("model", "study", "aircraft", "profile"):
             for tree in self.trees[kind].values():
                 for _, key, value in document.nodes(tree):
                     self.values.setdefault(key, []).append(value)
@@ -126,6 +127,14 @@ class Corpus:
         study.put("aircraft", "../problems/changed_aircraft.json")
         files[PLACES["study"]] = document.write(study, 1)
         return Case("aircraft", name, document.copy(self.trees["aircraft"][name]), files)
+
+    def profile(self, name):
+        tree = document.copy(self.trees["profile"][name])
+        files = {}
+        if tree.get("aircraft"):
+            files["problems/aircraft.json"] = (SOURCE / self._near(name, tree.get("aircraft"))).read_text(encoding="utf-8")
+            tree.put("aircraft", "../aircraft.json")
+        return Case("profile", name, tree, files)
 
     def result(self, name):
         """What the program itself makes of a shipped study."""

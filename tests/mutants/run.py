@@ -27,8 +27,8 @@ from corpus import SOURCE, Corpus  # noqa: E402
 from known import reason  # noqa: E402
 
 PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
-KINDS = ["model", "study", "result", "aircraft", "bytes", "harmless"]
-WEIGHTS = {"model": 6, "study": 6, "result": 1, "aircraft": 1, "bytes": 2, "harmless": 2}  # of mutants, where all kinds are asked for
+KINDS = ["model", "study", "result", "aircraft", "profile", "bytes", "harmless"]
+WEIGHTS = {"model": 6, "study": 6, "result": 1, "aircraft": 1, "profile": 2, "bytes": 2, "harmless": 2}  # of mutants, where all kinds are asked for
 ROUND = [kind for kind, weight in WEIGHTS.items() for _ in range(weight)]
 STEPS = (1, 1, 1, 1, 1, 2, 2, 3, 10)
 GUIDED = 5  # tries of a change that the program still takes
@@ -37,13 +37,13 @@ GUIDED = 5  # tries of a change that the program still takes
 def make(program, corpus, seed, kind, index):
     """(case, generator of the commands' random numbers, what was done to it)."""
     rng = random.Random(f"{seed}:{kind}:{index}")
-    case = corpus.pick(rng, kind if kind in corpus.trees else rng.choice(("model", "study", "study", "aircraft", "result")))
+    case = corpus.pick(rng, kind if kind in corpus.trees else rng.choice(("model", "study", "study", "aircraft", "profile", "result")))
     done = []
     if kind == "bytes":
         texts = list(case.files.values())
         case.files[case.target] = mutations.by_bytes(rng, case.files[case.target], texts)
         return case, rng, ["bytes"]
-    tree, guided = document.copy(case.original), kind in ("model", "study") and rng.random() < 0.5
+    tree, guided = document.copy(case.original), kind in ("model", "study", "profile") and rng.random() < 0.5
     for _ in range(GUIDED if guided else rng.choice(STEPS)):
         mutate, less = rng.choice(mutations.GENTLE if guided else mutations.BY_NODE), document.copy(tree)
         if mutate(rng, less, corpus) is False:

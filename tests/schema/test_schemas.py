@@ -13,12 +13,12 @@ from common_schema import ROOT, Schema, at, changed, load
 BUILD = Path(os.environ.get("BUILD_DIR", ROOT / "build/release"))
 HERE = ROOT / "tests/schema"
 KINDS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-result/1": "result",
-         "modetune-aircraft/1": "aircraft"}
+         "modetune-aircraft/1": "aircraft", "modetune-profile/1": "profile"}
 
 
 def shipped():
     """All files that are there to be read, with their kind."""
-    files = [p for folder in ("problems", "studies", "examples", "tests/schema", "tests/io/good") for p in sorted((ROOT / folder).glob("*.json"))]
+    files = [p for folder in ("problems", "problems/profiles", "studies", "examples", "tests/schema", "tests/io/good") for p in sorted((ROOT / folder).glob("*.json"))]
     return [(p, KINDS.get(load(p).get("format"))) for p in files]
 
 
@@ -90,10 +90,11 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         names = []
         for i, (path, kind, _, mutant) in enumerate(jobs):
-            if kind == "study":  # models are named relative to the study
+            if kind in ("study", "profile"):  # files are named relative to these
                 mutant = copy.deepcopy(mutant)
                 if isinstance(mutant.get("aircraft"), str):
                     mutant["aircraft"] = str((path.parent / mutant["aircraft"]).resolve())
+            if kind == "study":
                 references = mutant.get("references")
                 for holder in [mutant] + (list(references.values()) if isinstance(references, dict) else []):
                     if isinstance(holder, dict) and isinstance(holder.get("model"), str):

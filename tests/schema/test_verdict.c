@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * What the readers think of the structure of files, for test_schemas.py, which compares it with
- * the schemas. Started with the name of a list, a line "model PATH", "study PATH" or "aircraft
- * PATH" each, it prints for each the number of errors of structure, the number of lines said,
- * and the status. Without arguments it tests itself: that it can tell right from wrong.
+ * the schemas. Started with the name of a list, a line "model PATH" each (or "study",
+ * "aircraft", "profile"), it prints for each the number of errors of structure, the number of
+ * lines said, and the status. Without arguments it tests itself: that it can tell right from
+ * wrong.
  */
 #include <stdio.h>
 #include <string.h>
@@ -26,6 +27,7 @@ static verdict judge(const char *kind, const char *path)
     mt_diagnostics said = {.count = 0};
     mt_model *model = NULL;
     mt_study *study = NULL;
+    mt_vibration *profile = NULL;
     const mt_io_options opt = {.root = "/", .structural = &v.structural};
     if (strcmp(kind, "aircraft") == 0) {
         mt_aircraft_list list = {0};
@@ -33,6 +35,8 @@ static verdict judge(const char *kind, const char *path)
         v.rc = mt_arena_init(&mem, 0, NULL);
         v.rc = v.rc == MT_OK ? mt_aircraft_load(path, &opt, &mem, &list, &said, NULL) : v.rc;
         mt_arena_free(&mem);
+    } else if (strcmp(kind, "profile") == 0) {
+        v.rc = mt_vibration_load(path, &opt, &profile, &said, NULL);
     } else if (strcmp(kind, "study") == 0) {
         v.rc = mt_study_load(path, &opt, &study, &said, NULL);
     } else {
@@ -43,6 +47,7 @@ static verdict judge(const char *kind, const char *path)
     }
     mt_model_delete(model);
     mt_study_delete(study);
+    mt_vibration_delete(profile);
     mt_diagnostics_free(&said);
     return v;
 }

@@ -21,6 +21,7 @@ ALLOWED = {
     "response": ENGINE | {"analysis"},
     "nlp": {"base", "linalg"},
     "study": {"base", "expr", "model", "mechanics"},
+    "vibration": {"base", "response", "study"},
     "result": {"base", "study"},
     "prove": ENGINE | {"analysis"},
     "scene": ENGINE | {"tree", "analysis"},

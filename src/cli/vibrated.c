@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cli/vibrated.h"
+
+#include <math.h>
+
+static const double TWO_PI = 6.28318530717958647693;
+
+enum { DIGITS = 5, HZ_DIGITS = 6, BOUND_DIGITS = 2 };
+
+/* "m/s^2" of a response is in g as well. */
+static double in_g(const mt_vibrated *v, double value)
+{
+    return v->is_acceleration ? value / MT_STANDARD_GRAVITY : nan("");
+}
+
+static const char *unit_of(const mt_vibrated *v)
+{
+    return v->is_acceleration ? "m/s^2" : v->unit;
+}
+
+/* What stands where there is no number. */
+static const char *end_of(const mt_vibration_response *r)
+{
+    return r->end == MT_FORCED_FINITE ? NULL : mt_forced_end_name(r->end);
+}
+
+void mt_vibrated_columns(mt_table *t)
+{
+    mt_table_column(t, "random [g RMS]", "rms_g", MT_ALIGN_POINT);
+    mt_table_column(t, "tones [g]", "sine_g", MT_ALIGN_POINT);
+    mt_table_column(t, "peak [g]", "peak_g", MT_ALIGN_POINT);
+    mt_table_column(t, "random RMS", "rms", MT_ALIGN_POINT);
+    mt_table_column(t, "error at most", "rms_error_at_most", MT_ALIGN_POINT);
+    mt_table_column(t, "tones", "sine", MT_ALIGN_POINT);
+    mt_table_column(t, "peak", "peak", MT_ALIGN_POINT);
+    mt_table_column(t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(t, "no number", "end", MT_ALIGN_LEFT);
+}
+
+void mt_vibrated_row(mt_table *t, const mt_vibrated *v)
+{
+    const mt_vibration_response *const r = v->response;
+    const bool random = v->profile->n_random > 0;
+    const bool tones = v->profile->n_tones > 0;
+    const double none = nan("");
+    mt_table_number(t, random ? in_g(v, r->rms) : none, DIGITS);
+    mt_table_number(t, tones ? in_g(v, r->sine) : none, DIGITS);
+    mt_table_number(t, in_g(v, r->peak), DIGITS);
+    mt_table_number(t, random ? r->rms : none, DIGITS);
+    mt_table_number(t, random ? r->rms_bound : none, BOUND_DIGITS);
+    mt_table_number(t, tones ? r->sine : none, DIGITS);
+    mt_table_number(t, r->peak, DIGITS);
+    mt_table_text(t, unit_of(v));
+    mt_table_text(t, end_of(r));
+}
+
+void mt_vibrated_tone_columns(mt_table *t)
+{
+    mt_table_column(t, "tone", "tone", MT_ALIGN_LEFT);
+    mt_table_column(t, "at [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(t, "peak [g]", "peak_g", MT_ALIGN_POINT);
+    mt_table_column(t, "peak", "peak", MT_ALIGN_POINT);
+    mt_table_column(t, "more at most", "excess_at_most", MT_ALIGN_POINT);
+    mt_table_column(t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(t, "where", "where", MT_ALIGN_LEFT);
+}
+
+static const char *where(const mt_sine_peak *p)
+{
+    return p->end != MT_FORCED_FINITE ? mt_forced_end_name(p->end)
+           : p->at_edge               ? "end of the range"
+                                      : "within";
+}
+
+void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone)
+{
+    const mt_sine_peak *const p = &v->response->tones[tone];
+    const double value = mt_vibration_respond_tone(v->profile, v->response, tone);
+    mt_table_text(t, v->profile->tones[tone].label);
+    mt_table_number(t, p->omega / TWO_PI, HZ_DIGITS);
+    mt_table_number(t, in_g(v, value), DIGITS);
+    mt_table_number(t, value, DIGITS);
+    mt_table_number(t, p->excess, BOUND_DIGITS);
+    mt_table_text(t, unit_of(v));
+    mt_table_text(t, where(p));
+}
+
+void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v)
+{
+    const mt_vibration_response *const r = v->response;
+    mt_json_put_string(w, "end", mt_forced_end_name(r->end));
+    mt_json_put_string(w, "unit", unit_of(v));
+    mt_json_put_number(w, "rms", r->rms);
+    mt_json_put_number(w, "rms_error_at_most", r->rms_bound);
+    mt_json_put_number(w, "sine", r->sine);
+    mt_json_put_number(w, "peak", r->peak);
+    if (v->is_acceleration) {
+        mt_json_put_number(w, "rms_g", in_g(v, r->rms));
+        mt_json_put_number(w, "sine_g", in_g(v, r->sine));
+        mt_json_put_number(w, "peak_g", in_g(v, r->peak));
+    }
+    mt_json_open(w, "tones", '[');
+    for (int i = 0; i < r->n_tones; i++) {
+        const mt_sine_peak *const p = &r->tones[i];
+        mt_json_open_flat(w, NULL, '{');
+        mt_json_put_string(w, "tone", v->profile->tones[i].label);
+        mt_json_put_string(w, "end", mt_forced_end_name(p->end));
+        mt_json_put_number(w, "frequency_hz", p->omega / TWO_PI);
+        mt_json_put_number(w, "peak", mt_vibration_respond_tone(v->profile, r, i));
+        mt_json_put_number(w, "excess_at_most", p->excess);
+        mt_json_put_bool(w, "at_edge", p->at_edge);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}

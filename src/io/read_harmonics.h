@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_READ_HARMONICS_H
+#define IO_READ_HARMONICS_H
+
+#include "io/reader.h"
+#include "study/bands.h"
+
+/* "4P", "nT": the harmonics of a rotor, of a study or a profile; what has not their form is
+ * noted. */
+void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor);
+
+#endif

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef IO_READ_PROFILE_H
+#define IO_READ_PROFILE_H
+
+#include "base/diagnostics.h"
+#include "io/options.h"
+#include "io/reader.h"
+#include "study/vibration.h"
+
+/**
+ * Read and check a profile of vibration (format "modetune-profile/1") and the catalogue of
+ * aircraft that its rotors are in: the one that it names, else aircraft.json beside it, else
+ * the one that is part of the program.
+ * @param[out] out  mt_vibration_delete; NULL on failure
+ * Fails and messages as for mt_study_load.
+ */
+mt_status mt_vibration_load(const char *path, const mt_io_options *opt, mt_vibration **out,
+                            mt_diagnostics *messages, mt_err *err);
+
+/* The tables of keys of a profile, for the test that holds them to the JSON Schema; *n their
+ * number. */
+const mt_key_table *const *mt_profile_key_tables(int *n);
+
+#endif

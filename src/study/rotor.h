@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_ROTOR_H
+#define STUDY_ROTOR_H
+
+#include "study/aircraft.h"
+#include "study/bands.h"
+
+/* What is checked of a rotor (study/bands.h) wherever a file has one, and what it takes from a
+ * catalogue. */
+
+/* A value that nobody has read in a document. */
+typedef struct mt_rotor_doubt {
+    const char *what; /* "rotor speed", "tail rotor's number of blades" */
+    const mt_aircraft_value *value;
+} mt_rotor_doubt;
+enum { MT_ROTOR_DOUBTS = 4 };
+
+/* Speeds and blades of the aircraft. */
+void mt_rotor_take(mt_rotor *rotor, const mt_aircraft *aircraft);
+/* Those of them that the harmonics use and that are not confirmed, in out; returns how many. */
+int mt_rotor_doubts(const mt_rotor *rotor, const mt_aircraft *aircraft,
+                    mt_rotor_doubt out[MT_ROTOR_DOUBTS]);
+/* Harmonics given twice, or of what is not known; aircraft NULL: the rotor is as given. */
+void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft,
+                              mt_diags *diags);
+/* The range of speeds is above 0 and ascending. */
+void mt_rotor_check_range(const mt_rotor *rotor, mt_diags *diags);
+
+/* More than a thousand of something are refused: each is compared with all others. what:
+ * "harmonics". */
+bool mt_rotor_too_many(mt_diags *diags, int n, mt_addr addr, const char *what);
+
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_VIBRATION_H
+#define STUDY_VIBRATION_H
+
+#include "study/aircraft.h"
+#include "study/bands.h"
+#include "study/psd.h"
+
+/*
+ * A profile of vibration: what a base accelerates like. Random parts, whose densities add up,
+ * and tones, each a sine whose frequency lies anywhere within a range; both together are sine
+ * on random. SI; levels are kept in g as well, as a file has them.
+ */
+#define MT_STANDARD_GRAVITY 9.80665 /* m/s^2 to 1 g */
+
+/* Where a number comes from; what is assumed is marked wherever it is used. */
+typedef struct mt_vibration_origin {
+    mt_origin origin;
+    const char *source; /* NULL: none given */
+} mt_vibration_origin;
+
+/* A breakpoint as given: with a level, or with the slope of the segment to its neighbour. */
+typedef struct mt_vibration_point {
+    double hz;
+    double level;    /* NaN: from the slope */
+    double slope_db; /* [dB/octave], NaN: not given */
+    mt_addr addr;
+    mt_addr hz_addr;
+    mt_addr level_addr;
+} mt_vibration_point;
+
+typedef struct mt_vibration_random {
+    int n_points;
+    mt_vibration_point *points;
+    bool in_g;            /* levels are in g^2/Hz, else in (m/s^2)^2/Hz */
+    double published_rms; /* what the source prints for the whole of it [m/s^2], NaN: nothing */
+    mt_vibration_origin origin;
+    mt_addr addr;
+    mt_addr points_addr;
+    mt_addr published_addr;
+    mt_psd psd;      /* [(m/s^2)^2/Hz], of mt_vibration_finish */
+    double *level_g; /* [psd.n] the same in g^2/Hz */
+    double rms;      /* of the input itself [m/s^2] */
+} mt_vibration_random;
+
+/* A tone as given. */
+typedef struct mt_vibration_source {
+    bool has_rotor; /* each of its harmonics is a tone; else lower_hz to upper_hz is one */
+    mt_rotor rotor;
+    double lower_hz;
+    double upper_hz;
+    double level; /* amplitude, in the unit given */
+    bool in_g;
+    mt_vibration_origin origin;
+    mt_addr addr;
+    mt_addr range_addr;
+    mt_addr level_addr;
+} mt_vibration_source;
+
+typedef struct mt_vibration_tone {
+    const char *label; /* "4P of UH-60", "17.2 Hz", "16.3 to 18.1 Hz" */
+    double lower_hz;
+    double upper_hz;
+    double level;   /* amplitude [m/s^2] */
+    double level_g; /* the same in g */
+    int source;     /* which of the sources it is of */
+} mt_vibration_tone;
+
+/* How peaks of tones add up: all at once, the largest alone, the root of the sum of squares. */
+typedef enum mt_vibration_sum {
+    MT_TONES_SUM,
+    MT_TONES_LARGEST,
+    MT_TONES_ROOT
+} mt_vibration_sum;
+enum { MT_TONES_RULES = 3 };
+/* "sum", "largest", "root_sum_square"; all of them, in order. */
+extern const char *const mt_vibration_sum_names[MT_TONES_RULES];
+
+typedef struct mt_vibration {
+    mt_arena mem;
+    const char *path;
+    const char *sha256;
+    const char *name; /* NULL: none */
+    const char *description;
+    const char *source;
+    int axis; /* 0, 1, 2: x, y, z; MT_ABSENT: any */
+    mt_aircraft_list aircraft;
+    int n_random;
+    mt_vibration_random *random;
+    int n_sources;
+    mt_vibration_source *sources;
+    /* the combined peak: sigma RMS + the peaks of the tones by this rule */
+    double sigma; /* default 3 */
+    mt_vibration_sum rule;
+    mt_addr sigma_addr;
+    /* of mt_vibration_finish */
+    int n_tones;
+    mt_vibration_tone *tones;
+    int n_marks;
+    const char **marks; /* sentences: what of this is assumed, or not confirmed */
+} mt_vibration;
+
+/* Everything at its default. Fails: MT_E_MEMORY. */
+mt_status mt_vibration_new(mt_vibration **out, mt_err *err);
+void mt_vibration_delete(mt_vibration *v); /* accepts NULL */
+
+/* Check all numbers, noting every problem, look up aircraft, follow slopes, make tones and
+ * marks. What could not be made is left empty where there are errors; a shortage is known to
+ * the arena. */
+void mt_vibration_finish(mt_vibration *v, mt_diags *diags);
+
+/* RMS of the random parts together [m/s^2]. */
+double mt_vibration_rms(const mt_vibration *v);
+
+#endif

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "vibration/respond.h"
+
+#include <math.h>
+
+static const double TWO_PI = 6.28318530717958647693;
+
+static void note_end(mt_vibration_response *out, mt_forced_end end, int pole)
+{
+    if (end > out->end) {
+        out->end = end;
+        out->pole = pole;
+    }
+}
+
+static void add_random(const mt_vibration *v, const mt_spectral *of, mt_vibration_response *out)
+{
+    double square = 0.0;
+    double bound = 0.0;
+    for (int i = 0; i < v->n_random; i++) {
+        const mt_spectral_answer a = mt_spectral_rms(of, &v->random[i].psd, MT_SPECTRAL_BEST);
+        note_end(out, a.end, a.pole);
+        square += a.rms * a.rms;
+        /* of sqrt(sum a_i^2), by each a_i at most 1 */
+        bound += a.bound;
+    }
+    out->rms = sqrt(square);
+    out->rms_bound = bound;
+}
+
+double mt_vibration_respond_tone(const mt_vibration *v, const mt_vibration_response *r, int i)
+{
+    return v->tones[i].level * r->tones[i].value;
+}
+
+static int largest_tone(const mt_vibration *v, const mt_vibration_response *r)
+{
+    int best = 0;
+    for (int i = 1; i < r->n_tones; i++) {
+        const bool more =
+            mt_vibration_respond_tone(v, r, i) > mt_vibration_respond_tone(v, r, best);
+        best = more ? i : best;
+    }
+    return best;
+}
+
+/* NaN of any tone is NaN of all. */
+static double combine(const mt_vibration *v, const mt_vibration_response *r)
+{
+    double sum = 0.0;
+    double square = 0.0;
+    for (int i = 0; i < r->n_tones; i++) {
+        const double a = mt_vibration_respond_tone(v, r, i);
+        sum += a;
+        square += a * a;
+    }
+    switch (v->rule) {
+    case MT_TONES_SUM:
+        break;
+    case MT_TONES_LARGEST:
+        return sum == sum && r->n_tones > 0
+                   ? mt_vibration_respond_tone(v, r, largest_tone(v, r))
+                   : sum;
+    case MT_TONES_ROOT:
+        return sqrt(square);
+    }
+    return sum;
+}
+
+mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_arena *mem,
+                               mt_vibration_response *out, mt_err *err)
+{
+    mt_spectral of;
+    *out = (mt_vibration_response){.end = MT_FORCED_FINITE, .pole = -1, .n_tones = v->n_tones};
+    MT_TRY(mt_spectral_init(&of, h, mem, err));
+    out->tones = mt_arena_alloc(mem, (size_t)v->n_tones, sizeof *out->tones);
+    MT_TRY(mt_arena_check(mem, err));
+    add_random(v, &of, out);
+    for (int i = 0; i < v->n_tones; i++) {
+        out->tones[i] = mt_sine_peak_find(&of.h, TWO_PI * v->tones[i].lower_hz,
+                                          TWO_PI * v->tones[i].upper_hz);
+        note_end(out, out->tones[i].end, out->tones[i].pole);
+    }
+    out->sine = combine(v, out);
+    out->peak = (v->sigma * out->rms) + out->sine;
+    return MT_OK;
+}
+
+double mt_vibration_respond_psd(const mt_vibration *v, const mt_spectral *h, double hz)
+{
+    double sum = 0.0;
+    for (int i = 0; i < v->n_random; i++) {
+        sum += mt_spectral_psd(h, &v->random[i].psd, hz);
+    }
+    return sum;
+}
+
+/* d peak by the amplitude of tone i. */
+static double by_tone(const mt_vibration *v, const mt_vibration_response *r, int i)
+{
+    switch (v->rule) {
+    case MT_TONES_SUM:
+        break;
+    case MT_TONES_LARGEST:
+        return i == largest_tone(v, r) ? 1.0 : 0.0;
+    case MT_TONES_ROOT:
+        return r->sine > 0.0 ? mt_vibration_respond_tone(v, r, i) / r->sine : 0.0;
+    }
+    return 1.0;
+}
+
+mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *h,
+                                      const mt_vibration_response *r, mt_arena *mem,
+                                      double complex *by_s, double complex *by_residue,
+                                      double complex *by_d, mt_err *err)
+{
+    mt_spectral of;
+    double complex *const part = mt_arena_alloc(mem, 2 * (size_t)h->n, sizeof *part);
+    MT_TRY(mt_spectral_init(&of, h, mem, err));
+    for (int k = 0; k < h->n; k++) {
+        by_s[k] = 0.0;
+        by_residue[k] = 0.0;
+    }
+    for (int j = 0; j < MT_COUNT(h->d); j++) {
+        by_d[j] = 0.0;
+    }
+    for (int i = 0; i < v->n_random && r->rms > 0.0; i++) {
+        const mt_psd *const g = &v->random[i].psd;
+        double complex part_d[MT_COUNT(h->d)];
+        const double share = v->sigma * mt_spectral_rms(&of, g, MT_SPECTRAL_BEST).rms / r->rms;
+        mt_spectral_slopes(&of, g, part, part + h->n, part_d);
+        for (int k = 0; k < h->n; k++) {
+            by_s[k] += share * part[k];
+            by_residue[k] += share * part[h->n + k];
+        }
+        for (int j = 0; j < MT_COUNT(h->d); j++) {
+            by_d[j] += share * part_d[j];
+        }
+    }
+    for (int i = 0; i < r->n_tones; i++) {
+        const double share = v->tones[i].level * by_tone(v, r, i);
+        mt_frf_pull(&of.h, (mt_near){r->tones[i].omega, 0.0}, share * r->tones[i].direction,
+                    by_s, by_residue, by_d);
+    }
+    return MT_OK;
+}
+
+mt_pole_sum mt_vibration_respond_one_mass(double hz, double damping_ratio, double complex s[2],
+                                          double complex residue[2])
+{
+    const double w = TWO_PI * hz;
+    const double damped = w * sqrt((1.0 - damping_ratio) * (1.0 + damping_ratio));
+    s[0] = mt_frf_complex(-damping_ratio * w, damped);
+    s[1] = conj(s[0]);
+    /* (w^2 + 2 zeta w s) / (s - conj s) */
+    residue[0] = mt_frf_ratio((w * w) + (2.0 * damping_ratio * w * s[0]),
+                              mt_frf_complex(0.0, 2.0 * damped));
+    residue[1] = conj(residue[0]);
+    return (mt_pole_sum){.n = 2, .s = s, .residue = residue};
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef VIBRATION_RESPOND_H
+#define VIBRATION_RESPOND_H
+
+#include "study/vibration.h"
+#include "vibration/sine.h"
+#include "vibration/spectral.h"
+
+/* What a profile does to a response H to the acceleration of its base. */
+typedef struct mt_vibration_response {
+    mt_forced_end end; /* the worst of all parts; numbers that it takes away are NaN */
+    int pole;          /* which pole is then in the way; else -1 */
+    double rms;        /* of the random parts together [unit of H times m/s^2] */
+    double rms_bound;  /* of |error of rms| */
+    int n_tones;
+    mt_sine_peak *tones; /* [n_tones] of H itself: times the tone's level is its peak */
+    double sine;         /* the peaks of all tones by the profile's rule */
+    double peak;         /* sigma rms + sine */
+} mt_vibration_response;
+
+/* Lists in mem. Fails: as mt_spectral_init. */
+mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_arena *mem,
+                               mt_vibration_response *out, mt_err *err);
+/* Amplitude of the response to tone i. */
+double mt_vibration_respond_tone(const mt_vibration *v, const mt_vibration_response *r, int i);
+/* Density of the response at a frequency [Hz], of all random parts. */
+double mt_vibration_respond_psd(const mt_vibration *v, const mt_spectral *h, double hz);
+
+/**
+ * The derivative of the combined peak: d peak = Re [sum_k (by_s_k ds_k + by_residue_k dr_k) +
+ * sum_j by_d_j dd_j], conjugates on their own (as mt_spectral_slopes). By "largest" the tone
+ * that is the largest alone counts; where two are, the first.
+ * @param[in]  r  of the same profile and response, finite
+ * @param[out] by_s, by_residue  h->n
+ * @param[out] by_d              3
+ */
+mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *h,
+                                      const mt_vibration_response *r, mt_arena *mem,
+                                      double complex *by_s, double complex *by_residue,
+                                      double complex *by_d, mt_err *err);
+
+/* One mass on a spring and a dashpot that stand on the base: its absolute acceleration to that
+ * of the base, natural frequency [Hz] and damping ratio within 0 and 1. */
+mt_pole_sum mt_vibration_respond_one_mass(double hz, double damping_ratio, double complex s[2],
+                                          double complex residue[2]);
+
+#endif
