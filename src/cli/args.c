@@ -202,10 +202,17 @@ static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt
                    did_you_mean(s, names, MT_COUNT(names), "", suggestion));
 }
 
+static bool repeats(int option)
+{
+    return option == MT_OPT_START || option == MT_OPT_RATE || option == MT_OPT_PUSH ||
+           option == MT_OPT_SINE || option == MT_OPT_CHIRP || option == MT_OPT_RANDOM ||
+           option == MT_OPT_SEEN;
+}
+
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
-    if (args->given[option] && o->value != NULL && option != MT_OPT_SET) {
+    if (args->given[option] && o->value != NULL && option != MT_OPT_SET && !repeats(option)) {
         return mt_fail(err, MT_E_USAGE, "--%s is given twice", o->name);
     }
     args->given[option] = true;
@@ -215,6 +222,11 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     }
     if (value[0] == '\0') {
         return mt_fail(err, MT_E_USAGE, "--%s: the value is empty", o->name);
+    }
+    if (repeats(option)) {
+        args->repeats[args->n_repeats++] =
+            (mt_repeat){.option = (mt_option_id)option, .value = value};
+        return MT_OK;
     }
     switch (option) {
     case MT_OPT_SET:
@@ -236,6 +248,12 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return MT_OK;
     case MT_OPT_TIME:
         return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->time_s, err);
+    case MT_OPT_DURATION:
+        return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->duration_s, err);
+    case MT_OPT_DT_OUT:
+        return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->dt_out_s, err);
+    case MT_OPT_TOLERANCE:
+        return read_tolerance(value, o->name, &args->tolerance, err);
     case MT_OPT_PROOF:
         return read_seconds(value, o->name, true, MT_PROOF_S_MOST, &args->proof_s, err);
     case MT_OPT_SEED:
@@ -348,7 +366,8 @@ mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
     *out = (mt_args){.command = MT_CMD_NONE, .rank = 1, .threads = 1};
     out->operands = calloc(room, sizeof *out->operands);
     out->sets = calloc(room, sizeof *out->sets);
-    if (out->operands == NULL || out->sets == NULL) {
+    out->repeats = calloc(room, sizeof *out->repeats);
+    if (out->operands == NULL || out->sets == NULL || out->repeats == NULL) {
         return mt_fail(err, MT_E_MEMORY, "out of memory");
     }
     for (int i = 1; i < argc; i++) {
@@ -374,5 +393,6 @@ void mt_args_free(mt_args *args)
 {
     free((void *)args->operands);
     free((void *)args->sets);
+    free(args->repeats);
     *args = (mt_args){.command = MT_CMD_NONE};
 }

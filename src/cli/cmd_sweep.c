@@ -7,30 +7,8 @@
 
 #include "cli/sweep.h"
 #include "mechanics/drive.h"
-#include "model/values.h"
 
 enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
-
-/* One bound: an expression of the model's values. */
-static mt_status read_bound(mt_subject *s, const char *text, size_t length, double *out,
-                            mt_err *err)
-{
-    const int n = s->model->n_parameters;
-    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
-    const char *const copy = mt_arena_strndup(&s->mem, text, length);
-    mt_expr e;
-    MT_TRY(mt_arena_check(&s->mem, err));
-    for (int i = 0; i < n; i++) {
-        names[i] = s->model->parameters[i].name.s;
-    }
-    mt_status rc = mt_expr_parse(copy, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
-    if (rc == MT_OK) {
-        rc = mt_model_expr_value(s->model, s->values, &e, &s->mem, out, err);
-    }
-    return rc == MT_OK
-               ? rc
-               : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--drive: %s", copy);
-}
 
 /* N, a whole number: 1 only where the range is a point. */
 static mt_status read_points(const char *text, const double range[2], int *out, mt_err *err)
@@ -70,8 +48,10 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
     out->drive.spring = args->value[MT_OPT_HOLD];
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(read_bound(s, equals + 1, (size_t)(first - equals - 1), &range[0], err));
-    MT_TRY(read_bound(s, first + 1, (size_t)(second - first - 1), &range[1], err));
+    MT_TRY(mt_subject_number(s, "drive", equals + 1, (size_t)(first - equals - 1), &range[0],
+                             err));
+    MT_TRY(
+        mt_subject_number(s, "drive", first + 1, (size_t)(second - first - 1), &range[1], err));
     MT_TRY(read_points(second + 1, range, &out->n, err));
     out->positions = mt_arena_f64(&s->mem, (size_t)out->n, 1);
     MT_TRY(mt_arena_check(&s->mem, err));

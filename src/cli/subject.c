@@ -110,6 +110,26 @@ void mt_subject_free(mt_subject *s)
     memset(s, 0, sizeof *s);
 }
 
+mt_status mt_subject_number(mt_subject *s, const char *option, const char *text, size_t length,
+                            double *out, mt_err *err)
+{
+    const int n = s->model->n_parameters;
+    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
+    const char *const copy = mt_arena_strndup(&s->mem, text, length);
+    mt_expr e;
+    MT_TRY(mt_arena_check(&s->mem, err));
+    for (int i = 0; i < n; i++) {
+        names[i] = s->model->parameters[i].name.s;
+    }
+    mt_status rc = mt_expr_parse(copy, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
+    if (rc == MT_OK) {
+        rc = mt_model_expr_value(s->model, s->values, &e, &s->mem, out, err);
+    }
+    return rc == MT_OK
+               ? rc
+               : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--%s: %s", option, copy);
+}
+
 mt_status mt_subject_analyse(const mt_subject *s, int c, int first, mt_analysis **out,
                              mt_err *err)
 {

@@ -29,6 +29,10 @@ typedef struct mt_subject {
 int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
                     mt_subject *out);
 void mt_subject_free(mt_subject *s);
+/* A number of an option: an expression of the model's values. Fails: MT_E_USAGE, which names
+ * the option, MT_E_MEMORY. */
+mt_status mt_subject_number(mt_subject *s, const char *option, const char *text, size_t length,
+                            double *out, mt_err *err);
 /* Analyse configuration c for its `first` lowest vibration modes (0: all). A failure is left in
  * err. */
 mt_status mt_subject_analyse(const mt_subject *s, int c, int first, mt_analysis **out,

@@ -7,25 +7,33 @@
 
 #include "expr/op.h"
 
+/* Second derivatives of one operation at (a, b), where its value is v: not finite where there
+ * is none, 0 at kinks. */
+typedef struct curvatures {
+    double aa;
+    double ab;
+    double bb;
+} curvatures;
+
 /* Of two operands. */
 MT_DIVIDES_BY_ZERO
-static mt_curvatures of_two(mt_op op, double a, double b, double v)
+static curvatures of_two(mt_op op, double a, double b, double v)
 {
     const double r4 = ((a * a) + (b * b)) * ((a * a) + (b * b));
     switch ((int)op) {
     case MT_OP_MUL:
-        return (mt_curvatures){0.0, 1.0, 0.0};
+        return (curvatures){0.0, 1.0, 0.0};
     case MT_OP_DIV:
-        return (mt_curvatures){0.0, -1.0 / (b * b), 2.0 * v / (b * b)};
+        return (curvatures){0.0, -1.0 / (b * b), 2.0 * v / (b * b)};
     case MT_OP_POW:
-        return (mt_curvatures){b == 0.0 || b == 1.0 ? 0.0 : b * (b - 1.0) * pow(a, b - 2.0),
-                               pow(a, b - 1.0) * (1.0 + (b * log(a))), v * log(a) * log(a)};
+        return (curvatures){b == 0.0 || b == 1.0 ? 0.0 : b * (b - 1.0) * pow(a, b - 2.0),
+                            pow(a, b - 1.0) * (1.0 + (b * log(a))), v * log(a) * log(a)};
     case MT_OP_ATAN2:
-        return (mt_curvatures){-2.0 * a * b / r4, ((a * a) - (b * b)) / r4, 2.0 * a * b / r4};
+        return (curvatures){-2.0 * a * b / r4, ((a * a) - (b * b)) / r4, 2.0 * a * b / r4};
     case MT_OP_HYPOT:
-        return (mt_curvatures){b * b / (v * v * v), -a * b / (v * v * v), a * a / (v * v * v)};
+        return (curvatures){b * b / (v * v * v), -a * b / (v * v * v), a * a / (v * v * v)};
     default:
-        return (mt_curvatures){0.0, 0.0, 0.0};
+        return (curvatures){0.0, 0.0, 0.0};
     }
 }
 
@@ -64,10 +72,10 @@ static double of_one(mt_op op, double a, double v)
     }
 }
 
-mt_curvatures mt_op_curvatures(mt_op op, double a, double b, double v)
+static curvatures curvatures_of(mt_op op, double a, double b, double v)
 {
     return mt_op_operands(op) == 2 ? of_two(op, a, b, v)
-                                   : (mt_curvatures){of_one(op, a, v), 0.0, 0.0};
+                                   : (curvatures){of_one(op, a, v), 0.0, 0.0};
 }
 
 /* 0 times what is not finite counts as 0: an operand that stands still has no need of a slope
@@ -82,7 +90,7 @@ static void node_second(const mt_program_node *n, const double *a, const double 
 {
     const double v = mt_op_value(n->op, a[0], b[0]);
     const mt_partials d = mt_op_partials(n->op, a[0], b[0], v);
-    const mt_curvatures c = mt_op_curvatures(n->op, a[0], b[0], v);
+    const curvatures c = curvatures_of(n->op, a[0], b[0], v);
     out[0] = v;
     out[1] = times(d.a, a[1]) + times(d.b, b[1]);
     out[2] = times(d.a, a[2]) + times(d.b, b[2]) + times(c.aa, a[1] * a[1]) +

@@ -28,8 +28,10 @@ static const double LEAST_RATIO = 1e-6;
 static const double LEAST_LAST = 0.05;
 static const double LEAST_CHANGE = 0.2;
 static const double MOST_CHANGE = 5.0;
-/* A step that fails (nothing finite where it leads) is tried again as this part of it. */
+/* A step that fails (nothing finite where it leads) is tried again as this part of it, so many
+ * times in all. */
 static const double AFTER_FAILURE = 0.25;
+enum { FAILURES_MOST = 1000 };
 /* No body turns further in one step [rad]: increments stay well within half a turn, and whole
  * turns are counted. */
 static const double MOST_TURN = 1.0;
@@ -96,6 +98,7 @@ typedef struct run {
     double energy0; /* at the start */
     double potential0;
     double rest_energy;
+    int failures;      /* steps that led to nothing finite */
     double last_ratio; /* of the last step that was taken */
 } run;
 
@@ -264,13 +267,10 @@ static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
             return mt_fail(err, MT_E_NO_CONVERGENCE, "steps become too small");
         }
         const mt_status rc = mt_sim_advance(s, *t, length, err);
-        if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
+        if (rc != MT_OK && (rc != MT_E_DOMAIN || ++r->failures > FAILURES_MOST)) {
             return rc;
         }
         if (rc != MT_OK) {
-            if (!(AFTER_FAILURE * length > LEAST_STEP * s->opt->duration_s)) {
-                return rc;
-            }
             *h = AFTER_FAILURE * length;
             r->out->rejected++;
             continue;

@@ -25,7 +25,8 @@ typedef enum mt_sim_push {
 
 typedef struct mt_sim_input {
     mt_sim_push push;
-    int at; /* FORCE: channel; BASE: axis 0..2 */
+    int at;    /* FORCE: channel; BASE: axis 0..2 */
+    int slope; /* BASE: 0: the signal is the acceleration, 1: the velocity, 2: the place */
     const mt_signal *signal;
 } mt_sim_input;
 

@@ -100,7 +100,7 @@ static mt_status pushed(mt_sim *s, double t, const double *v, mt_err *err)
         }
         MT_TRY(mt_signal_eval(in->signal, t, value, err));
         if (in->push == MT_SIM_BASE) {
-            add_base(s, in->at, value[0], s->push);
+            add_base(s, in->at, value[in->slope], s->push);
         } else {
             const mt_gauge g = {.channel = in->at, .joint = -1};
             mt_motion_gauge(&s->motion, &s->at, v, g, &s->gauge);
@@ -271,7 +271,7 @@ static double base_acceleration(const mt_sim *s, int axis, double t, mt_err *err
         if (in->push == MT_SIM_BASE && in->at == axis) {
             *rc = mt_signal_eval(in->signal, t, value, err);
         }
-        sum += value[0];
+        sum += value[in->slope];
     }
     return sum;
 }

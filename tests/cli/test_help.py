@@ -15,6 +15,7 @@ OPTIONS = {
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
+    "simulate": {"configuration", "set", "duration", "dt-out", "start", "rate", "mode", "input", "sine", "sweep", "random", "seed", "output", "tolerance", "time"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
     "info": {"configuration", "set"},
     "show": {"configuration", "set", "output", "svg", "mode", "model"},
@@ -78,15 +79,15 @@ class Help(CliTest):
         self.assertEqual(set(re.findall(r"^\.SH (.*)$", page, re.M)),
                          {"NAME", "SYNOPSIS", "DESCRIPTION", "COMMANDS", "OPTIONS", "EXIT STATUS", "TEXT FROM FILES", "ENVIRONMENT"})
         words = shown(self.folder / path)
+        parts = {c: self.expect(0, c, "--help").stdout.split("\nOptions:\n") for c in COMMANDS}
+        options = {c: re.findall(r"^(?:  -| {6}-)(\S.*?)(?:  +|\n {31})(\S.*(?:\n {31}.*)*)$", said, re.M) for c, (_, said) in parts.items()}
         for command in COMMANDS:
             with self.subTest(command):
-                said = self.expect(0, command, "--help").stdout
                 self.assertTrue(f"modetune {command} " in words)
-                details, options = said.split("\nOptions:\n")
-                self.assertTrue(" ".join(details.split("\n", 1)[1].split()) in words)
-                for form, text in re.findall(r"^(?:  -| {6}-)(\S.*?)(?:  +|\n {31})(\S.*(?:\n {31}.*)*)$", options, re.M):
-                    owners = [c for c in COMMANDS if options_in(f"-{form}") & OPTIONS[c]]
-                    of = ", ".join(owners) + ": " if owners else ""
+                self.assertTrue(" ".join(parts[command][0].split("\n", 1)[1].split()) in words)
+                for form, text in options[command]:  # two commands may call different options alike
+                    owners = [c for c in COMMANDS if (form, text) in options[c]]
+                    of = "" if owners == COMMANDS else ", ".join(owners) + ": "
                     self.assertTrue(f"-{form} {of}{' '.join(text.split())}" in words, form)
         self.assertEqual(options_in(words), set().union(*OPTIONS.values()) | EVERYWHERE | ALONE)
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Small motions ring with the frequencies of the linearisation: started along each of the
- * lowest modes and let go, the strongest tone of what moves most is that mode's. The two have rows and
- * energies in common, and nothing of linearisation, eigenproblem and integration.
+ * lowest modes and let go, the strongest tone of what moves most is that mode's. The two have
+ * rows and energies in common, and nothing of linearisation, eigenproblem and integration.
  *     The amplitude is 1e-5 of the model's length: frequencies depend on its square; what the
  * first mode drags along, a shape's curvature, is other tones of the reading.
  */

@@ -14,7 +14,7 @@ MOST = 0.2  # of all lines of src in one room
 FUNCTION = re.compile(r"(.*): (\w+) ([TWU])\b")
 # Functions that nothing but tests calls. This list only gets shorter.
 FOR_TESTS = {
-    "mt_displaced_eval", "mt_linear_equations",  # the independent mechanics that the linearisation is held against
+    "mt_displaced_eval",  # the independent mechanics that the linearisation is held against
     "mt_enclosure_corners",  # the independent proof by corners
     "mt_model_key_tables", "mt_study_key_tables", "mt_aircraft_key_tables",  # what readers know, for schemas
 }
