@@ -23,7 +23,6 @@
 #include <string.h>
 
 #include "mechanics/constraint.h"
-#include "mechanics/singular.h"
 
 enum { ROOM_ROWS = 16 }; /* more than any term has (rows_priv.h) */
 
@@ -307,15 +306,11 @@ void mt_motion_turns(const mt_motion *o, mt_placement *at)
     mt_data_turns(&o->lin->data, at);
 }
 
-mt_status mt_motion_dead_centre(const mt_motion *o, const mt_placement *at,
-                                const mt_elimination *e, mt_arena *mem, mt_err *err)
+mt_status mt_motion_nearness(const mt_motion *o, const mt_placement *at,
+                             const mt_elimination *e, mt_arena *scratch, mt_arena *mem,
+                             mt_nearness *out, mt_err *err)
 {
-    mt_nearness near;
-    MT_TRY(mt_singular_nearness(&o->lin->data, at, e, mem, mem, &near, err));
-    return mt_fail(err, MT_E_DEAD_CENTRE,
-                   "a dead centre: joints %s depend on each other here, and the motion may go "
-                   "on in more than one way",
-                   near.near ? near.joints.text : "of a loop");
+    return mt_singular_nearness(&o->lin->data, at, e, scratch, mem, out, err);
 }
 
 bool mt_motion_has_value(const mt_system *sys, mt_gauge gauge)

@@ -3,6 +3,7 @@
 #define MECHANICS_MOTION_H
 
 #include "mechanics/linear.h"
+#include "mechanics/singular.h"
 
 /*
  * The equations of motion of a system at any position and any velocity,
@@ -43,10 +44,10 @@ void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v);
 /* Note in at->turn where the angles stand, which are less than half a turn from where they
  * were. */
 void mt_motion_turns(const mt_motion *o, mt_placement *at);
-/* MT_E_DEAD_CENTRE, with the names of the joints whose equations depend on each other at `at`;
- * e: elimination of all equations there. Fails also MT_E_MEMORY. */
-mt_status mt_motion_dead_centre(const mt_motion *o, const mt_placement *at,
-                                const mt_elimination *e, mt_arena *mem, mt_err *err);
+/* mt_singular_nearness at `at`; e: elimination of all equations there. scratch is not mem. */
+mt_status mt_motion_nearness(const mt_motion *o, const mt_placement *at,
+                             const mt_elimination *e, mt_arena *scratch, mt_arena *mem,
+                             mt_nearness *out, mt_err *err);
 
 /* One scalar that is looked at: a sensor's channel, or the coordinate of a joint. */
 typedef struct mt_gauge {

@@ -74,7 +74,8 @@ static double error_ratio(const mt_sim *s, double h)
     return most;
 }
 
-/* So long that no body turns further than MOST_TURN. */
+/* So long that no body turns further than MOST_TURN, and that none goes further than the way
+ * that is free. */
 static double longest_step(const mt_sim *s)
 {
     const double *const v = s->begin + s->nq;
@@ -87,7 +88,12 @@ static double longest_step(const mt_sim *s)
         }
         fastest = fmax(fastest, sqrt(square));
     }
-    return fastest > 0.0 ? MOST_TURN / fastest : (double)INFINITY;
+    double rate = 0.0; /* at which the free way is used up */
+    for (int i = 0; i < s->nq; i++) {
+        rate = fmax(rate, s->weight[i] * fabs(v[i]) / s->sys->length_m);
+    }
+    const double limit = rate > 0.0 ? s->free_way / rate : (double)INFINITY;
+    return fmin(limit, fastest > 0.0 ? MOST_TURN / fastest : (double)INFINITY);
 }
 
 /* A run: what is kept of it. */
@@ -340,6 +346,10 @@ mt_status mt_simulate(mt_linear *lin, const mt_sim_start *start, const mt_sim_op
     mt_status rc = begin(&r, lin, start, opt, mem, err);
     if (rc == MT_OK) {
         rc = go(&r, &t, err);
+    }
+    if (rc == MT_OK && opt->end != NULL) {
+        mt_placement_copy(r.s.sys, &r.s.base, &opt->end->at);
+        memcpy(opt->end->v, r.s.begin + r.s.nq, (size_t)r.s.nq * sizeof *opt->end->v);
     }
     out->evaluations = r.s.evaluations;
     out->gap_m = r.s.gap_m;

@@ -30,6 +30,12 @@ typedef struct mt_sim_input {
     const mt_signal *signal;
 } mt_sim_input;
 
+/* Where it begins, or has come to. */
+typedef struct mt_sim_start {
+    mt_placement at;
+    double *v; /* [nq] */
+} mt_sim_start;
+
 typedef struct mt_sim_options {
     double duration_s;
     double sample_s; /* results at 0, sample_s, 2 sample_s, ... */
@@ -41,17 +47,12 @@ typedef struct mt_sim_options {
     const mt_sim_input *inputs;
     int n_gauges;
     const mt_gauge *gauges;
-    bool turning; /* note where each gauge turns */
+    bool turning;      /* note where each gauge turns */
+    mt_sim_start *end; /* out: where it comes to; may be the start. NULL: nobody asks */
 } mt_sim_options;
 mt_sim_options mt_sim_options_default(void);
 /* More samples than this times gauges are refused. */
 enum { MT_SIM_SAMPLES_MOST = 20000000 };
-
-/* Where it begins. */
-typedef struct mt_sim_start {
-    mt_placement at;
-    double *v; /* [nq] */
-} mt_sim_start;
 
 typedef enum mt_sim_stop { MT_SIM_DONE, MT_SIM_INTERRUPTED } mt_sim_stop;
 

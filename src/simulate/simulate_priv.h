@@ -39,8 +39,10 @@ typedef struct mt_sim {
     double *weight; /* [nq] 1, or the model's length on rotations */
     double *speed;  /* [n_gauges] at the begin of the step */
     mt_gauge_motion gauge;
-    double still; /* drive of the rest position */
-    int rank;     /* of the joints' equations at the start; -1: not known yet */
+    double still;    /* drive of the rest position */
+    int rank;        /* of the joints' equations at the start; -1: not known yet */
+    mt_arena names;  /* of joints, for messages */
+    double free_way; /* no step goes further than this [rad, model lengths] */
     long evaluations;
     double far;  /* how far bodies have come [m] */
     double fast; /* how fast they have been [m/s] */

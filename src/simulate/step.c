@@ -14,6 +14,13 @@
 /* Gaps below so many rounding errors of the model's length are none. */
 static const double CLOSED = 16.0 * DBL_EPSILON;
 enum { CLOSING_STEPS = 4 };
+/* Of independent equations the weakest, below which steps mind dead centres. */
+static const double WEAK = 0.3;
+/* So far a step may go then [rad, model lengths]: less than dead centres are seen from. */
+static const double SEEN_FROM = 0.8 * MT_NEAR_DISTANCE;
+static const double HALF_WAY = 0.5;
+/* Nearer than this it is one [rad, model lengths]: accelerations are known to eps over it. */
+static const double DEAD = 1e-6;
 
 /* c(a); below SMALL its series, whose next term is a^6/1209600: < 1e-16 there. */
 static double turn_factor(double a)
@@ -175,6 +182,30 @@ static double as_length(const mt_elimination *e, const double *x)
     return most;
 }
 
+/*
+ * Where joints begin to depend on each other (a parallelogram in a line) the motion may go on
+ * in more than one way, and next to it accelerations are rounding over almost nothing: a step
+ * across it could end on either branch. So steps are made short beside such a position, by half
+ * of the way to it, and one that leads into it is refused. It is seen from 0.05 rad (or model
+ * lengths) on (singular.h), which no step may pass over where the equations are weak.
+ */
+static mt_status look_out(mt_sim *s, const mt_elimination *e, mt_err *err)
+{
+    mt_nearness near;
+    s->rank = s->rank < 0 ? e->qr.rank : s->rank;
+    mt_arena_clear(&s->names);
+    MT_TRY(mt_motion_nearness(&s->motion, &s->at, e, s->mem, &s->names, &near, err));
+    s->free_way = e->qr.kept < WEAK ? SEEN_FROM : (double)INFINITY;
+    s->free_way = near.near ? HALF_WAY * near.distance : s->free_way;
+    if (e->qr.rank == s->rank && !(near.near && near.distance < DEAD)) {
+        return MT_OK;
+    }
+    return mt_fail(err, MT_E_DEAD_CENTRE,
+                   "a dead centre: joints %s depend on each other here, and the motion may go "
+                   "on in more than one way",
+                   near.near ? near.joints.text : "of a loop");
+}
+
 /* s->at, with velocities v, onto the joints. */
 static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_err *err)
 {
@@ -185,10 +216,6 @@ static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_er
         mt_motion_eval(o, &s->at, v);
         s->evaluations++;
         MT_TRY(mt_eliminate_factor(s->sys, s->m, o->a, s->mem, &e, err));
-        s->rank = s->rank < 0 ? e.qr.rank : s->rank;
-        if (e.qr.rank != s->rank) {
-            return mt_motion_dead_centre(o, &s->at, &e, s->mem, err);
-        }
         const double gap = as_length(&e, o->gap);
         s->gap_m = i == 0 ? fmax(s->gap_m, gap) : s->gap_m;
         const bool closed = gap <= CLOSED * s->sys->length_m;
@@ -201,6 +228,7 @@ static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_er
             continue;
         }
         s->left_m = fmax(s->left_m, gap);
+        MT_TRY(look_out(s, &e, err));
         if (d >= 0) {
             o->rate[d] -= drive[1];
         }
@@ -338,6 +366,7 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
 {
     const mt_system *const sys = mt_linear_system(lin);
     *s = (mt_sim){.lin = lin, .sys = sys, .opt = opt, .mem = mem, .nq = sys->nq, .rank = -1};
+    s->free_way = (double)INFINITY;
     s->m = mt_linear_equations(lin);
     s->n = (2 * s->nq) + 1 + opt->n_gauges;
     MT_TRY(allocate(s, err));
@@ -352,6 +381,7 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
     mt_placement_copy(sys, &start->at, &s->start);
     mt_placement_copy(sys, &start->at, &s->base);
     memcpy(s->y + s->nq, start->v, (size_t)s->nq * sizeof *s->y);
+    MT_TRY(mt_arena_init(&s->names, 0, err));
     MT_TRY(mt_ode_new(s->n, mt_sim_slope, s, &s->ode, err));
     return mt_sim_accept(s, 0.0, err);
 }
@@ -359,5 +389,6 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
 void mt_sim_free(mt_sim *s)
 {
     mt_ode_delete(s->ode);
+    mt_arena_free(&s->names);
     s->ode = NULL;
 }

@@ -11,6 +11,8 @@ enum { MOTION_GAUGES = 8 };
 typedef struct motion {
     mech mech;
     mt_arena mem;
+    mt_system *own_sys; /* of motion_open_driven */
+    mt_linear *own_lin;
     mt_linear *lin;
     const mt_system *sys;
     double weight; /* sum of the forces of loads and springs at the start [N] */
@@ -48,6 +50,14 @@ static inline void motion_weigh(motion *m)
     }
 }
 
+static inline bool motion_done(mt_test *t, const motion *m, mt_status rc)
+{
+    if (!CHECK(t, rc == MT_OK)) {
+        (void)fprintf(stderr, "%s: %s\n", mt_status_name(rc), m->err.text);
+    }
+    return rc == MT_OK;
+}
+
 /* Takes the model; at rest, nothing watched. */
 static inline bool motion_open(mt_test *t, mt_model *model, const char *configuration,
                                motion *m)
@@ -67,18 +77,32 @@ static inline bool motion_open(mt_test *t, mt_model *model, const char *configur
     return ok;
 }
 
-static inline void motion_free(motion *m)
+/* With a joint that stands at `position`, and may be moved by an input. */
+static inline bool motion_open_driven(mt_test *t, mt_model *model, const char *configuration,
+                                      const char *joint, double position, motion *m)
 {
-    mt_arena_free(&m->mem);
-    mech_free(&m->mech);
+    const mt_system_drive drive = {.joint = joint, .fixed = true, .position = position};
+    *m = (motion){.opt = mt_sim_options_default(), .mech.model = model};
+    const int c = configuration == NULL ? 0 : mt_model_find_configuration(model, configuration);
+    mt_status rc = mt_arena_init(&m->mem, 0, &m->err);
+    rc = rc == MT_OK
+             ? mt_system_new_driven(model, c, &drive, 0, NULL, NULL, &m->own_sys, &m->err)
+             : rc;
+    rc = rc == MT_OK ? mt_linear_new(m->own_sys, &m->own_lin, &m->err) : rc;
+    rc = rc == MT_OK ? mt_linear_update(m->own_lin, NULL, false, &m->err) : rc;
+    m->lin = m->own_lin;
+    m->sys = m->own_sys;
+    m->opt.gauges = m->gauges;
+    rc = rc == MT_OK ? mt_start_rest(m->lin, &m->mem, &m->start, &m->err) : rc;
+    return motion_done(t, m, rc);
 }
 
-static inline bool motion_done(mt_test *t, const motion *m, mt_status rc)
+static inline void motion_free(motion *m)
 {
-    if (!CHECK(t, rc == MT_OK)) {
-        (void)fprintf(stderr, "%s: %s\n", mt_status_name(rc), m->err.text);
-    }
-    return rc == MT_OK;
+    mt_linear_delete(m->own_lin);
+    mt_system_delete(m->own_sys);
+    mt_arena_free(&m->mem);
+    mech_free(&m->mech);
 }
 
 static inline mt_sim_joint motion_joint(const motion *m, const char *name, double value)
