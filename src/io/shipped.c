@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The bytes are written by the build (CMakeLists.txt). */
+/* The bytes are those of files (CMakeLists.txt). */
 #include "io/shipped.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "io/shipped_data.h"
 
 static const mt_shipped files[] = {
-#define SHIPPED(number, path) {path, (const char *)file_##number, sizeof file_##number - 1},
+#define SHIPPED(bytes, path) {path, bytes, sizeof bytes - 1},
     SHIPPED_LIST(SHIPPED)
 #undef SHIPPED
 };

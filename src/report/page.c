@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The bytes of style and scripts are written by the build (CMakeLists.txt). */
+/* The bytes of style and scripts are those of files (CMakeLists.txt). */
 #include "report/page.h"
 
 #include <string.h>
@@ -54,7 +54,7 @@ static const struct {
     const char *name;
     const char *text;
 } files[] = {
-#define PAGE(number, name) {name, (const char *)file_##number},
+#define PAGE(bytes, name) {name, bytes},
     PAGE_LIST(PAGE)
 #undef PAGE
 };

@@ -3,7 +3,9 @@
 The Python package upon the shared library of this build; with MODETUNE_INSTALLED=1 as it is
 installed for the interpreter that runs this (tests/install/packages.sh). NumPy may be missing.
 """
+import base64
 import copy
+import hashlib
 import html.parser
 import importlib.util
 import io
@@ -356,8 +358,19 @@ class Page(unittest.TestCase):
         frames.feed(page._repr_html_())
         self.assertEqual([tag for tag, _ in frames.tags], ["iframe"])
         self.assertEqual(frames.tags[0][1]["srcdoc"], page.html)
-        self.assertEqual(frames.tags[0][1]["sandbox"], "")
-        self.assertNotIn("<script", page.html)
+        self.assertEqual(frames.tags[0][1]["sandbox"].split(), ["allow-scripts", "allow-downloads"])
+        # in the frame the name is text: data and program are all the scripts, and the policy knows the program
+        inside = Frames()
+        inside.feed(page.html)
+        scripts = [attributes for tag, attributes in inside.tags if tag == "script"]
+        self.assertEqual([a.get("type") for a in scripts if a.get("type") != "application/json"], [None])
+        self.assertNotIn("<script>alert", page.html)
+        (policy,) = [a["content"] for tag, a in inside.tags
+                     if tag == "meta" and a.get("http-equiv") == "Content-Security-Policy"]
+        program = re.search(r"<script>(.*?)</script>", page.html, re.S).group(1)
+        digest = base64.b64encode(hashlib.sha256(program.encode()).digest()).decode()
+        self.assertIn(f"script-src 'sha256-{digest}'", policy)
+        self.assertNotIn("unsafe", policy)
 
     def test_what_is_no_result_is_refused_with_its_place(self):
         result = modetune.solve(TUNING)

@@ -48,7 +48,7 @@ static void ruler__has_every_mark_at_its_place(mt_test *t)
     mt_result_frequency f[MODES];
     mt_result_gap gap;
     mt_recommendation r = make(f, &gap);
-    f[1].target_hz = 33.0;
+    r.frequencies[1].target_hz = 33.0;
     for (int width = 0; width <= 200; width += 50) {
         mt_text out = {.s = NULL};
         mt_test_row(t, "width %d", width);
@@ -82,8 +82,8 @@ static void ruler__is_not_drawn_where_nothing_is_asked(mt_test *t)
     r.n_gaps = 0;
     mt_report_ruler(&r, 0, &out);
     CHECK(t, out.s == NULL && !out.failed);
-    f[0].target_hz = nan("");
-    f[1].at_least_hz = HUGE_VAL;
+    r.frequencies[0].target_hz = nan("");
+    r.frequencies[1].at_least_hz = HUGE_VAL;
     mt_report_ruler(&r, 0, &out);
     CHECK(t, out.s == NULL && !out.failed);
 }

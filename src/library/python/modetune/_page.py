@@ -7,8 +7,10 @@ import os
 from pathlib import Path
 from typing import Union
 
-# its frame runs no script and reaches nothing, whatever a file's texts may be
-FRAME = '<iframe sandbox="" style="width:100%;height:40em;border:0" srcdoc="{}"></iframe>'
+# The page's own script alone runs there (its policy names it by its digest), as of an origin of
+# its own: it reaches neither the notebook nor anything else, whatever a file's texts may be.
+FRAME = ('<iframe sandbox="allow-scripts allow-downloads" '
+         'style="width:100%;height:40em;border:0" srcdoc="{}"></iframe>')
 
 
 class Report:
