@@ -216,6 +216,7 @@ static mt_status run(job *j, mt_err *err)
     MT_TRY(mt_arena_init(&j->mem, 0, err));
     MT_TRY(choose(j->s, &j->c, err));
     mt_subject_warn_overridden(j->s, j->c);
+    MT_TRY(mt_subject_admit_dense(j->s, j->c, "a motion needs them", err));
     MT_TRY(make(j, err));
     MT_TRY(mt_sim_read(j->args, j->s, j->sys, &j->request, err));
     MT_TRY(begin(j, err));

@@ -49,9 +49,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "parameters to vary (default: all that are not made of others)"),
     OPTION(MT_OPT_DURATION, '\0', "duration", "SECONDS", BIT(MT_CMD_SIMULATE),
            "how long the motion lasts; needed"),
-    OPTION(MT_OPT_DT_OUT, '\0', "dt-out", "SECONDS", BIT(MT_CMD_SIMULATE),
-           "time between two lines of the result (default: a hundredth of the duration); steps "
-           "are as short as the motion needs, whatever this is"),
+    OPTION(
+        MT_OPT_DT_OUT, '\0', "dt-out", "SECONDS", BIT(MT_CMD_SIMULATE),
+        "time between two lines of the result (default: a hundredth of the duration, or less, "
+        "a 24th of the period of a --sine); steps are as short as the motion needs, whatever "
+        "this is"),
     OPTION(MT_OPT_START, '\0', "start", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
            "let go where this joint (or link's hinge) is at a position, rad or m from the "
            "reference position: one joint is held there until the rest of the mechanism is in "

@@ -7,6 +7,8 @@
 #include "cli/simulate.h"
 #include "model/values.h"
 
+/* Lines of the result in a period of a sine, so that its harmonics are told apart. */
+enum { STEADY_SAMPLES = 24 };
 enum { AXES = 3, RANDOM_LINES_MOST = 100000 };
 static const char *const base_ports[AXES] = {"base.x", "base.y", "base.z"};
 
@@ -459,6 +461,9 @@ mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
     }
     if (args->value[MT_OPT_ALONG] != NULL) {
         MT_TRY(read_mode(s, args->value[MT_OPT_ALONG], out, err));
+    }
+    if (args->dt_out_s == 0.0 && out->steady_hz > 0.0) {
+        out->opt.sample_s = fmin(out->opt.sample_s, 1.0 / (STEADY_SAMPLES * out->steady_hz));
     }
     out->opt.turning = out->opt.n_inputs == 0;
     return read_outputs(args, sys, &s->mem, out, err);

@@ -264,17 +264,21 @@ static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
 {
     mt_sim *const s = &r->s;
     const bool fixed = s->opt->step_s > 0.0;
+    mt_err failed = {.code = MT_OK};
     for (;;) {
         const double left = until - *t;
         const double most = fmin(fixed ? s->opt->step_s : *h, longest_step(s));
         const double parts = fmax(1.0, ceil((left / most) - 1e-9));
         const double length = left / parts;
         if (!(length > LEAST_STEP * s->opt->duration_s)) {
-            return mt_fail(err, MT_E_NO_CONVERGENCE, "steps become too small");
+            return failed.code != MT_OK
+                       ? mt_fail(err, failed.code, "%s", failed.text)
+                       : mt_fail(err, MT_E_NO_CONVERGENCE, "steps become too small");
         }
-        const mt_status rc = mt_sim_advance(s, *t, length, err);
+        failed.code = MT_OK;
+        const mt_status rc = mt_sim_advance(s, *t, length, &failed);
         if (rc != MT_OK && (rc != MT_E_DOMAIN || ++r->failures > FAILURES_MOST)) {
-            return rc;
+            return mt_fail(err, rc, "%s", failed.text);
         }
         if (rc != MT_OK) {
             *h = AFTER_FAILURE * length;
