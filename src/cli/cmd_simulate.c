@@ -174,8 +174,9 @@ static mt_status read_one(job *j, int g, mt_sim_reading *out, mt_err *err)
                              &out->tones, err));
     }
     if (j->request.steady_hz > 0.0) {
-        MT_TRY(mt_steady_read(r->n, r->t, value, r->n_gauges, j->request.steady_hz,
-                              STEADY_PERIODS, &j->mem, &out->steady, err));
+        const mt_samples samples = {.n = r->n, .stride = r->n_gauges, .t = r->t, .x = value};
+        MT_TRY(mt_steady_read(&samples, j->request.steady_hz, STEADY_PERIODS, &j->mem,
+                              &out->steady, err));
     }
     return MT_OK;
 }

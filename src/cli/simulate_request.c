@@ -62,8 +62,8 @@ mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_aren
 {
     *name = NULL;
     for (int i = 0; i < args->n_repeats; i++) {
-        const char *joint = NULL;
-        const char *rest = NULL;
+        const char *joint = "";
+        const char *rest = "";
         if (!is_input(args->repeats[i].option)) {
             continue;
         }
@@ -88,8 +88,8 @@ mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint,
     *given = false;
     *value = 0.0;
     for (int i = 0; i < args->n_repeats; i++) {
-        const char *name = NULL;
-        const char *rest = NULL;
+        const char *name = "";
+        const char *rest = "";
         if (args->repeats[i].option != MT_OPT_START) {
             continue;
         }
@@ -145,7 +145,7 @@ static mt_status find_joint(const mt_system *sys, mt_option_id option, const cha
 static bool base_port(const mt_system *sys, const char *name, port *out)
 {
     static const char *const quantities[] = {"", ":velocity", ":displacement"};
-    for (int axis = 0; axis < sys->dimension; axis++) {
+    for (int axis = 0; axis < AXES && axis < sys->dimension; axis++) {
         const size_t length = strlen(base_ports[axis]);
         for (int k = 0;
              k < MT_COUNT(quantities) && strncmp(name, base_ports[axis], length) == 0; k++) {
@@ -271,8 +271,8 @@ static mt_status read_random(mt_subject *s, const mt_args *args, const mt_repeat
                              const char *text, mt_signal *out, mt_err *err)
 {
     size_t n = 1;
-    for (const char *at = text; *at != '\0'; at++) {
-        n += *at == ',' ? 1 : 0;
+    for (const char *at = strchr(text, ','); at != NULL; at = strchr(at + 1, ',')) {
+        n++;
     }
     double *const hz = mt_arena_f64(&s->mem, n, 1);
     double *const value = mt_arena_f64(&s->mem, n, 1);
@@ -303,9 +303,9 @@ static mt_status read_input(mt_subject *s, const mt_args *args, const mt_system 
                             const mt_repeat *r, mt_sim_request *out, mt_sim_input *inputs,
                             mt_err *err)
 {
-    const char *name = NULL;
-    const char *rest = NULL;
-    port p;
+    const char *name = "";
+    const char *rest = "";
+    port p = {.push = MT_SIM_FORCE};
     mt_signal *const signal = mt_arena_alloc(&s->mem, 1, sizeof *signal);
     MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(split(r, &s->mem, &name, &rest, err));
@@ -415,8 +415,8 @@ static mt_status read_outputs(const mt_args *args, const mt_system *sys, mt_aren
 static mt_status read_joint(mt_subject *s, const mt_system *sys, const mt_repeat *r,
                             mt_sim_joint *out, mt_err *err)
 {
-    const char *name = NULL;
-    const char *rest = NULL;
+    const char *name = "";
+    const char *rest = "";
     MT_TRY(split(r, &s->mem, &name, &rest, err));
     MT_TRY(find_joint(sys, r->option, name, &s->mem, &out->joint, err));
     return mt_subject_number(s, name_of(r->option), rest, strlen(rest), &out->value, err);

@@ -35,7 +35,7 @@ mt_ring mt_ring_read(const mt_turnings *t)
     mt_ring r = {.hz = nan(""), .spread = nan(""), .amplitude = nan("")};
     double before = 0.0;
     double first = 0.0;
-    double shortest = (double)INFINITY;
+    double shortest = HUGE_VAL;
     double longest = 0.0;
     bool any = false;
     for (int i = 0; i < t->n; i++) {
@@ -77,16 +77,15 @@ static void tell(int rows, const double *a, const double *b, const double *x, mt
     double largest = 0.0;
     out->mean = x[0];
     for (int h = 0; h < MT_HARMONICS; h++) {
-        const double s = x[(2 * h) + 1];
-        const double c = x[(2 * h) + 2];
-        out->amplitude[h] = hypot(s, c);
-        out->phase[h] = atan2(c, s);
+        const double *const pair = x + 1 + ((ptrdiff_t)2 * h);
+        out->amplitude[h] = hypot(pair[0], pair[1]);
+        out->phase[h] = atan2(pair[1], pair[0]);
         largest = fmax(largest, out->amplitude[h]);
     }
     out->residual = 0.0;
     for (ptrdiff_t i = 0; i < rows; i++) {
         double r = -b[i];
-        for (ptrdiff_t k = 0; k <= 2 * MT_HARMONICS; k++) {
+        for (ptrdiff_t k = 0; k < 1 + (2 * MT_HARMONICS); k++) {
             r += a[i + (k * rows)] * x[k];
         }
         out->residual = fmax(out->residual, fabs(r));
@@ -94,39 +93,60 @@ static void tell(int rows, const double *a, const double *b, const double *x, mt
     out->residual /= largest > 0.0 ? largest : 1.0;
 }
 
-mt_status mt_steady_read(int n, const double *t, const double *value, int stride, double hz,
-                         int periods, mt_arena *scratch, mt_steady *out, mt_err *err)
+/* The last samples, of so many seconds. */
+static mt_samples last_of(const mt_samples *s, double length)
 {
-    /* rank of the columns: samples as dense as the harmonics ask for */
-    static const double DEPENDENT = 1e-9;
-    const int columns = (2 * MT_HARMONICS) + 1;
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    *out = (mt_steady){.periods = 0};
-    const double length = n > 0 ? t[n - 1] - t[0] : 0.0;
-    const int whole = (int)fmin(floor(length * hz), (double)periods);
-    int first = n;
-    while (whole > 0 && first > 0 && t[n - 1] - t[first - 1] < whole / hz) {
+    int first = s->n;
+    while (first > 0 && s->t[s->n - 1] - s->t[first - 1] < length) {
         first--;
     }
-    const int rows = n - first;
-    if (whole < 1 || rows < columns) {
+    return (mt_samples){.n = s->n - first,
+                        .stride = s->stride,
+                        .t = s->t + first,
+                        .x = s->x + ((ptrdiff_t)first * s->stride)};
+}
+
+/* *done false: the samples do not tell the harmonics apart. */
+static mt_status fit(const mt_samples *s, double hz, bool *done, mt_arena *mem, mt_steady *out,
+                     mt_err *err)
+{
+    /* rank of the columns */
+    static const double DEPENDENT = 1e-9;
+    const int columns = (2 * MT_HARMONICS) + 1;
+    double *const a = mt_arena_f64(mem, (size_t)s->n, (size_t)columns);
+    double *const b = mt_arena_f64(mem, (size_t)s->n, 1);
+    double *const by = mt_arena_f64(mem, (size_t)columns, 1);
+    mt_qr qr;
+    MT_TRY(mt_arena_check(mem, err));
+    fill(s->n, s->t, 2.0 * PI * hz, a);
+    for (ptrdiff_t i = 0; i < s->n; i++) {
+        b[i] = s->x[i * s->stride];
+    }
+    MT_TRY(mt_qr_factor(s->n, columns, a, s->n, DEPENDENT, mem, &qr, err));
+    *done = qr.rank == columns;
+    if (*done) {
+        MT_TRY(mt_qr_solve(&qr, 1, b, by, mem, err));
+        tell(s->n, a, b, by, out);
+    }
+    return MT_OK;
+}
+
+mt_status mt_steady_read(const mt_samples *s, double hz, int periods, mt_arena *scratch,
+                         mt_steady *out, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    *out = (mt_steady){.periods = 0};
+    const double length = s->n > 0 ? s->t[s->n - 1] - s->t[0] : 0.0;
+    const int whole = (int)fmin(floor(length * hz), (double)periods);
+    if (whole < 1) {
         return MT_OK;
     }
-    double *const a = mt_arena_f64(scratch, (size_t)rows, (size_t)columns);
-    double *const b = mt_arena_f64(scratch, (size_t)rows, 1);
-    double *const x = mt_arena_f64(scratch, (size_t)columns, 1);
-    mt_qr qr;
-    MT_TRY(mt_arena_check(scratch, err));
-    fill(rows, t + first, 2.0 * PI * hz, a);
-    for (ptrdiff_t i = 0; i < rows; i++) {
-        b[i] = value[(first + i) * stride];
+    const mt_samples last = last_of(s, whole / hz);
+    bool done = false;
+    if (last.n > 2 * MT_HARMONICS) {
+        MT_TRY(fit(&last, hz, &done, scratch, out, err));
     }
-    MT_TRY(mt_qr_factor(rows, columns, a, rows, DEPENDENT, scratch, &qr, err));
-    if (qr.rank == columns) {
-        MT_TRY(mt_qr_solve(&qr, 1, b, x, scratch, err));
-        out->periods = whole;
-        tell(rows, a, b, x, out);
-    }
+    out->periods = done ? whole : 0;
     mt_arena_rewind(scratch, mark);
     return MT_OK;
 }

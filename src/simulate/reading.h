@@ -43,9 +43,17 @@ typedef struct mt_steady {
                                    amplitude */
 } mt_steady;
 
-/* Least squares over the last whole periods, at most `periods`, of samples value[i * stride] at
- * t[i]. Fails: MT_E_MEMORY. */
-mt_status mt_steady_read(int n, const double *t, const double *value, int stride, double hz,
-                         int periods, mt_arena *scratch, mt_steady *out, mt_err *err);
+/* Samples x[i * stride] at t[i]. */
+typedef struct mt_samples {
+    int n;
+    int stride;
+    const double *t; /* [s] */
+    const double *x;
+} mt_samples;
+
+/* Least squares over the last whole periods of the samples, at most `periods`. Fails:
+ * MT_E_MEMORY. */
+mt_status mt_steady_read(const mt_samples *s, double hz, int periods, mt_arena *scratch,
+                         mt_steady *out, mt_err *err);
 
 #endif

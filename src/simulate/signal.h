@@ -19,16 +19,16 @@ typedef struct mt_sine {
 
 typedef struct mt_signal {
     mt_signal_kind kind;
-    int n;
+    bool linear;  /* SWEEP: so many Hz a second; else so many octaves */
+    int n;        /* SINES */
+    mt_node node; /* EXPRESSION: of the program */
     const mt_sine *sines;
     double level; /* SWEEP */
     double from_hz;
     double to_hz;
     double duration_s;         /* in which it runs from one to the other */
-    bool linear;               /* so many Hz a second; else so many octaves */
     const mt_program *program; /* EXPRESSION: one input, t */
-    mt_node node;
-    double (*work)[3]; /* [program->count], of one worker */
+    double (*work)[3];         /* [program->count], of one worker */
 } mt_signal;
 
 /* out[3] = value and first two derivatives by time at t. Fails: MT_E_DOMAIN (of an

@@ -41,6 +41,8 @@ static const double ROUNDING = 16.0 * DBL_EPSILON;
 static const double LEAST_STEP = 1e-13;
 /* Samples nearer to the end than this part of their distance are at the end. */
 static const double SAME_TIME = 1e-6;
+/* A number of steps is a whole one within this. */
+static const double ROUNDED = 1e-9;
 /* The first step, as a part of the time to the first sample. */
 static const double FIRST_STEP = 1e-3;
 static const double TOLERANCE = 1e-11;
@@ -92,8 +94,8 @@ static double longest_step(const mt_sim *s)
     for (int i = 0; i < s->nq; i++) {
         rate = fmax(rate, s->weight[i] * fabs(v[i]) / s->sys->length_m);
     }
-    const double limit = rate > 0.0 ? s->free_way / rate : (double)INFINITY;
-    return fmin(limit, fastest > 0.0 ? MOST_TURN / fastest : (double)INFINITY);
+    const double limit = rate > 0.0 ? s->free_way / rate : HUGE_VAL;
+    return fmin(limit, fastest > 0.0 ? MOST_TURN / fastest : HUGE_VAL);
 }
 
 /* A run: what is kept of it. */
@@ -152,7 +154,7 @@ static mt_status rest_energy(run *r, mt_err *err)
 static void note_energy(run *r)
 {
     const mt_motion *const o = &r->s.motion;
-    const double work = r->s.begin[2 * r->s.nq];
+    const double work = r->s.begin[(ptrdiff_t)2 * r->s.nq];
     const double left = (o->kinetic + o->potential) - (r->energy0 + work);
     r->out->energy_error_j = fmax(r->out->energy_error_j, fabs(left));
     r->out->energy_scale_j = fmax(r->out->energy_scale_j, o->kinetic);
@@ -175,7 +177,7 @@ static mt_status sample(run *r, double t, mt_err *err)
     out->t[i] = t;
     out->kinetic[i] = r->s.motion.kinetic;
     out->potential[i] = r->s.motion.potential - r->rest_energy;
-    out->work[i] = r->s.begin[2 * r->s.nq];
+    out->work[i] = r->s.begin[(ptrdiff_t)2 * r->s.nq];
     out->n++;
     return MT_OK;
 }
@@ -259,6 +261,33 @@ static double change_of(const run *r, double ratio, bool taken)
     return fmin(fmax(change, LEAST_CHANGE), MOST_CHANGE);
 }
 
+/* The step from *t that is in s->y is taken; h becomes what the next one begins with. */
+static mt_status take(run *r, double *t, double until, double length, double ratio, double *h,
+                      mt_err *err)
+{
+    mt_sim *const s = &r->s;
+    const double next = length * change_of(r, ratio, true);
+    const bool last = length >= until - *t;
+    /* a step that was cut short says nothing against the longer one before */
+    *h = last && length < *h ? fmax(next, *h) : next;
+    r->last_ratio = fmax(ratio, LEAST_LAST);
+    if (s->opt->turning) {
+        MT_TRY(note_turnings(r, *t, length, err));
+    }
+    *t = last ? until : *t + length;
+    r->out->steps++;
+    return mt_sim_accept(s, *t, err);
+}
+
+/* What becomes of a step that failed: shorter, unless that is of no use. */
+static mt_status after_failure(run *r, mt_status rc, const mt_err *failed, mt_err *err)
+{
+    r->out->rejected++;
+    return rc != MT_E_DOMAIN || ++r->failures > FAILURES_MOST
+               ? mt_fail(err, rc, "%s", failed->text)
+               : MT_OK;
+}
+
 /* One step towards `until`, of about *h, which becomes the next one's. */
 static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
 {
@@ -268,8 +297,7 @@ static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
     for (;;) {
         const double left = until - *t;
         const double most = fmin(fixed ? s->opt->step_s : *h, longest_step(s));
-        const double parts = fmax(1.0, ceil((left / most) - 1e-9));
-        const double length = left / parts;
+        const double length = left / fmax(1.0, ceil((left / most) - ROUNDED));
         if (!(length > LEAST_STEP * s->opt->duration_s)) {
             return failed.code != MT_OK
                        ? mt_fail(err, failed.code, "%s", failed.text)
@@ -277,29 +305,16 @@ static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
         }
         failed.code = MT_OK;
         const mt_status rc = mt_sim_advance(s, *t, length, &failed);
-        if (rc != MT_OK && (rc != MT_E_DOMAIN || ++r->failures > FAILURES_MOST)) {
-            return mt_fail(err, rc, "%s", failed.text);
-        }
         if (rc != MT_OK) {
+            MT_TRY(after_failure(r, rc, &failed, err));
             *h = AFTER_FAILURE * length;
-            r->out->rejected++;
             continue;
         }
         const double ratio = fmax(error_ratio(s, length), LEAST_RATIO);
-        const bool taken = ratio <= 1.0 || fixed;
-        const double next = length * change_of(r, ratio, taken);
-        if (taken) {
-            r->last_ratio = fmax(ratio, LEAST_LAST);
-            /* a step that was cut short says nothing against the longer one before */
-            *h = parts == 1.0 && length < *h ? fmax(next, *h) : next;
-            if (s->opt->turning) {
-                MT_TRY(note_turnings(r, *t, length, err));
-            }
-            *t = parts == 1.0 ? until : *t + length;
-            r->out->steps++;
-            return mt_sim_accept(s, *t, err);
+        if (ratio <= 1.0 || fixed) {
+            return take(r, t, until, length, ratio, h, err);
         }
-        *h = next;
+        *h = length * change_of(r, ratio, false);
         r->out->rejected++;
     }
 }

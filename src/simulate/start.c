@@ -77,7 +77,7 @@ static mt_status close_all(augmented *g, mt_placement *at, int n, const mt_sim_j
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     double *const dq = mt_arena_f64(mem, (size_t)g->sys->nq, 1);
-    double before = INFINITY;
+    double before = HUGE_VAL;
     MT_TRY(mt_arena_check(mem, err));
     *holds = g->n == 0;
     for (int i = 0; i < NEWTON_STEPS && !*holds; i++) {

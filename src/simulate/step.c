@@ -157,10 +157,10 @@ mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err
     double drive[3];
     MT_TRY(place(s, t, u, drive, err));
     increments(s->sys, u, v, out);
-    MT_TRY(accelerate(s, t, v, drive, out + s->nq, &out[2 * s->nq], err));
+    MT_TRY(accelerate(s, t, v, drive, out + s->nq, out + ((ptrdiff_t)2 * s->nq), err));
     for (int i = 0; i < s->opt->n_gauges; i++) {
         mt_motion_gauge(&s->motion, &s->at, v, s->opt->gauges[i], &s->gauge);
-        out[(2 * s->nq) + 1 + i] = mt_dot(s->nq, s->gauge.row, v);
+        out[((ptrdiff_t)2 * s->nq) + 1 + i] = mt_dot(s->nq, s->gauge.row, v);
     }
     return MT_OK;
 }
@@ -195,7 +195,7 @@ static mt_status look_out(mt_sim *s, const mt_elimination *e, mt_err *err)
     s->rank = s->rank < 0 ? e->qr.rank : s->rank;
     mt_arena_clear(&s->names);
     MT_TRY(mt_motion_nearness(&s->motion, &s->at, e, s->mem, &s->names, &near, err));
-    s->free_way = e->qr.kept < WEAK ? SEEN_FROM : (double)INFINITY;
+    s->free_way = e->qr.kept < WEAK ? SEEN_FROM : HUGE_VAL;
     s->free_way = near.near ? HALF_WAY * near.distance : s->free_way;
     if (e->qr.rank == s->rank && !(near.near && near.distance < DEAD)) {
         return MT_OK;
@@ -310,7 +310,8 @@ static void read_gauge(mt_sim *s, int gauge, const double *y, const double *a, d
     const mt_gauge g = s->opt->gauges[gauge];
     const double *const v = y + s->nq;
     mt_motion_gauge(&s->motion, &s->at, v, g, &s->gauge);
-    out[0] = mt_motion_has_value(s->sys, g) ? s->gauge.value : y[(2 * s->nq) + 1 + gauge];
+    out[0] =
+        mt_motion_has_value(s->sys, g) ? s->gauge.value : y[((ptrdiff_t)2 * s->nq) + 1 + gauge];
     out[1] = mt_dot(s->nq, s->gauge.row, v);
     out[2] = mt_dot(s->nq, s->gauge.row, a) + s->gauge.drift;
 }
@@ -366,7 +367,7 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
 {
     const mt_system *const sys = mt_linear_system(lin);
     *s = (mt_sim){.lin = lin, .sys = sys, .opt = opt, .mem = mem, .nq = sys->nq, .rank = -1};
-    s->free_way = (double)INFINITY;
+    s->free_way = HUGE_VAL;
     s->m = mt_linear_equations(lin);
     s->n = (2 * s->nq) + 1 + opt->n_gauges;
     MT_TRY(allocate(s, err));

@@ -88,8 +88,8 @@ static void settles(mt_test *t, mt_model *model, const char *configuration, cons
         m.opt.n_inputs = 1;
         m.opt.inputs = &in;
         if (motion_run(t, &m, (SETTLE + LAST) / HZ, 1.0 / (SAMPLES * HZ))) {
-            CHECK(t, mt_steady_read(m.r.n, m.r.t, m.r.value, 1, HZ, LAST, &m.mem, &steady,
-                                    NULL) == MT_OK);
+            const mt_samples samples = {.n = m.r.n, .stride = 1, .t = m.r.t, .x = m.r.value};
+            CHECK(t, mt_steady_read(&samples, HZ, LAST, &m.mem, &steady, NULL) == MT_OK);
             CHECK_INT(t, steady.periods, LAST);
             CHECK_NEAR(t, steady.amplitude[0], amplitude * want[0], 1e-6);
             CHECK_NEAR_ABS(t, remainder(steady.phase[0] - want[1], TURN), 0.0, 1e-6);

@@ -211,7 +211,7 @@ static void simulate__a_parallelogram_passes_its_dead_centres_or_says_so(mt_test
 static void simulate__redundant_joints_move_as_the_plane_does(mt_test *t)
 {
     motion plane;
-    motion space;
+    motion space = {.lin = NULL};
     const bool both = motion_open(t, mech_load(t, "four_bar"), "loaded", &plane) &&
                       motion_open(t, mech_load(t, "space_four_bar"), "loaded", &space);
     if (both && motion_turn(t, &plane, "jA", 9.0) && motion_turn(t, &space, "jA", 9.0)) {

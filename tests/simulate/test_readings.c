@@ -46,11 +46,12 @@ static void simulate__tones_are_found_beside_each_other(mt_test *t)
         mt_tones tones;
         mt_test_row(t, "%s", rows[k].name);
         for (int i = 0; i < SAMPLES; i++) {
-            x[2 * i] = rows[k].mean;
-            x[(2 * i) + 1] = nan("");
+            double *const at = x + ((ptrdiff_t)2 * i);
+            at[0] = rows[k].mean;
+            at[1] = nan("");
             for (int j = 0; j < 3; j++) {
-                x[2 * i] += decaying(dt * i, rows[k].hz[j], rows[k].zeta[j],
-                                     rows[k].amplitude[j], 0.3 + j);
+                at[0] += decaying(dt * i, rows[k].hz[j], rows[k].zeta[j], rows[k].amplitude[j],
+                                  0.3 + j);
             }
         }
         CHECK(t, mt_tones_read(SAMPLES, dt, x, 2, &mem, &tones, NULL) == MT_OK);
@@ -94,6 +95,7 @@ static void simulate__steady_motion_is_read_with_its_harmonics(mt_test *t)
 {
     double time[SAMPLES];
     double x[SAMPLES];
+    const mt_samples samples = {.n = SAMPLES, .stride = 1, .t = time, .x = x};
     mt_steady s;
     mt_arena mem = {0};
     REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
@@ -103,7 +105,7 @@ static void simulate__steady_motion_is_read_with_its_harmonics(mt_test *t)
         x[i] = 0.5 + (2.0 * sin((w * time[i]) + 0.7)) + (0.1 * sin((3.0 * w * time[i]) - 2.0));
         x[i] += time[i] < 2.0 ? 100.0 : 0.0; /* not steady yet */
     }
-    CHECK(t, mt_steady_read(SAMPLES, time, x, 1, 4.0, 6, &mem, &s, NULL) == MT_OK);
+    CHECK(t, mt_steady_read(&samples, 4.0, 6, &mem, &s, NULL) == MT_OK);
     CHECK_INT(t, s.periods, 6);
     CHECK_NEAR(t, s.mean, 0.5, 1e-12);
     CHECK_NEAR(t, s.amplitude[0], 2.0, 1e-12);
@@ -111,7 +113,7 @@ static void simulate__steady_motion_is_read_with_its_harmonics(mt_test *t)
     CHECK_NEAR(t, s.amplitude[2], 0.1, 1e-12);
     CHECK_NEAR(t, s.phase[2], -2.0, 1e-11);
     CHECK(t, s.amplitude[1] < 1e-12 && s.residual < 1e-12);
-    CHECK(t, mt_steady_read(SAMPLES, time, x, 1, 0.1, 6, &mem, &s, NULL) == MT_OK);
+    CHECK(t, mt_steady_read(&samples, 0.1, 6, &mem, &s, NULL) == MT_OK);
     CHECK_INT(t, s.periods, 0);
     mt_arena_free(&mem);
 }
