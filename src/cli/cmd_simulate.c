@@ -146,8 +146,8 @@ static mt_status begin(job *j, mt_err *err)
         MT_TRY(start_along(j, err));
     }
     for (int i = 0; i < r->opt.n_inputs; i++) {
-        double value[3] = {0.0, 0.0, 0.0};
         if (r->opt.inputs[i].push == MT_SIM_MOVE) {
+            double value[3] = {0.0, 0.0, 0.0};
             MT_TRY(mt_signal_eval(r->opt.inputs[i].signal, 0.0, value, err));
             drive += value[1];
         }

@@ -84,8 +84,8 @@ static mt_status moved(const mt_sim *s, double t, double out[3], mt_err *err)
 {
     memset(out, 0, 3 * sizeof *out);
     for (int i = 0; i < s->opt->n_inputs; i++) {
-        double by[3];
         if (s->opt->inputs[i].push == MT_SIM_MOVE) {
+            double by[3];
             MT_TRY(mt_signal_eval(s->opt->inputs[i].signal, t, by, err));
             for (int k = 0; k < 3; k++) {
                 out[k] += by[k];

@@ -179,10 +179,10 @@ mt_status mt_tones_read(int n, double dt_s, const double *x, int stride, mt_aren
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     record r = {.n = n < SAMPLES_MOST ? n : SAMPLES_MOST};
     *out = (mt_tones){.residual = nan("")};
-    r.l = r.n / 2 < COLUMNS_MOST ? r.n / 2 : COLUMNS_MOST;
-    if (r.l < COLUMNS_LEAST) {
+    if (r.n < 2 * COLUMNS_LEAST) {
         return MT_OK;
     }
+    r.l = r.n / 2 < COLUMNS_MOST ? r.n / 2 : COLUMNS_MOST;
     r.x = mt_arena_f64(scratch, (size_t)r.n, 1);
     MT_TRY(mt_arena_check(scratch, err));
     for (ptrdiff_t i = 0; i < r.n; i++) {

@@ -32,7 +32,7 @@ static const char SPHERICAL[] =
     " \"sensors\": [{\"name\": \"s\", \"on\": \"bob\", \"directions\": [\"x\", \"y\", \"z\"]}],"
     " \"configurations\": {\"c\": {}}}";
 
-/* Velocities at a sample are not in the result: momenta are taken from a run that ends there. */
+/* Momenta at a place. */
 typedef struct momenta {
     double turn[3]; /* sum of J omega + m x cross v */
     double push[3];
@@ -107,8 +107,7 @@ static void simulate__free_bodies_keep_momentum_and_energy(mt_test *t)
 
 /*
  * Euler's equations in the body: J1 w1' = (J2 - J3) w2 w3, ... with J = 1 : 2 : 3 and w1 = e at
- * w2 = w: about the unstable axis w1 grows as cosh(k t), k = w sqrt((J3 - J2)(J2 - J1)/(J1 J3)),
- * and the body has turned over when the elliptic function comes round, after
+ * w2 = w: about the unstable axis w1 grows, and the body has turned over when the elliptic function comes round, after
  *     T/2 = 2 K(q)/kappa   (Landau and Lifshitz, Mechanics, 37), with M^2, E of the start.
  * The middle axis, on which the sensor sits a metre out, then points the other way.
  */

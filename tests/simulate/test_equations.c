@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The equations themselves: accelerations are those of the fundamental equation, at any place
- * and with any velocities; velocity terms are those of Lagrange, which leave the energy of every
- * mechanism alone (also of bars and beams, whose masses follow their frames); steps have the
+ * and with any velocities; velocity terms are those of Lagrange, which leave the energy of
+ * every mechanism alone (also of bars and beams, whose masses follow their frames); steps have the
  * order of the method.
  */
 #include "modetune/dynamics.h"
@@ -142,7 +142,7 @@ static double swung_to(mt_test *t, double step, double tolerance)
     return angle;
 }
 
-/* Halving the step divides the error by 2^8; a tighter tolerance divides it about as it says. */
+/* Halving the step divides the error by 2^8; a tighter tolerance about as it says. */
 static void simulate__errors_fall_with_the_order_of_the_method(mt_test *t)
 {
     const double exact = swung_to(t, 0.005, 1e-13);

@@ -72,7 +72,6 @@ static void simulate__a_ring_down_is_read_from_its_turnings(mt_test *t)
     const double hz = 3.0;
     const double zeta = 0.04;
     mt_turning at[12];
-    mt_turnings turnings = {.at = at, .n = 12};
     for (int i = 0; i < 12; i++) {
         /* cos(w t + phase) with the decay's own phase turns where its derivative is 0 */
         const double time = 0.1 + (0.5 * i / hz);
@@ -81,6 +80,7 @@ static void simulate__a_ring_down_is_read_from_its_turnings(mt_test *t)
                              .value = 7.0 + ((i % 2 == 0 ? 1.0 : -1.0) * exp(-d * i)),
                              .highest = i % 2 == 0};
     }
+    mt_turnings turnings = {.at = at, .n = 12};
     const mt_ring r = mt_ring_read(&turnings);
     CHECK_INT(t, r.periods, 5);
     CHECK_NEAR(t, r.hz, hz, 1e-14);
@@ -95,7 +95,6 @@ static void simulate__steady_motion_is_read_with_its_harmonics(mt_test *t)
 {
     double time[SAMPLES];
     double x[SAMPLES];
-    const mt_samples samples = {.n = SAMPLES, .stride = 1, .t = time, .x = x};
     mt_steady s;
     mt_arena mem = {0};
     REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
@@ -105,6 +104,7 @@ static void simulate__steady_motion_is_read_with_its_harmonics(mt_test *t)
         x[i] = 0.5 + (2.0 * sin((w * time[i]) + 0.7)) + (0.1 * sin((3.0 * w * time[i]) - 2.0));
         x[i] += time[i] < 2.0 ? 100.0 : 0.0; /* not steady yet */
     }
+    const mt_samples samples = {.n = SAMPLES, .stride = 1, .t = time, .x = x};
     CHECK(t, mt_steady_read(&samples, 4.0, 6, &mem, &s, NULL) == MT_OK);
     CHECK_INT(t, s.periods, 6);
     CHECK_NEAR(t, s.mean, 0.5, 1e-12);
