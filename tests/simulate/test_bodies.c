@@ -107,7 +107,8 @@ static void simulate__free_bodies_keep_momentum_and_energy(mt_test *t)
 
 /*
  * Euler's equations in the body: J1 w1' = (J2 - J3) w2 w3, ... with J = 1 : 2 : 3 and w1 = e at
- * w2 = w: about the unstable axis w1 grows, and the body has turned over when the elliptic function comes round, after
+ * w2 = w: about the unstable axis w1 grows, and the body has turned over when the elliptic
+ * functions come round, after
  *     T/2 = 2 K(q)/kappa   (Landau and Lifshitz, Mechanics, 37), with M^2, E of the start.
  * The middle axis, on which the sensor sits a metre out, then points the other way.
  */

@@ -2,8 +2,8 @@
 /*
  * The equations themselves: accelerations are those of the fundamental equation, at any place
  * and with any velocities; velocity terms are those of Lagrange, which leave the energy of
- * every mechanism alone (also of bars and beams, whose masses follow their frames); steps have the
- * order of the method.
+ * every mechanism alone (also of bars and beams, whose masses follow their frames); steps have
+ * the order of the method.
  */
 #include "modetune/dynamics.h"
 
