@@ -220,12 +220,18 @@ static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt
                    did_you_mean(s, names, MT_COUNT(names), "", suggestion));
 }
 
+static bool repeats(int option)
+{
+    return option == MT_OPT_START || option == MT_OPT_RATE || option == MT_OPT_PUSH ||
+           option == MT_OPT_SINE || option == MT_OPT_CHIRP || option == MT_OPT_RANDOM ||
+           option == MT_OPT_WATCHED;
+}
+
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
-    const bool repeats =
-        option == MT_OPT_SET || option == MT_OPT_INPUT || option == MT_OPT_SEEN;
-    if (args->given[option] && o->value != NULL && !repeats) {
+    if (args->given[option] && o->value != NULL && !repeats(option) && option != MT_OPT_SET &&
+        option != MT_OPT_INPUT && option != MT_OPT_SEEN) {
         return mt_fail(err, MT_E_USAGE, "--%s is given twice", o->name);
     }
     args->given[option] = true;
@@ -235,6 +241,11 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     }
     if (value[0] == '\0') {
         return mt_fail(err, MT_E_USAGE, "--%s: the value is empty", o->name);
+    }
+    if (repeats(option)) {
+        args->repeats[args->n_repeats++] =
+            (mt_repeat){.option = (mt_option_id)option, .value = value};
+        return MT_OK;
     }
     switch (option) {
     case MT_OPT_SET:
@@ -266,6 +277,12 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return MT_OK;
     case MT_OPT_TIME:
         return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->time_s, err);
+    case MT_OPT_DURATION:
+        return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->duration_s, err);
+    case MT_OPT_DT_OUT:
+        return read_seconds(value, o->name, false, MT_SECONDS_MOST, &args->dt_out_s, err);
+    case MT_OPT_TOLERANCE:
+        return read_tolerance(value, o->name, &args->tolerance, err);
     case MT_OPT_PROOF:
         return read_seconds(value, o->name, true, MT_PROOF_S_MOST, &args->proof_s, err);
     case MT_OPT_SEED:
@@ -380,8 +397,9 @@ mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
     out->sets = calloc(room, sizeof *out->sets);
     out->inputs = calloc(room, sizeof *out->inputs);
     out->outputs = calloc(room, sizeof *out->outputs);
+    out->repeats = calloc(room, sizeof *out->repeats);
     if (out->operands == NULL || out->sets == NULL || out->inputs == NULL ||
-        out->outputs == NULL) {
+        out->outputs == NULL || out->repeats == NULL) {
         return mt_fail(err, MT_E_MEMORY, "out of memory");
     }
     for (int i = 1; i < argc; i++) {
@@ -410,5 +428,6 @@ void mt_args_free(mt_args *args)
     free(args->result_path);
     free((void *)args->inputs);
     free((void *)args->outputs);
+    free(args->repeats);
     *args = (mt_args){.command = MT_CMD_NONE};
 }

@@ -34,6 +34,17 @@ typedef enum mt_option_id {
     MT_OPT_DIRECT,
     MT_OPT_POLES,
     MT_OPT_SENSITIVITY,
+    MT_OPT_DURATION,
+    MT_OPT_DT_OUT,
+    MT_OPT_START,
+    MT_OPT_RATE,
+    MT_OPT_ALONG,
+    MT_OPT_PUSH,
+    MT_OPT_SINE,
+    MT_OPT_CHIRP,
+    MT_OPT_RANDOM,
+    MT_OPT_WATCHED,
+    MT_OPT_TOLERANCE,
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,
@@ -69,6 +80,7 @@ typedef enum mt_command_id {
     MT_CMD_MODES,
     MT_CMD_MAC,
     MT_CMD_SWEEP,
+    MT_CMD_SIMULATE,
     MT_CMD_SENSITIVITY,
     MT_CMD_RESPONSE,
     MT_CMD_INFO,
@@ -138,6 +150,12 @@ typedef enum mt_progress_form {
     MT_PROGRESS_NONE
 } mt_progress_form;
 
+/* An option that may be repeated, as it was given. */
+typedef struct mt_repeat {
+    mt_option_id option;
+    const char *value;
+} mt_repeat;
+
 typedef struct mt_args {
     int command; /* mt_command_id, MT_CMD_NONE */
     mt_format format;
@@ -153,6 +171,9 @@ typedef struct mt_args {
     int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
     double rel_tol;      /* --rel-tol, default 0 */
     double time_s;       /* --time, 0: not given */
+    double duration_s;   /* --duration, 0: not given */
+    double dt_out_s;     /* --dt-out, 0: not given */
+    double tolerance;    /* --tolerance, 0: not given */
     double proof_s;      /* --proof; read it where it is given */
     unsigned long seed;  /* --seed; read it where it is given */
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
@@ -164,7 +185,9 @@ typedef struct mt_args {
     const char **inputs; /* --input, in order; [argc] */
     int n_outputs;
     const char **outputs; /* --output of response, in order; [argc] */
-    int part;             /* --shard PART/PARTS; 0: all of it */
+    int n_repeats;
+    mt_repeat *repeats; /* of `simulate`, in order; [argc] */
+    int part;           /* --shard PART/PARTS; 0: all of it */
     int parts;
     int n_journals; /* of merge */
     const char *const *journals;

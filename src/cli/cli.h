@@ -21,6 +21,7 @@ int mt_cmd_compare(const mt_args *args, mt_text *out);
 int mt_cmd_modes(const mt_args *args, mt_text *out);
 int mt_cmd_mac(const mt_args *args, mt_text *out);
 int mt_cmd_sweep(const mt_args *args, mt_text *out);
+int mt_cmd_simulate(const mt_args *args, mt_text *out);
 int mt_cmd_sensitivity(const mt_args *args, mt_text *out);
 int mt_cmd_response(const mt_args *args, mt_text *out);
 int mt_cmd_info(const mt_args *args, mt_text *out);

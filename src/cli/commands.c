@@ -6,7 +6,7 @@
 #define BIT(command) (1U << (unsigned)(command))
 #define ON_MODELS                                                                         \
     (BIT(MT_CMD_MODES) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY) | BIT(MT_CMD_INFO) | \
-     BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SHOW))
+     BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SHOW) | BIT(MT_CMD_SIMULATE))
 #define SOLVES     (BIT(MT_CMD_RUN) | BIT(MT_CMD_MERGE))
 #define ON_STUDIES (SOLVES | BIT(MT_CMD_COMPARE))
 
@@ -80,6 +80,46 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (in the text the poles alone)"),
     OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
            "change of every peak and antiresonance for one per cent more of these parameters"),
+    OPTION(MT_OPT_DURATION, '\0', "duration", "SECONDS", BIT(MT_CMD_SIMULATE),
+           "how long the motion lasts; needed"),
+    OPTION(
+        MT_OPT_DT_OUT, '\0', "dt-out", "SECONDS", BIT(MT_CMD_SIMULATE),
+        "time between two lines of the result (default: a hundredth of the duration, or less, "
+        "a 24th of the period of a --sine); steps are as short as the motion needs, whatever "
+        "this is"),
+    OPTION(MT_OPT_START, '\0', "start", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
+           "let go where this joint (or link's hinge) is at a position, rad or m from the "
+           "reference position: one joint is held there until the rest of the mechanism is in "
+           "equilibrium; several are moved there together, the rest following with the least "
+           "motion; may be repeated (\"pivot=170*deg\")"),
+    OPTION(MT_OPT_RATE, '\0', "rate", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
+           "start with this joint at a velocity, rad/s or m/s, the rest with the least kinetic "
+           "energy; may be repeated"),
+    OPTION(MT_OPT_ALONG, '\0', "mode", "N:AMPLITUDE", BIT(MT_CMD_SIMULATE),
+           "let go displaced along vibration mode N, so far at the sensor that moves most (m, "
+           "or rad where sensors show rotations alone)"),
+    OPTION(MT_OPT_PUSH, '\0', "input", "PORT=EXPRESSION", BIT(MT_CMD_SIMULATE),
+           "what pushes or shakes it, an expression of the time t: grip.x, the force (grip.r: "
+           "moment) along a direction of a sensor, or base.x, the acceleration of the ground "
+           "(base.x:displacement, base.x:velocity), or a joint, whose coordinate then follows "
+           "it, from where it starts; may be repeated (\"grip.x=10*sin(40*t)*exp(-t)\")"),
+    OPTION(MT_OPT_SINE, '\0', "sine", "PORT=AMPLITUDE@HZ", BIT(MT_CMD_SIMULATE),
+           "a sine there; may be repeated. With one frequency alone the steady motion is read "
+           "from the last periods"),
+    OPTION(MT_OPT_CHIRP, '\0', "sweep", "PORT=LEVEL@FROM:TO", BIT(MT_CMD_SIMULATE),
+           "a sine of this amplitude there whose frequency runs from FROM to TO Hz in the "
+           "duration, so many octaves a second (with \":linear\" behind it so many Hz)"),
+    OPTION(MT_OPT_RANDOM, '\0', "random", "PORT=HZ:PSD,...", BIT(MT_CMD_SIMULATE),
+           "random vibration there: breakpoints of a power spectral density (of base.x in "
+           "(m/s^2)^2/Hz), straight in log over log between them, made of sines whose phases "
+           "come from --seed"),
+    OPTION(MT_OPT_WATCHED, '\0', "output", "PORT", BIT(MT_CMD_SIMULATE),
+           "what is looked at: grip.x, a sensor's displacement from the rest position, "
+           "grip.x:velocity (both against the ground), grip.x:acceleration (in space), or a "
+           "joint's coordinate (pivot, pivot:velocity); may be repeated (default: the "
+           "displacements of all sensors; the coordinates of all joints where there are none)"),
+    OPTION(MT_OPT_TOLERANCE, '\0', "tolerance", "X", BIT(MT_CMD_SIMULATE),
+           "largest error of a step, as a part of the motion so far (default: 1e-11)"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
            SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES) | BIT(MT_CMD_SHOW),
            "folder for the results (default of run: results, in the current one; of report: "
@@ -92,11 +132,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "there "
            "are processors); the result does not depend on it"),
     OPTION(
-        MT_OPT_TIME, '\0', "time", "SECONDS", SOLVES,
-        "most time for the answer to each study once its files are read; then it ends with the "
-        "best so far, as after an interrupt"),
-    OPTION(MT_OPT_SEED, '\0', "seed", "N", ON_STUDIES,
-           "seed of the starting points instead of the study's"),
+        MT_OPT_TIME, '\0', "time", "SECONDS", SOLVES | BIT(MT_CMD_SIMULATE),
+        "most time for the answer to each study, or for the motion, once the files are read; "
+        "then it ends with the best so far, as after an interrupt"),
+    OPTION(MT_OPT_SEED, '\0', "seed", "N", ON_STUDIES | BIT(MT_CMD_SIMULATE),
+           "seed of the starting points instead of the study's; of simulate: of --random "
+           "(default: 1)"),
     OPTION(MT_OPT_STARTS, '\0', "starts", "N", ON_STUDIES,
            "number of local searches instead of the study's \"starts\""),
     OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,
@@ -216,6 +257,22 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "--modes, the natural frequencies (default: 6) by index. Where a limit position ends "
         "the range, the positions before it are printed, the limit is named, and the exit "
         "status is 3."),
+    COMMAND(
+        MT_CMD_SIMULATE, "simulate", "MODEL", 1, 1, "its motion in time, however large",
+        "Integrates the equations of motion of one configuration, with everything that depends "
+        "on where it stands and how fast it moves: a second opinion on whatever the other "
+        "commands say of small motions. It starts at rest in its equilibrium, unless --start, "
+        "--rate or --mode say otherwise, and is pushed by --input, --sine and --sweep. Prints "
+        "the outputs over time, then what is to be read from them: of a free motion how often "
+        "it turns and its tones (frequency, damping, amplitude), of one under a sine the "
+        "steady amplitudes and phases; how well energy is balanced, and how far joints drifted "
+        "in a step before they were taken back.\n"
+        "Springs, viscous dampers, loads and masses are those of the model; bars and beams of "
+        "consistent mass move their mass with their frame. Steps follow the fastest vibration "
+        "that the mechanism has: very stiff parts make them short.\n"
+        "An interrupt (Ctrl-C) or the end of --time ends the motion; what there is of it is "
+        "printed, with exit status 130. Where a dead centre ends it, or a direction without "
+        "mass is pushed, the exit status is 3."),
     COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
             "change of each frequency per per cent of each parameter",
             "Prints exact derivatives: Hz for one per cent more of a parameter, for the first "
@@ -339,5 +396,5 @@ const mt_exit mt_exits[MT_EXITS] = {
     {MT_EXIT_INPUT, "bad input or usage"},
     {MT_EXIT_NUMERICAL, "numerical failure"},
     {MT_EXIT_SYSTEM, "system failure: file, disk, memory"},
-    {MT_EXIT_INTERRUPTED, "interrupted; the best design so far was written"},
+    {MT_EXIT_INTERRUPTED, "interrupted; the best design, or the motion, so far was written"},
 };

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <gsl/gsl_errno.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -42,6 +43,7 @@ int main(int argc, char *argv[])
     mt_terminal_open();
     mt_terminal_ignore_signals();
     mt_blas_set_threads(1);
+    (void)gsl_set_error_handler_off(); /* it would abort where memory is out */
     const int code = mt_cli_main(argc, argv);
     return mt_exit_worse(code, mt_terminal_close());
 }

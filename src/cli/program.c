@@ -10,25 +10,16 @@
 typedef int (*command_function)(const mt_args *args, mt_text *out);
 
 static const command_function functions[MT_CMD_IDS] = {
-    [MT_CMD_RUN] = mt_cmd_run,
-    [MT_CMD_MERGE] = mt_cmd_merge,
-    [MT_CMD_COMPARE] = mt_cmd_compare,
-    [MT_CMD_MODES] = mt_cmd_modes,
-    [MT_CMD_MAC] = mt_cmd_mac,
-    [MT_CMD_SWEEP] = mt_cmd_sweep,
-    [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
-    [MT_CMD_RESPONSE] = mt_cmd_response,
-    [MT_CMD_INFO] = mt_cmd_info,
-    [MT_CMD_SHOW] = mt_cmd_show,
-    [MT_CMD_REPORT] = mt_cmd_report,
-    [MT_CMD_EXPLAIN] = mt_cmd_explain,
-    [MT_CMD_APPLY] = mt_cmd_apply,
-    [MT_CMD_DIFF] = mt_cmd_diff,
-    [MT_CMD_CHECK] = mt_cmd_check,
-    [MT_CMD_INIT] = mt_cmd_init,
-    [MT_CMD_EXAMPLES] = mt_cmd_examples,
-    [MT_CMD_SCHEMA] = mt_cmd_schema,
-    [MT_CMD_PROFILE] = mt_cmd_profile,
+    [MT_CMD_RUN] = mt_cmd_run,           [MT_CMD_MERGE] = mt_cmd_merge,
+    [MT_CMD_COMPARE] = mt_cmd_compare,   [MT_CMD_MODES] = mt_cmd_modes,
+    [MT_CMD_MAC] = mt_cmd_mac,           [MT_CMD_SWEEP] = mt_cmd_sweep,
+    [MT_CMD_SIMULATE] = mt_cmd_simulate, [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
+    [MT_CMD_RESPONSE] = mt_cmd_response, [MT_CMD_INFO] = mt_cmd_info,
+    [MT_CMD_SHOW] = mt_cmd_show,         [MT_CMD_REPORT] = mt_cmd_report,
+    [MT_CMD_EXPLAIN] = mt_cmd_explain,   [MT_CMD_APPLY] = mt_cmd_apply,
+    [MT_CMD_DIFF] = mt_cmd_diff,         [MT_CMD_CHECK] = mt_cmd_check,
+    [MT_CMD_INIT] = mt_cmd_init,         [MT_CMD_EXAMPLES] = mt_cmd_examples,
+    [MT_CMD_SCHEMA] = mt_cmd_schema,     [MT_CMD_PROFILE] = mt_cmd_profile,
 };
 
 static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)

@@ -91,6 +91,16 @@ static struct {
      FULL},
     {"sweep --drive pivo=-0.1:0.1:3 --format csv " MODELS "driven_rod.json", MT_EXIT_INPUT,
      FULL},
+    {"simulate -c loaded --duration 0.02 --start jA=0.1 --rate jA=1 " MODELS
+     "space_four_bar.json",
+     MT_EXIT_DONE, FULL},
+    {"simulate -c still --mode 1:1e-3 --duration 0.9 --dt-out 0.1 --format json " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE, FULL},
+    {"simulate -c still --input jA=0.1*t --input base.x=sin(9*t) --input tip.x=t --duration "
+     "0.01 "
+     "--format csv " MODELS "four_bar.json",
+     MT_EXIT_DONE, FULL},
     {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE, FULL},
     {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
      MT_EXIT_INPUT, FULL},

@@ -2,6 +2,7 @@
 /* Every exit status that a command can have is provoked and seen, and the commands, and the
  * README, know no other. */
 #include <ctype.h>
+#include <gsl/gsl_errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,6 +115,14 @@ static const struct {
     {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_SYSTEM, SHORT},
     {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_SYSTEM, FULL},
 
+    {"simulate --duration 0.1 -c still " MODELS "four_bar.json", MT_EXIT_DONE, AS_IT_IS},
+    {"simulate --duration 0.1 " MODELS "four_bar.json", MT_EXIT_INPUT, AS_IT_IS},
+    {"simulate --duration 0.1 -c sprung --input base.x=10*t " MODELS "massless.json",
+     MT_EXIT_NUMERICAL, AS_IT_IS},
+    {"simulate --duration 0.1 -c still " MODELS "four_bar.json", MT_EXIT_INTERRUPTED, STOPPED},
+    {"simulate --duration 0.1 -c still " MODELS "four_bar.json", MT_EXIT_SYSTEM, SHORT},
+    {"simulate --duration 0.1 -c still " MODELS "four_bar.json", MT_EXIT_SYSTEM, FULL},
+
     {"sensitivity " MODELS "ring.json", MT_EXIT_DONE, AS_IT_IS},
     {"sensitivity --parameters xyz " MODELS "ring.json", MT_EXIT_INPUT, AS_IT_IS},
     {"sensitivity %/ghost.json", MT_EXIT_NUMERICAL, AS_IT_IS},
@@ -216,6 +225,7 @@ static const struct {
     [MT_CMD_MODES] = {"modes", {true, false, true, true, true, false}},
     [MT_CMD_MAC] = {"mac", {true, false, true, true, true, false}},
     [MT_CMD_SWEEP] = {"sweep", {true, false, true, true, true, false}},
+    [MT_CMD_SIMULATE] = {"simulate", {true, false, true, true, true, true}},
     [MT_CMD_SENSITIVITY] = {"sensitivity", {true, false, true, true, true, false}},
     [MT_CMD_RESPONSE] = {"response", {true, false, true, true, true, false}},
     [MT_CMD_INFO] = {"info", {true, false, true, true, true, false}},
@@ -236,6 +246,7 @@ static void begin(void *context)
     const how way = *(const how *)context;
     mt_terminal_ignore_signals();
     mt_blas_set_threads(1);
+    (void)gsl_set_error_handler_off(); /* as main does */
     if (way == STOPPED) {
         mt_terminal_hold_signals();
         (void)raise(SIGINT);

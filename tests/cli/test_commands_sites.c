@@ -51,6 +51,15 @@ static const struct {
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},
     {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"simulate -c still --start jA=0.1 --rate jA=1 --duration 0.05 --format json " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE},
+    {"simulate -c still --input jA=0.1*t --input base.x=sin(9*t) --duration 0.01 " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE},
+    {"simulate -c still --mode 1:1e-3 --duration 0.9 --dt-out 0.1 --format csv " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE},
     {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE},
     {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
      MT_EXIT_INPUT},

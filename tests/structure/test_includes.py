@@ -25,6 +25,7 @@ ALLOWED = {
     "result": {"base", "study"},
     "prove": ENGINE | {"analysis"},
     "scene": ENGINE | {"tree", "analysis"},
+    "simulate": {"base", "linalg", "expr", "model", "mechanics"},
     "problem": ENGINE | {"analysis", "nlp", "study", "result", "prove"},
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
@@ -46,7 +47,9 @@ PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base",
 DOORS = [
     (re.compile(r"lapacke|cblas|lapack|openblas|(suitesparse/)?cholmod"), {"linalg"}),
     (re.compile(r"(cjson/)?cJSON"), {"io"}),
-    (re.compile(r"nlopt|gsl/"), {"nlp"}),
+    (re.compile(r"gsl/gsl_odeiv2\.h"), {"simulate"}),
+    (re.compile(r"gsl/gsl_errno\.h"), {"simulate", "cli"}),  # cli: what GSL does where memory is out
+    (re.compile(r"nlopt|gsl/(?!gsl_(odeiv2|errno)\.h)"), {"nlp"}),
     (re.compile(r"pthread\.h|threads\.h"), {"base"}),
     (re.compile(r"signal\.h|time\.h|sys/time\.h"), {"cli"}),
     (re.compile(r"locale\.h"), {"cli", "io"}),  # io: of one thread, while cJSON reads numbers; setlocale is refused by test_calls.py
@@ -141,6 +144,8 @@ def self_test():
         ("src/modal/x.c", "  #  include <lapacke.h>", "only door in linalg"),
         ("src/io/x.c", "#include <nlopt.h>", "only door in nlp"),
         ("src/mechanics/x.c", "#include <gsl/gsl_math.h>", "only door in nlp"),
+        ("src/nlp/x.c", "#include <gsl/gsl_odeiv2.h>", "only door in simulate"),
+        ("src/simulate/x.c", "#include <gsl/gsl_qrng.h>", "only door in nlp"),
         ("src/search/x.c", "#include <time.h>", "only door in cli"),
         ("src/base/x.c", '#include "arena.h"', "not written as"),
         ("src/base/x.c", '#include "../linalg/dense.h"', "not written as"),

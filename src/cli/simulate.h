@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef CLI_SIMULATE_H
+#define CLI_SIMULATE_H
+
+#include "cli/cli.h"
+#include "simulate/start.h"
+#include "simulate/tones.h"
+
+/* What of a gauge is looked at. */
+typedef enum mt_seen { MT_SEEN_VALUE, MT_SEEN_SPEED, MT_SEEN_ACCELERATION } mt_seen;
+
+/* One --output. */
+typedef struct mt_sim_output {
+    const char *port; /* "grip.x:velocity" */
+    int gauge;        /* of the options' gauges */
+    mt_seen what;
+    bool angle;
+} mt_sim_output;
+
+/* The options of the command, in the words of a system. */
+typedef struct mt_sim_request {
+    mt_sim_options opt;
+    int n_outputs;
+    mt_sim_output *outputs;
+    int n_starts;
+    mt_sim_joint *starts;
+    int n_rates;
+    mt_sim_joint *rates;
+    int mode; /* 0: not given */
+    double amplitude;
+    double steady_hz; /* of the one frequency that --sine has; 0: none, or more */
+} mt_sim_request;
+
+/* The joint that --input, --sine or --sweep moves, into name; NULL: none. Fails: MT_E_USAGE
+ * (two), MT_E_MEMORY. */
+mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_arena *mem,
+                             const char **name, mt_err *err);
+/* Value of --start for the joint of this name; *given: is there one? */
+mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint, bool *given,
+                          double *value, mt_err *err);
+/* Everything else, for a system. Fails: MT_E_USAGE, MT_E_MEMORY. */
+mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
+                      mt_sim_request *out, mt_err *err);
+
+/* What was read from the motion of one gauge. */
+typedef struct mt_sim_reading {
+    const char *name; /* port without quantity */
+    bool angle;
+    mt_ring ring;
+    mt_tones tones;
+    mt_steady steady;
+} mt_sim_reading;
+
+/* A motion, ready to be written. */
+typedef struct mt_sim_view {
+    const char *configuration;
+    const mt_system *sys;
+    const mt_sim_request *request;
+    const mt_sim_result *r;
+    mt_sim_reading *readings; /* [gauges] */
+    bool free;                /* nothing pushes: rings and tones mean something */
+} mt_sim_view;
+
+void mt_simulate_print(const mt_sim_view *v, mt_text *out);
+void mt_simulate_json(const mt_sim_view *v, mt_json_writer *w);
+void mt_simulate_csv(const mt_sim_view *v, mt_text *out);
+
+#endif

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SIMULATE_SIMULATE_PRIV_H
+#define SIMULATE_SIMULATE_PRIV_H
+
+#include "simulate/accelerate.h"
+#include "simulate/ode.h"
+#include "simulate/simulate.h"
+
+/*
+ * A motion under way. What is integrated, y[n]:
+ *     u  [nq]  increments from the pose `base`, where the step began
+ *     v  [nq]  velocities
+ *     w  [1]   work of inputs and dampers
+ *     z  [n_gauges]  integrals of the gauges' velocities
+ */
+typedef struct mt_sim {
+    mt_linear *lin;
+    const mt_system *sys;
+    const mt_sim_options *opt;
+    mt_arena *mem;
+    mt_motion motion;
+    mt_placement start; /* where all began */
+    mt_placement base;
+    mt_placement at;
+    mt_ode *ode;
+    int nq;
+    int m;
+    int n;          /* of y */
+    double *y;      /* at the end of the step */
+    double *begin;  /* at its begin: u = 0 */
+    double *slope;  /* there */
+    double *error;  /* of the step */
+    double *probe;  /* [n] */
+    double *along;  /* [nq] */
+    double *push;   /* [nq] inputs */
+    double *force;  /* [nq] */
+    double *b;      /* [m] */
+    double *lambda; /* [m] */
+    double *weight; /* [nq] 1, or the model's length on rotations */
+    double *speed;  /* [n_gauges] at the begin of the step */
+    mt_gauge_motion gauge;
+    double still;    /* drive of the rest position */
+    int rank;        /* of the joints' equations at the start; -1: not known yet */
+    mt_arena names;  /* of joints, for messages */
+    double free_way; /* no step goes further than this [rad, model lengths] */
+    long evaluations;
+    double far;  /* how far bodies have come [m] */
+    double fast; /* how fast they have been [m/s] */
+    double gap_m;
+    double left_m;
+} mt_sim;
+
+mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
+                      const mt_sim_options *opt, mt_arena *mem, mt_err *err);
+void mt_sim_free(mt_sim *s);
+/* An mt_ode_slope of an mt_sim. */
+mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err *err);
+/* s->y := what s->begin becomes in a step h from t. */
+mt_status mt_sim_advance(mt_sim *s, double t, double h, mt_err *err);
+/* s->y at t becomes the begin of the next step: onto the joints, base moved, turns counted,
+ * slope known. */
+mt_status mt_sim_accept(mt_sim *s, double t, mt_err *err);
+/* Value, velocity and (absolute) acceleration of a gauge at the begin of the step, at t. */
+mt_status mt_sim_gauge(mt_sim *s, double t, int gauge, double out[3], mt_err *err);
+/* Evaluate at s->y, after mt_sim_advance to t; then the same of a gauge there, its acceleration
+ * relative to the ground. */
+mt_status mt_sim_ahead(mt_sim *s, double t, mt_err *err);
+void mt_sim_gauge_ahead(mt_sim *s, int gauge, double out[3]);
+
+#endif

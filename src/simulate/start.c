@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Equations of the joints with those of the coordinates that are given below them,
+ *     [A; G] dq = -[c; s - s_given],
+ * solved by least-norm steps until they hold; and the velocities of least energy,
+ *     min 1/2 v^T M v   under   [A; G] v = [drive; rates].
+ */
+#include "simulate/start.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "simulate/accelerate.h"
+
+/* A walk goes so far in one step [rad, model lengths]. */
+static const double STRIDE = 0.05;
+enum { STRIDES_MOST = 100000, NEWTON_STEPS = 30 };
+/* Equations hold to so many rounding errors [model lengths]. */
+static const double HOLDS = 64.0 * DBL_EPSILON;
+/* A step of Newton's method beyond this [rad, model lengths] has left the branch. */
+static const double ASTRAY = 1.0;
+/* Rates hold to this part of the largest velocity. */
+static const double RATES_HOLD = 1e-9;
+
+/* The equations at a place. */
+typedef struct augmented {
+    mt_linear *lin;
+    const mt_system *sys;
+    mt_motion motion;
+    int m; /* of the joints */
+    int n; /* with the coordinates */
+    double *a;
+    double *c;
+    double *v;
+    mt_gauge_motion gauge;
+} augmented;
+
+static mt_status augmented_init(augmented *g, mt_linear *lin, int n, mt_arena *mem, mt_err *err)
+{
+    *g = (augmented){.lin = lin, .sys = mt_linear_system(lin)};
+    const size_t nq = (size_t)g->sys->nq;
+    MT_TRY(mt_motion_init(&g->motion, lin, mem, err));
+    g->m = g->motion.m;
+    g->n = g->m + n;
+    g->a = mt_arena_f64(mem, (size_t)g->n, nq);
+    g->c = mt_arena_f64(mem, (size_t)g->n, 1);
+    g->v = mt_arena_f64(mem, nq, 1);
+    g->gauge.row = mt_arena_f64(mem, nq, 1);
+    return mt_arena_check(mem, err);
+}
+
+/* A, G and what is left of the equations, with velocities v. */
+static void augmented_eval(augmented *g, const mt_placement *at, const double *v, int n,
+                           const mt_sim_joint *joints)
+{
+    mt_motion_eval(&g->motion, at, v);
+    for (ptrdiff_t j = 0; j < g->sys->nq; j++) {
+        for (ptrdiff_t i = 0; i < g->m; i++) {
+            g->a[i + (j * g->n)] = g->motion.a[i + (j * g->m)];
+        }
+    }
+    memcpy(g->c, g->motion.gap, (size_t)g->m * sizeof *g->c);
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const mt_gauge gauge = {.channel = -1, .joint = joints[k].joint};
+        mt_motion_gauge(&g->motion, at, v, gauge, &g->gauge);
+        for (ptrdiff_t j = 0; j < g->sys->nq; j++) {
+            g->a[g->m + k + (j * g->n)] = g->gauge.row[j];
+        }
+        g->c[g->m + k] = g->gauge.value - joints[k].value;
+    }
+}
+
+/* Newton with least-norm steps at `at`. *holds false: it does not get there. */
+static mt_status close_all(augmented *g, mt_placement *at, int n, const mt_sim_joint *joints,
+                           bool *holds, mt_arena *mem, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    double *const dq = mt_arena_f64(mem, (size_t)g->sys->nq, 1);
+    double before = HUGE_VAL;
+    MT_TRY(mt_arena_check(mem, err));
+    *holds = g->n == 0;
+    for (int i = 0; i < NEWTON_STEPS && !*holds; i++) {
+        mt_elimination e;
+        double gap = 0.0;
+        double largest = 0.0;
+        augmented_eval(g, at, g->v, n, joints);
+        MT_TRY(mt_eliminate_factor(g->sys, g->n, g->a, mem, &e, err));
+        for (int k = 0; k < g->n; k++) {
+            const double d = fabs(g->c[k]) * e.dr[k] / g->sys->length_m;
+            gap = !(d <= gap) ? d : gap;
+        }
+        *holds = gap <= HOLDS || (gap >= before && before <= HOLDS * NEWTON_STEPS);
+        before = gap;
+        if (*holds) {
+            break;
+        }
+        MT_TRY(mt_eliminate_particular(&e, g->c, dq, mem, err));
+        for (int k = 0; k < g->sys->nq; k++) {
+            largest = fmax(largest, fabs(dq[k]) / e.dc[k] / g->sys->length_m);
+            dq[k] = -dq[k];
+        }
+        if (!(largest <= ASTRAY)) {
+            break;
+        }
+        mt_poses_move(g->sys, at->pose, dq);
+    }
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_start_rest(mt_linear *lin, mt_arena *mem, mt_sim_start *out, mt_err *err)
+{
+    const mt_system *const sys = mt_linear_system(lin);
+    MT_TRY(mt_placement_init(&out->at, sys, mem, err));
+    out->v = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_placement_copy(sys, &mt_linear_position(lin)->at, &out->at);
+    return MT_OK;
+}
+
+/* Where the joints are now. */
+static void read_joints(augmented *g, const mt_placement *at, int n, mt_sim_joint *joints)
+{
+    augmented_eval(g, at, g->v, n, joints);
+    for (int k = 0; k < n; k++) {
+        joints[k].value += g->c[g->m + k];
+    }
+}
+
+static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placement *at,
+                      mt_arena *mem, mt_err *err)
+{
+    mt_sim_joint *const from = mt_arena_alloc(mem, (size_t)n, sizeof *from);
+    mt_sim_joint *const to = mt_arena_alloc(mem, (size_t)n, sizeof *to);
+    MT_TRY(mt_arena_check(mem, err));
+    double most = 0.0;
+    memcpy(from, joints, (size_t)n * sizeof *from);
+    memcpy(to, joints, (size_t)n * sizeof *to);
+    read_joints(g, at, n, from);
+    for (int k = 0; k < n; k++) {
+        const mt_system_joint *const j = &g->sys->joints[joints[k].joint];
+        const double way = fabs(joints[k].value - from[k].value);
+        most = fmax(most, j->angle ? way : way / g->sys->length_m);
+    }
+    const double wanted = ceil(most / STRIDE);
+    if (!(wanted <= STRIDES_MOST)) {
+        return mt_fail(err, MT_E_ASSEMBLY, "the joints are too far from where they start");
+    }
+    const int strides = wanted < 1.0 ? 1 : (int)wanted;
+    for (int i = 1; i <= strides; i++) {
+        bool holds = false;
+        const double share = (double)i / strides;
+        for (int k = 0; k < n; k++) {
+            to[k].value = i == strides
+                              ? joints[k].value
+                              : from[k].value + (share * (joints[k].value - from[k].value));
+        }
+        MT_TRY(close_all(g, at, n, to, &holds, mem, err));
+        if (!holds) {
+            const mt_system_joint *const j = &g->sys->joints[joints[0].joint];
+            return mt_fail(err, MT_E_ASSEMBLY,
+                           "the mechanism does not get there: it stays closed to where joint "
+                           "\"%s\" is at %.6g %s",
+                           j->name,
+                           from[0].value +
+                               ((i - 1.0) / strides * (joints[0].value - from[0].value)),
+                           j->angle ? "rad" : "m");
+        }
+        mt_motion_turns(&g->motion, at);
+    }
+    return MT_OK;
+}
+
+mt_status mt_start_joints(mt_linear *lin, int n, const mt_sim_joint *joints, mt_arena *mem,
+                          mt_sim_start *start, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    augmented g;
+    MT_TRY(augmented_init(&g, lin, n, mem, err));
+    MT_TRY(walk(&g, n, joints, &start->at, mem, err));
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_start_along(mt_linear *lin, const double *dq, mt_arena *mem, mt_sim_start *start,
+                         mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    augmented g;
+    bool holds = false;
+    MT_TRY(augmented_init(&g, lin, 0, mem, err));
+    mt_poses_move(g.sys, start->at.pose, dq);
+    MT_TRY(close_all(&g, &start->at, 0, NULL, &holds, mem, err));
+    if (!holds) {
+        return mt_fail(err, MT_E_ASSEMBLY, "displaced so far the mechanism does not close");
+    }
+    mt_motion_turns(&g.motion, &start->at);
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_start_from(mt_linear *lin, const mt_linear *from, mt_sim_start *start, mt_err *err)
+{
+    const mt_system *const to = mt_linear_system(lin);
+    const mt_system *const other = mt_linear_system(from);
+    const mt_placement *const at = &mt_linear_position(from)->at;
+    if (to->nq != other->nq || to->n_bodies != other->n_bodies ||
+        to->n_measures != other->n_measures) {
+        return mt_fail(err, MT_E_INTERNAL, "systems of other states");
+    }
+    const double drive = start->at.drive;
+    mt_placement_copy(to, at, &start->at);
+    start->at.drive = drive;
+    return MT_OK;
+}
+
+mt_status mt_start_rates(mt_linear *lin, int n, const mt_sim_joint *rates, double drive,
+                         mt_arena *mem, mt_sim_start *start, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    augmented g;
+    MT_TRY(augmented_init(&g, lin, n, mem, err));
+    const mt_system *const sys = g.sys;
+    double *const b = mt_arena_f64(mem, (size_t)g.n, 1);
+    double *const none = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    augmented_eval(&g, &start->at, g.v, n, rates);
+    for (int k = 0; k < n; k++) {
+        b[g.m + k] = rates[k].value;
+    }
+    if (sys->drive_constraint >= 0 && sys->drive_constraint < g.m) {
+        b[sys->drive_constraint] = drive;
+    }
+    const mt_gauss gauss = {.m = g.n, .mass = g.motion.mass, .force = none, .a = g.a, .b = b};
+    MT_TRY(mt_gauss_solve(sys, &gauss, start->v, NULL, NULL, mem, err));
+    memcpy(g.c, b, (size_t)g.n * sizeof *b);
+    mt_gemv(false, g.n, sys->nq, 1.0, g.a, g.n, start->v, -1.0, g.c);
+    for (int k = 0; k < n; k++) {
+        if (!(fabs(g.c[g.m + k]) <= RATES_HOLD * mt_max_abs(g.n, b))) {
+            return mt_fail(err, MT_E_INPUT,
+                           "joint \"%s\" cannot turn or slide at %.6g as the joints stand",
+                           sys->joints[rates[k].joint].name, rates[k].value);
+        }
+    }
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
