@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reports of all shipped studies, as a browser has them: their figures carry the result's numbers and follow the choice."""
+import json
 import re
+import tempfile
 import unittest
+from pathlib import Path
 
-from common_pages import SIZES, Answers
+from common_pages import SIZES, SOURCE, Answers, run
 from selenium.webdriver.common.keys import Keys
 
 MOST_BYTES = 700_000
