@@ -71,7 +71,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_LOG, '\0', "log", NULL, BIT(MT_CMD_RESPONSE),
            "the grid in equal ratios, not in equal steps"),
     OPTION(MT_OPT_KEEP, '\0', "modes", "N", BIT(MT_CMD_RESPONSE),
-           "by the lowest N modes, rigid-body ones included; the others follow statically "
+           "by the lowest N modes, rigid-body ones among them; the others follow statically "
            "(default: by all of them)"),
     OPTION(MT_OPT_DIRECT, '\0', "direct", NULL, BIT(MT_CMD_RESPONSE),
            "by a factor of the dynamic stiffness at every frequency, without modes"),

@@ -396,7 +396,8 @@ mt_status mt_basis_make(const mt_basis_problem *p, mt_arena *mem, mt_basis *out,
     if (m->shaped < m->all) {
         return mt_fail(err, MT_E_USAGE, "a response by modes needs the shapes of all modes");
     }
-    const int keep = p->keep > 0 && p->keep < m->all ? p->keep : m->all;
+    const int asked = p->keep > 0 && p->keep < m->all ? p->keep : m->all;
+    const int keep = asked > m->n_rigid ? asked : m->n_rigid; /* these follow nothing */
     mt_arena scratch;
     *out = (mt_basis){.f = p->f,
                       .n_modes = keep,

@@ -29,7 +29,8 @@ typedef struct mt_basis_problem {
     const mt_forced *f;
     const mt_mass_factor *mass; /* of f->m */
     const mt_modes *modes;      /* of f->k and f->m, all of them, with vectors */
-    int keep;                   /* the lowest modes; 0, or more than there are: all */
+    /* the lowest modes, and rigid-body modes in any case; 0, or more than there are: all */
+    int keep;
 } mt_basis_problem;
 
 /* Results in mem. O(n^3). Diagonal where Y^T C Y and Y^T H Y are, to what rounding leaves of

@@ -129,6 +129,11 @@ static bool is_known(const mt_sample *s, ptrdiff_t pair)
     return isfinite(size) && size > s->error[pair];
 }
 
+static bool is_infinite(const mt_sample *s, ptrdiff_t pair)
+{
+    return isinf(creal(s->h[pair])) != 0;
+}
+
 /* d log |H| / dw. */
 static double slope_of(const mt_sample *s, ptrdiff_t pair)
 {
@@ -242,7 +247,8 @@ static bool is_zero(const mt_extreme *e, const point *a, const point *b, double 
 
 static mt_status extreme(trace *c, const point *a, const point *b, ptrdiff_t pair, mt_err *err)
 {
-    if (!is_known(&a->at, pair) && !is_known(&b->at, pair)) {
+    const bool at_pole = is_infinite(&a->at, pair) || is_infinite(&b->at, pair);
+    if (at_pole || (!is_known(&a->at, pair) && !is_known(&b->at, pair))) {
         return MT_OK;
     }
     double rise[2] = {rise_of(&a->at, pair), rise_of(&b->at, pair)};
@@ -279,14 +285,28 @@ static int by_extreme(const void *a, const void *b)
                               : (l->w > r->w) - (l->w < r->w);
 }
 
+/* Of one pair: between points, and points that are resonances themselves. */
+static mt_status extremes_of(trace *c, ptrdiff_t pair, int n, mt_err *err)
+{
+    for (int i = 0; i < n; i++) {
+        const mt_extreme own = {
+            .pair = (int)pair, .peak = true, .infinite = true, .w = c->points[i].w};
+        if (is_infinite(&c->points[i].at, pair)) {
+            MT_TRY(note(c, &own, err));
+        }
+        if (i + 1 < n) {
+            MT_TRY(extreme(c, &c->points[i], &c->points[i + 1], pair, err));
+        }
+    }
+    return MT_OK;
+}
+
 static mt_status find_extremes(trace *c, mt_err *err)
 {
     const int n = c->n;
-    for (int i = 0; i + 1 < n; i++) {
+    for (ptrdiff_t p = 0; p < c->pairs; p++) {
         MT_TRY(mt_interrupt_check(c->opt->interrupt, err));
-        for (ptrdiff_t p = 0; p < c->pairs; p++) {
-            MT_TRY(extreme(c, &c->points[i], &c->points[i + 1], p, err));
-        }
+        MT_TRY(extremes_of(c, p, n, err));
     }
     if (c->n_extremes > 0) {
         qsort(c->extremes, (size_t)c->n_extremes, sizeof *c->extremes, by_extreme);

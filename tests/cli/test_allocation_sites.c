@@ -77,12 +77,6 @@ static struct {
     {"sensitivity " MODELS "space_frame.json", MT_EXIT_DONE, FULL},
     {"sensitivity --format json " MODELS "ring.json", MT_EXIT_DONE, FULL},
     {"sensitivity --format csv --parameters mas " MODELS "ring.json", MT_EXIT_INPUT, FULL},
-    {"response --input base.x --output tip.x:velocity --output joint.pivot.x "
-     "--sensitivity m,L -c hanging " MODELS "pendulum.json",
-     MT_EXIT_DONE, FULL},
-    {"response --input tip.x --format json --sensitivity a,k -c still --points 3 " MODELS
-     "four_bar.json",
-     MT_EXIT_DONE, FULL},
     {"info " MODELS "space_stick.json", MT_EXIT_DONE, FULL},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE, FULL},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE, FULL},
@@ -158,6 +152,12 @@ static struct {
     {"run --threads 1 -o @ studies/inceptor_trade.json", MT_EXIT_DONE, FEW},
     {"run --threads 1 -o @ studies/six_masses_bands.json", MT_EXIT_DONE, FEW},
     {"run --threads 1 -o @ " WRONG "study_bounds.json", MT_EXIT_INPUT, FULL},
+    {"response --input base.x --output tip.x:velocity --output joint.pivot.x "
+     "--sensitivity m,L -c hanging " MODELS "pendulum.json",
+     MT_EXIT_DONE, FULL},
+    {"response --input tip.x --format json --sensitivity a,k -c still --points 3 " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE, FULL},
 };
 
 typedef mt_child_text text;

@@ -81,6 +81,30 @@ static void curve__an_absorber_makes_an_antiresonance(mt_test *t)
     }
 }
 
+/* A point of the grid is a resonance to the bit, or next to it. */
+static void curve__a_resonance_on_the_grid_is_found_once(mt_test *t)
+{
+    for (int off = -1; off <= 1; off++) {
+        forced p;
+        forced_all(&p, 1);
+        p.k[0] = 16.0;
+        p.m[0] = 1.0;
+        const double from = 4.0 - (19.0 * 0.1) + (off * 1e-15);
+        mt_test_row(t, "off %d", off);
+        mt_curve c = {.n = 0};
+        if (forced_make(t, &p, 0) && trace(t, &p, 4.0, 6.0, false, &c)) {
+            CHECK_INT(t, c.n_extremes, 1);
+            CHECK(t, c.extremes[0].infinite);
+        }
+        if (trace(t, &p, from, from + 3.8, false, &c)) {
+            CHECK_INT(t, c.n_extremes, 1);
+            CHECK(t, c.extremes[0].infinite);
+            CHECK_NEAR(t, c.extremes[0].w, 4.0, 1e-14);
+        }
+        mt_arena_free(&p.mem);
+    }
+}
+
 static void curve__lines_between_points_hold(mt_test *t)
 {
     for (int log_scale = 0; log_scale < 2; log_scale++) {
@@ -117,4 +141,5 @@ static void curve__lines_between_points_hold(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(curve__one_mass_peaks_at_its_closed_form),
              MT_TEST(curve__an_absorber_makes_an_antiresonance),
+             MT_TEST(curve__a_resonance_on_the_grid_is_found_once),
              MT_TEST(curve__lines_between_points_hold))
