@@ -21,7 +21,7 @@ CODES = {0: "done", 1: "goals not met", 2: "bad input", 3: "numerical failure", 
 WORD = re.compile(r"(?<![A-Za-z0-9_.])[-+]?(nan|inf|infinity)(?![A-Za-z0-9_])", re.I)
 PLACE = re.compile(r"^(?P<file>[^\n]*?):(?P<line>\d+):(?P<column>\d+): error: (?:(?P<pointer>/[^\n]*?): )?", re.M)
 # About the command line and the files together: no place in one of them is to blame.
-ABOUT_BOTH = re.compile(r"^modetune: error: (\S+: (configuration \"[^\"]*\": )?(drive|hold): |\S+: (configuration \"[^\"]*\": )?the configuration has no sensors|\S+: is longer than|--hold|--parameters|the two have no sensor|unknown configuration|\S+: there are no (published values|parameters)|"
+ABOUT_BOTH = re.compile(r"^modetune: error: (\S+: (configuration \"[^\"]*\": )?(drive|hold): |\S+: (configuration \"[^\"]*\": )?(the configuration has no sensors|there is no vibration)|\S+: is longer than|(\S+: )?--(rate|start): |[^\n]*: meant for small vibrations|--hold|--parameters|the two have no sensor|unknown configuration|\S+: there are no (published values|parameters)|"
                         r"\S+ has \d+ recommendation)", re.M)
 # What only an analysis finds is told by its names: "FILE: configuration "loaded": sensor "mid": ...".
 ITEM = re.compile(r'^modetune: error: \S+\.json: (?!/).*"', re.M)
