@@ -24,14 +24,13 @@ typedef struct parts {
     mt_arena *mem;
     mt_arena *scratch;
     int n;
-    int r;          /* modes that stay */
-    int zd;         /* damped directions without mass */
-    int stay;       /* r + zd */
-    int u;          /* what follows at once */
-    double *x;      /* n x stay */
-    double *follow; /* n x u */
-    double *kuu;    /* u x u */
-    double complex *guu;
+    int r;                 /* modes that stay */
+    int zd;                /* damped directions without mass */
+    int stay;              /* r + zd */
+    int u;                 /* what follows at once */
+    double *x;             /* n x stay */
+    double *follow;        /* n x u */
+    double complex *guu;   /* u x u: G_UU */
     mt_complex_ldl factor; /* of guu */
     double complex *w;     /* u x stay */
 } parts;

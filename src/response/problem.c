@@ -24,7 +24,6 @@ typedef struct build {
     int n_out;
     const mt_port *in;
     const mt_port *out;
-    mt_forced *f;
     mt_response_ways *ways;
     double *b[MT_FORCED_POWERS];
     double *s[MT_FORCED_POWERS];
@@ -278,7 +277,6 @@ mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena
                .n_out = ports->n_out,
                .in = ports->in,
                .out = ports->out,
-               .f = f,
                .ways = ways};
     MT_TRY(admit(&a->modes, err));
     MT_TRY(fill(&k, err));

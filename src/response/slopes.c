@@ -214,8 +214,8 @@ static double complex between_one(const work *k, int p, mt_matrix m, const pair 
 }
 
 /* e . M q. */
-static mt_status product(work *k, mt_matrix m, const pair *e, const pair *q,
-                         double complex *out, mt_err *err)
+static mt_status product_with(work *k, mt_matrix m, const pair *e, const pair *q,
+                              double complex *out, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
     pair w = new_pair(k->mem, k->nq);
@@ -260,11 +260,11 @@ static mt_status between(work *k, int p, int o, int i, double complex *out, mt_e
         sum += k->factor[m] * between_one(k, p, (mt_matrix)m, e, q);
     }
     if (slope_of(k, p, d->mass) != 0.0) {
-        MT_TRY(product(k, MT_MATRIX_MASS, e, q, &part, err));
+        MT_TRY(product_with(k, MT_MATRIX_MASS, e, q, &part, err));
         sum += k->power[1] * slope_of(k, p, d->mass) * part;
     }
     if (slope_of(k, p, d->stiffness) != 0.0) {
-        MT_TRY(product(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
+        MT_TRY(product_with(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
         sum += k->power[1] * slope_of(k, p, d->stiffness) * part;
     }
     if (d->modal) {
