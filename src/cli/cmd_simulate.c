@@ -69,9 +69,9 @@ static mt_status start_held(job *j, const mt_sim_joint *at, mt_err *err)
         .joint = j->sys->joints[at->joint].name, .fixed = true, .position = at->value};
     mt_system *sys = NULL;
     mt_linear *lin = NULL;
-    if (!(fabs(at->value) <= mt_drive_reach(j->sys))) {
+    if (!(fabs(at->value) <= mt_drive_reach(j->sys, at->joint))) {
         return mt_fail(err, MT_E_USAGE, "--start: joint \"%s\" goes at most to %g", drive.joint,
-                       mt_drive_reach(j->sys));
+                       mt_drive_reach(j->sys, at->joint));
     }
     mt_status rc =
         mt_system_new_driven(s->model, j->c, &drive, s->n_inputs, s->inputs, s->at, &sys, err);

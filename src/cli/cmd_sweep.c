@@ -133,7 +133,7 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
 /* The range of the command line lies within reach of the joint. */
 static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt_err *err)
 {
-    const double reach = mt_drive_reach(sys);
+    const double reach = mt_drive_reach(sys, sys->drive_joint);
     const char *const unit = sys->joints[sys->drive_joint].angle ? "rad" : "m";
     for (int i = 0; i < r->n; i++) {
         if (!(fabs(r->positions[i]) <= reach)) {

@@ -152,9 +152,10 @@ static double mean_error(const mt_response_view *v)
     int n = 0;
     for (int p = 0; p < pairs_of(v); p++) {
         for (int i = 0; i < v->curve->n; i++) {
-            const double part = error_at(v, p, i) / magnitude(value_at(v, p, i));
-            if (part > 0.0 && isfinite(part)) {
-                sum += log(part);
+            const double error = error_at(v, p, i);
+            const double value = magnitude(value_at(v, p, i));
+            if (error > 0.0 && value > 0.0 && isfinite(error / value)) {
+                sum += log(error) - log(value);
                 n++;
             }
         }

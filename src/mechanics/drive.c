@@ -329,9 +329,9 @@ static mt_status refuse_dead_centre(walk *w, mt_err *err)
     return MT_OK;
 }
 
-double mt_drive_reach(const mt_system *sys)
+double mt_drive_reach(const mt_system *sys, int joint)
 {
-    return MT_DRIVE_REACH * (sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m);
+    return MT_DRIVE_REACH * (sys->joints[joint].angle ? 1.0 : sys->length_m);
 }
 
 /* Bodies that move much further than the joint make steps short. */
@@ -353,8 +353,8 @@ static mt_status refuse_far(const walk *w, mt_err *err)
     return mt_fail(err, MT_E_ASSEMBLY,
                    "joint \"%s\" cannot be driven to %g %s: at most %g %s from the reference "
                    "position",
-                   joint->name, w->goal, joint->angle ? "rad" : "m", mt_drive_reach(sys),
-                   joint->angle ? "rad" : "m");
+                   joint->name, w->goal, joint->angle ? "rad" : "m",
+                   mt_drive_reach(sys, sys->drive_joint), joint->angle ? "rad" : "m");
 }
 
 mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int *iterations,
@@ -362,7 +362,7 @@ mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int 
 {
     walk w = {.sys = data->sys, .data = data, .at = at, .brief = brief, .mem = mem};
     MT_TRY(walk_init(&w, err));
-    if (!(fabs(w.goal) <= mt_drive_reach(w.sys))) {
+    if (!(fabs(w.goal) <= mt_drive_reach(w.sys, w.sys->drive_joint))) {
         return refuse_far(&w, err);
     }
     if (at->drive != w.goal && at->drive == 0.0) {

@@ -19,9 +19,9 @@
 mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int *iterations,
                          mt_arena *mem, mt_err *err);
 
-/* The farthest position that the driven joint is brought to: MT_DRIVE_REACH rad, or model
- * lengths [m]. */
-double mt_drive_reach(const mt_system *sys);
+/* The farthest position that a joint (of sys->joints) is brought to: MT_DRIVE_REACH rad, or
+ * model lengths [m]. */
+double mt_drive_reach(const mt_system *sys, int joint);
 /* d(measure)/ds along the motion rate[nq] at poses. */
 double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
                      const double *rate);

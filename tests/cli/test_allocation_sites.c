@@ -21,6 +21,7 @@
  */
 #define _GNU_SOURCE /* memmem, MAP_ANONYMOUS; NOLINT(cert-dcl37-c,cert-dcl51-cpp) */
 #include <execinfo.h>
+#include <gsl/gsl_errno.h>
 #include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -219,6 +220,7 @@ static void begin(void *context)
     mt_sites_ask(mt_alloc_refuses);
     mt_terminal_ignore_signals();
     mt_blas_set_threads(1);
+    (void)gsl_set_error_handler_off(); /* as main does */
 }
 
 /* A sanitizer that is refused memory for a new thread ends the process: is there one? */

@@ -5,6 +5,7 @@
  * back. So it does where the system itself runs out, at any allocation.
  */
 #include <fcntl.h>
+#include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -126,6 +127,7 @@ static int run(const char *line)
     (void)lseek(catcher, 0, SEEK_SET);
     (void)dup2(catcher, STDOUT_FILENO);
     (void)dup2(nowhere, STDERR_FILENO);
+    (void)gsl_set_error_handler_off(); /* as main does */
     const int code = mt_cli_main(argc, argv);
     (void)fflush(stdout);
     (void)fflush(stderr);
