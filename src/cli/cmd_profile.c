@@ -361,9 +361,8 @@ static void write_text(const view *s, mt_text *out)
 static void write_csv(const view *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
-    mt_table t = mt_table_default();
     if (s->of.n > 0) {
-        t = spectrum_table(s);
+        mt_table t = spectrum_table(s);
         mt_table_csv(&t, out);
         mt_table_free(&t);
         return;
@@ -378,6 +377,7 @@ static void write_csv(const view *s, mt_text *out)
                                           "acceleration_g",
                                           "origin",
                                           "source"};
+    mt_table t = mt_table_default();
     for (int k = 0; k < MT_COUNT(columns); k++) {
         mt_table_column(&t, columns[k], columns[k], MT_ALIGN_LEFT);
     }
