@@ -173,14 +173,10 @@ static mt_status find_port(const mt_system *sys, mt_option_id option, const char
     return no_such_port(sys, option, name, true, true, mem, err);
 }
 
-/* Parameters, and behind them the time. */
-typedef struct names {
-    const mt_model *model;
-} names;
-
+/* Parameters of the model, and behind them the time. */
 static int lookup(const void *context, const char *name, size_t length)
 {
-    const mt_model *const model = ((const names *)context)->model;
+    const mt_model *const model = context;
     return length == 1 && name[0] == 't' ? model->n_parameters
                                          : mt_model_lookup(model, name, length);
 }
@@ -188,13 +184,12 @@ static int lookup(const void *context, const char *name, size_t length)
 static mt_status read_expression(mt_subject *s, const char *text, mt_signal *out, mt_err *err)
 {
     const mt_model *const model = s->model;
-    const names known = {model};
     mt_program *const p = mt_arena_alloc(&s->mem, 1, sizeof *p);
     mt_node *const nodes =
         mt_arena_alloc(&s->mem, (size_t)model->n_parameters + 1, sizeof *nodes);
     mt_expr e;
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(mt_expr_parse(text, lookup, &known, NULL, 0, &s->mem, &e, err));
+    MT_TRY(mt_expr_parse(text, lookup, model, NULL, 0, &s->mem, &e, err));
     MT_TRY(mt_program_init(p, 1, &s->mem, err));
     for (int i = 0; i < model->n_parameters; i++) {
         nodes[i] = mt_program_const(p, s->values[i]);

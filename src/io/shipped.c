@@ -8,7 +8,7 @@
 #include "io/shipped_data.h"
 
 static const mt_shipped files[] = {
-#define SHIPPED(bytes, path) {path, bytes, sizeof bytes - 1},
+#define SHIPPED(bytes, path) {path, bytes, sizeof(bytes) - 1},
     SHIPPED_LIST(SHIPPED)
 #undef SHIPPED
 };

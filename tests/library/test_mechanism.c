@@ -311,7 +311,7 @@ static void mechanism__responses_are_those_of_the_closed_form(mt_test *t)
     double error[6];
     REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &m, NULL) == MT_OK);
     CHECK_INT(t, mt_mechanism_response(m, &ports, 3, HZ, re, im, error, NULL), MT_OK);
-    for (int i = 0; i < 3; i++) {
+    for (ptrdiff_t i = 0; i < 3; i++) {
         const double x = 4.0 * PI * PI * HZ[i] * HZ[i];
         const double det = ((4.0 - x) * (1.0 - x)) - 1.0;
         const double ddet = (1.0 - x) + (4.0 - x) - 2.0;

@@ -272,7 +272,7 @@ static void eig__complex_finds_what_the_matrix_is_made_of(mt_test *t)
     double complex v[4];
     memcpy(work, a, sizeof a);
     CHECK_INT(t, mt_eig_complex(2, work, got, v, &mem, NULL), MT_OK);
-    for (int k = 0; k < 2; k++) {
+    for (ptrdiff_t k = 0; k < 2; k++) {
         const int which = cabs(got[k] - w[0]) < 1.0 ? 0 : 1;
         CHECK_NEAR_ABS(t, cabs(got[k] - w[which]), 0.0, 1e-14);
         for (int r = 0; r < 2; r++) {

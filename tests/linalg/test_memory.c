@@ -31,6 +31,7 @@ static mt_status run_eig_complex(double *a, mt_arena *mem, mt_err *err)
     double complex w[N];
     for (int i = 0; i < N * N; i++) {
         z[i] = a[i];
+        a[i] = 0.0; /* used up, as by the others */
     }
     return mt_eig_complex(N, z, w, NULL, mem, err);
 }
