@@ -182,8 +182,8 @@ mt_status mt_tones_read(int n, double dt_s, const double *x, int stride, mt_aren
     if (r.n < 2 * COLUMNS_LEAST) {
         return MT_OK;
     }
-    r.l = (r.n - 1) / 2 < COLUMNS_MOST ? (r.n - 1) / 2
-                                       : COLUMNS_MOST; /* no more columns than rows */
+    /* no more columns than rows */
+    r.l = (r.n - 1) / 2 < COLUMNS_MOST ? (r.n - 1) / 2 : COLUMNS_MOST;
     r.x = mt_arena_f64(scratch, (size_t)r.n, 1);
     MT_TRY(mt_arena_check(scratch, err));
     for (ptrdiff_t i = 0; i < r.n; i++) {
