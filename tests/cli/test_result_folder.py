@@ -234,9 +234,9 @@ class EveryCall(FolderTest):
                 for i, error in enumerate(ERRORS):
                     if EVERY or k % len(ERRORS) == i:
                         done, what = self.check_command(name, k, function, error, "fail", whole)
-                        # (of the places where apply and show look for the model they may do without some, and run where it asks
+                        # (of the places where apply, report and show look for the model they may do without some, and run where it asks
                         # for the permissions of what it replaces)
-                        if function in ("write", "open") and error != errno.EINTR and name not in ("apply", "show", "merge", "run two"):
+                        if function in ("write", "open") and error != errno.EINTR and name not in ("apply", "report", "show", "merge", "run two"):
                             self.assertEqual(done.returncode, 4, what)
                 if EVERY or k % 8 == 0:
                     self.check_command(name, k, function, errno.EIO, "ever", whole)
