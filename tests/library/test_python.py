@@ -174,6 +174,8 @@ class Progress(unittest.TestCase):
         self.assertEqual(threading.active_count(), 1)
 
     def test_interrupt_ends_the_search(self):
+        # in the background of a shell it is ignored, and that is handed on
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         main = threading.main_thread().ident
         timer = threading.Timer(0.2, signal.pthread_kill, (main, signal.SIGINT))
         started = time.monotonic()
