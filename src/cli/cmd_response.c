@@ -42,7 +42,7 @@ static mt_status range_end(job *j, int option, int index, double part, double *w
     const int at = mt_modal_flexible(&j->a->modes, index);
     double hz = at < 0 ? nan("") : part * mt_modal_hz(&j->a->modes, at);
     if (text != NULL) {
-        MT_TRY(mt_subject_number(j->s, name, text, strlen(text), &hz, err));
+        MT_TRY(mt_subject_number(j->s, name, NULL, text, strlen(text), &hz, err));
     }
     if (!(hz > 0.0 && isfinite(TWO_PI * hz))) {
         return text == NULL

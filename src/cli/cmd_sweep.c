@@ -23,19 +23,6 @@ static const mt_unit *unit_of(const mt_model *model, const char *name)
     return model->units[coordinate == MT_COORDINATE_DISPLACEMENT ? MT_LENGTH : MT_ANGLE];
 }
 
-/* One bound: a number in the model's unit, or an expression of its values. */
-static mt_status read_bound(mt_subject *s, const mt_unit *unit, const char *text, size_t length,
-                            double *out, mt_err *err)
-{
-    const char *const copy = mt_arena_strndup(&s->mem, text, length);
-    mt_typing with;
-    MT_TRY(mt_typing_new(s->model, s->values, &s->mem, &with, err));
-    const mt_status rc = mt_model_read_typed(&with, copy, unit, unit, out, err);
-    return rc == MT_OK
-               ? rc
-               : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--drive: %s", copy);
-}
-
 /* N, a whole number: 1 only where the range is a point. */
 static mt_status read_points(const char *text, const double range[2], int *out, mt_err *err)
 {
@@ -75,8 +62,10 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     out->drive.spring = args->value[MT_OPT_HOLD];
     MT_TRY(mt_arena_check(&s->mem, err));
     const mt_unit *const unit = unit_of(s->model, out->drive.joint);
-    MT_TRY(read_bound(s, unit, equals + 1, (size_t)(first - equals - 1), &range[0], err));
-    MT_TRY(read_bound(s, unit, first + 1, (size_t)(second - first - 1), &range[1], err));
+    MT_TRY(mt_subject_number(s, "drive", unit, equals + 1, (size_t)(first - equals - 1),
+                             &range[0], err));
+    MT_TRY(mt_subject_number(s, "drive", unit, first + 1, (size_t)(second - first - 1),
+                             &range[1], err));
     MT_TRY(read_points(second + 1, range, &out->n, err));
     out->positions = mt_arena_f64(&s->mem, (size_t)out->n, 1);
     MT_TRY(mt_arena_check(&s->mem, err));

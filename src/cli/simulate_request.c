@@ -95,7 +95,8 @@ mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint,
         }
         MT_TRY(split(&args->repeats[i], &s->mem, &name, &rest, err));
         if (strcmp(name, joint) == 0) {
-            MT_TRY(mt_subject_number(s, name_of(MT_OPT_START), rest, strlen(rest), value, err));
+            MT_TRY(mt_subject_number(s, name_of(MT_OPT_START), NULL, rest, strlen(rest), value,
+                                     err));
             *given = true;
         }
     }
@@ -214,7 +215,7 @@ static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const char *tex
                            r->value, mt_options[r->option].value);
         }
         const size_t length = end == NULL ? strlen(text) : (size_t)(end - text);
-        MT_TRY(mt_subject_number(s, name_of(r->option), text, length, &out[k], err));
+        MT_TRY(mt_subject_number(s, name_of(r->option), NULL, text, length, &out[k], err));
         if (end == NULL) {
             return MT_OK;
         }
@@ -414,7 +415,7 @@ static mt_status read_joint(mt_subject *s, const mt_system *sys, const mt_repeat
     const char *rest = "";
     MT_TRY(split(r, &s->mem, &name, &rest, err));
     MT_TRY(find_joint(sys, r->option, name, &s->mem, &out->joint, err));
-    return mt_subject_number(s, name_of(r->option), rest, strlen(rest), &out->value, err);
+    return mt_subject_number(s, name_of(r->option), NULL, rest, strlen(rest), &out->value, err);
 }
 
 static mt_status read_mode(mt_subject *s, const char *text, mt_sim_request *out, mt_err *err)
@@ -425,7 +426,7 @@ static mt_status read_mode(mt_subject *s, const char *text, mt_sim_request *out,
         return mt_fail(err, MT_E_USAGE, "--mode: \"%s\" is not N:AMPLITUDE", text);
     }
     out->mode = (int)n;
-    return mt_subject_number(s, "mode", end + 1, strlen(end + 1), &out->amplitude, err);
+    return mt_subject_number(s, "mode", NULL, end + 1, strlen(end + 1), &out->amplitude, err);
 }
 
 mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,

@@ -110,21 +110,13 @@ void mt_subject_free(mt_subject *s)
     memset(s, 0, sizeof *s);
 }
 
-mt_status mt_subject_number(mt_subject *s, const char *option, const char *text, size_t length,
-                            double *out, mt_err *err)
+mt_status mt_subject_number(mt_subject *s, const char *option, const mt_unit *unit,
+                            const char *text, size_t length, double *out, mt_err *err)
 {
-    const int n = s->model->n_parameters;
-    const char **const names = mt_arena_alloc(&s->mem, (size_t)n, sizeof *names);
     const char *const copy = mt_arena_strndup(&s->mem, text, length);
-    mt_expr e;
-    MT_TRY(mt_arena_check(&s->mem, err));
-    for (int i = 0; i < n; i++) {
-        names[i] = s->model->parameters[i].name.s;
-    }
-    mt_status rc = mt_expr_parse(copy, mt_model_lookup, s->model, names, n, &s->mem, &e, err);
-    if (rc == MT_OK) {
-        rc = mt_model_expr_value(s->model, s->values, &e, &s->mem, out, err);
-    }
+    mt_typing with;
+    MT_TRY(mt_typing_new(s->model, s->values, &s->mem, &with, err));
+    const mt_status rc = mt_model_read_typed(&with, copy, unit, unit, out, err);
     return rc == MT_OK
                ? rc
                : mt_err_in(err, rc == MT_E_MEMORY ? rc : MT_E_USAGE, "--%s: %s", option, copy);

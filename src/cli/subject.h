@@ -29,10 +29,11 @@ typedef struct mt_subject {
 int mt_subject_load(const mt_args *args, const char *path, const char *configuration,
                     mt_subject *out);
 void mt_subject_free(mt_subject *s);
-/* A number of an option: an expression of the model's values. Fails: MT_E_USAGE, which names
+/* A number of an option, alone in this unit (NULL: SI), or an expression of the model's values,
+ * in SI. Fails: MT_E_USAGE, which names
  * the option, MT_E_MEMORY. */
-mt_status mt_subject_number(mt_subject *s, const char *option, const char *text, size_t length,
-                            double *out, mt_err *err);
+mt_status mt_subject_number(mt_subject *s, const char *option, const mt_unit *unit,
+                            const char *text, size_t length, double *out, mt_err *err);
 /* The parameters "A,B" of an option, or where list is NULL all that are not made of others:
  * *n of them in mem. Fails: MT_E_USAGE, MT_E_INPUT (there are none), MT_E_MEMORY. */
 mt_status mt_subject_parameters(const mt_subject *s, const char *option, const char *list,
