@@ -283,7 +283,7 @@ static mt_status read_random(mt_subject *s, const mt_args *args, const mt_repeat
         value[i] = number[1];
         text += length + (text[length] == ',' ? 1 : 0);
     }
-    const mt_signal_psd psd = {.n = (int)n, .hz = hz, .value = value};
+    const mt_psd psd = {.n = (int)n, .hz = hz, .level = value};
     const double lines = ceil((hz[n - 1] - hz[0]) * args->duration_s) + 1.0;
     if (!(lines <= RANDOM_LINES_MOST)) {
         return mt_fail(err, MT_E_USAGE, "--random: %s: more than %d lines would be needed",

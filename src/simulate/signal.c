@@ -67,30 +67,6 @@ mt_status mt_signal_eval(const mt_signal *s, double t, double out[3], mt_err *er
     return MT_OK;
 }
 
-/* The area under the PSD between two frequencies of one straight piece, W = W0 (f/f0)^p. */
-static double piece_area(double f0, double w0, double p, double from, double to)
-{
-    if (fabs(p + 1.0) * log(to / from) < 1e-9) { /* f^-1: the limit of what follows */
-        return w0 * f0 * log(to / from);
-    }
-    return w0 * f0 / (p + 1.0) * (pow(to / f0, p + 1.0) - pow(from / f0, p + 1.0));
-}
-
-static double area(const mt_signal_psd *psd, double from, double to)
-{
-    double sum = 0.0;
-    for (int i = 0; i + 1 < psd->n; i++) {
-        const double a = fmax(from, psd->hz[i]);
-        const double b = fmin(to, psd->hz[i + 1]);
-        if (a < b) {
-            const double p =
-                log(psd->value[i + 1] / psd->value[i]) / log(psd->hz[i + 1] / psd->hz[i]);
-            sum += piece_area(psd->hz[i], psd->value[i], p, a, b);
-        }
-    }
-    return sum;
-}
-
 /* Uniform in [0, 1): splitmix64 (Steele, Lea, Flood, OOPSLA 2014). */
 static double uniform(uint64_t *state)
 {
@@ -101,12 +77,12 @@ static double uniform(uint64_t *state)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-mt_status mt_signal_of_psd(const mt_signal_psd *psd, int lines, unsigned long seed,
-                           mt_arena *mem, mt_signal *out, mt_err *err)
+mt_status mt_signal_of_psd(const mt_psd *psd, int lines, unsigned long seed, mt_arena *mem,
+                           mt_signal *out, mt_err *err)
 {
     bool good = psd->n >= 2 && lines >= 1;
     for (int i = 0; i < psd->n && good; i++) {
-        good = psd->value[i] > 0.0 && psd->hz[i] > (i == 0 ? 0.0 : psd->hz[i - 1]);
+        good = psd->level[i] > 0.0 && psd->hz[i] > (i == 0 ? 0.0 : psd->hz[i - 1]);
     }
     if (!good) {
         return mt_fail(err, MT_E_INPUT,
@@ -120,7 +96,7 @@ mt_status mt_signal_of_psd(const mt_signal_psd *psd, int lines, unsigned long se
     for (int i = 0; i < lines; i++) {
         const double from = psd->hz[0] + (df * i);
         const double to = i + 1 < lines ? from + df : psd->hz[psd->n - 1];
-        sines[i] = (mt_sine){.amplitude = sqrt(2.0 * area(psd, from, to)),
+        sines[i] = (mt_sine){.amplitude = sqrt(2.0 * mt_psd_area(psd, from, to)),
                              .hz = from + (0.5 * df),
                              .phase = TWO_PI * uniform(&state)};
     }

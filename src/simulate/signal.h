@@ -3,6 +3,7 @@
 #define SIMULATE_SIGNAL_H
 
 #include "expr/second.h"
+#include "study/psd.h"
 
 /* A function of time that pushes, shakes or moves a mechanism. */
 typedef enum mt_signal_kind {
@@ -35,20 +36,13 @@ typedef struct mt_signal {
  * expression). */
 mt_status mt_signal_eval(const mt_signal *s, double t, double out[3], mt_err *err);
 
-/* Breakpoints of a power spectral density, straight between them in log PSD over log f. */
-typedef struct mt_signal_psd {
-    int n;
-    const double *hz;    /* [n] ascending, above 0 */
-    const double *value; /* [n] above 0 [unit^2/Hz] */
-} mt_signal_psd;
-
 /*
- * One realisation of it: `lines` sines in the middle of equal parts df of the band, amplitude
- * sqrt(2 W df), W the mean of the PSD there, phases from the seed. It repeats after 1/df, and
- * its mean square over that time is the area under the PSD. Fails: MT_E_INPUT (breakpoints out
- * of order, values not above 0), MT_E_MEMORY.
+ * One realisation of a density: `lines` sines in the middle of equal parts df of the band,
+ * amplitude sqrt(2 W df), W the mean of the PSD there, phases from the seed. It repeats after
+ * 1/df, and its mean square over that time is the area under the PSD. Fails: MT_E_INPUT
+ * (breakpoints out of order or a step, values not above 0), MT_E_MEMORY.
  */
-mt_status mt_signal_of_psd(const mt_signal_psd *psd, int lines, unsigned long seed,
-                           mt_arena *mem, mt_signal *out, mt_err *err);
+mt_status mt_signal_of_psd(const mt_psd *psd, int lines, unsigned long seed, mt_arena *mem,
+                           mt_signal *out, mt_err *err);
 
 #endif

@@ -44,13 +44,22 @@ double mt_psd_power_integral(double e, double l)
     return x == 0.0 ? l : l * (expm1(x) / x);
 }
 
-double mt_psd_mean_square(const mt_psd *psd)
+double mt_psd_area(const mt_psd *psd, double from_hz, double to_hz)
 {
     double sum = 0.0;
     for (int i = 0; i + 1 < psd->n; i++) {
-        const double l = mt_psd_log_ratio(psd->hz[i], psd->hz[i + 1]);
-        sum += psd->level[i] * psd->hz[i] *
-               mt_psd_power_integral(mt_psd_exponent(psd, i) + 1.0, l);
+        const double a = fmax(from_hz, psd->hz[i]);
+        const double b = fmin(to_hz, psd->hz[i + 1]);
+        if (a < b) {
+            const double e = mt_psd_exponent(psd, i);
+            const double level = psd->level[i] * exp(e * mt_psd_log_ratio(psd->hz[i], a));
+            sum += level * a * mt_psd_power_integral(e + 1.0, mt_psd_log_ratio(a, b));
+        }
     }
     return sum;
+}
+
+double mt_psd_mean_square(const mt_psd *psd)
+{
+    return mt_psd_area(psd, psd->hz[0], psd->hz[psd->n - 1]);
 }

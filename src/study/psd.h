@@ -23,7 +23,9 @@ double mt_psd_slope_db(const mt_psd *psd, int i);
 double mt_psd_at(const mt_psd *psd, double hz);
 /* Integral of (f / f_1)^(e - 1) df / f_1 from f_1 to f_2, l = ln(f_2 / f_1). */
 double mt_psd_power_integral(double e, double l);
-/* Integral of G df in closed form [unit of the input^2]. */
+/* Integral of G df between two frequencies, in closed form [unit of the input^2]. */
+double mt_psd_area(const mt_psd *psd, double from_hz, double to_hz);
+/* The same over all of it. */
 double mt_psd_mean_square(const mt_psd *psd);
 
 #endif

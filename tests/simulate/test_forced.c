@@ -146,12 +146,12 @@ static void simulate__steady_motions_are_those_of_the_linear_system(mt_test *t)
 /* A realisation of a PSD has its area, whatever its seed; and what it is made of repeats. */
 static void simulate__a_random_signal_has_its_mean_square(mt_test *t)
 {
-    static const double hz[] = {5.0, 20.0, 100.0};
-    static const double w[] = {0.01, 0.04, 0.04 * 0.2};
+    static double hz[] = {5.0, 20.0, 100.0};
+    static double w[] = {0.01, 0.04, 0.04 * 0.2};
     /* by pieces: slope +1: (w1 f1 - w0 f0)/2; slope -1: w f ln(f2/f1) */
     const double area = (0.5 * ((0.04 * 20.0) - (0.01 * 5.0))) + (0.04 * 20.0 * log(5.0));
     enum { LINES = 190, TIMES = 4096 };
-    const mt_signal_psd psd = {.n = 3, .hz = hz, .value = w};
+    const mt_psd psd = {.n = 3, .hz = hz, .level = w};
     mt_arena mem = {0};
     REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
     for (unsigned long seed = 1; seed <= 3; seed++) {
@@ -167,7 +167,7 @@ static void simulate__a_random_signal_has_its_mean_square(mt_test *t)
         }
         CHECK_NEAR(t, square, area, 1e-9);
     }
-    const mt_signal_psd wrong = {.n = 2, .hz = (const double[]){5.0, 5.0}, .value = w};
+    const mt_psd wrong = {.n = 2, .hz = (double[]){5.0, 5.0}, .level = w};
     mt_signal s;
     CHECK_INT(t, mt_signal_of_psd(&wrong, LINES, 1, &mem, &s, NULL), MT_E_INPUT);
     mt_arena_free(&mem);

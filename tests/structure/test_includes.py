@@ -25,7 +25,7 @@ ALLOWED = {
     "result": {"base", "study"},
     "prove": ENGINE | {"analysis"},
     "scene": ENGINE | {"tree", "analysis"},
-    "simulate": {"base", "linalg", "expr", "model", "mechanics"},
+    "simulate": {"base", "linalg", "expr", "model", "mechanics", "study"},
     "problem": ENGINE | {"analysis", "nlp", "study", "result", "prove"},
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
