@@ -111,5 +111,9 @@ void mt_vibration_finish(mt_vibration *v, mt_diags *diags);
 
 /* RMS of the random parts together [m/s^2]. */
 double mt_vibration_rms(const mt_vibration *v);
+/* Density of all random parts together at a frequency [(m/s^2)^2/Hz]. */
+double mt_vibration_density(const mt_vibration *v, double hz);
+/* The lowest and highest frequency that there is in it [Hz]. */
+void mt_vibration_range(const mt_vibration *v, double hz[2]);
 
 #endif
