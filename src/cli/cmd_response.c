@@ -210,8 +210,7 @@ static mt_status open(job *j, mt_err *err)
 {
     j->request = request_of(j->args);
     if (j->profile != NULL) {
-        MT_TRY(
-            mt_response_vibration_ports(j->profile, j->a->sys, &j->s->mem, &j->request, err));
+        MT_TRY(mt_shaken_ports(j->profile, j->a->sys, &j->s->mem, &j->request, err));
     }
     return mt_response_open(j->a, &j->request, &j->r, err);
 }

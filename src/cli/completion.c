@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Scripts for the shells, from the tables behind --help. What the value of an option may be is
- * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL and PROFILE a file; of
- * another value nothing is known.
+ * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL and PROFILE a
+ * file; of another value nothing is known.
  */
 #include "cli/completion.h"
 

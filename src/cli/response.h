@@ -33,10 +33,6 @@ const mt_port *mt_response_input_of(const mt_response_view *v, int pair);
 const mt_port *mt_response_output_of(const mt_response_view *v, int pair);
 
 /* What --vibration adds (response_vibration.c). */
-/* The ports that are meant where args name none: the ground along the profile's axis, the
- * accelerations of all sensors. Names in mem. Fails: MT_E_USAGE (no axis), MT_E_MEMORY. */
-mt_status mt_response_vibration_ports(const mt_vibration *v, const mt_system *sys,
-                                      mt_arena *mem, mt_response_request *request, mt_err *err);
 /* What the profile does to each output, with all that has to be said of it. */
 void mt_response_vibration_print(const mt_response_view *v, mt_text *out);
 /* Members "profile", and "vibration", "psd_unit", "psd" of a response. */

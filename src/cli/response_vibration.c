@@ -10,49 +10,6 @@ enum { DIGITS = 5, UNIT_TEXT = 64 };
 
 static const double TWO_PI = 6.283185307179586477;
 
-static mt_status name_input(const mt_vibration *v, const mt_system *sys, mt_arena *mem,
-                            mt_response_request *request, mt_err *err)
-{
-    const char *const axis = mt_vibrated_axis(v);
-    const char **const name = mt_arena_alloc(mem, 1, sizeof *name);
-    MT_TRY(mt_arena_check(mem, err));
-    if (axis == NULL) {
-        return mt_fail(err, MT_E_USAGE,
-                       "--vibration: %s names no axis: say by --input base.x, base.y or base.z "
-                       "along which it shakes",
-                       mt_vibrated_name(v));
-    }
-    if (v->axis >= sys->dimension) {
-        return mt_fail(
-            err, MT_E_USAGE,
-            "--vibration: %s is along %s, and the mechanism is plane: say by --input "
-            "base.x or base.y along which it shakes",
-            mt_vibrated_name(v), axis);
-    }
-    name[0] = mt_arena_printf(mem, "base.%s", axis);
-    request->n_in = 1;
-    request->inputs = name;
-    return mt_arena_check(mem, err);
-}
-
-mt_status mt_response_vibration_ports(const mt_vibration *v, const mt_system *sys,
-                                      mt_arena *mem, mt_response_request *request, mt_err *err)
-{
-    if (request->n_in == 0) {
-        MT_TRY(name_input(v, sys, mem, request, err));
-    }
-    if (request->n_out == 0) {
-        const char **const names = mt_arena_alloc(mem, (size_t)sys->n_channels, sizeof *names);
-        MT_TRY(mt_arena_check(mem, err));
-        for (int i = 0; i < sys->n_channels; i++) {
-            names[i] = mt_arena_printf(mem, "%s:acceleration", sys->channels[i].name);
-        }
-        request->n_out = sys->n_channels;
-        request->outputs = names;
-    }
-    return mt_arena_check(mem, err);
-}
-
 static mt_vibrated row_of(const mt_response_view *v, int pair)
 {
     const mt_port *const to = mt_response_output_of(v, pair);

@@ -400,8 +400,8 @@ void mt_vibration_finish(mt_vibration *v, mt_diags *diags)
 
 double mt_vibration_rms(const mt_vibration *v)
 {
-    double sum = 0.0;
-    for (int i = 0; i < v->n_random; i++) {
+    double sum = v == NULL ? nan("") : 0.0;
+    for (int i = 0; v != NULL && i < v->n_random; i++) {
         sum += v->random[i].rms * v->random[i].rms;
     }
     return sqrt(sum);

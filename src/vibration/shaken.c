@@ -3,6 +3,51 @@
 
 #include <math.h>
 
+static mt_status name_input(const mt_vibration *v, const mt_system *sys, mt_arena *mem,
+                            mt_response_request *request, mt_err *err)
+{
+    static const char *const names[] = {"x", "y", "z"};
+    const char *const axis = v->axis == MT_ABSENT ? NULL : names[v->axis];
+    const char **const input = mt_arena_alloc(mem, 1, sizeof *input);
+    MT_TRY(mt_arena_check(mem, err));
+    if (axis == NULL) {
+        return mt_fail(
+            err, MT_E_USAGE,
+            "%s names no axis: name an input, base.x, base.y or base.z, along which it "
+            "shakes",
+            v->name == NULL ? v->path : v->name);
+    }
+    if (v->axis >= sys->dimension) {
+        return mt_fail(
+            err, MT_E_USAGE,
+            "--vibration: %s is along %s, and the mechanism is plane: say by --input "
+            "base.x or base.y along which it shakes",
+            v->name == NULL ? v->path : v->name, axis);
+    }
+    input[0] = mt_arena_printf(mem, "base.%s", axis);
+    request->n_in = 1;
+    request->inputs = input;
+    return mt_arena_check(mem, err);
+}
+
+mt_status mt_shaken_ports(const mt_vibration *v, const mt_system *sys, mt_arena *mem,
+                          mt_response_request *request, mt_err *err)
+{
+    if (request->n_in == 0) {
+        MT_TRY(name_input(v, sys, mem, request, err));
+    }
+    if (request->n_out == 0) {
+        const char **const names = mt_arena_alloc(mem, (size_t)sys->n_channels, sizeof *names);
+        MT_TRY(mt_arena_check(mem, err));
+        for (int i = 0; i < sys->n_channels; i++) {
+            names[i] = mt_arena_printf(mem, "%s:acceleration", sys->channels[i].name);
+        }
+        request->n_out = sys->n_channels;
+        request->outputs = names;
+    }
+    return mt_arena_check(mem, err);
+}
+
 /* A profile is of accelerations. */
 static mt_status check_inputs(const mt_port_set *ports, mt_err *err)
 {

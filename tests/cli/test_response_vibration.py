@@ -133,7 +133,7 @@ class Vibration(CliTest):
         model = self.write("one.json", one(0.05, 17.0))
         no_axis = self.profile(random=SINE_ON_RANDOM["random"])
         upright = self.write("z.json", json.dumps({"format": "modetune-profile/1", "axis": "z", "random": SINE_ON_RANDOM["random"]}))
-        for args, said in ((["--vibration", no_axis], "names no axis: say by --input base.x"),
+        for args, said in ((["--vibration", no_axis], "names no axis: name an input, base.x"),
                            (["--vibration", upright], "is along z, and the mechanism is plane"),
                            (["--vibration", no_axis, "--input", "a.x"], '"a.x" is none'),
                            (["--vibration", no_axis, "--input", "base.x:velocity"], '"base.x:velocity" is none'),
