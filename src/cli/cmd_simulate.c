@@ -5,6 +5,7 @@
 
 #include "base/interrupt.h"
 #include "cli/simulate.h"
+#include "cli/vibrated.h"
 #include "mechanics/drive.h"
 
 enum { STEADY_PERIODS = 10 };
@@ -12,6 +13,7 @@ enum { STEADY_PERIODS = 10 };
 /* One configuration at work. */
 typedef struct job {
     const mt_args *args;
+    mt_vibration *profile; /* --vibration, owned; NULL */
     mt_subject *s;
     int c;
     mt_arena mem;
@@ -219,7 +221,7 @@ static mt_status run(job *j, mt_err *err)
     mt_subject_warn_overridden(j->s, j->c);
     MT_TRY(mt_subject_admit_dense(j->s, j->c, "a motion needs them", err));
     MT_TRY(make(j, err));
-    MT_TRY(mt_sim_read(j->args, j->s, j->sys, &j->request, err));
+    MT_TRY(mt_sim_read(j->args, j->s, j->sys, j->profile, &j->request, err));
     MT_TRY(begin(j, err));
     MT_TRY(move(j, err));
     return read_all(j, err);
@@ -256,12 +258,26 @@ static int stopped(const job *j)
     return MT_EXIT_INTERRUPTED;
 }
 
+static int load(job *j)
+{
+    const char *const text = j->args->value[MT_OPT_VIBRATION];
+    const char *port = NULL;
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    const mt_status rc = text == NULL
+                             ? MT_OK
+                             : mt_vibrated_load(j->args, mt_sim_profile_of(text, &port),
+                                                &j->profile, &messages, &err);
+    return mt_cli_loaded(rc, &messages, &err);
+}
+
 int mt_cmd_simulate(const mt_args *args, mt_text *out)
 {
     mt_subject s = {.model = NULL};
     job j = {.args = args, .s = &s};
     mt_err err = {.code = MT_OK};
     int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    code = code == MT_EXIT_DONE ? load(&j) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -281,6 +297,7 @@ done:
         mt_system_delete(j.sys);
     }
     mt_analysis_delete(j.a);
+    mt_vibration_delete(j.profile);
     mt_arena_free(&j.mem);
     mt_subject_free(&s);
     return code;

@@ -80,12 +80,14 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (in the text the poles alone)"),
     OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
            "change of every peak and antiresonance for one per cent more of these parameters"),
-    OPTION(
-        MT_OPT_VIBRATION, '\0', "vibration", "PROFILE", BIT(MT_CMD_RESPONSE),
-        "a profile of vibration, a file or the name of one that is shipped, as the "
-        "acceleration of the ground: RMS, largest tones and peak of every output, by default "
-        "the accelerations of all sensors; --input is by default the ground along the "
-        "profile's axis, --from and --to are its ends"),
+    OPTION(MT_OPT_VIBRATION, '\0', "vibration", "PROFILE",
+           BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SIMULATE),
+           "a profile of vibration, a file or the name of one that is shipped, as the "
+           "acceleration of the ground. Of response: RMS, largest tones and peak of every "
+           "output, by default the accelerations of all sensors; --input is by default the "
+           "ground along the profile's axis, --from and --to are its ends. Of simulate: one "
+           "realisation of it, by --seed, tones going through their ranges once; of a profile "
+           "without an axis, or along another one, \"base.y=PROFILE\""),
     OPTION(MT_OPT_DURATION, '\0', "duration", "SECONDS", BIT(MT_CMD_SIMULATE),
            "how long the motion lasts; needed"),
     OPTION(
@@ -94,23 +96,27 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "a 24th of the period of a --sine); steps are as short as the motion needs, whatever "
         "this is"),
     OPTION(MT_OPT_START, '\0', "start", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
-           "let go where this joint (or link's hinge) is at a position, rad or m from the "
-           "reference position: one joint is held there until the rest of the mechanism is in "
+           "let go where this joint (or link's hinge) is at a position from the reference "
+           "position, "
+           "rad or m, or in the model's units where it names some: one joint is held there "
+           "until the rest of the mechanism is in "
            "equilibrium; several are moved there together, the rest following with the least "
            "motion; may be repeated (\"pivot=170*deg\")"),
     OPTION(MT_OPT_RATE, '\0', "rate", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
-           "start with this joint at a velocity, rad/s or m/s, the rest with the least kinetic "
+           "start with this joint at a velocity, rad/s or m/s, or the model's units a second, "
+           "the rest with the least kinetic "
            "energy; may be repeated"),
     OPTION(MT_OPT_ALONG, '\0', "mode", "N:AMPLITUDE", BIT(MT_CMD_SIMULATE),
            "let go displaced along vibration mode N, so far at the sensor that moves most (m, "
-           "or rad where sensors show rotations alone)"),
+           "or rad where sensors show rotations alone, or in the model's units)"),
     OPTION(MT_OPT_PUSH, '\0', "input", "PORT=EXPRESSION", BIT(MT_CMD_SIMULATE),
            "what pushes or shakes it, an expression of the time t: grip.x, the force (grip.r: "
            "moment) along a direction of a sensor, or base.x, the acceleration of the ground "
            "(base.x:displacement, base.x:velocity), or a joint, whose coordinate then follows "
            "it, from where it starts; may be repeated (\"grip.x=10*sin(40*t)*exp(-t)\")"),
     OPTION(MT_OPT_SINE, '\0', "sine", "PORT=AMPLITUDE@HZ", BIT(MT_CMD_SIMULATE),
-           "a sine there; may be repeated. With one frequency alone the steady motion is read "
+           "a sine there, of a joint or a place of the ground in the model's units; may be "
+           "repeated. With one frequency alone the steady motion is read "
            "from the last periods"),
     OPTION(MT_OPT_CHIRP, '\0', "sweep", "PORT=LEVEL@FROM:TO", BIT(MT_CMD_SIMULATE),
            "a sine of this amplitude there whose frequency runs from FROM to TO Hz in the "
@@ -143,7 +149,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "then it ends with the best so far, as after an interrupt"),
     OPTION(MT_OPT_SEED, '\0', "seed", "N", ON_STUDIES | BIT(MT_CMD_SIMULATE),
            "seed of the starting points instead of the study's; of simulate: of --random "
-           "(default: 1)"),
+           "and --vibration (default: 1)"),
     OPTION(MT_OPT_STARTS, '\0', "starts", "N", ON_STUDIES,
            "number of local searches instead of the study's \"starts\""),
     OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,

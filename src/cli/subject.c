@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/watch.h"
+#include "model/joint.h"
 #include "model/judge.h"
 #include "model/setting.h"
 #include "model/values.h"
@@ -108,6 +109,15 @@ void mt_subject_free(mt_subject *s)
     mt_model_delete(s->model);
     mt_arena_free(&s->mem);
     memset(s, 0, sizeof *s);
+}
+
+const mt_unit *mt_subject_joint_unit(const mt_model *model, const char *name)
+{
+    const int joint = mt_model_find_joint(model, name);
+    const mt_coordinate coordinate =
+        joint < 0 ? MT_COORDINATE_ANGLE
+                  : mt_joint_kind_of(model->joints[joint].type)->coordinate;
+    return model->units[coordinate == MT_COORDINATE_DISPLACEMENT ? MT_LENGTH : MT_ANGLE];
 }
 
 mt_status mt_subject_number(mt_subject *s, const char *option, const mt_unit *unit,
