@@ -94,8 +94,7 @@ static mt_status shape_size(job *j, const double *dq, double *size, mt_err *err)
     MT_TRY(mt_motion_init(&o, j->lin, &j->mem, err));
     mt_motion_eval(&o, &j->start.at, j->start.v);
     for (int i = 0; i < j->sys->n_channels; i++) {
-        const mt_channel_kind kind = j->sys->channels[i].kind;
-        const bool turns = kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+        const bool turns = mt_channel_turns(j->sys->channels[i].kind);
         const mt_gauge g = {.channel = i, .joint = -1};
         mt_motion_gauge(&o, &j->start.at, j->start.v, g, &along);
         const double way = mt_dot(j->sys->nq, along.row, dq);

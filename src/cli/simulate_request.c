@@ -6,6 +6,7 @@
 
 #include "cli/simulate.h"
 #include "model/values.h"
+#include "response/ports.h"
 
 /* Lines of the result in a period of a sine, so that its harmonics are told apart. */
 enum { STEADY_SAMPLES = 24 };
@@ -143,28 +144,18 @@ static mt_status find_joint(const mt_system *sys, mt_option_id option, const cha
                          name_of(option), name, mt_joint_type_name(sys->joints[*out].type));
 }
 
-/* "base.x", "base.x:displacement", "base.x:velocity"; false: none of these. */
-static bool base_port(const mt_system *sys, const char *name, port *out)
-{
-    static const char *const quantities[] = {"", ":velocity", ":displacement"};
-    for (int axis = 0; axis < AXES && axis < sys->dimension; axis++) {
-        const size_t length = strlen(base_ports[axis]);
-        for (int k = 0;
-             k < MT_COUNT(quantities) && strncmp(name, base_ports[axis], length) == 0; k++) {
-            if (strcmp(name + length, quantities[k]) == 0) {
-                *out = (port){.push = MT_SIM_BASE, .at = axis, .slope = k};
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 static mt_status find_port(const mt_system *sys, mt_option_id option, const char *name,
                            mt_arena *mem, port *out, mt_err *err)
 {
     *out = (port){.push = MT_SIM_FORCE, .at = mt_system_find_channel(sys, name)};
-    if (out->at >= 0 || base_port(sys, name, out)) {
+    if (out->at >= 0) {
+        return MT_OK;
+    }
+    if (strncmp(name, "base.", strlen("base.")) == 0) {
+        mt_port ground;
+        MT_TRY(mt_err_in(err, mt_port_input(sys, name, mem, &ground, err), "--%s",
+                         name_of(option)));
+        *out = (port){.push = MT_SIM_BASE, .at = ground.index, .slope = 2 - ground.motion};
         return MT_OK;
     }
     const int joint = mt_system_find_joint(sys, name);
@@ -344,9 +335,9 @@ static mt_status find_gauge(const mt_system *sys, const char *name, mt_sim_reque
     if (g.channel < 0) {
         g.joint = mt_system_find_joint(sys, name);
         if (g.joint < 0) {
-            return no_such_port(sys, MT_OPT_WATCHED, name, false, true, mem, err);
+            return no_such_port(sys, MT_OPT_SEEN, name, false, true, mem, err);
         }
-        MT_TRY(find_joint(sys, MT_OPT_WATCHED, name, mem, &g.joint, err));
+        MT_TRY(find_joint(sys, MT_OPT_SEEN, name, mem, &g.joint, err));
     }
     for (*at = 0; *at < out->opt.n_gauges; ++*at) {
         if (gauges[*at].channel == g.channel && gauges[*at].joint == g.joint) {
@@ -362,31 +353,18 @@ static bool is_angle(const mt_system *sys, mt_gauge g)
     if (g.channel < 0) {
         return sys->joints[g.joint].angle;
     }
-    const mt_channel_kind kind = sys->channels[g.channel].kind;
-    return kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+    return mt_channel_turns(sys->channels[g.channel].kind);
 }
 
 static mt_status read_output(const mt_system *sys, const char *text, mt_sim_request *out,
                              mt_gauge *gauges, mt_arena *mem, mt_err *err)
 {
-    static const char *const quantities[] = {"displacement", "velocity", "acceleration"};
-    const char *const colon = strchr(text, ':');
     mt_sim_output *const o = &out->outputs[out->n_outputs];
-    const char *const name =
-        colon == NULL ? text : mt_arena_strndup(mem, text, (size_t)(colon - text));
-    MT_TRY(mt_arena_check(mem, err));
+    const char *name = "";
+    mt_port seen = {.motion = 0};
     *o = (mt_sim_output){.port = text};
-    int what = 0;
-    while (colon != NULL && what < MT_COUNT(quantities) &&
-           strcmp(colon + 1, quantities[what]) != 0) {
-        what++;
-    }
-    if (what == MT_COUNT(quantities)) {
-        return mt_fail(err, MT_E_USAGE,
-                       "--output: %s: \"%s\" is none of displacement, velocity, acceleration",
-                       text, colon + 1);
-    }
-    o->what = (mt_seen)what;
+    MT_TRY(mt_err_in(err, mt_port_split(text, false, mem, &name, &seen, err), "--output"));
+    o->what = (mt_seen)seen.motion;
     MT_TRY(find_gauge(sys, name, out, gauges, mem, &o->gauge, err));
     o->angle = is_angle(sys, gauges[o->gauge]);
     out->n_outputs++;
@@ -402,12 +380,10 @@ static mt_status read_outputs(const mt_args *args, const mt_system *sys, mt_aren
     out->outputs = mt_arena_alloc(mem, room, sizeof *out->outputs);
     MT_TRY(mt_arena_check(mem, err));
     out->opt.gauges = gauges;
-    for (int i = 0; i < args->n_repeats; i++) {
-        if (args->repeats[i].option == MT_OPT_WATCHED) {
-            MT_TRY(read_output(sys, args->repeats[i].value, out, gauges, mem, err));
-        }
+    for (int i = 0; i < args->all[MT_OPT_SEEN].n; i++) {
+        MT_TRY(read_output(sys, args->all[MT_OPT_SEEN].value[i], out, gauges, mem, err));
     }
-    for (int i = 0; !args->given[MT_OPT_WATCHED] && i < sys->n_channels; i++) {
+    for (int i = 0; !args->given[MT_OPT_SEEN] && i < sys->n_channels; i++) {
         MT_TRY(read_output(sys, sys->channels[i].name, out, gauges, mem, err));
     }
     const bool joints = out->n_outputs == 0;
@@ -435,7 +411,7 @@ static const mt_unit *shape_unit(const mt_subject *s, const mt_system *sys)
 {
     bool turns = sys->n_channels > 0;
     for (int i = 0; i < sys->n_channels; i++) {
-        turns = turns && is_angle(sys, (mt_gauge){.channel = i, .joint = -1});
+        turns = turns && mt_channel_turns(sys->channels[i].kind);
     }
     return s->model->units[turns ? MT_ANGLE : MT_LENGTH];
 }

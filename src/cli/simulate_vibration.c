@@ -5,6 +5,7 @@
 
 #include "cli/simulate.h"
 #include "cli/vibrated.h"
+#include "vibration/shaken.h"
 
 enum { LINES_MOST = 100000 };
 /* Values that the RMS of a realisation is taken from, and what these may cost (values times
@@ -37,30 +38,24 @@ const char *mt_sim_profile_of(const char *text, const char **port)
 }
 
 static mt_status find_axis(const mt_args *args, const mt_vibration *v, const mt_system *sys,
-                           int *axis, mt_err *err)
+                           mt_arena *mem, int *axis, mt_err *err)
 {
-    static const char axes[] = "xyz";
     const char *port = NULL;
     const char *const file = mt_sim_profile_of(args->value[MT_OPT_VIBRATION], &port);
-    *axis = v->axis;
+    mt_response_request request = {.n_in = 0};
+    mt_port ground;
     if (port != NULL) {
-        const char letter = port[strlen("base.")];
-        const char *const at = strchr(axes, letter);
-        const bool right = letter != '=' && at != NULL && file == port + strlen("base.x=");
-        *axis = right ? (int)(at - axes) : MT_ABSENT;
+        port = mt_arena_strndup(mem, port, (size_t)(file - 1 - port));
+        request = (mt_response_request){.n_in = 1, .inputs = &port};
     }
-    if (*axis != MT_ABSENT && *axis < sys->dimension) {
-        return MT_OK;
-    }
-    return *axis == MT_ABSENT && port == NULL
-               ? mt_fail(err, MT_E_USAGE,
-                         "--vibration: %s names no axis: say along which it shakes, as "
-                         "base.x=%s",
-                         mt_vibrated_name(v), file)
-               : mt_fail(err, MT_E_USAGE,
-                         "--vibration: %s: the ground accelerates along base.x%s base.y%s",
-                         args->value[MT_OPT_VIBRATION], sys->dimension == 2 ? " or" : ",",
-                         sys->dimension == 2 ? "" : " or base.z");
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_err_in(err, mt_shaken_ports(v, sys, mem, &request, err), "--vibration PORT=%s",
+                     file));
+    MT_TRY(mt_err_in(err, mt_port_input(sys, request.inputs[0], mem, &ground, err),
+                     "--vibration"));
+    MT_TRY(mt_err_in(err, mt_shaken_input(&ground, err), "--vibration"));
+    *axis = ground.index;
+    return MT_OK;
 }
 
 /* A tone stays at its frequency, or goes through its range once. */
@@ -101,7 +96,7 @@ mt_status mt_sim_shake(const mt_args *args, mt_subject *s, const mt_system *sys,
     mt_sine *const sines = mt_arena_alloc(&s->mem, (size_t)v->n_tones, sizeof *sines);
     int axis = 0;
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(find_axis(args, v, sys, &axis, err));
+    MT_TRY(find_axis(args, v, sys, &s->mem, &axis, err));
     out->shaken = (mt_sim_shaken){
         .v = v, .axis = axis, .seed = args->given[MT_OPT_SEED] ? args->seed : MT_SIM_SEED};
     for (int i = 0; i < v->n_random; i++) {

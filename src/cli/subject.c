@@ -41,9 +41,10 @@ static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err
 static mt_status take_settings(const mt_args *args, mt_subject *s, mt_err *err)
 {
     mt_setting *settings = NULL;
-    const mt_status rc = mt_model_read_settings(s->model, s->original, args->n_sets, args->sets,
-                                                &s->mem, &settings, err);
-    for (int i = 0; rc == MT_OK && i < args->n_sets; i++) {
+    const mt_status rc =
+        mt_model_read_settings(s->model, s->original, args->all[MT_OPT_SET].n,
+                               args->all[MT_OPT_SET].value, &s->mem, &settings, err);
+    for (int i = 0; rc == MT_OK && i < args->all[MT_OPT_SET].n; i++) {
         s->inputs[s->n_inputs] = settings[i].parameter;
         s->at[s->n_inputs++] = settings[i].value;
     }

@@ -66,9 +66,9 @@ class Vibration(CliTest):
     def test_wrong_use_is_named(self):
         model = self.write("one.json", json.dumps(one_mass(0.3, 50.0)))
         profile = self.profile(random={"psd_m2_per_s3": [[0.3, 2], [40, 2]]})
-        for args, said in ((["--vibration", profile], f"names no axis: say along which it shakes, as base.x={profile}"),
-                           (["--vibration", f"base.z={profile}"], "the ground accelerates along base.x or base.y"),
-                           (["--vibration", f"base.x:velocity={profile}"], "the ground accelerates along base.x or base.y"),
+        for args, said in ((["--vibration", profile], "names no axis: name an input, base.x"),
+                           (["--vibration", f"base.z={profile}"], 'no input is called "base.z"'),
+                           (["--vibration", f"base.x:velocity={profile}"], '"base.x:velocity" is none'),
                            (["--vibration", "base.x=white"], "more than 100000 lines would be needed"),
                            (["--vibration", "base.x=whit"], 'no profile is called "whit"')):
             with self.subTest(args=args):
