@@ -56,10 +56,6 @@ mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
 
 /* Of --vibration [PORT=]FILE: the file, and the port, or NULL (simulate_vibration.c). */
 const char *mt_sim_profile_of(const char *text, const char **port);
-/* A realisation of a density that does not repeat in the duration. Fails: MT_E_USAGE (too many
- * lines, and as mt_signal_of_psd), MT_E_MEMORY. */
-mt_status mt_sim_realise(const mt_psd *psd, double duration_s, unsigned long seed,
-                         mt_arena *mem, mt_signal *out, mt_err *err);
 /* The profile's parts as inputs behind those that there are. */
 mt_status mt_sim_shake(const mt_args *args, mt_subject *s, const mt_system *sys,
                        const mt_vibration *v, mt_sim_request *out, mt_sim_input *inputs,

@@ -7,6 +7,7 @@
 #include "cli/simulate.h"
 #include "model/values.h"
 #include "response/ports.h"
+#include "simulate/realise.h"
 
 /* Lines of the result in a period of a sine, so that its harmonics are told apart. */
 enum { STEADY_SAMPLES = 24 };
@@ -293,7 +294,7 @@ static mt_status read_random(mt_subject *s, const mt_args *args, const mt_repeat
     }
     const mt_psd psd = {.n = (int)n, .hz = hz, .level = value};
     const unsigned long seed = args->given[MT_OPT_SEED] ? args->seed : MT_SIM_SEED;
-    return mt_err_in(err, mt_sim_realise(&psd, args->duration_s, seed, &s->mem, out, err),
+    return mt_err_in(err, mt_realise_psd(&psd, args->duration_s, seed, &s->mem, out, err),
                      "--random: %s", r->value);
 }
 
