@@ -23,7 +23,7 @@ typedef struct job {
     mt_analysis *a;
     mt_response_request request;
     mt_response r;
-    mt_shaken shaken;
+    mt_profiled profiled;
     mt_curve curve;
     mt_response_view v;
 } job;
@@ -200,8 +200,8 @@ static mt_status poles(job *j, mt_err *err)
 static mt_status shake(job *j, mt_err *err)
 {
     if (j->profile != NULL) {
-        MT_TRY(mt_shaken_find(&j->r, j->profile, &j->shaken, err));
-        j->v.shaken = &j->shaken;
+        MT_TRY(mt_profiled_find(&j->r, j->profile, &j->profiled, err));
+        j->v.profiled = &j->profiled;
     }
     return MT_OK;
 }
@@ -210,7 +210,7 @@ static mt_status open(job *j, mt_err *err)
 {
     j->request = request_of(j->args);
     if (j->profile != NULL) {
-        MT_TRY(mt_shaken_ports(j->profile, j->a->sys, &j->s->mem, &j->request, err));
+        MT_TRY(mt_profiled_ports(j->profile, j->a->sys, &j->s->mem, &j->request, err));
     }
     return mt_response_open(j->a, &j->request, &j->r, err);
 }

@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "report/table.h"
 #include "response/response.h"
-#include "vibration/shaken.h"
+#include "vibration/profiled.h"
 
 /* The response of one configuration, ready to be written. */
 typedef struct mt_response_view {
@@ -17,11 +17,11 @@ typedef struct mt_response_view {
     bool direct;
     const mt_pole_sum *sums; /* [pairs] of --poles; NULL: not asked for, or there are none */
     const char *no_sums;     /* why there are none; NULL */
-    const mt_shaken *shaken; /* --vibration; NULL */
-    int n;                   /* of --sensitivity */
-    const int *parameter;    /* [n] */
-    const double *value;     /* [n] */
-    const double *percent;   /* n_extremes x n: of |H|, for one per cent more */
+    const mt_profiled *profiled; /* --vibration; NULL */
+    int n;                       /* of --sensitivity */
+    const int *parameter;        /* [n] */
+    const double *value;         /* [n] */
+    const double *percent;       /* n_extremes x n: of |H|, for one per cent more */
 } mt_response_view;
 
 void mt_response_print(const mt_response_view *v, mt_text *out);

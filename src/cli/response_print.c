@@ -218,14 +218,14 @@ void mt_response_print(const mt_response_view *v, mt_text *out)
     mt_text_addf(out, "%s: response to %s%s, %.6g to %.6g Hz\n", v->configuration,
                  v->r->ports.in[0].name, v->r->ports.n_in > 1 ? ", ..." : "",
                  v->opt.from / TWO_PI, v->opt.to / TWO_PI);
-    if (v->shaken != NULL) {
+    if (v->profiled != NULL) {
         mt_response_vibration_print(v, out);
     }
     if (v->curve->n_extremes > 0) {
         print_extremes(v, out);
         mt_text_add(out, "\n");
     }
-    if (v->shaken == NULL) {
+    if (v->profiled == NULL) {
         print_grid(v, out);
     }
     print_poles(v, out);
@@ -340,7 +340,7 @@ static void json_pair(const mt_response_view *v, int pair, mt_json_writer *w)
     json_series(v, pair, "re", 0, w);
     json_series(v, pair, "im", 1, w);
     json_series(v, pair, "error", 2, w);
-    if (v->shaken != NULL) {
+    if (v->profiled != NULL) {
         mt_response_vibration_json_pair(v, pair, w);
     }
     mt_json_close(w);
@@ -356,7 +356,7 @@ void mt_response_json(const mt_response_view *v, mt_json_writer *w)
     mt_json_put_integer(w, "modes_left_out", b->n_left);
     mt_json_put_bool(w, "coupled", !b->t.diagonal);
     mt_json_put_bool(w, "complete", v->curve->complete);
-    if (v->shaken != NULL) {
+    if (v->profiled != NULL) {
         mt_response_vibration_json(v, w);
     }
     json_ports(w, "inputs", v->r->ports.n_in, v->r->ports.in);
@@ -411,7 +411,7 @@ void mt_response_csv_rows(const mt_response_view *v, mt_table *t)
             mt_table_number(t, phase(h), DIGITS);
             mt_table_number(t, error_at(v, p, i), DIGITS);
             mt_table_text(t, unit);
-            if (v->shaken != NULL) {
+            if (v->profiled != NULL) {
                 mt_response_vibration_cells(v, p, i, t);
             }
         }

@@ -13,8 +13,8 @@ static const double TWO_PI = 6.283185307179586477;
 static mt_vibrated row_of(const mt_response_view *v, int pair)
 {
     const mt_port *const to = mt_response_output_of(v, pair);
-    return (mt_vibrated){.profile = v->shaken->v,
-                         .response = &v->shaken->answers[pair],
+    return (mt_vibrated){.profile = v->profiled->v,
+                         .response = &v->profiled->answers[pair],
                          .is_acceleration =
                              to->kind == MT_PORT_SENSOR && to->motion == 2 && !to->turns,
                          .unit = to->unit};
@@ -42,7 +42,7 @@ static void print_rows(const mt_response_view *v, mt_text *out)
     mt_table t = mt_table_default();
     pair_columns(v, &t);
     mt_vibrated_columns(&t);
-    for (int p = 0; p < v->shaken->n_pairs; p++) {
+    for (int p = 0; p < v->profiled->n_pairs; p++) {
         const mt_vibrated row = row_of(v, p);
         pair_cells(v, p, &t);
         mt_vibrated_row(&t, &row);
@@ -57,15 +57,15 @@ static void print_tones(const mt_response_view *v, mt_text *out)
     mt_table t = mt_table_default();
     pair_columns(v, &t);
     mt_vibrated_tone_columns(&t);
-    for (int p = 0; p < v->shaken->n_pairs; p++) {
+    for (int p = 0; p < v->profiled->n_pairs; p++) {
         const mt_vibrated row = row_of(v, p);
-        for (int i = 0; i < v->shaken->v->n_tones; i++) {
+        for (int i = 0; i < v->profiled->v->n_tones; i++) {
             pair_cells(v, p, &t);
             mt_vibrated_tone_row(&t, &row, i);
         }
     }
     mt_table_print(&t, 2, mt_terminal_width(), out);
-    mt_text_add(out, v->shaken->no_sums == NULL
+    mt_text_add(out, v->profiled->no_sums == NULL
                          ? "  Each is the largest within its range, proven up to that part of "
                            "it.\n\n"
                          : "\n");
@@ -91,11 +91,11 @@ static int mode_of(const mt_response_view *v, double complex pole)
  * takes away are told once. */
 static void print_end(const mt_response_view *v, int pair, int *said, mt_text *out)
 {
-    const mt_vibration_response *const a = &v->shaken->answers[pair];
+    const mt_vibration_response *const a = &v->profiled->answers[pair];
     if (a->end == MT_FORCED_FINITE || a->pole < 0 || a->pole == *said) {
         return;
     }
-    const double complex pole = v->shaken->poles[a->pole];
+    const double complex pole = v->profiled->poles[a->pole];
     const int mode = mode_of(v, pole);
     const char *const name =
         mode > 0 ? mt_mode_name(v->s, v->r->a->sys->configuration, mode) : NULL;
@@ -110,7 +110,7 @@ static void print_end(const mt_response_view *v, int pair, int *said, mt_text *o
 
 void mt_response_vibration_print(const mt_response_view *v, mt_text *out)
 {
-    const mt_vibration *const p = v->shaken->v;
+    const mt_vibration *const p = v->profiled->v;
     const char *const axis = mt_vibrated_axis(p);
     int said = -1;
     mt_text_addf(out, "  Under %s%s%s", mt_vibrated_name(p), axis == NULL ? "" : ", along ",
@@ -122,25 +122,25 @@ void mt_response_vibration_print(const mt_response_view *v, mt_text *out)
     mt_vibrated_rule(p, out);
     mt_text_add(out, ":\n");
     print_rows(v, out);
-    for (int k = 0; k < v->shaken->n_pairs; k++) {
+    for (int k = 0; k < v->profiled->n_pairs; k++) {
         print_end(v, k, &said, out);
     }
     mt_text_add(out, said >= 0 ? "\n" : "");
     if (p->n_tones > 0) {
         print_tones(v, out);
     }
-    if (v->shaken->no_sums != NULL) {
+    if (v->profiled->no_sums != NULL) {
         mt_text_addf(out,
                      "  %s. The numbers are therefore by quadrature: errors are estimates, and "
                      "of tones nothing is proven.\n\n",
-                     v->shaken->no_sums);
+                     v->profiled->no_sums);
     }
     mt_vibrated_marks(p, out);
 }
 
 void mt_response_vibration_json(const mt_response_view *v, mt_json_writer *w)
 {
-    const mt_vibration *const p = v->shaken->v;
+    const mt_vibration *const p = v->profiled->v;
     mt_json_open(w, "profile", '{');
     mt_json_put_string(w, "file", p->path);
     mt_json_put_string(w, "name", p->name);
@@ -149,15 +149,15 @@ void mt_response_vibration_json(const mt_response_view *v, mt_json_writer *w)
     mt_vibrated_rule_json(w, p);
     mt_json_close(w);
     mt_json_put_string(w, "vibration_method",
-                       v->shaken->no_sums == NULL ? "poles" : "quadrature");
+                       v->profiled->no_sums == NULL ? "poles" : "quadrature");
 }
 
 /* Not infinite. */
 static double density_at(const mt_response_view *v, int pair, int point)
 {
-    const ptrdiff_t at = pair + ((ptrdiff_t)point * v->shaken->n_pairs);
+    const ptrdiff_t at = pair + ((ptrdiff_t)point * v->profiled->n_pairs);
     const double psd =
-        mt_shaken_psd(v->shaken, pair, v->curve->w[point] / TWO_PI, v->curve->h[at]);
+        mt_profiled_psd(v->profiled, pair, v->curve->w[point] / TWO_PI, v->curve->h[at]);
     return isfinite(psd) ? psd : nan("");
 }
 
@@ -175,7 +175,7 @@ void mt_response_vibration_json_pair(const mt_response_view *v, int pair, mt_jso
     mt_json_open(w, "vibration", '{');
     mt_vibrated_json(w, &row);
     if (a->end != MT_FORCED_FINITE && a->pole >= 0) {
-        mt_json_put_integer(w, "by_mode", mode_of(v, v->shaken->poles[a->pole]));
+        mt_json_put_integer(w, "by_mode", mode_of(v, v->profiled->poles[a->pole]));
     }
     mt_json_close(w);
     mt_json_put_string(w, "psd_unit", unit);

@@ -5,7 +5,7 @@
 #include "cli/simulate.h"
 #include "cli/vibrated.h"
 #include "simulate/realise.h"
-#include "vibration/shaken.h"
+#include "vibration/profiled.h"
 
 /* "base.y=FILE": the file, and where the port begins; else NULL. */
 const char *mt_sim_profile_of(const char *text, const char **port)
@@ -28,11 +28,11 @@ static mt_status find_axis(const mt_args *args, const mt_vibration *v, const mt_
         request = (mt_response_request){.n_in = 1, .inputs = &port};
     }
     MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(mt_err_in(err, mt_shaken_ports(v, sys, mem, &request, err), "--vibration PORT=%s",
+    MT_TRY(mt_err_in(err, mt_profiled_ports(v, sys, mem, &request, err), "--vibration PORT=%s",
                      file));
     MT_TRY(mt_err_in(err, mt_port_input(sys, request.inputs[0], mem, &ground, err),
                      "--vibration"));
-    MT_TRY(mt_err_in(err, mt_shaken_input(&ground, err), "--vibration"));
+    MT_TRY(mt_err_in(err, mt_profiled_input(&ground, err), "--vibration"));
     *axis = ground.index;
     return MT_OK;
 }

@@ -11,7 +11,7 @@
 #include "model/judge.h"
 #include "model/values.h"
 #include "response/response.h"
-#include "vibration/shaken.h"
+#include "vibration/profiled.h"
 
 static const double TWO_PI = 6.283185307179586477;
 
@@ -457,23 +457,23 @@ static mt_status shake(mt_mechanism *m, const mt_ports *ports, const mt_vibratio
                        mt_vibration_answer *answers, mt_response *r, mt_err *err)
 {
     mt_response_request request = request_of(ports);
-    mt_shaken shaken;
+    mt_profiled profiled;
     mt_arena_clear(&m->scratch);
-    MT_TRY(mt_shaken_ports(v, m->a->sys, &m->scratch, &request, err));
+    MT_TRY(mt_profiled_ports(v, m->a->sys, &m->scratch, &request, err));
     MT_TRY(mt_response_open(m->a, &request, r, err));
-    MT_TRY(mt_shaken_find(r, v, &shaken, err));
-    if (room < shaken.n_pairs) {
+    MT_TRY(mt_profiled_find(r, v, &profiled, err));
+    if (room < profiled.n_pairs) {
         return mt_fail(err, MT_E_USAGE, "mt_mechanism_vibration: room for %d answers, not %d",
-                       room, shaken.n_pairs);
+                       room, profiled.n_pairs);
     }
-    for (int p = 0; p < shaken.n_pairs; p++) {
-        const mt_vibration_response *const a = &shaken.answers[p];
+    for (int p = 0; p < profiled.n_pairs; p++) {
+        const mt_vibration_response *const a = &profiled.answers[p];
         answers[p] = (mt_vibration_answer){.end = (mt_vibration_end)a->end,
                                            .rms = a->rms,
                                            .rms_error = a->rms_bound,
                                            .tones = a->sine,
                                            .peak = a->peak,
-                                           .proven = shaken.no_sums == NULL ? 1 : 0};
+                                           .proven = profiled.no_sums == NULL ? 1 : 0};
     }
     return MT_OK;
 }

@@ -10,7 +10,7 @@
 #include "base/options.h"
 #include "simulate/realise.h"
 #include "simulate/start.h"
-#include "vibration/shaken.h"
+#include "vibration/profiled.h"
 
 /* One motion at work. */
 typedef struct work {
@@ -124,9 +124,9 @@ static mt_status add_vibration(work *k, mt_sim_input *inputs, mt_err *err)
                                    .inputs = &k->own.along};
     mt_port ground;
     mt_realised shake;
-    MT_TRY(mt_shaken_ports(v, k->sys, &k->mem, &request, err));
+    MT_TRY(mt_profiled_ports(v, k->sys, &k->mem, &request, err));
     MT_TRY(mt_port_input(k->sys, request.inputs[0], &k->mem, &ground, err));
-    MT_TRY(mt_shaken_input(&ground, err));
+    MT_TRY(mt_profiled_input(&ground, err));
     MT_TRY(mt_realise(v, k->own.duration_s, (unsigned long)k->own.seed, &k->mem, &shake, err));
     mt_realise_inputs(&shake, ground.index, inputs + k->opt.n_inputs);
     k->opt.n_inputs += shake.n;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vibration/shaken_priv.h"
+#include "vibration/profiled_priv.h"
 
 #include <math.h>
 
@@ -30,8 +30,8 @@ static mt_status name_input(const mt_vibration *v, const mt_system *sys, mt_aren
     return mt_arena_check(mem, err);
 }
 
-mt_status mt_shaken_ports(const mt_vibration *v, const mt_system *sys, mt_arena *mem,
-                          mt_response_request *request, mt_err *err)
+mt_status mt_profiled_ports(const mt_vibration *v, const mt_system *sys, mt_arena *mem,
+                            mt_response_request *request, mt_err *err)
 {
     if (request->n_in == 0) {
         MT_TRY(name_input(v, sys, mem, request, err));
@@ -48,7 +48,7 @@ mt_status mt_shaken_ports(const mt_vibration *v, const mt_system *sys, mt_arena 
     return mt_arena_check(mem, err);
 }
 
-mt_status mt_shaken_input(const mt_port *port, mt_err *err)
+mt_status mt_profiled_input(const mt_port *port, mt_err *err)
 {
     return port->kind == MT_PORT_BASE && port->motion == 2
                ? MT_OK
@@ -58,7 +58,8 @@ mt_status mt_shaken_input(const mt_port *port, mt_err *err)
                          port->name);
 }
 
-static mt_status by_poles(mt_response *r, const mt_pole_sum *sums, mt_shaken *out, mt_err *err)
+static mt_status by_poles(mt_response *r, const mt_pole_sum *sums, mt_profiled *out,
+                          mt_err *err)
 {
     out->n_poles = sums[0].n;
     out->poles = sums[0].s;
@@ -71,12 +72,12 @@ static mt_status by_poles(mt_response *r, const mt_pole_sum *sums, mt_shaken *ou
     return MT_OK;
 }
 
-mt_status mt_shaken_find(mt_response *r, const mt_vibration *v, mt_shaken *out, mt_err *err)
+mt_status mt_profiled_find(mt_response *r, const mt_vibration *v, mt_profiled *out, mt_err *err)
 {
     mt_err own = {.code = MT_OK};
-    *out = (mt_shaken){.v = v, .n_pairs = r->ports.n_in * r->ports.n_out};
+    *out = (mt_profiled){.v = v, .n_pairs = r->ports.n_in * r->ports.n_out};
     for (int i = 0; i < r->ports.n_in; i++) {
-        MT_TRY(mt_shaken_input(&r->ports.in[i], err));
+        MT_TRY(mt_profiled_input(&r->ports.in[i], err));
     }
     const size_t pairs = (size_t)out->n_pairs;
     mt_pole_sum *const sums = mt_arena_alloc(&r->mem, pairs, sizeof *sums);
@@ -91,10 +92,10 @@ mt_status mt_shaken_find(mt_response *r, const mt_vibration *v, mt_shaken *out, 
     }
     out->no_sums = mt_arena_strdup(&r->mem, own.text);
     MT_TRY(mt_arena_check(&r->mem, err));
-    return mt_shaken_quadrature(r, out, err);
+    return mt_profiled_quadrature(r, out, err);
 }
 
-double mt_shaken_psd(const mt_shaken *s, int pair, double hz, double complex h)
+double mt_profiled_psd(const mt_profiled *s, int pair, double hz, double complex h)
 {
     if (s->of != NULL) {
         return mt_vibration_respond_psd(s->v, &s->of[pair], hz);

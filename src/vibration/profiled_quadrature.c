@@ -6,7 +6,7 @@
  * I is wrong by, and J by far less. Poles without damping are not walked around: where one
  * resonates there is no number, and where none does nothing is to be seen of it.
  */
-#include "vibration/shaken_priv.h"
+#include "vibration/profiled_priv.h"
 
 #include <float.h>
 #include <math.h>
@@ -17,7 +17,7 @@ enum { TONE_POINTS = 9 };
 
 typedef struct work {
     mt_response *r;
-    mt_shaken *out;
+    mt_profiled *out;
     mt_gauss gauss;
     mt_frf h; /* of the poles that are damped; no residues */
     mt_sample at;
@@ -201,7 +201,7 @@ static mt_status make(work *k, mt_err *err)
     return mt_arena_check(mem, err);
 }
 
-mt_status mt_shaken_quadrature(mt_response *r, mt_shaken *out, mt_err *err)
+mt_status mt_profiled_quadrature(mt_response *r, mt_profiled *out, mt_err *err)
 {
     work k = {.r = r, .out = out};
     MT_TRY(make(&k, err));
