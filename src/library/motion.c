@@ -169,8 +169,7 @@ static mt_status hand_out(const work *k, int room, double *values, mt_motion_tol
     const ptrdiff_t n = k->opt.n_gauges;
     const double *const of[] = {r->value, r->speed, r->acceleration};
     if (n * r->n > room) {
-        return mt_fail(err, MT_E_USAGE, "room for %d values, not %lld", room,
-                       (long long)(n * r->n));
+        return mt_fail(err, MT_E_USAGE, "room for %d values, not %d", room, (int)(n * r->n));
     }
     for (ptrdiff_t i = 0; i < r->n; i++) {
         for (ptrdiff_t g = 0; g < n; g++) {
