@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* mt_mechanism_motion by closed forms: one mass of 2 kg on 200 N/m, damped by 4 N s/m, along x. */
+/* mt_mechanism_motion by closed forms: 2 kg on 200 N/m, damped by 4 N s/m, along x. */
 #include "modetune/motion.h"
 
 #include <gsl/gsl_errno.h>
