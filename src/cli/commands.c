@@ -310,9 +310,10 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "profile, with a bound of its error, the largest amplitude under each tone, wherever "
         "in its range that lies, which is proven, and the peak that both make by the profile's "
         "rule; all of the profile counts, whatever --from and --to are. The density of the "
-        "response over frequency is in JSON and CSV (psd). Where no sum over poles is to be "
-        "had, "
-        "numbers are by quadrature, and their errors estimates, which is said.\n"
+        "response over frequency is in JSON and CSV (psd). Bounds and proofs are of the sum "
+        "over the poles as it was found, whose own rounding the errors of the values tell. "
+        "Where no sum over poles is to be had, numbers are by quadrature, and their errors "
+        "estimates, which is said.\n"
         "A configuration that is unstable, or whose stability rounding hides, is refused, and "
         "so is the force of a joint that is redundant with others."),
     COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
