@@ -10,6 +10,7 @@
 #include "study/aircraft.h"
 #include "study/bands.h"
 #include "study/goal_kinds.h"
+#include "study/measurement.h"
 #include "study/objective_kinds.h"
 
 /*
@@ -284,6 +285,8 @@ typedef struct mt_study {
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
     MT_LIST_OF(mt_reference, references);
+    MT_LIST_OF(mt_measurement,
+               measurements); /* of each the responses that are meant, by finish */
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     mt_trade trade;
@@ -347,6 +350,7 @@ const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e);
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+int mt_study_find_measurement(const mt_study *study, const char *name);
 /* Is there a goal that keeps clear of bands? */
 bool mt_study_has_bands(const mt_study *study);
 /* Does a goal ask for this configuration? */

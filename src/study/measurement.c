@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/measurement.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+
+enum { DIGITS_MOST = 9 }; /* of the number of a node */
+
+mt_measurement mt_measurement_default(mt_name name, mt_addr addr)
+{
+    return (mt_measurement){.name = name,
+                            .factor = nan(""),
+                            .factor_addr = addr,
+                            .dataset_addr = addr,
+                            .addr = addr};
+}
+
+static bool read_axis(const char **s, int *direction)
+{
+    static const char axes[] = "XYZ";
+    const bool turns = (*s)[0] == 'R' || (*s)[0] == 'r';
+    const char letter = (*s)[turns ? 1 : 0];
+    const char upper = (char)(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
+    const char *const at = upper == '\0' ? NULL : strchr(axes, upper);
+    if (at == NULL) {
+        return false;
+    }
+    *direction = (int)(at - axes) + (turns ? 4 : 1);
+    *s += turns ? 2 : 1;
+    return true;
+}
+
+static int read_sign(const char **s)
+{
+    const char c = **s;
+    *s += c == '+' || c == '-' ? 1 : 0;
+    return c == '-' ? -1 : c == '+' ? 1 : 0;
+}
+
+bool mt_measured_freedom_parse(const char *text, mt_measured_freedom *out)
+{
+    const char *s = text;
+    *out = (mt_measured_freedom){0};
+    if (*s < '0' || *s > '9') {
+        return false;
+    }
+    for (; *s >= '0' && *s <= '9'; s++) {
+        if (s - text == DIGITS_MOST) {
+            return false;
+        }
+        out->node = (10 * out->node) + (*s - '0');
+    }
+    if (*s == '\0') {
+        return true;
+    }
+    const int before = read_sign(&s);
+    if (!read_axis(&s, &out->direction)) {
+        return false;
+    }
+    const int behind = read_sign(&s);
+    if (*s != '\0' || (before != 0 && behind != 0)) {
+        return false;
+    }
+    out->direction *= before + behind < 0 ? -1 : 1;
+    return true;
+}
+
+void mt_measured_freedom_text(const mt_measured_freedom *f, char text[MT_FREEDOM_TEXT])
+{
+    static const char *const names[] = {"", "X", "Y", "Z", "RX", "RY", "RZ"};
+    const int axis = f->direction < 0 ? -f->direction : f->direction;
+    (void)mt_snprintf(text, MT_FREEDOM_TEXT, "%d%s%s", f->node,
+                      f->direction < 0   ? "-"
+                      : f->direction > 0 ? "+"
+                                         : "",
+                      axis < MT_COUNT(names) ? names[axis] : "?");
+}
