@@ -15,6 +15,10 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
         return d->goal->expression_text;
     }
     const char *const configuration = mt_view_name(p, &p->views[d->view]);
+    if (!mt_demand_has_mode(d)) {
+        return mt_arena_printf(mem, "%s %s by %s", configuration, d->goal->shake->output.s,
+                               d->goal->shake->input.s);
+    }
     return d->mode > 0
                ? mt_arena_printf(mem, "%s mode %d", configuration, d->mode)
                : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);

@@ -20,7 +20,7 @@
 
 #include "base/format.h"
 
-enum { TEXTS = 5, FREQUENCY_RESPONSE = 4, TRANSMISSIBILITY = 5, VALUES_MOST = 100000000 };
+enum { TEXTS = 5, VALUES_MOST = 100000000 };
 enum { COMPLEX_SINGLE = 5, COMPLEX_DOUBLE = 6, REAL_SINGLE = 2, REAL_DOUBLE = 4 };
 enum { UNKNOWN = 0, GENERAL = 1, DISPLACEMENT = 8, REACTION = 9, VELOCITY = 11 };
 enum { ACCELERATION = 12, FORCE = 13, FREQUENCY = 18 };
@@ -207,7 +207,8 @@ static mt_status read_axes(const reading *u, const record axes[4], header *h)
     text_of(&axes[0], 47, 20, unit);
     text_of(&axes[1], 47, 20, h->numerator_unit);
     text_of(&axes[2], 47, 20, h->denominator_unit);
-    const bool response = h->function == FREQUENCY_RESPONSE || h->function == TRANSMISSIBILITY;
+    const bool response =
+        h->function == MT_FUNCTION_RESPONSE || h->function == MT_FUNCTION_TRANSMISSIBILITY;
     if (response && abscissa != FREQUENCY && abscissa != UNKNOWN && abscissa != GENERAL) {
         return mt_measuring_refuse(u->m, axes[0].line, 1,
                                    "a frequency response is over frequency (18), not over %d",
@@ -499,7 +500,7 @@ static mt_status read_function(reading *u, const record *number)
     r->function = h.function;
     r->response = h.response;
     r->reference = h.reference;
-    if (h.function == FREQUENCY_RESPONSE || h.function == TRANSMISSIBILITY) {
+    if (mt_measured_is_response(r)) {
         set_units(u, &h, r);
         MT_TRY(read_values(u, &h, r));
         return close_dataset(u);

@@ -19,6 +19,11 @@ bool mt_demand_is_frequency(const mt_demand *d)
     return d->quantity == MT_QUANTITY_FREQUENCY && d->mode > 0;
 }
 
+bool mt_demand_has_mode(const mt_demand *d)
+{
+    return d->mode > 0 || d->named >= 0;
+}
+
 double mt_demand_weight(const mt_workspace *w, const mt_demand *d)
 {
     return w->c->weight[d - w->p->demands];
@@ -94,6 +99,12 @@ static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err
         return MT_OK;
     }
     mt_view_work *const view = &w->views[d->view];
+    if (!mt_demand_has_mode(d)) {
+        return view->solved
+                   ? MT_OK
+                   : mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no modes here",
+                             mt_analysis_configuration(view->analysis));
+    }
     MT_TRY(mt_view_position(w, view, d->mode, d->named, pos, err));
     const bool infinite = d->quantity == MT_QUANTITY_FREQUENCY && view->solved &&
                           mt_analysis_is_infinite(view->analysis, d->mode);

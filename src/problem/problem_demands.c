@@ -182,7 +182,7 @@ static void number_rows(mt_problem *p, mt_demand *d)
     d->tolerance = mt_goal_tolerance(g);
     if (MT_HAS(g->weight)) {
         d->row_res = p->n_res;
-        d->n_res = d->ops->value == NULL ? d->shape.ns : 1;
+        d->n_res = d->ops->value == NULL ? d->n_res : 1;
         p->n_res += d->n_res;
         p->weights += g->weight;
     } else if (mt_robust_is_range(p, d)) {
@@ -217,7 +217,9 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
                          goal_index));
         const mt_view *const view = &p->views[d->view];
-        MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
+        MT_TRY(d->mode > 0                   ? resolve_index(view, d, err)
+               : g->mode.mode_name.s != NULL ? resolve_name(p, view, d, err)
+                                             : MT_OK);
     }
     if (d->ops->compile != NULL) {
         MT_TRY(mt_err_in(err, d->ops->compile(p, d, err), "/goals/%d", goal_index));

@@ -7,6 +7,7 @@
 #include "base/format.h"
 
 enum { DIGITS_MOST = 9 }; /* of the number of a node */
+enum { LISTED_MOST = 10 };
 
 mt_measurement mt_measurement_default(mt_name name, mt_addr addr)
 {
@@ -76,4 +77,39 @@ void mt_measured_freedom_text(const mt_measured_freedom *f, char text[MT_FREEDOM
                       : f->direction > 0 ? "+"
                                          : "",
                       axis < MT_COUNT(names) ? names[axis] : "?");
+}
+
+bool mt_measured_is_response(const mt_measured_response *r)
+{
+    return r->dataset == 0 || r->function == MT_FUNCTION_RESPONSE ||
+           r->function == MT_FUNCTION_TRANSMISSIBILITY;
+}
+
+const char *mt_measured_response_text(const mt_measured_response *r, mt_arena *mem)
+{
+    char a[MT_FREEDOM_TEXT];
+    char b[MT_FREEDOM_TEXT];
+    if (r->dataset == 0) {
+        return mt_arena_printf(
+            mem, "%s%s%s by %s", r->configuration == NULL ? "" : r->configuration,
+            r->configuration == NULL ? "" : ": ", r->output == NULL ? "an output" : r->output,
+            r->input == NULL ? "an input" : r->input);
+    }
+    mt_measured_freedom_text(&r->response, a);
+    mt_measured_freedom_text(&r->reference, b);
+    return mt_arena_printf(mem, "dataset %d: %s by %s", r->dataset, a, b);
+}
+
+const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem)
+{
+    const char *text = "";
+    int listed = 0;
+    for (int i = 0; i < m->n_responses && text != NULL && listed < LISTED_MOST; i++) {
+        if (mt_measured_is_response(&m->responses[i])) {
+            const char *const one = mt_measured_response_text(&m->responses[i], mem);
+            text = mt_arena_printf(mem, "%s%s%s", text, listed++ > 0 ? "; " : "",
+                                   one == NULL ? "" : one);
+        }
+    }
+    return text == NULL ? "" : text;
 }

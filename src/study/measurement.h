@@ -4,6 +4,9 @@
 
 #include "model/model.h"
 
+/* Kinds of functions of universal files that are frequency responses. */
+enum { MT_FUNCTION_RESPONSE = 4, MT_FUNCTION_TRANSMISSIBILITY = 5 };
+
 /* A measured response at one frequency: output per input. */
 typedef struct mt_measured_line {
     double frequency_hz;
@@ -59,8 +62,10 @@ bool mt_measured_freedom_parse(const char *text, mt_measured_freedom *out);
 /* As such a text, of a node with the direction's sign in front of it. */
 enum { MT_FREEDOM_TEXT = 24 };
 void mt_measured_freedom_text(const mt_measured_freedom *f, char text[MT_FREEDOM_TEXT]);
+/* Of a table always, of a universal file by its kind of function. */
+bool mt_measured_is_response(const mt_measured_response *r);
 /* "dataset 3: 12+Z by 1+Z", "installed: grip.x:acceleration by grip.x"; those of a file. In
- * mem, which remembers a shortage. (study_measurements.c) */
+ * mem, which remembers a shortage. */
 const char *mt_measured_response_text(const mt_measured_response *r, mt_arena *mem);
 const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem);
 

@@ -204,6 +204,12 @@ mt_avoid mt_avoid_default(mt_addr addr)
     };
 }
 
+mt_shake mt_shake_default(mt_addr addr)
+{
+    return (mt_shake){
+        .lower_hz = nan(""), .upper_hz = nan(""), .band_addr = addr, .measurement = MT_ABSENT};
+}
+
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
 {
     return (mt_vary){

@@ -12,6 +12,7 @@
 #include "study/goal_kinds.h"
 #include "study/measurement.h"
 #include "study/objective_kinds.h"
+#include "study/shake.h"
 
 /*
  * A question asked of a model: variables, goals, objective, references, published values.
@@ -104,6 +105,7 @@ typedef struct mt_goal {
     mt_expr expression; /* limit */
     const char *expression_text;
     mt_avoid *avoid; /* avoid: in the study's arena; else NULL */
+    mt_shake *shake; /* frequency_response: likewise */
     const char *description;
     mt_addr addr;
 } mt_goal;
@@ -285,8 +287,8 @@ typedef struct mt_study {
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
     MT_LIST_OF(mt_reference, references);
-    MT_LIST_OF(mt_measurement,
-               measurements); /* of each the responses that are meant, by finish */
+    /* of each the responses that are meant, by finish */
+    MT_LIST_OF(mt_measurement, measurements);
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     mt_trade trade;
@@ -322,6 +324,7 @@ mt_status mt_study_new(mt_study **out, mt_err *err);
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
 mt_avoid mt_avoid_default(mt_addr addr);
+mt_shake mt_shake_default(mt_addr addr);
 /* Tolerance of a goal, of 1. */
 double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);

@@ -8,8 +8,6 @@
 
 #include <string.h>
 
-enum { FREQUENCY_RESPONSE = 4, TRANSMISSIBILITY = 5, LISTED_MOST = 10 };
-
 int mt_study_find_measurement(const mt_study *study, const char *name)
 {
     for (int i = 0; i < study->n_measurements; i++) {
@@ -20,8 +18,8 @@ int mt_study_find_measurement(const mt_study *study, const char *name)
     return MT_ABSENT;
 }
 
-/* Is one of the file the one that was asked for? A node alone means any direction. Against a direction is the same freedom: the
- * sign is in the values. */
+/* Is one of the file the one that was asked for? A node alone means any direction; against a
+ * direction is the same freedom, the sign is in the values. */
 static bool is_freedom(mt_name asked, const mt_measured_freedom *has)
 {
     mt_measured_freedom f;
@@ -32,46 +30,11 @@ static bool is_freedom(mt_name asked, const mt_measured_freedom *has)
                                    f.direction == -has->direction);
 }
 
-static bool is_response(const mt_measured_response *r)
-{
-    return r->dataset == 0 || r->function == FREQUENCY_RESPONSE ||
-           r->function == TRANSMISSIBILITY;
-}
-
 static bool is_meant(const mt_measurement *m, const mt_measured_response *r)
 {
-    return is_response(r) && (m->dataset == 0 || m->dataset == r->dataset) &&
+    return mt_measured_is_response(r) && (m->dataset == 0 || m->dataset == r->dataset) &&
            is_freedom(m->response_name, &r->response) &&
            is_freedom(m->reference_name, &r->reference);
-}
-
-const char *mt_measured_response_text(const mt_measured_response *r, mt_arena *mem)
-{
-    char a[MT_FREEDOM_TEXT];
-    char b[MT_FREEDOM_TEXT];
-    if (r->dataset == 0) {
-        return mt_arena_printf(
-            mem, "%s%s%s by %s", r->configuration == NULL ? "" : r->configuration,
-            r->configuration == NULL ? "" : ": ", r->output == NULL ? "an output" : r->output,
-            r->input == NULL ? "an input" : r->input);
-    }
-    mt_measured_freedom_text(&r->response, a);
-    mt_measured_freedom_text(&r->reference, b);
-    return mt_arena_printf(mem, "dataset %d: %s by %s", r->dataset, a, b);
-}
-
-const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem)
-{
-    const char *text = "";
-    int listed = 0;
-    for (int i = 0; i < m->n_responses && text != NULL && listed < LISTED_MOST; i++) {
-        if (is_response(&m->responses[i])) {
-            const char *const one = mt_measured_response_text(&m->responses[i], mem);
-            text = mt_arena_printf(mem, "%s%s%s", text, listed++ > 0 ? "; " : "",
-                                   one == NULL ? "" : one);
-        }
-    }
-    return text == NULL ? "" : text;
 }
 
 /* Where the study asks for one of several. */
@@ -156,5 +119,20 @@ void mt_study_check_measurements(mt_study_check *c)
         for (int k = 0; k < m->n_responses && known; k++) {
             known = scale(c, m, &m->responses[k]);
         }
+    }
+}
+
+void mt_study_check_measured_goal(mt_study_check *c, mt_goal *goal)
+{
+    mt_shake *const s = goal->shake;
+    if (s == NULL) {
+        return; /* memory is out */
+    }
+    s->measurement = mt_check_measurement(c, s->measurement_name);
+    if (MT_HAS(s->lower_hz) && MT_HAS(s->upper_hz) &&
+        !(s->lower_hz >= 0.0 && s->lower_hz < s->upper_hz)) {
+        mt_diag_error(c->diags, s->band_addr,
+                      "band_hz (%g to %g) must be two frequencies from 0 on in ascending order",
+                      s->lower_hz, s->upper_hz);
     }
 }

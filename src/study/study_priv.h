@@ -12,8 +12,10 @@ typedef struct mt_study_check { /* a shortage is known to the study's arena */
     mt_diags *diags;
 } mt_study_check;
 
-void mt_study_check_references(mt_study_check *c);           /* study_references.c */
-void mt_study_check_measurements(mt_study_check *c);         /* study_measurements.c */
+void mt_study_check_references(mt_study_check *c);   /* study_references.c */
+void mt_study_check_measurements(mt_study_check *c); /* study_measurements.c */
+/* of a goal that is compared with one; by the goals */
+void mt_study_check_measured_goal(mt_study_check *c, mt_goal *goal);
 void mt_study_check_variables(mt_study_check *c);            /* study_variables.c */
 void mt_study_check_goals(mt_study_check *c);                /* study_goals.c */
 void mt_study_check_avoid(mt_study_check *c, mt_goal *goal); /* study_avoid.c; by the former */
