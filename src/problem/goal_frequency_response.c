@@ -79,12 +79,11 @@ static mt_status find_measured(mt_problem *p, const mt_demand *d, mt_fit *fit, m
 }
 
 /* Units are held against each other where the file says them. */
-static mt_status check_unit(mt_problem *p, const mt_demand *d, const mt_fit *fit,
-                            mt_err *err)
+static mt_status check_unit(mt_problem *p, const mt_demand *d, const mt_fit *fit, mt_err *err)
 {
     const mt_measurement *const m = &p->study->measurements[d->goal->shake->measurement];
-    const char *const unit = mt_arena_printf(&p->mem, "%s per %s",
-                                             fit->ports.out->unit, fit->ports.in->unit);
+    const char *const unit =
+        mt_arena_printf(&p->mem, "%s per %s", fit->ports.out->unit, fit->ports.in->unit);
     if (unit == NULL || fit->measured->unit == NULL || strcmp(unit, fit->measured->unit) == 0) {
         return MT_OK;
     }
