@@ -30,7 +30,7 @@ static mt_status index_of_demand(mt_workspace *fresh, mt_view_work *view, const 
 {
     int pos = -1;
     *index = 0;
-    if (!mt_demand_has_mode(d)) {
+    if (!mt_demand_is_modal(d)) {
         return MT_OK;
     }
     MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));

@@ -86,26 +86,16 @@ void mt_read_study_measurements(mt_study_reader *s, mt_addr object)
     }
 }
 
-static mt_addr found(const mt_study_object *o, const mt_goal_kind *kind, mt_goal_slot slot)
-{
-    return o->found[mt_goal_member_at(kind, slot)];
-}
-
-void mt_read_study_measured_goal(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
     const int band = mt_goal_member_at(kind, MT_SLOT_BAND);
-    mt_shake *const shake = mt_arena_alloc(&s->study->mem, 1, sizeof *shake);
+    const int named = mt_goal_member_at(kind, MT_SLOT_MEASUREMENT);
+    const int coherence = mt_goal_member_at(kind, MT_SLOT_COHERENCE);
+    mt_shake *const shake = goal->shake;
     double edges[2];
-    if (shake == NULL) {
-        return;
-    }
-    *shake = mt_shake_default(goal->addr);
-    goal->shake = shake;
-    shake->input = mt_reader_ref(&s->r, found(o, kind, MT_SLOT_INPUT));
-    shake->output = mt_reader_ref(&s->r, found(o, kind, MT_SLOT_OUTPUT));
-    shake->measurement_name = mt_reader_ref(&s->r, found(o, kind, MT_SLOT_MEASUREMENT));
-    shake->coherence = mt_reader_flag(&s->r, found(o, kind, MT_SLOT_COHERENCE), false);
+    shake->measurement_name = mt_reader_ref(&s->r, o->found[named]);
+    shake->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
     shake->band_addr = mt_read_study_place(s, o, band);
     if (o->found[band] != MT_NO_ADDR && mt_read_study_pair(s, o->found[band], edges)) {
         shake->lower_hz = edges[0];

@@ -22,6 +22,7 @@
 
 #include "problem/demand.h"
 #include "problem/goal.h"
+#include "problem/shaken.h"
 
 static const double TWO_PI = 6.283185307179586477;
 
@@ -157,14 +158,12 @@ static mt_status take_lines(mt_problem *p, const mt_demand *d, mt_fit *fit, mt_e
 
 static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
 {
-    const mt_system *const sys = p->views[d->view].original->sys;
     mt_fit *const fit = mt_arena_alloc(&p->mem, 1, sizeof *fit);
     mt_port *const ports = mt_arena_alloc(&p->mem, 2, sizeof *ports);
     MT_TRY(mt_arena_check(&p->mem, err));
     d->fit = fit;
     fit->ports = (mt_port_set){.n_in = 1, .n_out = 1, .in = &ports[0], .out = &ports[1]};
-    MT_TRY(mt_port_input(sys, d->goal->shake->input.s, &p->mem, &ports[0], err));
-    MT_TRY(mt_port_output(sys, d->goal->shake->output.s, &p->mem, &ports[1], err));
+    MT_TRY(mt_shaken_ports(p, d, &ports[0], &ports[1], err));
     MT_TRY(find_measured(p, d, fit, err));
     MT_TRY(check_unit(p, d, fit, err));
     MT_TRY(take_lines(p, d, fit, err));
@@ -284,7 +283,8 @@ bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double 
 
 static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
 {
-    return mt_arena_printf(mem, "%s as measured in \"%s\" (%d lines, %.6g to %.6g Hz)", what,
+    return mt_arena_printf(mem, "%s %s by %s as measured in \"%s\" (%d lines, %.6g to %.6g Hz)",
+                           what, d->fit->ports.out->name, d->fit->ports.in->name,
                            d->goal->shake->measurement_name.s, d->fit->n, d->fit->w[0] / TWO_PI,
                            d->fit->w[d->fit->n - 1] / TWO_PI);
 }

@@ -85,7 +85,8 @@ bool mt_measured_is_response(const mt_measured_response *r)
            r->function == MT_FUNCTION_TRANSMISSIBILITY;
 }
 
-const char *mt_measured_response_text(const mt_measured_response *r, mt_arena *mem)
+/* "dataset 3: 12+Z by 1+Z", "installed: grip.x:acceleration by grip.x" */
+static const char *response_text(const mt_measured_response *r, mt_arena *mem)
 {
     char a[MT_FREEDOM_TEXT];
     char b[MT_FREEDOM_TEXT];
@@ -106,7 +107,7 @@ const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem)
     int listed = 0;
     for (int i = 0; i < m->n_responses && text != NULL && listed < LISTED_MOST; i++) {
         if (mt_measured_is_response(&m->responses[i])) {
-            const char *const one = mt_measured_response_text(&m->responses[i], mem);
+            const char *const one = response_text(&m->responses[i], mem);
             text = mt_arena_printf(mem, "%s%s%s", text, listed++ > 0 ? "; " : "",
                                    one == NULL ? "" : one);
         }

@@ -64,9 +64,7 @@ enum { MT_FREEDOM_TEXT = 24 };
 void mt_measured_freedom_text(const mt_measured_freedom *f, char text[MT_FREEDOM_TEXT]);
 /* Of a table always, of a universal file by its kind of function. */
 bool mt_measured_is_response(const mt_measured_response *r);
-/* "dataset 3: 12+Z by 1+Z", "installed: grip.x:acceleration by grip.x"; those of a file. In
- * mem, which remembers a shortage. */
-const char *mt_measured_response_text(const mt_measured_response *r, mt_arena *mem);
+/* What a file has: "dataset 3: 12+Z by 1+Z; ...". In mem, which remembers a shortage. */
 const char *mt_measured_list_text(const mt_measurement *m, mt_arena *mem);
 
 #endif

@@ -122,12 +122,8 @@ void mt_study_check_measurements(mt_study_check *c)
     }
 }
 
-void mt_study_check_measured_goal(mt_study_check *c, mt_goal *goal)
+void mt_study_check_measured(mt_study_check *c, mt_shake *s)
 {
-    mt_shake *const s = goal->shake;
-    if (s == NULL) {
-        return; /* memory is out */
-    }
     s->measurement = mt_check_measurement(c, s->measurement_name);
     if (MT_HAS(s->lower_hz) && MT_HAS(s->upper_hz) &&
         !(s->lower_hz >= 0.0 && s->lower_hz < s->upper_hz)) {

@@ -26,7 +26,7 @@ ALLOWED = {
     "prove": ENGINE | {"analysis"},
     "scene": ENGINE | {"tree", "analysis"},
     "simulate": {"base", "linalg", "expr", "model", "mechanics", "study"},
-    "problem": ENGINE | {"analysis", "response", "nlp", "study", "result", "prove"},
+    "problem": ENGINE | {"analysis", "response", "vibration", "nlp", "study", "result", "prove"},
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
     "answer": ENGINE | {"tree", "analysis", "nlp", "study", "result", "prove", "problem", "search", "describe"},
