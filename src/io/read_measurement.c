@@ -84,7 +84,8 @@ bool mt_measuring_number(const char *text, size_t length, double *out)
         return false;
     }
     for (size_t i = 0; i < length; i++) {
-        own[i] = text[i] == 'D' || text[i] == 'd' ? 'E' : text[i];
+        const bool power = text[i] == 'D' || text[i] == 'd';
+        own[i] = (char)(power ? 'E' : text[i]);
     }
     own[length] = '\0';
     if (!is_decimal(own, length)) {

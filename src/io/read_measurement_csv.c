@@ -172,7 +172,7 @@ static char separator_of(const mt_measuring *m)
         }
     }
     const int commas = count[0];
-    return count[1] > commas ? ';' : count[2] > commas ? '\t' : ',';
+    return (char)(count[1] > commas ? ';' : count[2] > commas ? '\t' : ',');
 }
 
 static bool same_name(const char *a, const char *b)

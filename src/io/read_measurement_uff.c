@@ -92,17 +92,11 @@ static bool is_delimiter(const char *s)
 /* Is the line that `at` is in, from here on, a delimiter? It is not changed. */
 static bool at_delimiter(const mt_measuring *m)
 {
-    const char *s = m->at;
-    while (s < m->end && (*s == ' ' || *s == '\t')) {
-        s++;
-    }
-    if (m->end - s < 2 || s[0] != '-' || s[1] != '1') {
+    const char *s = m->at + strspn(m->at, " \t"); /* a NUL ends the text */
+    if (s[0] != '-' || s[1] != '1') {
         return false;
     }
-    s += 2;
-    while (s < m->end && (*s == ' ' || *s == '\t')) {
-        s++;
-    }
+    s += 2 + strspn(s + 2, " \t");
     return s >= m->end || *s == '\n' || *s == '\r';
 }
 

@@ -20,6 +20,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "problem/demand.h"
 #include "problem/goal.h"
 #include "problem/shaken.h"
@@ -228,6 +229,7 @@ static mt_status line(mt_workspace *w, const mt_demand *d, int i, const forced *
     double *const r = w->r + d->row_res + (2 * (ptrdiff_t)i);
     double complex h = 0.0;
     mt_arena *const mem = &w->views[d->view].analysis->mem;
+    MT_TRY(mt_interrupt_check(w->p->study->model->interrupt, err));
     MT_TRY(mt_transfer_at(&f->basis.t, d->fit->w[i], &(mt_sample){.h = &h}, mem, err));
     const double size = hypot(creal(h), cimag(h));
     if (!isfinite(size)) {
