@@ -156,7 +156,7 @@ mt_status mt_sampled_respond(mt_response *r, const mt_vibration *v, mt_vibration
                                &out->tones[i], &ignored, err));
         out->end = out->tones[i].end > out->end ? out->tones[i].end : out->end;
     }
-    mt_vibration_respond_sum(v, out);
+    mt_vibration_respond_combine(v, out);
     return MT_OK;
 }
 

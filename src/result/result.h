@@ -397,6 +397,16 @@ typedef struct mt_result_spent {
     long multiplications; /* of proofs, about */
 } mt_result_spent;
 
+/* A design that a search met that was better than all before it. */
+typedef struct mt_result_step {
+    int objective;    /* that was made least, from 1 */
+    int round;        /* from 1: what follows counts more closely, or under more conditions */
+    long evaluations; /* up to there, as if one worker had done all of it */
+    double value;     /* of that objective, as mt_design_objective has it; NaN: none */
+    double violation; /* the most that a goal or bound is missed by, of its tolerance */
+    bool feasible;
+} mt_result_step;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     mt_result_build build;
@@ -411,6 +421,8 @@ typedef struct mt_result_run {
     int distinct_designs;
     int found_once;           /* of them, by one start only */
     double estimated_missing; /* isolated designs that no start met, at least */
+    int n_history;            /* 0: nothing was searched, or an interrupt cut it */
+    mt_result_step *history;
     int n_overrides;
     mt_result_override *overrides;
     int n_inputs;
