@@ -20,7 +20,7 @@
 
 #include "base/format.h"
 
-enum { TEXTS = 5, VALUES_MOST = 100000000 };
+enum { TEXTS = 5, VALUES_MOST = 100000000, UNIT_TEXT = 24 };
 enum { COMPLEX_SINGLE = 5, COMPLEX_DOUBLE = 6, REAL_SINGLE = 2, REAL_DOUBLE = 4 };
 enum { UNKNOWN = 0, GENERAL = 1, DISPLACEMENT = 8, REACTION = 9, VELOCITY = 11 };
 enum { ACCELERATION = 12, FORCE = 13, FREQUENCY = 18 };
@@ -52,8 +52,8 @@ typedef struct header {
     mt_measured_freedom reference;
     int numerator;
     int denominator;
-    char numerator_unit[MT_FREEDOM_TEXT];
-    char denominator_unit[MT_FREEDOM_TEXT];
+    char numerator_unit[UNIT_TEXT];
+    char denominator_unit[UNIT_TEXT];
     record data; /* record 7 */
     bool binary;
     bool big;
@@ -142,11 +142,11 @@ static mt_status integer(const reading *u, const record *r, int from, int width,
     return MT_OK;
 }
 
-static void text_of(const record *r, int from, int width, char out[MT_FREEDOM_TEXT])
+static void text_of(const record *r, int from, int width, char out[UNIT_TEXT])
 {
     int length = 0;
     const char *const s = field_of(r, from, width, &length);
-    (void)mt_snprintf(out, MT_FREEDOM_TEXT, "%.*s", length, s);
+    (void)mt_snprintf(out, UNIT_TEXT, "%.*s", length, s);
 }
 
 static mt_status read_freedoms(const reading *u, const record *r, header *h)
@@ -194,7 +194,7 @@ static mt_status read_form(const reading *u, const record *r, header *h)
 static mt_status read_axes(const reading *u, const record axes[4], header *h)
 {
     int abscissa = 0;
-    char unit[MT_FREEDOM_TEXT];
+    char unit[UNIT_TEXT];
     MT_TRY(integer(u, &axes[0], 0, 10, &abscissa));
     MT_TRY(integer(u, &axes[1], 0, 10, &h->numerator));
     MT_TRY(integer(u, &axes[2], 0, 10, &h->denominator));

@@ -7,7 +7,7 @@
 #include "base/format.h"
 
 enum { DIGITS_MOST = 9 }; /* of the number of a node */
-enum { LISTED_MOST = 10 };
+enum { LISTED_MOST = 10, FREEDOM_TEXT = 24 };
 
 mt_measurement mt_measurement_default(mt_name name, mt_addr addr)
 {
@@ -68,11 +68,12 @@ bool mt_measured_freedom_parse(const char *text, mt_measured_freedom *out)
     return true;
 }
 
-void mt_measured_freedom_text(const mt_measured_freedom *f, char text[MT_FREEDOM_TEXT])
+/* "12+Z": a node, and a direction with its sign in front. */
+static void freedom_text(const mt_measured_freedom *f, char text[FREEDOM_TEXT])
 {
     static const char *const names[] = {"", "X", "Y", "Z", "RX", "RY", "RZ"};
     const int axis = f->direction < 0 ? -f->direction : f->direction;
-    (void)mt_snprintf(text, MT_FREEDOM_TEXT, "%d%s%s", f->node,
+    (void)mt_snprintf(text, FREEDOM_TEXT, "%d%s%s", f->node,
                       f->direction < 0   ? "-"
                       : f->direction > 0 ? "+"
                                          : "",
@@ -88,16 +89,16 @@ bool mt_measured_is_response(const mt_measured_response *r)
 /* "dataset 3: 12+Z by 1+Z", "installed: grip.x:acceleration by grip.x" */
 static const char *response_text(const mt_measured_response *r, mt_arena *mem)
 {
-    char a[MT_FREEDOM_TEXT];
-    char b[MT_FREEDOM_TEXT];
+    char a[FREEDOM_TEXT];
+    char b[FREEDOM_TEXT];
     if (r->dataset == 0) {
         return mt_arena_printf(
             mem, "%s%s%s by %s", r->configuration == NULL ? "" : r->configuration,
             r->configuration == NULL ? "" : ": ", r->output == NULL ? "an output" : r->output,
             r->input == NULL ? "an input" : r->input);
     }
-    mt_measured_freedom_text(&r->response, a);
-    mt_measured_freedom_text(&r->reference, b);
+    freedom_text(&r->response, a);
+    freedom_text(&r->reference, b);
     return mt_arena_printf(mem, "dataset %d: %s by %s", r->dataset, a, b);
 }
 

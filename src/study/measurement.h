@@ -59,9 +59,6 @@ typedef struct mt_measurement {
 mt_measurement mt_measurement_default(mt_name name, mt_addr addr);
 /* "12+Z", "12Z+", "3-RX", "7" (a scalar) read as a node and a direction; false: it is none. */
 bool mt_measured_freedom_parse(const char *text, mt_measured_freedom *out);
-/* As such a text, of a node with the direction's sign in front of it. */
-enum { MT_FREEDOM_TEXT = 24 };
-void mt_measured_freedom_text(const mt_measured_freedom *f, char text[MT_FREEDOM_TEXT]);
 /* Of a table always, of a universal file by its kind of function. */
 bool mt_measured_is_response(const mt_measured_response *r);
 /* What a file has: "dataset 3: 12+Z by 1+Z; ...". In mem, which remembers a shortage. */
