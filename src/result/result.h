@@ -85,7 +85,7 @@ typedef struct mt_result_goal {
     double tolerance_percent; /* a violation up to it is met */
     double violation_percent;
     bool met;
-    bool weighted; /* part of the misfit: does not decide status */
+    bool weighted; /* part of the misfit, or of the vibration: does not decide status */
     bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
     /* the worst value over the tolerances of the variables, which the goal is judged by; NaN:
      * none */
