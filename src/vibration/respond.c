@@ -67,7 +67,7 @@ static double combine(const mt_vibration *v, const mt_vibration_response *r)
     return sum;
 }
 
-void mt_vibration_respond_sum(const mt_vibration *v, mt_vibration_response *r)
+void mt_vibration_respond_combine(const mt_vibration *v, mt_vibration_response *r)
 {
     r->sine = combine(v, r);
     r->peak = (v->sigma * r->rms) + r->sine;
@@ -87,7 +87,7 @@ mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_a
                                           TWO_PI * v->tones[i].upper_hz);
         note_end(out, out->tones[i].end, out->tones[i].pole);
     }
-    mt_vibration_respond_sum(v, out);
+    mt_vibration_respond_combine(v, out);
     return MT_OK;
 }
 
