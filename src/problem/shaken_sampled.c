@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "vibration/profiled.h"
+
 static const double TWO_PI = 6.283185307179586476925;
 
 enum { CURVE_POINTS = 33, NODES = 4 };
@@ -118,45 +120,16 @@ static mt_status all_nodes(mt_response *r, const mt_vibration *v, mt_spectral_no
     return MT_OK;
 }
 
-/* An undamped resonance that is shaken is a point of the curve, or between two. */
-static mt_status judge(mt_response *r, const mt_vibration *v, mt_vibration_response *out,
-                       mt_err *err)
-{
-    for (int i = 0; i < v->n_random; i++) {
-        const mt_psd *const g = &v->random[i].psd;
-        mt_sine_peak peak;
-        double ignored = 0.0;
-        MT_TRY(mt_sampled_find(r, TWO_PI * g->hz[0], TWO_PI * g->hz[g->n - 1], &peak, &ignored,
-                               err));
-        out->end = peak.end > out->end ? peak.end : out->end;
-    }
-    return MT_OK;
-}
-
 mt_status mt_sampled_respond(mt_response *r, const mt_vibration *v, mt_vibration_response *out,
                              mt_err *err)
 {
-    mt_spectral_nodes nodes;
-    double square = 0.0;
-    *out = (mt_vibration_response){
-        .end = MT_FORCED_FINITE, .pole = -1, .rms_bound = nan(""), .n_tones = v->n_tones};
-    out->tones = mt_arena_alloc(&r->mem, (size_t)v->n_tones, sizeof *out->tones);
-    MT_TRY(mt_arena_check(&r->mem, err));
-    MT_TRY(judge(r, v, out, err));
-    MT_TRY(all_nodes(r, v, &nodes, err));
-    for (int j = 0; j < nodes.n; j++) {
-        double complex h = 0.0;
-        MT_TRY(at(r, nodes.omega[j], &h, NULL, err));
-        square += creal(nodes.weight[j]) * creal(h * conj(h));
-    }
-    out->rms = out->end == MT_FORCED_FINITE ? sqrt(square) : nan("");
-    for (int i = 0; i < v->n_tones; i++) {
+    mt_profiled profiled;
+    MT_TRY(mt_profiled_find(r, v, &profiled, err));
+    *out = profiled.answers[0];
+    for (int i = 0; i < out->n_tones && out->end == MT_FORCED_FINITE; i++) {
         double ignored = 0.0;
-        MT_TRY(mt_sampled_find(r, TWO_PI * v->tones[i].lower_hz, TWO_PI * v->tones[i].upper_hz,
-                               &out->tones[i], &ignored, err));
-        out->end = out->tones[i].end > out->end ? out->tones[i].end : out->end;
+        MT_TRY(take(r, &out->tones[i], &ignored, err)); /* its direction */
     }
-    mt_vibration_respond_combine(v, out);
     return MT_OK;
 }
 

@@ -7,8 +7,8 @@
 
 /*
  * Forced vibration without a sum over poles, of the only output of an open problem to its only
- * input: curves that follow the shape (response/curve.h), and Gauss's rule between their points.
- * Bounds of errors are NaN: nobody knows them. All of it is in r->mem.
+ * input: curves that follow the shape (response/curve.h), and quadrature. All of it is in
+ * r->mem. Of the largest value nobody knows a bound: its excess is NaN.
  */
 /* The largest |H| from lower to upper [rad/s], which may be equal, and d|H|/dw there. */
 mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_peak *out,

@@ -85,7 +85,7 @@ typedef struct mt_result_goal {
     double tolerance_percent; /* a violation up to it is met */
     double violation_percent;
     bool met;
-    bool weighted; /* part of the misfit: does not decide status */
+    bool weighted; /* part of the misfit, or of the vibration: does not decide status */
     bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
     /* the worst value over the tolerances of the variables, which the goal is judged by; NaN:
      * none */
@@ -126,10 +126,10 @@ typedef struct mt_result_response {
     const char *quantity; /* "response" | "rms" | "sine" | "peak" */
     const char *unit;     /* of value and error; "": not known */
     double value;         /* NaN: none, see end */
-    double error;         /* of it, at most */
-    double frequency_hz;  /* where the response is largest; NaN: not known */
-    bool at_edge;         /* that is an end of the range */
-    double lower_hz;      /* the range that it was looked for in */
+    double error; /* of it, at most; of one that is sampled an estimate; NaN: not known */
+    double frequency_hz; /* where the response is largest; NaN: not known */
+    bool at_edge;        /* that is an end of the range */
+    double lower_hz;     /* the range that it was looked for in */
     double upper_hz;
     const char *end;   /* "finite" | "infinite" | "unstable" | "none": could not be computed */
     const char *grade; /* "proven": no frequency of the range has more; "sampled" */

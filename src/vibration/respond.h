@@ -21,8 +21,7 @@ typedef struct mt_vibration_response {
 /* Lists in mem. Fails: as mt_spectral_init. */
 mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_arena *mem,
                                mt_vibration_response *out, mt_err *err);
-/* From RMS and tones, whoever found them, their sum by the profile's rule, and the peak; numbers
- * that are not finite take them away. */
+/* From RMS and tones their sum by the profile's rule, and the peak. */
 void mt_vibration_respond_combine(const mt_vibration *v, mt_vibration_response *r);
 /* Amplitude of the response to tone i. */
 double mt_vibration_respond_tone(const mt_vibration *v, const mt_vibration_response *r, int i);

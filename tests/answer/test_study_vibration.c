@@ -214,7 +214,7 @@ static void double_pole__is_sampled(mt_test *t)
         CHECK(t, strcmp(r[0].grade, "sampled") == 0 && !MT_HAS(r[0].error));
         CHECK_NEAR(t, r[0].value, sqrt(4.0 / 3.0), 1e-12);
         CHECK_NEAR(t, r[0].frequency_hz, hz * sqrt(0.5), 1e-6);
-        CHECK(t, strcmp(r[1].grade, "sampled") == 0 && !MT_HAS(r[1].error));
+        CHECK(t, strcmp(r[1].grade, "sampled") == 0 && r[1].error < 1e-9 * r[1].value);
         CHECK_NEAR(t, r[1].value, 9.80665 * sqrt(all - outside), 1e-6);
         /* all is in proportion to 1 / zeta + 4 zeta, zeta = c / 40; outside hardly depends on it */
         const double *const slope = s.result->baseline.goals[1].sensitivity;
