@@ -24,8 +24,7 @@ typedef struct mt_shake {
     mt_name profile_name;        /* as written; s NULL: none */
     const mt_vibration *profile; /* of the study's; NULL: none, or it could not be read */
     mt_shake_quantity quantity;
-    /* of the numbers, from the names of the ports; "": not known; by finish */
-    const char *unit;
+    const char *unit;         /* of the numbers, from the names of the ports; "": not known */
     mt_name measurement_name; /* frequency_response: what it is compared with; s NULL: none */
     int measurement;          /* of the study's; by finish */
     bool coherence;           /* its lines weigh by it */
