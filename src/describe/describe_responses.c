@@ -11,6 +11,7 @@ static const double TWO_PI = 6.283185307179586476925;
 static const double PERCENT = 100.0;
 
 static const char RELATIVE[] = "relative_";
+static const char BASE[] = "base.";
 
 /* "the acceleration of grip.x", "the force of spring.mount". */
 static const char *output_text(const char *port, mt_arena *mem)
@@ -40,7 +41,7 @@ static const char *beside_text(const mt_goal *g, double value, mt_arena *mem)
                                                : g->equals;
     const double off = PERCENT * (value / limit - 1.0);
     const char *const what = MT_HAS(g->at_most) || MT_HAS(g->at_least) ? "limit" : "target";
-    return mt_arena_printf(mem, ", %.2g %% %s its %s", fabs(off), off > 0.0 ? "above" : "below",
+    return mt_arena_printf(mem, ", %.3g %% %s its %s", fabs(off), off > 0.0 ? "above" : "below",
                            what);
 }
 
@@ -68,13 +69,17 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
     if (what == NULL) {
         return NULL;
     }
-    const char *const subject = mt_arena_printf(mem, "in \"%s\" %s %s %s", r->configuration,
-                                                what, s->profile == NULL ? "for" : "under", by);
+    const bool force = strncmp(by, BASE, strlen(BASE)) != 0;
+    const char *const subject = mt_arena_printf(mem, "%s %s%s in \"%s\"", what,
+                                                s->profile != NULL ? "under "
+                                                : force            ? "under a force at "
+                                                                   : "for ",
+                                                by, r->configuration);
     if (subject == NULL) {
         return NULL;
     }
     if (!MT_HAS(r->value)) {
-        return strcmp(r->end, mt_forced_end_name(MT_FORCED_INFINITE)) == 0
+        return strcmp(r->end, "infinite") == 0
                    ? mt_arena_printf(mem,
                                      "%s has no bound: nothing damps a motion that is shaken "
                                      "at its natural frequency",
@@ -95,11 +100,11 @@ static mt_status look(mt_workspace *fresh, const mt_demand *d, mt_arena *mem,
                       mt_result_response *out, mt_err *err)
 {
     const mt_goal *const g = d->goal;
-    mt_shaken_value v = {.end = MT_FORCED_UNSTABLE};
+    mt_shaken_value v = {.finite = false};
     mt_err own = {.code = MT_OK};
     const mt_status rc = mt_shaken_look(fresh, d, &v, &own);
     MT_TRY(mt_pass_final(rc, &own, err));
-    const bool has = rc == MT_OK && v.end == MT_FORCED_FINITE;
+    const bool has = rc == MT_OK && v.finite;
     *out =
         (mt_result_response){.pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index),
                              .configuration = mt_view_name(fresh->p, &fresh->p->views[d->view]),
@@ -114,7 +119,7 @@ static mt_status look(mt_workspace *fresh, const mt_demand *d, mt_arena *mem,
                              .at_edge = has && v.at_edge,
                              .lower_hz = v.lower_hz,
                              .upper_hz = v.upper_hz,
-                             .end = rc == MT_OK ? mt_forced_end_name(v.end) : "none",
+                             .end = rc == MT_OK ? v.end_name : "none",
                              .grade = v.proven ? "proven" : "sampled"};
     out->text = text_of(g, out, mem);
     return mt_arena_check(mem, err);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "problem/goal.h"
+#include "problem/shaken_sampled.h"
 
 void mt_shaken_close(mt_view_work *view)
 {
@@ -53,7 +54,15 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     const mt_shaken_pair pair = {d->goal->shake->input.s, d->goal->shake->output.s};
     mt_response r = {.a = NULL};
     mt_err own = {.code = MT_OK};
-    const mt_status rc = open_ports(view->original, &pair, &r, &own);
+    mt_status rc = open_ports(view->original, &pair, &r, &own);
+    if (rc == MT_OK && r.ports.out[0].kind == MT_PORT_JOINT) {
+        const bool modal = view->original->sys->damping.modal;
+        rc = modal || r.ways.joint[0].geometric != NULL
+                 ? mt_fail(&own, MT_E_USAGE,
+                           "%s: a joint's force has no derivatives %s, which a search needs",
+                           pair.output, modal ? "beside modal damping ratios" : "under loads")
+                 : MT_OK;
+    }
     mt_response_free(&r);
     if (rc == MT_E_USAGE) {
         return mt_fail(err, MT_E_INPUT, "/goals/%d/output: %s", d->goal_index, own.text);
@@ -61,17 +70,17 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     return mt_pass_final(rc, &own, err); /* else it may have one at another design */
 }
 
-static mt_status read_ports(mt_problem *p, const mt_view *view, const mt_demand *d, mt_err *err)
+mt_status mt_shaken_ports(mt_problem *p, const mt_demand *d, mt_port *in, mt_port *out,
+                          mt_err *err)
 {
     const mt_shake *const s = d->goal->shake;
-    const mt_system *const sys = view->original->sys;
-    mt_port port;
+    const mt_system *const sys = p->views[d->view].original->sys;
     mt_err own = {.code = MT_OK};
     const char *where = "input";
-    mt_status rc = mt_port_input(sys, s->input.s, &p->mem, &port, &own);
+    mt_status rc = mt_port_input(sys, s->input.s, &p->mem, in, &own);
     if (rc == MT_OK) {
         where = "output";
-        rc = mt_port_output(sys, s->output.s, &p->mem, &port, &own);
+        rc = mt_port_output(sys, s->output.s, &p->mem, out, &own);
     }
     return rc == MT_OK ? MT_OK
            : rc == MT_E_MEMORY
@@ -82,7 +91,9 @@ static mt_status read_ports(mt_problem *p, const mt_view *view, const mt_demand 
 mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err)
 {
     mt_view *const view = &p->views[d->view];
-    MT_TRY(read_ports(p, view, d, err));
+    mt_port in;
+    mt_port out;
+    MT_TRY(mt_shaken_ports(p, d, &in, &out, err));
     MT_TRY(try_ports(view, d, err));
     if (view->pairs == NULL) {
         view->pairs = mt_arena_alloc(&p->mem, (size_t)p->study->n_goals, sizeof *view->pairs);
@@ -133,7 +144,7 @@ mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, doub
     MT_TRY(open_view(w, d, &s, err));
     *out = (mt_shaken_peak){.proven = s->summed};
     if (!s->summed) {
-        return mt_fail(err, MT_E_SINGULAR, "the response is no sum over simple poles");
+        return mt_sampled_find(&s->r, lower, upper, &out->at, &out->by_omega, err);
     }
     out->at = mt_sine_peak_find(&s->frf, lower, upper);
     if (out->at.end == MT_FORCED_FINITE) {
@@ -144,17 +155,25 @@ mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, doub
 }
 
 mt_status mt_shaken_respond(mt_workspace *w, const mt_demand *d, mt_vibration_response *out,
-                            const mt_pole_sum **sum, mt_arena **mem, mt_err *err)
+                            bool *proven, mt_err *err)
 {
+    const mt_vibration *const v = d->goal->shake->profile;
     mt_shaken *s = NULL;
     MT_TRY(open_view(w, d, &s, err));
-    *mem = &s->r.mem;
-    *sum = NULL;
-    if (!s->summed) {
-        return mt_fail(err, MT_E_SINGULAR, "the response is no sum over simple poles");
-    }
-    *sum = &s->sum;
-    return mt_vibration_respond(d->goal->shake->profile, *sum, *mem, out, err);
+    *proven = s->summed;
+    return s->summed ? mt_vibration_respond(v, &s->sum, &s->r.mem, out, err)
+                     : mt_sampled_respond(&s->r, v, out, err);
+}
+
+mt_status mt_shaken_nodes(mt_workspace *w, const mt_demand *d, const mt_vibration_response *r,
+                          double by_rms, double by_sine, mt_spectral_nodes *out, mt_err *err)
+{
+    const mt_vibration *const v = d->goal->shake->profile;
+    mt_shaken *s = NULL;
+    MT_TRY(open_view(w, d, &s, err));
+    return s->summed
+               ? mt_vibration_respond_nodes(v, &s->sum, r, by_rms, by_sine, &s->r.mem, out, err)
+               : mt_sampled_nodes(&s->r, v, r, by_rms, by_sine, out, err);
 }
 
 mt_status mt_shaken_slope(mt_workspace *w, const mt_demand *d, const mt_spectral_nodes *nodes,
@@ -181,5 +200,8 @@ void mt_shaken_to_ln(const mt_workspace *w, const mt_demand *d, double q, double
 mt_status mt_shaken_look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
 {
     *out = (mt_shaken_value){.value = nan(""), .error = nan(""), .omega = nan("")};
-    return d->ops->look(w, d, out, err);
+    MT_TRY(d->ops->look(w, d, out, err));
+    out->finite = out->end == MT_FORCED_FINITE;
+    out->end_name = mt_forced_end_name(out->end);
+    return MT_OK;
 }

@@ -18,8 +18,8 @@ typedef struct mt_shaken_pair {
 
 /*
  * Forced vibration of a view from one port to another, made once for each solve of it, when a
- * goal first asks. The response is a sum over poles, and its largest value over a band is proven
- * by branch and bound (vibration/sine.h). Where there is no sum of simple poles
+ * goal first asks. The response is a sum over poles, and its largest value over a band is
+ * proven by branch and bound (vibration/sine.h). Where there is no sum of simple poles
  * (mt_response_poles), a curve that follows its shape is traced instead (response/curve.h):
  * sampled.
  */
@@ -41,8 +41,10 @@ typedef struct mt_shaken_peak {
 /* What a goal finds at a design. */
 typedef struct mt_shaken_value {
     mt_forced_end end; /* numbers are NaN where it is not MT_FORCED_FINITE */
+    bool finite;
+    const char *end_name;
     double value;
-    double error; /* of it, at most */
+    double error; /* of it, at most; NaN: not known */
     double omega; /* where |H| is the largest [rad/s]; NaN: not known */
     bool at_edge; /* of the range that it was looked for in */
     double lower_hz;
@@ -50,6 +52,10 @@ typedef struct mt_shaken_value {
     bool proven; /* no frequency has more; else sampled */
 } mt_shaken_value;
 
+/* The demand's ports as its view's mechanism has them. Fails: MT_E_INPUT, which begins with the
+ * address, MT_E_MEMORY. */
+mt_status mt_shaken_ports(mt_problem *p, const mt_demand *d, mt_port *in, mt_port *out,
+                          mt_err *err);
 /* Look up the demand's ports in its view, and try them there. Fails: MT_E_INPUT, which begins
  * with the address, MT_E_MEMORY. */
 mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err);
@@ -57,10 +63,12 @@ mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err);
  * Fails: as mt_response_open. */
 mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, double upper,
                          mt_shaken_peak *out, mt_err *err);
-/* What the demand's profile does; *sum: what that is made of, NULL where it is sampled. Lists in
- * *mem until the next solve. */
+/* What the demand's profile does, lists until the next solve; *proven: as mt_shaken_peak. */
 mt_status mt_shaken_respond(mt_workspace *w, const mt_demand *d, mt_vibration_response *out,
-                            const mt_pole_sum **sum, mt_arena **mem, mt_err *err);
+                            bool *proven, mt_err *err);
+/* by_rms d rms + by_sine d sine of it as nodes. */
+mt_status mt_shaken_nodes(mt_workspace *w, const mt_demand *d, const mt_vibration_response *r,
+                          double by_rms, double by_sine, mt_spectral_nodes *out, mt_err *err);
 /* out[p->n] = d/dt of Re sum_i weight_i H(w_i), times `factor`. After a solve with gradient. */
 mt_status mt_shaken_slope(mt_workspace *w, const mt_demand *d, const mt_spectral_nodes *nodes,
                           double factor, double *out, mt_err *err);

@@ -41,6 +41,10 @@ mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *
                                       double complex *by_s, double complex *by_residue,
                                       double complex *by_d, mt_err *err);
 
+/* by_sine d sine = Re sum_i weight_i dH(w_i), a node for each tone. In mem. */
+mt_status mt_vibration_respond_tone_nodes(const mt_vibration *v, const mt_vibration_response *r,
+                                          double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                          mt_err *err);
 /* The same as nodes: by_rms d rms + by_sine d sine = Re sum_i weight_i dH(w_i) (as
  * mt_spectral_slope_nodes). In mem. */
 mt_status mt_vibration_respond_nodes(const mt_vibration *v, const mt_pole_sum *h,
