@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
+#include "response/slopes_weighted.h"
+
 void mt_response_free(mt_response *r)
 {
     mt_arena_free(&r->mem);
@@ -66,4 +68,31 @@ mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt
     const mt_slope_problem p = {
         .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
     return mt_response_slopes(&p, w, dh, &r->mem, err);
+}
+
+/* The basis of all modes. */
+static mt_status whole_basis(mt_response *r, mt_basis *out, mt_err *err)
+{
+    *out = r->basis;
+    if (r->basis.n_left == 0) {
+        return MT_OK;
+    }
+    const mt_basis_problem problem = {.f = &r->f, .mass = &r->a->mass, .modes = &r->a->modes};
+    return mt_basis_make(&problem, &r->mem, out, err);
+}
+
+mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
+                                      const double complex *weight, double *slope, mt_err *err)
+{
+    const mt_slope_problem p = {
+        .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
+    const mt_slope_weights q = {.out = out, .in = in, .n = n, .w = w, .weight = weight};
+    const mt_arena_mark mark = mt_arena_get_mark(&r->mem);
+    mt_basis basis;
+    mt_status rc = whole_basis(r, &basis, err);
+    if (rc == MT_OK) {
+        rc = mt_response_slopes_weighted(&p, &basis, &q, slope, &r->mem, err);
+    }
+    mt_arena_rewind(&r->mem, mark);
+    return rc;
 }
