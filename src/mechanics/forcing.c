@@ -126,6 +126,15 @@ void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, do
     }
 }
 
+double mt_linear_jacobian_contract(const mt_linear *lin, int p, const double *lambda)
+{
+    double sum = 0.0;
+    for (ptrdiff_t j = 0; j < lin->sys->nq && is_moved(lin, p); j++) {
+        sum += mt_dot(lin->m, lin->tangent[p].a + (j * lin->m), lambda + (j * lin->m));
+    }
+    return sum;
+}
+
 mt_status mt_linear_multipliers(mt_linear *lin, const double *w, double *lambda, mt_err *err)
 {
     return mt_eliminate_multipliers(&lin->e, w, lambda, &lin->scratch, err);

@@ -43,6 +43,8 @@ double mt_linear_row_dot_slope(const mt_linear *lin, int p, mt_term_kind kind, i
                                const double *phi);
 /* out[m] = (dA/dp) phi. */
 void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, double *out);
+/* Sum over entries of lambda (m x nq) times dA/dp. */
+double mt_linear_jacobian_contract(const mt_linear *lin, int p, const double *lambda);
 /* lambda[m]: A^T lambda ~ w. */
 mt_status mt_linear_multipliers(mt_linear *lin, const double *w, double *lambda, mt_err *err);
 /* Sum over the joint's equations of lambda times the derivative of t. */

@@ -431,3 +431,44 @@ double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, co
     }
     return out;
 }
+
+/* a^T g b of rows i of a and k of b, g nq x nq. */
+static double between_rows(const mt_rows *a, int i, const mt_rows *b, int k, ptrdiff_t nq,
+                           const double *g)
+{
+    double out = 0.0;
+    for (int c = b->start[k]; c < b->start[k + 1]; c++) {
+        out += b->value[c] * mt_rows_dot(a, i, g + ((ptrdiff_t)b->index[c] * nq));
+    }
+    return out;
+}
+
+double mt_linear_contract_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *g)
+{
+    const sum s = sum_of(matrix);
+    const mt_term_list *const list = &lin->list[s.kind];
+    const mt_rows *const rows = &lin->full[s.kind];
+    const mt_rows *const drows = is_moved(lin, p) ? &lin->tangent[p].rows[s.kind] : NULL;
+    const ptrdiff_t nq = lin->sys->nq;
+    double out = 0.0;
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        if (is_blocked(lin, s.kind, i, t)) {
+            continue;
+        }
+        const int other = partner(t, i);
+        const double half = t->pair ? 0.5 : 1.0;
+        const double by = half * weight_slope(lin, s, t, p);
+        out += by == 0.0 ? 0.0 : by * between_rows(rows, i, rows, other, nq, g);
+        if (drows != NULL) {
+            out += half * weight(lin, s, t) *
+                   (between_rows(drows, i, rows, other, nq, g) +
+                    between_rows(rows, i, drows, other, nq, g));
+        }
+    }
+    for (ptrdiff_t c = 0;
+         c < nq && drows != NULL && matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL; c++) {
+        out += mt_dot((int)nq, lin->tangent[p].kg + (c * nq), g + (c * nq));
+    }
+    return out;
+}

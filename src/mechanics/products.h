@@ -34,6 +34,9 @@ void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double sca
  * gradients. */
 double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *a,
                                const double *b);
+/* The same of a sum of such products: of sum a b^T, g (nq x nq). O(entries of the terms)
+ * however many there are. */
+double mt_linear_contract_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *g);
 /* w[nq] += (K - lambda M) phi over the states, without the geometric part of K. */
 void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w);
 /* Values of channels channel[ns] for shapes y (n x cols): s ns x cols. */

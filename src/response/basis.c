@@ -275,9 +275,22 @@ static bool is_real(size_t n, const double complex *x)
     return real;
 }
 
-/* Inputs, outputs and the rest. */
-static mt_status channels(parts *s, mt_transfer *t, mt_err *err)
+/* What follows of the adjoints of S_p, whose U^T S_p^T are su. */
+static mt_status follow_adjoint(parts *s, int p, const double complex *su, mt_basis *b,
+                                mt_err *err)
 {
+    const size_t size = (size_t)s->u * (size_t)s->f->n_out;
+    double complex *const solved = mt_arena_alloc(s->mem, size, sizeof *solved);
+    MT_TRY(mt_arena_check(s->mem, err));
+    memcpy(solved, su, size * sizeof *solved);
+    b->follow_s[p] = solved;
+    return mt_complex_solve(&s->factor, s->f->n_out, solved, err);
+}
+
+/* Inputs, outputs and the rest. */
+static mt_status channels(parts *s, mt_basis *b, mt_err *err)
+{
+    mt_transfer *const t = &b->t;
     const mt_forced *const f = s->f;
     const ptrdiff_t u = s->u;
     double complex *bu[MT_FORCED_POWERS] = {NULL};
@@ -291,6 +304,7 @@ static mt_status channels(parts *s, mt_transfer *t, mt_err *err)
             MT_TRY(mt_arena_check(s->mem, err));
             MT_TRY(forces(s, f->n_in, f->b[p], NULL, false, beta, bu[p], err));
             MT_TRY(mt_complex_solve(&s->factor, f->n_in, bu[p], err));
+            b->follow_b[p] = bu[p];
             t->beta[p] = beta;
         }
         if (f->s[p] != NULL || s_im != NULL) {
@@ -299,6 +313,7 @@ static mt_status channels(parts *s, mt_transfer *t, mt_err *err)
             su[p] = mt_arena_alloc(s->mem, (size_t)u * (size_t)f->n_out, sizeof *sigma);
             MT_TRY(mt_arena_check(s->mem, err));
             MT_TRY(forces(s, f->n_out, f->s[p], s_im, true, sigma, su[p], err));
+            MT_TRY(follow_adjoint(s, p, su[p], b, err));
             t->sigma[p] = sigma;
             t->real[p] = is_real(size, sigma);
         }
@@ -386,7 +401,11 @@ static mt_status make(parts *s, const mt_basis_problem *p, mt_basis *b, mt_err *
                              .e = {f->e[0], f->e[1]}};
     MT_TRY(mt_transfer_direct(&alone, s->mem, &given, err));
     memcpy(b->t.rest, given.rest, sizeof b->t.rest);
-    return channels(s, &b->t, err);
+    b->x = s->x;
+    b->follow = s->follow;
+    b->w = s->w;
+    b->n_follow = s->u;
+    return channels(s, b, err);
 }
 
 mt_status mt_basis_make(const mt_basis_problem *p, mt_arena *mem, mt_basis *out, mt_err *err)

@@ -22,6 +22,14 @@ typedef struct mt_basis {
     double *lambda;     /* [n_modes] eigenvalues; 0 of rigid-body modes */
     double *c;          /* t.n x t.n viscous damping; NULL: none */
     double complex *g;  /* t.n x t.n */
+    /* x = X q + U (sum_p s^p follow_b[p] u - W q) of the problem's coordinates, and with
+     * follow_s their adjoint */
+    const double *x;         /* f->n x t.n */
+    const double *follow;    /* U: f->n x n_follow */
+    const double complex *w; /* n_follow x t.n */
+    int n_follow;
+    const double complex *follow_b[MT_FORCED_POWERS]; /* n_follow x n_in; NULL: 0 */
+    const double complex *follow_s[MT_FORCED_POWERS]; /* n_follow x n_out; NULL: 0 */
 } mt_basis;
 
 /* The problem as the caller has it. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
-#include <string.h>
+#include "response/slopes_weighted.h"
 
 void mt_response_free(mt_response *r)
 {
@@ -70,23 +70,28 @@ mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt
     return mt_response_slopes(&p, w, dh, &r->mem, err);
 }
 
+/* The basis of all modes. */
+static mt_status whole_basis(mt_response *r, mt_basis *out, mt_err *err)
+{
+    *out = r->basis;
+    if (r->basis.n_left == 0) {
+        return MT_OK;
+    }
+    const mt_basis_problem problem = {.f = &r->f, .mass = &r->a->mass, .modes = &r->a->modes};
+    return mt_basis_make(&problem, &r->mem, out, err);
+}
+
 mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
                                       const double complex *weight, double *slope, mt_err *err)
 {
-    const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_out * r->ports.n_in;
-    const ptrdiff_t pair = out + ((ptrdiff_t)in * r->ports.n_out);
-    const int n_inputs = r->a->sys->n_inputs;
+    const mt_slope_problem p = {
+        .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
+    const mt_slope_weights q = {.out = out, .in = in, .n = n, .w = w, .weight = weight};
     const mt_arena_mark mark = mt_arena_get_mark(&r->mem);
-    double complex *const dh =
-        mt_arena_alloc(&r->mem, (size_t)pairs * (size_t)n_inputs, sizeof *dh);
-    mt_status rc = mt_arena_check(&r->mem, err);
-    memset(slope, 0, (size_t)n_inputs * sizeof *slope);
-    for (int i = 0; i < n && rc == MT_OK; i++) {
-        rc = mt_response_slopes_at(r, w[i], dh, err);
-        for (int p = 0; p < n_inputs && rc == MT_OK; p++) {
-            const double complex d = dh[pair + (p * pairs)];
-            slope[p] += (creal(weight[i]) * creal(d)) - (cimag(weight[i]) * cimag(d));
-        }
+    mt_basis basis;
+    mt_status rc = whole_basis(r, &basis, err);
+    if (rc == MT_OK) {
+        rc = mt_response_slopes_weighted(&p, &basis, &q, slope, &r->mem, err);
     }
     mt_arena_rewind(&r->mem, mark);
     return rc;

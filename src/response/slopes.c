@@ -9,7 +9,7 @@
  * d of the ground's own motion does not depend on any input: a rigid translation moves every
  * sensor by 1.
  */
-#include "response/slopes.h"
+#include "response/slopes_priv.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,23 +45,36 @@ typedef struct work {
     double *shift;            /* [nq] */
 } work;
 
+enum { MATRICES = MT_SLOPE_MATRICES };
+
 static pair new_pair(mt_arena *mem, int n)
 {
     return (pair){{mt_arena_f64(mem, (size_t)n, 1), mt_arena_f64(mem, (size_t)n, 1)}};
 }
 
-/* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M.
- * Modal ratios stand apart: their part is known in the freedoms alone. */
-enum { MATRICES = 4 };
+void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d)
+{
+    const mt_damping_def *const def = &a->sys->damping;
+    const double beta = mt_response_node(a, def->stiffness);
+    const double alpha = mt_response_node(a, def->mass);
+    d[MT_MATRIX_STIFFNESS] = (mt_slope_factor){{1.0, beta, 0.0}};
+    d[MT_MATRIX_LOSS] = (mt_slope_factor){{mt_complex(0.0, 1.0), 0.0, 0.0}};
+    d[MT_MATRIX_DAMPERS] = (mt_slope_factor){{0.0, 1.0, 0.0}};
+    d[MT_MATRIX_MASS] = (mt_slope_factor){{0.0, alpha, 1.0}};
+}
+
+static double complex value_of(const work *k, mt_slope_factor f)
+{
+    return f.c[0] + (f.c[1] * k->power[1]) + (f.c[2] * k->power[2]);
+}
 
 static void factors_of(work *k)
 {
-    const mt_damping_def *const d = &k->p->a->sys->damping;
-    const double complex s = k->power[1];
-    k->factor[MT_MATRIX_STIFFNESS] = 1.0 + (s * mt_response_node(k->p->a, d->stiffness));
-    k->factor[MT_MATRIX_LOSS] = mt_complex(0.0, 1.0);
-    k->factor[MT_MATRIX_DAMPERS] = s;
-    k->factor[MT_MATRIX_MASS] = k->power[2] + (s * mt_response_node(k->p->a, d->mass));
+    mt_slope_factor d[MATRICES];
+    mt_slope_matrices(k->p->a, d);
+    for (int m = 0; m < MATRICES; m++) {
+        k->factor[m] = value_of(k, d[m]);
+    }
 }
 
 /* to += f x, f complex, x real. */
@@ -116,9 +129,14 @@ static mt_status expand(work *k, const double complex *x, pair *states, mt_err *
     return MT_OK;
 }
 
-static int channel_row(const work *k, const mt_port *port)
+int mt_slope_channel(const mt_linear *lin, const mt_port *port)
 {
-    return mt_linear_terms(k->lin, MT_TERM_CHANNEL)->terms[port->index].first;
+    return mt_linear_terms(lin, MT_TERM_CHANNEL)->terms[port->index].first;
+}
+
+int mt_slope_power(const mt_port *port)
+{
+    return port->kind == MT_PORT_BASE ? 2 - port->motion : 0;
 }
 
 static mt_status open_input(work *k, int i, const double complex *x, mt_err *err)
@@ -134,34 +152,41 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
         mt_linear_shift(k->lin, port->index, k->shift);
         mt_linear_states_product(k->lin, MT_MATRIX_MASS, -1.0, k->shift, f);
     } else {
-        mt_linear_row_add(k->lin, MT_TERM_CHANNEL, channel_row(k, port), 1.0, f);
+        mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, port), 1.0, f);
     }
-    add_real(k->nq, k->power[port->kind == MT_PORT_BASE ? 2 - port->motion : 0], f, &w);
+    add_real(k->nq, k->power[mt_slope_power(port)], f, &w);
     MT_TRY(subtract_d(k, &s->states, &w, err));
     return balance(k, &w, &s->forces, err);
 }
 
-/* What the force of a spring or damper is of its coefficient and motion. */
-static double complex force_factor(const work *k, const mt_port *port, const mt_term *term)
+mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term)
 {
     return port->kind == MT_PORT_DAMPER
-               ? k->power[1]
-               : mt_complex(1.0, mt_response_node(k->p->a, term->loss));
+               ? (mt_slope_factor){{0.0, 1.0, 0.0}}
+               : (mt_slope_factor){
+                     {mt_complex(1.0, mt_response_node(a, term->loss)), 0.0, 0.0}};
 }
 
-/* Row, kind of terms and factor of an output that is one row's. */
-static double complex row_of(const work *k, const mt_port *port, int *row, mt_term_kind *kind,
-                             const mt_term **term)
+mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row,
+                             mt_term_kind *kind, const mt_term **term)
 {
+    mt_slope_factor f = {{0.0}};
     *term = NULL;
     if (port->kind == MT_PORT_SENSOR) {
         *kind = MT_TERM_CHANNEL;
-        *row = channel_row(k, port);
-        return k->power[port->motion];
+        *row = mt_slope_channel(a->lin, port);
+        f.c[port->motion] = 1.0;
+        return f;
     }
-    const double c = mt_response_spring(k->p->a, port, row, term);
+    const double c = mt_response_spring(a, port, row, term);
     *kind = port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
-    return *term == NULL ? 0.0 : c * force_factor(k, port, *term);
+    if (*term != NULL) {
+        f = mt_slope_force(a, port, *term);
+    }
+    for (int i = 0; i < MT_FORCED_POWERS; i++) {
+        f.c[i] *= c;
+    }
+    return f;
 }
 
 static mt_status open_output(work *k, int o, const double complex *y, mt_err *err)
@@ -179,7 +204,8 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
         int row = -1;
         mt_term_kind kind = MT_TERM_CHANNEL;
         const mt_term *term = NULL;
-        const double complex factor = row_of(k, port, &row, &kind, &term);
+        const double complex factor =
+            value_of(k, mt_slope_row(k->p->a, port, &row, &kind, &term));
         if (row >= 0) {
             mt_linear_row_add(k->lin, kind, row, 1.0, sigma);
             add_real(k->nq, factor, sigma, &w);
@@ -196,9 +222,9 @@ static double complex dot(int n, const pair *a, const pair *b)
                       mt_dot(n, a->part[0], b->part[1]) + mt_dot(n, a->part[1], b->part[0]));
 }
 
-static double slope_of(const work *k, int p, mt_node node)
+double mt_slope_node(const mt_analysis *a, int p, mt_node node)
 {
-    return node == MT_NO_NODE ? 0.0 : mt_linear_slope(k->lin, node, p);
+    return node == MT_NO_NODE ? 0.0 : mt_linear_slope(a->lin, node, p);
 }
 
 /* e . (matrix or its derivative) q. */
@@ -259,13 +285,13 @@ static mt_status between(work *k, int p, int o, int i, double complex *out, mt_e
     for (int m = 0; m < MATRICES; m++) {
         sum += k->factor[m] * between_one(k, p, (mt_matrix)m, e, q);
     }
-    if (slope_of(k, p, d->mass) != 0.0) {
+    if (mt_slope_node(k->p->a, p, d->mass) != 0.0) {
         MT_TRY(product_with(k, MT_MATRIX_MASS, e, q, &part, err));
-        sum += k->power[1] * slope_of(k, p, d->mass) * part;
+        sum += k->power[1] * mt_slope_node(k->p->a, p, d->mass) * part;
     }
-    if (slope_of(k, p, d->stiffness) != 0.0) {
+    if (mt_slope_node(k->p->a, p, d->stiffness) != 0.0) {
         MT_TRY(product_with(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
-        sum += k->power[1] * slope_of(k, p, d->stiffness) * part;
+        sum += k->power[1] * mt_slope_node(k->p->a, p, d->stiffness) * part;
     }
     if (d->modal) {
         MT_TRY(ratios(k, p, o, i, &part, err));
@@ -287,12 +313,12 @@ static double complex force_slope(work *k, int p, int i, const pair *e)
 {
     const mt_port *const port = &k->p->ports->in[i];
     if (port->kind == MT_PORT_SENSOR) {
-        return row_slope(k, p, MT_TERM_CHANNEL, channel_row(k, port), e);
+        return row_slope(k, p, MT_TERM_CHANNEL, mt_slope_channel(k->lin, port), e);
     }
     mt_linear_shift(k->lin, port->index, k->shift);
     const double re = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[0], k->shift);
     const double im = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[1], k->shift);
-    return -k->power[2 - port->motion] * mt_complex(re, im);
+    return -k->power[mt_slope_power(port)] * mt_complex(re, im);
 }
 
 /* d(sigma) . q - d(t) . l. */
@@ -307,7 +333,7 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
     int row = -1;
     mt_term_kind kind = MT_TERM_CHANNEL;
     const mt_term *term = NULL;
-    const double complex factor = row_of(k, port, &row, &kind, &term);
+    const double complex factor = value_of(k, mt_slope_row(k->p->a, port, &row, &kind, &term));
     if (row < 0) {
         return 0.0;
     }
@@ -315,10 +341,10 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
     if (term != NULL) {
         const double own = mt_linear_value(k->lin, term->coefficient);
         const double loss =
-            port->kind == MT_PORT_SPRING ? slope_of(k, p, term->loss) * own : 0.0;
-        const double complex by =
-            (mt_linear_slope(k->lin, term->coefficient, p) * force_factor(k, port, term)) +
-            mt_complex(0.0, loss);
+            port->kind == MT_PORT_SPRING ? mt_slope_node(k->p->a, p, term->loss) * own : 0.0;
+        const double complex by = (mt_linear_slope(k->lin, term->coefficient, p) *
+                                   value_of(k, mt_slope_force(k->p->a, port, term))) +
+                                  mt_complex(0.0, loss);
         sum += by * mt_complex(mt_linear_row_dot(k->lin, kind, row, in->states.part[0]),
                                mt_linear_row_dot(k->lin, kind, row, in->states.part[1]));
     }
@@ -352,13 +378,13 @@ static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err
     return MT_OK;
 }
 
-static mt_status admit(const mt_slope_problem *p, mt_err *err)
+mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err *err)
 {
     if (!p->a->with_gradient) {
         return mt_fail(err, MT_E_INTERNAL,
                        "derivatives asked for after a solve without gradient");
     }
-    for (int o = 0; o < p->t->n_out; o++) {
+    for (int o = first; o < first + count; o++) {
         const bool modal = p->a->sys->damping.modal;
         if (p->ports->out[o].kind == MT_PORT_JOINT &&
             (modal || p->ways->joint[o].geometric != NULL)) {
@@ -433,7 +459,7 @@ mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex
               .w = w,
               .power = {1.0, mt_complex(0.0, w), -w * w}};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    MT_TRY(admit(p, err));
+    MT_TRY(mt_slope_admit(p, 0, p->t->n_out, err));
     factors_of(&k);
     const mt_status rc = slopes(&k, dh, err);
     mt_arena_rewind(scratch, mark);

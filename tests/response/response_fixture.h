@@ -33,8 +33,9 @@ static inline int split_words(const char *text, char *room, size_t size, const c
     return n;
 }
 
-/* Names separated by blanks. */
-static inline bool ask(mt_test *t, asked *q, const char *inputs, const char *outputs)
+/* Names separated by blanks; so many modes (0: all). */
+static inline bool ask_modes(mt_test *t, asked *q, const char *inputs, const char *outputs,
+                             int modes)
 {
     char room[2][512];
     const char *in[8];
@@ -43,7 +44,8 @@ static inline bool ask(mt_test *t, asked *q, const char *inputs, const char *out
         .n_in = split_words(inputs, room[0], sizeof room[0], in, 8),
         .inputs = in,
         .n_out = split_words(outputs, room[1], sizeof room[1], out, 16),
-        .outputs = out};
+        .outputs = out,
+        .modes = modes};
     mt_err err = {.text = ""};
     q->rc = mt_response_open(q->m.a, &request, &q->r, &err);
     if (!CHECK(t, q->rc == MT_OK)) {
@@ -54,6 +56,11 @@ static inline bool ask(mt_test *t, asked *q, const char *inputs, const char *out
     q->s = (mt_sample){.h = mt_arena_alloc(&q->r.mem, pairs, sizeof *q->s.h),
                        .error = mt_arena_f64(&q->r.mem, pairs, 1)};
     return true;
+}
+
+static inline bool ask(mt_test *t, asked *q, const char *inputs, const char *outputs)
+{
+    return ask_modes(t, q, inputs, outputs, 0);
 }
 
 /* By modes; the direct way is checked against it. */
@@ -148,6 +155,74 @@ static inline void check_slopes(mt_test *t, const sloped *s, asked *q, double w)
     }
 }
 
+/* Weights that turn. */
+static inline double complex weight_of(int i)
+{
+    return (1.0 + (0.3 * i)) * cexp(mt_complex(0.0, 0.7 + (1.9 * i)));
+}
+
+enum { MOST_SLOPES = 8 * 16 * MECH_INPUTS, MOST_WEIGHTED = 4096 };
+
+/* want and size [pairs x inputs]: sum of weight dH over the slopes at each frequency, and of its
+ * magnitude. */
+static inline void add_up_slopes(mt_test *t, asked *q, const double *ws, int n_w, double *want,
+                                 double *size)
+{
+    const int pairs = q->r.ports.n_in * q->r.ports.n_out;
+    double complex dh[MOST_SLOPES];
+    mt_err err = {.text = ""};
+    for (int i = 0; i < n_w; i++) {
+        CHECK(t, mt_response_slopes_at(&q->r, ws[i], dh, &err) == MT_OK);
+        for (int at = 0; at < pairs * q->m.n; at++) {
+            const double complex part = weight_of(i) * dh[at];
+            want[at] += creal(part);
+            size[at] += cabs(part);
+        }
+    }
+}
+
+/* A derivative that is 0 by itself is rounding beside the others. */
+static inline void check_weighted(mt_test *t, asked *q, const double *ws, int n_w)
+{
+    double complex weight[MOST_WEIGHTED];
+    double want[MOST_SLOPES] = {0.0};
+    double size[MOST_SLOPES] = {0.0};
+    double got[MECH_INPUTS];
+    mt_err err = {.text = ""};
+    const int n_out = q->r.ports.n_out;
+    const int pairs = q->r.ports.n_in * n_out;
+    for (int i = 0; i < n_w && i < MOST_WEIGHTED; i++) {
+        weight[i] = weight_of(i);
+    }
+    add_up_slopes(t, q, ws, n_w, want, size);
+    double most = 0.0;
+    for (int at = 0; at < pairs * q->m.n; at++) {
+        most = fmax(most, size[at]);
+    }
+    for (int pair = 0; pair < pairs; pair++) {
+        CHECK(t, mt_response_weighted_slopes(&q->r, pair % n_out, pair / n_out, n_w, ws, weight,
+                                             got, &err) == MT_OK);
+        for (int p = 0; p < q->m.n; p++) {
+            mt_test_row(t, "weighted, input %s, output %s, parameter %d",
+                        q->r.ports.in[pair / n_out].name, q->r.ports.out[pair % n_out].name, p);
+            CHECK_NEAR_ABS(t, got[p], want[pair + (p * pairs)],
+                           1e-11 * size[pair + (p * pairs)] + 1e-13 * most);
+        }
+    }
+}
+
+static inline void weighted_agree(mt_test *t, const sloped *s, asked *q, const double *ws,
+                                  int n_w)
+{
+    const mt_analysis_options opt = all_modes(true);
+    mt_err err = {.text = ""};
+    if (CHECK(t, mt_analysis_solve(q->m.a, q->m.at, &opt, &err) == MT_OK) &&
+        ask(t, q, s->inputs, s->outputs)) {
+        check_weighted(t, q, ws, n_w);
+    }
+    mt_response_free(&q->r);
+}
+
 static inline void slopes_agree(mt_test *t, const sloped *s, const double *ws, int n_w)
 {
     asked q = {.rc = MT_OK};
@@ -155,6 +230,9 @@ static inline void slopes_agree(mt_test *t, const sloped *s, const double *ws, i
     const bool ready = mech_must(t, model, s->configuration, s->parameters, &q.m);
     for (int k = 0; k < n_w && ready; k++) {
         check_slopes(t, s, &q, ws[k]);
+    }
+    if (ready) {
+        weighted_agree(t, s, &q, ws, n_w);
     }
     done(&q);
 }

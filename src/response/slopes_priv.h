@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_SLOPES_PRIV_H
+#define RESPONSE_SLOPES_PRIV_H
+
+#include "mechanics/products.h"
+#include "response/slopes.h"
+
+/* What slopes at one frequency and sums of them over many share. */
+
+/* c_0 + c_1 s + c_2 s^2. */
+typedef struct mt_slope_factor {
+    double complex c[MT_FORCED_POWERS];
+} mt_slope_factor;
+
+/* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M.
+ * Modal ratios stand apart: their part is known in the freedoms alone. */
+enum { MT_SLOPE_MATRICES = 4 };
+void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
+
+/* The power of s that an input's force has. */
+int mt_slope_power(const mt_port *port);
+/* Row of a sensor's direction, of the terms of channels. */
+int mt_slope_channel(const mt_linear *lin, const mt_port *port);
+/* What the force of a spring or damper is of its coefficient and motion. */
+mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term);
+/* Row, kind of terms and factor of an output that is one row's; row -1: it has none. The term
+ * of its coefficient, too; NULL: it has none. */
+mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row,
+                             mt_term_kind *kind, const mt_term **term);
+/* Derivative of a number that may not be there: then 0. */
+double mt_slope_node(const mt_analysis *a, int p, mt_node node);
+/* Is there a derivative of these outputs at all? Fails as mt_response_slopes. */
+mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err *err);
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The coordinates q of the basis at each frequency by themselves; then all at once
+ *     x = X q + U u,    u = sum_p s^p u_p - W q    (basis.h), and likewise y. */
+#include "response/solutions.h"
+
+#include <string.h>
+
+#include "linalg/dense.h"
+
+mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *mem,
+                            mt_solutions *s, mt_err *err)
+{
+    const mt_transfer *const t = &basis->t;
+    *s = (mt_solutions){.basis = basis, .one = *t, .in = in, .out = out};
+    s->one.n_in = 1;
+    s->one.n_out = 1;
+    memset(s->one.rest, 0, sizeof s->one.rest);
+    for (int p = 0; p < MT_FORCED_POWERS; p++) {
+        if (t->beta[p] != NULL) {
+            s->one.beta[p] = t->beta[p] + ((ptrdiff_t)in * t->n);
+        }
+        if (t->sigma[p] != NULL) {
+            double complex *const row = mt_arena_alloc(mem, (size_t)t->n, sizeof *row);
+            MT_TRY(mt_arena_check(mem, err));
+            for (ptrdiff_t j = 0; j < t->n; j++) {
+                row[j] = t->sigma[p][out + (j * t->n_out)];
+            }
+            s->one.sigma[p] = row;
+        }
+    }
+    return MT_OK;
+}
+
+/* Both parts of numbers that are complex, apart. */
+static void part(ptrdiff_t n, const double complex *z, double *const to[2], ptrdiff_t at)
+{
+    for (ptrdiff_t j = 0; j < n; j++) {
+        to[0][at + j] = creal(z[j]);
+        to[1][at + j] = cimag(z[j]);
+    }
+}
+
+/* u := sum_p s^p given_p - W q. */
+static void follow(const mt_solutions *s, double w, const double complex *const *given,
+                   int column, const double complex *q, double complex *u)
+{
+    const ptrdiff_t n = s->basis->n_follow;
+    double complex power = 1.0;
+    memset(u, 0, (size_t)n * sizeof *u);
+    for (int p = 0; p < MT_FORCED_POWERS; p++) {
+        for (ptrdiff_t i = 0; i < n && given[p] != NULL; i++) {
+            u[i] += power * given[p][i + (column * n)];
+        }
+        power *= mt_complex(0.0, w);
+    }
+    for (ptrdiff_t j = 0; j < s->one.n; j++) {
+        for (ptrdiff_t i = 0; i < n; i++) {
+            u[i] -= s->basis->w[i + (j * n)] * q[j];
+        }
+    }
+}
+
+/* One side, x or y, of all frequencies in coordinates of the basis. */
+typedef struct side {
+    double *q[2]; /* stay x count */
+    double *u[2]; /* follow x count */
+} side;
+
+static side new_side(const mt_solutions *s, int count, mt_arena *mem)
+{
+    const size_t stay = (size_t)s->one.n * (size_t)count;
+    const size_t more = (size_t)s->basis->n_follow * (size_t)count;
+    return (side){{mt_arena_f64(mem, stay, 1), mt_arena_f64(mem, stay, 1)},
+                  {mt_arena_f64(mem, more, 1), mt_arena_f64(mem, more, 1)}};
+}
+
+/* to := X q + U u. */
+static void back(const mt_solutions *s, int count, const side *from, double *const to[2])
+{
+    const mt_basis *const b = s->basis;
+    const int n = b->f->n;
+    for (int i = 0; i < 2; i++) {
+        mt_gemm(false, false, n, count, s->one.n, 1.0, b->x, n, from->q[i], s->one.n, 0.0,
+                to[i], n);
+        if (b->n_follow > 0) {
+            mt_gemm(false, false, n, count, b->n_follow, 1.0, b->follow, n, from->u[i],
+                    b->n_follow, 1.0, to[i], n);
+        }
+    }
+}
+
+static mt_status solve(const mt_solutions *s, int count, const double *w, const mt_solved *out,
+                       bool *singular, mt_arena *mem, mt_err *err)
+{
+    const ptrdiff_t n = s->one.n;
+    const ptrdiff_t more = s->basis->n_follow;
+    double complex *const q = mt_arena_alloc(mem, (size_t)(n + more), sizeof *q);
+    double complex *const a = mt_arena_alloc(mem, (size_t)(n + more), sizeof *a);
+    const side x = new_side(s, count, mem);
+    const side y = new_side(s, count, mem);
+    MT_TRY(mt_arena_check(mem, err));
+    for (ptrdiff_t i = 0; i < count; i++) {
+        MT_TRY(mt_transfer_solve(&s->one, w[i], q, a, singular, mem, err));
+        if (*singular) {
+            return MT_OK;
+        }
+        part(n, q, x.q, i * n);
+        part(n, a, y.q, i * n);
+        follow(s, w[i], s->basis->follow_b, s->in, q, q + n);
+        follow(s, w[i], s->basis->follow_s, s->out, a, a + n);
+        part(more, q + n, x.u, i * more);
+        part(more, a + n, y.u, i * more);
+    }
+    back(s, count, &x, out->x);
+    back(s, count, &y, out->y);
+    return MT_OK;
+}
+
+mt_status mt_solutions_at(const mt_solutions *s, int count, const double *w,
+                          const mt_solved *out, bool *singular, mt_arena *scratch, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    *singular = false;
+    const mt_status rc = solve(s, count, w, out, singular, scratch, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}

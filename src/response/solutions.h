@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_SOLUTIONS_H
+#define RESPONSE_SOLUTIONS_H
+
+#include "response/basis.h"
+
+/*
+ * Of one input and one output, solutions x = D^-1 B u and their adjoints y = D^-1 S^T at many
+ * frequencies, in the coordinates of the problem.
+ */
+typedef struct mt_solutions {
+    const mt_basis *basis; /* not owned */
+    mt_transfer one;       /* that pair alone */
+    int in;
+    int out;
+} mt_solutions;
+
+/* Real and imaginary parts, each n x count. */
+typedef struct mt_solved {
+    double *x[2];
+    double *y[2];
+} mt_solved;
+
+/* Results in mem; refers to the basis. Fails: MT_E_MEMORY. */
+mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *mem,
+                            mt_solutions *s, mt_err *err);
+/* At w[count]. *singular: there are none at one of them. O(n^2) for each where damping is
+ * diagonal. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_solutions_at(const mt_solutions *s, int count, const double *w,
+                          const mt_solved *out, bool *singular, mt_arena *scratch, mt_err *err);
+
+#endif
