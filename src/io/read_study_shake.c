@@ -41,7 +41,7 @@ static mt_name name_at(const reading *g, mt_goal_slot slot)
     return name;
 }
 
-/* A name, and no path: of a profile that is part of the program, where there is no such file. */
+/* A name, no path: of a profile that is part of the program, where there is no such file. */
 static bool is_shipped(const mt_study_reader *s, const char *name, const char *file)
 {
     return strpbrk(name, "/.") == NULL && mt_files_lack(&s->files.files, file);
