@@ -41,7 +41,7 @@ static mt_name name_at(const reading *g, mt_goal_slot slot)
     return name;
 }
 
-/* A name, and no path: of a profile that is part of the program, where there is no such file. */
+/* A name, no path: of a profile that is part of the program, where there is no such file. */
 static bool is_shipped(const mt_study_reader *s, const char *name, const char *file)
 {
     return strpbrk(name, "/.") == NULL && mt_files_lack(&s->files.files, file);
@@ -96,11 +96,12 @@ static void note_input(mt_study_reader *s, const char *name, const char *sha256)
 
 /* The profile, and the catalogue of aircraft that its rotors are in; `own`: both are part of
  * the program. */
-static void note_inputs(mt_study_reader *s, const char *name, bool own, const mt_vibration *v)
+static void note_inputs(mt_study_reader *s, const char *profile, bool own,
+                        const mt_vibration *v)
 {
     const char *const catalogue = own ? mt_aircraft_own_name : v->aircraft_name;
-    char *const file = own ? mt_arena_printf(s->r.mem, "profile %s of modetune", name)
-                           : mt_arena_strdup(s->r.mem, name);
+    char *const file = own ? mt_arena_printf(s->r.mem, "profile %s of modetune", profile)
+                           : mt_arena_strdup(s->r.mem, profile);
     if (file == NULL) {
         return;
     }
@@ -112,7 +113,7 @@ static void note_inputs(mt_study_reader *s, const char *name, bool own, const mt
         note_input(s, catalogue, v->aircraft.sha256);
         return;
     }
-    char *const joined = mt_file_join(name, catalogue);
+    char *const joined = mt_file_join(profile, catalogue);
     if (joined == NULL) {
         mt_arena_fail(s->r.mem);
         return;

@@ -15,7 +15,7 @@
 
 void mt_shaken_close(mt_view_work *view)
 {
-    for (int i = 0; view->shaken != NULL && i < view->of->n_pairs; i++) {
+    for (int i = 0; i < view->n_shaken; i++) {
         if (view->shaken[i].open) {
             mt_response_free(&view->shaken[i].r);
             view->shaken[i].open = false;
@@ -48,6 +48,20 @@ static mt_status open_ports(mt_analysis *a, const mt_shaken_pair *pair, mt_respo
     return rc;
 }
 
+/* A search needs derivatives of a joint's force (response/slopes.h). */
+static mt_status with_slopes(const mt_view *view, const mt_response *r, const char *output,
+                             mt_err *err)
+{
+    const char *const why = view->original->sys->damping.modal   ? "beside modal damping ratios"
+                            : r->ways.joint[0].geometric != NULL ? "under loads"
+                                                                 : NULL;
+    return why == NULL ? MT_OK
+                       : mt_fail(err, MT_E_USAGE,
+                                 "%s: a joint's force has no derivatives %s, which a search "
+                                 "needs",
+                                 output, why);
+}
+
 /* The forced problem of one goal alone at the original design: does it have one? */
 static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
 {
@@ -56,12 +70,7 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     mt_err own = {.code = MT_OK};
     mt_status rc = open_ports(view->original, &pair, &r, &own);
     if (rc == MT_OK && r.ports.out[0].kind == MT_PORT_JOINT) {
-        const bool modal = view->original->sys->damping.modal;
-        rc = modal || r.ways.joint[0].geometric != NULL
-                 ? mt_fail(&own, MT_E_USAGE,
-                           "%s: a joint's force has no derivatives %s, which a search needs",
-                           pair.output, modal ? "beside modal damping ratios" : "under loads")
-                 : MT_OK;
+        rc = with_slopes(view, &r, pair.output, &own);
     }
     mt_response_free(&r);
     if (rc == MT_E_USAGE) {
@@ -117,16 +126,18 @@ static mt_status open_sum(mt_shaken *s, mt_err *err)
 static mt_status open_view(mt_workspace *w, const mt_demand *d, mt_shaken **out, mt_err *err)
 {
     mt_view_work *const view = &w->views[d->view];
+    const mt_view *const of = &w->p->views[d->view];
     if (view->shaken == NULL) {
-        view->shaken = mt_arena_alloc(&w->mem, (size_t)view->of->n_pairs, sizeof *view->shaken);
+        view->shaken = mt_arena_alloc(&w->mem, (size_t)of->n_pairs, sizeof *view->shaken);
         MT_TRY(mt_arena_check(&w->mem, err));
+        view->n_shaken = of->n_pairs;
     }
     mt_shaken *const s = &view->shaken[d->pair];
     *out = s;
     if (s->open) {
         return MT_OK;
     }
-    MT_TRY(open_ports(view->analysis, &view->of->pairs[d->pair], &s->r, err));
+    MT_TRY(open_ports(view->analysis, &of->pairs[d->pair], &s->r, err));
     s->open = true;
     const mt_status rc = open_sum(s, err);
     if (rc != MT_OK) {
@@ -140,7 +151,6 @@ mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, doub
                          mt_shaken_peak *out, mt_err *err)
 {
     mt_shaken *s = NULL;
-    double complex jet[3];
     MT_TRY(open_view(w, d, &s, err));
     *out = (mt_shaken_peak){.proven = s->summed};
     if (!s->summed) {
@@ -148,6 +158,7 @@ mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, doub
     }
     out->at = mt_sine_peak_find(&s->frf, lower, upper);
     if (out->at.end == MT_FORCED_FINITE) {
+        double complex jet[3];
         mt_frf_jet(&s->frf, (mt_near){out->at.omega, 0.0}, jet);
         out->by_omega = creal(mt_frf_times(out->at.direction, jet[1]));
     }

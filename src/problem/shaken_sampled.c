@@ -17,19 +17,13 @@ static const double NODE[NODES] = {-0.8611363115940525752, -0.339981043584856264
 static const double WEIGHT[NODES] = {0.3478548451374538574, 0.6521451548625461426,
                                      0.6521451548625461426, 0.3478548451374538574};
 
-static mt_status at(mt_response *r, double w, double complex *h, double complex *dh,
-                    mt_err *err)
-{
-    const mt_sample sample = {.h = h, .dh = dh};
-    return mt_transfer_at(r->chosen, w, &sample, &r->mem, err);
-}
-
 /* The value at its omega, with all that belongs to it. */
 static mt_status take(mt_response *r, mt_sine_peak *out, double *by_omega, mt_err *err)
 {
     double complex h = 0.0;
     double complex dh = 0.0;
-    MT_TRY(at(r, out->omega, &h, &dh, err));
+    const mt_sample at = {.h = &h, .dh = &dh};
+    MT_TRY(mt_transfer_at(r->chosen, out->omega, &at, &r->mem, err));
     if (!isfinite(creal(h))) {
         *out = (mt_sine_peak){.end = MT_FORCED_INFINITE, .pole = -1, .value = nan("")};
         return MT_OK;
@@ -153,7 +147,8 @@ mt_status mt_sampled_nodes(mt_response *r, const mt_vibration *v,
     }
     for (int j = 0; j < random.n; j++) {
         double complex h = 0.0;
-        MT_TRY(at(r, random.omega[j], &h, NULL, err));
+        const mt_sample at = {.h = &h};
+        MT_TRY(mt_transfer_at(r->chosen, random.omega[j], &at, &r->mem, err));
         out->omega[tones.n + j] = random.omega[j];
         out->weight[tones.n + j] = by_rms * creal(random.weight[j]) * conj(h) / of->rms;
     }

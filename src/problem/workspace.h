@@ -18,7 +18,8 @@ typedef struct mt_view_work {
     bool all;                 /* it asks for all modes (mt_view_ask_all) */
     bool tracked;             /* track belongs to the last solve */
     bool solved;              /* the last solve succeeded */
-    struct mt_shaken *shaken; /* [n_pairs] its forced vibrations (shaken.h); NULL: none yet */
+    int n_shaken;             /* pairs of ports */
+    struct mt_shaken *shaken; /* [n_shaken] its forced vibrations (shaken.h); NULL: none yet */
     int n_corners;            /* analyses that there are */
     mt_analysis **corners;    /* owned; for corners of the tolerances (robust.h) */
 } mt_view_work;

@@ -238,6 +238,66 @@ static void double_pole__is_sampled(mt_test *t)
     study_free(&s);
 }
 
+/* Over a catalogue of both the best combination is that of the least peak, looked up. */
+static void catalogue__of_absorbers_is_judged_by_the_peak(mt_test *t)
+{
+    static const double SPRINGS[] = {0.04, 0.0453, 0.05};
+    static const double DASHPOTS[] = {0.005, 0.0127, 0.03};
+    double least = HUGE_VAL;
+    int best[2] = {0, 0};
+    study_case s;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            const double own = fmax(peak(SPRINGS[i], DASHPOTS[j], 0.5, 0.95),
+                                    peak(SPRINGS[i], DASHPOTS[j], 0.95, 1.3));
+            best[0] = own < least ? i : best[0];
+            best[1] = own < least ? j : best[1];
+            least = fmin(own, least);
+        }
+    }
+    if (study_solve(
+            t, ABSORBER("0.0045", "0.12"),
+            "'variables': [{'parameter': 'k', 'catalogue': [0.04, 0.0453, 0.05]},"
+            " {'parameter': 'c', 'catalogue': [0.005, 0.0127, 0.03]}],"
+            "'goals': [{'type': 'response', 'input': 'main.x', 'output': 'main.x', " BAND
+            ", 'at_most': 1}], 'objective': {'minimise': 'vibration'}",
+            &s)) {
+        CHECK_INT(t, s.result->status, MT_RESULT_SOLVED);
+        CHECK_NEAR(t, study_value(&s, 1, "k"), SPRINGS[best[0]], 0.0);
+        CHECK_NEAR(t, study_value(&s, 1, "c"), DASHPOTS[best[1]], 0.0);
+        CHECK_NEAR(t, s.result->recommendations[0].score, 100.0 * least, 1e-8 * least);
+        CHECK_INT(t, s.result->n_undetermined, 0);
+    }
+    study_free(&s);
+}
+
+/* More room for the dashpot costs change and saves vibration until the optimum is within: a
+ * front with two sides, beside bands that the second mode keeps clear of. */
+static void vibration__is_one_side_of_a_front(mt_test *t)
+{
+    study_case s;
+    if (study_solve(
+            t, ABSORBER("0.0453", "0.001"),
+            "'variables': [{'parameter': 'k', 'lower': 1e-3, 'upper': 1},"
+            " {'parameter': 'c', 'lower': 1e-4, 'upper': 0.005}],"
+            "'goals': [{'type': 'response', 'input': 'main.x', 'output': 'main.x', " BAND
+            ", 'at_most': 1}, {'type': 'avoid', 'bands_hz': [[0.2, 0.3]]}],"
+            "'objective': {'minimise': 'vibration'},"
+            "'trade': {'vary': [{'variable': 'c', 'bound': 'upper',"
+            " 'values': [0.004, 0.008, 0.016]}], 'objectives': ['vibration', 'change']}",
+            &s) &&
+        CHECK_INT(t, s.result->trade->n_points, 3)) {
+        const mt_trade_point *const p = s.result->trade->points;
+        for (int i = 0; i < 3; i++) {
+            mt_test_row(t, "point %d", i);
+            CHECK(t, p[i].pareto && p[i].best.feasible);
+            CHECK(t, i == 0 || (p[i].best.score < p[i - 1].best.score &&
+                                p[i].best.change > p[i - 1].best.change));
+        }
+    }
+    study_free(&s);
+}
+
 /* What a study cannot mean is refused in words where it stands. */
 static void ports__that_are_not_there_are_told(mt_test *t)
 {
@@ -269,4 +329,7 @@ MT_TEST_MAIN(MT_TEST(absorber__is_tuned_from_ten_times_off),
              MT_TEST(limit__is_held_or_relaxed_to_the_least_peak),
              MT_TEST(resonance__without_damping_is_left),
              MT_TEST(rms__under_white_noise_has_its_closed_form),
-             MT_TEST(double_pole__is_sampled), MT_TEST(ports__that_are_not_there_are_told))
+             MT_TEST(double_pole__is_sampled),
+             MT_TEST(catalogue__of_absorbers_is_judged_by_the_peak),
+             MT_TEST(vibration__is_one_side_of_a_front),
+             MT_TEST(ports__that_are_not_there_are_told))
