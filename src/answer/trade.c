@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/workers.h"
 #include "nlp/merit.h"
 #include "search/discrete.h"
@@ -30,6 +31,8 @@ enum { BLOCK = 256 };
 /* Evaluations beside one local search that asks whether a neighbour knows better; and without
  * which a point is not searched again. */
 enum { LOOKS = 3, WARM_LEAST = 30 };
+enum { POINTER_TEXT = 32 };
+static const double PERCENT = 100.0;
 
 typedef struct trade {
     const mt_study *study;
@@ -350,6 +353,24 @@ static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
+/* The largest part that a design's forced vibrations have of the study's own limits, whichever
+ * the point has [%]; NaN where one is not known. */
+static double largest_part(const mt_study *study, const mt_recommendation *r)
+{
+    double most = 0.0;
+    for (int g = 0; g < study->n_goals; g++) {
+        char pointer[POINTER_TEXT];
+        (void)mt_snprintf(pointer, sizeof pointer, "/goals/%d", g);
+        for (int i = 0; i < r->n_responses && mt_goal_is_limit(&study->goals[g]); i++) {
+            const mt_result_response *const found = &r->responses[i];
+            const double part = PERCENT * found->value / study->goals[g].at_most;
+            const bool own = strcmp(found->pointer, pointer) == 0;
+            most = own && !(part <= most) ? part : most;
+        }
+    }
+    return most;
+}
+
 /* An objective of a design, signed so that less is better; NaN where the design does not meet
  * the goals. */
 static double front_value(const mt_study *study, mt_objective_type type,
@@ -367,6 +388,9 @@ static double front_value(const mt_study *study, mt_objective_type type,
     }
     if (mt_objective_is(type, MT_BANDS)) {
         return -r->clearance_percent;
+    }
+    if (mt_objective_is(type, MT_SHAKES) && !is_first) {
+        return largest_part(study, r);
     }
     return is_first ? r->score : nan("");
 }

@@ -33,7 +33,7 @@ static const char *output_text(const char *port, mt_arena *mem)
                            relative ? " as seen from the ground" : "");
 }
 
-/* ", 45 % below its limit". */
+/* ", 45 % below its limit"; within what a goal is met by, ", at its limit". */
 static const char *beside_text(const mt_goal *g, double value, mt_arena *mem)
 {
     const double limit = MT_HAS(g->at_most)    ? g->at_most
@@ -41,6 +41,9 @@ static const char *beside_text(const mt_goal *g, double value, mt_arena *mem)
                                                : g->equals;
     const double off = PERCENT * (value / limit - 1.0);
     const char *const what = MT_HAS(g->at_most) || MT_HAS(g->at_least) ? "limit" : "target";
+    if (fabs(off) <= MT_DEFAULT_TOLERANCE_PERCENT) {
+        return mt_arena_printf(mem, ", at its %s", what);
+    }
     return mt_arena_printf(mem, ", %.3g %% %s its %s", fabs(off), off > 0.0 ? "above" : "below",
                            what);
 }

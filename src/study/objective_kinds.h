@@ -28,7 +28,7 @@
     X(EXPRESSION, expression, "", MT_AMOUNT)                                                \
     X(MISFIT, misfit, "", MT_WORD | MT_HALF_SQUARE | MT_RESIDUALS | MT_FRONT | MT_OF_STUDY) \
     X(CLEARANCE, clearance, "%", MT_WORD | MT_MAXIMISED | MT_BANDS | MT_FRONT)              \
-    X(VIBRATION, vibration, "%", MT_WORD | MT_SHAKES | MT_FRONT | MT_OF_STUDY)
+    X(VIBRATION, vibration, "%", MT_WORD | MT_SHAKES | MT_FRONT)
 #define MT_OBJECTIVE_ENUM(id, ...) MT_OBJECTIVE_##id,
 typedef enum mt_objective_type {
     MT_OBJECTIVE_LIST(MT_OBJECTIVE_ENUM) MT_OBJECTIVE_TYPE_COUNT

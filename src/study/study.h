@@ -357,6 +357,9 @@ int mt_study_find_reference(const mt_study *study, const char *name);
 int mt_study_find_measurement(const mt_study *study, const char *name);
 /* Is there a goal that keeps clear of bands? */
 bool mt_study_has_bands(const mt_study *study);
+/* Does the goal limit a forced vibration from above? Is there one that does? */
+bool mt_goal_is_limit(const mt_goal *goal);
+bool mt_study_has_limits(const mt_study *study);
 /* Does the objective take the goal's limit as its scale? Then nothing else is asked of it. */
 bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
 /* Does a goal ask for this configuration? */

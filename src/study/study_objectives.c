@@ -104,15 +104,10 @@ static void check_vibration(mt_study_check *c)
 {
     const mt_study *const s = c->study;
     const mt_objective *const vibration = find(s, MT_SHAKES);
-    bool any = false;
-    for (int i = 0; i < s->n_goals; i++) {
-        any = any || (s->goals[i].shake != NULL && MT_HAS(s->goals[i].at_most) &&
-                      !MT_HAS(s->goals[i].at_least));
-    }
     if (vibration != NULL && vibration != s->objectives) {
         mt_diag_error(c->diags, vibration->addr,
                       "the vibration is the first objective, or none");
-    } else if (vibration != NULL && !any) {
+    } else if (vibration != NULL && !mt_study_has_limits(s)) {
         mt_diag_error(c->diags, vibration->addr,
                       "the vibration needs a goal of type \"response\" or \"vibration\" with "
                       "\"at_most\" alone");

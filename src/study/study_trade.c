@@ -210,6 +210,10 @@ static void check_front(mt_study_check *c)
         if (mt_objective_is(type, MT_BANDS) && !mt_study_has_bands(s)) {
             mt_diag_error(c->diags, trade->objectives_addr,
                           "the clearance needs a goal of type \"avoid\"");
+        } else if (mt_objective_is(type, MT_SHAKES) && !mt_study_has_limits(s)) {
+            mt_diag_error(c->diags, trade->objectives_addr,
+                          "the vibration needs a goal of type \"response\" or \"vibration\" "
+                          "with \"at_most\" alone");
         } else if (mt_objective_is(type, MT_OF_STUDY) && !has_objective(s, type)) {
             mt_diag_error(c->diags, trade->objectives_addr,
                           "\"%s\" is no objective of the study",
