@@ -94,6 +94,12 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
                                    mt_result *result, mt_err *err);
+/* describe_curves.c: which responses the study asks for, before any design; and each of them
+ * at fresh->x, none at points of a trade study. What has no response says why. Fails:
+ * MT_E_MEMORY, MT_E_INTERRUPTED. */
+mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_err *err);
+mt_status mt_describe_curves(const mt_workspace *fresh, mt_result *result,
+                                mt_recommendation *rec, mt_err *err);
 /* Slopes of the values of goals at the design, the last that is asked of `fresh`; NULL where
  * there are none (describe_slopes.c). Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_result *result,

@@ -93,6 +93,7 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* After variables and goals; goals: the list of goals, whose indices it uses. */
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
+void mt_read_study_responses(mt_study_reader *s, mt_addr list);
 void mt_read_study_published(mt_study_reader *s, mt_addr list);
 
 extern const mt_key_table mt_study_keys;
@@ -111,6 +112,7 @@ extern const mt_key_table mt_study_tail_keys;
 extern const mt_key_table mt_study_machine_keys;
 extern const mt_key_table mt_study_gear_keys;
 extern const mt_key_table mt_study_objective_keys;
+extern const mt_key_table mt_study_response_keys;
 extern const mt_key_table mt_study_published_keys;
 extern const mt_key_table mt_study_published_frequency_keys;
 extern const mt_key_table mt_study_published_mac_keys;

@@ -29,8 +29,10 @@ typedef struct list_rule {
 static const list_rule RULES[] = {
     {"certificates", "certificate", {"kind", "pointer"}, NULL},
     {"clearances", "clearance", {"configuration", "mode", "band"}, NULL},
+    {"curves", "curve", {"configuration", "pointer"}, NULL},
     {"doubts", "doubt", {"kind", "configuration", "pointer"}, NULL},
     {"excitations", "excitation", {"pointer", "name"}, NULL},
+    {"extremes", "extreme", {NULL}, NULL},
     {"facts", "fact", {"kind", "configuration", "pointer"}, NULL},
     {"frequencies", "frequency", {"configuration", "mode", "reference"}, NULL},
     {"gap_assignment", "band", {"configuration", "band"}, NULL},
@@ -56,8 +58,8 @@ static const list_rule RULES[] = {
 /* Sentences, places in files, measures of rounding, and digests of what is written from all
  * this. */
 static const char *const PASSED_OVER[] = {
-    "column",  "goal",     "kkt_residual", "line", "orthogonality", "outputs",
-    "reasons", "residual", "status_text",  "text", "warnings",
+    "column",  "drawn",   "goal",     "kkt_residual", "line", "orthogonality",
+    "outputs", "reasons", "residual", "status_text",  "text", "warnings",
 };
 
 /* What changes where something else in the same part does. */

@@ -178,6 +178,39 @@ static const mt_field REACHED_FIELDS[] = {
 static const mt_record REACHED = MT_F_RECORD_OF(REACHED_FIELDS);
 #undef THIS
 
+#define THIS mt_result_extreme
+static const char *const EXTREMES[] = {"peak", "resonance", "antiresonance", "minimum"};
+static const mt_field EXTREME_FIELDS[] = {
+    MT_F_CHOICE("kind", kind, EXTREMES),
+    MT_F_NUMBER("frequency_hz", hz),
+    MT_F_NUMBER_OR_NULL("magnitude", magnitude),
+    MT_F_NUMBER_OR_NULL("phase_deg", phase_deg),
+    MT_F_NUMBER_OR_NULL("natural_hz", natural_hz),
+    MT_F_NUMBER_OR_NULL("damping_ratio", damping_ratio),
+};
+static const mt_record EXTREME = MT_F_RECORD_OF(EXTREME_FIELDS);
+#undef THIS
+
+#define THIS mt_curve_points
+static const mt_field DRAWN_FIELDS[] = {
+    MT_F_NUMBERS_ROUNDED("frequency_hz", hz, n_hz, MT_CURVE_HZ_DIGITS),
+    MT_F_NUMBERS_ROUNDED("magnitude", magnitude, n_magnitude, MT_CURVE_DIGITS),
+    MT_F_NUMBERS_ROUNDED("phase_deg", phase_deg, n_phase, MT_CURVE_DIGITS),
+};
+static const mt_record DRAWN = MT_F_RECORD_OF(DRAWN_FIELDS);
+#undef THIS
+
+#define THIS mt_design_curve
+static const mt_field DESIGN_CURVE_FIELDS[] = {
+    MT_F_TEXT("pointer", pointer),
+    MT_F_TEXT("configuration", configuration),
+    MT_F_TEXT_OR_NULL("trouble", trouble),
+    MT_F_LIST("extremes", extremes, n_extremes, mt_result_extreme, EXTREME),
+    MT_F_RECORD("drawn", drawn, mt_curve_points, DRAWN),
+};
+static const mt_record DESIGN_CURVE = MT_F_RECORD_OF(DESIGN_CURVE_FIELDS);
+#undef THIS
+
 #define THIS mt_reason
 static const char *const REASON_KINDS[] = {"change", "hold", "cost", "rank"};
 static const mt_field REASON_FIELDS[] = {
@@ -210,6 +243,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
+    MT_F_LIST("curves", curves, n_curves, mt_design_curve, DESIGN_CURVE),
     MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON),
     MT_F_UNWRITTEN_TEXT(disagreement),
 };
@@ -325,6 +359,21 @@ static const mt_field EXCITATION_FIELDS[] = {
     MT_F_LIST("orders", orders, n_orders, mt_result_order, ORDER),
 };
 static const mt_record EXCITATION = MT_F_RECORD_OF(EXCITATION_FIELDS);
+#undef THIS
+
+#define THIS mt_result_curve
+static const mt_field CURVE_FIELDS[] = {
+    MT_F_TEXT("pointer", pointer),
+    MT_F_TEXT("configuration", configuration),
+    MT_F_TEXT("input", input),
+    MT_F_TEXT("output", output),
+    MT_F_TEXT("unit", unit),
+    MT_F_NUMBER("lower_hz", lower_hz),
+    MT_F_NUMBER("upper_hz", upper_hz),
+    MT_F_TEXT_OR_NULL("description", description),
+    MT_F_TEXT_OR_NULL("source", source),
+};
+static const mt_record CURVE = MT_F_RECORD_OF(CURVE_FIELDS);
 #undef THIS
 
 #define THIS mt_result_published
@@ -471,6 +520,7 @@ static const mt_field RESULT_FIELDS[] = {
                       CERTIFICATE),
     MT_F_LIST_OR_NULL("relaxations", relaxations, n_relaxations, mt_relaxation, RELAXATION),
     MT_F_LIST("excitations", excitations, n_excitations, mt_result_excitation, EXCITATION),
+    MT_F_LIST("curves", curves, n_curves, mt_result_curve, CURVE),
     MT_F_OPTION("trade", trade, mt_trade_result, TRADE),
     MT_F_LIST_OR_NULL("published", published, n_published, mt_result_published, PUBLISHED),
     MT_F_TEXTS("warnings", warnings, n_warnings),

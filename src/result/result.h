@@ -173,6 +173,41 @@ typedef struct mt_tolerance_box {
     mt_result_tolerance *variables; /* in the study's order */
 } mt_tolerance_box;
 
+/* A maximum or minimum of |H| over frequency. */
+typedef struct mt_result_extreme {
+    const char *kind; /* "peak" | "resonance" (infinite) | "antiresonance" | "minimum" */
+    double hz;
+    double magnitude;     /* NaN: infinite */
+    double phase_deg;     /* of it, (-180, 180]; NaN: it has none */
+    double natural_hz;    /* of a peak: size and damping ratio of the pole s nearest to i w, */
+    double damping_ratio; /* |s|/(2 pi) and -Re s/|s|; NaN of others */
+} mt_result_extreme;
+
+/* Digits that files keep of a curve: frequencies next to a narrow peak differ late; what is
+ * drawn needs no more than that. */
+enum { MT_CURVE_HZ_DIGITS = 8, MT_CURVE_DIGITS = 6 };
+
+/* |H| and its phase at as many frequencies as a picture needs, where it is finite and not 0; in
+ * between both are straight over log frequency, the magnitude in its logarithm. */
+typedef struct mt_curve_points {
+    int n_hz; /* the same number of each; files may say otherwise */
+    double *hz;
+    int n_magnitude;
+    double *magnitude;
+    int n_phase;
+    double *phase_deg;
+} mt_curve_points;
+
+/* A response of result.curves at one design. */
+typedef struct mt_design_curve {
+    const char *pointer; /* pointer and configuration as there */
+    const char *configuration;
+    const char *trouble; /* why there is no curve; NULL: there is */
+    mt_curve_points drawn;
+    int n_extremes;
+    mt_result_extreme *extremes; /* by ascending frequency, all of the band */
+} mt_design_curve;
+
 /* One sentence of why a design is what it is. */
 typedef struct mt_reason {
     const char *kind;  /* "change" | "hold" | "cost" | "rank" */
@@ -213,6 +248,8 @@ typedef struct mt_recommendation {
     mt_tolerance_box *tolerance_box; /* NULL: not computed */
     int n_goals;
     mt_result_goal *goals;
+    int n_curves;
+    mt_design_curve *curves; /* in the order of the result's; none at points of a trade */
     int n_reasons;
     mt_reason *reasons;
 } mt_recommendation;
@@ -336,6 +373,19 @@ typedef struct mt_result_excitation {
     mt_result_order *orders;
 } mt_result_excitation;
 
+/* A response that is shown of every design. */
+typedef struct mt_result_curve {
+    const char *pointer; /* of what asks for it, "/responses/0" */
+    const char *configuration;
+    const char *input; /* ports, in full */
+    const char *output;
+    const char *unit; /* of its magnitude: "m/s^2 per m/s^2" */
+    double lower_hz;
+    double upper_hz;
+    const char *description; /* may be NULL */
+    const char *source;      /* may be NULL */
+} mt_result_curve;
+
 /* A file that the result names with the SHA-256 of its bytes. */
 typedef struct mt_result_digest {
     const char *file;
@@ -429,6 +479,8 @@ typedef struct mt_result {
     mt_recommendation *recommendations;
     mt_result_excitation *excitations;
     int n_excitations;
+    mt_result_curve *curves;
+    int n_curves;
     /* from here on lists that are NULL were not computed: an interrupt cut them */
     int n_undetermined;
     mt_undetermined *undetermined;

@@ -82,6 +82,26 @@ static mt_result_excitation EXCITATIONS[] = {{"/goals/1", "UH-60", 4.0, 4.5, 10.
                                               MT_COUNT(CONFIGURATIONS), CONFIGURATIONS,
                                               MT_COUNT(ORDERS), ORDERS}};
 
+static double HZ[] = {5.0, 22.101234567, 500.0};
+static double MAGNITUDES[] = {1.0 / 3.0, 48.123456789, 2e-7};
+static double PHASES[] = {0.0, -90.0 - (1.0 / 3.0), 180.0};
+static mt_result_extreme EXTREMES[] = {
+    {"resonance", 22.1012345678901, 0.0, 0.0, 22.0, 0.0},
+    {"antiresonance", 30.0, 0.1 + 0.2, -12.5, 0.0, 0.0},
+};
+static mt_design_curve DESIGN_CURVES[] = {
+    {.pointer = "/responses/0",
+     .configuration = "installed",
+     .drawn = {MT_COUNT(HZ), HZ, MT_COUNT(HZ), MAGNITUDES, MT_COUNT(HZ), PHASES},
+     .n_extremes = MT_COUNT(EXTREMES),
+     .extremes = EXTREMES},
+    {.pointer = "/responses/1", .configuration = "installed", .trouble = "nothing settles"}};
+static mt_result_curve CURVES[] = {
+    {"/responses/0", "installed", "base.y:acceleration", "grip.y:acceleration",
+     "m/s^2 per m/s^2", 5.0, 500.0, "the hand", NULL},
+    {"/responses/1", "installed", "grip.y", "grip.y:displacement", "m per N", 5.0, 50.0, NULL,
+     "a test"}};
+
 typedef struct sample {
     mt_result *result;
     mt_result_frequency frequency;
@@ -112,6 +132,9 @@ static void fill_design(sample *s, mt_recommendation *r)
     r->frequencies = &s->frequency;
     r->n_goals = MT_COUNT(GOALS);
     r->goals = GOALS;
+    EXTREMES[0].magnitude = nan("");
+    r->n_curves = MT_COUNT(DESIGN_CURVES);
+    r->curves = DESIGN_CURVES;
     r->n_reasons = MT_COUNT(REASONS);
     r->reasons = REASONS;
 }
@@ -281,6 +304,8 @@ static bool make_sample(sample *s)
     r->relaxations = RELAXATIONS;
     r->n_excitations = MT_COUNT(EXCITATIONS);
     r->excitations = EXCITATIONS;
+    r->n_curves = MT_COUNT(CURVES);
+    r->curves = CURVES;
     r->status = MT_RESULT_COMPROMISE;
     r->status_text = "No design meets every goal.";
     r->n_variables = MT_COUNT(VARIABLES);
@@ -395,6 +420,11 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"error_percent\": 0",
         "\"K_T1\": 0.00125",
         "\"clearances\": []",
+        "\"frequency_hz\": [5, 22.101235, 500]",
+        "\"magnitude\": [0.333333, 48.1235, 2e-07]",
+        "\"phase_deg\": [0, -90.3333, 180]",
+        "\"magnitude\": null",
+        "\"trouble\": \"nothing settles\"",
         "\"gap_assignment\": null",
         "\"motion\": []",
         "\"motion\": [",

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Responses that results show. Names of ports are looked up where the mechanism is known
+ * (problem/problem_responses.c). */
+#include "study/study_priv.h"
+
+void mt_study_check_responses(mt_study_check *c)
+{
+    for (int i = 0; i < c->study->n_responses; i++) {
+        mt_study_response *const r = &c->study->responses[i];
+        r->configuration = r->configuration_name.s == NULL
+                               ? mt_check_only_configuration(c, c->model, r->addr)
+                               : mt_check_configuration(c, c->model, r->configuration_name);
+        if (MT_HAS(r->lower_hz) && MT_HAS(r->upper_hz) &&
+            (!(r->lower_hz > 0.0) || !(r->lower_hz < r->upper_hz))) {
+            mt_diag_error(
+                c->diags, r->band_addr,
+                "band_hz (%g to %g) must be two frequencies above 0 in ascending order",
+                r->lower_hz, r->upper_hz);
+        }
+    }
+}
