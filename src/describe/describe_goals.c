@@ -15,6 +15,9 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
         return d->goal->expression_text;
     }
     const char *const configuration = mt_view_name(p, &p->views[d->view]);
+    if (!mt_demand_is_modal(d)) {
+        return configuration;
+    }
     return d->mode > 0
                ? mt_arena_printf(mem, "%s mode %d", configuration, d->mode)
                : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
@@ -147,6 +150,8 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     g->reference = asked->reference_name.s;
     if (d->view >= 0) {
         g->configuration = mt_view_name(p, &p->views[d->view]);
+    }
+    if (mt_demand_is_modal(d)) {
         g->mode = d->mode;
         g->name = d->mode > 0 ? NULL : asked->mode.mode_name.s;
     }
@@ -186,7 +191,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);
     MT_TRY(mt_arena_check(&result->mem, err));
-    return d->view < 0 || mt_describe_is_told(&fresh->views[d->view], d)
+    return !mt_demand_is_modal(d) || mt_describe_is_told(&fresh->views[d->view], d)
                ? MT_OK
                : doubt(fresh, d, result, g, err);
 }

@@ -317,6 +317,10 @@ static void note_places(mt_study_reader *s)
         note_place(s, g->equals_addr);
         note_place(s, g->at_least_addr);
         note_place(s, g->at_most_addr);
+        if (g->shake != NULL) {
+            note_place(s, g->shake->input.addr);
+            note_place(s, g->shake->output.addr);
+        }
     }
     for (int i = 0; i < study->doubts.n && i < MOST_PLACED; i++) {
         note_place(s, study->doubts.items[i].addr);

@@ -85,6 +85,8 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
 void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+/* What a goal that is about ports has besides. */
+void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
 void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
 /* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the

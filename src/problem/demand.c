@@ -19,6 +19,11 @@ bool mt_demand_is_frequency(const mt_demand *d)
     return d->quantity == MT_QUANTITY_FREQUENCY && d->mode > 0;
 }
 
+bool mt_demand_is_modal(const mt_demand *d)
+{
+    return d->view >= 0 && d->goal->shake == NULL;
+}
+
 double mt_demand_weight(const mt_workspace *w, const mt_demand *d)
 {
     return w->c->weight[d - w->p->demands];
@@ -38,10 +43,14 @@ static void put(const mt_workspace *w, double *matrix, int rows, int row, double
 }
 
 /* What q is off by from a limit, and what its slope is multiplied by. */
-static double off(const mt_demand *d, double q, double limit, double *factor)
+static double off(const mt_workspace *w, const mt_demand *d, double q, double limit,
+                  double *factor)
 {
     const double unit = mt_measure_unit(d->measure, limit);
     *factor = 1.0 / unit;
+    if (isinf(q) && d->goal->shake != NULL) {
+        return MT_MOST_INSIDE + w->beyond;
+    }
     return d->measure == MT_MEASURE_RATIO ? mt_frequency_ln_ratio(q, limit, d->floor_hz)
                                           : (q - limit) / unit;
 }
@@ -51,7 +60,7 @@ static void store(mt_workspace *w, const mt_demand *d, double q, const double *s
                   mt_nlp_values *out)
 {
     double factor = 1.0;
-    const double target = off(d, q, d->equals, &factor);
+    const double target = off(w, d, q, d->equals, &factor);
     if (d->row_res >= 0) {
         const double weight = sqrt(mt_demand_weight(w, d));
         w->r[d->row_res] = weight * target;
@@ -68,7 +77,7 @@ static void store(mt_workspace *w, const mt_demand *d, double q, const double *s
         const bool above = k == 0 && MT_HAS(d->goal->at_least);
         const double sign = above ? 1.0 : -1.0;
         const double limit = above ? d->goal->at_least : d->goal->at_most;
-        out->in[d->row_in + k] = sign * off(d, q, limit, &factor);
+        out->in[d->row_in + k] = sign * off(w, d, q, limit, &factor);
         put(w, out->din, rows, d->row_in + k, sign * factor, slope);
     }
 }
@@ -90,7 +99,7 @@ static mt_status no_mode(const mt_workspace *w, const mt_demand *d, mt_err *err)
 static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err *err)
 {
     *pos = -1;
-    if (d->view < 0) {
+    if (!mt_demand_is_modal(d)) {
         return MT_OK;
     }
     mt_view_work *const view = &w->views[d->view];
@@ -98,6 +107,24 @@ static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err
     const bool infinite = d->quantity == MT_QUANTITY_FREQUENCY && view->solved &&
                           mt_analysis_is_infinite(view->analysis, d->mode);
     return *pos < 0 && !infinite ? no_mode(w, d, err) : MT_OK;
+}
+
+/* The rows of a number that is the largest of several. */
+static mt_status store_parts(mt_workspace *w, const mt_demand *d, bool with_gradient,
+                             mt_nlp_values *out, double *value, mt_err *err)
+{
+    const int rows = mt_case_rows_in(w->c);
+    double factor = 1.0;
+    *value = 0.0;
+    for (int k = 0; k < d->n_parts; k++) {
+        double q = nan("");
+        double *const slope = with_gradient ? w->slope : NULL;
+        MT_TRY(d->ops->part(w, d, k, &q, slope, err));
+        out->in[d->row_in + k] = -off(w, d, q, d->goal->at_most, &factor);
+        put(w, out->din, rows, d->row_in + k, -factor, slope);
+        *value = q <= *value ? *value : q;
+    }
+    return MT_OK;
 }
 
 mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient,
@@ -110,6 +137,8 @@ mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient
     if (d->ops->value == NULL) {
         MT_TRY(d->ops->residuals(w, d, pos, with_gradient, err));
         q = mt_norm2(d->n_res, w->r + d->row_res) / sqrt(mt_demand_weight(w, d));
+    } else if (d->n_parts > 0) {
+        MT_TRY(store_parts(w, d, with_gradient, out, &q, err));
     } else {
         MT_TRY(d->ops->value(w, d, pos, &q, slope, err));
         store(w, d, q, slope, out);

@@ -112,6 +112,26 @@ typedef struct mt_result_clearance {
     double worst_percent;
 } mt_result_clearance;
 
+/* What a goal of forced vibration finds. */
+typedef struct mt_result_response {
+    const char *pointer; /* of the goal, "/goals/0" */
+    const char *configuration;
+    const char *input; /* ports, as in files */
+    const char *output;
+    const char *profile;  /* NULL: a response itself, not under a profile */
+    const char *quantity; /* "response" | "rms" | "sine" | "peak" */
+    const char *unit;     /* of value and error; "": not known */
+    double value;         /* NaN: none, see end */
+    double error;         /* of it, at most */
+    double frequency_hz;  /* where the response is largest; NaN: not known */
+    bool at_edge;         /* that is an end of the range */
+    double lower_hz;      /* the range that it was looked for in */
+    double upper_hz;
+    const char *end;   /* "finite" | "infinite" | "unstable" | "none": could not be computed */
+    const char *grade; /* "proven": no frequency of the range has more; "sampled" */
+    const char *text;  /* in words, without a full stop */
+} mt_result_response;
+
 /* The value of one objective, whether the goals are met or not; NaN: there is none. */
 typedef struct mt_design_objective {
     const char *text; /* text and unit as in mt_result_objective */
@@ -248,6 +268,8 @@ typedef struct mt_recommendation {
     mt_tolerance_box *tolerance_box; /* NULL: not computed */
     int n_goals;
     mt_result_goal *goals;
+    int n_responses; /* one for each goal of forced vibration and configuration */
+    mt_result_response *responses;
     int n_curves;
     mt_design_curve *curves; /* in the order of the result's; none at points of a trade */
     int n_reasons;

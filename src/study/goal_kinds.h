@@ -50,6 +50,22 @@
     X(AT_LEAST, "at_least", NUMBER, false, SHARE) \
     X(AT_MOST, "at_most", NUMBER, false, SHARE)   \
     X(WEIGHT, "weight", NUMBER, false, POSITIVE)
+#define MT_GOAL_OF_PORTS(X, needs_input)             \
+    MT_GOAL_OF_CONFIGURATIONS(X)                     \
+    X(INPUT, "input", TEXT, needs_input, ANY)        \
+    X(OUTPUT, "output", TEXT, true, ANY)             \
+    X(EQUALS, "target", NUMBER, false, POSITIVE)     \
+    X(AT_LEAST, "at_least", NUMBER, false, POSITIVE) \
+    X(AT_MOST, "at_most", NUMBER, false, POSITIVE)   \
+    X(WEIGHT, "weight", NUMBER, false, POSITIVE)
+#define MT_GOAL_RESPONSE_MEMBERS(X)      \
+    MT_GOAL_OF_PORTS(X, true)            \
+    X(BAND, "band_hz", LIST, false, ANY) \
+    X(AT, "at_hz", NUMBER, false, POSITIVE)
+#define MT_GOAL_VIBRATION_MEMBERS(X)       \
+    MT_GOAL_OF_PORTS(X, false)             \
+    X(PROFILE, "profile", TEXT, true, ANY) \
+    X(QUANTITY, "quantity", TEXT, false, ANY)
 #define MT_GOAL_LIMIT_MEMBERS(X)                 \
     MT_GOAL_ANY(X)                               \
     X(EXPRESSION, "expression", TEXT, true, ANY) \
@@ -74,6 +90,8 @@
     X(SHAPE, shape, "", DIFFERENCE)      \
     X(MAC, mac, "", DIFFERENCE)          \
     X(DAMPING, damping, "", PART)        \
+    X(RESPONSE, response, "", RATIO)     \
+    X(VIBRATION, vibration, "", RATIO)   \
     X(LIMIT, limit, "", PART)            \
     X(AVOID, avoid, "Hz", RATIO)
 #define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,
@@ -104,7 +122,13 @@ typedef enum mt_goal_slot {
     MT_SLOT_ROTORS,
     MT_SLOT_MACHINE,
     MT_SLOT_MACHINES,
-    MT_SLOT_CLUSTER
+    MT_SLOT_CLUSTER,
+    MT_SLOT_INPUT,
+    MT_SLOT_OUTPUT,
+    MT_SLOT_BAND,
+    MT_SLOT_AT,
+    MT_SLOT_PROFILE,
+    MT_SLOT_QUANTITY
 } mt_goal_slot;
 
 /* What a number may be. */

@@ -16,6 +16,7 @@ void mt_study_check_references(mt_study_check *c);           /* study_references
 void mt_study_check_variables(mt_study_check *c);            /* study_variables.c */
 void mt_study_check_goals(mt_study_check *c);                /* study_goals.c */
 void mt_study_check_avoid(mt_study_check *c, mt_goal *goal); /* study_avoid.c; by the former */
+void mt_study_check_shake(mt_study_check *c, mt_goal *goal); /* study_shake.c; likewise */
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */

@@ -84,6 +84,9 @@ typedef struct mt_vibration {
     const char *description;
     const char *source;
     int axis; /* 0, 1, 2: x, y, z; MT_ABSENT: any */
+    /* of the catalogue that was read: relative to the profile's folder, or as the program calls
+     * its own; NULL: none */
+    const char *aircraft_name;
     mt_aircraft_list aircraft;
     int n_random;
     mt_vibration_random *random;

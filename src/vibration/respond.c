@@ -145,6 +145,51 @@ mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *
     return MT_OK;
 }
 
+/* Nodes of random part i, behind those that are there. */
+static mt_status add_nodes(const mt_spectral *of, const mt_psd *g, double share, mt_arena *mem,
+                           mt_spectral_nodes *out, mt_err *err)
+{
+    mt_spectral_nodes part;
+    MT_TRY(mt_spectral_slope_nodes(of, g, mem, &part, err));
+    const size_t n = (size_t)out->n + (size_t)part.n;
+    double *const omega = mt_arena_f64(mem, n, 1);
+    double complex *const weight = mt_arena_alloc(mem, n, sizeof *weight);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < out->n; i++) {
+        omega[i] = out->omega[i];
+        weight[i] = out->weight[i];
+    }
+    for (int i = 0; i < part.n; i++) {
+        omega[out->n + i] = part.omega[i];
+        weight[out->n + i] = share * part.weight[i];
+    }
+    *out = (mt_spectral_nodes){.n = (int)n, .omega = omega, .weight = weight};
+    return MT_OK;
+}
+
+mt_status mt_vibration_respond_nodes(const mt_vibration *v, const mt_pole_sum *h,
+                                     const mt_vibration_response *r, double by_rms,
+                                     double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                     mt_err *err)
+{
+    mt_spectral of;
+    const int n_tones = by_sine != 0.0 ? r->n_tones : 0;
+    out->n = n_tones;
+    out->omega = mt_arena_f64(mem, (size_t)n_tones, 1);
+    out->weight = mt_arena_alloc(mem, (size_t)n_tones, sizeof *out->weight);
+    MT_TRY(mt_spectral_init(&of, h, mem, err));
+    for (int i = 0; i < n_tones; i++) {
+        out->omega[i] = r->tones[i].omega;
+        out->weight[i] = by_sine * v->tones[i].level * by_tone(v, r, i) * r->tones[i].direction;
+    }
+    for (int i = 0; i < v->n_random && by_rms != 0.0 && r->rms > 0.0; i++) {
+        const mt_psd *const g = &v->random[i].psd;
+        const double rms = mt_spectral_rms(&of, g, MT_SPECTRAL_BEST).rms;
+        MT_TRY(add_nodes(&of, g, by_rms * rms / r->rms, mem, out, err));
+    }
+    return MT_OK;
+}
+
 mt_pole_sum mt_vibration_respond_one_mass(double hz, double damping_ratio, double complex s[2],
                                           double complex residue[2])
 {

@@ -39,6 +39,13 @@ mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *
                                       double complex *by_s, double complex *by_residue,
                                       double complex *by_d, mt_err *err);
 
+/* The same as nodes: by_rms d rms + by_sine d sine = Re sum_i weight_i dH(w_i) (as
+ * mt_spectral_slope_nodes). In mem. */
+mt_status mt_vibration_respond_nodes(const mt_vibration *v, const mt_pole_sum *h,
+                                     const mt_vibration_response *r, double by_rms,
+                                     double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                     mt_err *err);
+
 /* One mass on a spring and a dashpot that stand on the base: its absolute acceleration to that
  * of the base, natural frequency [Hz] and damping ratio within 0 and 1. */
 mt_pole_sum mt_vibration_respond_one_mass(double hz, double damping_ratio, double complex s[2],

@@ -175,6 +175,24 @@ static mt_result_motion MOTIONS[] = {
      .grade = "sampled",
      .text = "mode 1 comes nearest"},
 };
+static mt_result_response RESPONSES[] = {
+    {.pointer = "/goals/2",
+     .configuration = "installed",
+     .input = "base.z",
+     .output = "grip.x:acceleration",
+     .profile = "helicopter_uh60_panel",
+     .quantity = "rms",
+     .unit = "m/s^2",
+     .value = 3.25,
+     .error = 1e-9,
+     .frequency_hz = 17.25,
+     .at_edge = true,
+     .lower_hz = 5.0,
+     .upper_hz = 500.0,
+     .end = "finite",
+     .grade = "proven",
+     .text = "the acceleration of grip.x is 3.25 m/s^2 rms"},
+};
 static mt_result_tolerance TOLERANCES[] = {
     {"K_T1", 4.5, "mode 1 at 4P of UH-60"},
     {"M_SAU", HUGE_VAL, NULL},
@@ -203,6 +221,8 @@ static void fill_bands(sample *s)
     r->gaps = GAPS;
     r->n_motions = MT_COUNT(MOTIONS);
     r->motions = MOTIONS;
+    r->n_responses = MT_COUNT(RESPONSES);
+    r->responses = RESPONSES;
     r->tolerance_box = &s->box;
     s->point = (mt_trade_point){.n_values = MT_COUNT(TRADE_VALUES),
                                 .values = TRADE_VALUES,
