@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Responses that the study asks for, of a design: from an analysis made anew there, all poles
- * and all modes in it. */
+/* Responses of a design that its result shows: each from an analysis made anew there, with all
+ * modes. */
 #include <complex.h>
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "describe/describe.h"
 #include "response/response.h"
+#include "vibration/respond.h"
 
 static const double TWO_PI = 6.283185307179586477;
 static const double HALF_TURN_DEG = 180.0;
@@ -95,13 +97,58 @@ static mt_status put_curve(const mt_response *r, const mt_curve *c, mt_arena *me
     return rc;
 }
 
-static mt_status trace(mt_analysis *a, const mt_study_response *asked, mt_arena *mem,
+/* Of the profile; a response that is no sum over poles has none, which is said. */
+static mt_status shake(mt_response *r, const mt_vibration *v, mt_arena *mem,
                        mt_design_curve *out, mt_err *err)
+{
+    mt_pole_sum sum;
+    mt_vibration_response found;
+    mt_err why = {.code = MT_OK};
+    mt_status rc = mt_response_sums(r, &sum, &why);
+    rc = rc == MT_OK ? mt_vibration_respond(v, &sum, &r->mem, &found, &why) : rc;
+    if (rc != MT_OK) {
+        out->trouble = mt_arena_strdup(mem, why.text);
+        return mt_is_final(rc) ? mt_fail(err, rc, "%s", why.text) : mt_arena_check(mem, err);
+    }
+    mt_result_shaken *const to = mt_arena_alloc(mem, 1, sizeof *to);
+    mt_result_shaken_tone *const tones = mt_arena_alloc(mem, (size_t)v->n_tones, sizeof *tones);
+    MT_TRY(mt_arena_check(mem, err));
+    *to = (mt_result_shaken){.end = mt_forced_end_name(found.end),
+                             .rms = found.rms,
+                             .rms_error_at_most = found.rms_bound,
+                             .sine = found.sine,
+                             .peak = found.peak,
+                             .n_tones = v->n_tones,
+                             .tones = tones};
+    for (int i = 0; i < v->n_tones; i++) {
+        const mt_sine_peak *const t = &found.tones[i];
+        tones[i] = (mt_result_shaken_tone){.label = v->tones[i].label,
+                                           .hz = t->omega / TWO_PI,
+                                           .peak = mt_vibration_respond_tone(v, &found, i),
+                                           .excess_at_most = t->excess,
+                                           .at_edge = t->at_edge};
+    }
+    out->vibration = to;
+    return MT_OK;
+}
+
+static const mt_vibration *profile_of(const mt_study *study, const mt_result_curve *asked)
+{
+    for (int i = 0; i < study->n_profiles && asked->profile != NULL; i++) {
+        if (strcmp(study->profiles[i].name.s, asked->profile->file) == 0) {
+            return study->profiles[i].profile;
+        }
+    }
+    return NULL;
+}
+
+static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vibration *v,
+                       mt_arena *mem, mt_design_curve *out, mt_err *err)
 {
     mt_response r = {.a = NULL};
     mt_curve curve;
     const mt_response_request request = {
-        .n_in = 1, .inputs = &asked->input.s, .n_out = 1, .outputs = &asked->output.s};
+        .n_in = 1, .inputs = &asked->input, .n_out = 1, .outputs = &asked->output};
     const mt_curve_options opt = {.from = TWO_PI * asked->lower_hz,
                                   .to = TWO_PI * asked->upper_hz,
                                   .points = GRID,
@@ -112,27 +159,27 @@ static mt_status trace(mt_analysis *a, const mt_study_response *asked, mt_arena 
     } else if (rc == MT_OK) {
         rc = mt_response_curve(&r, &opt, &curve, err);
         rc = rc == MT_OK ? put_curve(&r, &curve, mem, out, err) : rc;
+        rc = rc == MT_OK && v != NULL ? shake(&r, v, mem, out, err) : rc;
     }
     mt_response_free(&r);
     return rc;
 }
 
-/* Of the response at `x`; where there is none that is said. */
-static mt_status describe(const mt_workspace *fresh, const mt_study_response *asked,
+/* Where there is none that is said. */
+static mt_status describe(const mt_workspace *fresh, const mt_result_curve *asked,
                           mt_arena *mem, mt_design_curve *out, mt_err *err)
 {
     const mt_problem *const p = fresh->p;
+    const mt_model *const model = p->study->model;
+    const int configuration = mt_model_find_configuration(model, asked->configuration);
     mt_analysis *a = NULL;
     mt_err why = {.code = MT_OK};
-    mt_status rc = mt_analysis_new(p->study->model, asked->configuration, p->n, p->inputs,
-                                   fresh->x, &a, &why);
-    rc = rc == MT_OK ? trace(a, asked, mem, out, &why) : rc;
+    mt_status rc = mt_analysis_new(model, configuration, p->n, p->inputs, fresh->x, &a, &why);
+    rc = rc == MT_OK ? trace(a, asked, profile_of(p->study, asked), mem, out, &why) : rc;
     mt_analysis_delete(a);
     MT_TRY(mt_pass_final(rc, &why, err));
     if (rc != MT_OK) {
-        out->trouble = mt_arena_strdup(mem, why.text);
-        out->n_extremes = 0;
-        out->drawn = (mt_curve_points){.n_hz = 0};
+        *out = (mt_design_curve){.trouble = mt_arena_strdup(mem, why.text)};
     }
     return mt_arena_check(mem, err);
 }
@@ -140,60 +187,14 @@ static mt_status describe(const mt_workspace *fresh, const mt_study_response *as
 mt_status mt_describe_curves(const mt_workspace *fresh, mt_result *result,
                              mt_recommendation *rec, mt_err *err)
 {
-    const mt_study *const study = fresh->p->study;
     rec->curves = mt_arena_alloc(&result->mem, (size_t)result->n_curves, sizeof *rec->curves);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < result->n_curves; i++) {
         mt_design_curve *const out = &rec->curves[rec->n_curves++];
-        *out = (mt_design_curve){.pointer = result->curves[i].pointer,
-                                 .configuration = result->curves[i].configuration};
-        MT_TRY(describe(fresh, &study->responses[i], &result->mem, out, err));
+        *out = (mt_design_curve){.trouble = NULL};
+        MT_TRY(describe(fresh, &result->curves[i], &result->mem, out, err));
+        out->pointer = result->curves[i].pointer;
+        out->configuration = result->curves[i].configuration;
     }
     return MT_OK;
-}
-
-/* Ports in full, and what the numbers are in: of the original design, as everywhere. */
-static mt_status put_ports(const mt_problem *p, const mt_study_response *asked, mt_arena *mem,
-                           mt_result_curve *out, mt_err *err)
-{
-    mt_system *sys = NULL;
-    mt_port in;
-    mt_port to;
-    mt_status rc = mt_system_new(p->study->model, asked->configuration, p->n, p->inputs,
-                                 p->original, &sys, err);
-    rc = rc == MT_OK ? mt_port_input(sys, asked->input.s, mem, &in, err) : rc;
-    rc = rc == MT_OK ? mt_port_output(sys, asked->output.s, mem, &to, err) : rc;
-    if (rc == MT_OK) {
-        out->input = mt_arena_strdup(mem, in.name);
-        out->output = mt_arena_strdup(mem, to.name);
-        out->unit = mt_arena_printf(mem, "%s per %s", to.unit, in.unit);
-        rc = mt_arena_check(mem, err);
-    }
-    mt_system_delete(sys);
-    return rc;
-}
-
-mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_err *err)
-{
-    const mt_study *const study = p->study;
-    if (study->examined) {
-        return MT_OK; /* a point of a trade study */
-    }
-    result->curves =
-        mt_arena_alloc(&result->mem, (size_t)study->n_responses, sizeof *result->curves);
-    MT_TRY(mt_arena_check(&result->mem, err));
-    for (int i = 0; i < study->n_responses; i++) {
-        const mt_study_response *const r = &study->responses[i];
-        mt_result_curve *const out = &result->curves[i];
-        *out = (mt_result_curve){.pointer = mt_arena_printf(&result->mem, "/responses/%d", i),
-                                 .configuration =
-                                     study->model->configurations[r->configuration].name.s,
-                                 .lower_hz = r->lower_hz,
-                                 .upper_hz = r->upper_hz,
-                                 .description = r->description,
-                                 .source = r->source};
-        MT_TRY(put_ports(p, r, &result->mem, out, err));
-        result->n_curves++;
-    }
-    return mt_arena_check(&result->mem, err);
 }

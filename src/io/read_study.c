@@ -327,8 +327,8 @@ static void note_places(mt_study_reader *s)
     }
     for (int i = 0; i < study->n_responses && i < MOST_PLACED; i++) {
         note_place(s, study->responses[i].addr);
-        note_place(s, study->responses[i].input.addr);
-        note_place(s, study->responses[i].output.addr);
+        note_place(s, study->responses[i].shake.input.addr);
+        note_place(s, study->responses[i].shake.output.addr);
     }
     for (int i = 0; i < study->n_variables && i < MOST_PLACED; i++) {
         note_place(s, study->variables[i].addr);

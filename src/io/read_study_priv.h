@@ -85,6 +85,9 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
 void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+/* A profile of vibration that the study names, each read once; NULL: there is no name, or it
+ * could not be read (noted). */
+const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name);
 /* What a goal that is about ports has besides. */
 void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);

@@ -6,6 +6,7 @@
     X(RESPONSE_INPUT, "input", MT_KEY_TEXT, true)                  \
     X(RESPONSE_OUTPUT, "output", MT_KEY_TEXT, true)                \
     X(RESPONSE_BAND, "band_hz", MT_KEY_LIST, true)                 \
+    X(RESPONSE_PROFILE, "profile", MT_KEY_TEXT, false)             \
     X(RESPONSE_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
     X(RESPONSE_SOURCE, "source", MT_KEY_TEXT, false)
 enum { RESPONSE_KEYS(MT_STUDY_KEY_ENUM) RESPONSE_KEY_COUNT };
@@ -21,14 +22,16 @@ static bool read_response(mt_study_reader *s, mt_addr value, mt_study_response *
         return false;
     }
     r->configuration_name = mt_reader_ref(&s->r, o.found[RESPONSE_CONFIGURATION]);
-    r->input = mt_reader_ref(&s->r, o.found[RESPONSE_INPUT]);
-    r->output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
-    r->band_addr = mt_read_study_place(s, &o, RESPONSE_BAND);
+    r->shake.input = mt_reader_ref(&s->r, o.found[RESPONSE_INPUT]);
+    r->shake.output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
+    r->shake.band_addr = mt_read_study_place(s, &o, RESPONSE_BAND);
     if (o.found[RESPONSE_BAND] != MT_NO_ADDR &&
         mt_read_study_pair(s, o.found[RESPONSE_BAND], band)) {
-        r->lower_hz = band[0];
-        r->upper_hz = band[1];
+        r->shake.lower_hz = band[0];
+        r->shake.upper_hz = band[1];
     }
+    r->shake.profile_name = mt_reader_ref(&s->r, o.found[RESPONSE_PROFILE]);
+    r->shake.profile = mt_read_study_profile(s, r->shake.profile_name);
     r->description = mt_reader_text(&s->r, o.found[RESPONSE_DESCRIPTION]);
     r->source = mt_reader_text(&s->r, o.found[RESPONSE_SOURCE]);
     return true;

@@ -36,6 +36,27 @@ static void name_cells(mt_table *t, const mt_result_curve *of)
     mt_table_text(t, of->output);
 }
 
+/* Density of a profile at a frequency: NaN where there is none. */
+static double density(const mt_result_profile *p, double hz)
+{
+    double sum = nan("");
+    for (int i = 0; p != NULL && i < p->n_densities; i++) {
+        const mt_result_density *const d = &p->densities[i];
+        const int n = d->n_hz < d->n_level ? d->n_hz : d->n_level;
+        for (int k = 1; k < n; k++) {
+            const double a = d->hz[k - 1];
+            const double b = d->hz[k];
+            if (hz >= a && hz <= b && b > a) {
+                const double part = log(hz / a) / log(b / a);
+                const double level = d->level[k - 1] * pow(d->level[k] / d->level[k - 1], part);
+                sum = isnan(sum) ? level : sum + level;
+                break;
+            }
+        }
+    }
+    return sum;
+}
+
 static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
                       const mt_design_curve *r)
 {
@@ -46,6 +67,9 @@ static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
         mt_table_rounded(t, r->drawn.magnitude[i], MT_CURVE_DIGITS);
         mt_table_rounded(t, r->drawn.phase_deg[i], MT_CURVE_DIGITS);
         mt_table_text(t, of->unit);
+        const double size = r->drawn.magnitude[i];
+        mt_table_rounded(t, size * size * density(of->profile, r->drawn.hz[i]),
+                         MT_CURVE_DIGITS);
     }
 }
 
@@ -58,6 +82,7 @@ mt_table mt_report_curves(const mt_result *result)
     mt_table_column(&t, "magnitude", "magnitude", MT_ALIGN_POINT);
     mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
     mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "PSD", "psd", MT_ALIGN_POINT);
     for (int k = 0; k < result->n_curves; k++) {
         const mt_result_curve *const of = &result->curves[k];
         add_curve(&t, of, result->baseline.rank, at(&result->baseline, k));
@@ -141,6 +166,23 @@ static void tell_peaks(const mt_design_curve *r, mt_text *out)
     }
 }
 
+/* "3.21 m/s^2 RMS, 12.1 m/s^2 at peak" */
+static void tell_shaken(const mt_result_curve *of, const mt_design_curve *r, mt_text *out)
+{
+    const mt_result_shaken *const s = r == NULL ? NULL : r->vibration;
+    char rms[MT_NUMBER_TEXT];
+    char peak[MT_NUMBER_TEXT];
+    if (s == NULL) {
+        mt_text_add(out, " no number");
+    } else if (isnan(s->peak)) {
+        mt_text_addf(out, " no number (%s)", s->end);
+    } else {
+        mt_text_addf(out, " %s %s RMS, peak %s %s", mt_report_number(s->rms, TOLD_DIGITS, rms),
+                     of->output_unit, mt_report_number(s->peak, TOLD_DIGITS, peak),
+                     of->output_unit);
+    }
+}
+
 void mt_report_curve(const mt_result *result, int k, const mt_recommendation *r, mt_text *out)
 {
     const mt_result_curve *const of = &result->curves[k];
@@ -152,5 +194,15 @@ void mt_report_curve(const mt_result *result, int k, const mt_recommendation *r,
     if (found) {
         mt_text_add(out, "; after");
         tell_peaks(at(r, k), out);
+    }
+    if (of->profile != NULL) {
+        mt_text_addf(out, ". Under %s:%s",
+                     of->profile->name != NULL ? of->profile->name : of->profile->file,
+                     found ? " before" : "");
+        tell_shaken(of, at(&result->baseline, k), out);
+        if (found) {
+            mt_text_add(out, "; after");
+            tell_shaken(of, at(r, k), out);
+        }
     }
 }

@@ -96,7 +96,7 @@ void mt_table_rounded(mt_table *t, double value, int digits)
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
     (void)mt_snprintf(exact, sizeof exact, "%.*g", digits, value);
-    add_cell(t, mt_report_number(value, digits, text), isfinite(value) ? exact : NULL);
+    add_cell(t, mt_report_number(value, digits, text), isfinite(value) ? exact : "");
 }
 
 void mt_table_number(mt_table *t, double value, int digits)

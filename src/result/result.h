@@ -218,6 +218,26 @@ typedef struct mt_curve_points {
     double *phase_deg;
 } mt_curve_points;
 
+/* The response to a tone of a profile. */
+typedef struct mt_result_shaken_tone {
+    const char *label;
+    double hz;   /* of its range, where the response is the largest; NaN: it has no number */
+    double peak; /* amplitude [output_unit] */
+    double excess_at_most; /* part of the peak, proven; NaN: not proven */
+    bool at_edge;          /* of the range */
+} mt_result_shaken_tone;
+
+/* What a curve's profile does at one design, all of the profile, whatever is shown. */
+typedef struct mt_result_shaken {
+    const char *end; /* "finite" | "infinite" | "unstable": numbers are NaN where not finite */
+    double rms;      /* of the random parts [output_unit] */
+    double rms_error_at_most;
+    double sine; /* of the tones by the profile's rule */
+    double peak; /* sigma rms + sine */
+    int n_tones;
+    mt_result_shaken_tone *tones;
+} mt_result_shaken;
+
 /* A response of result.curves at one design. */
 typedef struct mt_design_curve {
     const char *pointer; /* pointer and configuration as there */
@@ -226,6 +246,8 @@ typedef struct mt_design_curve {
     mt_curve_points drawn;
     int n_extremes;
     mt_result_extreme *extremes; /* by ascending frequency, all of the band */
+    mt_result_shaken
+        *vibration; /* NULL: there is no profile, or no number (then trouble says) */
 } mt_design_curve;
 
 /* One sentence of why a design is what it is. */
@@ -395,6 +417,44 @@ typedef struct mt_result_excitation {
     mt_result_order *orders;
 } mt_result_excitation;
 
+/* What a goal asks of a response between two frequencies, which may be equal. */
+typedef struct mt_result_limit {
+    const char *pointer; /* "/goals/0" */
+    double lower_hz;
+    double upper_hz;
+    double target; /* NaN: not asked for; likewise */
+    double at_least;
+    double at_most;
+} mt_result_limit;
+
+/* One-sided density of an acceleration: straight in log-log scales between breakpoints. */
+typedef struct mt_result_density {
+    int n_hz; /* as in mt_curve_points */
+    double *hz;
+    int n_level;
+    double *level; /* [(m/s^2)^2/Hz] */
+} mt_result_density;
+
+typedef struct mt_result_tone {
+    const char *label;
+    double lower_hz;
+    double upper_hz;
+    double level; /* amplitude [m/s^2] */
+} mt_result_tone;
+
+/* What the ground accelerates like. */
+typedef struct mt_result_profile {
+    const char *file; /* as the study names it */
+    const char *name; /* NULL: it has none */
+    double rms;       /* [m/s^2] of its random parts */
+    double sigma;     /* a peak is sigma rms and the tones, */
+    const char *rule; /* "sum" | "largest" | "root_sum_square" of them */
+    int n_densities;  /* which add up */
+    mt_result_density *densities;
+    int n_tones;
+    mt_result_tone *tones;
+} mt_result_profile;
+
 /* A response that is shown of every design. */
 typedef struct mt_result_curve {
     const char *pointer; /* of what asks for it, "/responses/0" */
@@ -402,10 +462,14 @@ typedef struct mt_result_curve {
     const char *input; /* ports, in full */
     const char *output;
     const char *unit; /* of its magnitude: "m/s^2 per m/s^2" */
+    const char *output_unit;
     double lower_hz;
     double upper_hz;
     const char *description; /* may be NULL */
     const char *source;      /* may be NULL */
+    int n_limits;            /* of goals about the same ports */
+    mt_result_limit *limits;
+    mt_result_profile *profile; /* NULL: none */
 } mt_result_curve;
 
 /* A file that the result names with the SHA-256 of its bytes. */

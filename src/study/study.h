@@ -192,14 +192,10 @@ typedef struct mt_published {
 typedef struct mt_study_response {
     mt_name configuration_name;
     int configuration;
-    mt_name input; /* ports (response/ports.h) */
-    mt_name output;
-    double lower_hz;
-    double upper_hz;
+    mt_shake shake; /* ports and frequencies; a profile, where there is one */
     const char *description;
     const char *source;
     mt_addr addr;
-    mt_addr band_addr; /* equals addr where it was not given */
 } mt_study_response;
 
 /* A trade study: one or two quantities take each of their values (all pairs of two), and every
