@@ -77,6 +77,9 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
  * is looked up among the modes. */
 static double aim_value(const mt_workspace *fresh, int k, double motion_room)
 {
+    if (mt_objective_is(fresh->c->aims[k].type, MT_SHAKES)) {
+        return fresh->worst;
+    }
     if (!mt_objective_is(fresh->c->aims[k].type, MT_BANDS)) {
         return mt_aim_value(fresh, k, NULL);
     }

@@ -73,7 +73,7 @@ static double greater(double a, double b)
 /* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a
  * shape its distance. */
 static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
-                               const mt_nlp_values *v)
+                               const mt_nlp_values *v, double own_worst)
 {
     double worst = 0.0;
     if (d->row_res >= 0) {
@@ -81,6 +81,9 @@ static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
     }
     if (d->row_eq >= 0) {
         return fabs(v->eq[d->row_eq]);
+    }
+    if (d->row_soft >= 0) {
+        return fmax(own_worst, 0.0); /* of this demand alone */
     }
     for (int k = 0; k < d->n_in; k++) {
         worst = greater(worst, -v->in[d->row_in + k]);
@@ -169,23 +172,28 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     double percent = nan("");
     *g = mt_result_goal_default();
     say_what(fresh->p, d, g);
+    const double others = fresh->worst;
+    fresh->worst = -HUGE_VAL;
     const mt_status rc = mt_demand_eval(fresh, d, false, v, &g->value, &own);
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
     if (rc == MT_OK) {
-        violation = demand_violation(fresh, d, v);
+        const double own_worst = fresh->worst;
+        fresh->worst = fmax(others, own_worst);
+        violation = demand_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
         percent = PERCENT * off_by(d, g->value, violation);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");
+        fresh->worst = d->row_soft >= 0 ? nan("") : others;
         *why = why->code == MT_OK ? own : *why;
         for (int i = 0; i < d->n_res && d->row_res >= 0; i++) {
             fresh->r[d->row_res + i] = nan(""); /* nor is the misfit known */
         }
     }
-    g->weighted = d->row_res >= 0;
+    g->weighted = d->row_res >= 0 || d->row_soft >= 0;
     g->text = demand_text(fresh->p, d, &result->mem);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;

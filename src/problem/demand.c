@@ -34,12 +34,17 @@ static void put(const mt_workspace *w, double *matrix, int rows, int row, double
 {
     const int n = w->p->n;
     if (gradient != NULL && w->c->n_t > n && matrix != w->dr) {
-        /* the clearance enters no goal but the bands */
+        /* the last coordinate enters no goal, but bands or those of its own */
         matrix[row + ((ptrdiff_t)n * rows)] = 0.0;
     }
     for (int i = 0; i < n && gradient != NULL; i++) {
         matrix[row + ((ptrdiff_t)i * rows)] = factor * gradient[i];
     }
+}
+
+bool mt_shaken_given(const mt_workspace *w)
+{
+    return w->c->shaken && w->t[w->p->n] != 0.0;
 }
 
 /* What q is off by from a limit, and what its slope is multiplied by. */
@@ -53,6 +58,29 @@ static double off(const mt_workspace *w, const mt_demand *d, double q, double li
     }
     return d->measure == MT_MEASURE_RATIO ? mt_frequency_ln_ratio(q, limit, d->floor_hz)
                                           : (q - limit) / unit;
+}
+
+/* Number k of at most so many: its row beside an upper limit. */
+static void store_most(mt_workspace *w, const mt_demand *d, int k, double q,
+                       const double *slope, mt_nlp_values *out)
+{
+    double factor = 1.0;
+    const int rows = mt_case_rows_in(w->c);
+    const double over = off(w, d, q, d->goal->at_most, &factor);
+    if (d->row_soft < 0) {
+        out->in[d->row_in + k] = -over;
+        put(w, out->din, rows, d->row_in + k, -factor, slope);
+        return;
+    }
+    w->worst = over <= w->worst ? w->worst : over;
+    if (w->c->shaken) {
+        const int row = w->c->first_soft_row + d->row_soft + k;
+        out->in[row] = mt_shaken_given(w) ? w->t[w->p->n] - MT_SHAKEN_SHIFT - over : 0.0;
+        put(w, out->din, rows, row, -factor, slope);
+        if (slope != NULL) {
+            out->din[row + ((ptrdiff_t)w->p->n * rows)] = 1.0;
+        }
+    }
 }
 
 /* Rows of a number: slope NULL where none is wanted. */
@@ -72,13 +100,16 @@ static void store(mt_workspace *w, const mt_demand *d, double q, const double *s
         put(w, out->deq, mt_case_rows_eq(w->c), d->row_eq, factor, slope);
         return;
     }
-    const int rows = mt_case_rows_in(w->c);
-    for (int k = 0; k < d->n_in; k++) {
-        const bool above = k == 0 && MT_HAS(d->goal->at_least);
-        const double sign = above ? 1.0 : -1.0;
-        const double limit = above ? d->goal->at_least : d->goal->at_most;
-        out->in[d->row_in + k] = sign * off(w, d, q, limit, &factor);
-        put(w, out->din, rows, d->row_in + k, sign * factor, slope);
+    if (d->row_soft < 0 && d->row_in < 0) {
+        return; /* a range over tolerances */
+    }
+    const bool least = MT_HAS(d->goal->at_least);
+    if (least) {
+        out->in[d->row_in] = off(w, d, q, d->goal->at_least, &factor);
+        put(w, out->din, mt_case_rows_in(w->c), d->row_in, factor, slope);
+    }
+    if (MT_HAS(d->goal->at_most)) {
+        store_most(w, d, least ? 1 : 0, q, slope, out);
     }
 }
 
@@ -113,15 +144,12 @@ static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err
 static mt_status store_parts(mt_workspace *w, const mt_demand *d, bool with_gradient,
                              mt_nlp_values *out, double *value, mt_err *err)
 {
-    const int rows = mt_case_rows_in(w->c);
-    double factor = 1.0;
+    double *const slope = with_gradient ? w->slope : NULL;
     *value = 0.0;
     for (int k = 0; k < d->n_parts; k++) {
         double q = nan("");
-        double *const slope = with_gradient ? w->slope : NULL;
         MT_TRY(d->ops->part(w, d, k, &q, slope, err));
-        out->in[d->row_in + k] = -off(w, d, q, d->goal->at_most, &factor);
-        put(w, out->din, rows, d->row_in + k, -factor, slope);
+        store_most(w, d, k, q, slope, out);
         *value = q <= *value ? *value : q;
     }
     return MT_OK;

@@ -71,12 +71,14 @@ typedef struct mt_demand {
     mt_node node;   /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
     double equals; /* what is asked for, by the goal or its reference; NaN: limits only */
-    bool ranged; /* a target that is a range over the tolerances of the variables (robust.h) */
-    int row_eq;  /* its row in eq, -1 none */
-    int row_in;  /* first row in in, -1 none */
-    int n_in;    /* 2 where at_least and at_most are both given; or n_parts */
-    int row_res; /* first residual, -1 none */
-    int n_res;   /* residuals */
+    bool ranged;  /* a target that is a range over the tolerances of the variables (robust.h) */
+    int row_eq;   /* its row in eq, -1 none */
+    int row_in;   /* first row in in, -1 none */
+    int n_in;     /* 2 where at_least and at_most are both given; or n_parts */
+    int row_soft; /* first row of the objective "vibration" that it is part of, -1 none, */
+    int n_soft;   /* so many: then it limits nothing else */
+    int row_res;  /* first residual, -1 none */
+    int n_res;    /* residuals */
     double floor_hz;  /* in the unit of its number: below, its logarithm goes on as a tangent */
     double tolerance; /* relative */
 } mt_demand;
@@ -129,6 +131,7 @@ typedef struct mt_problem {
     int *tie;
     int n_eq;
     int n_in; /* of the demands; those of a case are more */
+    int n_soft;
     int n_res;
     double weights;     /* sum of the weights of the demands that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */

@@ -186,6 +186,10 @@ static void number_rows(mt_problem *p, mt_demand *d)
         d->n_res = d->ops->value == NULL ? d->shape.ns : 1;
         p->n_res += d->n_res;
         p->weights += g->weight;
+    } else if (mt_study_is_scale(p->study, g)) {
+        d->row_soft = p->n_soft;
+        d->n_soft = d->n_parts > 0 ? d->n_parts : 1;
+        p->n_soft += d->n_soft;
     } else if (mt_robust_is_range(p, d)) {
         d->ranged = true; /* its rows are those of the corners */
     } else if (MT_HAS(d->equals)) {
@@ -213,6 +217,7 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                      .node = MT_NO_NODE,
                      .row_eq = -1,
                      .row_in = -1,
+                     .row_soft = -1,
                      .row_res = -1,
                      .equals = g->equals};
     if (configuration != MT_ABSENT) {

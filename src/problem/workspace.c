@@ -212,6 +212,7 @@ mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradien
 {
     const mt_problem *const p = w->p;
     memmove(w->t, t, (size_t)w->c->n_t * sizeof *t);
+    w->worst = -HUGE_VAL;
     mt_case_x(w->c, t, w->x);
     if (!with_gradient) {
         return mt_program_eval(&p->program, w->x, w->value, NULL, err);

@@ -43,6 +43,7 @@ typedef struct mt_workspace {
     double *dshape; /* max ns x n */
     struct mt_robust_work *robust; /* where variables have tolerances (robust.h); else NULL */
     double beyond;   /* of a goal whose number is infinite: how far that is from finite (ln) */
+    double worst;    /* largest ln(value / limit) of demands with row_soft; -infinite: none */
     double accuracy; /* of the modes (mt_modal_options); MT_MODAL_ACCURACY unless set */
     long evaluations;
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */

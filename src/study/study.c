@@ -60,6 +60,13 @@ bool mt_study_has_bands(const mt_study *study)
     return false;
 }
 
+bool mt_study_is_scale(const mt_study *study, const mt_goal *goal)
+{
+    const bool shakes =
+        study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_SHAKES);
+    return shakes && goal->shake != NULL && MT_HAS(goal->at_most) && !MT_HAS(goal->at_least);
+}
+
 bool mt_study_asks(const mt_study *study, int configuration)
 {
     for (int g = 0; g < study->n_goals; g++) {

@@ -365,6 +365,8 @@ const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 int mt_study_find_reference(const mt_study *study, const char *name);
 /* Is there a goal that keeps clear of bands? */
 bool mt_study_has_bands(const mt_study *study);
+/* Does the objective take the goal's limit as its scale? Then nothing else is asked of it. */
+bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
 /* Does a goal ask for this configuration? */
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */
