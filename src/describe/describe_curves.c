@@ -142,6 +142,22 @@ static const mt_vibration *profile_of(const mt_study *study, const mt_result_cur
     return NULL;
 }
 
+/* G |H|^2 at the points that are drawn. */
+static mt_status put_psd(const mt_vibration *v, mt_arena *mem, mt_curve_points *to, mt_err *err)
+{
+    to->psd = mt_arena_f64(mem, (size_t)to->n_hz, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < to->n_hz && v->n_random > 0; i++) {
+        double level = 0.0;
+        for (int k = 0; k < v->n_random; k++) {
+            level += mt_psd_at(&v->random[k].psd, to->hz[i]);
+        }
+        to->psd[to->n_psd++] =
+            level > 0.0 ? level * to->magnitude[i] * to->magnitude[i] : nan("");
+    }
+    return MT_OK;
+}
+
 static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vibration *v,
                        mt_arena *mem, mt_design_curve *out, mt_err *err)
 {
@@ -159,6 +175,7 @@ static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vi
     } else if (rc == MT_OK) {
         rc = mt_response_curve(&r, &opt, &curve, err);
         rc = rc == MT_OK ? put_curve(&r, &curve, mem, out, err) : rc;
+        rc = rc == MT_OK && v != NULL ? put_psd(v, mem, &out->drawn, err) : rc;
         rc = rc == MT_OK && v != NULL ? shake(&r, v, mem, out, err) : rc;
     }
     mt_response_free(&r);

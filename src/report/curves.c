@@ -36,27 +36,6 @@ static void name_cells(mt_table *t, const mt_result_curve *of)
     mt_table_text(t, of->output);
 }
 
-/* Density of a profile at a frequency: NaN where there is none. */
-static double density(const mt_result_profile *p, double hz)
-{
-    double sum = nan("");
-    for (int i = 0; p != NULL && i < p->n_densities; i++) {
-        const mt_result_density *const d = &p->densities[i];
-        const int n = d->n_hz < d->n_level ? d->n_hz : d->n_level;
-        for (int k = 1; k < n; k++) {
-            const double a = d->hz[k - 1];
-            const double b = d->hz[k];
-            if (hz >= a && hz <= b && b > a) {
-                const double part = log(hz / a) / log(b / a);
-                const double level = d->level[k - 1] * pow(d->level[k] / d->level[k - 1], part);
-                sum = isnan(sum) ? level : sum + level;
-                break;
-            }
-        }
-    }
-    return sum;
-}
-
 static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
                       const mt_design_curve *r)
 {
@@ -67,9 +46,7 @@ static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
         mt_table_rounded(t, r->drawn.magnitude[i], MT_CURVE_DIGITS);
         mt_table_rounded(t, r->drawn.phase_deg[i], MT_CURVE_DIGITS);
         mt_table_text(t, of->unit);
-        const double size = r->drawn.magnitude[i];
-        mt_table_rounded(t, size * size * density(of->profile, r->drawn.hz[i]),
-                         MT_CURVE_DIGITS);
+        mt_table_rounded(t, i < r->drawn.n_psd ? r->drawn.psd[i] : nan(""), MT_CURVE_DIGITS);
     }
 }
 

@@ -221,6 +221,7 @@ static const mt_field DRAWN_FIELDS[] = {
     MT_F_NUMBERS_ROUNDED("frequency_hz", hz, n_hz, MT_CURVE_HZ_DIGITS),
     MT_F_NUMBERS_ROUNDED("magnitude", magnitude, n_magnitude, MT_CURVE_DIGITS),
     MT_F_NUMBERS_ROUNDED("phase_deg", phase_deg, n_phase, MT_CURVE_DIGITS),
+    MT_F_NUMBERS_ROUNDED("psd", psd, n_psd, MT_CURVE_DIGITS),
 };
 static const mt_record DRAWN = MT_F_RECORD_OF(DRAWN_FIELDS);
 #undef THIS

@@ -216,6 +216,8 @@ typedef struct mt_curve_points {
     double *magnitude;
     int n_phase;
     double *phase_deg;
+    int n_psd;   /* of the output under the curve's profile; none without */
+    double *psd; /* [output_unit^2/Hz] NaN: the profile has nothing there */
 } mt_curve_points;
 
 /* The response to a tone of a profile. */

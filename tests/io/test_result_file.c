@@ -84,6 +84,7 @@ static mt_result_excitation EXCITATIONS[] = {{"/goals/1", "UH-60", 4.0, 4.5, 10.
 
 static double HZ[] = {5.0, 22.101234567, 500.0};
 static double MAGNITUDES[] = {1.0 / 3.0, 48.123456789, 2e-7};
+static double DENSITY_THERE[] = {1e-30, 2.0 / 3.0, 3.0};
 static double PHASES[] = {0.0, -90.0 - (1.0 / 3.0), 180.0};
 static mt_result_extreme EXTREMES[] = {
     {"resonance", 22.1012345678901, 0.0, 0.0, 22.0, 0.0},
@@ -94,7 +95,8 @@ static mt_result_shaken SHAKEN = {"finite", 1.5, 1e-13, 3.25, 7.75, 1, SHAKEN_TO
 static mt_design_curve DESIGN_CURVES[] = {
     {.pointer = "/responses/0",
      .configuration = "installed",
-     .drawn = {MT_COUNT(HZ), HZ, MT_COUNT(HZ), MAGNITUDES, MT_COUNT(HZ), PHASES},
+     .drawn = {MT_COUNT(HZ), HZ, MT_COUNT(HZ), MAGNITUDES, MT_COUNT(HZ), PHASES, MT_COUNT(HZ),
+               DENSITY_THERE},
      .n_extremes = MT_COUNT(EXTREMES),
      .extremes = EXTREMES,
      .vibration = &SHAKEN},
