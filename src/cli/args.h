@@ -34,6 +34,7 @@ typedef enum mt_option_id {
     MT_OPT_DIRECT,
     MT_OPT_POLES,
     MT_OPT_SENSITIVITY,
+    MT_OPT_VIBRATION,
     MT_OPT_DURATION,
     MT_OPT_DT_OUT,
     MT_OPT_START,

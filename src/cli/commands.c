@@ -80,6 +80,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (in the text the poles alone)"),
     OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
            "change of every peak and antiresonance for one per cent more of these parameters"),
+    OPTION(
+        MT_OPT_VIBRATION, '\0', "vibration", "PROFILE", BIT(MT_CMD_RESPONSE),
+        "a profile of vibration, a file or the name of one that is shipped, as the "
+        "acceleration of the ground: RMS, largest tones and peak of every output, by default "
+        "the accelerations of all sensors; --input is by default the ground along the "
+        "profile's axis, --from and --to are its ends"),
     OPTION(MT_OPT_DURATION, '\0', "duration", "SECONDS", BIT(MT_CMD_SIMULATE),
            "how long the motion lasts; needed"),
     OPTION(
@@ -285,6 +291,13 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "it lags. At the resonance of a mode that nothing damps the response has no value, "
         "which is said. A value's error, in JSON and CSV, bounds what rounding has made of "
         "it.\n"
+        "Under --vibration each output has the RMS of its response to the random parts of the "
+        "profile, with a bound of its error, the largest amplitude under each tone, wherever "
+        "in its range that lies, which is proven, and the peak that both make by the profile's "
+        "rule; all of the profile counts, whatever --from and --to are. The density of the "
+        "response over frequency is in JSON and CSV (psd). Where no sum over poles is to be "
+        "had, "
+        "numbers are by quadrature, and their errors estimates, which is said.\n"
         "A configuration that is unstable, or whose stability rounding hides, is refused, and "
         "so is the force of a joint that is redundant with others."),
     COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,

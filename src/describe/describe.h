@@ -102,7 +102,11 @@ mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *fou
  * MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_err *err);
 mt_status mt_describe_curves(const mt_workspace *fresh, mt_result *result,
-                                mt_recommendation *rec, mt_err *err);
+                             mt_recommendation *rec, mt_err *err);
+/* describe_history.c: the designs that the search met on the way to found->solutions[0], whose
+ * f belongs to `stage`; once. Fails: MT_E_MEMORY. */
+mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, int stage,
+                              mt_result *result, mt_err *err);
 /* Slopes of the values of goals at the design, the last that is asked of `fresh`; NULL where
  * there are none (describe_slopes.c). Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_result *result,

@@ -269,6 +269,16 @@ static void say_violations(mt_sentences *s)
     }
 }
 
+/* How much it shakes: texts begin with "the". */
+static void say_responses(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_responses; i++) {
+        const mt_result_response *const r = &s->rec->responses[i];
+        mt_say_of(s, "hold", r->pointer);
+        mt_say(s, "T%s.", r->text + 1);
+    }
+}
+
 /* Root mean square of what the weighted goals are off by in percent, each weighted as in the
  * study. */
 static void say_misfit(mt_sentences *s)
@@ -277,7 +287,7 @@ static void say_misfit(mt_sentences *s)
     double sum = 0.0;
     for (int i = 0; i < s->p->n_demands; i++) {
         const mt_result_goal *const g = &s->rec->goals[i];
-        if (g->weighted) {
+        if (s->p->demands[i].row_res >= 0) {
             weighted++;
             sum += s->p->demands[i].goal->weight * g->violation_percent * g->violation_percent;
         }
@@ -395,6 +405,7 @@ mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, m
     say_doubt(&s);
     say_slack(&s);
     say_violations(&s);
+    say_responses(&s);
     mt_say_bands(&s);
     return mt_arena_check(&result->mem, err);
 }
@@ -410,6 +421,7 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     say_frequencies(&s);
     mt_say_worst(&s);
     say_violations(&s);
+    say_responses(&s);
     mt_say_bands(&s);
     if (design->cut) {
         mt_say_of(&s, "rank", NULL);

@@ -11,6 +11,7 @@ static const double TWO_PI = 6.283185307179586476925;
 static const double PERCENT = 100.0;
 
 static const char RELATIVE[] = "relative_";
+static const char BASE[] = "base.";
 
 /* "the acceleration of grip.x", "the force of spring.mount". */
 static const char *output_text(const char *port, mt_arena *mem)
@@ -40,7 +41,7 @@ static const char *beside_text(const mt_goal *g, double value, mt_arena *mem)
                                                : g->equals;
     const double off = PERCENT * (value / limit - 1.0);
     const char *const what = MT_HAS(g->at_most) || MT_HAS(g->at_least) ? "limit" : "target";
-    return mt_arena_printf(mem, ", %.2g %% %s its %s", fabs(off), off > 0.0 ? "above" : "below",
+    return mt_arena_printf(mem, ", %.3g %% %s its %s", fabs(off), off > 0.0 ? "above" : "below",
                            what);
 }
 
@@ -68,8 +69,12 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
     if (what == NULL) {
         return NULL;
     }
-    const char *const subject = mt_arena_printf(mem, "in \"%s\" %s %s %s", r->configuration,
-                                                what, s->profile == NULL ? "for" : "under", by);
+    const bool force = strncmp(by, BASE, strlen(BASE)) != 0;
+    const char *const subject = mt_arena_printf(mem, "%s %s%s in \"%s\"", what,
+                                                s->profile != NULL ? "under "
+                                                : force            ? "under a force at "
+                                                                   : "for ",
+                                                by, r->configuration);
     if (subject == NULL) {
         return NULL;
     }

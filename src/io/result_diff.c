@@ -38,6 +38,7 @@ static const list_rule RULES[] = {
     {"frequencies", "frequency", {"configuration", "mode", "reference"}, NULL},
     {"gap_assignment", "band", {"configuration", "band"}, NULL},
     {"goals", "goal", {"pointer"}, "goal"},
+    {"history", "step", {NULL}, NULL},
     {"inputs", "input", {"file"}, NULL},
     {"limits", "limit", {"pointer"}, NULL},
     {"motion", "motion", {"goal", "drive"}, NULL},
@@ -62,8 +63,9 @@ static const list_rule RULES[] = {
 /* Sentences, places in files, measures of rounding, and digests of what is written from all
  * this. */
 static const char *const PASSED_OVER[] = {
-    "column",  "drawn",   "goal",     "kkt_residual", "line", "orthogonality",
-    "outputs", "reasons", "residual", "status_text",  "text", "warnings",
+    "column",      "drawn",         "goal",     "history", "kkt_residual",
+    "line",        "orthogonality", "outputs",  "reasons", "residual",
+    "status_text", "text",          "warnings",
 };
 
 /* What changes where something else in the same part does. */

@@ -54,12 +54,11 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
                        mt_err *err)
 {
     const mt_shake *const s = d->goal->shake;
-    const mt_pole_sum *sum = NULL;
-    mt_arena *mem = NULL;
+    bool proven = false;
     mt_vibration_response r;
     mt_spectral_nodes nodes = {.n = 0};
     (void)pos;
-    MT_TRY(mt_shaken_respond(w, d, &r, &sum, &mem, err));
+    MT_TRY(mt_shaken_respond(w, d, &r, &proven, err));
     *q = number(s, &r);
     if (!is_finite(s, &r)) {
         double lower = 0.0;
@@ -71,8 +70,7 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
     if (slope == NULL) {
         return MT_OK;
     }
-    MT_TRY(mt_vibration_respond_nodes(s->profile, sum, &r, by_rms(s), by_sine(s), mem, &nodes,
-                                      err));
+    MT_TRY(mt_shaken_nodes(w, d, &r, by_rms(s), by_sine(s), &nodes, err));
     MT_TRY(mt_shaken_slope(w, d, &nodes, 1.0, slope, err));
     mt_shaken_to_ln(w, d, *q, slope);
     return MT_OK;
@@ -109,13 +107,12 @@ static void look_at_tones(const mt_shake *s, const mt_vibration_response *r,
 static mt_status look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
 {
     const mt_shake *const s = d->goal->shake;
-    const mt_pole_sum *sum = NULL;
-    mt_arena *mem = NULL;
+    bool proven = false;
     mt_vibration_response r;
     mt_shaken_peak peak;
-    MT_TRY(mt_shaken_respond(w, d, &r, &sum, &mem, err));
+    MT_TRY(mt_shaken_respond(w, d, &r, &proven, err));
     range_of(s, &out->lower_hz, &out->upper_hz);
-    out->proven = sum != NULL;
+    out->proven = proven;
     out->end = r.end;
     if (!is_finite(s, &r)) {
         return MT_OK;

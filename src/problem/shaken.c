@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "problem/goal.h"
+#include "problem/shaken_sampled.h"
 
 void mt_shaken_close(mt_view_work *view)
 {
@@ -141,7 +142,7 @@ mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, doub
     MT_TRY(open_view(w, d, &s, err));
     *out = (mt_shaken_peak){.proven = s->summed};
     if (!s->summed) {
-        return mt_fail(err, MT_E_SINGULAR, "the response is no sum over simple poles");
+        return mt_sampled_find(&s->r, lower, upper, &out->at, &out->by_omega, err);
     }
     out->at = mt_sine_peak_find(&s->frf, lower, upper);
     if (out->at.end == MT_FORCED_FINITE) {
@@ -152,17 +153,25 @@ mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, doub
 }
 
 mt_status mt_shaken_respond(mt_workspace *w, const mt_demand *d, mt_vibration_response *out,
-                            const mt_pole_sum **sum, mt_arena **mem, mt_err *err)
+                            bool *proven, mt_err *err)
 {
+    const mt_vibration *const v = d->goal->shake->profile;
     mt_shaken *s = NULL;
     MT_TRY(open_view(w, d, &s, err));
-    *mem = &s->r.mem;
-    *sum = NULL;
-    if (!s->summed) {
-        return mt_fail(err, MT_E_SINGULAR, "the response is no sum over simple poles");
-    }
-    *sum = &s->sum;
-    return mt_vibration_respond(d->goal->shake->profile, *sum, *mem, out, err);
+    *proven = s->summed;
+    return s->summed ? mt_vibration_respond(v, &s->sum, &s->r.mem, out, err)
+                     : mt_sampled_respond(&s->r, v, out, err);
+}
+
+mt_status mt_shaken_nodes(mt_workspace *w, const mt_demand *d, const mt_vibration_response *r,
+                          double by_rms, double by_sine, mt_spectral_nodes *out, mt_err *err)
+{
+    const mt_vibration *const v = d->goal->shake->profile;
+    mt_shaken *s = NULL;
+    MT_TRY(open_view(w, d, &s, err));
+    return s->summed
+               ? mt_vibration_respond_nodes(v, &s->sum, r, by_rms, by_sine, &s->r.mem, out, err)
+               : mt_sampled_nodes(&s->r, v, r, by_rms, by_sine, out, err);
 }
 
 mt_status mt_shaken_slope(mt_workspace *w, const mt_demand *d, const mt_spectral_nodes *nodes,

@@ -57,10 +57,12 @@ mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err);
  * Fails: as mt_response_open. */
 mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, double upper,
                          mt_shaken_peak *out, mt_err *err);
-/* What the demand's profile does; *sum: what that is made of, NULL where it is sampled. Lists in
- * *mem until the next solve. */
+/* What the demand's profile does, lists until the next solve; *proven: as mt_shaken_peak. */
 mt_status mt_shaken_respond(mt_workspace *w, const mt_demand *d, mt_vibration_response *out,
-                            const mt_pole_sum **sum, mt_arena **mem, mt_err *err);
+                            bool *proven, mt_err *err);
+/* by_rms d rms + by_sine d sine of it as nodes. */
+mt_status mt_shaken_nodes(mt_workspace *w, const mt_demand *d, const mt_vibration_response *r,
+                          double by_rms, double by_sine, mt_spectral_nodes *out, mt_err *err);
 /* out[p->n] = d/dt of Re sum_i weight_i H(w_i), times `factor`. After a solve with gradient. */
 mt_status mt_shaken_slope(mt_workspace *w, const mt_demand *d, const mt_spectral_nodes *nodes,
                           double factor, double *out, mt_err *err);

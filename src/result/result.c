@@ -549,6 +549,15 @@ static const mt_field OVERRIDE_FIELDS[] = {
 static const mt_record OVERRIDE = MT_F_RECORD_OF(OVERRIDE_FIELDS);
 #undef THIS
 
+#define THIS mt_result_step
+static const mt_field STEP_FIELDS[] = {
+    MT_F_COUNT("objective", objective, 1),       MT_F_COUNT("round", round, 1),
+    MT_F_LONG("evaluations", evaluations),       MT_F_NUMBER_OR_NULL("value", value),
+    MT_F_NUMBER_OR_NULL("violation", violation), MT_F_FLAG("feasible", feasible),
+};
+static const mt_record STEP = MT_F_RECORD_OF(STEP_FIELDS);
+#undef THIS
+
 #define THIS mt_result_run
 static const char *const CAUSES[] = {"interrupt", "time limit"};
 static const char *const PHASES[] = {"search",      "recommendations", "spread", "certificates",
@@ -564,6 +573,7 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_COUNT_OR_NULL("distinct_designs", distinct_designs, 0),
     MT_F_COUNT_OR_NULL("found_once", found_once, 0),
     MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
+    MT_F_LIST("history", history, n_history, mt_result_step, STEP),
     MT_F_LONG("evaluations", evaluations),
     MT_F_RECORD("spent", spent, mt_result_spent, SPENT),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),

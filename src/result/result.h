@@ -85,7 +85,7 @@ typedef struct mt_result_goal {
     double tolerance_percent; /* a violation up to it is met */
     double violation_percent;
     bool met;
-    bool weighted; /* part of the misfit: does not decide status */
+    bool weighted; /* part of the misfit, or of the vibration: does not decide status */
     bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
     /* the worst value over the tolerances of the variables, which the goal is judged by; NaN:
      * none */
@@ -122,10 +122,10 @@ typedef struct mt_result_response {
     const char *quantity; /* "response" | "rms" | "sine" | "peak" */
     const char *unit;     /* of value and error; "": not known */
     double value;         /* NaN: none, see end */
-    double error;         /* of it, at most */
-    double frequency_hz;  /* where the response is largest; NaN: not known */
-    bool at_edge;         /* that is an end of the range */
-    double lower_hz;      /* the range that it was looked for in */
+    double error; /* of it, at most; of one that is sampled an estimate; NaN: not known */
+    double frequency_hz; /* where the response is largest; NaN: not known */
+    bool at_edge;        /* that is an end of the range */
+    double lower_hz;     /* the range that it was looked for in */
     double upper_hz;
     const char *end;   /* "finite" | "infinite" | "unstable" | "none": could not be computed */
     const char *grade; /* "proven": no frequency of the range has more; "sampled" */
@@ -509,6 +509,16 @@ typedef struct mt_result_spent {
     long multiplications; /* of proofs, about */
 } mt_result_spent;
 
+/* A design that a search met that was better than all before it. */
+typedef struct mt_result_step {
+    int objective;    /* that was made least, from 1 */
+    int round;        /* from 1: what follows counts more closely, or under more conditions */
+    long evaluations; /* up to there, as if one worker had done all of it */
+    double value;     /* of that objective, as mt_design_objective has it; NaN: none */
+    double violation; /* the most that a goal or bound is missed by, of its tolerance */
+    bool feasible;
+} mt_result_step;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     mt_result_build build;
@@ -523,6 +533,8 @@ typedef struct mt_result_run {
     int distinct_designs;
     int found_once;           /* of them, by one start only */
     double estimated_missing; /* isolated designs that no start met, at least */
+    int n_history;            /* 0: nothing was searched, or an interrupt cut it */
+    mt_result_step *history;
     int n_overrides;
     mt_result_override *overrides;
     int n_inputs;

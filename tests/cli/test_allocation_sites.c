@@ -156,6 +156,12 @@ static struct {
     {"response --input base.x --output tip.x:velocity --output joint.pivot.x "
      "--sensitivity m,L -c hanging " MODELS "pendulum.json",
      MT_EXIT_DONE, FULL},
+    {"response --vibration helicopter_uh60_panel --input base.x -c still --points 3 " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE, FULL},
+    {"response --vibration tests/io/good/profile.json --input base.y --format json -c still "
+     "--points 3 " MODELS "four_bar.json",
+     MT_EXIT_DONE, SOME},
     {"response --input tip.x --format json --sensitivity a,k -c still --points 3 " MODELS
      "four_bar.json",
      MT_EXIT_DONE, FULL},

@@ -130,6 +130,11 @@ static const struct {
     {"sensitivity " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
     {"response --input tip.x " MODELS "pendulum.json -c hanging", MT_EXIT_DONE, AS_IT_IS},
+    {"response --vibration white --input base.x " MODELS "pendulum.json -c hanging",
+     MT_EXIT_DONE, AS_IT_IS},
+    {"response --vibration white " MODELS "pendulum.json -c hanging", MT_EXIT_INPUT, AS_IT_IS},
+    {"response --vibration %/none.json --input base.x " MODELS "pendulum.json -c hanging",
+     MT_EXIT_SYSTEM, AS_IT_IS},
     {"response --input tip.q " MODELS "pendulum.json -c hanging", MT_EXIT_INPUT, AS_IT_IS},
     {"response --input tip.x " MODELS "pendulum.json -c upside_down", MT_EXIT_NUMERICAL,
      AS_IT_IS},

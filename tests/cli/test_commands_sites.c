@@ -48,6 +48,9 @@ static const struct {
     {"response --input tip.x --output tip.y:velocity --sensitivity k -c still --points 3 "
      "--from 1 --to 2 " MODELS "four_bar.json",
      MT_EXIT_DONE},
+    {"response --vibration tests/io/good/profile.json --input base.y -c still --points 3 "
+     "--format csv " MODELS "four_bar.json",
+     MT_EXIT_DONE},
     {"info " MODELS "space_stick.json", MT_EXIT_DONE},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},

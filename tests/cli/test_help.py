@@ -17,7 +17,7 @@ OPTIONS = {
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
     "simulate": {"configuration", "set", "duration", "dt-out", "start", "rate", "mode", "input", "sine", "sweep", "random", "seed", "output", "tolerance", "time"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
-    "response": {"configuration", "set", "input", "output", "from", "to", "points", "log", "modes", "direct", "poles", "sensitivity"},
+    "response": {"configuration", "set", "input", "output", "from", "to", "points", "log", "modes", "direct", "poles", "sensitivity", "vibration"},
     "info": {"configuration", "set"},
     "show": {"configuration", "set", "output", "svg", "mode", "model"},
     "report": {"output", "verify"},

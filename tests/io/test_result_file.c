@@ -53,6 +53,7 @@ static const char *INCOMPLETE[] = {"trade"};
 static const char SHA256[] = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
 static mt_result_digest INPUTS[] = {{"study.json", SHA256}};
 static mt_result_override OVERRIDES[] = {{"parameter", "l", "m", "mm", 1e-3, 0.5, 0.25}};
+static mt_result_step HISTORY[] = {{1, 1, 3, 0.5, 12.5, false}, {2, 1, 1000, 0.25, 0.0, true}};
 static mt_result_digest OUTPUTS[] = {{"report.html", SHA256}};
 static mt_doubt DOUBTS[] = {{.kind = "margin",
                              .text = "a margin of 0.1 %",
@@ -279,6 +280,8 @@ static void fill_run(mt_result *r)
                              .distinct_designs = 9,
                              .found_once = 3,
                              .estimated_missing = 1.5,
+                             .n_history = MT_COUNT(HISTORY),
+                             .history = HISTORY,
                              .n_overrides = MT_COUNT(OVERRIDES),
                              .overrides = OVERRIDES,
                              .n_inputs = MT_COUNT(INPUTS),
