@@ -8,7 +8,7 @@
 
 #include "describe/describe.h"
 #include "response/response.h"
-#include "vibration/respond.h"
+#include "vibration/profiled.h"
 
 static const double TWO_PI = 6.283185307179586477;
 static const double HALF_TURN_DEG = 180.0;
@@ -97,23 +97,18 @@ static mt_status put_curve(const mt_response *r, const mt_curve *c, mt_arena *me
     return rc;
 }
 
-/* Of the profile; a response that is no sum over poles has none, which is said. */
+/* All of the profile, proven where the response is a sum over poles. */
 static mt_status shake(mt_response *r, const mt_vibration *v, mt_arena *mem,
                        mt_design_curve *out, mt_err *err)
 {
-    mt_pole_sum sum;
-    mt_vibration_response found;
-    mt_err why = {.code = MT_OK};
-    mt_status rc = mt_response_sums(r, &sum, &why);
-    rc = rc == MT_OK ? mt_vibration_respond(v, &sum, &r->mem, &found, &why) : rc;
-    if (rc != MT_OK) {
-        out->trouble = mt_arena_strdup(mem, why.text);
-        return mt_is_final(rc) ? mt_fail(err, rc, "%s", why.text) : mt_arena_check(mem, err);
-    }
+    mt_profiled all;
+    MT_TRY(mt_profiled_find(r, v, &all, err));
+    const mt_vibration_response found = all.answers[0];
     mt_result_shaken *const to = mt_arena_alloc(mem, 1, sizeof *to);
     mt_result_shaken_tone *const tones = mt_arena_alloc(mem, (size_t)v->n_tones, sizeof *tones);
     MT_TRY(mt_arena_check(mem, err));
     *to = (mt_result_shaken){.end = mt_forced_end_name(found.end),
+                             .proven = all.no_sums == NULL,
                              .rms = found.rms,
                              .rms_error_at_most = found.rms_bound,
                              .sine = found.sine,

@@ -239,6 +239,7 @@ static const mt_record SHAKEN_TONE = MT_F_RECORD_OF(SHAKEN_TONE_FIELDS);
 static const char *const VIBRATION_ENDS[] = {"finite", "infinite", "unstable"};
 static const mt_field VIBRATION_FIELDS[] = {
     MT_F_CHOICE("end", end, VIBRATION_ENDS),
+    MT_F_FLAG("proven", proven),
     MT_F_NUMBER_OR_NULL("rms", rms),
     MT_F_NUMBER_OR_NULL("rms_error_at_most", rms_error_at_most),
     MT_F_NUMBER_OR_NULL("sine", sine),

@@ -232,6 +232,7 @@ typedef struct mt_result_shaken_tone {
 /* What a curve's profile does at one design, all of the profile, whatever is shown. */
 typedef struct mt_result_shaken {
     const char *end; /* "finite" | "infinite" | "unstable": numbers are NaN where not finite */
+    bool proven;     /* false: by quadrature, errors are estimates */
     double rms;      /* of the random parts [output_unit] */
     double rms_error_at_most;
     double sine; /* of the tones by the profile's rule */
@@ -249,7 +250,7 @@ typedef struct mt_design_curve {
     int n_extremes;
     mt_result_extreme *extremes; /* by ascending frequency, all of the band */
     mt_result_shaken
-        *vibration; /* NULL: there is no profile, or no number (then trouble says) */
+        *vibration; /* NULL: there is no profile, or no curve (then trouble says) */
 } mt_design_curve;
 
 /* One sentence of why a design is what it is. */

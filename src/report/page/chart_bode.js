@@ -11,6 +11,7 @@
   const C = F.colour;
 
   const NAMED = 4; // peaks with words
+  const AT_ONE = ' at one frequency';
 
   const limits = (c) => D.clean(c.limits).filter((l) => R.positive(l.lower_hz) &&
     l.upper_hz >= l.lower_hz);
@@ -61,18 +62,19 @@
         const y = p.y(v);
         const from = Math.max(p.box.left, p.x(l.lower_hz));
         const to = Math.min(p.box.right, p.x(l.upper_hz));
-        const side = words === 'at least' ? -6 : 6;
-        const told = `${l.pointer}: ${words} ${T.sig(v)} ${p.c.unit}`;
-        if (to - from < 2) {
-          F.mark(g, words === 'target' ? 'diamond' : 'triangle', from, y, { colour: C.bad,
-            size: 70 }).append('title').text(told);
-          continue;
-        }
-        g.append('path').attr('d', `M${from},${y + side}V${y}H${to}V${y + side}`)
-          .attr('fill', 'none').attr('stroke', C.bad).attr('stroke-width', 2.4)
-          .append('title').text(told);
+        (to - from < 2 ? point(g, words, from, y) : bracket(g, words, from, to, y))
+          .append('title').text(`${l.pointer}: ${words} ${T.sig(v)} ${p.c.unit}`);
       }
     }
+  }
+
+  const point = (g, words, x, y) => F.mark(g, words.startsWith('target') ? 'diamond'
+    : 'triangle', x, y, { colour: C.bad, size: 70 });
+
+  function bracket(g, words, from, to, y) {
+    const side = words.startsWith('at least') ? -6 : 6;
+    return g.append('path').attr('d', `M${from},${y + side}V${y}H${to}V${y + side}`)
+      .attr('fill', 'none').attr('stroke', C.bad).attr('stroke-width', 2.4);
   }
 
   // A piece goes up to the edge where a resonance has no height.
@@ -134,11 +136,10 @@
       items.push({ words: 'infinite: nothing damps it', draw: (g, x, y) =>
         F.mark(g, 'triangle', x, y, { size: 60 }) });
     }
-    for (const words of new Set(limits(p.c).flatMap((l) => asks(l).map(([, v]) => v)))) {
-      const side = words === 'at least' ? -6 : 6;
-      items.push({ words: 'a goal: ' + words, draw: (g, x, y) => g.append('path')
-        .attr('d', `M${x - 12},${y + side}V${y}H${x + 12}V${y + side}`).attr('fill', 'none')
-        .attr('stroke', C.bad).attr('stroke-width', 2.4) });
+    for (const words of new Set(limits(p.c).flatMap((l) => asks(l).map(([, v]) => v +
+      (l.upper_hz > l.lower_hz ? '' : AT_ONE))))) {
+      items.push({ words: 'a goal: ' + words, draw: (g, x, y) => words.endsWith(AT_ONE)
+        ? point(g, words, x, y) : bracket(g, words, x - 12, x + 12, y) });
     }
     if (p.bands.length > 0) {
       items.push({ words: 'what turns', draw: (g, x, y) => F.rect(g, x - 11, y - 6, 22, 12,

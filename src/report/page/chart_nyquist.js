@@ -36,12 +36,13 @@
     const all = parts.flatMap((part) => part.lines.flat().map(complex));
     const [left, right] = d3.extent(all.map((z) => z[0]).concat(0));
     const [low, high] = d3.extent(all.map((z) => z[1]).concat(0));
-    const width = Math.min(w - 76, 640);
+    const margin = R.room(d3.ticks(low, high, 10).concat(low, high)) + 10;
+    const width = Math.min(w - margin - 14, 640);
     const span = Math.max(right - left, high - low, most * 1e-6, Number.MIN_VALUE * 1e20) * 1.1;
     let unit = width / Math.max(right - left, span * FLATTEST);
     const height = Math.max(width * FLATTEST, Math.min(width, (high - low) * unit * 1.1));
     unit = Math.min(width / ((right - left) * 1.1 || span), height / ((high - low) * 1.1 || span));
-    const box = { left: 62, right: 62 + width, top: 10, bottom: 10 + height };
+    const box = { left: margin, right: margin + width, top: 10, bottom: 10 + height };
     const x = d3.scaleLinear([(left + right - width / unit) / 2,
       (left + right + width / unit) / 2], [box.left, box.right]);
     const y = d3.scaleLinear([(low + high - height / unit) / 2,
@@ -71,7 +72,9 @@
     const list = R.shown(k);
     const p = layout(list, w);
     const { box, x, y } = p;
-    F.axisBelow(g, x, [box.left, box.right], T.fit(T.titled('real part', c.unit), w - 60), box);
+    const middle = (box.left + box.right) / 2;
+    F.axisBelow(g, x, [box.left, box.right], T.fit(T.titled('real part', c.unit),
+      2 * Math.min(middle, w - middle) - 8), box);
     F.axisLeft(g, y, [box.top, box.bottom], T.fit(T.titled('imaginary part', c.unit),
       box.bottom - box.top), box);
     const put = R.labels(g, box, 11);

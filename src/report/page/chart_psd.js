@@ -47,6 +47,7 @@
       .filter((point) => R.positive(point[1]));
   }
 
+  const squared = (unit) => (/^\w+$/.test(unit) ? unit : `(${unit})`) + '\u00b2';
   const shaken = (s) => s.r.own && s.r.own.vibration;
   const answers = (s) => D.clean(shaken(s) && shaken(s).tones)
     .filter((t) => R.positive(t.frequency_hz) && R.positive(t.peak));
@@ -76,7 +77,7 @@
     const left = Math.max(R.room(p.ticks), R.room(p.under));
     p.x = d3.scaleLog().domain([c.lower_hz, c.upper_hz]).range([left, w - 14]);
     const upper = all.length > 0 ? height : 0;
-    const lower = stems.length > 0 ? Math.max(110, height * 0.5) : 0;
+    const lower = peaks.some(R.positive) ? Math.max(110, height * 0.5) : 0;
     p.box = { left, right: w - 14, top: 10, bottom: 10 + upper };
     p.low = { left, right: w - 14, top: p.box.bottom + (upper > 0 && lower > 0 ? 14 : 0) };
     p.low.bottom = p.low.top + lower;
@@ -92,8 +93,8 @@
   };
 
   function drawDensities(g, p, k) {
-    F.axisLeft(g, p.y, [p.box.top, p.box.bottom], T.fit(T.titled('PSD', `(${p.c.output_unit})` +
-      '\u00b2/Hz'), p.box.bottom - p.box.top), Object.assign({ ticks: p.ticks }, p.box));
+    F.axisLeft(g, p.y, [p.box.top, p.box.bottom], T.fit(`PSD [${squared(p.c.output_unit)}/Hz]`,
+      p.box.bottom - p.box.top), Object.assign({ ticks: p.ticks }, p.box));
     const inside = R.clip(g, p.box, `clip-psd-${k}`);
     const line = d3.line().x((v) => p.x(v[0])).y((v) => p.y(v[1]));
     inside.append('path').attr('d', line(p.given)).attr('fill', 'none')
@@ -145,11 +146,11 @@
     if (p.all.length > 0) {
       drawDensities(g, p, k);
     }
-    if (p.stems.length > 0) {
+    if (p.low.bottom > p.low.top) {
       drawTones(g, p, list);
     }
     const items = R.keys(list);
-    if (p.same || p.stems.length > 0) {
+    if (p.same || p.low.bottom > p.low.top) {
       items.push({ words: 'the profile', draw: (place, x, y) => F.line(place, x - 13, y, x + 13,
         y, C.other, { 'stroke-width': 2, 'stroke-dasharray': '2 3' }) });
     }

@@ -31,7 +31,7 @@
       const p = D.clean(drawn.phase_deg)[i];
       if (positive(f) && positive(m) && T.isNumber(p) && f >= c.lower_hz * (1 - 1e-6) &&
         f <= c.upper_hz * (1 + 1e-6) && (at.length === 0 || f >= at[at.length - 1].f)) {
-        before = at.length === 0 ? p : turned(p, before);
+        before = at.length === 0 ? p - 360 * Math.round(p / 360) : turned(p, before);
         at.push({ f, m, p: before });
       }
     });
