@@ -33,7 +33,7 @@ static const list_rule RULES[] = {
     {"densities", "density", {NULL}, NULL},
     {"doubts", "doubt", {"kind", "configuration", "pointer"}, NULL},
     {"excitations", "excitation", {"pointer", "name"}, NULL},
-    {"extremes", "extreme", {NULL}, NULL},
+    {"extremes", "extreme", {"kind"}, NULL},
     {"facts", "fact", {"kind", "configuration", "pointer"}, NULL},
     {"frequencies", "frequency", {"configuration", "mode", "reference"}, NULL},
     {"gap_assignment", "band", {"configuration", "band"}, NULL},
@@ -70,10 +70,10 @@ static const char *const PASSED_OVER[] = {
 
 /* What changes where something else in the same part does. */
 static const char *const DERIVED[] = {
-    "change_percent",  "difference", "difference_percent", "error_percent",   "feasible",
-    "high_percent",    "hz",         "low_percent",        "margin_lower_hz", "margin_percent",
-    "margin_upper_hz", "original",   "original_hz",        "rival_share",     "score",
-    "sensitivity",     "share",
+    "change_percent", "damping_ratio",   "difference", "difference_percent", "error_percent",
+    "feasible",       "high_percent",    "hz",         "low_percent",        "margin_lower_hz",
+    "margin_percent", "margin_upper_hz", "natural_hz", "original",           "original_hz",
+    "phase_deg",      "rival_share",     "score",      "sensitivity",        "share",
 };
 
 /* Of these 1 is the whole: they are compared with it. */

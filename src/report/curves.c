@@ -71,10 +71,28 @@ mt_table mt_report_curves(const mt_result *result)
     return t;
 }
 
-mt_table mt_report_extremes(const mt_result *result, const mt_recommendation *r)
+static void add_extremes(mt_table *t, const mt_result_curve *of, int rank,
+                         const mt_design_curve *r)
+{
+    for (int e = 0; r != NULL && e < r->n_extremes; e++) {
+        const mt_result_extreme *const x = &r->extremes[e];
+        name_cells(t, of);
+        mt_table_integer(t, rank);
+        mt_table_text(t, x->kind);
+        mt_table_number(t, x->hz, DIGITS);
+        mt_table_number(t, x->magnitude, TOLD_DIGITS);
+        mt_table_text(t, of->unit);
+        mt_table_number(t, x->phase_deg, TOLD_DIGITS);
+        mt_table_number(t, x->natural_hz, DIGITS);
+        mt_table_number(t, x->damping_ratio, TOLD_DIGITS);
+    }
+}
+
+mt_table mt_report_extremes(const mt_result *result, int most)
 {
     mt_table t = mt_table_default();
     name_columns(&t);
+    mt_table_column(&t, "design", "rank", MT_ALIGN_RIGHT);
     mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
     mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
     mt_table_column(&t, "magnitude", "magnitude", MT_ALIGN_POINT);
@@ -83,17 +101,11 @@ mt_table mt_report_extremes(const mt_result *result, const mt_recommendation *r)
     mt_table_column(&t, "of a mode at [Hz]", "natural_hz", MT_ALIGN_POINT);
     mt_table_column(&t, "damping ratio", "damping_ratio", MT_ALIGN_POINT);
     for (int k = 0; k < result->n_curves; k++) {
-        const mt_design_curve *const of = at(r, k);
-        for (int e = 0; of != NULL && e < of->n_extremes; e++) {
-            const mt_result_extreme *const x = &of->extremes[e];
-            name_cells(&t, &result->curves[k]);
-            mt_table_text(&t, x->kind);
-            mt_table_number(&t, x->hz, DIGITS);
-            mt_table_number(&t, x->magnitude, TOLD_DIGITS);
-            mt_table_text(&t, result->curves[k].unit);
-            mt_table_number(&t, x->phase_deg, TOLD_DIGITS);
-            mt_table_number(&t, x->natural_hz, DIGITS);
-            mt_table_number(&t, x->damping_ratio, TOLD_DIGITS);
+        const mt_result_curve *const of = &result->curves[k];
+        add_extremes(&t, of, result->baseline.rank, at(&result->baseline, k));
+        for (int i = 0; i < result->n_recommendations && i < most; i++) {
+            const mt_recommendation *const r = &result->recommendations[i];
+            add_extremes(&t, of, r->rank, at(r, k));
         }
     }
     return t;

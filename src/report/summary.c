@@ -517,6 +517,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
         add_table(&to, mt_report_alternatives(result), "All recommendations");
         mt_text_add(out, "</div>\n");
     }
+    add_table(&to, mt_report_extremes(result, SHOWN), "Peaks and antiresonances");
     tell_trade(&to, result);
     tell_published(&to, result);
     mt_text_add(out, "</details>\n");

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Douglas and Peucker's choice of points, the farthest first: between two points that are kept
- * a picture has ln |H| and the phase (turned on, not wrapped) straight over x = ln w, and the
- * point in between that lies farthest from that,
+ * Douglas and Peucker's choice of points, the farthest first (The Canadian Cartographer 10
+ * (1973) 112-122): between two points that are kept a picture has ln |H| and the phase (turned
+ * on, not wrapped) straight over x = ln w, and the point in between that lies farthest from
+ * that,
  *     d = hypot(ln |H| - line, arg H - line) ~ |H - drawn| / |H|,
- * is kept next, until none is farther than DRAWN. (D. H. Douglas, T. K. Peucker, The Canadian Cartographer 10 (1973) 112-122.)
+ * is kept next, until none is farther than DRAWN.
  */
 #include <math.h>
 #include <string.h>

@@ -19,7 +19,7 @@ class Odd(Answers):
 
     def report(self, name, kind):
         folder = self.folder / f"{name}_{kind}"
-        folder.mkdir()
+        folder.mkdir(exist_ok=True)
         (folder / "result.json").write_text(json.dumps(odd.made(kind, self.reports[name][1])), encoding="utf-8")
         done = subprocess.run([PROGRAM, "report", folder / "result.json", "--format", "html"], capture_output=True, text=True, timeout=100)
         self.assertEqual(done.returncode, 0, done.stderr[:500])

@@ -47,7 +47,7 @@ static void curve__one_mass_peaks_at_its_closed_form(mt_test *t)
     }
 }
 
-/* What is drawn between two points of a picture: straight over log w in log |H| and in phase. */
+/* What is drawn between two points of a picture is straight over log w in log |H| and phase. */
 static double drawn_off(const mt_curve *c, int a, int b, int i)
 {
     const double part = log(c->w[i] / c->w[a]) / log(c->w[b] / c->w[a]);

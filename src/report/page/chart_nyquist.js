@@ -41,7 +41,8 @@
     const span = Math.max(right - left, high - low, most * 1e-6, Number.MIN_VALUE * 1e20) * 1.1;
     let unit = width / Math.max(right - left, span * FLATTEST);
     const height = Math.max(width * FLATTEST, Math.min(width, (high - low) * unit * 1.1));
-    unit = Math.min(width / ((right - left) * 1.1 || span), height / ((high - low) * 1.1 || span));
+    unit = Math.min(width / ((right - left) * 1.1 || span),
+      height / ((high - low) * 1.1 || span));
     const box = { left: margin, right: margin + width, top: 10, bottom: 10 + height };
     const x = d3.scaleLinear([(left + right - width / unit) / 2,
       (left + right + width / unit) / 2], [box.left, box.right]);

@@ -63,7 +63,8 @@
       const [least, most] = R.extent(s.r);
       const range = d3.extent(lines[i].pieces.flat(), (point) => point[1]);
       const of = d3.extent(given, (point) => point[1]);
-      return [Math.max(range[0], least * least * of[0]), Math.min(range[1], most * most * of[1])];
+      return [Math.max(range[0], least * least * of[0]),
+        Math.min(range[1], most * most * of[1])];
     });
     const values = ends.concat(same ? given.map((v) => v[1]) : []);
     const stems = tones(c);
