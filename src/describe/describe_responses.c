@@ -79,7 +79,7 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
         return NULL;
     }
     if (!MT_HAS(r->value)) {
-        return strcmp(r->end, mt_forced_end_name(MT_FORCED_INFINITE)) == 0
+        return strcmp(r->end, "infinite") == 0
                    ? mt_arena_printf(mem,
                                      "%s has no bound: nothing damps a motion that is shaken "
                                      "at its natural frequency",
@@ -100,11 +100,11 @@ static mt_status look(mt_workspace *fresh, const mt_demand *d, mt_arena *mem,
                       mt_result_response *out, mt_err *err)
 {
     const mt_goal *const g = d->goal;
-    mt_shaken_value v = {.end = MT_FORCED_UNSTABLE};
+    mt_shaken_value v = {.finite = false};
     mt_err own = {.code = MT_OK};
     const mt_status rc = mt_shaken_look(fresh, d, &v, &own);
     MT_TRY(mt_pass_final(rc, &own, err));
-    const bool has = rc == MT_OK && v.end == MT_FORCED_FINITE;
+    const bool has = rc == MT_OK && v.finite;
     *out =
         (mt_result_response){.pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index),
                              .configuration = mt_view_name(fresh->p, &fresh->p->views[d->view]),
@@ -119,7 +119,7 @@ static mt_status look(mt_workspace *fresh, const mt_demand *d, mt_arena *mem,
                              .at_edge = has && v.at_edge,
                              .lower_hz = v.lower_hz,
                              .upper_hz = v.upper_hz,
-                             .end = rc == MT_OK ? mt_forced_end_name(v.end) : "none",
+                             .end = rc == MT_OK ? v.end_name : "none",
                              .grade = v.proven ? "proven" : "sampled"};
     out->text = text_of(g, out, mem);
     return mt_arena_check(mem, err);

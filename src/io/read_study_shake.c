@@ -6,10 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "io/read_profile.h"
 #include "io/shipped.h"
 
 static const char SHIPPED[] = "problems/profiles/";
+static const char ENDING[] = ".json";
 static const char AIRCRAFT[] = "problems/aircraft.json";
 
 /* A goal being read. */
@@ -39,18 +41,47 @@ static mt_name name_at(const reading *g, mt_goal_slot slot)
     return name;
 }
 
-/* The one of that name that is part of the program, where there is no such file; NULL: the name
- * is a path, or that of none. */
-static const mt_shipped *shipped(mt_study_reader *s, const char *name, const char *file)
+/* A name, no path: of a profile that is part of the program, where there is no such file. */
+static bool is_shipped(const mt_study_reader *s, const char *name, const char *file)
 {
-    if (strpbrk(name, "/.") != NULL || !mt_files_lack(&s->files.files, file)) {
+    return strpbrk(name, "/.") == NULL && mt_files_lack(&s->files.files, file);
+}
+
+/* The one of that name; NULL: there is none (noted, with the nearest). */
+static const mt_shipped *shipped(mt_study_reader *s, mt_name name)
+{
+    int n = 0;
+    int n_names = 0;
+    const mt_shipped *const all = mt_shipped_all(&n);
+    const char **const names = mt_arena_alloc(s->r.mem, (size_t)n, sizeof *names);
+    for (int i = 0; i < n && names != NULL; i++) {
+        const char *const file = all[i].path + strlen(SHIPPED);
+        const size_t length = strlen(file) - strlen(ENDING);
+        if (strncmp(all[i].path, SHIPPED, strlen(SHIPPED)) != 0) {
+            continue;
+        }
+        if (strncmp(file, name.s, length) == 0 && name.s[length] == '\0') {
+            return &all[i];
+        }
+        names[n_names++] = mt_arena_strndup(s->r.mem, file, length);
+    }
+    if (names == NULL || mt_arena_failed(s->r.mem)) {
         return NULL;
     }
-    const mt_arena_mark mark = mt_arena_get_mark(s->r.mem);
-    const char *const path = mt_arena_printf(s->r.mem, "%s%s.json", SHIPPED, name);
-    const mt_shipped *const own = path == NULL ? NULL : mt_shipped_find(path);
-    mt_arena_rewind(s->r.mem, mark);
-    return own;
+    const char *const near = mt_text_nearest(name.s, names, n_names);
+    if (near == NULL) {
+        mt_diag_error(s->r.diags, name.addr,
+                      "there is no file \"%s\", and no profile of the program is called so: "
+                      "\"modetune profile\" lists them",
+                      name.s);
+    } else {
+        mt_diag_error(
+            s->r.diags, name.addr,
+            "there is no file \"%s\", and no profile of the program is called so; did "
+            "you mean \"%s\"?",
+            name.s, near);
+    }
+    return NULL;
 }
 
 static void note_input(mt_study_reader *s, const char *name, const char *sha256)
@@ -63,8 +94,8 @@ static void note_input(mt_study_reader *s, const char *name, const char *sha256)
     mt_read_study_note_input(s, name, sha256);
 }
 
-/* The profile, and the catalogue of aircraft that its rotors are in; `own`: both are part of the
- * program. */
+/* The profile, and the catalogue of aircraft that its rotors are in; `own`: both are part of
+ * the program. */
 static void note_inputs(mt_study_reader *s, const char *name, bool own, const mt_vibration *v)
 {
     const char *const catalogue = own ? mt_aircraft_own_name : v->aircraft_name;
@@ -90,32 +121,42 @@ static void note_inputs(mt_study_reader *s, const char *name, bool own, const mt
     free(joined);
 }
 
-static mt_vibration *load(mt_study_reader *s, mt_name name)
+/* From a file, or from the texts that are given in opt. */
+static mt_vibration *load_from(mt_study_reader *s, mt_name name, const char *path, bool own,
+                               const mt_io_options *opt)
 {
-    char *const joined = mt_file_join(s->study->path, name.s);
     const int told = s->model_messages->count;
     mt_vibration *v = NULL;
     mt_err why = {.code = MT_OK};
+    const mt_status rc = mt_vibration_load_within(path, opt, &v, s->model_messages, &why);
+    if (rc == MT_OK) {
+        note_inputs(s, name.s, own, v);
+    } else {
+        mt_read_study_note_failure(s, name, path, rc, &why, s->model_messages->count > told);
+    }
+    return v;
+}
+
+static mt_vibration *load(mt_study_reader *s, mt_name name)
+{
+    char *const joined = mt_file_join(s->study->path, name.s);
+    mt_vibration *v = NULL;
     if (joined == NULL) {
         mt_arena_fail(s->r.mem);
         return NULL;
     }
-    mt_io_options opt = s->files;
-    const mt_shipped *const own = shipped(s, name.s, joined);
-    const mt_shipped *const aircraft = own == NULL ? NULL : mt_shipped_find(AIRCRAFT);
-    const mt_file_text texts[] = {
-        {.path = own == NULL ? NULL : own->path, .text = own == NULL ? NULL : own->bytes},
-        {.path = AIRCRAFT, .text = aircraft == NULL ? NULL : aircraft->bytes}};
-    if (own != NULL) {
-        opt.files = (mt_files){
-            .given = texts, .n = aircraft == NULL ? 1 : MT_COUNT(texts), .only = true};
-    }
-    const char *const path = own == NULL ? joined : own->path;
-    const mt_status rc = mt_vibration_load_within(path, &opt, &v, s->model_messages, &why);
-    if (rc == MT_OK) {
-        note_inputs(s, name.s, own != NULL, v);
+    if (!is_shipped(s, name.s, joined)) {
+        v = load_from(s, name, joined, false, &s->files);
     } else {
-        mt_read_study_note_failure(s, name, path, rc, &why, s->model_messages->count > told);
+        const mt_shipped *const own = shipped(s, name);
+        const mt_shipped *const aircraft = mt_shipped_find(AIRCRAFT);
+        mt_io_options opt = s->files;
+        if (own != NULL) {
+            const mt_file_text texts[] = {{.path = own->path, .text = own->bytes},
+                                          {.path = aircraft->path, .text = aircraft->bytes}};
+            opt.files = (mt_files){.given = texts, .n = MT_COUNT(texts), .only = true};
+            v = load_from(s, name, own->path, true, &opt);
+        }
     }
     free(joined);
     return v;

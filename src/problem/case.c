@@ -38,7 +38,7 @@ void mt_case_bound(mt_case *c, int i, double lower, double upper)
 }
 
 /* Of rows of the objective "vibration": what it is told within. */
-static const double SOFT_TOLERANCE = 1e-9;
+static const double SOFT_TOLERANCE = 1e-7;
 
 /* Tolerances of all rows; those of corners and of what is held follow. */
 static mt_status init_tolerances(mt_case *c, mt_arena *mem, mt_err *err)

@@ -71,8 +71,8 @@ typedef struct mt_case {
     int n_next;
     /* t has one more entry, the least clearance ln(...) that is made greatest */
     bool clearance;
-    /* t has one more entry, MT_SHAKEN_SHIFT + the largest ln(value / limit) of the goals that the
-     * objective "vibration" is made of; 0: not given, it is looked up */
+    /* t has one more entry, MT_SHAKEN_SHIFT + the largest ln(value / limit) of the goals that
+     * the objective "vibration" is made of; 0: not given, it is looked up */
     bool shaken;
     int first_soft_row; /* of these, in `in` */
 } mt_case;

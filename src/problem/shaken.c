@@ -198,5 +198,8 @@ void mt_shaken_to_ln(const mt_workspace *w, const mt_demand *d, double q, double
 mt_status mt_shaken_look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
 {
     *out = (mt_shaken_value){.value = nan(""), .error = nan(""), .omega = nan("")};
-    return d->ops->look(w, d, out, err);
+    MT_TRY(d->ops->look(w, d, out, err));
+    out->finite = out->end == MT_FORCED_FINITE;
+    out->end_name = mt_forced_end_name(out->end);
+    return MT_OK;
 }

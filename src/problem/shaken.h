@@ -18,8 +18,8 @@ typedef struct mt_shaken_pair {
 
 /*
  * Forced vibration of a view from one port to another, made once for each solve of it, when a
- * goal first asks. The response is a sum over poles, and its largest value over a band is proven
- * by branch and bound (vibration/sine.h). Where there is no sum of simple poles
+ * goal first asks. The response is a sum over poles, and its largest value over a band is
+ * proven by branch and bound (vibration/sine.h). Where there is no sum of simple poles
  * (mt_response_poles), a curve that follows its shape is traced instead (response/curve.h):
  * sampled.
  */
@@ -41,8 +41,10 @@ typedef struct mt_shaken_peak {
 /* What a goal finds at a design. */
 typedef struct mt_shaken_value {
     mt_forced_end end; /* numbers are NaN where it is not MT_FORCED_FINITE */
+    bool finite;
+    const char *end_name;
     double value;
-    double error; /* of it, at most */
+    double error; /* of it, at most; NaN: not known */
     double omega; /* where |H| is the largest [rad/s]; NaN: not known */
     bool at_edge; /* of the range that it was looked for in */
     double lower_hz;

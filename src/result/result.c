@@ -168,31 +168,6 @@ static const mt_field GOAL_FIELDS[] = {
 static const mt_record GOAL = MT_F_RECORD_OF(GOAL_FIELDS);
 #undef THIS
 
-#define THIS mt_result_response
-static const char *const SHAKEN[] = {"response", "rms", "sine", "peak"};
-static const char *const SHAKEN_ENDS[] = {"finite", "infinite", "unstable", "none"};
-static const char *const SURETIES[] = {"proven", "sampled"};
-static const mt_field RESPONSE_FIELDS[] = {
-    MT_F_TEXT("goal", pointer),
-    MT_F_TEXT("configuration", configuration),
-    MT_F_TEXT("input", input),
-    MT_F_TEXT("output", output),
-    MT_F_TEXT_OR_NULL("profile", profile),
-    MT_F_CHOICE("quantity", quantity, SHAKEN),
-    MT_F_TEXT("unit", unit),
-    MT_F_NUMBER_OR_NULL("value", value),
-    MT_F_NUMBER_OR_NULL("error_at_most", error),
-    MT_F_NUMBER_OR_NULL("frequency_hz", frequency_hz),
-    MT_F_FLAG("at_edge", at_edge),
-    MT_F_NUMBER_OR_NULL("lower_hz", lower_hz),
-    MT_F_NUMBER_OR_NULL("upper_hz", upper_hz),
-    MT_F_CHOICE("end", end, SHAKEN_ENDS),
-    MT_F_CHOICE("grade", grade, SURETIES),
-    MT_F_TEXT("text", text),
-};
-static const mt_record RESPONSE = MT_F_RECORD_OF(RESPONSE_FIELDS);
-#undef THIS
-
 #define THIS mt_design_objective
 static const mt_field REACHED_FIELDS[] = {
     MT_F_TEXT("text", text),
@@ -214,6 +189,7 @@ static const mt_record REASON = MT_F_RECORD_OF(REASON_FIELDS);
 #undef THIS
 
 #define THIS mt_recommendation
+static const char *const SURETIES[] = {"proven", "sampled"};
 static const mt_field DESIGN_FIELDS[] = {
     MT_F_COUNT("rank", rank, 0),
     MT_F_FLAG("feasible", feasible),
@@ -234,7 +210,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
-    MT_F_LIST("responses", responses, n_responses, mt_result_response, RESPONSE),
+    MT_F_LIST("responses", responses, n_responses, mt_result_response, mt_response_record),
     MT_F_LIST("curves", curves, n_curves, mt_design_curve, mt_design_curve_record),
     MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON),
     MT_F_UNWRITTEN_TEXT(disagreement),

@@ -15,8 +15,9 @@
  *     RESIDUALS    half the square of the weighted goals' residuals, which it needs
  *     BANDS        of the bands that goals keep clear of, which it needs; a coordinate of the
  *                  search for one gap assignment, elsewhere looked up among the modes
- *     SHAKES       of the goals of forced vibration that are limited from above, which it needs,
- *                  and which then limit nothing; a coordinate of the search, elsewhere looked up
+ *     SHAKES       of the goals of forced vibration that are limited from above, which it
+ *                  needs, and which then limit nothing; a coordinate of the search, elsewhere
+ *                  looked up
  *     OF_ITEMS     "of" may list items
  *     FRONT        can be one side of a Pareto front; with OF_STUDY, if the study has it
  */

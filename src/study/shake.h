@@ -24,8 +24,7 @@ typedef struct mt_shake {
     mt_name profile_name;        /* as written; s NULL: none */
     const mt_vibration *profile; /* of the study's; NULL: none, or it could not be read */
     mt_shake_quantity quantity;
-    const char
-        *unit; /* of the numbers, from the names of the ports; "": not known; by finish */
+    const char *unit; /* of the numbers, from the names of the ports; "": not known */
     mt_addr band_addr; /* the addresses of what was not given equal the goal's */
     mt_addr at_addr;
     mt_addr quantity_addr;

@@ -2,8 +2,9 @@
 /*
  * A tuned mass damper on an undamped machine: M = 1, K = 1, an absorber mu with k and c. The
  * least possible peak of the machine's displacement under a force on it has a closed form,
- *     f    = 2/(1 + mu) sqrt(2 [16 + 23 mu + 9 mu^2 + 2 (2 + mu) r] / (3 [64 + 80 mu + 27 mu^2])),
- *     zeta = sqrt([8 + 9 mu - 4 r] / (1 + mu)) / 4,         r = sqrt(4 + 3 mu)
+ *     f    = 2/(1 + mu) sqrt(2 a / (3 b)),   a = 16 + 23 mu + 9 mu^2 + 2 (2 + mu) r,
+ *     zeta = sqrt((8 + 9 mu - 4 r) / (1 + mu)) / 4,
+ *     b = 64 + 80 mu + 27 mu^2,   r = sqrt(4 + 3 mu)
  * (Nishihara and Asami, Journal of Vibration and Acoustics 124, 2002), k = mu f^2 and
  * c = 2 zeta mu f; both peaks are equal there. Den Hartog's tuning f = 1/(1 + mu) is close.
  */
@@ -216,7 +217,7 @@ static void double_pole__is_sampled(mt_test *t)
         CHECK_NEAR(t, r[0].frequency_hz, hz * sqrt(0.5), 1e-6);
         CHECK(t, strcmp(r[1].grade, "sampled") == 0 && r[1].error < 1e-9 * r[1].value);
         CHECK_NEAR(t, r[1].value, 9.80665 * sqrt(all - outside), 1e-6);
-        /* all is in proportion to 1 / zeta + 4 zeta, zeta = c / 40; outside hardly depends on it */
+        /* all is in proportion to 1 / zeta + 4 zeta, zeta = c / 40, outside to nothing */
         const double *const slope = s.result->baseline.goals[1].sensitivity;
         if (CHECK(t, slope != NULL)) {
             CHECK_NEAR(t, slope[0], 0.5 * 9.80665 * (0.6 * all / 40.0) / sqrt(all - outside),
