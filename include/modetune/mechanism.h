@@ -165,10 +165,12 @@ typedef enum mt_vibration_end {
 typedef struct mt_vibration_answer {
     mt_vibration_end end; /* numbers that it takes away are NaN */
     double rms;           /* under the random parts together [unit of the output] */
-    double rms_error;     /* |error of rms| is at most this; an estimate where not proven */
-    double tones;         /* the largest amplitudes under the tones, by the profile's rule */
-    double peak;          /* the profile's sigma times rms, and tones */
-    int proven;           /* 1: bounds are proven; 0: by quadrature (see below) */
+    /* |error of rms| is at most this, given the poles and residues as they were found; an
+     * estimate where not proven */
+    double rms_error;
+    double tones; /* the largest amplitudes under the tones, by the profile's rule */
+    double peak;  /* the profile's sigma times rms, and tones */
+    int proven;   /* 1: bounds are proven; 0: by quadrature (see below) */
 } mt_vibration_answer;
 
 /**

@@ -30,10 +30,10 @@ typedef struct job {
 
 static mt_response_request request_of(const mt_args *args)
 {
-    return (mt_response_request){.n_in = args->n_inputs,
-                                 .inputs = args->inputs,
-                                 .n_out = args->n_outputs,
-                                 .outputs = args->outputs,
+    return (mt_response_request){.n_in = args->all[MT_OPT_INPUT].n,
+                                 .inputs = args->all[MT_OPT_INPUT].value,
+                                 .n_out = args->all[MT_OPT_SEEN].n,
+                                 .outputs = args->all[MT_OPT_SEEN].value,
                                  .direct = args->given[MT_OPT_DIRECT],
                                  .modes = args->keep};
 }
@@ -279,7 +279,7 @@ static int load(sink *to)
         const mt_status rc = mt_vibrated_load(to->args, name, &to->profile, &messages, &err);
         return mt_cli_loaded(rc, &messages, &err);
     }
-    return to->args->n_inputs > 0
+    return to->args->all[MT_OPT_INPUT].n > 0
                ? MT_EXIT_DONE
                : mt_cli_failed(mt_fail(&err, MT_E_USAGE,
                                        "\"response\" needs --input, what shakes the "

@@ -164,8 +164,7 @@ static void zsh_text(const char *text, mt_text *out)
 
 static void zsh_option(const mt_option *o, int command, mt_text *out)
 {
-    const bool repeated = o == &mt_options[MT_OPT_SET];
-    mt_text_addf(out, " \\\n            '%s--%s%s[", repeated ? "*" : "", o->name,
+    mt_text_addf(out, " \\\n            '%s--%s%s[", o->repeats ? "*" : "", o->name,
                  o->value == NULL ? "" : "=");
     zsh_text(o->help, out);
     mt_text_add(out, "]");

@@ -1,15 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which responses a result shows: those that the study lists, then those that its goals are
  * about, each pair of ports once, with what goals ask of it. */
+#include <complex.h>
 #include <math.h>
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/goal_frequency_response.h"
 #include "response/ports.h"
 
 /* Beyond the band of a goal, and about a single frequency, so much more is shown. */
 static const double BESIDE_BAND = 1.5;
 static const double BESIDE_ONE = 4.0;
+static const double TWO_PI = 6.283185307179586477;
+static const double HALF_TURN_DEG = 180.0;
+enum { MOST_MEASURED = 400 };
 
 /* The same ports of the same configuration, shaken likewise. */
 static bool is_same(const mt_result_curve *a, const mt_result_curve *b, const mt_shake *s)
@@ -110,13 +115,45 @@ static void choose_band(const mt_shake *s, mt_result_curve *out)
     }
 }
 
+/* What the goal compares the response with; NULL: nothing. */
+static const mt_fit *fit_of(const mt_problem *p, int goal, int configuration)
+{
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        if (d->goal_index == goal && d->view >= 0 &&
+            p->views[d->view].configuration == configuration) {
+            return d->fit;
+        }
+    }
+    return NULL;
+}
+
+/* Its lines, every second, third, ... of them where there are many. */
+static mt_status put_measured(const mt_fit *fit, mt_arena *mem, mt_result_curve *out,
+                              mt_err *err)
+{
+    const int step = 1 + (fit->n / MOST_MEASURED);
+    const size_t n = (size_t)(fit->n / step) + 1;
+    mt_curve_points *const to = &out->measured;
+    *to = (mt_curve_points){.hz = mt_arena_f64(mem, n, 1),
+                            .magnitude = mt_arena_f64(mem, n, 1),
+                            .phase_deg = mt_arena_f64(mem, n, 1)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < fit->n; i += step) {
+        to->hz[to->n_hz++] = fit->w[i] / TWO_PI;
+        to->magnitude[to->n_magnitude++] = hypot(creal(fit->h[i]), cimag(fit->h[i]));
+        to->phase_deg[to->n_phase++] = carg(fit->h[i]) / (0.5 * TWO_PI) * HALF_TURN_DEG;
+    }
+    return MT_OK;
+}
+
 /* What the goal asks, beside its curve. */
 static mt_status add_limit(const mt_goal *g, const char *pointer, mt_arena *mem,
                            mt_result_curve *to, mt_err *err)
 {
     const mt_shake *const s = g->shake;
     int room = to->n_limits;
-    if (s->profile_name.s != NULL) {
+    if (s->profile_name.s != NULL || s->measurement_name.s != NULL) {
         return MT_OK; /* of a number, not of a curve */
     }
     mt_result_limit *const all =
@@ -143,11 +180,20 @@ static mt_status add_goal(const mt_problem *p, int goal, int configuration, mt_r
                            .description = g->description};
     MT_TRY(put_ports(p, configuration, g->shake, mem, &own, err));
     mt_result_curve *to = find(result, &own, g->shake);
+    const mt_fit *const fit = fit_of(p, goal, configuration);
     if (to == NULL) {
         choose_band(g->shake, &own);
+        if (fit != NULL) {
+            own.lower_hz = fit->w[0] / TWO_PI;
+            own.upper_hz = fit->w[fit->n - 1] / TWO_PI;
+            own.upper_hz *= own.upper_hz > own.lower_hz ? 1.0 : BESIDE_ONE;
+        }
         MT_TRY(put_profile(g->shake, mem, &own, err));
         to = &result->curves[result->n_curves++];
         *to = own;
+    }
+    if (fit != NULL && to->measured.n_hz == 0) {
+        MT_TRY(put_measured(fit, mem, to, err));
     }
     return add_limit(g, own.pointer, mem, to, err);
 }

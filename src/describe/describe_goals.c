@@ -5,8 +5,11 @@
 #include "describe/describe.h"
 #include "problem/demand.h"
 #include "problem/goal.h"
+#include "problem/goal_frequency_response.h"
 
 static const double PERCENT = 100.0;
+static const double HALF_TURN = 3.14159265358979323846;
+static const double HALF_TURN_DEG = 180.0;
 
 /* "installed mode 1", "installed \"heave\"", or the expression. */
 static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
@@ -150,7 +153,8 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     const char *const unit = mt_study_goal_unit(p->study, asked);
     g->unit = d->view < 0 && unit[0] == '\0' ? NULL : unit;
     g->expression = d->view < 0 ? asked->expression_text : NULL;
-    g->reference = asked->reference_name.s;
+    g->reference =
+        asked->shake != NULL ? asked->shake->measurement_name.s : asked->reference_name.s;
     if (d->view >= 0) {
         g->configuration = mt_view_name(p, &p->views[d->view]);
     }
@@ -162,6 +166,16 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     g->at_most = asked->at_most;
     g->target = d->ops->value == NULL ? 0.0 : d->equals; /* a distance is to be none */
     g->tolerance_percent = asked->tolerance_percent;
+}
+
+/* The measured line where a response is off most. */
+static void say_line(const mt_workspace *fresh, const mt_demand *d, mt_result_goal *g)
+{
+    double complex off = 0.0;
+    if (mt_fit_worst(fresh, d, &g->off_most_hz, &off)) {
+        g->off_most_ratio = exp(creal(off));
+        g->off_most_phase_deg = cimag(off) / HALF_TURN * HALF_TURN_DEG;
+    }
 }
 
 static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v,
@@ -184,6 +198,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
         violation = demand_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
         percent = PERCENT * off_by(d, g->value, violation);
+        say_line(fresh, d, g);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");

@@ -269,6 +269,22 @@ static void say_violations(mt_sentences *s)
     }
 }
 
+/* Where responses are off their measurements most. */
+static void say_lines(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_goals; i++) {
+        const mt_result_goal *const g = &s->rec->goals[i];
+        if (isfinite(g->off_most_hz) && isfinite(g->off_most_ratio)) {
+            mt_say_of(s, "rank", g->pointer);
+            mt_say(s,
+                   "%s: off by %.3g %% rms, most at %.6g Hz, where the response is %.4g times "
+                   "what was measured and its phase %+.3g deg from it.",
+                   g->text, 100.0 * g->value, g->off_most_hz, g->off_most_ratio,
+                   g->off_most_phase_deg);
+        }
+    }
+}
+
 /* How much it shakes: texts begin with "the". */
 static void say_responses(mt_sentences *s)
 {
@@ -292,6 +308,7 @@ static void say_misfit(mt_sentences *s)
             sum += s->p->demands[i].goal->weight * g->violation_percent * g->violation_percent;
         }
     }
+    say_lines(s);
     mt_say_of(s, "rank", NULL);
     if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
         mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,

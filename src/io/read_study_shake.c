@@ -225,6 +225,8 @@ void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *
     shake->output = name_at(&g, MT_SLOT_OUTPUT);
     if (mt_goal_member_at(g.kind, MT_SLOT_PROFILE) >= 0) {
         read_profile(&g, shake);
+    } else if (mt_goal_member_at(g.kind, MT_SLOT_MEASUREMENT) >= 0) {
+        mt_read_study_measured(s, o, goal);
     } else {
         read_frequencies(&g, shake);
     }

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "modetune/mechanism.h"
+#include "library/mechanism_priv.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/channels.h"
 #include "analysis/sensitivity.h"
 #include "base/text.h"
@@ -15,17 +14,6 @@
 #include "vibration/profiled.h"
 
 static const double TWO_PI = 6.283185307179586477;
-
-struct mt_mechanism {
-    mt_analysis *a; /* owned */
-    mt_arena mem;   /* as long as this */
-    mt_arena scratch;
-    int n_inputs;
-    int *inputs;   /* [n_inputs] parameters */
-    double *at;    /* [n_inputs] their values at the last evaluation */
-    bool slopes;   /* derivatives have been asked for: they will be again */
-    bool has_none; /* the last evaluation failed */
-};
 
 static mt_status unknown(const char *what, const char *name, int n, const char *const *names,
                          mt_err *err)

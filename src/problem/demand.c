@@ -131,7 +131,10 @@ static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err
 {
     *pos = -1;
     if (!mt_demand_is_modal(d)) {
-        return MT_OK;
+        return d->view < 0 || w->views[d->view].solved
+                   ? MT_OK
+                   : mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no modes here",
+                             mt_analysis_configuration(w->views[d->view].analysis));
     }
     mt_view_work *const view = &w->views[d->view];
     MT_TRY(mt_view_position(w, view, d->mode, d->named, pos, err));

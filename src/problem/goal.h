@@ -18,7 +18,8 @@ struct mt_shaken_value;
 typedef struct mt_goal_ops {
     mt_quantity quantity;
     bool needs_vectors; /* all shapes, even where no gradient is asked for */
-    /* Look up what the goal is compared with, once view and mode are known. NULL: nothing. */
+    /* Look up what the goal is compared with, once view and mode are known, and set n_res of
+     * a goal that is no number. NULL: nothing. */
     mt_status (*compile)(mt_problem *p, mt_demand *d, mt_err *err);
     /* q of the mode at pos after its view has been solved (a mode at infinity: -1, of a
      * frequency only; a goal without a mode: -1), and its slope[n] unless NULL. */

@@ -70,6 +70,7 @@ typedef struct mt_demand {
     int n_parts;    /* and are so many rows; 0: it is one number, one row for each limit */
     mt_node node;   /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
+    struct mt_fit *fit;       /* frequency_response (goal_frequency_response.h); else NULL */
     double equals; /* what is asked for, by the goal or its reference; NaN: limits only */
     bool ranged;  /* a target that is a range over the tolerances of the variables (robust.h) */
     int row_eq;   /* its row in eq, -1 none */

@@ -183,7 +183,7 @@ static void number_rows(mt_problem *p, mt_demand *d)
     d->tolerance = mt_goal_tolerance(g);
     if (MT_HAS(g->weight)) {
         d->row_res = p->n_res;
-        d->n_res = d->ops->value == NULL ? d->shape.ns : 1;
+        d->n_res = d->ops->value == NULL ? d->n_res : 1;
         p->n_res += d->n_res;
         p->weights += g->weight;
     } else if (mt_study_is_scale(p->study, g)) {

@@ -70,17 +70,17 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     return mt_pass_final(rc, &own, err); /* else it may have one at another design */
 }
 
-static mt_status read_ports(mt_problem *p, const mt_view *view, const mt_demand *d, mt_err *err)
+mt_status mt_shaken_ports(mt_problem *p, const mt_demand *d, mt_port *in, mt_port *out,
+                          mt_err *err)
 {
     const mt_shake *const s = d->goal->shake;
-    const mt_system *const sys = view->original->sys;
-    mt_port port;
+    const mt_system *const sys = p->views[d->view].original->sys;
     mt_err own = {.code = MT_OK};
     const char *where = "input";
-    mt_status rc = mt_port_input(sys, s->input.s, &p->mem, &port, &own);
+    mt_status rc = mt_port_input(sys, s->input.s, &p->mem, in, &own);
     if (rc == MT_OK) {
         where = "output";
-        rc = mt_port_output(sys, s->output.s, &p->mem, &port, &own);
+        rc = mt_port_output(sys, s->output.s, &p->mem, out, &own);
     }
     return rc == MT_OK ? MT_OK
            : rc == MT_E_MEMORY
@@ -91,7 +91,9 @@ static mt_status read_ports(mt_problem *p, const mt_view *view, const mt_demand 
 mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err)
 {
     mt_view *const view = &p->views[d->view];
-    MT_TRY(read_ports(p, view, d, err));
+    mt_port in;
+    mt_port out;
+    MT_TRY(mt_shaken_ports(p, d, &in, &out, err));
     MT_TRY(try_ports(view, d, err));
     if (view->pairs == NULL) {
         view->pairs = mt_arena_alloc(&p->mem, (size_t)p->study->n_goals, sizeof *view->pairs);

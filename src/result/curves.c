@@ -3,6 +3,16 @@
 
 /* What each record holds, in the order of result.json. */
 
+#define THIS mt_curve_points
+static const mt_field DRAWN_FIELDS[] = {
+    MT_F_NUMBERS_ROUNDED("frequency_hz", hz, n_hz, MT_CURVE_HZ_DIGITS),
+    MT_F_NUMBERS_ROUNDED("magnitude", magnitude, n_magnitude, MT_CURVE_DIGITS),
+    MT_F_NUMBERS_ROUNDED("phase_deg", phase_deg, n_phase, MT_CURVE_DIGITS),
+    MT_F_NUMBERS_ROUNDED("psd", psd, n_psd, MT_CURVE_DIGITS),
+};
+static const mt_record DRAWN = MT_F_RECORD_OF(DRAWN_FIELDS);
+#undef THIS
+
 #define THIS mt_result_limit
 static const mt_field LIMIT_FIELDS[] = {
     MT_F_TEXT("pointer", pointer),
@@ -60,6 +70,7 @@ static const mt_field CURVE_FIELDS[] = {
     MT_F_TEXT_OR_NULL("source", source),
     MT_F_LIST("limits", limits, n_limits, mt_result_limit, LIMIT),
     MT_F_OPTION("profile", profile, mt_result_profile, PROFILE),
+    MT_F_RECORD("measured", measured, mt_curve_points, DRAWN),
 };
 const mt_record mt_curve_record = MT_F_RECORD_OF(CURVE_FIELDS);
 #undef THIS
@@ -75,16 +86,6 @@ static const mt_field EXTREME_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("damping_ratio", damping_ratio),
 };
 static const mt_record EXTREME = MT_F_RECORD_OF(EXTREME_FIELDS);
-#undef THIS
-
-#define THIS mt_curve_points
-static const mt_field DRAWN_FIELDS[] = {
-    MT_F_NUMBERS_ROUNDED("frequency_hz", hz, n_hz, MT_CURVE_HZ_DIGITS),
-    MT_F_NUMBERS_ROUNDED("magnitude", magnitude, n_magnitude, MT_CURVE_DIGITS),
-    MT_F_NUMBERS_ROUNDED("phase_deg", phase_deg, n_phase, MT_CURVE_DIGITS),
-    MT_F_NUMBERS_ROUNDED("psd", psd, n_psd, MT_CURVE_DIGITS),
-};
-static const mt_record DRAWN = MT_F_RECORD_OF(DRAWN_FIELDS);
 #undef THIS
 
 #define THIS mt_result_shaken_tone

@@ -7,6 +7,23 @@
 /* Frequency responses of a result (result.h): which are shown, and what they are at a design.
  * NaN: not applicable. */
 
+/* Digits that files keep of a curve: frequencies next to a narrow peak differ late; what is
+ * drawn needs no more than that. */
+enum { MT_CURVE_HZ_DIGITS = 8, MT_CURVE_DIGITS = 6 };
+
+/* |H| and its phase at as many frequencies as a picture needs, where it is finite and not 0; in
+ * between both are straight over log frequency, the magnitude in its logarithm. */
+typedef struct mt_curve_points {
+    int n_hz; /* the same number of each; files may say otherwise */
+    double *hz;
+    int n_magnitude;
+    double *magnitude;
+    int n_phase;
+    double *phase_deg;
+    int n_psd;   /* of the output under the curve's profile; none without */
+    double *psd; /* [output_unit^2/Hz] NaN: the profile has nothing there */
+} mt_curve_points;
+
 /* What a goal asks of a response between two frequencies, which may be equal. */
 typedef struct mt_result_limit {
     const char *pointer; /* "/goals/0" */
@@ -60,6 +77,7 @@ typedef struct mt_result_curve {
     int n_limits;            /* of goals about the same ports */
     mt_result_limit *limits;
     mt_result_profile *profile; /* NULL: none */
+    mt_curve_points measured;   /* that a goal compares it with; none: no points */
 } mt_result_curve;
 
 /* A maximum or minimum of |H| over frequency. */
@@ -71,23 +89,6 @@ typedef struct mt_result_extreme {
     double natural_hz;    /* of a peak: size and damping ratio of the pole s nearest to i w, */
     double damping_ratio; /* |s|/(2 pi) and -Re s/|s|; NaN of others */
 } mt_result_extreme;
-
-/* Digits that files keep of a curve: frequencies next to a narrow peak differ late; what is
- * drawn needs no more than that. */
-enum { MT_CURVE_HZ_DIGITS = 8, MT_CURVE_DIGITS = 6 };
-
-/* |H| and its phase at as many frequencies as a picture needs, where it is finite and not 0; in
- * between both are straight over log frequency, the magnitude in its logarithm. */
-typedef struct mt_curve_points {
-    int n_hz; /* the same number of each; files may say otherwise */
-    double *hz;
-    int n_magnitude;
-    double *magnitude;
-    int n_phase;
-    double *phase_deg;
-    int n_psd;   /* of the output under the curve's profile; none without */
-    double *psd; /* [output_unit^2/Hz] NaN: the profile has nothing there */
-} mt_curve_points;
 
 /* The response to a tone of a profile. */
 typedef struct mt_result_shaken_tone {

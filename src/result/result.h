@@ -75,7 +75,7 @@ typedef struct mt_result_goal {
     const char *configuration; /* NULL: of none, or of several */
     int mode;                  /* as asked by its index; 0: by name, or none */
     const char *name;          /* of the mode, where asked by it; NULL */
-    const char *reference;     /* that it is compared with; NULL */
+    const char *reference;     /* or measurement, that it is compared with; NULL */
     const char *expression;    /* of a limit; NULL */
     /* of value, target and limits; "": none; NULL: the expression's own */
     const char *unit;
@@ -95,6 +95,10 @@ typedef struct mt_result_goal {
     /* [n_parameters] of the value, per unit of each variable; NULL: it has none, as a mode that
      * repeats, or a distance */
     double *sensitivity;
+    /* of a frequency response: the measured line where it is off most; NaN: none */
+    double off_most_hz;
+    double off_most_ratio; /* magnitude over the measured one */
+    double off_most_phase_deg;
 } mt_result_goal;
 
 /* A mode beside a band. */

@@ -19,13 +19,16 @@ extern const char *const mt_shake_names[MT_SHAKE_QUANTITIES];
 typedef struct mt_shake {
     mt_name input; /* ports (response/ports.h); of a profile by finish, where not given */
     mt_name output;
-    double lower_hz; /* response: its band; both equal: at one frequency */
+    double lower_hz; /* its band; both equal: at one frequency; NaN: all that was measured */
     double upper_hz;
     mt_name profile_name;        /* as written; s NULL: none */
     const mt_vibration *profile; /* of the study's; NULL: none, or it could not be read */
     mt_shake_quantity quantity;
-    const char *unit; /* of the numbers, from the names of the ports; "": not known */
-    mt_addr band_addr; /* the addresses of what was not given equal the goal's */
+    const char *unit;         /* of the numbers, from the names of the ports; "": not known */
+    mt_name measurement_name; /* frequency_response: what it is compared with; s NULL: none */
+    int measurement;          /* of the study's; by finish */
+    bool coherence;           /* its lines weigh by it */
+    mt_addr band_addr;        /* the addresses of what was not given equal the goal's */
     mt_addr at_addr;
     mt_addr quantity_addr;
 } mt_shake;

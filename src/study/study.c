@@ -222,6 +222,7 @@ mt_shake mt_shake_default(mt_addr addr)
     return (mt_shake){.lower_hz = nan(""),
                       .upper_hz = nan(""),
                       .unit = "",
+                      .measurement = MT_ABSENT,
                       .band_addr = addr,
                       .at_addr = addr,
                       .quantity_addr = addr};

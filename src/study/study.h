@@ -10,6 +10,7 @@
 #include "study/aircraft.h"
 #include "study/bands.h"
 #include "study/goal_kinds.h"
+#include "study/measurement.h"
 #include "study/objective_kinds.h"
 #include "study/shake.h"
 
@@ -104,7 +105,7 @@ typedef struct mt_goal {
     mt_expr expression; /* limit */
     const char *expression_text;
     mt_avoid *avoid; /* avoid: in the study's arena; else NULL */
-    mt_shake *shake; /* response, vibration: likewise */
+    mt_shake *shake; /* of ports: likewise */
     const char *description;
     mt_addr addr;
 } mt_goal;
@@ -296,6 +297,8 @@ typedef struct mt_study {
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
     MT_LIST_OF(mt_reference, references);
+    /* of each the responses that are meant, by finish */
+    MT_LIST_OF(mt_measurement, measurements);
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     MT_LIST_OF(mt_study_response, responses);
@@ -363,6 +366,7 @@ const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e);
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+int mt_study_find_measurement(const mt_study *study, const char *name);
 /* Is there a goal that keeps clear of bands? */
 bool mt_study_has_bands(const mt_study *study);
 /* Does the objective take the goal's limit as its scale? Then nothing else is asked of it. */

@@ -162,6 +162,10 @@ void mt_study_check_shake(mt_study_check *c, mt_goal *goal)
     if (s == NULL) {
         return; /* memory is out */
     }
+    if (mt_goal_member_at(mt_goal_kind_of(goal->type), MT_SLOT_MEASUREMENT) >= 0) {
+        mt_study_check_measured(c, s);
+        return; /* its number is a distance, without a unit */
+    }
     if (s->quantity == MT_SHAKE_RESPONSE) {
         check_frequencies(c, goal, s);
     } else if (s->profile != NULL) {

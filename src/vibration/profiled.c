@@ -48,18 +48,14 @@ mt_status mt_profiled_ports(const mt_vibration *v, const mt_system *sys, mt_aren
     return mt_arena_check(mem, err);
 }
 
-/* A profile is of accelerations. */
-static mt_status check_inputs(const mt_port_set *ports, mt_err *err)
+mt_status mt_profiled_input(const mt_port *port, mt_err *err)
 {
-    for (int i = 0; i < ports->n_in; i++) {
-        if (ports->in[i].kind != MT_PORT_BASE || ports->in[i].motion != 2) {
-            return mt_fail(err, MT_E_USAGE,
-                           "a profile of vibration is an acceleration of the ground, and "
-                           "\"%s\" is none: \"base.x\", \"base.y\" and \"base.z\" are",
-                           ports->in[i].name);
-        }
-    }
-    return MT_OK;
+    return port->kind == MT_PORT_BASE && port->motion == 2
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE,
+                         "a profile of vibration is an acceleration of the ground, and \"%s\" "
+                         "is none: \"base.x\", \"base.y\" and \"base.z\" are",
+                         port->name);
 }
 
 static mt_status by_poles(mt_response *r, const mt_pole_sum *sums, mt_profiled *out,
@@ -80,7 +76,9 @@ mt_status mt_profiled_find(mt_response *r, const mt_vibration *v, mt_profiled *o
 {
     mt_err own = {.code = MT_OK};
     *out = (mt_profiled){.v = v, .n_pairs = r->ports.n_in * r->ports.n_out};
-    MT_TRY(check_inputs(&r->ports, err));
+    for (int i = 0; i < r->ports.n_in; i++) {
+        MT_TRY(mt_profiled_input(&r->ports.in[i], err));
+    }
     const size_t pairs = (size_t)out->n_pairs;
     mt_pole_sum *const sums = mt_arena_alloc(&r->mem, pairs, sizeof *sums);
     out->answers = mt_arena_alloc(&r->mem, pairs, sizeof *out->answers);

@@ -29,6 +29,8 @@ typedef struct mt_profiled {
  * accelerations of all sensors. Names in mem. Fails: MT_E_USAGE (no such axis), MT_E_MEMORY. */
 mt_status mt_profiled_ports(const mt_vibration *v, const mt_system *sys, mt_arena *mem,
                             mt_response_request *request, mt_err *err);
+/* MT_E_USAGE where a port is no acceleration of the ground, of which profiles are. */
+mt_status mt_profiled_input(const mt_port *port, mt_err *err);
 /* Inputs are accelerations of the ground, or MT_E_USAGE. Results in r->mem. Fails also:
  * MT_E_NO_CONVERGENCE, MT_E_DOMAIN, MT_E_INTERRUPTED, MT_E_MEMORY. */
 mt_status mt_profiled_find(mt_response *r, const mt_vibration *v, mt_profiled *out,

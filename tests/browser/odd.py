@@ -185,6 +185,11 @@ def profile(result):
                 {"tone": "50 Hz", "frequency_hz": 50.0, "peak": 1.0, "excess_at_most": None, "at_edge": True}]}
 
 
+def measured(result):
+    for curve in result["curves"]:
+        curve["measured"] = {"frequency_hz": [20.0, 30.0, None, 1e9], "magnitude": [1.0, 1e300, 2.0], "phase_deg": [1e9, None, 3.0, 4.0], "psd": []}
+
+
 def drawn(result, change):
     """Lists of what is drawn of a response, at all designs."""
     for design in designs(result):
@@ -238,7 +243,7 @@ KINDS.update({
 # Of results that have curves.
 CURVES = {f"curve_{change.__name__}": (lambda r, c=change: (profile(r), drawn(r, c))) for change in
           (infinite, first_only, unlike, huge_range, trouble)}
-CURVES.update({"profile": profile, "curve_text_script": lambda r: texts(r, TEXTS["script"]), "curve_text_long": lambda r: texts(r, TEXTS["long"]),
+CURVES.update({"profile": profile, "measured": measured, "curve_text_script": lambda r: texts(r, TEXTS["script"]), "curve_text_long": lambda r: texts(r, TEXTS["long"]),
                "curve_negative": lambda r: (profile(r), numbers(r, -1.0)), "curve_large": lambda r: (profile(r), numbers(r, 1e9)),
                "curve_zeros": lambda r: (profile(r), zeros(r)), "curve_nulls": lambda r: (profile(r), nulls(r))})
 KINDS.update(CURVES)

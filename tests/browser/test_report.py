@@ -113,6 +113,7 @@ class Report(Answers):
             "inceptor_trade": {"trade", "front", "parallel", "tolerance", "rotor-1"},
             "beam_identification": {"mac", "published", "starts", "sensitivity", "history-1"},
             "inceptor_tuning_1": {"bode-1", "nyquist-1"}, "den_hartog": {"bode-1", "nyquist-1"},
+            "three_masses_identification": {"bode-1", "bode-2"},
             "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
         }
         for name, figures in wanted.items():

@@ -6,6 +6,7 @@
 #include "modetune/dynamics.h"
 #include "modetune/mechanism.h"
 #include "modetune/model.h"
+#include "modetune/motion.h"
 #include "modetune/profile.h"
 #include "modetune/read.h"
 #include "modetune/study.h"
@@ -233,6 +234,12 @@ static mt_vibration_answer shaken[8];
 GIVES(mechanism_vibration,
       mt_mechanism_vibration(ARG(0, mechanism), ARG(1, &ports), ARG(2, profile), 8,
                              ARG(3, shaken), ARG(4, &said)))
+static const mt_motion_options moves = {
+    .size = sizeof moves, .duration_s = 0.01, .sample_s = 0.01};
+static const char *const seen[] = {"pivot"};
+static mt_motion_told told;
+GIVES(mechanism_motion, mt_mechanism_motion(ARG(0, mechanism), ARG(1, &moves), 1, ARG(2, seen),
+                                            8, ARG(3, part), ARG(4, &told), ARG(5, &said)))
 static mt_status call_study_read(int null)
 {
     mt_study *out = null == 0 ? study : NULL;

@@ -64,6 +64,7 @@ static const struct {
     ROW(mechanism_response, "rrrrraa"),
     ROW(mechanism_response_slopes, "rrrra"),
     ROW(mechanism_vibration, "rarra"),
+    ROW(mechanism_motion, "rrrraa"),
     ROW(vibration_read, "rara"),
     ROW(vibration_delete, "a"),
     ROW(vibration_rms, "n"),

@@ -275,7 +275,36 @@ static void shaken_objective__has_an_exact_gradient(mt_test *t)
     compiled_free(&s);
 }
 
+/* Logarithms of responses over measured ones, magnitude and phase, through loops under load. */
+static void measured_responses__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "damped_linkage",
+                "'variables': [{'parameter': 'a', 'lower': 0.12, 'upper': 0.18},"
+                " {'parameter': 'k', 'lower': 10, 'upper': 40},"
+                " {'parameter': 'c', 'lower': 0, 'upper': 2},"
+                " {'parameter': 'eta', 'lower': 0.01, 'upper': 0.3},"
+                " {'parameter': 'alpha', 'lower': -1, 'upper': 2}],"
+                "'measurements': {'shaker': {'file': '" MT_TEST_SOURCE_DIR
+                "/tests/io/wrong/parts/measured.csv'}},"
+                "'goals': ["
+                "{'type': 'frequency_response', 'configurations': ['all', 'still'],"
+                " 'input': 'base.x', 'output': 'spring.coil', 'measurement': 'shaker',"
+                " 'coherence': true, 'weight': 2},"
+                "{'type': 'frequency_response', 'configuration': 'dampers',"
+                " 'input': 'base.y:displacement', 'output': 'damper.strut',"
+                " 'measurement': 'shaker', 'band_hz': [1.5, 4], 'weight': 0.5}],"
+                "'objective': {'minimise': 'misfit'}",
+                &s)) {
+        double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), 0.9 / 3.0};
+        CHECK_INT(t, s.p->n_res, 2 * (3 + 3 + 2));
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
 MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
              MT_TEST(shaken_goals__have_exact_gradients),
+             MT_TEST(measured_responses__have_exact_gradients),
              MT_TEST(shaken_objective__has_an_exact_gradient),
              MT_TEST(named_and_repeated_modes__have_exact_gradients))

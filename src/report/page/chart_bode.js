@@ -130,8 +130,35 @@
     }
   }
 
+  const measured = (c) => {
+    const m = c.measured || {};
+    return D.clean(m.frequency_hz).map((f, i) => ({ f, m: D.clean(m.magnitude)[i],
+      p: D.clean(m.phase_deg)[i] })).filter((a) => R.positive(a.f) && R.positive(a.m) &&
+      T.isNumber(a.p) && a.f >= c.lower_hz && a.f <= c.upper_hz);
+  };
+
+  const sign = (g, x, y) => F.mark(g, 'cross', x, y, { colour: C.other, size: 22 });
+
+  // Phases by the turn that is nearest to what is shown.
+  function drawMeasured(g, p) {
+    const [low, high] = p.p.domain();
+    for (const a of measured(p.c)) {
+      const size = p.y(a.m);
+      if (size >= p.box.top && size <= p.box.bottom) {
+        sign(g, p.x(a.f), size);
+      }
+      const phase = a.p - 360 * Math.round((a.p - (low + high) / 2) / 360);
+      if (phase >= low && phase <= high) {
+        sign(g, p.x(a.f), p.p(phase));
+      }
+    }
+  }
+
   function legendItems(p, list) {
     const items = R.keys(list);
+    if (measured(p.c).length > 0) {
+      items.push({ words: 'measured', draw: sign });
+    }
     if (list.some((s) => s.r.poles.length > 0)) {
       items.push({ words: 'infinite: nothing damps it', draw: (g, x, y) =>
         F.mark(g, 'triangle', x, y, { size: 60 }) });
@@ -164,6 +191,7 @@
     drawBands(g, p);
     drawLimits(g, p);
     drawCurves(g, p, list, k);
+    drawMeasured(g, p);
     return p.under.bottom + 44 + F.legend(g, legendItems(p, list), 0, p.under.bottom + 42, w);
   }
 
@@ -182,7 +210,8 @@
 
   const table = (c, k) => ({
     columns: ['design', 'frequency_hz', T.titled('magnitude', c.unit), 'phase_deg'],
-    rows: R.shown(k).flatMap((s) => s.r.at.map((a) => [s.words, a.f, a.m, a.p])),
+    rows: R.shown(k).flatMap((s) => s.r.at.map((a) => [s.words, a.f, a.m, a.p]))
+      .concat(measured(c).map((a) => ['measured', a.f, a.m, a.p])),
   });
 
   mt.chartBode = () => R.asked().map((c, k) => ({
