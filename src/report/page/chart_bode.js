@@ -139,15 +139,18 @@
 
   const sign = (g, x, y) => F.mark(g, 'cross', x, y, { colour: C.other, size: 22 });
 
-  // Phases by the turn that is nearest to what is shown.
-  function drawMeasured(g, p) {
+  // Phases by the turn that is nearest to that of the design.
+  function drawMeasured(g, p, list) {
     const [low, high] = p.p.domain();
+    const at = list.length > 0 ? list[list.length - 1].r.at : [];
+    const place = d3.bisector((a) => a.f).left;
     for (const a of measured(p.c)) {
       const size = p.y(a.m);
       if (size >= p.box.top && size <= p.box.bottom) {
         sign(g, p.x(a.f), size);
       }
-      const phase = a.p - 360 * Math.round((a.p - (low + high) / 2) / 360);
+      const near = at[Math.min(at.length - 1, place(at, a.f))];
+      const phase = a.p - 360 * Math.round((a.p - (near ? near.p : 0)) / 360);
       if (phase >= low && phase <= high) {
         sign(g, p.x(a.f), p.p(phase));
       }
@@ -191,7 +194,7 @@
     drawBands(g, p);
     drawLimits(g, p);
     drawCurves(g, p, list, k);
-    drawMeasured(g, p);
+    drawMeasured(g, p, list);
     return p.under.bottom + 44 + F.legend(g, legendItems(p, list), 0, p.under.bottom + 42, w);
   }
 
