@@ -240,8 +240,8 @@ typedef struct mt_recommendation {
     mt_result_goal *goals;
     int n_responses; /* one for each goal of forced vibration and configuration */
     mt_result_response *responses;
-    int n_curves;
     mt_design_curve *curves; /* in the order of the result's; none at points of a trade */
+    int n_curves;
     int n_reasons;
     mt_reason *reasons;
 } mt_recommendation;
