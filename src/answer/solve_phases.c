@@ -22,6 +22,7 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     const mt_design original = {.t = p->whole.origin_t};
     MT_TRY(mt_describe_run(a->study, result, err));
     MT_TRY(mt_describe_excitations(a->study, result, err));
+    MT_TRY(mt_describe_asked_curves(p, result, err));
     if (!a->study->examined) {
         mt_doubt_list list = mt_doubt_list_default(&result->mem);
         MT_TRY(mt_study_examine(a->study, HUGE_VAL, &list, err));

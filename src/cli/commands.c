@@ -227,8 +227,8 @@ const mt_command mt_commands[MT_CMD_IDS] = {
     COMMAND(
         MT_CMD_RUN, "run", "STUDY...", 1, -1, "solve studies and write what was found",
         "Solves each study, writes result.json, recommendations.csv, report.html, trade.csv "
-        "(of "
-        "a trade study) and timing.json into DIR/<study file name without .json>/, and prints "
+        "(of a trade study), curves.csv (where the study lists responses) and timing.json "
+        "into DIR/<study file name without .json>/, and prints "
         "a "
         "summary. The files are replaced as one: result.json names the others with their "
         "SHA-256, and a run that fails or is killed leaves the old result, or one that the "

@@ -15,6 +15,7 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/folder.h"
+#include "report/curves.h"
 #include "report/html.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
@@ -231,6 +232,13 @@ static void write_output(const mt_result *result, const char *scene, mt_result_f
     case MT_RESULT_FILE_TRADE:
         if (result->trade != NULL) {
             table = mt_report_trade(result);
+            mt_table_csv(&table, out);
+            mt_table_free(&table);
+        }
+        break;
+    case MT_RESULT_FILE_CURVES:
+        if (result->n_curves > 0) {
+            table = mt_report_curves(result);
             mt_table_csv(&table, out);
             mt_table_free(&table);
         }

@@ -164,6 +164,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     if (fresh->c->robust != NULL) {
         rec->worst_case = mt_ranges_proven(mt_robust_known(fresh)) ? "proven" : "sampled";
     }
+    MT_TRY(mt_describe_curves(fresh, result, rec, err));
     rec->grade = rec->disagreement != NULL ? "not verified"
                  : rec->feasible           ? "feasible"
                                            : "compromise";

@@ -97,6 +97,12 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
                                    mt_result *result, mt_err *err);
+/* describe_curves_asked.c: which responses the result shows, before any design; and
+ * describe_curves.c: each of them at fresh->x. None at points of a trade study. What has no
+ * response says why. Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
+mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_err *err);
+mt_status mt_describe_curves(const mt_workspace *fresh, mt_result *result,
+                             mt_recommendation *rec, mt_err *err);
 /* describe_history.c: the designs that the search met on the way to found->solutions[0], whose
  * f belongs to `stage`; once. Fails: MT_E_MEMORY. */
 mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, int stage,

@@ -31,6 +31,7 @@
     X(STUDY_SPREAD, "spread", MT_KEY_OBJECT, false)                  \
     X(STUDY_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)                \
     X(STUDY_TRADE, "trade", MT_KEY_OBJECT, false)                    \
+    X(STUDY_RESPONSES, "responses", MT_KEY_LIST, false)              \
     X(STUDY_PUBLISHED, "published", MT_KEY_LIST, false)
 enum { STUDY_KEYS(MT_STUDY_KEY_ENUM) STUDY_KEY_COUNT };
 static const mt_key KEYS[] = {STUDY_KEYS(MT_STUDY_KEY)};
@@ -77,6 +78,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
                                                  &mt_study_vary_keys,
                                                  &mt_study_span_keys,
                                                  &mt_study_objective_keys,
+                                                 &mt_study_response_keys,
                                                  &mt_study_published_keys,
                                                  &mt_study_published_frequency_keys,
                                                  &mt_study_published_mac_keys,
@@ -325,6 +327,11 @@ static void note_places(mt_study_reader *s)
     for (int i = 0; i < study->doubts.n && i < MOST_PLACED; i++) {
         note_place(s, study->doubts.items[i].addr);
     }
+    for (int i = 0; i < study->n_responses && i < MOST_PLACED; i++) {
+        note_place(s, study->responses[i].addr);
+        note_place(s, study->responses[i].shake.input.addr);
+        note_place(s, study->responses[i].shake.output.addr);
+    }
     for (int i = 0; i < study->n_variables && i < MOST_PLACED; i++) {
         note_place(s, study->variables[i].addr);
         note_place(s, study->variables[i].lower_addr);
@@ -358,6 +365,7 @@ static void read_root(mt_study_reader *s)
     mt_read_study_objectives(s, o.found[STUDY_OBJECTIVE]);
     read_spread(s, o.found[STUDY_SPREAD]);
     mt_read_study_trade(s, o.found[STUDY_TRADE], o.found[STUDY_GOALS]);
+    mt_read_study_responses(s, o.found[STUDY_RESPONSES]);
     mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
 }
 

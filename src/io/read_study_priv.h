@@ -88,6 +88,9 @@ void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
 /* What a goal on ports has that is compared with one. */
 void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+/* A profile of vibration that the study names, each read once; NULL: there is no name, or it
+ * could not be read (noted). */
+const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name);
 /* What a goal that is about ports has besides. */
 void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
@@ -98,6 +101,7 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* After variables and goals; goals: the list of goals, whose indices it uses. */
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
+void mt_read_study_responses(mt_study_reader *s, mt_addr list);
 void mt_read_study_published(mt_study_reader *s, mt_addr list);
 
 extern const mt_key_table mt_study_keys;
@@ -117,6 +121,7 @@ extern const mt_key_table mt_study_tail_keys;
 extern const mt_key_table mt_study_machine_keys;
 extern const mt_key_table mt_study_gear_keys;
 extern const mt_key_table mt_study_objective_keys;
+extern const mt_key_table mt_study_response_keys;
 extern const mt_key_table mt_study_published_keys;
 extern const mt_key_table mt_study_published_frequency_keys;
 extern const mt_key_table mt_study_published_mac_keys;

@@ -163,8 +163,7 @@ static mt_vibration *load(mt_study_reader *s, mt_name name)
     return v;
 }
 
-/* Each profile once. */
-static const mt_vibration *profile_of(mt_study_reader *s, mt_name name)
+const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name)
 {
     mt_study *const study = s->study;
     if (name.s == NULL) {
@@ -211,7 +210,7 @@ static void read_profile(const reading *g, mt_shake *shake)
     shake->quantity = (mt_shake_quantity)(MT_SHAKE_RMS + (which == MT_ABSENT ? 0 : which));
     shake->quantity_addr = place(g, MT_SLOT_QUANTITY);
     shake->profile_name = name_at(g, MT_SLOT_PROFILE);
-    shake->profile = profile_of(g->s, shake->profile_name);
+    shake->profile = mt_read_study_profile(g->s, shake->profile_name);
 }
 
 void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)

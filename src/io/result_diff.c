@@ -29,14 +29,18 @@ typedef struct list_rule {
 static const list_rule RULES[] = {
     {"certificates", "certificate", {"kind", "pointer"}, NULL},
     {"clearances", "clearance", {"configuration", "mode", "band"}, NULL},
+    {"curves", "curve", {"configuration", "pointer"}, NULL},
+    {"densities", "density", {NULL}, NULL},
     {"doubts", "doubt", {"kind", "configuration", "pointer"}, NULL},
     {"excitations", "excitation", {"pointer", "name"}, NULL},
+    {"extremes", "extreme", {"kind"}, NULL},
     {"facts", "fact", {"kind", "configuration", "pointer"}, NULL},
     {"frequencies", "frequency", {"configuration", "mode", "reference"}, NULL},
     {"gap_assignment", "band", {"configuration", "band"}, NULL},
     {"goals", "goal", {"pointer"}, "goal"},
     {"history", "step", {NULL}, NULL},
     {"inputs", "input", {"file"}, NULL},
+    {"limits", "limit", {"pointer"}, NULL},
     {"motion", "motion", {"goal", "drive"}, NULL},
     {"objectives", "objective", {"text"}, NULL},
     {"orders", "order", {"label"}, NULL},
@@ -50,6 +54,7 @@ static const list_rule RULES[] = {
     {"reasons", "reason", {NULL}, NULL},
     {"relaxations", "relaxation", {"kind", "pointer", "what"}, NULL},
     {"spread", "spread", {"parameter"}, NULL},
+    {"tones", "tone", {"tone"}, NULL},
     {"undetermined", "direction", {NULL}, NULL},
     {"vary", "quantity", {"pointer"}, "text"},
     {"variables", "variable", {NULL}, NULL},
@@ -58,16 +63,17 @@ static const list_rule RULES[] = {
 /* Sentences, places in files, measures of rounding, and digests of what is written from all
  * this. */
 static const char *const PASSED_OVER[] = {
-    "column",  "goal",    "history",  "kkt_residual", "line", "orthogonality",
-    "outputs", "reasons", "residual", "status_text",  "text", "warnings",
+    "column",      "drawn",         "goal",     "history", "kkt_residual",
+    "line",        "orthogonality", "outputs",  "reasons", "residual",
+    "status_text", "text",          "warnings",
 };
 
 /* What changes where something else in the same part does. */
 static const char *const DERIVED[] = {
-    "change_percent",  "difference", "difference_percent", "error_percent",   "feasible",
-    "high_percent",    "hz",         "low_percent",        "margin_lower_hz", "margin_percent",
-    "margin_upper_hz", "original",   "original_hz",        "rival_share",     "score",
-    "sensitivity",     "share",
+    "change_percent", "damping_ratio",   "difference", "difference_percent", "error_percent",
+    "feasible",       "high_percent",    "hz",         "low_percent",        "margin_lower_hz",
+    "margin_percent", "margin_upper_hz", "natural_hz", "original",           "original_hz",
+    "phase_deg",      "rival_share",     "score",      "sensitivity",        "share",
 };
 
 /* Of these 1 is the whole: they are compared with it. */

@@ -10,6 +10,7 @@
 #define MT_RESULT_FILE_LIST(X)                       \
     X(MT_RESULT_FILE_DESIGNS, "recommendations.csv") \
     X(MT_RESULT_FILE_TRADE, "trade.csv")             \
+    X(MT_RESULT_FILE_CURVES, "curves.csv")           \
     X(MT_RESULT_FILE_REPORT, "report.html")          \
     X(MT_RESULT_FILE_TIMING, "timing.json")          \
     X(MT_RESULT_FILE_RESULT, "result.json")

@@ -40,11 +40,15 @@ static void put_texts(mt_json_writer *w, const char *name, const char *const *it
     mt_json_close(w);
 }
 
-static void put_numbers(mt_json_writer *w, const char *name, const double *items, int n)
+static void put_numbers(mt_json_writer *w, const mt_field *f, const double *items, int n)
 {
-    mt_json_open_flat(w, name, '[');
+    mt_json_open_flat(w, f->name, '[');
     for (int i = 0; i < n; i++) {
-        mt_json_put_number(w, NULL, items[i]);
+        if (f->digits > 0) {
+            mt_json_put_rounded(w, NULL, items[i], f->digits);
+        } else {
+            mt_json_put_number(w, NULL, items[i]);
+        }
     }
     mt_json_close(w);
 }
@@ -112,7 +116,7 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         put_texts(w, f->name, mt_record_get_pointer(at), *(const int *)other);
         break;
     case MT_FIELD_NUMBERS:
-        put_numbers(w, f->name, mt_record_get_pointer(at), *(const int *)other);
+        put_numbers(w, f, mt_record_get_pointer(at), *(const int *)other);
         break;
     case MT_FIELD_BY_VARIABLE:
         put_by_variable(w, f->name, mt_record_get_pointer(at), variables);

@@ -135,6 +135,7 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
     mt_status rc = mt_arena_init(&p->mem, 0, err);
     rc = rc == MT_OK ? init_references(p, err) : rc;
     rc = rc == MT_OK ? init_variables(p, err) : rc;
+    rc = rc == MT_OK ? mt_problem_check_responses(p, err) : rc;
     rc = rc == MT_OK ? mt_problem_init_demands(p, err) : rc;
     rc = rc == MT_OK ? mt_clears_compile(p, err) : rc;
     if (rc == MT_OK) {

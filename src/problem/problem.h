@@ -183,6 +183,8 @@ const char *mt_view_name(const mt_problem *p, const mt_view *view);
 
 /* problem_demands.c: views, demands and their rows. */
 mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+/* problem_responses.c. Fails: MT_E_INPUT, with the port that there is not. */
+mt_status mt_problem_check_responses(const mt_problem *p, mt_err *err);
 /* What each view is asked for; after demands and bands. */
 void mt_problem_ask(mt_problem *p);
 /* problem_program.c: the program of expressions, and the objectives. After the demands. */

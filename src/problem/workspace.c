@@ -262,7 +262,7 @@ mt_status mt_view_position(mt_workspace *w, mt_view_work *view, int mode, int na
                            mt_err *err)
 {
     *pos = -1;
-    if (!view->solved) {
+    if (!view->solved || (mode == 0 && named < 0)) { /* or a goal that is of no mode */
         return MT_OK;
     }
     if (mode > 0) {

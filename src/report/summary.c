@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "report/curves.h"
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/ruler.h"
@@ -423,14 +424,29 @@ static void tell_published(const mt_teller *to, const mt_result *result)
     }
 }
 
+static void tell_responses(const mt_teller *to, const mt_result *result,
+                           const mt_recommendation *r)
+{
+    if (open_list(to, "Responses", result->n_curves)) {
+        for (int k = 0; k < result->n_curves; k++) {
+            mt_text text = {.s = NULL};
+            mt_report_curve(result, k, r, &text);
+            add_made(to, &text);
+        }
+        close_list(to);
+    }
+}
+
 /* The best design (goals, frequencies, parameters, reasons), or the original one where there
  * is none; alternatives, what stays undetermined, certificates, relaxations, warnings. */
 static void tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
 {
     mt_tell_overrides(to, &result->run);
     mt_tell_doubts(to, result);
-    tell_design(to, result->n_recommendations > 0 ? &result->recommendations[0]
-                                                  : &result->baseline);
+    const mt_recommendation *const best =
+        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
+    tell_design(to, best);
+    tell_responses(to, result, best);
     if (result->n_recommendations > 1) {
         add_table(to, mt_report_alternatives(result), "All recommendations");
     }
@@ -501,6 +517,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
         add_table(&to, mt_report_alternatives(result), "All recommendations");
         mt_text_add(out, "</div>\n");
     }
+    add_table(&to, mt_report_extremes(result, SHOWN), "Peaks and antiresonances");
     tell_trade(&to, result);
     tell_published(&to, result);
     mt_text_add(out, "</details>\n");

@@ -91,6 +91,14 @@ void mt_table_shown(mt_table *t, double value, double factor, int digits)
              mt_report_exact(value, exact));
 }
 
+void mt_table_rounded(mt_table *t, double value, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    (void)mt_snprintf(exact, sizeof exact, "%.*g", digits, value);
+    add_cell(t, mt_report_number(value, digits, text), isfinite(value) ? exact : "");
+}
+
 void mt_table_number(mt_table *t, double value, int digits)
 {
     mt_table_shown(t, value, 1.0, digits);

@@ -47,7 +47,8 @@ void mt_table_column(mt_table *t, const char *heading, const char *member, mt_al
 void mt_table_text(mt_table *t, const char *text);
 void mt_table_integer(mt_table *t, long long value);
 void mt_table_number(mt_table *t, double value, int digits);
-void mt_table_change(mt_table *t, double value, int digits); /* with its sign */
+void mt_table_rounded(mt_table *t, double value, int digits); /* for machines, too */
+void mt_table_change(mt_table *t, double value, int digits);  /* with its sign */
 /* A number, and the name of its unit, that people see in another unit than machines, who get
  * SI: for them value / factor (result/result.h); NULL, and a factor that is not above 0: as it
  * is. */

@@ -51,4 +51,11 @@ double mt_curve_grid(const mt_curve_options *opt, int i);
 mt_status mt_curve_trace(const mt_transfer *t, const mt_curve_options *opt, mt_arena *mem,
                          mt_curve *out, mt_err *err);
 
+/* Which points of one pair (of `pairs`) a picture needs that is log-log in magnitude and
+ * straight in phase in between, to about 2 % of |H|: the ends, all extremes and what there is
+ * beside a resonance without a value, then at most so many. Of points that are finite and not
+ * 0. kept[*n], ascending, in mem. */
+mt_status mt_curve_thin(const mt_curve *c, int pair, int pairs, int most, mt_arena *mem, int *n,
+                        int **kept, mt_err *err);
+
 #endif

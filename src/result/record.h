@@ -43,6 +43,7 @@ typedef struct mt_field {
     mt_field_type type;
     int least;
     int n_choices;
+    int digits;            /* of a list of numbers: significant ones written; 0: all */
     bool nullable;         /* of a list: NULL is null, else NULL is empty */
     bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
 } mt_field;
@@ -144,6 +145,11 @@ struct mt_record {
 #define MT_F_NUMBERS(json, m, n)                                                             \
     {                                                                                        \
         MT_F_FIELD(json, MT_FIELD_NUMBERS, false, double *, m), .other = MT_F_MEMBER(int, n) \
+    }
+#define MT_F_NUMBERS_ROUNDED(json, m, n, most)                                                \
+    {                                                                                         \
+        MT_F_FIELD(json, MT_FIELD_NUMBERS, false, double *, m), .other = MT_F_MEMBER(int, n), \
+                                                                .digits = (most)              \
     }
 #define MT_F_BY_VARIABLE(json, m)                                                            \
     {                                                                                        \

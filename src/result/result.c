@@ -211,6 +211,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
     MT_F_LIST("responses", responses, n_responses, mt_result_response, mt_response_record),
+    MT_F_LIST("curves", curves, n_curves, mt_design_curve, mt_design_curve_record),
     MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON),
     MT_F_UNWRITTEN_TEXT(disagreement),
 };
@@ -482,6 +483,7 @@ static const mt_field RESULT_FIELDS[] = {
                       CERTIFICATE),
     MT_F_LIST_OR_NULL("relaxations", relaxations, n_relaxations, mt_relaxation, RELAXATION),
     MT_F_LIST("excitations", excitations, n_excitations, mt_result_excitation, EXCITATION),
+    MT_F_LIST("curves", curves, n_curves, mt_result_curve, mt_curve_record),
     MT_F_OPTION("trade", trade, mt_trade_result, TRADE),
     MT_F_LIST_OR_NULL("published", published, n_published, mt_result_published, PUBLISHED),
     MT_F_TEXTS("warnings", warnings, n_warnings),

@@ -8,6 +8,7 @@
 
 #include "base/arena.h"
 #include "base/doubt.h"
+#include "result/curves.h"
 #include "result/record.h"
 
 /*
@@ -239,6 +240,8 @@ typedef struct mt_recommendation {
     mt_result_goal *goals;
     int n_responses; /* one for each goal of forced vibration and configuration */
     mt_result_response *responses;
+    mt_design_curve *curves; /* in the order of the result's; none at points of a trade */
+    int n_curves;
     int n_reasons;
     mt_reason *reasons;
 } mt_recommendation;
@@ -467,6 +470,8 @@ typedef struct mt_result {
     mt_recommendation *recommendations;
     mt_result_excitation *excitations;
     int n_excitations;
+    mt_result_curve *curves;
+    int n_curves;
     /* from here on lists that are NULL were not computed: an interrupt cut them */
     int n_undetermined;
     mt_undetermined *undetermined;

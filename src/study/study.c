@@ -277,6 +277,12 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
     };
 }
 
+mt_study_response mt_study_response_default(mt_addr addr)
+{
+    return (mt_study_response){
+        .configuration = MT_ABSENT, .shake = mt_shake_default(addr), .addr = addr};
+}
+
 #define NAME_CASE(id, name) \
     case id:                \
         return name;

@@ -189,6 +189,16 @@ typedef struct mt_published {
     mt_addr tolerance_percent_addr;
 } mt_published;
 
+/* A response that the result has to show, of every design. */
+typedef struct mt_study_response {
+    mt_name configuration_name;
+    int configuration;
+    mt_shake shake; /* ports and frequencies; a profile, where there is one */
+    const char *description;
+    const char *source;
+    mt_addr addr;
+} mt_study_response;
+
 /* A trade study: one or two quantities take each of their values (all pairs of two), and every
  * such study is answered by its best design. */
 typedef enum mt_vary_kind {
@@ -291,6 +301,7 @@ typedef struct mt_study {
     MT_LIST_OF(mt_measurement, measurements);
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
+    MT_LIST_OF(mt_study_response, responses);
     mt_trade trade;
     /* the designs that are counted alike (analysis.h): variables within their bounds or
      * catalogues, with their tolerances and the original values, and what a trade study varies;
@@ -330,6 +341,7 @@ mt_shake mt_shake_default(mt_addr addr);
 double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
 mt_published mt_published_default(mt_published_kind kind, mt_addr addr);
+mt_study_response mt_study_response_default(mt_addr addr);
 /*
  * Resolve names and check meaning, all problems at once: unknown names with "did you mean",
  * bounds in the wrong order, catalogue and bounds together, duplicate variables, goals without

@@ -236,6 +236,7 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
     mt_study_check_overrides(&c);
     mt_study_check_objectives(&c);
     mt_study_check_published(&c);
+    mt_study_check_responses(&c);
     mt_study_check_trade(&c);
     mt_study_fill_counted(&c);
     if (study->recommendations < 1) {

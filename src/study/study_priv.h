@@ -23,6 +23,7 @@ void mt_study_check_shake(mt_study_check *c, mt_goal *goal); /* study_shake.c; l
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
+void mt_study_check_responses(mt_study_check *c);  /* study_responses.c */
 void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the checks */
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 void mt_study_check_bounds(mt_study_check *c);     /* study_bounds.c; where nothing is wrong */

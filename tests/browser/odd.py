@@ -86,6 +86,7 @@ def texts(result, text):
             f["name"] = text if f["name"] else f["name"]
         for p in design["parameters"]:
             p["unit"] = text[:40]
+    curve_texts(result, text)
     for e in result["excitations"]:
         e["name"] = text
         for order in e["orders"]:
@@ -103,7 +104,7 @@ def numbers(result, factor):
         walked(design, lambda _, value: scaled(value) if isinstance(value, float) else value)
 
 
-EDGES = ("lower_hz", "upper_hz", "margin_lower_hz", "margin_upper_hz")
+EDGES = ("lower_hz", "upper_hz", "margin_lower_hz", "margin_upper_hz", "frequency_hz")
 
 
 def nulls(result):
@@ -171,6 +172,66 @@ def infeasible(result):
     result.update(status="compromise", status_text="Compromise: nothing meets all goals.")
 
 
+def profile(result):
+    """All curves are under a profile, with a step and a tone that is a line; their answers are there."""
+    for curve in result["curves"]:
+        curve["profile"] = {"file": "floor.json", "name": None, "rms": 2.5, "sigma": 3.0, "rule": "sum", "densities": [
+            {"frequency_hz": [10.0, 40.0, 40.0, 300.0], "level": [0.1, 0.4, 2.0, 0.01]}], "tones": [
+            {"tone": "4P", "lower_hz": 17.0, "upper_hz": 17.5, "level": 2.0}, {"tone": "50 Hz", "lower_hz": 50.0, "upper_hz": 50.0, "level": 1.0}]}
+    for design in designs(result):
+        for curve in design["curves"]:
+            curve["vibration"] = {"end": "finite", "proven": True, "rms": 3.5, "rms_error_at_most": 1e-12, "sine": 9.0, "peak": 19.5, "tones": [
+                {"tone": "4P", "frequency_hz": 17.5, "peak": 8.0, "excess_at_most": 1e-12, "at_edge": True},
+                {"tone": "50 Hz", "frequency_hz": 50.0, "peak": 1.0, "excess_at_most": None, "at_edge": True}]}
+
+
+def measured(result):
+    for curve in result["curves"]:
+        curve["measured"] = {"frequency_hz": [20.0, 30.0, None, 1e9], "magnitude": [1.0, 1e300, 2.0], "phase_deg": [1e9, None, 3.0, 4.0], "psd": []}
+
+
+def drawn(result, change):
+    """Lists of what is drawn of a response, at all designs."""
+    for design in designs(result):
+        for curve in design["curves"]:
+            change(curve, curve["drawn"])
+
+
+def infinite(curve, points):
+    for e in curve["extremes"]:
+        e.update(kind="resonance", magnitude=None) if e["kind"] == "peak" else None
+
+
+def first_only(curve, points):
+    for key in points:
+        points[key] = points[key][:1]
+
+
+def unlike(curve, points):
+    points["magnitude"] = points["magnitude"][:3]
+    points["phase_deg"] = [None] * len(points["phase_deg"])
+
+
+def huge_range(curve, points):
+    n = len(points["magnitude"])
+    points["magnitude"] = [10.0 ** (-300 + 600 * i / max(1, n - 1)) for i in range(n)]
+
+
+def trouble(curve, points):
+    curve.update(trouble="a motion grows by itself here", extremes=[], vibration=None)
+    for key in points:
+        points[key] = []
+
+
+def curve_texts(result, text):
+    profile(result)
+    for curve in result["curves"]:
+        curve.update(input=text, output=text, unit=text, output_unit=text, description=text)
+        curve["profile"].update(name=text, file=text)
+        for tone in curve["profile"]["tones"]:
+            tone["tone"] = text
+
+
 KINDS = {f"text_{name}": (lambda r, t=text: texts(r, t)) for name, text in TEXTS.items()}
 KINDS.update({
     "tiny": lambda r: numbers(r, 1e-300), "huge": lambda r: numbers(r, 1e300), "small": lambda r: numbers(r, 1e-9),
@@ -179,6 +240,13 @@ KINDS.update({
     "thousands_of_designs": lambda r: many_designs(r, 3000 if EVERY else 1000), "hundreds_of_parameters": lambda r: many_parameters(r, 300),
     "many_modes": lambda r: many_modes(r, 120), "interrupted": interrupted, "infeasible": infeasible,
 })
+# Of results that have curves.
+CURVES = {f"curve_{change.__name__}": (lambda r, c=change: (profile(r), drawn(r, c))) for change in
+          (infinite, first_only, unlike, huge_range, trouble)}
+CURVES.update({"profile": profile, "measured": measured, "curve_text_script": lambda r: texts(r, TEXTS["script"]), "curve_text_long": lambda r: texts(r, TEXTS["long"]),
+               "curve_negative": lambda r: (profile(r), numbers(r, -1.0)), "curve_large": lambda r: (profile(r), numbers(r, 1e9)),
+               "curve_zeros": lambda r: (profile(r), zeros(r)), "curve_nulls": lambda r: (profile(r), nulls(r))})
+KINDS.update(CURVES)
 
 
 def made(kind, result):

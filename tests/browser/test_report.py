@@ -112,11 +112,38 @@ class Report(Answers):
             "inceptor_rotor": {"frequencies", "parameters", "rotor-1", "parallel", "tolerance", "sensitivity", "spent"},
             "inceptor_trade": {"trade", "front", "parallel", "tolerance", "rotor-1"},
             "beam_identification": {"mac", "published", "starts", "sensitivity", "history-1"},
+            "inceptor_tuning_1": {"bode-1", "nyquist-1"}, "den_hartog": {"bode-1", "nyquist-1"},
+            "three_masses_identification": {"bode-1", "bode-2"},
             "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
         }
         for name, figures in wanted.items():
             self.open(name)
             self.assertLessEqual(figures, set(self.browser.run(FIGURES)), name)
+
+    def test_curves_are_those_of_the_result(self):
+        """Numbers of the diagrams are the result's; peaks are told and marked; limits of goals are drawn."""
+        for name in ("inceptor_tuning_1", "inceptor_tuning_2", "inceptor_tuning_3", "den_hartog"):
+            result = self.open(name)
+            designs = {"original": result["baseline"], "No. 1": result["recommendations"][0]}
+            for k, curve in enumerate(result["curves"]):
+                bode, nyquist = self.browser.run("return [mt.chartBode, mt.chartNyquist].map((f) => f()[arguments[0]].table().rows)", k)
+                for words, design in designs.items():
+                    drawn = design["curves"][k]["drawn"]
+                    mine = [row[1:] for row in bode if row[0] == words]
+                    self.assertEqual([row[:2] for row in mine], [list(p) for p in zip(drawn["frequency_hz"], drawn["magnitude"])])
+                    for (_, _, phase), given in zip(mine, drawn["phase_deg"]):
+                        self.assertAlmostEqual((phase - given) / 360, round((phase - given) / 360), places=9)
+                    for (_, f, re_, im), size in zip([r for r in nyquist if r[0] == words], drawn["magnitude"]):
+                        self.assertAlmostEqual(abs(complex(re_, im)) / size, 1, places=9, msg=f)
+                    lead = self.browser.one(f"#figure-bode-{k + 1} .lead").text
+                    peaks = [e for e in design["curves"][k]["extremes"] if e["kind"] == "peak"]
+                    for e in sorted(peaks, key=lambda e: -e["magnitude"])[:2]:
+                        self.near(re.search(rf"([\d.e\u2212]+) at {e['frequency_hz']:.4g}", lead.replace(".00 ", " "))[1]
+                                  if f" at {e['frequency_hz']:.4g}" in lead else "0", e["magnitude"], lead)
+                marks = self.browser.all(f"#figure-bode-{k + 1} svg path > title")
+                told = [m.get_attribute("textContent") for m in marks]
+                for limit in curve["limits"]:
+                    self.assertEqual(sum(limit["pointer"] in words for words in told), 1, name)
 
     def test_a_point_of_the_trade_study_is_shown_everywhere(self):
         result = self.open("inceptor_trade")

@@ -50,13 +50,15 @@ typedef struct unit {
 
 static void make(unit *u, const char *version, bool trade)
 {
-    static const char *const words[] = {"designs", "trade", "report"};
+    static const char *const words[] = {"designs", "trade", "curves", "report"};
     const char *names[MT_RESULT_FILE_COUNT] = {NULL};
     mt_text outputs[MT_RESULT_FILE_COUNT];
     int n = 0;
     *u = (unit){.version = version, .trade = trade};
     for (int i = 0; i < MT_COUNT(words); i++) {
-        for (int k = 0; k < LENGTH && (trade || i != MT_RESULT_FILE_TRADE); k++) {
+        for (int k = 0;
+             k < LENGTH && (trade || (i != MT_RESULT_FILE_TRADE && i != MT_RESULT_FILE_CURVES));
+             k++) {
             mt_text_addf(&u->texts[i], "%s of %s\n", words[i], version);
         }
         if (u->texts[i].s != NULL) {

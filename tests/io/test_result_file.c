@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/io.h"
 #include "io/json.h"
+#include "io/result_curves_sample.h"
 #include "mt_alloc.h"
 #include "mt_test.h"
 
@@ -116,6 +117,9 @@ static void fill_design(sample *s, mt_recommendation *r)
     r->frequencies = &s->frequency;
     r->n_goals = MT_COUNT(GOALS);
     r->goals = GOALS;
+    EXTREMES[0].magnitude = nan("");
+    r->n_curves = MT_COUNT(DESIGN_CURVES);
+    r->curves = DESIGN_CURVES;
     r->n_reasons = MT_COUNT(REASONS);
     r->reasons = REASONS;
 }
@@ -307,6 +311,8 @@ static bool make_sample(sample *s)
     r->relaxations = RELAXATIONS;
     r->n_excitations = MT_COUNT(EXCITATIONS);
     r->excitations = EXCITATIONS;
+    r->n_curves = MT_COUNT(CURVES);
+    r->curves = CURVES;
     r->status = MT_RESULT_COMPROMISE;
     r->status_text = "No design meets every goal.";
     r->n_variables = MT_COUNT(VARIABLES);
@@ -421,6 +427,11 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"error_percent\": 0",
         "\"K_T1\": 0.00125",
         "\"clearances\": []",
+        "\"frequency_hz\": [5, 22.101235, 500]",
+        "\"magnitude\": [0.333333, 48.1235, 2e-07]",
+        "\"phase_deg\": [0, -90.3333, 180]",
+        "\"magnitude\": null",
+        "\"trouble\": \"nothing settles\"",
         "\"gap_assignment\": null",
         "\"motion\": []",
         "\"motion\": [",

@@ -50,6 +50,39 @@ class Inceptor(unittest.TestCase):
                     self.assertIn(p["role"], ("calibrates", "verifies", "not_comparable"))
                     self.assertTrue(p["source"] or p["kind"] == "status", p)
 
+    def peaks(self, design):
+        """The two highest peaks of the only curve of a design, which is whole and passes through all extremes."""
+        curve = design["curves"][0]
+        drawn = curve["drawn"]
+        self.assertIsNone(curve["trouble"])
+        self.assertEqual((drawn["frequency_hz"][0], drawn["frequency_hz"][-1]), (5, 500))
+        self.assertLess(len(drawn["frequency_hz"]), 400)
+        for e in curve["extremes"]:
+            at = min(range(len(drawn["frequency_hz"])), key=lambda i: abs(drawn["frequency_hz"][i] - e["frequency_hz"]))
+            self.assertLess(abs(drawn["frequency_hz"][at] / e["frequency_hz"] - 1), 1e-7)
+            self.assertLess(abs(drawn["magnitude"][at] / e["magnitude"] - 1), 1e-5)
+        found = [e for e in curve["extremes"] if e["kind"] == "peak"]
+        self.assertEqual(max(drawn["magnitude"]), max(drawn["magnitude"][i] for i in range(len(drawn["magnitude"]))
+                         if min(abs(drawn["frequency_hz"][i] / e["frequency_hz"] - 1) for e in found) < 1e-7))
+        return sorted(sorted(found, key=lambda e: -e["magnitude"])[:2], key=lambda e: e["frequency_hz"])
+
+    def test_the_grip_peaks_where_the_paper_has_its_frequencies(self):
+        # Table 7 before, to what the model is identified to, and the targets of Tables 8 to 10 after. With 2 % of critical
+        # damping a peak of |acceleration| lies beside its natural frequency, the nearer an antiresonance the farther
+        tuned = {"inceptor_tuning_1": (18, 90), "inceptor_tuning_2": (25, 135), "inceptor_tuning_3": (21, 70)}
+        for name, targets in tuned.items():
+            result = self.result(name)
+            off = 1e-6 if result["status"] == "solved" else 0.005  # a compromise has no design of both
+            for design, wanted, within in ((result["baseline"], (22.09, 107.61), 1e-3), (result["recommendations"][0], targets, off)):
+                with self.subTest(study=name, rank=design["rank"]):
+                    peaks = self.peaks(design)
+                    self.assertEqual(len(peaks), 2)
+                    for e, hz, f in zip(peaks, wanted, design["frequencies"]):
+                        self.assertLess(abs(e["natural_hz"] / hz - 1), within)
+                        self.assertLess(abs(e["natural_hz"] / f["recommended_hz"] - 1), 1e-9)
+                        self.assertAlmostEqual(e["damping_ratio"], 0.02, places=12)
+                        self.assertLess(abs(e["frequency_hz"] / hz - 1), 0.02)
+
     def test_predictions_are_no_calibration(self):
         # Tables 9 and 10 took no part: no goal names their configurations, and every entry about them verifies
         result = self.result("inceptor_prediction")

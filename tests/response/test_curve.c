@@ -47,6 +47,62 @@ static void curve__one_mass_peaks_at_its_closed_form(mt_test *t)
     }
 }
 
+/* What is drawn between two points of a picture is straight over log w in log |H| and phase. */
+static double drawn_off(const mt_curve *c, int a, int b, int i)
+{
+    const double part = log(c->w[i] / c->w[a]) / log(c->w[b] / c->w[a]);
+    const double complex step = clog(c->h[b] / c->h[a]);
+    return cabs((c->h[a] * cexp(part * step) / c->h[i]) - 1.0);
+}
+
+static void check_thin(mt_test *t, forced *p, const mt_curve *c, int most, double off)
+{
+    int n = 0;
+    int *kept = NULL;
+    double worst = 0.0;
+    if (!CHECK(t, mt_curve_thin(c, 0, 1, most, &p->mem, &n, &kept, NULL) == MT_OK) ||
+        !CHECK(t, n >= 2 && kept[0] == 0 && kept[n - 1] == c->n - 1)) {
+        return;
+    }
+    CHECK(t, n <= most);
+    for (int e = 0; e < c->n_extremes; e++) {
+        int found = 0;
+        for (int k = 0; k < n; k++) {
+            found += c->w[kept[k]] == c->extremes[e].w;
+        }
+        CHECK_INT(t, found, c->extremes[e].infinite ? 0 : 1);
+    }
+    for (int k = 1; k < n; k++) {
+        CHECK(t, kept[k] > kept[k - 1]);
+        for (int i = kept[k - 1] + 1; i < kept[k]; i++) {
+            worst = fmax(worst, drawn_off(c, kept[k - 1], kept[k], i));
+        }
+    }
+    CHECK(t, worst <= off);
+}
+
+/* A picture needs few of the points, extremes always; of a resonance that nothing damps both
+ * sides, and nothing is drawn through it. */
+static void curve__is_drawn_by_few_points(mt_test *t)
+{
+    static const double ZETA[] = {0.5, 0.02, 1e-5, 0.0};
+    for (int r = 0; r < (int)(sizeof ZETA / sizeof ZETA[0]); r++) {
+        forced p;
+        forced_all(&p, 1);
+        p.k[0] = 300.0;
+        p.m[0] = 3.0;
+        p.c[0] = 60.0 * ZETA[r];
+        p.f.c = p.c;
+        mt_test_row(t, "ratio %g", ZETA[r]);
+        mt_curve c = {.n = 0};
+        if (forced_make(t, &p, 0) && trace(t, &p, 0.1, 1000.0, true, &c)) {
+            check_thin(t, &p, &c, 400, 0.021);
+            check_thin(t, &p, &c, 8, 1e9);
+        }
+        mt_arena_free(&p.mem);
+    }
+}
+
 /* A mass with an absorber: the antiresonance of the mass is the absorber's own frequency. */
 static void curve__an_absorber_makes_an_antiresonance(mt_test *t)
 {
@@ -140,6 +196,7 @@ static void curve__lines_between_points_hold(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(curve__one_mass_peaks_at_its_closed_form),
+             MT_TEST(curve__is_drawn_by_few_points),
              MT_TEST(curve__an_absorber_makes_an_antiresonance),
              MT_TEST(curve__a_resonance_on_the_grid_is_found_once),
              MT_TEST(curve__lines_between_points_hold))

@@ -28,7 +28,7 @@ ALLOWED = {
     "simulate": {"base", "linalg", "expr", "model", "mechanics", "study"},
     "problem": ENGINE | {"analysis", "response", "vibration", "nlp", "study", "result", "prove"},
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
-    "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
+    "describe": ENGINE | {"analysis", "response", "vibration", "nlp", "study", "result", "prove", "problem", "search"},
     "answer": ENGINE | {"tree", "analysis", "nlp", "study", "result", "prove", "problem", "search", "describe"},
     "library": set(ROOMS) - {"library", "cli"},
     "io": {"base", "expr", "model", "study", "result", "scene"},

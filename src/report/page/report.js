@@ -5,7 +5,8 @@
   'use strict';
   const mt = window.mt;
 
-  const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartDrive',
+  const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartBode',
+    'chartNyquist', 'chartPsd', 'chartDrive',
     'chartTrade', 'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity',
     'chartMac', 'chartPublished', 'chartHistory', 'chartStarts', 'chartSpent'];
 
