@@ -539,26 +539,6 @@ double mt_result_shown(double value, double factor)
     return factor > 0.0 ? value / factor : value;
 }
 
-mt_result_mark mt_result_get_mark(const mt_result *result)
-{
-    return (mt_result_mark){.n_undetermined = result->n_undetermined,
-                            .n_spread = result->n_spread,
-                            .n_certificates = result->n_certificates,
-                            .n_relaxations = result->n_relaxations,
-                            .n_published = result->n_published,
-                            .n_warnings = result->n_warnings};
-}
-
-void mt_result_take_back(mt_result *result, const mt_result_mark *mark)
-{
-    result->n_undetermined = mark->n_undetermined;
-    result->n_spread = mark->n_spread;
-    result->n_certificates = mark->n_certificates;
-    result->n_relaxations = mark->n_relaxations;
-    result->n_published = mark->n_published;
-    result->n_warnings = mark->n_warnings;
-}
-
 mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err)
 {
     result->doubts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->doubts);

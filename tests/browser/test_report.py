@@ -9,7 +9,7 @@ from pathlib import Path
 from common_pages import SIZES, SOURCE, Answers, run
 from selenium.webdriver.common.keys import Keys
 
-MOST_BYTES = 700_000
+MOST_BYTES = 560_000
 HALF = 0.6e-3  # of the fourth digit, and a little
 # Words of the frequency chart's lanes by configuration and mode; values of the chart of parameters by name.
 LANES = """

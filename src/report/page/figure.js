@@ -325,7 +325,8 @@
   window.addEventListener('afterprint', () => print(false));
 
   mt.figure = {
-    colour, mark, line, rect, text, inkOn, arrow, axisBelow, axisLeft, legend, add, csv, on, fillTable,
+    colour, mark, line, rect, text, inkOn, arrow, axisBelow, axisLeft, legend, add, csv, on,
+    fillTable,
     shapes: Object.keys(SHAPES), updateAll: () => figures.forEach(update),
   };
 })();

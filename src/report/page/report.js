@@ -7,7 +7,8 @@
 
   const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartDrive',
     'chartTrade', 'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity',
-    'chartMac', 'chartMacMatrix', 'chartPublished', 'chartHistory', 'chartStarts', 'chartSpent'];
+    'chartMac', 'chartMacMatrix', 'chartPublished', 'chartHistory', 'chartStarts',
+    'chartSpent'];
 
   function place(id) {
     return document.getElementById('place-' + id) || document.getElementById('figures');
