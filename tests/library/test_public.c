@@ -304,14 +304,19 @@ static mt_status call_solve_json(int null)
     return (rc == MT_OK) != owned ? MT_E_INTERNAL : null == 1 && rc == MT_E_INPUT ? MT_OK : rc;
 }
 
-static mt_status call_result_json(int null)
-{
-    char *out = NULL;
-    const mt_status rc = mt_result_json(ARG(0, result), ARG(1, &out), ARG(2, &said));
-    const bool owned = out != NULL;
-    mt_string_delete(out);
-    return null < 0 && !owned ? MT_E_INTERNAL : rc;
-}
+/* A text of the result, which `out` owns. */
+#define WRITES(name, ...)                               \
+    static mt_status call_##name(int null)              \
+    {                                                   \
+        char *out = NULL;                               \
+        const mt_status rc = mt_##name(__VA_ARGS__);    \
+        const bool owned = out != NULL;                 \
+        mt_string_delete(out);                          \
+        return null < 0 && !owned ? MT_E_INTERNAL : rc; \
+    }
+WRITES(result_json, ARG(0, result), ARG(1, &out), ARG(2, &said))
+WRITES(result_html, ARG(0, result), ARG(1, &out), ARG(2, &said))
+WRITES(result_page, ARG(0, result), ARG(1, model), ARG(2, &out), ARG(3, &said))
 
 static mt_status call_result_read(int null)
 {
@@ -329,15 +334,6 @@ static mt_status call_result_read(int null)
     }
     mt_string_delete(text);
     return (rc == MT_OK) != owned ? MT_E_INTERNAL : null == 1 && rc == MT_E_SYSTEM ? MT_OK : rc;
-}
-
-static mt_status call_result_html(int null)
-{
-    char *out = NULL;
-    const mt_status rc = mt_result_html(ARG(0, result), ARG(1, &out), ARG(2, &said));
-    const bool owned = out != NULL;
-    mt_string_delete(out);
-    return null < 0 && !owned ? MT_E_INTERNAL : rc;
 }
 
 static mt_status call_udwadia_kalaba(int null)
@@ -433,6 +429,7 @@ static const struct {
     ROW(result_json, "rra"),
     ROW(result_read, "rara"),
     ROW(result_html, "rra"),
+    ROW(result_page, "rara"),
     ROW(string_delete, "a"),
     ROW(solve_json, "raara"),
     ROW(udwadia_kalaba, "rrrrra"),
