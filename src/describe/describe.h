@@ -71,6 +71,9 @@ double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const
 const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *mem);
 /* Is it certain enough which mode the demand means? A frequency that all candidates have is. */
 bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d);
+/* describe_responses.c: likewise. */
+mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
+                                mt_err *err);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,

@@ -45,6 +45,7 @@ static const list_rule RULES[] = {
     {"parameters", "parameter", {"name"}, NULL},
     {"per_variable", "variable", {"name"}, NULL},
     {"points", "point", {NULL}, NULL},
+    {"responses", "response", {"goal", "configuration"}, NULL},
     {"published", "value", {"pointer"}, "label"},
     {"recommendations", "recommendation", {NULL}, NULL},
     {"reasons", "reason", {NULL}, NULL},

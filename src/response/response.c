@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
+#include <string.h>
+
 void mt_response_free(mt_response *r)
 {
     mt_arena_free(&r->mem);
@@ -66,4 +68,26 @@ mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt
     const mt_slope_problem p = {
         .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
     return mt_response_slopes(&p, w, dh, &r->mem, err);
+}
+
+mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
+                                      const double complex *weight, double *slope, mt_err *err)
+{
+    const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_out * r->ports.n_in;
+    const ptrdiff_t pair = out + ((ptrdiff_t)in * r->ports.n_out);
+    const int n_inputs = r->a->sys->n_inputs;
+    const mt_arena_mark mark = mt_arena_get_mark(&r->mem);
+    double complex *const dh =
+        mt_arena_alloc(&r->mem, (size_t)pairs * (size_t)n_inputs, sizeof *dh);
+    mt_status rc = mt_arena_check(&r->mem, err);
+    memset(slope, 0, (size_t)n_inputs * sizeof *slope);
+    for (int i = 0; i < n && rc == MT_OK; i++) {
+        rc = mt_response_slopes_at(r, w[i], dh, err);
+        for (int p = 0; p < n_inputs && rc == MT_OK; p++) {
+            const double complex d = dh[pair + (p * pairs)];
+            slope[p] += (creal(weight[i]) * creal(d)) - (cimag(weight[i]) * cimag(d));
+        }
+    }
+    mt_arena_rewind(&r->mem, mark);
+    return rc;
 }

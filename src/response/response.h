@@ -44,6 +44,16 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
                             mt_err *err);
 /* Sums over poles out[n_out x n_in], in r->mem; fails as mt_response_poles. */
 mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err);
+/**
+ * The slope over all inputs of the analysis of a sum over frequencies of one response,
+ *     slope[p] = Re sum_i weight_i dH_oi(w_i) / dp.
+ * @param[in]  out, in     which output and input
+ * @param[in]  w, weight   [n]
+ * @param[out] slope       [n_inputs]
+ * Fails as mt_response_slopes.
+ */
+mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
+                                      const double complex *weight, double *slope, mt_err *err);
 /* dh as mt_response_slopes. */
 mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err);
 

@@ -42,6 +42,9 @@ static mt_result_goal GOALS[] = {{.text = "installed mode 1 at 18 Hz",
                                   .target = 18.0,
                                   .tolerance_percent = 1e-4,
                                   .met = true,
+                                  .off_most_hz = 17.25,
+                                  .off_most_ratio = 1.125,
+                                  .off_most_phase_deg = -3.5,
                                   .worst = 17.5,
                                   .sensitivity = SENSITIVITY}};
 static mt_reason REASONS[] = {{"change", "K_T1", "K_T1 rises by 1.5 %."},
@@ -160,6 +163,24 @@ static mt_result_motion MOTIONS[] = {
      .grade = "sampled",
      .text = "mode 1 comes nearest"},
 };
+static mt_result_response RESPONSES[] = {
+    {.pointer = "/goals/2",
+     .configuration = "installed",
+     .input = "base.z",
+     .output = "grip.x:acceleration",
+     .profile = "helicopter_uh60_panel",
+     .quantity = "rms",
+     .unit = "m/s^2",
+     .value = 3.25,
+     .error = 1e-9,
+     .frequency_hz = 17.25,
+     .at_edge = true,
+     .lower_hz = 5.0,
+     .upper_hz = 500.0,
+     .end = "finite",
+     .grade = "proven",
+     .text = "the acceleration of grip.x is 3.25 m/s^2 rms"},
+};
 static mt_result_tolerance TOLERANCES[] = {
     {"K_T1", 4.5, "mode 1 at 4P of UH-60"},
     {"M_SAU", HUGE_VAL, NULL},
@@ -188,6 +209,8 @@ static void fill_bands(sample *s)
     r->gaps = GAPS;
     r->n_motions = MT_COUNT(MOTIONS);
     r->motions = MOTIONS;
+    r->n_responses = MT_COUNT(RESPONSES);
+    r->responses = RESPONSES;
     r->tolerance_box = &s->box;
     s->point = (mt_trade_point){.n_values = MT_COUNT(TRADE_VALUES),
                                 .values = TRADE_VALUES,
