@@ -245,8 +245,8 @@ typedef struct mt_recommendation {
     int n_objectives;
     int n_frequencies;
     mt_result_frequency *frequencies;
-    int n_macs; /* one for each reference whose shapes goals compare */
-    mt_result_mac *macs;
+    mt_result_mac *macs; /* one for each reference whose shapes goals compare */
+    int n_macs;
     int n_clearances;
     mt_result_clearance *clearances;
     int n_gaps; /* 0: no bands */
