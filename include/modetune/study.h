@@ -155,12 +155,21 @@ MT_API mt_status mt_result_json(const mt_result *result, char **text, mt_err *er
 MT_API mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result **out,
                                 mt_err *err);
 /**
- * What people should see of it, as one HTML page: nothing is loaded from elsewhere, no script
- * is in it, and no text of a file becomes markup.
+ * What people should see of it, as one HTML page: nothing is loaded from elsewhere, and no
+ * text of a file becomes markup or a script.
  * @param[out] text  UTF-8, NUL-terminated, to be given to mt_string_delete; NULL on failure
  * Fails: MT_E_MEMORY.
  */
 MT_API mt_status mt_result_html(const mt_result *result, char **text, mt_err *err);
+/**
+ * The same with the mechanism and its modes to look at, as `modetune report` has it.
+ * @param[in]  model  the one that was solved; NULL: without. Of one that does not fit nothing
+ *   is shown
+ * @param[out] text   as of mt_result_html
+ * Fails: MT_E_MEMORY.
+ */
+MT_API mt_status mt_result_page(const mt_result *result, const mt_model *model, char **text,
+                                mt_err *err);
 /* Accepts NULL. */
 MT_API void mt_string_delete(char *text);
 

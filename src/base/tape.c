@@ -46,6 +46,7 @@ static void put(mt_tape *t, uint64_t word)
         uint64_t *const words =
             room > SIZE_MAX / WORD ? NULL : realloc(t->words, room * sizeof *words);
         t->failed = words == NULL;
+        t->no_memory = words == NULL;
         t->words = words != NULL ? words : t->words;
         t->room = words != NULL ? room : t->room;
     }

@@ -22,6 +22,8 @@ typedef struct mt_tape {
     size_t at; /* next to be read */
     bool reads;
     bool failed; /* or: what was to be written is no record */
+    /* what was to be written had no room: that is no answer to whether it is a record */
+    bool no_memory;
 } mt_tape;
 
 mt_tape mt_tape_of(const uint64_t *words, size_t n); /* to be read */

@@ -109,17 +109,21 @@ static void note_failure(pool *p, int task, mt_status rc, const mt_err *err)
     (void)pthread_mutex_unlock(&p->lock);
 }
 
-/* What the task at s has left. */
-static void keep(const mt_tasks *tasks, int task, const mt_scope *s)
+/* What the task at s has left. One that has no room to be kept is not left out: a part of a run
+ * would be told to be done without it. */
+static mt_status keep(const mt_tasks *tasks, int task, const mt_scope *s, mt_err *err)
 {
     mt_tape tape = {.words = NULL};
+    bool no_memory = false;
     if (s->interrupt == NULL || !mt_interrupt_any(s->interrupt)) {
         tasks->tape(tasks->context, task, &tape);
         if (!tape.failed) {
             put(s->ledger, s->path, &tape);
         }
+        no_memory = tape.no_memory;
     }
     mt_tape_free(&tape);
+    return no_memory ? mt_fail_memory(err) : MT_OK;
 }
 
 static void *work(void *argument)
@@ -132,11 +136,10 @@ static void *work(void *argument)
         const bool kept = tasks->tape != NULL && own.ledger != NULL;
         mt_scope inner = own;
         inner.ledger = kept ? NULL : own.ledger;
-        const mt_status rc = tasks->run(tasks->context, w->number, task, &inner, &err);
+        mt_status rc = tasks->run(tasks->context, w->number, task, &inner, &err);
+        rc = rc == MT_OK && kept ? keep(tasks, task, &own, &err) : rc;
         if (rc != MT_OK) {
             note_failure(w->pool, task, rc, &err);
-        } else if (kept) {
-            keep(tasks, task, &own);
         }
         mt_progress_done(w->pool->progress, w->pool->told);
     }

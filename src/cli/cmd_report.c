@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "cli/find_model.h"
 #include "cli/save.h"
-#include "cli/scene_designs.h"
+#include "library/scene_designs.h"
 
 /* The scene of the result's designs, where the model that was solved is found. Fails:
  * MT_E_MEMORY, MT_E_SYSTEM (what may be it cannot be read: the page would be another). */

@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "cli/profile.h"
 #include "cli/save.h"
-#include "cli/scene_designs.h"
+#include "library/scene_designs.h"
 #include "cli/watch.h"
 #include "cli/work.h"
 #include "report/result_tables.h"

@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "cli/find_model.h"
 #include "cli/picture.h"
-#include "cli/scene_designs.h"
+#include "library/scene_designs.h"
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/write_scene.h"

@@ -98,7 +98,7 @@ int mt_work_begin(const mt_args *args, const char *study_path, const mt_study *s
 }
 
 /* What came of the records that were read; and of the part, where only that was asked for. */
-static void tell(const mt_args *args, const char *study_path, bool complete,
+static void tell(const mt_args *args, const char *study_path, bool complete, bool part,
                  const mt_journal *j)
 {
     const mt_journal_counts n = mt_journal_count(j);
@@ -111,7 +111,7 @@ static void tell(const mt_args *args, const char *study_path, bool complete,
     if (args->command == MT_CMD_MERGE || args->given[MT_OPT_RESUME]) {
         mt_terminal_talk(quiet, "%s: %ld tasks known of %ld in journals, %ld done now",
                          study_path, n.used, n.known, n.made);
-    } else if (args->given[MT_OPT_SHARD] || (!complete && n.written > 0)) {
+    } else if (part || (!complete && n.written > 0)) {
         mt_terminal_talk(quiet, "%s: %ld tasks are in the journal", study_path, n.written);
     }
 }
@@ -121,8 +121,12 @@ int mt_work_end(const mt_args *args, const char *study_path, int code, bool comp
 {
     mt_err err = {.code = MT_OK};
     const bool part = args->given[MT_OPT_SHARD];
+    const bool done = part && code == MT_EXIT_DONE;
+    if (done) { /* one without a record is a part, too */
+        mt_journal_begin(j);
+    }
     const mt_status rc = mt_journal_end(j, complete && !part, &err);
-    tell(args, study_path, complete, j);
+    tell(args, study_path, complete, done, j);
     if (rc != MT_OK && part) {
         return mt_exit_worse(code, mt_cli_failed(rc, &err));
     }

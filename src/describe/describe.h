@@ -78,6 +78,10 @@ mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recom
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
+/* describe_mac.c: the first `listed` modes of a, which is the view's at the design, with those
+ * of the references that goals compare their shapes with. */
+mt_status mt_describe_mac(const mt_problem *p, int view, mt_analysis *a, int listed,
+                          mt_result *result, mt_recommendation *rec, mt_err *err);
 /*
  * describe_verify.c: how a study's reading of a configuration at one design differs from that
  * of a fresh analysis of it (solved with its own number of rigid-body modes), beyond the error

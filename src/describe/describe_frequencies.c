@@ -233,7 +233,7 @@ static mt_status list_view(listing *l, int v, int count, mt_err *err)
             MT_TRY(warn_lost(l, &fresh->p->demands[i], err));
         }
     }
-    return MT_OK;
+    return mt_describe_mac(fresh->p, v, l->scratch, count, l->result, l->rec, err);
 }
 
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,

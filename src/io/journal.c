@@ -393,9 +393,7 @@ static void put(void *context, const char *key, const uint64_t *words, size_t n)
     if (j->path == NULL || j->err.code != MT_OK) {
         return;
     }
-    if (j->fd < 0) {
-        open_file(j);
-    }
+    mt_journal_begin(j);
     line->length = 0;
     mt_text_add_n(line, "0123456789abcdef ", CHECK + 1); /* the check's place */
     mt_text_add(line, key);
@@ -442,11 +440,15 @@ mt_journal_counts mt_journal_count(const mt_journal *j)
     return j->counts;
 }
 
+void mt_journal_begin(mt_journal *j)
+{
+    if (j->path != NULL && j->fd < 0 && j->err.code == MT_OK) {
+        open_file(j);
+    }
+}
+
 mt_status mt_journal_end(mt_journal *j, bool remove, mt_err *err)
 {
-    if (j->ledger.parts > 0 && j->path != NULL && j->fd < 0 && j->err.code == MT_OK) {
-        open_file(j); /* a part without a record is a part */
-    }
     if (j->fd >= 0 && close(j->fd) != 0 && j->err.code == MT_OK) {
         (void)mt_file_failed(j->path, errno, &j->err);
     }

@@ -45,8 +45,11 @@ mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds, mt_err
  * been read. */
 mt_ledger *mt_journal_ledger(mt_journal *j, int part, int parts);
 mt_journal_counts mt_journal_count(const mt_journal *j);
+/* Where records go there is a file from here on, also where there are none: of a part that is
+ * done. What fails is told at the end. */
+void mt_journal_begin(mt_journal *j);
 /* No more records: everything is written, and with `remove` the file that they were to go to
- * goes. That of a part is there in any case. Fails: MT_E_SYSTEM: what of them could not be
+ * goes. Fails: MT_E_SYSTEM: what of them could not be
  * written, or removed. */
 mt_status mt_journal_end(mt_journal *j, bool remove, mt_err *err);
 

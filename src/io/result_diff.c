@@ -41,6 +41,7 @@ static const list_rule RULES[] = {
     {"history", "step", {NULL}, NULL},
     {"inputs", "input", {"file"}, NULL},
     {"limits", "limit", {"pointer"}, NULL},
+    {"mac_matrices", "MAC matrix", {"configuration", "reference"}, NULL},
     {"motion", "motion", {"goal", "drive"}, NULL},
     {"objectives", "objective", {"text"}, NULL},
     {"orders", "order", {"label"}, NULL},
@@ -53,6 +54,7 @@ static const list_rule RULES[] = {
     {"recommendations", "recommendation", {NULL}, NULL},
     {"reasons", "reason", {NULL}, NULL},
     {"relaxations", "relaxation", {"kind", "pointer", "what"}, NULL},
+    {"rows", "mode", {"mode"}, NULL},
     {"spread", "spread", {"parameter"}, NULL},
     {"tones", "tone", {"tone"}, NULL},
     {"undetermined", "direction", {NULL}, NULL},
@@ -77,7 +79,8 @@ static const char *const DERIVED[] = {
 };
 
 /* Of these 1 is the whole: they are compared with it. */
-static const char *const OF_ONE[] = {"mac", "share", "rival_share", "change", "misfit"};
+static const char *const OF_ONE[] = {"mac",         "values", "share",
+                                     "rival_share", "change", "misfit"};
 /* Of an object these have one unit. */
 static const char *const OF_ONE_UNIT[] = {
     "at_least",  "at_most",     "computed", "from", "high",  "low",   "original",

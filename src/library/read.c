@@ -9,6 +9,7 @@
 
 #include "base/options.h"
 #include "io/io.h"
+#include "library/scene_designs.h"
 #include "report/html.h"
 
 /* What a study is called that comes as a text. */
@@ -116,17 +117,29 @@ mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result
 
 mt_status mt_result_html(const mt_result *result, char **text, mt_err *err)
 {
+    MT_NOT_NULL(text, err);
+    *text = NULL;
+    MT_NOT_NULL(result, err);
+    return mt_result_page(result, NULL, text, err);
+}
+
+mt_status mt_result_page(const mt_result *result, const mt_model *model, char **text,
+                         mt_err *err)
+{
     mt_text out = {0};
     MT_NOT_NULL(text, err);
     *text = NULL;
     MT_NOT_NULL(result, err);
     mt_text json = {0};
+    mt_text scene = {0};
     mt_status rc = mt_result_write_alone(result, &json, err);
+    rc = rc == MT_OK ? mt_scene_of_result(model, result, &scene, err) : rc;
     if (rc == MT_OK) {
-        mt_report_html(result, json.s, NULL, &out);
+        mt_report_html(result, json.s, scene.s, &out);
         rc = out.failed ? mt_fail_memory(err) : MT_OK;
     }
     mt_text_free(&json);
+    mt_text_free(&scene);
     if (rc != MT_OK) {
         mt_text_free(&out);
         return rc;

@@ -6,6 +6,7 @@
 
 #include "base/base.h"
 #include "base/sha256.h"
+#include "report/pack.h"
 #include "report/page_data.h"
 #include "report/table.h"
 
@@ -49,6 +50,7 @@ static const char *const report_scripts[] = {"d3-array.js",
                                              "chart_parallel.js",
                                              "chart_tolerance.js",
                                              "chart_maps.js",
+                                             "chart_mac.js",
                                              "chart_published.js",
                                              "chart_search.js",
                                              "chart_history.js",
@@ -215,7 +217,8 @@ void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
 
 /* JSON in which nothing can end the element: a "<" stands only in strings, where it may be
  * written as its number. White space is left out: nobody reads it here, and it is a third of a
- * large result. */
+ * large
+ * result, and what is said twice stands once (pack.h). */
 static void add_json(const char *json, mt_text *out)
 {
     bool in_string = false;
@@ -236,13 +239,24 @@ static void add_json(const char *json, mt_text *out)
     }
 }
 
+static void add_data(const char *json, mt_text *out)
+{
+    mt_text plain = {.s = NULL};
+    add_json(json, &plain);
+    out->failed = out->failed || plain.failed;
+    if (plain.s != NULL && !plain.failed) {
+        mt_pack_json(plain.s, out);
+    }
+    mt_text_free(&plain);
+}
+
 void mt_page_end(mt_page_kind kind, int n, const mt_page_data *data, mt_text *out)
 {
     mt_text_add(out, "</main>\n");
     for (int i = 0; i < n; i++) {
         if (data[i].json != NULL) {
             mt_text_addf(out, "<script type=\"application/json\" id=\"%s\">", data[i].id);
-            add_json(data[i].json, out);
+            add_data(data[i].json, out);
             mt_text_add(out, "</script>\n");
         }
     }

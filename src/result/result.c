@@ -188,6 +188,24 @@ static const mt_field REASON_FIELDS[] = {
 static const mt_record REASON = MT_F_RECORD_OF(REASON_FIELDS);
 #undef THIS
 
+#define THIS mt_result_mac_row
+static const mt_field MAC_ROW_FIELDS[] = {
+    MT_F_COUNT("mode", mode, 1),
+    MT_F_NUMBERS("values", values, n_values),
+};
+static const mt_record MAC_ROW = MT_F_RECORD_OF(MAC_ROW_FIELDS);
+#undef THIS
+
+#define THIS mt_result_mac
+static const mt_field MAC_FIELDS[] = {
+    MT_F_TEXT("configuration", configuration),
+    MT_F_TEXT("reference", reference),
+    MT_F_NUMBERS("reference_modes", reference_modes, n_reference_modes),
+    MT_F_LIST("rows", rows, n_rows, mt_result_mac_row, MAC_ROW),
+};
+static const mt_record MAC = MT_F_RECORD_OF(MAC_FIELDS);
+#undef THIS
+
 #define THIS mt_recommendation
 static const char *const SURETIES[] = {"proven", "sampled"};
 static const mt_field DESIGN_FIELDS[] = {
@@ -205,6 +223,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_FLAG("singular", singular),
     MT_F_LIST("parameters", parameters, n_parameters, mt_result_parameter, PARAMETER),
     MT_F_LIST("frequencies", frequencies, n_frequencies, mt_result_frequency, FREQUENCY),
+    MT_F_LIST("mac_matrices", macs, n_macs, mt_result_mac, MAC),
     MT_F_LIST("clearances", clearances, n_clearances, mt_result_clearance, CLEARANCE),
     MT_F_LIST_OR_NULL("gap_assignment", gaps, n_gaps, mt_result_gap, GAP),
     MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),

@@ -198,6 +198,23 @@ typedef struct mt_tolerance_box {
     mt_result_tolerance *variables; /* in the study's order */
 } mt_tolerance_box;
 
+/* MAC of a mode with the modes of a reference. */
+typedef struct mt_result_mac_row {
+    int mode; /* vibration index at this design */
+    int n_values;
+    double *values; /* [n_values] one for each mode of the reference that is compared */
+} mt_result_mac_row;
+
+/* The modes of a configuration and those of a reference: whose shape is whose? */
+typedef struct mt_result_mac {
+    const char *configuration;
+    const char *reference;
+    int n_reference_modes;
+    double *reference_modes; /* [n_reference_modes] 1-based, those that move at the sensors */
+    int n_rows;
+    mt_result_mac_row *rows; /* of the modes listed, those that move there */
+} mt_result_mac;
+
 /* One sentence of why a design is what it is. */
 typedef struct mt_reason {
     const char *kind;  /* "change" | "hold" | "cost" | "rank" */
@@ -229,6 +246,8 @@ typedef struct mt_recommendation {
     int n_objectives;
     int n_frequencies;
     mt_result_frequency *frequencies;
+    mt_result_mac *macs; /* one for each reference whose shapes goals compare */
+    int n_macs;
     int n_clearances;
     mt_result_clearance *clearances;
     int n_gaps; /* 0: no bands */

@@ -136,6 +136,42 @@ static void contradicting_measurements__leave_the_least_misfit(mt_test *t)
 
 /* A MAC as a constraint, in the middle of the way: the least change stops where the MAC is just
  * met. */
+static const char *const MAC_GOAL =
+    "'goals': [{'type': 'mac', 'mode': 2, 'reference': 'test', 'at_least': 0.99}]";
+
+/* Of all modes with all of the reference's, at every design, whichever mode the goal names. */
+static void mac_matrix__is_that_of_the_closed_form(mt_test *t)
+{
+    study_case c;
+    char text[1024];
+    char members[4096];
+    (void)snprintf(members, sizeof members, "%s%s%s", SPRINGS, references(text), MAC_GOAL);
+    if (study_solve(t, MODEL, members, &c)) {
+        for (int rank = 0; rank <= 1; rank++) {
+            const mt_recommendation *const r =
+                rank == 0 ? &c.result->baseline : &c.result->recommendations[0];
+            const double k1 = rank == 0 ? 2.5 : study_value(&c, 1, "k1");
+            const double k2 = rank == 0 ? 1.2 : study_value(&c, 1, "k2");
+            if (!CHECK(t, r->n_macs == 1 && r->macs[0].n_rows == 2 &&
+                              r->macs[0].n_reference_modes == 2)) {
+                continue;
+            }
+            CHECK_STR(t, r->macs[0].configuration, "default");
+            CHECK_STR(t, r->macs[0].reference, "test");
+            for (int i = 0; i < 4; i++) {
+                double now[2];
+                double theirs[2];
+                two_shape(k1, k2, i / 2 == 0 ? -1 : 1, now);
+                two_shape(2.0, 1.0, i % 2 == 0 ? -1 : 1, theirs);
+                const mt_result_mac_row *const row = &r->macs[0].rows[i / 2];
+                CHECK_INT(t, row->mode, i / 2 + 1);
+                CHECK_NEAR_ABS(t, row->values[i % 2], two_mac(now, theirs), 1e-9);
+            }
+        }
+    }
+    study_free(&c);
+}
+
 static void mac_at_least__is_a_constraint(mt_test *t)
 {
     study_case c;
@@ -143,11 +179,9 @@ static void mac_at_least__is_a_constraint(mt_test *t)
     char members[4096];
     double want[2];
     two_shape(2.0, 1.0, 1, want);
-    (void)snprintf(
-        members, sizeof members,
-        "'variables': [{'parameter': 'k2', 'lower': 0.2, 'upper': 20}], %s"
-        "'goals': [{'type': 'mac', 'mode': 2, 'reference': 'test', 'at_least': 0.99}]",
-        references(text));
+    (void)snprintf(members, sizeof members,
+                   "'variables': [{'parameter': 'k2', 'lower': 0.2, 'upper': 20}], %s%s",
+                   references(text), MAC_GOAL);
     if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 6, 'm': 1", ""), members, &c)) {
         double now[2];
         two_shape(2.0, study_value(&c, 1, "k2"), 1, now);
@@ -209,6 +243,7 @@ static void sensors_of_one_side_only__are_left_out(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(measured_frequencies_and_shapes__are_identified_exactly),
              MT_TEST(contradicting_measurements__leave_the_least_misfit),
+             MT_TEST(mac_matrix__is_that_of_the_closed_form),
              MT_TEST(mac_at_least__is_a_constraint),
              MT_TEST(reference_configuration__gives_targets_and_shapes),
              MT_TEST(sensors_of_one_side_only__are_left_out))

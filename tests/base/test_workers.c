@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "mt_alloc.h"
 #include "support/mt_test.h"
 
 enum { TASKS = 1000, RECORDS = 64 };
@@ -213,6 +214,30 @@ static void workers__nothing_is_kept_after_a_cut(mt_test *t)
 }
 
 /* Beyond the room for a key nothing is known, and everything is done. */
+/* A task that was done and has no room for its record would be missing where all seems well. */
+static void workers__a_record_without_room_is_a_shortage(mt_test *t)
+{
+    enum { N = 3 };
+    bool short_of = true;
+    for (long nth = 0; mt_alloc_works() && short_of; nth++) {
+        job j = {.fail_from = 0};
+        book b;
+        mt_err err = {.code = MT_OK};
+        mt_scope scope = open_book(t, &b);
+        const mt_tasks tasks = {N, square, tape_square, &j, "tasks"};
+        mt_test_row(t, "allocation %ld", nth);
+        mt_alloc_fail_only(nth);
+        const mt_status rc = mt_workers_run(1, &scope, &tasks, &err);
+        mt_alloc_fail_after(-1);
+        short_of = rc != MT_OK;
+        CHECK_INT(t, rc, short_of ? MT_E_MEMORY : MT_OK);
+        CHECK_INT(t, err.code, rc);
+        CHECK(t, short_of == (b.n < N));
+        CHECK(t, nth > N || short_of); /* the list of what is left out, and each record */
+        mt_ledger_free(&b.ledger);
+    }
+}
+
 static void workers__a_key_that_is_too_long_is_none(mt_test *t)
 {
     static book b;
@@ -286,5 +311,6 @@ MT_TEST_MAIN(MT_TEST(workers__every_task_is_done_once_whatever_their_number),
              MT_TEST(workers__parts_of_a_task_have_keys_below_its_own),
              MT_TEST(workers__parts_share_the_tasks),
              MT_TEST(workers__nothing_is_kept_after_a_cut),
+             MT_TEST(workers__a_record_without_room_is_a_shortage),
              MT_TEST(workers__a_key_that_is_too_long_is_none),
              MT_TEST(tape__gives_back_what_was_written))

@@ -2,13 +2,10 @@
 """Pages of `modetune show`, of every shipped model and of what studies answer, as a browser has them."""
 import json
 import subprocess
-import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-from browser import Browser
-from common_pages import EVERY, PROGRAM, SIZES, SOURCE
+from common_pages import EVERY, PROGRAM, SIZES, SOURCE, STUDIES, Answers
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
@@ -16,7 +13,6 @@ MODELS = sorted(path for path in (SOURCE / "problems").glob("*.json") if path.na
 # One of each model, what has no answer, and what has many; MT_EVERY=1: all.
 SAMPLE = {"beam_identification", "engine_orders", "inceptor_catalogue", "inceptor_tuning_1", "six_masses_bands",
           "six_masses_infeasible", "truss_10bar_E68_9", "truss_72bar"}
-STUDIES = sorted(path for path in (SOURCE / "studies").glob("*.json") if EVERY or path.stem in SAMPLE)
 DIGITS = 1e-7  # a page has nine, of a design with seventeen
 # All that a page says of the modes of the chosen configuration: one list per design, null where it says nothing.
 HERTZ = """
@@ -41,17 +37,15 @@ def frequencies(model):
             for one in (told if isinstance(told, list) else [told])}
 
 
-class Show(unittest.TestCase):
+class Show(Answers):
+    studies = sorted(path for path in STUDIES if EVERY or path.stem in SAMPLE)
+
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = Path(holder.name)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
+        super().setUpClass()
         with ThreadPoolExecutor(2) as pool:
             cls.models = dict(zip(MODELS, pool.map(frequencies, MODELS)))
-            cls.pages = dict(pool.map(cls.of_model, MODELS)) | dict(pool.map(cls.of_study, STUDIES))
+            cls.pages = dict(pool.map(cls.of_model, MODELS)) | dict(pool.map(cls.of_study, cls.studies))
 
     @classmethod
     def of_model(cls, model):
@@ -62,13 +56,13 @@ class Show(unittest.TestCase):
     @classmethod
     def of_study(cls, study):
         """The page of its result, and the frequencies of the original design and of the best."""
-        program("run", study, "--quiet", "-o", cls.folder / "results")
-        result = cls.folder / "results" / study.stem / "result.json"
+        report, answer = cls.reports[study.stem]
+        result = report.with_name("result.json")
         page = cls.folder / f"{study.stem}_answer.html"
         model = (study.parent / json.loads(study.read_text(encoding="utf-8"))["model"]).resolve()
         page.write_text(program("show", result, "--model", model), encoding="utf-8")
         designs = [cls.models[model]]
-        if json.loads(result.read_text(encoding="utf-8"))["recommendations"]:
+        if answer["recommendations"]:
             applied = cls.folder / f"{study.stem}_applied.json"
             applied.write_text(program("apply", result, "--model", model), encoding="utf-8")
             designs.append(frequencies(applied))

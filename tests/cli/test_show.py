@@ -10,6 +10,7 @@ from html.parser import HTMLParser
 import jsonschema
 
 from common_cli import MODEL, SOURCE, CliTest, study
+from common_pack import unpack
 
 HOSTILE = "</script><img src=x onerror=alert(1)>"
 SCHEMA = jsonschema.Draft7Validator(json.loads((SOURCE / "schemas/scene.schema.json").read_text(encoding="utf-8")))
@@ -192,7 +193,7 @@ class Show(CliTest):
     def test_the_page_holds_the_same_scene(self):
         for form in ([], ["--format", "html"]):
             page = Tags(self.expect(0, "show", self.model, *form).stdout)
-            self.assertEqual(json.loads(page.data["scene"]), parse(self.expect(0, "show", "--format", "json", self.model).stdout))
+            self.assertEqual(unpack(page.data["scene"]), parse(self.expect(0, "show", "--format", "json", self.model).stdout))
 
     def test_output_is_a_file_whole_or_not_at_all(self):
         done = self.expect(0, "show", self.model, "-o", "new/page.html")
@@ -315,7 +316,7 @@ class Show(CliTest):
         self.assertNotIn("<img", page)
         tags = Tags(page)
         self.assertEqual((tags.tags, tags.attributes), (plain.tags, plain.attributes))
-        self.assertEqual(json.loads(tags.data["scene"])["model"], HOSTILE)
+        self.assertEqual(unpack(tags.data["scene"])["model"], HOSTILE)
         svg = self.expect(0, "show", "--svg", "problems/hostile.json").stdout
         self.assertNotIn("<img", svg)
         self.assertIn(HOSTILE, "".join(ET.fromstring(svg).itertext()))

@@ -130,6 +130,26 @@ static void journal__gives_back_what_was_put(mt_test *t)
     end();
 }
 
+/* A part that was ended before its first task leaves none; one that is done and had no task
+ * does. */
+static void journal__is_a_file_from_its_first_record_on(mt_test *t)
+{
+    for (int done = 0; done <= 1; done++) {
+        begin(t);
+        (void)remove(path);
+        mt_journal *const j = opened(t, IDENTITY);
+        CHECK_INT(t, mt_journal_write_to(j, path, false, NULL), MT_OK);
+        (void)mt_journal_ledger(j, 1, 2);
+        if (done == 1) {
+            mt_journal_begin(j);
+        }
+        CHECK_INT(t, mt_journal_end(j, false, NULL), MT_OK);
+        CHECK(t, mt_file_absent(path) == (done == 0));
+        mt_journal_delete(j);
+        end();
+    }
+}
+
 static void journal__of_another_question_is_refused(mt_test *t)
 {
     static const struct {
@@ -213,6 +233,7 @@ static void journal__damage_loses_records_and_changes_none(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(journal__gives_back_what_was_put),
+             MT_TEST(journal__is_a_file_from_its_first_record_on),
              MT_TEST(journal__of_another_question_is_refused),
              MT_TEST(journal__contradictions_count_for_nothing),
              MT_TEST(journal__damage_loses_records_and_changes_none))

@@ -83,6 +83,11 @@ static mt_result_objective OBJECTIVES[] = {{"change", "change", ""},
                                            {"expression", "a + b", NULL}};
 static const char *CONFIGURATIONS[] = {"installed"};
 static mt_result_order ORDERS[] = {{"4P", 4.0}};
+static double MAC[] = {0.25, 1.0};
+static double REFERENCE_MODES[] = {1.0, 3.0};
+static mt_result_mac_row MAC_ROWS[] = {{2, MT_COUNT(MAC), MAC}};
+static mt_result_mac MACS[] = {{"installed", "measured", MT_COUNT(REFERENCE_MODES),
+                                REFERENCE_MODES, MT_COUNT(MAC_ROWS), MAC_ROWS}};
 static mt_result_excitation EXCITATIONS[] = {{"/goals/1", "UH-60", 4.0, 4.5, 10.0, 60.0,
                                               MT_COUNT(CONFIGURATIONS), CONFIGURATIONS,
                                               MT_COUNT(ORDERS), ORDERS}};
@@ -115,6 +120,8 @@ static void fill_design(sample *s, mt_recommendation *r)
     r->parameters = PARAMETERS;
     r->n_frequencies = 1;
     r->frequencies = &s->frequency;
+    r->n_macs = MT_COUNT(MACS);
+    r->macs = MACS;
     r->n_goals = MT_COUNT(GOALS);
     r->goals = GOALS;
     EXTREMES[0].magnitude = nan("");

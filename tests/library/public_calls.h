@@ -375,6 +375,16 @@ static mt_status call_result_html(int null)
     return null < 0 && !owned ? MT_E_INTERNAL : rc;
 }
 
+static mt_status call_result_page(int null)
+{
+    char *out = NULL;
+    const mt_status rc =
+        mt_result_page(ARG(0, result), ARG(1, model), ARG(2, &out), ARG(3, &said));
+    const bool owned = out != NULL;
+    mt_string_delete(out);
+    return null < 0 && !owned ? MT_E_INTERNAL : rc;
+}
+
 static mt_status call_udwadia_kalaba(int null)
 {
     double xdd[1];

@@ -92,6 +92,7 @@ static const struct {
     ROW(result_json, "rra"),
     ROW(result_read, "rara"),
     ROW(result_html, "rra"),
+    ROW(result_page, "rara"),
     ROW(string_delete, "a"),
     ROW(solve_json, "raara"),
     ROW(udwadia_kalaba, "rrrrra"),

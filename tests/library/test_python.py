@@ -351,9 +351,20 @@ class Page(unittest.TestCase):
             (alone / "result.json").write_bytes(written.read_bytes())
             told = subprocess.run([os.environ["MODETUNE"], "report", "--format", "html", alone / "result.json"], check=True, capture_output=True,
                                   cwd=alone, text=True).stdout
-            self.assertEqual(modetune.report(written).html, told)
-            self.assertEqual(modetune.report(json.loads(written.read_text(encoding="utf-8"))).html,
-                             modetune.report(str(written)).html)
+            self.assertEqual(modetune.report(json.loads(written.read_text(encoding="utf-8"))).html, told)
+            # where it is found, or given, the page of `run`
+            model = SOURCE / "problems" / Path(json.loads(TUNING.read_text(encoding="utf-8"))["model"]).name
+            whole = written.with_name("report.html").read_text(encoding="utf-8")
+            self.assertIn('id="scene"', whole)
+            self.assertEqual(modetune.report(written).html, whole)
+            for given in (model, json.loads(model.read_text(encoding="utf-8"))):
+                self.assertEqual(modetune.report(alone / "result.json", given).html, whole)
+            # what has changed since is not taken unasked, and what does not fit not shown
+            other = Path(folder) / "problems" / model.name
+            other.parent.mkdir()
+            other.write_text(model.read_text(encoding="utf-8") + " ", encoding="utf-8")
+            self.assertEqual(modetune.report(alone / "result.json").html, told)
+            self.assertEqual(modetune.report(alone / "result.json", SOURCE / "problems/six_masses.json").html, told)
             to = page.save(Path(folder) / "page.html")
             self.assertEqual(to.read_text(encoding="utf-8"), page.html)
 

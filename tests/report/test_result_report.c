@@ -334,7 +334,7 @@ static void page__is_self_contained_and_escaped(mt_test *t)
         CHECK(t, strstr(out.s, "<title>A &lt;study&gt;</title>") != NULL);
         CHECK_INT(t, count(out.s, "<script"), 2);
         CHECK_INT(t, count(out.s, "</script>"), 2);
-        CHECK(t, strstr(out.s, "{\"na me\":\"\\u003c/script>  \\u003cimg>\\\\\"}</script>") !=
+        CHECK(t, strstr(out.s, "{\"na me\":\"\\u003c/script>  \\u003cimg>\\\\\"}]</script>") !=
                      NULL); /* white space stays where it is a string's */
         CHECK(t, strstr(out.s, "default-src 'none'") != NULL);
         CHECK(t, strstr(out.s, "; script-src 'sha256-") != NULL);

@@ -20,9 +20,30 @@
     });
   }
 
+  // What report/pack.h has packed, as it was: nothing is shared, so that all may be changed.
+  function unpack([keys, shared, root]) {
+    const open = (v) => {
+      if (Array.isArray(v)) {
+        return v.map(open);
+      }
+      if (v === null || typeof v !== 'object') {
+        return v;
+      }
+      if (v['#'] !== undefined) {
+        return open(shared[v['#']]);
+      }
+      const [k, ...values] = v['~'] || [];
+      return Object.fromEntries(k === undefined
+        ? Object.entries(v).map(([name, value]) => [name, open(value)])
+        : keys[k].map((name, i) => [name, open(values[i])]));
+    };
+    return open(root);
+  }
+
   function block(id) {
     const element = document.getElementById(id);
-    return element ? JSON.parse(visible(element.textContent)) : null;
+    const data = element ? JSON.parse(visible(element.textContent)) : null;
+    return Array.isArray(data) ? unpack(data) : data;
   }
 
   // The result of a report; the scene of a report (null: it has none) or of a show.

@@ -10,8 +10,6 @@
   const C = F.colour;
 
   const CELL = { least: 44, most: 92, height: 26 };
-  const DARK = '#000000'; // on cells, whose colours do not follow the page's
-  const LIGHT = '#fefefe';
 
   // --- sensitivity ---
 
@@ -32,11 +30,6 @@
   const WHOLE = 1000; // elasticities are about 1; what is that large has no room for decimals
   const shown = (x) => Math.abs(x) < 0.0005 ? '0' : Math.abs(x) >= WHOLE ? T.short(x, 2)
     : x.toFixed(Math.abs(x) < 0.1 ? 3 : 2).replace('-', '\u2212');
-
-  function inkOn(fill) {
-    const c = d3.rgb(fill);
-    return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b > 140 ? DARK : LIGHT;
-  }
 
   // A panel of so many frequencies as the width holds; the configuration stands above its own.
   function panel(g, list, rows, at, w, colours, left) {
@@ -69,7 +62,7 @@
           `${f.configuration} mode ${D.modeName(f)}: ` + (e === null ? 'no single slope'
             : `${T.sig(e)} % per % of ${p.name}`));
         F.text(g, x + wide / 2, y + 17, e === null ? '\u2013' : T.fit(shown(e), wide, 11),
-          { anchor: 'middle', size: 11, colour: e === null ? C.soft : inkOn(fill) })
+          { anchor: 'middle', size: 11, colour: e === null ? C.soft : F.inkOn(fill) })
           .attr('pointer-events', 'none');
       });
     });

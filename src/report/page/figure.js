@@ -138,6 +138,12 @@
       .attr('transform', `translate(12,${(range[0] + range[1]) / 2})rotate(-90)`);
   }
 
+  // Of letters on cells, whose colours do not follow the page's.
+  function inkOn(fill) {
+    const c = d3.rgb(fill);
+    return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b > 140 ? '#000000' : '#fefefe';
+  }
+
   // Items { words, draw(g, x, y) } in lines from y on; x, y: the middle of 26 px for the sign.
   // Returns the height used.
   function legend(g, items, x, y, w) {
@@ -319,7 +325,8 @@
   window.addEventListener('afterprint', () => print(false));
 
   mt.figure = {
-    colour, mark, line, rect, text, arrow, axisBelow, axisLeft, legend, add, csv, on, fillTable,
+    colour, mark, line, rect, text, inkOn, arrow, axisBelow, axisLeft, legend, add, csv, on,
+    fillTable,
     shapes: Object.keys(SHAPES), updateAll: () => figures.forEach(update),
   };
 })();

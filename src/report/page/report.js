@@ -8,7 +8,8 @@
   const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartBode',
     'chartNyquist', 'chartPsd', 'chartDrive',
     'chartTrade', 'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity',
-    'chartMac', 'chartPublished', 'chartHistory', 'chartStarts', 'chartSpent'];
+    'chartMac', 'chartMacMatrix', 'chartPublished', 'chartHistory', 'chartStarts',
+    'chartSpent'];
 
   function place(id) {
     return document.getElementById('place-' + id) || document.getElementById('figures');

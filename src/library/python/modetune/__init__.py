@@ -13,6 +13,7 @@ any number of workers.
 from __future__ import annotations
 
 import ctypes
+import hashlib
 import json
 import operator
 import os
@@ -20,6 +21,7 @@ import queue
 import threading
 import warnings
 from ctypes import byref, c_char_p, c_double, c_int, c_void_p, sizeof
+from pathlib import Path
 from typing import Any, Callable, Mapping, Optional, Sequence, Union
 
 from ._library import (
@@ -271,14 +273,53 @@ def modes(model: Union[PathLike, Mapping[str, Any]], configuration: Optional[str
                         **_describe(mechanism, names)}
 
 
-def report(result: Union[PathLike, Mapping[str, Any]]) -> Report:
+def _model_of(result: PathLike) -> Optional[Path]:
+    """The model that a result names, where it lies as it was solved: below the result's folder
+    or one above it, from the study's place as `run` noted it, or from the current folder."""
+    try:
+        path = Path(os.fsdecode(result))
+        told = json.loads(path.read_bytes())
+        name = told["model"]["file"]
+        (wanted,) = {one["sha256"] for one in told["run"]["inputs"] if one["file"] == name}
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    folders = [path.parent, *path.absolute().parents[1:3], Path()]
+    folders += [folder / "studies" for folder in folders]
+    try:
+        timing = json.loads((path.parent / "timing.json").read_bytes())
+        folders.insert(0, Path(timing["study_path"]).parent)
+    except (OSError, ValueError, KeyError, TypeError):
+        pass
+    for folder in folders:
+        try:
+            if hashlib.sha256((folder / name).read_bytes()).hexdigest() == wanted:
+                return folder / name
+        except (OSError, ValueError):
+            pass
+    return None
+
+
+def report(result: Union[PathLike, Mapping[str, Any]],
+           model: Union[PathLike, Mapping[str, Any], None] = None) -> Report:
     """The report of a result (as solve gives it, or the path of a result.json) as a page.
 
+    model  path of the model that was solved, or what it holds: the page then shows the
+           mechanism and its modes. None: of a result by its path the file that it names, where
+           that lies near it and has not changed
+
     A notebook shows it; `.html` is its text, `.save(path)` writes it. Raises Error where that
-    is no result.
+    is no result, or no model.
     """
     path, given = _named(result, "result.json", None)
-    with Files(given, [], None) as read:
+    if model is None and not isinstance(result, Mapping):
+        model = _model_of(result)
+    with Files(given, [], None) as read, one_thread:
         with made("mt_result_read", "mt_result_delete", path, byref(read.options),
                   listed=read.diagnostics) as answer:
-            return Report(text_made("mt_result_html", answer))
+            if model is None:
+                return Report(text_made("mt_result_page", answer, None))
+            path, given = _named(model, "model.json", None)
+            with Files(given, [], None) as other:
+                with made("mt_model_read", "mt_model_delete", path, byref(other.options),
+                          listed=other.diagnostics) as loaded:
+                    return Report(text_made("mt_result_page", answer, loaded))

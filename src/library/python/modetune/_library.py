@@ -124,7 +124,7 @@ FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "mt_result_delete": DELETE,
     "mt_result_read": READ,
     "mt_result_json": (c_int, c_void_p, OUT, ERR),
-    "mt_result_html": (c_int, c_void_p, OUT, ERR),
+    "mt_result_page": (c_int, c_void_p, c_void_p, OUT, ERR),
     "mt_string_delete": DELETE,
 }
 SEVERITIES = ("error", "warning", "note")
@@ -248,9 +248,9 @@ def made(function: str, delete: str, *arguments: Any,
         getattr(lib, delete)(handle)
 
 
-def text_made(function: str, owner: c_void_p) -> str:
-    """The text that a function of C makes of its owner."""
-    with made(function, "mt_string_delete", owner) as text:
+def text_made(function: str, *owners: Optional[c_void_p]) -> str:
+    """The text that a function of C makes of its owners."""
+    with made(function, "mt_string_delete", *owners) as text:
         return ctypes.cast(text, c_char_p).value.decode()  # type: ignore[union-attr]
 
 

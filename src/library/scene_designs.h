@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef CLI_SCENE_DESIGNS_H
-#define CLI_SCENE_DESIGNS_H
+#ifndef LIBRARY_SCENE_DESIGNS_H
+#define LIBRARY_SCENE_DESIGNS_H
 
 #include "base/text.h"
 #include "result/result.h"

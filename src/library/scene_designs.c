@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/scene_designs.h"
+#include "library/scene_designs.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The form of packed JSON; that it says the same is held in cli/test_packed_pages.py. */
+#include "mt_alloc.h"
+#include "mt_test.h"
+#include "report/pack.h"
+
+static void pack__says_once_what_is_said_twice(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *json;
+        const char *want;
+    } rows[] = {
+        {"a number", "-1.5e3", "[[],[],-1.5e3]"},
+        {"a text", "\"a\\\"[]{}\\\\\"", "[[],[],\"a\\\"[]{}\\\\\"]"},
+        {"nothing twice", "{\"a\":[1,2],\"b\":{}}", "[[],[],{\"a\":[1,2],\"b\":{}}]"},
+        {"a list", "[[1.25,2.25,3.25],[1.25,2.25,3.25]]",
+         "[[],[[1.25,2.25,3.25]],[{\"#\":0},{\"#\":0}]]"},
+        {"too short to be shared", "[[1,2],[1,2]]", "[[],[],[[1,2],[1,2]]]"},
+        {"texts, however short", "[[\"\"],[\"\"]]", "[[],[[\"\"]],[{\"#\":0},{\"#\":0}]]"},
+        {"names", "[{\"a\":1,\"b\":2},{\"a\":3,\"b\":4}]",
+         "[[[\"a\",\"b\"]],[],[{\"~\":[0,1,2]},{\"~\":[0,3,4]}]]"},
+        {"one within another", "[[[\"x\"],[\"y\"]],[\"x\"],[[\"x\"],[\"y\"]]]",
+         "[[],[[{\"#\":1},[\"y\"]],[\"x\"]],[{\"#\":0},{\"#\":1},{\"#\":0}]]"},
+        {"names of ours", "[{\"#\":0},{\"#\":0}]", "[[],[],[{\"#\":0},{\"#\":0}]]"},
+        {"and the other", "{\"~\":[0]}", "[[],[],{\"~\":[0]}]"},
+        {"nothing within", "[{},{},[],[]]", "[[],[{}],[{\"#\":0},{\"#\":0},[],[]]]"},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_text out = {.s = NULL};
+        mt_test_row(t, "%s", rows[i].name);
+        mt_pack_json(rows[i].json, &out);
+        CHECK(t, !out.failed && out.s != NULL);
+        CHECK_STR(t, out.s, rows[i].want);
+        mt_text_free(&out);
+    }
+}
+
+/* Every shortage is told. */
+static void pack__survives_every_failing_allocation(mt_test *t)
+{
+    static const char json[] = "[{\"a\":[1.25,2.25,3.25]},{\"a\":[1.25,2.25,3.25]}]";
+    const long before = mt_alloc_live();
+    bool failed = true;
+    for (long nth = 0; mt_alloc_works() && failed; nth++) {
+        mt_text out = {.s = NULL};
+        mt_alloc_fail_after(nth);
+        mt_pack_json(json, &out);
+        mt_alloc_fail_after(-1);
+        failed = out.failed;
+        mt_text_free(&out);
+        CHECK(t, mt_alloc_live() == before);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(pack__says_once_what_is_said_twice),
+             MT_TEST(pack__survives_every_failing_allocation))
