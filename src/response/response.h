@@ -47,8 +47,8 @@ mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err);
 /* dh as mt_response_slopes. */
 mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err);
 /* slope[n_inputs] = Re sum_i weight_i dH_{out, in}(w_i)/d(input) [unit of weight H per unit of
- * the input], NaN as there: what the loop over mt_response_slopes_at gives, of 1e5 frequencies at
- * the price of hardly more than their solutions. w[n] > 0 [rad/s]. Fails as that,
+ * the input], NaN as there: what the loop over mt_response_slopes_at gives, of 1e5 frequencies
+ * at the price of hardly more than their solutions. w[n] > 0 [rad/s]. Fails as that,
  * MT_E_INTERRUPTED. */
 mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
                                       const double complex *weight, double *slope, mt_err *err);

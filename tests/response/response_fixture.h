@@ -163,8 +163,8 @@ static inline double complex weight_of(int i)
 
 enum { MOST_SLOPES = 8 * 16 * MECH_INPUTS, MOST_WEIGHTED = 4096 };
 
-/* want and size [pairs x inputs]: sum of weight dH over the slopes at each frequency, and of its
- * magnitude. */
+/* want and size [pairs x inputs]: sum of weight dH over the slopes at each frequency, and of
+ * its magnitude. */
 static inline void add_up_slopes(mt_test *t, asked *q, const double *ws, int n_w, double *want,
                                  double *size)
 {
