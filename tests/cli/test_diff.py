@@ -16,7 +16,7 @@ KEYS = {"certificates": ["kind", "pointer"], "clearances": ["configuration", "mo
         "excitations": ["pointer", "name"], "facts": ["kind", "configuration", "pointer"],
         "frequencies": ["configuration", "mode", "name", "reference"], "gap_assignment": ["configuration", "band"], "goals": ["pointer"],
         "inputs": ["file"], "mac_matrices": ["configuration", "reference"], "rows": ["mode"], "motion": ["goal", "drive"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
-        "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "spread": ["parameter"], "vary": ["pointer"]}
+        "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "responses": ["goal", "configuration"], "spread": ["parameter"], "vary": ["pointer"]}
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
 BY_PLACE = {"history", "points", "reasons", "recommendations", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")
