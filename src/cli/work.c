@@ -121,7 +121,7 @@ int mt_work_end(const mt_args *args, const char *study_path, int code, bool comp
 {
     mt_err err = {.code = MT_OK};
     const bool part = args->given[MT_OPT_SHARD];
-    const bool done = part && code == MT_EXIT_DONE;
+    const bool done = part && code != MT_EXIT_INTERRUPTED; /* or it cannot be */
     if (done) { /* one without a record is a part, too */
         mt_journal_begin(j);
     }

@@ -16,8 +16,8 @@ KEYS = {"certificates": ["kind", "pointer"], "curves": ["configuration", "pointe
          "clearances": ["configuration", "mode", "band"], "doubts": ["kind", "configuration", "pointer"],
         "excitations": ["pointer", "name"], "facts": ["kind", "configuration", "pointer"],
         "frequencies": ["configuration", "mode", "name", "reference"], "gap_assignment": ["configuration", "band"], "goals": ["pointer"],
-        "inputs": ["file"], "mac_matrices": ["configuration", "reference"], "rows": ["mode"], "motion": ["goal", "drive"], "responses": ["goal", "configuration"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
-        "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "spread": ["parameter"], "vary": ["pointer"]}
+        "inputs": ["file"], "mac_matrices": ["configuration", "reference"], "rows": ["mode"], "motion": ["goal", "drive"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
+        "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "responses": ["goal", "configuration"], "spread": ["parameter"], "vary": ["pointer"]}
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
 BY_PLACE = {"densities", "history", "points", "reasons", "recommendations", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")
