@@ -20,6 +20,7 @@
 
 #include "modetune/export.h"
 #include "modetune/model.h"
+#include "modetune/profile.h"
 #include "modetune/status.h"
 
 #ifdef __cplusplus
@@ -154,6 +155,41 @@ MT_API mt_status mt_mechanism_response(mt_mechanism *mechanism, const mt_ports *
  */
 MT_API mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *ports,
                                               double hz, double *re, double *im, mt_err *err);
+
+/* What a profile does to one output. */
+typedef enum mt_vibration_end {
+    MT_VIBRATION_FINITE,
+    MT_VIBRATION_INFINITE, /* a mode that nothing damps lies where the profile acts */
+    MT_VIBRATION_UNSTABLE  /* a mode grows by itself */
+} mt_vibration_end;
+typedef struct mt_vibration_answer {
+    mt_vibration_end end; /* numbers that it takes away are NaN */
+    double rms;           /* under the random parts together [unit of the output] */
+    /* |error of rms| is at most this, given the poles and residues as they were found; an
+     * estimate where not proven */
+    double rms_error;
+    double tones; /* the largest amplitudes under the tones, by the profile's rule */
+    double peak;  /* the profile's sigma times rms, and tones */
+    int proven;   /* 1: bounds are proven; 0: by quadrature (see below) */
+} mt_vibration_answer;
+
+/**
+ * The evaluated mechanism under a profile: the ground accelerates as it says, and each output
+ * answers, about the equilibrium and with all damping.
+ * @param[in]  ports  inputs: accelerations of the ground, each on its own; none: that along the
+ *   profile's axis. Outputs as of mt_mechanism_response; none: the accelerations at all
+ *   channels. NULL: none of either
+ * @param[in]  room     answers that there is room for
+ * @param[out] answers  outputs x inputs, column-major
+ * By the sum over the poles of a response, in closed form or over panels as narrow as the
+ * resonances; where there is no such sum (critical damping, a displacement that nothing
+ * springs) by quadrature, with errors that are estimated. Allocates. Fails: MT_E_USAGE (less
+ * room, a profile without an axis and no input, an input that is no acceleration of the ground,
+ * and as mt_mechanism_response), MT_E_EQUILIBRIUM, MT_E_NO_CONVERGENCE, MT_E_MEMORY.
+ */
+MT_API mt_status mt_mechanism_vibration(mt_mechanism *mechanism, const mt_ports *ports,
+                                        const mt_vibration *vibration, int room,
+                                        mt_vibration_answer *answers, mt_err *err);
 
 #ifdef __cplusplus
 }

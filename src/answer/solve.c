@@ -95,6 +95,7 @@ static mt_status leave(mt_answer *a, mt_phase which, mt_err *err)
         a->result->run.distinct_designs = -1;
         a->result->run.found_once = -1;
         a->result->run.estimated_missing = nan("");
+        a->result->run.n_history = 0;
     } else if (which == MT_PHASE_RECOMMENDATIONS) {
         return tell_undescribed(a, err);
     } else if (which == MT_PHASE_CERTIFICATES) {

@@ -79,6 +79,7 @@ mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err)
     a->found.undetermined_effect = g->undetermined_effect;
     a->stage = g->stage;
     a->found.evals = g->evals;
+    a->found.steps = g->steps;
     a->found.starts = g->starts;
     a->found.stop = g->stop;
     return MT_OK;
@@ -110,10 +111,8 @@ static mt_status tell_hopeless(mt_answer *a, mt_err *err)
     return mt_pass_final(rc, &own, err);
 }
 
-mt_status mt_answer_search(mt_answer *a, mt_err *err)
+static mt_status search(mt_answer *a, mt_err *err)
 {
-    allow_search(a);
-    MT_TRY(tell_hopeless(a, err));
     if (mt_study_is_discrete(a->study)) {
         return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
                                  err);
@@ -127,6 +126,14 @@ mt_status mt_answer_search(mt_answer *a, mt_err *err)
     a->result->run.found_once = a->found.compromise ? 0 : a->found.n_once;
     a->result->run.estimated_missing = a->found.missing;
     return MT_OK;
+}
+
+mt_status mt_answer_search(mt_answer *a, mt_err *err)
+{
+    allow_search(a);
+    MT_TRY(tell_hopeless(a, err));
+    MT_TRY(search(a, err));
+    return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
 }
 
 static bool is_cut(const mt_answer *a, mt_phase which)

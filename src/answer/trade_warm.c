@@ -17,6 +17,7 @@ static void to_t(const mt_case *c, const double *x, double *t)
     for (int i = 0; i < c->p->n; i++) {
         t[i] = fmin(fmax(mt_problem_t(c->p, i, x[i]), c->lower_t[i]), c->upper_t[i]);
     }
+    t[c->p->n] = 0.0;
 }
 
 /* The first objective at t as the search sees it. */
@@ -72,7 +73,8 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
     mt_status rc = p->n_clears > 0 ? open_gap(w, t, mem, &in_gap, err) : MT_OK;
     if (rc == MT_OK) {
         mt_nlp nlp = mt_workspace_nlp(w);
-        nlp.origin = t; /* its last entry, where there is a clearance, is 0: on the edges */
+        t[p->n] = w->c->origin_t[p->n]; /* of a clearance 0: on the edges */
+        nlp.origin = t;
         opt.starts = 1;
         opt.max_evals = most < LOCAL_EVALUATIONS ? most : LOCAL_EVALUATIONS;
         rc = mt_workspace_solve(w, &nlp, &opt, mem, &found, err);

@@ -220,18 +220,10 @@ static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt
                    did_you_mean(s, names, MT_COUNT(names), "", suggestion));
 }
 
-static bool repeats(int option)
-{
-    return option == MT_OPT_START || option == MT_OPT_RATE || option == MT_OPT_PUSH ||
-           option == MT_OPT_SINE || option == MT_OPT_CHIRP || option == MT_OPT_RANDOM ||
-           option == MT_OPT_WATCHED;
-}
-
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
-    if (args->given[option] && o->value != NULL && !repeats(option) && option != MT_OPT_SET &&
-        option != MT_OPT_INPUT && option != MT_OPT_SEEN) {
+    if (args->given[option] && o->value != NULL && !o->repeats) {
         return mt_fail(err, MT_E_USAGE, "--%s is given twice", o->name);
     }
     args->given[option] = true;
@@ -242,21 +234,12 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     if (value[0] == '\0') {
         return mt_fail(err, MT_E_USAGE, "--%s: the value is empty", o->name);
     }
-    if (repeats(option)) {
+    if (o->repeats) {
         args->repeats[args->n_repeats++] =
             (mt_repeat){.option = (mt_option_id)option, .value = value};
         return MT_OK;
     }
     switch (option) {
-    case MT_OPT_SET:
-        args->sets[args->n_sets++] = value;
-        return MT_OK;
-    case MT_OPT_INPUT:
-        args->inputs[args->n_inputs++] = value;
-        return MT_OK;
-    case MT_OPT_SEEN:
-        args->outputs[args->n_outputs++] = value;
-        return MT_OK;
     case MT_OPT_POINTS:
         return read_count(value, o->name, MT_CURVE_MOST, &args->points, err);
     case MT_OPT_KEEP:
@@ -388,18 +371,31 @@ static mt_status check_operands(const mt_args *args, mt_err *err)
     return MT_OK;
 }
 
+/* The values of each option that may be repeated, one behind the other. */
+static void gather(mt_args *args)
+{
+    const char **at = args->pool;
+    for (int option = 0; option < MT_OPT_IDS; option++) {
+        mt_values *const to = &args->all[option];
+        *to = (mt_values){.value = at};
+        for (int i = 0; i < args->n_repeats; i++) {
+            if (args->repeats[i].option == (mt_option_id)option) {
+                to->value[to->n++] = args->repeats[i].value;
+            }
+        }
+        at += to->n;
+    }
+}
+
 mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
 {
     const size_t room = argc > 0 ? (size_t)argc : 1;
     bool operands_only = false;
     *out = (mt_args){.command = MT_CMD_NONE, .rank = 1, .threads = 1};
     out->operands = calloc(room, sizeof *out->operands);
-    out->sets = calloc(room, sizeof *out->sets);
-    out->inputs = calloc(room, sizeof *out->inputs);
-    out->outputs = calloc(room, sizeof *out->outputs);
+    out->pool = calloc(room, sizeof *out->pool);
     out->repeats = calloc(room, sizeof *out->repeats);
-    if (out->operands == NULL || out->sets == NULL || out->inputs == NULL ||
-        out->outputs == NULL || out->repeats == NULL) {
+    if (out->operands == NULL || out->pool == NULL || out->repeats == NULL) {
         return mt_fail(err, MT_E_MEMORY, "out of memory");
     }
     for (int i = 1; i < argc; i++) {
@@ -418,16 +414,15 @@ mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
         }
         MT_TRY(rc);
     }
+    gather(out);
     return check_operands(out, err);
 }
 
 void mt_args_free(mt_args *args)
 {
     free((void *)args->operands);
-    free((void *)args->sets);
+    free((void *)args->pool);
     free(args->result_path);
-    free((void *)args->inputs);
-    free((void *)args->outputs);
     free(args->repeats);
     *args = (mt_args){.command = MT_CMD_NONE};
 }

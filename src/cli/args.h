@@ -34,6 +34,7 @@ typedef enum mt_option_id {
     MT_OPT_DIRECT,
     MT_OPT_POLES,
     MT_OPT_SENSITIVITY,
+    MT_OPT_VIBRATION,
     MT_OPT_DURATION,
     MT_OPT_DT_OUT,
     MT_OPT_START,
@@ -43,7 +44,6 @@ typedef enum mt_option_id {
     MT_OPT_SINE,
     MT_OPT_CHIRP,
     MT_OPT_RANDOM,
-    MT_OPT_WATCHED,
     MT_OPT_TOLERANCE,
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
@@ -106,6 +106,7 @@ typedef struct mt_option {
     const char *help;
     unsigned commands; /* bit 1 << mt_command_id */
     char letter;       /* '\0': long form only */
+    bool repeats;      /* may be given more than once */
 } mt_option;
 
 typedef struct mt_command {
@@ -156,6 +157,12 @@ typedef struct mt_repeat {
     const char *value;
 } mt_repeat;
 
+/* All values of one. */
+typedef struct mt_values {
+    int n;
+    const char **value; /* [n] in order */
+} mt_values;
+
 typedef struct mt_args {
     int command; /* mt_command_id, MT_CMD_NONE */
     mt_format format;
@@ -177,17 +184,13 @@ typedef struct mt_args {
     double proof_s;      /* --proof; read it where it is given */
     unsigned long seed;  /* --seed; read it where it is given */
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
-    int n_sets;
-    const char **sets; /* --set, in order; [argc] */
-    int points;        /* --points, 0: not given */
-    int keep;          /* --modes N, 0: not given */
-    int n_inputs;
-    const char **inputs; /* --input, in order; [argc] */
-    int n_outputs;
-    const char **outputs; /* --output of response, in order; [argc] */
+    int points;          /* --points, 0: not given */
+    int keep;            /* --modes N, 0: not given */
     int n_repeats;
-    mt_repeat *repeats; /* of `simulate`, in order; [argc] */
-    int part;           /* --shard PART/PARTS; 0: all of it */
+    mt_repeat *repeats; /* all that may be repeated, in order; [argc] */
+    mt_values all[MT_OPT_IDS];
+    const char **pool; /* of their values; [argc] */
+    int part;          /* --shard PART/PARTS; 0: all of it */
     int parts;
     int n_journals; /* of merge */
     const char *const *journals;

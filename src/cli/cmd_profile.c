@@ -7,14 +7,6 @@
 #include "cli/cli.h"
 #include "cli/shipped.h"
 #include "cli/vibrated.h"
-#include "io/file.h"
-
-static const mt_shipped_kind profiles = {.command = "profile",
-                                         .what = "profile",
-                                         .folder = "problems/profiles/",
-                                         .ending = ".json",
-                                         .says = "name",
-                                         .heading = "what it is"};
 
 static const double DEFAULT_DAMPING = 0.05;
 static const double LEAST_HZ = 1e-9;
@@ -164,12 +156,6 @@ static void put_spectrum(mt_json_writer *w, const view *s)
     mt_json_close(w);
 }
 
-static const char *axis_name(const mt_vibration *v)
-{
-    static const char *const names[] = {"x", "y", "z"};
-    return v->axis == MT_ABSENT ? NULL : names[v->axis];
-}
-
 static int write_json(const view *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
@@ -178,7 +164,7 @@ static int write_json(const view *s, mt_text *out)
     mt_json_put_string(&w, "file", v->path);
     mt_json_put_string(&w, "name", v->name);
     mt_json_put_string(&w, "source", v->source);
-    mt_json_put_string(&w, "axis", axis_name(v));
+    mt_json_put_string(&w, "axis", mt_vibrated_axis(v));
     mt_json_put_number(&w, "rms_g", mt_vibration_rms(v) / MT_STANDARD_GRAVITY);
     mt_json_put_number(&w, "rms_m_per_s2", mt_vibration_rms(v));
     mt_json_open(&w, "random", '[');
@@ -191,15 +177,7 @@ static int write_json(const view *s, mt_text *out)
         put_tone(&w, v, &v->tones[i]);
     }
     mt_json_close(&w);
-    mt_json_open(&w, "combine", '{');
-    mt_json_put_number(&w, "sigma", v->sigma);
-    mt_json_put_string(&w, "tones", mt_vibration_sum_names[v->rule]);
-    mt_json_close(&w);
-    mt_json_open(&w, "marks", '[');
-    for (int i = 0; i < v->n_marks; i++) {
-        mt_json_put_string(&w, NULL, v->marks[i]);
-    }
-    mt_json_close(&w);
+    mt_vibrated_rule_json(&w, v);
     if (s->of.n > 0) {
         put_spectrum(&w, s);
     }
@@ -316,25 +294,12 @@ static void print_peaks(const view *s, mt_text *out)
     mt_table_free(&t);
 }
 
-/* "the peak is 3 times the RMS and the sum of all tones" */
-static void say_rule(const mt_vibration *v, mt_text *out)
-{
-    static const char *const rules[MT_TONES_RULES] = {
-        "the sum of all tones", "the largest tone", "the root of the tones' sum of squares"};
-    mt_text_add(out, "the peak is ");
-    if (v->n_random > 0) {
-        mt_text_addf(out, "%.4g times the RMS", v->sigma);
-        mt_text_add(out, v->n_tones > 0 ? "\nand " : "");
-    }
-    mt_text_add(out, v->n_tones > 0 ? rules[v->rule] : "");
-}
-
 static void write_text(const view *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
-    mt_text_addf(out, "%s%s%s%s\n\n", v->name == NULL ? v->path : v->name,
+    mt_text_addf(out, "%s%s%s%s\n\n", mt_vibrated_name(v),
                  v->axis == MT_ABSENT ? "" : ", along ",
-                 v->axis == MT_ABSENT ? "" : axis_name(v),
+                 v->axis == MT_ABSENT ? "" : mt_vibrated_axis(v),
                  v->n_random > 0 && v->n_tones > 0 ? ": sine on random" : "");
     if (v->n_random > 0) {
         print_random(v, out);
@@ -346,7 +311,7 @@ static void write_text(const view *s, mt_text *out)
         mt_table t = spectrum_table(s);
         mt_text_addf(out, "Absolute acceleration of one mass, damping ratio %.5g; ",
                      s->of.damping_ratio);
-        say_rule(v, out);
+        mt_vibrated_rule(v, out);
         mt_text_add(out, ":\n");
         mt_table_print(&t, 2, mt_terminal_width(), out);
         mt_text_add(out, "\n");
@@ -433,25 +398,6 @@ static int print(const mt_args *args, const view *s, mt_text *out)
     return MT_EXIT_DONE;
 }
 
-/* The file, or, where there is none, the one of that name that is part of the program, with its
- * catalogue. */
-static mt_status load(const mt_args *args, mt_vibration **out, mt_diagnostics *messages,
-                      mt_err *err)
-{
-    const char *const operand = args->operands[0];
-    mt_io_options opt = mt_cli_io(args);
-    const mt_shipped *own = NULL;
-    if (strpbrk(operand, "/.") != NULL || !mt_file_absent(operand)) {
-        return mt_vibration_load(operand, &opt, out, messages, err);
-    }
-    MT_TRY(mt_shipped_named(&profiles, operand, &own, err));
-    const mt_shipped *const aircraft = mt_shipped_find("problems/aircraft.json");
-    const mt_file_text texts[] = {{.path = own->path, .text = own->bytes},
-                                  {.path = aircraft->path, .text = aircraft->bytes}};
-    opt.files = (mt_files){.given = texts, .n = MT_COUNT(texts), .only = true};
-    return mt_vibration_load(own->path, &opt, out, messages, err);
-}
-
 int mt_cmd_profile(const mt_args *args, mt_text *out)
 {
     mt_diagnostics messages = {.count = 0};
@@ -460,10 +406,10 @@ int mt_cmd_profile(const mt_args *args, mt_text *out)
     mt_vibration *v = NULL;
     view s = {.v = NULL};
     if (args->n_operands == 0) {
-        return mt_shipped_list(args, &profiles, out);
+        return mt_shipped_list(args, &mt_shipped_profiles, out);
     }
     mt_status rc = read_masses(args, &s.of, &err);
-    rc = rc == MT_OK ? load(args, &v, &messages, &err) : rc;
+    rc = rc == MT_OK ? mt_vibrated_load(args, args->operands[0], &v, &messages, &err) : rc;
     int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {
         s.v = v;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/response.h"
+#include "cli/vibrated.h"
 
 enum { DEFAULT_POINTS = 50, DEFAULT_MODES = 6 };
 
@@ -16,31 +17,39 @@ static const double ABOVE_LAST = 2.0;
 /* One configuration at work. */
 typedef struct job {
     const mt_args *args;
+    const mt_vibration *profile; /* --vibration; NULL */
     mt_subject *s;
     int c;
     mt_analysis *a;
+    mt_response_request request;
     mt_response r;
+    mt_profiled profiled;
     mt_curve curve;
     mt_response_view v;
 } job;
 
 static mt_response_request request_of(const mt_args *args)
 {
-    return (mt_response_request){.n_in = args->n_inputs,
-                                 .inputs = args->inputs,
-                                 .n_out = args->n_outputs,
-                                 .outputs = args->outputs,
+    return (mt_response_request){.n_in = args->all[MT_OPT_INPUT].n,
+                                 .inputs = args->all[MT_OPT_INPUT].value,
+                                 .n_out = args->all[MT_OPT_SEEN].n,
+                                 .outputs = args->all[MT_OPT_SEEN].value,
                                  .direct = args->given[MT_OPT_DIRECT],
                                  .modes = args->keep};
 }
 
-/* An end of the range: of its option, or by vibration mode `index`. */
-static mt_status range_end(job *j, int option, int index, double part, double *w, mt_err *err)
+/* `part` of the frequency of vibration mode `index` [Hz]; NaN where there is none. */
+static double by_mode(const job *j, int index, double part)
+{
+    const int at = mt_modal_flexible(&j->a->modes, index);
+    return at < 0 ? nan("") : part * mt_modal_hz(&j->a->modes, at);
+}
+
+/* An end of the range: of its option, or the default [Hz]. */
+static mt_status range_end(job *j, int option, double hz, double *w, mt_err *err)
 {
     const char *const name = mt_options[option].name;
     const char *const text = j->args->value[option];
-    const int at = mt_modal_flexible(&j->a->modes, index);
-    double hz = at < 0 ? nan("") : part * mt_modal_hz(&j->a->modes, at);
     if (text != NULL) {
         MT_TRY(mt_subject_number(j->s, name, NULL, text, strlen(text), &hz, err));
     }
@@ -62,8 +71,13 @@ static mt_status choose_range(job *j, mt_err *err)
     mt_curve_options *const opt = &j->v.opt;
     *opt = (mt_curve_options){.points = j->args->points > 0 ? j->args->points : DEFAULT_POINTS,
                               .log = j->args->given[MT_OPT_LOG]};
-    MT_TRY(range_end(j, MT_OPT_FROM, 1, BELOW_FIRST, &opt->from, err));
-    MT_TRY(range_end(j, MT_OPT_TO, last, ABOVE_LAST, &opt->to, err));
+    double hz[2] = {by_mode(j, 1, BELOW_FIRST), by_mode(j, last, ABOVE_LAST)};
+    if (j->profile != NULL) {
+        mt_vibration_range(j->profile, hz);
+        hz[1] = hz[1] > hz[0] ? hz[1] : ABOVE_LAST * hz[1]; /* one tone */
+    }
+    MT_TRY(range_end(j, MT_OPT_FROM, hz[0], &opt->from, err));
+    MT_TRY(range_end(j, MT_OPT_TO, hz[1], &opt->to, err));
     if (!(opt->to > opt->from)) {
         return mt_fail(err, MT_E_USAGE, "--to: %g Hz is not above --from, %g Hz",
                        opt->to / TWO_PI, opt->from / TWO_PI);
@@ -100,8 +114,7 @@ static mt_status inputs_with(const job *j, int parameter, mt_arena *mem, int *n,
 static mt_status slopes_with(job *j, mt_analysis *a, mt_response *r, int slot, double value,
                              double *to, mt_err *err)
 {
-    const mt_response_request request = request_of(j->args);
-    MT_TRY(mt_response_open(a, &request, r, err));
+    MT_TRY(mt_response_open(a, &j->request, r, err));
     const ptrdiff_t pairs = (ptrdiff_t)r->ports.n_in * r->ports.n_out;
     double complex *const dh =
         mt_arena_alloc(&r->mem, (size_t)(pairs * a->sys->n_inputs), sizeof *dh);
@@ -183,12 +196,31 @@ static mt_status poles(job *j, mt_err *err)
     return mt_arena_check(&j->r.mem, err);
 }
 
+/* What the profile does, where one is given. */
+static mt_status shake(job *j, mt_err *err)
+{
+    if (j->profile != NULL) {
+        MT_TRY(mt_profiled_find(&j->r, j->profile, &j->profiled, err));
+        j->v.profiled = &j->profiled;
+    }
+    return MT_OK;
+}
+
+static mt_status open(job *j, mt_err *err)
+{
+    j->request = request_of(j->args);
+    if (j->profile != NULL) {
+        MT_TRY(mt_profiled_ports(j->profile, j->a->sys, &j->s->mem, &j->request, err));
+    }
+    return mt_response_open(j->a, &j->request, &j->r, err);
+}
+
 static mt_status run(job *j, mt_err *err)
 {
-    const mt_response_request request = request_of(j->args);
     MT_TRY(mt_subject_admit_dense(j->s, j->c, "a response needs all modes", err));
     MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
-    mt_status rc = mt_response_open(j->a, &request, &j->r, err);
+    mt_status rc = open(j, err);
+    rc = rc == MT_OK ? shake(j, err) : rc;
     rc = rc == MT_OK ? choose_range(j, err) : rc;
     rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;
     rc = rc == MT_OK ? poles(j, err) : rc;
@@ -198,6 +230,7 @@ static mt_status run(job *j, mt_err *err)
 
 typedef struct sink {
     const mt_args *args;
+    mt_vibration *profile; /* owned; NULL */
     mt_text *out;
     mt_json_writer w;
     mt_table table; /* CSV */
@@ -205,7 +238,7 @@ typedef struct sink {
 
 static int one(sink *to, mt_subject *s, int c)
 {
-    job j = {.args = to->args, .s = s, .c = c};
+    job j = {.args = to->args, .profile = to->profile, .s = s, .c = c};
     mt_err err = {.code = MT_OK};
     j.v = (mt_response_view){.configuration = mt_subject_configuration(s, c),
                              .s = s,
@@ -236,22 +269,35 @@ static int one(sink *to, mt_subject *s, int c)
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
 }
 
+/* The profile of --vibration; else there has to be an input. */
+static int load(sink *to)
+{
+    const char *const name = to->args->value[MT_OPT_VIBRATION];
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    if (name != NULL) {
+        const mt_status rc = mt_vibrated_load(to->args, name, &to->profile, &messages, &err);
+        return mt_cli_loaded(rc, &messages, &err);
+    }
+    return to->args->all[MT_OPT_INPUT].n > 0
+               ? MT_EXIT_DONE
+               : mt_cli_failed(mt_fail(&err, MT_E_USAGE,
+                                       "\"response\" needs --input, what shakes the "
+                                       "mechanism, or --vibration, a profile"),
+                               &err);
+}
+
 int mt_cmd_response(const mt_args *args, mt_text *out)
 {
     mt_subject s = {.model = NULL};
     sink to = {.args = args,
                .out = out,
                .w = mt_json_writer_default(out),
-               .table = mt_response_csv_table()};
-    mt_err err = {.code = MT_OK};
+               .table = mt_response_csv_table(args->given[MT_OPT_VIBRATION])};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
     int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
-    if (code == MT_EXIT_DONE && args->n_inputs == 0) {
-        code = mt_cli_failed(
-            mt_fail(&err, MT_E_USAGE, "\"response\" needs --input, what shakes the mechanism"),
-            &err);
-    }
+    code = code == MT_EXIT_DONE ? load(&to) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -271,6 +317,7 @@ int mt_cmd_response(const mt_args *args, mt_text *out)
         mt_table_csv(&to.table, out);
     }
 done:
+    mt_vibration_delete(to.profile);
     mt_table_free(&to.table);
     mt_subject_free(&s);
     return code;

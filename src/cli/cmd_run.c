@@ -52,8 +52,8 @@ static mt_status keep(void *context, mt_result *so_far, mt_err *err)
 static int answer(job *j)
 {
     const mt_args *const args = j->args;
-    const mt_asked asked = {.n_sets = args->n_sets,
-                            .sets = args->sets,
+    const mt_asked asked = {.n_sets = args->all[MT_OPT_SET].n,
+                            .sets = args->all[MT_OPT_SET].value,
                             .seed = args->given[MT_OPT_SEED] ? (long)args->seed : -1,
                             .starts = args->starts,
                             .max_evaluations = args->max_evaluations,

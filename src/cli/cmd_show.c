@@ -46,14 +46,15 @@ static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
 {
     o->asks = mt_arena_alloc(&o->s.mem, 1, sizeof *o->asks);
     MT_TRY(mt_arena_check(&o->s.mem, err));
-    o->asks[0] = (mt_scene_ask){.label = args->n_sets == 0 ? "original" : "as set",
+    o->asks[0] = (mt_scene_ask){.label = args->all[MT_OPT_SET].n == 0 ? "original" : "as set",
                                 .n_inputs = o->s.n_inputs,
                                 .inputs = o->s.inputs,
                                 .at = o->s.at,
                                 .n_shown = -1};
     o->n = 1;
-    return args->n_sets == 0 ? mt_scene_name_modes(o->s.model, &o->s.mem, &o->asks[0], err)
-                             : MT_OK;
+    return args->all[MT_OPT_SET].n == 0
+               ? mt_scene_name_modes(o->s.model, &o->s.mem, &o->asks[0], err)
+               : MT_OK;
 }
 
 /* Load what the operand names. Returns the exit status, everything said. */
@@ -74,7 +75,7 @@ static int load(const mt_args *args, subject *o)
         return mt_cli_failed(
             mt_fail(&err, MT_E_USAGE, "--model is of a result, and %s is none", operand), &err);
     }
-    if (result && args->n_sets > 0) {
+    if (result && args->all[MT_OPT_SET].n > 0) {
         return mt_cli_failed(
             mt_fail(&err, MT_E_USAGE, "--set is of a model: a result has its own values"),
             &err);

@@ -5,6 +5,7 @@
 
 #include "base/interrupt.h"
 #include "cli/simulate.h"
+#include "cli/vibrated.h"
 #include "mechanics/drive.h"
 
 enum { STEADY_PERIODS = 10 };
@@ -12,6 +13,7 @@ enum { STEADY_PERIODS = 10 };
 /* One configuration at work. */
 typedef struct job {
     const mt_args *args;
+    mt_vibration *profile; /* --vibration, owned; NULL */
     mt_subject *s;
     int c;
     mt_arena mem;
@@ -92,8 +94,7 @@ static mt_status shape_size(job *j, const double *dq, double *size, mt_err *err)
     MT_TRY(mt_motion_init(&o, j->lin, &j->mem, err));
     mt_motion_eval(&o, &j->start.at, j->start.v);
     for (int i = 0; i < j->sys->n_channels; i++) {
-        const mt_channel_kind kind = j->sys->channels[i].kind;
-        const bool turns = kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+        const bool turns = mt_channel_turns(j->sys->channels[i].kind);
         const mt_gauge g = {.channel = i, .joint = -1};
         mt_motion_gauge(&o, &j->start.at, j->start.v, g, &along);
         const double way = mt_dot(j->sys->nq, along.row, dq);
@@ -219,7 +220,7 @@ static mt_status run(job *j, mt_err *err)
     mt_subject_warn_overridden(j->s, j->c);
     MT_TRY(mt_subject_admit_dense(j->s, j->c, "a motion needs them", err));
     MT_TRY(make(j, err));
-    MT_TRY(mt_sim_read(j->args, j->s, j->sys, &j->request, err));
+    MT_TRY(mt_sim_read(j->args, j->s, j->sys, j->profile, &j->request, err));
     MT_TRY(begin(j, err));
     MT_TRY(move(j, err));
     return read_all(j, err);
@@ -256,12 +257,26 @@ static int stopped(const job *j)
     return MT_EXIT_INTERRUPTED;
 }
 
+static int load(job *j)
+{
+    const char *const text = j->args->value[MT_OPT_VIBRATION];
+    const char *port = NULL;
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    const mt_status rc = text == NULL
+                             ? MT_OK
+                             : mt_vibrated_load(j->args, mt_sim_profile_of(text, &port),
+                                                &j->profile, &messages, &err);
+    return mt_cli_loaded(rc, &messages, &err);
+}
+
 int mt_cmd_simulate(const mt_args *args, mt_text *out)
 {
     mt_subject s = {.model = NULL};
     job j = {.args = args, .s = &s};
     mt_err err = {.code = MT_OK};
     int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    code = code == MT_EXIT_DONE ? load(&j) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -281,6 +296,7 @@ done:
         mt_system_delete(j.sys);
     }
     mt_analysis_delete(j.a);
+    mt_vibration_delete(j.profile);
     mt_arena_free(&j.mem);
     mt_subject_free(&s);
     return code;

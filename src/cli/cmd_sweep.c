@@ -12,17 +12,6 @@
 
 enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
 
-/* What the model says of angles or displacements, whichever the joint has; a hinge of a link
- * turns. */
-static const mt_unit *unit_of(const mt_model *model, const char *name)
-{
-    const int joint = mt_model_find_joint(model, name);
-    const mt_coordinate coordinate =
-        joint < 0 ? MT_COORDINATE_ANGLE
-                  : mt_joint_kind_of(model->joints[joint].type)->coordinate;
-    return model->units[coordinate == MT_COORDINATE_DISPLACEMENT ? MT_LENGTH : MT_ANGLE];
-}
-
 /* N, a whole number: 1 only where the range is a point. */
 static mt_status read_points(const char *text, const double range[2], int *out, mt_err *err)
 {
@@ -61,7 +50,7 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
     out->drive.spring = args->value[MT_OPT_HOLD];
     MT_TRY(mt_arena_check(&s->mem, err));
-    const mt_unit *const unit = unit_of(s->model, out->drive.joint);
+    const mt_unit *const unit = mt_subject_joint_unit(s->model, out->drive.joint);
     MT_TRY(mt_subject_number(s, "drive", unit, equals + 1, (size_t)(first - equals - 1),
                              &range[0], err));
     MT_TRY(mt_subject_number(s, "drive", unit, first + 1, (size_t)(second - first - 1),

@@ -16,12 +16,18 @@
             .value = (value_),                               \
             .commands = (commands_),                         \
             .help = (help_)}
+#define REPEATED(id, name_, value_, commands_, help_) \
+    [id] = {.name = (name_),                          \
+            .value = (value_),                        \
+            .commands = (commands_),                  \
+            .help = (help_),                          \
+            .repeats = true}
 
 const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_CONFIGURATION, 'c', "configuration", "CONFIGURATION", ON_MODELS,
            "only this configuration (default: all)"),
-    OPTION(
-        MT_OPT_SET, '\0', "set", "NAME=VALUE", ON_MODELS | ON_STUDIES,
+    REPEATED(
+        MT_OPT_SET, "set", "NAME=VALUE", ON_MODELS | ON_STUDIES,
         "give a parameter another value, a number in its unit, or an expression in SI units, "
         "which may use the model's own values (\"k=1.1*k\"); may be repeated; of a study: one "
         "that it does not vary"),
@@ -51,15 +57,21 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "with --svg: vibration mode N beside the shape at rest"),
     OPTION(MT_OPT_PARAMETERS, '\0', "parameters", "A,B", BIT(MT_CMD_SENSITIVITY),
            "parameters to vary (default: all that are not made of others)"),
-    OPTION(MT_OPT_INPUT, '\0', "input", "PORT", BIT(MT_CMD_RESPONSE),
-           "what shakes: grip.x, the force (grip.rx: moment) along a direction of a sensor, or "
-           "base.x, the acceleration of the ground (base.x:displacement, base.x:velocity); may "
-           "be repeated"),
-    OPTION(MT_OPT_SEEN, '\0', "output", "PORT", BIT(MT_CMD_RESPONSE),
-           "what is looked at: grip.x, grip.x:velocity, grip.x:acceleration, a sensor's motion "
-           "in space (grip.x:relative_acceleration: against the ground), spring.NAME or "
-           "damper.NAME, the force or torque in it, joint.NAME.x, the force of a joint's first "
-           "body on its second; may be repeated (default: the displacements of all sensors)"),
+    REPEATED(
+        MT_OPT_INPUT, "input", "PORT", BIT(MT_CMD_RESPONSE),
+        "what shakes: grip.x, the force (grip.rx: moment) along a direction of a sensor, or "
+        "base.x, the acceleration of the ground (base.x:displacement, base.x:velocity); may "
+        "be repeated"),
+    REPEATED(
+        MT_OPT_SEEN, "output", "PORT", BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SIMULATE),
+        "what is looked at: grip.x, grip.x:velocity, grip.x:acceleration, a sensor's motion; "
+        "may be repeated (default: the displacements of all sensors). Of response it is that "
+        "in space (grip.x:relative_acceleration: against the ground), and there are "
+        "spring.NAME and damper.NAME, the force or torque in it, and joint.NAME.x, the force "
+        "of a joint's first body on its second. Of simulate displacements, from the rest "
+        "position, and velocities are against the ground, accelerations in space, and there "
+        "are joints' coordinates (pivot, pivot:velocity), by default those of all joints "
+        "where there are no sensors"),
     OPTION(MT_OPT_FROM, '\0', "from", "HZ", BIT(MT_CMD_RESPONSE),
            "lowest frequency (default: a quarter of the first vibration mode's)"),
     OPTION(MT_OPT_TO, '\0', "to", "HZ", BIT(MT_CMD_RESPONSE),
@@ -80,6 +92,14 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "pole) + d0 + d1 s + d2 s^2, s = 2 pi i f (in the text the poles alone)"),
     OPTION(MT_OPT_SENSITIVITY, '\0', "sensitivity", "A,B", BIT(MT_CMD_RESPONSE),
            "change of every peak and antiresonance for one per cent more of these parameters"),
+    OPTION(MT_OPT_VIBRATION, '\0', "vibration", "PROFILE",
+           BIT(MT_CMD_RESPONSE) | BIT(MT_CMD_SIMULATE),
+           "a profile of vibration, a file or the name of one that is shipped, as the "
+           "acceleration of the ground. Of response: RMS, largest tones and peak of every "
+           "output, by default the accelerations of all sensors; --input is by default the "
+           "ground along the profile's axis, --from and --to are its ends. Of simulate: one "
+           "realisation of it, by --seed, tones going through their ranges once; of a profile "
+           "without an axis, or along another one, \"base.y=PROFILE\""),
     OPTION(MT_OPT_DURATION, '\0', "duration", "SECONDS", BIT(MT_CMD_SIMULATE),
            "how long the motion lasts; needed"),
     OPTION(
@@ -87,37 +107,38 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "time between two lines of the result (default: a hundredth of the duration, or less, "
         "a 24th of the period of a --sine); steps are as short as the motion needs, whatever "
         "this is"),
-    OPTION(MT_OPT_START, '\0', "start", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
-           "let go where this joint (or link's hinge) is at a position, rad or m from the "
-           "reference position: one joint is held there until the rest of the mechanism is in "
-           "equilibrium; several are moved there together, the rest following with the least "
-           "motion; may be repeated (\"pivot=170*deg\")"),
-    OPTION(MT_OPT_RATE, '\0', "rate", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
-           "start with this joint at a velocity, rad/s or m/s, the rest with the least kinetic "
-           "energy; may be repeated"),
+    REPEATED(MT_OPT_START, "start", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
+             "let go where this joint (or link's hinge) is at a position from the reference "
+             "position, "
+             "rad or m, or in the model's units where it names some: one joint is held there "
+             "until the rest of the mechanism is in "
+             "equilibrium; several are moved there together, the rest following with the least "
+             "motion; may be repeated (\"pivot=170*deg\")"),
+    REPEATED(
+        MT_OPT_RATE, "rate", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
+        "start with this joint at a velocity, rad/s or m/s, or the model's units a second, "
+        "the rest with the least kinetic "
+        "energy; may be repeated"),
     OPTION(MT_OPT_ALONG, '\0', "mode", "N:AMPLITUDE", BIT(MT_CMD_SIMULATE),
            "let go displaced along vibration mode N, so far at the sensor that moves most (m, "
-           "or rad where sensors show rotations alone)"),
-    OPTION(MT_OPT_PUSH, '\0', "input", "PORT=EXPRESSION", BIT(MT_CMD_SIMULATE),
-           "what pushes or shakes it, an expression of the time t: grip.x, the force (grip.r: "
-           "moment) along a direction of a sensor, or base.x, the acceleration of the ground "
-           "(base.x:displacement, base.x:velocity), or a joint, whose coordinate then follows "
-           "it, from where it starts; may be repeated (\"grip.x=10*sin(40*t)*exp(-t)\")"),
-    OPTION(MT_OPT_SINE, '\0', "sine", "PORT=AMPLITUDE@HZ", BIT(MT_CMD_SIMULATE),
-           "a sine there; may be repeated. With one frequency alone the steady motion is read "
-           "from the last periods"),
-    OPTION(MT_OPT_CHIRP, '\0', "sweep", "PORT=LEVEL@FROM:TO", BIT(MT_CMD_SIMULATE),
-           "a sine of this amplitude there whose frequency runs from FROM to TO Hz in the "
-           "duration, so many octaves a second (with \":linear\" behind it so many Hz)"),
-    OPTION(MT_OPT_RANDOM, '\0', "random", "PORT=HZ:PSD,...", BIT(MT_CMD_SIMULATE),
-           "random vibration there: breakpoints of a power spectral density (of base.x in "
-           "(m/s^2)^2/Hz), straight in log over log between them, made of sines whose phases "
-           "come from --seed"),
-    OPTION(MT_OPT_WATCHED, '\0', "output", "PORT", BIT(MT_CMD_SIMULATE),
-           "what is looked at: grip.x, a sensor's displacement from the rest position, "
-           "grip.x:velocity (both against the ground), grip.x:acceleration (in space), or a "
-           "joint's coordinate (pivot, pivot:velocity); may be repeated (default: the "
-           "displacements of all sensors; the coordinates of all joints where there are none)"),
+           "or rad where sensors show rotations alone, or in the model's units)"),
+    REPEATED(
+        MT_OPT_PUSH, "input", "PORT=EXPRESSION", BIT(MT_CMD_SIMULATE),
+        "what pushes or shakes it, an expression of the time t: grip.x, the force (grip.r: "
+        "moment) along a direction of a sensor, or base.x, the acceleration of the ground "
+        "(base.x:displacement, base.x:velocity), or a joint, whose coordinate then follows "
+        "it, from where it starts; may be repeated (\"grip.x=10*sin(40*t)*exp(-t)\")"),
+    REPEATED(MT_OPT_SINE, "sine", "PORT=AMPLITUDE@HZ", BIT(MT_CMD_SIMULATE),
+             "a sine there, of a joint or a place of the ground in the model's units; may be "
+             "repeated. With one frequency alone the steady motion is read "
+             "from the last periods"),
+    REPEATED(MT_OPT_CHIRP, "sweep", "PORT=LEVEL@FROM:TO", BIT(MT_CMD_SIMULATE),
+             "a sine of this amplitude there whose frequency runs from FROM to TO Hz in the "
+             "duration, so many octaves a second (with \":linear\" behind it so many Hz)"),
+    REPEATED(MT_OPT_RANDOM, "random", "PORT=HZ:PSD,...", BIT(MT_CMD_SIMULATE),
+             "random vibration there: breakpoints of a power spectral density (of base.x in "
+             "(m/s^2)^2/Hz), straight in log over log between them, made of sines whose phases "
+             "come from --seed"),
     OPTION(MT_OPT_TOLERANCE, '\0', "tolerance", "X", BIT(MT_CMD_SIMULATE),
            "largest error of a step, as a part of the motion so far (default: 1e-11)"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
@@ -137,7 +158,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "then it ends with the best so far, as after an interrupt"),
     OPTION(MT_OPT_SEED, '\0', "seed", "N", ON_STUDIES | BIT(MT_CMD_SIMULATE),
            "seed of the starting points instead of the study's; of simulate: of --random "
-           "(default: 1)"),
+           "and --vibration (default: 1)"),
     OPTION(MT_OPT_STARTS, '\0', "starts", "N", ON_STUDIES,
            "number of local searches instead of the study's \"starts\""),
     OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,
@@ -285,6 +306,14 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "it lags. At the resonance of a mode that nothing damps the response has no value, "
         "which is said. A value's error, in JSON and CSV, bounds what rounding has made of "
         "it.\n"
+        "Under --vibration each output has the RMS of its response to the random parts of the "
+        "profile, with a bound of its error, the largest amplitude under each tone, wherever "
+        "in its range that lies, which is proven, and the peak that both make by the profile's "
+        "rule; all of the profile counts, whatever --from and --to are. The density of the "
+        "response over frequency is in JSON and CSV (psd). Bounds and proofs are of the sum "
+        "over the poles as it was found, whose own rounding the errors of the values tell. "
+        "Where no sum over poles is to be had, numbers are by quadrature, and their errors "
+        "estimates, which is said.\n"
         "A configuration that is unstable, or whose stability rounding hides, is refused, and "
         "so is the force of a joint that is redundant with others."),
     COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Scripts for the shells, from the tables behind --help. What the value of an option may be is
- * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL a file; of another
- * value nothing is known.
+ * read from how the tables call it: "a|b|c" are words, DIR a folder, MODEL and PROFILE a
+ * file; of another value nothing is known.
  */
 #include "cli/completion.h"
 
@@ -22,6 +22,11 @@ static bool is_choice(const mt_option *o)
 static bool is_called(const mt_option *o, const char *value)
 {
     return o->value != NULL && strcmp(o->value, value) == 0;
+}
+
+static bool is_file(const mt_option *o)
+{
+    return is_called(o, "MODEL") || is_called(o, "PROFILE");
 }
 
 /* The words of "a|b|c", a blank between them. */
@@ -91,7 +96,7 @@ static void bash_values(mt_text *out)
             mt_text_add(out, "' -- \"$current\")); return ;;\n");
         } else if (is_called(o, "DIR")) {
             mt_text_add(out, ") COMPREPLY=($(compgen -d -- \"$current\")); return ;;\n");
-        } else if (is_called(o, "MODEL")) {
+        } else if (is_file(o)) {
             mt_text_add(out, ") ;;\n");
         } else {
             mt_text_add(out, ") return ;;\n");
@@ -159,8 +164,7 @@ static void zsh_text(const char *text, mt_text *out)
 
 static void zsh_option(const mt_option *o, int command, mt_text *out)
 {
-    const bool repeated = o == &mt_options[MT_OPT_SET];
-    mt_text_addf(out, " \\\n            '%s--%s%s[", repeated ? "*" : "", o->name,
+    mt_text_addf(out, " \\\n            '%s--%s%s[", o->repeats ? "*" : "", o->name,
                  o->value == NULL ? "" : "=");
     zsh_text(o->help, out);
     mt_text_add(out, "]");
@@ -173,9 +177,9 @@ static void zsh_option(const mt_option *o, int command, mt_text *out)
         }
         mt_text_add(out, ")");
     } else if (o->value != NULL) {
-        const char *const how = is_called(o, "DIR")     ? "_files -/"
-                                : is_called(o, "MODEL") ? "_files -g \"*.json\""
-                                                        : "";
+        const char *const how = is_called(o, "DIR") ? "_files -/"
+                                : is_file(o)        ? "_files -g \"*.json\""
+                                                    : "";
         mt_text_addf(out, ":%s:%s", o->name, how);
     }
     mt_text_add(out, "'");

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "report/table.h"
 #include "response/response.h"
+#include "vibration/profiled.h"
 
 /* The response of one configuration, ready to be written. */
 typedef struct mt_response_view {
@@ -16,15 +17,29 @@ typedef struct mt_response_view {
     bool direct;
     const mt_pole_sum *sums; /* [pairs] of --poles; NULL: not asked for, or there are none */
     const char *no_sums;     /* why there are none; NULL */
-    int n;                   /* of --sensitivity */
-    const int *parameter;    /* [n] */
-    const double *value;     /* [n] */
-    const double *percent;   /* n_extremes x n: of |H|, for one per cent more */
+    const mt_profiled *profiled; /* --vibration; NULL */
+    int n;                       /* of --sensitivity */
+    const int *parameter;        /* [n] */
+    const double *value;         /* [n] */
+    const double *percent;       /* n_extremes x n: of |H|, for one per cent more */
 } mt_response_view;
 
 void mt_response_print(const mt_response_view *v, mt_text *out);
 void mt_response_json(const mt_response_view *v, mt_json_writer *w);
-mt_table mt_response_csv_table(void);
+/* psd: with the columns of --vibration. */
+mt_table mt_response_csv_table(bool psd);
 void mt_response_csv_rows(const mt_response_view *v, mt_table *t);
+const mt_port *mt_response_input_of(const mt_response_view *v, int pair);
+const mt_port *mt_response_output_of(const mt_response_view *v, int pair);
+
+/* What --vibration adds (response_vibration.c). */
+/* What the profile does to each output, with all that has to be said of it. */
+void mt_response_vibration_print(const mt_response_view *v, mt_text *out);
+/* Members "profile", and "vibration", "psd_unit", "psd" of a response. */
+void mt_response_vibration_json(const mt_response_view *v, mt_json_writer *w);
+void mt_response_vibration_json_pair(const mt_response_view *v, int pair, mt_json_writer *w);
+/* The columns, and the cells of a frequency of the curve. */
+void mt_response_vibration_columns(mt_table *t);
+void mt_response_vibration_cells(const mt_response_view *v, int pair, int point, mt_table *t);
 
 #endif

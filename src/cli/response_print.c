@@ -24,12 +24,12 @@ static double phase(double complex h)
     return isfinite(size) && size > 0.0 ? carg(h) / (0.5 * TWO_PI) * HALF_TURN_DEG : nan("");
 }
 
-static const mt_port *input_of(const mt_response_view *v, int pair)
+const mt_port *mt_response_input_of(const mt_response_view *v, int pair)
 {
     return &v->r->ports.in[pair / v->r->ports.n_out];
 }
 
-static const mt_port *output_of(const mt_response_view *v, int pair)
+const mt_port *mt_response_output_of(const mt_response_view *v, int pair)
 {
     return &v->r->ports.out[pair % v->r->ports.n_out];
 }
@@ -66,8 +66,8 @@ static const char *kind_of(const mt_extreme *e)
 
 static void unit_of(const mt_response_view *v, int pair, char unit[HEADING_TEXT])
 {
-    (void)mt_snprintf(unit, HEADING_TEXT, "%s per %s", output_of(v, pair)->unit,
-                      input_of(v, pair)->unit);
+    (void)mt_snprintf(unit, HEADING_TEXT, "%s per %s", mt_response_output_of(v, pair)->unit,
+                      mt_response_input_of(v, pair)->unit);
 }
 
 static double percent_of(const mt_response_view *v, int e, int k)
@@ -99,8 +99,8 @@ static void print_extremes(const mt_response_view *v, mt_text *out)
         const mt_extreme *const x = &v->curve->extremes[e];
         char unit[HEADING_TEXT];
         unit_of(v, x->pair, unit);
-        mt_table_text(&t, input_of(v, x->pair)->name);
-        mt_table_text(&t, output_of(v, x->pair)->name);
+        mt_table_text(&t, mt_response_input_of(v, x->pair)->name);
+        mt_table_text(&t, mt_response_output_of(v, x->pair)->name);
         mt_table_text(&t, kind_of(x));
         mt_table_number(&t, x->w / TWO_PI, HZ_DIGITS);
         mt_table_number(&t, magnitude(extreme_of(x)), DIGITS);
@@ -124,9 +124,9 @@ static void print_grid(const mt_response_view *v, mt_text *out)
         char heading[HEADING_TEXT];
         char unit[HEADING_TEXT];
         unit_of(v, p, unit);
-        (void)mt_snprintf(heading, sizeof heading, "%s%s%s [%s]", output_of(v, p)->name,
-                          v->r->ports.n_in > 1 ? " by " : "",
-                          v->r->ports.n_in > 1 ? input_of(v, p)->name : "", unit);
+        (void)mt_snprintf(heading, sizeof heading, "%s%s%s [%s]",
+                          mt_response_output_of(v, p)->name, v->r->ports.n_in > 1 ? " by " : "",
+                          v->r->ports.n_in > 1 ? mt_response_input_of(v, p)->name : "", unit);
         mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
         mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
     }
@@ -218,11 +218,16 @@ void mt_response_print(const mt_response_view *v, mt_text *out)
     mt_text_addf(out, "%s: response to %s%s, %.6g to %.6g Hz\n", v->configuration,
                  v->r->ports.in[0].name, v->r->ports.n_in > 1 ? ", ..." : "",
                  v->opt.from / TWO_PI, v->opt.to / TWO_PI);
+    if (v->profiled != NULL) {
+        mt_response_vibration_print(v, out);
+    }
     if (v->curve->n_extremes > 0) {
         print_extremes(v, out);
         mt_text_add(out, "\n");
     }
-    print_grid(v, out);
+    if (v->profiled == NULL) {
+        print_grid(v, out);
+    }
     print_poles(v, out);
     print_method(v, out);
     if (infinite) {
@@ -321,8 +326,8 @@ static void json_pair(const mt_response_view *v, int pair, mt_json_writer *w)
     char unit[HEADING_TEXT];
     unit_of(v, pair, unit);
     mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "input", input_of(v, pair)->name);
-    mt_json_put_string(w, "output", output_of(v, pair)->name);
+    mt_json_put_string(w, "input", mt_response_input_of(v, pair)->name);
+    mt_json_put_string(w, "output", mt_response_output_of(v, pair)->name);
     mt_json_put_string(w, "unit", unit);
     mt_json_open(w, "extremes", '[');
     for (int e = 0; e < v->curve->n_extremes; e++) {
@@ -335,6 +340,9 @@ static void json_pair(const mt_response_view *v, int pair, mt_json_writer *w)
     json_series(v, pair, "re", 0, w);
     json_series(v, pair, "im", 1, w);
     json_series(v, pair, "error", 2, w);
+    if (v->profiled != NULL) {
+        mt_response_vibration_json_pair(v, pair, w);
+    }
     mt_json_close(w);
 }
 
@@ -348,6 +356,9 @@ void mt_response_json(const mt_response_view *v, mt_json_writer *w)
     mt_json_put_integer(w, "modes_left_out", b->n_left);
     mt_json_put_bool(w, "coupled", !b->t.diagonal);
     mt_json_put_bool(w, "complete", v->curve->complete);
+    if (v->profiled != NULL) {
+        mt_response_vibration_json(v, w);
+    }
     json_ports(w, "inputs", v->r->ports.n_in, v->r->ports.in);
     json_ports(w, "outputs", v->r->ports.n_out, v->r->ports.out);
     mt_json_open_flat(w, "frequencies_hz", '[');
@@ -363,7 +374,7 @@ void mt_response_json(const mt_response_view *v, mt_json_writer *w)
     mt_json_close(w);
 }
 
-mt_table mt_response_csv_table(void)
+mt_table mt_response_csv_table(bool psd)
 {
     mt_table t = mt_table_default();
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
@@ -376,6 +387,9 @@ mt_table mt_response_csv_table(void)
     mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
     mt_table_column(&t, "error", "error", MT_ALIGN_POINT);
     mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    if (psd) {
+        mt_response_vibration_columns(&t);
+    }
     return t;
 }
 
@@ -388,8 +402,8 @@ void mt_response_csv_rows(const mt_response_view *v, mt_table *t)
             const double complex h = value_at(v, p, i);
             const bool has = isfinite(cabs(h));
             mt_table_text(t, v->configuration);
-            mt_table_text(t, input_of(v, p)->name);
-            mt_table_text(t, output_of(v, p)->name);
+            mt_table_text(t, mt_response_input_of(v, p)->name);
+            mt_table_text(t, mt_response_output_of(v, p)->name);
             mt_table_number(t, v->curve->w[i] / TWO_PI, HZ_DIGITS);
             mt_table_number(t, has ? creal(h) : nan(""), DIGITS);
             mt_table_number(t, has ? cimag(h) : nan(""), DIGITS);
@@ -397,6 +411,9 @@ void mt_response_csv_rows(const mt_response_view *v, mt_table *t)
             mt_table_number(t, phase(h), DIGITS);
             mt_table_number(t, error_at(v, p, i), DIGITS);
             mt_table_text(t, unit);
+            if (v->profiled != NULL) {
+                mt_response_vibration_cells(v, p, i, t);
+            }
         }
     }
 }

@@ -35,7 +35,7 @@ static mt_status name_them(const mt_system *sys, int modes, mt_arena *mem, mt_sh
     for (int k = 0; k < sys->n_channels && !mt_arena_failed(mem); k++) {
         const mt_channel_kind kind = sys->channels[k].kind;
         out->name[k] = mt_arena_strdup(mem, sys->channels[k].name);
-        out->turns[k] = kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+        out->turns[k] = mt_channel_turns(kind);
     }
     for (int b = 0; b < sys->n_bodies && !out->sensors && !mt_arena_failed(mem); b++) {
         for (int d = 0; d < MT_COUNT(directions); d++) {

@@ -21,6 +21,12 @@ const mt_shipped_kind mt_shipped_schemas = {.command = "schema",
                                             .ending = ".schema.json",
                                             .says = "description",
                                             .heading = "of"};
+const mt_shipped_kind mt_shipped_profiles = {.command = "profile",
+                                             .what = "profile",
+                                             .folder = "problems/profiles/",
+                                             .ending = ".json",
+                                             .says = "name",
+                                             .heading = "what it is"};
 
 /* The file's name, in name[size]; false: it is none of them. */
 static bool name_of(const mt_shipped_kind *kind, const mt_shipped *file, char *name,

@@ -19,6 +19,7 @@ typedef struct mt_shipped_kind {
 
 extern const mt_shipped_kind mt_shipped_examples;
 extern const mt_shipped_kind mt_shipped_schemas;
+extern const mt_shipped_kind mt_shipped_profiles;
 
 /* Append their names, a blank between them. */
 void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out);

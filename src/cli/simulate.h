@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "simulate/start.h"
 #include "simulate/tones.h"
+#include "study/vibration.h"
 
 /* What of a gauge is looked at. */
 typedef enum mt_seen { MT_SEEN_VALUE, MT_SEEN_SPEED, MT_SEEN_ACCELERATION } mt_seen;
@@ -17,6 +18,15 @@ typedef struct mt_sim_output {
     bool angle;
 } mt_sim_output;
 
+/* A realisation of --vibration. */
+typedef struct mt_sim_shaken {
+    const mt_vibration *v; /* NULL: none */
+    int axis;              /* of the ground */
+    unsigned long seed;
+    double rms; /* of the random parts over the duration [m/s^2] */
+} mt_sim_shaken;
+enum { MT_SIM_SEED = 1 };
+
 /* The options of the command, in the words of a system. */
 typedef struct mt_sim_request {
     mt_sim_options opt;
@@ -28,6 +38,7 @@ typedef struct mt_sim_request {
     mt_sim_joint *rates;
     int mode; /* 0: not given */
     double amplitude;
+    mt_sim_shaken shaken;
     double steady_hz; /* of the one frequency that --sine has; 0: none, or more */
 } mt_sim_request;
 
@@ -38,9 +49,20 @@ mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_aren
 /* Value of --start for the joint of this name; *given: is there one? */
 mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint, bool *given,
                           double *value, mt_err *err);
-/* Everything else, for a system. Fails: MT_E_USAGE, MT_E_MEMORY. */
+/* Everything else, for a system; profile: of --vibration, or NULL. Fails: MT_E_USAGE,
+ * MT_E_MEMORY. */
 mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
-                      mt_sim_request *out, mt_err *err);
+                      const mt_vibration *profile, mt_sim_request *out, mt_err *err);
+
+/* Of --vibration [PORT=]FILE: the file, and the port, or NULL (simulate_vibration.c). */
+const char *mt_sim_profile_of(const char *text, const char **port);
+/* The profile's parts as inputs behind those that there are. */
+mt_status mt_sim_shake(const mt_args *args, mt_subject *s, const mt_system *sys,
+                       const mt_vibration *v, mt_sim_request *out, mt_sim_input *inputs,
+                       mt_err *err);
+void mt_sim_shaken_print(const mt_sim_shaken *s, mt_text *out);
+/* Member "vibration" of an open object. */
+void mt_sim_shaken_json(const mt_sim_shaken *s, mt_json_writer *w);
 
 /* What was read from the motion of one gauge. */
 typedef struct mt_sim_reading {

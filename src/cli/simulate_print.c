@@ -144,6 +144,9 @@ void mt_simulate_print(const mt_sim_view *v, mt_text *out)
         }
         tell_steady(v, &v->readings[g], out);
     }
+    if (v->request->shaken.v != NULL) {
+        mt_sim_shaken_print(&v->request->shaken, out);
+    }
     mt_text_addf(out, "  Energy: up to %.4g J, balanced to %.1e J.\n", r->energy_scale_j,
                  r->energy_error_j);
     if (v->sys->n_constraints > 0) {
@@ -241,6 +244,9 @@ void mt_simulate_json(const mt_sim_view *v, mt_json_writer *w)
     mt_json_put_string(w, "configuration", v->configuration);
     mt_json_put_bool(w, "complete", r->stop == MT_SIM_DONE);
     mt_json_put_number(w, "tolerance", v->request->opt.tolerance);
+    if (v->request->shaken.v != NULL) {
+        mt_sim_shaken_json(&v->request->shaken, w);
+    }
     json_list(w, "time_s", r->n, r->t);
     json_outputs(v, w);
     json_list(w, "kinetic_j", r->n, r->kinetic);

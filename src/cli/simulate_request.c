@@ -6,10 +6,12 @@
 
 #include "cli/simulate.h"
 #include "model/values.h"
+#include "response/ports.h"
+#include "simulate/realise.h"
 
 /* Lines of the result in a period of a sine, so that its harmonics are told apart. */
 enum { STEADY_SAMPLES = 24 };
-enum { AXES = 3, RANDOM_LINES_MOST = 100000 };
+enum { AXES = 3 };
 static const char *const base_ports[AXES] = {"base.x", "base.y", "base.z"};
 
 /* A port of an input: what stands before '='. */
@@ -95,8 +97,9 @@ mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint,
         }
         MT_TRY(split(&args->repeats[i], &s->mem, &name, &rest, err));
         if (strcmp(name, joint) == 0) {
-            MT_TRY(mt_subject_number(s, name_of(MT_OPT_START), NULL, rest, strlen(rest), value,
-                                     err));
+            MT_TRY(mt_subject_number(s, name_of(MT_OPT_START),
+                                     mt_subject_joint_unit(s->model, name), rest, strlen(rest),
+                                     value, err));
             *given = true;
         }
     }
@@ -142,28 +145,18 @@ static mt_status find_joint(const mt_system *sys, mt_option_id option, const cha
                          name_of(option), name, mt_joint_type_name(sys->joints[*out].type));
 }
 
-/* "base.x", "base.x:displacement", "base.x:velocity"; false: none of these. */
-static bool base_port(const mt_system *sys, const char *name, port *out)
-{
-    static const char *const quantities[] = {"", ":velocity", ":displacement"};
-    for (int axis = 0; axis < AXES && axis < sys->dimension; axis++) {
-        const size_t length = strlen(base_ports[axis]);
-        for (int k = 0;
-             k < MT_COUNT(quantities) && strncmp(name, base_ports[axis], length) == 0; k++) {
-            if (strcmp(name + length, quantities[k]) == 0) {
-                *out = (port){.push = MT_SIM_BASE, .at = axis, .slope = k};
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 static mt_status find_port(const mt_system *sys, mt_option_id option, const char *name,
                            mt_arena *mem, port *out, mt_err *err)
 {
     *out = (port){.push = MT_SIM_FORCE, .at = mt_system_find_channel(sys, name)};
-    if (out->at >= 0 || base_port(sys, name, out)) {
+    if (out->at >= 0) {
+        return MT_OK;
+    }
+    if (strncmp(name, "base.", strlen("base.")) == 0) {
+        mt_port ground;
+        MT_TRY(mt_err_in(err, mt_port_input(sys, name, mem, &ground, err), "--%s",
+                         name_of(option)));
+        *out = (port){.push = MT_SIM_BASE, .at = ground.index, .slope = 2 - ground.motion};
         return MT_OK;
     }
     const int joint = mt_system_find_joint(sys, name);
@@ -204,9 +197,24 @@ static mt_status read_expression(mt_subject *s, const char *text, mt_signal *out
     return mt_arena_check(&s->mem, err);
 }
 
-/* Numbers between the separators: text "A@B" or "A@B:C". */
-static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const char *text,
-                              const char *separators, double *out, mt_err *err)
+/* What the model gives the amplitudes of a port in; NULL: SI. */
+static const mt_unit *unit_of(const mt_subject *s, const mt_system *sys, const port *p)
+{
+    switch (p->push) {
+    case MT_SIM_FORCE:
+        break;
+    case MT_SIM_BASE:
+        return p->slope > 0 ? s->model->units[MT_LENGTH] : NULL;
+    case MT_SIM_MOVE:
+        return mt_subject_joint_unit(s->model, sys->joints[p->joint].name);
+    }
+    return NULL;
+}
+
+/* Numbers between the separators, the first in a unit: text "A@B" or "A@B:C". */
+static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const mt_unit *unit,
+                              const char *text, const char *separators, double *out,
+                              mt_err *err)
 {
     for (size_t k = 0;; k++) {
         const char *const end = separators[k] == '\0' ? NULL : strchr(text, separators[k]);
@@ -215,7 +223,8 @@ static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const char *tex
                            r->value, mt_options[r->option].value);
         }
         const size_t length = end == NULL ? strlen(text) : (size_t)(end - text);
-        MT_TRY(mt_subject_number(s, name_of(r->option), NULL, text, length, &out[k], err));
+        MT_TRY(mt_subject_number(s, name_of(r->option), k == 0 ? unit : NULL, text, length,
+                                 &out[k], err));
         if (end == NULL) {
             return MT_OK;
         }
@@ -223,13 +232,13 @@ static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const char *tex
     }
 }
 
-static mt_status read_sine(mt_subject *s, const mt_repeat *r, const char *text, mt_signal *out,
-                           mt_err *err)
+static mt_status read_sine(mt_subject *s, const mt_repeat *r, const mt_unit *unit,
+                           const char *text, mt_signal *out, mt_err *err)
 {
     double number[2] = {0.0, 0.0};
     mt_sine *const sine = mt_arena_alloc(&s->mem, 1, sizeof *sine);
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(read_numbers(s, r, text, "@", number, err));
+    MT_TRY(read_numbers(s, r, unit, text, "@", number, err));
     if (!(number[1] > 0.0)) {
         return mt_fail(err, MT_E_USAGE, "--sine: %s: the frequency is not above 0", r->value);
     }
@@ -238,8 +247,8 @@ static mt_status read_sine(mt_subject *s, const mt_repeat *r, const char *text, 
     return MT_OK;
 }
 
-static mt_status read_sweep(mt_subject *s, const mt_repeat *r, const char *text,
-                            double duration_s, mt_signal *out, mt_err *err)
+static mt_status read_sweep(mt_subject *s, const mt_repeat *r, const mt_unit *unit,
+                            const char *text, double duration_s, mt_signal *out, mt_err *err)
 {
     static const char suffix[] = ":linear";
     double number[3] = {0.0, 0.0, 0.0};
@@ -249,7 +258,7 @@ static mt_status read_sweep(mt_subject *s, const mt_repeat *r, const char *text,
     const char *const numbers =
         mt_arena_strndup(&s->mem, text, linear ? length - tail : length);
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(read_numbers(s, r, numbers, "@:", number, err));
+    MT_TRY(read_numbers(s, r, unit, numbers, "@:", number, err));
     if (!(number[1] > 0.0) || !(number[2] > 0.0)) {
         return mt_fail(err, MT_E_USAGE, "--sweep: %s: a frequency is not above 0", r->value);
     }
@@ -278,21 +287,15 @@ static mt_status read_random(mt_subject *s, const mt_args *args, const mt_repeat
         const char *const pair = mt_arena_strndup(&s->mem, text, length);
         double number[2] = {0.0, 0.0};
         MT_TRY(mt_arena_check(&s->mem, err));
-        MT_TRY(read_numbers(s, r, pair, ":", number, err));
+        MT_TRY(read_numbers(s, r, NULL, pair, ":", number, err));
         hz[i] = number[0];
         value[i] = number[1];
         text += length + (text[length] == ',' ? 1 : 0);
     }
     const mt_psd psd = {.n = (int)n, .hz = hz, .level = value};
-    const double lines = ceil((hz[n - 1] - hz[0]) * args->duration_s) + 1.0;
-    if (!(lines <= RANDOM_LINES_MOST)) {
-        return mt_fail(err, MT_E_USAGE, "--random: %s: more than %d lines would be needed",
-                       r->value, (int)RANDOM_LINES_MOST);
-    }
-    const unsigned long seed = args->given[MT_OPT_SEED] ? args->seed : 1;
-    const mt_status rc =
-        mt_signal_of_psd(&psd, lines > 1.0 ? (int)lines : 1, seed, &s->mem, out, err);
-    return mt_err_in(err, rc == MT_E_INPUT ? MT_E_USAGE : rc, "--random: %s", r->value);
+    const unsigned long seed = args->given[MT_OPT_SEED] ? args->seed : MT_SIM_SEED;
+    return mt_err_in(err, mt_realise_psd(&psd, args->duration_s, seed, &s->mem, out, err),
+                     "--random: %s", r->value);
 }
 
 static mt_status read_input(mt_subject *s, const mt_args *args, const mt_system *sys,
@@ -307,12 +310,12 @@ static mt_status read_input(mt_subject *s, const mt_args *args, const mt_system 
     MT_TRY(split(r, &s->mem, &name, &rest, err));
     MT_TRY(find_port(sys, r->option, name, &s->mem, &p, err));
     if (r->option == MT_OPT_SINE) {
-        MT_TRY(read_sine(s, r, rest, signal, err));
+        MT_TRY(read_sine(s, r, unit_of(s, sys, &p), rest, signal, err));
         const double hz = signal->sines[0].hz;
         const bool first = out->opt.n_inputs == 0;
         out->steady_hz = first || out->steady_hz == hz ? hz : 0.0;
     } else if (r->option == MT_OPT_CHIRP) {
-        MT_TRY(read_sweep(s, r, rest, out->opt.duration_s, signal, err));
+        MT_TRY(read_sweep(s, r, unit_of(s, sys, &p), rest, out->opt.duration_s, signal, err));
     } else if (r->option == MT_OPT_RANDOM) {
         MT_TRY(read_random(s, args, r, rest, signal, err));
     } else {
@@ -333,9 +336,9 @@ static mt_status find_gauge(const mt_system *sys, const char *name, mt_sim_reque
     if (g.channel < 0) {
         g.joint = mt_system_find_joint(sys, name);
         if (g.joint < 0) {
-            return no_such_port(sys, MT_OPT_WATCHED, name, false, true, mem, err);
+            return no_such_port(sys, MT_OPT_SEEN, name, false, true, mem, err);
         }
-        MT_TRY(find_joint(sys, MT_OPT_WATCHED, name, mem, &g.joint, err));
+        MT_TRY(find_joint(sys, MT_OPT_SEEN, name, mem, &g.joint, err));
     }
     for (*at = 0; *at < out->opt.n_gauges; ++*at) {
         if (gauges[*at].channel == g.channel && gauges[*at].joint == g.joint) {
@@ -351,31 +354,18 @@ static bool is_angle(const mt_system *sys, mt_gauge g)
     if (g.channel < 0) {
         return sys->joints[g.joint].angle;
     }
-    const mt_channel_kind kind = sys->channels[g.channel].kind;
-    return kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+    return mt_channel_turns(sys->channels[g.channel].kind);
 }
 
 static mt_status read_output(const mt_system *sys, const char *text, mt_sim_request *out,
                              mt_gauge *gauges, mt_arena *mem, mt_err *err)
 {
-    static const char *const quantities[] = {"displacement", "velocity", "acceleration"};
-    const char *const colon = strchr(text, ':');
     mt_sim_output *const o = &out->outputs[out->n_outputs];
-    const char *const name =
-        colon == NULL ? text : mt_arena_strndup(mem, text, (size_t)(colon - text));
-    MT_TRY(mt_arena_check(mem, err));
+    const char *name = "";
+    mt_port seen = {.motion = 0};
     *o = (mt_sim_output){.port = text};
-    int what = 0;
-    while (colon != NULL && what < MT_COUNT(quantities) &&
-           strcmp(colon + 1, quantities[what]) != 0) {
-        what++;
-    }
-    if (what == MT_COUNT(quantities)) {
-        return mt_fail(err, MT_E_USAGE,
-                       "--output: %s: \"%s\" is none of displacement, velocity, acceleration",
-                       text, colon + 1);
-    }
-    o->what = (mt_seen)what;
+    MT_TRY(mt_err_in(err, mt_port_split(text, false, mem, &name, &seen, err), "--output"));
+    o->what = (mt_seen)seen.motion;
     MT_TRY(find_gauge(sys, name, out, gauges, mem, &o->gauge, err));
     o->angle = is_angle(sys, gauges[o->gauge]);
     out->n_outputs++;
@@ -391,12 +381,10 @@ static mt_status read_outputs(const mt_args *args, const mt_system *sys, mt_aren
     out->outputs = mt_arena_alloc(mem, room, sizeof *out->outputs);
     MT_TRY(mt_arena_check(mem, err));
     out->opt.gauges = gauges;
-    for (int i = 0; i < args->n_repeats; i++) {
-        if (args->repeats[i].option == MT_OPT_WATCHED) {
-            MT_TRY(read_output(sys, args->repeats[i].value, out, gauges, mem, err));
-        }
+    for (int i = 0; i < args->all[MT_OPT_SEEN].n; i++) {
+        MT_TRY(read_output(sys, args->all[MT_OPT_SEEN].value[i], out, gauges, mem, err));
     }
-    for (int i = 0; !args->given[MT_OPT_WATCHED] && i < sys->n_channels; i++) {
+    for (int i = 0; !args->given[MT_OPT_SEEN] && i < sys->n_channels; i++) {
         MT_TRY(read_output(sys, sys->channels[i].name, out, gauges, mem, err));
     }
     const bool joints = out->n_outputs == 0;
@@ -415,10 +403,22 @@ static mt_status read_joint(mt_subject *s, const mt_system *sys, const mt_repeat
     const char *rest = "";
     MT_TRY(split(r, &s->mem, &name, &rest, err));
     MT_TRY(find_joint(sys, r->option, name, &s->mem, &out->joint, err));
-    return mt_subject_number(s, name_of(r->option), NULL, rest, strlen(rest), &out->value, err);
+    return mt_subject_number(s, name_of(r->option), mt_subject_joint_unit(s->model, name), rest,
+                             strlen(rest), &out->value, err);
 }
 
-static mt_status read_mode(mt_subject *s, const char *text, mt_sim_request *out, mt_err *err)
+/* The unit of a displacement along a mode: an angle where sensors show nothing else. */
+static const mt_unit *shape_unit(const mt_subject *s, const mt_system *sys)
+{
+    bool turns = sys->n_channels > 0;
+    for (int i = 0; i < sys->n_channels; i++) {
+        turns = turns && mt_channel_turns(sys->channels[i].kind);
+    }
+    return s->model->units[turns ? MT_ANGLE : MT_LENGTH];
+}
+
+static mt_status read_mode(mt_subject *s, const mt_system *sys, const char *text,
+                           mt_sim_request *out, mt_err *err)
 {
     char *end = NULL;
     const long n = strtol(text, &end, 10);
@@ -426,13 +426,15 @@ static mt_status read_mode(mt_subject *s, const char *text, mt_sim_request *out,
         return mt_fail(err, MT_E_USAGE, "--mode: \"%s\" is not N:AMPLITUDE", text);
     }
     out->mode = (int)n;
-    return mt_subject_number(s, "mode", NULL, end + 1, strlen(end + 1), &out->amplitude, err);
+    return mt_subject_number(s, "mode", shape_unit(s, sys), end + 1, strlen(end + 1),
+                             &out->amplitude, err);
 }
 
 mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
-                      mt_sim_request *out, mt_err *err)
+                      const mt_vibration *profile, mt_sim_request *out, mt_err *err)
 {
-    const size_t room = (size_t)args->n_repeats + 1;
+    const int shakes = profile == NULL ? 0 : profile->n_random + profile->n_tones;
+    const size_t room = (size_t)args->n_repeats + (size_t)shakes + 1;
     mt_sim_input *const inputs = mt_arena_alloc(&s->mem, room, sizeof *inputs);
     *out = (mt_sim_request){.opt = mt_sim_options_default()};
     out->starts = mt_arena_alloc(&s->mem, room, sizeof *out->starts);
@@ -455,8 +457,11 @@ mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
             MT_TRY(read_joint(s, sys, r, &out->rates[out->n_rates++], err));
         }
     }
+    if (profile != NULL) {
+        MT_TRY(mt_sim_shake(args, s, sys, profile, out, inputs, err));
+    }
     if (args->value[MT_OPT_ALONG] != NULL) {
-        MT_TRY(read_mode(s, args->value[MT_OPT_ALONG], out, err));
+        MT_TRY(read_mode(s, sys, args->value[MT_OPT_ALONG], out, err));
     }
     if (args->dt_out_s == 0.0 && out->steady_hz > 0.0) {
         out->opt.sample_s = fmin(out->opt.sample_s, 1.0 / (STEADY_SAMPLES * out->steady_hz));

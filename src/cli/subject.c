@@ -7,6 +7,7 @@
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/watch.h"
+#include "model/joint.h"
 #include "model/judge.h"
 #include "model/setting.h"
 #include "model/values.h"
@@ -40,9 +41,10 @@ static mt_status find_configuration(mt_subject *s, const char *name, mt_err *err
 static mt_status take_settings(const mt_args *args, mt_subject *s, mt_err *err)
 {
     mt_setting *settings = NULL;
-    const mt_status rc = mt_model_read_settings(s->model, s->original, args->n_sets, args->sets,
-                                                &s->mem, &settings, err);
-    for (int i = 0; rc == MT_OK && i < args->n_sets; i++) {
+    const mt_status rc =
+        mt_model_read_settings(s->model, s->original, args->all[MT_OPT_SET].n,
+                               args->all[MT_OPT_SET].value, &s->mem, &settings, err);
+    for (int i = 0; rc == MT_OK && i < args->all[MT_OPT_SET].n; i++) {
         s->inputs[s->n_inputs] = settings[i].parameter;
         s->at[s->n_inputs++] = settings[i].value;
     }
@@ -108,6 +110,15 @@ void mt_subject_free(mt_subject *s)
     mt_model_delete(s->model);
     mt_arena_free(&s->mem);
     memset(s, 0, sizeof *s);
+}
+
+const mt_unit *mt_subject_joint_unit(const mt_model *model, const char *name)
+{
+    const int joint = mt_model_find_joint(model, name);
+    const mt_coordinate coordinate =
+        joint < 0 ? MT_COORDINATE_ANGLE
+                  : mt_joint_kind_of(model->joints[joint].type)->coordinate;
+    return model->units[coordinate == MT_COORDINATE_DISPLACEMENT ? MT_LENGTH : MT_ANGLE];
 }
 
 mt_status mt_subject_number(mt_subject *s, const char *option, const mt_unit *unit,

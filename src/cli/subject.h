@@ -34,6 +34,9 @@ void mt_subject_free(mt_subject *s);
  * the option, MT_E_MEMORY. */
 mt_status mt_subject_number(mt_subject *s, const char *option, const mt_unit *unit,
                             const char *text, size_t length, double *out, mt_err *err);
+/* What the model gives angles or displacements in, whichever the joint of this name has (a
+ * hinge of a link turns): the unit of numbers for it. */
+const mt_unit *mt_subject_joint_unit(const mt_model *model, const char *name);
 /* The parameters "A,B" of an option, or where list is NULL all that are not made of others:
  * *n of them in mem. Fails: MT_E_USAGE, MT_E_INPUT (there are none), MT_E_MEMORY. */
 mt_status mt_subject_parameters(const mt_subject *s, const char *option, const char *list,

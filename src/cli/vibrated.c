@@ -2,6 +2,10 @@
 #include "cli/vibrated.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "cli/shipped.h"
+#include "io/file.h"
 
 static const double TWO_PI = 6.28318530717958647693;
 
@@ -110,6 +114,67 @@ void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v)
         mt_json_put_number(w, "excess_at_most", p->excess);
         mt_json_put_bool(w, "at_edge", p->at_edge);
         mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+mt_status mt_vibrated_load(const mt_args *args, const char *name, mt_vibration **out,
+                           mt_diagnostics *messages, mt_err *err)
+{
+    mt_io_options opt = mt_cli_io(args);
+    const mt_shipped *own = NULL;
+    if (strpbrk(name, "/.") != NULL || !mt_file_absent(name)) {
+        return mt_vibration_load(name, &opt, out, messages, err);
+    }
+    MT_TRY(mt_shipped_named(&mt_shipped_profiles, name, &own, err));
+    const mt_shipped *const aircraft = mt_shipped_find("problems/aircraft.json");
+    const mt_file_text texts[] = {{.path = own->path, .text = own->bytes},
+                                  {.path = aircraft->path, .text = aircraft->bytes}};
+    opt.files = (mt_files){.given = texts, .n = MT_COUNT(texts), .only = true};
+    return mt_vibration_load(own->path, &opt, out, messages, err);
+}
+
+const char *mt_vibrated_axis(const mt_vibration *v)
+{
+    static const char *const names[] = {"x", "y", "z"};
+    return v->axis == MT_ABSENT ? NULL : names[v->axis];
+}
+
+const char *mt_vibrated_name(const mt_vibration *v)
+{
+    return v->name == NULL ? v->path : v->name;
+}
+
+void mt_vibrated_rule(const mt_vibration *v, mt_text *out)
+{
+    static const char *const rules[MT_TONES_RULES] = {
+        "the sum of all tones", "the largest tone", "the root of the tones' sum of squares"};
+    mt_text_add(out, "the peak is ");
+    if (v->n_random > 0) {
+        mt_text_addf(out, "%.4g times the RMS", v->sigma);
+        mt_text_add(out, v->n_tones > 0 ? "\nand " : "");
+    }
+    mt_text_add(out, v->n_tones > 0 ? rules[v->rule] : "");
+}
+
+void mt_vibrated_marks(const mt_vibration *v, mt_text *out)
+{
+    mt_text_add(out, v->n_marks > 0 ? "  Of the profile is assumed, or not confirmed:\n" : "");
+    for (int i = 0; i < v->n_marks; i++) {
+        mt_text_addf(out, "  - %s\n", v->marks[i]);
+    }
+    mt_text_add(out, v->n_marks > 0 ? "\n" : "");
+}
+
+void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v)
+{
+    mt_json_open(w, "combine", '{');
+    mt_json_put_number(w, "sigma", v->sigma);
+    mt_json_put_string(w, "tones", mt_vibration_sum_names[v->rule]);
+    mt_json_close(w);
+    mt_json_open(w, "marks", '[');
+    for (int i = 0; i < v->n_marks; i++) {
+        mt_json_put_string(w, NULL, v->marks[i]);
     }
     mt_json_close(w);
 }

@@ -2,9 +2,22 @@
 #ifndef CLI_VIBRATED_H
 #define CLI_VIBRATED_H
 
-#include "io/write_json.h"
+#include "cli/cli.h"
 #include "report/table.h"
 #include "vibration/respond.h"
+
+/* The profile in the file of that name, or, where there is none, the one of the name that is
+ * part of the program, with its catalogue. Fails and messages as mt_vibration_load. */
+mt_status mt_vibrated_load(const mt_args *args, const char *name, mt_vibration **out,
+                           mt_diagnostics *messages, mt_err *err);
+const char *mt_vibrated_axis(const mt_vibration *v); /* "z"; NULL: any */
+const char *mt_vibrated_name(const mt_vibration *v); /* what it says, or its path */
+/* "the peak is 3 times the RMS and the sum of all tones" */
+void mt_vibrated_rule(const mt_vibration *v, mt_text *out);
+/* What of it is assumed, or not confirmed; nothing where all is known. */
+void mt_vibrated_marks(const mt_vibration *v, mt_text *out);
+/* The rule as members of an open object, and the profile's marks. */
+void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v);
 
 /* What a profile does to responses, as tables and JSON: a row each. What is not an acceleration
  * has no values in g. */

@@ -77,6 +77,9 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
  * is looked up among the modes. */
 static double aim_value(const mt_workspace *fresh, int k, double motion_room)
 {
+    if (mt_objective_is(fresh->c->aims[k].type, MT_SHAKES)) {
+        return fresh->worst;
+    }
     if (!mt_objective_is(fresh->c->aims[k].type, MT_BANDS)) {
         return mt_aim_value(fresh, k, NULL);
     }
@@ -152,6 +155,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     *rec = mt_recommendation_default();
     rec->rank = design->rank;
     MT_TRY(mt_describe_goals(fresh, design, result, rec, &motion_room, err));
+    MT_TRY(mt_describe_responses(fresh, result, rec, err));
     MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
     MT_TRY(doubt(design, result, rec, err));

@@ -71,6 +71,9 @@ double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const
 const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *mem);
 /* Is it certain enough which mode the demand means? A frequency that all candidates have is. */
 bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d);
+/* describe_responses.c: likewise. */
+mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
+                                mt_err *err);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
@@ -94,6 +97,10 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
 /* describe_undetermined.c: directions that the goals do not settle. */
 mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
                                    mt_result *result, mt_err *err);
+/* describe_history.c: the designs that the search met on the way to found->solutions[0], whose
+ * f belongs to `stage`; once. Fails: MT_E_MEMORY. */
+mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, int stage,
+                              mt_result *result, mt_err *err);
 /* Slopes of the values of goals at the design, the last that is asked of `fresh`; NULL where
  * there are none (describe_slopes.c). Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_result *result,

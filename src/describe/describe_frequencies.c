@@ -6,6 +6,7 @@
 
 #include "analysis/count.h"
 #include "describe/describe.h"
+#include "problem/demand.h"
 #include "problem/robust.h"
 
 /* Modes listed of a configuration beyond those that goals name. */
@@ -28,6 +29,10 @@ static mt_status index_of_demand(mt_workspace *fresh, mt_view_work *view, const 
                                  int *index, mt_err *err)
 {
     int pos = -1;
+    *index = 0;
+    if (!mt_demand_is_modal(d)) {
+        return MT_OK;
+    }
     MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
     *index = mt_modal_index(&view->analysis->modes, pos);
     return MT_OK;

@@ -5,8 +5,11 @@
 #include "describe/describe.h"
 #include "problem/demand.h"
 #include "problem/goal.h"
+#include "problem/goal_frequency_response.h"
 
 static const double PERCENT = 100.0;
+static const double HALF_TURN = 3.14159265358979323846;
+static const double HALF_TURN_DEG = 180.0;
 
 /* "installed mode 1", "installed \"heave\"", or the expression. */
 static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
@@ -15,6 +18,9 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
         return d->goal->expression_text;
     }
     const char *const configuration = mt_view_name(p, &p->views[d->view]);
+    if (!mt_demand_is_modal(d)) {
+        return configuration;
+    }
     return d->mode > 0
                ? mt_arena_printf(mem, "%s mode %d", configuration, d->mode)
                : mt_arena_printf(mem, "%s \"%s\"", configuration, d->goal->mode.mode_name.s);
@@ -70,7 +76,7 @@ static double greater(double a, double b)
 /* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a
  * shape its distance. */
 static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
-                               const mt_nlp_values *v)
+                               const mt_nlp_values *v, double own_worst)
 {
     double worst = 0.0;
     if (d->row_res >= 0) {
@@ -78,6 +84,9 @@ static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
     }
     if (d->row_eq >= 0) {
         return fabs(v->eq[d->row_eq]);
+    }
+    if (d->row_soft >= 0) {
+        return fmax(own_worst, 0.0); /* of this demand alone */
     }
     for (int k = 0; k < d->n_in; k++) {
         worst = greater(worst, -v->in[d->row_in + k]);
@@ -144,9 +153,12 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     const char *const unit = mt_study_goal_unit(p->study, asked);
     g->unit = d->view < 0 && unit[0] == '\0' ? NULL : unit;
     g->expression = d->view < 0 ? asked->expression_text : NULL;
-    g->reference = asked->reference_name.s;
+    g->reference =
+        asked->shake != NULL ? asked->shake->measurement_name.s : asked->reference_name.s;
     if (d->view >= 0) {
         g->configuration = mt_view_name(p, &p->views[d->view]);
+    }
+    if (mt_demand_is_modal(d)) {
         g->mode = d->mode;
         g->name = d->mode > 0 ? NULL : asked->mode.mode_name.s;
     }
@@ -154,6 +166,16 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     g->at_most = asked->at_most;
     g->target = d->ops->value == NULL ? 0.0 : d->equals; /* a distance is to be none */
     g->tolerance_percent = asked->tolerance_percent;
+}
+
+/* The measured line where a response is off most. */
+static void say_line(const mt_workspace *fresh, const mt_demand *d, mt_result_goal *g)
+{
+    double complex off = 0.0;
+    if (mt_fit_worst(fresh, d, &g->off_most_hz, &off)) {
+        g->off_most_ratio = exp(creal(off));
+        g->off_most_phase_deg = cimag(off) / HALF_TURN * HALF_TURN_DEG;
+    }
 }
 
 static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v,
@@ -164,29 +186,35 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     double percent = nan("");
     *g = mt_result_goal_default();
     say_what(fresh->p, d, g);
+    const double others = fresh->worst;
+    fresh->worst = -HUGE_VAL;
     const mt_status rc = mt_demand_eval(fresh, d, false, v, &g->value, &own);
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
     if (rc == MT_OK) {
-        violation = demand_violation(fresh, d, v);
+        const double own_worst = fresh->worst;
+        fresh->worst = fmax(others, own_worst);
+        violation = demand_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
         percent = PERCENT * off_by(d, g->value, violation);
+        say_line(fresh, d, g);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");
+        fresh->worst = d->row_soft >= 0 ? nan("") : others;
         *why = why->code == MT_OK ? own : *why;
         for (int i = 0; i < d->n_res && d->row_res >= 0; i++) {
             fresh->r[d->row_res + i] = nan(""); /* nor is the misfit known */
         }
     }
-    g->weighted = d->row_res >= 0;
+    g->weighted = d->row_res >= 0 || d->row_soft >= 0;
     g->text = demand_text(fresh->p, d, &result->mem);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);
     MT_TRY(mt_arena_check(&result->mem, err));
-    return d->view < 0 || mt_describe_is_told(&fresh->views[d->view], d)
+    return !mt_demand_is_modal(d) || mt_describe_is_told(&fresh->views[d->view], d)
                ? MT_OK
                : doubt(fresh, d, result, g, err);
 }

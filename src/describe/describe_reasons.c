@@ -269,6 +269,32 @@ static void say_violations(mt_sentences *s)
     }
 }
 
+/* Where responses are off their measurements most. */
+static void say_lines(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_goals; i++) {
+        const mt_result_goal *const g = &s->rec->goals[i];
+        if (isfinite(g->off_most_hz) && isfinite(g->off_most_ratio)) {
+            mt_say_of(s, "rank", g->pointer);
+            mt_say(s,
+                   "%s: off by %.3g %% rms, most at %.6g Hz, where the response is %.4g times "
+                   "what was measured and its phase %+.3g deg from it.",
+                   g->text, 100.0 * g->value, g->off_most_hz, g->off_most_ratio,
+                   g->off_most_phase_deg);
+        }
+    }
+}
+
+/* How much it shakes: texts begin with "the". */
+static void say_responses(mt_sentences *s)
+{
+    for (int i = 0; i < s->rec->n_responses; i++) {
+        const mt_result_response *const r = &s->rec->responses[i];
+        mt_say_of(s, "hold", r->pointer);
+        mt_say(s, "T%s.", r->text + 1);
+    }
+}
+
 /* Root mean square of what the weighted goals are off by in percent, each weighted as in the
  * study. */
 static void say_misfit(mt_sentences *s)
@@ -277,11 +303,12 @@ static void say_misfit(mt_sentences *s)
     double sum = 0.0;
     for (int i = 0; i < s->p->n_demands; i++) {
         const mt_result_goal *const g = &s->rec->goals[i];
-        if (g->weighted) {
+        if (s->p->demands[i].row_res >= 0) {
             weighted++;
             sum += s->p->demands[i].goal->weight * g->violation_percent * g->violation_percent;
         }
     }
+    say_lines(s);
     mt_say_of(s, "rank", NULL);
     if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
         mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
@@ -395,6 +422,7 @@ mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, m
     say_doubt(&s);
     say_slack(&s);
     say_violations(&s);
+    say_responses(&s);
     mt_say_bands(&s);
     return mt_arena_check(&result->mem, err);
 }
@@ -410,6 +438,7 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
     say_frequencies(&s);
     mt_say_worst(&s);
     say_violations(&s);
+    say_responses(&s);
     mt_say_bands(&s);
     if (design->cut) {
         mt_say_of(&s, "rank", NULL);

@@ -32,13 +32,14 @@ static mt_status of_value(mt_workspace *fresh, const mt_demand *d, mt_result *re
     const int n = fresh->p->n;
     int pos = -1;
     double q = nan("");
+    const bool modal = mt_demand_is_modal(d);
     if (d->view >= 0) {
         mt_view_work *const view = &fresh->views[d->view];
         mt_view_ask_all(view);
         view->ask.vectors = true;
         MT_TRY(mt_view_solve(fresh, view, true, err));
-        MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
-        if (pos < 0) {
+        MT_TRY(modal ? mt_view_position(fresh, view, d->mode, d->named, &pos, err) : MT_OK);
+        if (modal && pos < 0) {
             return MT_OK;
         }
     }
@@ -46,7 +47,9 @@ static mt_status of_value(mt_workspace *fresh, const mt_demand *d, mt_result *re
     double *const slopes = mt_arena_f64(&result->mem, (size_t)n, 1);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < n; i++) {
-        slopes[i] = fresh->slope[i] / mt_workspace_stretch(fresh, i);
+        /* slopes of logarithms are those of ln q */
+        slopes[i] = (d->measure == MT_MEASURE_RATIO ? q : 1.0) * fresh->slope[i] /
+                    mt_workspace_stretch(fresh, i);
     }
     g->sensitivity = slopes;
     return MT_OK;

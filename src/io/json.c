@@ -10,12 +10,12 @@
 #include "io/json_priv.h"
 
 #include <float.h>
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "io/json_print.h"
+#include "io/locale.h"
 
 enum { CJSON_NUMBER_MOST = 63, CJSON_TYPE = 0xFF };
 
@@ -140,9 +140,10 @@ static void take_out_duplicates(mt_json *doc, cJSON *object, cJSON **members)
     }
 }
 
-/* Let cJSON build the values of a scanned text. */
-static mt_status build(mt_json *doc, mt_err *err)
+/* Let cJSON build the values of a scanned text: of a document. */
+static mt_status build(void *context, mt_err *err)
 {
+    mt_json *const doc = context;
     mt_arena scratch = {.first = NULL};
     const size_t n = (size_t)doc->spots.n;
     const char *const text = without_long_numbers(doc, &scratch);
@@ -174,20 +175,6 @@ static mt_status build(mt_json *doc, mt_err *err)
     return rc;
 }
 
-/* This thread keeps its locale. */
-static mt_status build_in_any_locale(mt_json *doc, mt_err *err)
-{
-    const locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c == (locale_t)0) {
-        return mt_fail_memory(err);
-    }
-    const locale_t own = uselocale(c);
-    const mt_status rc = build(doc, err);
-    (void)uselocale(own);
-    freelocale(c);
-    return rc;
-}
-
 mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *err)
 {
     *out = NULL;
@@ -210,7 +197,7 @@ mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *
         return mt_fail(err, MT_E_INPUT, "the text is not JSON");
     }
     if (rc == MT_OK) {
-        rc = build_in_any_locale(doc, err);
+        rc = mt_locale_plain(build, doc, err);
     }
     if (rc == MT_OK) {
         rc = mt_arena_check(&doc->mem, err);

@@ -302,8 +302,8 @@ static mt_status read_text(mt_read_profile *p, const mt_file *file, mt_diagnosti
     return rc;
 }
 
-mt_status mt_vibration_load(const char *path, const mt_io_options *opt, mt_vibration **out,
-                            mt_diagnostics *messages, mt_err *err)
+static mt_status load_from(const char *path, const char *within, const mt_io_options *opt,
+                           mt_vibration **out, mt_diagnostics *messages, mt_err *err)
 {
     const mt_io_options none = {0};
     mt_read_profile p = {.files = opt == NULL ? none : *opt, .failed = MT_OK};
@@ -315,7 +315,7 @@ mt_status mt_vibration_load(const char *path, const mt_io_options *opt, mt_vibra
         return rc;
     }
     const size_t limit = p.files.max_bytes == 0 ? MT_JSON_MAX_BYTES : p.files.max_bytes;
-    rc = mt_files_read(&p.files.files, path, NULL, limit, &file, err);
+    rc = mt_files_read(&p.files.files, path, within, limit, &file, err);
     if (rc != MT_OK) {
         goto done;
     }
@@ -341,4 +341,16 @@ done:
     }
     *out = p.v;
     return MT_OK;
+}
+
+mt_status mt_vibration_load(const char *path, const mt_io_options *opt, mt_vibration **out,
+                            mt_diagnostics *messages, mt_err *err)
+{
+    return load_from(path, NULL, opt, out, messages, err);
+}
+
+mt_status mt_vibration_load_within(const char *path, const mt_io_options *opt,
+                                   mt_vibration **out, mt_diagnostics *messages, mt_err *err)
+{
+    return load_from(path, opt->root, opt, out, messages, err);
 }

@@ -16,6 +16,9 @@
  */
 mt_status mt_vibration_load(const char *path, const mt_io_options *opt, mt_vibration **out,
                             mt_diagnostics *messages, mt_err *err);
+/* The same of a profile that another file names: it must lie within opt->root. */
+mt_status mt_vibration_load_within(const char *path, const mt_io_options *opt,
+                                   mt_vibration **out, mt_diagnostics *messages, mt_err *err);
 
 /* The tables of keys of a profile, for the test that holds them to the JSON Schema; *n their
  * number. */

@@ -25,6 +25,7 @@
     X(STUDY_GOALS, "goals", MT_KEY_LIST, false)                      \
     X(STUDY_OBJECTIVE, "objective", MT_KEY_OBJECT_OR_LIST, false)    \
     X(STUDY_REFERENCES, "references", MT_KEY_OBJECT, false)          \
+    X(STUDY_MEASUREMENTS, "measurements", MT_KEY_OBJECT, false)      \
     X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false) \
     X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                  \
     X(STUDY_SPREAD, "spread", MT_KEY_OBJECT, false)                  \
@@ -66,6 +67,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
                                                  &mt_study_variable_keys,
                                                  &mt_study_reference_keys,
                                                  &mt_study_measured_keys,
+                                                 &mt_study_measurement_keys,
                                                  &mt_study_rotor_keys,
                                                  &mt_study_tail_keys,
                                                  &mt_study_machine_keys,
@@ -315,6 +317,10 @@ static void note_places(mt_study_reader *s)
         note_place(s, g->equals_addr);
         note_place(s, g->at_least_addr);
         note_place(s, g->at_most_addr);
+        if (g->shake != NULL) {
+            note_place(s, g->shake->input.addr);
+            note_place(s, g->shake->output.addr);
+        }
     }
     for (int i = 0; i < study->doubts.n && i < MOST_PLACED; i++) {
         note_place(s, study->doubts.items[i].addr);
@@ -346,6 +352,7 @@ static void read_root(mt_study_reader *s)
     ask_search(s);
     mt_read_study_variables(s, o.found[STUDY_VARIABLES]);
     mt_read_study_references(s, o.found[STUDY_REFERENCES]);
+    mt_read_study_measurements(s, o.found[STUDY_MEASUREMENTS]);
     mt_read_study_goals(s, o.found[STUDY_GOALS]);
     mt_read_study_aircraft(s, o.found[STUDY_AIRCRAFT]);
     mt_read_study_objectives(s, o.found[STUDY_OBJECTIVE]);

@@ -216,6 +216,8 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
             mt_read_study_expr(s, g.o.found[i], &goal->expression, &goal->expression_text);
         } else if (slot == MT_SLOT_BANDS) {
             read_avoid(&g);
+        } else if (slot == MT_SLOT_OUTPUT) {
+            mt_read_study_shake(s, &g.o, goal);
         }
     }
     check_demands(&g);

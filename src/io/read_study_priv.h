@@ -84,7 +84,12 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
 
 void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
+void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
+/* What a goal on ports has that is compared with one. */
+void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+/* What a goal that is about ports has besides. */
+void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
 void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
 /* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the
@@ -105,6 +110,7 @@ extern const mt_key_table mt_study_vary_keys;
 extern const mt_key_table mt_study_span_keys;
 extern const mt_key_table mt_study_reference_keys;
 extern const mt_key_table mt_study_measured_keys;
+extern const mt_key_table mt_study_measurement_keys;
 extern const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT]; /* by kind */
 extern const mt_key_table mt_study_rotor_keys;
 extern const mt_key_table mt_study_tail_keys;

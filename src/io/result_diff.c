@@ -35,6 +35,7 @@ static const list_rule RULES[] = {
     {"frequencies", "frequency", {"configuration", "mode", "reference"}, NULL},
     {"gap_assignment", "band", {"configuration", "band"}, NULL},
     {"goals", "goal", {"pointer"}, "goal"},
+    {"history", "step", {NULL}, NULL},
     {"inputs", "input", {"file"}, NULL},
     {"motion", "motion", {"goal", "drive"}, NULL},
     {"objectives", "objective", {"text"}, NULL},
@@ -43,6 +44,7 @@ static const list_rule RULES[] = {
     {"parameters", "parameter", {"name"}, NULL},
     {"per_variable", "variable", {"name"}, NULL},
     {"points", "point", {NULL}, NULL},
+    {"responses", "response", {"goal", "configuration"}, NULL},
     {"published", "value", {"pointer"}, "label"},
     {"recommendations", "recommendation", {NULL}, NULL},
     {"reasons", "reason", {NULL}, NULL},
@@ -56,8 +58,8 @@ static const list_rule RULES[] = {
 /* Sentences, places in files, measures of rounding, and digests of what is written from all
  * this. */
 static const char *const PASSED_OVER[] = {
-    "column",  "goal",     "kkt_residual", "line", "orthogonality", "outputs",
-    "reasons", "residual", "status_text",  "text", "warnings",
+    "column",  "goal",    "history",  "kkt_residual", "line", "orthogonality",
+    "outputs", "reasons", "residual", "status_text",  "text", "warnings",
 };
 
 /* What changes where something else in the same part does. */

@@ -1,30 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "modetune/mechanism.h"
+#include "library/mechanism_priv.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/analysis.h"
 #include "analysis/channels.h"
 #include "analysis/sensitivity.h"
 #include "base/text.h"
 #include "model/judge.h"
 #include "model/values.h"
 #include "response/response.h"
+#include "vibration/profiled.h"
 
 static const double TWO_PI = 6.283185307179586477;
-
-struct mt_mechanism {
-    mt_analysis *a; /* owned */
-    mt_arena mem;   /* as long as this */
-    mt_arena scratch;
-    int n_inputs;
-    int *inputs;   /* [n_inputs] parameters */
-    double *at;    /* [n_inputs] their values at the last evaluation */
-    bool slopes;   /* derivatives have been asked for: they will be again */
-    bool has_none; /* the last evaluation failed */
-};
 
 static mt_status unknown(const char *what, const char *name, int n, const char *const *names,
                          mt_err *err)
@@ -460,6 +449,47 @@ mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *
             store(size, dh, re, im);
         }
     }
+    mt_response_free(&r);
+    return rc;
+}
+
+static mt_status shake(mt_mechanism *m, const mt_ports *ports, const mt_vibration *v, int room,
+                       mt_vibration_answer *answers, mt_response *r, mt_err *err)
+{
+    mt_response_request request = request_of(ports);
+    mt_profiled profiled;
+    mt_arena_clear(&m->scratch);
+    MT_TRY(mt_profiled_ports(v, m->a->sys, &m->scratch, &request, err));
+    MT_TRY(mt_response_open(m->a, &request, r, err));
+    MT_TRY(mt_profiled_find(r, v, &profiled, err));
+    if (room < profiled.n_pairs) {
+        return mt_fail(err, MT_E_USAGE, "mt_mechanism_vibration: room for %d answers, not %d",
+                       room, profiled.n_pairs);
+    }
+    for (int p = 0; p < profiled.n_pairs; p++) {
+        const mt_vibration_response *const a = &profiled.answers[p];
+        answers[p] = (mt_vibration_answer){.end = (mt_vibration_end)a->end,
+                                           .rms = a->rms,
+                                           .rms_error = a->rms_bound,
+                                           .tones = a->sine,
+                                           .peak = a->peak,
+                                           .proven = profiled.no_sums == NULL ? 1 : 0};
+    }
+    return MT_OK;
+}
+
+mt_status mt_mechanism_vibration(mt_mechanism *mechanism, const mt_ports *ports,
+                                 const mt_vibration *vibration, int room,
+                                 mt_vibration_answer *answers, mt_err *err)
+{
+    static const mt_ports none = {.n_inputs = 0};
+    MT_NOT_NULL(mechanism, err);
+    MT_NOT_NULL(vibration, err);
+    MT_NOT_NULL(answers, err);
+    ports = ports == NULL ? &none : ports;
+    MT_TRY(check_ports(mechanism, ports, __func__, err));
+    mt_response r = {.a = NULL};
+    const mt_status rc = shake(mechanism, ports, vibration, room, answers, &r, err);
     mt_response_free(&r);
     return rc;
 }

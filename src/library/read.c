@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading and writing for users of the library: the same as for the program. */
 #include "modetune/model.h"
+#include "modetune/profile.h"
 #include "modetune/study.h"
 
 #include <math.h>
@@ -78,6 +79,17 @@ mt_status mt_model_read(const char *path, const mt_read_options *opt, mt_model *
     MT_NOT_NULL(path, err);
     MT_TRY(take(__func__, opt, &asked, err));
     return mt_model_load(path, &asked.io, out, asked.own.diagnostics, err);
+}
+
+mt_status mt_vibration_read(const char *path, const mt_read_options *opt, mt_vibration **out,
+                            mt_err *err)
+{
+    request asked;
+    MT_NOT_NULL(out, err);
+    *out = NULL;
+    MT_NOT_NULL(path, err);
+    MT_TRY(take(__func__, opt, &asked, err));
+    return mt_vibration_load(path, &asked.io, out, asked.own.diagnostics, err);
 }
 
 mt_status mt_study_read(const char *path, const mt_read_options *opt, mt_study **out,

@@ -61,20 +61,39 @@ static int partner(const mt_term *t, int i)
     return t->pair ? (2 * t->first) + 1 - i : i;
 }
 
+/* One row of a sum, what it is multiplied with, and its part of the term. */
+typedef struct piece {
+    const mt_term *term;
+    int row;
+    int other;
+    double part;
+} piece;
+
+/* The first piece from row *i on that joints do not block; *i goes behind it. */
+static bool next_piece(const mt_linear *lin, sum s, int *i, piece *out)
+{
+    const mt_term_list *const list = &lin->list[s.kind];
+    for (; *i < list->n_rows; ++*i) {
+        const mt_term *const t = &list->terms[list->row_term[*i]];
+        if (!is_blocked(lin, s.kind, *i, t)) {
+            *out = (piece){t, *i, partner(t, *i), t->pair ? 0.5 : 1.0};
+            ++*i;
+            return true;
+        }
+    }
+    return false;
+}
+
 /* out += scale K phi (STIFFNESS), M phi (MASS) and so on, full coordinates, without the
  * geometric part. */
 static void full_product(const mt_linear *lin, sum s, double scale, const double *phi,
                          double *out)
 {
-    const mt_term_list *const list = &lin->list[s.kind];
     const mt_rows *const rows = &lin->full[s.kind];
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        if (is_blocked(lin, s.kind, i, t)) {
-            continue;
-        }
-        const double c = scale * weight(lin, s, t) * (t->pair ? 0.5 : 1.0);
-        mt_rows_axpy(rows, i, c * mt_rows_dot(rows, partner(t, i), phi), out);
+    piece k;
+    for (int i = 0; next_piece(lin, s, &i, &k);) {
+        const double c = scale * weight(lin, s, k.term) * k.part;
+        mt_rows_axpy(rows, k.row, c * mt_rows_dot(rows, k.other, phi), out);
     }
 }
 
@@ -82,25 +101,19 @@ static void full_product(const mt_linear *lin, sum s, double scale, const double
 static void full_product_derivative(const mt_linear *lin, sum s, int p, const double *phi,
                                     double *out)
 {
-    const mt_term_list *const list = &lin->list[s.kind];
     const mt_rows *const rows = &lin->full[s.kind];
     const mt_rows *const drows = &lin->tangent[p].rows[s.kind];
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        if (is_blocked(lin, s.kind, i, t)) {
+    piece k;
+    for (int i = 0; next_piece(lin, s, &i, &k);) {
+        const double c = weight(lin, s, k.term) * k.part;
+        const double dc = weight_slope(lin, s, k.term, p) * k.part;
+        if (dc == 0.0 && mt_rows_empty(drows, k.row) && mt_rows_empty(drows, k.other)) {
             continue;
         }
-        const int other = partner(t, i);
-        const double half = t->pair ? 0.5 : 1.0;
-        const double c = weight(lin, s, t) * half;
-        const double dc = weight_slope(lin, s, t, p) * half;
-        if (dc == 0.0 && mt_rows_empty(drows, i) && mt_rows_empty(drows, other)) {
-            continue;
-        }
-        const double way = mt_rows_dot(rows, other, phi);
-        const double dway = mt_rows_dot(drows, other, phi);
-        mt_rows_axpy(rows, i, (dc * way) + (c * dway), out);
-        mt_rows_axpy(drows, i, c * way, out);
+        const double way = mt_rows_dot(rows, k.other, phi);
+        const double dway = mt_rows_dot(drows, k.other, phi);
+        mt_rows_axpy(rows, k.row, (dc * way) + (c * dway), out);
+        mt_rows_axpy(drows, k.row, c * way, out);
     }
 }
 
@@ -397,24 +410,19 @@ double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, co
                                const double *b)
 {
     const sum s = sum_of(matrix);
-    const mt_term_list *const list = &lin->list[s.kind];
     const mt_rows *const rows = &lin->full[s.kind];
     const mt_rows *const drows = is_moved(lin, p) ? &lin->tangent[p].rows[s.kind] : NULL;
     const ptrdiff_t nq = lin->sys->nq;
     double out = 0.0;
-    for (int i = 0; i < list->n_rows; i++) {
-        const mt_term *const t = &list->terms[list->row_term[i]];
-        if (is_blocked(lin, s.kind, i, t)) {
-            continue;
-        }
-        const int other = partner(t, i);
-        const double half = t->pair ? 0.5 : 1.0;
-        const double left = mt_rows_dot(rows, i, a);
-        const double right = mt_rows_dot(rows, other, b);
-        out += half * weight_slope(lin, s, t, p) * left * right;
+    piece k;
+    for (int i = 0; next_piece(lin, s, &i, &k);) {
+        const double left = mt_rows_dot(rows, k.row, a);
+        const double right = mt_rows_dot(rows, k.other, b);
+        out += k.part * weight_slope(lin, s, k.term, p) * left * right;
         if (drows != NULL) {
-            out += half * weight(lin, s, t) *
-                   ((mt_rows_dot(drows, i, a) * right) + (left * mt_rows_dot(drows, other, b)));
+            out += k.part * weight(lin, s, k.term) *
+                   ((mt_rows_dot(drows, k.row, a) * right) +
+                    (left * mt_rows_dot(drows, k.other, b)));
         }
     }
     for (ptrdiff_t c = 0;

@@ -129,6 +129,10 @@ typedef enum mt_channel_kind {
     MT_CHANNEL_BEAM_POINT,
     MT_CHANNEL_BEAM_ROTATION
 } mt_channel_kind;
+static inline bool mt_channel_turns(mt_channel_kind kind)
+{
+    return kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
+}
 /* One scalar output of a sensor: a displacement or rotation along a global axis, per unit of
  * q. */
 typedef struct mt_channel_def {

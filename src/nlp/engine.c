@@ -290,6 +290,11 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
         refuse(e, MT_E_DOMAIN, &here);
         return false;
     }
+    if (e->steps != NULL && e->eq_shift == NULL) { /* else it is another question */
+        const mt_step now = {
+            .evals = e->evals, .f = p->f, .violation = p->violation, .squares = p->squares};
+        mt_steps_add(e->steps, &now);
+    }
     return true;
 }
 

@@ -52,6 +52,7 @@ typedef struct mt_nlp_engine {
     mt_status refused; /* first "no value here" and its text */
     mt_err refused_err;
     mt_err *err;
+    mt_steps *steps; /* what is evaluated is noted here; may be NULL */
     mt_arena scratch;
 } mt_nlp_engine;
 

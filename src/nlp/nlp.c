@@ -45,6 +45,7 @@ static bool begin(mt_nlp_engine *e, double *t, mt_nlp_point *p)
 /* How one task ended; slots are filled by workers in any order and read in order. */
 typedef struct job_slot {
     long evals;
+    mt_steps steps; /* of these */
     mt_stop stop;
     mt_status fatal;
     mt_status refused;
@@ -62,7 +63,8 @@ typedef struct start_job {
     double *t;         /* n x n, the starts where they begin */
     job_slot *slots;   /* [n] */
     int n;
-    long budget; /* of all of them */
+    long budget;     /* of all of them */
+    mt_steps *steps; /* of the whole search */
     atomic_int abort;
     mt_progress *progress; /* of first values */
     bool told;             /* there */
@@ -88,6 +90,7 @@ static mt_status run_task(void *context, int worker, int k, mt_scope *own, mt_er
     MT_TRY(mt_nlp_engine_init(&e, &nlp, &opt, err));
     e.err = &slot->fatal_err;
     e.evals = slot->evals;
+    e.steps = &slot->steps;
     e.abort = &job->abort;
     e.df_scale = all->df_scale;
     if (job->task == BEGIN) {
@@ -130,6 +133,24 @@ static void collect(mt_nlp_engine *e, const start_job *job, long before)
     e->ended = e->ended || e->stop == MT_STOP_USER;
 }
 
+static job_slot *new_slots(int n, mt_arena *mem)
+{
+    job_slot *const slots = mt_arena_alloc(mem, (size_t)n, sizeof *slots);
+    for (int k = 0; k < n && slots != NULL; k++) {
+        slots[k].steps = mt_steps_new(MT_STEPS_OF_TASK, mem);
+    }
+    return slots;
+}
+
+/* As if the tasks had been done one after the other. */
+static void note_steps(const start_job *job, long before)
+{
+    for (int k = 0; k < job->n; k++) {
+        mt_steps_append(job->steps, &job->slots[k].steps, before, 0, 0);
+        before += job->slots[k].evals;
+    }
+}
+
 /* What a task leaves: what it used, and where its local search stands. */
 static void tape_task(void *context, int k, mt_tape *tape)
 {
@@ -145,6 +166,9 @@ static void tape_task(void *context, int k, mt_tape *tape)
     mt_tape_int(tape, &stop, MT_STOP_DONE, MT_STOP_MAX_EVALS);
     mt_tape_int(tape, &refused, MT_OK, MT_STATUS_COUNT - 1);
     mt_tape_text(tape, &text, mem);
+    got.steps = tape->reads ? mt_steps_new(MT_STEPS_OF_TASK, mem) : slot->steps;
+    tape->failed = tape->failed || got.steps.at == NULL;
+    mt_steps_tape(&got.steps, tape);
     if (!mt_nlp_local_tape(job->e, job->at[k], tape) || !tape->reads) {
         return;
     }
@@ -173,13 +197,13 @@ static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before
 
 /* The approach from starts all->starts .. all->starts + n - 1; their ends are added to the
  * list. The scale of the objective is that of the first ones. */
-static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
+static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n, mt_steps *steps)
 {
     mt_arena *const mem = &e->scratch;
     const long before = e->evals;
-    start_job job = {.e = e, .n = n, .budget = e->opt.max_evals - before};
+    start_job job = {.e = e, .n = n, .budget = e->opt.max_evals - before, .steps = steps};
     double *const t = mt_nlp_starts(e->nlp, e->opt.seed, all->starts + n, mem);
-    job.slots = mt_arena_alloc(mem, (size_t)n, sizeof *job.slots);
+    job.slots = new_slots(n, mem);
     job.at = mt_arena_alloc(mem, (size_t)n, sizeof(mt_nlp_local *));
     mt_nlp_ends_grow(e, all, n);
     if (!mt_nlp_has_room(e, mem)) {
@@ -201,6 +225,7 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
     if (e->fatal == MT_OK && e->stop != MT_STOP_USER) {
         run_job(e, &job, APPROACH, before);
     }
+    note_steps(&job, before);
     for (int k = 0; k < n; k++) {
         first[k].start = all->starts + k;
         if (first[k].begun) {
@@ -216,7 +241,8 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n)
  * them only are one. Then from one end of each neighbourhood, until all that are left came to
  * rest or had their turn.
  */
-static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out)
+static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_arena *mem,
+                        mt_nlp_result *out)
 {
     mt_nlp_local **const chosen =
         mt_arena_alloc(&e->scratch, (size_t)all->count, sizeof(mt_nlp_local *));
@@ -232,12 +258,14 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nl
     }
     while (n > 0 && !e->ended) {
         const long before = e->evals;
-        start_job job = {.e = e, .n = n, .at = chosen, .budget = e->opt.max_evals - before};
-        job.slots = mt_arena_alloc(&e->scratch, (size_t)n, sizeof *job.slots);
+        start_job job = {.e = e, .n = n, .at = chosen, .steps = steps};
+        job.budget = e->opt.max_evals - before;
+        job.slots = new_slots(n, &e->scratch);
         if (!mt_nlp_has_room(e, &e->scratch)) {
             return;
         }
         run_job(e, &job, FINISH, before);
+        note_steps(&job, before);
         for (int k = 0; k < n; k++) {
             chosen[k]->polished = true;
         }
@@ -257,10 +285,10 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nl
  * stands for as much that was not met at all: Good and Turing) and the last starts brought no
  * new one.
  */
-static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_nlp_result *out)
+static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_nlp_result *out)
 {
     const int first = e->n_free > 0 ? e->opt.starts : 1;
-    bool more = add_starts(e, all, first) && e->open_starts;
+    bool more = add_starts(e, all, first, steps) && e->open_starts;
     int before = 1;
     while (more && e->stop == MT_STOP_DONE && all->starts < ROOT_ROUNDS * first) {
         const int left = ROOT_ROUNDS * first - all->starts;
@@ -270,7 +298,7 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_nlp_result *out)
             break;
         }
         before = roots;
-        more = add_starts(e, all, all->starts < left ? all->starts : left);
+        more = add_starts(e, all, all->starts < left ? all->starts : left, steps);
     }
     out->starts = all->starts;
 }
@@ -287,8 +315,10 @@ mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *m
     *out = (mt_nlp_result){.stop = MT_STOP_DONE};
     MT_TRY(mt_nlp_engine_init(&e, nlp, opt, err));
     mt_nlp_ends all = {0};
-    all_starts(&e, &all, out);
-    finish_ends(&e, &all, mem, out);
+    out->steps = mt_steps_new(MT_STEPS_MOST, mem);
+    (void)mt_nlp_has_room(&e, mem);
+    all_starts(&e, &all, &out->steps, out);
+    finish_ends(&e, &all, &out->steps, mem, out);
     mt_nlp_judge(&e, &all, mem, out);
     (void)mt_nlp_has_room(&e, &e.scratch);
     out->evals = e.evals;

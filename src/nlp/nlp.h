@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
+#include "nlp/steps.h"
 
 /*
  * A smooth search problem in scaled variables t (ln of positive parameters, linear otherwise;
@@ -120,6 +121,7 @@ typedef struct mt_nlp_result {
      * what was met once and twice (Chao 1984); 0 when all were met twice; else NaN */
     double missing;
     mt_stop stop;
+    mt_steps steps; /* on the way here */
     /* at the best solution: orthonormal directions of t-space along which crossing the whole
      * bounds changes every residual and constraint by less than its tolerance */
     int n_undetermined;

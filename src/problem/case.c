@@ -37,6 +37,9 @@ void mt_case_bound(mt_case *c, int i, double lower, double upper)
     c->robust = NULL; /* its corners are those of all bounds */
 }
 
+/* Of rows of the objective "vibration": what it is told within. */
+static const double SOFT_TOLERANCE = 1e-7;
+
 /* Tolerances of all rows; those of corners and of what is held follow. */
 static mt_status init_tolerances(mt_case *c, mt_arena *mem, mt_err *err)
 {
@@ -53,11 +56,30 @@ static mt_status init_tolerances(mt_case *c, mt_arena *mem, mt_err *err)
         for (int k = 0; k < d->n_in; k++) {
             c->in_tol[d->row_in + k] = d->tolerance;
         }
+        for (int k = 0; k < d->n_soft && c->shaken; k++) {
+            c->in_tol[c->first_soft_row + d->row_soft + k] = SOFT_TOLERANCE;
+        }
     }
     for (int k = 0; c->below != NULL && mt_clear_row_at(c, c->below, k, &at); k++) {
         c->in_tol[c->first_band_row + k] = c->clears[at.clear].tolerance;
     }
     return MT_OK;
+}
+
+/* Behind the rows of bands those of the objective "vibration", and its coordinate: any ratio of
+ * e^-49 to e^50. */
+static void lay_out_soft(mt_case *c)
+{
+    const int n = c->p->n;
+    c->shaken = mt_objective_is(c->aims[0].type, MT_SHAKES);
+    c->first_soft_row = c->n_in;
+    if (c->shaken) {
+        c->n_in += c->p->n_soft;
+        c->n_t = n + 1;
+        c->lower_t[n] = 1.0;
+        c->upper_t[n] = 2.0 * MT_SHAKEN_SHIFT;
+        c->origin_t[n] = MT_SHAKEN_SHIFT;
+    }
 }
 
 mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
@@ -67,6 +89,7 @@ mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut
     c->robust = NULL;
     c->n_next = 0;
     MT_TRY(mt_clear_lay_out(c, below, n_cuts, cuts, mem, err));
+    lay_out_soft(c);
     MT_TRY(init_tolerances(c, mem, err));
     MT_TRY(mt_robust_init(c, known, mem, err));
     MT_TRY(mt_next_init(c, mem, err));

@@ -71,7 +71,13 @@ typedef struct mt_case {
     int n_next;
     /* t has one more entry, the least clearance ln(...) that is made greatest */
     bool clearance;
+    /* t has one more entry, MT_SHAKEN_SHIFT + the largest ln(value / limit) of the goals that
+     * the objective "vibration" is made of; 0: not given, it is looked up */
+    bool shaken;
+    int first_soft_row; /* of these, in `in` */
 } mt_case;
+
+#define MT_SHAKEN_SHIFT 50.0
 
 /* out: as `from`, with bounds of its own. Fails: MT_E_MEMORY. */
 mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err);

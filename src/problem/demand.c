@@ -19,6 +19,11 @@ bool mt_demand_is_frequency(const mt_demand *d)
     return d->quantity == MT_QUANTITY_FREQUENCY && d->mode > 0;
 }
 
+bool mt_demand_is_modal(const mt_demand *d)
+{
+    return d->view >= 0 && d->goal->shake == NULL;
+}
+
 double mt_demand_weight(const mt_workspace *w, const mt_demand *d)
 {
     return w->c->weight[d - w->p->demands];
@@ -29,7 +34,7 @@ static void put(const mt_workspace *w, double *matrix, int rows, int row, double
 {
     const int n = w->p->n;
     if (gradient != NULL && w->c->n_t > n && matrix != w->dr) {
-        /* the clearance enters no goal but the bands */
+        /* the last coordinate enters no goal, but bands or those of its own */
         matrix[row + ((ptrdiff_t)n * rows)] = 0.0;
     }
     for (int i = 0; i < n && gradient != NULL; i++) {
@@ -37,13 +42,45 @@ static void put(const mt_workspace *w, double *matrix, int rows, int row, double
     }
 }
 
+bool mt_shaken_given(const mt_workspace *w)
+{
+    return w->c->shaken && w->t[w->p->n] != 0.0;
+}
+
 /* What q is off by from a limit, and what its slope is multiplied by. */
-static double off(const mt_demand *d, double q, double limit, double *factor)
+static double off(const mt_workspace *w, const mt_demand *d, double q, double limit,
+                  double *factor)
 {
     const double unit = mt_measure_unit(d->measure, limit);
     *factor = 1.0 / unit;
+    if (isinf(q) && d->goal->shake != NULL) {
+        return MT_MOST_INSIDE + w->beyond;
+    }
     return d->measure == MT_MEASURE_RATIO ? mt_frequency_ln_ratio(q, limit, d->floor_hz)
                                           : (q - limit) / unit;
+}
+
+/* Number k of at most so many: its row beside an upper limit. */
+static void store_most(mt_workspace *w, const mt_demand *d, int k, double q,
+                       const double *slope, mt_nlp_values *out)
+{
+    double factor = 1.0;
+    const int rows = mt_case_rows_in(w->c);
+    const double over = off(w, d, q, d->goal->at_most, &factor);
+    if (d->row_soft < 0) {
+        out->in[d->row_in + k] = -over;
+        put(w, out->din, rows, d->row_in + k, -factor, slope);
+        return;
+    }
+    w->worst = over <= w->worst ? w->worst : over;
+    if (w->c->shaken) {
+        const int row = w->c->first_soft_row + d->row_soft + k;
+        out->in[row] = mt_shaken_given(w) ? w->t[w->p->n] - MT_SHAKEN_SHIFT - over : 0.0;
+        put(w, out->din, rows, row, -factor, slope);
+        if (slope != NULL) {
+            out->din[row + ((ptrdiff_t)w->p->n * rows)] = 1.0;
+        }
+    }
 }
 
 /* Rows of a number: slope NULL where none is wanted. */
@@ -51,7 +88,7 @@ static void store(mt_workspace *w, const mt_demand *d, double q, const double *s
                   mt_nlp_values *out)
 {
     double factor = 1.0;
-    const double target = off(d, q, d->equals, &factor);
+    const double target = off(w, d, q, d->equals, &factor);
     if (d->row_res >= 0) {
         const double weight = sqrt(mt_demand_weight(w, d));
         w->r[d->row_res] = weight * target;
@@ -63,13 +100,16 @@ static void store(mt_workspace *w, const mt_demand *d, double q, const double *s
         put(w, out->deq, mt_case_rows_eq(w->c), d->row_eq, factor, slope);
         return;
     }
-    const int rows = mt_case_rows_in(w->c);
-    for (int k = 0; k < d->n_in; k++) {
-        const bool above = k == 0 && MT_HAS(d->goal->at_least);
-        const double sign = above ? 1.0 : -1.0;
-        const double limit = above ? d->goal->at_least : d->goal->at_most;
-        out->in[d->row_in + k] = sign * off(d, q, limit, &factor);
-        put(w, out->din, rows, d->row_in + k, sign * factor, slope);
+    if (d->row_soft < 0 && d->row_in < 0) {
+        return; /* a range over tolerances */
+    }
+    const bool least = MT_HAS(d->goal->at_least);
+    if (least) {
+        out->in[d->row_in] = off(w, d, q, d->goal->at_least, &factor);
+        put(w, out->din, mt_case_rows_in(w->c), d->row_in, factor, slope);
+    }
+    if (MT_HAS(d->goal->at_most)) {
+        store_most(w, d, least ? 1 : 0, q, slope, out);
     }
 }
 
@@ -90,14 +130,32 @@ static mt_status no_mode(const mt_workspace *w, const mt_demand *d, mt_err *err)
 static mt_status find_mode(mt_workspace *w, const mt_demand *d, int *pos, mt_err *err)
 {
     *pos = -1;
-    if (d->view < 0) {
-        return MT_OK;
+    if (!mt_demand_is_modal(d)) {
+        return d->view < 0 || w->views[d->view].solved
+                   ? MT_OK
+                   : mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no modes here",
+                             mt_analysis_configuration(w->views[d->view].analysis));
     }
     mt_view_work *const view = &w->views[d->view];
     MT_TRY(mt_view_position(w, view, d->mode, d->named, pos, err));
     const bool infinite = d->quantity == MT_QUANTITY_FREQUENCY && view->solved &&
                           mt_analysis_is_infinite(view->analysis, d->mode);
     return *pos < 0 && !infinite ? no_mode(w, d, err) : MT_OK;
+}
+
+/* The rows of a number that is the largest of several. */
+static mt_status store_parts(mt_workspace *w, const mt_demand *d, bool with_gradient,
+                             mt_nlp_values *out, double *value, mt_err *err)
+{
+    double *const slope = with_gradient ? w->slope : NULL;
+    *value = 0.0;
+    for (int k = 0; k < d->n_parts; k++) {
+        double q = nan("");
+        MT_TRY(d->ops->part(w, d, k, &q, slope, err));
+        store_most(w, d, k, q, slope, out);
+        *value = q <= *value ? *value : q;
+    }
+    return MT_OK;
 }
 
 mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient,
@@ -110,6 +168,8 @@ mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient
     if (d->ops->value == NULL) {
         MT_TRY(d->ops->residuals(w, d, pos, with_gradient, err));
         q = mt_norm2(d->n_res, w->r + d->row_res) / sqrt(mt_demand_weight(w, d));
+    } else if (d->n_parts > 0) {
+        MT_TRY(store_parts(w, d, with_gradient, out, &q, err));
     } else {
         MT_TRY(d->ops->value(w, d, pos, &q, slope, err));
         store(w, d, q, slope, out);

@@ -4,24 +4,33 @@
 
 #include "problem/workspace.h"
 
+struct mt_shaken_value;
+
 /*
  * The operations of a kind of goal, one file for each kind (goal_<kind>.c); what files may say
  * of it stands in study/goal_kinds.h. Most are a number q with a slope, held against an
  * interval: rows, residuals, violations, relaxations, proofs and sentences follow from q and
  * the measure of the kind,
- *     ratio        row = ln(q / limit)             slope d ln q / dt
+ *     ratio        row = ln(q / limit)             slope d ln q / dt (infinite: w->beyond)
  *     part         row = (q - limit) / |limit|     slope dq / dt (divided by 1 where it is 0)
  *     difference   row = q - limit                 slope dq / dt
  */
 typedef struct mt_goal_ops {
     mt_quantity quantity;
     bool needs_vectors; /* all shapes, even where no gradient is asked for */
-    /* Look up what the goal is compared with, once view and mode are known. NULL: nothing. */
+    /* Look up what the goal is compared with, once view and mode are known, and set n_res of
+     * a goal that is no number. NULL: nothing. */
     mt_status (*compile)(mt_problem *p, mt_demand *d, mt_err *err);
     /* q of the mode at pos after its view has been solved (a mode at infinity: -1, of a
      * frequency only; a goal without a mode: -1), and its slope[n] unless NULL. */
     mt_status (*value)(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
                        mt_err *err);
+    /* Of one with d->n_parts: part k of it, of which q is the largest. */
+    mt_status (*part)(mt_workspace *w, const mt_demand *d, int k, double *q, double *slope,
+                      mt_err *err);
+    /* Of a forced vibration: all that is known of q (shaken.h). NULL: it is none. */
+    mt_status (*look)(mt_workspace *w, const mt_demand *d, struct mt_shaken_value *out,
+                      mt_err *err);
     /* Of a goal that is no number: residuals from w->r[d->row_res] on, and their slopes. */
     mt_status (*residuals)(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
                            mt_err *err);

@@ -244,8 +244,8 @@ static mt_status put_band(mt_workspace *w, const mt_clear *c, int b, int *row,
         for (int i = 0; i < n; i++) {
             out->din[*row + (i * rows)] = sign * w->dshape[i];
         }
-        if (w->c->clearance) {
-            out->din[*row + (n * rows)] = -1.0;
+        if (w->c->n_t > n) {
+            out->din[*row + (n * rows)] = w->c->clearance ? -1.0 : 0.0;
         }
     }
     return MT_OK;

@@ -16,6 +16,13 @@ int mt_goal_reference_mode(const mt_problem *p, const mt_demand *d)
     return g->reference_mode > 0 ? g->reference_mode : own;
 }
 
+static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
+{
+    MT_TRY(mt_goal_compile_shape(p, d, err));
+    d->n_res = d->shape.ns;
+    return MT_OK;
+}
+
 mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err)
 {
     const mt_system *const sys = p->views[d->view].original->sys;
@@ -75,7 +82,7 @@ static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
 
 const mt_goal_ops mt_goal_shape = {.quantity = MT_QUANTITY_OTHER,
                                    .needs_vectors = true,
-                                   .compile = mt_goal_compile_shape,
+                                   .compile = compile,
                                    .residuals = residuals,
                                    .subject = subject,
                                    .equals = "at"};

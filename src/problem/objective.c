@@ -36,7 +36,7 @@ double mt_aim_value(const mt_workspace *w, int k, double *gradient)
 
 double mt_aim_root(const mt_aim *a, double f)
 {
-    return mt_objective_is(a->type, MT_HALF_SQUARE) ? sqrt(2.0 * fmax(f, 0.0)) : f;
+    return mt_objective_is(a->type, MT_HALF_SQUARE) ? sqrt(2.0 * (f < 0.0 ? 0.0 : f)) : f;
 }
 
 double mt_aim_shown(const mt_aim *a, double f)

@@ -40,6 +40,10 @@ typedef struct mt_view {
     int *named;  /* [n_named] of the model */
     const double **shape;    /* [n_named] weighed there (tracking.h) */
     mt_analysis_options ask; /* what its goals need of its modes: which, and their shapes */
+    /* pairs of an input and an output that goals name there, each once: a forced problem each
+     * (shaken.h) */
+    int n_pairs;
+    struct mt_shaken_pair *pairs;
 } mt_view;
 
 typedef struct mt_family mt_family; /* positions of one drive (family.h) */
@@ -58,19 +62,25 @@ typedef struct mt_demand {
     mt_goal_measure measure;
     const mt_goal *goal;
     int goal_index;
-    int view;                 /* -1: of no configuration, an expression */
-    int mode;                 /* 1-based index; 0: by name */
-    int named;                /* position in the view's list, where by name */
-    mt_node node;             /* limit: node of the expressions' program */
+    int view;       /* -1: of no configuration, an expression */
+    int mode;       /* 1-based index; 0: by name */
+    int named;      /* position in the view's list, where by name */
+    int pair;       /* response, vibration: of its view */
+    int first_mode; /* response over a band: its parts begin with this mode, */
+    int n_parts;    /* and are so many rows; 0: it is one number, one row for each limit */
+    mt_node node;   /* limit: node of the expressions' program */
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
+    struct mt_fit *fit;       /* frequency_response (goal_frequency_response.h); else NULL */
     double equals; /* what is asked for, by the goal or its reference; NaN: limits only */
-    bool ranged; /* a target that is a range over the tolerances of the variables (robust.h) */
-    int row_eq;  /* its row in eq, -1 none */
-    int row_in;  /* first row in in, -1 none */
-    int n_in;    /* 2 where at_least and at_most are both given */
-    int row_res; /* first residual, -1 none */
-    int n_res;   /* residuals */
-    double floor_hz;  /* of a frequency: below, its logarithm goes on as a tangent */
+    bool ranged;  /* a target that is a range over the tolerances of the variables (robust.h) */
+    int row_eq;   /* its row in eq, -1 none */
+    int row_in;   /* first row in in, -1 none */
+    int n_in;     /* 2 where at_least and at_most are both given; or n_parts */
+    int row_soft; /* first row of the objective "vibration" that it is part of, -1 none, */
+    int n_soft;   /* so many: then it limits nothing else */
+    int row_res;  /* first residual, -1 none */
+    int n_res;    /* residuals */
+    double floor_hz;  /* in the unit of its number: below, its logarithm goes on as a tangent */
     double tolerance; /* relative */
 } mt_demand;
 
@@ -122,6 +132,7 @@ typedef struct mt_problem {
     int *tie;
     int n_eq;
     int n_in; /* of the demands; those of a case are more */
+    int n_soft;
     int n_res;
     double weights;     /* sum of the weights of the demands that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */

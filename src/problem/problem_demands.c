@@ -5,6 +5,7 @@
 
 #include "analysis/count.h"
 #include "base/progress.h"
+#include "problem/demand.h"
 #include "problem/family.h"
 #include "problem/goal.h"
 #include "problem/next.h"
@@ -182,16 +183,21 @@ static void number_rows(mt_problem *p, mt_demand *d)
     d->tolerance = mt_goal_tolerance(g);
     if (MT_HAS(g->weight)) {
         d->row_res = p->n_res;
-        d->n_res = d->ops->value == NULL ? d->shape.ns : 1;
+        d->n_res = d->ops->value == NULL ? d->n_res : 1;
         p->n_res += d->n_res;
         p->weights += g->weight;
+    } else if (mt_study_is_scale(p->study, g)) {
+        d->row_soft = p->n_soft;
+        d->n_soft = d->n_parts > 0 ? d->n_parts : 1;
+        p->n_soft += d->n_soft;
     } else if (mt_robust_is_range(p, d)) {
         d->ranged = true; /* its rows are those of the corners */
     } else if (MT_HAS(d->equals)) {
         d->row_eq = p->n_eq++;
     } else {
         d->row_in = p->n_in;
-        d->n_in = (MT_HAS(g->at_least) ? 1 : 0) + (MT_HAS(g->at_most) ? 1 : 0);
+        d->n_in = d->n_parts > 0 ? d->n_parts
+                                 : (MT_HAS(g->at_least) ? 1 : 0) + (MT_HAS(g->at_most) ? 1 : 0);
         p->n_in += d->n_in;
     }
 }
@@ -211,16 +217,21 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                      .node = MT_NO_NODE,
                      .row_eq = -1,
                      .row_in = -1,
+                     .row_soft = -1,
                      .row_res = -1,
                      .equals = g->equals};
     if (configuration != MT_ABSENT) {
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
                          goal_index));
         const mt_view *const view = &p->views[d->view];
-        MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
+        if (mt_demand_is_modal(d)) {
+            MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
+        }
     }
     if (d->ops->compile != NULL) {
-        MT_TRY(mt_err_in(err, d->ops->compile(p, d, err), "/goals/%d", goal_index));
+        const mt_status rc = d->ops->compile(p, d, err);
+        const bool placed = rc != MT_OK && err->text[0] == '/'; /* at a member of the goal */
+        MT_TRY(placed ? rc : mt_err_in(err, rc, "/goals/%d", goal_index));
     }
     number_rows(p, d);
     p->n_demands++;

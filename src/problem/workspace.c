@@ -19,6 +19,7 @@
 #include "problem/objective.h"
 #include "problem/robust.h"
 #include "problem/robust_cut.h"
+#include "problem/shaken.h"
 
 /* Evaluations between two lines of progress: a tenth of a second or so for a small
  * mechanism. */
@@ -29,6 +30,7 @@ static void close_view(mt_view_work *view)
     for (int i = 0; i < view->n_corners; i++) {
         mt_analysis_delete(view->corners[i]);
     }
+    mt_shaken_close(view);
     mt_analysis_delete(view->scout);
     mt_analysis_delete(view->analysis);
     *view = (mt_view_work){.of = NULL};
@@ -54,7 +56,7 @@ static mt_status claim(mt_workspace *w, mt_err *err)
     const size_t n = (size_t)p->n;
     const size_t count = (size_t)p->program.count;
     const size_t n_res = (size_t)p->n_res;
-    size_t ns = 1;
+    size_t ns = 1; /* rows of slopes: of a shape, or of anything else */
     for (int i = 0; i < p->n_demands; i++) {
         const size_t own = (size_t)p->demands[i].shape.ns;
         ns = own > ns ? own : ns;
@@ -210,6 +212,7 @@ mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradien
 {
     const mt_problem *const p = w->p;
     memmove(w->t, t, (size_t)w->c->n_t * sizeof *t);
+    w->worst = -HUGE_VAL;
     mt_case_x(w->c, t, w->x);
     if (!with_gradient) {
         return mt_program_eval(&p->program, w->x, w->value, NULL, err);
@@ -248,6 +251,7 @@ mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient,
     const mt_analysis_options opt = mt_view_asks(w, view, with_gradient);
     view->tracked = false;
     view->solved = false;
+    mt_shaken_close(view);
     MT_TRY(mt_err_in(err, mt_analysis_solve(view->analysis, w->x, &opt, err),
                      "configuration \"%s\"", mt_analysis_configuration(view->analysis)));
     view->solved = true;

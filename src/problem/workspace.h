@@ -11,15 +11,16 @@
  */
 typedef struct mt_view_work {
     const mt_view *of;
-    mt_analysis *analysis;   /* owned */
-    mt_track *track;         /* [n_named] after mt_view_track */
-    mt_analysis *scout;      /* owned; for designs on the way there, made when first needed */
-    mt_analysis_options ask; /* as the view's, or more (describe asks for all) */
-    bool all;                /* it asks for all modes (mt_view_ask_all) */
-    bool tracked;            /* track belongs to the last solve */
-    bool solved;             /* the last solve succeeded */
-    int n_corners;           /* analyses that there are */
-    mt_analysis **corners;   /* owned; for corners of the tolerances (robust.h) */
+    mt_analysis *analysis;    /* owned */
+    mt_track *track;          /* [n_named] after mt_view_track */
+    mt_analysis *scout;       /* owned; for designs on the way there, made when first needed */
+    mt_analysis_options ask;  /* as the view's, or more (describe asks for all) */
+    bool all;                 /* it asks for all modes (mt_view_ask_all) */
+    bool tracked;             /* track belongs to the last solve */
+    bool solved;              /* the last solve succeeded */
+    struct mt_shaken *shaken; /* [n_pairs] its forced vibrations (shaken.h); NULL: none yet */
+    int n_corners;            /* analyses that there are */
+    mt_analysis **corners;    /* owned; for corners of the tolerances (robust.h) */
 } mt_view_work;
 
 typedef struct mt_workspace {
@@ -41,6 +42,8 @@ typedef struct mt_workspace {
     double *shape;  /* [max ns] */
     double *dshape; /* max ns x n */
     struct mt_robust_work *robust; /* where variables have tolerances (robust.h); else NULL */
+    double beyond;   /* of a goal whose number is infinite: how far that is from finite (ln) */
+    double worst;    /* largest ln(value / limit) of demands with row_soft; -infinite: none */
     double accuracy; /* of the modes (mt_modal_options); MT_MODAL_ACCURACY unless set */
     long evaluations;
     void (*progress)(void *context, const char *text); /* NULL, or called now and then */

@@ -19,9 +19,8 @@ static bool begins(const char *text, const char *with)
     return strncmp(text, with, strlen(with)) == 0;
 }
 
-/* Text up to the colon, and the motion behind it where there is one. */
-static mt_status split(const char *text, bool relative_too, mt_arena *mem, const char **name,
-                       mt_port *out, mt_err *err)
+mt_status mt_port_split(const char *text, bool relative_too, mt_arena *mem, const char **name,
+                        mt_port *out, mt_err *err)
 {
     const char *const colon = strchr(text, ':');
     *name = colon == NULL ? text : mt_arena_strndup(mem, text, (size_t)(colon - text));
@@ -93,18 +92,12 @@ static void set_motion(mt_arena *mem, const char *name, mt_port *out)
     out->unit = UNITS[out->turns ? 1 : 0][out->motion];
 }
 
-static bool is_rotation(const mt_system *sys, int channel)
-{
-    const mt_channel_kind kind = sys->channels[channel].kind;
-    return kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
-}
-
 mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
                         mt_err *err)
 {
     const char *name = NULL;
     *out = (mt_port){.kind = MT_PORT_BASE, .motion = 2};
-    MT_TRY(split(text, false, mem, &name, out, err));
+    MT_TRY(mt_port_split(text, false, mem, &name, out, err));
     const int axis = begins(name, BASE) ? axis_of(sys, name + strlen(BASE)) : -1;
     const int channel = mt_system_find_channel(sys, name);
     if (axis >= 0) {
@@ -120,7 +113,7 @@ mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, m
     }
     *out = (mt_port){.kind = MT_PORT_SENSOR,
                      .index = channel,
-                     .turns = is_rotation(sys, channel),
+                     .turns = mt_channel_turns(sys->channels[channel].kind),
                      .name = sys->channels[channel].name};
     out->unit = FORCES[out->turns ? 1 : 0];
     return MT_OK;
@@ -182,11 +175,11 @@ mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, 
 {
     const char *name = NULL;
     *out = (mt_port){.kind = MT_PORT_SENSOR};
-    MT_TRY(split(text, true, mem, &name, out, err));
+    MT_TRY(mt_port_split(text, true, mem, &name, out, err));
     const int channel = mt_system_find_channel(sys, name);
     if (channel >= 0) {
         out->index = channel;
-        out->turns = is_rotation(sys, channel);
+        out->turns = mt_channel_turns(sys->channels[channel].kind);
         set_motion(mem, name, out);
         return mt_arena_check(mem, err);
     }

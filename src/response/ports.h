@@ -43,6 +43,10 @@ typedef struct mt_port_set {
     mt_port *out; /* [n_out] */
 } mt_port_set;
 
+/* The name before the colon, in mem, and what motion stands behind it, where one does: out's
+ * motion, and with relative_too what "relative_" says. Fails: MT_E_USAGE, MT_E_MEMORY. */
+mt_status mt_port_split(const char *text, bool relative_too, mt_arena *mem, const char **name,
+                        mt_port *out, mt_err *err);
 /* Read one; the name is in mem. Fails: MT_E_USAGE (there is none of this name, with the nearest
  * one that there is; one that has no single force), MT_E_MEMORY. */
 mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,

@@ -17,6 +17,7 @@
 #include "analysis/damping.h"
 #include "linalg/dense.h"
 #include "mechanics/independence.h"
+#include "response/solutions.h"
 
 /* A complex vector. */
 typedef struct pair {
@@ -256,7 +257,7 @@ static mt_status product_with(work *k, mt_matrix m, const pair *e, const pair *q
 /* y . (d(ratios) x) in the freedoms, with the motion of their basis. */
 static mt_status ratios(work *k, int p, int o, int i, double complex *out, mt_err *err)
 {
-    const ptrdiff_t n = k->p->t->n;
+    const ptrdiff_t n = k->p->basis->f->n;
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
     double *const part = mt_arena_f64(k->mem, (size_t)n, 2);
     double *const product_of = mt_arena_f64(k->mem, (size_t)n, 2);
@@ -399,22 +400,22 @@ mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err
 /* Solutions and adjoints of all ports; *singular: there are none. */
 static mt_status open_ports(work *k, bool *singular, mt_err *err)
 {
-    const mt_transfer *const t = k->p->t;
-    const size_t n = (size_t)t->n;
-    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)t->n_in, sizeof *x);
-    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)t->n_out, sizeof *y);
+    const mt_forced *const f = k->p->basis->f;
+    const size_t n = (size_t)f->n;
+    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)f->n_in, sizeof *x);
+    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)f->n_out, sizeof *y);
     k->x = x;
     k->y = y;
-    k->in = mt_arena_alloc(k->mem, (size_t)t->n_in, sizeof *k->in);
-    k->out = mt_arena_alloc(k->mem, (size_t)t->n_out, sizeof *k->out);
+    k->in = mt_arena_alloc(k->mem, (size_t)f->n_in, sizeof *k->in);
+    k->out = mt_arena_alloc(k->mem, (size_t)f->n_out, sizeof *k->out);
     k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(mt_transfer_solve(t, k->w, x, y, singular, k->mem, err));
-    for (int i = 0; i < t->n_in && !*singular; i++) {
-        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * t->n), err));
+    MT_TRY(mt_basis_solve(k->p->basis, k->w, x, y, singular, k->mem, err));
+    for (int i = 0; i < f->n_in && !*singular; i++) {
+        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * f->n), err));
     }
-    for (int o = 0; o < t->n_out && !*singular; o++) {
-        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * t->n), err));
+    for (int o = 0; o < f->n_out && !*singular; o++) {
+        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * f->n), err));
     }
     return MT_OK;
 }
@@ -422,8 +423,8 @@ static mt_status open_ports(work *k, bool *singular, mt_err *err)
 /* Of all pairs with respect to input p. */
 static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
 {
-    const int n_out = k->p->t->n_out;
-    for (int at = 0; at < k->p->t->n_in * n_out; at++) {
+    const int n_out = k->p->basis->f->n_out;
+    for (int at = 0; at < k->p->basis->f->n_in * n_out; at++) {
         MT_TRY(slope(k, p, at % n_out, at / n_out, dh + at, err));
     }
     return MT_OK;
@@ -431,7 +432,7 @@ static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
 
 static mt_status slopes(work *k, double complex *dh, mt_err *err)
 {
-    const ptrdiff_t pairs = (ptrdiff_t)k->p->t->n_in * k->p->t->n_out;
+    const ptrdiff_t pairs = (ptrdiff_t)k->p->basis->f->n_in * k->p->basis->f->n_out;
     const int n_inputs = k->p->a->sys->n_inputs;
     bool singular = false;
     MT_TRY(open_ports(k, &singular, err));
@@ -459,7 +460,7 @@ mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex
               .w = w,
               .power = {1.0, mt_complex(0.0, w), -w * w}};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    MT_TRY(mt_slope_admit(p, 0, p->t->n_out, err));
+    MT_TRY(mt_slope_admit(p, 0, p->basis->f->n_out, err));
     factors_of(&k);
     const mt_status rc = slopes(&k, dh, err);
     mt_arena_rewind(scratch, mark);

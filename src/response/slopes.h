@@ -2,13 +2,13 @@
 #ifndef RESPONSE_SLOPES_H
 #define RESPONSE_SLOPES_H
 
+#include "response/basis.h"
 #include "response/problem.h"
-#include "response/transfer.h"
 
-/* Ports of a problem and the transfer that solves it directly. */
+/* Ports of a problem and the basis of all modes, which solves it. */
 typedef struct mt_slope_problem {
     mt_analysis *a; /* the last solve was with gradient */
-    const mt_transfer *t;
+    const mt_basis *basis;
     const mt_port_set *ports;
     const mt_response_ways *ways;
 } mt_slope_problem;

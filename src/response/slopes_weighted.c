@@ -99,7 +99,7 @@ static void add_products(const work *k, bool imaginary, const batch *b, double *
 }
 
 /* *singular: there is no response at one of the frequencies. */
-static mt_status add_up(work *k, const mt_basis *basis, bool *singular, mt_err *err)
+static mt_status add_up(work *k, bool *singular, mt_err *err)
 {
     const size_t size = (size_t)k->ny * AT_ONCE;
     mt_solutions s;
@@ -111,7 +111,7 @@ static mt_status add_up(work *k, const mt_basis *basis, bool *singular, mt_err *
         b.part[i] = mt_arena_f64(k->mem, size, 1);
     }
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(mt_solutions_open(basis, k->q->out, k->q->in, k->mem, &s, err));
+    MT_TRY(mt_solutions_open(k->p->basis, k->q->out, k->q->in, k->mem, &s, err));
     for (int at = 0; at < k->q->n && !*singular; at += AT_ONCE) {
         MT_TRY(mt_interrupt_check(k->p->a->sys->model->interrupt, err));
         b.count = k->q->n - at < AT_ONCE ? k->q->n - at : AT_ONCE;
@@ -386,7 +386,7 @@ static mt_status slopes_of_all(work *k, double *slope, mt_err *err)
     return MT_OK;
 }
 
-static mt_status weighted(work *k, const mt_basis *basis, double *slope, mt_err *err)
+static mt_status weighted(work *k, double *slope, mt_err *err)
 {
     bool singular = false;
     for (int i = 0; i < SUMS; i++) {
@@ -397,7 +397,7 @@ static mt_status weighted(work *k, const mt_basis *basis, double *slope, mt_err 
         k->y[i] = mt_arena_alloc(k->mem, (size_t)k->ny, sizeof *k->y[i]);
     }
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(add_up(k, basis, &singular, err));
+    MT_TRY(add_up(k, &singular, err));
     if (singular) {
         for (int p = 0; p < k->p->a->sys->n_inputs; p++) {
             slope[p] = nan("");
@@ -408,9 +408,8 @@ static mt_status weighted(work *k, const mt_basis *basis, double *slope, mt_err 
     return slopes_of_all(k, slope, err);
 }
 
-mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_basis *basis,
-                                      const mt_slope_weights *q, double *slope,
-                                      mt_arena *scratch, mt_err *err)
+mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_slope_weights *q,
+                                      double *slope, mt_arena *scratch, mt_err *err)
 {
     const int n = mt_linear_freedoms(p->a->lin);
     work k = {.p = p,
@@ -425,7 +424,7 @@ mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_basis 
               .m = mt_linear_equations(p->a->lin)};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     MT_TRY(mt_slope_admit(p, q->out, 1, err));
-    const mt_status rc = weighted(&k, basis, slope, err);
+    const mt_status rc = weighted(&k, slope, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

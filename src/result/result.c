@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result/result.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "study/goal_kinds.h"
 #include "study/objective_kinds.h"
 
@@ -160,6 +157,9 @@ static const mt_field GOAL_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("worst", worst),
     MT_F_BY_VARIABLE_OR_NULL("worst_at", worst_at),
     MT_F_BY_VARIABLE_OR_NULL("sensitivity", sensitivity),
+    MT_F_NUMBER_OR_NULL("off_most_hz", off_most_hz),
+    MT_F_NUMBER_OR_NULL("off_most_ratio", off_most_ratio),
+    MT_F_NUMBER_OR_NULL("off_most_phase_deg", off_most_phase_deg),
     MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),
     MT_F_FLAG("met", met),
     MT_F_FLAG("weighted", weighted),
@@ -210,6 +210,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
+    MT_F_LIST("responses", responses, n_responses, mt_result_response, mt_response_record),
     MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON),
     MT_F_UNWRITTEN_TEXT(disagreement),
 };
@@ -405,6 +406,15 @@ static const mt_field OVERRIDE_FIELDS[] = {
 static const mt_record OVERRIDE = MT_F_RECORD_OF(OVERRIDE_FIELDS);
 #undef THIS
 
+#define THIS mt_result_step
+static const mt_field STEP_FIELDS[] = {
+    MT_F_COUNT("objective", objective, 1),       MT_F_COUNT("round", round, 1),
+    MT_F_LONG("evaluations", evaluations),       MT_F_NUMBER_OR_NULL("value", value),
+    MT_F_NUMBER_OR_NULL("violation", violation), MT_F_FLAG("feasible", feasible),
+};
+static const mt_record STEP = MT_F_RECORD_OF(STEP_FIELDS);
+#undef THIS
+
 #define THIS mt_result_run
 static const char *const CAUSES[] = {"interrupt", "time limit"};
 static const char *const PHASES[] = {"search",      "recommendations", "spread", "certificates",
@@ -420,6 +430,7 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_COUNT_OR_NULL("distinct_designs", distinct_designs, 0),
     MT_F_COUNT_OR_NULL("found_once", found_once, 0),
     MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
+    MT_F_LIST("history", history, n_history, mt_result_step, STEP),
     MT_F_LONG("evaluations", evaluations),
     MT_F_RECORD("spent", spent, mt_result_spent, SPENT),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
@@ -478,86 +489,6 @@ static const mt_field RESULT_FIELDS[] = {
 };
 const mt_record mt_result_record = MT_F_RECORD_OF(RESULT_FIELDS);
 #undef THIS
-
-mt_status mt_result_new(mt_result **out, mt_err *err)
-{
-    *out = NULL;
-    mt_result *const result = malloc(sizeof *result);
-    if (result == NULL) {
-        return mt_fail_memory(err);
-    }
-    mt_record_clear(&mt_result_record, result);
-    result->status = MT_RESULT_INTERRUPTED;
-    const mt_status rc = mt_arena_init(&result->mem, 0, err);
-    if (rc != MT_OK) {
-        free(result);
-        return rc;
-    }
-    *out = result;
-    return MT_OK;
-}
-
-void mt_result_delete(mt_result *result)
-{
-    if (result != NULL) {
-        mt_arena_free(&result->mem);
-        free(result);
-    }
-}
-
-double mt_result_shown(double value, double factor)
-{
-    return factor > 0.0 ? value / factor : value;
-}
-
-mt_result_mark mt_result_get_mark(const mt_result *result)
-{
-    return (mt_result_mark){.n_undetermined = result->n_undetermined,
-                            .n_spread = result->n_spread,
-                            .n_certificates = result->n_certificates,
-                            .n_relaxations = result->n_relaxations,
-                            .n_published = result->n_published,
-                            .n_warnings = result->n_warnings};
-}
-
-void mt_result_take_back(mt_result *result, const mt_result_mark *mark)
-{
-    result->n_undetermined = mark->n_undetermined;
-    result->n_spread = mark->n_spread;
-    result->n_certificates = mark->n_certificates;
-    result->n_relaxations = mark->n_relaxations;
-    result->n_published = mark->n_published;
-    result->n_warnings = mark->n_warnings;
-}
-
-mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err)
-{
-    result->doubts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->doubts);
-    result->facts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->facts);
-    MT_TRY(mt_arena_check(&result->mem, err));
-    for (int i = 0; i < list->n; i++) {
-        if (list->items[i].level == MT_LEVEL_DOUBT) {
-            result->doubts[result->n_doubts++] = list->items[i];
-        } else if (list->items[i].level == MT_LEVEL_FACT) {
-            result->facts[result->n_facts++] = list->items[i];
-        }
-    }
-    return MT_OK;
-}
-
-mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
-                                 mt_recommendation *out, mt_err *err)
-{
-    *out = *from;
-    mt_record_own(&mt_design_record, out, from->n_parameters, mem);
-    return mt_arena_check(mem, err);
-}
-
-mt_status mt_result_own(mt_result *result, mt_err *err)
-{
-    mt_record_own(&mt_result_record, result, result->n_variables, &result->mem);
-    return mt_arena_check(&result->mem, err);
-}
 
 #define DEFAULT(of, record)             \
     of of##_default(void)               \

@@ -74,7 +74,7 @@ typedef struct mt_result_goal {
     const char *configuration; /* NULL: of none, or of several */
     int mode;                  /* as asked by its index; 0: by name, or none */
     const char *name;          /* of the mode, where asked by it; NULL */
-    const char *reference;     /* that it is compared with; NULL */
+    const char *reference;     /* or measurement, that it is compared with; NULL */
     const char *expression;    /* of a limit; NULL */
     /* of value, target and limits; "": none; NULL: the expression's own */
     const char *unit;
@@ -85,7 +85,7 @@ typedef struct mt_result_goal {
     double tolerance_percent; /* a violation up to it is met */
     double violation_percent;
     bool met;
-    bool weighted; /* part of the misfit: does not decide status */
+    bool weighted; /* part of the misfit, or of the vibration: does not decide status */
     bool doubtful; /* its named mode is ambiguous or lost: not met, whatever the number */
     /* the worst value over the tolerances of the variables, which the goal is judged by; NaN:
      * none */
@@ -94,6 +94,10 @@ typedef struct mt_result_goal {
     /* [n_parameters] of the value, per unit of each variable; NULL: it has none, as a mode that
      * repeats, or a distance */
     double *sensitivity;
+    /* of a frequency response: the measured line where it is off most; NaN: none */
+    double off_most_hz;
+    double off_most_ratio; /* magnitude over the measured one */
+    double off_most_phase_deg;
 } mt_result_goal;
 
 /* A mode beside a band. */
@@ -111,6 +115,26 @@ typedef struct mt_result_clearance {
     double worst_hz;
     double worst_percent;
 } mt_result_clearance;
+
+/* What a goal of forced vibration finds. */
+typedef struct mt_result_response {
+    const char *pointer; /* of the goal, "/goals/0" */
+    const char *configuration;
+    const char *input; /* ports, as in files */
+    const char *output;
+    const char *profile;  /* NULL: a response itself, not under a profile */
+    const char *quantity; /* "response" | "rms" | "sine" | "peak" */
+    const char *unit;     /* of value and error; "": not known */
+    double value;         /* NaN: none, see end */
+    double error; /* of it, at most; of one that is sampled an estimate; NaN: not known */
+    double frequency_hz; /* where the response is largest; NaN: not known */
+    bool at_edge;        /* that is an end of the range */
+    double lower_hz;     /* the range that it was looked for in */
+    double upper_hz;
+    const char *end;   /* "finite" | "infinite" | "unstable" | "none": could not be computed */
+    const char *grade; /* "proven": no frequency of the range has more; "sampled" */
+    const char *text;  /* in words, without a full stop */
+} mt_result_response;
 
 /* The value of one objective, whether the goals are met or not; NaN: there is none. */
 typedef struct mt_design_objective {
@@ -213,6 +237,8 @@ typedef struct mt_recommendation {
     mt_tolerance_box *tolerance_box; /* NULL: not computed */
     int n_goals;
     mt_result_goal *goals;
+    int n_responses; /* one for each goal of forced vibration and configuration */
+    mt_result_response *responses;
     int n_reasons;
     mt_reason *reasons;
 } mt_recommendation;
@@ -371,6 +397,16 @@ typedef struct mt_result_spent {
     long multiplications; /* of proofs, about */
 } mt_result_spent;
 
+/* A design that a search met that was better than all before it. */
+typedef struct mt_result_step {
+    int objective;    /* that was made least, from 1 */
+    int round;        /* from 1: what follows counts more closely, or under more conditions */
+    long evaluations; /* up to there, as if one worker had done all of it */
+    double value;     /* of that objective, as mt_design_objective has it; NaN: none */
+    double violation; /* the most that a goal or bound is missed by, of its tolerance */
+    bool feasible;
+} mt_result_step;
+
 typedef struct mt_result_run {
     const char *modetune_version;
     mt_result_build build;
@@ -385,6 +421,8 @@ typedef struct mt_result_run {
     int distinct_designs;
     int found_once;           /* of them, by one start only */
     double estimated_missing; /* isolated designs that no start met, at least */
+    int n_history;            /* 0: nothing was searched, or an interrupt cut it */
+    mt_result_step *history;
     int n_overrides;
     mt_result_override *overrides;
     int n_inputs;
@@ -474,6 +512,7 @@ double mt_result_shown(double value, double factor);
 /* What these structs hold, member by member as in JSON. */
 extern const mt_record mt_result_record;
 extern const mt_record mt_design_record; /* mt_recommendation */
+extern const mt_record mt_response_record; /* mt_result_response, part of that */
 extern const mt_record mt_doubt_record;
 
 /* mt_recommendation_default() and the like: all numbers are "not applicable". X(struct, its

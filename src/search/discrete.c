@@ -30,6 +30,7 @@ static mt_status begin(mt_discrete *d, mt_err *err)
     const mt_problem *const p = d->p;
     d->variable = mt_arena_int(d->mem, (size_t)p->n);
     d->values = mt_arena_alloc(d->mem, (size_t)d->n_workers, sizeof *d->values);
+    d->steps = mt_steps_new(MT_STEPS_MOST, d->mem);
     MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < p->n; i++) {
         if (p->study->variables[i].n_catalogue > 0) {
@@ -216,7 +217,8 @@ static mt_status to_solution(const mt_discrete *d, const mt_combination *c,
 static mt_status collect(const mt_discrete *d, const ranking *r, mt_nlp_result *out,
                          mt_err *err)
 {
-    *out = (mt_nlp_result){.evals = d->evals, .starts = d->starts, .stop = d->stop};
+    *out = (mt_nlp_result){
+        .evals = d->evals, .starts = d->starts, .stop = d->stop, .steps = d->steps};
     out->solutions = mt_arena_alloc(d->mem, (size_t)r->n, sizeof *out->solutions);
     MT_TRY(mt_arena_check(d->mem, err));
     out->compromise = r->n > 0 && !r->best[0]->feasible;

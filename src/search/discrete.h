@@ -86,6 +86,7 @@ typedef struct mt_discrete {
     long evals;
     int starts;
     mt_stop stop;
+    mt_steps steps; /* from combination to combination */
 } mt_discrete;
 
 bool mt_study_is_discrete(const mt_study *study);

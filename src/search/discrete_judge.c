@@ -369,6 +369,18 @@ static void tape_designs(void *context, int task, mt_tape *tape)
     }
 }
 
+/* In the order of the list; from position to position what may rank is followed later. */
+static void note_step(mt_discrete *d, const mt_combination *c)
+{
+    const mt_step one = {.evals = d->evals,
+                         .f = c->f[0],
+                         .violation = c->missed.violation,
+                         .squares = c->missed.squares};
+    if (c->judged && MT_HAS(c->missed.violation)) {
+        mt_steps_add(&d->steps, &one);
+    }
+}
+
 mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
                             mt_err *err)
 {
@@ -382,6 +394,7 @@ mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long bu
     for (int i = 0; i < n; i++) {
         n_designs += d->mixed ? 0 : list[i].evals;
         d->evals += list[i].evals;
+        note_step(d, &list[i]);
         d->starts += list[i].starts;
         d->stop = list[i].stop > d->stop ? list[i].stop : d->stop;
     }

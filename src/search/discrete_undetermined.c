@@ -51,7 +51,9 @@ static bool measure(crossing *x, double *rows, int *below)
         rows[n++] = w->r[i] / VALUE_TOL;
     }
     for (int k = 0; k < w->c->n_aims && known; k++) {
-        const bool counts = mt_objective_is(w->c->aims[k].type, MT_AMOUNT);
+        const mt_objective_type type = w->c->aims[k].type;
+        const bool counts =
+            mt_objective_is(type, MT_AMOUNT) || mt_objective_is(type, MT_SHAKES);
         rows[n++] = counts ? mt_aim_value(w, k, NULL) / VALUE_TOL : 0.0;
     }
     for (int i = 0; i < w->c->n_clears && known; i++) {

@@ -28,6 +28,7 @@ typedef struct slot {
     double *aims; /* [n_aims] of the best solution, where there is one and several objectives */
     mt_status rc;
     long evals; /* of all rounds */
+    long begun; /* of those before the last one, whose steps count */
     int starts;
     int n_cuts;
     mt_cut *cuts; /* [CUTS_MOST], owned */
@@ -89,15 +90,6 @@ static mt_status search_in_order(mt_workspace *w, slot *s, mt_err *err)
     return MT_OK;
 }
 
-static void refuse(mt_nlp_solution *best, double short_of, double tolerance)
-{
-    mt_missed m = {best->violation, best->squares};
-    mt_miss(&m, short_of, tolerance);
-    best->feasible = false;
-    best->squares = m.squares;
-    best->violation = m.violation;
-}
-
 /* Where the motion of a family comes nearer than `room`, one more cut for each way between two
  * positions: *added of them. */
 static mt_status add_cuts(slot *s, const mt_problem *p, int family, const mt_motion *m,
@@ -141,7 +133,7 @@ static mt_status follow_best(slot *s, mt_workspace *w, bool last, int *added, do
         }
     }
     if (*added == 0 && short_of > 0.0) {
-        refuse(best, short_of, tolerance);
+        mt_gap_refuse(best, short_of, tolerance);
     }
     return MT_OK;
 }
@@ -184,27 +176,6 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     }
     *again = added > 0 || worse;
     return MT_OK;
-}
-
-/*
- * The least clearance z is free to be negative, so that a search can start anywhere; a design
- * that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and
- * misses the bands by -z.
- */
-static void judge_clearance(const mt_case *c, mt_nlp_result *found)
-{
-    double tolerance = HUGE_VAL;
-    for (int i = 0; i < c->n_clears; i++) {
-        tolerance = fmin(tolerance, c->clears[i].tolerance);
-    }
-    for (int i = 0; i < found->n_solutions && c->clearance; i++) {
-        mt_nlp_solution *const s = &found->solutions[i];
-        const double z = s->t[c->p->n];
-        if (z < -tolerance) {
-            refuse(s, -z, tolerance);
-        }
-    }
-    found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
 }
 
 /* Is there something left of a candidate's share for one more round? */
@@ -251,8 +222,9 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
         rc = mt_search_repeated(w, options.max_evals, &s->mem, &s->found, why);
     }
     if (rc == MT_OK) {
-        judge_clearance(&c, &s->found);
+        mt_gap_judge_clearance(&c, &s->found);
     }
+    s->begun = s->evals;
     s->evals += s->found.evals;
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.stop != MT_STOP_USER) {
@@ -370,11 +342,37 @@ static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena 
     return MT_OK;
 }
 
+/* As if the candidates had been searched one after the other. What a later objective came to
+ * says something next to the others as they are there, so of the best candidate alone. */
+static mt_status keep_steps(const job *j, mt_arena *mem, mt_gap_result *out, mt_err *err)
+{
+    const int best = out->n_solutions > 0 ? out->solutions[0].candidate : -1;
+    long evals = out->evals;
+    out->steps = mt_steps_new(MT_STEPS_MOST, mem);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int k = 0; k < j->candidates->n; k++) {
+        const slot *const s = &j->slots[k];
+        for (int i = 0; i < s->found.steps.n; i++) {
+            mt_step one = s->found.steps.at[i];
+            one.evals += evals + s->begun;
+            if (one.stage == 0 && j->c->clearance) {
+                mt_gap_refuse_step(j->c, &one);
+            }
+            if (one.stage == 0 || k == best) {
+                mt_steps_add(&out->steps, &one);
+            }
+        }
+        evals += s->evals;
+    }
+    return MT_OK;
+}
+
 static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_gap_result *out,
                          mt_err *err)
 {
     MT_TRY(keep_solutions(p, j, mem, out, err));
     rank(out);
+    MT_TRY(keep_steps(j, mem, out, err));
     if (out->n_solutions > 0) {
         MT_TRY(keep_undetermined(p, &j->slots[out->solutions[0].candidate], mem, out, err));
     }

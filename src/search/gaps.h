@@ -47,6 +47,7 @@ typedef struct mt_gap_result {
     long evals;
     int starts;
     int stage; /* the objective that the solutions' f belongs to */
+    mt_steps steps;
     mt_stop stop;
 } mt_gap_result;
 
@@ -65,6 +66,13 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, const mt_ga
  * goes. Fails: MT_E_MEMORY. */
 mt_status mt_gap_copy(const mt_case *c, const int *below, const mt_nlp_solution *from,
                       mt_arena *mem, const mt_nlp_solution **out, mt_err *err);
+
+/* gaps_clearance.c: one more thing is missed at a design. */
+void mt_gap_refuse(mt_nlp_solution *s, double short_of, double tolerance);
+/* Where the case makes the least clearance most: designs that a search met on its way, and those
+ * that it ended at, miss what it is less than 0. */
+void mt_gap_refuse_step(const mt_case *c, mt_step *s);
+void mt_gap_judge_clearance(const mt_case *c, mt_nlp_result *found);
 
 /* gaps_budget.c: what a budget of evaluations has for candidates, of which `left` are left. A
  * search of fewer than so many is not begun. */

@@ -132,7 +132,9 @@ bool mt_relax_is_row(const mt_case *c, const mt_move *m, bool eq, int row)
     if (m->kind == MT_MOVE_GOAL) {
         const mt_demand *const d = &c->p->demands[m->demand];
         const int second = m->upper && MT_HAS(d->goal->at_least) ? 1 : 0;
-        return m->target ? eq && row == d->row_eq : !eq && row == d->row_in + second;
+        const int n = d->n_parts > 0 ? d->n_parts : 1;
+        return m->target ? eq && row == d->row_eq
+                         : !eq && row >= d->row_in + second && row < d->row_in + second + n;
     }
     if (m->kind != MT_MOVE_EDGE || eq || c->below == NULL || row < c->first_band_row ||
         !mt_clear_row_at(c, c->below, row - c->first_band_row, &at)) {

@@ -99,6 +99,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     opt.max_evals = budget;
     nlp.origin = old->t;
     MT_TRY(mt_workspace_solve(s->ws, &nlp, &opt, s->mem, &next, err));
+    mt_steps_append(&s->out->steps, &next.steps, s->out->evals, c->stage, 0);
     MT_TRY(mt_search_repeated(s->ws, most > 0 ? budget : 0, s->mem, &next, err));
     s->out->evals += next.evals;
     s->out->stop = next.stop;

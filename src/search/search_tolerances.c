@@ -35,6 +35,7 @@ typedef struct rounds {
     mt_arena *mem;
     mt_nlp_result *out;
     int *stage;
+    int round;
     bool *open; /* [n_solutions] not judged, or missed at a point that is a cut since */
     mt_robust_cuts cuts;
     const double *told; /* the design that undetermined directions are of */
@@ -61,6 +62,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
     mt_nlp_result next = {0};
     int stage = 0;
     const mt_status rc = mt_search_from(r->ws, s->t, r->mem, &next, &stage, err);
+    mt_steps_append(&r->out->steps, &next.steps, r->out->evals, 0, r->round);
     r->out->evals += next.evals;
     r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
     if (rc != MT_OK || next.n_solutions == 0 || next.compromise) {
@@ -157,6 +159,8 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     }
     mt_status rc = MT_OK;
     for (int round = 0; round < ROUNDS && any && rc == MT_OK; round++) {
+        /* with more cuts less is feasible: what was better counts no more */
+        r.round = round + 1;
         rc = judge_open(&r, round + 1 == ROUNDS || is_spent(&r), &any, err);
         cut = cut || r.cuts.n > 0;
         rc = rc == MT_OK && any ? search_again(&r, err) : rc;

@@ -15,10 +15,34 @@ static void add_sine(const mt_sine *s, double t, double out[3])
 {
     const double w = TWO_PI * s->hz;
     const double angle = (w * t) + s->phase;
-    const double a = s->amplitude;
-    out[0] += a * sin(angle);
-    out[1] += a * w * cos(angle);
-    out[2] -= a * w * w * sin(angle);
+    const double value = s->amplitude * sin(angle);
+    out[0] += value;
+    out[1] += s->amplitude * w * cos(angle);
+    out[2] -= w * w * value;
+}
+
+/* e^(i w_k t) is turned on from line to line, which costs a product where sine and cosine cost
+ * some ten; what rounding leaves of that is taken back every so many lines. */
+static void add_lines(const mt_signal *s, double t, double out[3])
+{
+    enum { FRESH = 64 };
+    const double turn[2] = {cos(TWO_PI * s->step_hz * t), sin(TWO_PI * s->step_hz * t)};
+    double re = 0.0;
+    double im = 0.0;
+    for (int k = 0; k < s->n; k++) {
+        const double w = TWO_PI * (s->from_hz + (k * s->step_hz));
+        if (k % FRESH == 0) {
+            re = cos(w * t);
+            im = sin(w * t);
+        }
+        const double value = (s->cosine[k] * im) + (s->sine[k] * re);
+        out[0] += value;
+        out[1] += w * ((s->cosine[k] * re) - (s->sine[k] * im));
+        out[2] -= w * w * value;
+        const double next = (re * turn[0]) - (im * turn[1]);
+        im = (re * turn[1]) + (im * turn[0]);
+        re = next;
+    }
 }
 
 static void sweep(const mt_signal *s, double t, double out[3])
@@ -54,6 +78,9 @@ mt_status mt_signal_eval(const mt_signal *s, double t, double out[3], mt_err *er
             add_sine(&s->sines[i], t, out);
         }
         return MT_OK;
+    case MT_SIGNAL_LINES:
+        add_lines(s, t, out);
+        return MT_OK;
     case MT_SIGNAL_SWEEP:
         sweep(s, t, out);
         return MT_OK;
@@ -80,26 +107,52 @@ static double uniform(uint64_t *state)
 mt_status mt_signal_of_psd(const mt_psd *psd, int lines, unsigned long seed, mt_arena *mem,
                            mt_signal *out, mt_err *err)
 {
-    bool good = psd->n >= 2 && lines >= 1;
+    const int last = psd->n - 1;
+    bool good = psd->n >= 2 && lines >= 1 && psd->hz[0] < psd->hz[last];
     for (int i = 0; i < psd->n && good; i++) {
-        good = psd->level[i] > 0.0 && psd->hz[i] > (i == 0 ? 0.0 : psd->hz[i - 1]);
+        good =
+            psd->level[i] > 0.0 && psd->hz[i] > 0.0 && (i == 0 || psd->hz[i] >= psd->hz[i - 1]);
     }
     if (!good) {
         return mt_fail(err, MT_E_INPUT,
                        "a power spectral density needs two breakpoints or more, ascending in "
                        "frequency, with values above 0");
     }
-    mt_sine *const sines = mt_arena_alloc(mem, (size_t)lines, sizeof *sines);
+    double *const cosine = mt_arena_f64(mem, (size_t)lines, 1);
+    double *const sine = mt_arena_f64(mem, (size_t)lines, 1);
     MT_TRY(mt_arena_check(mem, err));
-    const double df = (psd->hz[psd->n - 1] - psd->hz[0]) / lines;
+    const double df = (psd->hz[last] - psd->hz[0]) / lines;
     uint64_t state = seed;
     for (int i = 0; i < lines; i++) {
         const double from = psd->hz[0] + (df * i);
-        const double to = i + 1 < lines ? from + df : psd->hz[psd->n - 1];
-        sines[i] = (mt_sine){.amplitude = sqrt(2.0 * mt_psd_area(psd, from, to)),
-                             .hz = from + (0.5 * df),
-                             .phase = TWO_PI * uniform(&state)};
+        const double to = i + 1 < lines ? from + df : psd->hz[last];
+        const double amplitude = sqrt(2.0 * mt_psd_area(psd, from, to));
+        const double phase = TWO_PI * uniform(&state);
+        cosine[i] = amplitude * cos(phase);
+        sine[i] = amplitude * sin(phase);
     }
-    *out = (mt_signal){.kind = MT_SIGNAL_SINES, .n = lines, .sines = sines};
+    *out = (mt_signal){.kind = MT_SIGNAL_LINES,
+                       .n = lines,
+                       .cosine = cosine,
+                       .sine = sine,
+                       .from_hz = psd->hz[0] + (0.5 * df),
+                       .step_hz = df};
+    return MT_OK;
+}
+
+mt_status mt_signal_rms(int n, const mt_signal *signals, double duration_s, int samples,
+                        double *rms, mt_err *err)
+{
+    double square = 0.0;
+    for (int i = 0; i < samples; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < n; k++) {
+            double value[3];
+            MT_TRY(mt_signal_eval(&signals[k], duration_s * (i + 0.5) / samples, value, err));
+            sum += value[0];
+        }
+        square += sum * sum / samples;
+    }
+    *rms = sqrt(square);
     return MT_OK;
 }

@@ -50,6 +50,30 @@
     X(AT_LEAST, "at_least", NUMBER, false, SHARE) \
     X(AT_MOST, "at_most", NUMBER, false, SHARE)   \
     X(WEIGHT, "weight", NUMBER, false, POSITIVE)
+#define MT_GOAL_OF_PORTS(X, needs_input)             \
+    MT_GOAL_OF_CONFIGURATIONS(X)                     \
+    X(INPUT, "input", TEXT, needs_input, ANY)        \
+    X(OUTPUT, "output", TEXT, true, ANY)             \
+    X(EQUALS, "target", NUMBER, false, POSITIVE)     \
+    X(AT_LEAST, "at_least", NUMBER, false, POSITIVE) \
+    X(AT_MOST, "at_most", NUMBER, false, POSITIVE)   \
+    X(WEIGHT, "weight", NUMBER, false, POSITIVE)
+#define MT_GOAL_RESPONSE_MEMBERS(X)      \
+    MT_GOAL_OF_PORTS(X, true)            \
+    X(BAND, "band_hz", LIST, false, ANY) \
+    X(AT, "at_hz", NUMBER, false, POSITIVE)
+#define MT_GOAL_VIBRATION_MEMBERS(X)       \
+    MT_GOAL_OF_PORTS(X, false)             \
+    X(PROFILE, "profile", TEXT, true, ANY) \
+    X(QUANTITY, "quantity", TEXT, false, ANY)
+#define MT_GOAL_FREQUENCY_RESPONSE_MEMBERS(X)      \
+    MT_GOAL_OF_CONFIGURATIONS(X)                   \
+    X(INPUT, "input", TEXT, true, ANY)             \
+    X(OUTPUT, "output", TEXT, true, ANY)           \
+    X(MEASUREMENT, "measurement", TEXT, true, ANY) \
+    X(BAND, "band_hz", LIST, false, ANY)           \
+    X(COHERENCE, "coherence", BOOL, false, ANY)    \
+    X(WEIGHT, "weight", NUMBER, true, POSITIVE)
 #define MT_GOAL_LIMIT_MEMBERS(X)                 \
     MT_GOAL_ANY(X)                               \
     X(EXPRESSION, "expression", TEXT, true, ANY) \
@@ -69,12 +93,15 @@
 
 /* X(id, name in files, unit of the numbers, how a value is measured against them). Its members
  * are MT_GOAL_<id>_MEMBERS, its operations mt_goal_<name> of problem/goal.h. */
-#define MT_GOAL_LIST(X)                  \
-    X(FREQUENCY, frequency, "Hz", RATIO) \
-    X(SHAPE, shape, "", DIFFERENCE)      \
-    X(MAC, mac, "", DIFFERENCE)          \
-    X(DAMPING, damping, "", PART)        \
-    X(LIMIT, limit, "", PART)            \
+#define MT_GOAL_LIST(X)                                       \
+    X(FREQUENCY, frequency, "Hz", RATIO)                      \
+    X(SHAPE, shape, "", DIFFERENCE)                           \
+    X(MAC, mac, "", DIFFERENCE)                               \
+    X(DAMPING, damping, "", PART)                             \
+    X(RESPONSE, response, "", RATIO)                          \
+    X(VIBRATION, vibration, "", RATIO)                        \
+    X(FREQUENCY_RESPONSE, frequency_response, "", DIFFERENCE) \
+    X(LIMIT, limit, "", PART)                                 \
     X(AVOID, avoid, "Hz", RATIO)
 #define MT_GOAL_ENUM(id, ...) MT_GOAL_##id,
 typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
@@ -104,7 +131,15 @@ typedef enum mt_goal_slot {
     MT_SLOT_ROTORS,
     MT_SLOT_MACHINE,
     MT_SLOT_MACHINES,
-    MT_SLOT_CLUSTER
+    MT_SLOT_CLUSTER,
+    MT_SLOT_INPUT,
+    MT_SLOT_OUTPUT,
+    MT_SLOT_BAND,
+    MT_SLOT_AT,
+    MT_SLOT_PROFILE,
+    MT_SLOT_QUANTITY,
+    MT_SLOT_MEASUREMENT,
+    MT_SLOT_COHERENCE
 } mt_goal_slot;
 
 /* What a number may be. */

@@ -15,6 +15,9 @@
  *     RESIDUALS    half the square of the weighted goals' residuals, which it needs
  *     BANDS        of the bands that goals keep clear of, which it needs; a coordinate of the
  *                  search for one gap assignment, elsewhere looked up among the modes
+ *     SHAKES       of the goals of forced vibration that are limited from above, which it
+ *                  needs, and which then limit nothing; a coordinate of the search, elsewhere
+ *                  looked up
  *     OF_ITEMS     "of" may list items
  *     FRONT        can be one side of a Pareto front; with OF_STUDY, if the study has it
  */
@@ -24,7 +27,8 @@
     X(MASS, mass, "kg", MT_WORD | MT_AMOUNT | MT_OF_ITEMS | MT_FRONT | MT_OF_STUDY)         \
     X(EXPRESSION, expression, "", MT_AMOUNT)                                                \
     X(MISFIT, misfit, "", MT_WORD | MT_HALF_SQUARE | MT_RESIDUALS | MT_FRONT | MT_OF_STUDY) \
-    X(CLEARANCE, clearance, "%", MT_WORD | MT_MAXIMISED | MT_BANDS | MT_FRONT)
+    X(CLEARANCE, clearance, "%", MT_WORD | MT_MAXIMISED | MT_BANDS | MT_FRONT)              \
+    X(VIBRATION, vibration, "%", MT_WORD | MT_SHAKES | MT_FRONT | MT_OF_STUDY)
 #define MT_OBJECTIVE_ENUM(id, ...) MT_OBJECTIVE_##id,
 typedef enum mt_objective_type {
     MT_OBJECTIVE_LIST(MT_OBJECTIVE_ENUM) MT_OBJECTIVE_TYPE_COUNT
@@ -40,7 +44,8 @@ enum {
     MT_FRONT = 32,
     MT_OF_STUDY = 64,
     MT_RESIDUALS = 128,
-    MT_BANDS = 256
+    MT_BANDS = 256,
+    MT_SHAKES = 512
 };
 
 typedef struct mt_objective_kind {

@@ -42,6 +42,9 @@ void mt_study_delete(mt_study *study)
             mt_model_delete(model);
         }
     }
+    for (int i = 0; i < study->n_profiles; i++) {
+        mt_vibration_delete(study->profiles[i].profile);
+    }
     mt_model_delete(study->model);
     mt_arena_free(&study->mem);
     free(study);
@@ -55,6 +58,13 @@ bool mt_study_has_bands(const mt_study *study)
         }
     }
     return false;
+}
+
+bool mt_study_is_scale(const mt_study *study, const mt_goal *goal)
+{
+    const bool shakes =
+        study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_SHAKES);
+    return shakes && goal->shake != NULL && MT_HAS(goal->at_most) && !MT_HAS(goal->at_least);
 }
 
 bool mt_study_asks(const mt_study *study, int configuration)
@@ -102,6 +112,9 @@ const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e)
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
 {
     const mt_unit *const other = mt_study_demand_unit(study, &goal->expression);
+    if (goal->shake != NULL) {
+        return goal->shake->unit;
+    }
     return other != NULL ? mt_dimension_si(other->dimension)
                          : mt_goal_kind_of(goal->type)->unit;
 }
@@ -202,6 +215,17 @@ mt_avoid mt_avoid_default(mt_addr addr)
         .margin_addr = addr,
         .up_to_addr = addr,
     };
+}
+
+mt_shake mt_shake_default(mt_addr addr)
+{
+    return (mt_shake){.lower_hz = nan(""),
+                      .upper_hz = nan(""),
+                      .unit = "",
+                      .measurement = MT_ABSENT,
+                      .band_addr = addr,
+                      .at_addr = addr,
+                      .quantity_addr = addr};
 }
 
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)

@@ -10,7 +10,9 @@
 #include "study/aircraft.h"
 #include "study/bands.h"
 #include "study/goal_kinds.h"
+#include "study/measurement.h"
 #include "study/objective_kinds.h"
+#include "study/shake.h"
 
 /*
  * A question asked of a model: variables, goals, objective, references, published values.
@@ -103,6 +105,7 @@ typedef struct mt_goal {
     mt_expr expression; /* limit */
     const char *expression_text;
     mt_avoid *avoid; /* avoid: in the study's arena; else NULL */
+    mt_shake *shake; /* of ports: likewise */
     const char *description;
     mt_addr addr;
 } mt_goal;
@@ -284,6 +287,8 @@ typedef struct mt_study {
     MT_LIST_OF(mt_variable, variables);
     MT_LIST_OF(mt_goal, goals);
     MT_LIST_OF(mt_reference, references);
+    /* of each the responses that are meant, by finish */
+    MT_LIST_OF(mt_measurement, measurements);
     MT_LIST_OF(mt_objective, objectives);
     MT_LIST_OF(mt_published, published);
     mt_trade trade;
@@ -292,6 +297,7 @@ typedef struct mt_study {
      * by finish. Studies made from this one (points of a trade study, one combination of a
      * catalogue) keep it. */
     mt_count_box counted;
+    MT_LIST_OF(mt_study_profile, profiles); /* those that goals name, each once; owned */
     mt_name aircraft_path; /* of the catalogue read, or unreadable (noted); s NULL: none */
     mt_aircraft_list aircraft;
     /* for the result: what a reader of it must know (values that nobody confirmed, bands that
@@ -319,6 +325,7 @@ mt_status mt_study_new(mt_study **out, mt_err *err);
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
 mt_avoid mt_avoid_default(mt_addr addr);
+mt_shake mt_shake_default(mt_addr addr);
 /* Tolerance of a goal, of 1. */
 double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
@@ -342,13 +349,16 @@ const mt_unit *mt_study_unit(const mt_study *study, int parameter);
  * or a speed: that of a parameter in it, else the study's. NULL: SI, or it is none of these.
  * The expression is in SI all the same. */
 const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e);
-/* The unit of a goal's numbers, "" for none: of its kind (goal_kinds.h), or that of SI of its
- * expression, where parameters in it are shown in another. */
+/* The unit of a goal's numbers, "" for none: of its kind (goal_kinds.h), of its ports, or that
+ * of SI of its expression, where parameters in it are shown in another. */
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
+int mt_study_find_measurement(const mt_study *study, const char *name);
 /* Is there a goal that keeps clear of bands? */
 bool mt_study_has_bands(const mt_study *study);
+/* Does the objective take the goal's limit as its scale? Then nothing else is asked of it. */
+bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
 /* Does a goal ask for this configuration? */
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */

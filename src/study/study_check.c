@@ -97,6 +97,20 @@ int mt_check_reference(mt_study_check *c, mt_name name)
     return found;
 }
 
+int mt_check_measurement(mt_study_check *c, mt_name name)
+{
+    const mt_study *const s = c->study;
+    if (name.s == NULL) {
+        return MT_ABSENT;
+    }
+    const int found = mt_study_find_measurement(s, name.s);
+    if (found == MT_ABSENT) {
+        unknown(c, name, "measurement", s->measurements, s->n_measurements,
+                sizeof *s->measurements);
+    }
+    return found;
+}
+
 const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
 {
     const mt_aircraft_list *const list = &c->study->aircraft;
@@ -216,6 +230,7 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
         return rc;
     }
     mt_study_check_references(&c);
+    mt_study_check_measurements(&c);
     mt_study_check_variables(&c);
     mt_study_check_goals(&c);
     mt_study_check_overrides(&c);

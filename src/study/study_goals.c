@@ -99,6 +99,9 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
     if (mt_goal_member_at(kind, MT_SLOT_BANDS) >= 0) {
         mt_study_check_avoid(c, goal);
     }
+    if (mt_goal_member_at(kind, MT_SLOT_OUTPUT) >= 0) {
+        mt_study_check_shake(c, goal);
+    }
     if (mt_goal_member_at(kind, MT_SLOT_MODE) >= 0) {
         index = mt_check_mode(c, &goal->mode);
     }

@@ -99,6 +99,26 @@ static void check_spread(mt_study_check *c)
     }
 }
 
+/* What comes before it would be searched without the goals that it is made of. */
+static void check_vibration(mt_study_check *c)
+{
+    const mt_study *const s = c->study;
+    const mt_objective *const vibration = find(s, MT_SHAKES);
+    bool any = false;
+    for (int i = 0; i < s->n_goals; i++) {
+        any = any || (s->goals[i].shake != NULL && MT_HAS(s->goals[i].at_most) &&
+                      !MT_HAS(s->goals[i].at_least));
+    }
+    if (vibration != NULL && vibration != s->objectives) {
+        mt_diag_error(c->diags, vibration->addr,
+                      "the vibration is the first objective, or none");
+    } else if (vibration != NULL && !any) {
+        mt_diag_error(c->diags, vibration->addr,
+                      "the vibration needs a goal of type \"response\" or \"vibration\" with "
+                      "\"at_most\" alone");
+    }
+}
+
 static void check_proof(mt_study_check *c)
 {
     const mt_search *const search = &c->study->search;
@@ -118,6 +138,7 @@ void mt_study_check_objectives(mt_study_check *c)
     check_misfit(c);
     check_spread(c);
     check_proof(c);
+    check_vibration(c);
     const mt_objective *const clearance = find(s, MT_BANDS);
     if (clearance != NULL && !mt_study_has_bands(s)) {
         mt_diag_error(c->diags, clearance->addr,

@@ -12,10 +12,14 @@ typedef struct mt_study_check { /* a shortage is known to the study's arena */
     mt_diags *diags;
 } mt_study_check;
 
-void mt_study_check_references(mt_study_check *c);           /* study_references.c */
+void mt_study_check_references(mt_study_check *c);   /* study_references.c */
+void mt_study_check_measurements(mt_study_check *c); /* study_measurements.c */
+/* what a goal is compared with; by mt_study_check_shake */
+void mt_study_check_measured(mt_study_check *c, mt_shake *s);
 void mt_study_check_variables(mt_study_check *c);            /* study_variables.c */
 void mt_study_check_goals(mt_study_check *c);                /* study_goals.c */
 void mt_study_check_avoid(mt_study_check *c, mt_goal *goal); /* study_avoid.c; by the former */
+void mt_study_check_shake(mt_study_check *c, mt_goal *goal); /* study_shake.c; likewise */
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
@@ -33,6 +37,7 @@ int mt_check_parameter(mt_study_check *c, mt_name name);
 void mt_check_unset(mt_study_check *c, mt_name name, int parameter);
 int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name name);
 int mt_check_reference(mt_study_check *c, mt_name name);
+int mt_check_measurement(mt_study_check *c, mt_name name);
 /* NULL where the name is absent or unknown (noted, unless the catalogue itself could not be
  * read). */
 const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name);

@@ -400,9 +400,33 @@ void mt_vibration_finish(mt_vibration *v, mt_diags *diags)
 
 double mt_vibration_rms(const mt_vibration *v)
 {
-    double sum = 0.0;
-    for (int i = 0; i < v->n_random; i++) {
+    double sum = v == NULL ? nan("") : 0.0;
+    for (int i = 0; v != NULL && i < v->n_random; i++) {
         sum += v->random[i].rms * v->random[i].rms;
     }
     return sqrt(sum);
+}
+
+double mt_vibration_density(const mt_vibration *v, double hz)
+{
+    double sum = 0.0;
+    for (int i = 0; i < v->n_random; i++) {
+        sum += mt_psd_at(&v->random[i].psd, hz);
+    }
+    return sum;
+}
+
+void mt_vibration_range(const mt_vibration *v, double hz[2])
+{
+    hz[0] = HUGE_VAL;
+    hz[1] = 0.0;
+    for (int i = 0; i < v->n_random; i++) {
+        const mt_psd *const psd = &v->random[i].psd;
+        hz[0] = fmin(hz[0], psd->hz[0]);
+        hz[1] = fmax(hz[1], psd->hz[psd->n - 1]);
+    }
+    for (int i = 0; i < v->n_tones; i++) {
+        hz[0] = fmin(hz[0], v->tones[i].lower_hz);
+        hz[1] = fmax(hz[1], v->tones[i].upper_hz);
+    }
 }

@@ -2,6 +2,8 @@
 #ifndef STUDY_VIBRATION_H
 #define STUDY_VIBRATION_H
 
+#include "modetune/profile.h"
+
 #include "study/aircraft.h"
 #include "study/bands.h"
 #include "study/psd.h"
@@ -76,7 +78,7 @@ enum { MT_TONES_RULES = 3 };
 /* "sum", "largest", "root_sum_square"; all of them, in order. */
 extern const char *const mt_vibration_sum_names[MT_TONES_RULES];
 
-typedef struct mt_vibration {
+struct mt_vibration {
     mt_arena mem;
     const char *path;
     const char *sha256;
@@ -84,6 +86,9 @@ typedef struct mt_vibration {
     const char *description;
     const char *source;
     int axis; /* 0, 1, 2: x, y, z; MT_ABSENT: any */
+    /* of the catalogue that was read: relative to the profile's folder, or as the program calls
+     * its own; NULL: none */
+    const char *aircraft_name;
     mt_aircraft_list aircraft;
     int n_random;
     mt_vibration_random *random;
@@ -98,18 +103,19 @@ typedef struct mt_vibration {
     mt_vibration_tone *tones;
     int n_marks;
     const char **marks; /* sentences: what of this is assumed, or not confirmed */
-} mt_vibration;
+};
 
 /* Everything at its default. Fails: MT_E_MEMORY. */
 mt_status mt_vibration_new(mt_vibration **out, mt_err *err);
-void mt_vibration_delete(mt_vibration *v); /* accepts NULL */
 
 /* Check all numbers, noting every problem, look up aircraft, follow slopes, make tones and
  * marks. What could not be made is left empty where there are errors; a shortage is known to
  * the arena. */
 void mt_vibration_finish(mt_vibration *v, mt_diags *diags);
 
-/* RMS of the random parts together [m/s^2]. */
-double mt_vibration_rms(const mt_vibration *v);
+/* Density of all random parts together at a frequency [(m/s^2)^2/Hz]. */
+double mt_vibration_density(const mt_vibration *v, double hz);
+/* The lowest and highest frequency that there is in it [Hz]. */
+void mt_vibration_range(const mt_vibration *v, double hz[2]);
 
 #endif

@@ -67,6 +67,12 @@ static double combine(const mt_vibration *v, const mt_vibration_response *r)
     return sum;
 }
 
+void mt_vibration_respond_combine(const mt_vibration *v, mt_vibration_response *r)
+{
+    r->sine = combine(v, r);
+    r->peak = (v->sigma * r->rms) + r->sine;
+}
+
 mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_arena *mem,
                                mt_vibration_response *out, mt_err *err)
 {
@@ -81,8 +87,7 @@ mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_a
                                           TWO_PI * v->tones[i].upper_hz);
         note_end(out, out->tones[i].end, out->tones[i].pole);
     }
-    out->sine = combine(v, out);
-    out->peak = (v->sigma * out->rms) + out->sine;
+    mt_vibration_respond_combine(v, out);
     return MT_OK;
 }
 
@@ -141,6 +146,59 @@ mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *
         const double share = v->tones[i].level * by_tone(v, r, i);
         mt_frf_pull(&of.h, (mt_near){r->tones[i].omega, 0.0}, share * r->tones[i].direction,
                     by_s, by_residue, by_d);
+    }
+    return MT_OK;
+}
+
+/* Nodes of random part i, behind those that are there. */
+static mt_status add_nodes(const mt_spectral *of, const mt_psd *g, double share, mt_arena *mem,
+                           mt_spectral_nodes *out, mt_err *err)
+{
+    mt_spectral_nodes part;
+    MT_TRY(mt_spectral_slope_nodes(of, g, mem, &part, err));
+    const size_t n = (size_t)out->n + (size_t)part.n;
+    double *const omega = mt_arena_f64(mem, n, 1);
+    double complex *const weight = mt_arena_alloc(mem, n, sizeof *weight);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < out->n; i++) {
+        omega[i] = out->omega[i];
+        weight[i] = out->weight[i];
+    }
+    for (int i = 0; i < part.n; i++) {
+        omega[out->n + i] = part.omega[i];
+        weight[out->n + i] = share * part.weight[i];
+    }
+    *out = (mt_spectral_nodes){.n = (int)n, .omega = omega, .weight = weight};
+    return MT_OK;
+}
+
+mt_status mt_vibration_respond_tone_nodes(const mt_vibration *v, const mt_vibration_response *r,
+                                          double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                          mt_err *err)
+{
+    out->n = by_sine != 0.0 ? r->n_tones : 0;
+    out->omega = mt_arena_f64(mem, (size_t)out->n, 1);
+    out->weight = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->weight);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < out->n; i++) {
+        out->omega[i] = r->tones[i].omega;
+        out->weight[i] = by_sine * v->tones[i].level * by_tone(v, r, i) * r->tones[i].direction;
+    }
+    return MT_OK;
+}
+
+mt_status mt_vibration_respond_nodes(const mt_vibration *v, const mt_pole_sum *h,
+                                     const mt_vibration_response *r, double by_rms,
+                                     double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                     mt_err *err)
+{
+    mt_spectral of;
+    MT_TRY(mt_vibration_respond_tone_nodes(v, r, by_sine, mem, out, err));
+    MT_TRY(mt_spectral_init(&of, h, mem, err));
+    for (int i = 0; i < v->n_random && by_rms != 0.0 && r->rms > 0.0; i++) {
+        const mt_psd *const g = &v->random[i].psd;
+        const double rms = mt_spectral_rms(&of, g, MT_SPECTRAL_BEST).rms;
+        MT_TRY(add_nodes(&of, g, by_rms * rms / r->rms, mem, out, err));
     }
     return MT_OK;
 }

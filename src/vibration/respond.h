@@ -21,6 +21,8 @@ typedef struct mt_vibration_response {
 /* Lists in mem. Fails: as mt_spectral_init. */
 mt_status mt_vibration_respond(const mt_vibration *v, const mt_pole_sum *h, mt_arena *mem,
                                mt_vibration_response *out, mt_err *err);
+/* From RMS and tones their sum by the profile's rule, and the peak. */
+void mt_vibration_respond_combine(const mt_vibration *v, mt_vibration_response *r);
 /* Amplitude of the response to tone i. */
 double mt_vibration_respond_tone(const mt_vibration *v, const mt_vibration_response *r, int i);
 /* Density of the response at a frequency [Hz], of all random parts. */
@@ -38,6 +40,17 @@ mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *
                                       const mt_vibration_response *r, mt_arena *mem,
                                       double complex *by_s, double complex *by_residue,
                                       double complex *by_d, mt_err *err);
+
+/* by_sine d sine = Re sum_i weight_i dH(w_i), a node for each tone. In mem. */
+mt_status mt_vibration_respond_tone_nodes(const mt_vibration *v, const mt_vibration_response *r,
+                                          double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                          mt_err *err);
+/* The same as nodes: by_rms d rms + by_sine d sine = Re sum_i weight_i dH(w_i) (as
+ * mt_spectral_slope_nodes). In mem. */
+mt_status mt_vibration_respond_nodes(const mt_vibration *v, const mt_pole_sum *h,
+                                     const mt_vibration_response *r, double by_rms,
+                                     double by_sine, mt_arena *mem, mt_spectral_nodes *out,
+                                     mt_err *err);
 
 /* One mass on a spring and a dashpot that stand on the base: its absolute acceleration to that
  * of the base, natural frequency [Hz] and damping ratio within 0 and 1. */

@@ -157,6 +157,13 @@ static bool is_refused(const mt_spectral *r, const mt_psd *input, mt_spectral_an
     return a->end != MT_FORCED_FINITE;
 }
 
+/* |sqrt(x + e) - sqrt(x)| <= e / sqrt(x) and <= sqrt(e) */
+double mt_spectral_root_bound(double bound, double root)
+{
+    return fmin(sqrt(bound), root > 0.0 ? bound / root : HUGE_VAL) +
+           (ULPS_OF_A_TERM * DBL_EPSILON * root);
+}
+
 mt_spectral_answer mt_spectral_rms(const mt_spectral *r, const mt_psd *input,
                                    mt_spectral_way way)
 {
@@ -178,8 +185,6 @@ mt_spectral_answer mt_spectral_rms(const mt_spectral *r, const mt_psd *input,
         a.n_closed += closed ? 1 : 0;
     }
     a.rms = sqrt(fmax(square, 0.0));
-    /* |sqrt(x + e) - sqrt(x)| <= e / sqrt(x) and <= sqrt(e) */
-    a.bound = fmin(sqrt(bound), a.rms > 0.0 ? bound / a.rms : HUGE_VAL) +
-              (ULPS_OF_A_TERM * DBL_EPSILON * a.rms);
+    a.bound = mt_spectral_root_bound(bound, a.rms);
     return a;
 }

@@ -50,6 +50,9 @@ double mt_spectral_psd(const mt_spectral *r, const mt_psd *input, double hz);
 mt_spectral_answer mt_spectral_rms(const mt_spectral *r, const mt_psd *input,
                                    mt_spectral_way way);
 
+/* A bound of the error of a root, by that of what it is the root of. */
+double mt_spectral_root_bound(double bound, double root);
+
 /*
  * The derivative of the RMS by whatever moves H:
  *     d RMS = Re integral conj(H) dH G df / RMS = Re sum_i weight_i dH(w_i) + error,

@@ -111,7 +111,7 @@ class Report(Answers):
         wanted = {
             "inceptor_rotor": {"frequencies", "parameters", "rotor-1", "parallel", "tolerance", "sensitivity", "spent"},
             "inceptor_trade": {"trade", "front", "parallel", "tolerance", "rotor-1"},
-            "beam_identification": {"mac", "published", "starts", "sensitivity"},
+            "beam_identification": {"mac", "published", "starts", "sensitivity", "history-1"},
             "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
         }
         for name, figures in wanted.items():

@@ -86,6 +86,9 @@ static struct {
      FULL},
     {"sweep --drive pivo=-0.1:0.1:3 --format csv " MODELS "driven_rod.json", MT_EXIT_INPUT,
      FULL},
+    {"simulate --vibration base.y=tests/io/good/profile.json -c still --duration 0.01 " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE, SOME},
     {"simulate -c loaded --duration 0.02 --start jA=0.1 --rate jA=1 " MODELS
      "space_four_bar.json",
      MT_EXIT_DONE, FULL},
@@ -156,6 +159,12 @@ static struct {
     {"response --input base.x --output tip.x:velocity --output joint.pivot.x "
      "--sensitivity m,L -c hanging " MODELS "pendulum.json",
      MT_EXIT_DONE, FULL},
+    {"response --vibration helicopter_uh60_panel --input base.x -c still --points 3 " MODELS
+     "four_bar.json",
+     MT_EXIT_DONE, FULL},
+    {"response --vibration tests/io/good/profile.json --input base.y --format json -c still "
+     "--points 3 " MODELS "four_bar.json",
+     MT_EXIT_DONE, SOME},
     {"response --input tip.x --format json --sensitivity a,k -c still --points 3 " MODELS
      "four_bar.json",
      MT_EXIT_DONE, FULL},

@@ -115,6 +115,11 @@ static const struct {
     {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_SYSTEM, SHORT},
     {"sweep --drive pivot=-0.1:0.1:3 " MODELS "driven_rod.json", MT_EXIT_SYSTEM, FULL},
 
+    {"simulate --vibration base.x=truck_vertical --duration 0.01 " MODELS
+     "pendulum.json -c hanging",
+     MT_EXIT_DONE, AS_IT_IS},
+    {"simulate --vibration truck_vertical --duration 0.01 " MODELS "pendulum.json -c hanging",
+     MT_EXIT_INPUT, AS_IT_IS},
     {"simulate --duration 0.1 -c still " MODELS "four_bar.json", MT_EXIT_DONE, AS_IT_IS},
     {"simulate --duration 0.1 " MODELS "four_bar.json", MT_EXIT_INPUT, AS_IT_IS},
     {"simulate --duration 0.1 -c sprung --input base.x=10*t " MODELS "massless.json",
@@ -130,6 +135,11 @@ static const struct {
     {"sensitivity " MODELS "ring.json", MT_EXIT_SYSTEM, FULL},
 
     {"response --input tip.x " MODELS "pendulum.json -c hanging", MT_EXIT_DONE, AS_IT_IS},
+    {"response --vibration white --input base.x " MODELS "pendulum.json -c hanging",
+     MT_EXIT_DONE, AS_IT_IS},
+    {"response --vibration white " MODELS "pendulum.json -c hanging", MT_EXIT_INPUT, AS_IT_IS},
+    {"response --vibration %/none.json --input base.x " MODELS "pendulum.json -c hanging",
+     MT_EXIT_SYSTEM, AS_IT_IS},
     {"response --input tip.q " MODELS "pendulum.json -c hanging", MT_EXIT_INPUT, AS_IT_IS},
     {"response --input tip.x " MODELS "pendulum.json -c upside_down", MT_EXIT_NUMERICAL,
      AS_IT_IS},

@@ -48,10 +48,16 @@ static const struct {
     {"response --input tip.x --output tip.y:velocity --sensitivity k -c still --points 3 "
      "--from 1 --to 2 " MODELS "four_bar.json",
      MT_EXIT_DONE},
+    {"response --vibration tests/io/good/profile.json --input base.y -c still --points 3 "
+     "--format csv " MODELS "four_bar.json",
+     MT_EXIT_DONE},
     {"info " MODELS "space_stick.json", MT_EXIT_DONE},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},
     {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE},
+    {"simulate --vibration base.y=tests/io/good/profile.json -c still --duration 0.01 --format "
+     "json " MODELS "four_bar.json",
+     MT_EXIT_DONE},
     {"simulate -c still --start jA=0.1 --rate jA=1 --duration 0.05 --format json " MODELS
      "four_bar.json",
      MT_EXIT_DONE},

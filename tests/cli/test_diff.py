@@ -10,7 +10,7 @@ import re
 from common_cli import SOURCE, CliTest, main, study
 
 # What is not compared, wherever it stands.
-SENTENCES = {"column", "goal", "kkt_residual", "line", "orthogonality", "outputs", "reasons", "residual", "status_text", "text", "warnings"}
+SENTENCES = {"history", "column", "goal", "kkt_residual", "line", "orthogonality", "outputs", "reasons", "residual", "status_text", "text", "warnings"}
 # Lists whose items are found by what they are about. A change of that makes another item of it.
 KEYS = {"certificates": ["kind", "pointer"], "clearances": ["configuration", "mode", "band"], "doubts": ["kind", "configuration", "pointer"],
         "excitations": ["pointer", "name"], "facts": ["kind", "configuration", "pointer"],
@@ -18,7 +18,7 @@ KEYS = {"certificates": ["kind", "pointer"], "clearances": ["configuration", "mo
         "inputs": ["file"], "motion": ["goal", "drive"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
         "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "spread": ["parameter"], "vary": ["pointer"]}
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
-BY_PLACE = {"points", "reasons", "recommendations", "undetermined", "outputs"}
+BY_PLACE = {"history", "points", "reasons", "recommendations", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")
 HOLDS = """, "published": [
     { "label": "spring", "parameter": "k1", "value": 3, "tolerance_percent": 0.1, "source": "a" }, { "status": "solved" } ],

@@ -4,12 +4,12 @@ import csv
 import io
 import json
 import math
-import random
 
 import numpy
 from scipy import signal
 
 from common_cli import CliTest, main
+from common_shaken import chain
 
 # 2 kg on 200 N/m and a damper c, along x.
 ONE = """{ "format": "modetune-model/1", "name": "One", "dimension": 2, "parameters": { "m": 2, "k": 200, "c": 0.4 },
@@ -19,33 +19,6 @@ ONE = """{ "format": "modetune-model/1", "name": "One", "dimension": 2, "paramet
   "dampers": [ { "name": "d", "type": "axial", "bodies": ["ground", "a"], "at": [[0, 0], [1, 0]], "damping_n_s_per_m": "c" } ],
   "sensors": [ { "name": "a", "on": "a", "directions": ["x"] } ] }
 """
-
-
-def chain(seed, n):
-    """Masses on a line, each sprung and damped against those before it: the model, and M, C, K made here."""
-    rng = random.Random(seed)
-    m, c, k = (numpy.zeros((n, n)) for _ in range(3))
-    model = {"format": "modetune-model/1", "name": "chain", "dimension": 2, "bodies": [], "joints": [], "springs": [], "dampers": [], "sensors": []}
-
-    def tie(matrix, i, j, value):
-        for a in (i, j):
-            for b in (i, j):
-                if a >= 0 and b >= 0:
-                    matrix[a, b] += value if a == b else -value
-
-    for i in range(n):
-        name, at = f"b{i}", [i + 1, 0]
-        m[i, i] = 10 ** rng.uniform(-1, 1)
-        model["bodies"].append({"name": name, "mass_kg": m[i, i], "inertia_kg_m2": 1, "centre": at})
-        model["joints"].append({"name": "j" + name, "type": "prismatic", "bodies": ["ground", name], "at": at, "axis": [1, 0]})
-        model["sensors"].append({"name": name, "on": name, "directions": ["x"]})
-        for kind, matrix, member, low, high in (("springs", k, "stiffness_n_per_m", 2, 4), ("dampers", c, "damping_n_s_per_m", -1, 0.5)):
-            to = rng.randrange(-1, i) if i and kind == "dampers" else i - 1
-            value = 10 ** rng.uniform(low, high)
-            tie(matrix, i, to, value)
-            ends = ["ground" if to < 0 else f"b{to}", name]
-            model[kind].append({"name": kind[0] + name, "type": "axial", "bodies": ends, "at": [[to + 1, 0], at], member: value})
-    return model, m, c, k
 
 
 class Response(CliTest):

@@ -91,7 +91,7 @@ class Simulate(CliTest):
         self.refused("is not PORT=LEVEL@FROM:TO", *hanging, "--duration", "1", "--sweep", "base.x=1@5")
         self.refused("two breakpoints or more", *hanging, "--duration", "1", "--random", "base.x=1:1")
         self.refused('unknown name "x"', *hanging, "--duration", "1", "--input", "base.x=x")
-        self.refused("is none of displacement, velocity, acceleration", *hanging, "--duration", "1", "--output", "tip.x:speed")
+        self.refused("is not displacement, velocity or acceleration", *hanging, "--duration", "1", "--output", "tip.x:speed")
         self.refused("there are 1 vibration modes", *hanging, "--duration", "1", "--mode", "2:0.1")
         self.refused("is not N:AMPLITUDE", *hanging, "--duration", "1", "--mode", "0.1")
         self.refused("samples of", *hanging, "--duration", "1", "--dt-out", "1e-9")

@@ -42,6 +42,9 @@ static mt_result_goal GOALS[] = {{.text = "installed mode 1 at 18 Hz",
                                   .target = 18.0,
                                   .tolerance_percent = 1e-4,
                                   .met = true,
+                                  .off_most_hz = 17.25,
+                                  .off_most_ratio = 1.125,
+                                  .off_most_phase_deg = -3.5,
                                   .worst = 17.5,
                                   .sensitivity = SENSITIVITY}};
 static mt_reason REASONS[] = {{"change", "K_T1", "K_T1 rises by 1.5 %."},
@@ -53,6 +56,7 @@ static const char *INCOMPLETE[] = {"trade"};
 static const char SHA256[] = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
 static mt_result_digest INPUTS[] = {{"study.json", SHA256}};
 static mt_result_override OVERRIDES[] = {{"parameter", "l", "m", "mm", 1e-3, 0.5, 0.25}};
+static mt_result_step HISTORY[] = {{1, 1, 3, 0.5, 12.5, false}, {2, 1, 1000, 0.25, 0.0, true}};
 static mt_result_digest OUTPUTS[] = {{"report.html", SHA256}};
 static mt_doubt DOUBTS[] = {{.kind = "margin",
                              .text = "a margin of 0.1 %",
@@ -152,6 +156,24 @@ static mt_result_motion MOTIONS[] = {
      .grade = "sampled",
      .text = "mode 1 comes nearest"},
 };
+static mt_result_response RESPONSES[] = {
+    {.pointer = "/goals/2",
+     .configuration = "installed",
+     .input = "base.z",
+     .output = "grip.x:acceleration",
+     .profile = "helicopter_uh60_panel",
+     .quantity = "rms",
+     .unit = "m/s^2",
+     .value = 3.25,
+     .error = 1e-9,
+     .frequency_hz = 17.25,
+     .at_edge = true,
+     .lower_hz = 5.0,
+     .upper_hz = 500.0,
+     .end = "finite",
+     .grade = "proven",
+     .text = "the acceleration of grip.x is 3.25 m/s^2 rms"},
+};
 static mt_result_tolerance TOLERANCES[] = {
     {"K_T1", 4.5, "mode 1 at 4P of UH-60"},
     {"M_SAU", HUGE_VAL, NULL},
@@ -180,6 +202,8 @@ static void fill_bands(sample *s)
     r->gaps = GAPS;
     r->n_motions = MT_COUNT(MOTIONS);
     r->motions = MOTIONS;
+    r->n_responses = MT_COUNT(RESPONSES);
+    r->responses = RESPONSES;
     r->tolerance_box = &s->box;
     s->point = (mt_trade_point){.n_values = MT_COUNT(TRADE_VALUES),
                                 .values = TRADE_VALUES,
@@ -209,6 +233,8 @@ static void fill_run(mt_result *r)
                              .distinct_designs = 9,
                              .found_once = 3,
                              .estimated_missing = 1.5,
+                             .n_history = MT_COUNT(HISTORY),
+                             .history = HISTORY,
                              .n_overrides = MT_COUNT(OVERRIDES),
                              .overrides = OVERRIDES,
                              .n_inputs = MT_COUNT(INPUTS),

@@ -121,6 +121,30 @@ static void check_other_goals(mt_test *t, const mt_study *s)
     CHECK_INT(t, g[0].reference, MT_ABSENT);
 }
 
+static void check_measured(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = &s->goals[7];
+    if (!CHECK_INT(t, s->n_measurements, 2) ||
+        !CHECK_INT(t, g->type, MT_GOAL_FREQUENCY_RESPONSE)) {
+        return;
+    }
+    const mt_measurement *const m = &s->measurements[0];
+    CHECK_INT(t, g->n_configurations, 2);
+    CHECK_STR(t, g->shake->input.s, "s1.x");
+    CHECK_STR(t, g->shake->output.s, "s2.x:acceleration");
+    CHECK_INT(t, g->shake->measurement, 0);
+    CHECK(t, g->shake->coherence);
+    CHECK_NEAR(t, g->shake->lower_hz, 0.5, TOL);
+    CHECK_NEAR(t, g->shake->upper_hz, 3.0, TOL);
+    CHECK_NEAR(t, g->weight, 2.0, TOL);
+    CHECK_NEAR(t, m->factor, 2.0, TOL);
+    if (CHECK_INT(t, m->n_responses, 1) && CHECK_INT(t, m->responses[0].n_lines, 3)) {
+        CHECK_NEAR(t, m->responses[0].scale, 2.0, TOL);
+        CHECK_NEAR(t, m->responses[0].lines[2].coherence, 0.75, TOL);
+    }
+    CHECK(t, s->measurements[1].responses[0].scale == 1.0);
+}
+
 static void check_references(mt_test *t, const mt_study *s)
 {
     if (!CHECK_INT(t, s->n_references, 2)) {
@@ -192,9 +216,10 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.max_evaluations, 5000);
     CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
     CHECK_NEAR(t, s->spread.factor, 4.0, 0.0);
-    if (CHECK_INT(t, s->n_goals, 7)) {
+    if (CHECK_INT(t, s->n_goals, 8)) {
         check_frequency_goals(t, s);
         check_other_goals(t, s);
+        check_measured(t, s);
     }
     check_variables(t, s);
     check_references(t, s);
@@ -207,9 +232,10 @@ static void study__inputs_are_listed_with_their_digests(mt_test *t)
 {
     mt_study *const s = load(t, FULL);
     REQUIRE(t, s != NULL);
-    if (CHECK_INT(t, s->n_inputs, 2)) {
+    if (CHECK_INT(t, s->n_inputs, 4)) {
         CHECK_STR(t, s->inputs[0].name, "study_full.json");
         CHECK_STR(t, s->inputs[1].name, "../wrong/parts/model.json");
+        CHECK_STR(t, s->inputs[2].name, "../wrong/parts/measured.csv");
         CHECK_STR(t, s->inputs[1].sha256, s->model->sha256);
         CHECK_INT(t, strlen(s->inputs[0].sha256), 64);
     }

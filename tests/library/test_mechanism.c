@@ -336,6 +336,70 @@ static void mechanism__responses_are_those_of_the_closed_form(mt_test *t)
     mt_model_delete(model);
 }
 
+/* A mass of 2 kg on a spring and a damper, its ground shaken by white noise of 0.5
+ * (m/s^2)^2/Hz: RMS^2 = pi/2 f Q S (1 + 4 zeta^2), less what lies beyond the band; then at its
+ * resonance. */
+static const mt_file_text one_mass = {
+    "one.json",
+    "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"parameters\": {\"f\": 20, "
+    "\"zeta\": 0.05}, \"bodies\": [{\"name\": \"a\", \"mass_kg\": 2, \"inertia_kg_m2\": 1, "
+    "\"centre\": [1, 0]}], \"joints\": [{\"name\": \"j\", \"type\": \"prismatic\", "
+    "\"bodies\": [\"ground\", \"a\"], \"at\": [1, 0], \"axis\": [1, 0]}], \"springs\": "
+    "[{\"name\": \"s\", \"type\": \"axial\", \"bodies\": [\"ground\", \"a\"], \"at\": [[0, 0], "
+    "[1, 0]], \"stiffness_n_per_m\": \"2*(2*pi*f)^2\"}], \"dampers\": [{\"name\": \"d\", "
+    "\"type\": \"axial\", \"bodies\": [\"ground\", \"a\"], \"at\": [[0, 0], [1, 0]], "
+    "\"damping_n_s_per_m\": \"8*pi*zeta*f\"}], \"sensors\": [{\"name\": \"a\", \"on\": \"a\", "
+    "\"directions\": [\"x\"]}]}"};
+static const mt_file_text white = {
+    "white.json", "{\"format\": \"modetune-profile/1\", \"axis\": \"x\", \"random\": "
+                  "{\"psd_m2_per_s3\": [[1e-9, 0.5], [1e9, 0.5]]}, \"tones\": "
+                  "[{\"frequency_hz\": [1, 2], \"acceleration_m_per_s2\": 3}]}"};
+
+static void mechanism__shaken_by_a_profile_has_its_closed_form(mt_test *t)
+{
+    static const char *const names[] = {"zeta"};
+    const mt_read_options opt = {
+        .size = sizeof opt, .files = &white, .n_files = 1, .files_only = 1};
+    mt_model *const model = from_text(t, &one_mass);
+    mt_vibration *profile = NULL;
+    mt_mechanism *m = NULL;
+    mt_vibration_answer a = {.rms = 0.0};
+    mt_err err = {MT_OK, ""};
+    REQUIRE(t, mt_vibration_read("white.json", &opt, &profile, NULL) == MT_OK);
+    CHECK_NEAR(t, mt_vibration_rms(profile), sqrt(0.5e9), 1e-14);
+    REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &m, NULL) == MT_OK);
+    for (int i = 0; i < 4; i++) {
+        static const double ZETA[] = {0.05, 0.3, 1.0, 0.0};
+        const double z = ZETA[i];
+        mt_test_row(t, "damping ratio %g", z);
+        CHECK_INT(t, mt_mechanism_evaluate(m, &z, NULL), MT_OK);
+        CHECK_INT(t, mt_mechanism_vibration(m, NULL, profile, 1, &a, NULL), MT_OK);
+        if (z == 0.0) {
+            CHECK_INT(t, a.end, MT_VIBRATION_INFINITE);
+            CHECK(t, isnan(a.rms) && isnan(a.peak));
+            continue;
+        }
+        const double beyond = 4.0 * z * z * 400.0 / 1e9;
+        const double rms =
+            sqrt(0.5 * ((0.5 * PI * 20.0 / (2.0 * z) * (1.0 + (4.0 * z * z))) - beyond));
+        const double r = 0.1; /* 2 Hz of 20 */
+        const double tone = 3.0 * hypot(1.0, 2.0 * z * r) / hypot(1.0 - (r * r), 2.0 * z * r);
+        CHECK_INT(t, a.end, MT_VIBRATION_FINITE);
+        CHECK_INT(t, a.proven, z == 1.0 ? 0 : 1);
+        CHECK_NEAR(t, a.rms, rms, 1e-9);
+        CHECK(t, a.rms_error <= 1e-9 * rms);
+        CHECK_NEAR(t, a.tones, tone, 1e-12);
+        CHECK_NEAR(t, a.peak, (3.0 * a.rms) + a.tones, 1e-15);
+    }
+    CHECK_INT(t, mt_mechanism_vibration(m, NULL, profile, 0, &a, &err), MT_E_USAGE);
+    static const char *const push = "a.x";
+    static const mt_ports force = {.n_inputs = 1, .inputs = &push};
+    CHECK_INT(t, mt_mechanism_vibration(m, &force, profile, 1, &a, &err), MT_E_USAGE);
+    mt_mechanism_delete(m);
+    mt_vibration_delete(profile);
+    mt_model_delete(model);
+}
+
 /* Reading from memory, making, evaluating, and asking for everything, with the k-th allocation
  * refused. */
 static mt_status use_everything(void)
@@ -359,6 +423,13 @@ static mt_status use_everything(void)
     static const mt_ports ports = {.n_inputs = 1, .inputs = &input};
     rc = rc == MT_OK ? mt_mechanism_response(m, &ports, 1, at, room, room + 2, NULL, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_response_slopes(m, &ports, 2.0, room, room + 4, NULL) : rc;
+    mt_vibration *profile = NULL;
+    mt_vibration_answer answers[2];
+    const mt_read_options other = {
+        .size = sizeof other, .files = &white, .n_files = 1, .files_only = 1};
+    rc = rc == MT_OK ? mt_vibration_read("white.json", &other, &profile, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_vibration(m, NULL, profile, 2, answers, NULL) : rc;
+    mt_vibration_delete(profile);
     mt_mechanism_delete(m);
     mt_model_delete(model);
     mt_diagnostics_delete(opt.diagnostics);
@@ -430,6 +501,7 @@ MT_TEST_MAIN(MT_TEST(mechanism__frequencies_are_those_of_the_closed_form),
              MT_TEST(mechanism__shapes_solve_the_equations),
              MT_TEST(mechanism__mac_compares_two_designs),
              MT_TEST(mechanism__sensitivities_are_those_of_the_closed_form),
+             MT_TEST(mechanism__shaken_by_a_profile_has_its_closed_form),
              MT_TEST(mechanism__responses_are_those_of_the_closed_form),
              MT_TEST(mechanism__repeated_modes_split_along_directions),
              MT_TEST(mechanism__every_failing_allocation_is_survived),

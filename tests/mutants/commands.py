@@ -129,6 +129,7 @@ def commands(rng, case):
         yield ["modes", file, *form(), *rng.choice(([], ["--shapes"], ["--damped"], ["--shapes", "--damped", "--count", "3"]))]
         yield ["sensitivity", file, *form()]
         yield ["response", file, "--input", "base.x", "--points", "5", *form(), *rng.choice(([], ["--direct"], ["--modes", "2"], ["--log"]))]
+        yield ["response", file, "--input", "base.x", "--points", "5", *form(), "--vibration", rng.choice(("gevs_qualification", "helicopter_uh60_panel"))]
         joints = _moving(case.original)
         if joints:
             yield ["sweep", file, "-c", rng.choice(configurations), "--drive", f"{rng.choice(joints)}=-0.1:0.1:3", *form(), *rng.choice(([], ["--modes"]))]

@@ -96,6 +96,8 @@ class Corpus:
             return files
         named = [(study, "model")] + [(r, "model") for _, _, r in document.nodes(study.get("references", document.Object()))
                                       if isinstance(r, document.Object) and isinstance(r.get("model"), str)]
+        named += [(m, "file") for _, _, m in document.nodes(study.get("measurements", document.Object()))
+                  if isinstance(m, document.Object) and isinstance(m.get("file"), str)]
         named += [(study, "aircraft")] if study.get("aircraft") else []
         for where, member in named:
             path = SOURCE / self._near(name, where.get(member))

@@ -12,7 +12,7 @@ from document import Number, Object
 MARK = "zq_"  # before every name: a name of no shipped file, and one that keeps their order
 MAPS = ("parameters", "configurations", "modes", "references", "shape")  # the order of their members is that of the answer's lists
 RESERVED = ("ground", "default", "original", "recommended")
-NO_NAMES = ("directions", "type", "minimise", "status", "dimension", "model", "aircraft", "series", "orders", "design", "kind", "by", *document.FREE)
+NO_NAMES = ("directions", "file", "type", "minimise", "status", "dimension", "model", "aircraft", "series", "orders", "design", "kind", "by", *document.FREE)
 NAMED = ("bodies", "links", "joints", "springs", "dampers", "loads", "sensors")
 PLACES = ("sha256", "line", "column", "pointer", "file")
 
@@ -83,7 +83,7 @@ def unused(rng, trees):
 
 def _names(tree):
     found = {value for key in NAMED for item in tree.get(key) or [] for k, value in item if k == "name"}
-    for key in ("parameters", "points", "configurations", "modes", "references"):
+    for key in ("parameters", "points", "configurations", "modes", "references", "measurements"):
         found |= {k for k, _ in tree.get(key) or []}
     return found - set(RESERVED)
 
@@ -103,7 +103,7 @@ def rename(rng, trees):
             if isinstance(value, str) and not isinstance(value, Number) and (key not in NO_NAMES or (key == "name" and path[0] is not None and len(path) > 2)):
                 document.put(tree, path, _renamed(value, names, key == "of"))
         for _, key, value in [((), None, tree), *document.nodes(tree)]:
-            if isinstance(value, Object) and key in ("parameters", "points", "configurations", "modes", "references", "shape"):
+            if isinstance(value, Object) and key in ("parameters", "points", "configurations", "modes", "references", "measurements", "shape"):
                 for pair in value:
                     pair[0] = _renamed(pair[0], names) if pair[0] in names or pair[0].split(".")[0] in names else pair[0]
 
@@ -156,12 +156,16 @@ def _commands(case):
 def changed(rng, case, change):
     """The case's files with the change, as text."""
     places = [place for place in case.files if place in (case.target, "problems/changed.json") or (case.kind == "study" and place.startswith("problems/"))]
-    trees = {place: document.read(case.files[place]) for place in places if "aircraft" not in place}
+    trees = {place: document.read(case.files[place]) for place in places if "aircraft" not in place and place.endswith(".json")}
+    tables = {place: text for place, text in case.files.items() if place.endswith(".csv")} if change == "rename" else {}
+    names = set().union(*(_names(tree) for tree in trees.values()))
     if CHANGES[change] is not None:
         CHANGES[change](rng, trees)
     texts = {place: document.write(tree, rng.choice((None, 1, 4))) for place, tree in trees.items()}
     if change == "space":
         texts = {place: text.replace("\n", rng.choice(("\r\n", "\n\n\t"))) + rng.choice(("", " ", "\n\n")) for place, text in texts.items()}
+    for place, text in tables.items():  # names of ports
+        texts[place] = re.sub(r"(?m)(?<![\w.:])\w+(?=\.)", lambda m: MARK + m[0] if m[0] in names else m[0], text)
     return {**case.files, **texts}
 
 

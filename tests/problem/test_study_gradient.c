@@ -199,5 +199,112 @@ static void damping__has_exact_gradients(mt_test *t)
     compiled_free(&s);
 }
 
+/* Ports of loops under load: a band whose parts have their peaks within, at moving ends and at
+ * those of the band; one frequency; and all that profiles make of a response. */
+#define SHAKEN_VARIABLES                                                                    \
+    "'variables': [{'parameter': 'a', 'lower': 0.12, 'upper': 0.18}, {'parameter': 'k', "   \
+    "'lower': 10, 'upper': 40}, {'parameter': 'c', 'lower': 0, 'upper': 2}, {'parameter': " \
+    "'eta', 'lower': 0.01, 'upper': 0.3}, {'parameter': 'zeta', 'lower': 0.001, 'upper': "  \
+    "0.1}],"
+
+static void shaken_goals__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "damped_linkage",
+                SHAKEN_VARIABLES
+                "'goals': ["
+                "{'type': 'response', 'configuration': 'all', 'input': 'base.x',"
+                " 'output': 'spring.rail', 'band_hz': [0.4, 9], 'at_most': 3},"
+                "{'type': 'response', 'configuration': 'named', 'input': 'base.y:displacement',"
+                " 'output': 'damper.strut', 'at_hz': 1.7, 'target': 0.01},"
+                "{'type': 'response', 'configuration': 'all', 'input': 'base.y',"
+                " 'output': 'spring.coil', 'at_hz': 0.7, 'target': 0.01, 'weight': 2},"
+                "{'type': 'vibration', 'configuration': 'all', 'profile': 'truck_vertical',"
+                " 'input': 'base.y', 'output': 'spring.servo', 'at_most': 3, 'at_least': 1},"
+                "{'type': 'vibration', 'configuration': 'all', 'quantity': 'sine',"
+                " 'profile': 'helicopter_sine_on_random', 'input': 'base.y',"
+                " 'output': 'spring.rail', 'at_most': 3},"
+                "{'type': 'vibration', 'configuration': 'named', 'quantity': 'peak',"
+                " 'profile': 'helicopter_sine_on_random', 'input': 'base.x',"
+                " 'output': 'damper.oil', 'at_most': 3}],"
+                "'objective': {'minimise': 'misfit'}",
+                &s)) {
+        double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03)};
+        CHECK_INT(t, s.p->n_eq, 1);
+        CHECK_INT(t, s.p->n_res, 1);
+        CHECK(t, s.p->demands[0].n_parts > 2);
+        CHECK_INT(t, s.p->n_in, s.p->demands[0].n_parts + 4);
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
+/* With its coordinate above what all rows ask for, and without. */
+static void shaken_objective__has_an_exact_gradient(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "damped_linkage",
+                SHAKEN_VARIABLES
+                "'goals': ["
+                "{'type': 'frequency', 'configuration': 'all', 'mode': 1, 'at_least_hz': 0.1},"
+                "{'type': 'response', 'configuration': 'all', 'input': 'base.x',"
+                " 'output': 'spring.rail', 'band_hz': [0.4, 9], 'at_most': 3},"
+                "{'type': 'vibration', 'configuration': 'all', 'profile': 'truck_vertical',"
+                " 'input': 'base.y', 'output': 'spring.servo', 'at_most': 3}],"
+                "'objective': [{'minimise': 'vibration'}, {'minimise': 'change'}]",
+                &s)) {
+        double at[6] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03), 51.5};
+        mt_case later;
+        mt_nlp_values v;
+        CHECK_INT(t, s.p->n_in, 1);
+        CHECK_INT(t, s.p->n_soft, s.p->demands[1].n_parts + 1);
+        CHECK_INT(t, mt_case_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
+        CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
+        for (int k = 0; k < s.p->n_aims; k++) {
+            later.stage = k;
+            check_stage(t, s.w, at, &s.mem);
+            mt_aim_hold(&later, s.w, k, 1.01 * mt_aim_value(s.w, k, NULL));
+        }
+        later.stage = 0;
+        at[5] = 0.0; /* not given: looked up */
+        CHECK_INT(t, mt_case_values_init(s.w->c, &s.mem, &v, NULL), MT_OK);
+        CHECK_INT(t, mt_workspace_eval(s.w, at, false, &v, NULL), MT_OK);
+        CHECK(t, isfinite(s.w->worst));
+        CHECK_NEAR(t, mt_aim_value(s.w, 0, NULL), s.w->worst, 0.0);
+    }
+    compiled_free(&s);
+}
+
+/* Logarithms of responses over measured ones, magnitude and phase, through loops under load. */
+static void measured_responses__have_exact_gradients(mt_test *t)
+{
+    compiled s;
+    if (compile(t, "damped_linkage",
+                "'variables': [{'parameter': 'a', 'lower': 0.12, 'upper': 0.18},"
+                " {'parameter': 'k', 'lower': 10, 'upper': 40},"
+                " {'parameter': 'c', 'lower': 0, 'upper': 2},"
+                " {'parameter': 'eta', 'lower': 0.01, 'upper': 0.3},"
+                " {'parameter': 'alpha', 'lower': -1, 'upper': 2}],"
+                "'measurements': {'shaker': {'file': '" MT_TEST_SOURCE_DIR
+                "/tests/io/wrong/parts/measured.csv'}},"
+                "'goals': ["
+                "{'type': 'frequency_response', 'configurations': ['all', 'still'],"
+                " 'input': 'base.x', 'output': 'spring.coil', 'measurement': 'shaker',"
+                " 'coherence': true, 'weight': 2},"
+                "{'type': 'frequency_response', 'configuration': 'dampers',"
+                " 'input': 'base.y:displacement', 'output': 'damper.strut',"
+                " 'measurement': 'shaker', 'band_hz': [1.5, 4], 'weight': 0.5}],"
+                "'objective': {'minimise': 'misfit'}",
+                &s)) {
+        double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), 0.9 / 3.0};
+        CHECK_INT(t, s.p->n_res, 2 * (3 + 3 + 2));
+        check_stage(t, s.w, at, &s.mem);
+    }
+    compiled_free(&s);
+}
+
 MT_TEST_MAIN(MT_TEST(callback__has_exact_gradients), MT_TEST(damping__has_exact_gradients),
+             MT_TEST(shaken_goals__have_exact_gradients),
+             MT_TEST(measured_responses__have_exact_gradients),
+             MT_TEST(shaken_objective__has_an_exact_gradient),
              MT_TEST(named_and_repeated_modes__have_exact_gradients))

@@ -99,6 +99,10 @@ def main():
                 for holder in [mutant] + (list(references.values()) if isinstance(references, dict) else []):
                     if isinstance(holder, dict) and isinstance(holder.get("model"), str):
                         holder["model"] = str((path.parent / holder["model"]).resolve())
+                measurements = mutant.get("measurements")
+                for holder in measurements.values() if isinstance(measurements, dict) else []:
+                    if isinstance(holder, dict) and isinstance(holder.get("file"), str):
+                        holder["file"] = str((path.parent / holder["file"]).resolve())
             name = Path(folder, f"{i}.json")
             name.write_text(json.dumps(mutant), encoding="utf-8")
             names.append(f"{kind} {name}\n")

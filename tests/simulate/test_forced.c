@@ -167,10 +167,52 @@ static void simulate__a_random_signal_has_its_mean_square(mt_test *t)
         }
         CHECK_NEAR(t, square, area, 1e-9);
     }
+    /* a step is one */
+    const mt_psd step = {
+        .n = 4, .hz = (double[]){5.0, 20.0, 20.0, 30.0}, .level = (double[]){1, 1, 3, 3}};
+    double rms = 0.0;
+    mt_signal stepped;
+    CHECK_INT(t, mt_signal_of_psd(&step, 50, 1, &mem, &stepped, NULL), MT_OK);
+    CHECK_INT(t, mt_signal_rms(1, &stepped, 4.0, 4096, &rms, NULL), MT_OK);
+    CHECK_NEAR(t, rms, sqrt(45.0), 1e-9); /* 4 s: two of its periods */
     const mt_psd wrong = {.n = 2, .hz = (double[]){5.0, 5.0}, .level = w};
     mt_signal s;
     CHECK_INT(t, mt_signal_of_psd(&wrong, LINES, 1, &mem, &s, NULL), MT_E_INPUT);
     mt_arena_free(&mem);
+}
+
+/* Turned on from line to line, they are their sines, with both derivatives. */
+static void simulate__lines_are_the_sum_of_their_sines(mt_test *t)
+{
+    enum { LINES = 300 };
+    mt_sine sines[LINES];
+    double cosine[LINES];
+    double sine[LINES];
+    for (int k = 0; k < LINES; k++) {
+        sines[k] = (mt_sine){1.0 + sin(k), 20.0 + (0.37 * k), 0.7 * k};
+        cosine[k] = sines[k].amplitude * cos(sines[k].phase);
+        sine[k] = sines[k].amplitude * sin(sines[k].phase);
+    }
+    const mt_signal one = {.kind = MT_SIGNAL_SINES, .n = LINES, .sines = sines};
+    const mt_signal other = {.kind = MT_SIGNAL_LINES,
+                             .n = LINES,
+                             .cosine = cosine,
+                             .sine = sine,
+                             .from_hz = 20.0,
+                             .step_hz = 0.37};
+    for (int i = 0; i < 40; i++) {
+        const double time = 0.731 * i * i;
+        double want[3];
+        double got[3];
+        mt_test_row(t, "t = %g", time);
+        CHECK_INT(t, mt_signal_eval(&one, time, want, NULL), MT_OK);
+        CHECK_INT(t, mt_signal_eval(&other, time, got, NULL), MT_OK);
+        const double w = TURN * (20.0 + (0.37 * LINES));
+        const double size = 1e-15 * w * (1.0 + time) * LINES; /* the rounding of w t */
+        CHECK_NEAR_ABS(t, got[0], want[0], size);
+        CHECK_NEAR_ABS(t, got[1], want[1], w * size);
+        CHECK_NEAR_ABS(t, got[2], want[2], w * w * size);
+    }
 }
 
 /* Derivatives of signals, by differences. */
@@ -216,4 +258,5 @@ static void simulate__signals_have_their_derivatives(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(simulate__steady_motions_are_those_of_the_linear_system),
              MT_TEST(simulate__a_random_signal_has_its_mean_square),
+             MT_TEST(simulate__lines_are_the_sum_of_their_sines),
              MT_TEST(simulate__signals_have_their_derivatives))

@@ -26,7 +26,7 @@ ALLOWED = {
     "prove": ENGINE | {"analysis"},
     "scene": ENGINE | {"tree", "analysis"},
     "simulate": {"base", "linalg", "expr", "model", "mechanics", "study"},
-    "problem": ENGINE | {"analysis", "nlp", "study", "result", "prove"},
+    "problem": ENGINE | {"analysis", "response", "vibration", "nlp", "study", "result", "prove"},
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem", "search"},
     "answer": ENGINE | {"tree", "analysis", "nlp", "study", "result", "prove", "problem", "search", "describe"},
@@ -42,7 +42,7 @@ OPEN = {
     "prove": {"enclosure.h", "shaping.h", "box.h", "certify.h", "reach.h", "tolerance.h", "band_count.h"},
 }
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
-PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "mechanism": "library"}
+PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "profile": "study", "mechanism": "library", "motion": "library"}
 # <system header> pattern: the rooms that may include it
 DOORS = [
     (re.compile(r"lapacke|cblas|lapack|openblas|(suitesparse/)?cholmod"), {"linalg"}),

@@ -7,7 +7,7 @@
 
   const ORDER = ['chartFrequencies', 'chartParameters', 'chartRotor', 'chartDrive',
     'chartTrade', 'chartFront', 'chartParallel', 'chartTolerance', 'chartSensitivity',
-    'chartMac', 'chartPublished', 'chartStarts', 'chartSpent'];
+    'chartMac', 'chartPublished', 'chartHistory', 'chartStarts', 'chartSpent'];
 
   function place(id) {
     return document.getElementById('place-' + id) || document.getElementById('figures');

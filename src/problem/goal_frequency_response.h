@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_GOAL_FREQUENCY_RESPONSE_H
+#define PROBLEM_GOAL_FREQUENCY_RESPONSE_H
+
+#include <complex.h>
+
+#include "problem/workspace.h"
+#include "response/response.h"
+
+/* A measured response that a model's is compared with: the lines within the goal's band. */
+typedef struct mt_fit {
+    mt_port_set ports; /* one input, one output, of the view's system */
+    const mt_measured_response *measured;
+    int n;
+    double *w;         /* [n] [rad/s] */
+    double complex *h; /* [n] measured, in SI; not 0 */
+    double *share;     /* [n] of the goal's weight; sum 1 */
+    int *line;         /* [n] of the file */
+} mt_fit;
+
+/* Is it such a demand? Then its line of the greatest residual at the last evaluation: its
+ * frequency [Hz], and ln(H/H_measured) there. NaN where it has no value. */
+bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double complex *off);
+
+#endif

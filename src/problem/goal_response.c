@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * "response": q = |H| at a frequency, or the largest over a band. Where two peaks are equal, as
+ * at the best tuning of an absorber, that largest one has a kink. So a band is held by several
+ * rows: it is divided at
+ *     b_i = sqrt(w_i w_(i+1)),   w_i the undamped natural frequencies in their order,
+ * and each part has its own largest value, which is smooth while its peak stays within. Where
+ * it lies on an end that moves,
+ *     d q = d|H| + d|H|/dw b_i d ln b_i,   d ln b_i = (d ln w_i + d ln w_(i+1)) / 2.
+ * A part that the band has not gives the value at the band's end.
+ */
+#include <math.h>
+
+#include "analysis/count.h"
+#include "problem/goal.h"
+#include "problem/goal_frequency.h"
+#include "problem/shaken.h"
+
+/* Modes that parts are made of: those of the original design within the band, and so many
+ * beside it that may come in; what lies beyond shares the outermost parts. */
+enum { BESIDE = 3, MOST_PARTS = 24 };
+
+static const double TWO_PI = 6.283185307179586476925;
+
+static double lower_of(const mt_demand *d)
+{
+    return TWO_PI * d->goal->shake->lower_hz;
+}
+
+static double upper_of(const mt_demand *d)
+{
+    return TWO_PI * d->goal->shake->upper_hz;
+}
+
+/* Vibration modes below a frequency at the original design. */
+static int below(const mt_modes *modes, double hz)
+{
+    int n = 0;
+    for (int i = 0; i < modes->count; i++) {
+        n += modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) < hz ? 1 : 0;
+    }
+    return n;
+}
+
+static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
+{
+    MT_TRY(mt_shaken_compile(p, d, err));
+    if (d->goal->shake->lower_hz == d->goal->shake->upper_hz) {
+        return MT_OK;
+    }
+    const mt_view *const view = &p->views[d->view];
+    const mt_modes *const modes = &view->original->modes;
+    const int most = mt_view_vibrations(view);
+    const int first = below(modes, d->goal->shake->lower_hz) - BESIDE;
+    const int last = below(modes, d->goal->shake->upper_hz) + BESIDE + 1;
+    d->first_mode = first > 1 ? first : 1;
+    const int end = last < most ? last : most;
+    const int parts = end - d->first_mode + 1;
+    d->n_parts = parts < 1 ? 1 : parts > MOST_PARTS ? MOST_PARTS : parts;
+    return MT_OK;
+}
+
+/* Angular frequency of a vibration mode; of one at infinity infinite. */
+static double omega_of(const mt_analysis *a, int index, int *pos)
+{
+    *pos = mt_modal_flexible(&a->modes, index);
+    return *pos < 0 ? HUGE_VAL : TWO_PI * mt_modal_hz(&a->modes, *pos);
+}
+
+/* Between modes i and i + 1. */
+static double between(const mt_analysis *a, int i)
+{
+    int pos = -1;
+    const double under = omega_of(a, i, &pos);
+    const double over = omega_of(a, i + 1, &pos);
+    return sqrt(under) * sqrt(over);
+}
+
+/* slope += by b d ln b of the end above mode i. */
+static mt_status add_end(mt_workspace *w, mt_analysis *a, int i, double by, double *slope,
+                         mt_err *err)
+{
+    const double moved = 0.5 * by * between(a, i);
+    for (int k = 0; k < 2; k++) {
+        int pos = -1;
+        (void)omega_of(a, i + k, &pos);
+        MT_TRY(mt_problem_dln_frequency(w, a, pos, 0.0, w->dshape, err));
+        mt_axpy(w->p->n, moved, w->dshape, slope);
+    }
+    return MT_OK;
+}
+
+/* The number that the peak is, and its slope; end: the mode below the end that it lies on; 0:
+ * it lies on none. */
+static mt_status take(mt_workspace *w, const mt_demand *d, const mt_shaken_peak *peak, int end,
+                      double *q, double *slope, mt_err *err)
+{
+    double omega = peak->at.omega;
+    double complex weight = peak->at.direction;
+    const mt_spectral_nodes one = {.n = 1, .omega = &omega, .weight = &weight};
+    *q = peak->at.value;
+    if (slope == NULL) {
+        return MT_OK;
+    }
+    MT_TRY(mt_shaken_slope(w, d, &one, 1.0, slope, err));
+    if (end > 0) {
+        MT_TRY(add_end(w, w->views[d->view].analysis, end, peak->by_omega, slope, err));
+    }
+    mt_shaken_to_ln(w, d, *q, slope);
+    return MT_OK;
+}
+
+static double within(const mt_demand *d, double omega)
+{
+    return fmin(fmax(omega, lower_of(d)), upper_of(d));
+}
+
+static mt_status part(mt_workspace *w, const mt_demand *d, int k, double *q, double *slope,
+                      mt_err *err)
+{
+    mt_analysis *const a = w->views[d->view].analysis;
+    const int under = k > 0 ? d->first_mode + k - 1 : 0; /* the modes below its ends */
+    const int over = k + 1 < d->n_parts ? d->first_mode + k : 0;
+    const double from = under > 0 ? within(d, between(a, under)) : lower_of(d);
+    const double to = over > 0 ? within(d, between(a, over)) : upper_of(d);
+    mt_shaken_peak peak;
+    if (!mt_modal_indexed(&a->modes)) {
+        return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" is unstable",
+                       mt_analysis_configuration(a));
+    }
+    MT_TRY(mt_shaken_find(w, d, from, to, &peak, err));
+    if (peak.at.end != MT_FORCED_FINITE) {
+        *q = HUGE_VAL;
+        return mt_shaken_lead(w, d, from, to, slope, err);
+    }
+    const bool inside = peak.at.omega > lower_of(d) && peak.at.omega < upper_of(d);
+    const int end = !inside                 ? 0
+                    : peak.at.omega == from ? under
+                    : peak.at.omega == to   ? over
+                                            : 0;
+    return take(w, d, &peak, end, q, slope, err);
+}
+
+static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
+                       mt_err *err)
+{
+    mt_shaken_peak peak;
+    (void)pos;
+    MT_TRY(mt_shaken_find(w, d, lower_of(d), upper_of(d), &peak, err));
+    if (peak.at.end != MT_FORCED_FINITE) {
+        *q = HUGE_VAL;
+        return mt_shaken_lead(w, d, lower_of(d), upper_of(d), slope, err);
+    }
+    return take(w, d, &peak, 0, q, slope, err);
+}
+
+static mt_status look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
+{
+    mt_shaken_peak peak;
+    MT_TRY(mt_shaken_find(w, d, lower_of(d), upper_of(d), &peak, err));
+    out->end = peak.at.end;
+    out->proven = peak.proven;
+    out->lower_hz = d->goal->shake->lower_hz;
+    out->upper_hz = d->goal->shake->upper_hz;
+    if (out->end == MT_FORCED_FINITE) {
+        out->value = peak.at.value;
+        out->error = peak.at.value * peak.at.excess;
+        out->omega = peak.at.omega;
+        out->at_edge = peak.at.at_edge;
+    }
+    return MT_OK;
+}
+
+static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+{
+    const mt_shake *const s = d->goal->shake;
+    return s->lower_hz == s->upper_hz
+               ? mt_arena_printf(mem, "%s: response of %s to %s at %.10g Hz", what, s->output.s,
+                                 s->input.s, s->lower_hz)
+               : mt_arena_printf(mem, "%s: response of %s to %s from %.10g to %.10g Hz", what,
+                                 s->output.s, s->input.s, s->lower_hz, s->upper_hz);
+}
+
+const mt_goal_ops mt_goal_response = {.quantity = MT_QUANTITY_OTHER,
+                                      .needs_vectors = true,
+                                      .compile = compile,
+                                      .value = value,
+                                      .part = part,
+                                      .look = look,
+                                      .subject = subject,
+                                      .equals = "at"};

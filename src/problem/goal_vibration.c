@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* "vibration": q = what a profile does to a response: the RMS of its random parts, the peaks of
+ * its tones, each the largest over its range and together by the profile's rule, or both. */
+#include <math.h>
+
+#include "problem/goal.h"
+#include "problem/shaken.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/* q = by_rms RMS + by_sine tones. */
+static double by_rms(const mt_shake *s)
+{
+    return s->quantity == MT_SHAKE_RMS    ? 1.0
+           : s->quantity == MT_SHAKE_PEAK ? s->profile->sigma
+                                          : 0.0;
+}
+
+static double by_sine(const mt_shake *s)
+{
+    return s->quantity == MT_SHAKE_RMS ? 0.0 : 1.0;
+}
+
+static double number(const mt_shake *s, const mt_vibration_response *r)
+{
+    return s->quantity == MT_SHAKE_RMS    ? r->rms
+           : s->quantity == MT_SHAKE_SINE ? r->sine
+                                          : r->peak;
+}
+
+/* From where to where the parts that count shake [Hz]. */
+static void range_of(const mt_shake *s, double *lower, double *upper)
+{
+    const mt_vibration *const v = s->profile;
+    *lower = HUGE_VAL;
+    *upper = 0.0;
+    for (int i = 0; i < v->n_random && by_rms(s) > 0.0; i++) {
+        const mt_psd *const g = &v->random[i].psd;
+        *lower = fmin(*lower, g->hz[0]);
+        *upper = fmax(*upper, g->hz[g->n - 1]);
+    }
+    for (int i = 0; i < v->n_tones && by_sine(s) > 0.0; i++) {
+        *lower = fmin(*lower, v->tones[i].lower_hz);
+        *upper = fmax(*upper, v->tones[i].upper_hz);
+    }
+}
+
+static bool is_finite(const mt_shake *s, const mt_vibration_response *r)
+{
+    return isfinite(number(s, r));
+}
+
+static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
+                       mt_err *err)
+{
+    const mt_shake *const s = d->goal->shake;
+    bool proven = false;
+    mt_vibration_response r;
+    mt_spectral_nodes nodes = {.n = 0};
+    (void)pos;
+    MT_TRY(mt_shaken_respond(w, d, &r, &proven, err));
+    *q = number(s, &r);
+    if (!is_finite(s, &r)) {
+        double lower = 0.0;
+        double upper = 0.0;
+        range_of(s, &lower, &upper);
+        *q = HUGE_VAL;
+        return mt_shaken_lead(w, d, TWO_PI * lower, TWO_PI * upper, slope, err);
+    }
+    if (slope == NULL) {
+        return MT_OK;
+    }
+    MT_TRY(mt_shaken_nodes(w, d, &r, by_rms(s), by_sine(s), &nodes, err));
+    MT_TRY(mt_shaken_slope(w, d, &nodes, 1.0, slope, err));
+    mt_shaken_to_ln(w, d, *q, slope);
+    return MT_OK;
+}
+
+/* The tone that shakes most. */
+static int worst_tone(const mt_shake *s, const mt_vibration_response *r)
+{
+    int best = 0;
+    for (int i = 1; i < r->n_tones; i++) {
+        const double own = mt_vibration_respond_tone(s->profile, r, i);
+        best = own > mt_vibration_respond_tone(s->profile, r, best) ? i : best;
+    }
+    return best;
+}
+
+static void look_at_tones(const mt_shake *s, const mt_vibration_response *r,
+                          mt_shaken_value *out)
+{
+    double excess = 0.0;
+    for (int i = 0; i < r->n_tones; i++) {
+        excess = fmax(excess, r->tones[i].excess);
+    }
+    out->error += by_sine(s) * r->sine * excess;
+    if (s->quantity == MT_SHAKE_SINE) {
+        const int worst = worst_tone(s, r);
+        out->omega = r->tones[worst].omega;
+        out->at_edge = r->tones[worst].at_edge;
+        out->lower_hz = s->profile->tones[worst].lower_hz;
+        out->upper_hz = s->profile->tones[worst].upper_hz;
+    }
+}
+
+static mt_status look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
+{
+    const mt_shake *const s = d->goal->shake;
+    bool proven = false;
+    mt_vibration_response r;
+    mt_shaken_peak peak;
+    MT_TRY(mt_shaken_respond(w, d, &r, &proven, err));
+    range_of(s, &out->lower_hz, &out->upper_hz);
+    out->proven = proven;
+    out->end = r.end;
+    if (!is_finite(s, &r)) {
+        return MT_OK;
+    }
+    out->end = MT_FORCED_FINITE;
+    out->value = number(s, &r);
+    out->error = by_rms(s) > 0.0 ? by_rms(s) * r.rms_bound : 0.0;
+    look_at_tones(s, &r, out);
+    if (s->quantity != MT_SHAKE_SINE) {
+        MT_TRY(
+            mt_shaken_find(w, d, TWO_PI * out->lower_hz, TWO_PI * out->upper_hz, &peak, err));
+        out->omega = peak.at.omega;
+        out->at_edge = peak.at.at_edge;
+    }
+    return MT_OK;
+}
+
+static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+{
+    static const char *const words[MT_SHAKE_QUANTITIES] = {"response", "RMS", "tones", "peak"};
+    const mt_shake *const s = d->goal->shake;
+    return mt_arena_printf(
+        mem, "%s: %s of %s under %s along %s", what, words[s->quantity], s->output.s,
+        s->profile->name != NULL ? s->profile->name : s->profile_name.s, s->input.s);
+}
+
+const mt_goal_ops mt_goal_vibration = {.quantity = MT_QUANTITY_OTHER,
+                                       .needs_vectors = true,
+                                       .compile = mt_shaken_compile,
+                                       .value = value,
+                                       .look = look,
+                                       .subject = subject,
+                                       .equals = "at"};

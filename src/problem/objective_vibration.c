@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * "vibration": f = the largest of ln(value / limit) over all goals of forced vibration that are
+ * limited from above. In a search that is the last coordinate less MT_SHAKEN_SHIFT, which every
+ * row of these goals has to stay below (demand.c): a minimax is smooth so. Elsewhere it is
+ * looked up.
+ */
+#include <math.h>
+
+#include "problem/demand.h"
+#include "problem/objective.h"
+
+static const double PERCENT = 100.0;
+
+static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+{
+    (void)a;
+    if (gradient != NULL && w->c->shaken) {
+        gradient[w->p->n] = 1.0;
+    }
+    return mt_shaken_given(w) ? w->t[w->p->n] - MT_SHAKEN_SHIFT : w->worst;
+}
+
+static double shown(double f)
+{
+    return PERCENT * exp(f);
+}
+
+static const char *price(const mt_price *q, mt_arena *mem)
+{
+    return mt_arena_printf(mem, "%.3g percentage points of the largest part of a limit",
+                           q->score * q->df);
+}
+
+const mt_objective_ops mt_objective_vibration = {
+    .value = value, .shown = shown, .price = price};

@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Of H = sum_k r_k / (i w - s_k) + polynomial the largest value over a range, the RMS and the
+ * peaks of tones have slopes by the envelope theorem: at the frequency where |H| is the largest
+ *     d max|H| = Re(conj(H)/|H| dH),       d RMS = Re integral conj(H) dH G df / RMS,
+ * a sum over frequencies of weights times dH, which adjoints give.
+ */
+#include "problem/shaken.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "problem/goal.h"
+#include "problem/shaken_sampled.h"
+
+void mt_shaken_close(mt_view_work *view)
+{
+    for (int i = 0; view->shaken != NULL && i < view->of->n_pairs; i++) {
+        if (view->shaken[i].open) {
+            mt_response_free(&view->shaken[i].r);
+            view->shaken[i].open = false;
+        }
+    }
+}
+
+/* Place of the goal's pair in the view's list, where it is added if it is not there. */
+static int place_of(mt_view *view, const mt_shake *s)
+{
+    for (int i = 0; i < view->n_pairs; i++) {
+        if (strcmp(view->pairs[i].input, s->input.s) == 0 &&
+            strcmp(view->pairs[i].output, s->output.s) == 0) {
+            return i;
+        }
+    }
+    view->pairs[view->n_pairs] = (mt_shaken_pair){s->input.s, s->output.s};
+    return view->n_pairs++;
+}
+
+static mt_status open_ports(mt_analysis *a, const mt_shaken_pair *pair, mt_response *out,
+                            mt_err *err)
+{
+    const mt_response_request ask = {
+        .n_in = 1, .inputs = &pair->input, .n_out = 1, .outputs = &pair->output};
+    const mt_status rc = mt_response_open(a, &ask, out, err);
+    if (rc != MT_OK) {
+        mt_response_free(out);
+    }
+    return rc;
+}
+
+/* The forced problem of one goal alone at the original design: does it have one? */
+static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
+{
+    const mt_shaken_pair pair = {d->goal->shake->input.s, d->goal->shake->output.s};
+    mt_response r = {.a = NULL};
+    mt_err own = {.code = MT_OK};
+    mt_status rc = open_ports(view->original, &pair, &r, &own);
+    if (rc == MT_OK && r.ports.out[0].kind == MT_PORT_JOINT) {
+        const bool modal = view->original->sys->damping.modal;
+        rc = modal || r.ways.joint[0].geometric != NULL
+                 ? mt_fail(&own, MT_E_USAGE,
+                           "%s: a joint's force has no derivatives %s, which a search needs",
+                           pair.output, modal ? "beside modal damping ratios" : "under loads")
+                 : MT_OK;
+    }
+    mt_response_free(&r);
+    if (rc == MT_E_USAGE) {
+        return mt_fail(err, MT_E_INPUT, "/goals/%d/output: %s", d->goal_index, own.text);
+    }
+    return mt_pass_final(rc, &own, err); /* else it may have one at another design */
+}
+
+mt_status mt_shaken_ports(mt_problem *p, const mt_demand *d, mt_port *in, mt_port *out,
+                          mt_err *err)
+{
+    const mt_shake *const s = d->goal->shake;
+    const mt_system *const sys = p->views[d->view].original->sys;
+    mt_err own = {.code = MT_OK};
+    const char *where = "input";
+    mt_status rc = mt_port_input(sys, s->input.s, &p->mem, in, &own);
+    if (rc == MT_OK) {
+        where = "output";
+        rc = mt_port_output(sys, s->output.s, &p->mem, out, &own);
+    }
+    return rc == MT_OK ? MT_OK
+           : rc == MT_E_MEMORY
+               ? mt_fail_memory(err)
+               : mt_fail(err, MT_E_INPUT, "/goals/%d/%s: %s", d->goal_index, where, own.text);
+}
+
+mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err)
+{
+    mt_view *const view = &p->views[d->view];
+    mt_port in;
+    mt_port out;
+    MT_TRY(mt_shaken_ports(p, d, &in, &out, err));
+    MT_TRY(try_ports(view, d, err));
+    if (view->pairs == NULL) {
+        view->pairs = mt_arena_alloc(&p->mem, (size_t)p->study->n_goals, sizeof *view->pairs);
+        MT_TRY(mt_arena_check(&p->mem, err));
+    }
+    d->pair = place_of(view, d->goal->shake);
+    const double limit = fmin(fmin(d->equals, d->goal->at_least), d->goal->at_most);
+    d->floor_hz = MT_SHAKEN_FLOOR * limit;
+    return MT_OK;
+}
+
+static mt_status open_sum(mt_shaken *s, mt_err *err)
+{
+    mt_err own = {.code = MT_OK};
+    mt_status rc = mt_response_sums(&s->r, &s->sum, &own);
+    rc = rc == MT_OK ? mt_frf_init(&s->frf, &s->sum, &s->r.mem, &own) : rc;
+    s->summed = rc == MT_OK;
+    return rc == MT_OK || rc == MT_E_SINGULAR ? MT_OK : mt_fail(err, rc, "%s", own.text);
+}
+
+static mt_status open_view(mt_workspace *w, const mt_demand *d, mt_shaken **out, mt_err *err)
+{
+    mt_view_work *const view = &w->views[d->view];
+    if (view->shaken == NULL) {
+        view->shaken = mt_arena_alloc(&w->mem, (size_t)view->of->n_pairs, sizeof *view->shaken);
+        MT_TRY(mt_arena_check(&w->mem, err));
+    }
+    mt_shaken *const s = &view->shaken[d->pair];
+    *out = s;
+    if (s->open) {
+        return MT_OK;
+    }
+    MT_TRY(open_ports(view->analysis, &view->of->pairs[d->pair], &s->r, err));
+    s->open = true;
+    const mt_status rc = open_sum(s, err);
+    if (rc != MT_OK) {
+        mt_response_free(&s->r);
+        s->open = false;
+    }
+    return rc;
+}
+
+mt_status mt_shaken_find(mt_workspace *w, const mt_demand *d, double lower, double upper,
+                         mt_shaken_peak *out, mt_err *err)
+{
+    mt_shaken *s = NULL;
+    double complex jet[3];
+    MT_TRY(open_view(w, d, &s, err));
+    *out = (mt_shaken_peak){.proven = s->summed};
+    if (!s->summed) {
+        return mt_sampled_find(&s->r, lower, upper, &out->at, &out->by_omega, err);
+    }
+    out->at = mt_sine_peak_find(&s->frf, lower, upper);
+    if (out->at.end == MT_FORCED_FINITE) {
+        mt_frf_jet(&s->frf, (mt_near){out->at.omega, 0.0}, jet);
+        out->by_omega = creal(mt_frf_times(out->at.direction, jet[1]));
+    }
+    return MT_OK;
+}
+
+mt_status mt_shaken_respond(mt_workspace *w, const mt_demand *d, mt_vibration_response *out,
+                            bool *proven, mt_err *err)
+{
+    const mt_vibration *const v = d->goal->shake->profile;
+    mt_shaken *s = NULL;
+    MT_TRY(open_view(w, d, &s, err));
+    *proven = s->summed;
+    return s->summed ? mt_vibration_respond(v, &s->sum, &s->r.mem, out, err)
+                     : mt_sampled_respond(&s->r, v, out, err);
+}
+
+mt_status mt_shaken_nodes(mt_workspace *w, const mt_demand *d, const mt_vibration_response *r,
+                          double by_rms, double by_sine, mt_spectral_nodes *out, mt_err *err)
+{
+    const mt_vibration *const v = d->goal->shake->profile;
+    mt_shaken *s = NULL;
+    MT_TRY(open_view(w, d, &s, err));
+    return s->summed
+               ? mt_vibration_respond_nodes(v, &s->sum, r, by_rms, by_sine, &s->r.mem, out, err)
+               : mt_sampled_nodes(&s->r, v, r, by_rms, by_sine, out, err);
+}
+
+mt_status mt_shaken_slope(mt_workspace *w, const mt_demand *d, const mt_spectral_nodes *nodes,
+                          double factor, double *out, mt_err *err)
+{
+    mt_shaken *s = NULL;
+    MT_TRY(open_view(w, d, &s, err));
+    MT_TRY(mt_response_weighted_slopes(&s->r, 0, 0, nodes->n, nodes->omega, nodes->weight, out,
+                                       err));
+    for (int k = 0; k < w->p->n; k++) {
+        out[k] *= factor * mt_workspace_stretch(w, k);
+    }
+    return MT_OK;
+}
+
+void mt_shaken_to_ln(const mt_workspace *w, const mt_demand *d, double q, double *slope)
+{
+    const double by = q < d->floor_hz ? q / (d->floor_hz * d->floor_hz) : 1.0 / q;
+    for (int k = 0; k < w->p->n; k++) {
+        slope[k] *= by;
+    }
+}
+
+mt_status mt_shaken_look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
+{
+    *out = (mt_shaken_value){.value = nan(""), .error = nan(""), .omega = nan("")};
+    MT_TRY(d->ops->look(w, d, out, err));
+    out->finite = out->end == MT_FORCED_FINITE;
+    out->end_name = mt_forced_end_name(out->end);
+    return MT_OK;
+}

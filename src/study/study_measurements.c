@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Measurements of a study: of the responses of a file those that are meant stay, in SI. A table
+ * says by names of ports what it has, which is held against the goals where the mechanism is
+ * known; a universal file by numbers of datasets, nodes and directions.
+ */
+#include "study/study_priv.h"
+
+#include <string.h>
+
+int mt_study_find_measurement(const mt_study *study, const char *name)
+{
+    for (int i = 0; i < study->n_measurements; i++) {
+        if (strcmp(study->measurements[i].name.s, name) == 0) {
+            return i;
+        }
+    }
+    return MT_ABSENT;
+}
+
+/* Is one of the file the one that was asked for? A node alone means any direction; against a
+ * direction is the same freedom, the sign is in the values. */
+static bool is_freedom(mt_name asked, const mt_measured_freedom *has)
+{
+    mt_measured_freedom f;
+    if (asked.s == NULL || !mt_measured_freedom_parse(asked.s, &f)) {
+        return true;
+    }
+    return f.node == has->node && (f.direction == 0 || f.direction == has->direction ||
+                                   f.direction == -has->direction);
+}
+
+static bool is_meant(const mt_measurement *m, const mt_measured_response *r)
+{
+    return mt_measured_is_response(r) && (m->dataset == 0 || m->dataset == r->dataset) &&
+           is_freedom(m->response_name, &r->response) &&
+           is_freedom(m->reference_name, &r->reference);
+}
+
+/* Where the study asks for one of several. */
+static mt_addr choice_of(const mt_measurement *m)
+{
+    return m->dataset > 0                ? m->dataset_addr
+           : m->response_name.s != NULL  ? m->response_name.addr
+           : m->reference_name.s != NULL ? m->reference_name.addr
+                                         : m->addr;
+}
+
+/* Those that are meant alone stay. */
+static void choose(mt_study_check *c, mt_measurement *m)
+{
+    const bool table = m->n_responses > 0 && m->responses[0].dataset == 0;
+    const bool asked =
+        m->dataset > 0 || m->response_name.s != NULL || m->reference_name.s != NULL;
+    if (table && asked) {
+        mt_diag_error(c->diags, choice_of(m),
+                      "datasets and nodes go with a universal file, and \"%s\" is a table",
+                      m->path.s);
+        return;
+    }
+    mt_measured_response kept = {.dataset = 0};
+    int n = 0;
+    for (int i = 0; i < m->n_responses && !table; i++) {
+        if (is_meant(m, &m->responses[i])) {
+            kept = n++ == 0 ? m->responses[i] : kept;
+        }
+    }
+    if (table) {
+        return;
+    }
+    if (n == 1) {
+        m->responses[0] = kept;
+        m->n_responses = 1;
+        return;
+    }
+    const char *const list = mt_measured_list_text(m, &c->study->mem);
+    mt_diag_error(c->diags, choice_of(m),
+                  n > 1 ? "%d frequency responses of \"%s\" can be meant: say which by "
+                          "\"dataset\", or by \"response_node\" and \"reference_node\" (%s)"
+                        : "%d frequency responses of \"%s\" are meant by this; it has: %s",
+                  n, m->path.s, *list == '\0' ? "none" : list);
+}
+
+static bool scale(mt_study_check *c, const mt_measurement *m, mt_measured_response *r)
+{
+    const double by = MT_HAS(m->factor) ? m->factor : r->si;
+    if (!MT_HAS(by)) {
+        mt_diag_error(c->diags, m->path.addr,
+                      r->foreign != NULL
+                          ? "the unit \"%s\" of \"%s\" is not known: give \"factor\", by which "
+                            "its values are multiplied to be in SI"
+                          : "\"%s%s\" does not say what it measures, so that its units say "
+                            "nothing: give \"factor\", by which its values are multiplied to "
+                            "be in SI",
+                      r->foreign != NULL ? r->foreign : "", m->path.s);
+        return false;
+    }
+    r->scale = by;
+    r->unit = MT_HAS(m->factor) ? NULL : r->unit;
+    return true;
+}
+
+void mt_study_check_measurements(mt_study_check *c)
+{
+    mt_study *const s = c->study;
+    for (int i = 0; i < s->n_measurements; i++) {
+        mt_measurement *const m = &s->measurements[i];
+        if (mt_study_find_measurement(s, m->name.s) < i) {
+            mt_diag_error(c->diags, m->name.addr, "measurement \"%s\" is given twice",
+                          m->name.s);
+        }
+        mt_check_positive(c, m->factor, m->factor_addr, "factor");
+        if (!m->read) {
+            continue;
+        }
+        const int before = c->diags->errors;
+        choose(c, m);
+        bool known = c->diags->errors == before;
+        for (int k = 0; k < m->n_responses && known; k++) {
+            known = scale(c, m, &m->responses[k]);
+        }
+    }
+}
+
+void mt_study_check_measured(mt_study_check *c, mt_shake *s)
+{
+    s->measurement = mt_check_measurement(c, s->measurement_name);
+    if (MT_HAS(s->lower_hz) && MT_HAS(s->upper_hz) &&
+        !(s->lower_hz >= 0.0 && s->lower_hz < s->upper_hz)) {
+        mt_diag_error(c->diags, s->band_addr,
+                      "band_hz (%g to %g) must be two frequencies from 0 on in ascending order",
+                      s->lower_hz, s->upper_hz);
+    }
+}

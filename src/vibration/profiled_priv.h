@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef VIBRATION_PROFILED_PRIV_H
+#define VIBRATION_PROFILED_PRIV_H
+
+#include "vibration/profiled.h"
+
+/* Without a sum of poles: out->answers, each with its list of tones, are filled. */
+mt_status mt_profiled_quadrature(mt_response *r, mt_profiled *out, mt_err *err);
+
+#endif
