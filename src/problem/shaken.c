@@ -55,14 +55,6 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     mt_response r = {.a = NULL};
     mt_err own = {.code = MT_OK};
     mt_status rc = open_ports(view->original, &pair, &r, &own);
-    if (rc == MT_OK && r.ports.out[0].kind == MT_PORT_JOINT) {
-        const bool modal = view->original->sys->damping.modal;
-        rc = modal || r.ways.joint[0].geometric != NULL
-                 ? mt_fail(&own, MT_E_USAGE,
-                           "%s: a joint's force has no derivatives %s, which a search needs",
-                           pair.output, modal ? "beside modal damping ratios" : "under loads")
-                 : MT_OK;
-    }
     mt_response_free(&r);
     if (rc == MT_E_USAGE) {
         return mt_fail(err, MT_E_INPUT, "/goals/%d/output: %s", d->goal_index, own.text);

@@ -6,6 +6,11 @@
  *     dH = d(sigma) . q - d(t) . l + e . df - e . dD q - (dA e) . l - m . (dA q),
  * a d being the derivative with respect to one input, geometry and equilibrium with it. With x
  * and y of the reduced problem q = Z x and e = Z y - v, A v = t; l and m balance what is left.
+ * A standing force that turns with a joint's bodies is a part of sigma. Modal ratios are the
+ * matrix M Phi F Phi^T M of D over all states, whose derivative is (damping.c)
+ *     e . d(ratios) q = e . dM psi_q + psi_e . dM q + a . Q b - (dA psi_q) . P M e
+ *                       - (dA psi_e) . P M q,
+ *     b = Phi^T M q, psi_q = Phi F b,  a = Phi^T M e, psi_e = Phi F a,  P w: what balances w.
  * d of the ground's own motion does not depend on any input: a rigid translation moves every
  * sensor by 1.
  */
@@ -28,6 +33,10 @@ typedef struct pair {
 typedef struct side {
     pair states; /* q, or e */
     pair forces; /* l, or m */
+    /* with modal ratios */
+    double complex *coefficient; /* [r] b, or a */
+    pair turned;                 /* psi */
+    pair carried;                /* P M q, or P M e */
 } side;
 
 typedef struct work {
@@ -44,6 +53,9 @@ typedef struct work {
     side *in;                 /* [n_in] */
     side *out;                /* [n_out] */
     double *shift;            /* [nq] */
+    mt_ratio_modes ratio;
+    double *q;          /* r x r: Q of one input */
+    double **geometric; /* [n_out][nq]: slope of what stands in a joint, of one input; NULL */
 } work;
 
 enum { MATRICES = MT_SLOPE_MATRICES };
@@ -140,11 +152,57 @@ int mt_slope_power(const mt_port *port)
     return port->kind == MT_PORT_BASE ? 2 - port->motion : 0;
 }
 
+/* psi, P M q and b of one side. */
+static mt_status open_ratios(work *k, side *s, mt_err *err)
+{
+    const int n = mt_linear_freedoms(k->lin);
+    const int r = k->ratio.r;
+    s->coefficient = mt_arena_alloc(k->mem, (size_t)r, sizeof *s->coefficient);
+    s->turned = new_pair(k->mem, k->nq);
+    s->carried = new_pair(k->mem, k->m);
+    double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    double *const part = mt_arena_f64(k->mem, (size_t)(n > r ? n : r), 2);
+    MT_TRY(mt_arena_check(k->mem, err));
+    double *const other = part + (n > r ? n : r);
+    for (int i = 0; i < 2; i++) {
+        memset(product, 0, (size_t)k->nq * sizeof *product);
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, s->states.part[i], product);
+        MT_TRY(mt_linear_multipliers(k->lin, product, s->carried.part[i], err));
+        mt_linear_project(k->lin, product, part);
+        mt_gemv(true, n, r, 1.0, k->ratio.y, n, part, 0.0, other);
+        for (int j = 0; j < r; j++) {
+            s->coefficient[j] += mt_complex(1 - i, i) * other[j];
+            other[j] *= k->ratio.f[j];
+        }
+        mt_gemv(false, n, r, 1.0, k->ratio.y, n, other, 0.0, part);
+        mt_linear_expand(k->lin, 1, part, s->turned.part[i]);
+    }
+    return MT_OK;
+}
+
+/* l or m, with w what there is besides D. */
+static mt_status close_side(work *k, side *s, pair *w, mt_err *err)
+{
+    MT_TRY(subtract_d(k, &s->states, w, err));
+    if (k->ratio.r == 0) {
+        return balance(k, w, &s->forces, err);
+    }
+    MT_TRY(open_ratios(k, s, err));
+    double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int i = 0; i < 2; i++) {
+        memset(product, 0, (size_t)k->nq * sizeof *product);
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, s->turned.part[i], product);
+        add_real(k->nq, -k->power[1] * mt_complex(1 - i, i), product, w);
+    }
+    return balance(k, w, &s->forces, err);
+}
+
 static mt_status open_input(work *k, int i, const double complex *x, mt_err *err)
 {
     const mt_port *const port = &k->p->ports->in[i];
     side *const s = &k->in[i];
-    *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
+    *s = (side){.states = new_pair(k->mem, k->nq), .forces = new_pair(k->mem, k->m)};
     pair w = new_pair(k->mem, k->nq);
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
@@ -156,8 +214,7 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
         mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, port), 1.0, f);
     }
     add_real(k->nq, k->power[mt_slope_power(port)], f, &w);
-    MT_TRY(subtract_d(k, &s->states, &w, err));
-    return balance(k, &w, &s->forces, err);
+    return close_side(k, s, &w, err);
 }
 
 mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term)
@@ -194,13 +251,16 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
 {
     const mt_port *const port = &k->p->ports->out[o];
     side *const s = &k->out[o];
-    *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
+    *s = (side){.states = new_pair(k->mem, k->nq), .forces = new_pair(k->mem, k->m)};
     pair w = new_pair(k->mem, k->nq);
     double *const sigma = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(expand(k, y, &s->states, err));
     if (port->kind == MT_PORT_JOINT) {
         mt_axpy(k->nq, -1.0, k->p->ways->joint[o].v, s->states.part[0]);
+        if (k->p->ways->joint[o].geometric != NULL) {
+            mt_axpy(k->nq, -1.0, k->p->ways->joint[o].geometric, w.part[0]);
+        }
     } else {
         int row = -1;
         mt_term_kind kind = MT_TERM_CHANNEL;
@@ -212,8 +272,7 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
             add_real(k->nq, factor, sigma, &w);
         }
     }
-    MT_TRY(subtract_d(k, &s->states, &w, err));
-    return balance(k, &w, &s->forces, err);
+    return close_side(k, s, &w, err);
 }
 
 /* a . b, both complex; no conjugate. */
@@ -254,22 +313,33 @@ static mt_status product_with(work *k, mt_matrix m, const pair *e, const pair *q
     return MT_OK;
 }
 
-/* y . (d(ratios) x) in the freedoms, with the motion of their basis. */
+/* (dA/dp) x; a shortage is the arena's. */
+static pair jacobian(const work *k, int p, const pair *x)
+{
+    const pair out = new_pair(k->mem, k->m);
+    for (int part = 0; part < 2 && !mt_arena_failed(k->mem); part++) {
+        mt_linear_jacobian_slope(k->lin, p, x->part[part], out.part[part]);
+    }
+    return out;
+}
+
+/* e . d(ratios) q. */
 static mt_status ratios(work *k, int p, int o, int i, double complex *out, mt_err *err)
 {
-    const ptrdiff_t n = k->p->basis->f->n;
+    const side *const e = &k->out[o];
+    const side *const q = &k->in[i];
+    const ptrdiff_t r = k->ratio.r;
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
-    double *const part = mt_arena_f64(k->mem, (size_t)n, 2);
-    double *const product_of = mt_arena_f64(k->mem, (size_t)n, 2);
+    const pair by_q = jacobian(k, p, &q->turned);
+    const pair by_e = jacobian(k, p, &e->turned);
     MT_TRY(mt_arena_check(k->mem, err));
-    for (ptrdiff_t j = 0; j < n; j++) {
-        part[j] = creal(k->x[j + (i * n)]);
-        part[n + j] = cimag(k->x[j + (i * n)]);
-    }
-    MT_TRY(mt_analysis_ratio_products(k->p->a, p, 2, part, product_of, err));
-    *out = 0.0;
-    for (ptrdiff_t j = 0; j < n; j++) {
-        *out += k->y[j + (o * n)] * mt_complex(product_of[j], product_of[n + j]);
+    *out = between_one(k, p, MT_MATRIX_MASS, &e->states, &q->turned) +
+           between_one(k, p, MT_MATRIX_MASS, &e->turned, &q->states) -
+           dot(k->m, &by_q, &e->carried) - dot(k->m, &by_e, &q->carried);
+    for (ptrdiff_t c = 0; c < r; c++) {
+        for (ptrdiff_t a = 0; a < r; a++) {
+            *out += e->coefficient[a] * k->q[a + (c * r)] * q->coefficient[c];
+        }
     }
     mt_arena_rewind(k->mem, mark);
     return MT_OK;
@@ -294,7 +364,7 @@ static mt_status between(work *k, int p, int o, int i, double complex *out, mt_e
         MT_TRY(product_with(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
         sum += k->power[1] * mt_slope_node(k->p->a, p, d->stiffness) * part;
     }
-    if (d->modal) {
+    if (k->ratio.r > 0) {
         MT_TRY(ratios(k, p, o, i, &part, err));
         sum += k->power[1] * part;
     }
@@ -327,9 +397,13 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
 {
     const mt_port *const port = &k->p->ports->out[o];
     if (port->kind == MT_PORT_JOINT) {
-        return -mt_complex(
-            mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[0]),
-            mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[1]));
+        double part[2];
+        for (int c = 0; c < 2; c++) {
+            part[c] =
+                mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[c]) +
+                mt_dot(k->nq, k->geometric[o], in->states.part[c]);
+        }
+        return -mt_complex(part[0], part[1]);
     }
     int row = -1;
     mt_term_kind kind = MT_TERM_CHANNEL;
@@ -352,25 +426,14 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
     return sum;
 }
 
-static mt_status jacobian(const work *k, int p, const pair *x, pair *out, mt_err *err)
-{
-    *out = new_pair(k->mem, k->m);
-    MT_TRY(mt_arena_check(k->mem, err));
-    for (int part = 0; part < 2; part++) {
-        mt_linear_jacobian_slope(k->lin, p, x->part[part], out->part[part]);
-    }
-    return MT_OK;
-}
-
 static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err *err)
 {
     const side *const in = &k->in[i];
     const side *const side_out = &k->out[o];
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
-    pair moved_out;
-    pair moved_in;
-    MT_TRY(jacobian(k, p, &side_out->states, &moved_out, err));
-    MT_TRY(jacobian(k, p, &in->states, &moved_in, err));
+    const pair moved_out = jacobian(k, p, &side_out->states);
+    const pair moved_in = jacobian(k, p, &in->states);
+    MT_TRY(mt_arena_check(k->mem, err));
     double complex turned = 0.0;
     MT_TRY(between(k, p, o, i, &turned, err));
     *out = output_slope(k, p, o, in) + force_slope(k, p, i, &side_out->states) - turned -
@@ -379,22 +442,27 @@ static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err
     return MT_OK;
 }
 
-mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err *err)
+mt_status mt_slope_admit(const mt_slope_problem *p, mt_err *err)
 {
-    if (!p->a->with_gradient) {
-        return mt_fail(err, MT_E_INTERNAL,
-                       "derivatives asked for after a solve without gradient");
+    return p->a->with_gradient
+               ? MT_OK
+               : mt_fail(err, MT_E_INTERNAL,
+                         "derivatives asked for after a solve without gradient");
+}
+
+static mt_status open_work(work *k, mt_err *err)
+{
+    const int n_out = k->p->basis->f->n_out;
+    if (k->p->a->sys->damping.modal) {
+        MT_TRY(mt_analysis_ratio_modes(k->p->a, &k->ratio, err));
     }
-    for (int o = first; o < first + count; o++) {
-        const bool modal = p->a->sys->damping.modal;
-        if (p->ports->out[o].kind == MT_PORT_JOINT &&
-            (modal || p->ways->joint[o].geometric != NULL)) {
-            return mt_fail(err, MT_E_USAGE, "%s: a joint's force has no derivatives here %s",
-                           p->ports->out[o].name,
-                           modal ? "beside modal damping ratios" : "under loads");
-        }
+    k->q = mt_arena_f64(k->mem, (size_t)k->ratio.r, (size_t)k->ratio.r);
+    k->geometric = mt_arena_alloc(k->mem, (size_t)n_out, sizeof *k->geometric);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int o = 0; o < n_out; o++) {
+        k->geometric[o] = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     }
-    return MT_OK;
+    return mt_arena_check(k->mem, err);
 }
 
 /* Solutions and adjoints of all ports; *singular: there are none. */
@@ -424,6 +492,16 @@ static mt_status open_ports(work *k, bool *singular, mt_err *err)
 static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
 {
     const int n_out = k->p->basis->f->n_out;
+    if (k->ratio.r > 0) {
+        MT_TRY(mt_analysis_ratio_slope(k->p->a, p, k->q, err));
+    }
+    for (int o = 0; o < n_out; o++) {
+        const mt_port *const port = &k->p->ports->out[o];
+        if (port->kind == MT_PORT_JOINT) {
+            MT_TRY(mt_linear_joint_geometric_slope(k->lin, p, port->index, port->axis,
+                                                   k->geometric[o], err));
+        }
+    }
     for (int at = 0; at < k->p->basis->f->n_in * n_out; at++) {
         MT_TRY(slope(k, p, at % n_out, at / n_out, dh + at, err));
     }
@@ -435,6 +513,7 @@ static mt_status slopes(work *k, double complex *dh, mt_err *err)
     const ptrdiff_t pairs = (ptrdiff_t)k->p->basis->f->n_in * k->p->basis->f->n_out;
     const int n_inputs = k->p->a->sys->n_inputs;
     bool singular = false;
+    MT_TRY(open_work(k, err));
     MT_TRY(open_ports(k, &singular, err));
     for (ptrdiff_t at = 0; at < pairs * n_inputs; at++) {
         dh[at] = nan("");
@@ -460,7 +539,7 @@ mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex
               .w = w,
               .power = {1.0, mt_complex(0.0, w), -w * w}};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    MT_TRY(mt_slope_admit(p, 0, p->basis->f->n_out, err));
+    MT_TRY(mt_slope_admit(p, err));
     factors_of(&k);
     const mt_status rc = slopes(&k, dh, err);
     mt_arena_rewind(scratch, mark);

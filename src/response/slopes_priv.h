@@ -13,7 +13,7 @@ typedef struct mt_slope_factor {
 } mt_slope_factor;
 
 /* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M.
- * Modal ratios stand apart: their part is known in the freedoms alone. */
+ * Modal ratios stand apart. */
 enum { MT_SLOPE_MATRICES = 4 };
 void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
 
@@ -29,7 +29,7 @@ mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row
                              mt_term_kind *kind, const mt_term **term);
 /* Derivative of a number that may not be there: then 0. */
 double mt_slope_node(const mt_analysis *a, int p, mt_node node);
-/* Is there a derivative of these outputs at all? Fails as mt_response_slopes. */
-mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err *err);
+/* Fails: MT_E_INTERNAL (no gradient). */
+mt_status mt_slope_admit(const mt_slope_problem *p, mt_err *err);
 
 #endif

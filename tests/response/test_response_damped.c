@@ -148,7 +148,8 @@ static void damped__derivatives_are_slopes(mt_test *t)
                  W, 4);
     slopes_agree(t,
                  &(const sloped){ALL("\"ratio\": \"z\", \"ratios\": [\"2*z\"]"), NULL, "c",
-                                 "m k l eta z", "e.x base.y", "e.y:velocity spring.s"},
+                                 "m k l eta z", "e.x base.y",
+                                 "e.y:velocity spring.s joint.p.x joint.q.y"},
                  W, 4);
 }
 
@@ -159,9 +160,11 @@ static void damped__derivatives_hold_in_a_linkage_with_everything(mt_test *t)
     static const double W[] = {9.0, 40.0};
     for (int c = 0; c < 2; c++) {
         slopes_agree(t,
-                     &(const sloped){NULL, "damped_linkage", CONFIGURATIONS[c],
-                                     "a k m_c alpha c eta zeta rate lag", "base.x base.y",
-                                     "spring.coil damper.strut damper.oil"},
+                     &(const sloped){
+                         NULL, "damped_linkage", CONFIGURATIONS[c],
+                         "a k m_c alpha c eta zeta rate lag", "base.x base.y",
+                         "spring.coil damper.strut damper.oil joint.jA.x joint.jB.y joint.jC.x "
+                         "joint.jS.y joint.jW.x"},
                      W, 2);
     }
 }
