@@ -217,34 +217,49 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
     return close_side(k, s, &w, err);
 }
 
-mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term)
+/* coefficient (1 + i loss), or s coefficient of a damper. */
+static mt_slope_factor force_of(mt_term_kind kind, double coefficient, double lossy)
 {
-    return port->kind == MT_PORT_DAMPER
-               ? (mt_slope_factor){{0.0, 1.0, 0.0}}
-               : (mt_slope_factor){
-                     {mt_complex(1.0, mt_response_node(a, term->loss)), 0.0, 0.0}};
+    return kind == MT_TERM_DAMPING
+               ? (mt_slope_factor){{0.0, coefficient, 0.0}}
+               : (mt_slope_factor){{mt_complex(coefficient, lossy), 0.0, 0.0}};
 }
 
-mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row,
-                             mt_term_kind *kind, const mt_term **term)
+int mt_slope_parts(const mt_analysis *a, const mt_port *port, mt_slope_part *part)
 {
-    mt_slope_factor f = {{0.0}};
-    *term = NULL;
     if (port->kind == MT_PORT_SENSOR) {
-        *kind = MT_TERM_CHANNEL;
-        *row = mt_slope_channel(a->lin, port);
-        f.c[port->motion] = 1.0;
-        return f;
+        part[0] =
+            (mt_slope_part){.row = mt_slope_channel(a->lin, port), .kind = MT_TERM_CHANNEL};
+        part[0].factor.c[port->motion] = 1.0;
+        return 1;
     }
-    const double c = mt_response_spring(a, port, row, term);
-    *kind = port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
-    if (*term != NULL) {
-        f = mt_slope_force(a, port, *term);
+    mt_force_part force[MT_FORCE_PARTS];
+    const int n = mt_response_force(a, port, force);
+    const mt_term_kind kind =
+        port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
+    for (int i = 0; i < n; i++) {
+        const double c = force[i].share * mt_linear_value(a->lin, force[i].term->coefficient);
+        part[i] = (mt_slope_part){
+            .row = force[i].row,
+            .kind = kind,
+            .factor = force_of(kind, c, c * mt_response_node(a, force[i].term->loss)),
+            .force = force[i]};
     }
-    for (int i = 0; i < MT_FORCED_POWERS; i++) {
-        f.c[i] *= c;
+    return n;
+}
+
+mt_slope_factor mt_slope_turn(const mt_analysis *a, int p, const mt_slope_part *part)
+{
+    const mt_term *const term = part->force.term;
+    if (term == NULL) {
+        return (mt_slope_factor){{0.0}};
     }
-    return f;
+    const double share = part->force.share;
+    const double c = share * mt_linear_value(a->lin, term->coefficient);
+    const double turn = share * mt_linear_slope(a->lin, term->coefficient, p);
+    return force_of(part->kind, turn,
+                    (turn * mt_response_node(a, term->loss)) +
+                        (c * mt_slope_node(a, p, term->loss)));
 }
 
 static mt_status open_output(work *k, int o, const double complex *y, mt_err *err)
@@ -262,14 +277,12 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
             mt_axpy(k->nq, -1.0, k->p->ways->joint[o].geometric, w.part[0]);
         }
     } else {
-        int row = -1;
-        mt_term_kind kind = MT_TERM_CHANNEL;
-        const mt_term *term = NULL;
-        const double complex factor =
-            value_of(k, mt_slope_row(k->p->a, port, &row, &kind, &term));
-        if (row >= 0) {
-            mt_linear_row_add(k->lin, kind, row, 1.0, sigma);
-            add_real(k->nq, factor, sigma, &w);
+        mt_slope_part part[MT_FORCE_PARTS];
+        const int n = mt_slope_parts(k->p->a, port, part);
+        for (int i = 0; i < n; i++) {
+            memset(sigma, 0, (size_t)k->nq * sizeof *sigma);
+            mt_linear_row_add(k->lin, part[i].kind, part[i].row, 1.0, sigma);
+            add_real(k->nq, value_of(k, part[i].factor), sigma, &w);
         }
     }
     return close_side(k, s, &w, err);
@@ -405,23 +418,15 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
         }
         return -mt_complex(part[0], part[1]);
     }
-    int row = -1;
-    mt_term_kind kind = MT_TERM_CHANNEL;
-    const mt_term *term = NULL;
-    const double complex factor = value_of(k, mt_slope_row(k->p->a, port, &row, &kind, &term));
-    if (row < 0) {
-        return 0.0;
-    }
-    double complex sum = factor * row_slope(k, p, kind, row, &in->states);
-    if (term != NULL) {
-        const double own = mt_linear_value(k->lin, term->coefficient);
-        const double loss =
-            port->kind == MT_PORT_SPRING ? mt_slope_node(k->p->a, p, term->loss) * own : 0.0;
-        const double complex by = (mt_linear_slope(k->lin, term->coefficient, p) *
-                                   value_of(k, mt_slope_force(k->p->a, port, term))) +
-                                  mt_complex(0.0, loss);
-        sum += by * mt_complex(mt_linear_row_dot(k->lin, kind, row, in->states.part[0]),
-                               mt_linear_row_dot(k->lin, kind, row, in->states.part[1]));
+    mt_slope_part part[MT_FORCE_PARTS];
+    const int n = mt_slope_parts(k->p->a, port, part);
+    double complex sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        const mt_slope_part *const own = &part[i];
+        sum += (value_of(k, own->factor) * row_slope(k, p, own->kind, own->row, &in->states)) +
+               (value_of(k, mt_slope_turn(k->p->a, p, own)) *
+                mt_complex(mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[0]),
+                           mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[1])));
     }
     return sum;
 }

@@ -21,12 +21,17 @@ void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
 int mt_slope_power(const mt_port *port);
 /* Row of a sensor's direction, of the terms of channels. */
 int mt_slope_channel(const mt_linear *lin, const mt_port *port);
-/* What the force of a spring or damper is of its coefficient and motion. */
-mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term);
-/* Row, kind of terms and factor of an output that is one row's; row -1: it has none. The term
- * of its coefficient, too; NULL: it has none. */
-mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row,
-                             mt_term_kind *kind, const mt_term **term);
+/* An output that is no joint's force, as a sum of rows: factor times the motion along row. */
+typedef struct mt_slope_part {
+    int row;
+    mt_term_kind kind;
+    mt_slope_factor factor;
+    mt_force_part force; /* of a spring or damper; term NULL: none */
+} mt_slope_part;
+/* How many parts there are; part[MT_FORCE_PARTS]. */
+int mt_slope_parts(const mt_analysis *a, const mt_port *port, mt_slope_part *part);
+/* Derivative of a part's factor with respect to input p. */
+mt_slope_factor mt_slope_turn(const mt_analysis *a, int p, const mt_slope_part *part);
 /* Derivative of a number that may not be there: then 0. */
 double mt_slope_node(const mt_analysis *a, int p, mt_node node);
 /* Fails: MT_E_INTERNAL (no gradient). */

@@ -194,6 +194,14 @@ typedef struct balance {
     double *half;    /* nq x n: E G_j */
 } balance;
 
+static void push_output(const work *k, mt_slope_factor factor, const double *sigma,
+                        const balance *b)
+{
+    for (ptrdiff_t j = 0; j < k->n; j++) {
+        mt_axpy(k->nq, with(factor, k->x, j), sigma, b->out + (j * k->nq));
+    }
+}
+
 /* f (W s^k y')^T and sigma (W factor x)^T. */
 static mt_status push(work *k, const balance *b, mt_err *err)
 {
@@ -205,27 +213,23 @@ static mt_status push(work *k, const balance *b, mt_err *err)
     } else {
         mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, k->in), 1.0, f);
     }
-    mt_slope_factor factor = {{0.0}};
-    if (k->out->kind != MT_PORT_JOINT) {
-        int row = -1;
-        mt_term_kind kind = MT_TERM_CHANNEL;
-        const mt_term *term = NULL;
-        factor = mt_slope_row(k->p->a, k->out, &row, &kind, &term);
-        if (row >= 0) {
-            mt_linear_row_add(k->lin, kind, row, 1.0, sigma);
-        }
-    }
     for (ptrdiff_t j = 0; j < k->ny; j++) {
         mt_axpy(k->nq, creal(k->y[mt_slope_power(k->in)][j]), f, b->in + (j * k->nq));
     }
-    const double *const standing =
-        k->out->kind == MT_PORT_JOINT ? k->p->ways->joint[k->of->out].geometric : NULL;
-    if (standing != NULL) {
-        factor = ONE;
-        mt_axpy(k->nq, -1.0, standing, sigma);
+    if (k->out->kind == MT_PORT_JOINT) {
+        const double *const standing = k->p->ways->joint[k->of->out].geometric;
+        if (standing != NULL) {
+            mt_axpy(k->nq, -1.0, standing, sigma);
+            push_output(k, ONE, sigma, b);
+        }
+        return MT_OK;
     }
-    for (ptrdiff_t j = 0; j < k->n; j++) {
-        mt_axpy(k->nq, with(factor, k->x, j), sigma, b->out + (j * k->nq));
+    mt_slope_part part[MT_FORCE_PARTS];
+    const int n = mt_slope_parts(k->p->a, k->out, part);
+    for (int i = 0; i < n; i++) {
+        memset(sigma, 0, (size_t)k->nq * sizeof *sigma);
+        mt_linear_row_add(k->lin, part[i].kind, part[i].row, 1.0, sigma);
+        push_output(k, part[i].factor, sigma, b);
     }
     return MT_OK;
 }
@@ -419,31 +423,16 @@ static mt_status joint_slope(work *k, int p, double *part, double *motion, doubl
 }
 
 /* sum W (d(sigma) . q - d(t) . l), of what is no joint's force. */
-static double output_slope(const work *k, int p, double *part, double *motion)
+static double output_slope(const work *k, int p, double *room, double *motion)
 {
-    const mt_analysis *const a = k->p->a;
-    const mt_port *const port = k->out;
-    int row = -1;
-    mt_term_kind kind = MT_TERM_CHANNEL;
-    const mt_term *term = NULL;
-    const mt_slope_factor factor = mt_slope_row(a, port, &row, &kind, &term);
-    if (row < 0) {
-        return 0.0;
-    }
-    motion_with(k, factor, part, motion);
-    double sum = mt_linear_row_dot_slope(k->lin, p, kind, row, motion);
-    if (term != NULL) {
-        const double own = mt_linear_value(k->lin, term->coefficient);
-        const double turn = mt_linear_slope(k->lin, term->coefficient, p);
-        const double loss =
-            port->kind == MT_PORT_SPRING ? mt_slope_node(a, p, term->loss) * own : 0.0;
-        mt_slope_factor by = mt_slope_force(a, port, term);
-        for (int i = 0; i < MT_FORCED_POWERS; i++) {
-            by.c[i] *= turn;
-        }
-        by.c[0] += mt_complex(0.0, loss);
-        motion_with(k, by, part, motion);
-        sum += mt_linear_row_dot(k->lin, kind, row, motion);
+    mt_slope_part part[MT_FORCE_PARTS];
+    const int n = mt_slope_parts(k->p->a, k->out, part);
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        motion_with(k, part[i].factor, room, motion);
+        sum += mt_linear_row_dot_slope(k->lin, p, part[i].kind, part[i].row, motion);
+        motion_with(k, mt_slope_turn(k->p->a, p, &part[i]), room, motion);
+        sum += mt_linear_row_dot(k->lin, part[i].kind, part[i].row, motion);
     }
     return sum;
 }

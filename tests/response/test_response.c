@@ -186,6 +186,9 @@ static void response__unclear_forces_are_refused(mt_test *t)
         {"four_bar", "still", "tip.x", "spring.servi", "did you mean \"spring.servo\""},
         {"space_stick", "geared", "tip.x", "joint.gears.x", "no bodies of its own"},
         {"space_stick", "weightless", "tip.x", "spring.mount", "several forces"},
+        {"space_stick", "weightless", "tip.x", "spring.mount.q", "no output is called"},
+        {"four_bar", "still", "tip.x", "spring.servo.x", "no output is called"},
+        {"four_bar", "still", "tip.x", "spring.", "no output is called"},
     };
     for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
         mt_test_row(t, "%s, %s, %s", rows[r].model, rows[r].input, rows[r].output);
