@@ -224,25 +224,35 @@ static void modal_slope(const mt_analysis *a, const work *w, int p, const double
     }
 }
 
+/* q := Q (r x r), dm := (dM/dp) Phi (n x r). */
+static mt_status modal_turn(mt_analysis *a, const work *w, int p, double *q, double *dm,
+                            mt_err *err)
+{
+    const int n = w->n;
+    const int r = w->r;
+    const double *const y = a->modes.y;
+    double *const dk = mt_arena_f64(&a->damping_mem, (size_t)n, (size_t)r);
+    double *const mu = mt_arena_f64(&a->damping_mem, (size_t)r, (size_t)r);
+    MT_TRY(mt_arena_check(&a->damping_mem, err));
+    MT_TRY(mt_linear_products(a->lin, p, r, y, dk, dm, err));
+    mt_gemm(true, false, r, r, n, 1.0, y, n, dk, n, 0.0, q, r);
+    mt_gemm(true, false, r, r, n, 1.0, y, n, dm, n, 0.0, mu, r);
+    modal_slope(a, w, p, mu, q);
+    return MT_OK;
+}
+
 /* dcx += (d(N F N^T)/dp) x = dM Phi F z + N (F (dM Phi)^T x + Q z), z = N^T x. */
 static mt_status add_modal(mt_analysis *a, const work *w, int p, int cols, const double *x,
                            double *dcx, mt_err *err)
 {
     const int n = w->n;
     const int r = w->r;
-    const size_t size = (size_t)n * (size_t)r;
-    double *const dk = mt_arena_f64(&a->damping_mem, size, 1);
-    double *const dm = mt_arena_f64(&a->damping_mem, size, 1);
+    double *const dm = mt_arena_f64(&a->damping_mem, (size_t)n, (size_t)r);
     double *const q = mt_arena_f64(&a->damping_mem, (size_t)r, (size_t)r);
-    double *const mu = mt_arena_f64(&a->damping_mem, (size_t)r, (size_t)r);
     double *const z = mt_arena_f64(&a->damping_mem, (size_t)r, (size_t)cols);
     double *const g = mt_arena_f64(&a->damping_mem, (size_t)r, (size_t)cols);
     MT_TRY(mt_arena_check(&a->damping_mem, err));
-    const double *const y = a->modes.y;
-    MT_TRY(mt_linear_products(a->lin, p, r, y, dk, dm, err));
-    mt_gemm(true, false, r, r, n, 1.0, y, n, dk, n, 0.0, q, r);
-    mt_gemm(true, false, r, r, n, 1.0, y, n, dm, n, 0.0, mu, r);
-    modal_slope(a, w, p, mu, q);
+    MT_TRY(modal_turn(a, w, p, q, dm, err));
     mt_gemm(true, false, r, cols, n, 1.0, w->n_phi, n, x, n, 0.0, z, r);
     mt_gemm(true, false, r, cols, n, 1.0, dm, n, x, n, 0.0, g, r);
     for (int c = 0; c < cols; c++) {
@@ -302,13 +312,22 @@ mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const do
     return rc;
 }
 
-mt_status mt_analysis_ratio_products(mt_analysis *a, int p, int cols, const double *x,
-                                     double *dcx, mt_err *err)
+mt_status mt_analysis_ratio_modes(mt_analysis *a, mt_ratio_modes *out, mt_err *err)
+{
+    work *w = NULL;
+    MT_TRY(prepare(a, &w, err));
+    *out = (mt_ratio_modes){.r = w->r, .y = a->modes.y, .f = w->f};
+    return MT_OK;
+}
+
+mt_status mt_analysis_ratio_slope(mt_analysis *a, int p, double *q, mt_err *err)
 {
     work *w = NULL;
     MT_TRY(prepare(a, &w, err));
     const mt_arena_mark mark = mt_arena_get_mark(&a->damping_mem);
-    const mt_status rc = w->r > 0 ? add_modal(a, w, p, cols, x, dcx, err) : MT_OK;
+    double *const dm = mt_arena_f64(&a->damping_mem, (size_t)w->n, (size_t)w->r);
+    MT_TRY(mt_arena_check(&a->damping_mem, err));
+    const mt_status rc = modal_turn(a, w, p, q, dm, err);
     mt_arena_rewind(&a->damping_mem, mark);
     return rc;
 }

@@ -31,11 +31,20 @@ mt_status mt_analysis_damping(mt_analysis *a, double *c, double *h, bool *struct
 mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const double *x,
                                        double *dcx, double *dhx, mt_err *err);
 
-/* The part of the modal ratios alone, N F N^T with N = M Phi: its derivative's product with x,
- * dcx += (d(N F N^T)/dp) x, n x cols as above; and what it does to a motion that the joints do
- * not allow, of which Z^T M v is given: out[n] += N F Phi^T w. */
-mt_status mt_analysis_ratio_products(mt_analysis *a, int p, int cols, const double *x,
-                                     double *dcx, mt_err *err);
+/* The modal ratios alone: F_j of the modes of the last solve, with their shapes Phi. r 0: there
+ * are none. Valid until the next solve. Fails as mt_analysis_damping. */
+typedef struct mt_ratio_modes {
+    int r;
+    const double *y; /* n x r: Phi */
+    const double *f; /* [r] */
+} mt_ratio_modes;
+mt_status mt_analysis_ratio_modes(mt_analysis *a, mt_ratio_modes *out, mt_err *err);
+/* q (r x r) := Phi^T M d(Phi F Phi^T) M Phi by input p, after a solve with gradient, as the modes
+ * turn in the moving coordinates of mt_linear_products. NaN where equal frequencies with different
+ * ratios leave it without a value. O(n) products with K and M. */
+mt_status mt_analysis_ratio_slope(mt_analysis *a, int p, double *q, mt_err *err);
+/* What the ratios do to a motion v that the joints do not allow, of which w = Z^T M v is given:
+ * out[n] += N F Phi^T w, N = M Phi. */
 mt_status mt_analysis_ratio_force(mt_analysis *a, const double *w, double *out, mt_err *err);
 
 /* Complex modes with all of it, after a solve of all modes with vectors; valid until the next

@@ -67,8 +67,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "what is looked at: grip.x, grip.x:velocity, grip.x:acceleration, a sensor's motion; "
         "may be repeated (default: the displacements of all sensors). Of response it is that "
         "in space (grip.x:relative_acceleration: against the ground), and there are "
-        "spring.NAME and damper.NAME, the force or torque in it, and joint.NAME.x, the force "
-        "of a joint's first body on its second. Of simulate displacements, from the rest "
+        "spring.NAME and damper.NAME, the force or torque in it (of a bushing spring.NAME.x, "
+        "spring.NAME.rx, a component of it), and joint.NAME.x, the force of a joint's first "
+        "body on its second. Of simulate displacements, from the rest "
         "position, and velocities are against the ground, accelerations in space, and there "
         "are joints' coordinates (pivot, pivot:velocity), by default those of all joints "
         "where there are no sensors"),

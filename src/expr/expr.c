@@ -266,6 +266,33 @@ static mt_status bad_number(parser *p, size_t from, const char *what)
                    shown(end - from), p->text + from, what);
 }
 
+/* Does a name of `length` bytes stand for something? */
+static bool is_known(const parser *p, const char *name, size_t length)
+{
+    double value = 0.0;
+    mt_kind kind = MT_KIND_NUMBER;
+    mt_op op = MT_OP_CONST;
+    return length > 0 && (mt_expr_find_constant(name, length, &value, &kind) ||
+                          (p->lookup != NULL && p->lookup(p->context, name, length) >= 0) ||
+                          (name[length] == '(' && mt_expr_find_function(name, length, &op)));
+}
+
+/* A number from `from` with a name right behind it, at p->at: a product, perhaps. */
+static mt_status product_meant(parser *p, size_t from)
+{
+    size_t end = p->at;
+    while (is_name_part(p->text[end])) {
+        end++;
+    }
+    if (!is_name_start(p->text[p->at]) || !is_known(p, p->text + p->at, end - p->at)) {
+        return bad_number(p, from, "is not a number; a product needs \"*\"");
+    }
+    return mt_fail(p->err, MT_E_INPUT,
+                   "at character %d: \"%.*s\" is not a number; did you mean \"%.*s*%.*s\"?",
+                   character(p, from), shown(end - from), p->text + from, shown(p->at - from),
+                   p->text + from, shown(end - p->at), p->text + p->at);
+}
+
 /*
  * number = (digits [ "." [digits] ] | "." digits) [ ("e"|"E") ["+"|"-"] digits ], correctly
  * rounded. The C library rounds correctly, but reads the decimal point of the process's locale.
@@ -304,7 +331,7 @@ static mt_status parse_number(parser *p)
         exponent += negative ? -e : e;
     }
     if (is_name_part(s[p->at]) || s[p->at] == '.') {
-        return bad_number(p, from, "is not a number; a product needs \"*\"");
+        return product_meant(p, from);
     }
     (void)mt_snprintf(digits + n, sizeof digits - n, "e%d", exponent);
     const double value = strtod(digits, NULL);
@@ -359,6 +386,11 @@ static mt_status parse_product(parser *p)
 {
     MT_TRY(parse_unary(p));
     for (char c = peek(p); c == '*' || c == '/'; c = peek(p)) {
+        if (c == '*' && p->text[p->at + 1] == '*') {
+            return mt_fail(p->err, MT_E_INPUT,
+                           "at character %d: \"**\" is no operator; did you mean \"^\"?",
+                           character(p, p->at));
+        }
         p->at++;
         MT_TRY(parse_unary(p));
         MT_TRY(emit_op(p, c == '*' ? MT_OP_MUL : MT_OP_DIV));
@@ -377,24 +409,51 @@ static mt_status parse_sum(parser *p)
     return MT_OK;
 }
 
-/* What is left is no part of the expression: the unit of a number, perhaps. */
+/* End of the word at p->at: a name, "%" or a sign beyond ASCII, as of degrees. */
+static size_t word_end(const parser *p)
+{
+    size_t end = p->at;
+    while (is_name_part(p->text[end]) || ((unsigned char)p->text[end] & 0x80U) != 0) {
+        end++;
+    }
+    return end == p->at && p->text[end] == '%' ? end + 1 : end;
+}
+
+/* What is left is no part of the expression: the unit of a number, perhaps, what it is to be
+ * multiplied with, or what follows a decimal comma. */
 static mt_status left_over(parser *p)
 {
     char meant[2 * SHOWN];
-    size_t end = p->at;
-    bool apart = p->number_end > 0;
+    const char *const left = p->text + p->at;
+    const char *const number = p->text + p->number;
+    const size_t length = word_end(p) - p->at;
+    const size_t digits = p->number_end - p->number;
+    bool apart = p->number_end > 0 && digits < SHOWN;
     for (size_t i = p->number_end; i < p->at; i++) {
         apart = apart && p->text[i] == ' ';
     }
-    while (is_name_part(p->text[end])) {
-        end++;
-    }
-    if (apart && p->number_end - p->number < SHOWN &&
-        mt_unit_meant(p->text + p->number, p->number_end - p->number, p->text + p->at,
-                      end - p->at, meant, sizeof meant)) {
+    if (apart && mt_unit_meant(number, digits, left, length, meant, sizeof meant)) {
         return mt_fail(p->err, MT_E_INPUT,
                        "at character %d: \"%.*s\" is no part of a number; did you mean %s?",
-                       character(p, p->at), shown(end - p->at), p->text + p->at, meant);
+                       character(p, p->at), shown(length), left, meant);
+    }
+    size_t more = 1;
+    while (left[0] == ',' && is_digit(left[more])) {
+        more++;
+    }
+    if (apart && p->number_end == p->at && left[0] == ',' && more > 1 &&
+        memchr(number, '.', digits) == NULL) {
+        return mt_fail(p->err, MT_E_INPUT,
+                       "at character %d: \",\" where an operator or the end is expected; did "
+                       "you mean \"%.*s.%.*s\"?",
+                       character(p, p->at), (int)digits, number, shown(more - 1), left + 1);
+    }
+    if (apart && is_name_start(left[0]) && is_known(p, left, length)) {
+        return mt_fail(
+            p->err, MT_E_INPUT,
+            "at character %d: \"%.*s\" where an operator or the end is expected; did "
+            "you mean \"%.*s*%.*s\"?",
+            character(p, p->at), shown(length), left, (int)digits, number, shown(length), left);
     }
     return expected(p, "an operator or the end");
 }

@@ -37,8 +37,9 @@ static const unit_word words[] = {{"um", "1e-6", "m"},
 
 /* Other words for the constants. */
 static const char *const other_words[][2] = {
-    {"degree", "deg"}, {"degrees", "deg"}, {"in", "inch"},       {"inches", "inch"},
-    {"feet", "ft"},    {"foot", "ft"},     {"millimetre", "mm"}, {"RPM", "rpm"}};
+    {"degree", "deg"}, {"degrees", "deg"},   {"\xC2\xB0", "deg"},
+    {"in", "inch"},    {"inches", "inch"},   {"feet", "ft"},
+    {"foot", "ft"},    {"millimetre", "mm"}, {"RPM", "rpm"}};
 
 static bool same(const char *word, size_t n_word, const char *s)
 {
@@ -69,6 +70,10 @@ bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t
     const char *const constant = constant_of(word, n_word);
     if (constant != NULL) {
         (void)mt_snprintf(out, size, "\"%.*s*%s\"", (int)n_number, number, constant);
+        return true;
+    }
+    if (same(word, n_word, "%") || same(word, n_word, "percent")) {
+        (void)mt_snprintf(out, size, "\"%.*s/100\"", (int)n_number, number);
         return true;
     }
     for (int i = 0; i < MT_COUNT(words); i++) {

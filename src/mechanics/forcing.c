@@ -153,3 +153,24 @@ double mt_linear_joint_slope(const mt_linear *lin, int p, int joint, int axis,
     }
     return sum;
 }
+
+mt_status mt_linear_joint_geometric_slope(mt_linear *lin, int p, int joint, int axis,
+                                          double *out, mt_err *err)
+{
+    double sign = 1.0;
+    const ptrdiff_t nq = lin->sys->nq;
+    const int dof = lin->sys->bodies[side_of(lin->sys, joint, &sign)].dof[axis];
+    memset(out, 0, (size_t)nq * sizeof *out);
+    if (dof < 0 || lin->kg == NULL) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    double *const h = mt_arena_f64(&lin->scratch, (size_t)nq, (size_t)nq);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_tangent_joint(lin, p, joint, h, err));
+    for (ptrdiff_t c = 0; c < nq; c++) {
+        out[c] = sign * h[dof + (c * nq)];
+    }
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}

@@ -47,6 +47,9 @@ void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, do
 double mt_linear_jacobian_contract(const mt_linear *lin, int p, const double *lambda);
 /* lambda[m]: A^T lambda ~ w. */
 mt_status mt_linear_multipliers(mt_linear *lin, const double *w, double *lambda, mt_err *err);
+/* out[nq] := derivative of the joint's `geometric`; 0 where nothing loads. */
+mt_status mt_linear_joint_geometric_slope(mt_linear *lin, int p, int joint, int axis,
+                                          double *out, mt_err *err);
 /* Sum over the joint's equations of lambda times the derivative of t. */
 double mt_linear_joint_slope(const mt_linear *lin, int p, int joint, int axis,
                              const double *lambda);

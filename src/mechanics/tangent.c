@@ -74,7 +74,8 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
     mt_lagrangian l;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
-    mt_cx *const lambda = mt_arena_alloc(&lin->scratch, (size_t)all, sizeof *lambda);
+    mt_cx *const lambda =
+        mt_arena_alloc(&lin->geometry->mem, loaded ? (size_t)all : 0, sizeof *lambda);
     t->a = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, (size_t)nq);
     t->c = mt_arena_f64(&lin->geometry->mem, (size_t)lin->m, 1);
     t->kg = loaded ? mt_arena_f64(&lin->geometry->mem, (size_t)nq, (size_t)nq) : NULL;
@@ -98,6 +99,8 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
     t->moves = t->moves || !all_zero((size_t)lin->m * (size_t)nq, t->a);
     if (loaded) {
         memcpy(t->kg, l.h, (size_t)(nq * nq) * sizeof *t->kg);
+        t->lambda = lambda;
+        t->pose = at->pose;
     }
     t->moves = t->moves || (loaded && !all_zero((size_t)(nq * nq), t->kg));
     mt_arena_rewind(&lin->scratch, mark);
@@ -109,6 +112,7 @@ mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err)
     const mt_system *const sys = lin->sys;
     mt_arena *const mem = &lin->geometry->mem;
     lin->tangent = mt_arena_alloc(mem, (size_t)sys->n_inputs, sizeof *lin->tangent);
+    const bool loaded = lin->position.equilibrium.active;
     mt_placement at = lin->position.at;
     at.pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *at.pose);
     MT_TRY(mt_arena_check(mem, err));
@@ -117,10 +121,42 @@ mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err)
             continue;
         }
         lin->dual.input = p;
+        if (loaded) {
+            at.pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *at.pose);
+            MT_TRY(mt_arena_check(mem, err));
+        }
         MT_TRY(mt_position_tangent(&lin->position, &lin->dual, &lin->scratch, err));
         mt_poses_tangent(sys, lin->position.at.pose, lin->position.d_pose, at.pose);
         MT_TRY(tangent_rows(lin, at.pose, &lin->tangent[p], err));
         MT_TRY(tangent_constraints(lin, &at, &lin->tangent[p], err));
     }
+    return MT_OK;
+}
+
+mt_status mt_tangent_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    const size_t size = (size_t)sys->nq * (size_t)sys->nq;
+    const mt_linear_tangent *const t = lin->tangent == NULL ? NULL : &lin->tangent[p];
+    memset(out, 0, size * sizeof *out);
+    if (t == NULL || t->lambda == NULL) {
+        return MT_OK;
+    }
+    mt_lagrangian l;
+    mt_placement at = lin->position.at;
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    MT_TRY(mt_lagrangian_init(&l, sys, true, &lin->scratch, err));
+    mt_cx *const own = mt_arena_alloc(&lin->scratch, (size_t)sys->n_constraints, sizeof *own);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    for (int i = 0; i < sys->n_constraints; i++) {
+        own[i] = sys->constraints[i].joint == joint ? t->lambda[i] : 0.0;
+    }
+    at.pose = t->pose;
+    l.slope = true;
+    lin->dual.input = p;
+    mt_data_vecs(&lin->dual);
+    mt_lagrangian_curve(&lin->dual, &at, sys->n_constraints, own, &l);
+    memcpy(out, l.h, size * sizeof *out);
+    mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
 }

@@ -15,9 +15,14 @@ struct mt_linear_tangent {
     double terms;  /* largest sum of the terms of an entry of c, in rows of unit length */
     double motion; /* length of the motion that the input causes, in scaled coordinates */
     double *kg;    /* nq x nq; NULL where nothing loads */
+    mt_pose *pose; /* [bodies] with their derivatives; NULL where nothing loads */
+    mt_cx *lambda; /* [all constraints] likewise */
 };
 
 /* Fill lin->tangent, of the inputs in the set moves: nothing here depends on the others. */
 mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err);
+/* out (nq x nq) := derivative of the part of Kg that the equations of one joint make; 0 where
+ * nothing loads. */
+mt_status mt_tangent_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err);
 
 #endif

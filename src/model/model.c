@@ -166,10 +166,11 @@ const char *mt_spring_type_name(mt_spring_type type)
 const char *const *mt_model_units(int *n)
 {
     static const char *const units[] = {
-        "1",     "m",      "m^2", "m^3", "m^4",   "kg",      "kg/m",  "kg/m^2",    "kg/m^3",
-        "kg m",  "kg m^2", "s",   "Hz",  "rad",   "rad/s",   "m/s",   "m/s^2",     "N",
-        "N/m",   "N/m^2",  "Pa",  "N m", "N m^2", "N m/rad", "N s/m", "N m s/rad", "m/rad",
-        "rad/m", "J",      "W",   "mm",  "cm",    "in",      "ft",    "deg",       "rpm",
+        "1",       "m",     "m^2",       "m^3",   "m^4",   "kg", "kg/m", "kg/m^2",
+        "kg/m^3",  "kg m",  "kg m^2",    "s",     "1/s",   "Hz", "rad",  "rad/s",
+        "m/s",     "m/s^2", "N",         "N/m",   "N/m^2", "Pa", "N m",  "N m^2",
+        "N m/rad", "N s/m", "N m s/rad", "m/rad", "rad/m", "J",  "W",    "mm",
+        "cm",      "in",    "ft",        "deg",   "rpm",
     };
     *n = MT_COUNT(units);
     return units;

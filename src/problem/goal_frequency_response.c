@@ -177,16 +177,13 @@ typedef struct forced {
     mt_forced f;
     mt_response_ways ways;
     mt_basis basis;
-    mt_transfer direct; /* with gradient */
 } forced;
 
-static mt_status prepare(mt_analysis *a, const mt_fit *fit, bool with_gradient, forced *out,
-                         mt_err *err)
+static mt_status prepare(mt_analysis *a, const mt_fit *fit, forced *out, mt_err *err)
 {
     MT_TRY(mt_response_problem(a, &fit->ports, &a->mem, &out->f, &out->ways, err));
     const mt_basis_problem problem = {.f = &out->f, .mass = &a->mass, .modes = &a->modes};
-    MT_TRY(mt_basis_make(&problem, &a->mem, &out->basis, err));
-    return with_gradient ? mt_transfer_direct(&out->f, &a->mem, &out->direct, err) : MT_OK;
+    return mt_basis_make(&problem, &a->mem, &out->basis, err);
 }
 
 /* The measured file's name is said with its line, which is where the trouble is seen. */
@@ -250,9 +247,9 @@ static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool wi
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     forced f = {.f = {.n = 0}};
-    mt_status rc = prepare(a, d->fit, with_gradient, &f, err);
+    mt_status rc = prepare(a, d->fit, &f, err);
     const mt_slope_problem slopes = {
-        .a = a, .t = &f.direct, .ports = &d->fit->ports, .ways = &f.ways};
+        .a = a, .basis = &f.basis, .ports = &d->fit->ports, .ways = &f.ways};
     for (int i = 0; i < d->fit->n && rc == MT_OK; i++) {
         const mt_arena_mark inner = mt_arena_get_mark(&a->mem);
         rc = line(w, d, i, &f, with_gradient ? &slopes : NULL, err);

@@ -48,20 +48,6 @@ static mt_status open_ports(mt_analysis *a, const mt_shaken_pair *pair, mt_respo
     return rc;
 }
 
-/* A search needs derivatives of a joint's force (response/slopes.h). */
-static mt_status with_slopes(const mt_view *view, const mt_response *r, const char *output,
-                             mt_err *err)
-{
-    const char *const why = view->original->sys->damping.modal   ? "beside modal damping ratios"
-                            : r->ways.joint[0].geometric != NULL ? "under loads"
-                                                                 : NULL;
-    return why == NULL ? MT_OK
-                       : mt_fail(err, MT_E_USAGE,
-                                 "%s: a joint's force has no derivatives %s, which a search "
-                                 "needs",
-                                 output, why);
-}
-
 /* The forced problem of one goal alone at the original design: does it have one? */
 static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
 {
@@ -69,9 +55,6 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     mt_response r = {.a = NULL};
     mt_err own = {.code = MT_OK};
     mt_status rc = open_ports(view->original, &pair, &r, &own);
-    if (rc == MT_OK && r.ports.out[0].kind == MT_PORT_JOINT) {
-        rc = with_slopes(view, &r, pair.output, &own);
-    }
     mt_response_free(&r);
     if (rc == MT_E_USAGE) {
         return mt_fail(err, MT_E_INPUT, "/goals/%d/output: %s", d->goal_index, own.text);

@@ -119,28 +119,73 @@ mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, m
     return MT_OK;
 }
 
-/* "spring.NAME" or "damper.NAME". */
-static mt_status find_spring(const mt_system *sys, const char *name, mt_arena *mem, bool damper,
-                             mt_port *out, mt_err *err)
+/* How many forces a spring (or damper) of this name has; *first: the first of them. */
+static int count_forces(const mt_system *sys, const char *own, bool damper, int *first)
 {
-    const char *const own = name + strlen(WITH_FORCE[0]);
     int count = 0;
-    for (int i = 0; i < sys->n_springs; i++) {
+    for (int i = sys->n_springs - 1; i >= 0; i--) {
         const mt_spring_def *const s = &sys->springs[i];
         if (s->damper == damper && s->name != NULL && strcmp(s->name, own) == 0) {
             count++;
-            out->index = i;
+            *first = i;
         }
+    }
+    return count;
+}
+
+static bool is_bushing(const mt_model *m, const char *own, bool damper)
+{
+    bool is = false;
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const s = &m->springs[i];
+        is = is || (s->damper == damper && s->type == MT_SPRING_BUSHING &&
+                    strcmp(s->name.s, own) == 0);
+    }
+    return is;
+}
+
+/* "NAME.x" of a bushing (moments "NAME.rx", in the plane "NAME.r"): *own is its name, and the component is returned; -1: it is none. */
+static int component_of(const mt_system *sys, const char **own, bool damper, mt_arena *mem)
+{
+    const char *const dot = strrchr(*own, '.');
+    const bool turns = dot != NULL && dot[1] == 'r';
+    int axis = dot == NULL ? -1 : axis_of(sys, dot + (turns ? 2 : 1));
+    if (turns && sys->dimension == 2) {
+        axis = dot[2] == '\0' ? 2 : -1;
+    }
+    const char *const name =
+        mt_arena_strndup(mem, *own, dot == NULL ? 0 : (size_t)(dot - *own));
+    if (name == NULL || axis < 0 || !is_bushing(sys->model, name, damper)) {
+        return -1;
+    }
+    *own = name;
+    return axis + (turns ? 3 : 0);
+}
+
+/* "spring.NAME", "damper.NAME", or a component of a bushing's. */
+static mt_status find_spring(const mt_system *sys, const char *name, mt_arena *mem, bool damper,
+                             mt_port *out, mt_err *err)
+{
+    const char *own = name + strlen(WITH_FORCE[0]);
+    int count = count_forces(sys, own, damper, &out->index);
+    out->axis = -1;
+    if (count == 0) {
+        out->axis = component_of(sys, &own, damper, mem);
+        count = out->axis < 0 ? 0 : count_forces(sys, own, damper, &out->index);
     }
     if (count == 0) {
         return unknown(sys, name, false, mem, err);
     }
-    if (count > 1) {
-        return mt_fail(err, MT_E_USAGE, "\"%s\" has several forces, not one", name);
+    if (count > 1 && out->axis < 0) {
+        return mt_fail(err, MT_E_USAGE,
+                       "\"%s\" has several forces, not one: name one of its components, "
+                       "\"%s.x\" or, a moment, \"%s.%s\"",
+                       name, name, name, sys->dimension == 2 ? "r" : "rz");
     }
     const mt_measure_kind kind = sys->measures[sys->springs[out->index].measure[0]].kind;
     out->kind = damper ? MT_PORT_DAMPER : MT_PORT_SPRING;
-    out->turns = kind == MT_MEASURE_ANGLE || kind == MT_MEASURE_ROTATION;
+    out->turns = out->axis < 0 ? kind == MT_MEASURE_ANGLE || kind == MT_MEASURE_ROTATION
+                               : out->axis >= 3;
     out->name = mt_arena_strdup(mem, name);
     out->unit = FORCES[out->turns ? 1 : 0];
     return mt_arena_check(mem, err);

@@ -13,6 +13,9 @@
  *                                 as seen from the ground (MOTION relative_acceleration, ...)
  *              spring.NAME        force or torque in a spring, with what its loss factor takes;
  *              damper.NAME        in a damper; positive where it pulls
+ *              spring.NAME.x      component (.rx: moment) of a bushing's force, what its
+ *                                 stiffness makes of the motion of the second end against the
+ *                                 first, along axes that the first body carries; a damper's, too
  *              joint.NAME.x       force of the joint's first body on its second, at the joint
  *     MOTION   displacement, velocity, acceleration.
  */
@@ -26,11 +29,11 @@ typedef enum mt_port_kind {
 
 typedef struct mt_port {
     mt_port_kind kind;
-    int index;        /* channel, axis of the ground, spring, joint, of the system */
-    int axis;         /* of a joint's force */
-    int motion;       /* derivative in time: 0 displacement, 1 velocity, 2 acceleration */
-    bool relative;    /* of a sensor, to the ground */
-    bool turns;       /* an angle, or a torque */
+    int index;     /* channel, axis of the ground, spring, joint, of the system */
+    int axis;      /* of a joint's force; component of a bushing's (3 ... 5: moments), or -1 */
+    int motion;    /* derivative in time: 0 displacement, 1 velocity, 2 acceleration */
+    bool relative; /* of a sensor, to the ground */
+    bool turns;    /* an angle, or a torque */
     const char *name; /* in full: "grip.x:acceleration" */
     const char *unit; /* "m/s^2" */
 } mt_port;

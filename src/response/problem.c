@@ -62,22 +62,33 @@ double mt_response_node(const mt_analysis *a, mt_node node)
     return node == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, node);
 }
 
-double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
-                          const mt_term **term)
+/* Component of a bushing that a measure is. */
+static int component_of(const mt_measure_def *m)
 {
-    const mt_term_kind kind =
-        port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
-    const mt_term_list *const list = mt_linear_terms(a->lin, kind);
+    return m->component + (m->kind == MT_MEASURE_ROTATION ? 3 : 0);
+}
+
+int mt_response_force(const mt_analysis *a, const mt_port *port, mt_force_part *part)
+{
+    const mt_system *const sys = a->sys;
+    const mt_spring_def *const own = &sys->springs[port->index];
+    const mt_term_list *const list = mt_linear_terms(
+        a->lin, port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS);
+    int n = 0;
     for (int i = 0; i < list->n_terms; i++) {
-        if (list->terms[i].source == port->index) {
-            *row = list->terms[i].first;
-            *term = &list->terms[i];
-            return mt_linear_value(a->lin, list->terms[i].coefficient);
+        const mt_term *const t = &list->terms[i];
+        const mt_spring_def *const s = &sys->springs[t->source];
+        const bool together = s->name != NULL && strcmp(s->name, own->name) == 0;
+        for (int side = 0; side < (t->pair ? 2 : 1) && together && n < MT_FORCE_PARTS; side++) {
+            if (port->axis < 0 ||
+                component_of(&sys->measures[s->measure[side]]) == port->axis) {
+                part[n++] = (mt_force_part){.row = t->first + (t->pair ? 1 - side : 0),
+                                            .term = t,
+                                            .share = t->pair ? 0.5 : 1.0};
+            }
         }
     }
-    *row = -1;
-    *term = NULL;
-    return 0.0;
+    return n;
 }
 
 static mt_status add_input(build *k, int i, mt_err *err)
@@ -135,22 +146,21 @@ static mt_status add_spring(build *k, int o, mt_err *err)
 {
     const mt_port *const port = &k->out[o];
     const bool damper = port->kind == MT_PORT_DAMPER;
-    int row = -1;
-    const mt_term *term = NULL;
-    const double c = mt_response_spring(k->a, port, &row, &term);
+    mt_force_part part[MT_FORCE_PARTS];
+    const int n = mt_response_force(k->a, port, part);
     double *const s = ensure(k, &k->s[damper ? 1 : 0], k->n, k->n_out);
     MT_TRY(mt_arena_check(k->mem, err));
-    if (row < 0) {
-        return MT_OK;
-    }
-    const double *const own =
-        mt_linear_row(k->a->lin, damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS, row);
-    const double loss = damper ? 0.0 : mt_response_node(k->a, term->loss);
-    mt_axpy(k->n, c, own, s + ((ptrdiff_t)o * k->n));
-    if (loss != 0.0) {
-        double *const im = ensure(k, &k->s_im, k->n, k->n_out);
-        MT_TRY(mt_arena_check(k->mem, err));
-        mt_axpy(k->n, c * loss, own, im + ((ptrdiff_t)o * k->n));
+    for (int i = 0; i < n; i++) {
+        const double *const own =
+            mt_linear_row(k->a->lin, damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS, part[i].row);
+        const double c = part[i].share * mt_linear_value(k->a->lin, part[i].term->coefficient);
+        const double loss = damper ? 0.0 : mt_response_node(k->a, part[i].term->loss);
+        mt_axpy(k->n, c, own, s + ((ptrdiff_t)o * k->n));
+        if (loss != 0.0) {
+            double *const im = ensure(k, &k->s_im, k->n, k->n_out);
+            MT_TRY(mt_arena_check(k->mem, err));
+            mt_axpy(k->n, c * loss, own, im + ((ptrdiff_t)o * k->n));
+        }
     }
     return MT_OK;
 }

@@ -26,8 +26,15 @@ mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena
                               mt_forced *f, mt_response_ways *ways, mt_err *err);
 /* Value of a number that may not be there: then 0. */
 double mt_response_node(const mt_analysis *a, mt_node node);
-/* The coefficient of a spring's or damper's term, and its row. */
-double mt_response_spring(const mt_analysis *a, const mt_port *port, int *row,
-                          const mt_term **term);
+/* A part of the force in a spring or damper: share times its coefficient times the motion along
+ * the row. A bushing's components have one for each row of its stiffness. */
+enum { MT_FORCE_PARTS = 6 };
+typedef struct mt_force_part {
+    int row;
+    const mt_term *term;
+    double share;
+} mt_force_part;
+/* How many there are; part[MT_FORCE_PARTS]. */
+int mt_response_force(const mt_analysis *a, const mt_port *port, mt_force_part *part);
 
 #endif

@@ -63,13 +63,6 @@ mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err)
     return mt_response_poles(&r->basis, &r->mem, out, err);
 }
 
-mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err)
-{
-    const mt_slope_problem p = {
-        .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
-    return mt_response_slopes(&p, w, dh, &r->mem, err);
-}
-
 /* The basis of all modes. */
 static mt_status whole_basis(mt_response *r, mt_basis *out, mt_err *err)
 {
@@ -81,18 +74,28 @@ static mt_status whole_basis(mt_response *r, mt_basis *out, mt_err *err)
     return mt_basis_make(&problem, &r->mem, out, err);
 }
 
+mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err)
+{
+    mt_basis basis;
+    const mt_slope_problem p = {
+        .a = r->a, .basis = &basis, .ports = &r->ports, .ways = &r->ways};
+    const mt_arena_mark mark = mt_arena_get_mark(&r->mem);
+    MT_TRY(whole_basis(r, &basis, err));
+    const mt_status rc = mt_response_slopes(&p, w, dh, &r->mem, err);
+    mt_arena_rewind(&r->mem, mark);
+    return rc;
+}
+
 mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
                                       const double complex *weight, double *slope, mt_err *err)
 {
+    mt_basis basis;
     const mt_slope_problem p = {
-        .a = r->a, .t = &r->direct, .ports = &r->ports, .ways = &r->ways};
+        .a = r->a, .basis = &basis, .ports = &r->ports, .ways = &r->ways};
     const mt_slope_weights q = {.out = out, .in = in, .n = n, .w = w, .weight = weight};
     const mt_arena_mark mark = mt_arena_get_mark(&r->mem);
-    mt_basis basis;
-    mt_status rc = whole_basis(r, &basis, err);
-    if (rc == MT_OK) {
-        rc = mt_response_slopes_weighted(&p, &basis, &q, slope, &r->mem, err);
-    }
+    MT_TRY(whole_basis(r, &basis, err));
+    const mt_status rc = mt_response_slopes_weighted(&p, &q, slope, &r->mem, err);
     mt_arena_rewind(&r->mem, mark);
     return rc;
 }

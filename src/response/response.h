@@ -44,13 +44,18 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
                             mt_err *err);
 /* Sums over poles out[n_out x n_in], in r->mem; fails as mt_response_poles. */
 mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err);
-/* dh as mt_response_slopes. */
-mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err);
-/* slope[n_inputs] = Re sum_i weight_i dH_{out, in}(w_i)/d(input) [unit of weight H per unit of
- * the input], NaN as there: what the loop over mt_response_slopes_at gives, of 1e5 frequencies
- * at the price of hardly more than their solutions. w[n] > 0 [rad/s]. Fails as that,
- * MT_E_INTERRUPTED. */
+/**
+ * The slope over all inputs of the analysis of a sum over frequencies of one response,
+ *     slope[p] = Re sum_i weight_i dH_oi(w_i) / dp.
+ * @param[in]  out, in     which output and input
+ * @param[in]  w, weight   [n]
+ * @param[out] slope       [n_inputs]; NaN as there
+ * What the loop over mt_response_slopes_at gives, for hardly more than the solutions at all
+ * frequencies (slopes_weighted.h). Fails as mt_response_slopes, MT_E_INTERRUPTED.
+ */
 mt_status mt_response_weighted_slopes(mt_response *r, int out, int in, int n, const double *w,
                                       const double complex *weight, double *slope, mt_err *err);
+/* dh as mt_response_slopes. */
+mt_status mt_response_slopes_at(mt_response *r, double w, double complex *dh, mt_err *err);
 
 #endif

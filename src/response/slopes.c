@@ -6,6 +6,11 @@
  *     dH = d(sigma) . q - d(t) . l + e . df - e . dD q - (dA e) . l - m . (dA q),
  * a d being the derivative with respect to one input, geometry and equilibrium with it. With x
  * and y of the reduced problem q = Z x and e = Z y - v, A v = t; l and m balance what is left.
+ * A standing force that turns with a joint's bodies is a part of sigma. Modal ratios are the
+ * matrix M Phi F Phi^T M of D over all states, whose derivative is (damping.c)
+ *     e . d(ratios) q = e . dM psi_q + psi_e . dM q + a . Q b - (dA psi_q) . P M e
+ *                       - (dA psi_e) . P M q,
+ *     b = Phi^T M q, psi_q = Phi F b,  a = Phi^T M e, psi_e = Phi F a,  P w: what balances w.
  * d of the ground's own motion does not depend on any input: a rigid translation moves every
  * sensor by 1.
  */
@@ -17,6 +22,7 @@
 #include "analysis/damping.h"
 #include "linalg/dense.h"
 #include "mechanics/independence.h"
+#include "response/solutions.h"
 
 /* A complex vector. */
 typedef struct pair {
@@ -27,6 +33,10 @@ typedef struct pair {
 typedef struct side {
     pair states; /* q, or e */
     pair forces; /* l, or m */
+    /* with modal ratios */
+    double complex *coefficient; /* [r] b, or a */
+    pair turned;                 /* psi */
+    pair carried;                /* P M q, or P M e */
 } side;
 
 typedef struct work {
@@ -43,6 +53,9 @@ typedef struct work {
     side *in;                 /* [n_in] */
     side *out;                /* [n_out] */
     double *shift;            /* [nq] */
+    mt_ratio_modes ratio;
+    double *q;          /* r x r: Q of one input */
+    double **geometric; /* [n_out][nq]: slope of what stands in a joint, of one input; NULL */
 } work;
 
 enum { MATRICES = MT_SLOPE_MATRICES };
@@ -139,11 +152,57 @@ int mt_slope_power(const mt_port *port)
     return port->kind == MT_PORT_BASE ? 2 - port->motion : 0;
 }
 
+/* psi, P M q and b of one side. */
+static mt_status open_ratios(work *k, side *s, mt_err *err)
+{
+    const int n = mt_linear_freedoms(k->lin);
+    const int r = k->ratio.r;
+    s->coefficient = mt_arena_alloc(k->mem, (size_t)r, sizeof *s->coefficient);
+    s->turned = new_pair(k->mem, k->nq);
+    s->carried = new_pair(k->mem, k->m);
+    double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    double *const part = mt_arena_f64(k->mem, (size_t)(n > r ? n : r), 2);
+    MT_TRY(mt_arena_check(k->mem, err));
+    double *const other = part + (n > r ? n : r);
+    for (int i = 0; i < 2; i++) {
+        memset(product, 0, (size_t)k->nq * sizeof *product);
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, s->states.part[i], product);
+        MT_TRY(mt_linear_multipliers(k->lin, product, s->carried.part[i], err));
+        mt_linear_project(k->lin, product, part);
+        mt_gemv(true, n, r, 1.0, k->ratio.y, n, part, 0.0, other);
+        for (int j = 0; j < r; j++) {
+            s->coefficient[j] += mt_complex(1 - i, i) * other[j];
+            other[j] *= k->ratio.f[j];
+        }
+        mt_gemv(false, n, r, 1.0, k->ratio.y, n, other, 0.0, part);
+        mt_linear_expand(k->lin, 1, part, s->turned.part[i]);
+    }
+    return MT_OK;
+}
+
+/* l or m, with w what there is besides D. */
+static mt_status close_side(work *k, side *s, pair *w, mt_err *err)
+{
+    MT_TRY(subtract_d(k, &s->states, w, err));
+    if (k->ratio.r == 0) {
+        return balance(k, w, &s->forces, err);
+    }
+    MT_TRY(open_ratios(k, s, err));
+    double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int i = 0; i < 2; i++) {
+        memset(product, 0, (size_t)k->nq * sizeof *product);
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, s->turned.part[i], product);
+        add_real(k->nq, -k->power[1] * mt_complex(1 - i, i), product, w);
+    }
+    return balance(k, w, &s->forces, err);
+}
+
 static mt_status open_input(work *k, int i, const double complex *x, mt_err *err)
 {
     const mt_port *const port = &k->p->ports->in[i];
     side *const s = &k->in[i];
-    *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
+    *s = (side){.states = new_pair(k->mem, k->nq), .forces = new_pair(k->mem, k->m)};
     pair w = new_pair(k->mem, k->nq);
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
@@ -155,64 +214,78 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
         mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, port), 1.0, f);
     }
     add_real(k->nq, k->power[mt_slope_power(port)], f, &w);
-    MT_TRY(subtract_d(k, &s->states, &w, err));
-    return balance(k, &w, &s->forces, err);
+    return close_side(k, s, &w, err);
 }
 
-mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term)
+/* coefficient (1 + i loss), or s coefficient of a damper. */
+static mt_slope_factor force_of(mt_term_kind kind, double coefficient, double lossy)
 {
-    return port->kind == MT_PORT_DAMPER
-               ? (mt_slope_factor){{0.0, 1.0, 0.0}}
-               : (mt_slope_factor){
-                     {mt_complex(1.0, mt_response_node(a, term->loss)), 0.0, 0.0}};
+    return kind == MT_TERM_DAMPING
+               ? (mt_slope_factor){{0.0, coefficient, 0.0}}
+               : (mt_slope_factor){{mt_complex(coefficient, lossy), 0.0, 0.0}};
 }
 
-mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row,
-                             mt_term_kind *kind, const mt_term **term)
+int mt_slope_parts(const mt_analysis *a, const mt_port *port, mt_slope_part *part)
 {
-    mt_slope_factor f = {{0.0}};
-    *term = NULL;
     if (port->kind == MT_PORT_SENSOR) {
-        *kind = MT_TERM_CHANNEL;
-        *row = mt_slope_channel(a->lin, port);
-        f.c[port->motion] = 1.0;
-        return f;
+        part[0] =
+            (mt_slope_part){.row = mt_slope_channel(a->lin, port), .kind = MT_TERM_CHANNEL};
+        part[0].factor.c[port->motion] = 1.0;
+        return 1;
     }
-    const double c = mt_response_spring(a, port, row, term);
-    *kind = port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
-    if (*term != NULL) {
-        f = mt_slope_force(a, port, *term);
+    mt_force_part force[MT_FORCE_PARTS];
+    const int n = mt_response_force(a, port, force);
+    const mt_term_kind kind =
+        port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
+    for (int i = 0; i < n; i++) {
+        const double c = force[i].share * mt_linear_value(a->lin, force[i].term->coefficient);
+        part[i] = (mt_slope_part){
+            .row = force[i].row,
+            .kind = kind,
+            .factor = force_of(kind, c, c * mt_response_node(a, force[i].term->loss)),
+            .force = force[i]};
     }
-    for (int i = 0; i < MT_FORCED_POWERS; i++) {
-        f.c[i] *= c;
+    return n;
+}
+
+mt_slope_factor mt_slope_turn(const mt_analysis *a, int p, const mt_slope_part *part)
+{
+    const mt_term *const term = part->force.term;
+    if (term == NULL) {
+        return (mt_slope_factor){{0.0}};
     }
-    return f;
+    const double share = part->force.share;
+    const double c = share * mt_linear_value(a->lin, term->coefficient);
+    const double turn = share * mt_linear_slope(a->lin, term->coefficient, p);
+    return force_of(part->kind, turn,
+                    (turn * mt_response_node(a, term->loss)) +
+                        (c * mt_slope_node(a, p, term->loss)));
 }
 
 static mt_status open_output(work *k, int o, const double complex *y, mt_err *err)
 {
     const mt_port *const port = &k->p->ports->out[o];
     side *const s = &k->out[o];
-    *s = (side){new_pair(k->mem, k->nq), new_pair(k->mem, k->m)};
+    *s = (side){.states = new_pair(k->mem, k->nq), .forces = new_pair(k->mem, k->m)};
     pair w = new_pair(k->mem, k->nq);
     double *const sigma = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(expand(k, y, &s->states, err));
     if (port->kind == MT_PORT_JOINT) {
         mt_axpy(k->nq, -1.0, k->p->ways->joint[o].v, s->states.part[0]);
+        if (k->p->ways->joint[o].geometric != NULL) {
+            mt_axpy(k->nq, -1.0, k->p->ways->joint[o].geometric, w.part[0]);
+        }
     } else {
-        int row = -1;
-        mt_term_kind kind = MT_TERM_CHANNEL;
-        const mt_term *term = NULL;
-        const double complex factor =
-            value_of(k, mt_slope_row(k->p->a, port, &row, &kind, &term));
-        if (row >= 0) {
-            mt_linear_row_add(k->lin, kind, row, 1.0, sigma);
-            add_real(k->nq, factor, sigma, &w);
+        mt_slope_part part[MT_FORCE_PARTS];
+        const int n = mt_slope_parts(k->p->a, port, part);
+        for (int i = 0; i < n; i++) {
+            memset(sigma, 0, (size_t)k->nq * sizeof *sigma);
+            mt_linear_row_add(k->lin, part[i].kind, part[i].row, 1.0, sigma);
+            add_real(k->nq, value_of(k, part[i].factor), sigma, &w);
         }
     }
-    MT_TRY(subtract_d(k, &s->states, &w, err));
-    return balance(k, &w, &s->forces, err);
+    return close_side(k, s, &w, err);
 }
 
 /* a . b, both complex; no conjugate. */
@@ -253,22 +326,33 @@ static mt_status product_with(work *k, mt_matrix m, const pair *e, const pair *q
     return MT_OK;
 }
 
-/* y . (d(ratios) x) in the freedoms, with the motion of their basis. */
+/* (dA/dp) x; a shortage is the arena's. */
+static pair jacobian(const work *k, int p, const pair *x)
+{
+    const pair out = new_pair(k->mem, k->m);
+    for (int part = 0; part < 2 && !mt_arena_failed(k->mem); part++) {
+        mt_linear_jacobian_slope(k->lin, p, x->part[part], out.part[part]);
+    }
+    return out;
+}
+
+/* e . d(ratios) q. */
 static mt_status ratios(work *k, int p, int o, int i, double complex *out, mt_err *err)
 {
-    const ptrdiff_t n = k->p->t->n;
+    const side *const e = &k->out[o];
+    const side *const q = &k->in[i];
+    const ptrdiff_t r = k->ratio.r;
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
-    double *const part = mt_arena_f64(k->mem, (size_t)n, 2);
-    double *const product_of = mt_arena_f64(k->mem, (size_t)n, 2);
+    const pair by_q = jacobian(k, p, &q->turned);
+    const pair by_e = jacobian(k, p, &e->turned);
     MT_TRY(mt_arena_check(k->mem, err));
-    for (ptrdiff_t j = 0; j < n; j++) {
-        part[j] = creal(k->x[j + (i * n)]);
-        part[n + j] = cimag(k->x[j + (i * n)]);
-    }
-    MT_TRY(mt_analysis_ratio_products(k->p->a, p, 2, part, product_of, err));
-    *out = 0.0;
-    for (ptrdiff_t j = 0; j < n; j++) {
-        *out += k->y[j + (o * n)] * mt_complex(product_of[j], product_of[n + j]);
+    *out = between_one(k, p, MT_MATRIX_MASS, &e->states, &q->turned) +
+           between_one(k, p, MT_MATRIX_MASS, &e->turned, &q->states) -
+           dot(k->m, &by_q, &e->carried) - dot(k->m, &by_e, &q->carried);
+    for (ptrdiff_t c = 0; c < r; c++) {
+        for (ptrdiff_t a = 0; a < r; a++) {
+            *out += e->coefficient[a] * k->q[a + (c * r)] * q->coefficient[c];
+        }
     }
     mt_arena_rewind(k->mem, mark);
     return MT_OK;
@@ -293,7 +377,7 @@ static mt_status between(work *k, int p, int o, int i, double complex *out, mt_e
         MT_TRY(product_with(k, MT_MATRIX_STIFFNESS, e, q, &part, err));
         sum += k->power[1] * mt_slope_node(k->p->a, p, d->stiffness) * part;
     }
-    if (d->modal) {
+    if (k->ratio.r > 0) {
         MT_TRY(ratios(k, p, o, i, &part, err));
         sum += k->power[1] * part;
     }
@@ -326,39 +410,25 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
 {
     const mt_port *const port = &k->p->ports->out[o];
     if (port->kind == MT_PORT_JOINT) {
-        return -mt_complex(
-            mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[0]),
-            mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[1]));
+        double part[2];
+        for (int c = 0; c < 2; c++) {
+            part[c] =
+                mt_linear_joint_slope(k->lin, p, port->index, port->axis, in->forces.part[c]) +
+                mt_dot(k->nq, k->geometric[o], in->states.part[c]);
+        }
+        return -mt_complex(part[0], part[1]);
     }
-    int row = -1;
-    mt_term_kind kind = MT_TERM_CHANNEL;
-    const mt_term *term = NULL;
-    const double complex factor = value_of(k, mt_slope_row(k->p->a, port, &row, &kind, &term));
-    if (row < 0) {
-        return 0.0;
-    }
-    double complex sum = factor * row_slope(k, p, kind, row, &in->states);
-    if (term != NULL) {
-        const double own = mt_linear_value(k->lin, term->coefficient);
-        const double loss =
-            port->kind == MT_PORT_SPRING ? mt_slope_node(k->p->a, p, term->loss) * own : 0.0;
-        const double complex by = (mt_linear_slope(k->lin, term->coefficient, p) *
-                                   value_of(k, mt_slope_force(k->p->a, port, term))) +
-                                  mt_complex(0.0, loss);
-        sum += by * mt_complex(mt_linear_row_dot(k->lin, kind, row, in->states.part[0]),
-                               mt_linear_row_dot(k->lin, kind, row, in->states.part[1]));
+    mt_slope_part part[MT_FORCE_PARTS];
+    const int n = mt_slope_parts(k->p->a, port, part);
+    double complex sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        const mt_slope_part *const own = &part[i];
+        sum += (value_of(k, own->factor) * row_slope(k, p, own->kind, own->row, &in->states)) +
+               (value_of(k, mt_slope_turn(k->p->a, p, own)) *
+                mt_complex(mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[0]),
+                           mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[1])));
     }
     return sum;
-}
-
-static mt_status jacobian(const work *k, int p, const pair *x, pair *out, mt_err *err)
-{
-    *out = new_pair(k->mem, k->m);
-    MT_TRY(mt_arena_check(k->mem, err));
-    for (int part = 0; part < 2; part++) {
-        mt_linear_jacobian_slope(k->lin, p, x->part[part], out->part[part]);
-    }
-    return MT_OK;
 }
 
 static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err *err)
@@ -366,10 +436,9 @@ static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err
     const side *const in = &k->in[i];
     const side *const side_out = &k->out[o];
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
-    pair moved_out;
-    pair moved_in;
-    MT_TRY(jacobian(k, p, &side_out->states, &moved_out, err));
-    MT_TRY(jacobian(k, p, &in->states, &moved_in, err));
+    const pair moved_out = jacobian(k, p, &side_out->states);
+    const pair moved_in = jacobian(k, p, &in->states);
+    MT_TRY(mt_arena_check(k->mem, err));
     double complex turned = 0.0;
     MT_TRY(between(k, p, o, i, &turned, err));
     *out = output_slope(k, p, o, in) + force_slope(k, p, i, &side_out->states) - turned -
@@ -378,43 +447,48 @@ static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err
     return MT_OK;
 }
 
-mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err *err)
+mt_status mt_slope_admit(const mt_slope_problem *p, mt_err *err)
 {
-    if (!p->a->with_gradient) {
-        return mt_fail(err, MT_E_INTERNAL,
-                       "derivatives asked for after a solve without gradient");
+    return p->a->with_gradient
+               ? MT_OK
+               : mt_fail(err, MT_E_INTERNAL,
+                         "derivatives asked for after a solve without gradient");
+}
+
+static mt_status open_work(work *k, mt_err *err)
+{
+    const int n_out = k->p->basis->f->n_out;
+    if (k->p->a->sys->damping.modal) {
+        MT_TRY(mt_analysis_ratio_modes(k->p->a, &k->ratio, err));
     }
-    for (int o = first; o < first + count; o++) {
-        const bool modal = p->a->sys->damping.modal;
-        if (p->ports->out[o].kind == MT_PORT_JOINT &&
-            (modal || p->ways->joint[o].geometric != NULL)) {
-            return mt_fail(err, MT_E_USAGE, "%s: a joint's force has no derivatives here %s",
-                           p->ports->out[o].name,
-                           modal ? "beside modal damping ratios" : "under loads");
-        }
+    k->q = mt_arena_f64(k->mem, (size_t)k->ratio.r, (size_t)k->ratio.r);
+    k->geometric = mt_arena_alloc(k->mem, (size_t)n_out, sizeof *k->geometric);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (int o = 0; o < n_out; o++) {
+        k->geometric[o] = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     }
-    return MT_OK;
+    return mt_arena_check(k->mem, err);
 }
 
 /* Solutions and adjoints of all ports; *singular: there are none. */
 static mt_status open_ports(work *k, bool *singular, mt_err *err)
 {
-    const mt_transfer *const t = k->p->t;
-    const size_t n = (size_t)t->n;
-    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)t->n_in, sizeof *x);
-    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)t->n_out, sizeof *y);
+    const mt_forced *const f = k->p->basis->f;
+    const size_t n = (size_t)f->n;
+    double complex *const x = mt_arena_alloc(k->mem, n * (size_t)f->n_in, sizeof *x);
+    double complex *const y = mt_arena_alloc(k->mem, n * (size_t)f->n_out, sizeof *y);
     k->x = x;
     k->y = y;
-    k->in = mt_arena_alloc(k->mem, (size_t)t->n_in, sizeof *k->in);
-    k->out = mt_arena_alloc(k->mem, (size_t)t->n_out, sizeof *k->out);
+    k->in = mt_arena_alloc(k->mem, (size_t)f->n_in, sizeof *k->in);
+    k->out = mt_arena_alloc(k->mem, (size_t)f->n_out, sizeof *k->out);
     k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(mt_transfer_solve(t, k->w, x, y, singular, k->mem, err));
-    for (int i = 0; i < t->n_in && !*singular; i++) {
-        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * t->n), err));
+    MT_TRY(mt_basis_solve(k->p->basis, k->w, x, y, singular, k->mem, err));
+    for (int i = 0; i < f->n_in && !*singular; i++) {
+        MT_TRY(open_input(k, i, x + ((ptrdiff_t)i * f->n), err));
     }
-    for (int o = 0; o < t->n_out && !*singular; o++) {
-        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * t->n), err));
+    for (int o = 0; o < f->n_out && !*singular; o++) {
+        MT_TRY(open_output(k, o, y + ((ptrdiff_t)o * f->n), err));
     }
     return MT_OK;
 }
@@ -422,8 +496,18 @@ static mt_status open_ports(work *k, bool *singular, mt_err *err)
 /* Of all pairs with respect to input p. */
 static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
 {
-    const int n_out = k->p->t->n_out;
-    for (int at = 0; at < k->p->t->n_in * n_out; at++) {
+    const int n_out = k->p->basis->f->n_out;
+    if (k->ratio.r > 0) {
+        MT_TRY(mt_analysis_ratio_slope(k->p->a, p, k->q, err));
+    }
+    for (int o = 0; o < n_out; o++) {
+        const mt_port *const port = &k->p->ports->out[o];
+        if (port->kind == MT_PORT_JOINT) {
+            MT_TRY(mt_linear_joint_geometric_slope(k->lin, p, port->index, port->axis,
+                                                   k->geometric[o], err));
+        }
+    }
+    for (int at = 0; at < k->p->basis->f->n_in * n_out; at++) {
         MT_TRY(slope(k, p, at % n_out, at / n_out, dh + at, err));
     }
     return MT_OK;
@@ -431,9 +515,10 @@ static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
 
 static mt_status slopes(work *k, double complex *dh, mt_err *err)
 {
-    const ptrdiff_t pairs = (ptrdiff_t)k->p->t->n_in * k->p->t->n_out;
+    const ptrdiff_t pairs = (ptrdiff_t)k->p->basis->f->n_in * k->p->basis->f->n_out;
     const int n_inputs = k->p->a->sys->n_inputs;
     bool singular = false;
+    MT_TRY(open_work(k, err));
     MT_TRY(open_ports(k, &singular, err));
     for (ptrdiff_t at = 0; at < pairs * n_inputs; at++) {
         dh[at] = nan("");
@@ -459,7 +544,7 @@ mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex
               .w = w,
               .power = {1.0, mt_complex(0.0, w), -w * w}};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    MT_TRY(mt_slope_admit(p, 0, p->t->n_out, err));
+    MT_TRY(mt_slope_admit(p, err));
     factors_of(&k);
     const mt_status rc = slopes(&k, dh, err);
     mt_arena_rewind(scratch, mark);

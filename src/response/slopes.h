@@ -2,13 +2,13 @@
 #ifndef RESPONSE_SLOPES_H
 #define RESPONSE_SLOPES_H
 
+#include "response/basis.h"
 #include "response/problem.h"
-#include "response/transfer.h"
 
-/* Ports of a problem and the transfer that solves it directly. */
+/* Ports of a problem and the basis of all modes, which solves it. */
 typedef struct mt_slope_problem {
     mt_analysis *a; /* the last solve was with gradient */
-    const mt_transfer *t;
+    const mt_basis *basis;
     const mt_port_set *ports;
     const mt_response_ways *ways;
 } mt_slope_problem;
@@ -18,9 +18,7 @@ typedef struct mt_slope_problem {
  * @param[out] dh  n_out x n_in x n_inputs, column-major [unit of H per unit of the input]; NaN
  *   where there is none: at an undamped resonance, and where joints that are redundant at this
  *   value only block a motion, or come apart, at any other
- * O(n^3 + pairs n_inputs entries of the terms). Fails: MT_E_USAGE (the force of a joint in a
- * loaded configuration, whose standing force has no derivative here, or beside modal ratios),
- * MT_E_INTERNAL (no gradient), MT_E_MEMORY.
+ * O(n^3 + pairs n_inputs entries of the terms). Fails: MT_E_INTERNAL (no gradient), MT_E_MEMORY.
  */
 mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex *dh,
                              mt_arena *scratch, mt_err *err);

@@ -13,7 +13,7 @@ typedef struct mt_slope_factor {
 } mt_slope_factor;
 
 /* D over the states as a sum, with its factors: K + s beta K, i H, s C, s^2 M + s alpha M.
- * Modal ratios stand apart: their part is known in the freedoms alone. */
+ * Modal ratios stand apart. */
 enum { MT_SLOPE_MATRICES = 4 };
 void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
 
@@ -21,15 +21,20 @@ void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
 int mt_slope_power(const mt_port *port);
 /* Row of a sensor's direction, of the terms of channels. */
 int mt_slope_channel(const mt_linear *lin, const mt_port *port);
-/* What the force of a spring or damper is of its coefficient and motion. */
-mt_slope_factor mt_slope_force(const mt_analysis *a, const mt_port *port, const mt_term *term);
-/* Row, kind of terms and factor of an output that is one row's; row -1: it has none. The term
- * of its coefficient, too; NULL: it has none. */
-mt_slope_factor mt_slope_row(const mt_analysis *a, const mt_port *port, int *row,
-                             mt_term_kind *kind, const mt_term **term);
+/* An output that is no joint's force, as a sum of rows: factor times the motion along row. */
+typedef struct mt_slope_part {
+    int row;
+    mt_term_kind kind;
+    mt_slope_factor factor;
+    mt_force_part force; /* of a spring or damper; term NULL: none */
+} mt_slope_part;
+/* How many parts there are; part[MT_FORCE_PARTS]. */
+int mt_slope_parts(const mt_analysis *a, const mt_port *port, mt_slope_part *part);
+/* Derivative of a part's factor with respect to input p. */
+mt_slope_factor mt_slope_turn(const mt_analysis *a, int p, const mt_slope_part *part);
 /* Derivative of a number that may not be there: then 0. */
 double mt_slope_node(const mt_analysis *a, int p, mt_node node);
-/* Is there a derivative of these outputs at all? Fails as mt_response_slopes. */
-mt_status mt_slope_admit(const mt_slope_problem *p, int first, int count, mt_err *err);
+/* Fails: MT_E_INTERNAL (no gradient). */
+mt_status mt_slope_admit(const mt_slope_problem *p, mt_err *err);
 
 #endif

@@ -31,7 +31,7 @@ enum {
 
 typedef struct work {
     const mt_slope_problem *p;
-    const mt_slope_weights *q;
+    const mt_slope_weights *of;
     const mt_port *in;
     const mt_port *out;
     mt_linear *lin;
@@ -48,9 +48,15 @@ typedef struct work {
     double *lambda;                      /* m x nq: what dA goes with */
     double *l;                           /* [m]: sum W l */
     double *shift;                       /* [nq] along the ground's axis */
-    double of_mass;                      /* sum W s e . M q */
-    double of_stiffness;                 /* sum W s e . K q */
+    mt_ratio_modes ratio;
+    double *coefficient; /* r x ny: Phi^T M E */
+    double *turn;        /* r x r: what Q goes with */
+    double *q;           /* r x r: Q of one input */
+    double of_mass;      /* sum W s e . M q */
+    double of_stiffness; /* sum W s e . K q */
 } work;
+
+static const mt_slope_factor ONE = {{1.0, 0.0, 0.0}};
 
 /* Frequencies at work. */
 typedef struct batch {
@@ -99,7 +105,7 @@ static void add_products(const work *k, bool imaginary, const batch *b, double *
 }
 
 /* *singular: there is no response at one of the frequencies. */
-static mt_status add_up(work *k, const mt_basis *basis, bool *singular, mt_err *err)
+static mt_status add_up(work *k, bool *singular, mt_err *err)
 {
     const size_t size = (size_t)k->ny * AT_ONCE;
     mt_solutions s;
@@ -111,12 +117,12 @@ static mt_status add_up(work *k, const mt_basis *basis, bool *singular, mt_err *
         b.part[i] = mt_arena_f64(k->mem, size, 1);
     }
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(mt_solutions_open(basis, k->q->out, k->q->in, k->mem, &s, err));
-    for (int at = 0; at < k->q->n && !*singular; at += AT_ONCE) {
+    MT_TRY(mt_solutions_open(k->p->basis, k->of->out, k->of->in, k->mem, &s, err));
+    for (int at = 0; at < k->of->n && !*singular; at += AT_ONCE) {
         MT_TRY(mt_interrupt_check(k->p->a->sys->model->interrupt, err));
-        b.count = k->q->n - at < AT_ONCE ? k->q->n - at : AT_ONCE;
-        b.w = k->q->w + at;
-        b.weight = k->q->weight + at;
+        b.count = k->of->n - at < AT_ONCE ? k->of->n - at : AT_ONCE;
+        b.w = k->of->w + at;
+        b.weight = k->of->weight + at;
         MT_TRY(mt_solutions_at(&s, b.count, b.w, &b.got, singular, k->mem, err));
         for (int power = 0; power < MT_FORCED_POWERS && !*singular; power++) {
             scale(k, power, &b);
@@ -171,7 +177,7 @@ static mt_status make_e(work *k, mt_err *err)
     }
     mt_linear_expand(k->lin, k->n, unit, k->e);
     if (k->out->kind == MT_PORT_JOINT) {
-        mt_axpy(k->nq, -1.0, k->p->ways->joint[k->q->out].v, k->e + ((ptrdiff_t)k->n * k->nq));
+        mt_axpy(k->nq, -1.0, k->p->ways->joint[k->of->out].v, k->e + ((ptrdiff_t)k->n * k->nq));
     }
     if (k->in->kind == MT_PORT_BASE) {
         mt_linear_shift(k->lin, k->in->index, k->shift);
@@ -188,6 +194,14 @@ typedef struct balance {
     double *half;    /* nq x n: E G_j */
 } balance;
 
+static void push_output(const work *k, mt_slope_factor factor, const double *sigma,
+                        const balance *b)
+{
+    for (ptrdiff_t j = 0; j < k->n; j++) {
+        mt_axpy(k->nq, with(factor, k->x, j), sigma, b->out + (j * k->nq));
+    }
+}
+
 /* f (W s^k y')^T and sigma (W factor x)^T. */
 static mt_status push(work *k, const balance *b, mt_err *err)
 {
@@ -199,21 +213,23 @@ static mt_status push(work *k, const balance *b, mt_err *err)
     } else {
         mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, k->in), 1.0, f);
     }
-    mt_slope_factor factor = {{0.0}};
-    if (k->out->kind != MT_PORT_JOINT) {
-        int row = -1;
-        mt_term_kind kind = MT_TERM_CHANNEL;
-        const mt_term *term = NULL;
-        factor = mt_slope_row(k->p->a, k->out, &row, &kind, &term);
-        if (row >= 0) {
-            mt_linear_row_add(k->lin, kind, row, 1.0, sigma);
-        }
-    }
     for (ptrdiff_t j = 0; j < k->ny; j++) {
         mt_axpy(k->nq, creal(k->y[mt_slope_power(k->in)][j]), f, b->in + (j * k->nq));
     }
-    for (ptrdiff_t j = 0; j < k->n; j++) {
-        mt_axpy(k->nq, with(factor, k->x, j), sigma, b->out + (j * k->nq));
+    if (k->out->kind == MT_PORT_JOINT) {
+        const double *const standing = k->p->ways->joint[k->of->out].geometric;
+        if (standing != NULL) {
+            mt_axpy(k->nq, -1.0, standing, sigma);
+            push_output(k, ONE, sigma, b);
+        }
+        return MT_OK;
+    }
+    mt_slope_part part[MT_FORCE_PARTS];
+    const int n = mt_slope_parts(k->p->a, k->out, part);
+    for (int i = 0; i < n; i++) {
+        memset(sigma, 0, (size_t)k->nq * sizeof *sigma);
+        mt_linear_row_add(k->lin, part[i].kind, part[i].row, 1.0, sigma);
+        push_output(k, part[i].factor, sigma, b);
     }
     return MT_OK;
 }
@@ -241,23 +257,92 @@ static void add_matrix(work *k, int j, mt_slope_factor factor, const balance *b)
     }
 }
 
-/* lambda := (sum W y' l^T)^T E^T + (sum W x m^T)^T Z^T. */
+/* to (m x cols) += P w, w nq x cols. */
+static mt_status multipliers(work *k, int cols, const double *w, double *to, mt_err *err)
+{
+    for (ptrdiff_t j = 0; j < cols; j++) {
+        MT_TRY(mt_linear_multipliers(k->lin, w + (j * k->nq), to + (j * k->m), err));
+    }
+    return MT_OK;
+}
+
+/* psi of all columns of E, nq x ny, and what they are in the modes. */
+static mt_status turned(work *k, const double *mass_e, double *psi, mt_err *err)
+{
+    const int n = k->n;
+    const int r = k->ratio.r;
+    double *const own = mt_arena_f64(k->mem, (size_t)n, (size_t)k->ny);
+    double *const times = mt_arena_f64(k->mem, (size_t)r, (size_t)k->ny);
+    k->coefficient = mt_arena_f64(k->mem, (size_t)r, (size_t)k->ny);
+    k->turn = mt_arena_f64(k->mem, (size_t)r, (size_t)r);
+    k->q = mt_arena_f64(k->mem, (size_t)r, (size_t)r);
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_gemm(true, false, n, k->ny, k->nq, 1.0, k->e, k->nq, mass_e, k->nq, 0.0, own, n);
+    mt_gemm(true, false, r, k->ny, n, 1.0, k->ratio.y, n, own, n, 0.0, k->coefficient, r);
+    for (ptrdiff_t at = 0; at < (ptrdiff_t)r * k->ny; at++) {
+        times[at] = k->ratio.f[at % r] * k->coefficient[at];
+    }
+    mt_gemm(false, false, n, k->ny, r, 1.0, k->ratio.y, n, times, r, 0.0, own, n);
+    mt_linear_expand(k->lin, k->ny, own, psi);
+    mt_gemm(false, false, r, n, k->ny, 1.0, k->coefficient, r, k->sum[2], k->ny, 0.0, times, r);
+    mt_gemm(false, true, r, r, n, 1.0, times, r, k->coefficient, r, 0.0, k->turn, r);
+    return MT_OK;
+}
+
+/* Modal ratios, a fifth matrix: its part in both, in what dM goes with and in what dA does. */
+static mt_status add_ratios(work *k, const balance *b, mt_err *err)
+{
+    const int nq = k->nq;
+    const int n = k->n;
+    const int ny = k->ny;
+    const int m = k->m;
+    const double *const g = k->sum[2];
+    double *const mass_e = mt_arena_f64(k->mem, (size_t)nq, (size_t)ny);
+    double *const psi = mt_arena_f64(k->mem, (size_t)nq, (size_t)ny);
+    double *const carried = mt_arena_f64(k->mem, (size_t)m, (size_t)ny);
+    double *const times = mt_arena_f64(k->mem, (size_t)(m > nq ? m : nq), (size_t)ny);
+    MT_TRY(mt_arena_check(k->mem, err));
+    memset(b->product, 0, (size_t)nq * (size_t)ny * sizeof *b->product);
+    for (ptrdiff_t c = 0; c < ny; c++) {
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, k->e + (c * nq),
+                                 mass_e + (c * nq));
+    }
+    MT_TRY(turned(k, mass_e, psi, err));
+    for (ptrdiff_t c = 0; c < ny; c++) {
+        mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, psi + (c * nq),
+                                 b->product + (c * nq));
+    }
+    mt_gemm(false, true, nq, ny, n, -1.0, b->product, nq, g, ny, 1.0, b->in, nq);
+    mt_gemm(false, false, nq, n, ny, -1.0, b->product, nq, g, ny, 1.0, b->out, nq);
+    mt_gemm(false, false, nq, n, ny, 1.0, k->e, nq, g, ny, 0.0, b->half, nq);
+    mt_gemm(false, true, nq, nq, n, 1.0, b->half, nq, psi, nq, 1.0, k->g[MT_MATRIX_MASS], nq);
+    mt_gemm(false, false, nq, n, ny, 1.0, psi, nq, g, ny, 0.0, b->half, nq);
+    mt_gemm(false, true, nq, nq, n, 1.0, b->half, nq, k->e, nq, 1.0, k->g[MT_MATRIX_MASS], nq);
+    MT_TRY(multipliers(k, ny, mass_e, carried, err));
+    if (m > 0) {
+        mt_gemm(false, false, m, n, ny, 1.0, carried, m, g, ny, 0.0, times, m);
+        mt_gemm(false, true, m, nq, n, -1.0, times, m, psi, nq, 1.0, k->lambda, m);
+        mt_gemm(false, true, m, ny, n, 1.0, carried, m, g, ny, 0.0, times, m);
+        mt_gemm(false, true, m, nq, ny, -1.0, times, m, psi, nq, 1.0, k->lambda, m);
+    }
+    return MT_OK;
+}
+
+/* lambda += (sum W y' l^T)^T E^T + (sum W x m^T)^T Z^T. */
 static mt_status carry(work *k, const balance *b, mt_err *err)
 {
-    const ptrdiff_t nq = k->nq;
     const ptrdiff_t m = k->m;
     double *const l = mt_arena_f64(k->mem, (size_t)m, (size_t)k->ny);
     MT_TRY(mt_arena_check(k->mem, err));
-    for (ptrdiff_t j = 0; j < k->ny; j++) {
-        MT_TRY(mt_linear_multipliers(k->lin, b->in + (j * nq), l + (j * m), err));
-    }
-    k->l = l + (k->n * m);
-    mt_gemm(false, true, k->m, k->nq, k->ny, 1.0, l, k->m, k->e, k->nq, 0.0, k->lambda, k->m);
     double *const other = mt_arena_f64(k->mem, (size_t)m, (size_t)k->n);
     MT_TRY(mt_arena_check(k->mem, err));
-    for (ptrdiff_t j = 0; j < k->n; j++) {
-        MT_TRY(mt_linear_multipliers(k->lin, b->out + (j * nq), other + (j * m), err));
+    k->l = l + (k->n * m);
+    if (m == 0) {
+        return MT_OK;
     }
+    MT_TRY(multipliers(k, k->ny, b->in, l, err));
+    MT_TRY(multipliers(k, k->n, b->out, other, err));
+    mt_gemm(false, true, k->m, k->nq, k->ny, 1.0, l, k->m, k->e, k->nq, 1.0, k->lambda, k->m);
     mt_gemm(false, true, k->m, k->nq, k->n, 1.0, other, k->m, k->e, k->nq, 1.0, k->lambda,
             k->m);
     return MT_OK;
@@ -284,24 +369,13 @@ static mt_status gather(work *k, mt_err *err)
     for (int j = 0; j < MATRICES; j++) {
         add_matrix(k, j, d[j], &b);
     }
+    if (k->p->a->sys->damping.modal) {
+        MT_TRY(mt_analysis_ratio_modes(k->p->a, &k->ratio, err));
+    }
+    if (k->ratio.r > 0) {
+        MT_TRY(add_ratios(k, &b, err));
+    }
     return carry(k, &b, err);
-}
-
-/* sum W y . d(ratios) x. */
-static mt_status ratios(work *k, int p, double *out, mt_err *err)
-{
-    const size_t n = (size_t)k->n;
-    double *const unit = mt_arena_f64(k->mem, n, n);
-    double *const slope = mt_arena_f64(k->mem, n, n);
-    MT_TRY(mt_arena_check(k->mem, err));
-    for (size_t j = 0; j < n; j++) {
-        unit[j * (n + 1)] = 1.0;
-    }
-    MT_TRY(mt_analysis_ratio_products(k->p->a, p, k->n, unit, slope, err));
-    for (ptrdiff_t j = 0; j < k->n; j++) {
-        *out += mt_dot(k->n, slope + (j * k->n), k->sum[2] + (j * k->ny));
-    }
-    return MT_OK;
 }
 
 /* sum W e . dD q. */
@@ -313,8 +387,9 @@ static mt_status between(work *k, int p, double *out, mt_err *err)
     for (int j = 0; j < MATRICES; j++) {
         sum += mt_linear_contract_slope(k->lin, p, (mt_matrix)j, k->g[j]);
     }
-    if (d->modal) {
-        MT_TRY(ratios(k, p, &sum, err));
+    if (k->ratio.r > 0) {
+        MT_TRY(mt_analysis_ratio_slope(k->p->a, p, k->q, err));
+        sum += mt_dot(k->ratio.r * k->ratio.r, k->q, k->turn);
     }
     *out = sum;
     return MT_OK;
@@ -333,35 +408,31 @@ static double force_slope(const work *k, int p, double *part, double *e)
                : -mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e, k->shift);
 }
 
-/* sum W (d(sigma) . q - d(t) . l). */
-static double output_slope(const work *k, int p, double *part, double *motion)
+/* The same of a joint's force, what stands in it and turns included. */
+static mt_status joint_slope(work *k, int p, double *part, double *motion, double *out,
+                             mt_err *err)
 {
-    const mt_analysis *const a = k->p->a;
     const mt_port *const port = k->out;
-    if (port->kind == MT_PORT_JOINT) {
-        return -mt_linear_joint_slope(k->lin, p, port->index, port->axis, k->l);
-    }
-    int row = -1;
-    mt_term_kind kind = MT_TERM_CHANNEL;
-    const mt_term *term = NULL;
-    const mt_slope_factor factor = mt_slope_row(a, port, &row, &kind, &term);
-    if (row < 0) {
-        return 0.0;
-    }
-    motion_with(k, factor, part, motion);
-    double sum = mt_linear_row_dot_slope(k->lin, p, kind, row, motion);
-    if (term != NULL) {
-        const double own = mt_linear_value(k->lin, term->coefficient);
-        const double turn = mt_linear_slope(k->lin, term->coefficient, p);
-        const double loss =
-            port->kind == MT_PORT_SPRING ? mt_slope_node(a, p, term->loss) * own : 0.0;
-        mt_slope_factor by = mt_slope_force(a, port, term);
-        for (int i = 0; i < MT_FORCED_POWERS; i++) {
-            by.c[i] *= turn;
-        }
-        by.c[0] += mt_complex(0.0, loss);
-        motion_with(k, by, part, motion);
-        sum += mt_linear_row_dot(k->lin, kind, row, motion);
+    double *const turn = mt_arena_f64(k->mem, (size_t)k->nq, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(mt_linear_joint_geometric_slope(k->lin, p, port->index, port->axis, turn, err));
+    motion_with(k, ONE, part, motion);
+    *out = -mt_linear_joint_slope(k->lin, p, port->index, port->axis, k->l) -
+           mt_dot(k->nq, turn, motion);
+    return MT_OK;
+}
+
+/* sum W (d(sigma) . q - d(t) . l), of what is no joint's force. */
+static double output_slope(const work *k, int p, double *room, double *motion)
+{
+    mt_slope_part part[MT_FORCE_PARTS];
+    const int n = mt_slope_parts(k->p->a, k->out, part);
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        motion_with(k, part[i].factor, room, motion);
+        sum += mt_linear_row_dot_slope(k->lin, p, part[i].kind, part[i].row, motion);
+        motion_with(k, mt_slope_turn(k->p->a, p, &part[i]), room, motion);
+        sum += mt_linear_row_dot(k->lin, part[i].kind, part[i].row, motion);
     }
     return sum;
 }
@@ -375,18 +446,24 @@ static mt_status slopes_of_all(work *k, double *slope, mt_err *err)
         const mt_arena_mark mark = mt_arena_get_mark(k->mem);
         mt_independence why = {.opens = false};
         MT_TRY(mt_linear_independence(k->lin, p, k->mem, &why, err));
-        double turned = nan("");
+        double between_of = nan("");
+        double output = 0.0;
         if (!why.opens && !why.blocks) {
-            MT_TRY(between(k, p, &turned, err));
+            MT_TRY(between(k, p, &between_of, err));
         }
-        slope[p] = output_slope(k, p, part, motion) + force_slope(k, p, part, motion) - turned -
+        if (k->out->kind == MT_PORT_JOINT) {
+            MT_TRY(joint_slope(k, p, part, motion, &output, err));
+        } else {
+            output = output_slope(k, p, part, motion);
+        }
+        slope[p] = output + force_slope(k, p, part, motion) - between_of -
                    mt_linear_jacobian_contract(k->lin, p, k->lambda);
         mt_arena_rewind(k->mem, mark);
     }
     return MT_OK;
 }
 
-static mt_status weighted(work *k, const mt_basis *basis, double *slope, mt_err *err)
+static mt_status weighted(work *k, double *slope, mt_err *err)
 {
     bool singular = false;
     for (int i = 0; i < SUMS; i++) {
@@ -397,7 +474,7 @@ static mt_status weighted(work *k, const mt_basis *basis, double *slope, mt_err 
         k->y[i] = mt_arena_alloc(k->mem, (size_t)k->ny, sizeof *k->y[i]);
     }
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(add_up(k, basis, &singular, err));
+    MT_TRY(add_up(k, &singular, err));
     if (singular) {
         for (int p = 0; p < k->p->a->sys->n_inputs; p++) {
             slope[p] = nan("");
@@ -408,13 +485,12 @@ static mt_status weighted(work *k, const mt_basis *basis, double *slope, mt_err 
     return slopes_of_all(k, slope, err);
 }
 
-mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_basis *basis,
-                                      const mt_slope_weights *q, double *slope,
-                                      mt_arena *scratch, mt_err *err)
+mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_slope_weights *q,
+                                      double *slope, mt_arena *scratch, mt_err *err)
 {
     const int n = mt_linear_freedoms(p->a->lin);
     work k = {.p = p,
-              .q = q,
+              .of = q,
               .in = &p->ports->in[q->in],
               .out = &p->ports->out[q->out],
               .lin = p->a->lin,
@@ -424,8 +500,8 @@ mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_basis 
               .nq = p->a->sys->nq,
               .m = mt_linear_equations(p->a->lin)};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    MT_TRY(mt_slope_admit(p, q->out, 1, err));
-    const mt_status rc = weighted(&k, basis, slope, err);
+    MT_TRY(mt_slope_admit(p, err));
+    const mt_status rc = weighted(&k, slope, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

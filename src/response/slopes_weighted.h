@@ -2,7 +2,6 @@
 #ifndef RESPONSE_SLOPES_WEIGHTED_H
 #define RESPONSE_SLOPES_WEIGHTED_H
 
-#include "response/basis.h"
 #include "response/slopes.h"
 
 /* A sum over frequencies of one response, weighted. */
@@ -17,12 +16,10 @@ typedef struct mt_slope_weights {
 /**
  * slope[n_inputs] = Re sum_i weight_i dH_{out, in}(w_i)/d(input), what the sum over
  * mt_response_slopes is, for all frequencies with one contraction of the derivatives.
- * @param basis  of all modes
  * O(frequencies n^2) (n^3 where damping couples modes), and once O(n^3 + entries of the terms
  * n_inputs). Fails as mt_response_slopes, MT_E_INTERRUPTED.
  */
-mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_basis *basis,
-                                      const mt_slope_weights *q, double *slope,
-                                      mt_arena *scratch, mt_err *err);
+mt_status mt_response_slopes_weighted(const mt_slope_problem *p, const mt_slope_weights *q,
+                                      double *slope, mt_arena *scratch, mt_err *err);
 
 #endif

@@ -41,10 +41,10 @@ static void part(ptrdiff_t n, const double complex *z, double *const to[2], ptrd
 }
 
 /* u := sum_p s^p given_p - W q. */
-static void follow(const mt_solutions *s, double w, const double complex *const *given,
-                   int column, const double complex *q, double complex *u)
+static void follow(const mt_basis *b, double w, const double complex *const *given, int column,
+                   const double complex *q, double complex *u)
 {
-    const ptrdiff_t n = s->basis->n_follow;
+    const ptrdiff_t n = b->n_follow;
     double complex power = 1.0;
     memset(u, 0, (size_t)n * sizeof *u);
     for (int p = 0; p < MT_FORCED_POWERS; p++) {
@@ -53,11 +53,51 @@ static void follow(const mt_solutions *s, double w, const double complex *const 
         }
         power *= mt_complex(0.0, w);
     }
-    for (ptrdiff_t j = 0; j < s->one.n; j++) {
+    for (ptrdiff_t j = 0; j < b->t.n; j++) {
         for (ptrdiff_t i = 0; i < n; i++) {
-            u[i] -= s->basis->w[i + (j * n)] * q[j];
+            u[i] -= b->w[i + (j * n)] * q[j];
         }
     }
+}
+
+/* to[n] := X q + U u, u given as by `follow`. */
+static void back_one(const mt_basis *b, const double complex *q, const double complex *u,
+                     double complex *to)
+{
+    const ptrdiff_t n = b->f->n;
+    memset(to, 0, (size_t)n * sizeof *to);
+    for (ptrdiff_t j = 0; j < b->t.n; j++) {
+        for (ptrdiff_t i = 0; i < n; i++) {
+            to[i] += b->x[i + (j * n)] * q[j];
+        }
+    }
+    for (ptrdiff_t j = 0; j < b->n_follow; j++) {
+        for (ptrdiff_t i = 0; i < n; i++) {
+            to[i] += b->follow[i + (j * n)] * u[j];
+        }
+    }
+}
+
+mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double complex *y,
+                         bool *singular, mt_arena *scratch, mt_err *err)
+{
+    const ptrdiff_t n = b->t.n;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double complex *const q = mt_arena_alloc(scratch, (size_t)(n * b->t.n_in), sizeof *q);
+    double complex *const a = mt_arena_alloc(scratch, (size_t)(n * b->t.n_out), sizeof *a);
+    double complex *const u = mt_arena_alloc(scratch, (size_t)b->n_follow, sizeof *u);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_transfer_solve(&b->t, w, q, a, singular, scratch, err));
+    for (int i = 0; i < b->t.n_in && !*singular; i++) {
+        follow(b, w, b->follow_b, i, q + (i * n), u);
+        back_one(b, q + (i * n), u, x + ((ptrdiff_t)i * b->f->n));
+    }
+    for (int o = 0; o < b->t.n_out && !*singular; o++) {
+        follow(b, w, b->follow_s, o, a + (o * n), u);
+        back_one(b, a + (o * n), u, y + ((ptrdiff_t)o * b->f->n));
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
 }
 
 /* One side, x or y, of all frequencies in coordinates of the basis. */
@@ -106,8 +146,8 @@ static mt_status solve(const mt_solutions *s, int count, const double *w, const 
         }
         part(n, q, x.q, i * n);
         part(n, a, y.q, i * n);
-        follow(s, w[i], s->basis->follow_b, s->in, q, q + n);
-        follow(s, w[i], s->basis->follow_s, s->out, a, a + n);
+        follow(s->basis, w[i], s->basis->follow_b, s->in, q, q + n);
+        follow(s->basis, w[i], s->basis->follow_s, s->out, a, a + n);
         part(more, q + n, x.u, i * more);
         part(more, a + n, y.u, i * more);
     }

@@ -21,6 +21,10 @@ typedef struct mt_solved {
     double *y[2];
 } mt_solved;
 
+/* At w, for all inputs and outputs: x (n x n_in) and y (n x n_out). *singular: there are none.
+ * Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double complex *y,
+                         bool *singular, mt_arena *scratch, mt_err *err);
 /* Results in mem; refers to the basis. Fails: MT_E_MEMORY. */
 mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *mem,
                             mt_solutions *s, mt_err *err);

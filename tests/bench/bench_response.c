@@ -4,7 +4,9 @@
  * chains of n masses (m_i = 1 + i/10, k_i = 1e4 (1 + i/20), each spring with a damper of 1e-4
  * k_i or, "coupled", the last one alone with 1e-2), all masses by a force on the last. Errors
  * against long double, in parts of the largest value of any mass; of the inceptor against the
- * direct way.
+ * direct way. "weighted slopes" are those of a sum over these frequencies of one response of the
+ * inceptor, damped, with respect to six parameters, at once and one by one; error in parts of
+ * the sum of their magnitudes.
  *     bench_response [--quick]
  *     bench_response N 0|1 FILE     the chain (1: coupled) as a peer solved it: of each line of
  *                                   FILE w and then re, im of every mass; prints the error
@@ -176,6 +178,85 @@ static void bench_chain(const timing *how, int n, bool coupled)
     mt_arena_free(&p.mem);
 }
 
+enum { INPUTS = 6 };
+
+/* Sum over frequencies of weight times slope. */
+typedef struct weighted {
+    mt_response *r;
+    bool at_once;
+    const double *w;
+    double complex *weight; /* [FREQUENCIES] */
+    double slope[INPUTS];
+    double size[INPUTS]; /* of the sum one by one */
+} weighted;
+
+static void run_weighted(void *context, int call)
+{
+    weighted *const j = context;
+    double complex dh[INPUTS];
+    mt_err err = {.text = ""};
+    (void)call;
+    memset(j->slope, 0, sizeof j->slope);
+    memset(j->size, 0, sizeof j->size);
+    if (j->at_once) {
+        stop("weighted slopes",
+             mt_response_weighted_slopes(j->r, 0, 0, FREQUENCIES, j->w, j->weight, j->slope,
+                                         &err),
+             &err);
+    }
+    for (int i = 0; i < FREQUENCIES && !j->at_once; i++) {
+        stop("slopes", mt_response_slopes_at(j->r, j->w[i], dh, &err), &err);
+        for (int p = 0; p < INPUTS; p++) {
+            j->slope[p] += creal(j->weight[i] * dh[p]);
+            j->size[p] += cabs(j->weight[i] * dh[p]);
+        }
+    }
+}
+
+static void bench_weighted(const timing *how, const mt_model *model)
+{
+    static const char *const names[INPUTS] = {"K_T1", "M_SAU", "m_1", "m_u", "l_a", "k_servo"};
+    static const char *const grip = "grip.y";
+    const mt_response_request request = {
+        .n_in = 1, .inputs = &grip, .n_out = 1, .outputs = &grip};
+    mt_analysis_options opt = mt_analysis_options_default();
+    double at[INPUTS];
+    int input[INPUTS];
+    mt_err err = {.text = ""};
+    mt_analysis *a = NULL;
+    mt_response r = {.a = NULL};
+    for (int p = 0; p < INPUTS; p++) {
+        input[p] = mt_model_find_parameter(model, names[p]);
+        at[p] = model->parameters[input[p]].value;
+    }
+    opt.gradient = true;
+    const int c = mt_model_find_configuration(model, "shaken");
+    stop("inceptor", mt_analysis_new(model, c, INPUTS, input, at, &a, &err), &err);
+    stop("inceptor", mt_analysis_solve(a, at, &opt, &err), &err);
+    stop("inceptor", mt_response_open(a, &request, &r, &err), &err);
+    weighted jobs[2] = {{.r = &r, .at_once = true}, {.r = &r}};
+    timed things[2] = {{.what = "at once", .run = run_weighted, .context = &jobs[0]},
+                       {.what = "one by one", .run = run_weighted, .context = &jobs[1]}};
+    double complex *const weight = mt_arena_alloc(&r.mem, FREQUENCIES, sizeof *weight);
+    double *const w = grid(&r.mem, 1.0, 1000.0);
+    for (int i = 0; i < FREQUENCIES; i++) {
+        weight[i] = cexp(mt_complex(0.0, 0.37 * i));
+    }
+    jobs[0].w = jobs[1].w = w;
+    jobs[0].weight = jobs[1].weight = weight;
+    timing_side_by_side(how, things, 2);
+    double error = 0.0;
+    for (int p = 0; p < INPUTS; p++) {
+        const double off = fabs(jobs[0].slope[p] - jobs[1].slope[p]) / jobs[1].size[p];
+        error = off <= error ? error : off;
+    }
+    for (int way = 0; way < 2; way++) {
+        print("weighted slopes", r.f.n, 1, &things[way], error);
+    }
+    mt_response_free(&r);
+    mt_analysis_delete(a);
+}
+
 static void bench_inceptor(const timing *how)
 {
     static const char *const grip = "e3.y";
@@ -214,6 +295,7 @@ static void bench_inceptor(const timing *how)
     }
     mt_response_free(&r);
     mt_analysis_delete(a);
+    bench_weighted(how, model);
     mt_model_delete(model);
 }
 

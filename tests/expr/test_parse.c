@@ -150,7 +150,9 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
         {"x +",
          "at character 4: the expression ends where a number, a name or \"(\" is expected"},
         {"x + * y", "at character 5: \"*\" where a number, a name or \"(\" is expected"},
-        {"2 x", "at character 3: \"x\" where an operator or the end is expected"},
+        {"2 x", "at character 3: \"x\" where an operator or the end is expected; did you mean "
+                "\"2*x\"?"},
+        {"x y", "at character 3: \"y\" where an operator or the end is expected"},
         {"x)", "at character 2: \")\" where an operator or the end is expected"},
         {"(x", "at character 3: the expression ends where an operator or the \")\" for the "
                "\"(\" at character 1 is expected"},
@@ -173,7 +175,16 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
         {"sin(x", "at character 6: the expression ends where an operator or the \")\" for the "
                   "\"(\" at character 4 is expected"},
         {"1.2.3", "at character 1: \"1.2.3\" is not a number; a product needs \"*\""},
-        {"10deg", "at character 1: \"10deg\" is not a number; a product needs \"*\""},
+        {"10deg", "at character 1: \"10deg\" is not a number; did you mean \"10*deg\"?"},
+        {"2x", "at character 1: \"2x\" is not a number; did you mean \"2*x\"?"},
+        {"1 + 2sin(x)", "at character 5: \"2sin\" is not a number; did you mean \"2*sin\"?"},
+        {"2qqq", "at character 1: \"2qqq\" is not a number; a product needs \"*\""},
+        {"15\xC2\xB0", "at character 3: \"\xC2\xB0\" is no part of a number; did you mean "
+                       "\"15*deg\"?"},
+        {"5 %", "at character 3: \"%\" is no part of a number; did you mean \"5/100\"?"},
+        {"x %", "at character 3: \"%\" where an operator or the end is expected"},
+        {"x**2", "at character 2: \"**\" is no operator; did you mean \"^\"?"},
+        {"x* *2", "at character 4: \"*\" where a number, a name or \"(\" is expected"},
         {"0x10", "at character 1: \"0x10\" is not a number; a product needs \"*\""},
         {"1e", "at character 1: \"1e\" is not a number"},
         {"1e+x", "at character 1: \"1e\" is not a number"},
@@ -182,8 +193,10 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
         {"inf", "at character 1: unknown name \"inf\""},
         {"nan", "at character 1: unknown name \"nan\"; did you mean \"tan\"?"},
         {"x,y", "at character 2: \",\" where an operator or the end is expected"},
-        {"1,5", "at character 2: \",\" where an operator or the end is expected"},
-        {"x ** y", "at character 4: \"*\" where a number, a name or \"(\" is expected"},
+        {"1,5", "at character 2: \",\" where an operator or the end is expected; did you mean "
+                "\"1.5\"?"},
+        {"1.2,5", "at character 4: \",\" where an operator or the end is expected"},
+        {"x ** y", "at character 3: \"**\" is no operator; did you mean \"^\"?"},
         {"x %y", "at character 3: \"%\" where an operator or the end is expected"},
         /* characters are counted, not bytes: omega, a minus sign of typography */
         {"x+\xCF\x89",

@@ -186,6 +186,9 @@ static void response__unclear_forces_are_refused(mt_test *t)
         {"four_bar", "still", "tip.x", "spring.servi", "did you mean \"spring.servo\""},
         {"space_stick", "geared", "tip.x", "joint.gears.x", "no bodies of its own"},
         {"space_stick", "weightless", "tip.x", "spring.mount", "several forces"},
+        {"space_stick", "weightless", "tip.x", "spring.mount.q", "no output is called"},
+        {"four_bar", "still", "tip.x", "spring.servo.x", "no output is called"},
+        {"four_bar", "still", "tip.x", "spring.", "no output is called"},
     };
     for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
         mt_test_row(t, "%s, %s, %s", rows[r].model, rows[r].input, rows[r].output);
@@ -211,14 +214,25 @@ static void response__derivatives_are_slopes(mt_test *t)
                      NULL, "four_bar", "still", "a k m_c alpha", "tip.x base.y crank.r",
                      "tip.y mid.x:acceleration spring.servo spring.coil joint.jB.x joint.jD.y"},
                  W, 3);
-    slopes_agree(t,
-                 &(const sloped){NULL, "four_bar", "loaded", "a k m_c g alpha", "tip.x base.x",
-                                 "tip.y mid.x:velocity spring.servo spring.coil"},
-                 W, 3);
     slopes_agree(
         t,
-        &(const sloped){NULL, "four_bar", "trimmed", "a k m_c", "tip.x", "tip.y spring.coil"},
-        W, 2);
+        &(const sloped){NULL, "four_bar", "loaded", "a k m_c g alpha", "tip.x base.x",
+                        "tip.y mid.x:velocity spring.servo spring.coil joint.jA.x joint.jB.y "
+                        "joint.jC.x joint.jD.y"},
+        W, 3);
+    slopes_agree(t,
+                 &(const sloped){NULL, "four_bar", "trimmed", "a k m_c", "tip.x",
+                                 "tip.y spring.coil joint.jA.x joint.jC.y"},
+                 W, 2);
+    slopes_agree(t,
+                 &(const sloped){NULL, "pendulum", "hanging", "m L w g", "tip.x base.y",
+                                 "tip.x joint.pivot.x joint.pivot.y"},
+                 W, 3);
+    slopes_agree(t,
+                 &(const sloped){NULL, "space_loads", "heavy", "F T P a k", "sled.x base.z",
+                                 "joint.ball.x joint.ball.z joint.shaft.x joint.shaft.y "
+                                 "joint.guide.x joint.guide.z joint.foot.x joint.cord.z"},
+                 W, 2);
     slopes_agree(t,
                  &(const sloped){NULL, "space_stick", "geared", "k tilt l m ratio kb", "tip.x",
                                  "s.x tip.y:acceleration"},

@@ -148,7 +148,8 @@ static void damped__derivatives_are_slopes(mt_test *t)
                  W, 4);
     slopes_agree(t,
                  &(const sloped){ALL("\"ratio\": \"z\", \"ratios\": [\"2*z\"]"), NULL, "c",
-                                 "m k l eta z", "e.x base.y", "e.y:velocity spring.s"},
+                                 "m k l eta z", "e.x base.y",
+                                 "e.y:velocity spring.s joint.p.x joint.q.y"},
                  W, 4);
 }
 
@@ -159,11 +160,111 @@ static void damped__derivatives_hold_in_a_linkage_with_everything(mt_test *t)
     static const double W[] = {9.0, 40.0};
     for (int c = 0; c < 2; c++) {
         slopes_agree(t,
-                     &(const sloped){NULL, "damped_linkage", CONFIGURATIONS[c],
-                                     "a k m_c alpha c eta zeta rate lag", "base.x base.y",
-                                     "spring.coil damper.strut damper.oil"},
+                     &(const sloped){
+                         NULL, "damped_linkage", CONFIGURATIONS[c],
+                         "a k m_c alpha c eta zeta rate lag", "base.x base.y",
+                         "spring.coil damper.strut damper.oil joint.jA.x joint.jB.y joint.jC.x "
+                         "joint.jS.y joint.jW.x"},
                      W, 2);
     }
+}
+
+/* A body on a bushing with a stiffness between all directions, loss, and a damper of the kind. */
+static const char ON_BUSHING[] =
+    "{ \"format\": \"modetune-model/1\", \"name\": \"b\", \"dimension\": 3,"
+    "  \"parameters\": { \"k\": 900, \"q\": 40, \"eta\": 0.06, \"c\": 0.8, \"h\": 0.1 },"
+    "  \"bodies\": [ { \"name\": \"a\", \"mass_kg\": 2,"
+    "                  \"inertia_kg_m2\": [0.02, 0.03, 0.04, 0.001, 0.002, -0.003],"
+    "                  \"centre\": [0.05, 0.02, \"h\"] } ],"
+    "  \"springs\": [ { \"name\": \"mount\", \"type\": \"bushing\","
+    "                   \"bodies\": [\"ground\", \"a\"], \"at\": [0, 0, 0],"
+    "                   \"loss_factor\": \"eta\", \"stiffness_matrix\": ["
+    "                     [\"k\", 30, 5, 2, \"q\", 1], [30, 800, 7, -3, 4, 6],"
+    "                     [5, 7, 700, 8, -2, 3], [2, -3, 8, 20, 1, 0.5],"
+    "                     [\"q\", 4, -2, 1, 25, 0.7], [1, 6, 3, 0.5, 0.7, 30]] } ],"
+    "  \"dampers\": [ { \"name\": \"oil\", \"type\": \"bushing\","
+    "                   \"bodies\": [\"ground\", \"a\"], \"at\": [0, 0, 0],"
+    "                   \"damping_n_s_per_m\": [\"c\", 0.5, \"2*c\"],"
+    "                   \"damping_n_m_s_per_rad\": [0.02, 0.01, \"c/50\"] } ],"
+    "  \"sensors\": [ { \"name\": \"o\", \"on\": \"a\", \"at\": [0, 0, 0],"
+    "                   \"directions\": [\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"] },"
+    "                 { \"name\": \"t\", \"on\": \"a\", \"at\": [0.1, 0.2, 0.3] } ],"
+    "  \"configurations\": { \"c\": {} } }";
+
+/* Components are (1 + i eta) K, or s C, times the motion of the end that moves. */
+static void damped__bushings_forces_are_stiffness_times_motion(mt_test *t)
+{
+    static const double K[6][6] = {{900, 30, 5, 2, 40, 1},  {30, 800, 7, -3, 4, 6},
+                                   {5, 7, 700, 8, -2, 3},   {2, -3, 8, 20, 1, 0.5},
+                                   {40, 4, -2, 1, 25, 0.7}, {1, 6, 3, 0.5, 0.7, 30}};
+    static const double C[6] = {0.8, 0.5, 1.6, 0.02, 0.01, 0.016};
+    static const double W[] = {9.0, 31.0, 80.0};
+    asked q = {.rc = MT_OK};
+    const bool ready =
+        mech_must(t, mech_parse(t, ON_BUSHING), "c", "", &q.m) &&
+        ask(t, &q, "t.x t.z",
+            "o.x o.y o.z o.rx spring.mount.x spring.mount.y spring.mount.z spring.mount.rx "
+            "damper.oil.x damper.oil.y damper.oil.z damper.oil.rz o.ry o.rz spring.mount.ry "
+            "spring.mount.rz");
+    static const int MOTION[6] = {0, 1, 2, 3, 12, 13};
+    static const int FORCE[6] = {4, 5, 6, 7, 14, 15};
+    static const int DAMPER[6] = {8, 9, 10, -1, -1, 11};
+    for (int at = 0; at < 3 * 2 * 6 && ready; at++) {
+        const double w = W[at / 12];
+        const int c = at % 6;
+        mt_test_row(t, "w = %g, input %d, component %d", w, at / 6 % 2, c);
+        response_at(t, &q, w);
+        const double complex *const h = q.s.h + ((ptrdiff_t)(at / 6 % 2) * 16);
+        double complex want = 0.0;
+        double size = 0.0;
+        for (int j = 0; j < 6; j++) {
+            want += mt_complex(K[c][j], 0.06 * K[c][j]) * h[MOTION[j]];
+            size += fabs(K[c][j]) * cabs(h[MOTION[j]]);
+        }
+        CHECK_NEAR_ABS(t, cabs(h[FORCE[c]] - want), 0.0, TOL * size);
+        if (DAMPER[c] >= 0) {
+            CHECK_NEAR_ABS(t, cabs(h[DAMPER[c]] - (mt_complex(0.0, w * C[c]) * h[MOTION[c]])),
+                           0.0, TOL * w * C[c] * cabs(h[MOTION[c]]));
+        }
+    }
+    done(&q);
+    slopes_agree(t,
+                 &(const sloped){ON_BUSHING, NULL, "c", "k q eta c h", "t.x base.y",
+                                 "spring.mount.x spring.mount.ry spring.mount.z damper.oil.rz"},
+                 W, 3);
+}
+
+/* In the plane, and a turn about z alone. */
+static void damped__bushings_have_three_components_in_the_plane(mt_test *t)
+{
+    static const char *const no_turns[2] = {"spring.m.rz", "spring.m.z"};
+    static const char plane[] =
+        "{ \"format\": \"modetune-model/1\", \"name\": \"p\", \"dimension\": 2,"
+        "  \"bodies\": [ { \"name\": \"a\", \"mass_kg\": 2, \"inertia_kg_m2\": 0.1,"
+        "                  \"centre\": [0.1, 0.2] } ],"
+        "  \"springs\": [ { \"name\": \"m\", \"type\": \"bushing\","
+        "                   \"bodies\": [\"ground\", \"a\"], \"at\": [0, 0],"
+        "                   \"stiffness_n_per_m\": [800, 900],"
+        "                   \"stiffness_n_m_per_rad\": 30 } ],"
+        "  \"sensors\": [ { \"name\": \"o\", \"on\": \"a\", \"at\": [0, 0],"
+        "                   \"directions\": [\"x\", \"y\", \"r\"] } ],"
+        "  \"configurations\": { \"c\": {} } }";
+    static const double K[3] = {800, 900, 30};
+    asked q = {.rc = MT_OK};
+    if (mech_must(t, mech_parse(t, plane), "c", "", &q.m) &&
+        ask(t, &q, "o.x", "o.x o.y o.r spring.m.x spring.m.y spring.m.r")) {
+        response_at(t, &q, 25.0);
+        for (int c = 0; c < 3; c++) {
+            CHECK_NEAR_ABS(t, cabs(q.s.h[3 + c] - (K[c] * q.s.h[c])), 0.0,
+                           TOL * K[c] * cabs(q.s.h[c]));
+        }
+        for (int i = 0; i < 2; i++) {
+            mt_port port;
+            CHECK(t, mt_port_output(q.m.a->sys, no_turns[i], &q.r.mem, &port, &q.m.err) ==
+                         MT_E_USAGE);
+        }
+    }
+    done(&q);
 }
 
 /* Ratios of modes leave the modes what they are: still diagonal, each alone. */
@@ -188,4 +289,6 @@ MT_TEST_MAIN(MT_TEST(damped__one_mass_matches_its_closed_form),
              MT_TEST(damped__moving_ground_is_a_table_that_moves),
              MT_TEST(damped__derivatives_are_slopes),
              MT_TEST(damped__derivatives_hold_in_a_linkage_with_everything),
+             MT_TEST(damped__bushings_forces_are_stiffness_times_motion),
+             MT_TEST(damped__bushings_have_three_components_in_the_plane),
              MT_TEST(damped__ratios_are_diagonal))

@@ -13,6 +13,10 @@
   const SURE = 0.9; // what is called the same shape
   const fill = (x) => d3.interpolateBlues(0.04 + 0.92 * Math.max(0, Math.min(1, x)));
 
+  // A MAC is 0 to 1; what a file says else has the room that there is.
+  const shown = (x, wide) => !T.isNumber(x) ? '\u2013' : Math.abs(x) < 10 ? x.toFixed(2)
+    : T.fit(T.short(x, 2), wide - 4, 11);
+
   const matrices = (design) => D.clean(design.mac_matrices).filter((m) =>
     D.clean(m.rows).length > 0 && D.clean(m.reference_modes).length > 0);
   const same = (m, key) => m.configuration === key.configuration &&
@@ -39,8 +43,8 @@
   function panel(g, p, at, left, wide) {
     const columns = p.m.reference_modes;
     F.text(g, left, at + 12, p.title, { size: 11, bold: true });
-    columns.forEach((mode, k) => F.text(g, left + (k + 0.5) * wide, at + 28, String(mode),
-      { anchor: 'middle', size: 11, colour: C.soft }));
+    columns.forEach((mode, k) => F.text(g, left + (k + 0.5) * wide, at + 28,
+      T.fit(T.short(mode, 4), wide - 4, 11), { anchor: 'middle', size: 11, colour: C.soft }));
     p.m.rows.forEach((row, i) => {
       const y = at + 34 + i * CELL.height;
       const name = rowName(p.design, p.m, row);
@@ -51,9 +55,9 @@
         F.rect(g, left + k * wide + 1, y + 1, wide - 2, CELL.height - 2, tint).append('title')
           .text(`${p.title}: ${name}, mode ${columns[k]} of ${p.m.reference}: MAC ` +
             T.sig(value, 4));
-        F.text(g, left + (k + 0.5) * wide, y + 18, T.isNumber(value) ? value.toFixed(2)
-          : '\u2013', { anchor: 'middle', size: 11, colour: F.inkOn(tint),
-          bold: value >= SURE }).attr('pointer-events', 'none').attr('data-mac', value);
+        F.text(g, left + (k + 0.5) * wide, y + 18, shown(value, wide), { anchor: 'middle',
+          size: 11, colour: F.inkOn(tint), bold: value >= SURE })
+          .attr('pointer-events', 'none').attr('data-mac', value);
       });
     });
     return at + 34 + p.m.rows.length * CELL.height + 14;
