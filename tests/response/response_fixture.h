@@ -166,8 +166,8 @@ static inline double complex weight_of(int i)
 
 enum { MOST_SLOPES = 8 * 16 * MECH_INPUTS, MOST_WEIGHTED = 4096 };
 
-/* want and size [pairs x inputs]: sum of weight dH over the slopes at each frequency, and of its
- * magnitude. */
+/* want and size [pairs x inputs]: sum of weight dH over the slopes at each frequency, and of
+ * its magnitude. */
 static inline void add_up_slopes(mt_test *t, asked *q, const double *ws, int n_w, double *want,
                                  double *size)
 {
@@ -184,8 +184,8 @@ static inline void add_up_slopes(mt_test *t, asked *q, const double *ws, int n_w
     }
 }
 
-/* terms [pairs]: sum of |weight| |y|^T |K| |x|: a derivative by a parameter of size 1 is a sum of
- * such terms, and has their rounding however small it is. */
+/* terms [pairs]: sum of |weight| |y|^T |K| |x|: a derivative by a parameter of size 1 is a sum
+ * of such terms, and has their rounding however small it is. */
 static inline void add_up_terms(mt_test *t, asked *q, const double *ws, int n_w, double *terms)
 {
     const int n = q->r.f.n;
