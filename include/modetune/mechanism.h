@@ -121,7 +121,8 @@ MT_API mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes,
  *            "grip.x:acceleration", "grip.x:relative_displacement" (..._velocity, ...) against
  *            the ground; "spring.NAME", "damper.NAME", force or torque in it [N, N m], above 0
  *            where it pulls, of a bushing a component ("spring.NAME.x", "spring.NAME.rx": what
- *            stiffness times motion is); "joint.NAME.x", force of the joint's first body on its second [N]
+ *            stiffness times motion is); "joint.NAME.x", force of the joint's first body on its
+ *            second [N]
  */
 typedef struct mt_ports {
     int n_inputs;

@@ -39,9 +39,9 @@ typedef struct mt_ratio_modes {
     const double *f; /* [r] */
 } mt_ratio_modes;
 mt_status mt_analysis_ratio_modes(mt_analysis *a, mt_ratio_modes *out, mt_err *err);
-/* q (r x r) := Phi^T M d(Phi F Phi^T) M Phi by input p, after a solve with gradient, as the modes
- * turn in the moving coordinates of mt_linear_products. NaN where equal frequencies with different
- * ratios leave it without a value. O(n) products with K and M. */
+/* q (r x r) := Phi^T M d(Phi F Phi^T) M Phi by input p, after a solve with gradient, as the
+ * modes turn in the moving coordinates of mt_linear_products. NaN where equal frequencies with
+ * different ratios leave it without a value. O(n) products with K and M. */
 mt_status mt_analysis_ratio_slope(mt_analysis *a, int p, double *q, mt_err *err);
 /* What the ratios do to a motion v that the joints do not allow, of which w = Z^T M v is given:
  * out[n] += N F Phi^T w, N = M Phi. */

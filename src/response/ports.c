@@ -144,7 +144,8 @@ static bool is_bushing(const mt_model *m, const char *own, bool damper)
     return is;
 }
 
-/* "NAME.x" of a bushing (moments "NAME.rx", in the plane "NAME.r"): *own is its name, and the component is returned; -1: it is none. */
+/* "NAME.x" of a bushing (moments "NAME.rx", in the plane "NAME.r"): *own becomes its name, and
+ * the component is returned; -1: it is none. */
 static int component_of(const mt_system *sys, const char **own, bool damper, mt_arena *mem)
 {
     const char *const dot = strrchr(*own, '.');

@@ -13,9 +13,10 @@
  *                                 as seen from the ground (MOTION relative_acceleration, ...)
  *              spring.NAME        force or torque in a spring, with what its loss factor takes;
  *              damper.NAME        in a damper; positive where it pulls
- *              spring.NAME.x      component (.rx: moment) of a bushing's force, what its
- *                                 stiffness makes of the motion of the second end against the
- *                                 first, along axes that the first body carries; a damper's, too
+ *              spring.NAME.x      component of a bushing's force (moment: .rx, in the plane
+ *                                 .r): what its stiffness makes of the motion of the second end
+ *                                 against the first, along axes that the first carries; of
+ *                                 dampers, too
  *              joint.NAME.x       force of the joint's first body on its second, at the joint
  *     MOTION   displacement, velocity, acceleration.
  */

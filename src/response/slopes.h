@@ -18,7 +18,8 @@ typedef struct mt_slope_problem {
  * @param[out] dh  n_out x n_in x n_inputs, column-major [unit of H per unit of the input]; NaN
  *   where there is none: at an undamped resonance, and where joints that are redundant at this
  *   value only block a motion, or come apart, at any other
- * O(n^3 + pairs n_inputs entries of the terms). Fails: MT_E_INTERNAL (no gradient), MT_E_MEMORY.
+ * O(n^3 + pairs n_inputs entries of the terms). Fails: MT_E_INTERNAL (no gradient),
+ * MT_E_MEMORY.
  */
 mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex *dh,
                              mt_arena *scratch, mt_err *err);

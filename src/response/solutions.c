@@ -32,7 +32,7 @@ mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *me
 }
 
 /* Both parts of numbers that are complex, apart. */
-static void part(ptrdiff_t n, const double complex *z, double *const to[2], ptrdiff_t at)
+static void spread(ptrdiff_t n, const double complex *z, double *const to[2], ptrdiff_t at)
 {
     for (ptrdiff_t j = 0; j < n; j++) {
         to[0][at + j] = creal(z[j]);
@@ -144,12 +144,12 @@ static mt_status solve(const mt_solutions *s, int count, const double *w, const 
         if (*singular) {
             return MT_OK;
         }
-        part(n, q, x.q, i * n);
-        part(n, a, y.q, i * n);
+        spread(n, q, x.q, i * n);
+        spread(n, a, y.q, i * n);
         follow(s->basis, w[i], s->basis->follow_b, s->in, q, q + n);
         follow(s->basis, w[i], s->basis->follow_s, s->out, a, a + n);
-        part(more, q + n, x.u, i * more);
-        part(more, a + n, y.u, i * more);
+        spread(more, q + n, x.u, i * more);
+        spread(more, a + n, y.u, i * more);
     }
     back(s, count, &x, out->x);
     back(s, count, &y, out->y);

@@ -4,9 +4,9 @@
  * chains of n masses (m_i = 1 + i/10, k_i = 1e4 (1 + i/20), each spring with a damper of 1e-4
  * k_i or, "coupled", the last one alone with 1e-2), all masses by a force on the last. Errors
  * against long double, in parts of the largest value of any mass; of the inceptor against the
- * direct way. "weighted slopes" are those of a sum over these frequencies of one response of the
- * inceptor, damped, with respect to six parameters, at once and one by one; error in parts of
- * the sum of their magnitudes.
+ * direct way. "weighted slopes" are those of a sum over these frequencies of one response of
+ * the inceptor, damped, with respect to six parameters, at once and one by one; error in parts
+ * of the sum of their magnitudes.
  *     bench_response [--quick]
  *     bench_response N 0|1 FILE     the chain (1: coupled) as a peer solved it: of each line of
  *                                   FILE w and then re, im of every mass; prints the error

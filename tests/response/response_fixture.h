@@ -184,8 +184,8 @@ static inline void add_up_slopes(mt_test *t, asked *q, const double *ws, int n_w
     }
 }
 
-/* terms [pairs]: sum of |weight| |y|^T |K| |x|: a derivative by a parameter of size 1 is a sum of
- * such terms, and has their rounding however small it is. */
+/* terms [pairs]: sum of |weight| |y|^T |K| |x|: a derivative by a parameter of size 1 is a sum
+ * of such terms, and has their rounding however small it is. */
 static inline void add_up_terms(mt_test *t, asked *q, const double *ws, int n_w, double *terms)
 {
     const int n = q->r.f.n;

@@ -169,7 +169,7 @@ static void damped__derivatives_hold_in_a_linkage_with_everything(mt_test *t)
     }
 }
 
-/* A body on a bushing with a stiffness between all directions, loss, and a damper of the kind. */
+/* A body on a bushing with a stiffness between all directions and loss, and on dampers. */
 static const char ON_BUSHING[] =
     "{ \"format\": \"modetune-model/1\", \"name\": \"b\", \"dimension\": 3,"
     "  \"parameters\": { \"k\": 900, \"q\": 40, \"eta\": 0.06, \"c\": 0.8, \"h\": 0.1 },"
