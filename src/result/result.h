@@ -79,6 +79,8 @@ typedef struct mt_result_goal {
     const char *expression;    /* of a limit; NULL */
     /* of value, target and limits; "": none; NULL: the expression's own */
     const char *unit;
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
     double value;
     double target; /* NaN: limits only; of a shape 0: its distance */
     double at_least;
@@ -160,10 +162,12 @@ typedef struct mt_result_gap {
 
 /* A design between the named positions of one drive. */
 typedef struct mt_result_motion {
-    const char *pointer; /* of the first goal that keeps these positions clear of bands */
-    const char *drive;   /* the joint */
-    const char *unit;    /* "rad" | "m": of from, to, at */
-    double from;         /* first and last named position */
+    const char *pointer;      /* of the first goal that keeps these positions clear of bands */
+    const char *drive;        /* the joint */
+    const char *unit;         /* "rad" | "m": of from, to, at */
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
+    double from; /* first and last named position */
     double to;
     int positions; /* that were looked at; 0: none */
     /* of an edge of a band without its margin, negative beyond it; NaN: not followed */
@@ -535,7 +539,7 @@ double mt_result_shown(double value, double factor);
 
 /* What these structs hold, member by member as in JSON. */
 extern const mt_record mt_result_record;
-extern const mt_record mt_design_record; /* mt_recommendation */
+extern const mt_record mt_design_record;   /* mt_recommendation */
 extern const mt_record mt_response_record; /* mt_result_response, part of that */
 extern const mt_record mt_doubt_record;
 
