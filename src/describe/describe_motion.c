@@ -37,23 +37,28 @@ typedef struct described {
     double room;      /* the least of its motion; HUGE_VAL: none */
 } described;
 
-/* Its positions are shown in; NULL: SI. */
+static mt_dimension dimension_of(const mt_family *f)
+{
+    return f->angle ? MT_ANGLE : MT_LENGTH;
+}
+
+/* What its positions are shown in; NULL: SI. */
 static const mt_unit *shown_in(const described *d)
 {
-    return mt_study_shown(d->fresh->p->study, d->family->angle ? MT_ANGLE : MT_LENGTH);
+    return mt_study_shown(d->fresh->p->study, dimension_of(d->family));
 }
 
 static const char *si_of(const described *d)
 {
-    return mt_dimension_si(d->family->angle ? MT_ANGLE : MT_LENGTH);
+    return mt_dimension_si(dimension_of(d->family));
 }
 
-/* "0.1 rad", "-3.2 deg" */
-static const char *position_text(const described *d, double at)
+const char *mt_describe_position(const mt_study *study, const mt_family *f, double at,
+                                 mt_arena *mem)
 {
-    const mt_unit *const shown = shown_in(d);
-    return mt_arena_printf(&d->result->mem, "%.6g %s", mt_unit_from_si(shown, at),
-                           mt_unit_name(shown, si_of(d)));
+    const mt_unit *const shown = mt_study_shown(study, dimension_of(f));
+    return mt_arena_printf(mem, "%.6g %s", mt_unit_from_si(shown, at),
+                           mt_unit_name(shown, mt_dimension_si(dimension_of(f))));
 }
 
 static const char *configuration_of(const described *d, const mt_clear *c)
@@ -195,7 +200,8 @@ static const char *end_text(const described *d)
 {
     const mt_motion *const m = &d->motion;
     mt_arena *const mem = &d->result->mem;
-    const char *const where = position_text(d, m->broken_at);
+    const char *const where =
+        mt_describe_position(d->fresh->p->study, d->family, m->broken_at, mem);
     if (where == NULL) {
         return NULL;
     }
