@@ -217,6 +217,27 @@ class Report(Answers):
         self.assertEqual(self.browser.all(".view3d figcaption")[-1].text, "recommended, rank 3")
         self.assertEqual(self.browser.problems(), [])
 
+    def test_scales_end_where_nothing_is_asked_any_more(self):
+        """Over the travel both designs' lowest modes are drawn in full; a mode far above all that goals are about is told."""
+        result = self.open("inceptor_vibration")
+        paths = self.browser.run("return [...document.querySelectorAll('#figure-drive-1 svg path')].map((p) => ["
+                                 "(p.querySelector('title') || {}).textContent || '', p.getAttribute('d')])")
+        rows = self.browser.run("return mt.chartDrive()[0].table().rows")
+        for mode in (1, 2):
+            drawn = [d for title, d in paths if title.endswith(f" mode {mode}")]
+            self.assertEqual(len(drawn), 2, mode)
+            positions = len([r for r in rows if r[2] == mode])
+            self.assertEqual(sum(d.count("L") + d.count("M") for d in drawn), positions, mode)
+        best = result["recommendations"][0]
+        hz = sorted(max(f["original_hz"], f["recommended_hz"]) for f in best["frequencies"])
+        self.assertGreater(hz[-1], 10_000)
+        lead = self.browser.one("#figure-frequencies .lead").text
+        told = re.search(r"1 mode above (\d+) Hz is not drawn\.$", lead)
+        self.assertIsNotNone(told, lead)
+        self.assertTrue(hz[-2] < int(told[1]) < 1.3 * hz[-2], lead)
+        self.assertIn("above the scale: mode 3", self.browser.one("#figure-frequencies svg").text)
+        self.assertEqual(self.browser.problems(), [])
+
     def test_what_is_not_drawn_is_told(self):
         self.open("inceptor_trade")
         note = self.browser.one("#figure-mechanism .lead")

@@ -13,7 +13,7 @@
     m: { unit: 'mm', factor: 1000 },
   };
   const SAME = 1e-3; // curves that are nearer to each other are one
-  const BEYOND = 1.1;
+  const BEYOND = 1.15;
 
   // The scene's configurations of a design that are driven by this joint.
   function driven(scene, rank, joint) {
@@ -60,13 +60,14 @@
       origin: curvesOf(before, unit.factor) };
   }
 
+  // Bands and the two lowest modes of both designs, unless far above all bands.
   function top(c) {
     const design = mt.choice().design;
     const names = new Set(c.now.map((k) => k.name));
     const edges = D.bands(design).filter((b) => names.has(b.configuration))
       .map((b) => b.margin_upper_hz).filter(T.isNumber);
-    const lowest = c.after.filter((k) => k.mode <= 2).flatMap((k) => k.points.map((p) => p.hz))
-      .filter(T.isNumber);
+    const lowest = c.after.concat(c.origin).filter((k) => k.mode <= 2)
+      .flatMap((k) => k.points.map((p) => p.hz)).filter(T.isNumber);
     const limit = Math.max(0, ...edges) * 3;
     const near = edges.length > 0 ? lowest.filter((x) => x < limit) : lowest;
     return Math.max(0, ...edges, ...near) * BEYOND;
