@@ -166,7 +166,7 @@ class Report(Answers):
                 "format": "modetune-study/1", "model": "m.json", "units": {"length": "in"}, "recommendations": 2,
                 "variables": [{"parameter": "l_a", "lower": 4, "upper": 6}, {"parameter": "M_SAU", "lower": 1, "upper": 4}],
                 "goals": [{"type": "limit", "expression": "l_a", "at_least": "5.5*inch"}]}), encoding="utf-8")
-            report = run(folder / "s.json", folder)
+            report = run(folder / "s.json", folder, "--set", "r_SAU=6.5*inch")
             result = json.loads((report / "result.json").read_text(encoding="utf-8"))
             best = result["recommendations"][0]["parameters"]
             self.assertEqual((best[0]["unit"], best[0]["display_unit"], best[1]["display_unit"]), ("m", "in", None))
@@ -176,6 +176,10 @@ class Report(Answers):
             self.near(values["l_a"].split(" ")[-1], best[0]["recommended"] / 0.0254, "l_a")
             self.near(values["M_SAU"].split(" ")[-1], best[1]["recommended"], "M_SAU")
             self.assertIn("l_a [in]", self.browser.one("#figure-parameters svg").text)
+            origin = self.browser.one("#figure-origin").text
+            self.assertIn("asked with r_SAU = 6.5 in", origin)
+            self.assertIn("--set 'r_SAU=6.5*inch'", origin)  # 6.5 alone would be metres
+            self.assertIn("run time in timing.json", origin)
 
     def test_figures_are_saved(self):
         result = self.open("inceptor_rotor")
