@@ -535,7 +535,7 @@ double mt_result_shown(double value, double factor);
 
 /* What these structs hold, member by member as in JSON. */
 extern const mt_record mt_result_record;
-extern const mt_record mt_design_record; /* mt_recommendation */
+extern const mt_record mt_design_record;   /* mt_recommendation */
 extern const mt_record mt_response_record; /* mt_result_response, part of that */
 extern const mt_record mt_doubt_record;
 
