@@ -65,8 +65,8 @@
     const names = new Set(c.now.map((k) => k.name));
     const edges = D.bands(design).filter((b) => names.has(b.configuration))
       .map((b) => b.margin_upper_hz).filter(T.isNumber);
-    const lowest = c.after.filter((k) => k.mode <= 2).flatMap((k) => k.points.map((p) => p.hz))
-      .filter(T.isNumber);
+    const lowest = c.after.concat(c.origin).filter((k) => k.mode <= 2)
+      .flatMap((k) => k.points.map((p) => p.hz)).filter(T.isNumber);
     const limit = Math.max(0, ...edges) * 3;
     const near = edges.length > 0 ? lowest.filter((x) => x < limit) : lowest;
     return Math.max(0, ...edges, ...near) * BEYOND;

@@ -42,8 +42,9 @@
     const upTo = D.clean(mt.result().excitations).map((e) => e.up_to_hz).filter(T.isNumber);
     const all = frequencies.flatMap((f) => [f.original_hz, f.recommended_hz])
       .filter((x) => T.isNumber(x) && x > 0);
-    if (values.length === 0) {
-      values = all;
+    if (values.length === 0) { // what responses are looked at over, or all there is
+      const seen = D.clean(mt.result().curves).map((c) => c.upper_hz).filter(T.isNumber);
+      values = all.some((x) => x <= Math.max(...seen)) ? seen : all;
     }
     const asked = Math.max(...values);
     const beyond = Math.max(asked * NEAR, ...upTo);
