@@ -142,8 +142,8 @@ static const char *const MAC_GOAL =
 /* The matrix of the design with these springs. */
 static void check_matrix(mt_test *t, const mt_recommendation *r, double k1, double k2)
 {
-    if (!CHECK(t, r->n_macs == 1 && r->macs[0].n_rows == 2 &&
-                      r->macs[0].n_reference_modes == 2)) {
+    if (!CHECK(t,
+               r->n_macs == 1 && r->macs[0].n_rows == 2 && r->macs[0].n_reference_modes == 2)) {
         return;
     }
     CHECK_STR(t, r->macs[0].configuration, "default");
