@@ -155,7 +155,9 @@ static mt_status recommend(mt_answer *a, int i, mt_err *err)
                               .cut = is_cut(a, MT_PHASE_SEARCH),
                               .discrete = discrete ? &a->discrete : NULL,
                               .gaps = kinds ? &a->gaps : NULL,
-                              .below = kinds ? a->gaps.solutions[i].below : NULL};
+                              .below = kinds ? a->gaps.solutions[i].below : NULL,
+                              .held = kinds ? a->gaps.solutions[i].held : NULL,
+                              .n_held = kinds ? a->gaps.solutions[i].n_held : 0};
     mt_recommendation *const rec = &result->recommendations[i];
     a->mark = mt_result_get_mark(result);
     MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));

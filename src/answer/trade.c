@@ -58,12 +58,18 @@ static const mt_result *answer_of(const point *p)
     return p->again != NULL ? p->again : p->first;
 }
 
-/* What the values of a parameter or a bound are shown in; NULL: SI, or it is neither. */
+/* What the values of a parameter, a bound or a goal are shown in; NULL: SI. */
 static const mt_unit *shown_in(const mt_study *study, const mt_vary *v)
 {
-    return v->kind == MT_VARY_PARAMETER ? mt_study_unit(study, v->parameter)
-           : v->kind == MT_VARY_BOUND   ? study->variables[v->variable].shown
-                                        : NULL;
+    if (v->kind == MT_VARY_PARAMETER) {
+        return mt_study_unit(study, v->parameter);
+    }
+    if (v->kind == MT_VARY_BOUND) {
+        return study->variables[v->variable].shown;
+    }
+    return v->slot == MT_SLOT_MARGIN
+               ? NULL
+               : mt_study_demand_unit(study, &study->goals[v->goal].expression);
 }
 
 /* "upper bound of L = 170 mm" */

@@ -112,13 +112,16 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
 static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt_err *err)
 {
     const double reach = mt_drive_reach(sys, sys->drive_joint);
-    const char *const unit = sys->joints[sys->drive_joint].angle ? "rad" : "m";
+    const mt_dimension of = sys->joints[sys->drive_joint].angle ? MT_ANGLE : MT_LENGTH;
+    const mt_unit *const shown = mt_model_shown(sys->model, of);
+    const char *const unit = mt_unit_name(shown, mt_dimension_si(of));
     for (int i = 0; i < r->n; i++) {
         if (!(fabs(r->positions[i]) <= reach)) {
             return mt_fail(err, MT_E_USAGE,
                            "--drive: %s goes to %g %s, and at most to %g %s from the reference "
                            "position",
-                           r->drive.joint, r->positions[i], unit, reach, unit);
+                           r->drive.joint, mt_unit_from_si(shown, r->positions[i]), unit,
+                           mt_unit_from_si(shown, reach), unit);
         }
     }
     return MT_OK;

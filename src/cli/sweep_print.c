@@ -27,6 +27,28 @@ static const char *unit_of(bool angle)
     return angle ? "rad" : "m";
 }
 
+/* What people are shown its coordinates in: the model's unit; NULL: SI. */
+static const mt_unit *shown_in(const mt_sweep_view *v, bool angle)
+{
+    return mt_model_shown(v->sys->model, angle ? MT_ANGLE : MT_LENGTH);
+}
+
+static const char *shown_name(const mt_sweep_view *v, bool angle)
+{
+    return mt_unit_name(shown_in(v, angle), unit_of(angle));
+}
+
+static double shown(const mt_sweep_view *v, bool angle, double x)
+{
+    return mt_unit_from_si(shown_in(v, angle), tidy(x));
+}
+
+/* A joint's motion per that of the driven one, in these units. */
+static double shown_ratio(const mt_sweep_view *v, bool angle, double ratio)
+{
+    return shown(v, angle, mt_unit_to_si(shown_in(v, driven(v)->angle), tidy(ratio)));
+}
+
 /* Does what holds the joint push along an angle? */
 static bool hold_is_moment(const mt_sweep_view *v)
 {
@@ -48,20 +70,20 @@ static void text_columns(const mt_sweep_view *v, mt_table *t)
 {
     char s[HEADING];
     const mt_system_joint *const d = driven(v);
-    (void)mt_snprintf(s, sizeof s, "%s [%s]", d->name, unit_of(d->angle));
+    (void)mt_snprintf(s, sizeof s, "%s [%s]", d->name, shown_name(v, d->angle));
     mt_table_column(t, s, "position", MT_ALIGN_POINT);
     for (int i = 0; i < v->sys->n_joints; i++) {
         const mt_system_joint *const joint = &v->sys->joints[i];
         if (!told(v, i)) {
             continue;
         }
-        (void)mt_snprintf(s, sizeof s, "%s [%s]", joint->name, unit_of(joint->angle));
+        (void)mt_snprintf(s, sizeof s, "%s [%s]", joint->name, shown_name(v, joint->angle));
         mt_table_column(t, s, joint->name, MT_ALIGN_POINT);
         if (joint->angle == d->angle) {
             (void)mt_snprintf(s, sizeof s, "per %s", d->name);
         } else {
-            (void)mt_snprintf(s, sizeof s, "per %s [%s/%s]", d->name, unit_of(joint->angle),
-                              unit_of(d->angle));
+            (void)mt_snprintf(s, sizeof s, "per %s [%s/%s]", d->name,
+                              shown_name(v, joint->angle), shown_name(v, d->angle));
         }
         mt_table_column(t, s, "ratio", MT_ALIGN_POINT);
     }
@@ -77,11 +99,12 @@ static void text_columns(const mt_sweep_view *v, mt_table *t)
 static void text_row(const mt_sweep_view *v, int point, mt_table *t)
 {
     const mt_sweep_point *const p = &v->sweep.points[point];
-    mt_table_number(t, p->drive, DIGITS);
+    mt_table_number(t, mt_unit_from_si(shown_in(v, driven(v)->angle), p->drive), DIGITS);
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
-            mt_table_number(t, tidy(p->coordinate[i]), DIGITS);
-            mt_table_number(t, tidy(p->ratio[i]), DIGITS);
+            const bool angle = v->sys->joints[i].angle;
+            mt_table_number(t, shown(v, angle, p->coordinate[i]), DIGITS);
+            mt_table_number(t, shown_ratio(v, angle, p->ratio[i]), DIGITS);
         }
     }
     mt_table_number(t, tidy(p->hold), HOLD_DIGITS);
@@ -145,7 +168,8 @@ static void tell_dead_centre(const mt_sweep_view *v, mt_text *out)
         mt_text_addf(out,
                      "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
                      "joints %s depend on each other.\n",
-                     nearest->drive, unit_of(driven(v)->angle), nearest->near->distance,
+                     mt_unit_from_si(shown_in(v, driven(v)->angle), nearest->drive),
+                     shown_name(v, driven(v)->angle), nearest->near->distance,
                      nearest->near->joints.text);
     }
 }

@@ -25,6 +25,8 @@ typedef struct mt_design {
     const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
     const struct mt_gap_result *gaps;          /* NULL: no gap assignments were searched */
     const int *below;                          /* its assignment; NULL likewise */
+    const struct mt_gap_held *held;            /* [n_held] between positions of a drive */
+    int n_held;
 } mt_design;
 
 /* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own).
@@ -49,6 +51,9 @@ mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
  * judged over its motion as one more goal, and as a row of rec->motions. After the views of
  * fresh have been solved. *room: the least between their positions; HUGE_VAL: none. */
 int mt_describe_motion_count(const mt_problem *p);
+/* "-3.2 deg", a position of a family as people see it. NULL where memory is out. */
+const char *mt_describe_position(const mt_study *study, const mt_family *f, double at,
+                                 mt_arena *mem);
 mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                               double *room, mt_err *err);
 /* Clearance of each mode from its neighbouring bands, modes below each band, the least

@@ -31,22 +31,26 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
 static const char *interval_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
 {
     const mt_goal *const g = d->goal;
-    const char *const name = mt_study_goal_unit(p->study, g);
+    const mt_unit *const shown = mt_study_demand_unit(p->study, &g->expression);
+    const char *const name = mt_unit_name(shown, mt_study_goal_unit(p->study, g));
     const char *const unit = mt_arena_printf(mem, "%s%s", name[0] != '\0' ? " " : "", name);
     const bool least = MT_HAS(g->at_least);
-    const double number = least ? g->at_least : g->at_most;
+    const double equals = mt_unit_from_si(shown, d->equals);
+    const double low = mt_unit_from_si(shown, g->at_least);
+    const double high = mt_unit_from_si(shown, g->at_most);
+    const double number = least ? low : high;
     if (unit == NULL) {
         return NULL;
     }
     if (MT_HAS(d->equals) && d->shape.reference != NULL) {
-        return mt_arena_printf(mem, " %s %.10g%s as mode %d of \"%s\"", d->ops->equals,
-                               d->equals, unit, d->shape.mode, d->shape.reference);
+        return mt_arena_printf(mem, " %s %.10g%s as mode %d of \"%s\"", d->ops->equals, equals,
+                               unit, d->shape.mode, d->shape.reference);
     }
     if (MT_HAS(d->equals)) {
-        return mt_arena_printf(mem, " %s %.10g%s", d->ops->equals, d->equals, unit);
+        return mt_arena_printf(mem, " %s %.10g%s", d->ops->equals, equals, unit);
     }
     if (least && MT_HAS(g->at_most)) {
-        return mt_arena_printf(mem, " from %.10g to %.10g%s", g->at_least, g->at_most, unit);
+        return mt_arena_printf(mem, " from %.10g to %.10g%s", low, high, unit);
     }
     if (!MT_HAS(number)) {
         return "";
@@ -151,7 +155,10 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
     const mt_goal_kind *const kind = mt_goal_kind_of(asked->type);
     g->type = kind->name;
     const char *const unit = mt_study_goal_unit(p->study, asked);
+    const mt_unit *const shown = mt_study_demand_unit(p->study, &asked->expression);
     g->unit = d->view < 0 && unit[0] == '\0' ? NULL : unit;
+    g->display_unit = mt_unit_name(shown, NULL);
+    g->display_factor = mt_unit_display(shown);
     g->expression = d->view < 0 ? asked->expression_text : NULL;
     g->reference =
         asked->shake != NULL ? asked->shake->measurement_name.s : asked->reference_name.s;

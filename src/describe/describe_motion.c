@@ -37,6 +37,30 @@ typedef struct described {
     double room;      /* the least of its motion; HUGE_VAL: none */
 } described;
 
+static mt_dimension dimension_of(const mt_family *f)
+{
+    return f->angle ? MT_ANGLE : MT_LENGTH;
+}
+
+/* What its positions are shown in; NULL: SI. */
+static const mt_unit *shown_in(const described *d)
+{
+    return mt_study_shown(d->fresh->p->study, dimension_of(d->family));
+}
+
+static const char *si_of(const described *d)
+{
+    return mt_dimension_si(dimension_of(d->family));
+}
+
+const char *mt_describe_position(const mt_study *study, const mt_family *f, double at,
+                                 mt_arena *mem)
+{
+    const mt_unit *const shown = mt_study_shown(study, dimension_of(f));
+    return mt_arena_printf(mem, "%.6g %s", mt_unit_from_si(shown, at),
+                           mt_unit_name(shown, mt_dimension_si(dimension_of(f))));
+}
+
 static const char *configuration_of(const described *d, const mt_clear *c)
 {
     return mt_view_name(d->fresh->p, &d->fresh->p->views[c->view]);
@@ -150,7 +174,9 @@ static const char *nearest_text(const described *d, const char *range)
 {
     const mt_motion *const m = &d->motion;
     mt_arena *const mem = &d->result->mem;
-    const char *const unit = d->family->angle ? "rad" : "m";
+    const mt_unit *const shown = shown_in(d);
+    const double at = mt_unit_from_si(shown, m->at);
+    const char *const unit = mt_unit_name(shown, si_of(d));
     const char *const side = m->above ? "above" : "below";
     if (m->mode == 0) {
         return mt_arena_printf(mem, "%s (%d positions sampled): no mode beside a band", range,
@@ -161,28 +187,31 @@ static const char *nearest_text(const described *d, const char *range)
             mem,
             "%s (%d positions sampled): mode %d comes nearest, at %.4g %s (%.6g Hz), %.3g %% "
             "%s band %s",
-            range, m->positions, m->mode, m->at, unit, m->hz, m->percent, side, m->band.label);
+            range, m->positions, m->mode, at, unit, m->hz, m->percent, side, m->band.label);
     }
     const bool inside = m->percent < 0.0;
     return mt_arena_printf(
         mem, "%s (%d positions sampled): mode %d %s band %s, worst at %.4g %s (%.6g Hz)", range,
         m->positions, m->mode, inside ? "crosses the edge of" : "comes too near to",
-        m->band.label, m->at, unit, m->hz);
+        m->band.label, at, unit, m->hz);
 }
 
 static const char *end_text(const described *d)
 {
     const mt_motion *const m = &d->motion;
     mt_arena *const mem = &d->result->mem;
-    const char *const unit = d->family->angle ? "rad" : "m";
+    const char *const where =
+        mt_describe_position(d->fresh->p->study, d->family, m->broken_at, mem);
+    if (where == NULL) {
+        return NULL;
+    }
     switch (d->followed ? m->end : MT_MOTION_WHOLE) {
     case MT_MOTION_CAPPED:
         return "; the steps that the slopes ask for are shorter than these positions allow";
     case MT_MOTION_BROKEN:
-        return mt_arena_printf(mem, "; nothing is known at %.6g %s: %s", m->broken_at, unit,
-                               m->why);
+        return mt_arena_printf(mem, "; nothing is known at %s: %s", where, m->why);
     case MT_MOTION_UNSTABLE:
-        return mt_arena_printf(mem, "; unstable at %.6g %s", m->broken_at, unit);
+        return mt_arena_printf(mem, "; unstable at %s", where);
     case MT_MOTION_WHOLE:
     case MT_MOTION_NONE:
         break;
@@ -247,7 +276,9 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     *row = mt_result_motion_default();
     row->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
     row->drive = mt_arena_strdup(mem, d->family->joint);
-    row->unit = d->family->angle ? "rad" : "m";
+    row->unit = si_of(d);
+    row->display_unit = mt_unit_name(shown_in(d), NULL);
+    row->display_factor = mt_unit_display(shown_in(d));
     row->from = from;
     row->to = to;
     row->grade = grade_of(d);
@@ -283,8 +314,10 @@ static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_res
     if (d.followed && d.motion.end == MT_MOTION_NONE) {
         return MT_OK; /* no band is asked for on both sides of a motion */
     }
-    const char *const range = mt_arena_printf(&result->mem, "%s from %.6g to %.6g %s", f->joint,
-                                              from, to, f->angle ? "rad" : "m");
+    const mt_unit *const shown = shown_in(&d);
+    const char *const range = mt_arena_printf(
+        &result->mem, "%s from %.6g to %.6g %s", f->joint, mt_unit_from_si(shown, from),
+        mt_unit_from_si(shown, to), mt_unit_name(shown, si_of(&d)));
     MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(put_goal(&d, range, rec, err));
     return put_row(&d, range, from, to, rec, err);

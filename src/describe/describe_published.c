@@ -125,10 +125,12 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
     return rc;
 }
 
-/* What the numbers of a parameter are shown in; NULL: as they are. */
+/* What the numbers of a parameter or a quantity are shown in; NULL: as they are. */
 static const mt_unit *shown_in(const mt_problem *p, const mt_published *pub)
 {
-    return pub->kind == MT_PUBLISHED_PARAMETER ? mt_study_unit(p->study, pub->parameter) : NULL;
+    return pub->kind == MT_PUBLISHED_PARAMETER  ? mt_study_unit(p->study, pub->parameter)
+           : pub->kind == MT_PUBLISHED_QUANTITY ? mt_study_demand_unit(p->study, &pub->quantity)
+                                                : NULL;
 }
 
 static const char *label_of(const mt_problem *p, const mt_published *pub, mt_arena *mem)
@@ -145,8 +147,7 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
     case MT_PUBLISHED_QUANTITY: {
         const mt_unit *const other = mt_study_demand_unit(p->study, &pub->quantity);
         return other == NULL ? pub->quantity_text
-                             : mt_arena_printf(mem, "%s [%s]", pub->quantity_text,
-                                               mt_dimension_si(other->dimension));
+                             : mt_arena_printf(mem, "%s [%s]", pub->quantity_text, other->name);
     }
     case MT_PUBLISHED_FREQUENCY:
     case MT_PUBLISHED_MAC: {

@@ -11,6 +11,7 @@
 
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
+#include "search/gaps.h"
 
 static const double PERCENT = 100.0;
 
@@ -90,6 +91,27 @@ static void say_edges(mt_sentences *s)
     }
 }
 
+/* Margins that hold modes at positions between the named ones: rows of the search, too. */
+static void say_between(mt_sentences *s)
+{
+    mt_say_of(s, "cost", NULL);
+    for (int i = 0; i < s->design->n_held; i++) {
+        const mt_gap_held *const h = &s->design->held[i];
+        const mt_family *const f = &s->p->families[h->family];
+        const char *const saved = price(s, h->multiplier / PERCENT);
+        const char *const where =
+            saved == NULL ? NULL
+                          : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
+        if (where != NULL) {
+            mt_say(s,
+                   "The %s edge of %s, which holds mode %d where %s is at %s, between the "
+                   "positions, has a price: giving way by 1 %% would %s %s.",
+                   h->above ? "upper" : "lower", h->band, h->mode, f->joint, where, win(s),
+                   saved);
+        }
+    }
+}
+
 /* "0.1 kg more allowed on M_SAU" */
 static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
@@ -153,5 +175,6 @@ void mt_say_prices(mt_sentences *s)
 {
     say_demands(s);
     say_edges(s);
+    say_between(s);
     say_bounds(s);
 }

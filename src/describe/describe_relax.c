@@ -20,7 +20,10 @@ static void name_goal(const mt_problem *p, const mt_move *m, mt_arena *mem, mt_r
     out->kind = "goal";
     out->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
     const char *const unit = mt_study_goal_unit(p->study, d->goal);
+    const mt_unit *const shown = mt_study_demand_unit(p->study, &d->goal->expression);
     out->unit = unit[0] != '\0' ? unit : NULL;
+    out->display_unit = mt_unit_name(shown, NULL);
+    out->display_factor = mt_unit_display(shown);
     out->what = d->view < 0
                     ? mt_arena_printf(mem, "%s of goal %s", member, out->pointer)
                     : mt_arena_printf(mem, "%s of goal %s (\"%s\")", member, out->pointer,

@@ -181,6 +181,12 @@ const mt_unit *mt_parameter_si(const mt_parameter *parameter)
     return parameter->unit == NULL ? NULL : mt_unit_find(parameter->unit);
 }
 
+const mt_unit *mt_model_shown(const mt_model *model, mt_dimension dimension)
+{
+    const mt_unit *const unit = model->units[dimension];
+    return unit == NULL || mt_unit_is_si(unit) ? NULL : unit;
+}
+
 const mt_unit *mt_model_number_unit(const mt_model *model, int parameter)
 {
     const mt_parameter *const p = &model->parameters[parameter];

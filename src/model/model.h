@@ -472,6 +472,8 @@ void mt_model_find_kinds(mt_model *model);
 mt_kind mt_model_kind(const void *model, int parameter);
 /* The unit of the kind of this parameter's unit (a length's: m); NULL: it has none of those. */
 const mt_unit *mt_parameter_si(const mt_parameter *parameter);
+/* What people are shown coordinates of this dimension in: the file's unit; NULL: SI. */
+const mt_unit *mt_model_shown(const mt_model *model, mt_dimension dimension);
 /* The unit that a number for this parameter would be taken to be in, by its own unit or by the
  * file's: what its expressions are held against (mt_kind_complaint). NULL: SI. */
 const mt_unit *mt_model_number_unit(const mt_model *model, int parameter);

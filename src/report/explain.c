@@ -13,7 +13,9 @@ static const double PERCENT = 0.01;
 /* A number that variables move: a goal's value, or the frequency nearest to a band. */
 typedef struct moved {
     const char *text;
-    const char *unit; /* NULL, "": none */
+    const char *unit;         /* NULL, "": none */
+    const char *display_unit; /* as in mt_result_goal */
+    double display_factor;
     const double *slopes;
 } moved;
 
@@ -61,8 +63,8 @@ static void add_row(mt_table *t, const mt_recommendation *r, const moved *g, int
     add_room(p, &room);
     mt_table_text(t, g->text);
     mt_table_text(t, p->name);
-    mt_table_change(t, move(r, g, k), SHORT_DIGITS);
-    mt_table_text(t, g->unit != NULL && g->unit[0] != '\0' ? g->unit : NULL);
+    mt_table_change_shown(t, move(r, g, k), g->display_factor, SHORT_DIGITS);
+    mt_table_unit(t, g->unit != NULL && g->unit[0] != '\0' ? g->unit : NULL, g->display_unit);
     mt_table_shown(t, p->recommended, p->display_factor, VALUE_DIGITS);
     mt_table_unit(t, p->unit, p->display_unit);
     mt_table_text(t, p->at_bound);
@@ -116,7 +118,7 @@ static void add_nearest(mt_table *t, const mt_recommendation *r, const mt_result
             f->sensitivity != NULL) {
             const char *const text = mt_arena_printf(
                 &t->mem, "%s mode %d, %s %s", c->configuration, c->mode, c->side, c->band);
-            const moved m = {text, "Hz", f->sensitivity};
+            const moved m = {text, "Hz", NULL, nan(""), f->sensitivity};
             t->failed = t->failed || text == NULL;
             if (!t->failed) {
                 add_moved(t, r, &m);
@@ -140,7 +142,9 @@ mt_table mt_report_movers(const mt_recommendation *r)
     for (int i = 0; !t.failed && i < r->n_goals; i++) {
         const mt_result_goal *const g = &r->goals[i];
         if (g->sensitivity != NULL) {
-            add_moved(&t, r, &(moved){g->text, g->unit, g->sensitivity});
+            add_moved(
+                &t, r,
+                &(moved){g->text, g->unit, g->display_unit, g->display_factor, g->sensitivity});
         } else if (strcmp(g->type, "avoid") == 0) {
             add_nearest(&t, r, g);
         }
@@ -152,11 +156,12 @@ mt_table mt_report_movers(const mt_recommendation *r)
 static void add_goal_line(const mt_result_goal *g, mt_text *out)
 {
     char number[MT_NUMBER_TEXT];
+    const char *const unit = g->display_unit != NULL ? g->display_unit : g->unit;
     mt_text_addf(out, "  - %s: ", g->text);
     if (isfinite(g->value)) {
-        mt_text_addf(out, "%s%s%s, ", mt_report_number(g->value, VALUE_DIGITS, number),
-                     g->unit != NULL && g->unit[0] != '\0' ? " " : "",
-                     g->unit != NULL ? g->unit : "");
+        const double shown = mt_result_shown(g->value, g->display_factor);
+        mt_text_addf(out, "%s%s%s, ", mt_report_number(shown, VALUE_DIGITS, number),
+                     unit != NULL && unit[0] != '\0' ? " " : "", unit != NULL ? unit : "");
     }
     if (g->met) {
         mt_text_add(out, "met");

@@ -162,16 +162,18 @@ static void asked_cell(mt_table *t, const mt_result_goal *g)
         char high[MT_NUMBER_TEXT];
         char text[DEMAND_TEXT];
         (void)mt_snprintf(text, sizeof text, "%s to %s",
-                          mt_report_number(g->at_least, VALUE_DIGITS, low),
-                          mt_report_number(g->at_most, VALUE_DIGITS, high));
+                          mt_report_number(mt_result_shown(g->at_least, g->display_factor),
+                                           VALUE_DIGITS, low),
+                          mt_report_number(mt_result_shown(g->at_most, g->display_factor),
+                                           VALUE_DIGITS, high));
         mt_table_text(t, text);
         return;
     }
-    mt_table_number(t,
-                    !isnan(g->target)     ? g->target
-                    : !isnan(g->at_least) ? g->at_least
-                                          : g->at_most,
-                    VALUE_DIGITS);
+    mt_table_shown(t,
+                   !isnan(g->target)     ? g->target
+                   : !isnan(g->at_least) ? g->at_least
+                                         : g->at_most,
+                   g->display_factor, VALUE_DIGITS);
 }
 
 mt_table mt_report_goals(const mt_recommendation *r)
@@ -188,9 +190,9 @@ mt_table mt_report_goals(const mt_recommendation *r)
     for (int i = 0; i < r->n_goals; i++) {
         const mt_result_goal *const g = &r->goals[i];
         mt_table_text(&t, g->text);
-        mt_table_number(&t, g->value, VALUE_DIGITS);
+        mt_table_shown(&t, g->value, g->display_factor, VALUE_DIGITS);
         if (r->worst_case != NULL) {
-            mt_table_number(&t, g->worst, VALUE_DIGITS);
+            mt_table_shown(&t, g->worst, g->display_factor, VALUE_DIGITS);
         }
         asked_cell(&t, g);
         mt_table_percent(&t, g->violation_percent, PERCENT_DIGITS);
@@ -224,9 +226,9 @@ mt_table mt_report_motions(const mt_recommendation *r)
     for (int i = 0; i < r->n_motions; i++) {
         const mt_result_motion *const m = &r->motions[i];
         mt_table_text(&t, m->drive);
-        mt_table_text(&t, m->unit);
-        mt_table_number(&t, m->from, VALUE_DIGITS);
-        mt_table_number(&t, m->to, VALUE_DIGITS);
+        mt_table_unit(&t, m->unit, m->display_unit);
+        mt_table_shown(&t, m->from, m->display_factor, VALUE_DIGITS);
+        mt_table_shown(&t, m->to, m->display_factor, VALUE_DIGITS);
         mt_table_integer(&t, m->positions);
         if (m->mode > 0) {
             mt_table_integer(&t, m->mode);
@@ -234,7 +236,7 @@ mt_table mt_report_motions(const mt_recommendation *r)
             mt_table_text(&t, NULL);
         }
         mt_table_text(&t, m->band);
-        mt_table_number(&t, m->at, VALUE_DIGITS);
+        mt_table_shown(&t, m->at, m->display_factor, VALUE_DIGITS);
         mt_table_number(&t, m->hz, HZ_DIGITS);
         mt_table_number(&t, m->least_clearance_percent, PERCENT_DIGITS);
         mt_table_text(&t, m->crosses ? "crosses a band" : m->grade);

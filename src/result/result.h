@@ -79,6 +79,8 @@ typedef struct mt_result_goal {
     const char *expression;    /* of a limit; NULL */
     /* of value, target and limits; "": none; NULL: the expression's own */
     const char *unit;
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
     double value;
     double target; /* NaN: limits only; of a shape 0: its distance */
     double at_least;
@@ -181,10 +183,12 @@ typedef struct mt_result_gap {
 
 /* A design between the named positions of one drive. */
 typedef struct mt_result_motion {
-    const char *pointer; /* of the first goal that keeps these positions clear of bands */
-    const char *drive;   /* the joint */
-    const char *unit;    /* "rad" | "m": of from, to, at */
-    double from;         /* first and last named position */
+    const char *pointer;      /* of the first goal that keeps these positions clear of bands */
+    const char *drive;        /* the joint */
+    const char *unit;         /* "rad" | "m": of from, to, at */
+    const char *display_unit; /* as in mt_result_parameter */
+    double display_factor;
+    double from; /* first and last named position */
     double to;
     int positions; /* that were looked at; 0: none */
     /* of an edge of a band without its margin, negative beyond it; NaN: not followed */

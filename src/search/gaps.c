@@ -25,6 +25,7 @@ typedef struct slot {
     mt_arena mem;
     mt_nlp_result found;
     int n_t;
+    mt_gap_solution held; /* what holds the best solution between positions */
     double *aims; /* [n_aims] of the best solution, where there is one and several objectives */
     mt_status rc;
     long evals; /* of all rounds */
@@ -235,6 +236,9 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     s->begun = s->evals;
     s->evals += s->found.evals;
     s->starts += s->found.starts;
+    if (rc == MT_OK && s->found.n_solutions > 0) {
+        rc = mt_gap_hold(&c, s->cuts, &s->found.solutions[0], &s->mem, &s->held, why);
+    }
     if (rc == MT_OK && s->found.n_solutions > 0 && s->found.stop != MT_STOP_USER) {
         const long judged = s->evals + mt_gap_judgement(j->c); /* at most */
         const bool last = round + 1 == CUT_ROUNDS || !has_round(j, judged);
@@ -304,6 +308,8 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
             out->solutions[out->n_solutions++] =
                 (mt_gap_solution){.found = &found->solutions[0],
                                   .below = j->candidates->below + ((ptrdiff_t)k * p->n_bands),
+                                  .held = j->slots[k].held.held,
+                                  .n_held = j->slots[k].held.n_held,
                                   .candidate = k,
                                   .aims = j->slots[k].aims,
                                   .n_aims = j->slots[k].aims == NULL ? 0 : j->c->n_aims};
@@ -388,6 +394,7 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
     for (int i = 0; i < out->n_solutions; i++) {
         MT_TRY(mt_gap_copy(j->c, out->solutions[i].below, out->solutions[i].found, mem,
                            &out->solutions[i].found, err));
+        MT_TRY(mt_gap_copy_held(mem, &out->solutions[i], err));
         out->solutions[i].aims = NULL; /* the slots' memory goes */
         out->stage = out->solutions[i].n_aims > 0 ? j->c->n_aims - 1 : 0;
     }

@@ -14,10 +14,22 @@
  * from samples; each is searched once, by the bound formulation from several starts, on
  * workers. Results are ranked by the objective and do not depend on the number of workers.
  */
+/* A mode that holds a design at a position between the named ones, where bands are kept. */
+typedef struct mt_gap_held {
+    int family;
+    double position; /* [rad, m] */
+    int mode;        /* vibration index */
+    bool above;
+    const char *band;
+    double multiplier; /* of its row */
+} mt_gap_held;
+
 typedef struct mt_gap_solution {
     /* its t has problem->n_t entries; the first n are the design */
     const mt_nlp_solution *found;
-    const int *below;   /* [n_bands] its assignment */
+    const int *below; /* [n_bands] its assignment */
+    const mt_gap_held *held;
+    int n_held;
     const double *aims; /* [n_aims] its objectives, while they are ranked */
     int n_aims;
     int candidate;
@@ -66,6 +78,13 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, const mt_ga
  * goes. Fails: MT_E_MEMORY. */
 mt_status mt_gap_copy(const mt_case *c, const int *below, const mt_nlp_solution *from,
                       mt_arena *mem, const mt_nlp_solution **out, mt_err *err);
+
+/* Likewise of what holds it. */
+mt_status mt_gap_copy_held(mt_arena *mem, mt_gap_solution *s, mt_err *err);
+/* What holds a solution of case c at the cuts that it has beside those of its problem, in mem:
+ * rows with a price. Fails: MT_E_MEMORY. */
+mt_status mt_gap_hold(const mt_case *c, const struct mt_cut *cuts, const mt_nlp_solution *s,
+                      mt_arena *mem, mt_gap_solution *out, mt_err *err);
 
 /* gaps_clearance.c: one more thing is missed at a design. */
 void mt_gap_refuse(mt_nlp_solution *best, double short_of, double tolerance);

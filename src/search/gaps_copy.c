@@ -36,3 +36,39 @@ mt_status mt_gap_copy(const mt_case *c, const int *below, const mt_nlp_solution 
     *out = s;
     return MT_OK;
 }
+
+mt_status mt_gap_copy_held(mt_arena *mem, mt_gap_solution *s, mt_err *err)
+{
+    mt_gap_held *const held = mt_arena_alloc(mem, (size_t)s->n_held, sizeof *held);
+    MT_TRY(mt_arena_check(mem, err));
+    if (s->n_held > 0) {
+        memcpy(held, s->held, (size_t)s->n_held * sizeof *held);
+    }
+    s->held = held;
+    return MT_OK;
+}
+
+mt_status mt_gap_hold(const mt_case *c, const mt_cut *cuts, const mt_nlp_solution *s,
+                      mt_arena *mem, mt_gap_solution *out, mt_err *err)
+{
+    const int n = mt_clear_row_count(c, c->below);
+    mt_gap_held *const held = mt_arena_alloc(mem, (size_t)n, sizeof *held);
+    mt_clear_row row;
+    MT_TRY(mt_arena_check(mem, err));
+    out->held = held;
+    out->n_held = 0;
+    for (int i = 0; i < n && s->mult_in != NULL && mt_clear_row_at(c, c->below, i, &row); i++) {
+        const int k = row.clear - c->p->n_clears; /* cuts come behind the problem's own */
+        const double multiplier = s->mult_in[c->first_band_row + i];
+        if (k >= 0 && multiplier > 0.0) {
+            held[out->n_held++] =
+                (mt_gap_held){.family = cuts[k].family,
+                              .position = cuts[k].position,
+                              .mode = row.mode,
+                              .above = row.above,
+                              .band = c->clears[row.clear].bands.items[row.band].label,
+                              .multiplier = multiplier};
+        }
+    }
+    return MT_OK;
+}

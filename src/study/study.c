@@ -103,6 +103,14 @@ const mt_unit *mt_study_unit(const mt_study *study, int parameter)
     return unit == NULL || mt_unit_is_si(unit) ? NULL : unit;
 }
 
+const mt_unit *mt_study_shown(const mt_study *study, mt_dimension dimension)
+{
+    const mt_unit *const unit = study->units[dimension];
+    return unit == NULL          ? mt_model_shown(study->model, dimension)
+           : mt_unit_is_si(unit) ? NULL
+                                 : unit;
+}
+
 const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e)
 {
     const mt_kind kind =

@@ -357,6 +357,9 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err);
 /* What a number for this parameter of the study's model is in, in its file and for people: the
  * study's unit, else the parameter's own; NULL: SI. */
 const mt_unit *mt_study_unit(const mt_study *study, int parameter);
+/* What people are shown positions of this dimension in: the study's unit, else the model's;
+ * NULL: SI. */
+const mt_unit *mt_study_shown(const mt_study *study, mt_dimension dimension);
 /* The unit that somebody thinks in who asks for a value of an expression of a length, an angle
  * or a speed: that of a parameter in it, else the study's. NULL: SI, or it is none of these.
  * The expression is in SI all the same. */

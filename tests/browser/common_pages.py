@@ -17,9 +17,9 @@ SIZES = [(390, 844), (1280, 900), (1920, 1080)]
 EVERY = "MT_EVERY" in os.environ
 
 
-def run(study, folder):
+def run(study, folder, *more):
     """The folder of its result; a study that is not solved has one, too."""
-    subprocess.run([PROGRAM, "run", study, "--quiet", "-o", folder], capture_output=True, timeout=300, check=False)
+    subprocess.run([PROGRAM, "run", study, "--quiet", "-o", folder, *more], capture_output=True, timeout=300, check=False)
     return folder / study.stem
 
 

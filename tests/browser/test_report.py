@@ -166,7 +166,7 @@ class Report(Answers):
                 "format": "modetune-study/1", "model": "m.json", "units": {"length": "in"}, "recommendations": 2,
                 "variables": [{"parameter": "l_a", "lower": 4, "upper": 6}, {"parameter": "M_SAU", "lower": 1, "upper": 4}],
                 "goals": [{"type": "limit", "expression": "l_a", "at_least": "5.5*inch"}]}), encoding="utf-8")
-            report = run(folder / "s.json", folder)
+            report = run(folder / "s.json", folder, "--set", "r_SAU=6.5*inch")
             result = json.loads((report / "result.json").read_text(encoding="utf-8"))
             best = result["recommendations"][0]["parameters"]
             self.assertEqual((best[0]["unit"], best[0]["display_unit"], best[1]["display_unit"]), ("m", "in", None))
@@ -176,6 +176,10 @@ class Report(Answers):
             self.near(values["l_a"].split(" ")[-1], best[0]["recommended"] / 0.0254, "l_a")
             self.near(values["M_SAU"].split(" ")[-1], best[1]["recommended"], "M_SAU")
             self.assertIn("l_a [in]", self.browser.one("#figure-parameters svg").text)
+            origin = self.browser.one("#figure-origin").text
+            self.assertIn("asked with r_SAU = 6.5 in", origin)
+            self.assertIn("--set 'r_SAU=6.5*inch'", origin)  # 6.5 alone would be metres
+            self.assertIn("run time in timing.json", origin)
 
     def test_figures_are_saved(self):
         result = self.open("inceptor_rotor")
@@ -215,6 +219,27 @@ class Report(Answers):
         self.assertEqual(self.browser.one("#figure-mechanism output").text, "\u22129\u00b0")  # and the mode stay as they were
         self.assertTrue(self.browser.run("return document.querySelectorAll('.modes input')[2].checked"))
         self.assertEqual(self.browser.all(".view3d figcaption")[-1].text, "recommended, rank 3")
+        self.assertEqual(self.browser.problems(), [])
+
+    def test_scales_end_where_nothing_is_asked_any_more(self):
+        """Over the travel both designs' lowest modes are drawn in full; a mode far above all that goals are about is told."""
+        result = self.open("inceptor_vibration")
+        paths = self.browser.run("return [...document.querySelectorAll('#figure-drive-1 svg path')].map((p) => ["
+                                 "(p.querySelector('title') || {}).textContent || '', p.getAttribute('d')])")
+        rows = self.browser.run("return mt.chartDrive()[0].table().rows")
+        for mode in (1, 2):
+            drawn = [d for title, d in paths if title.endswith(f" mode {mode}")]
+            self.assertEqual(len(drawn), 2, mode)
+            positions = len([r for r in rows if r[2] == mode])
+            self.assertEqual(sum(d.count("L") + d.count("M") for d in drawn), positions, mode)
+        best = result["recommendations"][0]
+        hz = sorted(max(f["original_hz"], f["recommended_hz"]) for f in best["frequencies"])
+        self.assertGreater(hz[-1], 10_000)
+        lead = self.browser.one("#figure-frequencies .lead").text
+        told = re.search(r"1 mode above (\d+) Hz is not drawn\.$", lead)
+        self.assertIsNotNone(told, lead)
+        self.assertTrue(hz[-2] < int(told[1]) < 1.3 * hz[-2], lead)
+        self.assertIn("above the scale: mode 3", self.browser.one("#figure-frequencies svg").text)
         self.assertEqual(self.browser.problems(), [])
 
     def test_what_is_not_drawn_is_told(self):

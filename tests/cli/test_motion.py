@@ -10,6 +10,7 @@ import json
 import math
 import os
 import random
+import re
 import subprocess
 import tempfile
 import unittest
@@ -85,6 +86,31 @@ class Motion(unittest.TestCase):
     def best(self, result):
         design = result["recommendations"][0]
         return design, {p["name"]: p["recommended"] for p in design["parameters"]}
+
+    def test_a_margin_between_positions_has_a_price(self):
+        """The mode stays below a band and is highest at theta = 0, between the positions: k1 = m (2 pi f)^2 - k2 at the edge
+        f of band and margin, and 1 % more of f is worth dk1 = 0.02 m (2 pi f)^2 (to first order)."""
+        for low, margin in ((14.0, 0), (16.0, 10)):
+            edge = low * (1 - margin / 100)
+            model = dict(arm({"back": -0.6, "forth": 0.8}, 5000), units={"angle": "deg"})
+            model["parameters"]["k1"] = {"value": 5000, "unit": "N/m"}
+            result = self.answer(model, study([avoid(["back", "forth"], [[low, 30]], margin_percent=margin)], objective={"minimise": "60000 - k1"}), 0)
+            best, at = self.best(result)
+            with self.subTest(low=low, margin=margin):
+                self.assertAlmostEqual(at["k1"] / k1_for(edge, 0), 1, delta=1e-4)
+                told = [r["text"] for r in best["reasons"] if r["kind"] == "cost" and "between the positions" in r["text"]]
+                self.assertGreaterEqual(len(told), 1, best["reasons"])
+                found = [re.search(r"The lower edge of .*, which holds mode 1 where pivot is at (\S+) deg, between the positions, "
+                                   r"has a price: giving way by 1 % would save ([0-9.]+)", t) for t in told]
+                self.assertTrue(all(found), told)
+                self.assertTrue(all(abs(float(m[1])) < 1 for m in found), told)
+                worth = 0.02 * M * (TWO_PI * edge) ** 2
+                self.assertAlmostEqual(sum(float(m[2]) for m in found) / worth, 1, delta=6e-3)
+                row = best["motion"][0]
+                self.assertEqual((row["unit"], row["display_unit"]), ("rad", "deg"))
+                self.assertAlmostEqual(row["from"], -0.6, delta=1e-12)
+                self.assertTrue(row["text"].startswith("pivot from -34.3775 to 45.8366 deg ("), row["text"])
+        self.assertRegex(self.text, r"pivot +deg +-34\.3775 +45\.8366 ")
 
     def test_one_drive_has_one_count(self):
         """Above the band at one end of the motion, below it at the other: the shipped design must stay on one side."""

@@ -261,7 +261,9 @@ class Shown(CliTest):
         self.assertRegex(said, rf"d +in +6\.69291 +{re.escape(shown)} ")
         self.assertIn(f"from 6.69291 to {shown.rstrip('0')} in.", said)
         self.assertIn("The change of d counts linearly, 1.00000 in as 1.", said)
-        self.assertRegex(said, r"d at least 0\.1016 m ")
+        self.assertRegex(said, r"d at least 4 in +6\.\d+ +4\.0+ ")
+        goal = result["recommendations"][0]["goals"][1]
+        self.assertEqual((goal["unit"], goal["display_unit"], goal["display_factor"], goal["at_least"]), ("m", "in", 0.0254, 0.1016))
         self.assertEqual(self.expect(0, "report", "out/ask/result.json").stdout, said)
         self.assertRegex(self.expect(0, "explain", "out/ask/result.json").stdout, rf" {re.escape(shown)} +in ")
         self.assertRegex(self.expect(0, "compare", "studies/ask.json").stdout, r"d \[in\] +6\.7 +6\.\d+ ")
@@ -308,6 +310,41 @@ class Shown(CliTest):
             {"type": "frequency", "configuration": "as_is", "mode": 1, "target_hz": 23}])))
         said = self.run_program("run", "studies/never.json", "-o", "out").stdout
         self.assertRegex(said, r"With the lower bound of d at ([0-9.]+) in instead of 4 .*: d = \1 in\.")
+
+    def test_what_an_expression_is_held_against_is_shown_in_its_unit(self):
+        """The number stays in SI; what people see of it is in the unit of the expression's parameter, or in the study's."""
+        study = altered(ASK, variables=[dict(ASK["variables"][0], lower=4, upper=7.5)], objective={"minimise": "d"}, goals=[
+            {"type": "limit", "expression": "2*d", "at_least": "9*inch", "at_most": "14*inch"},
+            {"type": "limit", "expression": "tilt", "at_most": "12*deg"}, {"type": "limit", "expression": "d^2", "at_most": 1}],
+            published=[{"quantity": "2*d", "value": "9*inch", "tolerance": "0.01*inch"}])
+        self.write("studies/limits.json", json.dumps(study))
+        said = self.expect(0, "run", "studies/limits.json", "-o", "out").stdout
+        self.assertRegex(said, r"2\*d from 9 to 14 in +9\.0000\d* +9\.00000 to 14\.0000 ")
+        self.assertRegex(said, r"tilt at most 12 deg +3\.00000 +12\.0000 ")
+        self.assertRegex(said, r"d\^2 at most 1 +0\.01306\d+ +1\.00000 ")
+        result = json.loads((self.folder / "out/limits/result.json").read_text())
+        goals = result["recommendations"][0]["goals"]
+        self.assertEqual((goals[0]["unit"], goals[0]["at_least"]), ("m", 9 * 0.0254))
+        self.assertAlmostEqual(goals[0]["value"], 9 * 0.0254, delta=1e-6)
+        self.assertEqual([g["display_unit"] for g in goals], ["in", "deg", None])
+        explained = self.expect(0, "explain", "out/limits/result.json").stdout
+        self.assertRegex(explained, r"2\*d from 9 to 14 in: 9\.0000\d* in, met")
+        self.assertRegex(explained, r"2\*d from 9 to 14 in +d +\+0\.0900 +in +4\.50000 +in ")
+        self.assertRegex(self.expect(0, "compare", "studies/limits.json").stdout, r"2\*d \[in\] +9 +9\.0000\d* .*within 0\.01 ")
+        self.write("studies/wide.json", json.dumps(altered(study, published=None, goals=[
+            {"type": "limit", "expression": "2*d", "at_least": "16*inch"}])))
+        said = self.run_program("run", "studies/wide.json", "-o", "out").stdout
+        self.assertRegex(said, r"With the at_least of goal /goals/0 at (15|14\.9999\d*) in instead of 16 ")
+        self.write("studies/grid.json", json.dumps(altered(study, published=None, goals=study["goals"][:1], trade={
+            "vary": [{"goal": 0, "member": "at_least", "values": ["9*inch", "10*inch"]}]})))
+        self.assertRegex(self.expect(0, "run", "studies/grid.json", "-o", "out").stdout, r"at_least of [^\n]*\[in\]")
+
+    def test_a_sweep_is_shown_in_the_model_s_units(self):
+        said = self.expect(0, "sweep", "problems/stick.json", "-c", "as_is", "--drive", "pivot=-10:10:3").stdout
+        self.assertRegex(said, r"pivot \[deg\] ")
+        self.assertEqual(re.findall(r"^ +(-?[\d.]+) ", said, re.M), ["-10.0000", "0", "10.0000"])
+        got = self.json_of("sweep", "problems/stick.json", "-c", "as_is", "--drive", "pivot=-10:10:3")
+        self.assertIn(-10 * math.pi / 180, [p["position_rad"] for p in got["points"]])
 
     def test_asked_with_set_is_in_the_units(self):
         study = altered(ASK, published=None, variables=[{"parameter": "k", "lower": 1000, "upper": 9000}])

@@ -13,7 +13,7 @@
     m: { unit: 'mm', factor: 1000 },
   };
   const SAME = 1e-3; // curves that are nearer to each other are one
-  const BEYOND = 1.1;
+  const BEYOND = 1.15;
 
   // The scene's configurations of a design that are driven by this joint.
   function driven(scene, rank, joint) {
@@ -60,6 +60,7 @@
       origin: curvesOf(before, unit.factor) };
   }
 
+  // Bands and the two lowest modes of both designs, unless far above all bands.
   function top(c) {
     const design = mt.choice().design;
     const names = new Set(c.now.map((k) => k.name));

@@ -37,17 +37,27 @@
     return values;
   }
 
+  // How far up responses are looked at: modes as far as that are shown, but no empty scale.
+  function reach() {
+    const curves = D.clean(mt.result().curves);
+    const ranges = curves.concat(curves.flatMap((c) => D.clean(c.limits)),
+      D.clean(mt.choice().design.responses));
+    return Math.max(0, ...ranges.map((r) => r.upper_hz).filter(T.isNumber));
+  }
+
   function extent(frequencies) {
     let values = demands();
     const upTo = D.clean(mt.result().excitations).map((e) => e.up_to_hz).filter(T.isNumber);
+    const looked = reach();
     const all = frequencies.flatMap((f) => [f.original_hz, f.recommended_hz])
       .filter((x) => T.isNumber(x) && x > 0);
-    if (values.length === 0) { // what responses are looked at over, or all there is
-      const seen = D.clean(mt.result().curves).map((c) => c.upper_hz).filter(T.isNumber);
-      values = all.some((x) => x <= Math.max(...seen)) ? seen : all;
+    if (values.length === 0) {
+      const within = all.filter((x) => x <= looked);
+      values = within.length > 0 ? within : all;
     }
     const asked = Math.max(...values);
-    const beyond = Math.max(asked * NEAR, ...upTo);
+    const beyond = looked > 0 ? Math.max(asked, looked, ...upTo)
+      : Math.max(asked * NEAR, ...upTo);
     const most = Math.max(asked, ...all.filter((x) => x <= beyond));
     const inside = all.concat(values).filter((x) => x <= most);
     return { least: Math.min(...inside), most };
@@ -341,6 +351,15 @@
       c.side + ' ' : 'at the edge of ') + D.bandName(c) + (asked ? '; ' + asked : '.');
   }
 
+  function notDrawn(frequencies) {
+    const scale = makeScale(frequencies, 0, 1);
+    const n = frequencies.filter((f) => T.isNumber(f.recommended_hz) && !isShown(f, scale))
+      .length;
+    const what = (n === 1 ? ' mode above ' : ' modes above ') +
+      T.short(scale.domain()[1], 3) + (n === 1 ? ' Hz is' : ' Hz are');
+    return n > 0 ? n + what + ' not drawn.' : '';
+  }
+
   function lead() {
     const design = mt.choice().design;
     const bad = D.clean(design.frequencies).filter((f) => D.missed(design, f));
@@ -359,7 +378,7 @@
         : 'Of ' + asked.length + ' frequencies asked for, ' + worst.configuration +
           ' mode ' + worst.mode + ' is off most, by ' + T.short(miss, 2) + ' %.');
     }
-    parts.push(nearest(design));
+    parts.push(nearest(design), notDrawn(D.clean(design.frequencies)));
     return parts.filter((p) => p).join(' ');
   }
 

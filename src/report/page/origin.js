@@ -32,8 +32,11 @@
       : "'" + text.replace(/'/g, "'\\''") + "'";
     const options = { seed: '--seed', starts: '--starts', max_evaluations: '--max-evaluations',
       proof_s: '--proof' };
+    // a bare number would be in the parameter's own unit, whatever it is shown in
+    const inUnit = (o) => o.value + (o.display_factor > 0
+      ? '*' + (o.display_unit === 'in' ? 'inch' : o.display_unit) : '');
     const asked = D.clean(result.run.overrides).map((o) => o.kind === 'parameter'
-      ? ' --set ' + quoted(o.name + '=' + o.value)
+      ? ' --set ' + quoted(o.name + '=' + inUnit(o))
       : options[o.name] ? ' ' + options[o.name] + ' ' + o.value : '');
     return result.study && result.study.file
       ? 'modetune run ' + quoted(result.study.file) + asked.join('') : null;
@@ -49,6 +52,7 @@
       ['command', command(result)],
       ['seed, local searches', `${r.seed}, ${r.starts}`],
       ['evaluations', String(r.evaluations)],
+      ['run time', 'in timing.json, which "run" writes beside result.json'],
       ['cut by', r.cut_by],
     ];
     for (const o of D.clean(r.overrides)) {

@@ -42,6 +42,13 @@
       turnAll(moved.sensitivity, factors, 1);
       turnAll(moved.worst_at, factors, -1);
     }
+    for (const goal of clean(design && design.goals)) {
+      const factor = goal.display_factor;
+      Object.keys(goal.sensitivity || {}).forEach((name) => {
+        goal.sensitivity[name] = scaled(goal.sensitivity[name], factor > 0 ? 1 / factor : 1);
+      });
+      turn(goal, ['value', 'target', 'at_least', 'at_most', 'worst']);
+    }
     return factors;
   }
 
