@@ -6,10 +6,10 @@
 #include "cli/cli.h"
 #include "cli/find_model.h"
 #include "cli/picture.h"
-#include "library/scene_designs.h"
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/write_scene.h"
+#include "library/scene_designs.h"
 #include "report/page.h"
 #include "scene/scene.h"
 

@@ -156,6 +156,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     rec->rank = design->rank;
     MT_TRY(mt_describe_goals(fresh, design, result, rec, &motion_room, err));
     MT_TRY(mt_describe_responses(fresh, result, rec, err));
+    MT_TRY(mt_describe_between(fresh, design, result, rec, err));
     MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
     MT_TRY(doubt(design, result, rec, err));

@@ -79,6 +79,14 @@ bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d);
 /* describe_responses.c: likewise. */
 mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
+/* Words of them: "the acceleration of grip.x for base.z"; ", 45 % below its limit"; " rms".
+ * NULL: memory. */
+const char *mt_describe_shaken(const mt_shake *s, mt_arena *mem);
+const char *mt_describe_shaken_beside(const mt_goal *g, double value, mt_arena *mem);
+const char *mt_describe_shaken_kind(const mt_shake *s);
+/* describe_between.c: likewise, those that limit, between the positions of drives. */
+mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,
+                              mt_recommendation *rec, mt_err *err);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,

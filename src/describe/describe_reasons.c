@@ -293,6 +293,11 @@ static void say_responses(mt_sentences *s)
         mt_say_of(s, "hold", r->pointer);
         mt_say(s, "T%s.", r->text + 1);
     }
+    for (int i = 0; i < s->rec->n_between; i++) {
+        const mt_result_between *const r = &s->rec->between[i];
+        mt_say_of(s, "hold", r->pointer);
+        mt_say(s, "Between the positions that are given %s.", r->text);
+    }
 }
 
 /* Root mean square of what the weighted goals are off by in percent, each weighted as in the

@@ -33,10 +33,12 @@ static const char *output_text(const char *port, mt_arena *mem)
                            relative ? " as seen from the ground" : "");
 }
 
-/* ", 45 % below its limit"; within what a goal is met by, ", at its limit". */
-static const char *beside_text(const mt_goal *g, double value, mt_arena *mem)
+const char *mt_describe_shaken_beside(const mt_goal *g, double value, mt_arena *mem)
 {
-    const double limit = MT_HAS(g->at_most)    ? g->at_most
+    const bool both = MT_HAS(g->at_most) && MT_HAS(g->at_least);
+    const bool lower = both && log(g->at_least / value) > log(value / g->at_most);
+    const double limit = lower                 ? g->at_least
+                         : MT_HAS(g->at_most)  ? g->at_most
                          : MT_HAS(g->at_least) ? g->at_least
                                                : g->equals;
     const double off = PERCENT * (value / limit - 1.0);
@@ -46,6 +48,13 @@ static const char *beside_text(const mt_goal *g, double value, mt_arena *mem)
     }
     return mt_arena_printf(mem, ", %.3g %% %s its %s", fabs(off), off > 0.0 ? "above" : "below",
                            what);
+}
+
+const char *mt_describe_shaken_kind(const mt_shake *s)
+{
+    static const char *const kinds[MT_SHAKE_QUANTITIES] = {"", " rms", " of its tones",
+                                                           " at peak"};
+    return kinds[s->quantity];
 }
 
 /* ", largest at 17.2 Hz (proven over 5 to 500 Hz)". */
@@ -62,22 +71,25 @@ static const char *where_text(const mt_shake *s, const mt_result_response *r, mt
                            r->lower_hz, r->upper_hz);
 }
 
-static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_arena *mem)
+const char *mt_describe_shaken(const mt_shake *s, mt_arena *mem)
 {
-    static const char *const kinds[MT_SHAKE_QUANTITIES] = {"", " rms", " of its tones",
-                                                           " at peak"};
-    const mt_shake *const s = g->shake;
     const char *const what = output_text(s->output.s, mem);
     const char *const by = s->profile == NULL ? s->input.s : s->profile_name.s;
-    if (what == NULL) {
-        return NULL;
-    }
     const bool force = strncmp(by, BASE, strlen(BASE)) != 0;
-    const char *const subject = mt_arena_printf(mem, "%s %s%s in \"%s\"", what,
-                                                s->profile != NULL ? "under "
-                                                : force            ? "under a force at "
-                                                                   : "for ",
-                                                by, r->configuration);
+    return what == NULL ? NULL
+                        : mt_arena_printf(mem, "%s %s%s", what,
+                                          s->profile != NULL ? "under "
+                                          : force            ? "under a force at "
+                                                             : "for ",
+                                          by);
+}
+
+static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_arena *mem)
+{
+    const mt_shake *const s = g->shake;
+    const char *const about = mt_describe_shaken(s, mem);
+    const char *const subject =
+        about == NULL ? NULL : mt_arena_printf(mem, "%s in \"%s\"", about, r->configuration);
     if (subject == NULL) {
         return NULL;
     }
@@ -89,13 +101,13 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
                                      subject)
                    : mt_arena_printf(mem, "%s has no value", subject);
     }
-    const char *const beside = beside_text(g, r->value, mem);
+    const char *const beside = mt_describe_shaken_beside(g, r->value, mem);
     const char *const where = where_text(s, r, mem);
     return beside == NULL || where == NULL
                ? NULL
                : mt_arena_printf(mem, "%s is %.4g%s%s%s%s%s", subject, r->value,
-                                 r->unit[0] != '\0' ? " " : "", r->unit, kinds[s->quantity],
-                                 beside, where);
+                                 r->unit[0] != '\0' ? " " : "", r->unit,
+                                 mt_describe_shaken_kind(s), beside, where);
 }
 
 /* A failure leaves it without a value: what the goal says of it stands there. */

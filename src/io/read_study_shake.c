@@ -55,11 +55,11 @@ static const mt_shipped *shipped(mt_study_reader *s, mt_name name)
     const mt_shipped *const all = mt_shipped_all(&n);
     const char **const names = mt_arena_alloc(s->r.mem, (size_t)n, sizeof *names);
     for (int i = 0; i < n && names != NULL; i++) {
-        const char *const file = all[i].path + strlen(SHIPPED);
-        const size_t length = strlen(file) - strlen(ENDING);
         if (strncmp(all[i].path, SHIPPED, strlen(SHIPPED)) != 0) {
             continue;
         }
+        const char *const file = all[i].path + strlen(SHIPPED);
+        const size_t length = strlen(file) - strlen(ENDING);
         if (strncmp(file, name.s, length) == 0 && name.s[length] == '\0') {
             return &all[i];
         }

@@ -50,6 +50,7 @@ static const list_rule RULES[] = {
     {"per_variable", "variable", {"name"}, NULL},
     {"points", "point", {NULL}, NULL},
     {"responses", "response", {"goal", "configuration"}, NULL},
+    {"responses_between", "response between positions", {"goal", "drive"}, NULL},
     {"published", "value", {"pointer"}, "label"},
     {"recommendations", "recommendation", {NULL}, NULL},
     {"reasons", "reason", {NULL}, NULL},

@@ -7,6 +7,7 @@
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
 #include "problem/next.h"
+#include "problem/posed.h"
 #include "problem/robust.h"
 
 mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err *err)
@@ -60,6 +61,11 @@ static mt_status init_tolerances(mt_case *c, mt_arena *mem, mt_err *err)
             c->in_tol[c->first_soft_row + d->row_soft + k] = SOFT_TOLERANCE;
         }
     }
+    for (int i = 0; i < c->n_posed; i++) {
+        for (int k = 0; k < c->posed[i].n_in; k++) {
+            c->in_tol[c->posed[i].row_in + k] = c->posed[i].tolerance;
+        }
+    }
     for (int k = 0; c->below != NULL && mt_clear_row_at(c, c->below, k, &at); k++) {
         c->in_tol[c->first_band_row + k] = c->clears[at.clear].tolerance;
     }
@@ -90,6 +96,7 @@ mt_status mt_case_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut
     c->n_next = 0;
     MT_TRY(mt_clear_lay_out(c, below, n_cuts, cuts, mem, err));
     lay_out_soft(c);
+    MT_TRY(mt_posed_lay_out(c, n_cuts, cuts, mem, err));
     MT_TRY(init_tolerances(c, mem, err));
     MT_TRY(mt_robust_init(c, known, mem, err));
     MT_TRY(mt_next_init(c, mem, err));

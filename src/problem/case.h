@@ -25,6 +25,7 @@
 struct mt_problem;
 struct mt_workspace;
 struct mt_cut;
+struct mt_demand;
 
 /* An objective that is held. */
 typedef struct mt_held {
@@ -50,6 +51,9 @@ typedef struct mt_case {
     double *eq_tol;                /* [n_eq + n_res] */
     double *in_tol;                /* [n_in + n_aims] */
     struct mt_robust *robust;      /* variables with a tolerance (robust.h); NULL: none */
+    /* [n_posed] limits at cuts (posed.h), whose rows are the last before held objectives */
+    const struct mt_demand *posed;
+    int n_posed;
     /* [n_next] rows that follow from those of limits (next.h), and from which */
     const struct mt_next *next;
     const int *next_of;
@@ -85,7 +89,8 @@ mt_status mt_case_copy(const mt_case *from, mt_arena *mem, mt_case *out, mt_err 
 void mt_case_bound(mt_case *c, int i, double lower, double upper);
 /*
  * Rows of c within its bounds with a gap assignment below[n_bands of the problem] (NULL: none),
- * and cuts[n_cuts] of it (family.h), which outlive it, behind all other bands. w: set to this
+ * and cuts[n_cuts] of it (family.h), which outlive it: of bands, where there is an assignment,
+ * behind all others, and of limits. w: set to this
  * case afterwards; NULL while the problem is compiled. Fails:
  * MT_E_INPUT where a goal cannot be judged over tolerances, MT_E_MEMORY, numerical failures.
  */

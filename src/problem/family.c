@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "problem/beside.h"
+#include "problem/goal.h"
 
 static const mt_system *system_of(const mt_problem *p, int view)
 {
@@ -36,6 +37,42 @@ int mt_family_of(const mt_problem *p, int view)
         }
     }
     return -1;
+}
+
+/* Two of its values in one family: what lies between them is asked for as well. */
+static bool is_shaken(const mt_problem *p, const mt_demand *d)
+{
+    const int family = d->ops->look != NULL && d->row_res < 0 && !MT_HAS(d->equals)
+                           ? mt_family_of(p, d->view)
+                           : -1;
+    for (int i = 0; i < p->n_demands && family >= 0; i++) {
+        const mt_demand *const other = &p->demands[i];
+        if (other->goal_index == d->goal_index && other->view != d->view &&
+            mt_family_of(p, other->view) == family) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool mt_family_shakes_first(const mt_problem *p, const mt_demand *d)
+{
+    for (const mt_demand *other = p->demands; other < d; other++) {
+        if (other->goal_index == d->goal_index &&
+            mt_family_of(p, other->view) == mt_family_of(p, d->view)) {
+            return false;
+        }
+    }
+    return is_shaken(p, d);
+}
+
+static void find_shaken(mt_problem *p)
+{
+    for (int i = 0; i < p->n_demands; i++) {
+        if (is_shaken(p, &p->demands[i])) {
+            p->families[mt_family_of(p, p->demands[i].view)].shaken = true;
+        }
+    }
 }
 
 /* What drives the family: from a view that has a drive. */
@@ -110,7 +147,7 @@ mt_status mt_cut_init(const mt_problem *p, int family, double position, mt_cut *
     const mt_view view = view_of(p, f);
     const mt_system_drive drive = {
         .joint = f->joint, .spring = f->spring, .fixed = true, .position = position};
-    *out = (mt_cut){.family = family, .position = position};
+    *out = (mt_cut){.family = family, .demand = -1, .position = position};
     return mt_view_drive(p, &view, &drive, p->original, &out->original, err);
 }
 
@@ -143,8 +180,10 @@ mt_status mt_families_init(mt_problem *p, mt_err *err)
         }
     }
     MT_TRY(tie(p, err));
+    find_shaken(p);
     for (int i = 0; i < p->n_families; i++) {
-        MT_TRY(p->families[i].banded ? set_moving(p, &p->families[i], err) : MT_OK);
+        const bool followed = p->families[i].banded || p->families[i].shaken;
+        MT_TRY(followed ? set_moving(p, &p->families[i], err) : MT_OK);
     }
     return MT_OK;
 }

@@ -168,7 +168,7 @@ static mt_status add_cuts(mt_case *c, int n_cuts, const mt_cut *cuts, lists *l, 
     memcpy(l->views, p->views, (size_t)p->n_views * sizeof *l->views);
     memcpy(l->clears, p->clears, (size_t)p->n_clears * sizeof *l->clears);
     for (int i = 0; i < n_cuts; i++) {
-        MT_TRY(add_cut(c, &cuts[i], l, mem, err));
+        MT_TRY(cuts[i].demand < 0 ? add_cut(c, &cuts[i], l, mem, err) : MT_OK);
     }
     c->views = l->views;
     c->clears = l->clears;

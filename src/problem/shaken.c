@@ -109,7 +109,7 @@ static mt_status open_sum(mt_shaken *s, mt_err *err)
 static mt_status open_view(mt_workspace *w, const mt_demand *d, mt_shaken **out, mt_err *err)
 {
     mt_view_work *const view = &w->views[d->view];
-    const mt_view *const of = &w->p->views[d->view];
+    const mt_view *const of = &w->c->views[d->view];
     if (view->shaken == NULL) {
         view->shaken = mt_arena_alloc(&w->mem, (size_t)of->n_pairs, sizeof *view->shaken);
         MT_TRY(mt_arena_check(&w->mem, err));
@@ -198,4 +198,17 @@ mt_status mt_shaken_look(mt_workspace *w, const mt_demand *d, mt_shaken_value *o
     out->finite = out->end == MT_FORCED_FINITE;
     out->end_name = mt_forced_end_name(out->end);
     return MT_OK;
+}
+
+mt_status mt_shaken_look_at(mt_workspace *w, const mt_demand *d, mt_analysis *a,
+                            mt_shaken_value *out, mt_err *err)
+{
+    mt_view_work *const view = &w->views[d->view];
+    mt_analysis *const own = view->analysis;
+    mt_shaken_close(view);
+    view->analysis = a;
+    const mt_status rc = mt_shaken_look(w, d, out, err);
+    mt_shaken_close(view);
+    view->analysis = own;
+    return rc;
 }

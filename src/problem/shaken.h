@@ -83,6 +83,10 @@ mt_status mt_shaken_lead(mt_workspace *w, const mt_demand *d, double lower, doub
 /* The demand's number, with all that is known of it. */
 mt_status mt_shaken_look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out,
                          mt_err *err);
+/* The same of another analysis of the view's mechanism, solved with all shapes: another
+ * position of its drive. */
+mt_status mt_shaken_look_at(mt_workspace *w, const mt_demand *d, mt_analysis *a,
+                            mt_shaken_value *out, mt_err *err);
 /* slope of q to that of ln q as rows take it (MT_MEASURE_RATIO), in place. */
 void mt_shaken_to_ln(const mt_workspace *w, const mt_demand *d, double q, double *slope);
 /* The view has been solved anew, or goes. */

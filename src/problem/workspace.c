@@ -17,6 +17,7 @@
 #include "problem/goal_avoid.h"
 #include "problem/next.h"
 #include "problem/objective.h"
+#include "problem/posed.h"
 #include "problem/robust.h"
 #include "problem/robust_cut.h"
 #include "problem/shaken.h"
@@ -361,6 +362,7 @@ mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_
         MT_TRY(mt_err_in(err, mt_demand_eval(w, &p->demands[i], with_gradient, out, NULL, err),
                          "/goals/%d", p->demands[i].goal_index));
     }
+    MT_TRY(mt_posed_eval(w, with_gradient, out, err));
     MT_TRY(mt_clear_eval(w, with_gradient, out, err));
     MT_TRY(mt_robust_rows(w, with_gradient, out, err));
     MT_TRY(mt_next_eval(w, with_gradient, out, err));

@@ -114,6 +114,12 @@ static size_t string_end(const char *json, size_t at)
     return at + (json[at] == '"' ? 1 : 0);
 }
 
+/* Behind a bracket; not behind the end of all, where a walk without room has gone. */
+static size_t behind(const packing *p, size_t at)
+{
+    return at + (p->json[at] != '\0' ? 1 : 0);
+}
+
 static size_t read_value(packing *p, size_t at, bool *words);
 
 /* Members of an object from `at` on, behind which it ends; their names come to `names`. */
@@ -128,7 +134,7 @@ static size_t read_members(packing *p, size_t at, mt_text *names, bool *words)
         at = read_value(p, end + 1, words);
         at += p->json[at] == ',' ? 1 : 0;
     }
-    return at + 1;
+    return behind(p, at);
 }
 
 static size_t read_node(packing *p, size_t at, bool *words)
@@ -151,7 +157,7 @@ static size_t read_node(packing *p, size_t at, bool *words)
             end = read_value(p, end, &own);
             end += p->json[end] == ',' ? 1 : 0;
         }
-        end++;
+        end = behind(p, end);
     }
     const char *const text = names.s == NULL ? NULL : mt_arena_strdup(&p->mem, names.s);
     if (text != NULL) {

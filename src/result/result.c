@@ -234,6 +234,7 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
     MT_F_LIST("responses", responses, n_responses, mt_result_response, mt_response_record),
+    MT_F_LIST("responses_between", between, n_between, mt_result_between, mt_between_record),
     MT_F_LIST("curves", curves, n_curves, mt_design_curve, mt_design_curve_record),
     MT_F_LIST("reasons", reasons, n_reasons, mt_reason, REASON),
     MT_F_UNWRITTEN_TEXT(disagreement),

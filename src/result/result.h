@@ -139,6 +139,27 @@ typedef struct mt_result_response {
     const char *text;  /* in words, without a full stop */
 } mt_result_response;
 
+/* What a goal of forced vibration finds between the positions of one drive that it names. */
+typedef struct mt_result_between {
+    const char *pointer; /* of the goal, "/goals/0" */
+    const char *drive;   /* the joint */
+    const char *unit;    /* "rad" | "m": of from, to, at */
+    double from;         /* first and last position that the goal names */
+    double to;
+    int positions; /* that were looked at, those included; 0: none */
+    double at;     /* the worst of them; NaN: none has a value */
+    bool named;    /* that is one that the goal names */
+    double value;  /* there; NaN: none, or infinite, see end */
+    const char *value_unit;
+    double error; /* as mt_result_response */
+    double frequency_hz;
+    const char *end;
+    double violation_percent; /* of the limit there; NaN: as value */
+    bool holds;               /* the limit, at all positions that were looked at */
+    const char *grade;        /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" */
+    const char *text;         /* in words, without a full stop */
+} mt_result_between;
+
 /* The value of one objective, whether the goals are met or not; NaN: there is none. */
 typedef struct mt_design_objective {
     const char *text; /* text and unit as in mt_result_objective */
@@ -263,6 +284,8 @@ typedef struct mt_recommendation {
     mt_result_goal *goals;
     int n_responses; /* one for each goal of forced vibration and configuration */
     mt_result_response *responses;
+    int n_between; /* one for each such goal and drive with several positions that it names */
+    mt_result_between *between;
     mt_design_curve *curves; /* in the order of the result's; none at points of a trade */
     int n_curves;
     int n_reasons;
@@ -541,6 +564,7 @@ double mt_result_shown(double value, double factor);
 extern const mt_record mt_result_record;
 extern const mt_record mt_design_record;   /* mt_recommendation */
 extern const mt_record mt_response_record; /* mt_result_response, part of that */
+extern const mt_record mt_between_record;  /* mt_result_between, likewise */
 extern const mt_record mt_doubt_record;
 
 /* mt_recommendation_default() and the like: all numbers are "not applicable". X(struct, its

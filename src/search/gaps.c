@@ -33,6 +33,7 @@ typedef struct slot {
     int starts;
     int n_cuts;
     mt_cut *cuts; /* [CUTS_MOST], owned */
+    mt_posed_cuts posed;
     mt_robust_cuts corners;
     bool carried; /* searched before the proof */
 } slot;
@@ -171,6 +172,11 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     if (best->feasible && w->c->clearance && isfinite(room)) {
         tell_clearance(s, room, w->c->n_aims);
     }
+    if (best->feasible && mt_search_has_positions(w->c)) {
+        MT_TRY(mt_search_judge_positions(w, best->t, last, &s->mem, &s->posed, err));
+        s->evals += s->posed.evals;
+        added += s->posed.added;
+    }
     if (best->feasible && mt_robust_is_sampled(w->c)) {
         MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));
         s->evals++;
@@ -204,7 +210,9 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     if (s->corners.n > 0) {
         MT_TRY(mt_robust_add_cuts(j->c, &s->corners, &s->mem, &held.robust, why));
     }
-    MT_TRY(mt_case_in_gap(&held, below, s->n_cuts, s->cuts, w, &s->mem, &c, why));
+    mt_cut *cuts = NULL;
+    MT_TRY(mt_posed_cuts_behind(&s->posed, s->n_cuts, s->cuts, &s->mem, &cuts, why));
+    MT_TRY(mt_case_in_gap(&held, below, s->n_cuts + s->posed.n, cuts, w, &s->mem, &c, why));
     options.starts =
         round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
     c.starts = options.starts;
@@ -278,6 +286,7 @@ static mt_status search_candidate(void *context, int worker, int k, mt_scope *ow
     for (int i = 0; i < s->n_cuts; i++) {
         mt_cut_free(&s->cuts[i]);
     }
+    mt_posed_cuts_free(&s->posed);
     const bool fatal = mt_is_final(s->rc);
     return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
 }

@@ -87,7 +87,7 @@ mt_status mt_gap_hold(const mt_case *c, const struct mt_cut *cuts, const mt_nlp_
                       mt_arena *mem, mt_gap_solution *out, mt_err *err);
 
 /* gaps_clearance.c: one more thing is missed at a design. */
-void mt_gap_refuse(mt_nlp_solution *s, double short_of, double tolerance);
+void mt_gap_refuse(mt_nlp_solution *best, double short_of, double tolerance);
 /* Where the case makes the least clearance most: designs that a search met on its way, and
  * those that it ended at, miss what it is less than 0. */
 void mt_gap_refuse_step(const mt_case *c, mt_step *s);

@@ -75,8 +75,7 @@ static bool ends(mt_status rc)
     return mt_is_final(rc) || rc == MT_E_INTERRUPTED;
 }
 
-/* The worker's own analysis of the family's moving mechanism. */
-static mt_status open_drive(mt_workspace *ws, int family, mt_err *err)
+mt_status mt_motion_open(mt_workspace *ws, int family, mt_err *err)
 {
     const mt_family *const f = &ws->p->families[family];
     if (f->moving.original == NULL) {
@@ -313,13 +312,17 @@ static mt_status list_edges(walk *w, const int *below, const mt_way_band *bands,
     return MT_OK;
 }
 
+int mt_motion_pieces(double way, double unit, int most)
+{
+    const double wanted = ceil(way / (STEP * unit));
+    const double asked = fmin(fmax(wanted, INTERVALS_AT_FIRST), INTERVALS_MOST_AT_FIRST);
+    return (int)fmin(asked, most - 1);
+}
+
 /* The first positions of a way, evenly spread. */
 static mt_status spread(walk *w, double left, double right, mt_err *err)
 {
-    const double way = right - left;
-    const double wanted = ceil(way / (STEP * w->unit));
-    const double asked = fmin(fmax(wanted, INTERVALS_AT_FIRST), INTERVALS_MOST_AT_FIRST);
-    const int pieces = (int)fmin(asked, w->most - 1);
+    const int pieces = mt_motion_pieces(right - left, w->unit, w->most);
     w->n = 0;
     w->samples = mt_arena_alloc(w->mem, POSITIONS_MOST, sizeof *w->samples);
     MT_TRY(mt_arena_check(w->mem, err));
@@ -336,12 +339,10 @@ static mt_status spread(walk *w, double left, double right, mt_err *err)
     return MT_OK;
 }
 
-/* Distinct positions of the views with bands, ascending. */
-static int list_positions(const mt_family *f, const double *positions, double unit,
-                          double *list)
+int mt_motion_distinct(int n_positions, const double *positions, double unit, double *list)
 {
     int n = 0;
-    for (int k = 0; k < f->n; k++) {
+    for (int k = 0; k < n_positions; k++) {
         const double at = positions[k];
         bool known = false;
         for (int i = 0; i < n; i++) {
@@ -358,8 +359,7 @@ static int list_positions(const mt_family *f, const double *positions, double un
     return n;
 }
 
-/* Positions of each of n ways. */
-static int most_of_way(const mt_case *c, int n)
+int mt_motion_of_way(const mt_case *c, int n)
 {
     const int share = c->search.max_positions / (n > 0 ? n : 1);
     const int least = share > POSITIONS_LEAST ? share : POSITIONS_LEAST;
@@ -371,7 +371,14 @@ long mt_motion_most(const mt_case *c)
     long sum = 0;
     for (int i = 0; i < c->p->n_families && c->search.max_positions > 0; i++) {
         const mt_family *const f = &c->p->families[i];
-        sum += f->banded ? (long)(f->n - 1) * most_of_way(c, f->n - 1) : 0;
+        sum += f->banded ? (long)(f->n - 1) * mt_motion_of_way(c, f->n - 1) : 0;
+    }
+    for (int i = 0; i < c->p->n_demands && c->search.max_positions > 0; i++) {
+        const mt_demand *const d = &c->p->demands[i];
+        if (mt_family_shakes_first(c->p, d)) {
+            const int ways = c->p->families[mt_family_of(c->p, d->view)].n - 1;
+            sum += (long)ways * mt_motion_of_way(c, ways);
+        }
     }
     return sum;
 }
@@ -385,14 +392,14 @@ static mt_status follow(walk *w, const mt_family *f, const int *below, mt_err *e
         positions[k] = mt_family_position(w->ws->views[f->view[k]].analysis);
     }
     mt_motion *const out = w->out;
-    const int n = list_positions(f, positions, w->unit, list);
+    const int n = mt_motion_distinct(f->n, positions, w->unit, list);
     out->from = list[0];
     out->to = list[n - 1];
     out->way_at = mt_arena_f64(w->mem, (size_t)n, 1);
     out->way_room = mt_arena_f64(w->mem, (size_t)n, 1);
     MT_TRY(mt_arena_check(w->mem, err));
     w->shortest = SHORTEST * (out->to - out->from);
-    w->most = most_of_way(w->ws->c, n - 1);
+    w->most = mt_motion_of_way(w->ws->c, n - 1);
     for (int i = 0; i + 1 < n; i++) {
         mt_way_bands bands = {0};
         MT_TRY(
@@ -426,7 +433,7 @@ mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_ar
                        .hz = nan(""),
                        .broken_at = nan("")};
     walk w = {.ws = ws, .mem = mem, .out = out};
-    const mt_status rc = open_drive(ws, family, &why);
+    const mt_status rc = mt_motion_open(ws, family, &why);
     if (rc != MT_OK) {
         return ends(rc) ? mt_fail(err, rc, "%s", why.text)
                         : note_break(&w, first, MT_MOTION_BROKEN, why.text, err);

@@ -56,6 +56,16 @@ typedef struct mt_motion {
 mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_arena *mem,
                            mt_motion *out, mt_err *err);
 
+/* The worker's own analysis of the family's moving mechanism, ws->driven[family]. Fails:
+ * MT_E_DOMAIN where there is none, as mt_analysis_new. */
+mt_status mt_motion_open(mt_workspace *ws, int family, mt_err *err);
+/* Those that differ, ascending; their number. */
+int mt_motion_distinct(int n_positions, const double *positions, double unit, double *list);
+/* Most positions of each of n ways. */
+int mt_motion_of_way(const mt_case *c, int n);
+/* Intervals of a way at first. */
+int mt_motion_pieces(double way, double unit, int most);
+
 /* Evaluations that it takes at most to follow a design over all motions; 0: there are none, or
  * there is no limit. */
 long mt_motion_most(const mt_case *c);

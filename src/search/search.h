@@ -5,6 +5,7 @@
 #include "problem/workspace.h"
 
 struct mt_robust_cuts;
+struct mt_cut;
 
 /*
  * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for
@@ -23,8 +24,9 @@ mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_aren
 /*
  * search_tolerances.c: the same, and every design is held over its tolerances where the corners
  * of the case are samples (problem/robust_cut.h): what is worse within them becomes one more
- * corner, and the search goes on from there, within its budget. A design that misses something
- * even so is none where another one meets everything.
+ * corner, and the search goes on from there, within its budget. Limits of forced vibration are
+ * held likewise between the positions of a drive that their goals name. A design that misses
+ * something even so is none where another one meets everything.
  */
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                                     mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
@@ -33,6 +35,25 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
 mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem,
                           struct mt_robust_cuts *cuts, mt_nlp_solution *s, bool *again,
                           mt_err *err);
+/* search_positions.c: limits between the positions of a drive. Grown by who judges. */
+typedef struct mt_posed_cuts {
+    int n;
+    struct mt_cut *items; /* owned */
+    /* of the last design judged */
+    int added;
+    bool holds; /* every limit, at all positions that were looked at */
+    long evals;
+} mt_posed_cuts;
+/* Is there anything to judge so? */
+bool mt_search_has_positions(const mt_case *c);
+/* Judge the design at t, and add the positions where it misses a limit, but the last time.
+ * Fails: as an evaluation, as mt_motion_shaken. */
+mt_status mt_search_judge_positions(mt_workspace *w, const double *t, bool last, mt_arena *mem,
+                                    mt_posed_cuts *cuts, mt_err *err);
+/* first[n], then these, which still own theirs: for mt_case_lay_out. Fails: MT_E_MEMORY. */
+mt_status mt_posed_cuts_behind(const mt_posed_cuts *cuts, int n, const struct mt_cut *first,
+                               mt_arena *mem, struct mt_cut **out, mt_err *err);
+void mt_posed_cuts_free(mt_posed_cuts *cuts);
 /* search.c: the stages of one search of the case that ws is set to, from the design at `from`
  * alone. out->solutions[0] is what became of it, where there is any. */
 mt_status mt_search_from(mt_workspace *ws, const double *from, mt_arena *mem,

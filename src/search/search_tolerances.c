@@ -5,11 +5,14 @@
  *     g(t, c) <= 0    for all corners c of C,
  * its design t may miss a goal at some other point c' of its tolerances. With c' in C as well
  * the search goes on from t. The worst within moves as t does, and where it lies inside, its
- * value by the square of that: a few rounds end it. All designs are held at the same C.
+ * value by the square of that: a few rounds end it. All designs are held at the same C. So it
+ * is with limits over the positions of a drive, c being one.
  */
 #include <math.h>
 
+#include "problem/family.h"
 #include "problem/robust_cut.h"
+#include "search/motion.h"
 #include "search/search.h"
 
 enum { ROUNDS = 8 };
@@ -38,8 +41,37 @@ typedef struct rounds {
     int round;
     bool *open; /* [n_solutions] not judged, or missed at a point that is a cut since */
     mt_robust_cuts cuts;
+    bool over_tolerances;
+    bool over_positions;
+    long judgement; /* most evaluations that a design takes over the positions */
+    mt_posed_cuts posed;
+    bool *kept;         /* [n_solutions] the limits over the positions, when last judged */
     const double *told; /* the design that undetermined directions are of */
 } rounds;
+
+/* Has the budget less left? */
+static bool lacks(const rounds *r, long evals)
+{
+    const long most = r->c->search.max_evaluations;
+    return most > 0 && most - r->out->evals < evals;
+}
+
+/* Judge solution i over what there is to judge it over. */
+static mt_status judge(rounds *r, int i, bool last, mt_err *err)
+{
+    mt_nlp_solution *const s = &r->out->solutions[i];
+    r->open[i] = false;
+    if (r->over_tolerances) {
+        MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
+    }
+    if (r->over_positions && s->feasible && !lacks(r, r->judgement)) {
+        MT_TRY(mt_search_judge_positions(r->ws, s->t, last, r->mem, &r->posed, err));
+        r->kept[i] = r->posed.holds;
+        r->out->evals += r->posed.evals;
+        r->open[i] = r->open[i] || r->posed.added > 0;
+    }
+    return MT_OK;
+}
 
 /* Judge what is open; is any of it still? */
 static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
@@ -47,8 +79,7 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
     *any = false;
     for (int i = 0; i < r->out->n_solutions; i++) {
         if (r->open[i]) {
-            MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, &r->out->solutions[i],
-                                   &r->open[i], err));
+            MT_TRY(judge(r, i, last, err));
             *any = *any || r->open[i];
         }
     }
@@ -87,8 +118,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
 /* Nothing goes on when the budget is spent, or who asked wants no more. */
 static bool is_spent(rounds *r)
 {
-    const long most = r->c->search.max_evaluations;
-    const bool spent = most > 0 && r->out->evals >= most;
+    const bool spent = lacks(r, 1 + r->judgement);
     r->out->stop = spent && r->out->stop == MT_STOP_DONE ? MT_STOP_MAX_EVALS : r->out->stop;
     return spent || r->out->stop == MT_STOP_USER;
 }
@@ -99,18 +129,43 @@ static mt_status search_again(rounds *r, mt_err *err)
     const mt_case *const c = r->c;
     mt_case held;
     MT_TRY(mt_case_copy(c, r->mem, &held, err));
-    MT_TRY(mt_robust_add_cuts(c, &r->cuts, r->mem, &held.robust, err));
-    MT_TRY(mt_case_lay_out(&held, NULL, 0, NULL, r->ws, r->mem, err));
+    if (r->over_tolerances) {
+        MT_TRY(mt_robust_add_cuts(c, &r->cuts, r->mem, &held.robust, err));
+    }
+    MT_TRY(mt_case_lay_out(&held, NULL, r->posed.n, r->posed.items, r->ws, r->mem, err));
     mt_status rc = MT_OK;
     for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
         if (r->open[i] && !is_spent(r)) {
             held.search.max_evaluations =
-                c->search.max_evaluations > 0 ? c->search.max_evaluations - r->out->evals : 0;
+                c->search.max_evaluations > 0
+                    ? c->search.max_evaluations - r->out->evals - r->judgement
+                    : 0;
             rc = go_on(r, i, err);
         }
     }
     mt_workspace_back(r->ws, c);
     return rc;
+}
+
+/* Those that do not keep their limits between the positions are none where others do; where
+ * none does they stand as what they are at the positions that are given. */
+static void drop_broken(rounds *r)
+{
+    mt_nlp_result *const out = r->out;
+    int n = 0;
+    for (int i = 0; i < out->n_solutions; i++) {
+        n += out->solutions[i].feasible && r->kept[i] ? 1 : 0;
+    }
+    if (!r->over_positions || n == 0) {
+        return;
+    }
+    n = 0;
+    for (int i = 0; i < out->n_solutions; i++) {
+        if (r->kept[i]) {
+            out->solutions[n++] = out->solutions[i];
+        }
+    }
+    out->n_solutions = n;
 }
 
 /* Where some design meets everything those that do not are none. */
@@ -119,6 +174,7 @@ static mt_status sort_out(rounds *r, mt_err *err)
     mt_nlp_result *const out = r->out;
     const int before = out->n_solutions;
     int n = 0;
+    drop_broken(r);
     MT_TRY(mt_search_rank(r->ws, *r->stage, r->mem, out, err));
     while (n < out->n_solutions && out->solutions[n].feasible) {
         n++;
@@ -144,8 +200,11 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
                                     mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
 {
     rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out, .stage = stage};
+    r.over_tolerances = mt_robust_is_sampled(r.c);
+    r.over_positions = mt_search_has_positions(r.c);
+    r.judgement = r.over_positions ? 2 + mt_motion_most(r.c) : 0;
     MT_TRY(mt_search_designs(workers, n_workers, mem, out, stage, why, err));
-    if (!mt_robust_is_sampled(r.c) || out->n_solutions == 0 || out->compromise ||
+    if (!(r.over_tolerances || r.over_positions) || out->n_solutions == 0 || out->compromise ||
         out->stop == MT_STOP_USER) {
         return MT_OK;
     }
@@ -153,25 +212,28 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     bool cut = false;
     r.told = out->solutions[0].t;
     r.open = mt_arena_alloc(mem, (size_t)out->n_solutions, sizeof *r.open);
+    r.kept = mt_arena_alloc(mem, (size_t)out->n_solutions, sizeof *r.kept);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < out->n_solutions; i++) {
         r.open[i] = true;
+        r.kept[i] = true;
     }
     mt_status rc = MT_OK;
     for (int round = 0; round < ROUNDS && any && rc == MT_OK; round++) {
         /* with more cuts less is feasible: what was better counts no more */
         r.round = round + 1;
         rc = judge_open(&r, round + 1 == ROUNDS || is_spent(&r), &any, err);
-        cut = cut || r.cuts.n > 0;
+        cut = cut || r.cuts.n > 0 || r.posed.n > 0;
         rc = rc == MT_OK && any ? search_again(&r, err) : rc;
     }
+    mt_posed_cuts_free(&r.posed); /* no case with them is left */
     if (rc == MT_E_INTERRUPTED) {
         out->stop = MT_STOP_USER;
         return MT_OK;
     }
     bool missed = false;
     for (int i = 0; i < out->n_solutions; i++) {
-        missed = missed || !out->solutions[i].feasible;
+        missed = missed || !out->solutions[i].feasible || !r.kept[i];
     }
     return rc == MT_OK && (cut || missed) ? sort_out(&r, err) : rc;
 }

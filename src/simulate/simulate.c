@@ -114,8 +114,9 @@ static mt_status reserve(run *r, mt_err *err)
 {
     const mt_sim_options *const opt = r->s.opt;
     mt_sim_result *const out = r->out;
-    const double samples = floor(opt->duration_s / opt->sample_s) + 2.0;
-    if (!(opt->duration_s > 0.0) || !(opt->sample_s > 0.0) || !isfinite(samples)) {
+    const bool given = opt->duration_s > 0.0 && opt->sample_s > 0.0;
+    const double samples = given ? floor(opt->duration_s / opt->sample_s) + 2.0 : HUGE_VAL;
+    if (!isfinite(samples)) {
         return mt_fail(err, MT_E_USAGE, "a duration and a sample time above 0 are needed");
     }
     if (!(samples * (opt->n_gauges + 1) <= MT_SIM_SAMPLES_MOST)) {

@@ -139,6 +139,26 @@ static void contradicting_measurements__leave_the_least_misfit(mt_test *t)
 static const char *const MAC_GOAL =
     "'goals': [{'type': 'mac', 'mode': 2, 'reference': 'test', 'at_least': 0.99}]";
 
+/* The matrix of the design with these springs. */
+static void check_matrix(mt_test *t, const mt_recommendation *r, double k1, double k2)
+{
+    if (!CHECK(t,
+               r->n_macs == 1 && r->macs[0].n_rows == 2 && r->macs[0].n_reference_modes == 2)) {
+        return;
+    }
+    CHECK_STR(t, r->macs[0].configuration, "default");
+    CHECK_STR(t, r->macs[0].reference, "test");
+    for (int i = 0; i < 4; i++) {
+        double now[2];
+        double theirs[2];
+        two_shape(k1, k2, i / 2 == 0 ? -1 : 1, now);
+        two_shape(2.0, 1.0, i % 2 == 0 ? -1 : 1, theirs);
+        const mt_result_mac_row *const row = &r->macs[0].rows[i / 2];
+        CHECK_INT(t, row->mode, i / 2 + 1);
+        CHECK_NEAR_ABS(t, row->values[i % 2], two_mac(now, theirs), 1e-9);
+    }
+}
+
 /* Of all modes with all of the reference's, at every design, whichever mode the goal names. */
 static void mac_matrix__is_that_of_the_closed_form(mt_test *t)
 {
@@ -147,27 +167,9 @@ static void mac_matrix__is_that_of_the_closed_form(mt_test *t)
     char members[4096];
     (void)snprintf(members, sizeof members, "%s%s%s", SPRINGS, references(text), MAC_GOAL);
     if (study_solve(t, MODEL, members, &c)) {
-        for (int rank = 0; rank <= 1; rank++) {
-            const mt_recommendation *const r =
-                rank == 0 ? &c.result->baseline : &c.result->recommendations[0];
-            const double k1 = rank == 0 ? 2.5 : study_value(&c, 1, "k1");
-            const double k2 = rank == 0 ? 1.2 : study_value(&c, 1, "k2");
-            if (!CHECK(t, r->n_macs == 1 && r->macs[0].n_rows == 2 &&
-                              r->macs[0].n_reference_modes == 2)) {
-                continue;
-            }
-            CHECK_STR(t, r->macs[0].configuration, "default");
-            CHECK_STR(t, r->macs[0].reference, "test");
-            for (int i = 0; i < 4; i++) {
-                double now[2];
-                double theirs[2];
-                two_shape(k1, k2, i / 2 == 0 ? -1 : 1, now);
-                two_shape(2.0, 1.0, i % 2 == 0 ? -1 : 1, theirs);
-                const mt_result_mac_row *const row = &r->macs[0].rows[i / 2];
-                CHECK_INT(t, row->mode, i / 2 + 1);
-                CHECK_NEAR_ABS(t, row->values[i % 2], two_mac(now, theirs), 1e-9);
-            }
-        }
+        check_matrix(t, &c.result->baseline, 2.5, 1.2);
+        check_matrix(t, &c.result->recommendations[0], study_value(&c, 1, "k1"),
+                     study_value(&c, 1, "k2"));
     }
     study_free(&c);
 }

@@ -298,6 +298,35 @@ static void vibration__is_one_side_of_a_front(mt_test *t)
     study_free(&s);
 }
 
+/* Least change within a limit that varies: the part that the peak has of the study's own limit
+ * is the other side, whatever a point is given. A point whose limit the original keeps is the
+ * original itself. */
+static void vibration__is_told_where_change_is_made_least(mt_test *t)
+{
+    static const double LIMITS[] = {1e4, 12.0, 9.0, 7.0};
+    study_case s;
+    if (study_solve(
+            t, ABSORBER("0.0453", "0.001"),
+            "'variables': [{'parameter': 'k', 'lower': 1e-3, 'upper': 1},"
+            " {'parameter': 'c', 'lower': 1e-4, 'upper': 0.1}],"
+            "'goals': [{'type': 'response', 'input': 'main.x', 'output': 'main.x', " BAND
+            ", 'at_most': 10}], 'objective': {'minimise': 'change'},"
+            "'trade': {'vary': [{'goal': 0, 'member': 'at_most', 'values': [10000, 12, 9, 7]}],"
+            " 'objectives': ['change', 'vibration']}",
+            &s) &&
+        CHECK_INT(t, s.result->trade->n_points, 4)) {
+        const mt_trade_point *const p = s.result->trade->points;
+        CHECK_NEAR_ABS(t, p[0].best.change, 0.0, 1e-9);
+        for (int i = 0; i < 4; i++) {
+            mt_test_row(t, "limit %g", LIMITS[i]);
+            CHECK(t, p[i].pareto && p[i].best.feasible);
+            CHECK(t, i == 0 || p[i].best.change > p[i - 1].best.change);
+            CHECK(t, i == 0 || fabs(p[i].best.responses[0].value / LIMITS[i] - 1.0) < 1e-5);
+        }
+    }
+    study_free(&s);
+}
+
 /* What a study cannot mean is refused in words where it stands. */
 static void ports__that_are_not_there_are_told(mt_test *t)
 {
@@ -332,4 +361,5 @@ MT_TEST_MAIN(MT_TEST(absorber__is_tuned_from_ten_times_off),
              MT_TEST(double_pole__is_sampled),
              MT_TEST(catalogue__of_absorbers_is_judged_by_the_peak),
              MT_TEST(vibration__is_one_side_of_a_front),
+             MT_TEST(vibration__is_told_where_change_is_made_least),
              MT_TEST(ports__that_are_not_there_are_told))

@@ -176,6 +176,99 @@ def calculix(elements, folder):
     return cpu, [float(x) for x in found[:4]] or None, peak
 
 
+# Both peers hold the force straight between samples, which is their error; they are given the same file of A, B, time and force.
+LSIM_SCIPY = """
+import sys, numpy as np
+from scipy.signal import lsim
+d = np.load(sys.argv[1])
+n = len(d["a"])
+_, _, x = lsim((d["a"], d["b"], np.eye(n), np.zeros((n, 1))), d["u"], d["t"])
+np.save(sys.argv[1] + ".out.npy", x[:, :n // 2])
+"""
+LSIM_OCTAVE = """
+pkg load control
+load(argv(){1});
+n = rows(a);
+[~, ~, x] = lsim(ss(a, b, eye(n), zeros(n, 1)), u(:), t(:));
+x = x(:, 1:n/2);
+save("-ascii", "-double", [argv(){1} ".out"], "x");
+"""
+
+
+class Motion:
+    """A chain of masses on springs and dampers whose last one is pushed by a sine, from rest. With z = (x, v, sin, cos) as the
+    states z' = A z, so that exp(A dt) takes one sample to the next: the truth."""
+    HZ, FORCE, DURATION = 2.5, 3.0, 4.0
+
+    def __init__(self, masses, samples, folder):
+        import numpy as np
+        from scipy.linalg import expm
+        self.np, self.n, self.folder = np, masses, Path(folder)
+        self.step = self.DURATION / samples
+        m = 1 + 0.1 * np.arange(masses)
+        k, c = np.full(masses, 2000.0), np.full(masses, 1.5)
+
+        def line(v):
+            return np.diag(v) + np.diag(np.append(v[1:], 0)) - np.diag(v[1:], 1) - np.diag(v[1:], -1)
+        n, w = masses, 2 * math.pi * self.HZ
+        a = np.block([[np.zeros((n, n)), np.eye(n)], [-line(k) / m[:, None], -line(c) / m[:, None]]])
+        b = np.zeros((2 * n, 1))
+        b[-1] = 1 / m[-1]
+        whole = np.zeros((2 * n + 2, 2 * n + 2))
+        whole[:2 * n, :2 * n], whole[:2 * n, [2 * n]] = a, b * self.FORCE
+        whole[2 * n, 2 * n + 1], whole[2 * n + 1, 2 * n] = w, -w
+        t = self.step * np.arange(samples + 1)
+        on, z = expm(whole * self.step), np.append(np.zeros(2 * n + 1), 1.0)
+        self.truth = np.zeros((samples + 1, n))
+        for i in range(samples):
+            z = on @ z
+            self.truth[i + 1] = z[:n]
+        u = self.FORCE * np.sin(w * t)
+        self.data = self.folder / f"motion_{masses}.npz"
+        np.savez(self.data, a=a, b=b, u=u, t=t)
+        from scipy.io import savemat
+        savemat(self.folder / f"motion_{masses}.mat", {"a": a, "b": b, "u": u, "t": t}, format="4")
+        (self.folder / "lsim.m").write_text(LSIM_OCTAVE, encoding="utf-8")
+        put(self.folder / f"motion_{masses}.json", self.model(m, k, c))
+
+    def model(self, m, k, c):
+        def tie(i, value, kind, member):
+            return {"name": f"{kind}{i}", "type": "axial", "bodies": [f"b{i - 1}" if i else "ground", f"b{i}"], "at": [[i, 0], [i + 1, 0]],
+                    member: value}
+        return {"format": "modetune-model/1", "name": "chain", "dimension": 2,
+                "bodies": [{"name": f"b{i}", "mass_kg": m[i], "inertia_kg_m2": 1, "centre": [i + 1, 0]} for i in range(self.n)],
+                "joints": [{"name": f"j{i}", "type": "prismatic", "bodies": ["ground", f"b{i}"], "at": [i + 1, 0], "axis": [1, 0]}
+                           for i in range(self.n)],
+                "springs": [tie(i, k[i], "s", "stiffness_n_per_m") for i in range(self.n)],
+                "dampers": [tie(i, c[i], "d", "damping_n_s_per_m") for i in range(self.n)],
+                "sensors": [{"name": f"b{i}", "on": f"b{i}", "directions": ["x"]} for i in range(self.n)]}
+
+    def ours(self):
+        cpu, text, peak = run([PROGRAM, "simulate", self.folder / f"motion_{self.n}.json", "-c", "default", "--duration", self.DURATION,
+                               "--dt-out", repr(self.step), "--sine", f"b{self.n - 1}.x={self.FORCE}@{self.HZ}", "--format", "json"])
+        if text is None:
+            return cpu, None, peak
+        return cpu, self.np.array([out["values"] for out in json.loads(text)["outputs"]]).T, peak
+
+    def scipy(self):
+        cpu, text, peak = run([sys.executable, "-c", LSIM_SCIPY, self.data])
+        return cpu, None if text is None else self.np.load(f"{self.data}.out.npy"), peak
+
+    def octave(self):
+        data = self.folder / f"motion_{self.n}.mat"
+        cpu, text, peak = run(["octave", "--no-gui", "--norc", "--quiet", self.folder / "lsim.m", data])
+        return cpu, None if text is None else self.np.loadtxt(f"{data}.out"), peak
+
+    @staticmethod
+    def has_control():
+        return run(["octave", "--no-gui", "--norc", "--quiet", "--eval", "pkg load control"])[1] is not None
+
+    def error(self, x):
+        if x is None or x.shape != self.truth.shape:
+            return math.nan
+        return float(self.np.max(abs(x - self.truth)) / self.np.max(abs(self.truth)))
+
+
 def affine(masses, folder):
     """A study whose variables enter K affinely: a chain of masses on springs, the first frequency within a range."""
     model = {"format": "modetune-model/1", "name": f"chain of {masses} masses", "dimension": 2,

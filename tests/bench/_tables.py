@@ -30,6 +30,7 @@ COLUMNS = {
     "designs": ("study", "variables", "runs", "first_cpu_s", "best_cpu_s", "proof_cpu_s", "cpu_s", "spread_s", "peak_mib", "first_evaluations",
                 "best_evaluations", "evaluations", "multiplications", "status", "proven", "error"),
     "response": ("problem", "freedoms", "outputs", "way", "frequencies", "cpu_s", "spread_s", "error"),
+    "motion": ("way", "masses", "samples", "cpu_s", "spread_s", "ratio", "error"),
     "asked": ("what", "asked", "measured", "unit", "reached", "error"),
 }
 

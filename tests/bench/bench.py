@@ -16,6 +16,8 @@ studies     whole studies, from their files to their answers
 designs     studies of tests/bench/studies and shipped ones: CPU time to the first design that meets all goals, to the best, to what is
             proven of them, to the answer
 response    a thousand frequencies of forced vibration: by modes, directly, and by NumPy (bench_response)
+motion      a chain of masses from rest under a sine, in time: modetune simulate beside lsim of SciPy and of Octave's control
+            package, each in a process of its own; errors against the exponential of its matrix
 asked       what was to be reached beside what the other tables measured
 Times are CPU seconds of one thread, what is compared runs in turn, and each gets the median of its runs with the spread
 (largest less smallest) beside it. What is not installed is left out and named. SOURCE_DIR, BUILD_DIR and MODETUNE as in the tests.
@@ -38,7 +40,7 @@ import _pictures as pictures
 from _tables import ALONE, BUILD, COLUMNS, PROGRAM, SOURCE, machine, middle, rows_of, run, show, side_by_side, write
 
 PROGRAMS = BUILD / "tests/bench"
-NEEDED = {"octave": "octave", "ccx": "calculix-ccx", "matplotlib": "python3-matplotlib"}
+NEEDED = {"octave": "octave octave-control", "ccx": "calculix-ccx", "matplotlib": "python3-matplotlib"}
 
 
 def there(name):
@@ -226,6 +228,21 @@ class Bench:
             rows.append({"problem": "coupled chain" if coupled else "chain", "freedoms": n, "outputs": n, "way": "NumPy", "frequencies": len(w),
                          "cpu_s": solved[0]["cpu_s"], "spread_s": solved[0]["spread_s"], "error": error})
         self.tell("response", "a thousand frequencies; errors in parts of the largest value", rows)
+
+    def motion(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for masses, samples in ((3, 2000), (12, 2000)):
+                task = cases.Motion(masses, samples, folder)
+                ways = {"modetune": task.ours, "SciPy lsim": task.scipy, "Octave lsim": task.octave}
+                if "octave" in self.missing or not task.has_control():
+                    del ways["Octave lsim"]
+                solved = side_by_side(ways, 1 if self.quick else 5)
+                own = solved["modetune"][0]["cpu_s"]
+                self.rows.setdefault("motion", []).extend(
+                    {"way": way, "masses": masses, "samples": samples, "cpu_s": took["cpu_s"], "spread_s": took["spread_s"],
+                     "ratio": took["cpu_s"] / own, "error": task.error(x)} for way, (took, x) in solved.items())
+        self.tell("motion", "a chain under a sine in time, from file to last sample; ratio: to ours; errors in parts of the largest "
+                  "displacement", self.rows["motion"])
 
     def asked(self):
         def of(table, column, **want):

@@ -226,7 +226,7 @@ static void commands__tell_every_shortage(mt_test *t)
 {
     static const char *const left[] = {"engine_orders", "inceptor_tuning_2"};
     static const char *const files[] = {"result.json", "recommendations.csv", "report.html",
-                                        "trade.csv",   "curves.csv",       "timing.json"};
+                                        "trade.csv",   "curves.csv",          "timing.json"};
     FILE *const file = tmpfile();
     catcher = file == NULL ? -1 : fileno(file);
     if (!CHECK(t, catcher >= 0 && chdir(MT_TEST_SOURCE_DIR) == 0 && mkdtemp(folder) != NULL)) {

@@ -17,7 +17,7 @@ KEYS = {"certificates": ["kind", "pointer"], "curves": ["configuration", "pointe
         "excitations": ["pointer", "name"], "facts": ["kind", "configuration", "pointer"],
         "frequencies": ["configuration", "mode", "name", "reference"], "gap_assignment": ["configuration", "band"], "goals": ["pointer"],
         "inputs": ["file"], "mac_matrices": ["configuration", "reference"], "rows": ["mode"], "motion": ["goal", "drive"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
-        "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "responses": ["goal", "configuration"], "spread": ["parameter"], "vary": ["pointer"]}
+        "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "responses": ["goal", "configuration"], "responses_between": ["goal", "drive"], "spread": ["parameter"], "vary": ["pointer"]}
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
 BY_PLACE = {"densities", "history", "points", "reasons", "recommendations", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")

@@ -163,6 +163,23 @@ static mt_result_motion MOTIONS[] = {
      .grade = "sampled",
      .text = "mode 1 comes nearest"},
 };
+static mt_result_between BETWEEN[] = {
+    {.pointer = "/goals/2",
+     .drive = "pivot",
+     .unit = "rad",
+     .from = -0.25,
+     .to = 0.5,
+     .positions = 31,
+     .at = 0.0625,
+     .value = 4.5,
+     .value_unit = "m/s^2",
+     .error = 1e-9,
+     .frequency_hz = 14.25,
+     .end = "finite",
+     .violation_percent = 12.5,
+     .grade = "sampled",
+     .text = "the acceleration of grip.x is largest between the positions"},
+};
 static mt_result_response RESPONSES[] = {
     {.pointer = "/goals/2",
      .configuration = "installed",
@@ -211,6 +228,8 @@ static void fill_bands(sample *s)
     r->motions = MOTIONS;
     r->n_responses = MT_COUNT(RESPONSES);
     r->responses = RESPONSES;
+    r->n_between = MT_COUNT(BETWEEN);
+    r->between = BETWEEN;
     r->tolerance_box = &s->box;
     s->point = (mt_trade_point){.n_values = MT_COUNT(TRADE_VALUES),
                                 .values = TRADE_VALUES,

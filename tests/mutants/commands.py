@@ -225,7 +225,8 @@ class Answer:
             if not 1 <= line <= len(lines) or not 1 <= column <= len(lines[line - 1]) + 1:
                 yield "place", f"{match.group(0)} is outside of the file"
                 return
-            if match["pointer"] and name == self.case.target and self.tree is not None and not document.resolves(self.tree, match["pointer"]):
+            once = "is given twice" not in done.err  # else a pointer may lead into the first of two, which the tree has not
+            if once and match["pointer"] and name == self.case.target and self.tree is not None and not document.resolves(self.tree, match["pointer"]):
                 yield "place", f"the document has no {match['pointer']}: {done.said()}"
                 return
 
@@ -262,18 +263,18 @@ class Answer:
         """Files come from "run" alone, and only where it answered."""
         new = self._files() - before - {"stdout", "stderr"}
         if done.args[0] == "run" and done.code in (0, 1, 130):
-            new -= {f"out/changed/{n}" for n in ("result.json", "recommendations.csv", "report.html", "trade.csv", "timing.json")}
+            new -= {f"out/changed/{n}" for n in ("result.json", "recommendations.csv", "report.html", "trade.csv", "curves.csv", "timing.json")}
         if new:
             yield "left", f"exit code {done.code}, and files that do not belong there: {sorted(new)[:5]}"
 
     def written(self, done):
         """What was written is whole, and the program itself takes it back."""
         out = self.folder / "out/changed"
-        for name in ("result.json", "recommendations.csv", "report.html", "trade.csv"):
+        for name in ("result.json", "recommendations.csv", "report.html", "trade.csv", "curves.csv"):
             path = out / name
             if path.exists():
                 yield from self._words(name, without_program(path.read_text(encoding="utf-8", errors="replace")))
-            elif name != "trade.csv":
+            elif name not in ("trade.csv", "curves.csv"):
                 yield "left", f"{name} is missing"
                 return
         try:

@@ -120,7 +120,7 @@ static void steps__of_a_search_lead_to_its_best_design(mt_test *t)
     mt_nlp_options opt = mt_nlp_options_default();
     opt.starts = 12;
     opt.least_change = false;
-    mt_step first[MT_STEPS_MOST];
+    mt_step first[MT_STEPS_MOST] = {{.evals = 0}};
     int n = 0;
     for (int workers = 1; workers <= 4; workers++) {
         void *contexts[] = {&c, &c, &c, &c};

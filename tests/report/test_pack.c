@@ -51,6 +51,7 @@ static void pack__survives_every_failing_allocation(mt_test *t)
         mt_text_free(&out);
         CHECK(t, mt_alloc_live() == before);
     }
+    CHECK(t, !mt_alloc_works() || !failed);
 }
 
 MT_TEST_MAIN(MT_TEST(pack__says_once_what_is_said_twice),

@@ -25,11 +25,25 @@ VARIABLES = [{"parameter": "k", "lower": 800, "upper": 1200}]
 # What the shipped studies do not show: an answer that there is none, and a number that is asked for instead of the study's.
 EXTRA = {
     "none": {"variables": VARIABLES, "goals": [{"type": "frequency", "mode": 1, "at_least_hz": 6}]},
+    # between two positions of a drive
+    "swung": {"model": "arm.json", "variables": VARIABLES, "goals": [
+        {"type": "response", "configurations": ["down", "up"], "input": "tip.x", "output": "tip.x", "at_hz": 3, "at_most": 1e-6}]},
+}
+# The mass slides along an arm that is driven to where it is held.
+ARM = MODEL | {
+    "name": "Mass on an arm",
+    "bodies": [{"name": "arm", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [0, 0]}, {"name": "m", "mass_kg": 1, "inertia_kg_m2": 1, "centre": [1, 0]}],
+    "joints": [{"name": "pivot", "type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0]},
+               {"name": "rail", "type": "prismatic", "bodies": ["arm", "m"], "at": [1, 0], "axis": [1, 0]}],
+    "springs": [MODEL["springs"][0] | {"bodies": ["arm", "m"]}],
+    "sensors": [{"name": "tip", "on": "m", "at": [1, 0], "directions": ["x"]}],
+    "configurations": {name: {"drive": {"joint": "pivot", "position_rad": at, "hold": "lock"}} for name, at in (("down", -0.5), ("up", 0.7))},
 }
 
 
 def studies(folder):
-    (folder / "model.json").write_text(json.dumps(MODEL), encoding="utf-8")
+    for name, model in (("model", MODEL), ("arm", ARM)):
+        (folder / f"{name}.json").write_text(json.dumps(model), encoding="utf-8")
     for name, members in EXTRA.items():
         study = {"format": "modetune-study/1", "name": name, "model": "model.json", **members}
         (folder / f"{name}.json").write_text(json.dumps(study), encoding="utf-8")
@@ -63,7 +77,7 @@ def accounted(study, result):
     """What was spent adds up, and has room for all that the result shows."""
     spent = dict(result["run"]["spent"])
     designs = [result["baseline"], *result["recommendations"]]
-    positions = sum(m["positions"] for d in designs for m in d["motion"])
+    positions = sum(m["positions"] for d in designs for m in d["motion"] + d["responses_between"])
     spent.pop("multiplications")
     good = (sum(spent.values()) == result["run"]["evaluations"] and spent["descriptions"] >= 2 * len(designs) and spent["positions"] >= positions
             and (spent["trade"] > 0) == (result["trade"] is not None))

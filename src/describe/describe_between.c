@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Goals of forced vibration between the positions of one drive that they name: the worst, and
+ * whether their limit holds there. */
+#include <math.h>
+
+#include "describe/describe.h"
+#include "problem/goal.h"
+#include "search/motion_shaken.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+static const double PERCENT = 100.0;
+
+static const char *grade_of(const mt_shaken_motion *m)
+{
+    return m->end == MT_MOTION_CAPPED     ? "sampled coarsely"
+           : m->end == MT_MOTION_BROKEN   ? "incomplete"
+           : m->end == MT_MOTION_UNSTABLE ? "unstable"
+                                          : "sampled";
+}
+
+/* What is known of the worst, and where it is. */
+static const char *worst_text(const mt_goal *g, const mt_result_between *r, mt_arena *mem)
+{
+    const char *const about = mt_describe_shaken(g->shake, mem);
+    if (about == NULL) {
+        return NULL;
+    }
+    const char *const subject =
+        mt_arena_printf(mem, "%s over %s from %.6g to %.6g %s (%d positions sampled)", about,
+                        r->drive, r->from, r->to, r->unit, r->positions);
+    if (subject == NULL || !MT_HAS(r->at)) {
+        return subject == NULL ? NULL : mt_arena_printf(mem, "%s has no value", subject);
+    }
+    if (!MT_HAS(r->value)) {
+        return mt_arena_printf(mem,
+                               "%s has no bound at %.6g %s: nothing damps a motion that is "
+                               "shaken at its natural frequency",
+                               subject, r->at, r->unit);
+    }
+    const char *const beside = mt_describe_shaken_beside(g, r->value, mem);
+    return beside == NULL
+               ? NULL
+               : mt_arena_printf(mem, "%s is worst at %.6g %s%s: %.4g%s%s%s%s", subject, r->at,
+                                 r->unit, r->named ? ", a position that is given" : "",
+                                 r->value, r->value_unit[0] != '\0' ? " " : "", r->value_unit,
+                                 mt_describe_shaken_kind(g->shake), beside);
+}
+
+static const char *text_of(const mt_goal *g, const mt_shaken_motion *m,
+                           const mt_result_between *r, mt_arena *mem)
+{
+    const char *const worst = worst_text(g, r, mem);
+    if (worst == NULL) {
+        return NULL;
+    }
+    if (m->why != NULL) {
+        return mt_arena_printf(mem, "%s; nothing is known at %.6g %s: %s", worst, m->broken_at,
+                               r->unit, m->why);
+    }
+    return mt_arena_printf(
+        mem, "%s; the limit %s over the range%s", worst, r->holds ? "holds" : "does not hold",
+        m->end == MT_MOTION_CAPPED ? ", as far as the evaluations allow to look" : "");
+}
+
+static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_shaken_motion *m,
+                     mt_arena *mem, mt_result_between *out, mt_err *err)
+{
+    const mt_goal *const g = d->goal;
+    const mt_family *const f = &fresh->p->families[mt_family_of(fresh->p, d->view)];
+    const bool finite = m->worst.finite;
+    *out = (mt_result_between){.pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index),
+                               .drive = f->joint,
+                               .unit = f->angle ? "rad" : "m",
+                               .from = m->from,
+                               .to = m->to,
+                               .positions = m->positions,
+                               .at = m->at,
+                               .named = m->given,
+                               .value = finite ? m->worst.value : nan(""),
+                               .value_unit = mt_study_goal_unit(fresh->p->study, g),
+                               .error = finite ? m->worst.error : nan(""),
+                               .frequency_hz = finite ? m->worst.omega / TWO_PI : nan(""),
+                               .end = MT_HAS(m->at) ? m->worst.end_name : "none",
+                               .violation_percent =
+                                   finite ? PERCENT * expm1(fmax(m->off, 0.0)) : nan(""),
+                               .holds = mt_is_met(m->off, d->tolerance) && m->why == NULL,
+                               .grade = grade_of(m)};
+    out->text = text_of(g, m, out, mem);
+    return mt_arena_check(mem, err);
+}
+
+/* Who asks for a limit at some positions may take the range for granted. Limits that are but a
+ * scale are no promise. */
+static mt_status warn(const mt_design *design, const mt_result_between *r, mt_result *result,
+                      const mt_recommendation *rec, mt_err *err)
+{
+    if (design->found == NULL || r->holds || !rec->feasible) {
+        return MT_OK;
+    }
+    return mt_describe_warn(result, err,
+                            "recommendation %d keeps the limit of %s at the positions that are "
+                            "given alone: %s",
+                            design->rank, r->pointer, r->text);
+}
+
+mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,
+                              mt_recommendation *rec, mt_err *err)
+{
+    const mt_problem *const p = fresh->p;
+    rec->between = mt_arena_alloc(&result->mem, (size_t)p->n_demands, sizeof *rec->between);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    for (int i = 0; i < p->n_demands; i++) {
+        const mt_demand *const d = &p->demands[i];
+        mt_shaken_motion m = {.end = MT_MOTION_NONE};
+        MT_TRY(mt_family_shakes_first(p, d) ? mt_motion_shaken(fresh, d, &fresh->mem, &m, err)
+                                            : MT_OK);
+        if (m.end != MT_MOTION_NONE) {
+            mt_result_between *const row = &rec->between[rec->n_between++];
+            MT_TRY(put(fresh, d, &m, &result->mem, row, err));
+            MT_TRY(d->row_in >= 0 ? warn(design, row, result, rec, err) : MT_OK);
+        }
+    }
+    return MT_OK;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef SEARCH_MOTION_SHAKEN_H
+#define SEARCH_MOTION_SHAKEN_H
+
+#include "problem/shaken.h"
+#include "search/motion.h"
+
+/* A goal of forced vibration over the positions of one drive. */
+typedef struct mt_shaken_motion {
+    mt_motion_end end;
+    const char *why;
+    double broken_at;
+    double from; /* first and last position that is given [rad, m] */
+    double to;
+    int positions;
+    /* MT_MOTION_NONE as `end`: they are one position, and nothing else is set */
+    /* the most that a limit is exceeded by, ln(value / limit); negative: the least room; where
+     * it is infinite, HUGE_VAL. NaN: no position has a value */
+    double off;
+    double at;
+    bool given; /* that is one of the positions given */
+    mt_shaken_value worst;
+    int n_ways;
+    double *way_at; /* [n_ways] the worst strictly between two of those; NaN: there is none */
+    double *way_off;
+} mt_shaken_motion;
+
+/*
+ * The goal of d at all positions between those of its family that the goal names, at the design
+ * ws->x, at which the views have been solved. The worst is found to 1e-4 of
+ * the value; what rises and falls between two samples and touches neither is not seen. Fails:
+ * as mt_motion_follow.
+ */
+mt_status mt_motion_shaken(mt_workspace *ws, const mt_demand *d, mt_arena *mem,
+                           mt_shaken_motion *out, mt_err *err);
+
+#endif
