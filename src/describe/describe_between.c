@@ -19,43 +19,49 @@ static const char *grade_of(const mt_shaken_motion *m)
 }
 
 /* What is known of the worst, and where it is. */
-static const char *worst_text(const mt_goal *g, const mt_result_between *r, mt_arena *mem)
+static const char *worst_text(const mt_study *study, const mt_family *f, const mt_goal *g,
+                              const mt_result_between *r, mt_arena *mem)
 {
     const char *const about = mt_describe_shaken(g->shake, mem);
-    if (about == NULL) {
+    const mt_unit *const shown = mt_study_shown(study, f->angle ? MT_ANGLE : MT_LENGTH);
+    const char *const to = mt_describe_position(study, f, r->to, mem);
+    const char *const at = mt_describe_position(study, f, r->at, mem);
+    if (about == NULL || to == NULL || at == NULL) {
         return NULL;
     }
     const char *const subject =
-        mt_arena_printf(mem, "%s over %s from %.6g to %.6g %s (%d positions sampled)", about,
-                        r->drive, r->from, r->to, r->unit, r->positions);
+        mt_arena_printf(mem, "%s over %s from %.6g to %s (%d positions sampled)", about,
+                        r->drive, mt_unit_from_si(shown, r->from), to, r->positions);
     if (subject == NULL || !MT_HAS(r->at)) {
         return subject == NULL ? NULL : mt_arena_printf(mem, "%s has no value", subject);
     }
     if (!MT_HAS(r->value)) {
         return mt_arena_printf(mem,
-                               "%s has no bound at %.6g %s: nothing damps a motion that is "
+                               "%s has no bound at %s: nothing damps a motion that is "
                                "shaken at its natural frequency",
-                               subject, r->at, r->unit);
+                               subject, at);
     }
     const char *const beside = mt_describe_shaken_beside(g, r->value, mem);
     return beside == NULL
                ? NULL
-               : mt_arena_printf(mem, "%s is worst at %.6g %s%s: %.4g%s%s%s%s", subject, r->at,
-                                 r->unit, r->named ? ", a position that is given" : "",
-                                 r->value, r->value_unit[0] != '\0' ? " " : "", r->value_unit,
+               : mt_arena_printf(mem, "%s is worst at %s%s: %.4g%s%s%s%s", subject, at,
+                                 r->named ? ", a position that is given" : "", r->value,
+                                 r->value_unit[0] != '\0' ? " " : "", r->value_unit,
                                  mt_describe_shaken_kind(g->shake), beside);
 }
 
-static const char *text_of(const mt_goal *g, const mt_shaken_motion *m,
-                           const mt_result_between *r, mt_arena *mem)
+static const char *text_of(const mt_study *study, const mt_family *f, const mt_goal *g,
+                           const mt_shaken_motion *m, const mt_result_between *r, mt_arena *mem)
 {
-    const char *const worst = worst_text(g, r, mem);
+    const char *const worst = worst_text(study, f, g, r, mem);
     if (worst == NULL) {
         return NULL;
     }
     if (m->why != NULL) {
-        return mt_arena_printf(mem, "%s; nothing is known at %.6g %s: %s", worst, m->broken_at,
-                               r->unit, m->why);
+        const char *const where = mt_describe_position(study, f, m->broken_at, mem);
+        return where == NULL ? NULL
+                             : mt_arena_printf(mem, "%s; nothing is known at %s: %s", worst,
+                                               where, m->why);
     }
     return mt_arena_printf(
         mem, "%s; the limit %s over the range%s", worst, r->holds ? "holds" : "does not hold",
@@ -85,7 +91,7 @@ static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_sha
                                    finite ? PERCENT * expm1(fmax(m->off, 0.0)) : nan(""),
                                .holds = mt_is_met(m->off, d->tolerance) && m->why == NULL,
                                .grade = grade_of(m)};
-    out->text = text_of(g, m, out, mem);
+    out->text = text_of(fresh->p->study, f, g, m, out, mem);
     return mt_arena_check(mem, err);
 }
 

@@ -9,6 +9,7 @@ for every theta, stretched or not: with x = cos(theta)^2 between two positions a
 """
 import json
 import math
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -73,6 +74,15 @@ class Positions(unittest.TestCase):
             self.assertEqual(row["holds"], limit > value)
             self.assertAlmostEqual(row["violation_percent"], 100 * max(value / limit - 1, 0), delta=1e-3)
             self.assertGreater(row["positions"], 8)
+
+    def test_positions_are_told_in_the_model_s_unit(self):
+        value, at = largest(K1, 20.0)
+        row = self.answer(dict(damped(K1, 20.0), units={"angle": "deg"}), study([goal(value * 1.2)], C))["baseline"]["responses_between"][0]
+        self.assertEqual((row["unit"], row["from"]), ("rad", 0.2))
+        self.assertRegex(row["text"], r" over pivot from 11\.4592 to 68\.7549 deg \(")
+        told = re.search(r" is worst at ([0-9.]+) deg: ", row["text"])
+        self.assertIsNotNone(told, row["text"])
+        self.assertAlmostEqual(math.radians(float(told[1])), at, delta=2e-3)
 
     def test_the_search_keeps_the_limit_between_the_positions(self):
         """More damping than the named positions ask for: what the worst between them does, whoever works at it."""
