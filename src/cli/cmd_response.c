@@ -73,7 +73,7 @@ static mt_status choose_range(job *j, mt_err *err)
                               .log = j->args->given[MT_OPT_LOG]};
     double hz[2] = {by_mode(j, 1, BELOW_FIRST), by_mode(j, last, ABOVE_LAST)};
     if (j->profile != NULL) {
-        mt_vibration_range(j->profile, hz);
+        mt_vibration_range(j->profile, true, true, hz);
         hz[1] = hz[1] > hz[0] ? hz[1] : ABOVE_LAST * hz[1]; /* one tone */
     }
     MT_TRY(range_end(j, MT_OPT_FROM, hz[0], &opt->from, err));

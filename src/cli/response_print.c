@@ -8,20 +8,12 @@
 enum { DIGITS = 5, HZ_DIGITS = 7, HEADING_TEXT = 160 };
 
 static const double TWO_PI = 6.283185307179586477;
-static const double HALF_TURN_DEG = 180.0;
 
 /* NaN where there is no value. */
 static double magnitude(double complex h)
 {
     const double size = cabs(h);
     return isfinite(size) ? size : nan("");
-}
-
-/* Degrees in (-180, 180]; NaN of nothing and where there is no value. */
-static double phase(double complex h)
-{
-    const double size = cabs(h);
-    return isfinite(size) && size > 0.0 ? carg(h) / (0.5 * TWO_PI) * HALF_TURN_DEG : nan("");
 }
 
 const mt_port *mt_response_input_of(const mt_response_view *v, int pair)
@@ -105,7 +97,7 @@ static void print_extremes(const mt_response_view *v, mt_text *out)
         mt_table_number(&t, x->w / TWO_PI, HZ_DIGITS);
         mt_table_number(&t, magnitude(extreme_of(x)), DIGITS);
         mt_table_text(&t, unit);
-        mt_table_number(&t, phase(extreme_of(x)), DIGITS);
+        mt_table_number(&t, mt_phase_deg(extreme_of(x)), DIGITS);
         for (int k = 0; k < v->n; k++) {
             mt_table_change(&t, percent_of(v, e, k), DIGITS);
         }
@@ -138,7 +130,7 @@ static void print_grid(const mt_response_view *v, mt_text *out)
         mt_table_number(&t, v->curve->w[i] / TWO_PI, HZ_DIGITS);
         for (int p = 0; p < pairs_of(v); p++) {
             mt_table_number(&t, magnitude(value_at(v, p, i)), DIGITS);
-            mt_table_number(&t, phase(value_at(v, p, i)), DIGITS);
+            mt_table_number(&t, mt_phase_deg(value_at(v, p, i)), DIGITS);
         }
     }
     mt_table_print(&t, 2, mt_terminal_width(), out);
@@ -256,7 +248,7 @@ static void json_extreme(const mt_response_view *v, int e, mt_json_writer *w)
     mt_json_put_string(w, "kind", kind_of(x));
     mt_json_put_number(w, "frequency_hz", x->w / TWO_PI);
     mt_json_put_number(w, "magnitude", magnitude(extreme_of(x)));
-    mt_json_put_number(w, "phase_deg", phase(extreme_of(x)));
+    mt_json_put_number(w, "phase_deg", mt_phase_deg(extreme_of(x)));
     if (v->n > 0) {
         mt_json_open(w, "sensitivities", '[');
         for (int k = 0; k < v->n; k++) {
@@ -408,7 +400,7 @@ void mt_response_csv_rows(const mt_response_view *v, mt_table *t)
             mt_table_number(t, has ? creal(h) : nan(""), DIGITS);
             mt_table_number(t, has ? cimag(h) : nan(""), DIGITS);
             mt_table_number(t, magnitude(h), DIGITS);
-            mt_table_number(t, phase(h), DIGITS);
+            mt_table_number(t, mt_phase_deg(h), DIGITS);
             mt_table_number(t, error_at(v, p, i), DIGITS);
             mt_table_text(t, unit);
             if (v->profiled != NULL) {

@@ -11,19 +11,11 @@
 #include "vibration/profiled.h"
 
 static const double TWO_PI = 6.283185307179586477;
-static const double HALF_TURN_DEG = 180.0;
 /* Of a pole's size: what rounding may leave of a damping that is 0. */
 static const double UNDAMPED_ULPS = 64.0;
 
 /* Points that all curves have, of which the picture then takes what it needs. */
 enum { GRID = 100, MOST = 400 };
-
-/* Degrees in (-180, 180]; NaN of 0 and where there is no value. */
-static double phase_deg(double complex h)
-{
-    const double size = cabs(h);
-    return isfinite(size) && size > 0.0 ? carg(h) / (0.5 * TWO_PI) * HALF_TURN_DEG : nan("");
-}
 
 /* Does a motion grow by itself? Poles of negative frequency are mirror images of others. */
 static bool is_unstable(const mt_response *r)
@@ -64,7 +56,7 @@ static mt_result_extreme extreme_of(const mt_response *r, const mt_extreme *e)
                                    : "minimum",
         .hz = e->w / TWO_PI,
         .magnitude = e->infinite ? nan("") : cabs(h),
-        .phase_deg = phase_deg(h),
+        .phase_deg = mt_phase_deg(h),
         .natural_hz = cabs(s) / TWO_PI,
         .damping_ratio = -creal(s) / cabs(s),
     };
@@ -87,7 +79,7 @@ static mt_status put_curve(const mt_response *r, const mt_curve *c, mt_arena *me
     for (int i = 0; i < n && rc == MT_OK; i++) {
         to->hz[i] = c->w[kept[i]] / TWO_PI;
         to->magnitude[i] = cabs(c->h[kept[i]]);
-        to->phase_deg[i] = phase_deg(c->h[kept[i]]);
+        to->phase_deg[i] = mt_phase_deg(c->h[kept[i]]);
         to->n_hz = to->n_magnitude = to->n_phase = i + 1;
     }
     for (int e = 0; e < c->n_extremes && rc == MT_OK; e++) {
@@ -143,10 +135,7 @@ static mt_status put_psd(const mt_vibration *v, mt_arena *mem, mt_curve_points *
     to->psd = mt_arena_f64(mem, (size_t)to->n_hz, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < to->n_hz && v->n_random > 0; i++) {
-        double level = 0.0;
-        for (int k = 0; k < v->n_random; k++) {
-            level += mt_psd_at(&v->random[k].psd, to->hz[i]);
-        }
+        const double level = mt_vibration_density(v, to->hz[i]);
         to->psd[to->n_psd++] =
             level > 0.0 ? level * to->magnitude[i] * to->magnitude[i] : nan("");
     }

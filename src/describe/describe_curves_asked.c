@@ -13,7 +13,6 @@
 static const double BESIDE_BAND = 1.5;
 static const double BESIDE_ONE = 4.0;
 static const double TWO_PI = 6.283185307179586477;
-static const double HALF_TURN_DEG = 180.0;
 enum { MOST_MEASURED = 400 };
 
 /* The same ports of the same configuration, shaken likewise. */
@@ -94,21 +93,12 @@ static mt_status put_ports(const mt_problem *p, int configuration, const mt_shak
 static void choose_band(const mt_shake *s, mt_result_curve *out)
 {
     const mt_vibration *const v = s->profile;
-    out->lower_hz = s->lower_hz / BESIDE_BAND;
-    out->upper_hz = s->upper_hz * BESIDE_BAND;
+    double hz[2] = {s->lower_hz / BESIDE_BAND, s->upper_hz * BESIDE_BAND};
     if (v != NULL) {
-        out->lower_hz = HUGE_VAL;
-        out->upper_hz = 0.0;
-        for (int i = 0; i < v->n_random; i++) {
-            const mt_psd *const g = &v->random[i].psd;
-            out->lower_hz = fmin(out->lower_hz, g->hz[0]);
-            out->upper_hz = fmax(out->upper_hz, g->hz[g->n - 1]);
-        }
-        for (int i = 0; i < v->n_tones; i++) {
-            out->lower_hz = fmin(out->lower_hz, v->tones[i].lower_hz);
-            out->upper_hz = fmax(out->upper_hz, v->tones[i].upper_hz);
-        }
+        mt_vibration_range(v, true, true, hz);
     }
+    out->lower_hz = hz[0];
+    out->upper_hz = hz[1];
     if (!(out->lower_hz * BESIDE_BAND < out->upper_hz)) {
         out->lower_hz /= BESIDE_ONE;
         out->upper_hz *= BESIDE_ONE;
@@ -142,7 +132,7 @@ static mt_status put_measured(const mt_fit *fit, mt_arena *mem, mt_result_curve 
     for (int i = 0; i < fit->n; i += step) {
         to->hz[to->n_hz++] = fit->w[i] / TWO_PI;
         to->magnitude[to->n_magnitude++] = hypot(creal(fit->h[i]), cimag(fit->h[i]));
-        to->phase_deg[to->n_phase++] = carg(fit->h[i]) / (0.5 * TWO_PI) * HALF_TURN_DEG;
+        to->phase_deg[to->n_phase++] = mt_phase_deg(fit->h[i]);
     }
     return MT_OK;
 }

@@ -29,20 +29,9 @@ static double number(const mt_shake *s, const mt_vibration_response *r)
 }
 
 /* From where to where the parts that count shake [Hz]. */
-static void range_of(const mt_shake *s, double *lower, double *upper)
+static void range_of(const mt_shake *s, double hz[2])
 {
-    const mt_vibration *const v = s->profile;
-    *lower = HUGE_VAL;
-    *upper = 0.0;
-    for (int i = 0; i < v->n_random && by_rms(s) > 0.0; i++) {
-        const mt_psd *const g = &v->random[i].psd;
-        *lower = fmin(*lower, g->hz[0]);
-        *upper = fmax(*upper, g->hz[g->n - 1]);
-    }
-    for (int i = 0; i < v->n_tones && by_sine(s) > 0.0; i++) {
-        *lower = fmin(*lower, v->tones[i].lower_hz);
-        *upper = fmax(*upper, v->tones[i].upper_hz);
-    }
+    mt_vibration_range(s->profile, by_rms(s) > 0.0, by_sine(s) > 0.0, hz);
 }
 
 static bool is_finite(const mt_shake *s, const mt_vibration_response *r)
@@ -61,11 +50,10 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
     MT_TRY(mt_shaken_respond(w, d, &r, &proven, err));
     *q = number(s, &r);
     if (!is_finite(s, &r)) {
-        double lower = 0.0;
-        double upper = 0.0;
-        range_of(s, &lower, &upper);
+        double hz[2];
+        range_of(s, hz);
         *q = HUGE_VAL;
-        return mt_shaken_lead(w, d, TWO_PI * lower, TWO_PI * upper, slope, err);
+        return mt_shaken_lead(w, d, TWO_PI * hz[0], TWO_PI * hz[1], slope, err);
     }
     if (slope == NULL) {
         return MT_OK;
@@ -110,8 +98,11 @@ static mt_status look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out,
     bool proven = false;
     mt_vibration_response r;
     mt_shaken_peak peak;
+    double hz[2];
     MT_TRY(mt_shaken_respond(w, d, &r, &proven, err));
-    range_of(s, &out->lower_hz, &out->upper_hz);
+    range_of(s, hz);
+    out->lower_hz = hz[0];
+    out->upper_hz = hz[1];
     out->proven = proven;
     out->end = r.end;
     if (!is_finite(s, &r)) {

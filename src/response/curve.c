@@ -15,6 +15,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double PI = 3.14159265358979323846;
+static const double HALF_TURN_DEG = 180.0;
 /* What a straight line in log |H| may be off by. */
 static const double BENT = 0.01;
 /* Intervals are not divided below this part of their frequency: at an undamped pole or zero log
@@ -83,6 +85,12 @@ static void tidy(trace *c)
         }
     }
     c->n = kept;
+}
+
+double mt_phase_deg(double complex h)
+{
+    const double size = cabs(h);
+    return isfinite(size) && size > 0.0 ? carg(h) / PI * HALF_TURN_DEG : nan("");
 }
 
 double mt_curve_grid(const mt_curve_options *opt, int i)

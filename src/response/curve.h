@@ -45,6 +45,8 @@ typedef struct mt_curve {
     bool complete; /* MT_CURVE_MOST points did */
 } mt_curve;
 
+/* Degrees in (-180, 180]; NaN of 0 and where there is no value. */
+double mt_phase_deg(double complex h);
 /* Frequency i of the grid [rad/s]. */
 double mt_curve_grid(const mt_curve_options *opt, int i);
 /* Results in mem. Fails: as mt_transfer_at, MT_E_INTERRUPTED. */

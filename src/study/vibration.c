@@ -416,16 +416,16 @@ double mt_vibration_density(const mt_vibration *v, double hz)
     return sum;
 }
 
-void mt_vibration_range(const mt_vibration *v, double hz[2])
+void mt_vibration_range(const mt_vibration *v, bool random, bool tones, double hz[2])
 {
     hz[0] = HUGE_VAL;
     hz[1] = 0.0;
-    for (int i = 0; i < v->n_random; i++) {
+    for (int i = 0; random && i < v->n_random; i++) {
         const mt_psd *const psd = &v->random[i].psd;
         hz[0] = fmin(hz[0], psd->hz[0]);
         hz[1] = fmax(hz[1], psd->hz[psd->n - 1]);
     }
-    for (int i = 0; i < v->n_tones; i++) {
+    for (int i = 0; tones && i < v->n_tones; i++) {
         hz[0] = fmin(hz[0], v->tones[i].lower_hz);
         hz[1] = fmax(hz[1], v->tones[i].upper_hz);
     }

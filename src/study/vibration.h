@@ -115,7 +115,7 @@ void mt_vibration_finish(mt_vibration *v, mt_diags *diags);
 
 /* Density of all random parts together at a frequency [(m/s^2)^2/Hz]. */
 double mt_vibration_density(const mt_vibration *v, double hz);
-/* The lowest and highest frequency that there is in it [Hz]. */
-void mt_vibration_range(const mt_vibration *v, double hz[2]);
+/* The lowest and highest frequency of its random parts, its tones, or both [Hz]. */
+void mt_vibration_range(const mt_vibration *v, bool random, bool tones, double hz[2]);
 
 #endif
