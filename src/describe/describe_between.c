@@ -10,14 +10,6 @@
 static const double TWO_PI = 6.283185307179586476925;
 static const double PERCENT = 100.0;
 
-static const char *grade_of(const mt_shaken_motion *m)
-{
-    return m->end == MT_MOTION_CAPPED     ? "sampled coarsely"
-           : m->end == MT_MOTION_BROKEN   ? "incomplete"
-           : m->end == MT_MOTION_UNSTABLE ? "unstable"
-                                          : "sampled";
-}
-
 /* What is known of the worst, and where it is. */
 static const char *worst_text(const mt_study *study, const mt_family *f, const mt_goal *g,
                               const mt_result_between *r, mt_arena *mem)
@@ -90,7 +82,7 @@ static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_sha
                                .violation_percent =
                                    finite ? PERCENT * expm1(fmax(m->off, 0.0)) : nan(""),
                                .holds = mt_is_met(m->off, d->tolerance) && m->why == NULL,
-                               .grade = grade_of(m)};
+                               .grade = mt_motion_grade(m->end)};
     out->text = text_of(fresh->p->study, f, g, m, out, mem);
     return mt_arena_check(mem, err);
 }

@@ -150,25 +150,6 @@ static mt_status examine(described *d, mt_err *err)
     return MT_OK;
 }
 
-static const char *grade_of(const described *d)
-{
-    if (!d->followed) {
-        return "not followed";
-    }
-    switch (d->motion.end) {
-    case MT_MOTION_WHOLE:
-    case MT_MOTION_NONE:
-        return "sampled";
-    case MT_MOTION_CAPPED:
-        return "sampled coarsely";
-    case MT_MOTION_BROKEN:
-        return "incomplete";
-    case MT_MOTION_UNSTABLE:
-        return "unstable";
-    }
-    return "";
-}
-
 /* What the samples say of the mode that comes nearest. */
 static const char *nearest_text(const described *d, const char *range)
 {
@@ -281,7 +262,7 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     row->display_factor = mt_unit_display(shown_in(d));
     row->from = from;
     row->to = to;
-    row->grade = grade_of(d);
+    row->grade = d->followed ? mt_motion_grade(d->motion.end) : "not followed";
     row->mode = d->followed ? m->mode : c->mode;
     row->band = band == NULL ? NULL : mt_arena_strdup(mem, band);
     row->band_id = band == NULL ? 0 : d->followed ? m->tie + 1 : c->band_id;

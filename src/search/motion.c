@@ -75,6 +75,22 @@ static bool ends(mt_status rc)
     return mt_is_final(rc) || rc == MT_E_INTERRUPTED;
 }
 
+const char *mt_motion_grade(mt_motion_end end)
+{
+    switch (end) {
+    case MT_MOTION_WHOLE:
+    case MT_MOTION_NONE:
+        break;
+    case MT_MOTION_CAPPED:
+        return "sampled coarsely";
+    case MT_MOTION_BROKEN:
+        return "incomplete";
+    case MT_MOTION_UNSTABLE:
+        return "unstable";
+    }
+    return "sampled";
+}
+
 mt_status mt_motion_open(mt_workspace *ws, int family, mt_err *err)
 {
     const mt_family *const f = &ws->p->families[family];

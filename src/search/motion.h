@@ -21,6 +21,10 @@ typedef enum mt_motion_end {
     MT_MOTION_NONE      /* no frequency is forbidden between the positions */
 } mt_motion_end;
 
+/* How results grade what was looked at so: "sampled", "sampled coarsely", "incomplete",
+ * "unstable". */
+const char *mt_motion_grade(mt_motion_end end);
+
 typedef struct mt_motion {
     mt_motion_end end;
     const char *why; /* of the first position that is broken or unstable; NULL */
