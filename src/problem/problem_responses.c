@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Are there the ports of the responses that results show? */
 #include "problem/problem.h"
-#include "response/ports.h"
+#include "problem/shaken.h"
 
 /* A profile says how the ground accelerates. */
 static mt_status check_shaken(const mt_study_response *r, const mt_port *in, int index,
@@ -16,28 +16,17 @@ static mt_status check_shaken(const mt_study_response *r, const mt_port *in, int
                          index, r->shake.input.s);
 }
 
-static mt_status check_port(const mt_system *sys, bool input, mt_name name, int index,
-                            mt_arena *mem, mt_port *port, mt_err *err)
-{
-    mt_err why = {.code = MT_OK};
-    const mt_status rc = input ? mt_port_input(sys, name.s, mem, port, &why)
-                               : mt_port_output(sys, name.s, mem, port, &why);
-    return rc == MT_OK
-               ? MT_OK
-               : mt_fail(err, rc == MT_E_USAGE ? MT_E_INPUT : rc, "/responses/%d/%s: %s", index,
-                         input ? "input" : "output", why.text);
-}
-
 static mt_status check(const mt_problem *p, int index, mt_arena *mem, mt_err *err)
 {
     const mt_study_response *const r = &p->study->responses[index];
     mt_port in = {.name = NULL};
     mt_port out;
     mt_system *sys = NULL;
+    const char *const at = mt_arena_printf(mem, "/responses/%d", index);
+    MT_TRY(mt_arena_check(mem, err));
     mt_status rc = mt_system_new(p->study->model, r->configuration, p->n, p->inputs,
                                  p->original, &sys, err);
-    rc = rc == MT_OK ? check_port(sys, true, r->shake.input, index, mem, &in, err) : rc;
-    rc = rc == MT_OK ? check_port(sys, false, r->shake.output, index, mem, &out, err) : rc;
+    rc = rc == MT_OK ? mt_shaken_ports_at(sys, &r->shake, at, mem, &in, &out, err) : rc;
     rc = rc == MT_OK ? check_shaken(r, &in, index, err) : rc;
     mt_system_delete(sys);
     return rc;

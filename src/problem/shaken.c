@@ -62,22 +62,28 @@ static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
     return mt_pass_final(rc, &own, err); /* else it may have one at another design */
 }
 
+mt_status mt_shaken_ports_at(const mt_system *sys, const mt_shake *s, const char *at,
+                             mt_arena *mem, mt_port *in, mt_port *out, mt_err *err)
+{
+    mt_err own = {.code = MT_OK};
+    const char *where = "input";
+    mt_status rc = mt_port_input(sys, s->input.s, mem, in, &own);
+    if (rc == MT_OK) {
+        where = "output";
+        rc = mt_port_output(sys, s->output.s, mem, out, &own);
+    }
+    return rc == MT_OK         ? MT_OK
+           : rc == MT_E_MEMORY ? mt_fail_memory(err)
+                               : mt_fail(err, MT_E_INPUT, "%s/%s: %s", at, where, own.text);
+}
+
 mt_status mt_shaken_ports(mt_problem *p, const mt_demand *d, mt_port *in, mt_port *out,
                           mt_err *err)
 {
-    const mt_shake *const s = d->goal->shake;
-    const mt_system *const sys = p->views[d->view].original->sys;
-    mt_err own = {.code = MT_OK};
-    const char *where = "input";
-    mt_status rc = mt_port_input(sys, s->input.s, &p->mem, in, &own);
-    if (rc == MT_OK) {
-        where = "output";
-        rc = mt_port_output(sys, s->output.s, &p->mem, out, &own);
-    }
-    return rc == MT_OK ? MT_OK
-           : rc == MT_E_MEMORY
-               ? mt_fail_memory(err)
-               : mt_fail(err, MT_E_INPUT, "/goals/%d/%s: %s", d->goal_index, where, own.text);
+    const char *const at = mt_arena_printf(&p->mem, "/goals/%d", d->goal_index);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    return mt_shaken_ports_at(p->views[d->view].original->sys, d->goal->shake, at, &p->mem, in,
+                              out, err);
 }
 
 mt_status mt_shaken_compile(mt_problem *p, mt_demand *d, mt_err *err)

@@ -52,8 +52,11 @@ typedef struct mt_shaken_value {
     bool proven; /* no frequency has more; else sampled */
 } mt_shaken_value;
 
-/* The demand's ports as its view's mechanism has them. Fails: MT_E_INPUT, which begins with the
- * address, MT_E_MEMORY. */
+/* The ports as a mechanism has them; at: where a file says them. Fails: MT_E_INPUT, which
+ * begins with that, MT_E_MEMORY. */
+mt_status mt_shaken_ports_at(const mt_system *sys, const mt_shake *s, const char *at,
+                             mt_arena *mem, mt_port *in, mt_port *out, mt_err *err);
+/* Those of the demand, of its view's mechanism. */
 mt_status mt_shaken_ports(mt_problem *p, const mt_demand *d, mt_port *in, mt_port *out,
                           mt_err *err);
 /* Look up the demand's ports in its view, and try them there. Fails: MT_E_INPUT, which begins
