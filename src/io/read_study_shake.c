@@ -50,20 +50,20 @@ static bool is_shipped(const mt_study_reader *s, const char *name, const char *f
 /* The one of that name; NULL: there is none (noted, with the nearest). */
 static const mt_shipped *shipped(mt_study_reader *s, mt_name name)
 {
+    const char *const path = mt_arena_printf(s->r.mem, "%s%s%s", SHIPPED, name.s, ENDING);
+    const mt_shipped *const own = path == NULL ? NULL : mt_shipped_find(path);
     int n = 0;
     int n_names = 0;
     const mt_shipped *const all = mt_shipped_all(&n);
     const char **const names = mt_arena_alloc(s->r.mem, (size_t)n, sizeof *names);
+    if (own != NULL) {
+        return own;
+    }
     for (int i = 0; i < n && names != NULL; i++) {
-        if (strncmp(all[i].path, SHIPPED, strlen(SHIPPED)) != 0) {
-            continue;
+        if (strncmp(all[i].path, SHIPPED, strlen(SHIPPED)) == 0) {
+            const char *const file = all[i].path + strlen(SHIPPED);
+            names[n_names++] = mt_arena_strndup(s->r.mem, file, strlen(file) - strlen(ENDING));
         }
-        const char *const file = all[i].path + strlen(SHIPPED);
-        const size_t length = strlen(file) - strlen(ENDING);
-        if (strncmp(file, name.s, length) == 0 && name.s[length] == '\0') {
-            return &all[i];
-        }
-        names[n_names++] = mt_arena_strndup(s->r.mem, file, length);
     }
     if (names == NULL || mt_arena_failed(s->r.mem)) {
         return NULL;
