@@ -50,6 +50,21 @@ static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
     }
 }
 
+/* Of every response the original design, then the first recommendations. */
+static void add_all(mt_table *t, const mt_result *result, int most,
+                    void (*add)(mt_table *, const mt_result_curve *, int,
+                                const mt_design_curve *))
+{
+    for (int k = 0; k < result->n_curves; k++) {
+        const mt_result_curve *const of = &result->curves[k];
+        add(t, of, result->baseline.rank, at(&result->baseline, k));
+        for (int i = 0; i < result->n_recommendations && i < most; i++) {
+            const mt_recommendation *const r = &result->recommendations[i];
+            add(t, of, r->rank, at(r, k));
+        }
+    }
+}
+
 mt_table mt_report_curves(const mt_result *result)
 {
     mt_table t = mt_table_default();
@@ -60,14 +75,7 @@ mt_table mt_report_curves(const mt_result *result)
     mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
     mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
     mt_table_column(&t, "PSD", "psd", MT_ALIGN_POINT);
-    for (int k = 0; k < result->n_curves; k++) {
-        const mt_result_curve *const of = &result->curves[k];
-        add_curve(&t, of, result->baseline.rank, at(&result->baseline, k));
-        for (int i = 0; i < result->n_recommendations; i++) {
-            const mt_recommendation *const r = &result->recommendations[i];
-            add_curve(&t, of, r->rank, at(r, k));
-        }
-    }
+    add_all(&t, result, result->n_recommendations, add_curve);
     return t;
 }
 
@@ -100,14 +108,7 @@ mt_table mt_report_extremes(const mt_result *result, int most)
     mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
     mt_table_column(&t, "of a mode at [Hz]", "natural_hz", MT_ALIGN_POINT);
     mt_table_column(&t, "damping ratio", "damping_ratio", MT_ALIGN_POINT);
-    for (int k = 0; k < result->n_curves; k++) {
-        const mt_result_curve *const of = &result->curves[k];
-        add_extremes(&t, of, result->baseline.rank, at(&result->baseline, k));
-        for (int i = 0; i < result->n_recommendations && i < most; i++) {
-            const mt_recommendation *const r = &result->recommendations[i];
-            add_extremes(&t, of, r->rank, at(r, k));
-        }
-    }
+    add_all(&t, result, most, add_extremes);
     return t;
 }
 
