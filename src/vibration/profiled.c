@@ -18,11 +18,11 @@ static mt_status name_input(const mt_vibration *v, const mt_system *sys, mt_aren
             v->name == NULL ? v->path : v->name);
     }
     if (v->axis >= sys->dimension) {
-        return mt_fail(
-            err, MT_E_USAGE,
-            "--vibration: %s is along %s, and the mechanism is plane: say by --input "
-            "base.x or base.y along which it shakes",
-            v->name == NULL ? v->path : v->name, axis);
+        return mt_fail(err, MT_E_USAGE,
+                       "%s is along %s, and the mechanism is plane: name an input, base.x or "
+                       "base.y, along "
+                       "which it shakes",
+                       v->name == NULL ? v->path : v->name, axis);
     }
     input[0] = mt_arena_printf(mem, "base.%s", axis);
     request->n_in = 1;
