@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "base/workers.h"
-#include "mt_alloc.h"
+#include "library/refusals.h"
 #include "mt_test.h"
 
 #define MODELS MT_TEST_SOURCE_DIR "/tests/models/"
@@ -438,20 +438,7 @@ static mt_status use_everything(void)
 
 static void mechanism__every_failing_allocation_is_survived(mt_test *t)
 {
-    CHECK_INT(t, use_everything(), MT_OK); /* libraries claim what they keep */
-    for (long nth = 0; mt_alloc_works(); nth++) {
-        const long before = mt_alloc_live();
-        mt_test_row(t, "allocation %ld", nth);
-        mt_alloc_fail_after(nth);
-        const mt_status rc = use_everything();
-        mt_alloc_fail_after(-1);
-        CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
-        CHECK_INT(t, mt_alloc_live(), before);
-        if (rc == MT_OK) {
-            CHECK(t, nth > 10);
-            break;
-        }
-    }
+    bears_refusals(t, use_everything);
 }
 
 enum { TASKS = 64, THREADS = 4 };

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mt_alloc.h"
+#include "library/refusals.h"
 #include "mt_test.h"
 
 static const mt_file_text FILES[] = {
@@ -206,20 +206,7 @@ static mt_status move_once(void)
 static void motion__every_failing_allocation_is_survived(mt_test *t)
 {
     gsl_error_handler_t *const theirs = gsl_set_error_handler_off();
-    CHECK_INT(t, move_once(), MT_OK); /* libraries claim what they keep */
-    for (long nth = 0; mt_alloc_works(); nth++) {
-        const long before = mt_alloc_live();
-        mt_test_row(t, "allocation %ld", nth);
-        mt_alloc_fail_after(nth);
-        const mt_status rc = move_once();
-        mt_alloc_fail_after(-1);
-        CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
-        CHECK_INT(t, mt_alloc_live(), before);
-        if (rc == MT_OK) {
-            CHECK(t, nth > 10);
-            break;
-        }
-    }
+    bears_refusals(t, move_once);
     (void)gsl_set_error_handler(theirs);
 }
 
