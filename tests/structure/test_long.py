@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""
+What `./bootstrap test` leaves out is known: the tests with the label "long" (tests/CMakeLists.txt: long_tests, and every_tests with
+".every" behind their names) are the rows of the table in CONTRIBUTING, each with the defect that only it would find.
+"""
+import os
+import re
+import unittest
+from pathlib import Path
+
+TREE = Path(os.environ["SOURCE_DIR"])
+ROW = re.compile(r"^\| `(\w+/test_\w+(?:\.every)?)` \| ([^|]+) \|$", re.M)
+
+
+def listed(text, name):
+    """The words of a list of CMake."""
+    found = re.search(rf"^set\({name}\b([^)]*)\)", text, re.M)
+    return [word for line in found[1].split("\n") for word in line.split("#")[0].split()]
+
+
+class Long(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cmake = (TREE / "tests/CMakeLists.txt").read_text(encoding="utf-8")
+        cls.whole = listed(cmake, "long_tests")
+        cls.every = listed(cmake, "every_tests")
+        cls.rows = ROW.findall((TREE / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+
+    def test_the_table_has_all_that_is_left_out(self):
+        self.assertGreater(len(self.whole) + len(self.every), 0)
+        self.assertEqual(sorted(name for name, _ in self.rows), sorted(self.whole + [name + ".every" for name in self.every]))
+        for name, defect in self.rows:
+            self.assertGreater(len(defect.split()), 5, name)
+
+    def test_each_is_a_test_that_is_there(self):
+        for name in self.whole + self.every:
+            self.assertTrue(any((TREE / "tests" / (name + ending)).is_file() for ending in (".c", ".py", ".sh")), name)
+
+    def test_what_looks_at_a_sample_reads_the_switch(self):
+        for name in self.every:
+            room = TREE / "tests" / name.split("/")[0]
+            own = next(path for path in (TREE / "tests" / (name + e) for e in (".c", ".py", ".sh")) if path.is_file())
+            texts = [own.read_text(encoding="utf-8")] + [p.read_text(encoding="utf-8") for p in room.glob("*.py") if p.stem in
+                                                          re.findall(r"^(?:from|import) (\w+)", own.read_text(encoding="utf-8"), re.M)]
+            self.assertTrue(any("MT_EVERY" in text for text in texts), name)
+
+
+if __name__ == "__main__":
+    unittest.main()
