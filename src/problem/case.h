@@ -40,7 +40,7 @@ typedef struct mt_case {
     double *lower_t; /* [n + 1] coordinates; room for one more */
     double *upper_t;
     double *origin_t; /* [n + 1] may lie outside the bounds, where the original design does */
-    const double *change_weight; /* [n + 1] of the coordinates in a change; 0: has none */
+    const double *change_weight;   /* [n + 1] of the coordinates in a change; 0: has none */
     const struct mt_aim *aims;     /* [n_aims] */
     mt_held *held;                 /* [n_aims] those before the stage; NULL at stage 0 */
     double *r_held;                /* [n_res] what a held misfit keeps the residuals at */
