@@ -127,7 +127,8 @@ typedef struct mt_nlp_result {
     mt_stop stop;
     mt_steps steps; /* on the way here */
     /* at the best solution: orthonormal directions of t-space along which crossing the whole
-     * bounds changes every residual and constraint by less than its tolerance */
+     * bounds changes every residual and constraint by less than its tolerance; of a space of
+     * them a basis that follows from the space alone (undetermined.c) */
     int n_undetermined;
     double *undetermined; /* n x n_undetermined */
     /* [n_undetermined] greatest change / tolerance found when crossing */
