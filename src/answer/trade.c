@@ -191,8 +191,8 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
-/* Is a the better answer of one point? The first objective's score decides among designs that
- * meet all goals. */
+/* Is a the better answer of one point, by more than searches leave open? The first objective's
+ * score decides among designs that meet all goals. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
 {
     const mt_recommendation *const x = best_of(a);
@@ -205,7 +205,8 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
     const double f = most ? -x->score : x->score;
     const double g = most ? -y->score : y->score;
     return mt_merit_before(&(mt_merit){.feasible = x->feasible, .n = 1, .f = &f},
-                           &(mt_merit){.feasible = y->feasible, .n = 1, .f = &g}, 0.0);
+                           &(mt_merit){.feasible = y->feasible, .n = 1, .f = &g},
+                           MT_EQUAL_FOUND);
 }
 
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tie.h"
 #include "describe/describe.h"
 #include "problem/beside.h"
 #include "problem/goal_avoid.h"
@@ -114,7 +115,7 @@ static const char *avoid_text(const mt_goal *g, const char *configuration, mt_ar
 }
 
 /* Of all modes beside all bands the clearance that comes nearest to its margin, or falls short
- * of it most. */
+ * of it most; the first of equal ones. */
 typedef struct tightest {
     double has; /* NaN without bands or modes */
     double asked;
@@ -137,8 +138,9 @@ static tightest find_tightest(const mt_workspace *fresh, int view, const mt_band
                               : p.hz;
         const double has = standing(p.band, hz, &asked);
         t.missing = fmax(t.missing, missing_percent(p.band, hz));
-        if (has - asked < least) {
-            least = has - asked;
+        const double room = mt_without_noise(has - asked, MT_PERCENT_NOISE);
+        if (mt_exceeds(least, room)) {
+            least = room;
             t.has = has;
             t.asked = asked;
             t.at = at;

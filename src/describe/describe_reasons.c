@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/tie.h"
 #include "describe/certificates.h"
 #include "describe/describe_discrete.h"
 
@@ -105,19 +106,21 @@ static void say_changes(mt_sentences *s)
             "The goals do not settle %s: they change by at most %.2g %% across its bounds, so "
             "the "
             "design keeps what it had there.",
-            s->result->undetermined[i].text, s->result->undetermined[i].effect_percent);
+            s->result->undetermined[i].text,
+            fmax(s->result->undetermined[i].effect_percent, MT_PERCENT_NOISE));
     }
 }
 
-/* The variable that moves this frequency most, per percent of its value: "; M_SAU moves it
- * most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of its own. */
+/* The variable that moves this frequency most, the first of equal ones, per percent of its
+ * value: "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of
+ * its own. */
 static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
 {
     double most = 0.0;
     int lever = -1;
     for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL && !f->repeated; i++) {
         const double one = 0.01 * f->sensitivity[i] * fabs(s->rec->parameters[i].recommended);
-        if (isfinite(one) && fabs(one) > fabs(most)) {
+        if (isfinite(one) && mt_exceeds(fabs(one), fabs(most))) {
             most = one;
             lever = i;
         }
@@ -317,7 +320,8 @@ static void say_misfit(mt_sentences *s)
     mt_say_of(s, "rank", NULL);
     if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
         mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
-               weighted == 1 ? " is" : "s are", sqrt(sum / s->p->weights));
+               weighted == 1 ? " is" : "s are",
+               mt_without_noise(sqrt(sum / s->p->weights), MT_PERCENT_NOISE));
     }
 }
 

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/tie.h"
+
 /* A clearance that equals its margin within this, in percent of the edge, is active: ten times
  * the tolerance that a goal has by default. */
 static const double ACTIVE_PERCENT = 1e-3;
@@ -91,7 +93,7 @@ static void say_short(mt_sentences *s, const mt_result_clearance *c)
     }
 }
 
-/* What is active or missed, each; of the rest the least. */
+/* What is active or missed, each; of the rest the least, the first of equal ones. */
 static void say_clearances(mt_sentences *s)
 {
     const mt_result_clearance *least = NULL;
@@ -101,7 +103,7 @@ static void say_clearances(mt_sentences *s)
             say_active(s, c);
         } else if (c->percent < c->margin_percent) {
             say_short(s, c);
-        } else if (least == NULL || c->percent < least->percent) {
+        } else if (least == NULL || mt_exceeds(least->percent, c->percent)) {
             least = c;
         }
     }

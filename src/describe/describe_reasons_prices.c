@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tie.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "search/gaps.h"
@@ -145,7 +146,8 @@ static void say_bound_frequency(mt_sentences *s, int i, double amount,
         return;
     }
     const double outwards = strcmp(p->at_bound, "upper") == 0 ? 1.0 : -1.0;
-    const double hz = amount * outwards * f->sensitivity[i];
+    const double hz = mt_without_noise(amount * outwards * f->sensitivity[i],
+                                       MT_RATIO_NOISE * f->recommended_hz);
     const bool raise = f->recommended_hz < f->target_hz || f->recommended_hz < f->at_least_hz;
     const bool lower = f->recommended_hz > f->target_hz || f->recommended_hz > f->at_most_hz;
     if ((raise && hz > 0.0) || (lower && hz < 0.0)) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tie.h"
 #include "mechanics/drive.h"
 #include "mechanics/newton_tangent.h"
 
@@ -141,6 +142,7 @@ static double turn_between(const mt_pose *from, const mt_pose *to)
     return atan2(mt_norm2(3, axis), r[0][0] + r[1][1] + r[2][2] - 1.0);
 }
 
+/* The bodies that move and turn farthest, the first of those that do alike. */
 static void measure_motion(mt_state *p)
 {
     const mt_pose *const from = p->sys->driven ? p->driven.pose : p->drawn;
@@ -153,11 +155,11 @@ static void measure_motion(mt_state *p)
         }
         const double moved = mt_norm2(3, way);
         const double turned = turn_between(&from[i], &p->at.pose[i]);
-        if (moved > p->moved_m) {
+        if (mt_exceeds(moved, p->moved_m)) {
             p->moved_m = moved;
             p->moved_body = i;
         }
-        if (turned > p->turned_rad) {
+        if (mt_exceeds(turned, p->turned_rad)) {
             p->turned_rad = turned;
             p->turned_body = i;
         }

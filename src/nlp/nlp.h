@@ -48,6 +48,8 @@ typedef struct mt_nlp {
     const double *upper;
     const double *hint;   /* [n] another start beside origin and sequence; NULL: none */
     const double *origin; /* [n] the original design, clamped by the engine */
+    /* [n] of the coordinates in the change from the origin; NULL: 1 each */
+    const double *change_weight;
     int n_res;
     int n_eq;
     int n_in;
@@ -107,7 +109,9 @@ typedef struct mt_nlp_solution {
 } mt_nlp_solution;
 
 typedef struct mt_nlp_result {
-    /* only feasible ones, by f; else compromises, by squares, equal ones by f */
+    /* only feasible ones, by f; else compromises, by squares, equal ones by f; what is equal in
+     * both by the change from the origin, 1/2 sum w_j (t_j - origin_j)^2, then by the first
+     * coordinate that differs, less first (equal: to MT_EQUAL_FOUND, merit.h) */
     int n_solutions;
     mt_nlp_solution *solutions;
     /* none is feasible: these minimise the sum of squares of the violations relative to the
@@ -123,7 +127,8 @@ typedef struct mt_nlp_result {
     mt_stop stop;
     mt_steps steps; /* on the way here */
     /* at the best solution: orthonormal directions of t-space along which crossing the whole
-     * bounds changes every residual and constraint by less than its tolerance */
+     * bounds changes every residual and constraint by less than its tolerance; of a space of
+     * them a basis that follows from the space alone (undetermined.c) */
     int n_undetermined;
     double *undetermined; /* n x n_undetermined */
     /* [n_undetermined] greatest change / tolerance found when crossing */

@@ -22,6 +22,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tie.h"
 #include "nlp/kkt.h"
 #include "nlp/lsq.h"
 #include "nlp/polish.h"
@@ -274,6 +275,38 @@ static int single_variables(crossing *x, const mt_nlp_point *p, mt_nlp_result *o
     return k;
 }
 
+/*
+ * Of singular vectors whose values are rounding only the space V V^T that they span is known,
+ * not they themselves. Its basis is taken from it alone, by Cholesky's method with pivots: the
+ * variable that lies in the space most (the first of equal ones), its projection, and the same
+ * of what is left. v: m columns of k, orthonormal; afterwards that basis. w[k], g[m]: work.
+ */
+static void choose_basis(int k, int m, double *v, double *w, double *g, double *basis)
+{
+    for (int r = 0; r < m; r++) {
+        double most = 0.0;
+        int pivot = 0;
+        for (int i = 0; i < k; i++) {
+            double own = 0.0;
+            for (int c = 0; c < m; c++) {
+                own += v[i + (ptrdiff_t)c * k] * v[i + (ptrdiff_t)c * k];
+            }
+            if (mt_exceeds(own, most)) {
+                most = own;
+                pivot = i;
+            }
+        }
+        for (int c = 0; c < m; c++) {
+            g[c] = v[pivot + (ptrdiff_t)c * k];
+        }
+        mt_gemv(false, k, m, 1.0 / sqrt(most), v, k, g, 0.0, w);
+        for (int c = 0; c < m; c++) {
+            mt_axpy(k, -mt_dot(k, w, v + (ptrdiff_t)c * k), w, v + (ptrdiff_t)c * k);
+        }
+        memcpy(basis + (ptrdiff_t)r * k, w, (size_t)k * sizeof *basis);
+    }
+}
+
 /* Small right singular vectors of A (columns of `column`), weakest first. */
 static mt_status combinations(crossing *x, const mt_nlp_point *p, mt_nlp_result *out, double *A,
                               const int *column, int k)
@@ -284,16 +317,31 @@ static mt_status combinations(crossing *x, const mt_nlp_point *p, mt_nlp_result 
     double *const s = mt_arena_f64(mem, (size_t)k, 1);
     double *const u = mt_arena_f64(mem, (size_t)rows, (size_t)k);
     double *const vt = mt_arena_f64(mem, (size_t)k, (size_t)k);
+    double *const v = mt_arena_f64(mem, (size_t)k, (size_t)k);
+    double *const basis = mt_arena_f64(mem, (size_t)k, (size_t)k);
+    double *const w = mt_arena_f64(mem, (size_t)k, 2);
     MT_TRY(mt_arena_check(mem, e->err));
     MT_TRY(mt_svd(rows, k, A, s, u, vt, mem, e->err));
     /* a singular value is the change for a unit vector; it knows rounding of the largest */
-    const double small = fmax(CANDIDATE, 16 * DBL_EPSILON * (double)rows * s[0]);
-    for (int c = k - 1; c >= 0 && s[c] <= small && !e->ended; c--) {
+    const double rounding = 16 * DBL_EPSILON * (double)rows * s[0];
+    const double small = fmax(CANDIDATE, rounding);
+    int n = 0; /* vectors v, of which the first `lost` are known as a space only */
+    int lost = 0;
+    for (int c = k - 1; c >= 0 && s[c] <= small; c--) {
+        for (int i = 0; i < k; i++) {
+            v[i + (ptrdiff_t)n * k] = vt[c + (ptrdiff_t)i * k];
+        }
+        n++;
+        lost += s[c] <= rounding;
+    }
+    choose_basis(k, lost, v, w, w + k, basis);
+    memcpy(v, basis, (size_t)k * (size_t)lost * sizeof *v);
+    for (int c = 0; c < n && !e->ended; c++) {
         double *const d = out->undetermined + (ptrdiff_t)out->n_undetermined * e->n;
         memset(d, 0, (size_t)e->n * sizeof *d);
         for (int i = 0; i < k; i++) {
             const int j = column[i];
-            d[j] = vt[c + (ptrdiff_t)i * k] * (e->nlp->upper[j] - e->nlp->lower[j]);
+            d[j] = v[i + (ptrdiff_t)c * k] * (e->nlp->upper[j] - e->nlp->lower[j]);
         }
         confirm(x, p, out);
     }

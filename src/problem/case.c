@@ -167,6 +167,16 @@ void mt_case_x(const mt_case *c, const double *t, double *x)
     }
 }
 
+double mt_case_change(const mt_case *c, const double *t)
+{
+    double f = 0.0;
+    for (int i = 0; i < c->p->n; i++) {
+        const double d = t[i] - c->origin_t[i];
+        f += 0.5 * c->change_weight[i] * d * d;
+    }
+    return f;
+}
+
 int mt_case_rows_res(const mt_case *c)
 {
     return mt_objective_is(c->aims[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;

@@ -40,6 +40,7 @@ typedef struct mt_case {
     double *lower_t; /* [n + 1] coordinates; room for one more */
     double *upper_t;
     double *origin_t; /* [n + 1] may lie outside the bounds, where the original design does */
+    const double *change_weight;   /* [n + 1] of the coordinates in a change; 0: has none */
     const struct mt_aim *aims;     /* [n_aims] */
     mt_held *held;                 /* [n_aims] those before the stage; NULL at stage 0 */
     double *r_held;                /* [n_res] what a held misfit keeps the residuals at */
@@ -106,6 +107,9 @@ mt_status mt_case_for_stages(const mt_case *from, mt_arena *mem, mt_case *out, m
 /* Parameter values x[n] of coordinates t[n]: a bound, a value of a catalogue, and the original
  * value come back to the last bit. */
 void mt_case_x(const mt_case *c, const double *t, double *x);
+/* The change of the design t[n], 1/2 sum w_i (t_i - t_i(original))^2: what decides among
+ * designs that are as good. */
+double mt_case_change(const mt_case *c, const double *t);
 /* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held
  * objectives. */
 int mt_case_rows_in(const mt_case *c);

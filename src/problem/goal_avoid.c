@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "analysis/count.h"
+#include "base/tie.h"
 #include "problem/beside.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
@@ -346,7 +347,7 @@ int mt_clears_reach(const mt_workspace *w, int view)
         const double top = bands->items[bands->n - 1].upper_hz;
         for (int i = 0; i < modes->count; i++) {
             n += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
-            if (modes->kind[i] == MT_MODE_FLEXIBLE && mt_modal_hz(modes, i) > top) {
+            if (modes->kind[i] == MT_MODE_FLEXIBLE && !mt_exceeds(top, mt_modal_hz(modes, i))) {
                 break; /* the first above all bands still says how far it stays away */
             }
         }

@@ -100,12 +100,14 @@ static mt_status init_whole(mt_problem *p, mt_err *err)
     const size_t n = (size_t)p->n + 1;
     mt_case *const c = &p->whole;
     double *const weight = mt_arena_f64(&p->mem, (size_t)p->n_demands, 1);
+    double *const change_weight = mt_arena_f64(&p->mem, n, 1);
     *c = (mt_case){.p = p,
                    .lower = mt_arena_f64(&p->mem, n, 1),
                    .upper = mt_arena_f64(&p->mem, n, 1),
                    .lower_t = mt_arena_f64(&p->mem, n, 1),
                    .upper_t = mt_arena_f64(&p->mem, n, 1),
                    .origin_t = mt_arena_f64(&p->mem, n, 1),
+                   .change_weight = change_weight,
                    .n_aims = p->n_aims,
                    .aims = p->aims,
                    .weight = weight,
@@ -116,6 +118,7 @@ static mt_status init_whole(mt_problem *p, mt_err *err)
         const mt_variable *const v = &p->study->variables[i];
         mt_case_bound(c, i, v->lower, v->upper);
         c->origin_t[i] = mt_problem_t(p, i, v->original);
+        change_weight[i] = v->weight;
     }
     for (int i = 0; i < p->n_demands; i++) {
         weight[i] = p->demands[i].goal->weight;

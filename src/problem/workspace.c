@@ -196,6 +196,7 @@ mt_nlp mt_workspace_nlp(mt_workspace *w)
                         .upper = c->upper_t,
                         .hint = c->hint,
                         .origin = c->origin_t,
+                        .change_weight = c->change_weight,
                         .n_res = mt_case_rows_res(c),
                         .n_eq = mt_case_rows_eq(c),
                         .n_in = mt_case_rows_in(c),

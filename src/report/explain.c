@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tie.h"
 #include "report/number.h"
 
 enum { VALUE_DIGITS = 6, SHORT_DIGITS = 3, INDENT = 2 };
@@ -25,14 +26,15 @@ static double move(const mt_recommendation *r, const moved *m, int k)
     return m->slopes[k] * PERCENT * fabs(r->parameters[k].recommended);
 }
 
-/* The variable that moves it most among those not taken yet; -1: none does. */
+/* The variable that moves it most among those not taken yet, the first of equal ones; -1: none
+ * does. */
 static int next_mover(const mt_recommendation *r, const moved *g, const bool *taken)
 {
     int best = -1;
     for (int k = 0; k < r->n_parameters; k++) {
         const double own = fabs(move(r, g, k));
         if (!taken[k] && own > 0.0 && isfinite(own) &&
-            (best < 0 || own > fabs(move(r, g, best)))) {
+            (best < 0 || mt_exceeds(own, fabs(move(r, g, best))))) {
             best = k;
         }
     }
@@ -94,16 +96,19 @@ static bool same(const char *a, const char *b)
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* Of bands: the mode that has least room beside its margin. NULL: none. */
+/* Of bands: the mode that has least room beside its margin, the first of equal ones. NULL:
+ * none. */
 static const mt_result_clearance *nearest(const mt_recommendation *r, const char *configuration)
 {
     const mt_result_clearance *best = NULL;
+    double least = HUGE_VAL;
     for (int i = 0; i < r->n_clearances; i++) {
         const mt_result_clearance *const c = &r->clearances[i];
-        const double room = c->percent - c->margin_percent;
+        const double room = mt_without_noise(c->percent - c->margin_percent, MT_PERCENT_NOISE);
         if (same(c->configuration, configuration) && isfinite(room) &&
-            (best == NULL || room < best->percent - best->margin_percent)) {
+            mt_exceeds(least, room)) {
             best = c;
+            least = room;
         }
     }
     return best;

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/base.h"
+#include "base/tie.h"
 #include "report/number.h"
 #include "report/table.h"
 
@@ -137,8 +138,9 @@ static void add_goals(const mt_recommendation *r, mt_text *out)
                      mt_report_number(r->clearance_percent, DIGITS, number));
     }
     if (!isnan(r->misfit)) {
-        mt_text_addf(out, "%s the misfit is %s", n > 0 ? ";" : "",
-                     mt_report_number(r->misfit, DIGITS, number));
+        mt_text_addf(
+            out, "%s the misfit is %s", n > 0 ? ";" : "",
+            mt_report_number(mt_without_noise(r->misfit, MT_RATIO_NOISE), DIGITS, number));
     }
     mt_text_add(out, ".");
     close_item(out);

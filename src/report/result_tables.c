@@ -87,6 +87,16 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
     return t;
 }
 
+/* Of objectives without a unit, and of percentages, it is known what is noise. */
+static void objective_cell(mt_table *t, const char *unit, double value)
+{
+    if (unit == NULL || unit[0] == '\0' || strcmp(unit, "%") == 0) {
+        mt_table_ratio(t, value, VALUE_DIGITS);
+    } else {
+        mt_table_number(t, value, VALUE_DIGITS);
+    }
+}
+
 mt_table mt_report_objectives(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
@@ -98,8 +108,8 @@ mt_table mt_report_objectives(const mt_recommendation *r)
         const mt_design_objective *const o = &r->objectives[k];
         mt_table_text(&t, o->text);
         mt_table_text(&t, o->unit == NULL || o->unit[0] == '\0' ? NULL : o->unit);
-        mt_table_number(&t, o->original, VALUE_DIGITS);
-        mt_table_number(&t, o->recommended, VALUE_DIGITS);
+        objective_cell(&t, o->unit, o->original);
+        objective_cell(&t, o->unit, o->recommended);
     }
     return t;
 }
@@ -146,11 +156,11 @@ void mt_report_objective_columns(mt_table *t, const mt_result *result)
 void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_recommendation *r)
 {
     for (int k = 0; k < result->n_objectives; k++) {
-        mt_table_number(t, k < r->n_objectives ? r->objectives[k].recommended : nan(""),
-                        VALUE_DIGITS);
+        objective_cell(t, result->objectives[k].unit,
+                       k < r->n_objectives ? r->objectives[k].recommended : nan(""));
     }
     if (!has_objective(result, CHANGE)) {
-        mt_table_number(t, r->change, VALUE_DIGITS);
+        mt_table_ratio(t, r->change, VALUE_DIGITS);
     }
 }
 
@@ -398,8 +408,8 @@ mt_table mt_report_published(const mt_result *result)
             mt_table_quoted(&t, p->published, p->display_factor);
             mt_table_shown(&t, p->computed, p->display_factor, VALUE_DIGITS);
         }
-        mt_table_change_shown(&t, p->difference, p->display_factor, PERCENT_DIGITS);
-        mt_table_percent(&t, p->difference_percent, PERCENT_DIGITS);
+        mt_table_difference(&t, p->difference, p->difference_percent, p->display_factor,
+                            PERCENT_DIGITS);
         mt_table_text(&t, p->demand);
         mt_table_text(&t, p->role);
         mt_table_text(&t, p->role != NULL && strcmp(p->role, "not_comparable") == 0

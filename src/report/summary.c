@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tie.h"
 #include "report/curves.h"
 #include "report/number.h"
 #include "report/result_tables.h"
@@ -315,7 +316,8 @@ void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
             if (!isnan(u->effect_percent)) {
                 char effect[MT_NUMBER_TEXT];
                 mt_text_addf(&text, " (at most %s %% from bound to bound)",
-                             mt_report_number(u->effect_percent, DIGITS, effect));
+                             mt_report_number(fmax(u->effect_percent, MT_PERCENT_NOISE), DIGITS,
+                                              effect));
             }
             add_made(to, &text);
         }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/tie.h"
 #include "base/visible.h"
 #include "report/number.h"
 #include "result/result.h"
@@ -133,16 +134,30 @@ void mt_table_quoted(mt_table *t, double value, double factor)
              mt_report_exact(value, exact));
 }
 
-/* Below this a percentage says nothing: the tightest tolerance of a goal is 1e-4 % by default,
- * and frequencies carry relative rounding of about 1e-14. */
-static const double PERCENT_NOISE = 1e-9;
-
 void mt_table_percent(mt_table *t, double value, int digits)
 {
     char text[MT_NUMBER_TEXT];
     char exact[MT_NUMBER_TEXT];
-    const double shown = fabs(value) < PERCENT_NOISE ? 0.0 : value;
+    const double shown = mt_without_noise(value, MT_PERCENT_NOISE);
     add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
+}
+
+void mt_table_difference(mt_table *t, double value, double percent, double factor, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    const bool noise = fabs(percent) < MT_PERCENT_NOISE;
+    const double shown = noise ? 0.0 : mt_result_shown(value, factor);
+    add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
+    mt_table_percent(t, percent, digits);
+}
+
+void mt_table_ratio(mt_table *t, double value, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    const double shown = mt_without_noise(value, MT_RATIO_NOISE);
+    add_cell(t, mt_report_number(shown, digits, text), mt_report_exact(value, exact));
 }
 
 int mt_table_rows(const mt_table *t)

@@ -57,8 +57,13 @@ void mt_table_change_shown(mt_table *t, double value, double factor, int digits)
 void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
 /* A number as a source gives it, in such a unit: no more digits than it has. */
 void mt_table_quoted(mt_table *t, double value, double factor);
-/* A percentage with its sign; for people, what is below 1e-9 % is rounding and written 0. */
+/* A percentage with its sign, and a ratio without; for people, what is noise (base/tie.h) is
+ * written 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
+void mt_table_ratio(mt_table *t, double value, int digits);
+/* Two cells: a difference, shown as above, and what it is in percent; both 0 where that is
+ * noise. */
+void mt_table_difference(mt_table *t, double value, double percent, double factor, int digits);
 int mt_table_rows(const mt_table *t);
 
 /* Heading, rule, rows; two blanks between columns, `indent` before the first, none behind the

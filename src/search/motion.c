@@ -19,12 +19,15 @@
 #include <string.h>
 
 #include "base/spent.h"
+#include "base/tie.h"
 #include "mechanics/products.h"
 
 static const double PART = 0.1;     /* of a clearance, between two positions */
 static const double NEAREST = 1e-3; /* clearances (ln) below it count as it */
 /* an improvement of the least room (ln) that is not worth a position */
 static const double CLOSER = 1e-8;
+/* Rooms that differ by less are equal: what searches and rounding leave open. */
+static const double EQUAL_ROOM = MT_RATIO_NOISE;
 static const double SHORTEST = 1e-7; /* of the motion: intervals that are not halved */
 /* a new position keeps this part of the interval from its ends */
 static const double AWAY = 0.05;
@@ -129,6 +132,14 @@ static double base_room(const edge *e, double room)
     return room + (e->sign * (e->log_hz - e->log_base_hz));
 }
 
+/* Is `room` at a position less than the least so far? Of equal ones (both ends of a travel that
+ * is alike on either side) the lower position is meant, then the first edge. */
+static bool is_less(double room, double at, double least, double least_at)
+{
+    const bool equal = fabs(room - least) <= EQUAL_ROOM;
+    return equal ? at < least_at : !(room >= least);
+}
+
 static void keep_least(walk *w, const edge *e, double at, double room)
 {
     mt_motion *const out = w->out;
@@ -137,7 +148,7 @@ static void keep_least(walk *w, const edge *e, double at, double room)
         out->way_room[w->way] = room;
         out->way_at[w->way] = named ? nan("") : at;
     }
-    if (room >= out->room) {
+    if (!is_less(room, at, out->room, out->at)) {
         return;
     }
     const mt_band *const band = &e->band->band;

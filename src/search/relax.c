@@ -4,7 +4,13 @@
  *     minimise 1/2 s^2   subject to   in_i(t) + s >= 0 (i: rows of the moved number),
  *         eq_i(t) - s = 0,   all other rows as they are;
  * for a bound there is no s: its variable may leave it, and 1/2 (t_j - bound)^2 beyond it is
- * minimised.
+ * minimised. That says how far, s*, but seldom where: two limits that meet on one frequency
+ * leave all designs of that frequency. So once more, from the design that was found and from
+ * the original one,
+ *     minimise the change 1/2 sum w_i (t_i - t_i(original))^2
+ *         subject to the same rows with s = s* + SLACK (the bound beyond by as much),
+ * where the slack gives the designs that are left an interior, and their least change one
+ * place.
  */
 #include "search/relax.h"
 
@@ -29,11 +35,17 @@ static const double LEAST = 1e-9;
  * one found by no more than rows are kept to. */
 enum { ROUNDS = 8 };
 static const double ENOUGH = MT_DEFAULT_TOLERANCE_PERCENT / 100.0;
+/* Searches for the least change, and the part of a budget that is kept for them. */
+enum { STARTS_CHANGE = 2, PART_CHANGE = 4 };
+/* Far above what a move is known to (its square root is by how much a design that is the only
+ * one moves), and below a digit that is shown of a number, and what rows are kept to. */
+static const double SLACK = 1e-7;
 
 typedef struct relaxed {
     mt_workspace *w;
     const mt_move *move;
     double bound_t; /* of a bound that is moved */
+    bool settled;   /* how far is known: the change is minimised */
 } relaxed;
 
 typedef struct task_result {
@@ -74,10 +86,14 @@ static void relax_rows(const relaxed *r, double s, bool with_gradient, mt_nlp_va
     const ptrdiff_t n = c->p->n;
     const int n_in = c->n_in;
     const int n_eq = c->p->n_eq;
-    out->f = 0.5 * s * s;
-    if (with_gradient) {
+    if (!r->settled) {
+        out->f = 0.5 * s * s;
+    }
+    if (with_gradient && !r->settled) {
         memset(out->df, 0, (size_t)n * sizeof *out->df);
-        out->df[n] = s;
+    }
+    if (with_gradient) {
+        out->df[n] = r->settled ? 0.0 : s;
         memset(out->din + (n * n_in), 0, (size_t)n_in * sizeof *out->din);
         memset(out->deq + (n * n_eq), 0, (size_t)n_eq * sizeof *out->deq);
     }
@@ -104,10 +120,10 @@ static mt_status evaluate(void *context, const double *t, bool with_gradient,
 {
     const relaxed *const r = context;
     MT_TRY(mt_workspace_eval_uncounted(r->w, t, with_gradient, out, err));
-    if (r->move->kind == MT_MOVE_BOUND) {
-        beyond_bound(r, t, with_gradient, out);
-    } else {
+    if (r->move->kind != MT_MOVE_BOUND) {
         relax_rows(r, t[r->w->p->n], with_gradient, out);
+    } else if (!r->settled) {
+        beyond_bound(r, t, with_gradient, out);
     }
     return MT_OK;
 }
@@ -147,35 +163,32 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, ans
     return MT_OK;
 }
 
-/* Keep what was found in a case where it is the least move so far, and a workspace made anew
- * confirms it. *again: the move is not enough for what is worst within the tolerances, and
+/* Keep the design t of a move of that size where it is the least so far, and a workspace made
+ * anew confirms it. *again: the move is not enough for what is worst within the tolerances, and
  * there is a cut that says so. */
-static mt_status keep(const mt_case *c, mt_move *m, const mt_nlp_solution *found, answer *a,
+static mt_status keep(const mt_case *c, mt_move *m, double size, const double *t, answer *a,
                       bool *again, mt_err *err)
 {
-    const size_t n = (size_t)c->p->n;
     mt_workspace *fresh = NULL;
-    double size = sqrt(2.0 * found->f);
-    if (!found->feasible || !(size > LEAST) || (m->found && size >= m->size)) {
-        return MT_OK;
-    }
+    const double change = mt_case_change(c, t);
     a->value = nan("");
     a->cuts.added = 0;
+    *again = false;
+    if (!mt_relax_is_less(m, size, change)) {
+        return MT_OK;
+    }
     MT_TRY(mt_workspace_new(c->p, &fresh, err));
     mt_status rc = mt_workspace_use(fresh, c, err);
-    rc = rc == MT_OK ? confirm(fresh, m, found->t, a, err) : rc;
+    rc = rc == MT_OK ? confirm(fresh, m, t, a, err) : rc;
     mt_workspace_delete(fresh);
     MT_TRY(rc);
     if (mt_robust_is_sampled(c)) {
         const double needed = MT_HAS(a->value) ? mt_relax_size(c->p, m, a->value) : HUGE_VAL;
         *again = a->cuts.added > 0 && !(needed <= size + ENOUGH);
-        size = fmax(size, needed);
+        size = needed > size + SLACK ? needed : size;
     }
-    if (MT_HAS(a->value) && !(m->found && size >= m->size)) {
-        m->found = true;
-        m->to = a->value;
-        m->size = size;
-        memcpy(m->x, a->x, n * sizeof *m->x);
+    if (MT_HAS(a->value) && mt_relax_is_less(m, size, change)) {
+        mt_relax_keep(m, size, change, a->value, a->x, c->p->n);
     }
     return MT_OK;
 }
@@ -206,19 +219,74 @@ static mt_nlp nlp_of(relaxed *r, mt_case *c, const double *near, double *hint)
     return nlp;
 }
 
+/* Evaluations that are left to the move, without its confirmations', and their places' along a
+ * motion. */
+static long left_of(const job *j, const mt_case *c, const task_result *out, const answer *a)
+{
+    return j->budget - out->evals - a->evals - (2 * (1 + mt_motion_most(c)));
+}
+
+/* nlp and opt: of the search for how far. */
+static mt_status solve(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options *opt,
+                       task_result *out, mt_nlp_result *found, mt_err *err)
+{
+    mt_err why = {0};
+    const mt_status own = mt_workspace_solve(w, nlp, opt, &out->mem, found, &why);
+    out->evals += found->evals;
+    out->starts += found->starts;
+    out->stopped = out->stopped || found->stop == MT_STOP_USER;
+    if (own != MT_OK) {
+        found->n_solutions = 0;
+    }
+    return mt_pass_final(own, &why, err);
+}
+
+/* The search for the least change with the move that was found, which ends in *to; NULL: none
+ * was found, or there is nothing left for it. */
+static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, long left,
+                        task_result *out, const double **to, mt_err *err)
+{
+    relaxed *const r = nlp.context;
+    const int k = r->move->kind == MT_MOVE_BOUND ? r->move->variable : nlp.n - 1;
+    const bool down = r->move->kind == MT_MOVE_BOUND ? !r->move->upper : found[k] < 0.0;
+    const double most = found[k] + (down ? -SLACK : SLACK);
+    const size_t size = (size_t)nlp.n * sizeof *found;
+    double *const lower = mt_arena_f64(&out->mem, (size_t)nlp.n, 1);
+    double *const upper = mt_arena_f64(&out->mem, (size_t)nlp.n, 1);
+    mt_nlp_result least = {0};
+    *to = NULL;
+    MT_TRY(mt_arena_check(&out->mem, err));
+    if (left <= 0 || out->stopped) {
+        return MT_OK;
+    }
+    memcpy(lower, nlp.lower, size);
+    memcpy(upper, nlp.upper, size);
+    lower[k] = r->move->kind == MT_MOVE_BOUND && !down ? lower[k] : fmax(most, lower[k]);
+    upper[k] = r->move->kind == MT_MOVE_BOUND && down ? upper[k] : fmin(most, upper[k]);
+    nlp.lower = lower;
+    nlp.upper = upper;
+    nlp.hint = found;
+    opt.starts = STARTS_CHANGE;
+    opt.max_evals =
+        left < (long)STARTS_CHANGE * EVALUATIONS ? left : (long)STARTS_CHANGE * EVALUATIONS;
+    r->settled = true;
+    MT_TRY(solve(r->w, &nlp, &opt, out, &least, err));
+    *to = least.n_solutions > 0 && least.solutions[0].feasible ? least.solutions[0].t : NULL;
+    return MT_OK;
+}
+
 /* Once in case c, to which w is set. */
 static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move *m,
                              task_result *out, answer *a, bool *again, mt_err *err)
 {
     relaxed r = {.w = w, .move = m};
     mt_nlp_result found = {0};
-    mt_err why = {0};
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = c->search.seed;
     opt.starts = STARTS;
     const long most = (long)STARTS * EVALUATIONS;
-    /* without its confirmation's, and its place's along a motion */
-    const long left = j->budget - out->evals - a->evals - 1 - mt_motion_most(c);
+    long left = left_of(j, c, out, a);
+    left -= left / PART_CHANGE;
     *again = false;
     if (left <= 0) {
         return MT_OK;
@@ -229,13 +297,17 @@ static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move 
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
     MT_TRY(mt_arena_check(&out->mem, err));
     const mt_nlp nlp = nlp_of(&r, c, a->near, hint);
-    const mt_status own = mt_workspace_solve(w, &nlp, &opt, &out->mem, &found, &why);
-    out->evals += found.evals;
-    out->starts += found.starts;
-    out->stopped = out->stopped || found.stop == MT_STOP_USER;
-    return own == MT_OK && found.n_solutions > 0
-               ? keep(c, m, &found.solutions[0], a, again, err)
-               : mt_pass_final(own, &why, err);
+    MT_TRY(solve(w, &nlp, &opt, out, &found, err));
+    const mt_nlp_solution *const s = found.n_solutions > 0 ? &found.solutions[0] : NULL;
+    const double size = s != NULL ? sqrt(2.0 * s->f) : 0.0;
+    if (!(size > LEAST) || !s->feasible || !mt_relax_is_less(m, size, 0.0)) {
+        return MT_OK;
+    }
+    const double *least = NULL;
+    a->value = nan("");
+    MT_TRY(settle(nlp, opt, s->t, left_of(j, c, out, a), out, &least, err));
+    MT_TRY(least != NULL ? keep(c, m, size, least, a, again, err) : MT_OK);
+    return MT_HAS(a->value) || *again ? MT_OK : keep(c, m, size, s->t, a, again, err);
 }
 
 /* In case c, to which w is set; afterwards to that with cuts. */

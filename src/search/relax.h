@@ -17,6 +17,14 @@
  * bounds and for what the miss that the search found there presses against (relax_near.c). What
  * is found is a design, so a move that is reported suffices for certain; that a smaller one
  * would not is sampled.
+ *     Many designs may do with the same move, so the design that is reported answers another
+ * question: of all that meet the study's rows with the number moved by the least s (and 1e-7
+ * more, less than rows are kept to) that of least change,
+ *     minimise 1/2 sum w_i (t_i - t_i(original))^2.
+ *     Ties are not left to rounding: sizes that differ by less than MT_EQUAL_FOUND are equal.
+ * Of equal moves of one number the design of less change counts, then the first in the order of
+ * assignments or combinations; equal moves of several numbers are listed in the order of the
+ * question: bounds, edges of bands, goals, each as the study lists them, lower before upper.
  */
 typedef enum mt_move_kind { MT_MOVE_BOUND, MT_MOVE_EDGE, MT_MOVE_GOAL } mt_move_kind;
 
@@ -31,8 +39,10 @@ typedef struct mt_move {
     bool found;
     double from;
     double to;
-    double size; /* |s|: by which moves are ranked */
-    double *x;   /* [n] a design that meets everything after the move */
+    double size;   /* |s|: by which moves are ranked */
+    double change; /* f of x */
+    double *x;     /* [n] the design of least change that meets everything after the move */
+    int order;     /* its place in the question */
 } mt_move;
 
 typedef struct mt_moves {
@@ -52,7 +62,8 @@ typedef struct mt_moves {
  *                     spent of the study's budget
  * @param[in]  gaps    the same with the gap assignments, or NULL
  * @param[out] out lists in mem Every move reported has been confirmed by a new workspace at its
- *   design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move.
+ *   design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move,
+ *   of which a third at most is for its design.
  *   Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_relax(mt_workspace *const *workers, int n_workers, const mt_nlp_result *search,
@@ -99,9 +110,14 @@ static const double MT_RELAX_MOST = 2.302585092994046;
 /* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too
  * far to be of help. */
 double mt_relax_size(const mt_problem *p, const mt_move *m, double to);
+/* Is a move of this size, with a design of this change, less than what was found for m: by its
+ * size or, where sizes are equal, by its change? */
+bool mt_relax_is_less(const mt_move *m, double size, double change);
+/* Into m, what is less: the move to `to` with the design x[n]. */
+void mt_relax_keep(mt_move *m, double size, double change, double to, const double *x, int n);
 /* Found moves of `from` into `to`, which lists all, where they are less; n: variables. */
 void mt_relax_merge(mt_moves *to, const mt_moves *from, int n);
-/* Found ones only, least first; stable. */
+/* Found ones only, least first, equal ones in the order of the question. */
 void mt_relax_rank(mt_moves *moves);
 /* Is this row of `in` (of the equalities, where eq) the move's? */
 bool mt_relax_is_row(const mt_case *c, const mt_move *m, bool eq, int row);

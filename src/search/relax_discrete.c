@@ -97,15 +97,13 @@ static double needed(const mt_workspace *w, const mt_move *m, const mt_nlp_value
 
 static void look(const mt_workspace *w, const mt_nlp_values *v, mt_moves *moves)
 {
+    const double change = mt_case_change(w->c, w->t);
     for (int k = 0; k < moves->n; k++) {
         mt_move *const m = &moves->items[k];
         const double to = needed(w, m, v);
         const double size = mt_relax_size(w->p, m, to);
-        if (size > 0.0 && (!m->found || size < m->size)) {
-            m->found = true;
-            m->to = to;
-            m->size = size;
-            memcpy(m->x, w->x, (size_t)w->p->n * sizeof *m->x);
+        if (size > 0.0 && mt_relax_is_less(m, size, change)) {
+            mt_relax_keep(m, size, change, to, w->x, w->p->n);
         }
     }
 }

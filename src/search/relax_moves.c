@@ -75,6 +75,7 @@ mt_status mt_relax_moves(const mt_case *c, mt_arena *mem, mt_moves *out, mt_err 
     add_edge_moves(p, out);
     add_goal_moves(p, out);
     for (int i = 0; i < out->n; i++) {
+        out->items[i].order = i;
         out->items[i].x = mt_arena_f64(mem, (size_t)p->n, 1);
         MT_TRY(mt_arena_check(mem, err));
     }
@@ -197,11 +198,24 @@ double mt_relax_size(const mt_problem *p, const mt_move *m, double to)
     return right && fabs(s) <= MT_RELAX_MOST ? fabs(s) : nan("");
 }
 
-static bool is_same(const mt_move *a, const mt_move *b)
+bool mt_relax_is_less(const mt_move *m, double size, double change)
 {
-    return a->kind == b->kind && a->upper == b->upper && a->variable == b->variable &&
-           a->clear == b->clear && a->band == b->band && a->demand == b->demand &&
-           a->target == b->target;
+    if (!m->found) {
+        return true;
+    }
+    const int order = mt_compare(size, m->size, MT_EQUAL_FOUND);
+    return order < 0 || (order == 0 && mt_compare(change, m->change, MT_EQUAL_FOUND) < 0);
+}
+
+void mt_relax_keep(mt_move *m, double size, double change, double to, const double *x, int n)
+{
+    /* of equal sizes the least stays what others are compared with */
+    const bool equal = m->found && mt_compare(size, m->size, MT_EQUAL_FOUND) == 0;
+    m->size = equal ? fmin(size, m->size) : size;
+    m->change = change;
+    m->to = to;
+    m->found = true;
+    memcpy(m->x, x, (size_t)n * sizeof *m->x);
 }
 
 void mt_relax_merge(mt_moves *to, const mt_moves *from, int n)
@@ -210,13 +224,29 @@ void mt_relax_merge(mt_moves *to, const mt_moves *from, int n)
         const mt_move *const m = &from->items[i];
         for (int k = 0; k < to->n && m->found; k++) {
             mt_move *const own = &to->items[k];
-            if (is_same(own, m) && (!own->found || m->size < own->size)) {
-                double *const x = own->x;
-                memcpy(x, m->x, (size_t)n * sizeof *x);
-                *own = *m;
-                own->x = x;
+            if (own->order == m->order && mt_relax_is_less(own, m->size, m->change)) {
+                mt_relax_keep(own, m->size, m->change, m->to, m->x, n);
             }
         }
+    }
+}
+
+/* Is a before b? By size, or where both count as equal by the question. */
+static bool is_before(const mt_move *a, const mt_move *b, bool equal)
+{
+    return equal ? a->order < b->order : a->size < b->size;
+}
+
+/* By insertion, stable. */
+static void sort(mt_move *items, int n, bool equal)
+{
+    for (int i = 1; i < n; i++) {
+        const mt_move m = items[i];
+        int at = i;
+        for (; at > 0 && is_before(&m, &items[at - 1], equal); at--) {
+            items[at] = items[at - 1];
+        }
+        items[at] = m;
     }
 }
 
@@ -224,15 +254,17 @@ void mt_relax_rank(mt_moves *moves)
 {
     int kept = 0;
     for (int i = 0; i < moves->n; i++) {
-        const mt_move m = moves->items[i];
-        if (!m.found) {
-            continue;
+        if (moves->items[i].found) {
+            moves->items[kept++] = moves->items[i];
         }
-        int at = kept++;
-        for (; at > 0 && m.size < moves->items[at - 1].size; at--) {
-            moves->items[at] = moves->items[at - 1];
-        }
-        moves->items[at] = m;
     }
     moves->n = kept;
+    sort(moves->items, kept, false);
+    for (int first = 0, end = 0; first < kept; first = end) {
+        const double size = moves->items[first].size;
+        while (end < kept && mt_compare(moves->items[end].size, size, MT_EQUAL_FOUND) == 0) {
+            end++;
+        }
+        sort(moves->items + first, end - first, true);
+    }
 }

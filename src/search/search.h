@@ -65,6 +65,10 @@ mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_resu
 
 /* Are designs at a[n] and b[n] one, as in the search itself? */
 bool mt_search_same(int n, const double *a, const double *b);
+/* search_continuum.c: of two designs s[n] and t[n] that are as good, is s the one that counts?
+ * That of less change; of those that mirror each other the one with less of the first
+ * coordinate that differs. */
+bool mt_search_nearer(const mt_case *c, const double *s, const double *t);
 
 /* search_repeated.c: improve ends where modes repeat, judge whether they are optima, rank, and
  * drop what is one and what is not shown to be optimal behind a better design. In the present

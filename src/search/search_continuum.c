@@ -87,14 +87,13 @@ static bool connected(continua *c, int i, int k)
     return one;
 }
 
-/* Squared distance from the original design. */
-static double distance(const mt_workspace *ws, const mt_nlp_solution *s)
+bool mt_search_nearer(const mt_case *c, const double *s, const double *t)
 {
-    double sum = 0.0;
-    for (int j = 0; j < ws->p->n; j++) {
-        sum += (s->t[j] - ws->c->origin_t[j]) * (s->t[j] - ws->c->origin_t[j]);
+    int order = mt_compare(mt_case_change(c, s), mt_case_change(c, t), MT_EQUAL_FOUND);
+    for (int j = 0; j < c->p->n && order == 0; j++) {
+        order = fabs(s[j] - t[j]) <= MT_SAME_DESIGN ? 0 : s[j] < t[j] ? -1 : 1;
     }
-    return sum;
+    return order < 0;
 }
 
 /* One record for both, at the place of the better: it is that of the nearer to the original,
@@ -106,7 +105,7 @@ static void join(const continua *c, int into, const mt_nlp_solution *other)
     const int hits = s->hits + other->hits;
     const int start = s->start < other->start ? s->start : other->start;
     const bool told = into == 0 && out->n_undetermined > 0;
-    if (!told && other->kkt <= STATIONARY && distance(c->ws, other) < distance(c->ws, s)) {
+    if (!told && other->kkt <= STATIONARY && mt_search_nearer(c->ws->c, other->t, s->t)) {
         *s = *other;
     }
     s->hits = hits;

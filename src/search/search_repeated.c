@@ -381,10 +381,14 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     return MT_OK;
 }
 
-static bool before(const mt_nlp_solution *a, const mt_nlp_solution *b)
+static bool before(const mt_case *c, const mt_nlp_solution *a, const mt_nlp_solution *b)
 {
-    return mt_merit_before(&(mt_merit){a->feasible, a->squares, 1, &a->f},
-                           &(mt_merit){b->feasible, b->squares, 1, &b->f}, 0.0);
+    const mt_merit x = {a->feasible, a->squares, 1, &a->f};
+    const mt_merit y = {b->feasible, b->squares, 1, &b->f};
+    if (mt_merit_before(&x, &y, MT_EQUAL_FOUND) || mt_merit_before(&y, &x, MT_EQUAL_FOUND)) {
+        return mt_merit_before(&x, &y, MT_EQUAL_FOUND);
+    }
+    return mt_search_nearer(c, a->t, b->t);
 }
 
 /* By objective; what is one counts once, and an end that is not shown to be optimal does not
@@ -395,7 +399,7 @@ static void rank(const mt_workspace *ws, mt_nlp_result *out)
     for (int i = 1; i < out->n_solutions; i++) {
         const mt_nlp_solution s = out->solutions[i];
         int k = i;
-        for (; k > 0 && before(&s, &out->solutions[k - 1]); k--) {
+        for (; k > 0 && before(ws->c, &s, &out->solutions[k - 1]); k--) {
             out->solutions[k] = out->solutions[k - 1];
         }
         out->solutions[k] = s;

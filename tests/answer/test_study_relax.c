@@ -5,14 +5,15 @@
 
 static const double TOL = 1e-5;
 
-#define ONE_MASS                                                                             \
-    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': 1000},"              \
-    "'bodies': [{'name': 'm1', 'mass_kg': 1, 'centre': [1, 0]}],"                            \
+#define ONE_MASS_OF(mass)                                                                    \
+    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': 1000, 'm': 1},"      \
+    "'bodies': [{'name': 'm1', 'mass_kg': '" mass "', 'centre': [1, 0]}],"                   \
     "'joints': [{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', 'm1'], 'at': "    \
     "[1, 0], 'axis': [1, 0]}],"                                                              \
     "'springs': [{'name': 's1', 'type': 'axial', 'bodies': ['ground', 'm1'], 'at': [[0, 0]," \
     " [1, 0]], 'stiffness_n_per_m': 'k'}]}"
-#define RANGE "'variables': [{'parameter': 'k', 'lower': 800, 'upper': 1200}],"
+#define ONE_MASS ONE_MASS_OF("1")
+#define RANGE    "'variables': [{'parameter': 'k', 'lower': 800, 'upper': 1200}],"
 
 static double stiffness(double hz)
 {
@@ -113,6 +114,43 @@ static void one_mass__every_kind_of_move_is_exact(mt_test *t)
             }
             /* the nearest design comes with the proof */
             CHECK(t, c.result->n_recommendations > 0);
+        }
+        study_free(&c);
+    }
+}
+
+/* Two limits that meet on one frequency leave all designs of it, k/m = (2 pi f)^2: of these the
+ * least change is reported, with d = ln((2 pi f)^2 m / k) at the original and weights w
+ *     ln k: d w_m / (w_k + w_m),   ln m: -d w_k / (w_k + w_m).
+ * Both moves have the size ln(6/4): they come in the order of the question. */
+static void equal_moves__least_change_in_the_order_of_the_question(mt_test *t)
+{
+    static const char *const LEAST = "{'type': 'frequency', 'mode': 1, 'at_least_hz': 6}";
+    static const char *const MOST = "{'type': 'frequency', 'mode': 1, 'at_most_hz': 4}";
+    static const double WEIGHT[][2] = {{1.0, 1.0}, {1.0, 3.0}, {5.0, 0.5}};
+    for (int i = 0; i < 2 * MT_COUNT(WEIGHT); i++) {
+        const double *const w = WEIGHT[i / 2];
+        const bool swapped = i % 2 == 1;
+        study_case c;
+        char members[1024];
+        mt_test_row(t, "weights %g and %g, %s first", w[0], w[1], swapped ? "most" : "least");
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k', 'lower': 100, 'upper': 9000, "
+                       "'weight': %g}, {'parameter': 'm', 'lower': 0.1, 'upper': 9, 'weight': "
+                       "%g}], 'goals': [%s, %s]",
+                       w[0], w[1], swapped ? MOST : LEAST, swapped ? LEAST : MOST);
+        if (study_solve(t, ONE_MASS_OF("m"), members, &c) &&
+            CHECK(t, c.result->n_relaxations >= 2)) {
+            for (int k = 0; k < 2; k++) {
+                const bool lower = (k == 0) != swapped;
+                const double f = lower ? 4.0 : 6.0; /* the other limit */
+                const double d = log(stiffness(f) / 1000.0);
+                const mt_relaxation *const r = &c.result->relaxations[k];
+                CHECK(t, strstr(r->what, lower ? "at_least_hz" : "at_most_hz") != NULL);
+                CHECK_NEAR(t, r->to, f, TOL);
+                CHECK_NEAR(t, r->design[0], 1000.0 * exp(d * w[1] / (w[0] + w[1])), TOL);
+                CHECK_NEAR(t, r->design[1], exp(-d * w[0] / (w[0] + w[1])), TOL);
+            }
         }
         study_free(&c);
     }
@@ -301,6 +339,7 @@ static void two_masses__moves_of_random_studies_are_least(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(one_mass__every_kind_of_move_is_exact), MT_TEST(solved__has_no_move),
+             MT_TEST(equal_moves__least_change_in_the_order_of_the_question),
              MT_TEST(contradiction__only_a_goal_can_move),
              MT_TEST(catalogue__goals_and_edges_can_move),
              MT_TEST(catalogue__every_mode_of_a_band_counts),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where optimisers go wrong: bad starts, missing values, budgets, failing callbacks, equal
  * bytes. */
+#include "nlp/merit.h"
 #include "nlp_problem.h"
 
 enum { TUTORIAL_SIDE = 5 };
@@ -219,13 +220,66 @@ static void nlp_robust__two_runs_are_bitwise_equal(mt_test *t)
                      same_bytes(&x->f, &y->f, sizeof x->f));
         CHECK(t, same_bytes(x->mult_eq, y->mult_eq, sizeof *x->mult_eq));
     }
-    /* all are local minima: stationary, in order */
+    /* all are local minima: stationary, in order; mirrors of each other are equal */
     for (int i = 0; i < a.result.n_solutions; i++) {
         CHECK(t, a.result.solutions[i].kkt < 1e-8 && a.result.solutions[i].violation < 1e-3);
-        CHECK(t, i == 0 || a.result.solutions[i].f >= a.result.solutions[i - 1].f);
+        CHECK(t, i == 0 || mt_compare(a.result.solutions[i].f, a.result.solutions[i - 1].f,
+                                      MT_EQUAL_FOUND) >= 0);
     }
     mt_arena_free(&a.mem);
     mt_arena_free(&b.mem);
+}
+
+/* Four minima of equal depth, (-1 or 1, -1 or 2), and as another processor would have it. */
+static mt_status wells(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                       mt_err *err)
+{
+    const nlp_case *const c = context;
+    const double x = (t[0] * t[0]) - 1.0;
+    const double y = (t[1] + 1.0) * (t[1] - 2.0);
+    (void)with_gradient;
+    (void)err;
+    out->f = 1.0 + (x * x) + (y * y) + (c->target[0] * sin(1e6 * (t[0] + t[1])));
+    out->df[0] = 4.0 * t[0] * x;
+    out->df[1] = 2.0 * y * ((2.0 * t[1]) - 1.0);
+    return MT_OK;
+}
+
+/* By the change from the origin, with its weights, then by the first coordinate. */
+static void nlp_robust__equal_solutions_are_in_an_order_without_rounding(mt_test *t)
+{
+    static const double weight[] = {1.0, 1.0};
+    static const double far_weight[] = {3.0, 0.25};
+    static const struct {
+        const char *name;
+        double rounding;
+        double origin_y;
+        const double *weight;
+        double y; /* of the nearer two */
+    } rows[] = {
+        {"exact", 0.0, 0.0, NULL, -1.0},
+        {"rounding", 1e-13, 0.0, NULL, -1.0},
+        {"other rounding", -1e-13, 0.0, weight, -1.0},
+        {"from elsewhere", 1e-13, 0.9, weight, 2.0},
+        {"other weights", 1e-13, 0.9, far_weight, 2.0},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        nlp_case c = {0};
+        mt_nlp_options opt = mt_nlp_options_default();
+        mt_test_row(t, "%s", rows[i].name);
+        case_begin(&c, 2, wells, -3.0, 3.0);
+        c.target[0] = rows[i].rounding;
+        c.origin[1] = rows[i].origin_y;
+        c.nlp.change_weight = rows[i].weight;
+        opt.least_change = false;
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK && c.result.n_solutions >= 4);
+        for (int k = 0; k < 4; k++) {
+            const double y = k < 2 ? rows[i].y : 1.0 - rows[i].y;
+            CHECK_NEAR(t, c.result.solutions[k].t[0], k % 2 == 0 ? -1.0 : 1.0, 1e-5);
+            CHECK_NEAR(t, c.result.solutions[k].t[1], y, 1e-5);
+        }
+        mt_arena_free(&c.mem);
+    }
 }
 
 static void nlp_robust__fixed_variables_do_not_move(mt_test *t)
@@ -257,4 +311,5 @@ MT_TEST_MAIN(MT_TEST(nlp_robust__tutorial_is_solved_from_every_start),
              MT_TEST(nlp_robust__budget_is_never_exceeded),
              MT_TEST(nlp_robust__failures_of_the_callback_end_the_search),
              MT_TEST(nlp_robust__two_runs_are_bitwise_equal),
+             MT_TEST(nlp_robust__equal_solutions_are_in_an_order_without_rounding),
              MT_TEST(nlp_robust__fixed_variables_do_not_move))

@@ -293,7 +293,49 @@ static void nlp_undetermined__what_is_on_a_bound_to_rounding_is_put_on_it(mt_tes
     }
 }
 
-MT_TEST_MAIN(MT_TEST(nlp_undetermined__originals_on_bounds_do_not_spoil_optima),
+/* r = t0 + t1 + t2 - 0.5, its slopes as several processors have them. */
+static mt_status plane(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                       mt_err *err)
+{
+    const nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    out->f = 0.0;
+    out->r[0] = -0.5;
+    for (int j = 0; j < 3; j++) {
+        out->dr[j] = 1.0 + c->target[j];
+        out->r[0] += out->dr[j] * t[j];
+    }
+    return MT_OK;
+}
+
+/* Two directions are open, and any two that span the plane would do: the projections of the
+ * first two variables, (2, -1, -1) and (0, 1, -1), whatever rounding the slopes have. */
+static void nlp_undetermined__a_plane_has_one_basis(mt_test *t)
+{
+    static const double rounding[][3] = {
+        {0.0, 0.0, 0.0}, {1e-16, -2e-16, 0.0}, {-3e-16, 2e-16, 4e-16}, {5e-16, 0.0, -5e-16}};
+    const double wanted[] = {2.0 / sqrt(6.0), -1.0 / sqrt(6.0), -1.0 / sqrt(6.0), 0.0,
+                             1.0 / sqrt(2.0), -1.0 / sqrt(2.0)};
+    for (int i = 0; i < MT_COUNT(rounding); i++) {
+        nlp_case c = {0};
+        mt_nlp_options opt = mt_nlp_options_default();
+        mt_test_row(t, "rounding %d", i);
+        case_begin(&c, 3, plane, -2.0, 2.0);
+        c.nlp.n_res = 1;
+        memcpy(c.target, rounding[i], sizeof rounding[i]);
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        REQUIRE(t, c.result.n_undetermined == 2);
+        for (int k = 0; k < MT_COUNT(wanted); k++) {
+            mt_test_row(t, "rounding %d, entry %d", i, k);
+            CHECK(t, fabs(c.result.undetermined[k] - wanted[k]) <= 1e-12);
+        }
+        mt_arena_free(&c.mem);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(nlp_undetermined__a_plane_has_one_basis),
+             MT_TEST(nlp_undetermined__originals_on_bounds_do_not_spoil_optima),
              MT_TEST(nlp_undetermined__a_combination_through_a_corner_is_still_found),
              MT_TEST(nlp_undetermined__no_room_at_the_solution_is_no_direction),
              MT_TEST(nlp_undetermined__what_is_on_a_bound_to_rounding_is_put_on_it))
