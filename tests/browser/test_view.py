@@ -94,8 +94,9 @@ class Judge(Pages):
 
 
 class Geometry(Pages):
-    def test_axes_point_where_people_expect_them(self):
+    def test_axes_joints_and_ellipsoids(self):
         self.show()
+        # axes point where people expect them
         up_z = self.browser.run(ALONG, {"size": 1, "dimension": 3, "gravity": [0, 0, -9.81]})
         # right, down, towards the eye
         self.assertEqual(up_z[0], [[0, 0, 1], [1, 0, 0], [0, -1, 0]])
@@ -105,18 +106,14 @@ class Geometry(Pages):
         self.assertEqual(plane[2], [[1, 0, 0], [0, -1, 0], [0, 0, 1]])
         hanging = self.browser.run(ALONG, {"size": 1, "dimension": 3, "gravity": [0, 0, 9.81]})
         self.assertEqual(hanging[0][2], [0, 1, 0])  # z is down
-
-    def test_joints_hold_what_they_hold(self):
-        self.show()
+        # joints hold what they hold
         for k in (0, 8, 18):
             driven, moved, foreign = self.browser.run(APART, k)
             self.assertLess(driven, 1e-6)
             self.assertLess(moved, 0.01)  # by central differences
             self.assertGreater(foreign, 1)  # a mode that is none of the mechanism: the measure can fail
         self.assertTrue(math.isfinite(driven))
-
-    def test_outline_of_an_ellipsoid(self):
-        self.show()
+        # the outline of an ellipsoid
         self.assertLess(self.browser.run(OUTLINE), 2e-4)
 
     def test_a_fitted_scene_is_inside(self):
