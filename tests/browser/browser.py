@@ -102,10 +102,12 @@ class Browser:
         for switch in SWITCHES + [f"--user-data-dir={self.profile}"] + (["--no-sandbox"] if os.geteuid() == 0 else []):
             options.add_argument(switch)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        options.add_experimental_option("perfLoggingPrefs", {"enableNetwork": True, "enablePage": False})
         options.binary_location = shutil.which("chromium") or "/usr/bin/chromium"
         service = Service(shutil.which("chromedriver") or "/usr/bin/chromedriver")
         self.driver = webdriver.Chrome(service=service, options=options)
         self.driver.set_script_timeout(60)
+        self.window = None  # as it was opened in, or unknown
 
     def close(self):
         self.driver.quit()
@@ -113,6 +115,7 @@ class Browser:
 
     def screen(self, width=1280, height=900, dark=False, still=True):
         """The window, and what people ask for: dark colours, no motion."""
+        self.window = None
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
         wishes = {"prefers-color-scheme": "dark" if dark else "light",
@@ -120,8 +123,13 @@ class Browser:
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
             "media": "", "features": [{"name": name, "value": value} for name, value in wishes.items()]})
 
-    def open(self, path):
-        """Opens a file and waits until it has drawn."""
+    def open(self, path, **wishes):
+        """Opens a file in the window that is wished for and waits until it has drawn. The page before, if it had another one, is left first: it need
+        not draw itself anew for it."""
+        if self.window != wishes:
+            self.driver.get("about:blank")
+            self.screen(**wishes)
+            self.window = wishes
         self.driver.get_log("browser")
         self.driver.get_log("performance")
         self.driver.get(path.as_uri())

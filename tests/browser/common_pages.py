@@ -1,45 +1,54 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests of pages share: the program, the shipped studies and their answers, made once."""
+"""What tests of pages share: the program, the shipped studies and their answers, and one browser for all of a process."""
+import atexit
+import functools
 import json
 import os
-import subprocess
+import sys
 import tempfile
 import unittest
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from browser import Browser
 
-SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from answers import PROGRAM, SOURCE, answers  # noqa: E402
+
 STUDIES = sorted((SOURCE / "studies").glob("*.json"))
 SIZES = [(390, 844), (1280, 900), (1920, 1080)]
+WINDOWS = [{"width": width, "height": height, "dark": dark} for width, height in SIZES for dark in (False, True)]
 EVERY = "MT_EVERY" in os.environ
 
 
-def run(study, folder, *more):
-    """The folder of its result; a study that is not solved has one, too."""
-    subprocess.run([PROGRAM, "run", study, "--quiet", "-o", folder, *more], capture_output=True, timeout=300, check=False)
-    return folder / study.stem
+@functools.cache
+def browser():
+    started = Browser()
+    atexit.register(started.close)
+    return started
 
 
-class Answers(unittest.TestCase):
-    """A browser and the reports of studies, by their names: page and result."""
-    studies = STUDIES
+class Pages(unittest.TestCase):
+    """A browser, and a folder for pages."""
 
     @classmethod
     def setUpClass(cls):
         holder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(holder.cleanup)
         cls.folder = Path(holder.name)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
-        with ThreadPoolExecutor(2) as pool:
-            folders = list(pool.map(lambda study: run(study, cls.folder), cls.studies))
+        cls.browser = browser()
+
+
+class Answers(Pages):
+    """The reports of studies, by their names: page and result."""
+    studies = STUDIES
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        folders = [made.folder for made in answers(cls.studies)]
         cls.reports = {f.name: (f / "report.html", json.loads((f / "result.json").read_text(encoding="utf-8"))) for f in folders}
 
     def open(self, name, **wishes):
         path, result = self.reports[name]
-        self.browser.screen(**wishes)
-        self.browser.open(path)
+        self.browser.open(path, **wishes)
         return result

@@ -29,6 +29,8 @@ def designs(result):
 def rename_parameter(result, at, name):
     old = result["variables"][at]
     result["variables"][at] = name
+    for item, member in [(u, "components") for u in result["undetermined"]] + [(r, "design") for r in result["relaxations"]]:
+        item[member] = {name if k == old else k: v for k, v in item[member].items()}
     for design in designs(result):
         for p in design["parameters"]:
             p["name"] = name if p["name"] == old else p["name"]

@@ -1,15 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reports of all shipped studies, as a browser has them: their figures carry the result's numbers and follow the choice."""
+"""Reports of shipped studies, as a browser has them: their figures carry the result's numbers and follow the choice. MT_EVERY=1: of all
+studies, in all windows, of all designs and on paper."""
 import json
 import re
-import tempfile
+import subprocess
 import unittest
-from pathlib import Path
 
-from common_pages import SIZES, SOURCE, Answers, run
+from common_pages import EVERY, PROGRAM, SOURCE, STUDIES, WINDOWS, Answers
 from selenium.webdriver.common.keys import Keys
 
 MOST_BYTES = 560_000
+# Between them they have every kind of figure that a report has, no design, no answer and several of both; each is opened in another window.
+SAMPLE = ["beam_identification", "den_hartog", "inceptor_trade", "inceptor_vibration", "beam_reference", "six_masses_infeasible"]
+# What reports have to have, and to say before all else.
+FIGURES_OF = {
+    "inceptor_rotor": {"frequencies", "parameters", "rotor-1", "parallel", "tolerance", "sensitivity", "spent"},
+    "inceptor_trade": {"trade", "front", "parallel", "tolerance", "rotor-1"},
+    "beam_identification": {"mac", "published", "starts", "sensitivity", "history-1", "mac-matrix-1"},
+    "inceptor_tuning_1": {"bode-1", "nyquist-1"}, "den_hartog": {"bode-1", "nyquist-1"},
+    "three_masses_identification": {"bode-1", "bode-2"},
+    "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
+}
+GISTS = {"inceptor_rotor": ["k_servo +8.21 %", "Graded feasible;", "all 4 are met", "Of 10 gap assignments"],
+         "six_masses_infeasible": ["Infeasible", "the goal is missed by", "No design within the bounds"],
+         "beam_identification": ["and 4 others", "nothing; designs were found by local searches"]}
+CUT = "six_masses_infeasible"
+CURVES = {"inceptor_tuning_1", "inceptor_tuning_2", "inceptor_tuning_3", "den_hartog"}
 HALF = 0.6e-3  # of the fourth digit, and a little
 # Words of the frequency chart's lanes by configuration and mode; values of the chart of parameters by name.
 LANES = """
@@ -39,6 +55,8 @@ def number(text):
 
 
 class Report(Answers):
+    studies = STUDIES if EVERY else [SOURCE / "studies" / f"{name}.json" for name in SAMPLE]
+
     def near(self, text, value, where):
         self.assertLessEqual(abs(number(text) - value), HALF * abs(value) + 1e-12, f"{where}: {text} for {value}")
 
@@ -77,76 +95,32 @@ class Report(Answers):
             if int(mode) in hertz:
                 self.assertAlmostEqual(float(hz) / hertz[int(mode)], 1, places=6)
 
-    def test_every_report_in_every_window(self):
-        for name, (path, _) in self.reports.items():
-            self.assertLess(path.stat().st_size, MOST_BYTES, name)
-            self.open(name)
-            for width, height in SIZES:
-                for dark in (False, True):
-                    with self.subTest(report=name, width=width, dark=dark):
-                        self.browser.screen(width, height, dark)
-                        self.browser.settle()
-                        found = self.browser.console() if dark else self.browser.problems() + self.browser.numbers()
-                        self.assertEqual(found, [])
-            self.assertEqual(self.browser.requests(), [])
-
-    def test_figures_carry_the_numbers_of_the_design_that_is_chosen(self):
-        for name, (_, result) in self.reports.items():
-            with self.subTest(report=name):
-                self.open(name)
-                designs = result["recommendations"]
-                radios = self.browser.all(".alternatives input")
-                self.assertEqual(len(radios), len(designs) if len(designs) > 1 else 0)
-                for place, design in enumerate(designs):
-                    if radios:
-                        radios[place].click()
-                    self.browser.settle()
-                    self.check_frequencies(design)
-                    self.check_parameters(design)
-                    self.check_told(design["rank"])
-                    self.check_mechanism(design)
-                self.assertEqual(self.browser.problems(), [])
-
-    def test_there_is_a_figure_of_all_that_a_result_has(self):
-        wanted = {
-            "inceptor_rotor": {"frequencies", "parameters", "rotor-1", "parallel", "tolerance", "sensitivity", "spent"},
-            "inceptor_trade": {"trade", "front", "parallel", "tolerance", "rotor-1"},
-            "beam_identification": {"mac", "published", "starts", "sensitivity", "history-1", "mac-matrix-1"},
-            "inceptor_tuning_1": {"bode-1", "nyquist-1"}, "den_hartog": {"bode-1", "nyquist-1"},
-            "three_masses_identification": {"bode-1", "bode-2"},
-            "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
-        }
-        for name, figures in wanted.items():
-            self.open(name)
-            self.assertLessEqual(figures, set(self.browser.run(FIGURES)), name)
-
-    def test_curves_are_those_of_the_result(self):
+    def check_curves(self, result):
         """Numbers of the diagrams are the result's; peaks are told and marked; limits of goals are drawn."""
-        for name in ("inceptor_tuning_1", "inceptor_tuning_2", "inceptor_tuning_3", "den_hartog"):
-            result = self.open(name)
-            designs = {"original": result["baseline"], "No. 1": result["recommendations"][0]}
-            for k, curve in enumerate(result["curves"]):
-                bode, nyquist = self.browser.run("return [mt.chartBode, mt.chartNyquist].map((f) => f()[arguments[0]].table().rows)", k)
-                for words, design in designs.items():
-                    drawn = design["curves"][k]["drawn"]
-                    mine = [row[1:] for row in bode if row[0] == words]
-                    self.assertEqual([row[:2] for row in mine], [list(p) for p in zip(drawn["frequency_hz"], drawn["magnitude"])])
-                    for (_, _, phase), given in zip(mine, drawn["phase_deg"]):
-                        self.assertAlmostEqual((phase - given) / 360, round((phase - given) / 360), places=9)
-                    for (_, f, re_, im), size in zip([r for r in nyquist if r[0] == words], drawn["magnitude"]):
-                        self.assertAlmostEqual(abs(complex(re_, im)) / size, 1, places=9, msg=f)
-                    lead = self.browser.one(f"#figure-bode-{k + 1} .lead").text
-                    peaks = [e for e in design["curves"][k]["extremes"] if e["kind"] == "peak"]
-                    for e in sorted(peaks, key=lambda e: -e["magnitude"])[:2]:
-                        self.near(re.search(rf"([\d.e\u2212]+) at {e['frequency_hz']:.4g}", lead.replace(".00 ", " "))[1]
-                                  if f" at {e['frequency_hz']:.4g}" in lead else "0", e["magnitude"], lead)
-                marks = self.browser.all(f"#figure-bode-{k + 1} svg path > title")
-                told = [m.get_attribute("textContent") for m in marks]
-                for limit in curve["limits"]:
-                    self.assertEqual(sum(limit["pointer"] in words for words in told), 1, name)
+        designs = {"original": result["baseline"], "No. 1": result["recommendations"][0]}
+        for k, curve in enumerate(result["curves"]):
+            bode, nyquist = self.browser.run("return [mt.chartBode, mt.chartNyquist].map((f) => f()[arguments[0]].table().rows)", k)
+            for words, design in designs.items():
+                drawn = design["curves"][k]["drawn"]
+                mine = [row[1:] for row in bode if row[0] == words]
+                self.assertEqual([row[:2] for row in mine], [list(p) for p in zip(drawn["frequency_hz"], drawn["magnitude"])])
+                for (_, _, phase), given in zip(mine, drawn["phase_deg"]):
+                    self.assertAlmostEqual((phase - given) / 360, round((phase - given) / 360), places=9)
+                for (_, f, re_, im), size in zip([r for r in nyquist if r[0] == words], drawn["magnitude"]):
+                    self.assertAlmostEqual(abs(complex(re_, im)) / size, 1, places=9, msg=f)
+                lead = self.browser.one(f"#figure-bode-{k + 1} .lead").text
+                peaks = [e for e in design["curves"][k]["extremes"] if e["kind"] == "peak"]
+                for e in sorted(peaks, key=lambda e: -e["magnitude"])[:2]:
+                    self.near(re.search(rf"([\d.e\u2212]+) at {e['frequency_hz']:.4g}", lead.replace(".00 ", " "))[1]
+                              if f" at {e['frequency_hz']:.4g}" in lead else "0", e["magnitude"], lead)
+            marks = self.browser.all(f"#figure-bode-{k + 1} svg path > title")
+            told = [m.get_attribute("textContent") for m in marks]
+            for limit in curve["limits"]:
+                self.assertEqual(sum(limit["pointer"] in words for words in told), 1, limit)
 
-    def test_a_point_of_the_trade_study_is_shown_everywhere(self):
-        result = self.open("inceptor_trade")
+    def check_trade_points(self, result):
+        note = self.browser.one("#figure-mechanism .lead")
+        self.assertFalse(note.is_displayed())
         cells = self.browser.all("#figure-trade [data-at]")
         self.assertEqual(len(cells), len(result["trade"]["points"]))
         for place in (0, 17, len(cells) - 1):
@@ -155,37 +129,15 @@ class Report(Answers):
             best = result["trade"]["points"][place]["best"]
             self.check_frequencies(best)
             self.check_parameters(best)
+        self.browser.run("mt.choose(10)")
+        self.assertTrue(note.is_displayed())
+        self.assertRegex(note.text, r"^Trade point: .* is not drawn; here is recommended, rank 1\.$")
 
-    def test_parameters_are_shown_in_their_units(self):
-        """The answer in inches is drawn in inches; the data in the page stay in SI."""
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            model = json.loads((SOURCE / "problems/inceptor.json").read_text(encoding="utf-8"))
-            (folder / "m.json").write_text(json.dumps(model), encoding="utf-8")
-            (folder / "s.json").write_text(json.dumps({
-                "format": "modetune-study/1", "model": "m.json", "units": {"length": "in"}, "recommendations": 2,
-                "variables": [{"parameter": "l_a", "lower": 4, "upper": 6}, {"parameter": "M_SAU", "lower": 1, "upper": 4}],
-                "goals": [{"type": "limit", "expression": "l_a", "at_least": "5.5*inch"}]}), encoding="utf-8")
-            report = run(folder / "s.json", folder, "--set", "r_SAU=6.5*inch")
-            result = json.loads((report / "result.json").read_text(encoding="utf-8"))
-            best = result["recommendations"][0]["parameters"]
-            self.assertEqual((best[0]["unit"], best[0]["display_unit"], best[1]["display_unit"]), ("m", "in", None))
-            self.browser.screen()
-            self.browser.open(report / "report.html")
-            values = self.browser.run(VALUES)
-            self.near(values["l_a"].split(" ")[-1], best[0]["recommended"] / 0.0254, "l_a")
-            self.near(values["M_SAU"].split(" ")[-1], best[1]["recommended"], "M_SAU")
-            self.assertIn("l_a [in]", self.browser.one("#figure-parameters svg").text)
-            origin = self.browser.one("#figure-origin").text
-            self.assertIn("asked with r_SAU = 6.5 in", origin)
-            self.assertIn("--set 'r_SAU=6.5*inch'", origin)  # 6.5 alone would be metres
-            self.assertIn("run time in timing.json", origin)
-
-    def test_figures_are_saved(self):
-        result = self.open("inceptor_rotor")
+    def check_saved(self, result):
         figures = self.browser.run(FIGURES)
         self.browser.run(SAVED)
-        self.browser.driver.execute_async_script("setTimeout(arguments[0], 1500)")
+        self.browser.driver.execute_async_script("const [count, done] = arguments; const wait = () => (window.kept.length < count"
+                                                 " ? setTimeout(wait, 20) : done()); wait();", 3 * len(figures))
         kept = dict(self.browser.run(KEPT))
         for figure in figures:
             for ending in ("svg", "png", "csv"):
@@ -197,16 +149,14 @@ class Report(Answers):
         hz = [float(row.split(",")[5]) for row in rows if row.startswith("mode,")]
         self.assertEqual(hz, [f["recommended_hz"] for f in result["recommendations"][0]["frequencies"]])
 
-    def test_arrow_keys_choose(self):
-        self.open("six_masses_bands")
+    def check_arrow_keys(self, result):
         first = self.browser.run(VALUES)
         self.browser.all(".alternatives input")[0].send_keys("\ue015")
         self.browser.settle()
         self.assertNotEqual(self.browser.run(VALUES), first)
         self.assertTrue(self.browser.run("return document.querySelectorAll('.alternatives input')[1].checked"))
 
-    def test_the_drive_is_there(self):
-        result = self.open("inceptor_rotor")
+    def check_drive(self, result):
         self.assertIn("drive-1", self.browser.run(FIGURES))
         slider = self.browser.one("#drive")
         slider.send_keys(Keys.END)
@@ -221,9 +171,8 @@ class Report(Answers):
         self.assertEqual(self.browser.all(".view3d figcaption")[-1].text, "recommended, rank 3")
         self.assertEqual(self.browser.problems(), [])
 
-    def test_scales_end_where_nothing_is_asked_any_more(self):
+    def check_scales(self, result):
         """Over the travel both designs' lowest modes are drawn in full; a mode far above all that goals are about is told."""
-        result = self.open("inceptor_vibration")
         paths = self.browser.run("return [...document.querySelectorAll('#figure-drive-1 svg path')].map((p) => ["
                                  "(p.querySelector('title') || {}).textContent || '', p.getAttribute('d')])")
         rows = self.browser.run("return mt.chartDrive()[0].table().rows")
@@ -242,25 +191,7 @@ class Report(Answers):
         self.assertIn("above the scale: mode 3", self.browser.one("#figure-frequencies svg").text)
         self.assertEqual(self.browser.problems(), [])
 
-    def test_what_is_not_drawn_is_told(self):
-        self.open("inceptor_trade")
-        note = self.browser.one("#figure-mechanism .lead")
-        self.assertFalse(note.is_displayed())
-        self.browser.run("mt.choose(10)")
-        self.assertTrue(note.is_displayed())
-        self.assertRegex(note.text, r"^Trade point: .* is not drawn; here is recommended, rank 1\.$")
-
-    def test_the_gist_comes_first(self):
-        for name, words in (("inceptor_rotor", ["k_servo +8.21 %", "Graded feasible;", "all 4 are met", "Of 10 gap assignments"]),
-                            ("six_masses_infeasible", ["Infeasible", "the goal is missed by", "No design within the bounds"]),
-                            ("beam_identification", ["and 4 others", "nothing; designs were found by local searches"])):
-            self.open(name)
-            told = self.browser.one("main").text[:1200]
-            for part in words:
-                self.assertIn(part, told, name)
-
-    def test_keys_reach_everything(self):
-        self.open("inceptor_trade")
+    def check_keys(self, result):
         reached = []
         for _ in range(12):
             self.browser.one("html").send_keys(Keys.TAB) if not reached else self.browser.driver.switch_to.active_element.send_keys(Keys.TAB)
@@ -270,21 +201,86 @@ class Report(Answers):
         self.assertEqual(self.browser.run("return [...document.querySelectorAll('button, select, input, summary, canvas, [data-at]')]"
                                           ".filter((e) => e.tabIndex < 0).length"), 0)
 
-    def test_reports_are_printed(self):
-        for name in self.reports:
-            with self.subTest(report=name):
-                self.open(name)
-                self.assertEqual(self.browser.paper(), [])
-        for name in ("inceptor_trade", "beam_identification"):
-            self.open(name, dark=True)
-            printed = self.browser.pdf()
-            self.assertTrue(printed.startswith(b"%PDF"))
-            self.assertIn(printed.count(b"/Type /Page\n"), range(4, 20))
+    def check_printed(self, _result):
+        printed = self.browser.pdf()
+        self.assertTrue(printed.startswith(b"%PDF"))
+        self.assertIn(printed.count(b"/Type /Page\n"), range(4, 20))
 
-    def test_what_paper_cuts_is_found(self):
-        self.open("inceptor_rotor")
-        self.browser.run("document.querySelector('.gist').style.cssText = 'white-space: nowrap; overflow: hidden'")
-        self.assertIn("UL is cut on paper", " ".join(self.browser.paper()))
+    def check_windows(self, windows):
+        for window in windows:
+            with self.subTest(window=window):
+                self.browser.screen(**window)
+                self.browser.settle()
+                self.assertEqual(self.browser.console() if window["dark"] and len(windows) > 1 else self.browser.problems() + self.browser.numbers(), [])
+
+    def check_designs(self, designs):
+        radios = self.browser.all(".alternatives input")
+        self.assertEqual(len(radios), len(designs) if len(designs) > 1 else 0)
+        places = range(len(designs)) if EVERY else sorted({0, len(designs) // 2, len(designs) - 1} & set(range(len(designs))))
+        for place in places:
+            if radios:
+                radios[place].click()
+            self.browser.settle()
+            self.check_frequencies(designs[place])
+            self.check_parameters(designs[place])
+            self.check_told(designs[place]["rank"])
+            self.check_mechanism(designs[place])
+        self.assertEqual(self.browser.problems(), [])
+
+    def test_reports(self):
+        """In a window, or in all; of the designs that are chosen; on paper. What single reports are asked goes first."""
+        asked = {"inceptor_trade": [self.check_keys, self.check_trade_points], "inceptor_rotor": [self.check_drive],
+                 "inceptor_vibration": [self.check_scales], "beam_identification": [self.check_saved, self.check_arrow_keys, self.check_printed]}
+        asked.update({name: [self.check_curves] for name in CURVES})
+        if EVERY:
+            asked["inceptor_trade"].append(self.check_printed)
+        figures = {}
+        for turn, (name, (path, result)) in enumerate(self.reports.items()):
+            windows = [WINDOWS[(turn + k) % len(WINDOWS)] for k in range(len(WINDOWS) if EVERY else 1)]
+            with self.subTest(report=name):
+                self.assertLess(path.stat().st_size, MOST_BYTES)
+                self.open(name, **windows[0])
+                figures[name] = set(self.browser.run(FIGURES))
+                self.assertLessEqual(FIGURES_OF.get(name, set()), figures[name])
+                told = self.browser.one("main").text[:1200]
+                for part in GISTS.get(name, []):
+                    self.assertIn(part, told)
+                for check in asked.get(name, []):
+                    check(result)
+                self.check_windows(windows)
+                self.check_designs(result["recommendations"])
+                if EVERY or turn % 2 == 0:
+                    self.assertEqual(self.browser.paper(), [])
+                if name == CUT:  # what paper cuts is found
+                    self.browser.run("document.querySelector('.gist').style.cssText = 'white-space: nowrap; overflow: hidden'")
+                    self.assertIn("UL is cut on paper", " ".join(self.browser.paper()))
+                self.assertEqual(self.browser.requests(), [])
+        kinds = {name: {re.sub(r"-\d+$", "", figure) for figure in had} for name, had in figures.items()}
+        self.assertEqual(set().union(*kinds.values()) - set().union(*(kinds[name] for name in SAMPLE)), set())
+
+    def test_parameters_are_shown_in_their_units(self):
+        """The answer in inches is drawn in inches; the data in the page stay in SI."""
+        model = json.loads((SOURCE / "problems/inceptor.json").read_text(encoding="utf-8"))
+        model["configurations"] = {name: model["configurations"][name] for name in ("stick_free", "installed")}  # none is driven
+        (self.folder / "m.json").write_text(json.dumps(model), encoding="utf-8")
+        (self.folder / "s.json").write_text(json.dumps({
+            "format": "modetune-study/1", "model": "m.json", "units": {"length": "in"}, "recommendations": 2,
+            "variables": [{"parameter": "l_a", "lower": 4, "upper": 6}, {"parameter": "M_SAU", "lower": 1, "upper": 4}],
+            "goals": [{"type": "limit", "expression": "l_a", "at_least": "5.5*inch"}]}), encoding="utf-8")
+        subprocess.run([PROGRAM, "run", self.folder / "s.json", "--quiet", "-o", self.folder, "--set", "r_SAU=6.5*inch"], capture_output=True, timeout=300, check=False)
+        report = self.folder / "s"
+        result = json.loads((report / "result.json").read_text(encoding="utf-8"))
+        best = result["recommendations"][0]["parameters"]
+        self.assertEqual((best[0]["unit"], best[0]["display_unit"], best[1]["display_unit"]), ("m", "in", None))
+        self.browser.open(report / "report.html")
+        values = self.browser.run(VALUES)
+        self.near(values["l_a"].split(" ")[-1], best[0]["recommended"] / 0.0254, "l_a")
+        self.near(values["M_SAU"].split(" ")[-1], best[1]["recommended"], "M_SAU")
+        self.assertIn("l_a [in]", self.browser.one("#figure-parameters svg").text)
+        origin = self.browser.one("#figure-origin").text
+        self.assertIn("asked with r_SAU = 6.5 in", origin)
+        self.assertIn("--set 'r_SAU=6.5*inch'", origin)  # 6.5 alone would be metres
+        self.assertIn("run time in timing.json", origin)
 
 
 if __name__ == "__main__":
