@@ -533,7 +533,7 @@ int main(int argc, char *argv[])
     /* the end of a process takes longest where it tells of leaks, or what was covered */
     const bool slow = getenv("MT_INSTRUMENTED") != NULL;
     alone = slow;
-    sampling s = {.seed = 1, .count = slow ? 6 : 10, .only = -1, .at = -1};
+    sampling s = {.seed = 1, .count = slow ? 6 : getenv("MT_EVERY") != NULL ? 10 : 4, .only = -1, .at = -1};
     if (!read_arguments(argc, argv, &s)) {
         return 2;
     }
