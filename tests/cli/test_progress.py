@@ -101,7 +101,7 @@ class Progress(CliTest):
 
     def test_a_long_search_and_its_end(self):
         fewer = self.write("studies/fewer.json", LONG.replace("beam.json", "slender.json"))
-        running = Running(self.folder, "run", fewer, "--progress", "json")
+        running = Running(self.folder, "run", fewer, "--progress", "json", "--threads", "1")
         self.assertTrue(running.wait_for('"unit": "starts"'), running.said)
         for _ in range(2):
             self.assertTrue(running.wait_for('"unit": "starts"'), running.said)
@@ -157,7 +157,7 @@ class Progress(CliTest):
 
     def test_nothing_where_nothing_is_asked_for(self):
         for option in (("--progress", "none"), ("--quiet",)):
-            running = Running(self.folder, "run", self.long, "--time", "0.5", *option)
+            running = Running(self.folder, "run", self.long, "--time", "0.5", "--threads", "1", *option)
             self.assertEqual(running.end()[0], 130)
             self.assertNotIn(WIPE, running.said)
 

@@ -34,7 +34,7 @@ LINES = {
     "response": ["response", "problems/model.json", "-c", "held", "--input", "a.x", "--format", "csv"],
     "info": ["info", "problems/model.json", "--format", "json"],
     "check": ["check", "studies/two.json", "results/two/result.json"],
-    "catalogue": ["check", str(SOURCE / "studies/inceptor_rotor.json")],
+    "catalogue": ["check", str(SOURCE / "studies/inceptor_catalogue.json")],
     "report": ["report", "results/two/result.json", "--format", "html"],
     "apply": ["apply", "results/two/result.json"],
     "apply --model": ["apply", "results/two/result.json", "--model", "problems/model.json", "--root", "problems"],
