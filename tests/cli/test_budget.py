@@ -23,8 +23,8 @@ class Budget(CliTest):
 
     def test_the_limit_ends_with_the_best_so_far_and_the_next_study_has_its_own(self):
         for threads in ("1", "3"):
-            done = self.expect(130, "run", "studies/long.json", "studies/short.json", "--time", "1", "--threads", threads)
-            self.assertIn("studies/long.json: stopped at the time limit of 1 s", done.stderr)
+            done = self.expect(130, "run", "studies/long.json", "studies/short.json", "--time", "0.5", "--threads", threads)
+            self.assertIn("studies/long.json: stopped at the time limit of 0.5 s", done.stderr)
             found = json.loads(self.result(name="long"))
             self.assertEqual(found["status"], "interrupted")
             self.assertIn("search", found["run"]["incomplete"])

@@ -43,6 +43,7 @@ SARIF = closed({
     }), minItems=1, maxItems=1)})
 PROBLEM = closed({"file": {"type": "string"}, "line": {"type": ["integer", "null"], "minimum": 1}, "column": {"type": ["integer", "null"], "minimum": 1},
                   "pointer": {"type": ["string", "null"], "pattern": "^(/.*)?$"}, "severity": LEVEL, "message": {"type": "string", "minLength": 1}})
+IS_SARIF, IS_PROBLEM = (jsonschema.Draft7Validator(schema) for schema in (SARIF, PROBLEM))
 WRONG = sorted((SOURCE / "tests/io/wrong").glob("*.json"))
 
 
@@ -55,12 +56,12 @@ class CheckFormats(CliTest):
         if code is not None:
             self.assertEqual(done["sarif"].returncode, code, done["sarif"].stderr)
         told, log = (json.loads(done[name].stdout) for name in ("json", "sarif"))
-        jsonschema.validate(log, SARIF, cls=jsonschema.Draft7Validator)
+        IS_SARIF.validate(log)
         for f in told:
             self.assertEqual(f["ok"], all(p["severity"] != "error" for p in f["problems"]), f["file"])
         problems = [p for f in told for p in f["problems"]]
         for p in problems:
-            jsonschema.validate(p, PROBLEM)
+            IS_PROBLEM.validate(p)
             self.assertEqual({p["line"] is None, p["column"] is None, p["pointer"] is None}, {p["line"] is None})
         (run,) = log["runs"]
         rules = run["tool"]["driver"]["rules"]

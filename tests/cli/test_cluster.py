@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The example of a study that is shared out, with GNU parallel and on a cluster of one node. Each is skipped where its program
-is not installed (Debian: parallel; slurm-wlm). MT_EVERY=1: all million designs, else four points of the hundred.
+"""The example of a study that is shared out, with GNU parallel and, where Slurm is installed (Debian: slurm-wlm) or MT_SLURM=1
+demands it, on a cluster of one node. MT_EVERY=1: all million designs, else four points of the hundred.
 MT_SLURM_CONF: more lines for slurm.conf."""
 import json
 import os
@@ -16,6 +16,8 @@ PROGRAM = os.environ.get("MODETUNE", "build/release/modetune")
 SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
 DAEMONS = ("slurmctld", "slurmd")
+SLURM = (*DAEMONS, "sbatch", "sinfo")
+DEMANDED = os.environ.get("MT_SLURM", "0") != "0"
 PARTS = 3
 # Nobody is authenticated and nothing is accounted: one node, for the time of a test.
 CONF = """ClusterName=test
@@ -92,15 +94,16 @@ class Cluster(unittest.TestCase):
         self.assertGreater(int(said.split(" tasks known of ")[0].split()[-1]), points, said)
         self.check("alone")
 
-    @unittest.skipUnless(installed("parallel"), "GNU parallel is not installed")
     def test_gnu_parallel(self):
+        self.assertTrue(installed("parallel"), "GNU parallel is missing (Debian: apt-get install parallel)")
         self.call("parallel", "-j2", self.environment["MODETUNE"], "run", self.study, "-o", "parts", "--quiet", "--resume", "--shard",
                   f"{{}}/{PARTS}", ":::", *(str(i + 1) for i in range(PARTS)))
         self.call("sh", "-c", f'"$MODETUNE" merge {self.study} parts/*.journal -o parts')
         self.check("parts")
 
-    @unittest.skipUnless(all(installed(name) for name in (*DAEMONS, "sbatch", "sinfo")), "Slurm is not installed")
+    @unittest.skipUnless(DEMANDED or all(map(installed, SLURM)), "Slurm is not installed (Debian: slurm-wlm); MT_SLURM=1 demands it")
     def test_job_array_of_slurm(self):
+        self.assertEqual([name for name in SLURM if not installed(name)], [], "missing (Debian: apt-get install slurm-wlm)")
         place = self.folder / "slurm"
         for name in ("state", "spool"):
             (place / name).mkdir(parents=True)
@@ -120,7 +123,7 @@ class Cluster(unittest.TestCase):
                 break
             time.sleep(0.5)
         else:
-            self.skipTest("Slurm does not start here: " + (place / "slurmd.log").read_text(encoding="utf-8")[-300:])
+            (self.fail if DEMANDED else self.skipTest)("Slurm does not start here: " + (place / "slurmd.log").read_text(encoding="utf-8")[-300:])
         self.call("problems/large/slurm.sh", self.study, "jobs", str(PARTS))
         self.assertEqual(len(list((self.folder / "jobs").glob("*.journal"))), PARTS)
         self.check("jobs")

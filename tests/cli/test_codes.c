@@ -254,6 +254,7 @@ static const struct {
 static void begin(void *context)
 {
     const how way = *(const how *)context;
+    (void)signal(SIGINT, SIG_DFL); /* a background job of a shell has it ignored */
     mt_terminal_ignore_signals();
     mt_blas_set_threads(1);
     (void)gsl_set_error_handler_off(); /* as main does */

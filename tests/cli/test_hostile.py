@@ -2,6 +2,7 @@
 """
 No file keeps the program for long, takes the machine's memory or fills the terminal, whatever it holds: files of every hostile kind (common_hostile.py), the tree's own files grown at random places, and
 extreme numbers in them, end by themselves within processor seconds and memory that files of their size never need (a search over all names for each of them does), with an exit status of the program's own.
+MT_EVERY=1: files of twice the size, and twenty grown files and twenty with extreme numbers, else six.
     tests/cli/test_hostile.py --size N --count N --seed S     larger files of each kind, more grown ones
 """
 import argparse
@@ -18,6 +19,7 @@ import common_hostile as hostile
 from common_cli import PROGRAM, SOURCE, CliTest
 
 INSTRUMENTED = "MT_INSTRUMENTED" in os.environ or "MT_TEST_LAUNCHED" in os.environ
+EVERY = os.environ.get("MT_EVERY", "0") != "0"
 BASE = 5000  # size that the seconds are for
 SECONDS = 60 if INSTRUMENTED else 3  # of the processor; no file of that size takes one
 MEMORY = "1G"
@@ -27,7 +29,7 @@ FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/io/good/st
          "tests/io/good/aircraft.json", "tests/io/good/profile.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
          "studies/six_masses_bands.json", "tests/models/space_couplings.json"]
 COMMANDS = {"model": [("modes",), ("info",), ("sensitivity", "--count", "2")], "study": [("run", "-o", "out", "--quiet")]}
-knobs = argparse.Namespace(size=500 if INSTRUMENTED else 2000, count=6 if INSTRUMENTED else 20, seed=4)
+knobs = argparse.Namespace(size=500 if INSTRUMENTED else 2000 if EVERY else 1000, count=20 if EVERY else 6, seed=4)
 
 
 def seconds():

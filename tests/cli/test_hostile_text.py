@@ -3,7 +3,7 @@
 
 Every shipped study and model is run as two twins that differ in their free texts only: harmless words in one, hostile ones in the other. What the program says of
 both must be the same but for these texts, which are shown escaped: no control character leaves the program, no line, no cell and no tag is made by a name.
-Each round takes every eighth file and shifts the hostile texts: --rounds 8 --seed S takes all.
+Each round takes every 24th file, with MT_EVERY=1 every eighth, and shifts the hostile texts: MT_EVERY=1 and --rounds 8 --seed S take all.
 """
 import argparse
 import copy
@@ -21,7 +21,7 @@ import tempfile
 import unicodedata
 from pathlib import Path
 
-from common_cli import PROGRAM, SOURCE
+from common_cli import MODEL, PROGRAM, SOURCE, study as two_springs
 
 HOSTILE = [
     "\x1b]0;owned\x07", "\x1b[2J\x1b[1;1H", "\x9b31m", "\x90q\x9c", "\x7f\x08\x08", "a\nmodetune: error: forged", "a\r\nb", "a\rb", "\u202eesrever\u202c",
@@ -32,7 +32,8 @@ HOSTILE = [
 FREE = {"description", "source", "label"}
 SLOW = {"inceptor_identification", "inceptor_rotor", "truss_72bar", "inceptor_trade"}  # more than half a second
 DROPPED = {"sha256", "study_path", "solve_s"}
-SHARE = 8
+EVERY = os.environ.get("MT_EVERY", "0") != "0"
+SHARE = 8 if EVERY else 24
 LONG = 400  # texts beyond it may be cut somewhere
 
 
@@ -347,18 +348,17 @@ class Hunt:
     def file_names(self):
         """Files with such names are read and written as they are, and shown escaped. The names are bytes."""
         names = [b"\x1b]0;x\x07", b"a\nb", b"\xff\xfe", "\u202eb".encode(), b"=1+1", b"<b>&\"'", b" ", b"\xc2\x9b", "gr\u00f6\u00dfe".encode()]
-        study = json.loads((SOURCE / "studies/inceptor_tuning_1.json").read_text(encoding="utf-8"))
+        study = json.loads(two_springs(extra=', "search": { "starts": 1 }'))
         with tempfile.TemporaryDirectory() as top:
             top = os.fsencode(top)
             for name in names:
                 folder = os.path.join(top, b"d" + name)
                 os.makedirs(folder)
-                shutil.copy(SOURCE / "problems/inceptor.json", os.path.join(folder, name + b"m.json"))
                 given = copy.deepcopy(study)
                 given["model"] = os.fsdecode(name) + "m.json"
                 if any(0xDC80 <= ord(c) <= 0xDCFF for c in given["model"]):  # no JSON can name it
-                    shutil.copy(SOURCE / "problems/inceptor.json", os.path.join(folder, b"m.json"))
                     given["model"] = "m.json"
+                Path(os.fsdecode(folder), given["model"]).write_text(MODEL, encoding="utf-8")
                 given.pop("name", None)
                 with open(os.path.join(folder, name + b".json"), "w", encoding="utf-8") as file:
                     json.dump(given, file)

@@ -96,15 +96,14 @@ class Run(CliTest):
     def setUp(self):
         super().setUp()
         self.write("problems/beam.json", BEAM % 5)  # of two links the search is over before a third line of its progress
-        self.long = self.write("studies/long.json", LONG)
-        self.other = self.write("studies/other.json", LONG)
+        self.long, self.other = (self.write(f"studies/{name}.json", LONG.replace("5000", "1000")) for name in ("long", "other"))
 
     def result(self, name="long"):
         return json.loads((self.folder / f"results/{name}/result.json").read_text(encoding="utf-8"))
 
     def at_work(self, *args, **options):
         running = Running(self.folder, "run", *args, **options)
-        self.assertTrue(running.wait_for_designs(6000), running.said)  # the starts, and searches from some
+        self.assertTrue(running.wait_for_designs(2000), running.said)  # the starts, and searches from some
         return running
 
     def test_the_best_so_far_is_written_and_130(self):

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A run that is killed and resumed, or shared out and merged, writes the bytes of one that was left alone.
-MT_KILLS=100: so many kills at random moments (MT_EVERY=1: 30; else 8), MT_KILLS_SEED=S."""
+MT_KILLS=100: so many kills at random moments (MT_EVERY=1: 30; else 4), MT_KILLS_SEED=S.
+MT_EVERY=1: any number of workers up to 8, seven parts, every place where a journal is cut; else some of them."""
 import hashlib
 import json
 import os
 import random
 import subprocess
 import time
-import unittest
 
 from common_cli import PROGRAM, CliTest, main
 
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
 FEWER = "MT_INSTRUMENTED" in os.environ  # a sanitizer looks at the same lines with a few parts and workers
-KILLS = int(os.environ.get("MT_KILLS", "30" if EVERY else "3" if FEWER else "8"))
+KILLS = int(os.environ.get("MT_KILLS", "30" if EVERY else "3" if FEWER else "4"))
 SEED = int(os.environ.get("MT_KILLS_SEED", "1"))
 # Eight masses in a row between the ground and nothing, their springs the variables.
 N = 8
@@ -74,10 +74,10 @@ class Journal(CliTest):
         for name in STUDIES:
             self.run_study(name, "whole", "--threads", "1")
             self.assertEqual(os.listdir(self.folder / "whole").count(f"{name}.journal"), 0)
-            for threads in (range(2, 9) if EVERY else (3,) if FEWER else (3, 8)):
+            for threads in range(2, 9) if EVERY else (3,):
                 self.run_study(name, "many", "--threads", str(threads))
                 self.assertEqual(self.result(name, "whole"), self.result(name, "many"), f"{name}: {threads} workers")
-            for parts in (2,) if FEWER else (1, 3, 7):
+            for parts in (1, 3, 7) if EVERY else (2,):
                 folder = f"parts{parts}"
                 for part in range(1, parts + 1):
                     self.run_study(name, folder, "--shard", f"{part}/{parts}", "--threads", "2", expect=(0,))
@@ -117,13 +117,13 @@ class Journal(CliTest):
             self.assertFalse(self.journal(name, "killed").exists())
             (self.folder / "killed" / name / "result.json").unlink()
 
-    @unittest.skipIf(FEWER, "a long proof, which a sanitizer has seen")
     def test_design_is_safe_before_a_long_proof(self):
         asked = {"variables": variables(8), "goals": [AVOID], "search": {"starts": 2}}
         self.write("studies/long.json", json.dumps({"format": "modetune-study/1", "model": "../problems/chain.json", **asked}))
-        self.run_study("long", "whole")
+        proof = ("--proof", "1")  # long enough to be killed in
+        self.run_study("long", "whole", *proof)
         early = self.folder / "killed" / "long" / "result.json"
-        run = subprocess.Popen([PROGRAM, "run", "studies/long.json", "-o", "killed"], cwd=self.folder,
+        run = subprocess.Popen([PROGRAM, "run", "studies/long.json", "-o", "killed", *proof], cwd=self.folder,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while run.poll() is None and not early.exists():
             time.sleep(0.001)
@@ -134,22 +134,23 @@ class Journal(CliTest):
         self.assertEqual(said["run"]["incomplete"][0], "search")
         self.assertEqual(len(said["recommendations"]), 1)
         self.assertTrue(all(goal["met"] for goal in said["recommendations"][0]["goals"]))
-        self.run_study("long", "killed", "--resume")
+        self.run_study("long", "killed", "--resume", *proof)
         self.assertEqual(self.result("long", "whole"), self.result("long", "killed"))
 
     def test_cut_behind_every_line(self):
         """What a kill leaves, without a clock: a journal of so many lines, and half of the next one."""
-        for name in ("gaps", "trade") if FEWER else STUDIES:
+        for i, name in enumerate(STUDIES if EVERY else ("gaps", "trade") if FEWER else ("starts", "mixed", "branched", "trade")):
+            some = slice(None) if EVERY else slice(i % 2, None, 2)
             self.run_study(name, "whole")
             self.run_study(name, "part", "--shard", "1/1")
             lines = self.journal(name, "part", ".1-of-1").read_bytes().splitlines(keepends=True)
             first = next(i for i, line in enumerate(lines) if i > 0 and not line.startswith(b"|"))
-            for head in (b"", lines[0][:30], lines[0], b"".join(lines[:first])[:-1]):  # killed while it was begun
+            for head in (b"", lines[0][:30], lines[0], b"".join(lines[:first])[:-1])[some]:  # killed while it was begun
                 self.journal(name, "whole").write_bytes(head)
                 before = self.result(name, "whole")
                 self.assertIn(" 0 tasks known of 0 in journals", self.run_study(name, "whole", "--resume"))
                 self.assertEqual(before, self.result(name, "whole"), f"{name}, {len(head)} bytes")
-            for cut in sorted({first, first + 1, (first + len(lines)) // 2, len(lines) - 1}):
+            for cut in sorted({first, first + 1, (first + len(lines)) // 2, len(lines) - 1})[some]:
                 torn = lines[cut][: len(lines[cut]) // 2] if cut < len(lines) else b""
                 self.journal(name, "whole").write_bytes(b"".join(lines[:cut]) + torn)
                 before = self.result(name, "whole")
@@ -165,7 +166,7 @@ class Journal(CliTest):
         lines = self.journal("starts", "part", ".1-of-1").read_text().splitlines()
         identity = lines[0].split()[1]
         first = next(i for i, line in enumerate(lines) if i > 0 and not line.startswith("|"))
-        for word in range(2, 30, 4 if FEWER else 1):
+        for word in range(2, 30, 1 if EVERY else 4):
             forged = lines[:first]
             for line in lines[first:]:
                 parts = line.split()[1:]

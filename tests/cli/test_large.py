@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Large models are read, checked and, where they are trees or bear no load, answered in time in proportion to their size. No time is measured: a million elements take hours where
-time goes with the square of the size."""
+time goes with the square of the size. MT_EVERY=1: a ring of 6000 bars, else of 2000, and trees of 20000 bodies, else of 6000."""
 import json
 import math
 import os
@@ -11,7 +11,9 @@ from common_cli import SOURCE, CliTest, main
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import large  # noqa: E402
 
-PARTS = 3000 if "MT_INSTRUMENTED" in os.environ else 10000  # written out
+EVERY = os.environ.get("MT_EVERY", "0") != "0"
+PARTS = 10000 if EVERY else 3000  # written out
+TREE = 20000 if EVERY else 6000  # more than dense matrices take
 ELEMENTS = 1000000  # the most that a link may have
 
 
@@ -113,7 +115,7 @@ class Large(CliTest):
     def test_rings_of_any_size_are_rings(self):
         """Bending of an inextensible ring, EI = 1000 N m^2, 1 kg/m (Love, section 293): omega_j^2 = EI j^2 (j^2 - 1)^2 / (j^2 + 1), each twice. Bars
         are off by some 1/n^2. A loop of thousands passes its force on through all of them."""
-        for n in (150, 6000):
+        for n in (150, 6000 if EVERY else 2000):
             lowest = self.modes(self.model_of("ring", n), "--count", "6")
             self.assertEqual((lowest["method"], lowest["rigid_body_modes"]), ("sparse", 3))
             for i, mode in enumerate(lowest["modes"][3:]):
@@ -188,18 +190,18 @@ class Large(CliTest):
         return got["method"], out, got["modes"]
 
     def test_sensitivities_of_large_ones_are_powers(self):
-        model = large.beam(20000)
+        model = large.beam(TREE)
         model["parameters"] = {name: {"value": value} for name, value in (("m", 1), ("E", 1e6), ("I", 1e-6), ("L", 1), ("unused", 3))}
         model["points"]["tip"] = ["L", 0]
         model["links"][0].update(mass_kg="m", youngs_modulus_pa="E", section={"shape": "general", "area_m2": 1, "second_moment_m4": "I"})
         beam = self.write("beam.json", json.dumps(model))
-        for path, names, powers in ((beam, "m,E,I,L,unused", (-0.5, 0.5, 0.5, -1.5, 0)), (self.hanging(20000), "m,g,L", (0, 0.5, -0.5))):
+        for path, names, powers in ((beam, "m,E,I,L,unused", (-0.5, 0.5, 0.5, -1.5, 0)), (self.hanging(TREE), "m,g,L", (0, 0.5, -0.5))):
             method, slope, _ = self.slopes(path, "--parameters", names, "--count", "4")
             self.assertEqual(method, "tree")
             for name, power in zip(names.split(","), powers):
                 for got in slope[name]:
                     self.assertAlmostEqual(got, power, delta=1e-9, msg=name)
-        self.assertIn("The lowest modes of a tree of 20001 bodies (joint coordinates).", self.expect(0, "sensitivity", beam, "--count", "2").stdout)
+        self.assertIn(f"The lowest modes of a tree of {TREE + 1} bodies (joint coordinates).", self.expect(0, "sensitivity", beam, "--count", "2").stdout)
 
     def test_what_no_recursion_can_tell_is_left_to_the_dense_way(self):
         chain = large.chain(150)
@@ -227,7 +229,7 @@ class Large(CliTest):
                 self.assertAlmostEqual(got, value, delta=1e-9, msg=name)
 
     def test_shapes_of_large_ones(self):
-        model = large.beam(20000)
+        model = large.beam(TREE)
         model["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]},
                             {"name": "middle", "on": "beam", "fraction": 0.5, "directions": ["y", "rz"]}]
         got = self.modes(self.write("seen.json", json.dumps(model)), "--count", "2", "--shapes")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A result folder is one unit, and every command survives every call to the system that fails.
 
-MT_FAULTS_EVERY=1 tries every error at every call (else at a fourth of them, and the first of each function), MT_FAULTS_KILLS=N kills so many runs of the program
+MT_FAULTS_EVERY=1 tries every error at every call (else at one of sixteen, with MT_EVERY=1 of four, and the first of each function of half of the commands), MT_FAULTS_KILLS=N kills so many runs of the program
 (default 8), MT_FAULTS_SEED=S chooses where. tests/io/test_folder_faults.c does the same to the writing of the folder alone, at every call.
 """
 import errno
@@ -19,7 +19,7 @@ from common_cli import COMMANDS, PROGRAM, SOURCE, CliTest, main, study
 FAULTY = os.environ.get("MODETUNE_FAULTS", os.path.join(os.path.dirname(PROGRAM), "tests/modetune_faults"))
 EVERY = os.environ.get("MT_FAULTS_EVERY", "0") != "0"
 SEED = int(os.environ.get("MT_FAULTS_SEED", "1"))
-STRIDE = 1 if EVERY else 30 if os.environ.get("MT_INSTRUMENTED") else 4  # of a command's calls
+STRIDE = 1 if EVERY else 30 if os.environ.get("MT_INSTRUMENTED") else 4 if os.environ.get("MT_EVERY", "0") != "0" else 16  # of a command's calls
 ERRORS = [errno.EIO, errno.ENOSPC, errno.EMFILE, errno.EDQUOT, errno.EINTR]
 FILES = ["recommendations.csv", "report.html", "result.json", "timing.json"]
 ONE_START = ', "search": { "starts": 1 }'
@@ -34,7 +34,7 @@ LINES = {
     "response": ["response", "problems/model.json", "-c", "held", "--input", "a.x", "--format", "csv"],
     "info": ["info", "problems/model.json", "--format", "json"],
     "check": ["check", "studies/two.json", "results/two/result.json"],
-    "catalogue": ["check", str(SOURCE / "studies/inceptor_rotor.json")],
+    "catalogue": ["check", str(SOURCE / "studies/inceptor_catalogue.json")],
     "report": ["report", "results/two/result.json", "--format", "html"],
     "apply": ["apply", "results/two/result.json"],
     "apply --model": ["apply", "results/two/result.json", "--model", "problems/model.json", "--root", "problems"],
@@ -222,14 +222,15 @@ class EveryCall(FolderTest):
             self.expect(0, *LINES[name])
         self.expect(0, "run", "studies/two.json", "--shard", "1/1")
         self.expect(0, "run", "studies/two.json")
-        for name, line in LINES.items():
+        for number, (name, line) in enumerate(LINES.items()):
             if name == "run":
                 continue
             whole, calls = self.calls(line)
             self.assertEqual(whole.returncode, 0, whole.stderr)
             self.assertGreater(len(calls), 0)
             for k, function in enumerate(calls):
-                if not (EVERY or k % STRIDE == SEED % STRIDE or calls.index(function) == k):
+                first = calls.index(function) == k and (STRIDE == 4 or (k + number) % 2 == 0)
+                if not (EVERY or first or k % STRIDE == SEED % STRIDE):
                     continue
                 for i, error in enumerate(ERRORS):
                     if EVERY or k % len(ERRORS) == i:
@@ -238,7 +239,7 @@ class EveryCall(FolderTest):
                         # for the permissions of what it replaces)
                         if function in ("write", "open") and error != errno.EINTR and name not in ("apply", "report", "show", "merge", "run two"):
                             self.assertEqual(done.returncode, 4, what)
-                if EVERY or k % 8 == 0:
+                if EVERY or k == 0 or k % (2 * STRIDE) == SEED % STRIDE:
                     self.check_command(name, k, function, errno.EIO, "ever", whole)
 
     def test_run_leaves_the_old_result_or_the_new_one(self):

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured frequency responses as they are read: tables and universal files. */
 #define _XOPEN_SOURCE 700 /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): mkdtemp */
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

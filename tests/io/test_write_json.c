@@ -191,16 +191,16 @@ static void write_json__what_is_not_finite_is_null(mt_test *t)
     CHECK_STR(t, mt_json_format_number(-HUGE_VAL, buffer), "null");
 }
 
-/* Wherever such a locale is installed, its decimal comma must not get into the file. */
+/* No locale's decimal point gets into the file. */
 static void write_json__the_locale_does_not_matter(mt_test *t)
 {
-    static const char *const locales[] = {"C", "de_DE.UTF-8", "fr_FR.UTF-8", "ps_AF.UTF-8"};
+    static const char *const locales[] = {"C", "de_DE.UTF-8", "ps_AF.UTF-8"};
     for (int i = 0; i < MT_COUNT(locales); i++) {
         char buffer[MT_JSON_NUMBER_SIZE];
         mt_test_row(t, "%s", locales[i]);
-        const char *const set = setlocale(LC_NUMERIC, locales[i]);
+        CHECK(t, setlocale(LC_NUMERIC, locales[i]) != NULL);
+        CHECK(t, (strcmp(localeconv()->decimal_point, ".") == 0) == (i == 0));
         CHECK_STR(t, mt_json_format_number(1.5e-300, buffer), "1.5000000000000001e-300");
-        CHECK(t, set != NULL || i > 0);
     }
     (void)setlocale(LC_NUMERIC, "C");
 }
