@@ -348,8 +348,8 @@ static void every_study_of_the_tree__says_what_is_missing(mt_test *t)
         mt_err err = {.text = ""};
         mt_test_row(t, "%s", list.gl_pathv[i]);
         if (CHECK_INT(t, mt_study_read(list.gl_pathv[i], NULL, &study, &err), MT_OK)) {
-            disturb_one(t, strrchr(list.gl_pathv[i], '/') + 1, study,
-                        all ? TREE_ALL : TREE, &n);
+            disturb_one(t, strrchr(list.gl_pathv[i], '/') + 1, study, all ? TREE_ALL : TREE,
+                        &n);
         }
         mt_study_delete(study);
     }
