@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
 
 SEED = int(os.environ.get("MT_SEED", "1"))
-COUNT = int(os.environ.get("MT_COUNT", "300" if "MT_EVERY" in os.environ else "50"))
+COUNT = int(os.environ.get("MT_COUNT", "300" if "MT_EVERY" in os.environ else "50" if "MT_INSTRUMENTED" in os.environ else "15"))
 
 PLANE_JOINTS = ["fixed", "revolute", "prismatic", "pin-in-slot", "distance"]
 SPACE_JOINTS = ["fixed", "revolute", "prismatic", "cylindrical", "spherical", "universal", "planar", "point-on-line", "distance"]

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 MODETUNE = os.environ["MODETUNE"]
-SAMPLES = 100 if "MT_EVERY" in os.environ else 30
+SAMPLES = 100 if "MT_EVERY" in os.environ else 12
 GUARD = 3e-6  # goals are met within 1e-4 % of an edge
 ORDERS = (0.125, 0.5, 1, 1.5, 2, 2.5, 3, 4, 6, 7.333)
 MODEL = {

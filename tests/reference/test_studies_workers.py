@@ -11,7 +11,7 @@ from pathlib import Path
 
 MODETUNE = os.environ["MODETUNE"]
 SOURCE = Path(os.environ["SOURCE_DIR"])
-STUDIES = ("six_masses_bands", "inceptor_rotor", "truss_10bar_E69_8", "inceptor_catalogue")
+STUDIES = ("six_masses_bands", "truss_10bar_E69_8", "inceptor_catalogue", *(("inceptor_rotor",) if "MT_EVERY" in os.environ else ()))
 WORKERS = ("1", "2", "8") if "MT_EVERY" in os.environ else ("1", "8")
 failures = []
 

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
 
 SEED = int(os.environ.get("MT_SEED", "1"))
-COUNT = int(os.environ.get("MT_COUNT", "60"))
+COUNT = int(os.environ.get("MT_COUNT", "60" if {"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ) else "20"))
 
 
 class Units:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Some models of every family (run.py), and errors that must be found in what the program answers."""
+"""Some models of every family (run.py), and errors that must be found in what the program answers. MT_EVERY=1: more of them, and
+larger ones."""
 import json
 import os
 import random
@@ -11,7 +12,8 @@ import run  # first: it says where the others are
 import extremes  # noqa: E402
 import hanging  # noqa: E402
 
-COUNT = 2 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else 4  # of each family
+EVERY = "MT_EVERY" in os.environ
+COUNT = 4 if EVERY else 2  # of each family
 
 
 def slide(beside):
@@ -85,12 +87,13 @@ class Stress(unittest.TestCase):
     def test_bounds_follow_from_energies(self):
         """Errors and bounds of what the data determine, of springs and masses far apart: a thousand times as good where quotients of energies are taken."""
         rows = {}
-        found = list(run.stress("q1", ["stiffnesses 1:1e12", "masses 1:1e9", "both", "slender beams"], range(6), rows))
+        found = list(run.stress("q1", ["stiffnesses 1:1e12", "masses 1:1e9", "both", "slender beams"], range(6 if EVERY else 2), rows))
         self.assertEqual(found, [])
         for row in rows.values():
             self.assertLess(row.told, 1e-11, row.name)
             self.assertLess(row.error, 1e-13, row.name)
 
+    @unittest.skipUnless(EVERY or "MT_INSTRUMENTED" in os.environ, "three seconds of the reference")
     def test_long_stacks_keep_their_modes(self):
         """Rods with a short way from the end of a long arm pass on what the platform above does, enlarged and turned: bounds that grew with each step made 87 of 90 modes free."""
         rows = {}

@@ -17,23 +17,44 @@
 /* Of x = from + d, d with all its digits. */
 typedef long double ref_function(const void *ctx, long double from, long double d);
 
-/* Takahasi and Mori's rule on [a, b]: the integrand at a + d and b - d, d kept as it is. */
+enum { REF_RULE = 130, REF_PLACES = (2 * REF_RULE) + 1 };
+
+/* Of Takahasi and Mori's rule on an interval of half width 1: how far its places are from the
+ * nearer end, and its weights. */
+typedef struct ref_rule {
+    bool made;
+    long double rest[REF_PLACES];
+    long double weight[REF_PLACES];
+} ref_rule;
+
+static inline const ref_rule *ref_rule_made(void)
+{
+    static ref_rule rule;
+    const long double step = 1.0L / 32.0L;
+    for (int i = 0; i < REF_PLACES && !rule.made; i++) {
+        const long double t = step * (long double)(i - REF_RULE);
+        const long double u = 0.5L * REF_PI * sinhl(t);
+        /* 1 - |tanh u| */
+        rule.rest[i] = 2.0L / (1.0L + expl(2.0L * fabsl(u)));
+        rule.weight[i] = step * 0.5L * REF_PI * coshl(t) / (coshl(u) * coshl(u));
+    }
+    rule.made = true;
+    return &rule;
+}
+
+/* On [a, b]: the integrand at a + d and b - d, d kept as it is. */
 static inline long double ref_integral(ref_function *f, const void *ctx, long double a,
                                        long double b)
 {
-    const long double step = 1.0L / 32.0L;
+    const ref_rule *const rule = ref_rule_made();
     const long double half = 0.5L * (b - a);
     long double sum = 0.0L;
-    for (int i = -130; i <= 130; i++) {
-        const long double t = step * (long double)i;
-        const long double u = 0.5L * REF_PI * sinhl(t);
-        /* 1 - |tanh u| */
-        const long double rest = 2.0L / (1.0L + expl(2.0L * fabsl(u)));
-        const long double d = u < 0.0L ? half * rest : -half * rest;
-        const long double weight =
-            half * step * 0.5L * REF_PI * coshl(t) / (coshl(u) * coshl(u));
+    for (int i = 0; i < REF_PLACES; i++) {
+        const bool low = i < REF_RULE;
+        const long double d = half * (low ? rule->rest[i] : -rule->rest[i]);
+        const long double weight = half * rule->weight[i];
         if (weight > 0.0L && d != 0.0L) {
-            sum += weight * f(ctx, u < 0.0L ? a : b, d);
+            sum += weight * f(ctx, low ? a : b, d);
         }
     }
     return sum;
@@ -61,22 +82,30 @@ static inline double ref_size(const mt_pole_sum *h, double w)
     return (double)cabsl(ref_response(h, (long double)w, 0.0L));
 }
 
+/* Of a density log G = log_level + slope (log w - log_w). */
 typedef struct ref_segment {
     const mt_pole_sum *h;
-    const mt_psd *g;
-    int i;
+    long double log_w;
+    long double log_level;
+    long double slope;
 } ref_segment;
+
+static inline ref_segment ref_segment_of(const mt_pole_sum *h, const mt_psd *g, int i)
+{
+    const long double f[] = {(long double)g->hz[i], (long double)g->hz[i + 1]};
+    const long double level[] = {(long double)g->level[i], (long double)g->level[i + 1]};
+    return (ref_segment){.h = h,
+                         .log_w = logl(2.0L * REF_PI * f[0]),
+                         .log_level = logl(level[0]),
+                         .slope = logl(level[1] / level[0]) / logl(f[1] / f[0])};
+}
 
 static inline long double ref_density(const void *ctx, long double from, long double d)
 {
     const ref_segment *const s = ctx;
-    const long double hz = (from + d) / (2.0L * REF_PI);
-    const long double f[] = {(long double)s->g->hz[s->i], (long double)s->g->hz[s->i + 1]};
-    const long double level[] = {(long double)s->g->level[s->i],
-                                 (long double)s->g->level[s->i + 1]};
-    const long double b = logl(level[1] / level[0]) / logl(f[1] / f[0]);
-    const long double size = cabsl(ref_response(s->h, from, d));
-    return size * size * level[0] * powl(hz / f[0], b);
+    const long double complex h = ref_response(s->h, from, d);
+    const long double size = (creall(h) * creall(h)) + (cimagl(h) * cimagl(h));
+    return size * expl(s->log_level + (s->slope * (logl(from + d) - s->log_w)));
 }
 
 enum { REF_CUTS = 4096, REF_POWERS = 24 };
@@ -132,7 +161,7 @@ static inline long double ref_mean_square(const mt_pole_sum *h, const mt_psd *g,
     static ref_cuts cuts;
     long double total = 0.0L;
     for (int i = 0; i + 1 < g->n; i++) {
-        const ref_segment s = {h, g, i};
+        const ref_segment s = ref_segment_of(h, g, i);
         if (g->hz[i] < g->hz[i + 1]) {
             ref_cut_all(&cuts, h, ref_end(g->hz[i], rounded), ref_end(g->hz[i + 1], rounded));
             for (int k = 0; k + 1 < cuts.n; k++) {
