@@ -100,7 +100,7 @@ class Progress(CliTest):
                 self.assertGreater(found[-1]["best_evaluations"], 0)
 
     def test_a_long_search_and_its_end(self):
-        fewer = self.write("studies/fewer.json", LONG.replace("beam.json", "slender.json").replace("5000", "1000"))
+        fewer = self.write("studies/fewer.json", LONG.replace("beam.json", "slender.json"))
         running = Running(self.folder, "run", fewer, "--progress", "json", "--threads", "1")
         self.assertTrue(running.wait_for('"unit": "starts"'), running.said)
         for _ in range(2):
@@ -112,8 +112,8 @@ class Progress(CliTest):
         starts = [f for f in found if f["unit"] == "starts"]
         self.assertGreaterEqual(len(starts), 2)
         for f in starts:
-            self.assertEqual(f["total"], 1000)
-            self.assertAlmostEqual(f["share"], f["done"] / 1000, delta=1e-12)
+            self.assertEqual(f["total"], 5000)
+            self.assertAlmostEqual(f["share"], f["done"] / 5000, delta=1e-12)
 
     def test_a_line_of_a_terminal_goes(self):
         for columns in (200, 40):

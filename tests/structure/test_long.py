@@ -37,11 +37,11 @@ class Long(unittest.TestCase):
             self.assertTrue(any((TREE / "tests" / (name + ending)).is_file() for ending in (".c", ".py", ".sh")), name)
 
     def test_what_looks_at_a_sample_reads_the_switch(self):
+        """Itself, or a file of its folder that scripts share."""
         for name in self.every:
-            room = TREE / "tests" / name.split("/")[0]
-            own = next(path for path in (TREE / "tests" / (name + e) for e in (".c", ".py", ".sh")) if path.is_file())
-            texts = [own.read_text(encoding="utf-8")] + [p.read_text(encoding="utf-8") for p in room.glob("*.py") if p.stem in
-                                                          re.findall(r"^(?:from|import) (\w+)", own.read_text(encoding="utf-8"), re.M)]
+            path = TREE / "tests" / name
+            texts = [p.read_text(encoding="utf-8") for p in path.parent.glob("*.py")] if path.with_suffix(".py").is_file() else [
+                path.with_suffix(".c").read_text(encoding="utf-8")]
             self.assertTrue(any("MT_EVERY" in text for text in texts), name)
 
 
