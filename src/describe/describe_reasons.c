@@ -132,8 +132,9 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
                            s->rec->parameters[lever].name, most);
 }
 
-/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer: "at
- * its lower limit", "2 % below its lower limit of 7 Hz". */
+/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer, the
+ * lower one where it is in the middle: "at its lower limit", "2 % below its lower limit of 7
+ * Hz". */
 static void limit_text(const mt_result_frequency *f, char *text)
 {
     const bool both = MT_HAS(f->at_least_hz) && MT_HAS(f->at_most_hz);
@@ -142,9 +143,10 @@ static void limit_text(const mt_result_frequency *f, char *text)
     const double highest = range ? f->highest_hz : f->recommended_hz;
     const double low = MT_HAS(f->at_least_hz) ? log(lowest / f->at_least_hz) : HUGE_VAL;
     const double high = MT_HAS(f->at_most_hz) ? mt_log_ratio(f->at_most_hz, highest) : HUGE_VAL;
-    const double error = 100.0 * (low < high ? -expm1(low) : expm1(-high));
-    const char *const side = low < high ? "lower" : "upper";
-    const double limit = low < high ? f->at_least_hz : f->at_most_hz;
+    const bool lower = MT_HAS(f->at_least_hz) && !mt_exceeds(low, high);
+    const double error = 100.0 * (lower ? -expm1(low) : expm1(-high));
+    const char *const side = lower ? "lower" : "upper";
+    const double limit = lower ? f->at_least_hz : f->at_most_hz;
     if (!(f->recommended_hz > 0.0) && MT_HAS(f->at_least_hz)) {
         (void)mt_snprintf(text, DEMAND_SIZE, "far below its lower limit of %.6g Hz",
                           f->at_least_hz);
@@ -152,10 +154,10 @@ static void limit_text(const mt_result_frequency *f, char *text)
         (void)mt_snprintf(text, DEMAND_SIZE, "at its %s limit", side);
     } else if (isinf(error)) {
         (void)mt_snprintf(text, DEMAND_SIZE, "far %s its %s limit of %.6g Hz",
-                          low < high ? "below" : "above", side, limit);
+                          lower ? "below" : "above", side, limit);
     } else if (error > WORTH_SAYING_PERCENT) {
         (void)mt_snprintf(text, DEMAND_SIZE, "%.3g %% %s its %s limit of %.6g Hz", error,
-                          low < high ? "below" : "above", side, limit);
+                          lower ? "below" : "above", side, limit);
     } else if (both) {
         (void)mt_snprintf(text, DEMAND_SIZE, "between its limits of %.6g and %.6g Hz",
                           f->at_least_hz, f->at_most_hz);

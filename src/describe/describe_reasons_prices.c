@@ -26,8 +26,9 @@ static const char *price(mt_sentences *s, double df)
                         .score = s->rec->score,
                         .first = s->design->stage == 0};
     const bool known = s->rec->feasible && mt_describe_is_optimum(s->rec);
-    return !(fabs(df) > 0.0) || !known || ops->price == NULL ? NULL
-                                                             : ops->price(&q, &s->result->mem);
+    const bool noise =
+        !(fabs(df) > 0.0) || (q.first && fabs(df) <= MT_RATIO_NOISE * fabs(q.score));
+    return noise || !known || ops->price == NULL ? NULL : ops->price(&q, &s->result->mem);
 }
 
 static const char *win(const mt_sentences *s)

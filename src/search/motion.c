@@ -193,9 +193,12 @@ static mt_status measure(walk *w, sample *s, mt_err *err)
     return MT_OK;
 }
 
-/* Look at one more position; its place in the samples is w->n - 1. */
-static mt_status look(walk *w, double at, int next, mt_err *err)
+/* Look at one more position; its place in the samples is w->n - 1. What is 0 but for rounding
+ * of the way there, is 0: far nearer than positions come to each other. */
+static mt_status look(walk *w, double position, int next, mt_err *err)
 {
+    const double travel = fabs(w->samples[1].at - w->samples[0].at);
+    const double at = mt_without_noise(position, MT_RATIO_NOISE * travel);
     const mt_analysis_options opt = {.shapes = {.first = w->highest},
                                      .gradient = true,
                                      .vectors = true,
