@@ -33,8 +33,9 @@ if "MODETUNE_INSTALLED" not in os.environ:
     sys.path.insert(0, str(PACKAGE))
     needed = subprocess.run(["readelf", "-d", os.environ["MODETUNE_LIBRARY"]], check=True,
                             capture_output=True, text=True).stdout
-    if "libasan" in needed and "LD_PRELOAD" not in os.environ:  # it has to come first; leaks are Python's
-        asan = re.search(r"\[(libasan\.so\.\d+)\]", needed).group(1)
+    asan = re.search(r"\[(lib(?:asan|clang_rt\.asan)\S*\.so\S*)\]", needed)
+    if asan and "LD_PRELOAD" not in os.environ:  # it has to come first; leaks are Python's
+        asan = subprocess.run([os.environ["CC"], f"-print-file-name={asan[1]}"], check=True, capture_output=True, text=True).stdout.strip()
         os.execve(sys.executable, [sys.executable, "-B", *sys.argv],
                   dict(os.environ, LD_PRELOAD=asan, ASAN_OPTIONS="detect_leaks=0"))
 

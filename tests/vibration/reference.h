@@ -161,8 +161,8 @@ static inline long double ref_mean_square(const mt_pole_sum *h, const mt_psd *g,
     static ref_cuts cuts;
     long double total = 0.0L;
     for (int i = 0; i + 1 < g->n; i++) {
-        const ref_segment s = ref_segment_of(h, g, i);
-        if (g->hz[i] < g->hz[i + 1]) {
+        if (g->hz[i] < g->hz[i + 1]) { /* no jump */
+            const ref_segment s = ref_segment_of(h, g, i);
             ref_cut_all(&cuts, h, ref_end(g->hz[i], rounded), ref_end(g->hz[i + 1], rounded));
             for (int k = 0; k + 1 < cuts.n; k++) {
                 if (cuts.at[k] < cuts.at[k + 1]) {
