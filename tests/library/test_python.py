@@ -19,7 +19,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import types
 import unittest
 import warnings
@@ -179,13 +178,11 @@ class Progress(unittest.TestCase):
         self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         main = threading.main_thread().ident
         timer = threading.Timer(0.2, signal.pthread_kill, (main, signal.SIGINT))
-        started = time.monotonic()
         timer.start()
         with self.assertRaises(KeyboardInterrupt):
             modetune.solve(LONG, workers=1)
-            time.sleep(5)  # had it ended before
+            self.fail("the search went on to its end")
         timer.join()
-        self.assertLess(time.monotonic() - started, 5)
         self.assertEqual(threading.active_count(), 1)
 
     def test_line_is_written_over_and_emptied(self):
