@@ -136,7 +136,7 @@ class Modes(CliTest):
 
     def test_the_locale_changes_nothing(self):
         plain = self.expect(0, "modes", self.model, "--format", "json", env={"LC_ALL": "C"}).stdout
-        for name in ("de_DE.UTF-8", "C.UTF-8", "nonsense"):
+        for name in ("de_DE.UTF-8", "tr_TR.UTF-8", "C.UTF-8", "nonsense"):
             self.assertEqual(self.expect(0, "modes", self.model, "--format", "json", env={"LC_ALL": name}).stdout, plain)
 
 

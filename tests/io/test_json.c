@@ -299,7 +299,7 @@ static void json__the_locale_changes_nothing(mt_test *t)
     static const char text[] =
         "[1.5, 2.25e1, "
         "3.1250000000000000000000000000000000000000000000000000000000000000000001]";
-    static const char *const locales[] = {"C", "de_DE.UTF-8", "ps_AF.UTF-8"};
+    static const char *const locales[] = {"C", "de_DE.UTF-8", "tr_TR.UTF-8", "ps_AF.UTF-8"};
     static const double numbers[] = {1.5, 22.5, 3.125};
     for (int i = 0; i < MT_COUNT(locales); i++) {
         mt_json *doc = NULL;

@@ -194,7 +194,7 @@ static void write_json__what_is_not_finite_is_null(mt_test *t)
 /* No locale's decimal point gets into the file. */
 static void write_json__the_locale_does_not_matter(mt_test *t)
 {
-    static const char *const locales[] = {"C", "de_DE.UTF-8", "ps_AF.UTF-8"};
+    static const char *const locales[] = {"C", "de_DE.UTF-8", "tr_TR.UTF-8", "ps_AF.UTF-8"};
     for (int i = 0; i < MT_COUNT(locales); i++) {
         char buffer[MT_JSON_NUMBER_SIZE];
         mt_test_row(t, "%s", locales[i]);
