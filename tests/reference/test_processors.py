@@ -33,6 +33,8 @@ COUNT = int(os.environ.get("MT_PROCESSORS_COUNT", "8" if EVERY else "1"))
 ONLY = os.environ.get("MT_PROCESSORS_ONLY")
 sys.path.insert(0, str(SOURCE / "tests/hunt"))
 sys.dont_write_bytecode = True
+for given in ("OPENBLAS_CORETYPE", "GLIBC_TUNABLES"):  # the machine itself is one side
+    os.environ.pop(given, None)
 
 # What a kernel of OpenBLAS needs of the processor that runs it, by its name in /proc/cpuinfo.
 CORES = {"Prescott": "pni", "Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512bw"}
