@@ -284,7 +284,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
     MT_TRY(mt_info_fill(a->lin, &info, err));
     doubt_mass(info.mass_kg, out);
     doubt_frequency(&a->modes, out);
-    const int unstable = a->modes.n_unstable + a->modes.n_unstable_condensed;
+    const int unstable = a->modes.n_unstable;
     say_motion(a->lin, out);
     say_free(a, out);
     fault_damping(a, out);

@@ -96,9 +96,13 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     }
     mt_json_put_integer(w, "freedoms", m->n);
     mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
-    mt_json_put_integer(w, "unstable_modes", m->n_unstable + m->n_unstable_condensed);
+    mt_json_put_integer(w, "unstable_modes", m->n_unstable);
     mt_json_put_integer(w, "undecided_modes", m->n_undecided);
-    mt_json_put_integer(w, "massless_directions", m->n_condensed);
+    if (v->l == NULL) {
+        mt_json_put_integer(w, "massless_directions", m->n_condensed);
+    } else {
+        mt_json_put_null(w, "massless_directions"); /* the lowest modes are found without them */
+    }
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->shown; i++) {
         json_mode(w, v, i);

@@ -86,7 +86,7 @@ static mt_status visit(void *context, int point, const double *inputs, mt_err *e
         j->v.hz[i + ((ptrdiff_t)point * j->v.modes)] = at < 0 ? nan("") : mt_modal_hz(m, at);
     }
     j->v.rigid[point] = m->n_rigid;
-    j->v.unstable[point] = m->n_unstable + m->n_unstable_condensed;
+    j->v.unstable[point] = m->n_unstable;
     j->v.undecided[point] = m->n_undecided;
     return MT_OK;
 }

@@ -31,7 +31,7 @@ static mt_status choose_modes(mt_survey *v, const mt_modes *m, int wanted, mt_er
     }
     const size_t most = (size_t)m->count;
     v->room = m->count;
-    v->unstable = m->n_unstable + m->n_unstable_condensed;
+    v->unstable = m->n_unstable;
     v->position = mt_arena_int(&v->mem, most);
     v->hz = mt_arena_f64(&v->mem, most, 1);
     v->repeated = mt_arena_alloc(&v->mem, most, sizeof *v->repeated);

@@ -182,7 +182,7 @@ static const mt_modes *modes_of(const mt_mechanism *m)
 int mt_mechanism_vibration_modes(const mt_mechanism *mechanism)
 {
     const mt_modes *const modes = modes_of(mechanism);
-    return modes->count - modes->n_rigid - modes->n_unstable - modes->n_undecided;
+    return mt_modal_index(modes, modes->count - 1);
 }
 
 int mt_mechanism_rigid_body_modes(const mt_mechanism *mechanism)
@@ -193,7 +193,7 @@ int mt_mechanism_rigid_body_modes(const mt_mechanism *mechanism)
 int mt_mechanism_unstable_modes(const mt_mechanism *mechanism)
 {
     const mt_modes *const modes = modes_of(mechanism);
-    return modes->n_unstable + modes->n_unstable_condensed;
+    return modes->n_unstable;
 }
 
 int mt_mechanism_undecided_modes(const mt_mechanism *mechanism)
@@ -204,8 +204,7 @@ int mt_mechanism_undecided_modes(const mt_mechanism *mechanism)
 /* Where vibration mode `mode` stands among all; -1: nowhere. */
 static int position_of(const mt_mechanism *m, int mode)
 {
-    const mt_modes *const modes = modes_of(m);
-    return modes->n_unstable_condensed > 0 ? -1 : mt_modal_flexible(modes, mode);
+    return mt_modal_flexible(modes_of(m), mode);
 }
 
 double mt_mechanism_hz(const mt_mechanism *mechanism, int mode)

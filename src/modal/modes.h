@@ -19,10 +19,10 @@ typedef struct mt_modes {
     int n_condensed; /* directions without mass */
     int n_rigid;
     int n_held; /* of an n_rigid that was given: those that are no null directions of K */
-    int n_unstable;
+    int n_unstable; /* all unstable directions, those without mass among them */
     int n_undecided;
-    int n_unstable_condensed; /* directions without mass and with negative stiffness: unstable,
-                                 though no entry of lambda shows it */
+    int n_unstable_condensed; /* of n_unstable: directions without mass and with negative
+                                 stiffness, which no entry of lambda shows */
     /* [all] ascending [rad^2/s^2]; beyond count as the matrices say, not judged */
     double *lambda;
     mt_mode_kind *kind; /* [count] */

@@ -152,10 +152,15 @@ static mt_status hold(mt_sparse *s, bool *held, char *why, mt_err *err)
     return MT_OK;
 }
 
-/* The first mode that is no rigid-body one; 0: none. */
-static double first_lambda(const mt_modes *m)
+/* The lowest of the modes that are no rigid-body ones, negative where one is unstable (it
+ * stands before the rigid-body ones, in the order of 1/(lambda + s)); 0: none. */
+static double lowest_lambda(const mt_modes *m)
 {
-    return m->n_rigid < m->count ? m->lambda[m->n_rigid] : 0.0;
+    double lowest = HUGE_VAL;
+    for (int i = 0; i < m->count; i++) {
+        lowest = m->kind[i] == MT_MODE_FLEXIBLE ? fmin(lowest, m->lambda[i]) : lowest;
+    }
+    return lowest < HUGE_VAL ? lowest : 0.0;
 }
 
 static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *stable,
@@ -176,7 +181,7 @@ static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *s
                                            .context = s};
         s->refined = p->a.n_rows > 0 || s->held.least < WELL;
         MT_TRY(mt_modal_lowest(&problem, mem, out, err));
-        const double first = first_lambda(&out->modes);
+        const double first = lowest_lambda(&out->modes);
         *stable = first >= 0.0;
         const bool apart = s->shift > MOST_SHIFT * first || s->shift < LEAST_SHIFT * first;
         if (round == ROUNDS || s->shift == 0.0 || !(first > 0.0 && apart)) {

@@ -245,7 +245,7 @@ static mt_status add_output(build *k, int o, mt_err *err)
 /* About a position that does not hold nothing vibrates. */
 static mt_status admit(const mt_modes *m, mt_err *err)
 {
-    if (m->n_unstable + m->n_unstable_condensed > 0) {
+    if (m->n_unstable > 0) {
         return mt_fail(err, MT_E_EQUILIBRIUM,
                        "the position is unstable: it does not hold, and nothing vibrates about "
                        "it");
