@@ -3,7 +3,7 @@
 
 Every shipped study and model is run as two twins that differ in their free texts only: harmless words in one, hostile ones in the other. What the program says of
 both must be the same but for these texts, which are shown escaped: no control character leaves the program, no line, no cell and no tag is made by a name.
-Each round takes every 24th file, with MT_EVERY=1 every eighth, and shifts the hostile texts: MT_EVERY=1 and --rounds 8 --seed S take all.
+Each round takes every 48th file and half of the names and arguments, with MT_EVERY=1 every eighth, and shifts the hostile texts: MT_EVERY=1 and --rounds 8 --seed S take all.
 """
 import argparse
 import copy
@@ -33,7 +33,8 @@ FREE = {"description", "source", "label"}
 SLOW = {"inceptor_identification", "inceptor_rotor", "truss_72bar", "inceptor_trade"}  # more than half a second
 DROPPED = {"sha256", "study_path", "solve_s"}
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
-SHARE = 8 if EVERY else 24
+FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
+SHARE = 8 if EVERY else 48 if FEW else 24
 LONG = 400  # texts beyond it may be cut somewhere
 
 
@@ -336,7 +337,7 @@ class Hunt:
                   ["modes", model, "--root", "{}"], ["sensitivity", model, "--parameters", "{}"], ["diff", "{}", "{}"],
                   ["diff", model, model, "--rel-tol", "{}"]]
         for i, word in enumerate(HOSTILE):
-            for shape in (shapes[i % len(shapes)], shapes[(3 * i + 1) % len(shapes)]):
+            for shape in (shapes[i % len(shapes)], shapes[(3 * i + 1) % len(shapes)])[:1 if FEW else 2]:
                 args = [a.format(word) for a in shape]
                 done = self.program(SOURCE, *args)
                 for stream in (done.stdout, done.stderr):
@@ -347,11 +348,11 @@ class Hunt:
 
     def file_names(self):
         """Files with such names are read and written as they are, and shown escaped. The names are bytes."""
-        names = [b"\x1b]0;x\x07", b"a\nb", b"\xff\xfe", "\u202eb".encode(), b"=1+1", b"<b>&\"'", b" ", b"\xc2\x9b", "gr\u00f6\u00dfe".encode()]
+        names = [b"\x1b]0;x\x07", b"a\nb", b"=1+1", b"\xff\xfe", "\u202eb".encode(), b"<b>&\"'", b" ", b"\xc2\x9b", "gr\u00f6\u00dfe".encode()]
         study = json.loads(two_springs(extra=', "search": { "starts": 1 }'))
         with tempfile.TemporaryDirectory() as top:
             top = os.fsencode(top)
-            for name in names:
+            for name in names[1::2] if FEW else names:
                 folder = os.path.join(top, b"d" + name)
                 os.makedirs(folder)
                 given = copy.deepcopy(study)
