@@ -18,7 +18,7 @@ typedef struct mt_modes {
     int shaped;      /* those of them whose shape is in y, the lowest; 0 without vectors */
     int n_condensed; /* directions without mass */
     int n_rigid;
-    int n_held; /* of an n_rigid that was given: those that are no null directions of K */
+    int n_held;     /* of an n_rigid that was given: those that are no null directions of K */
     int n_unstable; /* all unstable directions, those without mass among them */
     int n_undecided;
     int n_unstable_condensed; /* of n_unstable: directions without mass and with negative

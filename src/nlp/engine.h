@@ -28,6 +28,7 @@ typedef struct mt_nlp_point {
     double violation; /* max |violation| / tolerance; <= 1 is feasible */
     double squares;   /* sum of squares of eq and of the negative part of in */
     double kkt;       /* last known relative KKT residual, infinity where unknown */
+    int n_loose;      /* directions that nothing holds at a minimum (polish.c); 0: none known */
 } mt_nlp_point;
 
 typedef struct mt_nlp_engine {

@@ -276,6 +276,7 @@ static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
         to->violation <= p->violation + STILL_MET &&
         (mt_nlp_feasible(to) || !mt_nlp_feasible(p))) {
         to->kkt = p->kkt;
+        to->n_loose = p->n_loose;
         mt_nlp_point_copy(e, p, to);
     }
     mt_arena_rewind(&e->scratch, mark);
@@ -293,6 +294,17 @@ static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
     (void)mt_nlp_weakness_at(e, p, &e->scratch, &w);
     mt_arena_rewind(&e->scratch, mark);
     return w.singular;
+}
+
+/* Undetermined directions of one variable, which stands at the origin for them. */
+static int single_directions(const mt_nlp_engine *e, const mt_nlp_result *out)
+{
+    int n = 0;
+    for (int k = 0; k < out->n_undetermined; k++) {
+        const double *const d = out->undetermined + ((ptrdiff_t)k * e->n);
+        n += mt_max_abs(e->n, d) == 1.0;
+    }
+    return n;
 }
 
 void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_result *out)
@@ -336,6 +348,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     }
     for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, mem, &out->solutions[i]); i++) {
         out->solutions[i].singular = is_singular(e, all->at[i].p, all->at[i].merged);
+        out->solutions[i].flat = all->at[i].p->n_loose > single_directions(e, out);
         out->solutions[i].start = all->at[i].start;
         out->solutions[i].hits = all->at[i].hits;
         out->n_solutions = i + 1;

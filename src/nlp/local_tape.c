@@ -18,6 +18,7 @@ static void tape_point(const mt_nlp_engine *e, mt_nlp_point *p, mt_tape *tape)
     mt_tape_numbers(tape, 1, &p->violation);
     mt_tape_numbers(tape, 1, &p->squares);
     mt_tape_numbers(tape, 1, &p->kkt);
+    mt_tape_int(tape, &p->n_loose, 0, INT_MAX);
 }
 
 /* Everything else at the design of p; false where its numbers come out otherwise. */
@@ -27,6 +28,7 @@ static bool evaluate_again(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *at)
                       at->violation == p->violation && at->squares == p->squares &&
                       memcmp(at->t, p->t, (size_t)e->n * sizeof *p->t) == 0;
     at->kkt = p->kkt;
+    at->n_loose = p->n_loose;
     return same;
 }
 

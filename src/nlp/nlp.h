@@ -97,6 +97,10 @@ typedef struct mt_nlp_solution {
     bool continuum;
     /* Jacobian of the active constraints (or of r) rank deficient at t: a double root */
     bool singular;
+    /* f and the constraints leave more directions free at t, to first and second order, than
+     * the undetermined ones of one variable: others next to it may be as good (without
+     * residuals) */
+    bool flat;
     /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated
      * roots (no freedom left) */
     double kkt;

@@ -43,6 +43,11 @@ static const double CURVATURE_NOISE = 1e-7;
 static const double SADDLE = 1e-4;
 /* KKT residuals below this are stationary points. */
 static const double STATIONARY = 1e-6;
+/* Curvatures and multipliers below this part of the gradients hold nothing: a direction with no
+ * more is known to rounding over it, to fewer digits than are told. Of gradients that vanish
+ * this part of the largest one met counts, as in kkt.c. */
+static const double LOOSE = 1e-5;
+static const double GRADIENT_FLOOR = 1e-3;
 /* A step must not be longer than this part of the one before, or the iteration is not
  * converging; with an old Hessian not longer than the second, or it takes a new one. */
 static const double CONTRACTION = 0.7;
@@ -70,6 +75,7 @@ typedef struct polish {
     mt_nlp_point *trial;
     mt_nlp_point *best;
     double limit; /* the objective must not end above this */
+    int n_loose;  /* at cur; -1: not known */
 } polish;
 
 /* The active set as numbers: sides of the variables, rows. */
@@ -323,6 +329,42 @@ static void curvature(polish *w)
     }
 }
 
+/*
+ * Directions that nothing holds at cur: those without curvature among the ones that the active
+ * constraints leave, and one for each inequality or bound that is met without being needed (its
+ * multiplier is 0: a minimum beside it is as good). -1: no curvature is known.
+ */
+static int loose_directions(const polish *w)
+{
+    const mt_nlp_active *const a = &w->a;
+    double scale = GRADIENT_FLOOR * w->e->df_scale;
+    int n = 0;
+    if (w->n_v < 0 || w->e->nlp->n_res > 0 || w->aim != MT_NLP_OBJECTIVE) {
+        return -1;
+    }
+    mt_nlp_gradient(w->e, w->cur, w->aim, w->gl);
+    for (int j = 0; j < w->e->n; j++) {
+        scale = w->e->held[j] ? scale : fmax(scale, fabs(w->gl[j]));
+    }
+    for (int i = 0; i < a->k; i++) {
+        scale = fmax(scale, fabs(a->lambda[i]) * a->scale[i]);
+    }
+    for (int c = 0; c < w->n_v; c++) {
+        scale = fmax(scale, fabs(w->w[c]));
+    }
+    for (int c = 0; c < w->n_v; c++) {
+        n += fabs(w->w[c]) <= LOOSE * scale;
+    }
+    for (int r = 0; r < a->qr.rank; r++) {
+        const int i = a->qr.perm[r];
+        n += a->row[i] >= w->e->nlp->n_eq && fabs(a->lambda[i]) * a->scale[i] <= LOOSE * scale;
+    }
+    for (int j = 0; j < w->e->n; j++) {
+        n += a->side[j] != 0 && fabs(a->z[j]) <= LOOSE * scale;
+    }
+    return n;
+}
+
 static double longest(const polish *w)
 {
     return mt_max_abs(w->e->n, w->step);
@@ -357,6 +399,7 @@ static bool newton_step(polish *w, double *size, double *saddle)
         }
         reduced_step(w);
     }
+    w->n_loose = loose_directions(w);
     if (saddle != NULL && w->a.kkt <= STATIONARY && find_saddle(w, saddle)) {
         return false;
     }
@@ -386,7 +429,7 @@ static void iterate(polish *w, double *saddle)
 void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *saddle)
 {
     const mt_nlp *const q = e->nlp;
-    polish w = {.e = e, .aim = aim, .n_v = -1};
+    polish w = {.e = e, .aim = aim, .n_v = -1, .n_loose = -1};
     mt_arena *const mem = &e->scratch;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     w.gl = mt_arena_f64(mem, (size_t)e->n, 1);
@@ -409,6 +452,7 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *sa
         mt_nlp_point_copy(e, w.cur, p);
         mt_nlp_point_copy(e, w.best, p);
         iterate(&w, saddle);
+        w.best->n_loose = w.n_loose >= 0 ? w.n_loose : p->n_loose;
         mt_nlp_point_copy(e, p, w.best);
     }
     mt_arena_rewind(mem, mark);

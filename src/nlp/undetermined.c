@@ -487,6 +487,7 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *undetermined, mt_nl
         mt_nlp_evaluate(e, t, true, to)) {
         to->kkt = p->kkt;
         restore(e, undetermined, mt_nlp_feasible(p), to);
+        to->n_loose = p->n_loose; /* with these directions among them */
         if (as_good(e, to, p)) {
             mt_nlp_point_copy(e, p, to);
         }

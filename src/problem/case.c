@@ -121,7 +121,7 @@ mt_status mt_case_for_stages(const mt_case *from, mt_arena *mem, mt_case *out, m
     out->in_tol = mt_arena_f64(mem, n_in, 1);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(out->eq_tol, from->eq_tol, n_eq * sizeof *out->eq_tol);
-    memcpy(out->in_tol, from->in_tol, n_in * sizeof *out->in_tol);
+    memcpy(out->in_tol, from->in_tol, (size_t)from->n_in * sizeof *out->in_tol);
     return MT_OK;
 }
 

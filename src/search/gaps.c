@@ -233,6 +233,9 @@ static mt_status search_round(const job *j, mt_workspace *w, slot *s, int k, int
     if (rc == MT_OK) {
         mt_gap_judge_clearance(&c, &s->found);
     }
+    if (rc == MT_OK && c.n_aims == 1) {
+        rc = mt_search_nearest(w, options.max_evals, NULL, NULL, &s->mem, &s->found, why);
+    }
     s->begun = s->evals;
     s->evals += s->found.evals;
     s->starts += s->found.starts;
@@ -318,30 +321,6 @@ static mt_status keep_solutions(const mt_problem *p, const job *j, mt_arena *mem
     return MT_OK;
 }
 
-static bool better(const mt_case *c, const mt_gap_solution *a, const mt_gap_solution *b)
-{
-    const mt_merit x = {a->found->feasible, a->found->squares, a->n_aims, a->aims};
-    const mt_merit y = {b->found->feasible, b->found->squares, b->n_aims, b->aims};
-    if (mt_merit_before(&x, &y, MT_EQUAL_FOUND) || mt_merit_before(&y, &x, MT_EQUAL_FOUND)) {
-        return mt_merit_before(&x, &y, MT_EQUAL_FOUND);
-    }
-    const int order = mt_compare(a->found->f, b->found->f, MT_EQUAL_FOUND);
-    return order < 0 || (order == 0 && mt_search_nearer(c, a->found->t, b->found->t));
-}
-
-/* Stable: what is equal keeps the order of the assignments. */
-static void rank(const mt_case *c, mt_gap_result *r)
-{
-    for (int i = 1; i < r->n_solutions; i++) {
-        const mt_gap_solution s = r->solutions[i];
-        int k = i;
-        for (; k > 0 && better(c, &s, &r->solutions[k - 1]); k--) {
-            r->solutions[k] = r->solutions[k - 1];
-        }
-        r->solutions[k] = s;
-    }
-}
-
 /* Of the best solution's search, without the coordinate of the clearance. */
 static mt_status keep_undetermined(const mt_problem *p, const slot *s, mt_arena *mem,
                                    mt_gap_result *out, mt_err *err)
@@ -388,7 +367,7 @@ static mt_status collect(const mt_problem *p, const job *j, mt_arena *mem, mt_ga
                          mt_err *err)
 {
     MT_TRY(keep_solutions(p, j, mem, out, err));
-    rank(j->c, out);
+    mt_gap_rank(j->c, out);
     MT_TRY(keep_steps(j, mem, out, err));
     if (out->n_solutions > 0) {
         MT_TRY(keep_undetermined(p, &j->slots[out->solutions[0].candidate], mem, out, err));

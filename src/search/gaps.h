@@ -86,6 +86,9 @@ mt_status mt_gap_copy_held(mt_arena *mem, mt_gap_solution *s, mt_err *err);
 mt_status mt_gap_hold(const mt_case *c, const struct mt_cut *cuts, const mt_nlp_solution *s,
                       mt_arena *mem, mt_gap_solution *out, mt_err *err);
 
+/* gaps_rank.c: the best first. Stable: what is equal keeps the order of the assignments. */
+void mt_gap_rank(const mt_case *c, mt_gap_result *r);
+
 /* gaps_clearance.c: one more thing is missed at a design. */
 void mt_gap_refuse(mt_nlp_solution *best, double short_of, double tolerance);
 /* Where the case makes the least clearance most: designs that a search met on its way, and

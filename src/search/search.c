@@ -142,6 +142,12 @@ static void drop_failed(mt_nlp_result *out)
     out->n_solutions = kept;
 }
 
+/* Of two flat optima that are as good the one of less change counts. */
+static bool is_nearer(const stages *s, const mt_nlp_solution *a, const mt_nlp_solution *b)
+{
+    return a->feasible && a->flat && b->flat && mt_search_nearer(s->first, a->t, b->t);
+}
+
 /* Drop what has become one, then rank (insertion, stable). */
 static void rank(stages *s)
 {
@@ -152,8 +158,13 @@ static void rank(stages *s)
         const mt_nlp_solution one = all[i];
         double *const f = s->f + ((ptrdiff_t)i * n_aims);
         bool twin = false;
-        for (int k = 0; k < kept; k++) {
-            twin = twin || mt_search_same(s->first->p->n, all[k].t, one.t);
+        for (int k = 0; k < kept && !twin; k++) {
+            twin = mt_search_same(s->first->p->n, all[k].t, one.t);
+            const bool continuum = all[k].continuum || one.continuum;
+            if (twin && is_nearer(s, &one, &all[k])) {
+                all[k] = one;
+            }
+            all[k].continuum = twin ? continuum : all[k].continuum;
         }
         if (twin) {
             continue;
@@ -163,7 +174,9 @@ static void rank(stages *s)
         for (; at > 0; at--) {
             const double *const g = s->f + ((ptrdiff_t)(at - 1) * n_aims);
             const mt_merit other = {all[at - 1].feasible, all[at - 1].squares, n_aims, g};
-            if (!mt_merit_before(&own, &other, MT_EQUAL_FOUND)) {
+            const bool before = mt_merit_before(&own, &other, MT_EQUAL_FOUND);
+            if (!before && (mt_merit_before(&other, &own, MT_EQUAL_FOUND) ||
+                            !is_nearer(s, &one, &all[at - 1]))) {
                 break;
             }
             all[at] = all[at - 1];
@@ -201,6 +214,9 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
         }
         *stage = k;
     }
+    mt_workspace_back(s->ws, s->first);
+    MT_TRY(mt_search_nearest(s->ws, s->first->search.max_evaluations, s->f, s->limit, s->mem,
+                             out, err));
     /* solutions that a stage has not reached keep the value of an earlier one: say so by one
      * measure for all */
     for (int i = 0; i < out->n_solutions; i++) {
@@ -243,11 +259,12 @@ static mt_status search(mt_workspace *const *workers, int n_workers, const doubl
         return MT_OK;
     }
     MT_TRY(mt_search_repeated(ws, c->search.max_evaluations, mem, out, err));
+    const long most = c->search.max_evaluations;
     if (c->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
-        return mt_search_join_continua(ws, mem, out, err);
+        MT_TRY(mt_search_join_continua(ws, mem, out, err));
+        return c->n_aims == 1 ? mt_search_nearest(ws, most, NULL, NULL, mem, out, err) : MT_OK;
     }
-    const long most = c->search.max_evaluations;
     if (most > 0 && most - out->evals < out->n_solutions) { /* nothing for their objectives */
         out->stop = MT_STOP_MAX_EVALS;
         return mt_search_join_continua(ws, mem, out, err);

@@ -10,13 +10,14 @@ struct mt_cut;
 /*
  * Search a problem for designs. The first objective from many starts (mt_nlp_solve); then, for
  * every design found, the next objective from there with the ones before it held (mt_aim_hold),
- * and so on through the list. Designs that have become one are reported once, in the order of
- * the objectives. A compromise, a spent budget or an interruption ends the list: out->stop
- * tells, and *stage is the objective that the solutions' f belongs to. Undetermined directions
- * are those at the best design. workers[n_workers], set to one case, in its first stage: the
- * result is the same for any number of them. Results in mem; the workers are set to that case
- * again. Deterministic. That no start has any value is no failure: then there are no solutions
- * and *why tells what was wrong. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE.
+ * and so on through the list; where that leaves a continuum, the change (mt_search_nearest).
+ * Designs that have become one are reported once, in the order of the objectives. A
+ * compromise, a spent budget or an interruption ends the list: out->stop tells, and *stage is
+ * the objective that the solutions' f belongs to. Undetermined directions are those at the best
+ * design. workers[n_workers], set to one case, in its first stage: the result is the same for
+ * any number of them. Results in mem; the workers are set to that case again. Deterministic.
+ * That no start has any value is no failure: then there are no solutions and *why tells what
+ * was wrong. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE.
  */
 mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
@@ -69,6 +70,23 @@ bool mt_search_same(int n, const double *a, const double *b);
  * That of less change; of those that mirror each other the one with less of the first
  * coordinate that differs. */
 bool mt_search_nearer(const mt_case *c, const double *s, const double *t);
+
+/*
+ * search_nearest.c: of designs that are as good the one of least change. A solution that is
+ * flat (mt_nlp_solution) stands where its search ended, which rounding decides; the rule is
+ *
+ *     minimise the change   with all objectives held (mt_aim_hold),
+ *
+ * from there, then with the last one held closely, so that it keeps its value in every digit
+ * that is told. Solutions that are not flat stay as they are, those for which no such design is
+ * found, and all where the change or a misfit is among the objectives. out->evals may grow to
+ * `most` (0: no limit). f (NULL with one objective): n_aims objectives of each solution, kept
+ * up; limit: likewise what those before the last are held at. With one objective the solutions
+ * are ranked afterwards, and what has become one counts once. Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL, MT_E_USAGE.
+ */
+mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double *limit,
+                            mt_arena *mem, mt_nlp_result *out, mt_err *err);
 
 /* search_repeated.c: improve ends where modes repeat, judge whether they are optima, rank, and
  * drop what is one and what is not shown to be optimal behind a better design. In the present

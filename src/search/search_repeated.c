@@ -372,6 +372,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     }
     MT_TRY(judge(w, s->t, &kkt, z, s, err));
     s->kkt = kkt;
+    s->flat = false; /* where modes repeat the curvature of rows says nothing */
     for (int j = 0; j < ws->c->n_t; j++) {
         const double near = ON_BOUND * (ws->c->upper_t[j] - ws->c->lower_t[j]);
         s->bound[j] =

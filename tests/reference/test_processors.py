@@ -57,11 +57,6 @@ ROUNDING_COLUMNS = {
 }
 
 
-# Random studies whose difference waits for its mending: (seed, study), and why.
-FLAT = "an objective other than the change leaves a continuum of designs: which one is told depends on where searches end"
-KNOWN = {("2", "trade_3"): FLAT, ("3", "trade_0"): FLAT}
-
-
 def environments():
     """{name: variables} of what this machine can stand for, and what it cannot, with the reason."""
     flags = set(Path("/proc/cpuinfo").read_text(encoding="utf-8").split()) if Path("/proc/cpuinfo").exists() else set()
@@ -179,8 +174,6 @@ class Processors(unittest.TestCase):
             for name, variables in self.environments.items():
                 there = run(paths, variables, Path(scratch) / name.replace(" ", "_"))
                 for study in here:
-                    if (SEED, study) in KNOWN and not ONLY:
-                        continue
                     for a, b in differences(here[study], there[study], units)[:3]:
                         wrong.append(f"{study} ({name})\n  here:  {a}\n  there: {b}")
             print(f"{len(paths)} studies in {len(self.environments)} environments: {len(wrong)} lines differ")

@@ -14,6 +14,7 @@ MEANT = {
     "MT_OBJECTIVE_CHANGE": (  # the distance from the original design itself
         "src/study/study_objectives.c",  # the objective where none is given
         "src/search/relax_moves.c",  # the nearest design
+        "src/search/search_nearest.c",  # of optima that are as good
         "src/search/search.c", "src/search/gaps.c",  # what no goal settles stays at the original
         "src/search/discrete.c",  # combinations come in the order of their change
         "src/answer/trade.c",  # results tell the change of every design

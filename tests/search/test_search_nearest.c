@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Flat optima, whose design of least change is known in closed form. a b >= 2 makes a b = 2 the
+ * least product, by every a and b = 2/a; of these with weights v of a and w of b
+ *
+ *     ln a = ln 2 w / (v + w),   ln b = ln 2 v / (v + w).
+ */
+#include "study_fixture.h"
+
+#define MODEL STUDY_TWO_MASSES("'a': 1, 'b': 1, 'k1': 1, 'k2': 'a*b', 'm': 1", "")
+#define VARIABLES                                                              \
+    "'variables': [{'parameter': 'a', 'lower': 0.2, 'upper': 5, 'weight': 3}," \
+    " {'parameter': 'b', 'lower': 0.1, 'upper': 6}],"
+#define LIMIT   "{'type': 'limit', 'expression': 'a*b', 'at_least': 2}"
+#define FAR     "{'type': 'avoid', 'bands_hz': [[100, 200]]}"
+#define PRODUCT "{'minimise': 'a*b'}"
+
+static const double A = 1.1892071150027210667; /* 2^(1/4) */
+static const double B = 1.6817928305074290861; /* 2^(3/4) */
+/* Limits are met within 1e-6. */
+static const double MET = 2e-6;
+
+static const struct {
+    const char *name;
+    const char *members;
+} rows[] = {
+    {"an expression", VARIABLES "'objective': " PRODUCT ", 'goals': [" LIMIT "]"},
+    {"in a gap", VARIABLES "'objective': " PRODUCT ", 'goals': [" LIMIT "," FAR "]"},
+    {"a constant after it",
+     VARIABLES "'objective': [" PRODUCT ", {'minimise': '(a*b)^2'}], 'goals': [" LIMIT "]"},
+    {"in a gap, a constant after it", VARIABLES
+     "'objective': [" PRODUCT ", {'minimise': '(a*b)^2'}], 'goals': [" LIMIT "," FAR "]"},
+    {"the change is asked for",
+     VARIABLES "'objective': [" PRODUCT ", {'minimise': 'change'}], 'goals': [" LIMIT "]"},
+};
+
+static void flat_optimum__is_the_one_of_least_change(mt_test *t)
+{
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        study_case c;
+        double first = nan("");
+        mt_test_row(t, "%s", rows[i].name);
+        for (int threads = 1; study_load(t, MODEL, rows[i].members, &c) && threads <= 8;
+             threads *= 2) {
+            const mt_solve_options opt = {.size = sizeof opt, .threads = threads};
+            mt_test_row(t, "%s, %d threads", rows[i].name, threads);
+            CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, &c.err), MT_OK);
+            if (c.result == NULL || !CHECK(t, c.result->n_recommendations > 0)) {
+                break;
+            }
+            const double a = study_value(&c, 1, "a");
+            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_NEAR(t, a / A, 1.0, MET);
+            CHECK_NEAR(t, study_value(&c, 1, "b") / B, 1.0, MET);
+            CHECK(t, c.result->recommendations[0].kkt_residual <= 1e-6);
+            first = threads == 1 ? a : first;
+            CHECK(t, a == first);
+            study_free(&c);
+        }
+        study_free(&c);
+    }
+}
+
+/* A budget is not exceeded, wherever it ends; what it has is told. */
+static void budget__is_kept(mt_test *t)
+{
+    for (long most = 1; most <= 4096; most *= 2) {
+        study_case c;
+        char members[600];
+        (void)snprintf(members, sizeof members, "%s, 'search': {'max_evaluations': %ld}",
+                       rows[0].members, most);
+        mt_test_row(t, "%ld evaluations", most);
+        if (study_solve(t, MODEL, members, &c)) {
+            CHECK(t, c.result->run.spent.search <= most);
+        }
+        study_free(&c);
+    }
+}
+
+/* What is determined is not asked again. */
+static void determined_optimum__costs_nothing(mt_test *t)
+{
+    study_case c;
+    study_case again;
+    long evaluations[2] = {0, 0};
+    if (study_solve(t, MODEL,
+                    VARIABLES "'objective': {'minimise': 'a+b'}, 'goals': [" LIMIT "]", &c)) {
+        CHECK_NEAR(t, study_value(&c, 1, "a") / sqrt(2.0), 1.0, MET);
+        evaluations[0] = c.result->run.spent.search;
+    }
+    study_free(&c);
+    if (study_solve(t, MODEL,
+                    VARIABLES "'objective': [{'minimise': 'a+b'}, {'minimise': 'change'}],"
+                              " 'goals': [" LIMIT "]",
+                    &again)) {
+        evaluations[1] = again.result->run.spent.search;
+    }
+    study_free(&again);
+    CHECK(t, evaluations[0] < evaluations[1]);
+}
+
+MT_TEST_MAIN(MT_TEST(flat_optimum__is_the_one_of_least_change), MT_TEST(budget__is_kept),
+             MT_TEST(determined_optimum__costs_nothing))
