@@ -12,6 +12,7 @@ from selenium.webdriver.common.keys import Keys
 MOST_BYTES = 560_000
 # Between them they have every kind of figure that a report has, no design, no answer and several of both; each is opened in another window.
 SAMPLE = ["beam_identification", "den_hartog", "inceptor_trade", "inceptor_vibration", "beam_reference", "six_masses_infeasible"]
+LIKE_ANOTHER = "beam_reference"  # has no figure of its own
 # What reports have to have, and to say before all else.
 FIGURES_OF = {
     "inceptor_rotor": {"frequencies", "parameters", "rotor-1", "parallel", "tolerance", "sensitivity", "spent"},
@@ -55,7 +56,7 @@ def number(text):
 
 
 class Report(Answers):
-    studies = STUDIES if EVERY else [SOURCE / "studies" / f"{name}.json" for name in SAMPLE]
+    studies = STUDIES if EVERY else [SOURCE / "studies" / f"{name}.json" for name in SAMPLE if name != LIKE_ANOTHER]
 
     def near(self, text, value, where):
         self.assertLessEqual(abs(number(text) - value), HALF * abs(value) + 1e-12, f"{where}: {text} for {value}")
@@ -123,7 +124,7 @@ class Report(Answers):
         self.assertFalse(note.is_displayed())
         cells = self.browser.all("#figure-trade [data-at]")
         self.assertEqual(len(cells), len(result["trade"]["points"]))
-        for place in (0, 17, len(cells) - 1):
+        for place in (0, 17, len(cells) - 1)[0 if EVERY else 1:]:
             self.browser.all("#figure-trade [data-at]")[place].send_keys("\ue007")
             self.browser.settle()
             best = result["trade"]["points"][place]["best"]
@@ -216,7 +217,7 @@ class Report(Answers):
     def check_designs(self, designs):
         radios = self.browser.all(".alternatives input")
         self.assertEqual(len(radios), len(designs) if len(designs) > 1 else 0)
-        places = range(len(designs)) if EVERY else sorted({0, len(designs) // 2, len(designs) - 1} & set(range(len(designs))))
+        places = range(len(designs)) if EVERY else sorted({0, len(designs) - 1} & set(range(len(designs))))
         for place in places:
             if radios:
                 radios[place].click()
@@ -249,14 +250,14 @@ class Report(Answers):
                     check(result)
                 self.check_windows(windows)
                 self.check_designs(result["recommendations"])
-                if EVERY or turn % 2 == 0:
+                if EVERY or name in (CUT, SAMPLE[0]):
                     self.assertEqual(self.browser.paper(), [])
                 if name == CUT:  # what paper cuts is found
                     self.browser.run("document.querySelector('.gist').style.cssText = 'white-space: nowrap; overflow: hidden'")
                     self.assertIn("UL is cut on paper", " ".join(self.browser.paper()))
                 self.assertEqual(self.browser.requests(), [])
         kinds = {name: {re.sub(r"-\d+$", "", figure) for figure in had} for name, had in figures.items()}
-        self.assertEqual(set().union(*kinds.values()) - set().union(*(kinds[name] for name in SAMPLE)), set())
+        self.assertEqual(set().union(*kinds.values()) - set().union(*(kinds[name] for name in SAMPLE if name in kinds)), set())
 
     def test_parameters_are_shown_in_their_units(self):
         """The answer in inches is drawn in inches; the data in the page stay in SI."""

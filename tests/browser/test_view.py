@@ -227,7 +227,7 @@ class Panels(Pages):
     def test_nothing_overflows_or_hides(self):
         self.show(scene(3))
         for turn in range(3):
-            for window in WINDOWS if EVERY else WINDOWS[2 * turn:2 * turn + 2]:
+            for window in WINDOWS if EVERY else [WINDOWS[2 * turn + turn % 2]]:
                 self.browser.screen(**window)
                 self.browser.settle()
                 self.assertEqual(self.browser.problems(), [], window)

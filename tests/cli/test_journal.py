@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A run that is killed and resumed, or shared out and merged, writes the bytes of one that was left alone.
 MT_KILLS=100: so many kills at random moments (MT_EVERY=1: 30; else 4), MT_KILLS_SEED=S.
-MT_EVERY=1: any number of workers up to 8, seven parts, every place where a journal is cut; else some of them."""
+MT_EVERY=1: any number of workers up to 8, seven parts, every place where a journal is cut, a proof that goes on after a kill; else some of them."""
 import hashlib
 import json
 import os
@@ -12,6 +12,7 @@ import time
 from common_cli import PROGRAM, CliTest, main
 
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
+FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 FEWER = "MT_INSTRUMENTED" in os.environ  # a sanitizer looks at the same lines with a few parts and workers
 KILLS = int(os.environ.get("MT_KILLS", "30" if EVERY else "3" if FEWER else "4"))
 SEED = int(os.environ.get("MT_KILLS_SEED", "1"))
@@ -71,10 +72,10 @@ class Journal(CliTest):
         return self.folder / folder / f"{name}{part}.journal"
 
     def test_any_number_of_workers_and_shards(self):
-        for name in STUDIES:
+        for place, name in enumerate(STUDIES):
             self.run_study(name, "whole", "--threads", "1")
             self.assertEqual(os.listdir(self.folder / "whole").count(f"{name}.journal"), 0)
-            for threads in range(2, 9) if EVERY else (3,):
+            for threads in range(2, 9) if EVERY else () if FEW else (3,):  # parts have two
                 self.run_study(name, "many", "--threads", str(threads))
                 self.assertEqual(self.result(name, "whole"), self.result(name, "many"), f"{name}: {threads} workers")
             for parts in (1, 3, 7) if EVERY else (2,):
@@ -85,7 +86,7 @@ class Journal(CliTest):
                 journals = [str(self.journal(name, folder, f".{k}-of-{parts}")) for k in range(1, parts + 1)]
                 said = self.run_study(name, folder, *reversed(journals), command="merge")
                 self.assertEqual(self.result(name, "whole"), self.result(name, folder), f"{name}: {parts} parts")
-                if parts > 1:  # what is missing is done, and said
+                if parts > 1 and not (FEW and place % 2):  # what is missing is done, and said
                     short = self.run_study(name, "short", *journals[1:], command="merge")
                     self.assertEqual(self.result(name, "whole"), self.result(name, "short"), name)
                     known, more = (int(s.split(" tasks known of ")[0].split()[-1]) for s in (short, said))
@@ -103,7 +104,7 @@ class Journal(CliTest):
     def test_kill_and_resume(self):
         names = ["starts", "mixed", "trade", "none", "gaps", "catalogue", "branched"]
         seconds = {}
-        for name in names:
+        for name in names[:KILLS]:
             begun = time.monotonic()
             self.run_study(name, "whole", "--threads", "2")
             seconds[name] = time.monotonic() - begun
@@ -121,7 +122,6 @@ class Journal(CliTest):
         asked = {"variables": variables(8), "goals": [AVOID], "search": {"starts": 2}}
         self.write("studies/long.json", json.dumps({"format": "modetune-study/1", "model": "../problems/chain.json", **asked}))
         proof = ("--proof", "1")  # long enough to be killed in
-        self.run_study("long", "whole", *proof)
         early = self.folder / "killed" / "long" / "result.json"
         run = subprocess.Popen([PROGRAM, "run", "studies/long.json", "-o", "killed", *proof], cwd=self.folder,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -134,12 +134,15 @@ class Journal(CliTest):
         self.assertEqual(said["run"]["incomplete"][0], "search")
         self.assertEqual(len(said["recommendations"]), 1)
         self.assertTrue(all(goal["met"] for goal in said["recommendations"][0]["goals"]))
+        if FEW:
+            return  # the same proof twice more
+        self.run_study("long", "whole", *proof)
         self.run_study("long", "killed", "--resume", *proof)
         self.assertEqual(self.result("long", "whole"), self.result("long", "killed"))
 
     def test_cut_behind_every_line(self):
         """What a kill leaves, without a clock: a journal of so many lines, and half of the next one."""
-        for i, name in enumerate(STUDIES if EVERY else ("gaps", "trade") if FEWER else ("starts", "mixed", "branched", "trade")):
+        for i, name in enumerate(STUDIES if EVERY else ("gaps", "trade") if FEWER else ("mixed", "trade")):
             some = slice(None) if EVERY else slice(i % 2, None, 2)
             self.run_study(name, "whole")
             self.run_study(name, "part", "--shard", "1/1")
@@ -166,7 +169,7 @@ class Journal(CliTest):
         lines = self.journal("starts", "part", ".1-of-1").read_text().splitlines()
         identity = lines[0].split()[1]
         first = next(i for i, line in enumerate(lines) if i > 0 and not line.startswith("|"))
-        for word in range(2, 30, 1 if EVERY else 4):
+        for word in range(2, 30, 1 if EVERY else 8 if FEW else 4):
             forged = lines[:first]
             for line in lines[first:]:
                 parts = line.split()[1:]

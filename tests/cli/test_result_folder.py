@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A result folder is one unit, and every command survives every call to the system that fails.
 
-MT_FAULTS_EVERY=1 tries every error at every call (else at one of sixteen, with MT_EVERY=1 of four, and the first of each function of half of the commands), MT_FAULTS_KILLS=N kills so many runs of the program
-(default 8), MT_FAULTS_SEED=S chooses where. tests/io/test_folder_faults.c does the same to the writing of the folder alone, at every call.
+MT_FAULTS_EVERY=1 tries every error at every call (else at one of 48, of the run alone at one of 16, with MT_EVERY=1 of four, and the first of each function of a quarter of the commands), MT_FAULTS_KILLS=N kills so many runs of the program
+(default 4, with MT_EVERY=1 eight), MT_FAULTS_SEED=S chooses where. tests/io/test_folder_faults.c does the same to the writing of the folder alone, at every call.
 """
 import errno
 import json
@@ -19,7 +19,9 @@ from common_cli import COMMANDS, PROGRAM, SOURCE, CliTest, main, study
 FAULTY = os.environ.get("MODETUNE_FAULTS", os.path.join(os.path.dirname(PROGRAM), "tests/modetune_faults"))
 EVERY = os.environ.get("MT_FAULTS_EVERY", "0") != "0"
 SEED = int(os.environ.get("MT_FAULTS_SEED", "1"))
-STRIDE = 1 if EVERY else 30 if os.environ.get("MT_INSTRUMENTED") else 4 if os.environ.get("MT_EVERY", "0") != "0" else 16  # of a command's calls
+INSTRUMENTED, ALL = (os.environ.get(name, "0") != "0" for name in ("MT_INSTRUMENTED", "MT_EVERY"))
+FEW = not (EVERY or INSTRUMENTED or ALL)
+STRIDE = 1 if EVERY else 30 if INSTRUMENTED else 4 if ALL else 48  # of a command's calls
 ERRORS = [errno.EIO, errno.ENOSPC, errno.EMFILE, errno.EDQUOT, errno.EINTR]
 FILES = ["recommendations.csv", "report.html", "result.json", "timing.json"]
 ONE_START = ', "search": { "starts": 1 }'
@@ -229,7 +231,7 @@ class EveryCall(FolderTest):
             self.assertEqual(whole.returncode, 0, whole.stderr)
             self.assertGreater(len(calls), 0)
             for k, function in enumerate(calls):
-                first = calls.index(function) == k and (STRIDE == 4 or (k + number) % 2 == 0)
+                first = calls.index(function) == k and (STRIDE == 4 or (k + number) % (4 if FEW else 2) == 0)
                 if not (EVERY or first or k % STRIDE == SEED % STRIDE):
                     continue
                 for i, error in enumerate(ERRORS):
@@ -249,7 +251,8 @@ class EveryCall(FolderTest):
         whole, calls = self.calls(LINES["run"])
         self.assertEqual(self.files(), new)
         backup = self.folder / "backup"
-        for k, function in list(enumerate(calls))[SEED % STRIDE::STRIDE]:
+        stride = 16 if FEW else STRIDE
+        for k, function in list(enumerate(calls))[SEED % stride::stride]:
             for i, error in enumerate(ERRORS):
                 if not EVERY and k % len(ERRORS) != i:
                     continue
@@ -274,7 +277,7 @@ class EveryCall(FolderTest):
         shutil.copytree(self.results, backup)
         self.write("studies/two.json", study(extra=ONE_START))
         count = len(self.calls(LINES["run"])[1])
-        for _ in range(int(os.environ.get("MT_FAULTS_KILLS", "8"))):
+        for _ in range(int(os.environ.get("MT_FAULTS_KILLS", "4" if FEW else "8"))):
             k, how = chance.randrange(count), chance.choice(["kill", "tear"])
             shutil.rmtree(self.results)
             shutil.copytree(backup, self.results)
@@ -322,14 +325,14 @@ class Streams(FolderTest):
                               preexec_fn=restrict, timeout=600, check=False)
 
     def test_a_full_device_is_told_and_4_in_every_command(self):
-        for name, line in LINES.items():
+        for name, line in list(LINES.items())[::2 if FEW else 1]:
             with self.subTest(name), open("/dev/full", "wb") as full:
                 done = self.streams(line, full)
                 self.assertEqual(done.returncode, 4)
                 self.assertIn("modetune: error: standard output: No space left on device\n", done.stderr)
 
     def test_a_closed_pipe_is_quiet_and_4_in_every_command(self):
-        for name, line in LINES.items():
+        for name, line in list(LINES.items())[1 if FEW else 0::2 if FEW else 1]:
             with self.subTest(name):
                 read, write = os.pipe()
                 os.close(read)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The hunt in the suite: saved cases, faults that must be found, and a study of each kind of a fixed seed; with MT_EVERY=1, and
-in instrumented builds, three of each kind and all saved cases, else every third."""
+in instrumented builds, three of each kind and all saved cases, else every sixth."""
 import functools
 import itertools
 import json
@@ -16,6 +16,7 @@ from known import reason
 SEED = "7"
 WHOLE = bool({"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ))
 COUNT = 3 if WHOLE else 1  # of each kind
+FIRST = {"_second_objective": [("limits", 14)], "_range": [("infeasible", 9)]}  # before others, of which none has a place for the fault
 CASES = Path(__file__).resolve().parent / "cases"
 
 
@@ -39,7 +40,7 @@ class Cases(unittest.TestCase):
     """What the hunt once found. A case is one file {"holds": why it is here, "model": ..., "study": ...}."""
 
     def test_cases(self):
-        for path in sorted(CASES.glob("*.json"))[::1 if WHOLE else 3]:
+        for path in sorted(CASES.glob("*.json"))[::1 if WHOLE else 6]:
             case = json.loads(path.read_text())
             with self.subTest(case=path.stem):
                 wrong = [f for f in run.findings(path.stem, case["model"], case["study"], run.again(case["model"], [case["study"]])[0])
@@ -56,7 +57,7 @@ class Faults(unittest.TestCase):
 
     def _find(self, plant, kinds, check, tries=40):
         """Does the check tell a sound result from the same with the fault?"""
-        for index, kind in itertools.product(range(tries), kinds):
+        for kind, index in (*(() if WHOLE else FIRST.get(plant.__name__, ())), *((k, i) for i in range(tries) for k in kinds)):
             model, study, (_, words, result) = solved(kind, index)
             if result is None:
                 continue

@@ -103,6 +103,15 @@ static bool ring(mt_test *t, mt_model *model, const char *configuration, int ind
     return true;
 }
 
+/* Without MT_EVERY=1 the highest of a row's modes is enough, and of "installed", whose lowest takes
+ * longer than all others together, none; counters see all but that one. */
+static bool left_out(const char *configuration, int mode, int modes)
+{
+    const bool installed = strcmp(configuration, "installed") == 0;
+    return getenv("MT_INSTRUMENTED") != NULL ? installed && mode == 1
+                                             : installed || mode < modes;
+}
+
 static void simulate__small_motions_ring_with_the_frequencies_of_modes(mt_test *t)
 {
     static const struct {
@@ -131,9 +140,9 @@ static void simulate__small_motions_ring_with_the_frequencies_of_modes(mt_test *
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
         for (int k = 1; k <= rows[i].modes; k++) {
-            if (k == 1 && strcmp(rows[i].configuration, "installed") == 0 &&
-                getenv("MT_EVERY") == NULL) {
-                continue; /* longer than all others together */
+            if (getenv("MT_EVERY") == NULL &&
+                left_out(rows[i].configuration, k, rows[i].modes)) {
+                continue;
             }
             mt_test_row(t, "%s, %s, mode %d", rows[i].file, rows[i].configuration, k);
             CHECK(t, ring(t, mech_load(t, rows[i].file), rows[i].configuration, k));
