@@ -101,8 +101,8 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     if (v->l == NULL) {
         mt_json_put_integer(w, "massless_directions", m->n_condensed);
     } else {
-        mt_json_put_null(w,
-                         "massless_directions"); /* the lowest modes are found without them */
+        /* the lowest modes are found without them */
+        mt_json_put_null(w, "massless_directions");
     }
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->shown; i++) {
