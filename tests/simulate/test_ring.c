@@ -103,8 +103,8 @@ static bool ring(mt_test *t, mt_model *model, const char *configuration, int ind
     return true;
 }
 
-/* Without MT_EVERY=1 the highest of a row's modes is enough, and of "installed", whose lowest takes
- * longer than all others together, none; counters see all but that one. */
+/* Without MT_EVERY=1 the highest of a row's modes is enough, and none of "installed", whose
+ * lowest takes longer than all others together; counters see all but that one. */
 static bool left_out(const char *configuration, int mode, int modes)
 {
     const bool installed = strcmp(configuration, "installed") == 0;
