@@ -298,8 +298,11 @@ static mt_status search_once(const job *j, mt_case *c, mt_workspace *w, mt_move 
     MT_TRY(mt_arena_check(&out->mem, err));
     const mt_nlp nlp = nlp_of(&r, c, a->near, hint);
     MT_TRY(solve(w, &nlp, &opt, out, &found, err));
-    const mt_nlp_solution *const s = found.n_solutions > 0 ? &found.solutions[0] : NULL;
-    const double size = s != NULL ? sqrt(2.0 * s->f) : 0.0;
+    if (found.n_solutions == 0) {
+        return MT_OK;
+    }
+    const mt_nlp_solution *const s = &found.solutions[0];
+    const double size = sqrt(2.0 * s->f);
     if (!(size > LEAST) || !s->feasible || !mt_relax_is_less(m, size, 0.0)) {
         return MT_OK;
     }

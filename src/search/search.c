@@ -148,6 +148,21 @@ static bool is_nearer(const stages *s, const mt_nlp_solution *a, const mt_nlp_so
     return a->feasible && a->flat && b->flat && mt_search_nearer(s->first, a->t, b->t);
 }
 
+/* Is `one` the same design as one of the first `kept`? The nearer of two flat ones stays. */
+static bool is_twin(const stages *s, int kept, const mt_nlp_solution *one)
+{
+    mt_nlp_solution *const all = s->out->solutions;
+    for (int k = 0; k < kept; k++) {
+        if (mt_search_same(s->first->p->n, all[k].t, one->t)) {
+            const bool continuum = all[k].continuum || one->continuum;
+            all[k] = is_nearer(s, one, &all[k]) ? *one : all[k];
+            all[k].continuum = continuum;
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Drop what has become one, then rank (insertion, stable). */
 static void rank(stages *s)
 {
@@ -157,16 +172,7 @@ static void rank(stages *s)
         mt_nlp_solution *const all = s->out->solutions;
         const mt_nlp_solution one = all[i];
         double *const f = s->f + ((ptrdiff_t)i * n_aims);
-        bool twin = false;
-        for (int k = 0; k < kept && !twin; k++) {
-            twin = mt_search_same(s->first->p->n, all[k].t, one.t);
-            const bool continuum = all[k].continuum || one.continuum;
-            if (twin && is_nearer(s, &one, &all[k])) {
-                all[k] = one;
-            }
-            all[k].continuum = twin ? continuum : all[k].continuum;
-        }
-        if (twin) {
+        if (is_twin(s, kept, &one)) {
             continue;
         }
         int at = kept++;

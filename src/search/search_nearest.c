@@ -123,7 +123,7 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
         return mt_fail(err, rc, "%s", own.text);
     }
     if (rc == MT_OK && next.stop == MT_STOP_DONE && next.n_solutions > 0 && !next.compromise) {
-        *end = &next.solutions[0];
+        *end = next.solutions;
     }
     return MT_OK;
 }
@@ -163,7 +163,7 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
     mt_nlp_solution *near = NULL;
     mt_nlp_solution *end = NULL;
     for (int k = 0; k < n_aims; k++) {
-        n->at[k] = k + 1 < n_aims ? limit[k] : f[k];
+        n->at[k] = k + 1 < n_aims && limit != NULL ? limit[k] : f[k];
     }
     n->close = 0.0;
     MT_TRY(minimise(n, n_aims, EVALUATIONS, s->t, &near, err));
@@ -247,7 +247,7 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
     }
     MT_TRY(add_change(&n, err));
     mt_status rc = MT_OK;
-    for (int i = 0; i < out->n_solutions && out->stop == MT_STOP_DONE && rc == MT_OK; i++) {
+    for (int i = 0; i < out->n_solutions && n.out->stop == MT_STOP_DONE && rc == MT_OK; i++) {
         mt_nlp_solution *const s = &out->solutions[i];
         const ptrdiff_t row = (ptrdiff_t)i * n_aims;
         double own = s->f;
