@@ -383,16 +383,20 @@ static void compare_slopes(mt_test *t, int seed, mt_lowest *l, mech *dense, doub
     mt_arena_free(&mem);
 }
 
+/* How many of the random trees: all with MT_EVERY=1, a tenth under valgrind. */
+static int number_of_trees(bool looped)
+{
+    const int number = rounds() * (looped ? LOOPED : TREES);
+    const int part = getenv("MT_EVERY") != NULL ? 1 : 3;
+    return number / (getenv("MT_TEST_LAUNCHED") != NULL ? 10 : part);
+}
+
 /* least: parts of a hundred that are answered. */
 static void check_trees(mt_test *t, bool hung, bool looped, int least)
 {
     writer w = {.text = malloc(TEXT)};
     static const int input[INPUTS] = {0, 1, 2, 3, 4, 5, 6};
-    const int number = rounds() * (looped ? LOOPED : TREES);
-    const int part = getenv("MT_TEST_LAUNCHED") != NULL ? 10
-                     : getenv("MT_EVERY") != NULL       ? 1
-                                                        : 3;
-    const int trees = number / part;
+    const int trees = number_of_trees(looped);
     int found = 0;
     int refused = 0;
     int told = 0;
