@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """
 Run time against error: every table as text and CSV, and (where matplotlib is installed) a picture of each.
-    bench.py [--quick] [--only NAME] [--out FOLDER]
+    bench.py [--quick] [--without-peers] [--only NAME] [--out FOLDER]
 beam        the nine-element beam beside the paper's way in Octave and a bare dsyevd (bench_beam)
 elements    a beam's first four frequencies by the number of its elements: rigid ones with the physical springs, with springs
             identified as the paper does, beam elements; errors against the closed form, of the supports that springs were
@@ -272,7 +272,11 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one short run of everything")
     parser.add_argument("--only", choices=tuple(COLUMNS), action="append")
     parser.add_argument("--out", type=Path, default=BUILD / "bench")
+    parser.add_argument("--without-peers", action="store_true", help="leave out what Octave, CalculiX and matplotlib are needed for, where they are missing")
     options = parser.parse_args()
+    missing = [NEEDED[name] for name in sorted(NEEDED) if not there(name)]
+    if missing and not options.without_peers:
+        parser.error(f"sudo apt-get install --no-install-recommends {' '.join(missing)}, or --without-peers")
     bench = Bench(options.out, options.quick)
     start = time.monotonic()
     for name in COLUMNS if options.only is None else (c for c in COLUMNS if c in options.only):
