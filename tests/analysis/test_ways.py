@@ -17,7 +17,7 @@ from pathlib import Path
 
 PROGRAM = os.environ["MODETUNE"]
 EVERY = "MT_EVERY" in os.environ
-CASES = 60 if EVERY else 12
+CASES = 24 if EVERY else 12
 COUNT = 6
 LEAST = 100  # bodies, from where the lowest modes have a way of their own
 COUNTS = ("rigid_body_modes", "unstable_modes", "undecided_modes", "freedoms")

@@ -237,7 +237,7 @@ class Report(Answers):
             asked["inceptor_trade"].append(self.check_printed)
         figures = {}
         for turn, (name, (path, result)) in enumerate(self.reports.items()):
-            windows = [WINDOWS[(turn + k) % len(WINDOWS)] for k in range(len(WINDOWS) if EVERY else 1)]
+            windows = [WINDOWS[(turn + 2 * k) % len(WINDOWS)] for k in range(3 if EVERY else 1)]  # three widths, in turn light and dark
             with self.subTest(report=name):
                 self.assertLess(path.stat().st_size, MOST_BYTES)
                 self.open(name, **windows[0])

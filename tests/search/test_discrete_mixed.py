@@ -4,7 +4,7 @@
 
 Random rows of masses with two or three catalogues and one or two continuous variables, bands, targets and limits, for the least change or the least of an
 expression. What branch and bound says is the best of all must be: each value of the first catalogue is made a study of its own, whose combinations the program
-enumerates (search/test_discrete has that against brute force). The suite has two of few combinations. MT_EVERY=1: twenty of any size; MT_MIXED=N: so many (200 take ten minutes);
+enumerates (search/test_discrete has that against brute force). The suite has two of few combinations. MT_EVERY=1: ten of any size; MT_MIXED=N: so many (200 take ten minutes);
 MT_MIXED_SEED=S.
 """
 import json
@@ -20,7 +20,7 @@ import numpy as np
 
 PROGRAM = os.environ["MODETUNE"]
 SOURCE = Path(os.environ["SOURCE_DIR"])
-COUNT = int(os.environ.get("MT_MIXED", "16" if os.environ.get("MT_EVERY", "0") != "0" else "0"))  # 0: QUICK ones
+COUNT = int(os.environ.get("MT_MIXED", "6" if os.environ.get("MT_EVERY", "0") != "0" else "0"))  # 0: QUICK ones
 FEW = not {"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ)
 QUICK = ((3,), (2,)) if FEW else ((2, 3), (1, 2, 4))  # seconds of one core; without and with lengths
 SEED = os.environ.get("MT_MIXED_SEED", "1")
