@@ -100,15 +100,14 @@ typedef struct slope_values {
     double complex h[SLOPE_POINTS][MOST_PAIRS];
 } slope_values;
 
-static inline bool fill_values(slope_values *v, const double *x, double complex *h)
+static inline bool fill_values(slope_values *v, const double *x, const mt_sample *sample)
 {
     const mt_analysis_options opt = all_modes(false);
-    const mt_sample sample = {.h = h};
     mt_response r = {.a = NULL};
     mt_err err;
     const bool ok = mt_analysis_solve(v->a, x, &opt, &err) == MT_OK &&
                     mt_response_open(v->a, &v->request, &r, &err) == MT_OK &&
-                    mt_transfer_at(&r.direct, v->w, &sample, &r.mem, &err) == MT_OK;
+                    mt_transfer_at(&r.direct, v->w, sample, &r.mem, &err) == MT_OK;
     mt_response_free(&r);
     return ok;
 }
@@ -122,7 +121,7 @@ static inline const double complex *values_at(slope_values *v, int n, const doub
             return v->h[i];
         }
     }
-    if (v->n == SLOPE_POINTS || !fill_values(v, x, v->h[v->n])) {
+    if (v->n == SLOPE_POINTS || !fill_values(v, x, &(mt_sample){.h = v->h[v->n]})) {
         return NULL;
     }
     memcpy(v->x[v->n], x, size);
