@@ -21,8 +21,10 @@ KEPT = BUILD.is_dir() and not {"MT_INSTRUMENTED", "MT_TEST_LAUNCHED"} & set(os.e
 
 
 def digest():
-    """Of the program, and of the names and bytes of all that a study may read."""
+    """Of the program, of the names and bytes of all that a study may read, and of what chooses the processor's kernels."""
     told = hashlib.sha256()
+    for name in ("OPENBLAS_CORETYPE", "GLIBC_TUNABLES"):
+        told.update(f"{name}={os.environ.get(name, '')}\n".encode())
     for path in [Path(PROGRAM), *sorted(p for folder in ("problems", "studies") for p in (SOURCE / folder).rglob("*") if p.is_file())]:
         told.update(f"{path} {path.stat().st_size}\n".encode() + path.read_bytes())
     return told.hexdigest()[:32]
