@@ -116,35 +116,12 @@ static void rank_equals(mt_nlp_ends *all)
     }
 }
 
-/* 1/2 sum w_j (t_j - origin_j)^2 */
-static double change_of(const mt_nlp_engine *e, const mt_nlp_point *p)
-{
-    const double *const weight = e->nlp->change_weight;
-    double f = 0.0;
-    for (int j = 0; j < e->n; j++) {
-        const double d = p->t[j] - e->origin[j];
-        f += 0.5 * (weight != NULL ? weight[j] : 1.0) * d * d;
-    }
-    return f;
-}
-
 /* Is a as good as b, as far as a search tells? */
 static bool is_equal(const mt_nlp_point *a, const mt_nlp_point *b)
 {
     const bool feasible = mt_nlp_feasible(a);
     return feasible == mt_nlp_feasible(b) && mt_compare(a->f, b->f, MT_EQUAL_FOUND) == 0 &&
            (feasible || fabs(a->squares - b->squares) <= EQUAL_SQUARES * b->squares);
-}
-
-/* Of two that are as good: has a the less change or, where they mirror each other, the less of
- * the first coordinate that differs? */
-static bool is_nearer(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_nlp_point *b)
-{
-    int order = mt_compare(change_of(e, a), change_of(e, b), MT_EQUAL_FOUND);
-    for (int j = 0; j < e->n && order == 0; j++) {
-        order = fabs(a->t[j] - b->t[j]) <= MT_SAME_DESIGN ? 0 : a->t[j] < b->t[j] ? -1 : 1;
-    }
-    return order < 0;
 }
 
 /* Ranked and merged: what is as good as the first of it is in an order that rounding has no
@@ -154,7 +131,9 @@ static void order_equals(const mt_nlp_engine *e, mt_nlp_ends *all)
     for (int first = 0, end = 0; first < all->count; first = end) {
         const mt_nlp_point *const best = all->at[first].p;
         for (end = first + 1; end < all->count && is_equal(all->at[end].p, best); end++) {
-            for (int k = end; k > first && is_nearer(e, all->at[k].p, all->at[k - 1].p); k--) {
+            for (int k = end; k > first && mt_is_nearer(e->n, e->origin, e->nlp->change_weight,
+                                                        all->at[k].p->t, all->at[k - 1].p->t);
+                 k--) {
                 swap(all, k, k - 1);
             }
         }

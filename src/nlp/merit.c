@@ -2,6 +2,7 @@
 #include "nlp/merit.h"
 
 #include <math.h>
+#include <stddef.h>
 
 bool mt_is_met(double violation, double tolerance)
 {
@@ -60,6 +61,27 @@ bool mt_merit_before(const mt_merit *a, const mt_merit *b, double equal)
     int order = a->feasible ? 0 : mt_compare(a->squares, b->squares, equal);
     for (int k = 0; k < a->n && k < b->n && order == 0; k++) {
         order = mt_compare(a->f[k], b->f[k], equal);
+    }
+    return order < 0;
+}
+
+double mt_change(int n, const double *origin, const double *weight, const double *t)
+{
+    double f = 0.0;
+    for (int j = 0; j < n; j++) {
+        const double d = t[j] - origin[j];
+        f += 0.5 * (weight != NULL ? weight[j] : 1.0) * d * d;
+    }
+    return f;
+}
+
+bool mt_is_nearer(int n, const double *origin, const double *weight, const double *s,
+                  const double *t)
+{
+    int order = mt_compare(mt_change(n, origin, weight, s), mt_change(n, origin, weight, t),
+                           MT_EQUAL_FOUND);
+    for (int j = 0; j < n && order == 0; j++) {
+        order = fabs(s[j] - t[j]) <= MT_SAME_DESIGN ? 0 : s[j] < t[j] ? -1 : 1;
     }
     return order < 0;
 }

@@ -52,4 +52,12 @@ int mt_compare(double a, double b, double equal);
  * has it. */
 bool mt_merit_before(const mt_merit *a, const mt_merit *b, double equal);
 
+/* The change of the design t[n] from the original, 1/2 sum w_j (t_j - origin_j)^2; weight NULL:
+ * 1 each. */
+double mt_change(int n, const double *origin, const double *weight, const double *t);
+/* Of two designs s[n] and t[n] that are as good, does s count? The one of less change does; of
+ * those that mirror each other the one with less of the first coordinate that differs. */
+bool mt_is_nearer(int n, const double *origin, const double *weight, const double *s,
+                  const double *t);
+
 #endif

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "nlp/merit.h"
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
 #include "problem/next.h"
@@ -169,12 +170,7 @@ void mt_case_x(const mt_case *c, const double *t, double *x)
 
 double mt_case_change(const mt_case *c, const double *t)
 {
-    double f = 0.0;
-    for (int i = 0; i < c->p->n; i++) {
-        const double d = t[i] - c->origin_t[i];
-        f += 0.5 * c->change_weight[i] * d * d;
-    }
-    return f;
+    return mt_change(c->p->n, c->origin_t, c->change_weight, t);
 }
 
 int mt_case_rows_res(const mt_case *c)

@@ -66,9 +66,7 @@ mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_resu
 
 /* Are designs at a[n] and b[n] one, as in the search itself? */
 bool mt_search_same(int n, const double *a, const double *b);
-/* search_continuum.c: of two designs s[n] and t[n] that are as good, is s the one that counts?
- * That of less change; of those that mirror each other the one with less of the first
- * coordinate that differs. */
+/* search_continuum.c: mt_is_nearer (nlp/merit.h) from the original of the case. */
 bool mt_search_nearer(const mt_case *c, const double *s, const double *t);
 
 /*

@@ -89,11 +89,7 @@ static bool connected(continua *c, int i, int k)
 
 bool mt_search_nearer(const mt_case *c, const double *s, const double *t)
 {
-    int order = mt_compare(mt_case_change(c, s), mt_case_change(c, t), MT_EQUAL_FOUND);
-    for (int j = 0; j < c->p->n && order == 0; j++) {
-        order = fabs(s[j] - t[j]) <= MT_SAME_DESIGN ? 0 : s[j] < t[j] ? -1 : 1;
-    }
-    return order < 0;
+    return mt_is_nearer(c->p->n, c->origin_t, c->change_weight, s, t);
 }
 
 /* One record for both, at the place of the better: it is that of the nearer to the original,
