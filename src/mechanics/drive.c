@@ -27,13 +27,13 @@
 static const double DRIVE_STEP = 0.1;
 static const double BODY_STEP = 0.3;
 /* A step is taken where the way back to the constraints is at most this part of it: on one
- * branch it is about h |q''| / (2 |q'|) of it. */
+ * branch it is about h |q''| / (2 |q'|) of it, beside what a closure leaves to rounding. */
 static const double CORRECTION = 0.3;
 /* Gap [model lengths] that may be left where the walk only passes: far below the corrections
  * that tell a branch, and the next closure takes it away. */
 static const double PASSING = 1e-6;
-/* Steps shorter than this part of DRIVE_STEP are not tried: the limit is then known to 1e-8
- * rad. */
+/* Steps shorter than this part of DRIVE_STEP are not tried, and none is left for the last: the
+ * limit is then known to 1e-8 rad. */
 static const double SHORTEST = 1e-7;
 /* Rows of A dq/ds = e_d that fail by more than this say that the other joints hold the driven
  * one; at the shortest step before a limit the ratio is still below 1/this. */
@@ -206,7 +206,8 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", w->why.text);
     }
-    *good = rc == MT_OK && mt_poses_distance(sys, w->trial, w->guess) <= CORRECTION * length;
+    *good = rc == MT_OK &&
+            mt_poses_distance(sys, w->trial, w->guess) <= (CORRECTION * length) + MT_STEP_DONE;
     return MT_OK;
 }
 
@@ -225,7 +226,8 @@ static mt_status advance(walk *w, double *h, mt_err *err)
     }
     double step = fmin(fmin(*h, fabs(way)), BODY_STEP * w->unit / size);
     while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
-        const double to = step >= fabs(way) ? w->goal : w->at->drive + copysign(step, way);
+        const bool last = step >= fabs(way) - (SHORTEST * DRIVE_STEP * w->unit);
+        const double to = last ? w->goal : w->at->drive + copysign(step, way);
         for (int j = 0; j < sys->nq; j++) {
             w->motion[j] = (to - w->at->drive) * w->rate[j];
         }

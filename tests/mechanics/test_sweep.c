@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Joints driven through their range, against closed forms of linkages. */
+#include <float.h>
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
@@ -241,6 +242,29 @@ static void sweep__the_crank_of_a_slider_crank_goes_round(mt_test *t)
         }
     }
     run_free(&r);
+}
+
+/* Positions that differ by rounding only: what a closure corrects is longer than the way. */
+static void sweep__the_last_digit_of_a_position_is_reached(mt_test *t)
+{
+    static const double start[] = {-7.1, -0.1, 0.1, 0.3, 1.0, 9.8};
+    const mt_system_drive drive = {.joint = "shaft"};
+    for (size_t k = 0; k < sizeof start / sizeof *start; k++) {
+        const double end = start[k] + (100.0 * DBL_EPSILON);
+        run r;
+        mt_test_row(t, "from %g", start[k]);
+        if (CHECK(t, run_sweep(t, mech_parse(t, SLIDER_CRANK), NULL, &drive,
+                               (const double[]){start[k], end}, POINTS, &r))) {
+            CHECK_INT(t, r.sweep.n_reached, POINTS);
+            for (int i = 0; i < POINTS; i++) {
+                const mt_sweep_point *const p = reached(t, &r, i);
+                if (p != NULL) {
+                    CHECK_NEAR_ABS(t, p->coordinate[joint(&r, "shaft")], start[k], TOL);
+                }
+            }
+        }
+        run_free(&r);
+    }
 }
 
 static void sweep__limit_is_located(mt_test *t)
@@ -515,6 +539,7 @@ MT_TEST_MAIN(MT_TEST(sweep__failing_allocations_are_errors),
              MT_TEST(sweep__ratio_is_the_slope_of_the_coordinate),
              MT_TEST(sweep__slider_crank_stops_at_its_limit_positions),
              MT_TEST(sweep__the_crank_of_a_slider_crank_goes_round),
+             MT_TEST(sweep__the_last_digit_of_a_position_is_reached),
              MT_TEST(sweep__limit_is_located), MT_TEST(sweep__servo_moves_the_stick_in_space),
              MT_TEST(sweep__a_locked_rod_is_held_by_its_moment),
              MT_TEST(sweep__meets_the_configuration_that_drives_the_same),
