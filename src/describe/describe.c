@@ -13,10 +13,6 @@
  * relatively: both are good to about n eps. Roots of squares, so that an exact identification
  * (f of 1e-24) is not judged by its rounding. */
 static const double SAME_OBJECTIVE = 1e-8;
-/* A KKT residual (relative to the objective's gradient) above this is told. Along the way that
- * is left, of at most a few in ln x, it costs less than a thousandth of the objective; Newton's
- * iteration reaches 1e-9 wherever the modes are simple. */
-static const double KKT_TOLD = 1e-4;
 /* Of a design that is described: as the study reads it, and by systems that are made anew. */
 enum { ANALYSES = 2 };
 
@@ -197,5 +193,5 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
 bool mt_describe_is_optimum(const mt_recommendation *rec)
 {
     /* NaN: nothing is free, or the search was over a catalogue */
-    return !(rec->kkt_residual > KKT_TOLD);
+    return !(rec->kkt_residual > MT_KKT_TOLD);
 }

@@ -16,19 +16,47 @@
 
 static const double PERCENT = 100.0;
 
-/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: not worth a
- * sentence, not known (this is no optimum, or a corner of min and max), or out of memory. */
-static const char *price(mt_sentences *s, double df)
+/* Parts of a demand [-] that a price is told for: the largest one whose worth a slope tells. */
+static const double parts[] = {1e-2, 1e-3, 1e-4, 1e-5};
+enum { N_PARTS = sizeof parts / sizeof *parts };
+
+static mt_price price_of(const mt_sentences *s, double df)
+{
+    return (mt_price){.df = df,
+                      .change = s->rec->change,
+                      .score = s->rec->score,
+                      .first = s->design->stage == 0};
+}
+
+/* Does this design have prices: the slopes of a value at its optimum? */
+static bool has_prices(const mt_sentences *s)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
-    const mt_price q = {.df = df,
-                        .change = s->rec->change,
-                        .score = s->rec->score,
-                        .first = s->design->stage == 0};
-    const bool known = s->rec->feasible && mt_describe_is_optimum(s->rec);
+    return ops->price != NULL && s->rec->feasible && mt_describe_is_optimum(s->rec);
+}
+
+/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: nothing but
+ * rounding, further than a slope tells, not known, or out of memory. */
+static const char *worth(mt_sentences *s, double df)
+{
+    const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
+    const mt_price q = price_of(s, df);
     const bool noise =
         !(fabs(df) > 0.0) || (q.first && fabs(df) <= MT_RATIO_NOISE * fabs(q.score));
-    return noise || !known || ops->price == NULL ? NULL : ops->price(&q, &s->result->mem);
+    return noise || !has_prices(s) ? NULL : ops->price(&q, &s->result->mem);
+}
+
+/* What a part of a demand is worth, and which; slope: df by the logarithm of the demand. */
+static const char *price(mt_sentences *s, double slope, const char **part)
+{
+    const char *text = NULL;
+    for (int i = 0; i < N_PARTS && text == NULL; i++) {
+        text = worth(s, slope * parts[i]);
+        if (text != NULL) {
+            *part = mt_arena_printf(&s->result->mem, "%g %%", PERCENT * parts[i]);
+        }
+    }
+    return *part != NULL ? text : NULL;
 }
 
 static const char *win(const mt_sentences *s)
@@ -37,37 +65,52 @@ static const char *win(const mt_sentences *s)
     return mt_objective_is(type, MT_MAXIMISED) ? "gain" : "save";
 }
 
-/* What one percent less of each demand would save. */
+/* A demand that the variables hardly move: at an optimum its slope by them, the other rows
+ * held, is at most that of the objective over the multiplier. */
+static void say_hardly(mt_sentences *s, const mt_demand *d, const mt_result_goal *g,
+                       double slope)
+{
+    const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
+    const mt_price q = price_of(s, fabs(slope) / PERCENT);
+    const char *const why =
+        has_prices(s) && ops->hardly != NULL ? ops->hardly(&q, &s->result->mem) : NULL;
+    const char *const left = why != NULL ? worth(s, fabs(slope) * d->tolerance) : NULL;
+    if (left != NULL) {
+        mt_say(s,
+               "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of "
+               "%.3g %% leaves open is worth %s.",
+               g->pointer, g->text, why, PERCENT * d->tolerance, left);
+    } else if (why != NULL) {
+        mt_say(s, "Goal %s (%s) hardly depends on the variables here: %s.", g->pointer, g->text,
+               why);
+    }
+}
+
+/* What a little less of each demand would save. */
 static void say_demands(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
     for (int i = 0; i < s->p->n_demands; i++) {
         const mt_demand *const d = &s->p->demands[i];
         const mt_result_goal *const g = &s->rec->goals[i];
+        const char *part = NULL;
         mt_say_of(s, "cost", g->pointer);
         for (int k = 0; k < d->n_in && found->mult_in != NULL; k++) {
             const double mult = found->mult_in[d->row_in + k];
-            const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
+            const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
             if (saved != NULL) {
-                mt_say(s, "Goal %s (%s) has a price: giving way by 1 %% would %s %s.",
-                       g->pointer, g->text, win(s), saved);
+                mt_say(s, "Goal %s (%s) has a price: giving way by %s would %s %s.", g->pointer,
+                       g->text, part, win(s), saved);
             }
         }
         const double slope =
             d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
-        const char *const cost = price(s, fabs(slope) / PERCENT);
+        const char *const cost = price(s, fabs(slope), &part);
         if (cost != NULL) {
-            mt_say(s, "Goal %s (%s) has a price: asking for 1 %% %s would %s %s.", g->pointer,
-                   g->text, slope > 0.0 ? "less" : "more", win(s), cost);
-            continue;
+            mt_say(s, "Goal %s (%s) has a price: asking for %s %s would %s %s.", g->pointer,
+                   g->text, part, slope > 0.0 ? "less" : "more", win(s), cost);
         }
-        const char *const left = price(s, fabs(slope) * d->tolerance);
-        if (left != NULL) {
-            mt_say(s,
-                   "Goal %s (%s) hardly depends on the variables here: what its tolerance of "
-                   "%.3g %% leaves open is worth %s.",
-                   g->pointer, g->text, PERCENT * d->tolerance, left);
-        }
+        say_hardly(s, d, g, slope);
     }
 }
 
@@ -82,13 +125,14 @@ static void say_edges(mt_sentences *s)
          i++) {
         const mt_clear *const c = &s->p->clears[row.clear];
         const double mult = found->mult_in[s->p->whole.first_band_row + i];
-        const char *const saved = mult > 0.0 ? price(s, mult / PERCENT) : NULL;
+        const char *part = NULL;
+        const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
         if (saved != NULL) {
             mt_say(s,
                    "The %s edge of %s, which holds %s mode %d, has a price: giving way by "
-                   "1 %% would %s %s.",
+                   "%s would %s %s.",
                    row.above ? "upper" : "lower", c->bands.items[row.band].label,
-                   mt_view_name(s->p, &s->p->views[c->view]), row.mode, win(s), saved);
+                   mt_view_name(s->p, &s->p->views[c->view]), row.mode, part, win(s), saved);
         }
     }
 }
@@ -100,16 +144,17 @@ static void say_between(mt_sentences *s)
     for (int i = 0; i < s->design->n_held; i++) {
         const mt_gap_held *const h = &s->design->held[i];
         const mt_family *const f = &s->p->families[h->family];
-        const char *const saved = price(s, h->multiplier / PERCENT);
+        const char *part = NULL;
+        const char *const saved = price(s, h->multiplier, &part);
         const char *const where =
             saved == NULL ? NULL
                           : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
         if (where != NULL) {
             mt_say(s,
                    "The %s edge of %s, which holds mode %d where %s is at %s, between the "
-                   "positions, has a price: giving way by 1 %% would %s %s.",
-                   h->above ? "upper" : "lower", h->band, h->mode, f->joint, where, win(s),
-                   saved);
+                   "positions, has a price: giving way by %s would %s %s.",
+                   h->above ? "upper" : "lower", h->band, h->mode, f->joint, where, part,
+                   win(s), saved);
         }
     }
 }
@@ -124,17 +169,23 @@ static const char *room_text(mt_sentences *s, const mt_result_parameter *p, doub
                            strcmp(p->at_bound, "upper") == 0 ? "more" : "less", p->name);
 }
 
-/* Where the objective tells: the multiplier, chained to the parameter. */
+/* Where the objective tells: the multiplier, chained to the parameter, for the largest amount
+ * that a slope tells. */
 static void say_bound_price(mt_sentences *s, int i, double amount)
 {
     const mt_nlp_solution *const found = s->design->found;
     const mt_result_parameter *const p = &s->rec->parameters[i];
-    const double dt = amount / mt_problem_stretch_at(s->p, i, p->recommended);
-    const char *const saved = found->mult_bound != NULL && found->bound[i] != 0
-                                  ? price(s, fabs(found->mult_bound[i]) * dt)
-                                  : NULL;
-    if (saved != NULL) {
-        mt_say(s, "%s would %s %s.", room_text(s, p, amount), win(s), saved);
+    if (found->mult_bound == NULL || found->bound[i] == 0) {
+        return;
+    }
+    const char *saved = NULL;
+    for (int k = 0; k < N_PARTS && saved == NULL; k++) {
+        const double less = amount * parts[k] / parts[0];
+        const double dt = less / mt_problem_stretch_at(s->p, i, p->recommended);
+        saved = worth(s, fabs(found->mult_bound[i]) * dt);
+        if (saved != NULL) {
+            mt_say(s, "%s would %s %s.", room_text(s, p, less), win(s), saved);
+        }
     }
 }
 

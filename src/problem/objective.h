@@ -29,9 +29,12 @@ typedef struct mt_objective_ops {
                     double *low, double *high);
     /* What results show of f. NULL: f, or the root of twice f where f is half a square. */
     double (*shown)(double f);
-    /* "0.12 kg". NULL: not worth a sentence, more than there is (a slope says nothing that
-     * far). The member NULL: it never is. */
+    /* "0.12 kg". NULL: further than the slope at the design tells, or out of memory. The
+     * member NULL: slopes tell nothing of f. */
     const char *(*price)(const mt_price *q, mt_arena *mem);
+    /* df is that of 1 % of a demand: "moving it by 1 % takes ..." where the variables hardly
+     * move it. NULL: they do, or out of memory. The member NULL: slopes do not tell. */
+    const char *(*hardly)(const mt_price *q, mt_arena *mem);
 } mt_objective_ops;
 
 #define MT_OBJECTIVE_OPS(id, name, ...) extern const mt_objective_ops mt_objective_##name;

@@ -39,12 +39,23 @@ static double least(
     return f * (1.0 - (MT_OBJECTIVE_ULPS * (double)p->n * DBL_EPSILON));
 }
 
-/* dc = df / c */
+/* dc = df / c, within a sixth of c - sqrt(c^2 - 2 df) up to a quarter of c^2. */
 static const char *price(const mt_price *q, mt_arena *mem)
 {
-    return !(q->change > 0.0) || fabs(q->df) > q->change * q->change
+    return !(q->change > 0.0) || fabs(q->df) > 0.25 * q->change * q->change
                ? NULL
                : mt_arena_printf(mem, "%.3g of the size of the redesign", q->df / q->change);
 }
 
-const mt_objective_ops mt_objective_change = {.value = value, .least = least, .price = price};
+/* At the optimum c u = mult g + ..., u of unit length: with the other rows held, the slope of
+ * the demand by the variables is at most c / mult. */
+static const char *hardly(const mt_price *q, mt_arena *mem)
+{
+    return !(q->change > 0.0) || !(q->df > q->change)
+               ? NULL
+               : mt_arena_printf(mem, "moving it by 1 %% takes a redesign of size %.2g or more",
+                                 q->df / q->change);
+}
+
+const mt_objective_ops mt_objective_change = {
+    .value = value, .least = least, .price = price, .hardly = hardly};

@@ -70,5 +70,12 @@ static const char *price(const mt_price *q, mt_arena *mem)
     return q->first && fabs(q->df) > q->score ? NULL : mt_arena_printf(mem, "%.3g kg", q->df);
 }
 
+static const char *hardly(const mt_price *q, mt_arena *mem)
+{
+    return !q->first || !(q->df > q->score)
+               ? NULL
+               : mt_arena_printf(mem, "1 %% of it is worth more than the whole mass");
+}
+
 const mt_objective_ops mt_objective_mass = {
-    .compile = compile, .value = value, .least = least, .price = price};
+    .compile = compile, .value = value, .least = least, .price = price, .hardly = hardly};

@@ -198,6 +198,29 @@ static void add_reasons(const mt_recommendation *r, const char *kind, const char
     }
 }
 
+/* Why no price is told: there is none, or none is known. */
+static const char *no_price(const mt_result *result, const mt_recommendation *r)
+{
+    const bool misfit =
+        result->n_objectives > 0 && strcmp(result->objectives[0].type, "misfit") == 0;
+    if (r->rank == 0) {
+        return "not known: only an optimum has prices, and the original design is none";
+    }
+    if (!r->feasible) {
+        return "not known: only a design that meets all goals has prices";
+    }
+    if (isnan(r->kkt_residual)) {
+        return "not known: the design is no optimum of variables that can move (goals or "
+               "catalogues leave single designs)";
+    }
+    if (r->kkt_residual > MT_KKT_TOLD) {
+        return "not known: only an optimum has prices, and this design is not shown to be one";
+    }
+    return misfit ? "not known: a misfit of weighted goals has no prices"
+                  : "nothing: no goal, band or bound that gives way a little would make the "
+                    "design better";
+}
+
 void mt_report_explain(const mt_result *result, const mt_recommendation *r, int width,
                        mt_text *out)
 {
@@ -220,6 +243,6 @@ void mt_report_explain(const mt_result *result, const mt_recommendation *r, int 
     }
     add_reasons(r, "hold", "What holds it",
                 "nothing: no bound, band or limit stands in its way", out);
-    add_reasons(r, "cost", "What it costs", "nothing is told: no demand has a price here", out);
+    add_reasons(r, "cost", "What it costs", no_price(result, r), out);
     mt_table_free(&t);
 }

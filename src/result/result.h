@@ -486,6 +486,11 @@ typedef struct mt_result_run {
 } mt_result_run;
 
 /* What the designs are best in, first of all in the first. */
+/* A KKT residual (relative to the objective's gradient) above this is told. Along the way that
+ * is left, of at most a few in ln x, it costs less than a thousandth of the objective; Newton's
+ * iteration reaches 1e-9 wherever the modes are simple. */
+#define MT_KKT_TOLD 1e-4
+
 typedef struct mt_result_objective {
     const char *type; /* as files call it: "mass" */
     const char *text; /* the type, "mass of bar*", or the expression */

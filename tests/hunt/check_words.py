@@ -82,7 +82,7 @@ def prices(run):
     for reason in (r["text"] for r in best["reasons"]):
         if told_of == PRICES:
             return
-        goal = re.match(r"Goal /goals/(\d+) \(.*\) has a price: (?:giving way by|asking for) 1 % ?(less|more|)\s?would (?:save|gain) " + NUMBER, reason)
+        goal = re.match(r"Goal /goals/(\d+) \(.*\) has a price: (?:giving way by|asking for) ([\d.e-]+) % ?(less|more|)\s?would (?:save|gain) " + NUMBER, reason)
         bound = re.match(NUMBER + r" ?(.*) (more|less) allowed on (\w+) would (?:save|gain) " + NUMBER, reason)
         if goal:
             two = [m for m in run.study["goals"][int(goal[1])] if m.startswith("at_")]
@@ -90,8 +90,8 @@ def prices(run):
                 continue
             if len(run.study["goals"][int(goal[1])].get("configurations", [1])) > 1:
                 continue
-            told = float(goal[3])
-            slopes = _slopes(run, _goal_mover(int(goal[1]), reason, -1.0 if goal[2] == "more" else 1.0), start)
+            told = float(goal[4]) / float(goal[2])  # by 1 %
+            slopes = _slopes(run, _goal_mover(int(goal[1]), reason, -1.0 if goal[3] == "more" else 1.0), start)
         elif bound:
             index = [v.name for v in q.variables].index(bound[4])
             told = float(bound[5])

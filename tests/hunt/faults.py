@@ -171,7 +171,7 @@ def _box(run):
 def _price(run):
     best = _first(run.result)
     for i, reason in enumerate([r["text"] for r in best["reasons"]] if best else []):
-        found = re.match(r"(Goal .* has a price: (?:giving way by|asking for) 1 % ?(?:less|more|)\s?would save )(\d[\d.]*)( .*)", reason)
+        found = re.match(r"(Goal .* has a price: (?:giving way by|asking for) [\d.e-]+ % ?(?:less|more|)\s?would save )(\d[\d.]*)( .*)", reason)
         if found and float(found[2]) > 1e-3 and "from" not in found[1]:
             best["reasons"][i]["text"] = f"{found[1]}{1.2 * float(found[2]):.3g}{found[3]}"
             return True
