@@ -409,7 +409,7 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "Prints the breakpoints of its random parts with their slopes and overall RMS, and its "
         "tones with the harmonics of rotors resolved to Hz, each with origin and source. What "
         "is "
-        "assumed, or not confirmed by a public document, is said on standard error, too. "
+        "assumed, or unconfirmed by a public document, is said on standard error, too. "
         "PROFILE is a file, or the name of one that is part of the program; without it: lists "
         "these.\n"
         "--spectrum prints what the profile does to one mass on a spring that stands on the "

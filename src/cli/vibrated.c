@@ -159,7 +159,7 @@ void mt_vibrated_rule(const mt_vibration *v, mt_text *out)
 
 void mt_vibrated_marks(const mt_vibration *v, mt_text *out)
 {
-    mt_text_add(out, v->n_marks > 0 ? "  Of the profile is assumed, or not confirmed:\n" : "");
+    mt_text_add(out, v->n_marks > 0 ? "  Of the profile is assumed, or unconfirmed:\n" : "");
     for (int i = 0; i < v->n_marks; i++) {
         mt_text_addf(out, "  - %s\n", v->marks[i]);
     }

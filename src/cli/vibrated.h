@@ -14,7 +14,7 @@ const char *mt_vibrated_axis(const mt_vibration *v); /* "z"; NULL: any */
 const char *mt_vibrated_name(const mt_vibration *v); /* what it says, or its path */
 /* "the peak is 3 times the RMS and the sum of all tones" */
 void mt_vibrated_rule(const mt_vibration *v, mt_text *out);
-/* What of it is assumed, or not confirmed; nothing where all is known. */
+/* What of it is assumed, or unconfirmed; nothing where all is known. */
 void mt_vibrated_marks(const mt_vibration *v, mt_text *out);
 /* The rule as members of an open object, and the profile's marks. */
 void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v);

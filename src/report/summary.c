@@ -306,7 +306,8 @@ static void tell_design(const mt_teller *to, const mt_recommendation *r)
 void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
 {
     static const char undetermined[] = "Undetermined: the goals hardly change along";
-    static const char spread[] = "Spread under other weights";
+    static const char spread[] =
+        "Sensitivity to the weights (the scatter of repeated tests may be many times larger)";
     if (is_known(to, undetermined, result->undetermined) &&
         open_list(to, undetermined, result->n_undetermined)) {
         for (int i = 0; i < result->n_undetermined; i++) {

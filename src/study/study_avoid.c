@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "study/rotor.h"
 
@@ -37,12 +38,11 @@ static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
     const int n = mt_rotor_doubts(rotor, aircraft, doubts);
     for (int i = 0; i < n; i++) {
         const mt_rotor_doubt *const d = &doubts[i];
-        mt_diag_warning(c->diags, rotor->aircraft.addr,
-                        "%s: the %s (%s) is not confirmed by a public document",
+        mt_diag_warning(c->diags, rotor->aircraft.addr, "%s: the %s (%s) is unconfirmed",
                         rotor->aircraft.s, d->what, d->value->text);
         mt_check_warn_result(
             c, mt_arena_printf(&c->study->mem,
-                               "%s: the %s (%s) is not confirmed by a public document (%s)",
+                               "%s: the %s (%s) is unconfirmed (source needed: %s)",
                                rotor->aircraft.s, d->what, d->value->text, d->value->source));
     }
 }
@@ -152,6 +152,38 @@ static void make_bands(mt_study_check *c, const mt_goal *goal)
     }
 }
 
+/* What turns by name is a body of the model: its modes are those of a body that does not. */
+static void warn_spin(mt_study_check *c, const mt_goal *goal, const char *name)
+{
+    const mt_model *const model = c->study->model;
+    for (int i = 0; name != NULL && i < model->n_bodies; i++) {
+        if (strcmp(model->bodies[i].name.s, name) == 0) {
+            mt_check_warn_result(
+                c, mt_arena_printf(&c->study->mem,
+                                   "/goals/%d: body \"%s\" turns, and the modes are those of "
+                                   "the mechanism at rest: without the gyroscopic and "
+                                   "centrifugal terms of what spins",
+                                   (int)(goal - c->study->goals), model->bodies[i].name.s));
+            return;
+        }
+    }
+}
+
+static void warn_spins(mt_study_check *c, const mt_goal *goal)
+{
+    const mt_bands_source *const source = &goal->avoid->source;
+    for (int i = 0; i < source->n_rotors; i++) {
+        warn_spin(c, goal, source->rotors[i].name);
+    }
+    for (int i = 0; i < source->n_machines; i++) {
+        const mt_machine *const m = &source->machines[i];
+        warn_spin(c, goal, m->name);
+        for (int k = 0; k < m->n_gears; k++) {
+            warn_spin(c, goal, m->gears[k].name);
+        }
+    }
+}
+
 void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
 {
     mt_avoid *const avoid = goal->avoid;
@@ -179,5 +211,6 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
     }
     if (c->diags->errors == 0 && is_known(&avoid->source)) {
         make_bands(c, goal);
+        warn_spins(c, goal);
     }
 }

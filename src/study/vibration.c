@@ -348,8 +348,7 @@ static void mark_source(marking *m, const mt_vibration_source *s)
     const int n = a == NULL ? 0 : mt_rotor_doubts(&s->rotor, a, doubts);
     for (int i = 0; i < n; i++) {
         mark(m, s->rotor.aircraft.addr,
-             mt_arena_printf(&v->mem,
-                             "%s: the %s (%s) is not confirmed by a public document (%s)",
+             mt_arena_printf(&v->mem, "%s: the %s (%s) is unconfirmed (source needed: %s)",
                              s->rotor.aircraft.s, doubts[i].what, doubts[i].value->text,
                              doubts[i].value->source));
     }

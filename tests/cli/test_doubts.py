@@ -335,6 +335,16 @@ class Doubts(CliTest):
         lines = self.expect(0, "run", self.put_study()).stdout.splitlines()
         self.assertEqual(lines[3:5], ["Facts of the model", '  - default: joint "foot" lies 0.4 m off "rod.start"'])
 
+    def test_what_turns_and_is_a_body_is_at_rest_in_the_modes(self):
+        self.put_model()
+        gear = {"name": "tip", "ratio": 2, "teeth": 20, "orders": ["1G"]}
+        for goal, told in ((machine(name="tip", speed_hz=30), True), (machine(name="engine", speed_hz=30, gears=[gear]), True),
+                           ({"type": "avoid", "rotor": dict(ROTOR, name="tip")}, True), (machine(name="engine", speed_hz=30), False)):
+            self.expect(0, "run", self.put_study(("goals", 0), goal), "--starts", "2")
+            warnings = json.loads((self.folder / "results/s/result.json").read_text(encoding="utf-8"))["warnings"]
+            said = [w for w in warnings if w.startswith('/goals/0: body "tip" turns, and the modes are those of the mechanism at rest')]
+            self.assertEqual(len(said), 1 if told else 0, (goal, warnings))
+
     def test_a_band_that_is_cut_off_whole_is_an_error(self):
         self.put_model()
         done = self.expect(2, "run", self.put_study(("goals", 0), {"type": "avoid", "bands_hz": [[9, 11]], "up_to_hz": 5}))

@@ -126,7 +126,7 @@ class Vibration(CliTest):
         model = self.write("one.json", one(0.05, 17.0))
         asked = ("response", model, "--input", "base.x", "--vibration", "helicopter_uh60_panel")
         text = self.expect(0, *asked).stdout
-        self.assertIn("Of the profile is assumed, or not confirmed:\n  - the density from 10 to 500 Hz is assumed", text)
+        self.assertIn("Of the profile is assumed, or unconfirmed:\n  - the density from 10 to 500 Hz is assumed", text)
         self.assertEqual(len(self.json_of(*asked, "-c", "default")["profile"]["marks"]), 6)
 
     def test_wrong_use_is_named(self):

@@ -219,8 +219,7 @@ static void check_trade(mt_test *t, const mt_study *s)
 static void check_warnings(mt_test *t, const mt_study *s)
 {
     static const char *const want[] = {
-        "Dragonfly: the tail rotor's speed (20 Hz) is not confirmed by a public document "
-        "(hearsay)",
+        "Dragonfly: the tail rotor's speed (20 Hz) is unconfirmed (source needed: hearsay)",
         "/goals/0: nP + 1T of the dragon overlap: merged into one band, 18 to 22 Hz, with its "
         "margin "
         "16.2 to 24.2 Hz",
@@ -248,8 +247,7 @@ static void bands_study__every_member_arrives(mt_test *t)
     CHECK(t,
           messages.lines.s != NULL &&
               strstr(messages.lines.s, "warning: /goals/0/rotor/aircraft: Dragonfly: the tail "
-                                       "rotor's speed (20 Hz) is not confirmed by a public "
-                                       "document\n") != NULL);
+                                       "rotor's speed (20 Hz) is unconfirmed\n") != NULL);
     if (CHECK_INT(t, s->n_goals, 5)) {
         check_avoid(t, s);
         check_rotors(t, s);

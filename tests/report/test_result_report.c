@@ -169,7 +169,10 @@ static void sections__that_an_interrupt_cut_say_so(mt_test *t)
     r->undetermined = NULL;
     check_missing(t, r, "Undetermined: the goals hardly change along", 1);
     r->spread = NULL;
-    check_missing(t, r, "Spread under other weights", 2);
+    check_missing(
+        t, r,
+        "Sensitivity to the weights (the scatter of repeated tests may be many times larger)",
+        2);
     r->certificates = NULL;
     check_missing(t, r, "Certificates", 3);
     r->relaxations = NULL;

@@ -217,9 +217,11 @@
         }
       }
     }
-    return met.length === 0 ? 'Within the operating range no order meets a mode.'
+    const said = met.length === 0 ? 'Within the operating range no order meets a mode.'
       : met.slice(0, 3).join('; ') + (met.length > 3 ? ' and ' + (met.length - 3) + ' more'
         : '') + '.';
+    return said + ' The modes are those of the mechanism at rest, without gyroscopic and '
+      + 'centrifugal terms.';
   }
 
   mt.chartRotor = () => D.clean(mt.result().excitations).map((e, i) => ({
