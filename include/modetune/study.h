@@ -155,6 +155,18 @@ MT_API mt_status mt_result_json(const mt_result *result, char **text, mt_err *er
 MT_API mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result **out,
                                 mt_err *err);
 /**
+ * The model that a result was solved from, where it lies near the result and has not changed:
+ * found from the place of the study that timing.json beside the result names, the result's
+ * folder and the two above it, the current folder, and folders "studies" in these.
+ * @param[in]  path  the result's, as mt_result_read had it
+ * @param[in]  opt   NULL: defaults. root: NULL is the parent of the folder from which the model
+ *   is named, as of a study there
+ * @param[out] out   the model, owned by the caller; NULL on failure, and where it is not found
+ * Fails: MT_E_SYSTEM (what may be it cannot be read), MT_E_USAGE (opt), MT_E_MEMORY.
+ */
+MT_API mt_status mt_result_model(const mt_result *result, const char *path,
+                                 const mt_read_options *opt, mt_model **out, mt_err *err);
+/**
  * What people should see of it, as one HTML page: nothing is loaded from elsewhere, and no
  * text of a file becomes markup or a script.
  * @param[out] text  UTF-8, NUL-terminated, to be given to mt_string_delete; NULL on failure

@@ -202,7 +202,7 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "of --spectrum: the mass's damping ratio, between 0 and 1 (default: 0.05, Q = 10)"),
     OPTION(MT_OPT_ROOT, '\0', "root", "DIR", MT_ALL_COMMANDS,
            "files named by other files must lie beneath DIR (default: the parent of the "
-           "study's folder)"),
+           "folder of the file that names them; of a result, of its study's)"),
     OPTION(MT_OPT_FORMAT, '\0', "format", "text|json|csv", MT_ALL_COMMANDS,
            "form of what goes to standard output (default: text; of report also html, of check "
            "sarif; of show html or json, default html)"),

@@ -9,6 +9,7 @@
 
 #include "base/options.h"
 #include "io/io.h"
+#include "io/result_model.h"
 #include "library/scene_designs.h"
 #include "report/html.h"
 
@@ -113,6 +114,28 @@ mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result
     MT_NOT_NULL(path, err);
     MT_TRY(take(__func__, opt, &asked, err));
     return mt_result_load(path, &asked.io, out, asked.own.diagnostics, err);
+}
+
+mt_status mt_result_model(const mt_result *result, const char *path, const mt_read_options *opt,
+                          mt_model **out, mt_err *err)
+{
+    request asked;
+    mt_file file;
+    char *found = NULL;
+    mt_err why = {.code = MT_OK};
+    MT_NOT_NULL(out, err);
+    *out = NULL;
+    MT_NOT_NULL(result, err);
+    MT_NOT_NULL(path, err);
+    MT_TRY(take(__func__, opt, &asked, err));
+    mt_status rc = mt_result_find_model(path, result, asked.own.root, &file, &found, &why);
+    if (rc == MT_OK) {
+        rc = mt_model_load(found, &asked.io, out, asked.own.diagnostics, &why);
+    }
+    mt_file_free(&file);
+    free(found);
+    /* not found, or what was solved then is no model today: there is none */
+    return rc == MT_OK || rc == MT_E_INPUT ? MT_OK : mt_fail(err, rc, "%s", why.text);
 }
 
 mt_status mt_result_html(const mt_result *result, char **text, mt_err *err)

@@ -258,6 +258,22 @@ class Show(CliTest):
         changed = self.expect(0, "show", "--format", "json", "--model", self.model, "results/two/result.json")
         self.assertIn("has changed since", changed.stderr)
 
+    def test_a_result_reads_its_model_below_the_root_of_its_study_only(self):
+        here = self.folder / "a/b/c/d"  # far from it: below no folder that is looked into
+        (here / "studies").mkdir(parents=True)
+        far = str(self.folder / self.model)
+        self.write("a/b/c/d/studies/two.json", json.dumps({**json.loads(study(first_hz=0.15, second_hz=0.4)), "model": far}))
+        self.folder = here
+        self.expect(0, "run", "--quiet", "--root", "../../../..", "studies/two.json")
+        for command in ("show", "apply"):
+            said = self.expect(2, command, "results/two/result.json").stderr
+            self.assertIn("with --root a folder", said)
+            self.expect(0, command, "--root", "../../../../problems", "results/two/result.json")
+            self.expect(0, command, "--model", far, "results/two/result.json")
+        pages = [self.expect(0, "report", "--format", "html", *root, "results/two/result.json").stdout
+                 for root in ((), ("--root", "../../../.."))]
+        self.assertEqual(['id="scene"' in page for page in pages], [False, True])
+
     def test_a_rod_is_drawn_and_keeps_its_length(self):
         path = self.write("rod.json", json.dumps({
             "format": "modetune-model/1", "dimension": 2,

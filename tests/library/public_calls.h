@@ -385,6 +385,18 @@ static mt_status call_result_page(int null)
     return null < 0 && !owned ? MT_E_INTERNAL : rc;
 }
 
+static mt_status call_result_model(int null)
+{
+    /* of a result that lies nowhere there is no model */
+    mt_model *out = NULL;
+    const mt_read_options opt = {.size = sizeof opt, .root = "/nowhere"};
+    const mt_status rc = mt_result_model(ARG(0, result), ARG(1, "r.json"), ARG(2, &opt),
+                                         ARG(3, &out), ARG(4, &said));
+    const bool owned = out != NULL;
+    mt_model_delete(out);
+    return null < 0 && owned ? MT_E_INTERNAL : rc;
+}
+
 static mt_status call_udwadia_kalaba(int null)
 {
     double xdd[1];

@@ -93,6 +93,7 @@ static const struct {
     ROW(result_read, "rara"),
     ROW(result_html, "rra"),
     ROW(result_page, "rara"),
+    ROW(result_model, "rrara"),
     ROW(string_delete, "a"),
     ROW(solve_json, "raara"),
     ROW(udwadia_kalaba, "rrrrra"),

@@ -185,6 +185,59 @@ class Progress(unittest.TestCase):
         timer.join()
         self.assertEqual(threading.active_count(), 1)
 
+    def test_interrupt_at_the_start_ends_the_search(self):
+        wait, armed = threading.Event.wait, []
+
+        def interrupted(event, timeout=None):  # where start() waits that its thread begins: what SIGINT raises there
+            if armed and threading.current_thread() is threading.main_thread() and sys._getframe(1).f_code.co_name == armed[0]:
+                armed.pop()
+                raise KeyboardInterrupt
+            return wait(event, timeout)
+
+        with mock.patch.object(threading.Event, "wait", interrupted):
+            for place in ("start", "start", "_is_over"):  # the last: again, while the end is waited for
+                armed[:] = [place]
+                with self.assertRaises(KeyboardInterrupt):
+                    modetune.solve(LONG, workers=1, progress=self.interrupt if place == "_is_over" else False)
+                self.assertEqual((armed, threading.active_count()), ([], 1), place)
+
+    @staticmethod
+    def interrupt(text):
+        raise KeyboardInterrupt
+
+    def test_interrupt_before_the_thread_is_there_waits_for_nobody(self):
+        began = []
+        with mock.patch.object(threading.Thread, "start", lambda thread: began.append(thread) or self.interrupt("")), \
+                mock.patch.object(modetune, "MOST_START_S", 0.01), self.assertRaises(KeyboardInterrupt):
+            modetune.solve(LONG, workers=1)
+        with mock.patch.object(_library.lib, "mt_study_read", None):  # one that comes late leaves C alone
+            began[0].run()
+        self.assertEqual(threading.active_count(), 1)
+
+    def test_interrupts_at_any_moment_leave_nothing(self):
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        code = """if 1:
+            import os, random, signal, sys, threading, time
+            import modetune
+            draw = random.Random(int(sys.argv[1]))
+            for _ in range(int(sys.argv[2])):
+                timer = threading.Timer(10 ** draw.uniform(-4.5, -0.7), os.kill, (os.getpid(), signal.SIGINT))
+                try:
+                    timer.start()
+                    modetune.solve(sys.argv[3], workers=1, progress=False)
+                    timer.join()
+                    time.sleep(1e-3)
+                except KeyboardInterrupt:
+                    pass
+                timer.join()
+                assert [t.name for t in threading.enumerate()] == ["MainThread"], threading.enumerate()
+            """
+        count = "300" if os.environ.get("MT_EVERY", "0") == "1" else "20"
+        paths = os.pathsep.join(sys.path)
+        done = subprocess.run([sys.executable, "-B", "-c", code, "7", count, LONG], env=dict(os.environ, PYTHONPATH=paths),
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_line_is_written_over_and_emptied(self):
         with mock.patch("sys.stderr", io.StringIO()) as said:
             line = _progress.teller(True)
@@ -365,6 +418,27 @@ class Page(unittest.TestCase):
             self.assertEqual(modetune.report(alone / "result.json", SOURCE / "problems/six_masses.json").html, told)
             to = page.save(Path(folder) / "page.html")
             self.assertEqual(to.read_text(encoding="utf-8"), page.html)
+
+    def test_a_model_that_is_no_file_is_not_read(self):
+        result = modetune.solve(TUNING, progress=False)
+        with tempfile.TemporaryDirectory() as folder:
+            alone = Path(folder) / "result.json"
+            os.mkfifo(Path(folder) / "fifo")
+            (Path(folder) / "link").symlink_to("/dev/zero")
+            os.mkfifo(Path(folder) / "timing.json")
+            without = modetune.report(result).html
+            name = result["model"]["file"]
+            for model in ("fifo", "link", str(Path(folder) / "fifo"), "/dev/zero", folder, "/proc/self/mem"):
+                changed = copy.deepcopy(result)
+                changed["model"]["file"] = model
+                for one in changed["run"]["inputs"]:
+                    one["file"] = model if one["file"] == name else one["file"]
+                alone.write_text(json.dumps(changed), encoding="utf-8")
+                page = modetune.report(alone).html
+                self.assertEqual('id="scene"' in page, 'id="scene"' in without, model)
+            for path in (Path(folder) / "fifo", "/dev/zero", folder):
+                with self.assertRaises(modetune.Error):
+                    modetune.report(path)
 
     def test_frame_has_the_page_and_no_other_tag(self):
         study, files = question()

@@ -13,16 +13,17 @@ any number of workers.
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import json
 import operator
 import os
 import queue
 import threading
 import warnings
+from contextlib import contextmanager
 from ctypes import byref, c_char_p, c_double, c_int, c_void_p, sizeof
-from pathlib import Path
-from typing import Any, Callable, Mapping, Optional, Sequence, Union
+from typing import (
+    Any, Callable, ContextManager, Iterator, Mapping, Optional, Sequence, Union,
+)
 
 from ._library import (
     PROGRESS, Diagnostic, Error, ErrStruct, Files, SolveOptions, check, encoded, lib, made,
@@ -37,6 +38,7 @@ __version__ = version
 PathLike = Union[str, "os.PathLike[str]"]
 Value = Union[float, int, str]
 WISH_END = 2  # of mt_wish
+MOST_START_S = 1.0  # a thread that has begun by then is waited for as long as it takes
 MOST_SEED = 2**31 - 1
 
 
@@ -76,51 +78,79 @@ def _named(thing: Union[PathLike, Mapping[str, Any]], name: str,
     return encoded(os.fsencode(thing)), given
 
 
-def _outlive(thread: threading.Thread) -> None:
-    """Wait for a thread, whatever else is pressed: it uses what goes next."""
-    while thread.is_alive():
-        try:
-            thread.join()
-        except KeyboardInterrupt:
-            pass
-
-
 class _Search:
-    """mt_study_solve in a thread of its own, so that Ctrl-C and the progress reach this one."""
+    """A study read, solved and deleted by a thread of its own, so that Ctrl-C and the progress
+    reach this one. That thread alone holds what C has made: wherever this one is interrupted,
+    nothing is deleted under the search."""
 
-    def __init__(self, study: c_void_p, workers: int, show: Silent) -> None:
-        self.result = c_void_p()
-        self.err = ErrStruct()
-        self.status = 0
-        self._study = study
+    def __init__(self, question: Callable[[], ContextManager[c_void_p]], workers: int,
+                 show: Silent) -> None:
+        self._question = question
         self._show = show
         self._said: "queue.SimpleQueue[Optional[str]]" = queue.SimpleQueue()
+        self._answer = ""
+        self._failure: Optional[BaseException] = None
         self._wish = c_int(0)
         self._tell = PROGRESS(lambda _, text: self._said.put(text_of(text)))
         self._options = SolveOptions(
             size=sizeof(SolveOptions), threads=workers,
             stop=ctypes.cast(lib.mt_wish_at, c_void_p),
             stop_context=ctypes.cast(ctypes.pointer(self._wish), c_void_p), progress=self._tell)
+        self._turn = threading.Lock()  # who has it decides whether there is a search
+        self._over = threading.Event()  # the thread's last word
 
     def _solve(self) -> None:
+        with self._question() as study, made(
+                "mt_study_solve", "mt_result_delete", study, byref(self._options)) as result:
+            self._answer = text_made("mt_result_json", result)
+
+    def _work(self) -> None:
         try:
-            self.status = lib.mt_study_solve(
-                self._study, byref(self._options), byref(self.result), byref(self.err))
+            if self._turn.acquire(blocking=False):
+                self._solve()
+        except BaseException as failure:  # told by the thread that asked
+            self._failure = failure
         finally:
             self._said.put(None)
+            self._over.set()
 
-    def run(self) -> None:
-        thread = threading.Thread(target=self._solve, name="modetune", daemon=True)
+    def _is_over(self, thread: threading.Thread) -> bool:
+        """Wait for the thread's last word."""
+        self._wish.value = WISH_END
+        # a thread whose start was interrupted may never come, or find that it is late
+        if not self._over.wait(MOST_START_S) and self._turn.acquire(blocking=False):
+            return True
+        self._over.wait()
+        thread.join()
+        return True
+
+    def run(self) -> str:
+        thread = threading.Thread(target=self._work, name="modetune", daemon=True)
+        pressed: Optional[KeyboardInterrupt] = None
+        over = False
         try:
             thread.start()
             for text in iter(self._said.get, None):
                 self._show.show(text)
-        except BaseException:  # an interrupt, or the caller's function failed: nobody waits
-            self._wish.value = WISH_END
-            raise
-        finally:
-            _outlive(thread)
+        finally:  # also where it was interrupted, or the caller's function failed
+            while not over:
+                try:
+                    over = self._is_over(thread)
+                except KeyboardInterrupt as again:
+                    pressed = again
             self._show.close()
+        if pressed is not None or self._failure is not None:
+            raise pressed or self._failure  # type: ignore[misc]
+        return self._answer
+
+
+@contextmanager
+def _study(path: bytes, given: dict[str, str], sets: list[str],
+           seed: Optional[int]) -> Iterator[c_void_p]:
+    with Files(given, sets, seed) as read, one_thread:
+        with made("mt_study_read", "mt_study_delete", path, byref(read.options),
+                  listed=read.diagnostics) as question:
+            yield question
 
 
 def solve(study: Union[PathLike, Mapping[str, Any]], *,
@@ -146,16 +176,9 @@ def solve(study: Union[PathLike, Mapping[str, Any]], *,
         raise ValueError(f"seed must be from 0 to {MOST_SEED}")
     path, given = _named(study, "study.json", files)
     count = len(os.sched_getaffinity(0)) if workers is None else workers
-    with Files(given, _sets(set), seed) as read, one_thread:
-        with made("mt_study_read", "mt_study_delete", path, byref(read.options),
-                  listed=read.diagnostics) as question:
-            search = _Search(question, count, teller(progress))
-            try:
-                search.run()
-                check(search.status, search.err)
-                return json.loads(text_made("mt_result_json", search.result))
-            finally:
-                lib.mt_result_delete(search.result)
+    sets = _sets(set)
+    search = _Search(lambda: _study(path, given, sets, seed), count, teller(progress))
+    return json.loads(search.run())
 
 
 def _array(rows: list[Any]) -> Any:
@@ -273,30 +296,18 @@ def modes(model: Union[PathLike, Mapping[str, Any]], configuration: Optional[str
                         **_describe(mechanism, names)}
 
 
-def _model_of(result: PathLike) -> Optional[Path]:
-    """The model that a result names, where it lies as it was solved: below the result's folder
-    or one above it, from the study's place as `run` noted it, or from the current folder."""
-    try:
-        path = Path(os.fsdecode(result))
-        told = json.loads(path.read_bytes())
-        name = told["model"]["file"]
-        (wanted,) = {one["sha256"] for one in told["run"]["inputs"] if one["file"] == name}
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    folders = [path.parent, *path.absolute().parents[1:3], Path()]
-    folders += [folder / "studies" for folder in folders]
-    try:
-        timing = json.loads((path.parent / "timing.json").read_bytes())
-        folders.insert(0, Path(timing["study_path"]).parent)
-    except (OSError, ValueError, KeyError, TypeError):
-        pass
-    for folder in folders:
-        try:
-            if hashlib.sha256((folder / name).read_bytes()).hexdigest() == wanted:
-                return folder / name
-        except (OSError, ValueError):
-            pass
-    return None
+def _solved_model(answer: c_void_p, path: bytes) -> ContextManager[c_void_p]:
+    """The model of a result at the path; none where it is not found as it was solved."""
+    return made("mt_result_model", "mt_model_delete", answer, path, None)
+
+
+@contextmanager
+def _model(model: Union[PathLike, Mapping[str, Any]]) -> Iterator[c_void_p]:
+    path, given = _named(model, "model.json", None)
+    with Files(given, [], None) as read:
+        with made("mt_model_read", "mt_model_delete", path, byref(read.options),
+                  listed=read.diagnostics) as loaded:
+            yield loaded
 
 
 def report(result: Union[PathLike, Mapping[str, Any]],
@@ -311,15 +322,10 @@ def report(result: Union[PathLike, Mapping[str, Any]],
     is no result, or no model.
     """
     path, given = _named(result, "result.json", None)
-    if model is None and not isinstance(result, Mapping):
-        model = _model_of(result)
     with Files(given, [], None) as read, one_thread:
         with made("mt_result_read", "mt_result_delete", path, byref(read.options),
                   listed=read.diagnostics) as answer:
-            if model is None:
+            if model is None and isinstance(result, Mapping):
                 return Report(text_made("mt_result_page", answer, None))
-            path, given = _named(model, "model.json", None)
-            with Files(given, [], None) as other:
-                with made("mt_model_read", "mt_model_delete", path, byref(other.options),
-                          listed=other.diagnostics) as loaded:
-                    return Report(text_made("mt_result_page", answer, loaded))
+            with _solved_model(answer, path) if model is None else _model(model) as solved:
+                return Report(text_made("mt_result_page", answer, solved))

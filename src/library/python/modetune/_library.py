@@ -123,6 +123,7 @@ FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "mt_study_solve": (c_int, c_void_p, POINTER(SolveOptions), OUT, ERR),
     "mt_result_delete": DELETE,
     "mt_result_read": READ,
+    "mt_result_model": (c_int, c_void_p, c_char_p, POINTER(ReadOptions), OUT, ERR),
     "mt_result_json": (c_int, c_void_p, OUT, ERR),
     "mt_result_page": (c_int, c_void_p, c_void_p, OUT, ERR),
     "mt_string_delete": DELETE,
@@ -240,9 +241,8 @@ def made(function: str, delete: str, *arguments: Any,
          listed: Optional[Diagnostics] = None) -> Iterator[c_void_p]:
     """What a function of C makes from the arguments, deleted in the end."""
     handle, err = c_void_p(), ErrStruct()
-    status = getattr(lib, function)(*arguments, byref(handle), byref(err))
-    try:
-        check(status, err, listed)
+    try:  # before the call: an interrupt may come right behind it
+        check(getattr(lib, function)(*arguments, byref(handle), byref(err)), err, listed)
         yield handle
     finally:
         getattr(lib, delete)(handle)
