@@ -206,7 +206,7 @@ static mt_status shake(job *j, mt_err *err)
     return MT_OK;
 }
 
-static mt_status open(job *j, mt_err *err)
+static mt_status open_response(job *j, mt_err *err)
 {
     j->request = request_of(j->args);
     if (j->profile != NULL) {
@@ -219,7 +219,7 @@ static mt_status run(job *j, mt_err *err)
 {
     MT_TRY(mt_subject_admit_dense(j->s, j->c, "a response needs all modes", err));
     MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
-    mt_status rc = open(j, err);
+    mt_status rc = open_response(j, err);
     rc = rc == MT_OK ? shake(j, err) : rc;
     rc = rc == MT_OK ? choose_range(j, err) : rc;
     rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;

@@ -246,7 +246,8 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "take long the best design so far is written likewise.\n"
         "While it works, a run appends what it knows to DIR/<study file name without "
         ".json>.journal, which goes when the answer is complete; after an interrupt or a kill "
-        "--resume goes on from it."),
+        "--resume goes on from it. Without --resume a journal that is there is kept with .old "
+        "behind its name, and merge goes on from it."),
     COMMAND(
         MT_CMD_MERGE, "merge", "STUDY JOURNAL...", 2, -1, "join the parts of a study's work",
         "Reads the journals that `run --shard PART/PARTS` left in DIR/<study file name without "

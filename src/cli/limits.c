@@ -12,13 +12,13 @@
 
 #include <inttypes.h>
 #include <sched.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "base/workers.h"
+#include "io/file.h"
 #include "linalg/blas.h"
 
 /* The runtimes of sanitizers claim more than any limit. */
@@ -64,12 +64,13 @@ static uint64_t granted = 0;
 static uint64_t number_in(const char *path, int place)
 {
     char text[256];
-    FILE *const file = fopen(path, "re");
-    const char *const line = file == NULL ? NULL : fgets(text, sizeof text, file);
-    if (file != NULL) {
-        (void)fclose(file);
+    const int fd = mt_file_open(MT_FILE_HERE, path);
+    const ssize_t length = fd < 0 ? -1 : read(fd, text, sizeof text - 1);
+    if (fd >= 0) {
+        (void)close(fd);
     }
-    const char *at = line;
+    text[length > 0 ? length : 0] = '\0';
+    const char *at = length > 0 ? text : NULL;
     char *end = NULL;
     uint64_t number = 0;
     for (int i = 0; i <= place && at != NULL; i++) {

@@ -46,6 +46,44 @@ static char *journal_of(const mt_args *args, const char *study_path)
     return t.s;
 }
 
+/* What stood where this run's journal goes. Fails: MT_E_SYSTEM, of a part that leaves nothing
+ * but its journal. */
+static mt_status tell_place(const mt_args *args, const char *study_path, const char *path,
+                            mt_journal *j, mt_journal_place place, mt_err *err)
+{
+    const bool quiet = args->given[MT_OPT_QUIET];
+    const bool part = args->part > 0;
+    switch (place) {
+    case MT_JOURNAL_NEW:
+        if (args->given[MT_OPT_RESUME]) {
+            mt_terminal_talk(quiet, "%s: there is no %s to resume: all of it is done",
+                             study_path, path);
+        }
+        break;
+    case MT_JOURNAL_KEPT:
+        mt_terminal_talk(
+            quiet,
+            "%s: a journal was left there, of a run that was not finished or of a "
+            "part: it is kept as %s" MT_JOURNAL_OLD
+            "; --resume would have gone on from it, and `modetune merge %s %s" MT_JOURNAL_OLD
+            "` does",
+            study_path, path, study_path, path);
+        break;
+    case MT_JOURNAL_HELD:
+        if (part) {
+            return mt_fail(err, MT_E_SYSTEM, "%s: another run is writing it", path);
+        }
+        mt_terminal_talk(quiet, "%s: another run is writing %s: this one keeps no journal",
+                         study_path, path);
+        break;
+    case MT_JOURNAL_FAILED:
+        return part ? mt_journal_end(j, false, err) : MT_OK;
+    case MT_JOURNAL_CONTINUED:
+        break;
+    }
+    return MT_OK;
+}
+
 /* The journals that are read, and where new records go. */
 static mt_status open_files(const mt_args *args, const char *study_path, mt_journal *j,
                             mt_err *err)
@@ -54,26 +92,16 @@ static mt_status open_files(const mt_args *args, const char *study_path, mt_jour
     if (path == NULL) {
         return mt_fail_memory(err);
     }
-    const bool absent = mt_file_absent(path);
-    const bool adds = args->given[MT_OPT_RESUME] && !absent;
-    const bool quiet = args->given[MT_OPT_QUIET];
+    const bool adds = args->given[MT_OPT_RESUME] && !mt_file_absent(path);
+    mt_journal_place place = MT_JOURNAL_NEW;
     mt_status rc = MT_OK;
     for (int i = 0; i < args->n_journals && rc == MT_OK; i++) {
         rc = mt_journal_read(j, args->journals[i], err);
     }
-    if (adds && rc == MT_OK) {
-        rc = mt_journal_read(j, path, err);
-    } else if (args->given[MT_OPT_RESUME]) {
-        mt_terminal_talk(quiet, "%s: there is no %s to resume: all of it is done", study_path,
-                         path);
-    } else if (!absent && args->command == MT_CMD_RUN) {
-        mt_terminal_talk(quiet,
-                         "%s: the journal of a run that was not finished, %s, is "
-                         "replaced; --resume would go on from it",
-                         study_path, path);
-    }
+    rc = rc == MT_OK && adds ? mt_journal_read(j, path, err) : rc;
     if (args->command == MT_CMD_RUN && rc == MT_OK) {
-        rc = mt_journal_write_to(j, path, adds, err);
+        rc = mt_journal_write_to(j, path, adds, &place, err);
+        rc = rc == MT_OK ? tell_place(args, study_path, path, j, place, err) : rc;
     }
     free(path);
     return rc;

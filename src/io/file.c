@@ -70,6 +70,60 @@ static char *resolve(const char *path, const char *root, mt_status *rc, mt_err *
     return real;
 }
 
+const int MT_FILE_HERE = AT_FDCWD;
+
+/* Without O_NONBLOCK a pipe would block the open. */
+static int opened(int folder, const char *name, int how)
+{
+    enum { ALL_THE_UMASK_ALLOWS = 0666 };
+    int fd = -1;
+    do {
+        fd = openat(folder, name, how | O_NONBLOCK | O_CLOEXEC, ALL_THE_UMASK_ALLOWS);
+    } while (fd < 0 && errno == EINTR);
+    return fd;
+}
+
+int mt_file_open(int folder, const char *name)
+{
+    return opened(folder, name, O_RDONLY | O_NOFOLLOW);
+}
+
+int mt_file_open_folder(const char *path)
+{
+    return opened(AT_FDCWD, path, O_RDONLY | O_DIRECTORY);
+}
+
+int mt_file_create(int folder, const char *name, bool adds)
+{
+    const int fd =
+        opened(folder, name, O_WRONLY | O_APPEND | O_NOFOLLOW | (adds ? 0 : O_CREAT | O_EXCL));
+    struct stat st;
+    if (fd < 0 || !adds) {
+        return fd;
+    }
+    int code = fstat(fd, &st) != 0 ? errno : !S_ISREG(st.st_mode) ? ENXIO : 0;
+    code = code == 0 && st.st_nlink != 1 ? EMLINK : code;
+    if (code != 0) {
+        (void)close(fd);
+        errno = code;
+        return -1;
+    }
+    return fd;
+}
+
+bool mt_file_write(int fd, const char *bytes, size_t length)
+{
+    size_t done = 0;
+    while (done < length) {
+        const ssize_t n = write(fd, bytes + done, length - done);
+        if (n < 0 && errno != EINTR) {
+            return false;
+        }
+        done += n > 0 ? (size_t)n : 0;
+    }
+    return true;
+}
+
 /* Bytes of an open file until its end; a growing file stops at the limit. */
 static mt_status read_all(int fd, const char *path, size_t limit, mt_file *out, mt_err *err)
 {
@@ -111,11 +165,7 @@ mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file
     if (real == NULL) {
         return rc;
     }
-    /* the last part is no link any more; without O_NONBLOCK a pipe would block the open */
-    int fd = -1;
-    do {
-        fd = open(real, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    } while (fd < 0 && errno == EINTR);
+    const int fd = mt_file_open(MT_FILE_HERE, real); /* the last part is no link any more */
     const int code = errno;
     free(real);
     if (fd < 0) {

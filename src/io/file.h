@@ -15,6 +15,24 @@ typedef struct mt_file {
     char sha256[MT_SHA256_TEXT];
 } mt_file;
 
+/*
+ * The doors to the disk: nobody else opens files (structure/test_calls). Descriptors that the
+ * caller closes, not inherited by other programs; -1 with errno on failure. A name is relative
+ * to `folder`, a descriptor or MT_FILE_HERE.
+ */
+extern const int MT_FILE_HERE;
+/* What is there, for reading. ELOOP where the last part of the name is a link; a pipe is not
+ * waited for. */
+int mt_file_open(int folder, const char *name);
+/* A folder, also by a link. */
+int mt_file_open_folder(const char *path);
+/* For writing at the end: a file that is new, or (adds) one that is there under no other name.
+ * Fails: EEXIST, with adds ENOENT, and ELOOP, ENXIO or EMLINK for a link, what is no regular
+ * file, and one with several names. */
+int mt_file_create(int folder, const char *name, bool adds);
+/* All bytes; false with errno. */
+bool mt_file_write(int fd, const char *bytes, size_t length);
+
 /**
  * Read a regular file of at most `limit` bytes. Symbolic links are followed; where root is not
  * NULL the file that they lead to must lie beneath that folder (whose links are resolved as

@@ -130,30 +130,6 @@ static mt_status flush_folder(const replacement *r)
                : mt_file_failed(r->folder, errno, r->err);
 }
 
-static int create(const replacement *r, const char *name)
-{
-    enum { ALL_THE_UMASK_ALLOWS = 0666 };
-    int fd = -1;
-    do {
-        fd = openat(r->fd, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-                    ALL_THE_UMASK_ALLOWS);
-    } while (fd < 0 && errno == EINTR);
-    return fd;
-}
-
-static bool write_all(int fd, const char *bytes, size_t length)
-{
-    size_t done = 0;
-    while (done < length) {
-        const ssize_t n = write(fd, bytes + done, length - done);
-        if (n < 0 && errno != EINTR) {
-            return false;
-        }
-        done += n > 0 ? (size_t)n : 0;
-    }
-    return true;
-}
-
 static bool keep_permissions(const replacement *r, int fd, const char *name)
 {
     enum { PERMISSIONS = 0777 };
@@ -170,12 +146,12 @@ static bool keep_permissions(const replacement *r, int fd, const char *name)
 static mt_status write_new(const replacement *r, const mt_folder_file *f)
 {
     const marked_name name = marked(NEW, f);
-    const int fd = create(r, name.s);
+    const int fd = mt_file_create(r->fd, name.s, false);
     if (fd < 0) {
         return failed(r, f->name);
     }
-    const bool ok =
-        write_all(fd, f->bytes, f->length) && keep_permissions(r, fd, f->name) && flushed(fd);
+    const bool ok = mt_file_write(fd, f->bytes, f->length) &&
+                    keep_permissions(r, fd, f->name) && flushed(fd);
     const mt_status rc = ok ? MT_OK : failed(r, f->name);
     /* after the flush an interrupted close has nothing left to fail at */
     const bool closed = close(fd) == 0 || errno == EINTR;
@@ -222,7 +198,7 @@ static mt_status put_aside(const replacement *r, const mt_folder_file *f)
     if (f->bytes == NULL) {
         return MT_OK;
     }
-    const int fd = create(r, marked(NONE, f).s);
+    const int fd = mt_file_create(r->fd, marked(NONE, f).s, false);
     return fd >= 0 && (close(fd) == 0 || errno == EINTR) ? MT_OK : failed(r, f->name);
 }
 
@@ -325,7 +301,7 @@ static mt_status make_folder(const char *path, mt_err *err)
     if (above == NULL) {
         return mt_fail_memory(err);
     }
-    const int fd = open(above, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int fd = mt_file_open_folder(above);
     if (fd >= 0) {
         (void)flushed(fd);
         (void)close(fd);
@@ -353,11 +329,8 @@ mt_status mt_folder_lock(const char *folder, bool shared, int patience_ms, int *
                          mt_err *err)
 {
     enum { PAUSE_MS = 20, MS_PER_S = 1000 };
-    int fd = -1;
+    const int fd = mt_file_open_folder(folder);
     *lock = -1;
-    do {
-        fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    } while (fd < 0 && errno == EINTR);
     if (fd < 0) {
         return mt_file_failed(folder, errno, err);
     }

@@ -3,8 +3,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h> /* renameat */
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/format.h"
@@ -14,7 +17,7 @@
 
 static const char FORMAT[] = "modetune-journal/1 ";
 /* Digits of a SHA-256 that a line has: nobody works against the engineer here, a disk does. */
-enum { CHECK = 16, NIBBLE = 4, WORD_DIGITS = 16, MODE = 0666 };
+enum { CHECK = 16, NIBBLE = 4, WORD_DIGITS = 16 };
 /* A journal is read as a whole, within the memory that the program may use. */
 static const size_t MOST_BYTES = (size_t)1 << 36;
 
@@ -41,10 +44,10 @@ struct mt_journal {
     record *records; /* [n], by key once they are asked for */
     bool sorted;
     mt_journal_counts counts;
-    char *path; /* of new records; NULL: they go nowhere */
-    bool adds;
+    char *path;   /* of new records; NULL: they go nowhere */
     bool torn;    /* a file that was read ends within its head: it is written anew */
-    int fd;       /* -1: not open yet */
+    int fd;       /* has the lock of the file at `path`, which is ours; -1: not made yet */
+    bool begun;   /* it has its head, and ends with a line */
     mt_text line; /* under way */
     mt_err err;   /* the first failure of writing: nothing is written after it */
 };
@@ -279,18 +282,124 @@ mt_status mt_journal_read(mt_journal *j, const char *path, mt_err *err)
     return torn ? MT_OK : read_records(j, s, records, err);
 }
 
-mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds, mt_err *err)
+/* Is the file held by another run? Where the file system knows no locks it is not. */
+static bool is_held(int fd)
+{
+    while (flock(fd, LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EINTR) {
+            return errno == EWOULDBLOCK;
+        }
+    }
+    return false;
+}
+
+/* errno as a failure of the journal's path. */
+static void fail(mt_journal *j)
+{
+    const int code = errno;
+    if (code == ELOOP || code == ENXIO || code == EMLINK) {
+        (void)mt_fail(&j->err, MT_E_SYSTEM, "%s: is not a regular file with one name: %s",
+                      j->path, "nothing is written there");
+    } else {
+        (void)mt_file_failed(j->path, code, &j->err);
+    }
+}
+
+/* The folder's lock, under which journals are made and put aside; -1: j->err, or there is no
+ * folder. */
+static int lock_folder(mt_journal *j, bool makes)
+{
+    char *const folder = mt_file_folder(j->path);
+    int lock = -1;
+    if (folder == NULL) {
+        (void)mt_fail_memory(&j->err);
+    } else if ((makes && mt_folder_make(folder, &j->err) == MT_OK) || !mt_file_absent(folder)) {
+        (void)mt_folder_lock(folder, false, MT_FOLDER_PATIENCE_MS, &lock, &j->err);
+    }
+    free(folder);
+    return lock;
+}
+
+/* What stands at the path, under the folder's lock: to be gone on with. */
+static mt_journal_place go_on(mt_journal *j)
+{
+    const int fd = mt_file_create(MT_FILE_HERE, j->path, true);
+    if (fd < 0 && errno == ENOENT) {
+        return MT_JOURNAL_NEW;
+    }
+    if (fd < 0) {
+        fail(j);
+        return MT_JOURNAL_FAILED;
+    }
+    if (is_held(fd)) {
+        (void)close(fd);
+        return MT_JOURNAL_HELD;
+    }
+    j->fd = fd;
+    return MT_JOURNAL_CONTINUED;
+}
+
+static bool remove_file(const mt_journal *j)
+{
+    return unlinkat(AT_FDCWD, j->path, 0) == 0 || errno == ENOENT || errno == ENOTDIR;
+}
+
+/* The same, to be put aside. */
+static mt_journal_place put_aside(mt_journal *j)
+{
+    mt_text old = {.s = NULL};
+    struct stat st;
+    mt_journal_place place = MT_JOURNAL_FAILED;
+    const int fd = mt_file_open(MT_FILE_HERE, j->path);
+    mt_text_add(&old, j->path);
+    mt_text_add(&old, MT_JOURNAL_OLD);
+    if (fd < 0 && errno == ENOENT) {
+        place = MT_JOURNAL_NEW;
+    } else if (fd < 0 || fstat(fd, &st) != 0) {
+        fail(j);
+    } else if (!S_ISREG(st.st_mode)) {
+        errno = ENXIO;
+        fail(j);
+    } else if (is_held(fd)) {
+        place = MT_JOURNAL_HELD;
+    } else if (old.failed) {
+        (void)mt_fail_memory(&j->err);
+    } else if (renameat(AT_FDCWD, j->path, AT_FDCWD, old.s) != 0 || !remove_file(j)) {
+        fail(j); /* two names of one file do not replace each other */
+    } else {
+        place = MT_JOURNAL_KEPT;
+    }
+    if (fd >= 0) {
+        (void)close(fd);
+    }
+    mt_text_free(&old);
+    return place;
+}
+
+mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds,
+                              mt_journal_place *place, mt_err *err)
 {
     mt_text copy = {.s = NULL};
     mt_text_add(&copy, path);
+    *place = MT_JOURNAL_NEW;
     if (copy.failed || copy.s == NULL) {
         mt_text_free(&copy);
         return mt_fail_memory(err);
     }
     free(j->path);
     j->path = copy.s;
-    j->adds = adds && !j->torn;
-    return MT_OK;
+    const int lock = lock_folder(j, false);
+    if (lock >= 0) {
+        *place = adds ? go_on(j) : put_aside(j);
+    } else if (j->err.code != MT_OK) {
+        *place = MT_JOURNAL_FAILED;
+    }
+    mt_folder_unlock(lock);
+    if (*place == MT_JOURNAL_HELD) { /* the other run's: nothing is written or removed */
+        free(j->path);
+        j->path = NULL;
+    }
+    return j->err.code == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
 static int by_key(const void *a, const void *b)
@@ -341,14 +450,8 @@ static const uint64_t *find(void *context, const char *key, size_t *n)
 
 static void write_all(mt_journal *j, const char *s, size_t n)
 {
-    while (n > 0 && j->err.code == MT_OK) {
-        const ssize_t done = write(j->fd, s, n);
-        if (done < 0 && errno != EINTR) {
-            (void)mt_file_failed(j->path, errno, &j->err);
-        } else if (done > 0) {
-            s += done;
-            n -= (size_t)done;
-        }
+    if (j->err.code == MT_OK && !mt_file_write(j->fd, s, n)) {
+        (void)mt_file_failed(j->path, errno, &j->err);
     }
 }
 
@@ -363,24 +466,48 @@ static void write_head(mt_journal *j)
     mt_text_free(&head);
 }
 
+/* A new file, and its lock before anybody else can have it. */
+static void make_file(mt_journal *j)
+{
+    const int lock = lock_folder(j, true);
+    if (lock < 0) {
+        return;
+    }
+    j->fd = mt_file_create(MT_FILE_HERE, j->path, false);
+    if (j->fd < 0 && errno == EEXIST) { /* another run has begun meanwhile: that is its own */
+        free(j->path);
+        j->path = NULL;
+    } else if (j->fd < 0) {
+        fail(j);
+    } else {
+        (void)is_held(j->fd);
+    }
+    mt_folder_unlock(lock);
+}
+
 static void open_file(mt_journal *j)
 {
-    char *const folder = mt_file_folder(j->path);
-    const int how = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (j->adds ? 0 : O_TRUNC);
-    if (folder == NULL) {
-        (void)mt_fail_memory(&j->err);
-    } else if (mt_folder_make(folder, &j->err) == MT_OK) {
-        j->fd = open(j->path, how, MODE);
-        if (j->fd < 0) {
-            (void)mt_file_failed(j->path, errno, &j->err);
+    const bool adds = j->fd >= 0 && !j->torn;
+    if (j->fd >= 0 && j->torn) {
+        const bool gone = remove_file(j);
+        if (!gone) {
+            fail(j);
+        }
+        (void)close(j->fd);
+        j->fd = -1;
+        if (!gone) {
+            return;
         }
     }
-    free(folder);
-    if (j->fd >= 0 && j->adds) {
+    if (j->fd < 0) {
+        make_file(j);
+    }
+    if (j->fd >= 0 && adds) {
         write_all(j, "\n", 1); /* behind a line that was torn */
     } else if (j->fd >= 0) {
         write_head(j);
     }
+    j->begun = j->fd >= 0;
 }
 
 static void put(void *context, const char *key, const uint64_t *words, size_t n)
@@ -394,6 +521,9 @@ static void put(void *context, const char *key, const uint64_t *words, size_t n)
         return;
     }
     mt_journal_begin(j);
+    if (j->path == NULL || j->fd < 0) {
+        return;
+    }
     line->length = 0;
     mt_text_add_n(line, "0123456789abcdef ", CHECK + 1); /* the check's place */
     mt_text_add(line, key);
@@ -442,22 +572,20 @@ mt_journal_counts mt_journal_count(const mt_journal *j)
 
 void mt_journal_begin(mt_journal *j)
 {
-    if (j->path != NULL && j->fd < 0 && j->err.code == MT_OK) {
+    if (j->path != NULL && !j->begun && j->err.code == MT_OK) {
         open_file(j);
     }
 }
 
 mt_status mt_journal_end(mt_journal *j, bool remove, mt_err *err)
 {
+    if (j->fd >= 0 && remove && !remove_file(j) && j->err.code == MT_OK) {
+        fail(j);
+    }
     if (j->fd >= 0 && close(j->fd) != 0 && j->err.code == MT_OK) {
-        (void)mt_file_failed(j->path, errno, &j->err);
+        fail(j);
     }
     j->fd = -1;
-    const bool gone = !remove || j->path == NULL || unlinkat(AT_FDCWD, j->path, 0) == 0 ||
-                      errno == ENOENT || errno == ENOTDIR;
-    if (!gone && j->err.code == MT_OK) {
-        (void)mt_file_failed(j->path, errno, &j->err);
-    }
     if (j->err.code != MT_OK && err != NULL) {
         *err = j->err;
     }

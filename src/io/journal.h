@@ -37,10 +37,21 @@ void mt_journal_delete(mt_journal *j);
 /* The records of a file join; one that ends within its head has none. Fails: MT_E_INPUT (no
  * journal; one of another question: what differs), MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_journal_read(mt_journal *j, const char *path, mt_err *err);
-/* New records go to `path`, whose folder is made; the file is made with the first one. adds:
- * behind what is there, which has been read and has its head; else what is there goes. Fails:
- * MT_E_MEMORY. */
-mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds, mt_err *err);
+/* What stood where new records are to go. */
+typedef enum mt_journal_place {
+    MT_JOURNAL_NEW,       /* nothing */
+    MT_JOURNAL_CONTINUED, /* what has been read: they go behind it */
+    MT_JOURNAL_KEPT,      /* what is now called so with MT_JOURNAL_OLD behind its name */
+    MT_JOURNAL_HELD,      /* what another run writes: they go nowhere, and nothing is removed */
+    MT_JOURNAL_FAILED     /* what is no regular file, or cannot be had: the end tells why */
+} mt_journal_place;
+#define MT_JOURNAL_OLD ".old"
+
+/* New records go to `path`, whose folder is made; the file is made with the first one, and held
+ * until the end. adds: behind what is there, which has been read; else what is there is put
+ * aside. Fails: MT_E_MEMORY. */
+mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds,
+                              mt_journal_place *place, mt_err *err);
 /* All of it, or (of parts) one part. Lives as long as the journal; not before everything has
  * been read. */
 mt_ledger *mt_journal_ledger(mt_journal *j, int part, int parts);
@@ -48,9 +59,8 @@ mt_journal_counts mt_journal_count(const mt_journal *j);
 /* Where records go there is a file from here on, also where there are none: of a part that is
  * done. What fails is told at the end. */
 void mt_journal_begin(mt_journal *j);
-/* No more records: everything is written, and with `remove` the file that they were to go to
- * goes. Fails: MT_E_SYSTEM: what of them could not be
- * written, or removed. */
+/* No more records: everything is written, and with `remove` the file that they went to goes.
+ * Fails: MT_E_SYSTEM: what of them could not be written, or removed. */
 mt_status mt_journal_end(mt_journal *j, bool remove, mt_err *err);
 
 #endif

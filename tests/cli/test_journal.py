@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import random
+import signal
 import subprocess
 import time
 
@@ -203,12 +204,70 @@ class Journal(CliTest):
         self.assertIn("there is no out/gaps.journal to resume", said)
         self.journal("gaps", "out").write_text("left")
         said = self.run_study("gaps", "out")
-        self.assertIn("--resume would go on from it", said)
+        self.assertIn("it is kept as out/gaps.journal.old; --resume would have gone on from it", said)
         self.assertFalse(self.journal("gaps", "out").exists())
+        self.assertEqual((self.folder / "out/gaps.journal.old").read_text(), "left")
         for wrong in ("0/3", "4/3", "3", "1/", "/2", "1/2/3", "-1/2", "1/x", "1 /2"):
             done = self.run_program("run", "studies/gaps.json", "--shard", wrong)
             self.assertEqual(done.returncode, 2, wrong)
             self.assertIn("is not PART/PARTS", done.stderr)
+
+    def test_a_forgotten_resume_costs_nothing(self):
+        self.run_study("starts", "whole")
+        self.run_study("starts", "out", "--shard", "1/1")
+        self.journal("starts", "out", ".1-of-1").rename(self.journal("starts", "out"))
+        said = self.run_study("starts", "out")
+        command = said.split("`modetune ")[1].split("`")[0].split()
+        self.assertEqual(command[0], "merge")
+        said = self.expect(0, *command, "-o", "again").stderr
+        self.assertRegex(said, r": ([1-9]\d*) tasks known of \d+ in journals, 0 done now")
+        self.assertEqual(self.result("starts", "whole"), self.result("starts", "again"))
+
+    def test_runs_at_the_same_time_leave_each_others_journal_alone(self):
+        """The second comes and goes while the first one works; a kill then leaves all that the first one knew."""
+        first = subprocess.Popen([PROGRAM, "run", "studies/trade.json", "-o", "out", "--threads", "1"], cwd=self.folder,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        journal = self.journal("trade", "out")
+        while first.poll() is None and not (journal.exists() and journal.stat().st_size > 0):
+            time.sleep(0.001)
+        os.kill(first.pid, signal.SIGSTOP)
+        try:
+            self.assertIsNone(first.poll(), "it was too fast to be met")
+            inode, size = journal.stat().st_ino, journal.stat().st_size
+            for more in ((), ("--resume",)):
+                said = self.run_study("trade", "out", *more)
+                self.assertIn("another run is writing out/trade.journal: this one keeps no journal", said)
+                self.assertEqual((journal.stat().st_ino, journal.stat().st_size), (inode, size))
+        finally:
+            first.kill()
+            first.wait()
+        self.run_study("trade", "whole")
+        self.assertNotIn(" 0 tasks known", self.run_study("trade", "out", "--resume"))
+        self.assertEqual(self.result("trade", "whole"), self.result("trade", "out"))
+        self.assertFalse(journal.exists())
+
+    def test_what_is_no_journal_of_ours_is_left_alone(self):
+        self.run_study("starts", "whole")
+        (self.folder / "out").mkdir()
+        victim = self.folder / "victim"
+        journal = self.journal("starts", "out")
+        for make in (lambda: journal.symlink_to(victim), lambda: os.mkfifo(journal), lambda: os.link(victim, journal),
+                     lambda: journal.symlink_to("/dev/full"), lambda: journal.symlink_to("nowhere")):
+            victim.write_text("precious")
+            make()
+            for more in ((), ("--shard", "1/2")):
+                if more:
+                    journal.rename(self.journal("starts", "out", ".1-of-2"))
+                link = os.path.lexists(victim) and journal.exists() and not journal.is_symlink() and journal.is_file()
+                said = self.run_study("starts", "out", *more, expect=(0, 4) if more else (0,))
+                self.assertIn(".journal", said)
+                self.assertEqual(victim.read_text(), "precious")
+                if link:
+                    break
+            for path in (self.folder / "out").glob("*journal*"):
+                path.unlink()
+        self.assertEqual(self.result("starts", "whole"), self.result("starts", "out"))
+        self.assertFalse((self.folder / "out/nowhere").exists())
 
     def test_a_journal_that_cannot_be_written_is_no_failure(self):
         (self.folder / "out" / "gaps.journal").mkdir(parents=True)

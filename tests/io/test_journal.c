@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "io/file.h"
@@ -17,6 +18,7 @@ enum { KEYS = 12, WORDS = 5 };
 
 static const char IDENTITY[] = "{\n  \"seed\": 1,\n  \"inputs\": \"abc\"\n}\n";
 static char path[64];
+static char old[sizeof path + sizeof MT_JOURNAL_OLD];
 
 static uint64_t word_of(int key, int i)
 {
@@ -47,11 +49,18 @@ static void put(mt_journal *j, int key, int changed)
     ledger->put(ledger->context, name, words, (size_t)(key % (WORDS + 1)));
 }
 
+/* What was there; -1 where it failed. */
+static int write_to(mt_journal *j, bool adds)
+{
+    mt_journal_place place = MT_JOURNAL_NEW;
+    return mt_journal_write_to(j, path, adds, &place, NULL) == MT_OK ? (int)place : -1;
+}
+
 static void write_keys(mt_test *t, int from, int to, bool adds)
 {
     mt_journal *const j = opened(t, IDENTITY);
     REQUIRE(t, !adds || mt_journal_read(j, path, NULL) == MT_OK);
-    REQUIRE(t, mt_journal_write_to(j, path, adds, NULL) == MT_OK);
+    REQUIRE(t, write_to(j, adds) >= 0);
     for (int k = from; k < to; k++) {
         put(j, k, 0);
     }
@@ -97,12 +106,14 @@ static void overwrite(mt_test *t, const char *bytes, size_t n)
 static void begin(mt_test *t)
 {
     (void)snprintf(path, sizeof path, "/tmp/journal_%ld.d/a.journal", (long)getpid());
+    (void)snprintf(old, sizeof old, "%s" MT_JOURNAL_OLD, path);
     write_keys(t, 0, KEYS, false);
 }
 
 static void end(void)
 {
     (void)unlink(path);
+    (void)unlink(old);
     *strrchr(path, '/') = '\0';
     (void)rmdir(path);
 }
@@ -123,11 +134,102 @@ static void journal__gives_back_what_was_put(mt_test *t)
     CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK); /* twice the same is the same */
     CHECK_INT(t, intact(j), KEYS);
     CHECK_INT(t, mt_journal_count(j).known, KEYS);
-    CHECK_INT(t, mt_journal_write_to(j, path, true, NULL), MT_OK);
+    CHECK_INT(t, write_to(j, true), MT_JOURNAL_CONTINUED);
     CHECK_INT(t, mt_journal_end(j, true, NULL), MT_OK);
     CHECK(t, mt_file_absent(path));
     mt_journal_delete(j);
     end();
+}
+
+/* How many records the file has. */
+static long known_of(mt_test *t, const char *file)
+{
+    mt_journal *const j = opened(t, IDENTITY);
+    const long n = mt_journal_read(j, file, NULL) == MT_OK ? mt_journal_count(j).known : -1;
+    mt_journal_delete(j);
+    return n;
+}
+
+/* What a run that was not finished knew stays when the next one begins anew. */
+static void journal__of_an_unfinished_run_is_kept(mt_test *t)
+{
+    begin(t);
+    mt_journal *const j = opened(t, IDENTITY);
+    CHECK_INT(t, write_to(j, false), MT_JOURNAL_KEPT);
+    CHECK(t, mt_file_absent(path));
+    CHECK_INT(t, known_of(t, old), KEYS);
+    put(j, 0, 0);
+    CHECK_INT(t, mt_journal_end(j, true, NULL), MT_OK);
+    CHECK(t, mt_file_absent(path));
+    CHECK_INT(t, known_of(t, old), KEYS);
+    mt_journal_delete(j);
+    end();
+}
+
+/* Of two runs at the same time one has the journal, the other writes and removes nothing. */
+static void journal__belongs_to_one_run(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        bool made; /* before the other one begins */
+        bool adds;
+    } rows[] = {
+        {"made", true, false}, {"made, and resumed", true, true}, {"made later", false, false}};
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_test_row(t, "%s", rows[i].name);
+        begin(t);
+        (void)unlink(path);
+        mt_journal *const first = opened(t, IDENTITY);
+        mt_journal *const second = opened(t, IDENTITY);
+        CHECK_INT(t, write_to(first, false), MT_JOURNAL_NEW);
+        if (rows[i].made) {
+            put(first, 1, 0);
+        }
+        CHECK_INT(t, write_to(second, rows[i].adds),
+                  rows[i].made ? MT_JOURNAL_HELD : MT_JOURNAL_NEW);
+        put(first, 2, 0);
+        put(second, 3, 0);
+        CHECK_INT(t, mt_journal_count(second).written, 0);
+        CHECK_INT(t, mt_journal_end(second, true, NULL), MT_OK);
+        CHECK_INT(t, known_of(t, path), rows[i].made ? 2 : 1);
+        CHECK_INT(t, mt_journal_end(first, true, NULL), MT_OK);
+        CHECK(t, mt_file_absent(path) && mt_file_absent(old));
+        mt_journal_delete(first);
+        mt_journal_delete(second);
+        end();
+    }
+}
+
+/* A link, a second name, a pipe and a folder are left as they are. */
+static void journal__is_a_regular_file_of_its_own(mt_test *t)
+{
+    enum { LINK, NOWHERE, NAMES, PIPE, FOLDER, COUNT };
+    static const char *const names[COUNT] = {"link", "link to nothing", "two names", "pipe",
+                                             "folder"};
+    for (int i = 0; i < 2 * COUNT; i++) {
+        const int kind = i / 2;
+        const bool adds = i % 2 == 1;
+        mt_test_row(t, "%s%s", names[kind], adds ? ", resumed" : "");
+        begin(t);
+        REQUIRE(t, rename(path, old) == 0);
+        const int made = kind == LINK      ? symlink(old, path)
+                         : kind == NOWHERE ? symlink("nothing", path)
+                         : kind == NAMES   ? link(old, path)
+                         : kind == PIPE    ? mkfifo(path, 0600)
+                                           : mkdir(path, 0700);
+        REQUIRE(t, made == 0);
+        mt_journal *const j = opened(t, IDENTITY);
+        /* a name is taken away from where it stands without a byte of the file changing */
+        const bool kept = kind == NAMES && !adds;
+        CHECK_INT(t, write_to(j, adds), kept ? MT_JOURNAL_KEPT : MT_JOURNAL_FAILED);
+        put(j, 1, 0);
+        CHECK_INT(t, mt_journal_count(j).written, kept ? 1 : 0);
+        CHECK_INT(t, mt_journal_end(j, true, NULL), kept ? MT_OK : MT_E_SYSTEM);
+        CHECK_INT(t, known_of(t, old), KEYS);
+        mt_journal_delete(j);
+        (void)remove(path);
+        end();
+    }
 }
 
 /* A part that was ended before its first task leaves none; one that is done and had no task
@@ -138,7 +240,7 @@ static void journal__is_a_file_from_its_first_record_on(mt_test *t)
         begin(t);
         (void)remove(path);
         mt_journal *const j = opened(t, IDENTITY);
-        CHECK_INT(t, mt_journal_write_to(j, path, false, NULL), MT_OK);
+        CHECK_INT(t, write_to(j, false), MT_JOURNAL_NEW);
         (void)mt_journal_ledger(j, 1, 2);
         if (done == 1) {
             mt_journal_begin(j);
@@ -180,7 +282,7 @@ static void journal__contradictions_count_for_nothing(mt_test *t)
     begin(t);
     mt_journal *j = opened(t, IDENTITY);
     CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
-    CHECK_INT(t, mt_journal_write_to(j, path, true, NULL), MT_OK);
+    CHECK_INT(t, write_to(j, true), MT_JOURNAL_CONTINUED);
     put(j, 4, 1);
     CHECK_INT(t, mt_journal_end(j, false, NULL), MT_OK);
     mt_journal_delete(j);
@@ -234,6 +336,9 @@ static void journal__damage_loses_records_and_changes_none(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(journal__gives_back_what_was_put),
              MT_TEST(journal__is_a_file_from_its_first_record_on),
+             MT_TEST(journal__of_an_unfinished_run_is_kept),
+             MT_TEST(journal__belongs_to_one_run),
+             MT_TEST(journal__is_a_regular_file_of_its_own),
              MT_TEST(journal__of_another_question_is_refused),
              MT_TEST(journal__contradictions_count_for_nothing),
              MT_TEST(journal__damage_loses_records_and_changes_none))
