@@ -141,6 +141,7 @@ static mt_drive read_drive(mt_model_reader *mr, mt_addr value)
     if (d.position_is_angle == (at[DRIVE_M] != MT_NO_ADDR)) {
         mt_diag_error(mr->r.diags, value, "give either \"position_rad\" or \"position_m\"");
     }
+    d.hold_given = at[DRIVE_HOLD] != MT_NO_ADDR;
     if (at[DRIVE_HOLD] == MT_NO_ADDR ||
         mt_json_type_of(mr->r.doc, at[DRIVE_HOLD]) == MT_JSON_STRING) {
         (void)mt_reader_choice(&mr->r, at[DRIVE_HOLD], "hold", holds, MT_COUNT(holds));

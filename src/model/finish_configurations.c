@@ -96,6 +96,37 @@ static void inherit_overrides(mt_finish *f, mt_configuration *c, bool *overridde
     }
 }
 
+/* Which configuration gives the drive that is in force in this one. */
+static const mt_configuration *driver_of(const mt_finish *f, const mt_configuration *c)
+{
+    while (c->drive.inherited) {
+        c = &f->m->configurations[c->like];
+    }
+    return c;
+}
+
+/* A configuration has one drive: its own takes the place of an inherited one of the same joint.
+ * Of another joint it would let go what the configuration that it is like holds. */
+static void check_dropped_drive(mt_finish *f, const mt_configuration *c,
+                                const mt_configuration *parent)
+{
+    const mt_drive *const own = &c->drive;
+    const mt_drive *const other = &parent->drive;
+    if (!own->given || !other->given || own->joint_name.s == NULL ||
+        other->joint_name.s == NULL) {
+        return;
+    }
+    const char *const from = driver_of(f, parent)->name.s;
+    if (strcmp(own->joint_name.s, other->joint_name.s) != 0) {
+        mt_diag_error(f->d, own->addr,
+                      "drops the inherited drive of %s: \"%s\" drives joint \"%s\", this one "
+                      "\"%s\", and a configuration has one drive; \"like\" must name a "
+                      "configuration without a drive, or one that drives \"%s\"",
+                      other->joint_name.s, from, other->joint_name.s, own->joint_name.s,
+                      own->joint_name.s);
+    }
+}
+
 /* Settings in force: own, else those of the configuration it is like, else the model's. */
 static void inherit(mt_finish *f, mt_configuration *c, bool *overridden)
 {
@@ -113,6 +144,9 @@ static void inherit(mt_finish *f, mt_configuration *c, bool *overridden)
     if (!c->has_gravity && (model_has || (parent != NULL && parent->has_gravity))) {
         c->has_gravity = true;
         memcpy(c->gravity, model_has ? f->m->gravity : parent->gravity, sizeof c->gravity);
+    }
+    if (parent != NULL) {
+        check_dropped_drive(f, c, parent);
     }
     if (!c->drive.given && parent != NULL) {
         c->drive = parent->drive;

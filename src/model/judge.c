@@ -334,6 +334,7 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     judge_joints(&j);
     judge_drive(&j);
     mt_judge_damping(&j);
+    mt_judge_inherited(&j);
     mt_judge_geometry(&j);
 }
 

@@ -29,6 +29,8 @@ const char *mt_judge_drive_pointer(const mt_judge *j, const char *member);
 void mt_judge_damping(mt_judge *j);
 /* What is doubtful about a loss factor; NULL: nothing. */
 const char *mt_judge_loss(double loss_factor);
+/* What its own drive and damping drop of inherited ones (judge_inherited.c). */
+void mt_judge_inherited(mt_judge *j);
 /* Joints and springs off what they hold, pairs of points that are apart, sizes
  * (judge_geometry.c). */
 void mt_judge_geometry(mt_judge *j);

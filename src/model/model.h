@@ -334,6 +334,7 @@ typedef struct mt_drive {
     int joint;
     mt_num position;        /* rad or m, relative to the reference position */
     bool position_is_angle; /* which of position_rad / position_m was written */
+    bool hold_given;        /* false: locked, as nothing else is said */
     bool trim;              /* false: locked there */
     mt_name trim_name;
     int trim_spring;

@@ -151,6 +151,26 @@ class Doubts(CliTest):
                 self.assertIn(kind, [d["kind"] for d in self.found(self.put_model(path, wrong))[0]])
                 self.assertEqual(self.found(self.put_model(path, right))[0], [])
 
+    def test_what_a_configuration_drops_of_another(self):
+        trimmed = {"joint": "foot", "position_rad": 0.1, "hold": {"trim": "hold"}}
+        mass, both = {"mass_per_s": 0.1, "ratio": 0.01}, {"mass_per_s": 0, "ratio": 0.02}
+        rows = [  # of the configuration that another is like, of that one, near miss, what is dropped
+            ({"drive": trimmed}, {"drive": {"joint": "foot", "position_rad": 0.2}}, {"drive": trimmed}, ["hold"]),
+            ({"damping": mass}, {"damping": {"ratio": 0.02}}, {"damping": both}, ["mass_per_s"]),
+            ({"damping": mass}, {"damping": {"stiffness_s": 1e-5}}, {}, ['ratio", "mass_per_s']),
+        ]
+        for inherited, own, right, members in rows:
+            for mine, want in ((own, members), (right, [])):
+                with self.subTest(own=mine):
+                    between = {"a": inherited, "b": {"like": "a"}, "c": dict(mine, like="b"), "d": {"like": "c"}}
+                    doubts, _ = self.found(self.put_model(base=dict(MODEL, configurations=between)))
+                    self.assertEqual([d["kind"] for d in doubts], ["dropped"] * len(want))
+                    for doubt, member in zip(doubts, want):
+                        self.assertIn(f'drops the inherited "{member}"', doubt["text"])
+                        self.assertEqual(doubt["pointer"], f"/configurations/c/{list(mine)[0]}")
+        damped = dict(MODEL, damping=mass, configurations={"a": {"damping": {"ratio": 0.02}}})
+        self.assertEqual([d["kind"] for d in self.found(self.put_model(base=damped))[0]], ["dropped"])
+
     def test_joints_off_what_they_hold(self):
         _, facts = self.found(self.put_model(("joints", 0, "at"), [0.4, 0]))
         self.assertEqual([(f["kind"], f["text"], f["pointer"]) for f in facts],
