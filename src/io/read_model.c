@@ -259,28 +259,74 @@ static int compare_addrs(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* Addresses that are kept: of every number, and of what else is told by its place when the
+ * document is gone. */
+typedef struct place_list {
+    int *addrs;
+    int n;
+} place_list;
+
+static void add_place(place_list *list, mt_addr addr)
+{
+    if (addr != MT_NO_ADDR) {
+        list->addrs[list->n++] = addr;
+    }
+}
+
+static void add_places(const mt_model *m, place_list *list)
+{
+    for (int i = 0; i < m->n_nums; i++) {
+        add_place(list, m->nums[i].addr);
+    }
+    for (int i = 0; i < m->n_joints; i++) {
+        add_place(list, m->joints[i].name.addr);
+        add_place(list, m->joints[i].n_at > 0 ? m->joints[i].at[0].addr : MT_NO_ADDR);
+        add_place(list, m->joints[i].n_at > 1 ? m->joints[i].at[1].addr : MT_NO_ADDR);
+    }
+    for (int i = 0; i < m->n_springs; i++) {
+        add_place(list, m->springs[i].name.addr);
+        add_place(list, m->springs[i].n_at > 0 ? m->springs[i].at[0].addr : MT_NO_ADDR);
+        add_place(list, m->springs[i].n_at > 1 ? m->springs[i].at[1].addr : MT_NO_ADDR);
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        add_place(list, m->links[i].name.addr);
+    }
+    for (int i = 0; i < m->n_loads; i++) {
+        add_place(list, m->loads[i].at.given ? m->loads[i].at.addr : MT_NO_ADDR);
+    }
+    for (int c = 0; c < m->n_configurations; c++) {
+        const mt_configuration *const own = &m->configurations[c];
+        const bool drives = own->drive.given && !own->drive.inherited;
+        add_place(list, drives ? own->drive.addr : MT_NO_ADDR);
+        add_place(list, drives && own->drive.trim ? own->drive.trim_name.addr : MT_NO_ADDR);
+        add_place(list, own->damping.given && !own->damping.inherited ? own->damping.addr
+                                                                      : MT_NO_ADDR);
+    }
+}
+
 /* Keep where every number stands: the document is gone when a value turns out to be wrong. */
 static void note_places(mt_model_reader *mr)
 {
     mt_model *const m = mr->m;
-    const size_t n = (size_t)m->n_nums;
-    m->places = mt_arena_alloc(&m->mem, n, sizeof *m->places);
+    const size_t most = (size_t)m->n_nums + (3 * ((size_t)m->n_joints + (size_t)m->n_springs)) +
+                        (size_t)m->n_links + (size_t)m->n_loads +
+                        (3 * (size_t)m->n_configurations);
+    m->places = mt_arena_alloc(&m->mem, most, sizeof *m->places);
     const mt_arena_mark mark = mt_arena_get_mark(&m->mem);
-    int *const addrs = mt_arena_int(&m->mem, n);
-    int *const lines = mt_arena_int(&m->mem, n);
-    int *const columns = mt_arena_int(&m->mem, n);
+    place_list list = {.addrs = mt_arena_int(&m->mem, most)};
+    int *const lines = mt_arena_int(&m->mem, most);
+    int *const columns = mt_arena_int(&m->mem, most);
     if (mt_arena_failed(&m->mem)) {
         return;
     }
-    for (size_t i = 0; i < n; i++) {
-        addrs[i] = m->nums[i].addr;
+    add_places(m, &list);
+    qsort(list.addrs, (size_t)list.n, sizeof *list.addrs, compare_addrs);
+    mt_json_places(mr->r.doc, list.n, list.addrs, lines, columns);
+    for (int i = 0; i < list.n; i++) {
+        m->places[i] =
+            (mt_place){.addr = list.addrs[i], .line = lines[i], .column = columns[i]};
     }
-    qsort(addrs, n, sizeof *addrs, compare_addrs);
-    mt_json_places(mr->r.doc, m->n_nums, addrs, lines, columns);
-    for (size_t i = 0; i < n; i++) {
-        m->places[i] = (mt_place){.addr = addrs[i], .line = lines[i], .column = columns[i]};
-    }
-    m->n_places = m->n_nums;
+    m->n_places = list.n;
     mt_arena_rewind(&m->mem, mark);
 }
 

@@ -380,6 +380,17 @@ mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int 
     return at->drive == w.goal ? MT_OK : h > 0.0 ? refuse_steps(&w, err) : refuse(&w, err);
 }
 
+mt_status mt_drive_motion(const mt_data *data, mt_placement *at, double *rate, double *size,
+                          bool *held, mt_arena *mem, mt_err *err)
+{
+    walk w = {.sys = data->sys, .data = data, .at = at, .mem = mem};
+    MT_TRY(walk_init(&w, err));
+    MT_TRY(find_rate(&w, size, err));
+    memcpy(rate, w.rate, (size_t)w.sys->nq * sizeof *rate);
+    *held = w.held;
+    return MT_OK;
+}
+
 double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, const double *rate)
 {
     const mt_measure_def *const def = &data->sys->measures[measure];

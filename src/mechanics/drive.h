@@ -22,6 +22,11 @@ mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int 
 /* The farthest position that a joint (of sys->joints) is brought to: MT_DRIVE_REACH rad, or
  * model lengths [m]. */
 double mt_drive_reach(const mt_system *sys, int joint);
+/* The motion dq/ds with which the driven joint goes on from where `at` stands: rate[nq]; *size:
+ * how far it moves bodies [model lengths, rad] while the joint goes by 1 rad or a model length;
+ * *held: there is none, the other joints hold it. Fails: as Newton's steps, MT_E_MEMORY. */
+mt_status mt_drive_motion(const mt_data *data, mt_placement *at, double *rate, double *size,
+                          bool *held, mt_arena *mem, mt_err *err);
 /* d(measure)/ds along the motion rate[nq] at poses. */
 double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
                      const double *rate);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/tie.h"
 #include "mechanics/drive.h"
 #include "mechanics/newton_tangent.h"
@@ -92,6 +93,52 @@ static bool is_direct(const mt_state *p)
            mt_poses_distance(p->sys, p->driven.pose, p->at.pose) <= DIRECT;
 }
 
+/* A spring that is trimmed by less than this part of how far the mechanism moves does no work
+ * on the motion of the driven joint: what is left is rounding of the walk. */
+static const double TRIM_LEAST = 1e-7;
+enum { PLACE_SIZE = 64 };
+
+/*
+ * The force tau of a trimmed spring acts along the gradient t of its stretch. Along v = dq/ds,
+ * the motion of the driven joint in which nothing else is held against it, the equilibrium asks
+ * for v . (g + tau t) = 0: where v . t = 0 no force of the spring makes it. Says so instead of
+ * the search that failed with rc.
+ */
+static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt_arena *mem,
+                              mt_err *err)
+{
+    const mt_system *const sys = p->sys;
+    const mt_model *const m = sys->model;
+    const int measure = sys->springs[sys->trim_spring].measure[0];
+    const double unit = sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m;
+    const double stretch =
+        sys->measures[measure].kind == MT_MEASURE_ANGLE ? 1.0 : sys->length_m;
+    double *const rate = mt_arena_f64(mem, (size_t)sys->nq, 1);
+    double size = 0.0;
+    bool held = false;
+    MT_TRY(mt_arena_check(mem, err));
+    mt_status own = mt_drive_motion(data, &p->driven, rate, &size, &held, mem, NULL);
+    if (own != MT_OK || held || !(size > 0.0) ||
+        !(fabs(mt_drive_rate(data, measure, p->driven.pose, rate)) * unit / stretch <=
+          TRIM_LEAST * size)) {
+        return own == MT_E_MEMORY ? mt_fail_memory(err) : rc;
+    }
+    const mt_configuration *const c = &m->configurations[sys->configuration];
+    const char *const spring = sys->springs[sys->trim_spring].name;
+    const char *const joint = sys->joints[sys->drive_joint].name;
+    int line = 0;
+    int column = 0;
+    char place[PLACE_SIZE] = "";
+    if (c->drive.trim && strcmp(c->drive.trim_name.s, spring) == 0 &&
+        mt_model_place(m, c->drive.trim_name.addr, &line, &column)) {
+        (void)mt_snprintf(place, sizeof place, " (line %d, column %d)", line, column);
+    }
+    return mt_fail(err, MT_E_INPUT,
+                   "trim: spring \"%s\" cannot hold \"%s\": its force does no work when \"%s\" "
+                   "moves%s; name a spring that \"%s\" strains, or lock it",
+                   spring, joint, joint, place, joint);
+}
+
 /* From `from` to the driven position, and to the equilibrium beside it. */
 static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *from, bool brief,
                        mt_arena *mem, mt_err *err)
@@ -99,7 +146,8 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
     mt_placement_copy(p->sys, from, &p->driven);
     MT_TRY(mt_drive_solve(data, brief, &p->driven, &p->iterations, mem, err));
     mt_placement_copy(p->sys, &p->driven, &p->at);
-    return balance(p, data, mem, err);
+    const mt_status rc = balance(p, data, mem, err);
+    return rc == MT_E_EQUILIBRIUM && p->sys->trim ? explain_trim(p, data, rc, mem, err) : rc;
 }
 
 /*

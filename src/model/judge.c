@@ -80,6 +80,16 @@ static void sign(mt_judge *j, const mt_item *item, mt_num num, const char *membe
     }
 }
 
+/* A gear that passes nothing on. */
+static void nonzero(mt_judge *j, const mt_item *item, mt_num num, const char *member)
+{
+    if (num != MT_ABSENT && j->value[num] == 0.0) {
+        fault(j, item, num, member,
+              "must not be 0: the joints would have nothing to do with "
+              "each other");
+    }
+}
+
 static void range(mt_judge *j, const mt_item *item, mt_num num, const char *member,
                   const char *kind, const char *why)
 {
@@ -141,13 +151,10 @@ static void loss(mt_judge *j, const mt_item *item, mt_num num)
     }
 }
 
-/* The tensor, positive semidefinite up to rounding of its own entries: leading and other
- * principal minors. */
 static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
 {
     static const char *const members[] = {"inertia_kg_m2/0", "inertia_kg_m2/1",
                                           "inertia_kg_m2/2"};
-    static const double ROUNDING = 1e-12; /* of the product of the diagonal */
     const bool plane = j->model->dimension == 2;
     double v[6];
     for (int k = 0; k < (plane ? 1 : 3); k++) {
@@ -159,19 +166,10 @@ static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
     if (plane || !(v[0] >= 0.0 && v[1] >= 0.0 && v[2] >= 0.0)) {
         return;
     }
-    const double pairs[3] = {(v[0] * v[1]) - (v[3] * v[3]), (v[0] * v[2]) - (v[4] * v[4]),
-                             (v[1] * v[2]) - (v[5] * v[5])};
-    const double least[3] = {v[0] * v[1], v[0] * v[2], v[1] * v[2]};
-    const double det = (v[0] * pairs[2]) - (v[3] * ((v[3] * v[2]) - (v[5] * v[4]))) +
-                       (v[4] * ((v[3] * v[5]) - (v[1] * v[4])));
-    bool bad = det < -ROUNDING * v[0] * v[1] * v[2];
-    for (int k = 0; k < 3; k++) {
-        bad = bad || pairs[k] < -ROUNDING * least[k];
-    }
-    if (bad) {
-        fault(j, item, b->inertia[0], "inertia_kg_m2/0",
-              "belongs to a tensor with a negative principal moment: its products of inertia "
-              "are too large");
+    int at = 0;
+    const char *const why = mt_judge_tensor(j, v, &at);
+    if (why != NULL) {
+        fault(j, item, b->inertia[at], members[at], why);
     }
 }
 
@@ -285,6 +283,8 @@ static void judge_joints(mt_judge *j)
         if (mt_model_present(&joint->in, j->configuration)) {
             sign(j, &item, joint->length, "length_m", false);
             sign(j, &item, joint->mass, "mass_kg", true);
+            nonzero(j, &item, joint->ratio, "ratio");
+            nonzero(j, &item, joint->ratio_m_per_rad, "ratio_m_per_rad");
         }
     }
 }
@@ -335,6 +335,7 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     judge_drive(&j);
     mt_judge_damping(&j);
     mt_judge_inherited(&j);
+    mt_judge_structure(&j);
     mt_judge_geometry(&j);
 }
 

@@ -55,7 +55,7 @@ static double distance(const double a[3], const double b[3])
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-static bool place_of(const mt_judge *j, const mt_position *p, double x[3])
+bool mt_judge_position(const mt_judge *j, const mt_position *p, double x[3])
 {
     const mt_num *const own = p->point >= 0 ? j->model->points[p->point].x : p->x;
     bool known = true;
@@ -75,7 +75,7 @@ static mt_addr addr_of(const mt_position *p)
 static void include(const mt_judge *j, box *b, const mt_position *p)
 {
     double x[3];
-    if (!place_of(j, p, x)) {
+    if (!mt_judge_position(j, p, x)) {
         return;
     }
     for (int k = 0; k < 3; k++) {
@@ -149,7 +149,8 @@ static segment segment_of(const mt_judge *j, const mt_attach *a)
     const mt_link *const l = &j->model->links[a->index];
     double from[3];
     double to[3];
-    segment s = {.known = place_of(j, &l->from, from) && place_of(j, &l->to, to)};
+    segment s = {.known =
+                     mt_judge_position(j, &l->from, from) && mt_judge_position(j, &l->to, to)};
     if (!s.known || l->elements < 1) {
         s.known = false;
         return s;
@@ -185,7 +186,7 @@ static bool is_on(const mt_attach *a, int body)
 static double nearer(const mt_judge *j, const mt_position *p, const double x[3], double least)
 {
     double other[3];
-    return place_of(j, p, other) ? fmin(least, distance(other, x)) : least;
+    return mt_judge_position(j, p, other) ? fmin(least, distance(other, x)) : least;
 }
 
 /* The point of `at` that is body `side`'s. */
@@ -263,7 +264,7 @@ static void judge_side(mt_judge *j, const holder *h, int side)
     const mt_attach *const a = &h->bodies[side];
     double x[3];
     if (a->name.s == NULL || a->kind == MT_ATTACH_GROUND || h->n_at == 0 ||
-        !place_of(j, side_at(h->n_at, h->at, side), x)) {
+        !mt_judge_position(j, side_at(h->n_at, h->at, side), x)) {
         return;
     }
     if (a->kind == MT_ATTACH_BODY && j->model->n_joints + j->model->n_springs > MOST_COMPARED) {
@@ -299,7 +300,8 @@ static double gap_of(const mt_judge *j, const mt_joint *joint)
     double d[3];
     double axis[3];
     double dot = 0.0;
-    if (joint->n_at != 2 || !place_of(j, &joint->at[0], a) || !place_of(j, &joint->at[1], b)) {
+    if (joint->n_at != 2 || !mt_judge_position(j, &joint->at[0], a) ||
+        !mt_judge_position(j, &joint->at[1], b)) {
         return nan("");
     }
     const mt_closes closes = mt_joint_kind_of(joint->type)->closes;
@@ -371,7 +373,7 @@ static void judge_stout(mt_judge *j, const mt_item *item, const mt_link *l)
     const mt_num numbers[] = {l->section.width, l->section.height, l->section.diameter};
     double from[3];
     double to[3];
-    if (!place_of(j, &l->from, from) || !place_of(j, &l->to, to) ||
+    if (!mt_judge_position(j, &l->from, from) || !mt_judge_position(j, &l->to, to) ||
         l->section.shape == MT_SECTION_NONE || l->section.shape == MT_SECTION_GENERAL) {
         return;
     }

@@ -31,6 +31,14 @@ void mt_judge_damping(mt_judge *j);
 const char *mt_judge_loss(double loss_factor);
 /* What its own drive and damping drop of inherited ones (judge_inherited.c). */
 void mt_judge_inherited(mt_judge *j);
+/* What is said of a tensor xx yy zz xy xz yz (moments not negative) that no body has, and of
+ * which moment; NULL: a body has it (judge_structure.c). */
+const char *mt_judge_tensor(mt_judge *j, const double v[6], int *at);
+/* What no mechanism is built like: unsymmetric matrices, lines between coincident points, axes
+ * without direction (judge_structure.c). */
+void mt_judge_structure(mt_judge *j);
+/* The coordinates of a position; false: they are not known (judge_geometry.c). */
+bool mt_judge_position(const mt_judge *j, const mt_position *p, double x[3]);
 /* Joints and springs off what they hold, pairs of points that are apart, sizes
  * (judge_geometry.c). */
 void mt_judge_geometry(mt_judge *j);

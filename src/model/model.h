@@ -429,7 +429,9 @@ typedef struct mt_model {
     /* by their parameters; the model is as if its file said so */
     MT_LIST_OF(mt_setting, settings);
     const char *sha256; /* of the file's bytes, hexadecimal; NULL: not read from a file */
-    int n_places;       /* one per number, sorted by address; 0: not read from a file */
+    /* of every number and of what else is told by its place, sorted by address; 0: not read
+     * from a file */
+    int n_places;
     mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
     /* NULL in a model that was made or read. Who answers a question that may be interrupted
@@ -458,7 +460,8 @@ int mt_model_find_joint(const mt_model *model, const char *name);
 int mt_model_find_spring(const mt_model *model, const char *name);
 int mt_model_find_link(const mt_model *model, const char *name);
 int mt_model_find_sensor(const mt_model *model, const char *name);
-/* Line and column in model->path of the number at an address; false where it is not known. */
+/* Line and column in model->path of what stands at an address (of a number, a position, a name,
+ * a drive); false where it is not known. */
 bool mt_model_place(const mt_model *model, mt_addr addr, int *line, int *column);
 /* Is the item present in configuration c? */
 bool mt_model_present(const mt_presence *in, int configuration);

@@ -99,8 +99,8 @@ static void write_body(stack *s, const char *name, int level, const char *which,
     if (s->dimension == 2) {
         ADD(s, ", \"inertia_kg_m2\": %.17g}", in(s, 0.02, 0.5));
     } else {
-        ADD(s, ", \"inertia_kg_m2\": [%.17g, %.17g, %.17g, %.17g, 0, 0.01]}", in(s, 0.2, 0.5),
-            in(s, 0.2, 0.5), in(s, 0.2, 0.5), in(s, -0.05, 0.05));
+        ADD(s, ", \"inertia_kg_m2\": [%.17g, %.17g, %.17g, %.17g, 0, 0.01]}", in(s, 0.3, 0.5),
+            in(s, 0.3, 0.5), in(s, 0.3, 0.5), in(s, -0.05, 0.05));
     }
 }
 

@@ -136,8 +136,8 @@ static void write_bodies(writer *w, tree *m)
             ADD(w, ", \"inertia_kg_m2\": \"%.17g*J\"", mt_random_in(&m->r, 0.01, 0.5));
         } else if (!m->point[i]) {
             ADD(w, ", \"inertia_kg_m2\": [\"%.17g*J\", %.17g, %.17g, %.17g, 0, 0.01]",
-                mt_random_in(&m->r, 0.2, 0.5), mt_random_in(&m->r, 0.2, 0.5),
-                mt_random_in(&m->r, 0.2, 0.5), mt_random_in(&m->r, -0.05, 0.05));
+                mt_random_in(&m->r, 0.3, 0.5), mt_random_in(&m->r, 0.3, 0.5),
+                mt_random_in(&m->r, 0.3, 0.5), mt_random_in(&m->r, -0.05, 0.05));
         }
         ADD(w, "}");
     }

@@ -275,10 +275,11 @@ static void put_body(writer *w, const char *name, double x, bool common)
     matrix(w, 3, 0.02, common, entry);
     put(w, "{\"name\": \"%s\", \"centre\": [%.6g, 0, 0.1], ", name, x);
     number(w, "mass_kg", mt_random_in(&w->r, 0.5, 2.0));
-    put(w,
-        ", \"inertia_kg_m2\": [\"%s + 1e-3\", \"%s + 1e-3\", \"%s + 1e-3\", \"%s\", \"%s\", "
-        "\"%s\"]}",
-        entry[0][0], entry[1][1], entry[2][2], entry[1][0], entry[2][0], entry[2][1]);
+    /* tr(S) E - S of the second moments S */
+    put(w, ", \"inertia_kg_m2\": [\"%s + %s + 1e-3\", \"%s + %s + 1e-3\", ", entry[1][1],
+        entry[2][2], entry[0][0], entry[2][2]);
+    put(w, "\"%s + %s + 1e-3\", \"-(%s)\", \"-(%s)\", \"-(%s)\"]}", entry[0][0], entry[1][1],
+        entry[1][0], entry[2][0], entry[2][1]);
 }
 
 /* Two bodies in space whose inertia tensors and bushings couple directions. */

@@ -25,7 +25,7 @@ def grid(rods, fixed):
     nodes = [(i, j, k) for k in range(GRID[2]) for j in range(GRID[1]) for i in range(GRID[0])]
     place = {node: at for at, node in enumerate(nodes)}
     centres = np.array(nodes, dtype=float) + draw.uniform(-0.1, 0.1, (len(nodes), 3))
-    masses, inertias = draw.uniform(1, 3, len(nodes)), draw.uniform(0.02, 0.05, (len(nodes), 3))
+    masses, inertias = draw.uniform(1, 3, len(nodes)), draw.uniform(0.03, 0.05, (len(nodes), 3))
     model = {"format": "modetune-model/1", "name": "Grid", "dimension": 3, "joints": [], "springs": [],
              "bodies": [{"name": f"b{b}", "mass_kg": masses[b], "centre": list(centres[b]), "inertia_kg_m2": [*inertias[b], 0, 0, 0]}
                         for b in range(len(nodes))]}
