@@ -84,7 +84,10 @@ mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recom
 const char *mt_describe_shaken(const mt_shake *s, mt_arena *mem);
 const char *mt_describe_shaken_beside(const mt_goal *g, double value, mt_arena *mem);
 const char *mt_describe_shaken_kind(const mt_shake *s);
-/* describe_between.c: likewise, those that limit, between the positions of drives. */
+/* What the number q of a demand misses its goal by, as a part of what is asked for; violation:
+ * as its kind measures it. */
+double mt_describe_off_by(const mt_demand *d, double q, double violation);
+/* describe_between.c: goals that limit a number, between the positions of drives. */
 mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
 /* describe_frequencies.c: after mt_describe_goals, whose views are compared. */

@@ -1,20 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Goals of forced vibration between the positions of one drive that they name: the worst, and
- * whether their limit holds there. */
+/* Goals that limit a number between the positions of one drive that they name: the worst of
+ * the positions that were looked at, and whether all of these keep the limit. */
 #include <math.h>
 
 #include "describe/describe.h"
 #include "problem/goal.h"
-#include "search/motion_shaken.h"
+#include "problem/shaken.h"
+#include "search/motion_limit.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 static const double PERCENT = 100.0;
 
+/* "the acceleration of grip.x for base.z", "the frequency of mode 1". */
+static const char *about_text(const mt_demand *d, mt_arena *mem)
+{
+    return d->goal->shake != NULL
+               ? mt_describe_shaken(d->goal->shake, mem)
+               : mt_arena_printf(mem, "the %s of mode %d", d->ops->number, d->mode);
+}
+
 /* What is known of the worst, and where it is. */
-static const char *worst_text(const mt_study *study, const mt_family *f, const mt_goal *g,
+static const char *worst_text(const mt_study *study, const mt_family *f, const mt_demand *d,
                               const mt_result_between *r, mt_arena *mem)
 {
-    const char *const about = mt_describe_shaken(g->shake, mem);
+    const mt_goal *const g = d->goal;
+    const char *const about = about_text(d, mem);
     const mt_unit *const shown = mt_study_shown(study, f->angle ? MT_ANGLE : MT_LENGTH);
     const char *const to = mt_describe_position(study, f, r->to, mem);
     const char *const at = mt_describe_position(study, f, r->at, mem);
@@ -26,6 +36,9 @@ static const char *worst_text(const mt_study *study, const mt_family *f, const m
                         r->drive, mt_unit_from_si(shown, r->from), to, r->positions);
     if (subject == NULL || !MT_HAS(r->at)) {
         return subject == NULL ? NULL : mt_arena_printf(mem, "%s has no value", subject);
+    }
+    if (!MT_HAS(r->value) && g->shake == NULL) {
+        return mt_arena_printf(mem, "%s is not finite at %s", subject, at);
     }
     if (!MT_HAS(r->value)) {
         return mt_arena_printf(mem,
@@ -39,13 +52,27 @@ static const char *worst_text(const mt_study *study, const mt_family *f, const m
                : mt_arena_printf(mem, "%s is worst at %s%s: %.4g%s%s%s%s", subject, at,
                                  r->named ? ", a position that is given" : "", r->value,
                                  r->value_unit[0] != '\0' ? " " : "", r->value_unit,
-                                 mt_describe_shaken_kind(g->shake), beside);
+                                 g->shake != NULL ? mt_describe_shaken_kind(g->shake) : "",
+                                 beside);
 }
 
-static const char *text_of(const mt_study *study, const mt_family *f, const mt_goal *g,
-                           const mt_shaken_motion *m, const mt_result_between *r, mt_arena *mem)
+/* What samples say: a limit that one of them misses is missed, one that all of them keep may
+ * still be missed elsewhere. */
+static const char *verdict_text(const mt_limit_motion *m, const mt_result_between *r)
 {
-    const char *const worst = worst_text(study, f, g, r, mem);
+    const bool capped = m->end == MT_MOTION_CAPPED;
+    if (!r->holds) {
+        return "the limit does not hold over the range";
+    }
+    return capped ? "all of them keep the limit, as many as the evaluations allow (sampled "
+                    "coarsely, not proven)"
+                  : "all of them keep the limit (sampled, not proven)";
+}
+
+static const char *text_of(const mt_study *study, const mt_family *f, const mt_demand *d,
+                           const mt_limit_motion *m, const mt_result_between *r, mt_arena *mem)
+{
+    const char *const worst = worst_text(study, f, d, r, mem);
     if (worst == NULL) {
         return NULL;
     }
@@ -55,35 +82,35 @@ static const char *text_of(const mt_study *study, const mt_family *f, const mt_g
                              : mt_arena_printf(mem, "%s; nothing is known at %s: %s", worst,
                                                where, m->why);
     }
-    return mt_arena_printf(
-        mem, "%s; the limit %s over the range%s", worst, r->holds ? "holds" : "does not hold",
-        m->end == MT_MOTION_CAPPED ? ", as far as the evaluations allow to look" : "");
+    return mt_arena_printf(mem, "%s; %s", worst, verdict_text(m, r));
 }
 
-static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_shaken_motion *m,
+static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_limit_motion *m,
                      mt_arena *mem, mt_result_between *out, mt_err *err)
 {
     const mt_goal *const g = d->goal;
     const mt_family *const f = &fresh->p->families[mt_family_of(fresh->p, d->view)];
     const bool finite = m->worst.finite;
-    *out = (mt_result_between){.pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index),
-                               .drive = f->joint,
-                               .unit = f->angle ? "rad" : "m",
-                               .from = m->from,
-                               .to = m->to,
-                               .positions = m->positions,
-                               .at = m->at,
-                               .named = m->given,
-                               .value = finite ? m->worst.value : nan(""),
-                               .value_unit = mt_study_goal_unit(fresh->p->study, g),
-                               .error = finite ? m->worst.error : nan(""),
-                               .frequency_hz = finite ? m->worst.omega / TWO_PI : nan(""),
-                               .end = MT_HAS(m->at) ? m->worst.end_name : "none",
-                               .violation_percent =
-                                   finite ? PERCENT * expm1(fmax(m->off, 0.0)) : nan(""),
-                               .holds = mt_is_met(m->off, d->tolerance) && m->why == NULL,
-                               .grade = mt_motion_grade(m->end)};
-    out->text = text_of(fresh->p->study, f, g, m, out, mem);
+    *out = (mt_result_between){
+        .pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index),
+        .drive = f->joint,
+        .unit = f->angle ? "rad" : "m",
+        .from = m->from,
+        .to = m->to,
+        .positions = m->positions,
+        .at = m->at,
+        .named = m->given,
+        .value = finite ? m->worst.value : nan(""),
+        .value_unit = mt_study_goal_unit(fresh->p->study, g),
+        .error = finite ? m->worst.error : nan(""),
+        .frequency_hz = finite ? m->worst.omega / TWO_PI : nan(""),
+        .end = MT_HAS(m->at) ? m->worst.end_name : "none",
+        .violation_percent =
+            finite ? PERCENT * mt_describe_off_by(d, m->worst.value, fmax(m->off, 0.0))
+                   : nan(""),
+        .holds = mt_is_met(m->off, d->tolerance) && m->why == NULL,
+        .grade = mt_motion_grade(m->end)};
+    out->text = text_of(fresh->p->study, f, d, m, out, mem);
     return mt_arena_check(mem, err);
 }
 
@@ -109,8 +136,8 @@ mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_r
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
-        mt_shaken_motion m = {.end = MT_MOTION_NONE};
-        MT_TRY(mt_family_shakes_first(p, d) ? mt_motion_shaken(fresh, d, &fresh->mem, &m, err)
+        mt_limit_motion m = {.end = MT_MOTION_NONE};
+        MT_TRY(mt_family_limits_first(p, d) ? mt_motion_limit(fresh, d, &fresh->mem, &m, err)
                                             : MT_OK);
         if (m.end != MT_MOTION_NONE) {
             mt_result_between *const row = &rec->between[rec->n_between++];

@@ -98,9 +98,7 @@ static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
     return worst;
 }
 
-/* The same as a part of what is asked for, where it is a logarithm: (limit - q)/limit below its
- * limit, (q - limit)/limit above. */
-static double off_by(const mt_demand *d, double q, double violation)
+double mt_describe_off_by(const mt_demand *d, double q, double violation)
 {
     const mt_goal *const g = d->goal;
     double worst = 0.0;
@@ -204,7 +202,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
         fresh->worst = fmax(others, own_worst);
         violation = demand_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
-        percent = PERCENT * off_by(d, g->value, violation);
+        percent = PERCENT * mt_describe_off_by(d, g->value, violation);
         say_line(fresh, d, g);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {

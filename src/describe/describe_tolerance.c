@@ -147,7 +147,8 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
     }
     MT_TRY(confirm(fresh, result, &confirmed, err));
     /* between the positions of a drive there are samples and no proof */
-    rec->grade = confirmed && rec->n_motions == 0 ? "feasible and proven" : rec->grade;
+    const bool sampled = rec->n_motions + rec->n_between > 0;
+    rec->grade = confirmed && !sampled ? "feasible and proven" : rec->grade;
     if (!worth_a_box(fresh->p) || rec->n_gaps != fresh->c->n_bands) {
         return MT_OK;
     }

@@ -13,6 +13,7 @@
 #include "analysis/count.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
+#include "problem/shaken.h"
 
 bool mt_demand_is_frequency(const mt_demand *d)
 {
@@ -178,4 +179,46 @@ mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient
         *value = q;
     }
     return MT_OK;
+}
+
+mt_status mt_demand_look_at(mt_workspace *w, const mt_demand *d, mt_analysis *a,
+                            mt_shaken_value *out, mt_err *err)
+{
+    if (d->ops->look != NULL) {
+        return mt_shaken_look_at(w, d, a, out, err);
+    }
+    mt_view_work *const view = &w->views[d->view];
+    const mt_view_work own = *view;
+    int pos = -1;
+    *out = (mt_shaken_value){.value = nan(""), .error = nan(""), .omega = nan("")};
+    view->analysis = a;
+    view->solved = true;
+    mt_status rc = find_mode(w, d, &pos, err);
+    rc = rc == MT_OK ? d->ops->value(w, d, pos, &out->value, NULL, err) : rc;
+    view->analysis = own.analysis;
+    view->solved = own.solved;
+    out->finite = rc == MT_OK && isfinite(out->value);
+    out->end = isinf(out->value) ? MT_FORCED_INFINITE : MT_FORCED_FINITE;
+    out->end_name = mt_forced_end_name(out->end);
+    return rc;
+}
+
+static double over_limit(const mt_demand *d, double q, double limit)
+{
+    if (d->measure != MT_MEASURE_RATIO) {
+        return (q - limit) / mt_measure_unit(d->measure, limit);
+    }
+    const double part = q / limit;
+    return log(part >= MT_SHAKEN_FLOOR ? part : MT_SHAKEN_FLOOR);
+}
+
+double mt_demand_over(const mt_demand *d, double q)
+{
+    const mt_goal *const g = d->goal;
+    double worst = -HUGE_VAL;
+    if (isnan(q)) {
+        return q;
+    }
+    worst = MT_HAS(g->at_most) ? over_limit(d, q, g->at_most) : worst;
+    return MT_HAS(g->at_least) ? fmax(worst, -over_limit(d, q, g->at_least)) : worst;
 }

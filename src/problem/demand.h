@@ -4,6 +4,8 @@
 
 #include "problem/workspace.h"
 
+struct mt_shaken_value;
+
 /* Does it limit the frequency of a mode by its index? Those are sorted: what holds for one
  * holds for all beyond it. */
 bool mt_demand_is_frequency(const mt_demand *d);
@@ -16,6 +18,15 @@ bool mt_demand_is_modal(const mt_demand *d);
  * mode at infinity), or the distance that its residuals amount to. */
 mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient,
                          mt_nlp_values *out, double *value, mt_err *err);
+/* The number at another analysis of its view's mechanism, another position of its drive, solved
+ * with the shapes that the view asks for: of a forced vibration all that is known of it, of any
+ * other goal the value alone (infinite of a mode at infinity). Fails: MT_E_DOMAIN where there
+ * is no such mode, as the goal's value. */
+mt_status mt_demand_look_at(mt_workspace *w, const mt_demand *d, mt_analysis *a,
+                            struct mt_shaken_value *out, mt_err *err);
+/* What q exceeds the limit by that it is nearest to, or misses most, as the kind measures it:
+ * above 0 it is missed. */
+double mt_demand_over(const mt_demand *d, double q);
 /* The weight that a demand has in the case; NaN: it is a constraint. */
 double mt_demand_weight(const mt_workspace *w, const mt_demand *d);
 

@@ -39,12 +39,12 @@ int mt_family_of(const mt_problem *p, int view)
     return -1;
 }
 
-/* Two of its values in one family: what lies between them is asked for as well. */
-static bool is_shaken(const mt_problem *p, const mt_demand *d)
+/* A number with a limit, and two of its values in one family: what lies between them is asked
+ * for as well. A target, and what has a weight, is of the positions that are named. */
+static bool is_limited(const mt_problem *p, const mt_demand *d)
 {
-    const int family = d->ops->look != NULL && d->row_res < 0 && !MT_HAS(d->equals)
-                           ? mt_family_of(p, d->view)
-                           : -1;
+    const bool limits = d->ops->value != NULL && d->row_res < 0 && !MT_HAS(d->equals);
+    const int family = limits && d->view >= 0 ? mt_family_of(p, d->view) : -1;
     for (int i = 0; i < p->n_demands && family >= 0; i++) {
         const mt_demand *const other = &p->demands[i];
         if (other->goal_index == d->goal_index && other->view != d->view &&
@@ -55,7 +55,7 @@ static bool is_shaken(const mt_problem *p, const mt_demand *d)
     return false;
 }
 
-bool mt_family_shakes_first(const mt_problem *p, const mt_demand *d)
+bool mt_family_limits_first(const mt_problem *p, const mt_demand *d)
 {
     for (const mt_demand *other = p->demands; other < d; other++) {
         if (other->goal_index == d->goal_index &&
@@ -63,14 +63,14 @@ bool mt_family_shakes_first(const mt_problem *p, const mt_demand *d)
             return false;
         }
     }
-    return is_shaken(p, d);
+    return is_limited(p, d);
 }
 
-static void find_shaken(mt_problem *p)
+static void find_limited(mt_problem *p)
 {
     for (int i = 0; i < p->n_demands; i++) {
-        if (is_shaken(p, &p->demands[i])) {
-            p->families[mt_family_of(p, p->demands[i].view)].shaken = true;
+        if (is_limited(p, &p->demands[i])) {
+            p->families[mt_family_of(p, p->demands[i].view)].limited = true;
         }
     }
 }
@@ -180,9 +180,9 @@ mt_status mt_families_init(mt_problem *p, mt_err *err)
         }
     }
     MT_TRY(tie(p, err));
-    find_shaken(p);
+    find_limited(p);
     for (int i = 0; i < p->n_families; i++) {
-        const bool followed = p->families[i].banded || p->families[i].shaken;
+        const bool followed = p->families[i].banded || p->families[i].limited;
         MT_TRY(followed ? set_moving(p, &p->families[i], err) : MT_OK);
     }
     return MT_OK;

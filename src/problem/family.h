@@ -22,8 +22,8 @@ struct mt_family {
     bool fixed;         /* the positions do not depend on the design */
     int configuration;  /* of a view with a drive */
     bool banded;        /* at least two views keep clear of bands */
-    bool shaken;        /* a goal limits forced vibration in at least two views */
-    /* where banded or shaken: the mechanism with the position as its last input, beside the
+    bool limited;       /* a goal limits a number in at least two views */
+    /* where banded or limited: the mechanism with the position as its last input, beside the
      * variables; its original is owned by the problem, NULL where there is none: `why` */
     mt_view moving;
     double *moving_at; /* [n + 1] where that is solved */
@@ -31,7 +31,7 @@ struct mt_family {
 };
 
 /* One more position of a family where the bands between its positions are kept, or where one
- * limit of forced vibration is: a cutting plane of a search. Its analysis lends its system to
+ * limit of a number is: a cutting plane of a search. Its analysis lends its system to
  * all cases and workers that keep it, which it outlives. */
 typedef struct mt_cut {
     int family;
@@ -50,9 +50,9 @@ mt_status mt_cut_init(const mt_problem *p, int family, double position, mt_cut *
 void mt_cut_free(mt_cut *cut);
 /* Does a family keep clear of bands in several positions? */
 bool mt_family_any(const mt_problem *p);
-/* Does the demand limit forced vibration in several positions of its family, and is it the
- * first of its goal there? */
-bool mt_family_shakes_first(const mt_problem *p, const mt_demand *d);
+/* Does the demand limit a number (a frequency, a damping ratio, a MAC, a forced vibration) in
+ * several positions of its family, and is it the first of its goal there? */
+bool mt_family_limits_first(const mt_problem *p, const mt_demand *d);
 /* Position of a view at its last solve [rad, m]. */
 double mt_family_position(const mt_analysis *a);
 /* Family that a view belongs to; -1. */

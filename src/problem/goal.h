@@ -36,6 +36,7 @@ typedef struct mt_goal_ops {
                            mt_err *err);
     /* What sentences say is held, of the mode or expression called `what`; NULL: just that. */
     const char *(*subject)(const mt_demand *d, const char *what, mt_arena *mem);
+    const char *number; /* of a mode: "damping ratio"; NULL: it is of no mode alone */
     const char *equals; /* between this and the number that is asked for: "at" */
 } mt_goal_ops;
 

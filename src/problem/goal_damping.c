@@ -65,4 +65,5 @@ const mt_goal_ops mt_goal_damping = {.quantity = MT_QUANTITY_OTHER,
                                      .needs_vectors = true,
                                      .value = value,
                                      .subject = subject,
+                                     .number = "damping ratio",
                                      .equals = "at"};

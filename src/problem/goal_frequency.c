@@ -83,5 +83,8 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
     return slope == NULL ? MT_OK : mt_problem_dln_frequency(w, a, pos, d->floor_hz, slope, err);
 }
 
-const mt_goal_ops mt_goal_frequency = {
-    .quantity = MT_QUANTITY_FREQUENCY, .compile = compile, .value = value, .equals = "at"};
+const mt_goal_ops mt_goal_frequency = {.quantity = MT_QUANTITY_FREQUENCY,
+                                       .compile = compile,
+                                       .value = value,
+                                       .number = "frequency",
+                                       .equals = "at"};

@@ -28,4 +28,5 @@ const mt_goal_ops mt_goal_mac = {.quantity = MT_QUANTITY_OTHER,
                                  .compile = mt_goal_compile_shape,
                                  .value = value,
                                  .subject = subject,
+                                 .number = "MAC",
                                  .equals = "at"};

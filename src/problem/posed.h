@@ -4,7 +4,7 @@
 
 #include "problem/family.h"
 
-/* Limits of forced vibration at more positions of a drive than a study names: of each cut a
+/* Limits at more positions of a drive than a study names: of each cut a
  * view and its demand, whose rows in `in` follow all others, so that those keep their numbers.
  * For mt_case_lay_out, after the bands; cuts of these are left out. Fails: MT_E_MEMORY. */
 mt_status mt_posed_lay_out(mt_case *c, int n_cuts, const mt_cut *cuts, mt_arena *mem,

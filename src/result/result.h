@@ -139,7 +139,7 @@ typedef struct mt_result_response {
     const char *text;  /* in words, without a full stop */
 } mt_result_response;
 
-/* What a goal of forced vibration finds between the positions of one drive that it names. */
+/* What a goal that limits a number finds between the positions of one drive that it names. */
 typedef struct mt_result_between {
     const char *pointer; /* of the goal, "/goals/0" */
     const char *drive;   /* the joint */

@@ -108,22 +108,19 @@ mt_status mt_motion_open(mt_workspace *ws, int family, mt_err *err)
     return MT_OK;
 }
 
-/* dr/ds of the mode at pos; NaN where it is repeated. */
-static mt_status slope_of(walk *w, const edge *e, int pos, double *slope, mt_err *err)
+mt_status mt_motion_rate(mt_analysis *a, int pos, double *rate, mt_err *err)
 {
-    mt_analysis *const a = w->a;
-    const ptrdiff_t n = mt_linear_freedoms(a->lin);
+    const int n = mt_linear_freedoms(a->lin);
     const double *const y = mt_modal_shape(&a->modes, pos);
     int size = 1;
     (void)mt_modal_cluster(&a->modes, pos, &size);
-    *slope = nan("");
+    *rate = nan("");
     if (size > 1 || !(a->modes.lambda[pos] > 0.0)) {
         return MT_OK;
     }
-    MT_TRY(mt_linear_products(a->lin, w->ws->p->n, 1, y, a->dky, a->dmy, err));
+    MT_TRY(mt_linear_products(a->lin, a->sys->n_inputs - 1, 1, y, a->dky, a->dmy, err));
     const double lambda = a->modes.lambda[pos];
-    const double rate = mt_dot((int)n, y, a->dky) - (lambda * mt_dot((int)n, y, a->dmy));
-    *slope = e->sign * rate / (2.0 * lambda);
+    *rate = (mt_dot(n, y, a->dky) - (lambda * mt_dot(n, y, a->dmy))) / (2.0 * lambda);
     return MT_OK;
 }
 
@@ -186,7 +183,8 @@ static mt_status measure(walk *w, sample *s, mt_err *err)
         s->slope[i] = 0.0;
         if (pos >= 0) {
             s->room[i] = e->sign * (log(mt_modal_hz(&w->a->modes, pos)) - e->log_hz);
-            MT_TRY(slope_of(w, e, pos, &s->slope[i], err));
+            MT_TRY(mt_motion_rate(w->a, pos, &s->slope[i], err));
+            s->slope[i] *= e->sign;
             keep_least(w, e, s->at, s->room[i]);
         }
     }
@@ -405,7 +403,7 @@ long mt_motion_most(const mt_case *c)
     }
     for (int i = 0; i < c->p->n_demands && c->search.max_positions > 0; i++) {
         const mt_demand *const d = &c->p->demands[i];
-        if (mt_family_shakes_first(c->p, d)) {
+        if (mt_family_limits_first(c->p, d)) {
             const int ways = c->p->families[mt_family_of(c->p, d->view)].n - 1;
             sum += (long)ways * mt_motion_of_way(c, ways);
         }

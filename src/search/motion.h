@@ -63,6 +63,9 @@ mt_status mt_motion_follow(mt_workspace *ws, int family, const int *below, mt_ar
 /* The worker's own analysis of the family's moving mechanism, ws->driven[family]. Fails:
  * MT_E_DOMAIN where there is none, as mt_analysis_new. */
 mt_status mt_motion_open(mt_workspace *ws, int family, mt_err *err);
+/* d ln f / d position of the mode at pos of a driven analysis, solved with gradient; NaN where
+ * it repeats, or has 0 Hz. Fails: as mt_linear_products. */
+mt_status mt_motion_rate(mt_analysis *a, int pos, double *rate, mt_err *err);
 /* Those that differ, ascending; their number. */
 int mt_motion_distinct(int n_positions, const double *positions, double unit, double *list);
 /* Most positions of each of n ways. */

@@ -25,8 +25,8 @@ mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_aren
 /*
  * search_tolerances.c: the same, and every design is held over its tolerances where the corners
  * of the case are samples (problem/robust_cut.h): what is worse within them becomes one more
- * corner, and the search goes on from there, within its budget. Limits of forced vibration are
- * held likewise between the positions of a drive that their goals name. A design that misses
+ * corner, and the search goes on from there, within its budget. Limits of numbers are held
+ * likewise between the positions of a drive that their goals name. A design that misses
  * something even so is none where another one meets everything.
  */
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
@@ -48,7 +48,7 @@ typedef struct mt_posed_cuts {
 /* Is there anything to judge so? */
 bool mt_search_has_positions(const mt_case *c);
 /* Judge the design at t, and add the positions where it misses a limit, but the last time.
- * Fails: as an evaluation, as mt_motion_shaken. */
+ * Fails: as an evaluation, as mt_motion_limit. */
 mt_status mt_search_judge_positions(mt_workspace *w, const double *t, bool last, mt_arena *mem,
                                     mt_posed_cuts *cuts, mt_err *err);
 /* first[n], then these, which still own theirs: for mt_case_lay_out. Fails: MT_E_MEMORY. */

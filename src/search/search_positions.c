@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Limits of forced vibration between the positions of a drive that a goal names: where a design
- * exceeds one most within a way between two of them, that position is one more row of the limit
+ * Limits between the positions of a drive that a goal names: where a design
+ * misses one most within a way between two of them, that position is one more row of the limit
  * (problem/posed.h), for all designs.
  */
 #include <math.h>
 
 #include "nlp/merit.h"
-#include "search/motion_shaken.h"
+#include "search/motion_limit.h"
 #include "search/search.h"
 
 enum { CUTS_MOST = 32 };
@@ -18,7 +18,7 @@ static const double SAME = 1e-7;
 /* Of the objective "vibration" limits are a scale, and asked for where they are given. */
 static bool is_asked(const mt_problem *p, int demand)
 {
-    return p->demands[demand].row_in >= 0 && mt_family_shakes_first(p, &p->demands[demand]);
+    return p->demands[demand].row_in >= 0 && mt_family_limits_first(p, &p->demands[demand]);
 }
 
 bool mt_search_has_positions(const mt_case *c)
@@ -41,7 +41,7 @@ static bool is_known(const mt_posed_cuts *cuts, int demand, double at, double ne
     return false;
 }
 
-static mt_status add(const mt_problem *p, int demand, const mt_shaken_motion *m,
+static mt_status add(const mt_problem *p, int demand, const mt_limit_motion *m,
                      mt_posed_cuts *cuts, mt_err *err)
 {
     const int family = mt_family_of(p, p->demands[demand].view);
@@ -74,11 +74,11 @@ mt_status mt_search_judge_positions(mt_workspace *w, const double *t, bool last,
     MT_TRY(mt_case_values_init(w->c, mem, &v, err));
     MT_TRY(mt_workspace_eval(w, t, false, &v, err));
     for (int i = 0; i < w->p->n_demands; i++) {
-        mt_shaken_motion m;
+        mt_limit_motion m;
         if (!is_asked(w->p, i)) {
             continue;
         }
-        MT_TRY(mt_motion_shaken(w, &w->p->demands[i], mem, &m, err));
+        MT_TRY(mt_motion_limit(w, &w->p->demands[i], mem, &m, err));
         cuts->evals += m.positions;
         if (m.end == MT_MOTION_NONE) {
             continue;

@@ -1,32 +1,41 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Of a goal of forced vibration
- *     e(s) = max(ln(q(s) / at_most), ln(at_least / q(s)))
- * at the positions s between those that are given, q no less than a small part of a limit.
- * Between two samples a and b the lines through each and its other neighbour, or at an end
- * through what the next two intervals say of the slope there, meet above a maximum that is
- * smooth, and below one that is the peak of a resonance: an interval is halved while three
- * halves of the height where they meet, above the higher of a and b, reach further than the
- * worst so far, or while e differs by more than 1/2 between its ends. Around the worst a
- * parabola then says where the maximum is.
+ * Of a goal with limits
+ *     e(s) = what its number q(s) exceeds a limit by, as its kind measures it (demand.h)
+ * at the positions s between those that are given. An interval between two samples is halved
+ *   - while its ends are too far apart for what lies between to be told from them, or one of
+ *     them is not where its neighbours have it (motion_guard.h), or e differs by more than 1/2
+ *     between them: longest intervals first;
+ *   - then while e may be higher within than anywhere so far. The lines through each end
+ *     and its other neighbour, or at an end through what the next two intervals say of the
+ *     slope there, meet above a maximum that is smooth, and below one that is the peak of a
+ *     resonance: three halves of the height where they meet, above the higher end, must not
+ *     reach the worst.
+ * Around the worst a parabola then says where the maximum is.
  */
-#include "search/motion_shaken.h"
+#include "search/motion_limit.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/spent.h"
-#include "problem/goal.h"
+#include "problem/demand.h"
+#include "search/motion_guard.h"
 
 static const double CLOSER = 1e-5;   /* of e: what is not worth a position */
 static const double STEEP = 0.5;     /* of e, between two positions */
+static const double BENT = 0.1;      /* of e, beside the line between two others */
 static const double BEYOND = 1.5;    /* of what lines say */
 static const double SHORTEST = 1e-7; /* of the motion */
 enum { POLISH = 3, SAMPLES_MOST = 400 };
 
 typedef struct sample {
     double at;
-    double off; /* NaN: it has none */
+    double off;   /* NaN: it has none */
+    bool guarded; /* `guard` is there */
+    bool apart;   /* too far from the next one */
+    bool astray;  /* not where its neighbours have it */
+    mt_guard_sample guard;
 } sample;
 
 typedef struct walk {
@@ -40,19 +49,17 @@ typedef struct walk {
     int most;
     int n;
     sample *samples; /* of one way, ascending */
-    mt_shaken_motion *out;
+    bool has_guards; /* of this way */
+    mt_guards guards;
+    mt_limit_motion *out;
 } walk;
 
-static double off_of(const mt_goal *g, const mt_shaken_value *v)
+static double off_of(const mt_demand *d, const mt_shaken_value *v)
 {
-    double worst = -HUGE_VAL;
-    if (!v->finite) {
-        return v->end == MT_FORCED_INFINITE ? HUGE_VAL : nan("");
+    if (v->finite || isinf(v->value)) {
+        return mt_demand_over(d, v->value);
     }
-    worst = MT_HAS(g->at_most) ? log(fmax(v->value / g->at_most, MT_SHAKEN_FLOOR)) : worst;
-    return MT_HAS(g->at_least)
-               ? fmax(worst, -log(fmax(v->value / g->at_least, MT_SHAKEN_FLOOR)))
-               : worst;
+    return v->end == MT_FORCED_INFINITE ? HUGE_VAL : nan("");
 }
 
 static mt_status note_break(walk *w, double at, mt_motion_end end, const char *why, mt_err *err)
@@ -65,41 +72,89 @@ static mt_status note_break(walk *w, double at, mt_motion_end end, const char *w
     return mt_arena_check(w->mem, err);
 }
 
-/* What the goal finds at a position; v->value NaN: nothing. */
-static mt_status find(walk *w, double at, mt_shaken_value *v, mt_err *err)
+/* What shows that the number may be another one beside this position. */
+static mt_status guard(walk *w, sample *s, mt_err *err)
 {
-    const mt_analysis_options opt = mt_view_asks(w->ws, &w->ws->views[w->d->view], false);
+    if (!w->has_guards) {
+        MT_TRY(mt_guards_init(w->d, w->a, w->mem, &w->guards, err));
+        w->has_guards = true;
+    }
+    MT_TRY(mt_guards_read(&w->guards, w->a, w->mem, &s->guard, err));
+    s->guarded = true;
+    return MT_OK;
+}
+
+/* What the goal finds at a position; v->value NaN: nothing. */
+static mt_status find(walk *w, sample *s, mt_shaken_value *v, mt_err *err)
+{
+    mt_analysis_options opt = mt_view_asks(w->ws, &w->ws->views[w->d->view], false);
     mt_err why = {.code = MT_OK};
+    mt_guards_ask(w->d, &opt);
     *v = (mt_shaken_value){.value = nan(""), .end = MT_FORCED_UNSTABLE};
     w->out->positions++;
     mt_spent_note(w->ws->p->study->model->spent, MT_SPENT_POSITIONS, 1);
-    w->inputs[w->ws->p->n] = at;
+    w->inputs[w->ws->p->n] = s->at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
     if (rc == MT_OK && !mt_modal_indexed(&w->a->modes)) {
-        return note_break(w, at, MT_MOTION_UNSTABLE, "it is unstable there", err);
+        return note_break(w, s->at, MT_MOTION_UNSTABLE, "it is unstable there", err);
     }
-    rc = rc == MT_OK ? mt_shaken_look_at(w->ws, w->d, w->a, v, &why) : rc;
+    rc = rc == MT_OK ? mt_demand_look_at(w->ws, w->d, w->a, v, &why) : rc;
+    rc = rc == MT_OK ? guard(w, s, &why) : rc;
     if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
         return mt_fail(err, rc, "%s", why.text);
     }
     if (rc != MT_OK) {
-        v->finite = false;
-        v->end = MT_FORCED_UNSTABLE;
-        return note_break(w, at, MT_MOTION_BROKEN, why.text, err);
+        *v = (mt_shaken_value){.value = nan(""), .end = MT_FORCED_UNSTABLE};
+        return note_break(w, s->at, MT_MOTION_BROKEN, why.text, err);
     }
     return MT_OK;
+}
+
+static bool is_apart(const walk *w, const sample *a)
+{
+    const sample *const b = a + 1;
+    return a->guarded && b->guarded &&
+           mt_guards_apart(&w->guards, &a->guard, &b->guard, b->at - a->at);
+}
+
+static bool is_astray(const walk *w, const sample *s)
+{
+    const sample *const a = s - 1;
+    const sample *const b = s + 1;
+    const double before = s->at - a->at;
+    const double after = b->at - s->at;
+    if (!a->guarded || !s->guarded || !b->guarded) {
+        return false;
+    }
+    const double line = ((after * a->off) + (before * b->off)) / (before + after);
+    return fabs(s->off - line) > BENT ||
+           mt_guards_astray(&w->guards, &a->guard, before, &s->guard, after, &b->guard);
+}
+
+/* What sample i makes known of itself and its neighbours. */
+static void judge_neighbours(walk *w, int i)
+{
+    for (int k = i > 0 ? i - 1 : 0; k <= i && k + 1 < w->n; k++) {
+        w->samples[k].apart = is_apart(w, &w->samples[k]);
+    }
+    for (int k = i > 1 ? i - 1 : 1; k <= i + 1 && k + 1 < w->n; k++) {
+        w->samples[k].astray = is_astray(w, &w->samples[k]);
+    }
 }
 
 /* One more position, which becomes sample i of the way. */
 static mt_status look(walk *w, int i, double at, bool given, mt_err *err)
 {
-    mt_shaken_motion *const out = w->out;
+    mt_limit_motion *const out = w->out;
     mt_shaken_value v;
-    MT_TRY(find(w, at, &v, err));
-    const double off = off_of(w->d->goal, &v);
+    sample fresh = {.at = at};
+    MT_TRY(find(w, &fresh, &v, err));
+    const double off = off_of(w->d, &v);
+    fresh.off = off;
     memmove(&w->samples[i + 1], &w->samples[i], (size_t)(w->n - i) * sizeof *w->samples);
-    w->samples[i] = (sample){at, off};
+    w->samples[i] = fresh;
     w->n++;
+    judge_neighbours(w, i);
     if (!given && MT_HAS(off) && !(off <= out->way_off[out->n_ways - 1])) {
         out->way_off[out->n_ways - 1] = off;
         out->way_at[out->n_ways - 1] = at;
@@ -141,29 +196,49 @@ static double height(const walk *w, int i)
     return top + (BEYOND * (a->off + (left * x) - top));
 }
 
-static bool needs_more(const walk *w, int i)
+/* May e be anything between sample i and the next? */
+static bool is_open(const walk *w, int i)
 {
     const sample *const a = &w->samples[i];
-    if (!isfinite(a[0].off) || !isfinite(a[1].off) || !(a[1].at - a[0].at > w->shortest)) {
-        return false;
-    }
-    return fabs(a[1].off - a[0].off) > STEEP || height(w, i) > w->out->off + CLOSER;
+    const sample *const b = a + 1;
+    const bool good = isfinite(a->off) && isfinite(b->off);
+    return good && b->at - a->at > w->shortest &&
+           (a->apart || a->astray || b->astray || fabs(b->off - a->off) > STEEP);
 }
 
-/* Halve the highest interval that needs it, until none does. */
+/* May it be higher than all so far? */
+static bool is_high(const walk *w, int i)
+{
+    const sample *const a = &w->samples[i];
+    const bool good = isfinite(a[0].off) && isfinite(a[1].off);
+    return good && a[1].at - a[0].at > w->shortest && height(w, i) > w->out->off + CLOSER;
+}
+
+/* The interval that is halved next, the longest of those that are open, else the highest; -1:
+ * none needs it. */
+static int choose(const walk *w)
+{
+    int best = -1;
+    double most = 0.0;
+    for (int i = 0; i + 1 < w->n; i++) {
+        const double length = w->samples[i + 1].at - w->samples[i].at;
+        if (length > most && is_open(w, i)) {
+            best = i;
+            most = length;
+        }
+    }
+    most = -HUGE_VAL;
+    for (int i = 0, none = best < 0; none && i + 1 < w->n; i++) {
+        const double high = is_high(w, i) ? height(w, i) : -HUGE_VAL;
+        best = high > most ? i : best;
+        most = high > most ? high : most;
+    }
+    return best;
+}
+
 static mt_status refine(walk *w, mt_err *err)
 {
-    for (;;) {
-        int best = -1;
-        double most = -HUGE_VAL;
-        for (int i = 0; i + 1 < w->n; i++) {
-            const double high = needs_more(w, i) ? height(w, i) : -HUGE_VAL;
-            best = high > most ? i : best;
-            most = high > most ? high : most;
-        }
-        if (best < 0) {
-            return MT_OK;
-        }
+    for (int best = choose(w); best >= 0; best = choose(w)) {
         if (w->n >= w->most) {
             w->out->end = w->out->end == MT_MOTION_WHOLE ? MT_MOTION_CAPPED : w->out->end;
             return MT_OK;
@@ -171,6 +246,7 @@ static mt_status refine(walk *w, mt_err *err)
         const sample *const a = &w->samples[best];
         MT_TRY(look(w, best + 1, 0.5 * (a[0].at + a[1].at), false, err));
     }
+    return MT_OK;
 }
 
 /* The top of the parabola through the highest sample within the way and its neighbours. */
@@ -203,6 +279,7 @@ static mt_status follow_way(walk *w, double left, double right, mt_err *err)
 {
     const int pieces = mt_motion_pieces(right - left, w->unit, w->most);
     w->n = 0;
+    w->has_guards = false;
     for (int i = 0; i <= pieces; i++) {
         const double u = (double)i / (double)pieces;
         const bool given = i == 0 || i == pieces;
@@ -216,7 +293,7 @@ static mt_status follow_way(walk *w, double left, double right, mt_err *err)
 /* Distinct positions of the goal's configurations in the family, and what samples need. */
 static mt_status prepare(walk *w, int family, double **list, int *n, mt_err *err)
 {
-    mt_shaken_motion *const out = w->out;
+    mt_limit_motion *const out = w->out;
     const mt_problem *const p = w->ws->p;
     const mt_system *const sys = w->ws->views[w->d->view].analysis->sys;
     const size_t most = (size_t)p->families[family].n;
@@ -245,18 +322,18 @@ static mt_status prepare(walk *w, int family, double **list, int *n, mt_err *err
     return MT_OK;
 }
 
-mt_status mt_motion_shaken(mt_workspace *ws, const mt_demand *d, mt_arena *mem,
-                           mt_shaken_motion *out, mt_err *err)
+mt_status mt_motion_limit(mt_workspace *ws, const mt_demand *d, mt_arena *mem,
+                          mt_limit_motion *out, mt_err *err)
 {
     const int family = mt_family_of(ws->p, d->view);
     double *list = NULL;
     int n = 0;
     mt_err why = {.code = MT_OK};
-    *out = (mt_shaken_motion){.end = MT_MOTION_WHOLE,
-                              .off = nan(""),
-                              .at = nan(""),
-                              .broken_at = nan(""),
-                              .worst = {.value = nan(""), .error = nan(""), .omega = nan("")}};
+    *out = (mt_limit_motion){.end = MT_MOTION_WHOLE,
+                             .off = nan(""),
+                             .at = nan(""),
+                             .broken_at = nan(""),
+                             .worst = {.value = nan(""), .error = nan(""), .omega = nan("")}};
     walk w = {.ws = ws, .d = d, .mem = mem, .out = out};
     MT_TRY(prepare(&w, family, &list, &n, err));
     if (n < 2) {
