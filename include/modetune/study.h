@@ -53,7 +53,8 @@ typedef struct mt_solve_options {
      * what it said once it need not say again */
     int (*stop)(void *context);
     void *stop_context;
-    /* NULL, or called now and then from the caller's thread with one line of text */
+    /* NULL, or called from the caller's thread with one line of text, when a search begins and
+     * now and then */
     void (*progress)(void *context, const char *text);
     void *progress_context;
     /* NULL, or asked, with stop_context, of an answer that was cut: an mt_cause */

@@ -266,6 +266,9 @@ static mt_status begin(mt_answer *a, const mt_solve_options *opt, mt_err *err)
     a->workers[0]->progress = opt->progress; /* the first worker's: one line at a time */
     a->workers[0]->progress_context = opt->progress_context;
     a->searched = a->p->n > 0 && (a->p->n_demands > 0 || a->p->n_clears > 0);
+    if (a->searched && opt->progress != NULL) { /* however few designs its worker evaluates */
+        opt->progress(opt->progress_context, "searching: the first designs are evaluated");
+    }
     return opt->hint != NULL ? take_hint(a, opt->hint, err) : MT_OK;
 }
 
