@@ -30,10 +30,11 @@ typedef struct mt_study mt_study;
 typedef struct mt_result mt_result;
 
 /* How a search ended. Not to meet the goals is an answer, no failure. */
-#define MT_RESULT_STATUS_LIST(X)          \
-    X(MT_RESULT_SOLVED, "solved")         \
-    X(MT_RESULT_COMPROMISE, "compromise") \
-    X(MT_RESULT_INFEASIBLE, "infeasible") \
+#define MT_RESULT_STATUS_LIST(X)                                               \
+    X(MT_RESULT_SOLVED, "solved")                                              \
+    X(MT_RESULT_COMPROMISE, "compromise")                                      \
+    X(MT_RESULT_INFEASIBLE, "infeasible")                                      \
+    X(MT_RESULT_FITTED, "fitted") /* all goals are weighted: a least misfit */ \
     X(MT_RESULT_INTERRUPTED, "interrupted")
 #define MT_RESULT_STATUS_ENUM(id, name) id,
 typedef enum mt_result_status {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/tie.h"
 #include "describe/certificates.h"
 #include "describe/describe.h"
 
@@ -105,11 +106,28 @@ static const char *early_text(const mt_answer *a, const mt_recommendation *best)
     if (best->n_goals == 0) {
         return "No goals: the model as it is, against published values.";
     }
+    if (!a->searched && mt_study_is_fit(a->study)) {
+        return mt_arena_printf(&a->result->mem,
+                               "Nothing to fit: the original design has a misfit of %.4g.",
+                               best->misfit);
+    }
     if (!a->searched) {
         return best->feasible ? "The original design meets all goals."
                               : "The original design does not meet all goals.";
     }
     return NULL;
+}
+
+/* Is the first objective the misfit of weighted goals? */
+static bool has_misfit(const mt_result *result)
+{
+    return result->n_objectives > 0 && strcmp(result->objectives[0].type, "misfit") == 0;
+}
+
+/* Of half its square; an exact fit leaves rounding. */
+static double shown_misfit(double f)
+{
+    return mt_without_noise(sqrt(2.0 * f), MT_RATIO_NOISE);
 }
 
 static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *mem)
@@ -139,8 +157,79 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
                                         "good designs, meet all goals.%s",
                                         n, doubt);
     }
-    return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n,
-                           n == 1 ? " meets" : "s meet", doubt);
+    const char *const many = n == 1 ? " meets" : "s meet";
+    if (!has_misfit(a->result)) {
+        return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n, many,
+                               doubt);
+    }
+    const double least = shown_misfit(a->found.solutions[0].f);
+    return n == 1 ? mt_arena_printf(mem,
+                                    "Solved: 1 distinct design meets all goals without a "
+                                    "weight, with a misfit of %.4g of the others.%s",
+                                    least, doubt)
+                  : mt_arena_printf(mem,
+                                    "Solved: %d distinct designs meet all goals without a "
+                                    "weight, with misfits from %.4g to %.4g of the others.%s",
+                                    n, least, shown_misfit(a->found.solutions[n - 1].f), doubt);
+}
+
+/* Did the search of a fit end at a least misfit? */
+static bool is_fitted(const mt_answer *a, const mt_recommendation *best)
+{
+    return a->searched && best->rank > 0 && best->feasible && mt_describe_is_optimum(best) &&
+           a->found.stop != MT_STOP_MAX_EVALS && mt_study_is_fit(a->study);
+}
+
+/* "1.3 to 57 times" */
+static const char *others_text(const mt_answer *a, mt_arena *mem)
+{
+    const int n = a->found.n_solutions;
+    if (n < 2) {
+        return "";
+    }
+    const double least = shown_misfit(a->found.solutions[0].f);
+    const double first = shown_misfit(a->found.solutions[1].f) / least;
+    const double last = shown_misfit(a->found.solutions[n - 1].f) / least;
+    if (!isfinite(last)) {
+        return mt_arena_printf(mem, "; %d other local minim%s misfits above 0", n - 1,
+                               n == 2 ? "um has a" : "a have");
+    }
+    return n == 2 ? mt_arena_printf(mem, "; another local minimum has %.3g times it", first)
+                  : mt_arena_printf(mem, "; %d other local minima have %.3g to %.3g times it",
+                                    n - 1, first, last);
+}
+
+/* "; c at its lower bound": the data ask for more than the model may be. */
+static const char *bounds_text(const mt_recommendation *best, mt_arena *mem)
+{
+    const char *text = "";
+    for (int i = 0; i < best->n_parameters && text != NULL; i++) {
+        const mt_result_parameter *const p = &best->parameters[i];
+        if (p->at_bound != NULL) {
+            text =
+                mt_arena_printf(mem, "%s; %s is at its %s bound", text, p->name, p->at_bound);
+        }
+    }
+    return text;
+}
+
+static const char *fit_text(const mt_answer *a, const mt_recommendation *best, mt_arena *mem)
+{
+    const char *const others = others_text(a, mem);
+    const char *const bounds = bounds_text(best, mem);
+    if (others == NULL || bounds == NULL) {
+        return NULL;
+    }
+    const char *const end = !mt_describe_is_optimum(best)
+                                ? ", which is not shown to be a local minimum"
+                            : is_fitted(a, best) ? ""
+                                                 : ", when the budget of evaluations ended";
+    return mt_arena_printf(
+        mem, "%s: the least misfit found from %d start%s is %.4g%s%s%s%s.",
+        is_fitted(a, best) ? "Fitted" : "Not converged", a->found.starts,
+        a->found.starts == 1 ? "" : "s", mt_without_noise(best->misfit, MT_RATIO_NOISE), end,
+        a->found.solutions[0].continuum ? "; a continuum of designs has it" : "", bounds,
+        others);
 }
 
 static const char *status_text(const mt_answer *a, const mt_recommendation *best)
@@ -164,6 +253,9 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                : a->found.stop == MT_STOP_MAX_EVALS
                    ? "The budget ended before any design was found."
                    : "No design was found within the bounds (sampled, not proven).";
+    }
+    if (best->feasible && mt_study_is_fit(a->study)) {
+        return fit_text(a, best, mem);
     }
     const char *const doubt =
         mt_describe_is_optimum(best)
@@ -239,10 +331,12 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
     const mt_recommendation *const best =
         result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
     const bool nothing = a->searched && result->n_recommendations == 0;
-    result->status = mt_describe_is_doubted(result) ? MT_RESULT_COMPROMISE
-                     : a->infeasible                ? MT_RESULT_INFEASIBLE
-                     : best->feasible               ? MT_RESULT_SOLVED
-                                                    : MT_RESULT_COMPROMISE;
+    result->status = mt_describe_is_doubted(result)             ? MT_RESULT_COMPROMISE
+                     : a->infeasible                            ? MT_RESULT_INFEASIBLE
+                     : is_fitted(a, best)                       ? MT_RESULT_FITTED
+                     : a->searched && mt_study_is_fit(a->study) ? MT_RESULT_COMPROMISE
+                     : best->feasible                           ? MT_RESULT_SOLVED
+                                                                : MT_RESULT_COMPROMISE;
     if (nothing && result->status == MT_RESULT_SOLVED) {
         result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
     }

@@ -113,7 +113,8 @@ static int outcome(const job *j, bool verify)
     }
     int judged = 0;
     const bool holds =
-        verify ? mt_report_verified(j->result, &judged) : j->result->status == MT_RESULT_SOLVED;
+        verify ? mt_report_verified(j->result, &judged)
+               : j->result->status == MT_RESULT_SOLVED || j->result->status == MT_RESULT_FITTED;
     if (verify && judged == 0) { /* nothing to judge must not look like a success */
         mt_terminal_error("%s: there are no published values to judge", j->path);
         return MT_EXIT_INPUT;

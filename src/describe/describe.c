@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <string.h>
 
 #include "base/spent.h"
 #include "problem/goal_avoid.h"
@@ -27,6 +28,11 @@ mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     va_end(args);
     MT_TRY(mt_arena_check(&result->mem, err));
     result->warnings = grown;
+    for (int i = 0; i < result->n_warnings; i++) {
+        if (strcmp(result->warnings[i], text) == 0) {
+            return MT_OK;
+        }
+    }
     result->warnings[result->n_warnings++] = text;
     return MT_OK;
 }
@@ -143,6 +149,16 @@ static mt_status doubt(const mt_design *design, mt_result *result, mt_recommenda
                                   design->rank, rec->disagreement);
 }
 
+/* Of a fit no goal decides: how near its least misfit is. */
+static void grade_fit(const mt_problem *p, const mt_design *design, mt_recommendation *rec)
+{
+    if (mt_study_is_fit(p->study) && rec->feasible && rec->disagreement == NULL) {
+        rec->grade = design->cut || !mt_describe_is_optimum(rec) ? "not converged"
+                     : design->rank == 1                         ? "fitted"
+                                                                 : "local minimum";
+    }
+}
+
 static mt_status describe(mt_workspace *fresh, const mt_design *design,
                           const mt_recommendation *baseline, mt_result *result,
                           mt_recommendation *rec, mt_err *err)
@@ -169,11 +185,14 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
         return MT_OK;
     }
     MT_TRY(mt_describe_tolerance(fresh, result, rec, err));
+    if (!design->cut) {
+        rec->kkt_residual = design->found->kkt;
+        rec->singular = design->found->singular;
+    }
+    grade_fit(fresh->p, design, rec);
     if (design->cut) {
         return MT_OK;
     }
-    rec->kkt_residual = design->found->kkt;
-    rec->singular = design->found->singular;
     return compare(fresh, design, motion_room, result, err);
 }
 

@@ -149,7 +149,7 @@ mt_status mt_describe_excitations(const mt_study *study, mt_result *result, mt_e
 /* Copy every text that study and problem lent into the result, which may outlive them
  * (describe_run.c). */
 mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err);
-/* Add a warning (formatted) to the result. */
+/* Add a warning (formatted) to the result, once. */
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     MT_PRINTF(3, 4);
 

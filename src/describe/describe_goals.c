@@ -10,6 +10,8 @@
 static const double PERCENT = 100.0;
 static const double HALF_TURN = 3.14159265358979323846;
 static const double HALF_TURN_DEG = 180.0;
+/* A phase that rises by more [rad] through a peak is no noise: a quarter turn is due. */
+static const double CONJUGATED = 0.5;
 
 /* "installed mode 1", "installed \"heave\"", or the expression. */
 static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
@@ -224,6 +226,29 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
                : doubt(fresh, d, result, g, err);
 }
 
+/* What measured data look like that fit no mechanism: told where the original design shows it,
+ * or the best one. */
+static mt_status doubt_data(const mt_workspace *fresh, const mt_demand *d,
+                            const mt_design *design, mt_result *result, mt_err *err)
+{
+    double hz = 0.0;
+    const double rise = design->found == NULL ? mt_fit_rise(d, &hz) : 0.0;
+    if (rise > CONJUGATED) {
+        MT_TRY(mt_describe_warn(result, err,
+                                "/goals/%d: the data look conjugated: through the peak at "
+                                "%.6g Hz the measured phase rises by %.0f degrees, where that "
+                                "of a damped mechanism falls (exp(-i w t) was meant?)",
+                                d->goal_index, hz, rise * HALF_TURN_DEG / HALF_TURN));
+    }
+    return design->rank <= 1 && mt_fit_is_reversed(fresh, d)
+               ? mt_describe_warn(result, err,
+                                  "/goals/%d: the data look reversed: with the other sign of "
+                                  "the measured response its phases would fit better (a "
+                                  "sensor or a force that points the other way?)",
+                                  d->goal_index)
+               : MT_OK;
+}
+
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
                             mt_recommendation *rec, double *motion_room, mt_err *err)
 {
@@ -241,6 +266,7 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
     MT_TRY(solve_views(fresh, &why, err));
     for (int i = 0; i < fresh->p->n_demands; i++) {
         MT_TRY(judge(fresh, &fresh->p->demands[i], &v, result, &rec->goals[i], &why, err));
+        MT_TRY(doubt_data(fresh, &fresh->p->demands[i], design, result, err));
         rec->n_goals++;
     }
     MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));

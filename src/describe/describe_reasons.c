@@ -382,6 +382,22 @@ static void say_optimality(mt_sentences *s)
     }
 }
 
+/* One of several local minima of a misfit. */
+static void say_minimum(mt_sentences *s, const mt_nlp_result *search)
+{
+    const double least = mt_without_noise(sqrt(2.0 * search->solutions[0].f), MT_RATIO_NOISE);
+    const double ratio = s->rec->misfit / least;
+    if (s->rec->rank == 1) {
+        mt_say(s, "Its misfit is the least of %d local minima found from %d starts.",
+               search->n_solutions, search->starts);
+    } else if (isfinite(ratio)) {
+        mt_say(s, "It is a local minimum of the misfit, %.3g times that of recommendation 1.",
+               ratio);
+    } else {
+        mt_say(s, "It is a local minimum of the misfit, where recommendation 1 has none.");
+    }
+}
+
 static void say_rank(mt_sentences *s, const mt_nlp_result *search)
 {
     const char *const first = aim_text(&s->p->aims[0]);
@@ -405,6 +421,8 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
                search->starts, search->starts == 1 ? "" : "s");
     } else if (search->n_solutions == 1) {
         say_only(s, search, first);
+    } else if (mt_study_is_fit(s->p->study)) {
+        say_minimum(s, search);
     } else {
         mt_say(s, "It ranks %d of %d distinct designs found from %d starts, by %s %s.",
                s->rec->rank, search->n_solutions, search->starts, best_of(&s->p->aims[0]),

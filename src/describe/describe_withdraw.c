@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a fresh analysis that disagrees (describe_verify.c) makes of a result. */
+#include <string.h>
+
 #include "describe/describe.h"
 
 static bool doubted(const mt_recommendation *rec)
@@ -21,7 +23,12 @@ static void disgrade(mt_recommendation *rec)
 {
     rec->tolerance_box = NULL;
     rec->worst_case = rec->worst_case == NULL ? NULL : "sampled";
-    rec->grade = doubted(rec) ? "not verified" : rec->feasible ? "feasible" : "compromise";
+    if (doubted(rec)) {
+        rec->grade = "not verified";
+    } else if (rec->feasible && rec->grade != NULL &&
+               strcmp(rec->grade, "feasible and proven") == 0) {
+        rec->grade = "feasible";
+    }
 }
 
 mt_status mt_describe_withdraw(mt_result *result, mt_err *err)

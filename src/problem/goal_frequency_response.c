@@ -280,6 +280,50 @@ bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double 
     return true;
 }
 
+double mt_fit_rise(const mt_demand *d, double *hz)
+{
+    const mt_fit *const fit = d->fit;
+    int peak = 0;
+    *hz = nan("");
+    if (fit == NULL) {
+        return 0.0;
+    }
+    for (int i = 1; i < fit->n; i++) {
+        peak = cabs(fit->h[i]) > cabs(fit->h[peak]) ? i : peak;
+    }
+    const double half_power = cabs(fit->h[peak]) / sqrt(2.0);
+    int first = peak;
+    int last = peak;
+    while (first > 0 && cabs(fit->h[first]) >= half_power) {
+        first--;
+    }
+    while (last < fit->n - 1 && cabs(fit->h[last]) >= half_power) {
+        last++;
+    }
+    double rise = 0.0;
+    for (int i = first; i < last; i++) {
+        rise += remainder(carg(fit->h[i + 1]) - carg(fit->h[i]), TWO_PI);
+    }
+    *hz = fit->w[peak] / TWO_PI;
+    /* a quarter turn lies between the half-power points; a line beyond each */
+    return first < peak && peak < last && last - first >= 4 ? fmax(rise, 0.0) : 0.0;
+}
+
+bool mt_fit_is_reversed(const mt_workspace *w, const mt_demand *d)
+{
+    double as_is = 0.0;
+    double reversed = 0.0;
+    for (int i = 0; d->fit != NULL && i < d->fit->n; i++) {
+        const double scale = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
+        const double off = w->r[d->row_res + (2 * (ptrdiff_t)i) + 1];
+        const double other =
+            scale > 0.0 ? scale * remainder((off / scale) + (0.5 * TWO_PI), TWO_PI) : 0.0;
+        as_is += off * off;
+        reversed += other * other;
+    }
+    return 2.0 * reversed < as_is;
+}
+
 static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s %s by %s as measured in \"%s\" (%d lines, %.6g to %.6g Hz)",

@@ -315,6 +315,16 @@ const char *mt_published_kind_name(mt_published_kind kind)
     return "unknown";
 }
 
+bool mt_study_is_fit(const mt_study *study)
+{
+    bool fit = study->n_goals > 0 && study->n_objectives > 0 &&
+               mt_objective_is(study->objectives[0].type, MT_RESIDUALS);
+    for (int i = 0; i < study->n_goals; i++) {
+        fit = fit && MT_HAS(study->goals[i].weight);
+    }
+    return fit;
+}
+
 const char *const *mt_study_statuses(int *n)
 {
     /* a study that was interrupted says nothing that could be published */

@@ -172,7 +172,7 @@ typedef struct mt_published {
     mt_name reference_name; /* mac */
     int reference;
     int reference_mode;
-    const char *status; /* "solved" | "compromise" | "infeasible" */
+    const char *status; /* "solved" | "compromise" | "infeasible" | "fitted" */
     bool original;      /* "design": "original": judged there, not at the recommended design */
     double value;     /* judged within a tolerance, or shown beside limits, which then judge */
     double tolerance; /* absolute */
@@ -389,5 +389,8 @@ const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);
 /* What a published `status` may say, in the order of mt_result_status; *n their number. */
 const char *const *mt_study_statuses(int *n);
+/* Is the misfit made least, and every goal a part of it, so that none decides whether a design
+ * is good? */
+bool mt_study_is_fit(const mt_study *study);
 
 #endif

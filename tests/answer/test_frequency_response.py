@@ -255,8 +255,41 @@ def undamped(folder):
     check("nothing damps the resonance at 10 Hz, line 3" in bench.text or code in (0, 1), f"undamped: exit status {code}: {bench.text[-300:]}")
 
 
+def status(folder):
+    """A study whose goals are all weighted is a fit: converged or not, with its other local minima, bounds, and data that fit no mechanism."""
+    hz = np.linspace(4.0, 50.0, 185)
+    values = dict(TRUE, c_1=40.0)
+    h = response(STATIONS, values, hz, 0, 2)
+    for what, data, says in (("as measured", h, None), ("conjugated", h.conj(), "look conjugated"), ("reversed", -h, "look reversed")):
+        table(folder / "frf.csv", hz, data)
+        bench = chain_study(folder, {"hammer": {"file": "frf.csv"}}, [goal(3, 1, "hammer")], start=values)
+        code = bench.run()
+        result = json.loads((folder / "out/study/result.json").read_text())
+        best = result["recommendations"][0]
+        check((code, result["status"], best["grade"]) == (0, "fitted", "fitted"), f"{what}: exit status {code}, {result['status']}, {best['grade']}")
+        check(result["status_text"].startswith("Fitted: the least misfit found from 4 starts is "), f"{what}: {result['status_text']}")
+        looks = [w for w in result["warnings"] if "the data look " in w]
+        check(len(looks) == (says is not None) and all(says in w for w in looks), f"{what}: {looks}")
+        at = [p["name"] for p in best["parameters"] if p["at_bound"] is not None]
+        check(all(f"; {name} is at its " in result["status_text"] for name in at), f"{what}: {at} at a bound: {result['status_text']}")
+        check((what == "as measured") == (not at), f"{what}: at a bound: {at}")
+        others = [r for r in result["recommendations"][1:]]
+        for other in others:
+            ratio = other["misfit"] / best["misfit"] if best["misfit"] > 1e-9 else None
+            told = [r["text"] for r in other["reasons"] if "local minimum of the misfit" in r["text"]]
+            check(other["grade"] == "local minimum" and len(told) == 1, f"{what}: {other['grade']}, {told}")
+            if ratio and told:
+                check(abs(float(told[0].split(", ")[1].split()[0]) / ratio - 1) < 0.006, f"{what}: {ratio}: {told}")
+    table(folder / "frf.csv", hz, h)
+    bench = chain_study(folder, {"hammer": {"file": "frf.csv"}}, [goal(3, 1, "hammer")])
+    bench.study["search"]["max_evaluations"] = 12
+    code = bench.run()
+    result = json.loads((folder / "out/study/result.json").read_text())
+    check((code, result["status"]) == (1, "compromise"), f"a budget: exit status {code}, {result['status']}: {result['status_text']}")
+
+
 def main():
-    for test in (one_mass, chain, noise, round_trip, refusals, undamped):
+    for test in (status, one_mass, chain, noise, round_trip, refusals, undamped):
         with tempfile.TemporaryDirectory() as folder:
             test(Path(folder))
     print("\n".join(problems))

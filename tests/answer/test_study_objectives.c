@@ -39,7 +39,7 @@ static void exact_misfit__leaves_the_rest_to_the_next_objective(mt_test *t)
         mt_test_row(t, "%s", rows[i].next);
         if (study_solve(t, PRODUCT, members, &c)) {
             const double a = study_value(&c, 1, "a");
-            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_INT(t, c.result->status, MT_RESULT_FITTED);
             CHECK_INT(t, c.result->n_recommendations, 1);
             CHECK_NEAR(t, a, rows[i].a, 1e-4);
             CHECK_NEAR(t, a * study_value(&c, 1, "b"), 2.0, 1e-5);
@@ -86,7 +86,7 @@ static void inexact_misfit__is_held(mt_test *t)
             &c)) {
         const double hz = exp((log(0.12) + (2.0 * log(0.13))) / 3.0);
         const double lambda = pow(2.0 * STUDY_PI * hz, 2.0);
-        CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+        CHECK_INT(t, c.result->status, MT_RESULT_FITTED);
         CHECK_NEAR(t, c.result->recommendations[0].misfit, sqrt(2.0 / 3.0) * log(0.13 / 0.12),
                    TOL);
         CHECK_NEAR(t, study_frequency(&c, 1, "default", 1), hz, 4e-6);

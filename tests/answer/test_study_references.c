@@ -56,7 +56,7 @@ static void measured_frequencies_and_shapes__are_identified_exactly(mt_test *t)
                    SPRINGS, references(text));
     if (study_solve(t, MODEL, members, &c)) {
         const mt_recommendation *const r = &c.result->recommendations[0];
-        CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+        CHECK_INT(t, c.result->status, MT_RESULT_FITTED);
         CHECK_NEAR(t, study_value(&c, 1, "k1"), 2.0, TOL);
         CHECK_NEAR(t, study_value(&c, 1, "k2"), 1.0, TOL);
         CHECK_NEAR_ABS(t, r->misfit, 0.0, 1e-9);
@@ -126,7 +126,7 @@ static void contradicting_measurements__leave_the_least_misfit(mt_test *t)
         char rms[64];
         (void)snprintf(rms, sizeof rms, "The 2 weighted goals are off by %.3g %% rms.",
                        off_by(low, w));
-        CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+        CHECK_INT(t, c.result->status, MT_RESULT_FITTED);
         CHECK_NEAR(t, study_value(&c, 1, "k1"), low, 1e-6);
         CHECK_NEAR(t, c.result->recommendations[0].misfit, misfit(low, w), 1e-9);
         CHECK(t, study_reasons(&c, 1, rms));

@@ -34,7 +34,7 @@ def trade(run, solve):
         if result["status"] != point["status"]:
             yield f"point {point['values']} is {point['status']}, by itself {result['status']}"
         best = result["recommendations"][0] if result["recommendations"] else None
-        if best is None or result["status"] != "solved" or point["status"] != "solved" or best["score"] is None:
+        if best is None or result["status"] not in ("solved", "fitted") or point["status"] != result["status"] or best["score"] is None:
             continue
         sign = -1.0 if "maximise" in run.question.objectives[0] else 1.0
         if sign * point["best"]["score"] > sign * best["score"] + SAME * max(abs(best["score"]), 0.02):

@@ -54,7 +54,7 @@ def _clear_with(run, item, x):
 def relaxations(run):
     """With the change that is named the design that is named meets all goals; and no design that brute force finds does with less of it."""
     for number, item in enumerate(run.result["relaxations"]):
-        if run.result["status"] == "solved":
+        if run.result["status"] in ("solved", "fitted"):
             yield f"solved, but: {item['text']}"
         x = np.array([[item["design"][v.name] for v in run.question.variables]], float)
         if item["kind"] == "band":

@@ -187,9 +187,12 @@ def consistent(run):
     impossible = [c for c in result["certificates"] if c["kind"] == "infeasible" and c["proven"]]
     feasible = [r for r in result["recommendations"] if r["feasible"]]
     status, text = result["status"], result["status_text"] or ""
-    if status == "solved" and run.question.n and not feasible:
-        yield "solved, but nothing recommended is feasible"
-    if status != "solved" and feasible:
+    if status in ("solved", "fitted") and run.question.n and not feasible:
+        yield f"{status}, but nothing recommended is feasible"
+    weighted = all("weight" in g for g in run.study["goals"]) and str(run.study.get("objective")).count("misfit") > 0
+    if status == "fitted" and not weighted:
+        yield "fitted, but not all goals are weighted"
+    if status not in ("solved", "fitted") and feasible and not weighted:
         yield f"{status}, but rank {feasible[0]['rank']} is feasible"
     if impossible and feasible:
         yield f"\"{impossible[0]['text']}\", but rank {feasible[0]['rank']} is feasible"
@@ -207,7 +210,7 @@ def consistent(run):
         if re.search(r"\b(nan|inf|-nan)\b", sentence):
             yield f"\"{sentence}\""
     for rec in result["recommendations"]:
-        if (rec["grade"] or "").startswith("feasible") != rec["feasible"]:
+        if (rec["grade"] or "").startswith(("fitted", "local minimum", "not converged") if weighted else "feasible") != rec["feasible"]:
             yield f"rank {rec['rank']}: feasible {rec['feasible']}, grade \"{rec['grade']}\""
         if impossible and rec["grade"] == "compromise" and any(
                 "not proven" in s["text"] and not s["text"].startswith("Over the tolerances") for s in rec["reasons"]):

@@ -52,7 +52,7 @@ def _violation(run):
 
 
 def _called_feasible(run):
-    if run.result["status"] == "solved" or not run.result["recommendations"] or len(run.study["goals"]) != 1:
+    if run.result["status"] in ("solved", "fitted") or not run.result["recommendations"] or len(run.study["goals"]) != 1:
         return False
     run.result["recommendations"][0]["feasible"] = True
     return True
@@ -122,7 +122,7 @@ def _second_best(run):
 
 
 def _not_found(run):
-    if run.result["status"] != "solved" or run.question.n == 0:
+    if run.result["status"] not in ("solved", "fitted") or run.question.n == 0:
         return False
     run.result["status"] = "compromise"
     for r in run.result["recommendations"]:
@@ -131,7 +131,7 @@ def _not_found(run):
 
 
 def _false_proof(run):
-    if run.result["status"] != "solved":
+    if run.result["status"] not in ("solved", "fitted"):
         return False
     run.result["certificates"].append({"kind": "infeasible", "text": "No design meets all goals.", "proven": True, "pointer": None,
                                        "reachable_lower_hz": None, "reachable_upper_hz": None})
@@ -215,7 +215,7 @@ def _count(run):
 
 def _point(run):
     for point in (run.result["trade"] or {"points": []})["points"]:
-        if point["status"] == "solved" and point["best"]["score"] and abs(point["best"]["score"]) > 0.1:
+        if point["status"] in ("solved", "fitted") and point["best"]["score"] and abs(point["best"]["score"]) > 0.1:
             point["best"]["score"] *= 1.001
             return True
     return False

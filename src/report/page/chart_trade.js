@@ -22,7 +22,7 @@
 
   const value = (point) => point.best && point.best.feasible
     ? D.objective(point.best, objective()) : null;
-  const isSolved = (point) => point.status === 'solved';
+  const isSolved = (point) => ['solved', 'fitted'].includes(point.status);
   const axisTitle = (v) => T.titled(v.quantity, v.unit);
 
   // What a mark of a point does: it can be clicked and reached by keys.
