@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Building a program. A node is known by (op, operands, input, value): the hash table gives the
- * node that is already there. Operations on constants are carried out at once where the result
- * is finite; where it is not, the node stays, so that evaluation reports it with its address.
+ * Building a program. A node is known by (op, operands, input, value): the sorted nodes give
+ * the one that is already there. Operations on constants are carried out at once where the
+ * result is finite; where it is not, the node stays, so that evaluation reports it with its
+ * address.
  *
  * Simplifications keep every value of the program (up to the sign of zero), and since a node
  * that is no longer used is still evaluated, they hide no domain error either:
@@ -18,13 +19,11 @@
 #include "expr/interval.h"
 #include "expr/op.h"
 
-enum { FIRST_TABLE_SIZE = 64, BITS = 64 };
+enum { BITS = 64 };
 
 mt_status mt_program_init(mt_program *p, int n_inputs, mt_arena *mem, mt_err *err)
 {
     *p = (mt_program){.mem = mem, .n_inputs = n_inputs};
-    p->table = mt_arena_int(mem, FIRST_TABLE_SIZE);
-    p->table_size = FIRST_TABLE_SIZE;
     return mt_arena_check(mem, err);
 }
 
@@ -35,71 +34,36 @@ static uint64_t value_bits(double value)
     return bits;
 }
 
-/* All bits of the word into all bits of the hash, also those of small whole numbers, which as
- * doubles end in forty zeros: D. Stafford's variant 13 of the finaliser of MurmurHash3,
- * http://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html. */
-static uint64_t mix(uint64_t hash, uint64_t word)
+static int compare_nodes(const void *context, const void *key, int i)
 {
-    hash += word + UINT64_C(0x9E3779B97F4A7C15); /* 2^64 / golden ratio: 0 does not stay 0 */
-    hash = (hash ^ (hash >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    hash = (hash ^ (hash >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return hash ^ (hash >> 31);
-}
-
-static uint64_t node_hash(const mt_program_node *n)
-{
-    uint64_t h = mix(1, (uint64_t)n->op);
-    h = mix(h, (uint32_t)n->a);
-    h = mix(h, (uint32_t)n->b);
-    h = mix(h, (uint32_t)n->input);
-    return mix(h, value_bits(n->value));
-}
-
-static bool node_equal(const mt_program_node *m, const mt_program_node *n)
-{
-    return m->op == n->op && m->a == n->a && m->b == n->b && m->input == n->input &&
-           value_bits(m->value) == value_bits(n->value);
-}
-
-/* The place of the node in the table (entries are node + 1, 0 is free): its own or the free
- * one. */
-static int table_slot(const mt_program *p, const mt_program_node *n)
-{
-    const uint64_t mask = (uint64_t)p->table_size - 1; /* the size is a power of two */
-    uint64_t slot = node_hash(n) & mask;
-    while (p->table[slot] != 0 && !node_equal(&p->nodes[p->table[slot] - 1], n)) {
-        slot = (slot + 1) & mask;
+    const mt_program *const p = context;
+    const mt_program_node *const m = key;
+    const mt_program_node *const n = &p->nodes[i];
+    if (m->b != n->b) {
+        return m->b < n->b ? -1 : 1;
     }
-    return (int)slot;
-}
-
-/* Keep the table at most half full. Without memory it stays as it is. */
-static void table_reserve(mt_program *p)
-{
-    if (p->count < p->table_size / 2) {
-        return;
+    if (m->a != n->a) {
+        return m->a < n->a ? -1 : 1;
     }
-    const size_t most = INT_MAX / 2;
-    const size_t size = 2 * (size_t)p->table_size;
-    int *const table = mt_arena_int(p->mem, size > most ? SIZE_MAX : size);
-    if (table == NULL) {
-        return;
+    if (m->op != n->op) {
+        return m->op < n->op ? -1 : 1;
     }
-    p->table = table;
-    p->table_size = (int)size;
-    for (int i = 0; i < p->count; i++) {
-        p->table[table_slot(p, &p->nodes[i])] = i + 1;
+    if (m->input != n->input) {
+        return m->input < n->input ? -1 : 1;
     }
+    const uint64_t v = value_bits(m->value);
+    const uint64_t w = value_bits(n->value);
+    return (v > w) - (v < w);
 }
 
 static mt_node intern(mt_program *p, const mt_program_node *n)
 {
     if (mt_arena_failed(p->mem)) {
-        return MT_NO_NODE; /* the table may be missing, or full */
+        return MT_NO_NODE; /* the order may be without the last node */
     }
-    const int slot = table_slot(p, n);
-    if (p->table[slot] != 0) {
-        return p->table[slot] - 1;
+    const int known = mt_sorted_find(&p->order, compare_nodes, p, n);
+    if (known >= 0) {
+        return known;
     }
     mt_program_node *const nodes =
         mt_arena_grow(p->mem, p->nodes, p->count, &p->capacity, sizeof *nodes);
@@ -107,10 +71,11 @@ static mt_node intern(mt_program *p, const mt_program_node *n)
         return MT_NO_NODE;
     }
     p->nodes = nodes;
+    if (!mt_sorted_add(&p->order, p->mem, compare_nodes, p, n)) {
+        return MT_NO_NODE;
+    }
     p->nodes[p->count] = *n;
-    p->table[slot] = ++p->count;
-    table_reserve(p);
-    return p->count - 1;
+    return p->count++;
 }
 
 mt_node mt_program_const(mt_program *p, double value)

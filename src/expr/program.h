@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "base/sorted.h"
 #include "expr/expr.h"
 
 /*
@@ -35,8 +36,7 @@ typedef struct mt_program {
     int count;
     int capacity;
     int n_inputs;
-    int *table; /* hash table of nodes, for sharing */
-    int table_size;
+    mt_sorted order;     /* of the nodes, for sharing */
     bool *active;        /* [count] depends on some input; made by finish */
     uint64_t *inputs_of; /* [count * words] the inputs that each node depends on, as bits */
     int words;

@@ -3,7 +3,6 @@
 #include "mechanics/build.h"
 
 #include <stdarg.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "base/format.h"
@@ -50,70 +49,38 @@ const char *mt_build_name(mt_builder *b, const char *fmt, ...)
     return s == NULL ? "" : s;
 }
 
-static bool same_vec(const mt_vec_def *a, const mt_vec_def *b)
+static int compare_vecs(const void *context, const void *key, int i)
 {
-    return a->kind == b->kind && a->node[0] == b->node[0] && a->node[1] == b->node[1] &&
-           a->node[2] == b->node[2] && a->axis == b->axis && a->helper == b->helper;
-}
-
-/* Where a vector stands, or would stand, in the table of those that there are (open addressing,
- * FNV-1a over its numbers). */
-static int vec_slot(const mt_builder *b, const mt_vec_def *def)
-{
-    const int numbers[] = {(int)def->kind, def->node[0], def->node[1],
-                           def->node[2],   def->axis,    def->helper};
-    uint32_t h = 2166136261U;
-    for (int i = 0; i < MT_COUNT(numbers); i++) {
-        h = (h ^ (uint32_t)numbers[i]) * 16777619U;
+    const mt_builder *const b = context;
+    const mt_vec_def *const x = key;
+    const mt_vec_def *const y = &b->sys->vecs[i];
+    const int of_x[] = {(int)x->kind, x->node[0], x->node[1], x->node[2], x->axis, x->helper};
+    const int of_y[] = {(int)y->kind, y->node[0], y->node[1], y->node[2], y->axis, y->helper};
+    for (int k = 0; k < MT_COUNT(of_x); k++) {
+        if (of_x[k] != of_y[k]) {
+            return of_x[k] < of_y[k] ? -1 : 1;
+        }
     }
-    h ^= h >> 15U;
-    const uint32_t mask = (uint32_t)b->vec_slots - 1U;
-    uint32_t at = h & mask;
-    while (b->vec_at[at] >= 0 && !same_vec(&b->sys->vecs[b->vec_at[at]], def)) {
-        at = (at + 1U) & mask;
-    }
-    return (int)at;
-}
-
-/* Room for one more vector in the table, at most half full; false where memory is out. */
-static bool vec_room(mt_builder *b)
-{
-    enum { FIRST = 64 };
-    if (2 * (b->sys->n_vecs + 1) <= b->vec_slots) {
-        return true;
-    }
-    const int slots = b->vec_slots == 0 ? FIRST : 2 * b->vec_slots;
-    int *const at = mt_arena_int(&b->sys->mem, (size_t)slots);
-    if (at == NULL) {
-        return false;
-    }
-    memset(at, 0xFF, (size_t)slots * sizeof *at); /* -1: free */
-    b->vec_at = at;
-    b->vec_slots = slots;
-    for (int i = 0; i < b->sys->n_vecs; i++) {
-        b->vec_at[vec_slot(b, &b->sys->vecs[i])] = i;
-    }
-    return true;
+    return 0;
 }
 
 /* The vector, which is made where there is none like it. */
 static int add_vec(mt_builder *b, const mt_vec_def *def)
 {
     mt_system *const sys = b->sys;
-    if (!vec_room(b)) {
-        return 0;
-    }
-    int *const at = &b->vec_at[vec_slot(b, def)];
-    if (*at >= 0) {
-        return *at;
+    const int known = mt_sorted_find(&b->vec_order, compare_vecs, b, def);
+    if (known >= 0) {
+        return known;
     }
     mt_vec_def *const grown = GROW(b, vecs);
     if (grown == NULL) {
         return 0;
     }
     sys->vecs = grown;
+    if (!mt_sorted_add(&b->vec_order, &sys->mem, compare_vecs, b, def)) {
+        return 0;
+    }
     sys->vecs[sys->n_vecs] = *def;
-    *at = sys->n_vecs;
     return sys->n_vecs++;
 }
 

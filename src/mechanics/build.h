@@ -2,6 +2,7 @@
 #ifndef MECHANICS_BUILD_H
 #define MECHANICS_BUILD_H
 
+#include "base/sorted.h"
 #include "mechanics/system.h"
 
 /* What the files build_*.c share while a system is made. A shortage is remembered by the arena
@@ -17,8 +18,7 @@ typedef struct mt_builder {
     int *joint_at;         /* [model joints] the system's joint or -1 */
     int *hinge_at;         /* [model links] the system's joint of its first hinge or -1 */
     int axis_vec[3];       /* vectors of the global axes */
-    int *vec_at;           /* [vec_slots] hash table of vectors; -1: free */
-    int vec_slots;         /* a power of 2 */
+    mt_sorted vec_order;   /* of the system's vectors */
     const mt_system_drive *drive; /* of the caller; NULL: the configuration's own */
     mt_err *err;
 } mt_builder;

@@ -33,10 +33,8 @@ void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const 
     for (int i = 0; i < n_more; i++) {
         names[n++] = more[i];
     }
-    for (int i = 0; i < table->size; i++) {
-        if (table->keys[i] != NULL) {
-            names[n++] = table->keys[i];
-        }
+    for (int i = 0; i < table->count; i++) {
+        names[n++] = table->items[i].name;
     }
     const char *const near = mt_text_nearest(name.s, names, n);
     mt_arena_rewind(&f->m->mem, mark);

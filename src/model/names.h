@@ -2,14 +2,20 @@
 #ifndef MODEL_NAMES_H
 #define MODEL_NAMES_H
 
+#include "base/sorted.h"
 #include "model/model.h"
 
-/* Names to indices: an open-addressing hash table in an arena. Names are not copied. */
+typedef struct mt_named {
+    const char *name; /* not copied */
+    int value;
+} mt_named;
+
+/* Names to values. */
 typedef struct mt_names {
-    const char **keys; /* [size], NULL: free */
-    int *values;
-    int size; /* a power of 2, at least twice the count; 0: nothing yet */
+    mt_named *items; /* [count] */
     int count;
+    int room;
+    mt_sorted order; /* of the names */
 } mt_names;
 
 /* One table per name space. Bodies and links share one: both stand where a body may. */

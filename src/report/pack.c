@@ -7,10 +7,10 @@
  */
 #include "report/pack.h"
 
-#include <stdint.h>
 #include <string.h>
 
 #include "base/arena.h"
+#include "base/sorted.h"
 
 /* A list of numbers that is shorter than this is as short as a reference to it. */
 enum { LEAST_LIST = 12 };
@@ -28,8 +28,7 @@ typedef struct classes {
     entry *at;
     int n;
     int capacity;
-    int *slots; /* [n_slots] 1 + entry; 0: free */
-    size_t n_slots;
+    mt_sorted order; /* of the texts */
 } classes;
 
 typedef struct node {
@@ -54,55 +53,33 @@ typedef struct packing {
     mt_text *out;
 } packing;
 
-static uint64_t hash_of(const char *text, size_t n)
+static int compare_texts(const void *context, const void *key, int i)
 {
-    uint64_t hash = 0xcbf29ce484222325U; /* FNV-1a */
-    for (size_t i = 0; i < n; i++) {
-        hash = (hash ^ (unsigned char)text[i]) * 0x100000001b3U;
+    const entry *const x = key;
+    const entry *const y = &((const classes *)context)->at[i];
+    if (x->length != y->length) {
+        return x->length < y->length ? -1 : 1;
     }
-    return hash;
-}
-
-/* Twice as many slots; false: no room. */
-static bool widen(packing *p, classes *c)
-{
-    const size_t n = c->n_slots > 0 ? 2 * c->n_slots : 1024;
-    int *const slots = mt_arena_int(&p->mem, n);
-    if (slots == NULL) {
-        return false;
-    }
-    for (int i = 0; i < c->n; i++) {
-        size_t k = hash_of(c->at[i].text, c->at[i].length) % n;
-        while (slots[k] != 0) {
-            k = (k + 1) % n;
-        }
-        slots[k] = i + 1;
-    }
-    c->slots = slots;
-    c->n_slots = n;
-    return true;
+    return memcmp(x->text, y->text, x->length);
 }
 
 /* The class of a text, which lives as long; -1: no room. */
 static int class_of(packing *p, classes *c, const char *text, size_t length, int first)
 {
-    if (2 * (size_t)c->n >= c->n_slots && !widen(p, c)) {
-        return -1;
-    }
-    size_t k = hash_of(text, length) % c->n_slots;
-    for (; c->slots[k] != 0; k = (k + 1) % c->n_slots) {
-        const entry *const e = &c->at[c->slots[k] - 1];
-        if (e->length == length && memcmp(e->text, text, length) == 0) {
-            return c->slots[k] - 1;
-        }
+    const entry new = {text, length, 0, -1, first};
+    const int known = mt_sorted_find(&c->order, compare_texts, c, &new);
+    if (known >= 0) {
+        return known;
     }
     entry *const at = mt_arena_grow(&p->mem, c->at, c->n, &c->capacity, sizeof *at);
     if (at == NULL) {
         return -1;
     }
     c->at = at;
-    at[c->n] = (entry){text, length, 0, -1, first};
-    c->slots[k] = c->n + 1;
+    if (!mt_sorted_add(&c->order, &p->mem, compare_texts, c, &new)) {
+        return -1;
+    }
+    at[c->n] = new;
     return c->n++;
 }
 
