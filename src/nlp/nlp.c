@@ -190,9 +190,13 @@ static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before
     job->task = task;
     job->progress = place != NULL && first ? place->progress : NULL;
     job->told = mt_progress_begin(job->progress, "first values", job->n);
-    (void)mt_nlp_ok(e, mt_workers_run(e->nlp->n_workers, first ? NULL : place, &tasks, e->err));
+    mt_err own = {.code = MT_OK};
+    const mt_status rc = mt_workers_run(e->nlp->n_workers, first ? NULL : place, &tasks, &own);
     mt_progress_end(job->progress, job->told);
-    collect(e, job, before);
+    collect(e, job, before); /* a task's own failure before "left to other parts" */
+    if (rc != MT_OK && e->fatal == MT_OK) {
+        (void)mt_nlp_ok(e, mt_fail(e->err, rc, "%s", own.text));
+    }
 }
 
 /* The approach from starts all->starts .. all->starts + n - 1; their ends are added to the

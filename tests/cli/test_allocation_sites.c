@@ -142,6 +142,7 @@ static struct {
     {"diff %/engine_orders %/engine_orders/result.json", MT_EXIT_DONE, FULL},
     {"run --threads 1 -o @ studies/engine_orders.json", MT_EXIT_DONE, SOME},
     {"run -o @ --threads 1 --shard 1/2 studies/engine_orders.json", MT_EXIT_DONE, SOME},
+    {"run -o @ --threads 1 --shard 1/2 studies/inceptor_tuning_1.json", MT_EXIT_DONE, SOME},
     {"merge -o @ --threads 1 studies/engine_orders.json %/engine_orders.1-of-2.journal",
      MT_EXIT_DONE, SOME},
     {"run -o @ --threads 2 studies/inceptor_tuning_2.json", MT_EXIT_DONE, SOME},
