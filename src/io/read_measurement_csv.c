@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/sorted.h"
 #include "base/text.h"
 
 #define COLUMN_LIST(X)                     \
@@ -41,6 +42,8 @@ typedef struct table {
     int re;                   /* columns of real and imaginary part, or MAGNITUDE and PHASE */
     int im;
     field fields[FIELDS_MOST];
+    mt_sorted responses; /* by their labels */
+    int last;            /* the response of the line before; -1: none */
 } table;
 
 static bool ends_field(const table *t, const char *at)
@@ -283,15 +286,20 @@ static const char *label(const table *t, int column)
     return *s == '\0' ? NULL : s;
 }
 
-static bool same(const char *a, const char *b)
+static int compare(const char *a, const char *b)
 {
-    return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
+    return strcmp(a == NULL ? "" : a, b == NULL ? "" : b);
 }
 
-static bool is_of(const table *t, const mt_measured_response *r)
+/* The labels of the line, and those of response i. */
+static int compare_labels(const void *context, const void *key, int i)
 {
-    return same(r->configuration, label(t, CONFIGURATION)) && same(r->input, label(t, INPUT)) &&
-           same(r->output, label(t, OUTPUT)) && same(r->unit, label(t, UNIT));
+    const mt_measured_response *const r = &((const mt_measuring *)context)->out->responses[i];
+    const table *const t = key;
+    int order = compare(label(t, OUTPUT), r->output);
+    order = order != 0 ? order : compare(label(t, INPUT), r->input);
+    order = order != 0 ? order : compare(label(t, CONFIGURATION), r->configuration);
+    return order != 0 ? order : compare(label(t, UNIT), r->unit);
 }
 
 static const char *keep(const table *t, int column)
@@ -304,20 +312,24 @@ enum { RESPONSES_MOST = 10000 };
 
 /* The response that the line belongs to: mostly that of the line before. NULL, told: there is
  * none and cannot be one. */
-static mt_status response_of(const table *t, mt_measured_response **out)
+static mt_status response_of(table *t, mt_measured_response **out)
 {
     mt_measuring *const m = t->m;
-    for (int i = m->out->n_responses - 1; i >= 0; i--) {
-        if (is_of(t, &m->out->responses[i])) {
-            *out = &m->out->responses[i];
-            return MT_OK;
-        }
+    const int last = t->last;
+    t->last = last >= 0 && compare_labels(m, t, last) == 0
+                  ? last
+                  : mt_sorted_find(&t->responses, compare_labels, m, t);
+    if (t->last >= 0) {
+        *out = &m->out->responses[t->last];
+        return MT_OK;
     }
     if (m->out->n_responses == RESPONSES_MOST) {
         return mt_measuring_refuse(m, t->fields[0].line, 1, "more than %d responses",
                                    RESPONSES_MOST);
     }
-    *out = mt_measuring_response(m);
+    t->last = t->responses.n;
+    *out = mt_sorted_add(&t->responses, m->mem, compare_labels, m, t) ? mt_measuring_response(m)
+                                                                      : NULL;
     if (*out != NULL) {
         (*out)->configuration = keep(t, CONFIGURATION);
         (*out)->input = keep(t, INPUT);
@@ -330,7 +342,7 @@ static mt_status response_of(const table *t, mt_measured_response **out)
 mt_status mt_read_measurement_csv(mt_measuring *m)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8 */
-    table t = {.m = m};
+    table t = {.m = m, .last = -1};
     if (m->end - m->at >= 3 && memcmp(m->at, mark, 3) == 0) {
         m->at += 3;
         m->start_of_line = m->at;
