@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,12 +78,26 @@ static mt_status read_count(const char *s, const char *option, int most, int *ou
 }
 
 /* A number from 0 up to 1. */
-static mt_status read_tolerance(const char *s, const char *option, double *out, mt_err *err)
+/* A number from 0 up to, and without, `most`. */
+static bool read_below(const char *s, double most, double *out)
 {
     char *end = NULL;
-    const double value = strtod(s, &end);
-    if (s[0] == '\0' || strspn(s, "0123456789.eE+-") != strlen(s) || *end != '\0' ||
-        !(value >= 0.0 && value < 1.0)) {
+    *out = strtod(s, &end);
+    return s[0] != '\0' && strspn(s, "0123456789.eE+-") == strlen(s) && *end == '\0' &&
+           *out >= 0.0 && *out < most;
+}
+
+static mt_status read_absolute(const char *s, double *out, mt_err *err)
+{
+    return read_below(s, HUGE_VAL, out)
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE, "--abs-tol: \"%s\" is not a number from 0", s);
+}
+
+static mt_status read_tolerance(const char *s, const char *option, double *out, mt_err *err)
+{
+    double value = 0.0;
+    if (!read_below(s, 1.0, &value)) {
         return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not a number from 0 up to 1", option,
                        s);
     }
@@ -272,6 +287,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return read_seed(value, o->name, &args->seed, err);
     case MT_OPT_REL_TOL:
         return read_tolerance(value, o->name, &args->rel_tol, err);
+    case MT_OPT_ABS_TOL:
+        return read_absolute(value, &args->abs_tol, err);
     case MT_OPT_SHARD:
         return read_part(value, o->name, args, err);
     case MT_OPT_MAX_MEMORY:

@@ -60,7 +60,9 @@ typedef enum mt_option_id {
     MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
     MT_OPT_MODEL,
+    MT_OPT_REDO,
     MT_OPT_REL_TOL,
+    MT_OPT_ABS_TOL,
     MT_OPT_SPECTRUM,
     MT_OPT_DAMPING_RATIO,
     MT_OPT_ROOT,
@@ -177,6 +179,7 @@ typedef struct mt_args {
     int max_evaluations;           /* --max-evaluations, 0: not given */
     int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
     double rel_tol;      /* --rel-tol, default 0 */
+    double abs_tol;      /* --abs-tol, default 0 */
     double time_s;       /* --time, 0: not given */
     double duration_s;   /* --duration, 0: not given */
     double dt_out_s;     /* --dt-out, 0: not given */

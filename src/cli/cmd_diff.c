@@ -184,6 +184,7 @@ static int print(const mt_args *args, const mt_result_diff *diff, mt_text *out)
         mt_json_put_string(&w, "a", args->operands[0]);
         mt_json_put_string(&w, "b", args->operands[1]);
         mt_json_put_number(&w, "rel_tol", args->rel_tol);
+        mt_json_put_number(&w, "abs_tol", args->abs_tol);
         mt_json_put_bool(&w, "same", diff->of_answer == 0);
         put_differences(&w, "made_by", diff, true);
         put_differences(&w, "differences", diff, false);
@@ -209,8 +210,9 @@ int mt_cmd_diff(const mt_args *args, mt_text *out)
     mt_err err = {.code = MT_OK};
     mt_result_diff diff = {.n = 0};
     const char *const paths[SIDES] = {args->operands[0], args->operands[1]};
-    const mt_status rc = mt_result_diff_find(paths, args->rel_tol, args->value[MT_OPT_ROOT],
-                                             &diff, &messages, &err);
+    const mt_diff_tolerance tol = {args->rel_tol, args->abs_tol};
+    const mt_status rc =
+        mt_result_diff_find(paths, tol, args->value[MT_OPT_ROOT], &diff, &messages, &err);
     int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {
         const bool same = diff.of_answer == 0;

@@ -174,6 +174,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "result is that of a run without a break"),
     OPTION(MT_OPT_SHARD, '\0', "shard", "PART/PARTS", BIT(MT_CMD_RUN),
            "do one part of the work only, and leave a journal for `merge`"),
+    OPTION(MT_OPT_REDO, '\0', "redo", NULL, BIT(MT_CMD_MERGE),
+           "do the tasks again of journals from processors that compute otherwise, which are "
+           "refused else"),
     OPTION(MT_OPT_PROFILE, '\0', "profile", NULL, SOLVES | BIT(MT_CMD_MODES),
            "how often each stage of the evaluations was done or could be skipped, and the "
            "seconds that all workers took, on standard error"),
@@ -195,6 +198,10 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_REL_TOL, '\0', "rel-tol", "X", BIT(MT_CMD_DIFF),
            "numbers that differ by no more than this part of them are the same (default: 0; "
            "1e-6 passes over what another machine or compiler rounds differently)"),
+    OPTION(
+        MT_OPT_ABS_TOL, '\0', "abs-tol", "X", BIT(MT_CMD_DIFF),
+        "so are numbers that differ by no more than X, in the units of the results (default: "
+        "0)"),
     OPTION(MT_OPT_SPECTRUM, '\0', "spectrum", "FROM:TO:N", BIT(MT_CMD_PROFILE),
            "what the profile does to one mass on a spring, for N natural frequencies [Hz] from "
            "FROM to TO in equal quotients"),

@@ -7,18 +7,23 @@
 #include "cli/save.h"
 #include "describe/describe.h"
 #include "io/file.h"
+#include "linalg/arithmetic.h"
 
 /* What a result says of its own making before anything is computed: program, libraries, files
- * and settings. Where it is the same, every task leaves the same. */
+ * and settings; and what tells processors apart that compute otherwise. Where it is the same,
+ * every task leaves the same. */
 static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
 {
     mt_result *result = NULL;
+    char digits[MT_ARITHMETIC_TEXT];
     MT_TRY(mt_result_new(&result, err));
     mt_status rc = mt_describe_run(study, result, err);
     if (rc == MT_OK) {
         mt_json_writer w = mt_json_writer_default(out);
         mt_json_open(&w, NULL, '{');
         mt_result_put_member(&w, "run", result);
+        mt_arithmetic_digest(digits);
+        mt_json_put_string(&w, "arithmetic", digits);
         mt_json_close(&w);
         rc = mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
     }
@@ -93,12 +98,20 @@ static mt_status open_files(const mt_args *args, const char *study_path, mt_jour
         return mt_fail_memory(err);
     }
     const bool adds = args->given[MT_OPT_RESUME] && !mt_file_absent(path);
+    const bool quiet = args->given[MT_OPT_QUIET];
     mt_journal_place place = MT_JOURNAL_NEW;
     mt_status rc = MT_OK;
     for (int i = 0; i < args->n_journals && rc == MT_OK; i++) {
-        rc = mt_journal_read(j, args->journals[i], err);
+        bool foreign = false;
+        rc = mt_journal_read(j, args->journals[i], &foreign, err);
+        if (foreign) {
+            const mt_err why = *err;
+            const bool redo = args->given[MT_OPT_REDO];
+            rc = redo ? MT_OK : mt_fail(err, rc, "%s; --redo does its tasks again", why.text);
+            mt_terminal_talk(quiet || !redo, "%s; its tasks are done again", why.text);
+        }
     }
-    rc = rc == MT_OK && adds ? mt_journal_read(j, path, err) : rc;
+    rc = rc == MT_OK && adds ? mt_journal_read(j, path, NULL, err) : rc;
     if (args->command == MT_CMD_RUN && rc == MT_OK) {
         rc = mt_journal_write_to(j, path, adds, &place, err);
         rc = rc == MT_OK ? tell_place(args, study_path, path, j, place, err) : rc;

@@ -14,8 +14,8 @@
 #include "base/text.h"
 #include "io/file.h"
 #include "io/folder.h"
+#include "io/journal_head.h"
 
-static const char FORMAT[] = "modetune-journal/1 ";
 /* Digits of a SHA-256 that a line has: nobody works against the engineer here, a disk does. */
 enum { CHECK = 16, NIBBLE = 4, WORD_DIGITS = 16 };
 /* A journal is read as a whole, within the memory that the program may use. */
@@ -129,49 +129,12 @@ static mt_status add_record(mt_journal *j, const record *r, mt_err *err)
     return MT_OK;
 }
 
-/* The first line of the identity that the journal and this question do not share. */
-static mt_status refuse(const mt_journal *j, const char *path, const char *theirs, mt_err *err)
-{
-    const char *ours = j->identity;
-    while (theirs[0] == '|' && theirs[1] == ' ') {
-        const size_t n = strcspn(theirs + 2, "\n");
-        const size_t m = strcspn(ours, "\n");
-        if (n != m || memcmp(theirs + 2, ours, n) != 0) {
-            return mt_fail(
-                err, MT_E_INPUT,
-                "%s: the journal of another question or program: it has `%.*s` where "
-                "this run has `%.*s`",
-                path, (int)(n < 200 ? n : 200), theirs + 2, (int)(m < 200 ? m : 200), ours);
-        }
-        theirs += 2 + n + (theirs[2 + n] == '\n' ? 1 : 0);
-        ours += m + (ours[m] == '\n' ? 1 : 0);
-    }
-    return mt_fail(err, MT_E_INPUT, "%s: the head of the journal is damaged", path);
-}
-
-/* The identity behind bars. */
-static mt_text head_of(const mt_journal *j)
-{
-    mt_text head = {.s = NULL};
-    mt_text_add(&head, FORMAT);
-    mt_text_add(&head, j->sha256);
-    mt_text_add(&head, "\n");
-    for (const char *s = j->identity; *s != '\0';) {
-        const size_t n = strcspn(s, "\n");
-        mt_text_add(&head, "| ");
-        mt_text_add_n(&head, s, n);
-        mt_text_add(&head, "\n");
-        s += n + (s[n] == '\n' ? 1 : 0);
-    }
-    return head;
-}
-
-/* Past the head, which may have been torn (*torn: there is no more). Fails: MT_E_INPUT,
- * MT_E_MEMORY. */
+/* Past the head, which may have been torn (*torn: there is no more). Fails: MT_E_INPUT (as
+ * mt_journal_read), MT_E_MEMORY. */
 static mt_status skip_head(const mt_journal *j, const char *path, const mt_file *file,
-                           char **records, bool *torn, mt_err *err)
+                           char **records, bool *torn, bool *foreign, mt_err *err)
 {
-    mt_text head = head_of(j);
+    mt_text head = mt_journal_head(j->identity, j->sha256);
     if (head.failed || head.s == NULL || file->bytes == NULL) {
         mt_text_free(&head);
         return mt_fail_memory(err);
@@ -184,11 +147,11 @@ static mt_status skip_head(const mt_journal *j, const char *path, const mt_file 
     if (same) {
         return MT_OK;
     }
-    if (strncmp(file->bytes, FORMAT, sizeof FORMAT - 1) != 0) {
+    if (strncmp(file->bytes, MT_JOURNAL_FORMAT, strlen(MT_JOURNAL_FORMAT)) != 0) {
         return mt_fail(err, MT_E_INPUT, "%s: not a journal of modetune", path);
     }
     const char *const line = strchr(file->bytes, '\n');
-    return refuse(j, path, line == NULL ? "" : line + 1, err);
+    return mt_journal_refuse(j->identity, path, line == NULL ? "" : line + 1, foreign, err);
 }
 
 static mt_status read_records(mt_journal *j, source *from, char *at, mt_err *err)
@@ -262,8 +225,11 @@ void mt_journal_delete(mt_journal *j)
     free(j);
 }
 
-mt_status mt_journal_read(mt_journal *j, const char *path, mt_err *err)
+mt_status mt_journal_read(mt_journal *j, const char *path, bool *foreign, mt_err *err)
 {
+    bool other = false;
+    bool *const is_foreign = foreign == NULL ? &other : foreign;
+    *is_foreign = false;
     source *const sources =
         realloc(j->sources, ((size_t)j->n_sources + 1) * sizeof *j->sources);
     if (sources == NULL) {
@@ -277,7 +243,7 @@ mt_status mt_journal_read(mt_journal *j, const char *path, mt_err *err)
     j->sorted = false;
     char *records = s->file.bytes;
     bool torn = false;
-    MT_TRY(skip_head(j, path, &s->file, &records, &torn, err));
+    MT_TRY(skip_head(j, path, &s->file, &records, &torn, is_foreign, err));
     j->torn = j->torn || torn;
     return torn ? MT_OK : read_records(j, s, records, err);
 }
@@ -457,7 +423,7 @@ static void write_all(mt_journal *j, const char *s, size_t n)
 
 static void write_head(mt_journal *j)
 {
-    mt_text head = head_of(j);
+    mt_text head = mt_journal_head(j->identity, j->sha256);
     if (head.failed) {
         (void)mt_fail_memory(&j->err);
     } else {

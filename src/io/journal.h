@@ -35,8 +35,10 @@ mt_status mt_journal_new(const char *identity, mt_journal **out, mt_err *err);
 /* Accepts NULL. */
 void mt_journal_delete(mt_journal *j);
 /* The records of a file join; one that ends within its head has none. Fails: MT_E_INPUT (no
- * journal; one of another question: what differs), MT_E_SYSTEM, MT_E_MEMORY. */
-mt_status mt_journal_read(mt_journal *j, const char *path, mt_err *err);
+ * journal; one of another question: what differs), MT_E_SYSTEM, MT_E_MEMORY. *foreign (may be
+ * NULL): it fails because the same question was worked on by a processor that computes
+ * otherwise; nothing of it is taken, and others may be read. */
+mt_status mt_journal_read(mt_journal *j, const char *path, bool *foreign, mt_err *err);
 /* What stood where new records are to go. */
 typedef enum mt_journal_place {
     MT_JOURNAL_NEW,       /* nothing */

@@ -133,7 +133,7 @@ typedef struct search {
     mt_reader r[SIDES];
     mt_arena scratch;
     mt_result_diff *out;
-    double rel_tol;
+    mt_diff_tolerance tol;
 } search;
 
 static mt_json_type type_of(const search *s, int side, mt_addr value)
@@ -167,7 +167,7 @@ static const char *text_member(const search *s, int side, mt_addr object, const 
 static scales measure(const search *s, const mt_addr v[SIDES])
 {
     scales all = {0.0, 0.0};
-    for (int side = 0; side < SIDES && s->rel_tol > 0.0; side++) {
+    for (int side = 0; side < SIDES && s->tol.relative > 0.0; side++) {
         for (mt_items i = mt_reader_items(&s->r[side], v[side]); mt_items_next(&i);) {
             const char *const name = mt_json_name(i.doc, i.at);
             const double size = fabs(told(s, side, i.at).number);
@@ -204,7 +204,7 @@ static bool same_number(const search *s, const step *at, const scales *all, doub
     } else if (is_among(name, OF_ONE_UNIT, MT_COUNT(OF_ONE_UNIT))) {
         scale = fmax(scale, all->plain);
     }
-    return a == b || fabs(a - b) <= s->rel_tol * scale;
+    return a == b || fabs(a - b) <= fmax(s->tol.relative * scale, s->tol.absolute);
 }
 
 static bool same(const search *s, const step *at, const scales *all, const mt_addr v[SIDES])
@@ -540,11 +540,12 @@ static mt_status read_one(const char *path, const char *root, search *s, int sid
     return rc;
 }
 
-mt_status mt_result_diff_find(const char *const paths[2], double rel_tol, const char *root,
-                              mt_result_diff *out, mt_diagnostics *messages, mt_err *err)
+mt_status mt_result_diff_find(const char *const paths[2], mt_diff_tolerance tol,
+                              const char *root, mt_result_diff *out, mt_diagnostics *messages,
+                              mt_err *err)
 {
     static const mt_addr roots[SIDES] = {MT_JSON_ROOT, MT_JSON_ROOT};
-    search s = {.out = out, .rel_tol = rel_tol};
+    search s = {.out = out, .tol = tol};
     mt_status rc = mt_arena_init(&s.scratch, 0, err);
     rc = rc == MT_OK ? mt_arena_init(&out->mem, 0, err) : rc;
     if (rc == MT_OK) { /* both are told what is wrong with them */

@@ -40,15 +40,22 @@ typedef struct mt_result_diff {
     int of_answer; /* how many are not of provenance */
 } mt_result_diff;
 
+/* What numbers may differ by; 0: not at all. */
+typedef struct mt_diff_tolerance {
+    double relative;
+    double absolute; /* whatever their size, as they stand in the results */
+} mt_diff_tolerance;
+
 /**
- * Compare the results at two paths. Numbers are the same where they differ by no more than
- * rel_tol (0: not at all) of the largest number of their unit in the object that they are in;
- * percentages, shares and MAC where by no more than rel_tol of the whole. mt_result_diff_free
- * in any case (out zeroed before). O(n log n) values. Fails: MT_E_INPUT (messages as for
- * mt_model_load), MT_E_SYSTEM, MT_E_MEMORY.
+ * Compare the results at two paths. Numbers are the same where they differ by no more than the
+ * relative tolerance of the largest number of their unit in the object that they are in
+ * (percentages, shares and MAC: of the whole), or by no more than the absolute one.
+ * mt_result_diff_free in any case (out zeroed before). O(n log n) values. Fails: MT_E_INPUT
+ * (messages as for mt_model_load), MT_E_SYSTEM, MT_E_MEMORY.
  */
-mt_status mt_result_diff_find(const char *const paths[2], double rel_tol, const char *root,
-                              mt_result_diff *out, mt_diagnostics *messages, mt_err *err);
+mt_status mt_result_diff_find(const char *const paths[2], mt_diff_tolerance tol,
+                              const char *root, mt_result_diff *out, mt_diagnostics *messages,
+                              mt_err *err);
 void mt_result_diff_free(mt_result_diff *diff);
 
 #endif

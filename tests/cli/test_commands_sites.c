@@ -242,6 +242,8 @@ static void commands__tell_every_shortage(mt_test *t)
         }
         (void)snprintf(path, sizeof path, "%s/%s.journal", folder, left[i]);
         (void)unlink(path); /* of a run that was cut */
+        (void)snprintf(path, sizeof path, "%s/%s.journal.old", folder, left[i]);
+        (void)unlink(path);
         (void)snprintf(path, sizeof path, "%s/%s", folder, left[i]);
         CHECK(t, rmdir(path) == 0);
     }

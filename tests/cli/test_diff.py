@@ -210,6 +210,19 @@ class Diff(CliTest):
         for wrong in ("1", "-0.1", "nan", "x", "1e-6x", "0x1p-3", "inf"):
             self.assertIn(f'--rel-tol: "{wrong}" is not a number from 0 up to 1', self.expect(2, "diff", a, a, f"--rel-tol={wrong}").stderr)
 
+    def test_a_floor_whatever_the_size(self):
+        a = self.put(self.result, "a.json")
+        way = ("recommendations", 0, "change")
+        b = self.changed(self.result, way, self.result["recommendations"][0]["change"] + 3e-7)
+        self.assertFalse(self.diff(a, b)["same"])
+        self.assertTrue(self.diff(a, b, "--abs-tol", "4e-7")["same"])
+        self.assertFalse(self.diff(a, b, "--abs-tol", "2e-7")["same"])
+        b = self.changed(self.result, way, 2.0)  # beside a floor of 1e30 everything is the same but what is no number
+        self.assertTrue(self.diff(a, b, "--abs-tol", "1e30", "--rel-tol", "1e-9")["same"])
+        self.assertFalse(self.diff(a, self.changed(self.result, ("recommendations", 0, "feasible"), None), "--abs-tol", "1e30")["same"])
+        for wrong in ("-0.1", "nan", "x", "1e-6x", "0x1p-3", "inf"):
+            self.assertIn(f'--abs-tol: "{wrong}" is not a number from 0', self.expect(2, "diff", a, a, f"--abs-tol={wrong}").stderr)
+
     def test_how_an_answer_was_made_is_told_and_is_no_difference(self):
         changed = copy.deepcopy(self.result)
         changed["run"]["modetune"], changed["run"]["seed"] = "9.9.9", 77

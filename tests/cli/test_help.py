@@ -10,7 +10,7 @@ EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 ALONE = {"manual", "completion", "version"}
 OPTIONS = {
     "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "resume", "shard", "profile", "progress"},
-    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "profile", "progress"},
+    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "redo", "profile", "progress"},
     "compare": {"threads", "set", "seed", "starts", "max-evaluations", "proof", "progress"},
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
     "mac": {"count"},
@@ -23,7 +23,7 @@ OPTIONS = {
     "report": {"output", "verify"},
     "explain": {"rank"},
     "apply": {"rank", "model"},
-    "diff": {"rel-tol"},
+    "diff": {"rel-tol", "abs-tol"},
     "check": set(),
     "init": set(),
     "examples": {"output"},

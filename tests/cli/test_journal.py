@@ -9,6 +9,7 @@ import random
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 from common_cli import PROGRAM, CliTest, main
 
@@ -185,6 +186,36 @@ class Journal(CliTest):
             for a, b in zip(whole, got):
                 for p, q in zip(a["parameters"], b["parameters"]):
                     self.assertAlmostEqual(p["recommended"], q["recommended"], delta=1e-6 * p["recommended"], msg=f"word {word}")
+
+    def test_processors_that_compute_otherwise_are_not_mixed(self):
+        """A part done without fused multiply-add, by glibc or by OpenBLAS, and one with it."""
+        flags = Path("/proc/cpuinfo").read_text(encoding="utf-8").split()
+        if "fma" not in flags or "avx2" not in flags:
+            self.skipTest("this processor has one way to compute")
+        self.run_study("starts", "whole")
+        self.run_study("starts", "out", "--shard", "1/2")
+        for variable, value, member in (("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4", "arithmetic"),
+                                        ("OPENBLAS_CORETYPE", "Prescott", "blas")):
+            self.expect(0, "run", "studies/starts.json", "-o", "other", "--shard", "2/2", env={variable: value})
+            journals = [str(self.journal("starts", "out", ".1-of-2")), str(self.journal("starts", "other", ".2-of-2"))]
+            first = [line for line in Path(self.folder / journals[0]).read_text().splitlines() if f'"{member}"' in line][0].strip("| ")
+            second = [line for line in Path(self.folder / journals[1]).read_text().splitlines() if f'"{member}"' in line][0].strip("| ")
+            self.assertNotEqual(first, second)
+            said = self.run_study("starts", "merged", *journals, command="merge", expect=(2,))
+            for told in ("other/starts.2-of-2.journal: the journal of a processor that computes otherwise", first, second, "--redo"):
+                self.assertIn(told, said)
+            self.assertFalse((self.folder / "merged").exists())
+            said = self.run_study("starts", "merged", "--redo", *journals, command="merge")
+            self.assertIn("its tasks are done again", said)
+            self.assertEqual(self.result("starts", "whole"), self.result("starts", "merged"))
+            for path in (self.folder / "other").glob("*journal*"):
+                path.unlink()
+            for path in sorted((self.folder / "merged").rglob("*"), reverse=True):
+                path.rmdir() if path.is_dir() else path.unlink()
+            (self.folder / "merged").rmdir()
+        self.run_study("gaps", "other", "--shard", "2/2")  # another question stays one
+        said = self.run_study("starts", "merged", "--redo", str(self.journal("gaps", "other", ".2-of-2")), command="merge", expect=(2,))
+        self.assertIn("of another question", said)
 
     def test_other_questions_are_refused(self):
         self.run_study("starts", "part", "--shard", "1/2")

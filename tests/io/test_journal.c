@@ -59,7 +59,7 @@ static int write_to(mt_journal *j, bool adds)
 static void write_keys(mt_test *t, int from, int to, bool adds)
 {
     mt_journal *const j = opened(t, IDENTITY);
-    REQUIRE(t, !adds || mt_journal_read(j, path, NULL) == MT_OK);
+    REQUIRE(t, !adds || mt_journal_read(j, path, NULL, NULL) == MT_OK);
     REQUIRE(t, write_to(j, adds) >= 0);
     for (int k = from; k < to; k++) {
         put(j, k, 0);
@@ -122,7 +122,7 @@ static void journal__gives_back_what_was_put(mt_test *t)
 {
     begin(t);
     mt_journal *j = opened(t, IDENTITY);
-    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_read(j, path, NULL, NULL), MT_OK);
     CHECK_INT(t, intact(j), KEYS);
     CHECK_INT(t, mt_journal_count(j).ignored, 0);
     CHECK_INT(t, mt_journal_count(j).used, KEYS);
@@ -130,8 +130,8 @@ static void journal__gives_back_what_was_put(mt_test *t)
     write_keys(t, 0, 4, false); /* begins anew */
     write_keys(t, 4, KEYS, true);
     j = opened(t, IDENTITY);
-    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
-    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK); /* twice the same is the same */
+    CHECK_INT(t, mt_journal_read(j, path, NULL, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_read(j, path, NULL, NULL), MT_OK); /* twice the same is the same */
     CHECK_INT(t, intact(j), KEYS);
     CHECK_INT(t, mt_journal_count(j).known, KEYS);
     CHECK_INT(t, write_to(j, true), MT_JOURNAL_CONTINUED);
@@ -145,7 +145,8 @@ static void journal__gives_back_what_was_put(mt_test *t)
 static long known_of(mt_test *t, const char *file)
 {
     mt_journal *const j = opened(t, IDENTITY);
-    const long n = mt_journal_read(j, file, NULL) == MT_OK ? mt_journal_count(j).known : -1;
+    const long n =
+        mt_journal_read(j, file, NULL, NULL) == MT_OK ? mt_journal_count(j).known : -1;
     mt_journal_delete(j);
     return n;
 }
@@ -269,7 +270,7 @@ static void journal__of_another_question_is_refused(mt_test *t)
         mt_err err = {.code = MT_OK};
         mt_test_row(t, "%s", rows[i].name);
         mt_journal *const j = opened(t, rows[i].identity);
-        CHECK_INT(t, mt_journal_read(j, path, &err), MT_E_INPUT);
+        CHECK_INT(t, mt_journal_read(j, path, NULL, &err), MT_E_INPUT);
         CHECK(t, strstr(err.text, rows[i].says) != NULL);
         mt_journal_delete(j);
     }
@@ -281,13 +282,13 @@ static void journal__contradictions_count_for_nothing(mt_test *t)
 {
     begin(t);
     mt_journal *j = opened(t, IDENTITY);
-    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_read(j, path, NULL, NULL), MT_OK);
     CHECK_INT(t, write_to(j, true), MT_JOURNAL_CONTINUED);
     put(j, 4, 1);
     CHECK_INT(t, mt_journal_end(j, false, NULL), MT_OK);
     mt_journal_delete(j);
     j = opened(t, IDENTITY);
-    CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+    CHECK_INT(t, mt_journal_read(j, path, NULL, NULL), MT_OK);
     CHECK_INT(t, intact(j), KEYS - 1);
     CHECK_INT(t, mt_journal_count(j).ignored, 1);
     mt_journal_delete(j);
@@ -298,7 +299,7 @@ static void look(mt_test *t, const char *bytes, size_t n, bool head, int least)
 {
     mt_journal *const j = opened(t, IDENTITY);
     overwrite(t, bytes, n);
-    const mt_status rc = mt_journal_read(j, path, NULL);
+    const mt_status rc = mt_journal_read(j, path, NULL, NULL);
     const int found = rc == MT_OK ? intact(j) : 0;
     CHECK(t, rc == MT_OK || (head && rc == MT_E_INPUT));
     CHECK(t, found >= (rc == MT_OK ? least : 0));
@@ -324,7 +325,7 @@ static void journal__damage_loses_records_and_changes_none(mt_test *t)
         if (i == head - 1 || i == head || every) { /* and what is added to it can be read */
             write_keys(t, 0, 2, true);
             mt_journal *const j = opened(t, IDENTITY);
-            CHECK_INT(t, mt_journal_read(j, path, NULL), MT_OK);
+            CHECK_INT(t, mt_journal_read(j, path, NULL, NULL), MT_OK);
             CHECK(t, intact(j) >= 2);
             mt_journal_delete(j);
         }
