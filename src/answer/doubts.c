@@ -12,14 +12,14 @@
 
 enum { NAME_SIZE = 400, NUMBER_SIZE = 32, NAMED = 3, STATES_2D = 3, STATES_3D = 6 };
 
-/* kg: a large ship's rudder gear has 1e6, a micromirror 1e-9; steel in t/mm^3 with metres makes
+/* kg: the largest ships have 7e8, a resonator some 1e-12; steel in t/mm^3 with metres makes
  * 1e-9 of a mass, millimetres with kg/m^3 1e9 of it. */
-static const double MOST_MASS_KG = 1e6;
-static const double LEAST_MASS_KG = 1e-9;
-/* Hz of the lowest mode: a quartz crystal has 3e4, a microresonator 1e6; a period of three
- * hours is no vibration of a mechanism. */
-static const double MOST_LOWEST_HZ = 1e6;
-static const double LEAST_LOWEST_HZ = 1e-4;
+static const double MOST_MASS_KG = 1e10;
+static const double LEAST_MASS_KG = 1e-18;
+/* Hz of the lowest mode: a quartz crystal has 3e4, a resonator of 1e-12 kg 1e7; a period of a
+ * week is no vibration of a mechanism. */
+static const double MOST_LOWEST_HZ = 1e10;
+static const double LEAST_LOWEST_HZ = 1e-6;
 
 double mt_doubts_work(const mt_model *model, int configuration)
 {
@@ -246,6 +246,82 @@ static void fault_damping(const mt_analysis *a, mt_doubt_list *out)
     }
 }
 
+/* Of the terms of spring `name`, from term t on: has any a coefficient, and does any act on a
+ * motion that the joints leave? Returns the first term of another spring. */
+static int look_at_spring(const mt_linear *lin, mt_term_kind kind, int t, bool *given,
+                          bool *acts)
+{
+    const mt_system *const sys = mt_linear_system(lin);
+    const mt_term_list *const list = mt_linear_terms(lin, kind);
+    const int n = mt_linear_freedoms(lin);
+    const char *const name = sys->springs[list->terms[t].source].name;
+    *given = false;
+    *acts = false;
+    for (; t < list->n_terms; t++) {
+        const mt_term *const term = &list->terms[t];
+        const mt_spring_def *const s = &sys->springs[term->source];
+        if (strcmp(s->name, name) != 0) {
+            break;
+        }
+        /* what is strained where it stands resists across its line, too */
+        *acts = *acts || s->preload != MT_NO_NODE || s->free != MT_NO_NODE ||
+                term->source == sys->trim_spring ||
+                (sys->loaded && sys->measures[s->measure[0]].kind == MT_MEASURE_DISTANCE);
+        if (mt_linear_value(lin, term->coefficient) == 0.0) {
+            continue;
+        }
+        *given = true;
+        for (int row = term->first; row < term->first + term->count; row++) {
+            for (int i = 0; i < n && !*acts; i++) {
+                *acts = *acts || mt_linear_row(lin, kind, row)[i] != 0.0;
+            }
+        }
+    }
+    return t;
+}
+
+/* Springs and dampers whose every direction the joints forbid. A driven joint that is locked
+ * forbids its own, which is what it is for. */
+static void doubt_springs(const mt_linear *lin, mt_doubt_list *out)
+{
+    static const mt_term_kind kinds[] = {MT_TERM_STIFFNESS, MT_TERM_DAMPING};
+    const mt_system *const sys = mt_linear_system(lin);
+    const mt_model *const m = sys->model;
+    if (sys->driven && !sys->trim) {
+        return;
+    }
+    for (int k = 0; k < MT_COUNT(kinds); k++) {
+        const mt_term_list *const list = mt_linear_terms(lin, kinds[k]);
+        for (int t = 0; t < list->n_terms;) {
+            bool given = false;
+            bool acts = false;
+            const int i = mt_model_find_spring(m, sys->springs[list->terms[t].source].name);
+            t = look_at_spring(lin, kinds[k], t, &given, &acts);
+            if (i < 0 || !given || acts) {
+                continue;
+            }
+            const mt_spring *const s = &m->springs[i];
+            int before = 0; /* dampers stand behind the springs */
+            for (; s->damper && before < i && !m->springs[before].damper; before++) {
+            }
+            mt_doubt *const d = mt_doubt_add(
+                out, MT_LEVEL_DOUBT, "spring",
+                "%s \"%s\" has no effect here: joints forbid every motion that it acts against",
+                s->damper ? "damper" : "spring", s->name.s);
+            if (d != NULL) {
+                d->addr = s->name.addr;
+                d->pointer =
+                    mt_arena_printf(out->mem, "/%s/%d", s->damper ? "dampers" : "springs",
+                                    s->damper ? i - before : i);
+                if (!mt_model_place(m, d->addr, &d->line, &d->column)) {
+                    d->line = 0;
+                    d->column = 0;
+                }
+            }
+        }
+    }
+}
+
 static void doubt_mass(double mass_kg, mt_doubt_list *out)
 {
     if (mass_kg > MOST_MASS_KG || (mass_kg > 0.0 && mass_kg < LEAST_MASS_KG)) {
@@ -285,6 +361,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
     doubt_mass(info.mass_kg, out);
     doubt_frequency(&a->modes, out);
     const int unstable = a->modes.n_unstable;
+    doubt_springs(a->lin, out);
     say_motion(a->lin, out);
     say_free(a, out);
     fault_damping(a, out);
@@ -326,8 +403,10 @@ static void merge(mt_doubt_list *out, const mt_doubt *d)
 {
     for (int i = 0; i < out->n; i++) {
         mt_doubt *const other = &out->items[i];
-        if (other->addr == d->addr && d->pointer != NULL && other->pointer != NULL &&
-            strcmp(other->text, d->text) == 0 && strcmp(other->pointer, d->pointer) == 0) {
+        const bool same_pointer = d->pointer != NULL && other->pointer != NULL
+                                      ? strcmp(other->pointer, d->pointer) == 0
+                                      : d->pointer == other->pointer && d->addr != MT_NO_ADDR;
+        if (other->addr == d->addr && same_pointer && strcmp(other->text, d->text) == 0) {
             other->configuration = NULL;
             return;
         }
@@ -360,6 +439,7 @@ static mt_status gather(const known *k, int n_inputs, const int *inputs, const d
         list->items[i].file = m->path;
     }
     mt_model_judge(m, c, value, list);
+    mt_doubt_accept(list, 0, &m->accepted);
     for (int i = 0; i < list->n; i++) {
         mt_doubt *const d = &list->items[i];
         if (k->a != NULL && strcmp(d->kind, "gap") == 0) {

@@ -220,8 +220,64 @@ static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_
     return rc;
 }
 
-static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *of_study,
-                                       mt_doubt_list *of_model, mt_err *err)
+/* What a measured reference asks of a goal's mode [Hz]; NaN: nothing. */
+static double measured_hz(const mt_study *s, const mt_goal *goal)
+{
+    const mt_reference *const r =
+        goal->reference == MT_ABSENT ? NULL : &s->references[goal->reference];
+    const int mode = goal->reference_mode > 0 ? goal->reference_mode : goal->mode.index;
+    const bool there = r != NULL && r->model == NULL && mode >= 1 && mode <= r->n_modes;
+    return there ? r->modes[mode - 1].frequency_hz : nan("");
+}
+
+/* Frequencies of a reference in parts of the model's: 2 pi says rad/s, 60 turns per minute.
+ * Models are not wrong by as much in all modes alike. */
+static void doubt_reference(const mt_study *s, int reference, const double *ratio,
+                            mt_doubt_list *out)
+{
+    static const struct {
+        double factor;
+        const char *what;
+    } units[] = {{6.283185307179586, "rad/s"}, {60.0, "turns per minute"}};
+    enum { LEAST_MODES = 2 };
+    static const double ALIKE = 0.15; /* of the logarithm */
+    for (int u = 0; u < MT_COUNT(units); u++) {
+        const double factor = units[u].factor;
+        int above = 0;
+        int below = 0;
+        int n = 0;
+        for (int g = 0; g < s->n_goals; g++) {
+            if (s->goals[g].reference == reference && ratio[g] > 0.0) {
+                n++;
+                above += fabs(log(ratio[g] / factor)) < ALIKE ? 1 : 0;
+                below += fabs(log(ratio[g] * factor)) < ALIKE ? 1 : 0;
+            }
+        }
+        if (n < LEAST_MODES || (above < n && below < n)) {
+            continue;
+        }
+        mt_doubt *const d = mt_doubt_add(
+            out, MT_LEVEL_DOUBT, "reference",
+            "the %d frequencies of reference \"%s\" that goals ask for are all about %.3g "
+            "times "
+            "%s the model's: %s",
+            n, s->references[reference].name.s, factor, above == n ? "above" : "below",
+            above == n
+                ? mt_arena_printf(out->mem, "are they in %s instead of Hz?", units[u].what)
+                : mt_arena_printf(out->mem,
+                                  "is the model in units of which a frequency "
+                                  "comes out in %s?",
+                                  units[u].what));
+        if (d != NULL) {
+            d->addr = s->references[reference].addr;
+        }
+    }
+}
+
+/* ratio[n_goals]: of what references ask for to what the model has, as far as they are seen. */
+static mt_status examine_configuration(const mt_study *s, int c, double *ratio,
+                                       mt_doubt_list *of_study, mt_doubt_list *of_model,
+                                       mt_err *err)
 {
     mt_analysis *a = NULL;
     const int first = of_model->n;
@@ -244,6 +300,7 @@ static mt_status examine_configuration(const mt_study *s, int c, mt_doubt_list *
                 continue;
             }
             const double hz = original_hz(s, goal, a);
+            ratio[g] = measured_hz(s, goal) / hz;
             for (int slot = MT_SLOT_EQUALS; slot <= MT_SLOT_AT_MOST; slot++) {
                 doubt_target(of_study, goal, (mt_goal_slot)slot, hz);
             }
@@ -295,15 +352,20 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_lis
         mt_doubt_copy(out, &study->doubts.items[i]);
     }
     mt_doubt_list of_model = mt_doubt_list_default(out->mem);
+    double *const ratio = mt_arena_f64(out->mem, (size_t)study->n_goals, 1);
+    MT_TRY(mt_arena_check(out->mem, err));
     for (int c = 0; c < study->model->n_configurations && look; c++) {
         if (mt_study_asks(study, c)) {
-            MT_TRY(examine_configuration(study, c, out, &of_model, err));
+            MT_TRY(examine_configuration(study, c, ratio, out, &of_model, err));
         }
     }
     for (int g = 0; g < study->n_goals && look; g++) {
         if (study->goals[g].avoid != NULL) {
             MT_TRY(examine_bands(study, g, out, err));
         }
+    }
+    for (int i = 0; i < study->n_references; i++) {
+        doubt_reference(study, i, ratio, out);
     }
     for (int i = first; i < out->n; i++) {
         mt_doubt *const d = &out->items[i];
@@ -320,5 +382,6 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_lis
     for (int i = 0; i < study->n_references; i++) {
         MT_TRY(examine_reference(study, &study->references[i], out, err));
     }
+    mt_doubt_accept(out, first, &study->accepted);
     return mt_arena_check(out->mem, err);
 }

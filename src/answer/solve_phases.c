@@ -267,7 +267,5 @@ mt_status mt_answer_publish(mt_answer *a, mt_err *err)
 
 mt_status mt_answer_trade(mt_answer *a, mt_err *err)
 {
-    MT_TRY(mt_trade_solve(a->study, a->threads, &a->scope, a->result, err));
-    mt_answer_qualify_trade(a->result);
-    return MT_OK;
+    return mt_trade_solve(a->study, a->threads, &a->scope, a->result, err);
 }

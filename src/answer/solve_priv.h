@@ -99,7 +99,5 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err);
 mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err);
 /* What all of it has cost, but for the points of a trade study, which are told already. */
 void mt_answer_note_spent(const mt_answer *a);
-/* Doubts about the question concern the points of its trade study, too. */
-void mt_answer_qualify_trade(mt_result *result);
 
 #endif

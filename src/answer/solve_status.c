@@ -289,42 +289,6 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                      nearest);
 }
 
-static void lower_grade(mt_recommendation *r)
-{
-    if (r->grade != NULL && strcmp(r->grade, "feasible and proven") == 0) {
-        r->grade = "feasible";
-    }
-}
-
-/* The points of a trade study are answers to the same question. */
-void mt_answer_qualify_trade(mt_result *result)
-{
-    for (int i = 0;
-         result->n_doubts > 0 && result->trade != NULL && i < result->trade->n_points; i++) {
-        lower_grade(&result->trade->points[i].best);
-    }
-}
-
-/* Nothing is proven of a question that is hardly the one that was meant: the doubts come first,
- * and no design is graded beyond "feasible". */
-static mt_status qualify(mt_result *result, mt_err *err)
-{
-    const int n = result->n_doubts;
-    const char *const first = n > 0 ? result->doubts[0].text : "";
-    if (n == 0) {
-        return MT_OK;
-    }
-    for (int i = 0; i < result->n_recommendations; i++) {
-        lower_grade(&result->recommendations[i]);
-    }
-    result->status_text =
-        n == 1 ? mt_arena_printf(&result->mem, "Doubtful question (%s). %s", first,
-                                 result->status_text)
-               : mt_arena_printf(&result->mem, "Doubtful question (%s; and %d more). %s", first,
-                                 n - 1, result->status_text);
-    return mt_arena_check(&result->mem, err);
-}
-
 mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
 {
     mt_result *const result = a->result;
@@ -341,8 +305,7 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
         result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
     }
     result->status_text = status_text(a, best);
-    MT_TRY(mt_arena_check(&result->mem, err));
-    return qualify(result, err);
+    return mt_arena_check(&result->mem, err);
 }
 
 void mt_answer_note_spent(const mt_answer *a)

@@ -3,6 +3,13 @@
 
 #include <stdarg.h>
 #include <stddef.h>
+#include <string.h>
+
+const char *const mt_doubt_names[MT_DOUBT_NAME_COUNT] = {
+#define MT_DOUBT_NAME(name, of) name,
+    MT_DOUBT_NAMES(MT_DOUBT_NAME)
+#undef MT_DOUBT_NAME
+};
 
 mt_doubt_list mt_doubt_list_default(mt_arena *mem)
 {
@@ -52,6 +59,20 @@ void mt_doubt_sort(mt_doubt_list *list, int first)
             list->items[k] = list->items[k - 1];
         }
         list->items[k] = moved;
+    }
+}
+
+void mt_doubt_accept(mt_doubt_list *list, int first, const mt_accepted *accepted)
+{
+    for (int i = first; i < list->n; i++) {
+        mt_doubt *const d = &list->items[i];
+        for (int k = 0; k < accepted->n && d->level == MT_LEVEL_DOUBT; k++) {
+            if (strcmp(accepted->names[k], d->kind) == 0) {
+                d->level = MT_LEVEL_FACT;
+                d->text =
+                    mt_arena_printf(list->mem, "accepted: %s", d->text == NULL ? "" : d->text);
+            }
+        }
     }
 }
 

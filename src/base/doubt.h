@@ -32,6 +32,46 @@ typedef struct mt_doubt {
     double size;  /* how far, in a unit of the kind: the largest is said first */
 } mt_doubt;
 
+/* Names of warnings (doubts), which a file may accept by them: name, of what. */
+#define MT_DOUBT_NAMES(X)                                                              \
+    X("angle", "an angle above 2 pi without a unit in a trigonometric function")       \
+    X("band", "a band without width")                                                  \
+    X("bounds", "bounds of a variable, powers of ten apart or away from the original") \
+    X("bushing", "a bushing whose two points are apart")                               \
+    X("damping", "a damping ratio or loss factor that looks like per cent")            \
+    X("density", "a density that no solid has")                                        \
+    X("drive", "a drive beyond a turn, or beyond the drawing")                         \
+    X("dropped", "an own setting of a configuration that drops inherited ones")        \
+    X("frequency", "a lowest frequency that no mechanism has")                         \
+    X("gap", "two points of a joint that are drawn apart")                             \
+    X("gravity", "gravity that points up")                                             \
+    X("inertia", "a radius of gyration beyond a body's size")                          \
+    X("margin", "a margin that looks like a factor")                                   \
+    X("mass", "a mass that no mechanism has")                                          \
+    X("modulus", "a modulus that no solid has")                                        \
+    X("no_effect", "bands without effect")                                             \
+    X("off", "a joint or spring that lies off what it holds")                          \
+    X("reference", "measured frequencies that are all off by 2 pi or 60")              \
+    X("section", "a section that is too thick or too thin")                            \
+    X("size", "a drawing that is too large or too small")                              \
+    X("speed", "a speed that looks like turns per minute")                             \
+    X("speed_range", "a range of speeds that looks like per cent")                     \
+    X("spring", "a spring that acts against what joints forbid")                       \
+    X("target", "a target far from the original frequency")                            \
+    X("tolerance", "a tolerance within which almost anything, or nothing, lies")
+enum {
+#define MT_DOUBT_COUNT_ONE(name, of) +1
+    MT_DOUBT_NAME_COUNT = 0 MT_DOUBT_NAMES(MT_DOUBT_COUNT_ONE)
+#undef MT_DOUBT_COUNT_ONE
+};
+extern const char *const mt_doubt_names[MT_DOUBT_NAME_COUNT];
+
+/* Names of warnings that a file accepts; the file's arena owns them. */
+typedef struct mt_accepted {
+    int n;
+    const char **names;
+} mt_accepted;
+
 /* So many are kept, and as many faults besides: no doubt hides one. */
 enum { MT_DOUBT_LIMIT = 1000 };
 
@@ -50,6 +90,8 @@ mt_doubt *mt_doubt_add(mt_doubt_list *list, mt_doubt_level level, const char *ki
                        const char *fmt, ...) MT_PRINTF(4, 5);
 /* Items first .. n - 1 in the order of falling size; equal ones keep their order. */
 void mt_doubt_sort(mt_doubt_list *list, int first);
+/* Doubts from `first` on that are accepted become facts, which say so. */
+void mt_doubt_accept(mt_doubt_list *list, int first, const mt_accepted *accepted);
 /* Copy of an item, with all its texts, into another list. */
 void mt_doubt_copy(mt_doubt_list *list, const mt_doubt *item);
 

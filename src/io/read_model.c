@@ -24,6 +24,7 @@
     X(MODEL_NAME, "name", TEXT, false)                \
     X(MODEL_DESCRIPTION, "description", TEXT, false)  \
     X(MODEL_SOURCE, "source", TEXT, false)            \
+    X(MODEL_ACCEPTED, "accepted", LIST, false)        \
     X(MODEL_UNITS, "units", OBJECT, false)            \
     X(MODEL_DIMENSION, "dimension", COUNT, true)      \
     X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false) \
@@ -232,6 +233,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     mt_model *const m = mr->m;
     m->name = mt_reader_text(&mr->r, at[MODEL_NAME]);
     m->description = mt_reader_text(&mr->r, at[MODEL_DESCRIPTION]);
+    m->accepted = mt_reader_accepted(&mr->r, at[MODEL_ACCEPTED]);
     m->dimension = mt_reader_count(&mr->r, at[MODEL_DIMENSION], 2, 3, 0);
     m->dimension_addr = at[MODEL_DIMENSION];
     mt_read_units(&mr->r, at[MODEL_UNITS], m->units);

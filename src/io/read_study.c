@@ -19,6 +19,7 @@
     X(STUDY_NAME, "name", MT_KEY_TEXT, false)                        \
     X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
     X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                    \
+    X(STUDY_ACCEPTED, "accepted", MT_KEY_LIST, false)                \
     X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                       \
     X(STUDY_UNITS, "units", MT_KEY_OBJECT, false)                    \
     X(STUDY_VARIABLES, "variables", MT_KEY_LIST, false)              \
@@ -337,6 +338,9 @@ static void note_places(mt_study_reader *s)
         note_place(s, study->variables[i].lower_addr);
         note_place(s, study->variables[i].upper_addr);
     }
+    for (int i = 0; i < study->n_references && i < MOST_PLACED; i++) {
+        note_place(s, study->references[i].addr);
+    }
 }
 
 static void read_root(mt_study_reader *s)
@@ -349,6 +353,7 @@ static void read_root(mt_study_reader *s)
     }
     study->name = mt_reader_text(&s->r, o.found[STUDY_NAME]);
     study->description = mt_reader_text(&s->r, o.found[STUDY_DESCRIPTION]);
+    study->accepted = mt_reader_accepted(&s->r, o.found[STUDY_ACCEPTED]);
     study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);
     study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
                                              MAX_RECOMMENDATIONS, study->recommendations);

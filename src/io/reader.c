@@ -342,6 +342,20 @@ int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *
     return MT_ABSENT;
 }
 
+mt_accepted mt_reader_accepted(mt_reader *r, mt_addr value)
+{
+    mt_items items = mt_reader_items(r, value);
+    mt_accepted out = {.names = mt_reader_room(r, &items, sizeof *out.names)};
+    while (mt_items_next(&items)) {
+        const int k =
+            mt_reader_choice(r, items.at, "warning", mt_doubt_names, MT_COUNT(mt_doubt_names));
+        if (k != MT_ABSENT) {
+            out.names[out.n++] = mt_doubt_names[k];
+        }
+    }
+    return out;
+}
+
 int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallback)
 {
     if (!mt_reader_type(r, value, MT_KEY_COUNT)) {

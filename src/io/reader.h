@@ -2,6 +2,7 @@
 #ifndef IO_READER_H
 #define IO_READER_H
 
+#include "base/doubt.h"
 #include "expr/expr.h"
 #include "io/json.h"
 #include "model/model.h"
@@ -131,6 +132,8 @@ mt_name_list mt_reader_refs(mt_reader *r, mt_addr value);
  * and the known ones). what: "type". */
 int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names,
                      int n);
+/* The names of warnings in a list, each noted where there is none of that name. */
+mt_accepted mt_reader_accepted(mt_reader *r, mt_addr value);
 /* A whole number within least..most; fallback where absent or wrong (noted). 9, 9.0 and 9e0 are
  * whole. */
 int mt_reader_count(mt_reader *r, mt_addr value, int least, int most, int fallback);

@@ -19,10 +19,10 @@
  * aluminium in psi 1e7 (not seen), steel in GPa 210. */
 static const double LEAST_MODULUS_PA = 1e6;
 static const double MOST_MODULUS_PA = 1e13;
-/* kg/m^3. Air has 1.2, foams 20 and more, osmium 22 590; steel in t/mm^3 is 7.85e-9, in g/cm^3
- * 7.85 (not seen), in kg/mm^3 7.85e-6. */
-static const double LEAST_DENSITY = 1.0;
-static const double MOST_DENSITY = 3e4;
+/* kg/m^3. Foams have 20 and more, osmium 22 590; steel in g/cm^3 is 7.85, in t/mm^3 7.85e-9, in
+ * kg/mm^3 7.85e-6. */
+static const double LEAST_DENSITY = 10.0;
+static const double MOST_DENSITY = 23000.0;
 /* m: a section wider than the trunk of a giant tree, or than the finest wire is thick, was
  * written in other units. */
 static const double MOST_SECTION_M = 10.0;
@@ -121,10 +121,11 @@ static void density(mt_judge *j, const mt_item *item, mt_num num)
     sign(j, item, num, member, false);
     if (v > 0.0 && v < LEAST_DENSITY) {
         range(j, item, num, member, "density",
-              "below 1 kg/m^3, lighter than air: is it meant in t/mm^3 or kg/mm^3?");
+              "below 10 kg/m^3, less than any solid has: is it meant in g/cm^3, t/mm^3 or "
+              "kg/mm^3?");
     } else if (v > MOST_DENSITY) {
         range(j, item, num, member, "density",
-              "above 30000 kg/m^3, more than any solid has: is the unit kg/m^3?");
+              "above 23000 kg/m^3, more than any solid has: is the unit kg/m^3?");
     }
 }
 
@@ -328,6 +329,7 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
                     mt_doubt_list *out)
 {
     mt_judge j = {.model = model, .configuration = configuration, .value = value, .out = out};
+    const int first = out->n;
     judge_bodies(&j);
     judge_links(&j);
     judge_springs(&j);
@@ -336,7 +338,9 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     mt_judge_damping(&j);
     mt_judge_inherited(&j);
     mt_judge_structure(&j);
+    mt_judge_angles(&j);
     mt_judge_geometry(&j);
+    mt_doubt_accept(out, first, &model->accepted);
 }
 
 mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,

@@ -22,15 +22,21 @@ static const double DOUBTED_OFF = 1.0;
 static const double TOLD_GAP = 1e-3;
 static const double DOUBTED_GAP = 0.1;
 static const double DOUBTED_GAP_M = 1.0;
-/* m: the box around a mechanism. A wind turbine's rotor has 200 m, and a stick of half a metre
- * in millimetres 500; the smallest micromachines have some 1e-6. */
+/* m: the box around a mechanism; the smallest micromachines have some 1e-6. A stick of half a
+ * metre in millimetres has 500, as a large ship: what tells them apart is the mass in the cube
+ * around them [kg/m^3], a ship's 1, a wind turbine's 1e-2, a bridge's 1e-3, and 1e-8 of a stick
+ * of 2 kg that is 500 m wide. */
 static const double MOST_SIZE_M = 300.0;
-static const double LEAST_SIZE_M = 1e-6;
+static const double LEAST_SIZE_M = 1e-8;
+static const double LEAST_FILLED = 1e-4;
 /* A section so many times thicker than its link is long is written in millimetres. */
 static const double MOST_STOUT = 10.0;
-/* Radius of gyration of a body in sizes of the drawing: kg mm^2 for kg m^2 makes it a thousand
- * times too large; inertias that a gear multiplies stay below. */
-static const double MOST_GYRATION = 30.0;
+/* Radius of gyration in largest distances of the body's points: a rod's is 0.3 of its length;
+ * kg mm^2 for kg m^2 makes it a thousand times too large, g cm^2 three thousand. Of a body with
+ * one point, as a rotor, in sizes of the drawing; inertias that a gear multiplies stay
+ * below. */
+static const double MOST_GYRATION = 3.0;
+static const double MOST_ALONE = 30.0;
 /* A drive along a line, in sizes of the drawing: a stroke is a part of the mechanism. */
 static const double MOST_STROKE = 3.0;
 /* Points of bodies are compared with all others: in models of more joints and springs that
@@ -83,6 +89,18 @@ static void include(const mt_judge *j, box *b, const mt_position *p)
         b->high[k] = b->n == 0 ? x[k] : fmax(b->high[k], x[k]);
     }
     b->n++;
+}
+
+/* The points of a joint or a spring on the bodies that it holds. */
+static void include_sides(const mt_judge *j, box *boxes, const mt_attach bodies[2], int n_at,
+                          const mt_position at[2])
+{
+    for (int side = 0; side < 2 && n_at > 0; side++) {
+        const mt_attach *const a = &bodies[side];
+        if (a->name.s != NULL && a->kind == MT_ATTACH_BODY && a->index >= 0) {
+            include(j, &boxes[a->index], &at[n_at == 2 ? side : 0]);
+        }
+    }
 }
 
 /* The box around everything that is drawn, but for one joint and one spring (NULL: nothing is
@@ -352,9 +370,28 @@ static void judge_gap(mt_judge *j, const mt_item *item, const mt_joint *joint, d
     }
 }
 
+/* What the model says of masses, without those that follow from density and section. */
+static double mass_of(const mt_judge *j)
+{
+    const mt_model *const m = j->model;
+    double mass = 0.0;
+    for (int i = 0; i < m->n_bodies; i++) {
+        const mt_num num = m->bodies[i].mass;
+        mass += num == MT_ABSENT ? 0.0 : j->value[num];
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        const mt_link *const l = &m->links[i];
+        mass += l->mass == MT_ABSENT ? 0.0 : j->value[l->mass];
+        for (int k = 0; k < l->n_element_mass; k++) {
+            mass += j->value[l->element_mass[k]];
+        }
+    }
+    return mass;
+}
+
 static void judge_size(mt_judge *j, double size)
 {
-    const bool large = size > MOST_SIZE_M;
+    const bool large = size > MOST_SIZE_M && mass_of(j) / size / size / size < LEAST_FILLED;
     if (size == 0.0 || (!large && size >= LEAST_SIZE_M)) {
         return;
     }
@@ -395,7 +432,38 @@ static void judge_stout(mt_judge *j, const mt_item *item, const mt_link *l)
     }
 }
 
-static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, double size)
+/* The box of each body's points: its centre, and where joints, springs, loads and sensors hold
+ * on to it. NULL: no memory. */
+static box *boxes_of_bodies(const mt_judge *j)
+{
+    const mt_model *const m = j->model;
+    box *const boxes = mt_arena_alloc(j->out->mem, (size_t)m->n_bodies, sizeof *boxes);
+    for (int i = 0; i < m->n_bodies && boxes != NULL; i++) {
+        include(j, &boxes[i], &m->bodies[i].centre);
+    }
+    for (int i = 0; i < m->n_joints && boxes != NULL; i++) {
+        const mt_joint *const o = &m->joints[i];
+        if (mt_model_present(&o->in, j->configuration)) {
+            include_sides(j, boxes, o->bodies, o->n_at, o->at);
+        }
+    }
+    for (int i = 0; i < m->n_springs && boxes != NULL; i++) {
+        const mt_spring *const o = &m->springs[i];
+        if (mt_model_present(&o->in, j->configuration)) {
+            include_sides(j, boxes, o->bodies, o->n_at, o->at);
+        }
+    }
+    for (int i = 0; i < m->n_sensors && boxes != NULL; i++) {
+        const mt_sensor *const o = &m->sensors[i];
+        if (o->on_kind == MT_ATTACH_BODY && o->on >= 0 && o->at.given) {
+            include(j, &boxes[o->on], &o->at);
+        }
+    }
+    return boxes;
+}
+
+static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, double own,
+                           double size)
 {
     const double mass = b->mass == MT_ABSENT ? 0.0 : j->value[b->mass];
     double most = 0.0;
@@ -403,13 +471,15 @@ static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, d
         most = fmax(most, b->inertia[k] == MT_ABSENT ? 0.0 : j->value[b->inertia[k]]);
     }
     const double radius = mass > 0.0 ? sqrt(most) / sqrt(mass) : 0.0;
-    if (size > 0.0 && radius > MOST_GYRATION * size) {
+    const char *const of = own > 0.0 ? "of a body whose points are at most" : "in a drawing";
+    if (own > 0.0 ? radius > MOST_GYRATION * own : size > 0.0 && radius > MOST_ALONE * size) {
         (void)mt_judge_place(
             j,
             mt_doubt_add(j->out, MT_LEVEL_DOUBT, "inertia",
                          "body \"%s\": inertia_kg_m2 (%g) and mass_kg (%g) give a radius of "
-                         "gyration of %.4g m in a drawing %.4g m wide: is it meant in kg mm^2?",
-                         item->name, most, mass, radius, size),
+                         "gyration of %.4g m %s %.4g m %s: is it meant in kg mm^2 or g cm^2?",
+                         item->name, most, mass, radius, of, own > 0.0 ? own : size,
+                         own > 0.0 ? "apart" : "wide"),
             j->model->nums[b->inertia[0]].addr,
             mt_arena_printf(j->out->mem, "/bodies/%d/inertia_kg_m2", item->index));
     }
@@ -489,10 +559,11 @@ void mt_judge_geometry(mt_judge *j)
     }
     judge_loads(j);
     mt_doubt_sort(j->out, first);
-    for (int i = 0; i < m->n_bodies; i++) {
+    const box *const own = boxes_of_bodies(j);
+    for (int i = 0; i < m->n_bodies && own != NULL; i++) {
         if (mt_model_present(&m->bodies[i].in, j->configuration)) {
             const mt_item item = {"body", "bodies", i, m->bodies[i].name.s};
-            judge_gyration(j, &item, &m->bodies[i], size);
+            judge_gyration(j, &item, &m->bodies[i], size_of(&own[i]), size);
         }
     }
     for (int i = 0; i < m->n_links; i++) {
@@ -503,4 +574,5 @@ void mt_judge_geometry(mt_judge *j)
     }
     judge_size(j, size);
     judge_stroke(j, size);
+    mt_judge_meant(j, size);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a configuration's own setting drops of the one that it would inherit: a setting takes the
- * place of the whole of the other. */
+/* What a configuration's own setting drops of the one that it would inherit: it takes the place
+ * of the whole of the other. */
 #include "model/judge_priv.h"
 
 #include <stddef.h>

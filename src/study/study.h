@@ -316,6 +316,7 @@ typedef struct mt_study {
     MT_LIST_OF(const char *, warnings);
     /* of the study's own numbers; by finish, their places by the reader */
     mt_doubt_list doubts;
+    mt_accepted accepted; /* warnings that are known and meant, of its model, too */
     /* of goals, variables and their numbers; by the reader */
     MT_LIST_OF(mt_study_place, places);
     bool examined;       /* doubts have been told already: a point of a trade study */

@@ -23,6 +23,8 @@ static const double LEAST_MARGIN_PERCENT = 1.0;
 static const double LEAST_WIDTH = 1e-3;
 /* A goal met within half of what it asks asks for nothing. */
 static const double MOST_TOLERANCE_PERCENT = 50.0;
+/* No part is made to a hundredth of a per cent; 0.005 is the factor that half a per cent is. */
+static const double LEAST_TOLERANCE_PERCENT = 0.01;
 /* Bounds that span more than eight decades, or lie three from the original, have a power of ten
  * wrong more often than not. */
 static const double MOST_SPAN = 1e8;
@@ -152,13 +154,27 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
     }
 }
 
+static void doubt_fine(mt_doubt_list *out, double tolerance, mt_addr addr)
+{
+    if (tolerance > 0.0 && tolerance < LEAST_TOLERANCE_PERCENT) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "tolerance",
+                        "tolerance_percent %g is %g %%, next to nothing: is %g %% meant?",
+                        tolerance, tolerance, PERCENT * tolerance),
+           addr);
+    }
+}
+
 static void doubt_trade(mt_doubt_list *out, const mt_trade *trade)
 {
+    /* a span from 0 to 10 per cent passes by all that is less */
     for (int i = 0; i < trade->n_vary; i++) {
         const mt_vary *const v = &trade->vary[i];
-        const bool margin = v->kind == MT_VARY_GOAL && v->slot == MT_SLOT_MARGIN;
-        for (int k = 0; k < v->n_values && margin; k++) {
-            doubt_margin(out, v->values[k], v->values_addr);
+        double most = 0.0;
+        for (int k = 0; k < v->n_values; k++) {
+            most = fmax(most, v->values[k]);
+        }
+        if (v->kind == MT_VARY_GOAL && v->slot == MT_SLOT_MARGIN) {
+            doubt_margin(out, most, v->values_addr);
         }
     }
 }
@@ -170,6 +186,7 @@ void mt_study_check_doubts(mt_study_check *c)
     *out = mt_doubt_list_default(&s->mem);
     for (int i = 0; i < s->n_variables; i++) {
         doubt_variable(out, &s->variables[i]);
+        doubt_fine(out, s->variables[i].tolerance_percent, s->variables[i].tolerance_addr);
     }
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const goal = &s->goals[i];
@@ -185,7 +202,10 @@ void mt_study_check_doubts(mt_study_check *c)
         }
     }
     doubt_trade(out, &s->trade);
+    mt_doubt_accept(out, 0, &s->accepted);
     for (int i = 0; i < out->n; i++) {
-        mt_diag_warning(c->diags, out->items[i].addr, "%s", out->items[i].text);
+        if (out->items[i].level == MT_LEVEL_DOUBT) {
+            mt_diag_warning(c->diags, out->items[i].addr, "%s", out->items[i].text);
+        }
     }
 }

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is possible and hardly meant, beside single numbers: gravity that points up, bushings
+ * whose two points are apart, and what a kind of link leaves out. */
+#include "model/judge_priv.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "base/format.h"
+
+/* A bushing's two points so far apart, in parts of the drawing's size, are two points. */
+static const double BUSHING_APART = 0.01;
+
+enum { AXES = 3, PLACE = 96 };
+
+/* Whose gravity is in force: its pointer, and its numbers. */
+static const char *gravity_pointer(const mt_judge *j)
+{
+    const mt_model *const m = j->model;
+    const mt_num own = m->configurations[j->configuration].gravity[0];
+    int c = j->configuration;
+    if (m->has_gravity && m->gravity[0] == own) {
+        return "/gravity_m_per_s2";
+    }
+    for (int like = m->configurations[c].like;
+         like != MT_ABSENT && m->configurations[like].gravity[0] == own;
+         like = m->configurations[c].like) {
+        c = like;
+    }
+    return mt_arena_printf(j->out->mem, "/configurations/%s/gravity_m_per_s2",
+                           m->configurations[c].name.s);
+}
+
+/* Along +y of a plane, +y or +z of space, more than along any other axis. */
+static void judge_gravity(mt_judge *j)
+{
+    static const char *const axes[] = {"x", "y", "z"};
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
+    double g[AXES] = {0.0, 0.0, 0.0};
+    int most = 0;
+    if (!c->has_gravity) {
+        return;
+    }
+    for (int k = 0; k < AXES; k++) {
+        g[k] = c->gravity[k] == MT_ABSENT ? 0.0 : j->value[c->gravity[k]];
+        most = fabs(g[k]) > fabs(g[most]) ? k : most;
+    }
+    if (most == 0 || !(g[most] > 0.0)) {
+        return;
+    }
+    (void)mt_judge_place(
+        j,
+        mt_doubt_add(j->out, MT_LEVEL_DOUBT, "gravity",
+                     "gravity_m_per_s2 is %g along +%s, which is up where %s is the height: is "
+                     "%g meant?",
+                     g[most], axes[most], axes[most], -g[most]),
+        j->model->nums[c->gravity[most]].addr, gravity_pointer(j));
+}
+
+static const char *point_text(const mt_judge *j, const double x[3], char out[PLACE])
+{
+    (void)(j->model->dimension == 2
+               ? mt_snprintf(out, PLACE, "(%.4g, %.4g) m", x[0], x[1])
+               : mt_snprintf(out, PLACE, "(%.4g, %.4g, %.4g) m", x[0], x[1], x[2]));
+    return out;
+}
+
+/* The forces of a bushing act at its second point, on both bodies. */
+static void judge_bushing(mt_judge *j, const mt_item *item, const mt_spring *s, double size)
+{
+    double x[2][AXES] = {{0.0}};
+    char place[PLACE];
+    mt_arena *const mem = j->out->mem;
+    const mt_attach *const second = &s->bodies[1];
+    if (s->n_at == 2 && mt_judge_position(j, &s->at[0], x[0]) &&
+        mt_judge_position(j, &s->at[1], x[1])) {
+        const double apart =
+            hypot(hypot(x[1][0] - x[0][0], x[1][1] - x[0][1]), x[1][2] - x[0][2]);
+        if (!(apart > BUSHING_APART * size)) {
+            return;
+        }
+        mt_doubt *const doubt =
+            mt_doubt_add(j->out, MT_LEVEL_DOUBT, "bushing",
+                         "%s \"%s\": its two points are %.4g m apart; its forces act at the "
+                         "second, %s, on both bodies",
+                         item->what, item->name, apart, point_text(j, x[1], place));
+        if (mt_judge_place(j, doubt, s->at[1].addr,
+                           mt_arena_printf(mem, "/%s/%d/at/1", item->list, item->index)) !=
+            NULL) {
+            doubt->size = apart;
+        }
+        return;
+    }
+    if (s->n_at > 0 || second->name.s == NULL) {
+        return;
+    }
+    const bool body = second->kind == MT_ATTACH_BODY && second->index >= 0;
+    const bool known = body
+                           ? mt_judge_position(j, &j->model->bodies[second->index].centre, x[1])
+                           : second->kind == MT_ATTACH_GROUND;
+    const char *const of = second->kind == MT_ATTACH_GROUND ? "the origin" : "the centre of ";
+    (void)mt_judge_place(
+        j,
+        mt_doubt_add(j->out, MT_LEVEL_FACT, "bushing",
+                     "%s \"%s\" has no \"at\": its forces act at %s%s%s%s%s%s", item->what,
+                     item->name, of, second->kind == MT_ATTACH_GROUND ? "" : "\"",
+                     second->kind == MT_ATTACH_GROUND ? "" : second->name.s,
+                     second->kind == MT_ATTACH_GROUND ? "" : "\"", known ? ", " : "",
+                     known ? point_text(j, x[1], place) : ""),
+        s->name.addr, mt_arena_printf(mem, "/%s/%d", item->list, item->index));
+}
+
+/* Rigid elements are joined by hinges about one axis. */
+static void judge_link(mt_judge *j, const mt_item *item, const mt_link *l)
+{
+    if (j->model->dimension == 2 || l->kind == MT_LINK_BEAM || l->elements < 2) {
+        return;
+    }
+    (void)mt_judge_place(
+        j,
+        mt_doubt_add(j->out, MT_LEVEL_FACT, "one_axis",
+                     "link \"%s\" of rigid elements bends about its hinge axis only: about the "
+                     "other axis, and in torsion, it is rigid (\"kind\": \"beam\" bends about "
+                     "both)",
+                     item->name),
+        l->name.addr, mt_arena_printf(j->out->mem, "/links/%d", item->index));
+}
+
+void mt_judge_meant(mt_judge *j, double size)
+{
+    const mt_model *const m = j->model;
+    int dampers = 0;
+    judge_gravity(j);
+    for (int i = 0; i < m->n_springs; i++) {
+        const mt_spring *const s = &m->springs[i];
+        const mt_item item = {s->damper ? "damper" : "spring",
+                              s->damper ? "dampers" : "springs", s->damper ? dampers++ : i,
+                              s->name.s};
+        if (s->type == MT_SPRING_BUSHING && mt_model_present(&s->in, j->configuration)) {
+            judge_bushing(j, &item, s, size);
+        }
+    }
+    for (int i = 0; i < m->n_links; i++) {
+        const mt_item item = {"link", "links", i, m->links[i].name.s};
+        if (mt_model_present(&m->links[i].in, j->configuration)) {
+            judge_link(j, &item, &m->links[i]);
+        }
+    }
+}
