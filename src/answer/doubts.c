@@ -147,6 +147,9 @@ static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
 /* One degree, one per cent: more than what a drawing leaves open. */
 static const double MUCH_RAD = 0.017453292519943295;
 static const double MUCH_OF_LENGTH = 0.01;
+/* Ten degrees, a tenth of the model: another posture than the one that was drawn. */
+static const double FAR_RAD = 0.17453292519943295;
+static const double FAR_OF_LENGTH = 0.1;
 
 static void say_motion(const mt_linear *lin, mt_doubt_list *out)
 {
@@ -158,17 +161,24 @@ static void say_motion(const mt_linear *lin, mt_doubt_list *out)
     if (!p->equilibrium.active) {
         return;
     }
+    const bool far = (p->turned_body >= 0 && p->turned_rad > FAR_RAD) ||
+                     (p->moved_body >= 0 && p->moved_m > FAR_OF_LENGTH * sys->length_m);
+    const char *const how = far ? "far " : "";
+    mt_doubt *d = NULL;
     if (turns) {
-        (void)mt_doubt_add(
+        d = mt_doubt_add(
             out, MT_LEVEL_FACT, "settles",
-            "it settles away from %s: \"%s\" turns by %.3g degrees, \"%s\" moves by "
+            "it settles %saway from %s: \"%s\" turns by %.3g degrees, \"%s\" moves by "
             "%.3g m",
-            from, sys->bodies[p->turned_body].name, p->turned_rad / MUCH_RAD,
+            how, from, sys->bodies[p->turned_body].name, p->turned_rad / MUCH_RAD,
             sys->bodies[p->moved_body < 0 ? p->turned_body : p->moved_body].name, p->moved_m);
     } else if (moves) {
-        (void)mt_doubt_add(out, MT_LEVEL_FACT, "settles",
-                           "it settles away from %s: \"%s\" moves by %.3g m", from,
-                           sys->bodies[p->moved_body].name, p->moved_m);
+        d = mt_doubt_add(out, MT_LEVEL_FACT, "settles",
+                         "it settles %saway from %s: \"%s\" moves by %.3g m", how, from,
+                         sys->bodies[p->moved_body].name, p->moved_m);
+    }
+    if (d != NULL && far) {
+        d->size = 1.0;
     }
 }
 
@@ -398,6 +408,11 @@ static void say_lowest(const mt_lowest *l, mt_doubt_list *out)
     }
 }
 
+bool mt_doubts_settles_far(const mt_doubt *d)
+{
+    return strcmp(d->kind, "settles") == 0 && d->size > 0.0;
+}
+
 /* Into `out`; what is there already, of another configuration, belongs to no single one. */
 static void merge(mt_doubt_list *out, const mt_doubt *d)
 {
@@ -461,9 +476,15 @@ static mt_status add_known(const known *k, int n_inputs, const int *inputs, cons
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_doubt_list list = mt_doubt_list_default(&mem);
     const mt_status rc = gather(k, n_inputs, inputs, at, &list, err);
+    /* another posture than the drawn one before all else */
+    for (int i = 0; i < list.n && rc == MT_OK; i++) {
+        if (mt_doubts_settles_far(&list.items[i])) {
+            merge(out, &list.items[i]);
+        }
+    }
     for (int level = MT_LEVEL_DOUBT; rc == MT_OK && level >= MT_LEVEL_FACT; level--) {
         for (int i = 0; i < list.n; i++) {
-            if ((int)list.items[i].level == level) {
+            if ((int)list.items[i].level == level && !mt_doubts_settles_far(&list.items[i])) {
                 merge(out, &list.items[i]);
             }
         }

@@ -23,6 +23,10 @@ mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
 mt_status mt_doubts_of_lowest(const mt_lowest *l, int n_inputs, const int *inputs,
                               const double *at, mt_doubt_list *out, mt_err *err);
 
+/* Is it said of a posture that settles more than ten degrees, or a tenth of the model, away? It
+ * is the first line of any answer. */
+bool mt_doubts_settles_far(const mt_doubt *d);
+
 /* What looking at configurations may cost where nobody asked for an analysis (`check`), in
  * operations: some three seconds. */
 #define MT_DOUBTS_WORK 2e9

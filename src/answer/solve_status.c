@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "answer/doubts.h"
 #include "base/format.h"
 #include "base/tie.h"
 #include "describe/certificates.h"
@@ -305,6 +306,15 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
         result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
     }
     result->status_text = status_text(a, best);
+    for (int i = 0; i < result->n_facts && result->status_text != NULL; i++) {
+        const mt_doubt *const d = &result->facts[i];
+        if (mt_doubts_settles_far(d)) {
+            result->status_text = mt_arena_printf(
+                &result->mem, "%s%s%s. %s", d->configuration == NULL ? "" : d->configuration,
+                d->configuration == NULL ? "" : ": ", d->text, result->status_text);
+            break;
+        }
+    }
     return mt_arena_check(&result->mem, err);
 }
 

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune info: what each configuration weighs and how it can move. */
 #include <math.h>
+#include <string.h>
 
 #include "answer/doubts.h"
 #include "base/format.h"
 #include "cli/cli.h"
+#include "cli/conventions.h"
 #include "mechanics/info.h"
 #include "mechanics/redundant.h"
+#include "model/values.h"
 #include "report/number.h"
 #include "report/table.h"
 
@@ -180,7 +183,26 @@ static const char *point_text(const double *x, int n, char *text, size_t size)
     return text;
 }
 
-static void write_text(mt_text *out, const view *v)
+/* Where another configuration has said the same (*last, which is taken over) nothing is. */
+static mt_status write_conventions(mt_text *out, view *v, mt_text *last, mt_err *err)
+{
+    mt_text text = {.s = NULL};
+    const mt_model *const m = v->s->model;
+    double *const value = mt_arena_f64(&v->mem, (size_t)m->n_nums, 1);
+    MT_TRY(mt_arena_check(&v->mem, err));
+    MT_TRY(
+        mt_model_numbers(m, v->c, v->s->n_inputs, v->s->inputs, v->s->at, &v->mem, value, err));
+    mt_cli_write_conventions(m, v->c, value, &text);
+    if (text.s != NULL && (last->s == NULL || strcmp(last->s, text.s) != 0)) {
+        mt_text_add(out, text.s);
+    }
+    out->failed = out->failed || text.failed;
+    mt_text_free(last);
+    *last = text;
+    return MT_OK;
+}
+
+static mt_status write_text(mt_text *out, view *v, mt_text *last, mt_err *err)
 {
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
@@ -211,7 +233,9 @@ static void write_text(mt_text *out, const view *v)
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);
     }
+    MT_TRY(write_conventions(out, v, last, err));
     mt_text_add(out, "\n");
+    return MT_OK;
 }
 
 /* "170 mm = 0.17 m": of every parameter that the file gives in a unit other than SI. */
@@ -275,8 +299,15 @@ static void fill_table(mt_table *t, const view *v)
     mt_table_integer(t, i->redundant);
 }
 
-static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *t, mt_text *out,
-                     mt_err *err)
+/* What is written in turn. */
+typedef struct sinks {
+    mt_json_writer *w;
+    mt_table *t;
+    mt_text *out;
+    mt_text *last; /* conventions, as they were said last */
+} sinks;
+
+static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
 {
     MT_TRY(mt_subject_analyse(v->s, v->c, 1, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
@@ -287,15 +318,14 @@ static mt_status one(const mt_args *args, view *v, mt_json_writer *w, mt_table *
         mt_doubts_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at, &v->doubts, err));
     switch (args->format) {
     case MT_FORMAT_JSON:
-        return write_json(w, v, err);
+        return write_json(to->w, v, err);
     case MT_FORMAT_CSV:
-        fill_table(t, v);
+        fill_table(to->t, v);
         return MT_OK;
     case MT_FORMAT_HTML:  /* of report alone */
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
-        write_text(out, v);
-        break;
+        return write_text(to->out, v, to->last, err);
     }
     return MT_OK;
 }
@@ -305,6 +335,8 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
     mt_subject s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
     mt_table t = table_new();
+    mt_text last = {.s = NULL};
+    const sinks to = {.w = &w, .t = &t, .out = out, .last = &last};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
     int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
@@ -321,7 +353,7 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
         view v = {.s = &s, .c = s.configurations[i]};
         mt_err err = {.code = MT_OK};
         mt_subject_warn_overridden(&s, v.c);
-        const mt_status rc = one(args, &v, &w, &t, out, &err);
+        const mt_status rc = one(args, &v, &to, &err);
         if (rc != MT_OK) {
             code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         }
@@ -345,6 +377,7 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
     }
 done:
     mt_table_free(&t);
+    mt_text_free(&last);
     mt_subject_free(&s);
     return code;
 }
