@@ -131,6 +131,58 @@ static double shown_misfit(double f)
     return mt_without_noise(sqrt(2.0 * f), MT_RATIO_NOISE);
 }
 
+/* Has the study goals besides limits that are but a scale? */
+static bool has_goals(const mt_recommendation *r)
+{
+    for (int i = 0; i < r->n_goals; i++) {
+        if (!r->goals[i].weighted) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Limits that are the scale of the objective "vibration": who keeps all of them. */
+static const char *scale_text(const mt_answer *a, mt_arena *mem)
+{
+    static const double WHOLE = 100.0; /* percent of a limit */
+    const mt_result *const r = a->result;
+    const double most = WHOLE * (1.0 + (MT_DEFAULT_TOLERANCE_PERCENT / WHOLE));
+    int kept = 0;
+    const char *list = "";
+    for (int i = 0; i < r->n_recommendations && list != NULL; i++) {
+        const mt_recommendation *const design = &r->recommendations[i];
+        if (design->n_objectives > 0 && design->objectives[0].recommended <= most) {
+            list = mt_arena_printf(mem, "%s%s %d", list, kept > 0 ? "," : "", design->rank);
+            kept++;
+        }
+    }
+    if (list == NULL) {
+        return NULL;
+    }
+    return kept == 0 ? "no recommendation keeps all limits of vibration"
+           : kept == r->n_recommendations
+               ? "all limits of vibration are kept"
+               : mt_arena_printf(mem,
+                                 "all limits of vibration are kept by recommendation%s%s alone",
+                                 kept == 1 ? "" : "s", list);
+}
+
+/* Of a study that makes vibration least. */
+static const char *least_text(const mt_answer *a, const mt_recommendation *best,
+                              const char *doubt, mt_arena *mem)
+{
+    const int n = a->found.n_solutions;
+    const char *const scale = scale_text(a, mem);
+    return scale == NULL ? NULL
+                         : mt_arena_printf(mem, "Solved: %d distinct design%s%s; %s.%s", n,
+                                           n == 1 ? "" : "s",
+                                           !has_goals(best) ? ""
+                                           : n == 1         ? " meets all goals"
+                                                            : " meet all goals",
+                                           scale, doubt);
+}
+
 static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
@@ -266,6 +318,10 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                   best->kkt_residual);
     if (doubt == NULL) {
         return NULL;
+    }
+    if (best->feasible && a->gaps.n_solutions == 0 &&
+        mt_objective_is(a->p->aims[0].type, MT_SHAKES)) {
+        return least_text(a, best, doubt, mem);
     }
     if (best->feasible) {
         return solved_text(a, doubt, mem);

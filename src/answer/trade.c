@@ -20,7 +20,6 @@ typedef struct point {
                      * with */
     mt_result *first; /* of the first pass; owned */
     mt_result *again; /* of the second, where a neighbour knew better; owned, or NULL */
-    double front[2];  /* what the front compares, less is better; NaN: does not take part */
     long evaluations;
     long multiplications;
 } point;
@@ -31,8 +30,6 @@ enum { BLOCK = 256 };
 /* Evaluations beside one local search that asks whether a neighbour knows better; and without
  * which a point is not searched again. */
 enum { LOOKS = 3, WARM_LEAST = 30 };
-enum { POINTER_TEXT = 32 };
-static const double PERCENT = 100.0;
 
 typedef struct trade {
     const mt_study *study;
@@ -360,75 +357,6 @@ static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* The largest part that a design's forced vibrations have of the study's own limits, whichever
- * the point has [%]; NaN where one is not known. */
-static double largest_part(const mt_study *study, const mt_recommendation *r)
-{
-    double most = 0.0;
-    for (int g = 0; g < study->n_goals; g++) {
-        char pointer[POINTER_TEXT];
-        (void)mt_snprintf(pointer, sizeof pointer, "/goals/%d", g);
-        for (int i = 0; i < r->n_responses && mt_goal_is_limit(&study->goals[g]); i++) {
-            const mt_result_response *const found = &r->responses[i];
-            const double part = PERCENT * found->value / study->goals[g].at_most;
-            const bool own = strcmp(found->pointer, pointer) == 0;
-            most = own && !(part <= most) ? part : most;
-        }
-    }
-    return most;
-}
-
-/* An objective of a design, signed so that less is better; NaN where the design does not meet
- * the goals. */
-static double front_value(const mt_study *study, mt_objective_type type,
-                          const mt_recommendation *r)
-{
-    if (r == NULL || !r->feasible) {
-        return nan("");
-    }
-    const bool is_first = study->n_objectives > 0 && study->objectives[0].type == type;
-    if (type == MT_OBJECTIVE_CHANGE) {
-        return r->change;
-    }
-    if (mt_objective_is(type, MT_RESIDUALS)) {
-        return r->misfit;
-    }
-    if (mt_objective_is(type, MT_BANDS)) {
-        return -r->clearance_percent;
-    }
-    if (mt_objective_is(type, MT_SHAKES) && !is_first) {
-        return largest_part(study, r);
-    }
-    return is_first ? r->score : nan("");
-}
-
-/* Is a as good as b in both and better in one, by more than the searches' rounding? */
-static bool dominates(const double *a, const double *b)
-{
-    const int first = mt_compare(a[0], b[0], MT_EQUAL_FOUND);
-    const int second = mt_compare(a[1], b[1], MT_EQUAL_FOUND);
-    return MT_HAS(a[0] + a[1]) && first <= 0 && second <= 0 && first + second < 0;
-}
-
-static void mark_front(const trade *t, mt_trade_result *out)
-{
-    const mt_trade *const asked = &t->study->trade;
-    for (int k = 0; k < t->n; k++) {
-        for (int i = 0; i < asked->n_objectives; i++) {
-            t->points[k].front[i] =
-                front_value(t->study, asked->objectives[i], best_of(answer_of(&t->points[k])));
-        }
-    }
-    for (int k = 0; k < t->n && asked->n_objectives == 2; k++) {
-        const double *const own = t->points[k].front;
-        bool beaten = !MT_HAS(own[0]) || !MT_HAS(own[1]);
-        for (int i = 0; i < t->n; i++) {
-            beaten = beaten || dominates(t->points[i].front, own);
-        }
-        out->points[k].pareto = !beaten;
-    }
-}
-
 /* The unit of what varies; NULL: it has none. */
 static const char *unit_of(const mt_study *study, const mt_vary *v)
 {
@@ -477,12 +405,13 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
         mt_interrupt_cause(t->study->model->interrupt) == MT_CAUSE_TIME_LIMIT
             ? "Not answered: the time limit came first."
             : "Interrupted before it was answered.";
+    const mt_recommendation **const best =
+        mt_arena_alloc(mem, (size_t)t->n, sizeof(const mt_recommendation *));
     out->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *out->points);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < t->n; k++) {
         const point *const p = &t->points[k];
         const mt_result *const r = answer_of(p);
-        const mt_recommendation *const best = best_of(r);
         mt_trade_point *const told = &out->points[k];
         *told = (mt_trade_point){.n_values = t->study->trade.n_vary,
                                  .values = mt_arena_f64(mem, MT_MAX_VARY, 1),
@@ -492,15 +421,15 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
             mem, r != NULL && r->status_text != NULL ? r->status_text : unanswered);
         MT_TRY(mt_arena_check(mem, err));
         memcpy(told->values, p->values, sizeof p->values);
-        if (best != NULL) {
-            MT_TRY(mt_recommendation_copy(best, mem, &told->best, err));
+        best[k] = best_of(r);
+        if (best[k] != NULL) {
+            MT_TRY(mt_recommendation_copy(best[k], mem, &told->best, err));
         }
         result->run.spent.trade += p->evaluations;
         result->run.spent.multiplications += p->multiplications;
     }
-    mark_front(t, out);
     result->trade = out;
-    return MT_OK;
+    return mt_trade_front(t->study, best, &result->baseline, mem, out, err);
 }
 
 /* All points, and once more each whose neighbours are known: what is left to other parts of the

@@ -25,6 +25,12 @@ mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *sco
  * value). */
 mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *mem,
                          mt_study *out, mt_err *err);
+/* trade_front.c: points of out that no other one beats are marked, and every point shows the
+ * objectives of the front that are none of the study's. best[n_points]: the best design of each
+ * or NULL, of which out has a copy; baseline: the original one. Fails: MT_E_MEMORY. */
+mt_status mt_trade_front(const mt_study *study, const mt_recommendation *const *best,
+                         const mt_recommendation *baseline, mt_arena *mem, mt_trade_result *out,
+                         mt_err *err);
 /* trade_warm.c: does a local search from x[n_variables] find a design of the point that w is of
  * (set to the whole of it, and again afterwards) that is better than best_x (NULL: any that
  * meets all goals)? In `most` evaluations at most, about. */

@@ -88,7 +88,7 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
 }
 
 /* Of objectives without a unit, and of percentages, it is known what is noise. */
-static void objective_cell(mt_table *t, const char *unit, double value)
+void mt_report_objective_cell(mt_table *t, const char *unit, double value)
 {
     if (unit == NULL || unit[0] == '\0' || strcmp(unit, "%") == 0) {
         mt_table_ratio(t, value, VALUE_DIGITS);
@@ -108,8 +108,8 @@ mt_table mt_report_objectives(const mt_recommendation *r)
         const mt_design_objective *const o = &r->objectives[k];
         mt_table_text(&t, o->text);
         mt_table_text(&t, o->unit == NULL || o->unit[0] == '\0' ? NULL : o->unit);
-        objective_cell(&t, o->unit, o->original);
-        objective_cell(&t, o->unit, o->recommended);
+        mt_report_objective_cell(&t, o->unit, o->original);
+        mt_report_objective_cell(&t, o->unit, o->recommended);
     }
     return t;
 }
@@ -118,7 +118,7 @@ mt_table mt_report_objectives(const mt_recommendation *r)
  * least. */
 static const char CHANGE[] = "change";
 
-static bool has_objective(const mt_result *result, const char *text)
+bool mt_report_has_objective(const mt_result *result, const char *text)
 {
     for (int k = 0; k < result->n_objectives; k++) {
         if (strcmp(result->objectives[k].text, text) == 0) {
@@ -131,7 +131,8 @@ static bool has_objective(const mt_result *result, const char *text)
 void mt_report_clearance_column(mt_table *t, const mt_result *result)
 {
     mt_table_column(t,
-                    has_objective(result, "clearance") ? "without margin [%]" : "clearance [%]",
+                    mt_report_has_objective(result, "clearance") ? "without margin [%]"
+                                                                 : "clearance [%]",
                     "clearance_percent", MT_ALIGN_POINT);
 }
 
@@ -148,7 +149,7 @@ void mt_report_objective_columns(mt_table *t, const mt_result *result)
         mt_table_column(t, heading, strcmp(heading, CHANGE) == 0 ? CHANGE : member,
                         MT_ALIGN_POINT);
     }
-    if (!has_objective(result, CHANGE)) {
+    if (!mt_report_has_objective(result, CHANGE)) {
         mt_table_column(t, CHANGE, CHANGE, MT_ALIGN_POINT);
     }
 }
@@ -156,10 +157,10 @@ void mt_report_objective_columns(mt_table *t, const mt_result *result)
 void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_recommendation *r)
 {
     for (int k = 0; k < result->n_objectives; k++) {
-        objective_cell(t, result->objectives[k].unit,
-                       k < r->n_objectives ? r->objectives[k].recommended : nan(""));
+        mt_report_objective_cell(t, result->objectives[k].unit,
+                                 k < r->n_objectives ? r->objectives[k].recommended : nan(""));
     }
-    if (!has_objective(result, CHANGE)) {
+    if (!mt_report_has_objective(result, CHANGE)) {
         mt_table_ratio(t, r->change, VALUE_DIGITS);
     }
 }
@@ -186,6 +187,16 @@ static void asked_cell(mt_table *t, const mt_result_goal *g)
                    g->display_factor, VALUE_DIGITS);
 }
 
+/* A limit that is the scale of an objective decides nothing, but it is kept or not. */
+static const char *verdict_of(const mt_result_goal *g)
+{
+    const bool kept = g->violation_percent <= 0.0;
+    if (!g->weighted) {
+        return g->met ? "met" : "not met";
+    }
+    return isnan(g->target) && !isnan(g->at_most) ? kept ? "kept" : "exceeded" : "weighted";
+}
+
 mt_table mt_report_goals(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
@@ -206,7 +217,7 @@ mt_table mt_report_goals(const mt_recommendation *r)
         }
         asked_cell(&t, g);
         mt_table_percent(&t, g->violation_percent, PERCENT_DIGITS);
-        mt_table_text(&t, g->weighted ? "weighted" : g->met ? "met" : "not met");
+        mt_table_text(&t, verdict_of(g));
     }
     return t;
 }

@@ -19,11 +19,16 @@ mt_table mt_report_objectives(const mt_recommendation *r);
 void mt_report_objective_columns(mt_table *t, const mt_result *result);
 void mt_report_objective_cells(mt_table *t, const mt_result *result,
                                const mt_recommendation *r);
+/* Is it one of the result's objectives? */
+bool mt_report_has_objective(const mt_result *result, const char *text);
+/* A cell of an objective's column. */
+void mt_report_objective_cell(mt_table *t, const char *unit, double value);
 /* The column of the least clearance from the bands without their margin, beside an objective
  * that is the one with it. */
 void mt_report_clearance_column(mt_table *t, const mt_result *result);
-/* A column for each variable, with the unit where people see another than machines (which it is
- * at this design, the same for all; NULL: there is none); and their cells of one design. */
+/* A column for each variable in the unit that people see (which it is at this design, the same
+ * for all; NULL: there is none), which machines find in the heading, people where it is not SI;
+ * and their cells of one design. */
 void mt_report_variable_columns(mt_table *t, const mt_result *result,
                                 const mt_recommendation *of);
 void mt_report_variable_cells(mt_table *t, const mt_result *result, const mt_recommendation *r);

@@ -59,13 +59,15 @@ void mt_report_variable_columns(mt_table *t, const mt_result *result,
                                 const mt_recommendation *of)
 {
     for (int k = 0; k < result->n_variables; k++) {
-        const char *const unit =
-            of != NULL && k < of->n_parameters ? of->parameters[k].display_unit : NULL;
+        const mt_result_parameter *const p =
+            of != NULL && k < of->n_parameters ? &of->parameters[k] : NULL;
+        const char *const shown = p == NULL ? NULL : p->display_unit;
+        const char *const unit = p == NULL || shown != NULL ? shown : p->unit;
         char heading[HEADING_TEXT];
         (void)mt_snprintf(heading, sizeof heading, "%.120s [%.20s]", result->variables[k],
                           unit == NULL ? "" : unit);
-        mt_table_column(t, unit == NULL ? result->variables[k] : heading, result->variables[k],
-                        MT_ALIGN_POINT);
+        mt_table_column(t, shown == NULL ? result->variables[k] : heading,
+                        unit == NULL ? result->variables[k] : heading, MT_ALIGN_POINT);
     }
 }
 
@@ -74,7 +76,7 @@ void mt_report_variable_cells(mt_table *t, const mt_result *result, const mt_rec
     for (int k = 0; k < result->n_variables; k++) {
         if (k < r->n_parameters) {
             const mt_result_parameter *const p = &r->parameters[k];
-            mt_table_shown(t, p->recommended, p->display_factor, VALUE_DIGITS);
+            mt_table_in_unit(t, p->recommended, p->display_factor, VALUE_DIGITS);
         } else {
             mt_table_number(t, nan(""), VALUE_DIGITS);
         }

@@ -92,6 +92,11 @@ void mt_table_shown(mt_table *t, double value, double factor, int digits)
              mt_report_exact(value, exact));
 }
 
+void mt_table_in_unit(mt_table *t, double value, double factor, int digits)
+{
+    mt_table_shown(t, mt_result_shown(value, factor), 1.0, digits);
+}
+
 void mt_table_rounded(mt_table *t, double value, int digits)
 {
     char text[MT_NUMBER_TEXT];

@@ -53,6 +53,8 @@ void mt_table_change(mt_table *t, double value, int digits);  /* with its sign *
  * SI: for them value / factor (result/result.h); NULL, and a factor that is not above 0: as it
  * is. */
 void mt_table_shown(mt_table *t, double value, double factor, int digits);
+/* The same, and machines see what people see: their heading names the unit. */
+void mt_table_in_unit(mt_table *t, double value, double factor, int digits);
 void mt_table_change_shown(mt_table *t, double value, double factor, int digits);
 void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
 /* A number as a source gives it, in such a unit: no more digits than it has. */

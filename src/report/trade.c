@@ -3,6 +3,7 @@
 #include "report/trade.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/format.h"
 #include "report/number.h"
@@ -10,13 +11,76 @@
 
 enum { VALUE_DIGITS = 6, PERCENT_DIGITS = 3, HEADING_TEXT = 160 };
 
+/* Objectives of the front that are none of the study's, and have no column of their own. */
+static bool has_column(const mt_result *result, int k)
+{
+    static const char *const own[] = {"change", "clearance"};
+    const char *const name = result->trade->objectives[k];
+    bool known = mt_report_has_objective(result, name);
+    for (int i = 0; i < MT_COUNT(own); i++) {
+        known = known || strcmp(own[i], name) == 0;
+    }
+    return !known;
+}
+
+/* An objective at a design; NULL: it has none. */
+static const mt_design_objective *objective_at(const mt_recommendation *r, const char *name)
+{
+    for (int i = 0; i < r->n_objectives; i++) {
+        if (strcmp(r->objectives[i].text, name) == 0) {
+            return &r->objectives[i];
+        }
+    }
+    return NULL;
+}
+
+static const char *front_unit(const mt_trade_result *trade, int k)
+{
+    for (int i = 0; i < trade->n_points; i++) {
+        const mt_design_objective *const o =
+            objective_at(&trade->points[i].best, trade->objectives[k]);
+        if (o != NULL && o->unit != NULL) {
+            return o->unit;
+        }
+    }
+    return "";
+}
+
+static void front_columns(mt_table *t, const mt_result *result)
+{
+    for (int k = 0; k < result->trade->n_objectives; k++) {
+        const char *const unit = front_unit(result->trade, k);
+        const bool bare = unit[0] == '\0';
+        char member[HEADING_TEXT];
+        (void)mt_snprintf(member, sizeof member, "objective %.60s%s%.20s%s",
+                          result->trade->objectives[k], bare ? "" : " [", unit,
+                          bare ? "" : "]");
+        if (has_column(result, k)) {
+            mt_table_column(t, strchr(member, ' ') + 1, member, MT_ALIGN_POINT);
+        }
+    }
+}
+
+static void front_cells(mt_table *t, const mt_result *result, const mt_trade_point *p)
+{
+    for (int k = 0; k < result->trade->n_objectives; k++) {
+        const mt_design_objective *const o =
+            objective_at(&p->best, result->trade->objectives[k]);
+        if (has_column(result, k)) {
+            mt_report_objective_cell(t, o == NULL ? "" : o->unit,
+                                     o == NULL ? nan("") : o->recommended);
+        }
+    }
+}
+
 static void point_row(mt_table *t, const mt_result *result, const mt_trade_point *p)
 {
     for (int i = 0; i < result->trade->n_vary; i++) {
-        mt_table_shown(t, p->values[i], result->trade->vary[i].display_factor, VALUE_DIGITS);
+        mt_table_in_unit(t, p->values[i], result->trade->vary[i].display_factor, VALUE_DIGITS);
     }
     mt_table_text(t, mt_result_status_name(p->status));
     mt_report_objective_cells(t, result, &p->best);
+    front_cells(t, result, p);
     mt_table_number(t, p->best.clearance_percent, PERCENT_DIGITS);
     mt_table_percent(t, p->best.violation_percent, PERCENT_DIGITS);
     if (result->trade->n_objectives == 2) {
@@ -49,10 +113,11 @@ mt_table mt_report_trade(const mt_result *result)
         char heading[HEADING_TEXT];
         (void)mt_snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text, bare ? "" : " [",
                           bare ? "" : unit, bare ? "" : "]");
-        mt_table_column(&t, heading, v->text, MT_ALIGN_POINT);
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
     }
     mt_table_column(&t, "status", "status", MT_ALIGN_LEFT);
     mt_report_objective_columns(&t, result);
+    front_columns(&t, result);
     mt_report_clearance_column(&t, result);
     mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
     if (result->trade->n_objectives == 2) {

@@ -85,7 +85,7 @@ class Choices(unittest.TestCase):
         self.assertGreaterEqual(len(front), 8)
         for change, clearance in front:
             self.assertFalse([1 for c, d in front if c < change * (1 - 1e-5) and d > clearance * (1 + 1e-5)])
-        self.assertTrue((self.folder / "out/inceptor_trade/trade.csv").read_text().startswith("upper bound of M_SAU,"))
+        self.assertTrue((self.folder / "out/inceptor_trade/trade.csv").read_text().startswith("upper bound of M_SAU [kg],"))
         self.assertIn("Trade study", (self.folder / "out/inceptor_trade/report.html").read_text())
 
     def test_nothing_nearer_than_the_recommended_design_is_clear(self):

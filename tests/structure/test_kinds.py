@@ -17,7 +17,7 @@ MEANT = {
         "src/search/search_nearest.c",  # of optima that are as good
         "src/search/search.c", "src/search/gaps.c",  # what no goal settles stays at the original
         "src/search/discrete.c",  # combinations come in the order of their change
-        "src/answer/trade.c",  # results tell the change of every design
+        "src/answer/trade_front.c",  # results tell the change of every design
     ),
 }
 
