@@ -131,7 +131,8 @@ static mt_status compare(const mt_workspace *fresh, const mt_design *design, dou
     return mt_describe_warn(result, err,
                             "recommendation %d: the search ended with an objective of %.12g, "
                             "recomputed it is %.12g",
-                            design->rank, had, f);
+                            design->rank, had * fresh->c->aims[k].size,
+                            f * fresh->c->aims[k].size);
 }
 
 /* A design at which a fresh analysis disagrees meets nothing: see describe_verify.c. */

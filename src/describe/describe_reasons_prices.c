@@ -22,7 +22,7 @@ enum { N_PARTS = sizeof parts / sizeof *parts };
 
 static mt_price price_of(const mt_sentences *s, double df)
 {
-    return (mt_price){.df = df,
+    return (mt_price){.df = df * s->p->aims[s->design->stage].size,
                       .change = s->rec->change,
                       .score = s->rec->score,
                       .first = s->design->stage == 0};
@@ -42,7 +42,7 @@ static const char *worth(mt_sentences *s, double df)
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
     const mt_price q = price_of(s, df);
     const bool noise =
-        !(fabs(df) > 0.0) || (q.first && fabs(df) <= MT_RATIO_NOISE * fabs(q.score));
+        !(fabs(df) > 0.0) || (q.first && fabs(q.df) <= MT_RATIO_NOISE * fabs(q.score));
     return noise || !has_prices(s) ? NULL : ops->price(&q, &s->result->mem);
 }
 

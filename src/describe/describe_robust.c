@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/demand.h"
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"
 
@@ -24,12 +25,12 @@ mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err)
 /* How far a range falls short of a limit, relatively; negative: room is left. NaN where there
  * is no value somewhere. */
 static double beyond(const mt_robust_range *r, mt_robust_side side, double limit,
-                     mt_goal_measure measure)
+                     const mt_demand *d)
 {
     const double value = r->value[side];
     const double sign = side == MT_LOWEST ? 1.0 : -1.0;
-    const bool ratio = measure == MT_MEASURE_RATIO;
-    const double unit = mt_measure_unit(measure, limit);
+    const bool ratio = d->measure == MT_MEASURE_RATIO;
+    const double unit = mt_demand_unit(d, limit);
     const double far = sign * (ratio ? mt_log_ratio(limit, value) : (limit - value) / unit);
     return ratio && far > MT_MOST_INSIDE ? MT_MOST_INSIDE : far; /* NaN stays */
 }
@@ -61,7 +62,7 @@ static verdict judge(const mt_demand *d, const mt_robust_range *r)
         if (!MT_HAS(limit[k]) || !MT_HAS(v.percent)) {
             continue;
         }
-        const double far = beyond(r, side, limit[k], d->measure);
+        const double far = beyond(r, side, limit[k], d);
         const double percent = percent_of(d, side, far);
         v.side = percent > v.percent || !MT_HAS(percent) ? side : v.side;
         v.violation = far > v.violation || !MT_HAS(far) ? far : v.violation;

@@ -48,11 +48,17 @@ bool mt_shaken_given(const mt_workspace *w)
     return w->c->shaken && w->t[w->p->n] != 0.0;
 }
 
+double mt_demand_unit(const mt_demand *d, double asked)
+{
+    const bool none = d->measure == MT_MEASURE_PART && !(fabs(asked) > 0.0);
+    return none ? d->size : mt_measure_unit(d->measure, asked);
+}
+
 /* What q is off by from a limit, and what its slope is multiplied by. */
 static double off(const mt_workspace *w, const mt_demand *d, double q, double limit,
                   double *factor)
 {
-    const double unit = mt_measure_unit(d->measure, limit);
+    const double unit = mt_demand_unit(d, limit);
     *factor = 1.0 / unit;
     if (isinf(q) && d->goal->shake != NULL) {
         return MT_MOST_INSIDE + w->beyond;
@@ -206,7 +212,7 @@ mt_status mt_demand_look_at(mt_workspace *w, const mt_demand *d, mt_analysis *a,
 static double over_limit(const mt_demand *d, double q, double limit)
 {
     if (d->measure != MT_MEASURE_RATIO) {
-        return (q - limit) / mt_measure_unit(d->measure, limit);
+        return (q - limit) / mt_demand_unit(d, limit);
     }
     const double part = q / limit;
     return log(part >= MT_SHAKEN_FLOOR ? part : MT_SHAKEN_FLOOR);

@@ -24,6 +24,8 @@ mt_status mt_demand_eval(mt_workspace *w, const mt_demand *d, bool with_gradient
  * is no such mode, as the goal's value. */
 mt_status mt_demand_look_at(mt_workspace *w, const mt_demand *d, mt_analysis *a,
                             struct mt_shaken_value *out, mt_err *err);
+/* What a difference from the number `asked` is divided by. */
+double mt_demand_unit(const mt_demand *d, double asked);
 /* What q exceeds the limit by that it is nearest to, or misses most, as the kind measures it:
  * above 0 it is missed. */
 double mt_demand_over(const mt_demand *d, double q);

@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-/* An objective is held within this part of its value (of 1 kg or one unit of the expression
- * where it is below that). */
+/* An objective is held within this part of its value (of its size, where it is below that). */
 static const double HELD = 1e-6;
 /* The same for the objectives that are half a square, of the root where it is below 1: a change
  * or a misfit of 1e-6 is none to an engineer. */
@@ -31,7 +30,11 @@ double mt_aim_value(const mt_workspace *w, int k, double *gradient)
     for (int i = 0; i < w->c->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
-    return a->ops->value == NULL ? 0.0 : a->ops->value(w, a, gradient);
+    const double f = a->ops->value == NULL ? 0.0 : a->ops->value(w, a, gradient);
+    for (int i = 0; i < w->c->n_t && gradient != NULL; i++) {
+        gradient[i] /= a->size;
+    }
+    return f / a->size;
 }
 
 double mt_aim_root(const mt_aim *a, double f)
@@ -41,7 +44,7 @@ double mt_aim_root(const mt_aim *a, double f)
 
 double mt_aim_shown(const mt_aim *a, double f)
 {
-    return a->ops->shown != NULL ? a->ops->shown(f) : mt_aim_root(a, f);
+    return a->ops->shown != NULL ? a->ops->shown(f) : mt_aim_root(a, f * a->size);
 }
 
 /* Row of `in` that holds objective k: a misfit among those before it has none. */

@@ -42,8 +42,8 @@ MT_OBJECTIVE_LIST(MT_OBJECTIVE_OPS)
 #undef MT_OBJECTIVE_OPS
 const mt_objective_ops *mt_objective_ops_of(mt_objective_type type);
 
-/* f of objective k at the last evaluation, gradient[n_t] (may be NULL)
- * likewise. */
+/* f of objective k at the last evaluation over its size, gradient[n_t] (may be NULL)
+ * likewise: all that searches and ranks see. */
 double mt_aim_value(const mt_workspace *w, int k, double *gradient);
 /* A value f of an objective, a half square as its root: differences of these are told. */
 double mt_aim_root(const mt_aim *a, double f);

@@ -82,6 +82,9 @@ typedef struct mt_demand {
     int n_res;    /* residuals */
     double floor_hz;  /* in the unit of its number: below, its logarithm goes on as a tangent */
     double tolerance; /* relative */
+    /* what a difference from a limit of 0 is divided by (mt_demand_unit): of an expression what
+     * it changes by with the variables at the original design, of anything else 1 */
+    double size;
 } mt_demand;
 
 /*
@@ -105,8 +108,12 @@ typedef struct mt_aim {
     const struct mt_objective_ops *ops; /* of its kind (objective.h) */
     const mt_objective *objective;      /* NULL: none */
     mt_node node;                       /* expression: in the problem's program */
-    int n_mass;                         /* items counted by a mass */
-    mt_node *mass;                      /* [n_mass] nodes in the first view's program */
+    /* what its value is divided by in the search, which then knows no units: of an amount (a
+     * mass, an expression) a power of two next to what it changes by with the variables at the
+     * original design; else 1 */
+    double size;
+    int n_mass;    /* items counted by a mass */
+    mt_node *mass; /* [n_mass] nodes in the first view's program */
 } mt_aim;
 
 typedef struct mt_problem {

@@ -219,7 +219,8 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
                      .row_in = -1,
                      .row_soft = -1,
                      .row_res = -1,
-                     .equals = g->equals};
+                     .equals = g->equals,
+                     .size = 1.0};
     if (configuration != MT_ABSENT) {
         MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
                          goal_index));

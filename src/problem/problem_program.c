@@ -1,7 +1,67 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limits, objectives and published quantities as one program of the variables. */
+#include <math.h>
+
 #include "model/values.h"
 #include "problem/objective.h"
+
+/* What node moves by with the variables, each by 1 in t, at the original design; where it does
+ * not move its own value, and 1 where that is 0, too. No unit is in it but the node's own. */
+static double size_of(const mt_problem *p, mt_node node, const double *value,
+                      const double *grad)
+{
+    double square = 0.0;
+    for (int i = 0; i < p->n; i++) {
+        const double slope =
+            grad[((ptrdiff_t)node * p->n) + i] * mt_problem_stretch_at(p, i, p->original[i]);
+        square += slope * slope;
+    }
+    const double moved = sqrt(square);
+    const double own = fabs(value[node]);
+    return moved > 0.0 && isfinite(moved) ? moved : own > 0.0 && isfinite(own) ? own : 1.0;
+}
+
+static double size_of_mass(const mt_problem *p, const mt_aim *a)
+{
+    double sum = 0.0;
+    for (int k = 0; k < a->n_mass; k++) {
+        sum += mt_linear_value(p->views[0].original->lin, a->mass[k]);
+    }
+    return sum > 0.0 ? sum : 1.0;
+}
+
+/* A power of two rounds nothing. */
+static double next_power(double size)
+{
+    return ldexp(1.0, ilogb(size));
+}
+
+/* Sizes that make the search know no units. A value that there is not at the original design
+ * leaves 1. */
+static mt_status set_sizes(mt_problem *p, mt_err *err)
+{
+    const size_t count = (size_t)p->program.count;
+    const mt_arena_mark mark = mt_arena_get_mark(&p->mem);
+    double *const value = mt_arena_f64(&p->mem, count, 1);
+    double *const grad = mt_arena_f64(&p->mem, count, (size_t)p->n);
+    mt_err own = {.code = MT_OK};
+    MT_TRY(mt_arena_check(&p->mem, err));
+    const bool known =
+        mt_program_gradient(&p->program, p->original, value, grad, NULL, &own) == MT_OK;
+    for (int i = 0; i < p->n_demands && known; i++) {
+        mt_demand *const d = &p->demands[i];
+        d->size = d->node != MT_NO_NODE ? size_of(p, d->node, value, grad) : d->size;
+    }
+    for (int i = 0; i < p->n_aims; i++) {
+        mt_aim *const a = &p->aims[i];
+        const double size = a->n_mass > 0                    ? size_of_mass(p, a)
+                            : known && a->node != MT_NO_NODE ? size_of(p, a->node, value, grad)
+                                                             : 1.0;
+        a->size = next_power(size);
+    }
+    mt_arena_rewind(&p->mem, mark);
+    return MT_OK;
+}
 
 mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
 {
@@ -49,5 +109,6 @@ mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
             p->published[i] = nodes[pub->parameter];
         }
     }
-    return mt_program_finish(&p->program, err);
+    MT_TRY(mt_program_finish(&p->program, err));
+    return set_sizes(p, err);
 }

@@ -5,6 +5,7 @@
 
 #include "analysis/count.h"
 #include "problem/beside.h"
+#include "problem/demand.h"
 #include "problem/goal_avoid.h"
 #include "problem/goal_frequency.h"
 #include "problem/robust.h"
@@ -95,9 +96,8 @@ static double limit_of(const mt_problem *p, const mt_robust_row *row)
     if (!d->ranged) {
         return low ? d->goal->at_least : d->goal->at_most;
     }
-    return d->measure == MT_MEASURE_RATIO
-               ? d->equals * (1.0 + give)
-               : d->equals + (give * mt_measure_unit(d->measure, d->equals));
+    return d->measure == MT_MEASURE_RATIO ? d->equals * (1.0 + give)
+                                          : d->equals + (give * mt_demand_unit(d, d->equals));
 }
 
 static double edge_of(const mt_case *c, const mt_robust_row *row)
@@ -132,7 +132,7 @@ double mt_robust_row_room(const mt_case *c, const mt_robust_row *row, double val
         return sign * -mt_log_ratio(limit_hz, value);
     }
     const double limit = limit_of(c->p, row);
-    return sign * (value - limit) / mt_measure_unit(c->p->demands[row->demand].measure, limit);
+    return sign * (value - limit) / mt_demand_unit(&c->p->demands[row->demand], limit);
 }
 
 static mt_status demand_value(mt_workspace *w, const mt_robust_row *row, bool with_gradient,
@@ -143,7 +143,7 @@ static mt_status demand_value(mt_workspace *w, const mt_robust_row *row, bool wi
     if (d->view >= 0) {
         return frequency(w, d->view, row, d->mode, limit, with_gradient, &q->value, err);
     }
-    const double unit = mt_measure_unit(d->measure, limit);
+    const double unit = mt_demand_unit(d, limit);
     q->edge = limit / unit;
     return expression(w, &w->c->robust->limits[row->demand].corners[row->corner], d->node, unit,
                       with_gradient, &q->value, err);

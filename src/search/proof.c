@@ -148,9 +148,9 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
             proof->limits[q->n_limits++] =
                 (mt_certify_limit){d->view, d->mode, least, most, d->tolerance};
         } else if (d->quantity == MT_QUANTITY_EXPRESSION) {
-            proof->bounds[q->n_bounds++] = (mt_certify_bound){
-                d->node, least - (d->tolerance * mt_measure_unit(d->measure, least)),
-                most + (d->tolerance * mt_measure_unit(d->measure, most))};
+            proof->bounds[q->n_bounds++] =
+                (mt_certify_bound){d->node, least - (d->tolerance * mt_demand_unit(d, least)),
+                                   most + (d->tolerance * mt_demand_unit(d, most))};
         } else {
             proof->covers = false;
         }

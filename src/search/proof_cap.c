@@ -9,7 +9,7 @@ static double least(void *context, const double *lo, const double *hi)
 {
     const mt_proof_cap *const c = context;
     const mt_aim *const a = &c->p->aims[0];
-    return c->known ? a->ops->least(c->p, a, lo, hi, c->low, c->high) : -HUGE_VAL;
+    return c->known ? a->ops->least(c->p, a, lo, hi, c->low, c->high) / a->size : -HUGE_VAL;
 }
 
 mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem, mt_err *err)

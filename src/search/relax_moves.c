@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "problem/demand.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "problem/robust.h"
@@ -98,8 +99,10 @@ static double far_bound(const mt_case *c, int i, bool upper)
 mt_status mt_relax_case(const mt_case *from, const mt_move *m, mt_workspace *w, mt_arena *mem,
                         mt_case *out, bool *useful, mt_err *err)
 {
-    static const mt_aim CHANGE = {
-        .type = MT_OBJECTIVE_CHANGE, .ops = &mt_objective_change, .node = MT_NO_NODE};
+    static const mt_aim CHANGE = {.type = MT_OBJECTIVE_CHANGE,
+                                  .ops = &mt_objective_change,
+                                  .size = 1.0,
+                                  .node = MT_NO_NODE};
     *useful = true;
     MT_TRY(mt_case_copy(from, mem, out, err));
     out->n_aims = 1;
@@ -153,15 +156,20 @@ static mt_goal_measure measure_of(const mt_problem *p, const mt_move *m)
 
 /* Where the number must be for a row of value `row` (relaxed: what is missing is made up for)
  * to be 0. */
+/* What a difference from the number that is moved is divided by. */
+static double unit_of(const mt_problem *p, const mt_move *m)
+{
+    return m->kind == MT_MOVE_GOAL ? mt_demand_unit(&p->demands[m->demand], m->from) : 1.0;
+}
+
 static double moved(const mt_problem *p, const mt_move *m, double row)
 {
     const mt_goal_measure measure = measure_of(p, m);
     const bool lower_edge = m->kind == MT_MOVE_EDGE && !m->upper;
     const bool at_most = m->kind == MT_MOVE_GOAL && m->upper;
     const double sign = lower_edge || at_most ? -1.0 : 1.0;
-    return measure == MT_MEASURE_RATIO
-               ? m->from * exp(sign * row)
-               : m->from + (sign * row * mt_measure_unit(measure, m->from));
+    return measure == MT_MEASURE_RATIO ? m->from * exp(sign * row)
+                                       : m->from + (sign * row * unit_of(p, m));
 }
 
 double mt_relax_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v)
@@ -189,9 +197,8 @@ double mt_relax_size(const mt_problem *p, const mt_move *m, double to)
 {
     const bool goal = m->kind == MT_MOVE_GOAL;
     const mt_goal_measure measure = measure_of(p, m);
-    const double s = measure == MT_MEASURE_RATIO
-                         ? log(to / m->from)
-                         : (to - m->from) / mt_measure_unit(measure, m->from);
+    const double s =
+        measure == MT_MEASURE_RATIO ? log(to / m->from) : (to - m->from) / unit_of(p, m);
     /* a lower limit gives way downwards, an upper edge too */
     const bool down = goal ? !m->upper : m->upper;
     const bool right = m->target ? fabs(s) > 0.0 : (down ? -s : s) > 0.0;

@@ -64,8 +64,10 @@ static mt_status add_change(nearest *n, mt_err *err)
     n->at = mt_arena_f64(n->mem, n_aims, 1);
     MT_TRY(mt_arena_check(n->mem, err));
     memcpy(aims, n->first->aims, n_aims * sizeof *aims);
-    aims[n_aims] =
-        (mt_aim){.type = MT_OBJECTIVE_CHANGE, .ops = &mt_objective_change, .node = MT_NO_NODE};
+    aims[n_aims] = (mt_aim){.type = MT_OBJECTIVE_CHANGE,
+                            .ops = &mt_objective_change,
+                            .size = 1.0,
+                            .node = MT_NO_NODE};
     with.aims = aims;
     with.n_aims++;
     return mt_case_for_stages(&with, n->mem, &n->held, err);
