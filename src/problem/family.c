@@ -39,6 +39,38 @@ int mt_family_of(const mt_problem *p, int view)
     return -1;
 }
 
+static bool is_equal(double a, double b)
+{
+    return a == b || (!MT_HAS(a) && !MT_HAS(b));
+}
+
+static bool is_text(const char *a, const char *b)
+{
+    return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
+}
+
+/* Is the same shaken, and the same looked at? */
+static bool same_shake(const mt_shake *a, const mt_shake *b)
+{
+    if (a == NULL || b == NULL) {
+        return a == b;
+    }
+    return is_text(a->input.s, b->input.s) && is_text(a->output.s, b->output.s) &&
+           is_equal(a->lower_hz, b->lower_hz) && is_equal(a->upper_hz, b->upper_hz) &&
+           a->profile == b->profile && a->quantity == b->quantity;
+}
+
+bool mt_family_same_limit(const mt_demand *a, const mt_demand *b)
+{
+    return a->goal_index == b->goal_index ||
+           (a->ops == b->ops && a->mode == b->mode && a->named < 0 && b->named < 0 &&
+            a->row_res < 0 && b->row_res < 0 && is_equal(a->equals, b->equals) &&
+            is_equal(a->goal->at_least, b->goal->at_least) &&
+            is_equal(a->goal->at_most, b->goal->at_most) &&
+            same_shake(a->goal->shake, b->goal->shake) &&
+            is_text(a->shape.reference, b->shape.reference) && a->shape.mode == b->shape.mode);
+}
+
 /* A number with a limit, and two of its values in one family: what lies between them is asked
  * for as well. A target, and what has a weight, is of the positions that are named. */
 static bool is_limited(const mt_problem *p, const mt_demand *d)
@@ -47,7 +79,7 @@ static bool is_limited(const mt_problem *p, const mt_demand *d)
     const int family = limits && d->view >= 0 ? mt_family_of(p, d->view) : -1;
     for (int i = 0; i < p->n_demands && family >= 0; i++) {
         const mt_demand *const other = &p->demands[i];
-        if (other->goal_index == d->goal_index && other->view != d->view &&
+        if (mt_family_same_limit(other, d) && other->view != d->view &&
             mt_family_of(p, other->view) == family) {
             return true;
         }
@@ -58,7 +90,7 @@ static bool is_limited(const mt_problem *p, const mt_demand *d)
 bool mt_family_limits_first(const mt_problem *p, const mt_demand *d)
 {
     for (const mt_demand *other = p->demands; other < d; other++) {
-        if (other->goal_index == d->goal_index &&
+        if (mt_family_same_limit(other, d) &&
             mt_family_of(p, other->view) == mt_family_of(p, d->view)) {
             return false;
         }

@@ -308,7 +308,7 @@ static mt_status prepare(walk *w, int family, double **list, int *n, mt_err *err
     int given = 0;
     for (int i = 0; i < p->n_demands; i++) {
         const mt_demand *const d = &p->demands[i];
-        if (d->goal_index == w->d->goal_index && mt_family_of(p, d->view) == family) {
+        if (mt_family_same_limit(d, w->d) && mt_family_of(p, d->view) == family) {
             all[given++] = mt_family_position(w->ws->views[d->view].analysis);
         }
     }

@@ -26,11 +26,11 @@ typedef struct mt_limit_motion {
 } mt_limit_motion;
 
 /*
- * The goal of d at positions between those of its family that the goal names, at the design
- * ws->x, at which the views have been solved: samples, closer where modes come to or leave what
- * the goal looks at, where the mechanism turns, and around the worst, whose top is then known
- * to 1e-4 of the value. That is no proof: what no mode, no turn and no neighbour shows is not
- * seen. Fails: as mt_motion_follow.
+ * The goal of d at positions between those of its family that the goal, or another that asks
+ * the same, names, at the design ws->x, at which the views have been solved: samples, closer
+ * where modes come to or leave what the goal looks at, where the mechanism turns, and around
+ * the worst, whose top is then known to 1e-4 of the value. That is no proof: what no mode, no
+ * turn and no neighbour shows is not seen. Fails: as mt_motion_follow.
  */
 mt_status mt_motion_limit(mt_workspace *ws, const mt_demand *d, mt_arena *mem,
                           mt_limit_motion *out, mt_err *err);

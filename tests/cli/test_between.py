@@ -114,7 +114,7 @@ def draw(seed):
 
 class Between(unittest.TestCase):
     def answer(self, a, goal, variables):
-        study = {"format": "modetune-study/1", "model": "model.json", "variables": variables, "goals": [goal], "search": {"starts": 3}}
+        study = {"format": "modetune-study/1", "model": "model.json", "variables": variables, "goals": goal if isinstance(goal, list) else [goal], "search": {"starts": 3}}
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "model.json").write_text(json.dumps(arm(a)))
             (Path(folder) / "study.json").write_text(json.dumps(study))
@@ -161,6 +161,10 @@ class Between(unittest.TestCase):
         self.assertAlmostEqual(worst(a | {"k0": after["parameters"][0]["recommended"]}, goal) / 12.5, 1, delta=2e-6)
         self.assertIn("the frequency of mode 1 over p from -0.5 to 0.5 rad", after["responses_between"][0]["text"])
         self.assertEqual(after["grade"], "feasible")
+        one = {"type": "frequency", "mode": 1, "at_least_hz": 12.5}
+        apart = self.answer(a, [one | {"configuration": c} for c in goal["configurations"]], [{"parameter": "k0", "lower": 2000, "upper": 12000}])
+        rows = apart["recommendations"][0]["responses_between"]
+        self.assertEqual([(r["goal"], r["value"]) for r in rows], [("/goals/0", after["responses_between"][0]["value"])])
 
     def test_a_dip_of_an_instant(self):
         """The spring's end is 0.01 mm from the way: the mode falls, and is back again within a thousandth of a degree."""
