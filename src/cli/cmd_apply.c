@@ -27,24 +27,25 @@ static int by_place(const void *a, const void *b)
     return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
-/* What the model gives the number of this parameter in; NULL: SI, or it says nothing. */
-static const mt_unit *unit_of(const mt_json *doc, mt_addr parameter)
+/* What the model gives the number of this parameter, whose value has this unit of SI, in; NULL:
+ * SI, or it says nothing. */
+static const mt_unit *unit_of(const mt_json *doc, mt_addr parameter, const char *si)
 {
     const mt_addr unit = mt_json_member(doc, parameter, "unit");
     const bool is_text = unit != MT_NO_ADDR && mt_json_type_of(doc, unit) == MT_JSON_STRING;
-    return is_text ? mt_unit_find(mt_json_string(doc, unit)) : NULL;
+    return is_text ? mt_unit_find_of(mt_json_string(doc, unit), si) : NULL;
 }
 
 /* The text of a parameter's value in the model, and the number for it. The result is a file,
  * too: it may name what is not there (that it names nothing twice its reader has seen). */
 static mt_status find_place(const mt_json *doc, const char *path, const char *name,
-                            double value, replacement *out, mt_err *err)
+                            const char *si, double value, replacement *out, mt_err *err)
 {
     const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
     mt_addr at = parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
     out->value = value;
     if (at != MT_NO_ADDR && mt_json_type_of(doc, at) == MT_JSON_OBJECT) {
-        out->value = mt_unit_written(unit_of(doc, at), value);
+        out->value = mt_unit_written(unit_of(doc, at, si), value);
         at = mt_json_member(doc, at, "value");
     }
     if (at == MT_NO_ADDR || !mt_json_span(doc, at, &out->begin, &out->end)) {
@@ -63,12 +64,12 @@ static mt_status find_places(const mt_recommendation *r, const mt_result_run *ru
     *n = 0;
     for (int i = 0; i < r->n_parameters; i++) {
         const mt_result_parameter *const p = &r->parameters[i];
-        MT_TRY(find_place(doc, path, p->name, p->recommended, &list[(*n)++], err));
+        MT_TRY(find_place(doc, path, p->name, p->unit, p->recommended, &list[(*n)++], err));
     }
     for (int i = 0; i < run->n_overrides; i++) {
         const mt_result_override *const o = &run->overrides[i];
         if (strcmp(o->kind, "parameter") == 0) {
-            MT_TRY(find_place(doc, path, o->name, o->value, &list[(*n)++], err));
+            MT_TRY(find_place(doc, path, o->name, o->unit, o->value, &list[(*n)++], err));
         }
     }
     qsort(list, (size_t)*n, sizeof *list, by_place);

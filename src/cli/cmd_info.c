@@ -43,7 +43,7 @@ static void json_units(mt_json_writer *w, const mt_subject *s)
         if (p->written != NULL) {
             mt_json_open_flat(w, NULL, '{');
             mt_json_put_string(w, "parameter", p->name.s);
-            mt_json_put_number(w, "number", mt_unit_from_si(p->written, s->original[i]));
+            mt_json_put_number(w, "number", mt_unit_written(p->written, s->original[i]));
             mt_json_put_string(w, "number_unit", p->written->name);
             mt_json_put_number(w, "value", s->original[i]);
             mt_json_put_string(w, "unit", p->unit);
@@ -253,8 +253,8 @@ static void write_units(mt_text *out, const mt_subject *s)
     for (int i = 0; i < m->n_parameters; i++) {
         const mt_parameter *const p = &m->parameters[i];
         if (p->written != NULL) {
-            mt_text_addf(out, "%s  %s: %.10g %s = %.10g %s\n",
-                         told++ == 0 ? "Parameters in other units than SI\n" : "", p->name.s,
+            mt_text_add(out, told++ == 0 ? "Parameters in other units than SI\n" : "");
+            mt_text_addf(out, "  %s: %.10g %s = %.10g %s\n", p->name.s,
                          mt_unit_from_si(p->written, s->original[i]), p->written->name,
                          s->original[i], p->unit);
         }

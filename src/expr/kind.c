@@ -4,6 +4,7 @@
 #include "expr/kind.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/format.h"
 #include "expr/op.h"
@@ -41,7 +42,8 @@ static const rule rule_of[MT_OP_COUNT] = {
 
 mt_kind mt_kind_of_dimension(mt_dimension dimension)
 {
-    static const mt_kind kinds[] = {MT_KIND_LENGTH, MT_KIND_ANGLE, MT_KIND_SPEED};
+    static const mt_kind kinds[] = {MT_KIND_LENGTH, MT_KIND_ANGLE, MT_KIND_SPEED,
+                                    MT_KIND_UNKNOWN};
     return kinds[dimension];
 }
 
@@ -233,37 +235,76 @@ static const char *kind_text(mt_kind kind)
     return kind == MT_KIND_AREA ? "an area" : NULL;
 }
 
+void mt_kind_bare_text(double number, const mt_unit *unit, const char *what, char *out,
+                       size_t size)
+{
+    char is[MT_KIND_TEXT / 2];
+    const char *const si = strcmp(unit->si, "1") == 0 ? "" : unit->si;
+    (void)mt_snprintf(is, sizeof is, "%.10g is %.10g%s%s here, as %s are in SI units", number,
+                      number, *si == '\0' ? "" : " ", si, what);
+    if (unit->constant == NULL) {
+        (void)mt_snprintf(out, size, "%s: %.10g %s is written \"%.10g\"", is, number,
+                          unit->name, mt_unit_to_si(unit, number));
+    } else if (fabs(number) < 1.0) {
+        const double written = mt_unit_written(unit, number);
+        (void)mt_snprintf(out, size, "%s: write %.10g %s as \"%.10g*%s\"", is, number, si,
+                          written, unit->constant);
+    } else {
+        (void)mt_snprintf(out, size, "%s: write \"%.10g*%s\"", is, number, unit->constant);
+    }
+}
+
+/* What an expression without a unit is multiplied by. */
+static const char *factor_text(const mt_unit *unit, char *out, size_t size)
+{
+    if (unit->constant != NULL) {
+        return unit->constant;
+    }
+    (void)mt_snprintf(out, size, "%.10g", mt_unit_factor(unit));
+    return out;
+}
+
+/* What is said of a part that is no number, or of none that is known. */
+static bool say_measures(const mt_kind_found *f, bool number, const mt_unit *unit, char *out,
+                         size_t size)
+{
+    char factor[32];
+    const char *const by = factor_text(unit, factor, sizeof factor);
+    const bool other = unit->dimension == MT_OTHER;
+    if (number) {
+        (void)mt_snprintf(out, size,
+                          "this has no unit and would be in %s, as expressions are in SI "
+                          "units: say the \"unit\" of its parameters, or multiply by %s",
+                          unit->si, by);
+    } else if (f->mixed && !other) {
+        (void)mt_snprintf(out, size,
+                          "this adds or compares what has different units; expressions are in "
+                          "SI units, and a number of %s is written \"...*%s\"",
+                          unit->name, by);
+    } else if (!other && kind_text(f->kind) != NULL &&
+               f->kind != mt_kind_of_dimension(unit->dimension)) {
+        (void)mt_snprintf(out, size, "this is %s, where %s belongs", kind_text(f->kind),
+                          mt_dimension_text(unit->dimension));
+    } else {
+        return false;
+    }
+    return true;
+}
+
 bool mt_kind_complaint(const mt_expr *e, const mt_unit *unit, mt_kind_lookup lookup,
                        const void *context, char *out, size_t size)
 {
     if (unit == NULL || mt_unit_is_si(unit)) {
         return false;
     }
-    const mt_kind wanted = mt_kind_of_dimension(unit->dimension);
-    const char *const si = mt_dimension_si(unit->dimension);
     const mt_kind_found f = mt_expr_kind(e, lookup, context);
+    const bool pure = strcmp(unit->si, "1") == 0; /* of numbers: expressions have no unit */
     const bool number = is_number(f.kind) && f.kind != MT_KIND_ZERO &&
-                        !(f.kind == MT_KIND_PI && wanted == MT_KIND_ANGLE);
-    if ((number || f.mixed) && isfinite(f.bare)) {
-        (void)mt_snprintf(out, size,
-                          "%.10g is %.10g %s here, as expressions are in SI units: write "
-                          "\"%.10g*%s\"",
-                          f.bare, f.bare, si, f.bare, unit->constant);
-    } else if (number) {
-        (void)mt_snprintf(out, size,
-                          "this has no unit and would be in %s, as expressions are in SI "
-                          "units: say the \"unit\" of its parameters, or multiply by %s",
-                          si, unit->constant);
-    } else if (f.mixed) {
-        (void)mt_snprintf(out, size,
-                          "this adds or compares what has different units; expressions are in "
-                          "SI units, and a number of %s is written \"...*%s\"",
-                          unit->name, unit->constant);
-    } else if (kind_text(f.kind) != NULL && f.kind != wanted) {
-        (void)mt_snprintf(out, size, "this is %s, where %s belongs", kind_text(f.kind),
-                          mt_dimension_text(unit->dimension));
-    } else {
-        return false;
+                        !(f.kind == MT_KIND_PI && unit->dimension == MT_ANGLE);
+    const bool bare = number || (f.mixed && !pure);
+    if (bare && isfinite(f.bare)) {
+        mt_kind_bare_text(f.bare, unit, "expressions", out, size);
+        return true;
     }
-    return true;
+    return say_measures(&f, number && !pure, unit, out, size);
 }

@@ -41,6 +41,11 @@ typedef struct mt_kind_found {
 
 /* O(length of the expression). */
 mt_kind_found mt_expr_kind(const mt_expr *e, mt_kind_lookup lookup, const void *context);
+/* Why a number cannot be meant in an expression where numbers are in this unit, which is not of
+ * SI: what it is, since these are, and how that is written ("14*mm" of 0.014 m: below 1, it
+ * looks like SI). */
+void mt_kind_bare_text(double number, const mt_unit *unit, const char *what, char *out,
+                       size_t size);
 /*
  * Why an expression cannot be meant where numbers are in this unit ("50 is 50 m here ...: write
  * \"50*mm\""), in out[size]. False, and nothing written: it can be, or the unit is NULL or SI,

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * value = number * numerator / denominator, in this order: for lengths in mm and cm and for
- * rpm a single division of the number as written, which rounds once; of inches and feet 254
- * and 3048 times a number of up to 41 bits is exact. The inverse, value * denominator /
- * numerator, rounds as often, so that it may miss the number that was written in its last
- * place: mt_unit_written looks at its neighbours.
+ * value = number * numerator / denominator, in this order: of decimal units and of rpm a single
+ * product, or division, of the number as written, which rounds once; of inches and feet 254 and
+ * 3048 times a number of up to 41 bits is exact. Numerators of pounds have no bit to spare:
+ * the product is p + e and the quotient q is corrected by its remainder, (p - q d + e)/d, so
+ * that all of it rounds once. The inverse, value * denominator / numerator, rounds as often, so
+ * that it may miss the number that was written in its last place: mt_unit_written looks for one
+ * of up to 15 digits, then at its neighbours.
  */
 #include "expr/units.h"
 
@@ -13,15 +15,23 @@
 #include <string.h>
 
 #include "base/base.h"
+#include "expr/unit_list.h"
 
-#define PI 3.14159265358979323846
+#define PI  3.14159265358979323846
+#define DEG (PI / 180.0)
 
+#define CONVERTED(name, si, dimension, up, down) {name, NULL, si, dimension, up, down},
 static const mt_unit units[] = {
-    {"m", NULL, MT_LENGTH, 1.0, 1.0},          {"mm", "mm", MT_LENGTH, 1.0, 1000.0},
-    {"cm", "cm", MT_LENGTH, 1.0, 100.0},       {"in", "inch", MT_LENGTH, 254.0, 10000.0},
-    {"ft", "ft", MT_LENGTH, 3048.0, 10000.0},  {"rad", NULL, MT_ANGLE, 1.0, 1.0},
-    {"deg", "deg", MT_ANGLE, PI / 180.0, 1.0}, {"Hz", NULL, MT_SPEED, 1.0, 1.0},
-    {"rpm", "rpm", MT_SPEED, 1.0, 60.0},
+    {"m", NULL, "m", MT_LENGTH, 1.0, 1.0},
+    {"mm", "mm", "m", MT_LENGTH, 1.0, 1000.0},
+    {"cm", "cm", "m", MT_LENGTH, 1.0, 100.0},
+    {"in", "inch", "m", MT_LENGTH, 254.0, 10000.0},
+    {"ft", "ft", "m", MT_LENGTH, 3048.0, 10000.0},
+    {"rad", NULL, "rad", MT_ANGLE, 1.0, 1.0},
+    {"deg", "deg", "rad", MT_ANGLE, DEG, 1.0},
+    {"Hz", NULL, "Hz", MT_SPEED, 1.0, 1.0},
+    {"rpm", "rpm", "Hz", MT_SPEED, 1.0, 60.0},
+    MT_UNIT_LIST(CONVERTED){"g", NULL, "m/s^2", MT_OTHER, 980665.0, 100000.0},
 };
 
 const mt_unit *mt_units(int *n)
@@ -30,14 +40,19 @@ const mt_unit *mt_units(int *n)
     return units;
 }
 
-const mt_unit *mt_unit_find(const char *name)
+const mt_unit *mt_unit_find_of(const char *name, const char *si)
 {
     for (int i = 0; i < MT_COUNT(units); i++) {
-        if (strcmp(units[i].name, name) == 0) {
+        if (strcmp(units[i].name, name) == 0 && (si == NULL || strcmp(units[i].si, si) == 0)) {
             return &units[i];
         }
     }
     return NULL;
+}
+
+const mt_unit *mt_unit_find(const char *name)
+{
+    return mt_unit_find_of(name, NULL);
 }
 
 #define NAME(id, name, text, si) name,
@@ -64,7 +79,12 @@ const char *mt_dimension_si(mt_dimension dimension)
 
 bool mt_unit_is_si(const mt_unit *unit)
 {
-    return unit->constant == NULL;
+    return strcmp(unit->name, unit->si) == 0;
+}
+
+bool mt_unit_is_common(const mt_unit *unit)
+{
+    return unit->constant != NULL || mt_unit_is_si(unit);
 }
 
 const char *mt_unit_name(const mt_unit *unit, const char *si)
@@ -82,30 +102,47 @@ double mt_unit_display(const mt_unit *unit)
     return unit == NULL ? nan("") : mt_unit_factor(unit);
 }
 
+/* x a / b. */
+static double scaled(const mt_unit *unit, double x, double a, double b)
+{
+    const double p = x * a;
+    const double q = p / b;
+    const double rest = fma(-q, b, p) + fma(x, a, -p);
+    return mt_unit_is_common(unit) || !isfinite(rest) ? q : q + rest / b;
+}
+
 double mt_unit_to_si(const mt_unit *unit, double number)
 {
-    return unit == NULL ? number : number * unit->numerator / unit->denominator;
+    return unit == NULL ? number : scaled(unit, number, unit->numerator, unit->denominator);
 }
 
 double mt_unit_from_si(const mt_unit *unit, double value)
 {
-    return unit == NULL ? value : value * unit->denominator / unit->numerator;
+    return unit == NULL ? value : scaled(unit, value, unit->denominator, unit->numerator);
 }
 
-/* The number of 15 digits, which every double keeps, next to x: an integer below 1e15 over (or
- * times) a power of ten that is exact, rounded once. NaN where the power is not exact. */
+/* The number of 15 digits, which every double keeps, next to x: an integer n below 1e15 over
+ * (or times) a power of ten, which as p + e of two doubles is exact; the quotient is corrected
+ * by its remainder. NaN where the power is not exact. */
 static double shortened(double x)
 {
-    enum { DIGITS = 15, EXACT = 22 };
+    enum { DIGITS = 15, EXACT = 22, SUM = 44 };
     const int k = x == 0.0 ? 0 : DIGITS - 1 - (int)floor(log10(fabs(x)));
     double power = 1.0;
-    if (k > EXACT || k < -EXACT) {
+    double more = 1.0;
+    if (k > SUM || k < -EXACT) {
         return nan("");
     }
     for (int i = 0; i < abs(k); i++) {
-        power *= 10.0;
+        *(i < EXACT ? &power : &more) *= 10.0;
     }
-    return k < 0 ? round(x / power) * power : round(x * power) / power;
+    if (k < 0) {
+        return round(x / power) * power;
+    }
+    const double p = power * more;
+    const double n = round(x * p);
+    const double q = n / p;
+    return q + (fma(-q, p, n) - q * fma(power, more, -p)) / p;
 }
 
 double mt_unit_written(const mt_unit *unit, double value)

@@ -84,21 +84,6 @@ static mt_origin read_origin(mt_model_reader *mr, mt_addr value)
     return (mt_origin)(mt_reader_choice(&mr->r, value, "origin", names, MT_COUNT(names)) + 1);
 }
 
-/* The unit of a parameter's number, and that of its value, which is of SI. */
-static void read_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p)
-{
-    int n = 0;
-    const char *const *const names = mt_model_units(&n);
-    const int which = mt_reader_choice(&mr->r, value, "unit", names, n);
-    if (which == MT_ABSENT) {
-        return;
-    }
-    const mt_unit *const unit = mt_unit_find(names[which]);
-    const bool other = unit != NULL && !mt_unit_is_si(unit);
-    p->written = other ? unit : NULL;
-    p->unit = other ? mt_dimension_si(unit->dimension) : names[which];
-}
-
 static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
 {
     mt_addr at[PARAMETER_COUNT];
@@ -110,7 +95,7 @@ static void read_parameter(mt_model_reader *mr, mt_addr value, mt_parameter *p)
         return;
     }
     (void)mt_reader_object(&mr->r, value, &mt_parameter_keys, at);
-    read_unit(mr, at[PARAMETER_UNIT], p);
+    mt_read_parameter_unit(mr, at[PARAMETER_UNIT], p);
     p->value = mt_read_num_in(mr, at[PARAMETER_VALUE], p->written);
     p->description = mt_reader_text(&mr->r, at[PARAMETER_DESCRIPTION]);
     p->source = mt_reader_text(&mr->r, at[PARAMETER_SOURCE]);
@@ -251,6 +236,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     mt_read_sensors(mr, at[MODEL_SENSORS]);
     mt_read_modes(mr, at[MODEL_MODES]);
     m->damping = mt_read_damping(mr, at[MODEL_DAMPING]);
+    mt_read_settle_units(mr);
     mt_read_configurations(mr, at[MODEL_CONFIGURATIONS]);
 }
 

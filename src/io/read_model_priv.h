@@ -56,6 +56,12 @@ int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2]);
 void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2]);
 mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value);
 
+/* The unit of a parameter's number, and that of its value, which is of SI. */
+void mt_read_parameter_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p);
+/* When all but the configurations is read: what "g" means of each parameter, by its uses; and
+ * units of parameters that do not measure what the members do that they are the values of. */
+void mt_read_settle_units(mt_model_reader *mr);
+
 void mt_read_links(mt_model_reader *mr, mt_addr list);
 void mt_read_joints(mt_model_reader *mr, mt_addr list);
 void mt_read_springs(mt_model_reader *mr, mt_addr springs, mt_addr dampers);

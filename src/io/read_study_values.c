@@ -82,11 +82,10 @@ void mt_read_study_check_demand(mt_study_reader *s, const mt_expr *of, mt_addr v
         return;
     }
     if (is_bare(s, value)) {
-        const double number = mt_json_number(s->r.doc, value);
-        mt_diag_error(s->r.diags, value,
-                      "%.10g is %.10g %s here, as expressions and what they are held against "
-                      "are in SI units: write \"%.10g*%s\"",
-                      number, number, mt_dimension_si(unit->dimension), number, unit->constant);
+        char text[MT_KIND_TEXT];
+        mt_kind_bare_text(mt_json_number(s->r.doc, value), unit,
+                          "expressions and what they are held against", text, sizeof text);
+        mt_diag_error(s->r.diags, value, "%s", text);
         return;
     }
     mt_expr e = {0};

@@ -18,9 +18,16 @@ static const mt_unit *read_unit(mt_reader *r, mt_addr value, mt_dimension dimens
     const char *const text = value == MT_NO_ADDR ? NULL : mt_json_string(r->doc, value);
     const mt_unit *const meant = text == NULL ? NULL : mt_unit_find(text);
     for (int i = 0; i < n; i++) {
-        if (all[i].dimension == dimension) {
+        if (all[i].dimension == dimension && mt_unit_is_common(&all[i])) {
             names[n_names++] = all[i].name;
         }
+    }
+    if (meant != NULL && !mt_unit_is_common(meant)) {
+        mt_diag_structure(
+            r->diags, value,
+            "\"%s\" is a unit of a parameter's number only: write \"%s\" or \"%s\"", text,
+            names[0], names[1]);
+        return NULL;
     }
     if (meant != NULL && meant->dimension != dimension) {
         mt_diag_structure(r->diags, value,

@@ -118,7 +118,9 @@ const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e)
     for (int i = 0; i < e->length; i++) {
         const mt_unit *const unit =
             e->code[i].op == MT_OP_PARAM ? mt_study_unit(study, e->code[i].param) : NULL;
-        if (unit != NULL && mt_kind_of_dimension(unit->dimension) == kind) {
+        const bool alone = e->length == 1; /* of whatever */
+        if (unit != NULL && (alone || (unit->dimension != MT_OTHER &&
+                                       mt_kind_of_dimension(unit->dimension) == kind))) {
             return unit;
         }
     }
@@ -138,8 +140,7 @@ const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
     if (goal->shake != NULL) {
         return goal->shake->unit;
     }
-    return other != NULL ? mt_dimension_si(other->dimension)
-                         : mt_goal_kind_of(goal->type)->unit;
+    return other != NULL ? other->si : mt_goal_kind_of(goal->type)->unit;
 }
 
 int mt_study_find_reference(const mt_study *study, const char *name)

@@ -25,6 +25,21 @@ FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 SECONDS = {"inceptor_identification", "inceptor_rotor", *(("beam_identification", "inceptor_tuning_2", "truss_10bar_E68_9") if FEW else ())}
 QUICK = ["beam_identification", "beam_table_3", "engine_orders", "inceptor_identification", "inceptor_rotor", "inceptor_stick",
          "inceptor_tuning_1", "inceptor_tuning_2", "six_masses_bands", "truss_10bar_E68_9"]
+# Exact factors by definition: pound, inch, gravity (a pound of force is their product), foot, slug; a degree to thirty digits.
+LB, INCH, G, FT = Fraction("0.45359237"), Fraction("0.0254"), Fraction("9.80665"), Fraction("0.3048")
+LBF, SLUG, DEG = LB * G, LB * G / FT, Fraction("3.14159265358979323846264338328") / 180
+EXACT = {"N/mm": 1000, "kN/m": 1000, "kN/mm": 10 ** 6, "N/um": 10 ** 6, "MPa": 10 ** 6, "GPa": 10 ** 9, "kPa": 1000, "N/mm^2": 10 ** 6,
+         "g": Fraction(1, 1000), "t": 1000, "lb": LB, "oz": LB / 16, "slug": SLUG, "lbf s^2/in": LBF / INCH, "kg mm^2": Fraction(1, 10 ** 6),
+         "g cm^2": Fraction(1, 10 ** 7), "g mm^2": Fraction(1, 10 ** 9), "kg cm^2": Fraction(1, 10 ** 4), "t mm^2": Fraction(1, 1000),
+         "lb in^2": LB * INCH ** 2, "lb ft^2": LB * FT ** 2, "slug ft^2": SLUG * FT ** 2, "lbf in s^2": LBF * INCH, "N mm": Fraction(1, 1000),
+         "N mm/rad": Fraction(1, 1000), "N m/deg": 1 / DEG, "N mm/deg": 1 / DEG / 1000, "kip": 1000 * LBF, "lbf": LBF, "psi": LBF / INCH ** 2,
+         "ksi": 1000 * LBF / INCH ** 2, "lbf/in": LBF / INCH, "lbf/ft": LBF / FT, "kip/in": 1000 * LBF / INCH, "lbf in": LBF * INCH,
+         "lbf ft": LBF * FT, "lbf in/rad": LBF * INCH, "lbf ft/rad": LBF * FT, "lbf in/deg": LBF * INCH / DEG, "g/cm^3": 1000,
+         "t/mm^3": 10 ** 12, "lb/in^3": LB / INCH ** 3, "lb/ft^3": LB / FT ** 3, "slug/ft^3": SLUG / FT ** 3, "mm^2": Fraction(1, 10 ** 6),
+         "mm^4": Fraction(1, 10 ** 12), "in^2": INCH ** 2, "in^4": INCH ** 4, "N s/mm": 1000, "lbf s/in": LBF / INCH, "mm/s^2": Fraction(1, 1000),
+         "um": Fraction(1, 10 ** 6), "mrad": Fraction(1, 1000), "kHz": 1000, "ms": Fraction(1, 1000), "%": Fraction(1, 100), "in": INCH, "ft": FT,
+         "mm": Fraction(1, 1000), "cm": Fraction(1, 100), "deg": DEG, "rpm": Fraction(1, 60), "kN": 1000, "kN m": 1000, "deg/s": DEG,
+         "in/s^2": INCH, "kg/mm": 1000, "g/mm": 1, "lb/in": LB / INCH, "lb/ft": LB / FT}
 # What tells people, or of files, and which unit that was shown in; it may differ, all else may not.
 TOLD = {"display_unit", "display_factor", "text", "reasons", "inputs", "outputs", "demand", "label", "unit", "goal", "what", "line", "column"}
 
@@ -235,7 +250,7 @@ class Shown(CliTest):
 
     def test_set_refuses_what_looks_like_another_unit(self):
         for text, why in (("d=100+20", '120 is 120 m here, as expressions are in SI units: write "120*mm"'),
-                          ("d=d+20", 'write "20*mm"'), ("d=max(d, 200)", 'write "200*mm"'), ("tilt=0.05+tilt", 'write "0.05*deg"'),
+                          ("d=d+20", 'write "20*mm"'), ("d=max(d, 200)", 'write "200*mm"'), ("tilt=0.05+tilt", 'write 0.05 rad as "2.864788976*deg"'),
                           ("n=2*150", 'write "300*rpm"'), ("d=3*tilt", "this is an angle, where a length belongs"),
                           ("w=1+w", 'write "1*mm"'), ("d=20 mm", 'did you mean "20*mm"'), ("d=mm", '"mm" is a unit')):
             with self.subTest(text=text):
@@ -374,6 +389,80 @@ class Shown(CliTest):
             self.assertLessEqual(abs(d["value"] * 1.0 / 1000.0 - wanted), math.ulp(wanted))
             got = self.json_of("modes", "problems/applied.json", "-c", "as_is")["modes"][0]["frequency_hz"]
             self.assertAlmostEqual(got / best["frequencies"][0]["recommended_hz"], 1, delta=DIGITS)
+
+    def test_every_unit_of_a_parameter_there_and_back(self):
+        """Numbers of one to fifteen digits: the value is within half a unit of the last place (two in degrees) of the exact one, info and apply
+        give the number back to its last digit, and a study with bounds in the unit shows it."""
+        names = json.loads((SOURCE / "schemas/model.schema.json").read_text())["definitions"]["parameter"]["properties"]["unit"]["enum"]
+        self.assertLessEqual(set(EXACT), set(names))
+        numbers = [3, 240, 6.8, 0.07, 1234.5678, 0.123456789012345, 987654321.987654]
+        parameters = {f"p{i}_{k}": {"value": x, "unit": name} for i, name in enumerate(names) for k, x in enumerate(numbers)}
+        self.write("problems/all.json", json.dumps(altered(STICK, parameters=dict(STICK["parameters"], **parameters))))
+        got = {c["parameter"]: c for c in self.json_of("info", "problems/all.json", "-c", "as_is")["converted"]}
+        for name, exact in EXACT.items():
+            for k, x in enumerate(numbers):
+                with self.subTest(unit=name, number=x):
+                    c = got[f"p{names.index(name)}_{k}"]
+                    self.assertEqual((c["number"], c["number_unit"]), (x, name))
+                    wanted = Fraction(str(x)) * exact
+                    self.assertLessEqual(abs(Fraction(c["value"]) - wanted), Fraction(math.ulp(float(wanted))) * (2 if "deg" in name else Fraction(3, 2)))
+        si = {"1", *SI.values()} | {n for n in names if n not in EXACT}
+        self.assertEqual({c["unit"] for c in got.values()} - si, set())
+
+    def test_a_study_in_units_of_the_shop(self):
+        shop = {"k": {"value": 3000000, "unit": "N mm/rad"}, "m": {"value": 2300, "unit": "g"}}
+        self.write("problems/stick.json", json.dumps(altered(STICK, parameters=dict(STICK["parameters"], **shop))))
+        study = altered(ASK, published=[{"parameter": "k", "value": 3e6, "tolerance": 1e6}], goals=[
+            ASK["goals"][0], {"type": "limit", "expression": "m", "at_most": "2.5"}], variables=[
+            {"parameter": "k", "lower": 2e6, "upper": 4e6}, {"parameter": "m", "lower": 2000, "upper": 2600}])
+        self.write("studies/shop.json", json.dumps(study))
+        refused = self.expect(2, "run", "studies/shop.json", "-o", "out").stderr
+        self.assertIn('2.5 is 2.5 kg here, as expressions are in SI units: 2.5 g is written "0.0025"', refused)
+        del study["goals"][1]
+        self.write("studies/shop.json", json.dumps(study))
+        said = self.expect(0, "run", "studies/shop.json", "-o", "out").stdout
+        self.assertRegex(said, r"k +N mm/rad +3e\+06 +[23]\.\d+e\+06 ")
+        self.assertRegex(said, r"m +g +2300\.00 +2\d\d\d\.\d")
+        a, b = json.loads((self.folder / "out/shop/result.json").read_text())["recommendations"][0]["parameters"]
+        self.assertEqual((a["unit"], a["display_unit"], a["display_factor"], a["lower"], a["upper"]), ("N m/rad", "N mm/rad", 0.001, 2000, 4000))
+        self.assertEqual((b["unit"], b["display_unit"], b["display_factor"], b["lower"], b["upper"]), ("kg", "g", 0.001, 2, 2.6))
+        applied = json.loads(self.expect(0, "apply", "out/shop/result.json").stdout)["parameters"]
+        for p, name in ((a, "k"), (b, "m")):
+            self.assertEqual(applied[name]["unit"], p["display_unit"])
+            self.assertLessEqual(abs(applied[name]["value"] / 1000 - p["recommended"]), math.ulp(p["recommended"]))
+        self.assertAlmostEqual(self.hz("-c", "as_is", "--set", "m=2300", "--set", "k=3e6") / self.exact(0.17, 3), 1, delta=DIGITS)
+
+    def test_what_g_is_follows_from_its_use(self):
+        def tried(value, mass="m", gravity=None, unit="g", **more):
+            model = altered(STICK, parameters=dict(STICK["parameters"], q={"value": value, "unit": unit}), gravity_m_per_s2=gravity)
+            model["bodies"] = [dict(STICK["bodies"][0], mass_kg=mass), STICK["bodies"][1]]
+            self.write("problems/g.json", json.dumps(dict(model, **more)))
+            return self.run_program("info", "problems/g.json", "-c", "as_is", "--format", "json")
+
+        for args, unit, value in (((1500, "q"), "kg", 1.5), ((1500, "1 + q/2"), "kg", 1.5), ((1500,), "kg", 1.5),
+                                  ((1, 1.5, [0, "-q"]), "m/s^2", 9.80665), ((2, 1.5, [0, "-q*cos(tilt)"]), "m/s^2", 19.6133)):
+            with self.subTest(args=args):
+                c = next(c for c in json.loads(tried(*args).stdout)["converted"] if c["parameter"] == "q")
+                self.assertEqual((c["number"], c["unit"], c["value"]), (args[0], unit, value))
+        force = [{"name": "pull", "on": "stick", "at": "grip", "force_n": [0, "-2*q"]}]
+        for got in (tried(1, "q", [0, "-q"]), tried(1, loads=force)):
+            self.assertEqual(got.returncode, 2)
+            self.assertIn('"g" is a gram or 9.80665 m/s^2, and what uses "q" does not say which', got.stderr)
+        self.assertEqual(tried(1, "q", loads=force).returncode, 0)
+        got = tried(1, "q", unit="lb/in")
+        self.assertEqual(got.returncode, 2)
+        self.assertIn('"q" is in lb/in, of which 1 is 17.858 kg/m: that is not what is wanted here', got.stderr)
+
+    def test_an_unknown_unit_is_told_by_what_it_is(self):
+        for unit, why in (("Nmm/rad", 'did you mean "N mm/rad"?'), ("kgm2", 'did you mean "kg m^2"?'), ("N\u00b7mm", 'did you mean "N mm"?'),
+                          ("kN/um", '(of its kind: "N/m", '), ("N m/rd", 'did you mean "N m/rad"?'), ("lb/ft^4", "write the number in units of SI"),
+                          ("furlong", "modetune schema model"), ("inch", 'did you mean "in"?'), ("\u00b5m", 'did you mean "um"?')):
+            with self.subTest(unit=unit):
+                self.write("problems/odd.json", json.dumps(altered(STICK, parameters=dict(STICK["parameters"], q={"value": 1, "unit": unit}))))
+                self.assertIn(f'unknown unit "{unit}"', said := self.expect(2, "check", "problems/odd.json").stderr)
+                self.assertIn(why, said)
+        self.write("problems/odd.json", json.dumps(altered(STICK, units={"length": "um"})))
+        self.assertIn('"um" is a unit of a parameter\'s number only: write "m" or "mm"', self.expect(2, "check", "problems/odd.json").stderr)
 
     def test_a_parameter_of_a_unit_s_name_is_refused(self):
         self.write("problems/old.json", json.dumps(altered(STICK, parameters=dict(STICK["parameters"], ft=3))))
