@@ -145,6 +145,7 @@ static mt_status read_text(void *context, mt_err *err)
 {
     mt_measuring *const m = context;
     m->err = err;
+    m->begin = m->at;
     if (is_universal(m->at)) {
         return mt_read_measurement_uff(m);
     }

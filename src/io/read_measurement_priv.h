@@ -8,6 +8,7 @@
  * separator was. */
 typedef struct mt_measuring {
     const char *path;
+    char *begin;
     char *at;
     char *end; /* a NUL stands there */
     char *start_of_line;
@@ -33,6 +34,21 @@ mt_status mt_measuring_add(mt_measuring *m, mt_measured_response *r,
                            const mt_measured_line *line, int column);
 /* One more response; NULL: out of memory. */
 mt_measured_response *mt_measuring_response(mt_measuring *m);
+
+/* What a universal file says of the units of a response. */
+typedef struct mt_measured_labels {
+    int numerator; /* codes of what is measured */
+    int denominator;
+    bool turns[2]; /* is that about an axis: numerator, denominator */
+    const char *numerator_unit;
+    const char *denominator_unit;
+    double length; /* so many of the file's are a metre, by dataset 164; NaN: it has none */
+    double force;
+} mt_measured_labels;
+/* What a response measures and what its numbers are multiplied by: by the labels of its units,
+ * by dataset 164, or of SI; NaN where they are not known or contradict each other. */
+void mt_measuring_units(mt_measuring *m, const mt_measured_labels *labels,
+                        mt_measured_response *r);
 
 mt_status mt_read_measurement_csv(mt_measuring *m);
 mt_status mt_read_measurement_uff(mt_measuring *m);

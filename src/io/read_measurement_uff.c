@@ -19,11 +19,13 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/visible.h"
+#include "expr/unit_text.h"
+#include "io/universal.h"
 
-enum { TEXTS = 5, VALUES_MOST = 100000000, UNIT_TEXT = 24 };
+enum { TEXTS = 5, VALUES_MOST = 100000000, UNIT_TEXT = 48 };
 enum { COMPLEX_SINGLE = 5, COMPLEX_DOUBLE = 6, REAL_SINGLE = 2, REAL_DOUBLE = 4 };
-enum { UNKNOWN = 0, GENERAL = 1, DISPLACEMENT = 8, REACTION = 9, VELOCITY = 11 };
-enum { ACCELERATION = 12, FORCE = 13, FREQUENCY = 18 };
+enum { UNKNOWN = 0, GENERAL = 1, FREQUENCY = 18 };
 enum { LITTLE_ENDIAN_BYTES = 1, BIG_ENDIAN_BYTES = 2, IEEE = 2 };
 
 /* One line of text: a record. */
@@ -57,6 +59,7 @@ typedef struct header {
     record data; /* record 7 */
     bool binary;
     bool big;
+    int bytes; /* of binary data, as told; 0: not */
 } header;
 
 static mt_status unfinished(const reading *u)
@@ -142,11 +145,20 @@ static mt_status integer(const reading *u, const record *r, int from, int width,
     return MT_OK;
 }
 
+/* Columns are characters where somebody writes UTF-8 into a label. */
 static void text_of(const record *r, int from, int width, char out[UNIT_TEXT])
 {
     int length = 0;
-    const char *const s = field_of(r, from, width, &length);
-    (void)mt_snprintf(out, UNIT_TEXT, "%.*s", length, s);
+    for (int i = 0; i < r->length && i < from + width; i++) {
+        const size_t more = mt_utf8_length(r->text + i, (size_t)(r->length - i));
+        const int extra = more > 1 ? (int)more - 1 : 0;
+        from += i < from ? extra : 0;
+        width += i < from ? 0 : extra;
+        i += extra;
+    }
+    const char *const s = field_of(r, from, width < UNIT_TEXT ? width : UNIT_TEXT - 1, &length);
+    memcpy(out, s, (size_t)length); /* Latin-1 stays what it is */
+    out[length] = '\0';
 }
 
 static mt_status read_freedoms(const reading *u, const record *r, header *h)
@@ -191,6 +203,20 @@ static mt_status read_form(const reading *u, const record *r, header *h)
                                      "the number of values must be from 0 to %d", VALUES_MOST);
 }
 
+/* Or nothing that is known to be another unit. */
+static bool is_hertz(const char *unit)
+{
+    static const char *const turns[] = {"rpm", "RPM", "cpm", "CPM", "1/min", "orders"};
+    mt_unit_worth is;
+    for (int i = 0; i < MT_COUNT(turns); i++) {
+        if (strcmp(unit, turns[i]) == 0) {
+            return false;
+        }
+    }
+    return !mt_unit_read(unit, MT_READ_MASSES, &is) ||
+           (is.factor == 1.0 && is.power[MT_BASE_RAD] == 0);
+}
+
 static mt_status read_axes(const reading *u, const record axes[4], header *h)
 {
     int abscissa = 0;
@@ -208,7 +234,7 @@ static mt_status read_axes(const reading *u, const record axes[4], header *h)
                                    "a frequency response is over frequency (18), not over %d",
                                    abscissa);
     }
-    return response && strncmp(unit, "rad", 3) == 0
+    return response && !is_hertz(unit)
                ? mt_measuring_refuse(u->m, axes[0].line, 48,
                                      "frequencies must be in Hz, not in %s", unit)
                : MT_OK;
@@ -303,6 +329,19 @@ static ptrdiff_t bytes_of(const header *h)
     return h->binary ? size * h->count * per_value(h) : 0;
 }
 
+/* Those, or as many as were told, where the last block is filled up. */
+static ptrdiff_t bytes_to_pass(const reading *u, const header *h)
+{
+    const ptrdiff_t needed = bytes_of(h);
+    const bool more = h->binary && h->bytes > needed && h->bytes <= u->m->end - u->m->at;
+    return more ? h->bytes : needed;
+}
+
+static bool is_turn(const mt_measured_freedom *f)
+{
+    return f->direction > 3 || f->direction < -3;
+}
+
 static double sign_of(const header *h)
 {
     return (h->response.direction < 0) != (h->reference.direction < 0) ? -1.0 : 1.0;
@@ -357,72 +396,22 @@ static mt_status read_values(const reading *u, const header *h, mt_measured_resp
                                        .line = h->binary ? h->data.line : m->line};
         MT_TRY(mt_measuring_add(m, r, &line, column));
     }
-    m->at += bytes_of(h);
+    m->at += bytes_to_pass(u, h);
     return MT_OK;
-}
-
-/* Powers of length and force in what is measured along, or about, a direction; and its unit in
- * SI. NULL: it is not said, or nothing that a port has. */
-static const char *quantity(int what, int direction, int powers[2])
-{
-    const bool turns = direction > 3 || direction < -3;
-    powers[0] = 1;
-    powers[1] = 0;
-    if (what == FORCE || what == REACTION) {
-        powers[0] = turns ? 1 : 0;
-        powers[1] = 1;
-        return turns ? "N m" : "N";
-    }
-    powers[0] = turns ? 0 : 1;
-    return what == DISPLACEMENT   ? (turns ? "rad" : "m")
-           : what == VELOCITY     ? (turns ? "rad/s" : "m/s")
-           : what == ACCELERATION ? (turns ? "rad/s^2" : "m/s^2")
-                                  : NULL;
-}
-
-/* Does the file call the unit by a name of SI's, or by none? */
-static bool is_si(const char *unit)
-{
-    static const char *const known[] = {"",       "NONE",   "none",  "m",      "m/s",
-                                        "m/s^2",  "m/s2",   "m/s/s", "m/s**2", "m/sec^2",
-                                        "N",      "Newton", "rad",   "rad/s",  "rad/s^2",
-                                        "rad/s2", "N m",    "Nm",    "N*m",    "N-m"};
-    for (int i = 0; i < MT_COUNT(known); i++) {
-        if (strcmp(unit, known[i]) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool is_gravity(const char *unit)
-{
-    return (unit[0] == 'g' || unit[0] == 'G') && (unit[1] == '\0' || unit[1] == '\'');
 }
 
 static void set_units(const reading *u, const header *h, mt_measured_response *r)
 {
-    int up[2];
-    int down[2];
-    const char *const numerator = quantity(h->numerator, h->response.direction, up);
-    const char *const denominator = quantity(h->denominator, h->reference.direction, down);
-    const bool named = isfinite(u->length);
-    const char *const units[] = {h->numerator_unit, h->denominator_unit};
-    for (int i = 0; i < MT_COUNT(units); i++) {
-        if (is_gravity(units[i]) || (!named && !is_si(units[i]))) {
-            r->si = nan("");
-            r->foreign = mt_arena_strdup(u->m->mem, units[i]);
-        }
-    }
-    if (numerator == NULL || denominator == NULL) {
-        const bool metric = !named || (u->length == 1.0 && u->force == 1.0);
-        r->si = metric ? r->si : nan("");
-        return;
-    }
-    r->unit = mt_arena_printf(u->m->mem, "%s per %s", numerator, denominator);
-    if (named) {
-        r->si /= pow(u->length, up[0] - down[0]) * pow(u->force, up[1] - down[1]);
-    }
+    const mt_measured_labels labels = {
+        .numerator = h->numerator,
+        .denominator = h->denominator,
+        .turns = {is_turn(&h->response), is_turn(&h->reference)},
+        .numerator_unit = h->numerator_unit,
+        .denominator_unit = h->denominator_unit,
+        .length = u->length,
+        .force = u->force,
+    };
+    mt_measuring_units(u->m, &labels, r);
 }
 
 /* "58b" has more on its line. */
@@ -438,6 +427,7 @@ static mt_status read_binary(const reading *u, const record *r, header *h)
     MT_TRY(integer(u, r, 7, 6, &order));
     MT_TRY(integer(u, r, 13, 6, &numbers));
     MT_TRY(integer(u, r, 19, 12, &lines));
+    MT_TRY(integer(u, r, 31, 12, &h->bytes));
     h->big = order == BIG_ENDIAN_BYTES;
     if (order != LITTLE_ENDIAN_BYTES && order != BIG_ENDIAN_BYTES) {
         return mt_measuring_refuse(u->m, r->line, 8, "the order of bytes is 1 or 2, not %d",
@@ -467,11 +457,32 @@ static mt_status skip_dataset(const reading *u)
     return unfinished(u);
 }
 
-/* Nothing but a delimiter follows. */
-static mt_status close_dataset(const reading *u)
+/* Are these numbers alone, as the last line of values is filled up with? */
+static bool is_filling(const record *r)
+{
+    const char *s = r->text + strspn(r->text, " \t");
+    while (*s != '\0') {
+        double value = 0.0;
+        const size_t length = strcspn(s, " \t");
+        if (!mt_measuring_number(s, length, &value)) {
+            return false;
+        }
+        s += length + strspn(s + length, " \t");
+    }
+    return true;
+}
+
+/* Nothing but a delimiter follows the line of the last value. */
+static mt_status close_dataset(const reading *u, bool binary)
 {
     record r;
+    bool within = !binary && u->m->at > u->m->start_of_line;
     while (next_record(u, &r)) {
+        if (within && is_filling(&r)) {
+            within = false;
+            continue;
+        }
+        within = false;
         if (is_delimiter(r.text)) {
             return MT_OK;
         }
@@ -497,7 +508,7 @@ static mt_status read_function(reading *u, const record *number)
     if (mt_measured_is_response(r)) {
         set_units(u, &h, r);
         MT_TRY(read_values(u, &h, r));
-        return close_dataset(u);
+        return close_dataset(u, h.binary);
     }
     if (!h.binary) {
         return skip_dataset(u);
@@ -505,8 +516,8 @@ static mt_status read_function(reading *u, const record *number)
     if (u->m->end - u->m->at < bytes_of(&h)) {
         return unfinished(u);
     }
-    u->m->at += bytes_of(&h);
-    return close_dataset(u);
+    u->m->at += bytes_to_pass(u, &h);
+    return close_dataset(u, h.binary);
 }
 
 static mt_status read_units(reading *u)
@@ -542,6 +553,22 @@ static mt_status read_dataset(reading *u)
     return is_delimiter(r.text) ? MT_OK : skip_dataset(u);
 }
 
+/* What it has instead of what was asked for. */
+static mt_status refuse_contents(const reading *u)
+{
+    mt_measuring *const m = u->m;
+    mt_text holds = {.s = NULL};
+    mt_universal_contents(m->begin, (size_t)(m->end - m->begin), &holds);
+    const mt_status rc =
+        holds.failed
+            ? mt_fail_memory(m->err)
+            : mt_measuring_refuse(m, 1, 1, "the file has no %s; it holds: %s",
+                                  u->functions > 0 ? "frequency response" : "dataset 58",
+                                  holds.s);
+    mt_text_free(&holds);
+    return rc;
+}
+
 mt_status mt_read_measurement_uff(mt_measuring *m)
 {
     reading u = {.m = m, .length = nan(""), .force = nan("")};
@@ -557,5 +584,9 @@ mt_status mt_read_measurement_uff(mt_measuring *m)
             return mt_measuring_refuse(m, r.line, 1, "a dataset begins with a line \"-1\"");
         }
     }
-    return u.functions > 0 ? MT_OK : mt_measuring_refuse(m, 1, 1, "the file has no dataset 58");
+    bool any = false;
+    for (int i = 0; i < m->out->n_responses; i++) {
+        any = any || mt_measured_is_response(&m->out->responses[i]);
+    }
+    return any ? MT_OK : refuse_contents(&u);
 }

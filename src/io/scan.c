@@ -13,6 +13,7 @@
 #include "base/format.h"
 #include "base/visible.h"
 #include "io/json.h"
+#include "io/universal.h"
 
 enum {
     MESSAGE_SIZE = 256,
@@ -451,10 +452,21 @@ static void scan_text(scan *sc)
     }
 }
 
+/* The other files of a test are given by mistake. */
+static void tell_universal(scan *sc)
+{
+    mt_text holds = {.s = NULL};
+    mt_universal_contents(sc->s, sc->n, &holds);
+    (void)wrong(sc, 0, "this is a universal file, no JSON: %s", holds.s == NULL ? "" : holds.s);
+    mt_text_free(&holds);
+}
+
 void mt_json_scan(const char *text, size_t length, mt_json_spots *out, mt_diags *diags)
 {
     scan sc = {.s = text, .n = length, .parent = MT_NO_ADDR, .out = out, .diags = diags};
-    if (length > MT_JSON_MAX_BYTES) {
+    if (length <= MT_JSON_MAX_BYTES && mt_universal_begins(text, length)) {
+        tell_universal(&sc);
+    } else if (length > MT_JSON_MAX_BYTES) {
         (void)wrong(&sc, 0, "longer than %d bytes", MT_JSON_MAX_BYTES);
     } else {
         scan_text(&sc);

@@ -36,6 +36,7 @@ typedef struct mt_measured_response {
     /* what numbers are multiplied by to be SI; NaN where that is not known, because of */
     double si;
     const char *foreign; /* this unit; NULL: the file does not say what is measured */
+    const char *against; /* what the file says besides, that this unit is none of; NULL */
     double scale;        /* by finish: the lines times this are in SI */
     MT_LIST_OF(mt_measured_line, lines); /* ascending */
 } mt_measured_response;

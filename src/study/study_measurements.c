@@ -85,6 +85,13 @@ static bool scale(mt_study_check *c, const mt_measurement *m, mt_measured_respon
 {
     const double by = MT_HAS(m->factor) ? m->factor : r->si;
     if (!MT_HAS(by)) {
+        if (r->foreign != NULL && r->against != NULL) {
+            mt_diag_error(c->diags, m->path.addr,
+                          "\"%s\" says that it has %s, and \"%s\" for its unit: give "
+                          "\"factor\", by which its values are multiplied to be in SI",
+                          m->path.s, r->against, r->foreign);
+            return false;
+        }
         mt_diag_error(c->diags, m->path.addr,
                       r->foreign != NULL
                           ? "the unit \"%s\" of \"%s\" is not known: give \"factor\", by which "

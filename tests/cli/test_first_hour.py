@@ -100,5 +100,20 @@ class FirstHour(CliTest):
         self.assertIn("UH-60", self.expect(2, "check", "mine/study.json").stderr)
 
 
+class Universal(CliTest):
+    FILE = "    -1\n    15\n         1         0         0        11  4.0E-01  0.0E+00  0.0E+00\n    -1\n" + "    -1\n    55\n" + "NONE\n" * 5 + \
+        "         1         2         2         8         2         3\n         2         4         1         1\n  5.0E+00  1.0E+00  1.9E-02  0.0E+00\n" \
+        "         1\n  0.0E+00 -2.4E-02 -2.1E-01\n    -1\n"
+
+    def test_a_universal_file_is_told_by_what_it_holds(self):
+        self.write("test.unv", self.FILE)
+        for args in (("check", "test.unv"), ("info", "test.unv"), ("modes", "test.unv"), ("mac", "test.unv:a", "test.unv:b"), ("run", "test.unv")):
+            with self.subTest(args=args):
+                said = self.expect(2, *args).stderr
+                self.assertIn("test.unv:1:1: error: this is a universal file, no JSON: 1 mode shape (dataset 55), 1 node (dataset 15); "
+                              "no frequency response", said)
+                self.assertNotIn("unexpected", said)
+
+
 if __name__ == "__main__":
     main()

@@ -235,14 +235,164 @@ static void measurement__universal_units_are_turned_or_told(mt_test *t)
               "        13    0    0    0 Moment               N                   \n",
               values);
     load_text(text, &l);
-    CHECK(t, l.m.n_responses == 1 && isnan(l.m.responses[0].si));
-    CHECK(t, l.m.n_responses == 1 && strcmp(l.m.responses[0].foreign, "mm") == 0);
+    CHECK(t, l.m.n_responses == 1 && l.m.responses[0].si == 0.001);
     CHECK(t, l.m.n_responses == 1 && strcmp(l.m.responses[0].unit, "m per N") == 0);
     unload(&l);
     (void)snprintf(both, sizeof both, "%s%s", millimetres, text);
     load_text(both, &l);
     CHECK(t, l.m.n_responses == 1 && l.m.responses[0].si == 1.0);
     unload(&l);
+}
+
+/* Labels as test software writes them, over codes of an acceleration (12) and a force (13). */
+static void measurement__labels_of_units_are_understood(mt_test *t)
+{
+    static const char values[] = " -1.00000E+00  2.00000E+00  5.00000E-01 -2.50000E-01\n";
+    static const double LBF = 0.45359237 * 9.80665;
+    static const struct {
+        int code; /* of the numerator; 0: not said */
+        const char *top;
+        const char *bottom;
+        double si;           /* NaN: refused */
+        const char *against; /* what is told then; NULL: the unit is not known */
+    } rows[] = {
+        {12, "m/s^2", "N", 1.0, NULL},
+        {12, "m/s^2/N", "", 1.0, NULL},
+        {12, "(m/s^2)/N", "NONE", 1.0, NULL},
+        {12, "m/s2/N", "", 1.0, NULL},
+        {12, "(m/s\xB2)/N", "", 1.0, NULL},
+        {12, "(1/N)*(m/s\xB2)", "", 1.0, NULL},
+        {12, "(m/s\xC2\xB2)/N", "", 1.0, NULL},
+        {12, "m\xC2\xB7s\xE2\x81\xBB\xC2\xB2/N", "", 1.0, NULL},
+        {12, "m/(N*s^2)", "", 1.0, NULL},
+        {12, "1/kg", "", 1.0, NULL},
+        {12, "(m/s^2)/N", "N", 1.0, NULL},
+        {12, "m/sec^2", "N", 1.0, NULL},
+        {12, "m/s/s", "N", 1.0, NULL},
+        {12, "m/s**2", "Newton", 1.0, NULL},
+        {12, "", "", 1.0, NULL},
+        {12, "NONE", "NONE", 1.0, NULL},
+        {12, "m/s^2", "", 1.0, NULL},
+        {12, "g", "N", 9.80665, NULL},
+        {12, "g/N", "", 9.80665, NULL},
+        {12, "gn/N", "", 9.80665, NULL},
+        {12, "G/N", "", 9.80665, NULL},
+        {12, "mg/N", "", 9.80665e-3, NULL},
+        {12, "g/lbf", "", 9.80665 / LBF, NULL},
+        {12, "g", "lb", 9.80665 / LBF, NULL},
+        {12, "in/s^2", "lbf", 0.0254 / LBF, NULL},
+        {12, "mm/s^2/N", "", 1e-3, NULL},
+        {12, "mm/s^2", "kN", 1e-6, NULL},
+        {12, "N", "N", NAN, "an acceleration"},
+        {12, "m", "N", NAN, "an acceleration"},
+        {12, "m/s^2", "m", NAN, "a force"},
+        {12, "m/s", "", NAN, "an acceleration"},
+        {12, "furlong", "N", NAN, NULL},
+        {12, "m/s^2", "EU", NAN, NULL},
+        {12, "V", "N", NAN, NULL},
+        {11, "mm/s", "N", 1e-3, NULL},
+        {11, "g", "N", NAN, "a velocity"},
+        {8, "um/N", "", 1e-6, NULL},
+        {8, "\xB5m", "N", 1e-6, NULL},
+        {8, "\xC2\xB5m", "N", 1e-6, NULL},
+        {0, "g/N", "", 9.80665, NULL},
+        {0, "mm", "N", 1e-3, NULL},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        char axes[256];
+        char text[TEXT];
+        loaded l;
+        mt_test_row(t, "%d: %s over \"%s\"", rows[i].code, rows[i].top, rows[i].bottom);
+        (void)snprintf(axes, sizeof axes,
+                       "%10d    0    0    0 %-20s %-20s\n%10d    0    0    0 %-20s %-20s\n",
+                       rows[i].code, "", rows[i].top, rows[i].code == 0 ? 0 : 13, "",
+                       rows[i].bottom);
+        universal(text, 5, 1, axes, values);
+        load_text(text, &l);
+        if (CHECK_INT(t, l.rc, MT_OK) && CHECK_INT(t, l.m.n_responses, 1)) {
+            const mt_measured_response *const r = &l.m.responses[0];
+            if (isnan(rows[i].si)) {
+                CHECK(t, isnan(r->si));
+                CHECK(t, r->foreign != NULL);
+                CHECK(t, (r->against == NULL) == (rows[i].against == NULL));
+                CHECK(t, rows[i].against == NULL || r->against == NULL ||
+                             strcmp(r->against, rows[i].against) == 0);
+            } else {
+                CHECK_NEAR(t, r->si / rows[i].si, 1.0, 1e-14);
+                CHECK(t, rows[i].code != 0 || r->unit != NULL);
+            }
+        }
+        unload(&l);
+    }
+}
+
+static void measurement__filled_last_lines_are_read(mt_test *t)
+{
+    static const char *const fillings[] = {
+        " -1.0E+00  2.0E+00  5.0E-01 -2.5E-01  0.00000E+00  0.00000E+00\n",
+        " -1.0E+00  2.0E+00\n  5.0E-01 -2.5E-01  0.00000E+00  0.00000E+00\n",
+        " -1.0E+00  2.0E+00  5.0E-01 -2.5E-01  7.00000E+00   \n\n",
+    };
+    for (int i = 0; i < MT_COUNT(fillings); i++) {
+        char text[TEXT];
+        loaded l;
+        mt_test_row(t, "%d", i);
+        universal(text, 5, 1, ACCELERANCE, fillings[i]);
+        load_text(text, &l);
+        check_two(t, &l, 1e-15);
+        unload(&l);
+    }
+}
+
+/* What is there is told where a frequency response is not. */
+static void measurement__contents_are_told(mt_test *t)
+{
+    static const struct {
+        const char *text;
+        const char *says;
+    } rows[] = {
+        {"    -1\n    15\n  1 0 0 11 0. 0. 0.\n  2 0 0 11 0. 0. 0.\n    -1\n"
+         "    -1\n    55\nN\nN\nN\nN\nN\n         1         2         2         8\n    -1\n",
+         "no dataset 58; it holds: 1 mode shape (dataset 55), 2 nodes (dataset 15); no "
+         "frequency "
+         "response"},
+        {"    -1\r\n  2411\r\n 1 1 1 11\r\n 0. 0. 0.\r\n    -1\r\n    -1\r\n   164\r\n 1 SI\r\n"
+         "  1.0000000000000000D+00  1.0000000000000000D+00  1.0D+00\r\n 273.\r\n    -1\r\n",
+         "1 node (dataset 2411), 1 set of units (dataset 164); no"},
+        {"    -1\n   757\nx\n    -1\n", "1 other dataset"},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        loaded l;
+        mt_test_row(t, "%d", i);
+        load_text(rows[i].text, &l);
+        CHECK_INT(t, l.rc, MT_E_INPUT);
+        if (!CHECK(t, strstr(l.err.text, rows[i].says) != NULL)) {
+            (void)fprintf(stderr, "%s\n", l.err.text);
+        }
+        unload(&l);
+    }
+    static const struct {
+        int function;
+        const char *says;
+    } kinds[] = {{2, "no frequency response; it holds: 1 power spectrum (dataset 58)"},
+                 {1, "1 time history (dataset 58)"},
+                 {9, "1 power spectral density (dataset 58)"},
+                 {99, "1 function of another kind (dataset 58)"}};
+    for (int i = 0; i < MT_COUNT(kinds); i++) {
+        char text[TEXT];
+        char number[8];
+        loaded l;
+        mt_test_row(t, "function %d", kinds[i].function);
+        universal(text, 5, 1, ACCELERANCE, " 1. 2. 3. 4.\n");
+        (void)snprintf(number, sizeof number, "%5d", kinds[i].function);
+        memcpy(strstr(text, "    4"), number, 5);
+        load_text(text, &l);
+        CHECK_INT(t, l.rc, MT_E_INPUT);
+        if (!CHECK(t, strstr(l.err.text, kinds[i].says) != NULL)) {
+            (void)fprintf(stderr, "%s\n", l.err.text);
+        }
+        unload(&l);
+    }
 }
 
 static void measurement__wrong_universal_files_are_told(mt_test *t)
@@ -374,6 +524,9 @@ MT_TEST_MAIN(MT_TEST(measurement__tables_of_every_spelling_are_one),
              MT_TEST(measurement__wrong_files_are_told_with_their_place),
              MT_TEST(measurement__universal_files_of_every_form_are_one),
              MT_TEST(measurement__universal_units_are_turned_or_told),
+             MT_TEST(measurement__labels_of_units_are_understood),
+             MT_TEST(measurement__filled_last_lines_are_read),
+             MT_TEST(measurement__contents_are_told),
              MT_TEST(measurement__wrong_universal_files_are_told),
              MT_TEST(measurement__no_beginning_of_a_file_is_read_beyond),
              MT_TEST(measurement__binary_is_as_text), MT_TEST(measurement__freedoms_are_read))
