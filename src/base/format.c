@@ -112,6 +112,21 @@ static void put_string(sink *s, const spec *f, const char *text)
     }
 }
 
+/* The C library writes the decimal point of the locale, which may be several bytes: whatever is
+ * no digit, sign or exponent becomes one point. */
+static void make_point_plain(char *text)
+{
+    char *out = text;
+    for (const char *s = text; *s != '\0'; s++) {
+        if (strchr("0123456789+-e", *s) != NULL) {
+            *out++ = *s;
+        } else if (out == text || out[-1] != '.') {
+            *out++ = '.';
+        }
+    }
+    *out = '\0';
+}
+
 static void put_real(sink *s, spec *f, double x)
 {
     char text[NUMBER_SIZE];
@@ -120,9 +135,11 @@ static void put_real(sink *s, spec *f, double x)
     const int digits = f->precision < 0 ? 6 : f->precision;
     if (!isfinite(x)) {
         f->zero = false;
-        (void)snprintf(text, sizeof text, "%s",
-                       isnan(x) ? "undefined" : (x < 0.0 ? "-infinite" : "infinite"));
-    } else if (f->conversion == 'f') {
+        const char *const word = isnan(x) ? "undefined" : x < 0.0 ? "-infinite" : "infinite";
+        put_padded(s, f, word, strlen(word));
+        return;
+    }
+    if (f->conversion == 'f') {
         (void)snprintf(text, sizeof text, "%s%.*f", sign, digits, v);
     } else if (f->conversion == 'e') {
         (void)snprintf(text, sizeof text, "%s%.*e", sign, digits, v);
@@ -131,6 +148,7 @@ static void put_real(sink *s, spec *f, double x)
     } else {
         (void)snprintf(text, sizeof text, "%s%.*g", sign, digits, v);
     }
+    make_point_plain(text);
     put_padded(s, f, text, strlen(text));
 }
 

@@ -11,7 +11,7 @@
  * The one door of formatted text: messages of errors, sentences, tables and pages are all made
  * here, so that nobody who writes one can forget that
  *   - a number may be not finite: it is a word then, "undefined" for NaN, "infinite",
- *     "-infinite"; and -0 is 0;
+ *     "-infinite"; -0 is 0, and a decimal point is one in every locale;
  *   - an argument %s (or %c) may come from outside: it is made visible, see base/visible.h;
  *   - a text that is cut, by size or by %.20s, ends before a UTF-8 character, not in it.
  * Else as vsnprintf with these conversions: d i u x X c s e f g and %%, lengths l, ll and z,

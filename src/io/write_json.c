@@ -2,10 +2,10 @@
 #include "io/write_json.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/visible.h"
 
 enum { LONGEST_CHARACTER = 4 }; /* in bytes of UTF-8 */
@@ -18,27 +18,36 @@ mt_json_writer mt_json_writer_default(mt_text *out)
     return (mt_json_writer){.out = out};
 }
 
-/* printf writes the decimal point of the locale, which may be several bytes: whatever is not a
- * digit, sign or exponent becomes one point. */
 static const char *format_number(double value, int digits, char buffer[MT_JSON_NUMBER_SIZE])
 {
-    if (!isfinite(value)) {
+    if (isfinite(value)) {
+        (void)mt_snprintf(buffer, MT_JSON_NUMBER_SIZE, "%.*g", digits, value);
+    } else {
         memcpy(buffer, "null", sizeof "null");
-        return buffer;
     }
-    char raw[MT_JSON_NUMBER_SIZE];
-    /* -0 is 0 */
-    const int length = snprintf(raw, sizeof raw, "%.*g", digits, value == 0.0 ? 0.0 : value);
-    int n = 0;
-    for (int i = 0; i < length && i < MT_JSON_NUMBER_SIZE - 1; i++) {
-        if (strchr("0123456789+-e", raw[i]) != NULL) {
-            buffer[n++] = raw[i];
-        } else if (n > 0 && buffer[n - 1] != '.') {
-            buffer[n++] = '.';
+    return buffer;
+}
+
+/* The double that such a number is read as: its digits as a whole number, and the exponent that
+ * goes with it, have no decimal point. */
+static double read_back(const char *number)
+{
+    char plain[MT_JSON_NUMBER_SIZE + sizeof "e-2147483648"];
+    const size_t mantissa = strcspn(number, "e");
+    const char *const exponent = number[mantissa] == 'e' ? number + mantissa + 1 : "0";
+    size_t n = 0;
+    int behind = 0;
+    bool pointed = false;
+    for (size_t i = 0; i < mantissa; i++) {
+        if (number[i] == '.') {
+            pointed = true;
+        } else {
+            plain[n++] = number[i];
+            behind += pointed ? 1 : 0;
         }
     }
-    buffer[n] = '\0';
-    return buffer;
+    (void)mt_snprintf(plain + n, sizeof plain - n, "e%ld", strtol(exponent, NULL, 10) - behind);
+    return strtod(plain, NULL);
 }
 
 const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE])
@@ -48,15 +57,13 @@ const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]
 
 const char *mt_json_format_shortest(double value, char buffer[MT_JSON_NUMBER_SIZE])
 {
-    char raw[MT_JSON_NUMBER_SIZE];
-    int digits = CERTAIN;
-    for (; digits < EXACT; digits++) { /* read as it is written here, in the locale */
-        (void)snprintf(raw, sizeof raw, "%.*g", digits, value);
-        if (strtod(raw, NULL) == value) {
-            break;
+    for (int digits = CERTAIN; digits < EXACT; digits++) {
+        const char *const text = format_number(value, digits, buffer);
+        if (!isfinite(value) || read_back(text) == value) {
+            return text;
         }
     }
-    return format_number(value, digits, buffer);
+    return format_number(value, EXACT, buffer);
 }
 
 /* One character at s as JSON text; returns how many bytes of s it took. What cannot be seen is

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <float.h>
 #include <limits.h>
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,6 +47,24 @@ static void format__is_printf_where_nothing_is_hidden(mt_test *t)
             CHECK_STR(t, got, want);
         }
     }
+}
+
+/* A decimal comma, and a decimal point of two bytes. */
+static void format__numbers_are_the_same_in_every_locale(mt_test *t)
+{
+    static const char *const locales[] = {"C", "de_DE.UTF-8", "tr_TR.UTF-8", "ps_AF.UTF-8"};
+    for (int i = 0; i < MT_COUNT(locales); i++) {
+        char got[SIZE];
+        mt_test_row(t, "%s", locales[i]);
+        CHECK(t, setlocale(LC_NUMERIC, locales[i]) != NULL);
+        CHECK(t, (strcmp(localeconv()->decimal_point, ".") == 0) == (i == 0));
+        const int n = mt_snprintf(got, sizeof got, "%.1f %+.3e %#.6g|%8.3g|%-8.2f|%08.3f %g %g",
+                                  75.7, -1234.5, 3.0, 0.125, 2.5, -1.25, 1e300, nan(""));
+        CHECK_STR(t, got,
+                  "75.7 -1.234e+03 3.00000|   0.125|2.50    |-001.250 1e+300 undefined");
+        CHECK_INT(t, n, (int)strlen(got));
+    }
+    (void)setlocale(LC_NUMERIC, "C");
 }
 
 static void format__knows_every_length_and_width(mt_test *t)
@@ -175,6 +194,7 @@ static void visible__leaves_no_control_character_of_any_bytes(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(format__is_printf_where_nothing_is_hidden),
+             MT_TEST(format__numbers_are_the_same_in_every_locale),
              MT_TEST(format__knows_every_length_and_width),
              MT_TEST(format__says_what_is_not_finite_in_words),
              MT_TEST(format__makes_arguments_visible_and_nothing_else),

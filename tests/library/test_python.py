@@ -10,6 +10,7 @@ import html.parser
 import importlib.util
 import io
 import json
+import locale
 import math
 import os
 import pickle
@@ -172,6 +173,26 @@ class Progress(unittest.TestCase):
         with self.assertRaises(KeyError):
             modetune.solve(TOLD, workers=2, progress=refuse)
         self.assertEqual(threading.active_count(), 1)
+
+    def test_locale_changes_no_byte(self):
+        def without_times(answer):
+            told = {k: v for k, v in answer.items() if k != "timing"}
+            return json.dumps(told), re.sub(r"[0-9.]+ s\b", "", modetune.report(answer).html)
+
+        plain = without_times(modetune.solve(TUNING, progress=False))
+        changed = 0
+        try:
+            for name in ("de_DE.UTF-8", "tr_TR.UTF-8", "ps_AF.UTF-8"):
+                try:
+                    locale.setlocale(locale.LC_ALL, name)
+                except locale.Error:
+                    continue  # installed packages are tried where nobody made them
+                with self.subTest(locale=name):
+                    self.assertEqual(without_times(modetune.solve(TUNING, progress=False)), plain)
+                    changed += locale.localeconv()["decimal_point"] != "."
+        finally:
+            locale.setlocale(locale.LC_ALL, "C")
+        self.assertTrue(changed > 0 or "MODETUNE_INSTALLED" in os.environ)
 
     def test_interrupt_ends_the_search(self):
         # in the background of a shell it is ignored, and that is handed on
