@@ -91,6 +91,8 @@ MT_API mt_status mt_mechanism_shape(mt_mechanism *mechanism, int mode, double *s
  * Modal assurance criterion of the shapes of two mechanisms, which may be of different models,
  * at the channels whose names both have:
  *     mac_ij = (a_i . b_j)^2 / ((a_i . a_i)(b_j . b_j)), in [0, 1].
+ * Where the channels are displacements and rotations together, a rotation counts as its arc at
+ * the length of a's model.
  * @param[in]  modes_a, modes_b  how many vibration modes, the first ones
  * @param[out] mac  modes_a x modes_b, column-major; NaN where a shape vanishes at all channels
  *   a and b may be the same. Source: Ewins, Modal Testing, 2000, section 5.

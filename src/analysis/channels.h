@@ -15,4 +15,12 @@ typedef struct mt_common_channels {
 mt_status mt_analysis_common_channels(const mt_analysis *a, const mt_analysis *b, mt_arena *mem,
                                       mt_common_channels *out, mt_err *err);
 
+/* Where these channels are displacements and angles together: what each counts as, 1 or the
+ * length [m] at which an angle is an arc, in mem; *scale is NULL where they are of one kind.
+ * Fails: MT_E_MEMORY. */
+mt_status mt_channels_scale(const mt_system *sys, int n, const int *channels, double length,
+                            mt_arena *mem, double **scale, mt_err *err);
+/* Multiply shapes[n x columns] so; scale NULL: as they are. */
+void mt_channels_weigh(int n, const double *scale, int columns, double *shapes);
+
 #endif

@@ -31,8 +31,9 @@ typedef struct comparison {
     side a;
     side b;
     int ns;
-    double *mac; /* a.n x b.n */
-    int *pair;   /* [a.n] */
+    double *scale; /* [ns] of displacements and angles together; NULL: of one kind */
+    double *mac;   /* a.n x b.n */
+    int *pair;     /* [a.n] */
     mt_arena mem;
 } comparison;
 
@@ -77,7 +78,9 @@ static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
     }
     x->shape = mt_arena_f64(&c->mem, (size_t)c->ns, (size_t)x->n);
     MT_TRY(mt_arena_check(&c->mem, err));
-    return mt_shapes_at(x->a, c->ns, x->channels, x->n, x->position, x->shape, err);
+    MT_TRY(mt_shapes_at(x->a, c->ns, x->channels, x->n, x->position, x->shape, err));
+    mt_channels_weigh(c->ns, c->scale, x->n, x->shape);
+    return MT_OK;
 }
 
 static mt_status correlate(comparison *c, int count, mt_err *err)
@@ -95,6 +98,8 @@ static mt_status correlate(comparison *c, int count, mt_err *err)
     c->ns = common.n;
     c->a.channels = common.a;
     c->b.channels = common.b;
+    const mt_system *const sys = c->a.a->sys;
+    MT_TRY(mt_channels_scale(sys, c->ns, common.a, sys->length_m, &c->mem, &c->scale, err));
     const int wanted = count > 0 ? count : c->ns;
     MT_TRY(choose_modes(c, &c->a, wanted, err));
     MT_TRY(choose_modes(c, &c->b, wanted, err));
@@ -142,6 +147,14 @@ static mt_status notes(comparison *c, emit_note emit, void *context, mt_err *err
             "%d sensor channels cannot tell %d modes apart: shapes beyond %d depend "
             "on each other there",
             c->ns, most, c->ns);
+        emit(context, text);
+    }
+    if (c->scale != NULL) {
+        char text[NOTE_TEXT];
+        (void)mt_snprintf(text, sizeof text,
+                          "the sensors mix displacements and rotations: a rotation counts as "
+                          "its arc at %.4g m, the length of A's model",
+                          c->a.a->sys->length_m);
         emit(context, text);
     }
     MT_TRY(note_alike(c, &c->a, emit, context, err));

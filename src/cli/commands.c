@@ -273,12 +273,15 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "it), the residual and orthogonality ratios of each (about 1 is perfect), redundant "
         "joints, and how the equilibrium was found. Shapes are mass-normalised. Names that the "
         "model gives to modes are shown where nothing is changed by --set."),
-    COMMAND(MT_CMD_MAC, "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2, 2,
-            "pair and correlate two sets of modes",
-            "Compares shapes at the sensors that both models have, pairs the modes one to one, "
-            "and compares repeated modes as subspaces. The configuration may be left out where "
-            "a model has only one. Default number of modes: as many as there are common sensor "
-            "channels."),
+    COMMAND(
+        MT_CMD_MAC, "mac", "MODEL:CONFIGURATION MODEL:CONFIGURATION", 2, 2,
+        "pair and correlate two sets of modes",
+        "Compares shapes at the sensors that both models have, pairs the modes one to one, "
+        "and compares repeated modes as subspaces. Where they are displacements and rotations "
+        "together, a rotation counts as its arc at the length of A's model. The configuration "
+        "may be left out where "
+        "a model has only one. Default number of modes: as many as there are common sensor "
+        "channels."),
     COMMAND(
         MT_CMD_SWEEP, "sweep", "MODEL", 1, 1,
         "positions and frequencies over a range of motion",

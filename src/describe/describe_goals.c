@@ -226,6 +226,20 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
                : doubt(fresh, d, result, g, err);
 }
 
+/* Sensors of a MAC or a shape that mix displacements and angles, where the length at which an
+ * angle is an arc is not the question's own. */
+static mt_status tell_length(const mt_demand *d, const mt_design *design, mt_result *result,
+                             mt_err *err)
+{
+    return design->found != NULL || d->shape.scale == NULL || MT_HAS(d->goal->length)
+               ? MT_OK
+               : mt_describe_warn(result, err,
+                                  "/goals/%d: the sensors of \"%s\" mix displacements and "
+                                  "rotations: a rotation counts as its arc at %.4g m, the "
+                                  "model's length (\"length_m\" of the goal chooses another)",
+                                  d->goal_index, d->shape.reference, d->shape.length);
+}
+
 /* What measured data look like that fit no mechanism: told where the original design shows it,
  * or the best one. */
 static mt_status doubt_data(const mt_workspace *fresh, const mt_demand *d,
@@ -266,6 +280,7 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
     MT_TRY(solve_views(fresh, &why, err));
     for (int i = 0; i < fresh->p->n_demands; i++) {
         MT_TRY(judge(fresh, &fresh->p->demands[i], &v, result, &rec->goals[i], &why, err));
+        MT_TRY(tell_length(&fresh->p->demands[i], design, result, err));
         MT_TRY(doubt_data(fresh, &fresh->p->demands[i], design, result, err));
         rec->n_goals++;
     }

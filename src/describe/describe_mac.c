@@ -34,9 +34,9 @@ static mt_status compared_with(const mt_problem *p, const mt_demand *d, int list
     *n = 0;
     for (int k = 1; k <= most && k <= REFERENCE_MODES; k++) {
         mt_err why = {.code = MT_OK};
-        const mt_status rc =
-            mt_reference_shape_init(p->references, d->goal->reference, k,
-                                    p->views[d->view].original->sys, mem, &shapes[*n], &why);
+        const mt_status rc = mt_reference_shape_init(p->references, d->goal->reference, k,
+                                                     p->views[d->view].original->sys,
+                                                     d->goal->length, mem, &shapes[*n], &why);
         MT_TRY(mt_pass_final(rc, &why, err));
         *n += rc == MT_OK ? 1 : 0;
     }

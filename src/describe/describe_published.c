@@ -119,7 +119,7 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
     mt_reference_shape shape;
     mt_status rc = mt_reference_shape_init(
         j->p->references, pub->reference, pub->reference_mode > 0 ? pub->reference_mode : index,
-        a->sys, &j->mem, &shape, err);
+        a->sys, nan(""), &j->mem, &shape, err);
     rc = rc == MT_OK ? mt_reference_mac(a, pos, &shape, value, err) : rc;
     mt_arena_rewind(&j->mem, mark);
     return rc;

@@ -310,6 +310,11 @@ mt_status mt_mechanism_mac(mt_mechanism *a, int modes_a, mt_mechanism *b, int mo
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(shapes_of(a, common.n, common.a, modes_a, at_a, shape_a, err));
     MT_TRY(shapes_of(b, common.n, common.b, modes_b, at_b, shape_b, err));
+    double *scale = NULL;
+    MT_TRY(mt_channels_scale(a->a->sys, common.n, common.a, a->a->sys->length_m, mem, &scale,
+                             err));
+    mt_channels_weigh(common.n, scale, modes_a, shape_a);
+    mt_channels_weigh(common.n, scale, modes_b, shape_b);
     mt_mac_matrix(common.n, modes_a, shape_a, modes_b, shape_b, mac);
     return MT_OK;
 }

@@ -29,8 +29,8 @@ mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err)
     return d->goal->reference_name.s == NULL
                ? MT_OK
                : mt_reference_shape_init(p->references, d->goal->reference,
-                                         mt_goal_reference_mode(p, d), sys, &p->mem, &d->shape,
-                                         err);
+                                         mt_goal_reference_mode(p, d), sys, d->goal->length,
+                                         &p->mem, &d->shape, err);
 }
 
 mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
@@ -39,6 +39,8 @@ mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_
     mt_analysis *const a = w->views[d->view].analysis;
     MT_TRY(mt_analysis_shape(a, pos, d->shape.ns, d->shape.channel, w->shape,
                              with_gradient ? w->dshape : NULL, err));
+    mt_reference_scale(&d->shape, 1, w->shape);
+    mt_reference_scale(&d->shape, with_gradient ? w->p->n : 0, w->dshape);
     *norm = mt_norm2(d->shape.ns, w->shape);
     if (!(*norm > 0.0)) {
         return mt_fail(err, MT_E_DOMAIN,

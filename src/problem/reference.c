@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "analysis/channels.h"
+
 static mt_status no_common(const mt_reference *r, mt_err *err)
 {
     return mt_fail(err, MT_E_INPUT,
@@ -10,8 +12,17 @@ static mt_status no_common(const mt_reference *r, mt_err *err)
                    r->name.s);
 }
 
-static mt_status normalise(const mt_reference *r, mt_reference_shape *out, mt_err *err)
+void mt_reference_scale(const mt_reference_shape *ref, int n, double *shape)
 {
+    mt_channels_weigh(ref->ns, ref->scale, n, shape);
+}
+
+static mt_status normalise(const mt_reference *r, const mt_system *sys, double length,
+                           mt_arena *mem, mt_reference_shape *out, mt_err *err)
+{
+    out->length = MT_HAS(length) ? length : sys->length_m;
+    MT_TRY(mt_channels_scale(sys, out->ns, out->channel, out->length, mem, &out->scale, err));
+    mt_reference_scale(out, 1, out->shape);
     const double norm = mt_norm2(out->ns, out->shape);
     if (!(norm > 0.0)) {
         return mt_fail(err, MT_E_INPUT,
@@ -35,8 +46,8 @@ static const mt_measured_mode *measured_mode(const mt_reference *r, int mode, mt
     return &r->modes[mode - 1];
 }
 
-static mt_status measured(const mt_reference *r, const mt_system *sys, mt_arena *mem,
-                          mt_reference_shape *out, mt_err *err)
+static mt_status measured(const mt_reference *r, const mt_system *sys, double length,
+                          mt_arena *mem, mt_reference_shape *out, mt_err *err)
 {
     const mt_measured_mode *const m = measured_mode(r, out->mode, err);
     if (m == NULL) {
@@ -53,7 +64,7 @@ static mt_status measured(const mt_reference *r, const mt_system *sys, mt_arena 
         }
     }
     out->frequency_hz = m->frequency_hz;
-    return out->ns == 0 ? no_common(r, err) : normalise(r, out, err);
+    return out->ns == 0 ? no_common(r, err) : normalise(r, sys, length, mem, out, err);
 }
 
 mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
@@ -94,7 +105,7 @@ static mt_status computed_mode(mt_reference_cache *cache, int reference, int mod
 }
 
 static mt_status computed(mt_analysis *a, int pos, const mt_reference *r, const mt_system *sys,
-                          mt_arena *mem, mt_reference_shape *out, mt_err *err)
+                          double length, mt_arena *mem, mt_reference_shape *out, mt_err *err)
 {
     const size_t most = (size_t)sys->n_channels;
     int *const theirs = mt_arena_int(mem, most);
@@ -113,22 +124,22 @@ static mt_status computed(mt_analysis *a, int pos, const mt_reference *r, const 
     }
     out->frequency_hz = mt_modal_hz(&a->modes, pos);
     MT_TRY(mt_analysis_shape(a, pos, out->ns, theirs, out->shape, NULL, err));
-    return normalise(r, out, err);
+    return normalise(r, sys, length, mem, out, err);
 }
 
 mt_status mt_reference_shape_init(mt_reference_cache *cache, int reference, int mode,
-                                  const mt_system *sys, mt_arena *mem, mt_reference_shape *out,
-                                  mt_err *err)
+                                  const mt_system *sys, double length, mt_arena *mem,
+                                  mt_reference_shape *out, mt_err *err)
 {
     const mt_reference *const r = &cache->study->references[reference];
     mt_analysis *a = NULL;
     int pos = -1;
     *out = (mt_reference_shape){.reference = r->name.s, .mode = mode, .frequency_hz = nan("")};
     if (r->model == NULL) {
-        return measured(r, sys, mem, out, err);
+        return measured(r, sys, length, mem, out, err);
     }
     MT_TRY(computed_mode(cache, reference, mode, &a, &pos, err));
-    return computed(a, pos, r, sys, mem, out, err);
+    return computed(a, pos, r, sys, length, mem, out, err);
 }
 
 mt_status mt_reference_frequency_init(mt_reference_cache *cache, int reference, int mode,
@@ -163,6 +174,7 @@ mt_status mt_reference_mac(mt_analysis *a, int pos, const mt_reference_shape *re
     MT_TRY(mt_arena_check(&a->mem, err));
     const mt_status rc = mt_analysis_shape(a, pos, ref->ns, ref->channel, s, NULL, err);
     if (rc == MT_OK) {
+        mt_reference_scale(ref, 1, s);
         mt_mac_matrix(ref->ns, 1, s, 1, ref->shape, mac);
     }
     mt_arena_rewind(&a->mem, mark);

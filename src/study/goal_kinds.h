@@ -38,11 +38,13 @@
     MT_GOAL_OF_MODE(X)                                     \
     X(REFERENCE, "reference", TEXT, true, ANY)             \
     X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
+    X(LENGTH, "length_m", NUMBER, false, POSITIVE)         \
     X(WEIGHT, "weight", NUMBER, true, POSITIVE)
 #define MT_GOAL_MAC_MEMBERS(X)                             \
     MT_GOAL_OF_MODE(X)                                     \
     X(REFERENCE, "reference", TEXT, true, ANY)             \
     X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
+    X(LENGTH, "length_m", NUMBER, false, POSITIVE)         \
     X(AT_LEAST, "at_least", NUMBER, true, SHARE)
 #define MT_GOAL_DAMPING_MEMBERS(X)                \
     MT_GOAL_OF_MODE(X)                            \
@@ -114,6 +116,7 @@ typedef enum mt_goal_slot {
     MT_SLOT_AT_MOST,
     MT_SLOT_TOLERANCE,
     MT_SLOT_WEIGHT,
+    MT_SLOT_LENGTH,
     MT_GOAL_NUMBERS,
     MT_SLOT_MARGIN = MT_GOAL_NUMBERS, /* from here on each is known to its reader */
     MT_SLOT_UP_TO,

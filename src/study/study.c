@@ -214,6 +214,7 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
         .at_most = nan(""),
         .tolerance_percent = MT_DEFAULT_TOLERANCE_PERCENT,
         .weight = nan(""),
+        .length = nan(""),
         .reference_name = {.addr = addr},
         .reference = MT_ABSENT,
         .addr = addr,
@@ -222,6 +223,7 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
         .at_most_addr = addr,
         .tolerance_addr = addr,
         .weight_addr = addr,
+        .length_addr = addr,
     };
 }
 

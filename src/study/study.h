@@ -84,6 +84,7 @@ typedef struct mt_goal {
             double at_most;
             double tolerance_percent;
             double weight; /* NaN: a constraint; else a residual of the misfit */
+            double length; /* at which angles are arcs [m]; NaN: the model's */
         };
         double number[MT_GOAL_NUMBERS];
     };
@@ -94,6 +95,7 @@ typedef struct mt_goal {
             mt_addr at_most_addr;
             mt_addr tolerance_addr;
             mt_addr weight_addr;
+            mt_addr length_addr;
         };
         mt_addr number_addr[MT_GOAL_NUMBERS];
     };
