@@ -17,18 +17,18 @@ from test_motion import TWO_PI, run
 M, K, C, HZ, LIMIT = 2.0, 8000.0, 10.0, 9.0, 5e-4
 
 
-def response(k):
+def response(k, c=C):
     w = TWO_PI * HZ
-    return 1 / abs(k - M * w * w + 1j * w * C)
+    return 1 / abs(k - M * w * w + 1j * w * c)
 
 
 MODEL = {
     "format": "modetune-model/1", "dimension": 2, "units": {"length": "mm"},
-    "parameters": {"k": {"value": K, "unit": "N/m"}, "L": {"value": 50, "unit": "mm"}},
+    "parameters": {"k": {"value": K, "unit": "N/m"}, "c": C, "L": {"value": 50, "unit": "mm"}},
     "bodies": [{"name": "b", "mass_kg": M, "inertia_kg_m2": 1, "centre": ["L", 0]}],
     "joints": [{"name": "j", "type": "prismatic", "bodies": ["ground", "b"], "at": ["L", 0], "axis": [1, 0]}],
     "springs": [{"name": "s", "type": "axial", "joint": "j", "stiffness_n_per_m": "k"}],
-    "dampers": [{"name": "d", "type": "axial", "joint": "j", "damping_n_s_per_m": C}], "sensors": [{"name": "o", "on": "b"}]}
+    "dampers": [{"name": "d", "type": "axial", "joint": "j", "damping_n_s_per_m": "c"}], "sensors": [{"name": "o", "on": "b"}]}
 GOAL = {"type": "response", "input": "o.x", "output": "o.x", "at_hz": HZ, "at_most": LIMIT}
 VARIABLES = [{"parameter": "k", "lower": 2000, "upper": 40000}]
 STUDY = {"format": "modetune-study/1", "model": "model.json", "variables": VARIABLES, "goals": [GOAL], "objective": {"minimise": "change"}}
@@ -65,6 +65,23 @@ class TradeTable(unittest.TestCase):
                 self.assertEqual(float(row["k [N/m]"]), k)
                 self.assertEqual(float(row["at_most of /goals/0 [m per N]"]), limit)
                 self.assertAlmostEqual(told["change"]["recommended"], abs(math.log(k / K)), delta=1e-9)
+
+    def test_no_design_of_a_grid_beats_a_front(self):
+        """Two variables, all designs of a grid of each over its bounds: none has less change and less vibration than a point."""
+        limits = [3e-4, 2e-4, 1.5e-4, 1e-4, 0.7e-4]
+        both = VARIABLES + [{"parameter": "c", "lower": 2, "upper": 200}]
+        trade = {"vary": [{"goal": 0, "member": "at_most", "values": limits}], "objectives": ["change", "vibration"]}
+        points = self.answer(STUDY | {"variables": both, "trade": trade})["trade"]["points"]
+        grid = [(math.hypot(math.log(k / K), math.log(c / C)), response(k, c)) for k in (2000 * 20 ** (i / 400) for i in range(401))
+                for c in (2 * 100 ** (i / 400) for i in range(401))]
+        for point, limit in zip(points, limits):
+            own = {p["name"]: p["recommended"] for p in point["best"]["parameters"]}
+            change, value = math.hypot(math.log(own["k"] / K), math.log(own["c"] / C)), response(own["k"], own["c"])
+            with self.subTest(limit=limit):
+                self.assertTrue(point["pareto"])
+                self.assertAlmostEqual(value / limit, 1, delta=2e-6)
+                self.assertFalse([g for g in grid if g[0] < change * (1 - 1e-6) and g[1] < value * (1 + 1e-6)])
+                self.assertLess(min(g[0] for g in grid if g[1] < limit), change + 0.02)
 
     def test_lengths_are_in_the_unit_of_the_study(self):
         """A bound of 60 mm is 60 under "[mm]", and so is the length beside it; in the result both are in metres."""
