@@ -36,8 +36,9 @@ mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *stu
 void mt_reference_cache_free(mt_reference_cache *cache);
 
 /* The shape of a mode of a reference at the channels that sys has as well, angles at length [m]
- * (NaN: the model's own) where there are displacements, too; results in mem. Fails: MT_E_INPUT (no such mode, no common channel, a shape without motion there; the text
- * names the reference), failures of the reference's own analysis, MT_E_MEMORY. */
+ * (NaN: the model's own) where there are displacements, too; results in mem. Fails:
+ * MT_E_INPUT (no such mode, no common channel, a shape without motion there; the text names the
+ * reference), failures of the reference's own analysis, MT_E_MEMORY. */
 mt_status mt_reference_shape_init(mt_reference_cache *cache, int reference, int mode,
                                   const mt_system *sys, double length, mt_arena *mem,
                                   mt_reference_shape *out, mt_err *err);

@@ -32,7 +32,8 @@ static void doubts__every_failing_allocation_is_survived(mt_test *t)
         const char *name;
         int found;
     } rows[] = {
-        {"six_masses_bands.json", 0}, {"inceptor_stick.json", 1} /* it floats */
+        {"six_masses_bands.json", 0},
+        {"inceptor_stick.json", 2} /* it floats, and bends about one axis */
     };
     REQUIRE(t, chdir(MT_TEST_SOURCE_DIR "/studies") == 0);
     for (int i = 0; i < MT_COUNT(rows); i++) {
