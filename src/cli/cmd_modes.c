@@ -16,6 +16,9 @@ enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
 /* A table on paper tells the error of a frequency from this part of it on: the digits that it
  * prints. */
 static const double TOLD_ERROR = 1e-6;
+/* A greater part of the forces at work is left in an equilibrium only where they are rounding
+ * of what they are made of: that part says nothing. */
+static const double MOST_LEFT = 1e-9;
 
 /* One configuration, ready to be written. */
 typedef struct view {
@@ -249,8 +252,13 @@ static void tell(const view *v, mt_text *out)
                          v->l->equations, n_redundant(v->l));
         }
     } else if (at != NULL && at->equilibrium.active) {
-        mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
-                     at->iterations, at->equilibrium.residual);
+        if (at->equilibrium.residual > MOST_LEFT) {
+            mt_text_addf(out, "  Equilibrium found in %d iterations, to rounding.\n",
+                         at->iterations);
+        } else {
+            mt_text_addf(out, "  Equilibrium found in %d iterations, residual %.1e.\n",
+                         at->iterations, at->equilibrium.residual);
+        }
     }
     if (m->n_condensed > 0) {
         mt_text_addf(out, "  %d direction%s without mass follow%s statically.\n",

@@ -5,7 +5,7 @@
 #include "cli/survey.h"
 #include "report/table.h"
 
-enum { DEFAULT_MODES = 6, DIGITS = 4, HZ_DIGITS = 6, HEADING_TEXT = 40 };
+enum { DEFAULT_MODES = 6, DIGITS = 4, HZ_DIGITS = 6, HEADING_TEXT = 40, NAME_TEXT = 128 };
 
 static const char *unit_of(const mt_survey *v, int k)
 {
@@ -108,6 +108,7 @@ static void write_text(mt_text *out, const mt_survey *v)
     mt_table t = mt_table_default();
     bool repeated = false;
     bool overridden = false;
+    bool coordinates = false;
     mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
     mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
     mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
@@ -119,11 +120,15 @@ static void write_text(mt_text *out, const mt_survey *v)
         repeated = repeated || v->repeated[i];
     }
     for (int k = 0; k < v->n; k++) {
-        mt_table_text(&t, name_of(v, k));
+        const bool percent = mt_survey_has_percent(v, k);
+        char name[NAME_TEXT];
+        (void)mt_snprintf(name, sizeof name, "%s (1 mm)", name_of(v, k));
+        mt_table_text(&t, percent ? name_of(v, k) : name);
+        coordinates = coordinates || !percent;
         mt_table_number(&t, mt_unit_from_si(shown_in(v, k), v->value[k]), HZ_DIGITS);
         mt_table_text(&t, mt_unit_name(shown_in(v, k), unit_of(v, k)));
         for (int i = 0; i < v->modes; i++) {
-            mt_table_change(&t, mt_survey_per_percent(v, i, k), DIGITS);
+            mt_table_change(&t, mt_survey_shown(v, i, k), DIGITS);
         }
         overridden = overridden || v->overridden[k];
     }
@@ -131,6 +136,11 @@ static void write_text(mt_text *out, const mt_survey *v)
                  mt_subject_configuration(v->s, v->c));
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
+    if (coordinates) {
+        mt_text_add(out,
+                    "  (1 mm): for one millimetre more; of a coordinate at or below 0 one per "
+                    "cent means nothing.\n");
+    }
     if (repeated) {
         mt_text_add(out,
                     "  * Repeated modes: none of them has a derivative of its own; these are "

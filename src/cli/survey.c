@@ -8,9 +8,13 @@
 #include <string.h>
 
 #include "analysis/sensitivity.h"
+#include "base/tie.h"
 #include "model/values.h"
 
 static const double PER_CENT = 0.01;
+static const double MILLIMETRE = 1e-3;
+/* What rounding alone makes of a slope that is 0, as part of the frequency. */
+static const double SLOPE_NOISE = 1e-12;
 
 static bool is_overridden(const mt_survey *v, int parameter)
 {
@@ -206,4 +210,18 @@ void mt_survey_free(mt_survey *v)
 double mt_survey_per_percent(const mt_survey *v, int i, int k)
 {
     return PER_CENT * v->value[k] * v->per_unit[i + ((ptrdiff_t)k * v->room)];
+}
+
+bool mt_survey_has_percent(const mt_survey *v, int k)
+{
+    const char *const unit = v->s->model->parameters[v->parameter[k]].unit;
+    return v->value[k] > 0.0 || unit == NULL || strcmp(unit, "m") != 0;
+}
+
+double mt_survey_shown(const mt_survey *v, int i, int k)
+{
+    const double per_unit = v->per_unit[i + ((ptrdiff_t)k * v->room)];
+    const double more =
+        mt_survey_has_percent(v, k) ? mt_survey_per_percent(v, i, k) : MILLIMETRE * per_unit;
+    return mt_without_noise(more, SLOPE_NOISE * v->hz[i]);
 }

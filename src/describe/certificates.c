@@ -160,7 +160,7 @@ static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result
         return state(result, "infeasible", false, err,
                      "That no design meets all limits together is sampled, not proven: the "
                      "budget of the "
-                     "proof ended after %ld boxes, with %.2g %% of the designs within the "
+                     "proof ended after %ld boxes, with %.3g %% of the designs within the "
                      "bounds undecided.",
                      found.boxes, 100.0 * found.undecided);
     }

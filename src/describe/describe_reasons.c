@@ -15,6 +15,8 @@
 /* Changes of a parameter below this many percent, and errors of a frequency, are not worth a
  * number. */
 static const double WORTH_SAYING_PERCENT = 1e-4;
+/* What rounding alone makes of a slope that is 0, as part of the number for 1 % more. */
+static const double SLOPE_NOISE = 1e-12;
 enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
 
 void mt_say_of(mt_sentences *s, const char *kind, const char *about)
@@ -103,33 +105,54 @@ static void say_changes(mt_sentences *s)
     for (int i = 0; i < s->result->n_undetermined; i++) {
         mt_say(
             s,
-            "The goals do not settle %s: they change by at most %.2g %% across its bounds, so "
-            "the "
-            "design keeps what it had there.",
+            "The goals do not settle %s: they change by at most %.3g %% across its bounds, so "
+            "the design keeps what it had there.",
             s->result->undetermined[i].text,
             fmax(s->result->undetermined[i].effect_percent, MT_PERCENT_NOISE));
     }
 }
 
-/* The variable that moves this frequency most, the first of equal ones, per percent of its
- * value: "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does, or it has no slope of
- * its own. */
+/* A little more of a variable: 1 % of its value; of a coordinate, whose zero means nothing,
+ * 1 mm or 1 degree, as changes of it are measured on a linear scale. */
+static double little_more(const mt_result_parameter *p, const char **text)
+{
+    static const double DEGREE = 3.14159265358979323846 / 180.0;
+    const bool linear = strcmp(p->measure, "linear") == 0;
+    if (linear && p->unit != NULL && strcmp(p->unit, "m") == 0) {
+        *text = "1 mm";
+        return 1e-3;
+    }
+    if (linear && p->unit != NULL && strcmp(p->unit, "rad") == 0) {
+        *text = "1 degree";
+        return DEGREE;
+    }
+    *text = "1 %";
+    return 0.01 * fabs(p->recommended);
+}
+
+/* The variable that moves this frequency most, the first of equal ones, by a little more of it:
+ * "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does by more than rounding, or it
+ * has no slope of its own. */
 static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
 {
     double most = 0.0;
     int lever = -1;
+    const char *by = "";
     for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL && !f->repeated; i++) {
-        const double one = 0.01 * f->sensitivity[i] * fabs(s->rec->parameters[i].recommended);
-        if (isfinite(one) && mt_exceeds(fabs(one), fabs(most))) {
+        const char *text = NULL;
+        const double one = f->sensitivity[i] * little_more(&s->rec->parameters[i], &text);
+        const bool noise = fabs(one) <= SLOPE_NOISE * f->recommended_hz;
+        if (isfinite(one) && !noise && mt_exceeds(fabs(one), fabs(most))) {
             most = one;
             lever = i;
+            by = text;
         }
     }
     if (lever < 0) {
         return "";
     }
-    return mt_arena_printf(&s->result->mem, "; %s moves it most, %+.3g Hz for 1 %% more",
-                           s->rec->parameters[lever].name, most);
+    return mt_arena_printf(&s->result->mem, "; %s moves it most, %+.3g Hz for %s more",
+                           s->rec->parameters[lever].name, most, by);
 }
 
 /* How the frequency (over the tolerances: its worst) stands to the limit that is nearer, the

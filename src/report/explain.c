@@ -17,8 +17,12 @@ typedef struct moved {
     const char *unit;         /* NULL, "": none */
     const char *display_unit; /* as in mt_result_goal */
     double display_factor;
+    double value; /* NaN: not known */
     const double *slopes;
 } moved;
+
+/* What rounding alone makes of a slope that is 0, as part of the number for 1 % more. */
+static const double SLOPE_NOISE = 1e-12;
 
 /* What 1 % more of variable k adds to it. */
 static double move(const mt_recommendation *r, const moved *m, int k)
@@ -33,7 +37,7 @@ static int next_mover(const mt_recommendation *r, const moved *g, const bool *ta
     int best = -1;
     for (int k = 0; k < r->n_parameters; k++) {
         const double own = fabs(move(r, g, k));
-        if (!taken[k] && own > 0.0 && isfinite(own) &&
+        if (!taken[k] && own > 0.0 && !(own <= SLOPE_NOISE * fabs(g->value)) && isfinite(own) &&
             (best < 0 || mt_exceeds(own, fabs(move(r, g, best))))) {
             best = k;
         }
@@ -123,7 +127,7 @@ static void add_nearest(mt_table *t, const mt_recommendation *r, const mt_result
             f->sensitivity != NULL) {
             const char *const text = mt_arena_printf(
                 &t->mem, "%s mode %d, %s %s", c->configuration, c->mode, c->side, c->band);
-            const moved m = {text, "Hz", NULL, nan(""), f->sensitivity};
+            const moved m = {text, "Hz", NULL, nan(""), f->recommended_hz, f->sensitivity};
             t->failed = t->failed || text == NULL;
             if (!t->failed) {
                 add_moved(t, r, &m);
@@ -147,9 +151,9 @@ mt_table mt_report_movers(const mt_recommendation *r)
     for (int i = 0; !t.failed && i < r->n_goals; i++) {
         const mt_result_goal *const g = &r->goals[i];
         if (g->sensitivity != NULL) {
-            add_moved(
-                &t, r,
-                &(moved){g->text, g->unit, g->display_unit, g->display_factor, g->sensitivity});
+            add_moved(&t, r,
+                      &(moved){g->text, g->unit, g->display_unit, g->display_factor, g->value,
+                               g->sensitivity});
         } else if (strcmp(g->type, "avoid") == 0) {
             add_nearest(&t, r, g);
         }

@@ -216,7 +216,7 @@ mt_table mt_report_goals(const mt_recommendation *r)
             mt_table_shown(&t, g->worst, g->display_factor, VALUE_DIGITS);
         }
         asked_cell(&t, g);
-        mt_table_percent(&t, g->violation_percent, PERCENT_DIGITS);
+        mt_table_off_by(&t, g->violation_percent, g->met, PERCENT_DIGITS);
         mt_table_text(&t, verdict_of(g));
     }
     return t;
@@ -224,7 +224,8 @@ mt_table mt_report_goals(const mt_recommendation *r)
 
 static void percent_cells(mt_table *t, const mt_recommendation *r, const mt_result_clearance *c)
 {
-    mt_table_number(t, c != NULL ? c->percent : nan(""), PERCENT_DIGITS);
+    mt_table_clearance(t, c != NULL ? c->percent : nan(""), c != NULL ? c->margin_percent : 0.0,
+                       PERCENT_DIGITS);
     if (r->worst_case != NULL) {
         mt_table_number(t, c != NULL ? c->worst_percent : nan(""), PERCENT_DIGITS);
     }
@@ -259,7 +260,7 @@ mt_table mt_report_motions(const mt_recommendation *r)
         mt_table_text(&t, m->band);
         mt_table_shown(&t, m->at, m->display_factor, VALUE_DIGITS);
         mt_table_number(&t, m->hz, HZ_DIGITS);
-        mt_table_number(&t, m->least_clearance_percent, PERCENT_DIGITS);
+        mt_table_clearance(&t, m->least_clearance_percent, m->margin_percent, PERCENT_DIGITS);
         mt_table_text(&t, m->crosses ? "crosses a band" : m->grade);
     }
     return t;
@@ -369,7 +370,7 @@ mt_table mt_report_alternatives(const mt_result *result)
         mt_table_integer(&t, r->rank);
         mt_table_text(&t, r->grade);
         mt_report_objective_cells(&t, result, r);
-        mt_table_percent(&t, r->violation_percent, PERCENT_DIGITS);
+        mt_table_off_by(&t, r->violation_percent, r->feasible, PERCENT_DIGITS);
         if (bands) {
             char text[DEMAND_TEXT];
             mt_table_number(&t, r->clearance_percent, PERCENT_DIGITS);

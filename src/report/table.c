@@ -12,6 +12,9 @@
 
 enum { INTEGER_TEXT = 24 };
 
+/* A goal is met up to this many percent of it, unless it says otherwise. */
+static const double LEFT_OPEN = 1e-4;
+
 mt_table mt_table_default(void)
 {
     mt_table t = {.columns = NULL};
@@ -145,6 +148,23 @@ void mt_table_percent(mt_table *t, double value, int digits)
     char exact[MT_NUMBER_TEXT];
     const double shown = mt_without_noise(value, MT_PERCENT_NOISE);
     add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(value, exact));
+}
+
+void mt_table_off_by(mt_table *t, double percent, bool met, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    const double shown = mt_without_noise(percent, met ? LEFT_OPEN : MT_PERCENT_NOISE);
+    add_cell(t, mt_report_change(shown, digits, text), mt_report_exact(percent, exact));
+}
+
+void mt_table_clearance(mt_table *t, double percent, double margin, int digits)
+{
+    char text[MT_NUMBER_TEXT];
+    char exact[MT_NUMBER_TEXT];
+    const bool kept = fabs(percent - margin) <= LEFT_OPEN * (1.0 + (0.01 * margin));
+    add_cell(t, mt_report_number(kept ? margin : percent, digits, text),
+             mt_report_exact(percent, exact));
 }
 
 void mt_table_difference(mt_table *t, double value, double percent, double factor, int digits)

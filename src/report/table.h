@@ -62,6 +62,10 @@ void mt_table_quoted(mt_table *t, double value, double factor);
 /* A percentage with its sign, and a ratio without; for people, what is noise (base/tie.h) is
  * written 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
+/* What a goal is off by: of one that is met, what searches leave open is 0 for people. */
+void mt_table_off_by(mt_table *t, double percent, bool met, int digits);
+/* A clearance, or one beside the margin that it keeps, up to what searches leave open. */
+void mt_table_clearance(mt_table *t, double percent, double margin, int digits);
 void mt_table_ratio(mt_table *t, double value, int digits);
 /* Two cells: a difference, shown as above, and what it is in percent; both 0 where that is
  * noise. */

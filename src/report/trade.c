@@ -82,7 +82,7 @@ static void point_row(mt_table *t, const mt_result *result, const mt_trade_point
     mt_report_objective_cells(t, result, &p->best);
     front_cells(t, result, p);
     mt_table_number(t, p->best.clearance_percent, PERCENT_DIGITS);
-    mt_table_percent(t, p->best.violation_percent, PERCENT_DIGITS);
+    mt_table_off_by(t, p->best.violation_percent, p->best.feasible, PERCENT_DIGITS);
     if (result->trade->n_objectives == 2) {
         mt_table_text(t, p->pareto ? "yes" : "no");
     }

@@ -296,7 +296,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
         found->proven
             ? NULL
             : mt_arena_printf(mem,
-                              "the budget of the proof ended after %ld boxes, with %.2g %% "
+                              "the budget of the proof ended after %ld boxes, with %.3g %% "
                               "of the designs within the bounds undecided",
                               found->boxes, 100.0 * found->undecided);
     return mt_arena_check(mem, err);
