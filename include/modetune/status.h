@@ -52,7 +52,8 @@ typedef enum mt_wish {
     MT_WISH_END     /* at once, also where what was found is being made ready */
 } mt_wish;
 
-/* Why he wants it to end, which the answer says. */
+/* Why he wants it to end, which the answer says. At a time limit the best design that was found
+ * is analysed anew, however late. */
 typedef enum mt_cause { MT_CAUSE_INTERRUPT, MT_CAUSE_TIME_LIMIT } mt_cause;
 
 enum { MT_ERR_TEXT_SIZE = 1024 };

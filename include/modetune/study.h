@@ -35,7 +35,8 @@ typedef struct mt_result mt_result;
     X(MT_RESULT_COMPROMISE, "compromise")                                      \
     X(MT_RESULT_INFEASIBLE, "infeasible")                                      \
     X(MT_RESULT_FITTED, "fitted") /* all goals are weighted: a least misfit */ \
-    X(MT_RESULT_INTERRUPTED, "interrupted")
+    X(MT_RESULT_INTERRUPTED, "interrupted")                                    \
+    X(MT_RESULT_TIME_LIMIT, "time_limit")
 #define MT_RESULT_STATUS_ENUM(id, name) id,
 typedef enum mt_result_status {
     MT_RESULT_STATUS_LIST(MT_RESULT_STATUS_ENUM) MT_RESULT_STATUS_COUNT

@@ -54,31 +54,40 @@ static bool is_groundless(const mt_answer *a, mt_phase which)
     return cut || (which == MT_PHASE_TRADE && mt_interrupt_any(i));
 }
 
+/* "k = 1200 N/m, m = 2 kg", with all digits. */
+static const char *values_text(const mt_problem *p, const double *x, mt_arena *mem)
+{
+    const char *text = "";
+    for (int k = 0; k < p->n; k++) {
+        const mt_variable *const v = &p->study->variables[k];
+        text = mt_arena_printf(mem, "%s%s%s = %.17g%s%s", text, k > 0 ? ", " : "",
+                               v->parameter_name.s, mt_unit_written(v->shown, x[k]),
+                               v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""));
+    }
+    return text;
+}
+
 /* The values of designs that there was no time to analyse anew: hours of search may be in
  * them. */
 static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
 {
-    mt_arena *const mem = &a->result->mem;
+    mt_result *const r = a->result;
     const mt_problem *const p = a->p;
-    double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    for (int i = a->result->n_recommendations;
-         i < a->found.n_solutions && i < a->study->recommendations; i++) {
-        const char *text = "";
-        mt_case_x(&a->asked, a->found.solutions[i].t, x);
-        for (int k = 0; k < p->n; k++) {
-            const mt_variable *const v = &p->study->variables[k];
-            text = mt_arena_printf(mem, "%s%s%s = %.17g%s%s", text, k > 0 ? ", " : "",
-                                   v->parameter_name.s, mt_unit_written(v->shown, x[k]),
-                                   v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""));
-        }
-        MT_TRY(mt_arena_check(mem, err));
-        MT_TRY(mt_describe_warn(a->result, err,
-                                "interrupted before design %d of the search was analysed anew, "
-                                "nothing is verified of it: %s",
-                                i + 1, text));
+    const int asked = a->study->recommendations;
+    const int last = a->found.n_solutions < asked ? a->found.n_solutions : asked;
+    const int first = r->n_recommendations;
+    const int n = last > first ? last - first : 0;
+    r->unchecked = mt_arena_alloc(&r->mem, (size_t)n, sizeof *r->unchecked);
+    MT_TRY(mt_arena_check(&r->mem, err));
+    for (int i = 0; i < n; i++) {
+        mt_unchecked *const u = &r->unchecked[i];
+        u->values = mt_arena_f64(&r->mem, (size_t)p->n, 1);
+        MT_TRY(mt_arena_check(&r->mem, err));
+        mt_case_x(&a->asked, a->found.solutions[first + i].t, u->values);
+        u->text = values_text(p, u->values, &r->mem);
+        r->n_unchecked++;
     }
-    return MT_OK;
+    return mt_arena_check(&r->mem, err);
 }
 
 /* What a phase leaves where it was cut. */

@@ -181,7 +181,9 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     const bool told = mt_progress_begin(progress, "designs", n);
     mt_status rc = MT_OK;
     for (int i = 0; i < n && rc == MT_OK && !is_cut(a, MT_PHASE_RECOMMENDATIONS); i++) {
+        a->interrupt->needed = i == 0; /* without the best one there is no answer */
         rc = recommend(a, i, err);
+        a->interrupt->needed = false;
         mt_progress_done(progress, told);
     }
     mt_progress_end(progress, told);

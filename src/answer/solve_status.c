@@ -93,7 +93,9 @@ static const char *early_text(const mt_answer *a, const mt_recommendation *best)
 {
     const bool cut = mt_interrupt_is_cut(a->interrupt, MT_PHASE_RECOMMENDATIONS);
     if (cut && a->result->n_recommendations == 0 && a->found.n_solutions > 0) {
-        return "Designs were found, but none was analysed anew (see the warnings).";
+        return "Feasible designs may have been found, but none was re-checked (see the designs "
+               "not "
+               "re-checked).";
     }
     if (a->found.stop == MT_STOP_USER) {
         return a->found.n_solutions > 0 ? "The best designs found so far."
@@ -418,8 +420,8 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
         const char *const link = i + 1 < run->n_incomplete ? ", " : " and ";
         list = mt_arena_printf(&result->mem, "%s%s%s", list, link, run->incomplete[i]);
     }
-    result->status = MT_RESULT_INTERRUPTED;
     const bool late = mt_interrupt_cause(a->interrupt) == MT_CAUSE_TIME_LIMIT;
+    result->status = late ? MT_RESULT_TIME_LIMIT : MT_RESULT_INTERRUPTED;
     run->cut_by = late ? "time limit" : "interrupt";
     result->status_text = mt_arena_printf(&result->mem, "%s (not complete: %s). %s",
                                           late ? "Stopped at the time limit" : "Interrupted",

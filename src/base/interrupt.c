@@ -10,6 +10,7 @@ void mt_interrupt_init(mt_interrupt *i, int (*wish)(void *context), void *contex
     i->whole = whole;
     i->phase = 0;
     i->makes_ready = false;
+    i->needed = false;
     atomic_init(&i->level, MT_WISH_NONE);
     atomic_init(&i->cut, 0U);
 }
@@ -38,7 +39,8 @@ static int wish_for(mt_interrupt *i)
 
 bool mt_interrupted(mt_interrupt *i)
 {
-    if (i == NULL || wish_for(i) < (i->makes_ready ? MT_WISH_END : MT_WISH_FINISH)) {
+    if (i == NULL || wish_for(i) < (i->makes_ready ? MT_WISH_END : MT_WISH_FINISH) ||
+        (i->needed && mt_interrupt_cause(i) == MT_CAUSE_TIME_LIMIT)) {
         return false;
     }
     mt_interrupt_cut(i, i->phase);

@@ -23,7 +23,7 @@ enum { MT_INTERRUPT_ORDER = 128 };
 
 typedef struct mt_interrupt {
     int (*wish)(void *context); /* an mt_wish; called by all workers; NULL: none ever */
-    /* an mt_cause, asked by one thread after a wish; NULL: MT_CAUSE_INTERRUPT */
+    /* an mt_cause, asked after a wish; NULL: MT_CAUSE_INTERRUPT */
     int (*cause)(void *context);
     void *context; /* of both */
     /* NULL, or of the work that this is a part of: its wish is this one's, and where this is
@@ -32,6 +32,9 @@ typedef struct mt_interrupt {
     /* that is being worked on, below MT_INTERRUPT_PHASES; changed while no worker runs */
     int phase;
     bool makes_ready; /* this phase goes on until MT_WISH_END */
+    /* and now something that is worth more than a time limit, so until an interrupt's; changed
+     * while no worker runs */
+    bool needed;
     atomic_int level; /* the strongest wish so far */
     atomic_uint cut;  /* bit k: phase k is not complete */
 } mt_interrupt;

@@ -32,6 +32,7 @@ typedef struct job {
     mt_err err;
     mt_journal *journal; /* of a command that writes its result; else NULL */
     bool complete;       /* nothing is left to be resumed */
+    bool searches;       /* what comes before is done */
     bool stopped;        /* by a signal or the end of its time */
 } job;
 
@@ -46,6 +47,30 @@ static mt_status keep(void *context, mt_result *so_far, mt_err *err)
     (void)mt_save(j->args, j->path, so_far, NULL, mt_terminal_seconds() - j->start, sha256);
     mt_watch_go_on();
     return MT_OK;
+}
+
+/* What the original design took tells what the best one will take that is found: as long, and
+ * again for its slopes and its reasons. */
+static void leave_time(void *context, const char *text)
+{
+    enum { TIMES = 4 };
+    job *const j = context;
+    (void)text;
+    if (!j->searches && j->args->part == 0) {
+        mt_terminal_reserve(TIMES * (mt_terminal_seconds() - j->start));
+    }
+    j->searches = true;
+}
+
+static bool is_cut(const mt_result *result)
+{
+    return result->status == MT_RESULT_INTERRUPTED || result->status == MT_RESULT_TIME_LIMIT;
+}
+
+/* Did the time end it, and no signal? */
+static bool is_late(const job *j)
+{
+    return j->stopped && !mt_terminal_is_stopped();
 }
 
 /* Load and solve; everything that went wrong is said. */
@@ -72,6 +97,8 @@ static int answer(job *j)
     opt.threads = j->args->threads;
     opt.stop = j->stops ? mt_terminal_wish : NULL;
     opt.cause = j->stops ? mt_terminal_cause : NULL;
+    opt.progress = j->stops && j->args->given[MT_OPT_TIME] ? leave_time : NULL;
+    opt.progress_context = j;
     j->profile = mt_cli_profile(j->args, &j->counts);
     j->study->model->profile = j->profile;
     mt_ledger *ledger = NULL;
@@ -95,26 +122,46 @@ static int answer(job *j)
     j->stopped = mt_terminal_wish(NULL) != MT_WISH_NONE;
     mt_terminal_limit(0.0);
     j->study->model->progress = NULL;
-    mt_watch_end(rc == MT_OK && j->result->status != MT_RESULT_INTERRUPTED);
-    if (j->stopped && !mt_terminal_is_stopped() &&
-        (rc == MT_E_INTERRUPTED || j->args->part > 0 ||
-         (rc == MT_OK && j->result->status == MT_RESULT_INTERRUPTED))) {
-        mt_terminal_talk(j->args->given[MT_OPT_QUIET], "%s: stopped at the time limit of %s s",
-                         j->path, j->args->value[MT_OPT_TIME]);
+    mt_watch_end(rc == MT_OK && !is_cut(j->result));
+    const bool late = is_late(j) && (rc == MT_E_INTERRUPTED || j->args->part > 0 ||
+                                     (rc == MT_OK && is_cut(j->result)));
+    if (late) {
+        mt_terminal_talk(j->args->given[MT_OPT_QUIET],
+                         "%s: stopped at the time limit of %s s%s", j->path,
+                         j->args->value[MT_OPT_TIME],
+                         j->args->command == MT_CMD_RUN ? "; --resume goes on from here" : "");
     }
     mt_cli_place(j->study, j->path, rc, &j->err, &messages);
-    return mt_cli_loaded(rc, &messages, &j->err);
+    const int ended = mt_cli_loaded(rc, &messages, &j->err);
+    return late && ended == MT_EXIT_INTERRUPTED ? MT_EXIT_GOALS : ended;
+}
+
+/* Is there a design that was analysed anew and meets all goals? A fit that was cut has not
+ * converged, whatever its misfit. */
+static bool is_met_by_best(const mt_result *r)
+{
+    const mt_recommendation *const best = r->recommendations;
+    bool asked = false;
+    for (int i = 0; r->n_recommendations > 0 && i < best->n_goals; i++) {
+        asked = asked || !best->goals[i].weighted;
+    }
+    return asked && best->feasible;
 }
 
 static int outcome(const job *j, bool verify)
 {
-    if (j->result->status == MT_RESULT_INTERRUPTED) {
+    const mt_result *const r = j->result;
+    if (r->status == MT_RESULT_INTERRUPTED) {
         return MT_EXIT_INTERRUPTED;
     }
     int judged = 0;
-    const bool holds =
-        verify ? mt_report_verified(j->result, &judged)
-               : j->result->status == MT_RESULT_SOLVED || j->result->status == MT_RESULT_FITTED;
+    const bool late = r->status == MT_RESULT_TIME_LIMIT;
+    const bool met = late ? is_met_by_best(r)
+                          : r->status == MT_RESULT_SOLVED || r->status == MT_RESULT_FITTED;
+    const bool holds = verify ? mt_report_verified(r, &judged) && (met || !late) : met;
+    if (late && !(holds && (!verify || judged > 0))) {
+        return MT_EXIT_GOALS;
+    }
     if (verify && judged == 0) { /* nothing to judge must not look like a success */
         mt_terminal_error("%s: there are no published values to judge", j->path);
         return MT_EXIT_INPUT;
@@ -129,11 +176,17 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
 {
     const bool verify = j->args->given[MT_OPT_VERIFY];
     if (j->args->part > 0) { /* its journal is what it leaves */
-        return j->stopped ? MT_EXIT_INTERRUPTED : MT_EXIT_DONE;
+        j->complete = !j->stopped;
+        return j->complete ? MT_EXIT_DONE : is_late(j) ? MT_EXIT_GOALS : MT_EXIT_INTERRUPTED;
     }
     mt_text scene = {.s = NULL};
     j->study->model->profile = NULL; /* it was asked of the answer */
-    const mt_status rc = mt_scene_of_result(j->study->model, j->result, &scene, &j->err);
+    if (j->result->status == MT_RESULT_TIME_LIMIT && j->args->command == MT_CMD_RUN) {
+        j->result->status_text = mt_arena_printf(
+            &j->result->mem, "%s `run --resume` goes on from here.", j->result->status_text);
+    }
+    mt_status rc = mt_arena_check(&j->result->mem, &j->err);
+    rc = rc != MT_OK ? rc : mt_scene_of_result(j->study->model, j->result, &scene, &j->err);
     if (rc != MT_OK) { /* no other answer than with memory */
         mt_text_free(&scene);
         return mt_cli_failed(rc, &j->err);
@@ -141,7 +194,7 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
     mt_save_print(j->args, j->result, scene.s, w, out);
     const int saved = mt_save(j->args, j->path, j->result, scene.s, j->seconds, j->sha256);
     mt_text_free(&scene);
-    j->complete = saved == MT_EXIT_DONE && j->result->status != MT_RESULT_INTERRUPTED;
+    j->complete = saved == MT_EXIT_DONE && !is_cut(j->result);
     return mt_exit_worse(outcome(j, verify),
                          mt_exit_worse(saved, mt_cli_profile_print(j->profile)));
 }

@@ -254,7 +254,7 @@ static int stopped(const job *j)
                      j->s->path,
                      mt_terminal_is_stopped() ? "interrupted" : "stopped at the time limit",
                      j->result.t[j->result.n - 1]);
-    return MT_EXIT_INTERRUPTED;
+    return mt_terminal_is_stopped() ? MT_EXIT_INTERRUPTED : MT_EXIT_GOALS;
 }
 
 static int load(job *j)

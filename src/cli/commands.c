@@ -433,9 +433,10 @@ const mt_command mt_commands[MT_CMD_IDS] = {
 
 const mt_exit mt_exits[MT_EXITS] = {
     {MT_EXIT_DONE, "done, all goals met (with --verify: all published values hold)"},
-    {MT_EXIT_GOALS, "done, goals not met (of diff: the answers differ)"},
+    {MT_EXIT_GOALS, "done, or out of time, goals not met (of diff: the answers differ)"},
     {MT_EXIT_INPUT, "bad input or usage"},
     {MT_EXIT_NUMERICAL, "numerical failure"},
     {MT_EXIT_SYSTEM, "system failure: file, disk, memory"},
-    {MT_EXIT_INTERRUPTED, "interrupted; the best design, or the motion, so far was written"},
+    {MT_EXIT_INTERRUPTED,
+     "interrupted by a signal; the best design, or the motion, so far was written"},
 };

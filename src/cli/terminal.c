@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -38,6 +39,7 @@ static const char WIPE[] = "\r\033[K"; /* the line of progress */
 static atomic_llong stop_ns; /* when the first signal was noted; 0: none */
 static atomic_bool line_is_shown;
 static long long limit_ns = 0; /* when the time is over; 0: never */
+static atomic_llong early_ns;  /* when the search ends, to leave time for what it found */
 static char last_words[LAST_WORDS_SIZE];
 static size_t last_words_length = 0;
 static bool dropped = false; /* what is being collected */
@@ -385,23 +387,39 @@ bool mt_terminal_is_stopped(void)
 void mt_terminal_limit(double seconds)
 {
     limit_ns = seconds > 0.0 ? now_ns() + (long long)(seconds * (double)NS_PER_S) : 0;
+    atomic_store(&early_ns, limit_ns);
+}
+
+void mt_terminal_reserve(double seconds)
+{
+    const long long now = now_ns();
+    const long long half = (limit_ns - now) / 2;
+    const long long asked = (long long)(fmin(seconds, 1e9) * (double)NS_PER_S);
+    if (limit_ns > now) {
+        atomic_store(&early_ns, limit_ns - (asked < half ? asked : half));
+    }
 }
 
 int mt_terminal_wish(void *unused)
 {
-    long long since = atomic_load(&stop_ns);
+    const long long stopped = atomic_load(&stop_ns);
+    long long since = stopped;
     (void)unused;
     if (since == 0 && limit_ns == 0) {
         return MT_WISH_NONE;
     }
     const long long now = now_ns();
-    if (limit_ns != 0 && (since == 0 || limit_ns < since)) {
-        since = limit_ns;
+    long long last = since + MAKE_READY_NS;
+    const long long early = atomic_load(&early_ns);
+    if (limit_ns != 0 && (since == 0 || early < since)) {
+        since = early;
+        last = early + MAKE_READY_NS < limit_ns ? limit_ns : early + MAKE_READY_NS;
+        last = stopped != 0 && stopped + MAKE_READY_NS < last ? stopped + MAKE_READY_NS : last;
     }
     if (now < since) {
         return MT_WISH_NONE;
     }
-    return now - since < MAKE_READY_NS ? MT_WISH_FINISH : MT_WISH_END;
+    return now < last ? MT_WISH_FINISH : MT_WISH_END;
 }
 
 int mt_terminal_cause(void *unused)

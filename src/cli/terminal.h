@@ -73,6 +73,9 @@ bool mt_terminal_is_stopped(void);
  * after a signal. While no worker runs. */
 #define MT_SECONDS_MOST 1e9
 void mt_terminal_limit(double seconds);
+/* So many seconds before that limit, or half of the time that is left, to finish is wished for
+ * already, and to end at the limit. Any thread. */
+void mt_terminal_reserve(double seconds);
 /* An mt_wish, the stop of a solve: to finish, and, a moment after the signal or the end of the
  * time, to end. Any thread. */
 int mt_terminal_wish(void *unused);

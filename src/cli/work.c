@@ -162,8 +162,9 @@ int mt_work_end(const mt_args *args, const char *study_path, int code, bool comp
 {
     mt_err err = {.code = MT_OK};
     const bool part = args->given[MT_OPT_SHARD];
-    const bool done = part && code != MT_EXIT_INTERRUPTED; /* or it cannot be */
-    if (done) { /* one without a record is a part, too */
+    const bool cut = code == MT_EXIT_INTERRUPTED || code == MT_EXIT_GOALS;
+    const bool done = part && (complete || !cut); /* or it cannot be */
+    if (done) {                                   /* one without a record is a part, too */
         mt_journal_begin(j);
     }
     const mt_status rc = mt_journal_end(j, complete && !part, &err);

@@ -58,6 +58,7 @@ static const list_rule RULES[] = {
     {"rows", "mode", {"mode"}, NULL},
     {"spread", "spread", {"parameter"}, NULL},
     {"tones", "tone", {"tone"}, NULL},
+    {"unchecked", "design not re-checked", {NULL}, NULL},
     {"undetermined", "direction", {NULL}, NULL},
     {"vary", "quantity", {"pointer"}, "text"},
     {"variables", "variable", {NULL}, NULL},

@@ -436,8 +436,23 @@ static void tell_responses(const mt_teller *to, const mt_result *result,
     }
 }
 
+/* Values alone: nothing else is known of them. */
+static void tell_unchecked(const mt_teller *to, const mt_result *result)
+{
+    if (open_list(to, "Not re-checked before the end, nothing is verified of them",
+                  result->n_unchecked)) {
+        for (int i = 0; i < result->n_unchecked; i++) {
+            mt_text text = {0};
+            mt_text_addf(&text, "%s", result->unchecked[i].text);
+            add_made(to, &text);
+        }
+        close_list(to);
+    }
+}
+
 /* The best design (goals, frequencies, parameters, reasons), or the original one where there
- * is none; alternatives, what stays undetermined, certificates, relaxations, warnings. */
+ * is none; alternatives, what stays undetermined, certificates, relaxations, designs that
+ * were not analysed anew, warnings. */
 static void tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
 {
     mt_tell_overrides(to, &result->run);
@@ -456,6 +471,7 @@ static void tell_answer(const mt_teller *to, const mt_result *result, bool with_
     if (with_published) {
         tell_published(to, result);
     }
+    tell_unchecked(to, result);
     add_sentences(to, "Warnings", result->n_warnings, result->warnings);
 }
 
@@ -505,6 +521,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     tell_relaxations(&to, result);
     mt_tell_uncertainty(&to, result);
     tell_certificates(&to, result);
+    tell_unchecked(&to, result);
     add_sentences(&to, "Warnings", result->n_warnings, result->warnings);
     tell_facts(&to, result->n_facts, result->facts);
     keep_place(&to, "place-mechanism");

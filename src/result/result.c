@@ -242,6 +242,14 @@ static const mt_field DESIGN_FIELDS[] = {
 const mt_record mt_design_record = MT_F_RECORD_OF(DESIGN_FIELDS);
 #undef THIS
 
+#define THIS mt_unchecked
+static const mt_field UNCHECKED_FIELDS[] = {
+    MT_F_TEXT("text", text),
+    MT_F_NUMBERS_BY_VARIABLE("values", values),
+};
+static const mt_record UNCHECKED = MT_F_RECORD_OF(UNCHECKED_FIELDS);
+#undef THIS
+
 #define THIS mt_undetermined
 static const mt_field UNDETERMINED_FIELDS[] = {
     MT_F_TEXT("direction", text),
@@ -500,6 +508,7 @@ static const mt_field RESULT_FIELDS[] = {
     MT_F_RECORD("baseline", baseline, mt_recommendation, mt_design_record),
     MT_F_LIST("recommendations", recommendations, n_recommendations, mt_recommendation,
               mt_design_record),
+    MT_F_LIST("unchecked", unchecked, n_unchecked, mt_unchecked, UNCHECKED),
     MT_F_LIST_OR_NULL("undetermined", undetermined, n_undetermined, mt_undetermined,
                       UNDETERMINED),
     MT_F_LIST_OR_NULL("spread", spread, n_spread, mt_result_spread, SPREAD),

@@ -292,6 +292,12 @@ typedef struct mt_recommendation {
     mt_reason *reasons;
 } mt_recommendation;
 
+/* A design of a search that was cut, which nobody has analysed anew: nothing is known of it. */
+typedef struct mt_unchecked {
+    double *values;   /* [n_variables] */
+    const char *text; /* "k = 1200 N/m, m = 2 kg" */
+} mt_unchecked;
+
 /* A direction in the space of the variables along which the goals do not change. */
 typedef struct mt_undetermined {
     /* [n_variables] unit vector in ln(parameter) (positive ones) or parameter/scale */
@@ -519,6 +525,8 @@ typedef struct mt_result {
     int n_recommendations;
     mt_recommendation baseline; /* the original design, rank 0 */
     mt_recommendation *recommendations;
+    mt_unchecked *unchecked;
+    int n_unchecked;
     mt_result_excitation *excitations;
     int n_excitations;
     mt_result_curve *curves;

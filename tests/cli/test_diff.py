@@ -21,7 +21,7 @@ KEYS = {"certificates": ["kind", "pointer"], "curves": ["configuration", "pointe
         "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "responses": ["goal", "configuration"], "responses_between": ["goal", "drive"], "spread": ["parameter"], "vary": ["pointer"]}
 LIBC = ctypes.CDLL(None)
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
-BY_PLACE = {"densities", "history", "points", "reasons", "recommendations", "undetermined", "outputs"}
+BY_PLACE = {"densities", "history", "points", "reasons", "recommendations", "unchecked", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")
 HOLDS = """, "published": [
     { "label": "spring", "parameter": "k1", "value": 3, "tolerance_percent": 0.1, "source": "a" }, { "status": "solved" } ],

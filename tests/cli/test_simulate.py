@@ -118,7 +118,7 @@ class Simulate(CliTest):
 
     def test_time_limit_and_interrupt_leave_what_there_is(self):
         asked = ("simulate", PENDULUM, "-c", "hanging", "--start", "pivot=2", "--duration", "1e6", "--dt-out", "1")
-        done = self.expect(130, *asked, "--time", "0.3", "--format", "json")
+        done = self.expect(1, *asked, "--time", "0.3", "--format", "json")
         answer = json.loads(done.stdout)
         self.assertFalse(answer["complete"])
         self.assertGreater(len(answer["time_s"]), 0)

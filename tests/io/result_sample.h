@@ -92,6 +92,7 @@ typedef struct sample {
     mt_result *result;
     mt_result_frequency frequency;
     mt_recommendation recommendation;
+    mt_unchecked unchecked;
     mt_undetermined undetermined;
     mt_result_spread spread;
     mt_certificate certificate;
@@ -289,6 +290,7 @@ static inline bool make_sample(sample *s)
     fill_design(s, &r->baseline);
     fill_design(s, &s->recommendation);
     s->recommendation.rank = 1;
+    s->unchecked = (mt_unchecked){DIRECTION, "M_SAU = 0.5 kg"};
     s->undetermined = (mt_undetermined){DIRECTION, "M_SAU", 1e-5};
     s->spread = (mt_result_spread){.parameter = "M_SAU",
                                    .unit = "kg",
@@ -341,6 +343,8 @@ static inline bool make_sample(sample *s)
     r->variables = VARIABLES;
     r->n_recommendations = 1;
     r->recommendations = &s->recommendation;
+    r->n_unchecked = 1;
+    r->unchecked = &s->unchecked;
     r->n_undetermined = 1;
     r->undetermined = &s->undetermined;
     r->n_spread = 1;

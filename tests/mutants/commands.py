@@ -189,7 +189,7 @@ class Answer:
         if done.slow and done.slow != "interrupted":
             yield "stuck", done.slow
             return
-        if done.code < 0 or done.code not in CODES or (done.code == 130 and not done.slow and "--time" not in done.args):
+        if done.code < 0 or done.code not in CODES or (done.code == 130 and not done.slow):
             yield "crash", f"exit code {done.code}: {done.said()}"
             return
         if "Sanitizer" in done.err or "runtime error" in done.err:
