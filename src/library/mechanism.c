@@ -38,16 +38,33 @@ static const char **names_of(const mt_model *model, int n,
     return names;
 }
 
+/* Of several configurations none is the one that is meant. */
+static mt_status ask_which(int n, const char *const *names, mt_arena *mem, mt_err *err)
+{
+    enum { LISTED_MOST = 10 };
+    const char *list = "";
+    for (int i = 0; i < n && i < LISTED_MOST && list != NULL; i++) {
+        list = mt_arena_printf(mem, "%s%s\"%s\"", list, i == 0 ? "" : ", ", names[i]);
+    }
+    MT_TRY(mt_arena_check(mem, err));
+    return mt_fail(err, MT_E_USAGE, "the model has %d configurations: say which (%s%s)", n,
+                   list, n > LISTED_MOST ? ", ..." : "");
+}
+
 static mt_status find_configuration(const mt_model *model, const char *name, mt_arena *mem,
                                     int *out, mt_err *err)
 {
     const int n = mt_model_configuration_count(model);
-    *out = name == NULL ? 0 : mt_model_find_configuration(model, name);
+    *out = name != NULL ? mt_model_find_configuration(model, name) : n == 1 ? 0 : MT_ABSENT;
     if (*out != MT_ABSENT) {
         return MT_OK;
     }
     const char **const names = names_of(model, n, mt_model_configuration_name, mem, err);
-    return names == NULL ? MT_E_MEMORY : unknown("configuration", name, n, names, err);
+    if (names == NULL) {
+        return MT_E_MEMORY;
+    }
+    return name == NULL ? ask_which(n, names, mem, err)
+                        : unknown("configuration", name, n, names, err);
 }
 
 static mt_status find_inputs(mt_mechanism *m, const mt_model *model, const char *const *inputs,

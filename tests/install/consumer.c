@@ -18,7 +18,7 @@ static int ask_model(const char *path)
     mt_mechanism *mechanism = NULL;
     int failed = 1;
     if (mt_model_read(path, NULL, &model, &err) != MT_OK ||
-        mt_mechanism_new(model, NULL, 0, NULL, &mechanism, &err) != MT_OK) {
+        mt_mechanism_new(model, "hanging", 0, NULL, &mechanism, &err) != MT_OK) {
         fprintf(stderr, "%s\n", err.text);
     } else {
         failed = printf(" %d mode %.6f Hz", mt_mechanism_vibration_modes(mechanism),

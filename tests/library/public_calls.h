@@ -160,7 +160,7 @@ static mt_status call_mechanism_new(int null)
 static mt_status call_mechanism_delete(int null)
 {
     mt_mechanism *own = NULL;
-    const mt_status rc = mt_mechanism_new(model, NULL, 0, NULL, &own, &said);
+    const mt_status rc = mt_mechanism_new(model, configuration, 0, NULL, &own, &said);
     mt_mechanism_delete(ARG(0, own));
     if (null == 0) {
         mt_mechanism_delete(own);

@@ -72,7 +72,7 @@ static void mechanism__frequencies_are_those_of_the_closed_form(mt_test *t)
         {3.0, 1.0, 1.0}, {1e-6, 1.0, 2.0}, {1e9, 2.0, 3.0}, {3.0, 1e8, 1e-3}};
     mt_model *const model = from_text(t, &two_masses);
     mt_mechanism *m = NULL;
-    CHECK_INT(t, mt_mechanism_new(model, NULL, 3, names, &m, NULL), MT_OK);
+    CHECK_INT(t, mt_mechanism_new(model, "held", 3, names, &m, NULL), MT_OK);
     REQUIRE(t, m != NULL);
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "k1 %g, k2 %g, m %g", rows[i][0], rows[i][1], rows[i][2]);
@@ -172,14 +172,16 @@ static void mechanism__what_is_no_mechanism_is_refused(mt_test *t)
     mt_err err = {MT_OK, ""};
     CHECK_INT(t, mt_mechanism_new(model, "hold", 0, NULL, &m, &err), MT_E_USAGE);
     CHECK_STR(t, err.text, "no configuration is called \"hold\"; did you mean \"held\"?");
-    CHECK_INT(t, mt_mechanism_new(model, NULL, 1, wrong, &m, &err), MT_E_USAGE);
+    CHECK_INT(t, mt_mechanism_new(model, NULL, 0, NULL, &m, &err), MT_E_USAGE);
+    CHECK_STR(t, err.text, "the model has 2 configurations: say which (\"held\", \"free\")");
+    CHECK_INT(t, mt_mechanism_new(model, "held", 1, wrong, &m, &err), MT_E_USAGE);
     CHECK_STR(t, err.text, "no parameter is called \"mm\"; did you mean \"m\"?");
-    CHECK_INT(t, mt_mechanism_new(model, NULL, 2, twice, &m, &err), MT_E_USAGE);
+    CHECK_INT(t, mt_mechanism_new(model, "held", 2, twice, &m, &err), MT_E_USAGE);
     CHECK_STR(t, err.text, "parameter \"m\" is given twice");
-    CHECK_INT(t, mt_mechanism_new(model, NULL, 2, missing, &m, &err), MT_E_USAGE);
+    CHECK_INT(t, mt_mechanism_new(model, "held", 2, missing, &m, &err), MT_E_USAGE);
     CHECK_INT(t, mt_mechanism_new(model, NULL, -1, names, &m, &err), MT_E_USAGE);
     CHECK(t, m == NULL);
-    REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &m, NULL) == MT_OK);
+    REQUIRE(t, mt_mechanism_new(model, "held", 1, names, &m, NULL) == MT_OK);
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "m %g", rows[i]);
         CHECK_INT(t, mt_mechanism_evaluate(m, &rows[i], &err), MT_E_USAGE);
@@ -206,7 +208,7 @@ static void mechanism__shapes_solve_the_equations(mt_test *t)
     mt_mechanism *m = NULL;
     double s[2][2];
     double mac[4];
-    REQUIRE(t, mt_mechanism_new(model, NULL, 3, names, &m, NULL) == MT_OK);
+    REQUIRE(t, mt_mechanism_new(model, "held", 3, names, &m, NULL) == MT_OK);
     CHECK_INT(t, mt_mechanism_evaluate(m, at, NULL), MT_OK);
     CHECK_INT(t, mt_mechanism_channels(m), 2);
     CHECK_STR(t, mt_mechanism_channel(m, 0), "a.x");
@@ -261,7 +263,7 @@ static void mechanism__sensitivities_are_those_of_the_closed_form(mt_test *t)
     mt_model *const model = from_text(t, &two_masses);
     mt_mechanism *m = NULL;
     double slope[6];
-    REQUIRE(t, mt_mechanism_new(model, NULL, 3, names, &m, NULL) == MT_OK);
+    REQUIRE(t, mt_mechanism_new(model, "held", 3, names, &m, NULL) == MT_OK);
     CHECK_INT(t, mt_mechanism_evaluate(m, at, NULL), MT_OK);
     CHECK_INT(t, mt_mechanism_sensitivities(m, 2, slope, NULL), MT_OK);
     for (int mode = 1; mode <= 2; mode++) {
@@ -309,7 +311,7 @@ static void mechanism__responses_are_those_of_the_closed_form(mt_test *t)
     double re[6];
     double im[6];
     double error[6];
-    REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &m, NULL) == MT_OK);
+    REQUIRE(t, mt_mechanism_new(model, "held", 1, names, &m, NULL) == MT_OK);
     CHECK_INT(t, mt_mechanism_response(m, &ports, 3, HZ, re, im, error, NULL), MT_OK);
     for (ptrdiff_t i = 0; i < 3; i++) {
         const double x = 4.0 * PI * PI * HZ[i] * HZ[i];
@@ -414,7 +416,7 @@ static mt_status use_everything(void)
     double room[8];
     mt_status rc = mt_diagnostics_new(&opt.diagnostics, NULL);
     rc = rc == MT_OK ? mt_model_read("two.json", &opt, &model, NULL) : rc;
-    rc = rc == MT_OK ? mt_mechanism_new(model, NULL, 2, names, &m, NULL) : rc;
+    rc = rc == MT_OK ? mt_mechanism_new(model, "held", 2, names, &m, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_evaluate(m, at, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_shape(m, 1, room, NULL) : rc;
     rc = rc == MT_OK ? mt_mechanism_mac(m, 2, m, 2, room, NULL) : rc;
@@ -464,7 +466,7 @@ static void mechanism__threads_share_a_model(mt_test *t)
     mt_model *const model = from_text(t, &two_masses);
     share s[2];
     for (int i = 0; i < THREADS; i++) {
-        REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &s[0].of[i], NULL) == MT_OK);
+        REQUIRE(t, mt_mechanism_new(model, "held", 1, names, &s[0].of[i], NULL) == MT_OK);
         s[1].of[i] = s[0].of[i];
     }
     const mt_tasks many = {TASKS, one_task, NULL, &s[0], "tasks"};

@@ -8,8 +8,8 @@
 
 #include "library/public_calls.h"
 
-/* One letter for each pointer among the arguments: r refused, a allowed, n answered with
- * nothing. */
+/* One letter for each pointer among the arguments: r refused, u refused for what else is asked,
+ * a allowed, n answered with nothing. */
 #define ROW(name, nulls)                \
     {                                   \
         "mt_" #name, nulls, call_##name \
@@ -45,7 +45,7 @@ static const struct {
     ROW(model_parameter_follows, "a"),
     ROW(model_configuration_count, "n"),
     ROW(model_configuration_name, "n"),
-    ROW(mechanism_new, "rarra"),
+    ROW(mechanism_new, "rurra"),
     ROW(mechanism_delete, "a"),
     ROW(mechanism_evaluate, "rra"),
     ROW(mechanism_value, "nn"),
@@ -116,7 +116,7 @@ static void public__null_is_refused_allowed_or_nothing(mt_test *t)
     opt = (mt_read_options){.size = sizeof opt, .files = &along_x, .n_files = 1};
     REQUIRE(t, mt_vibration_read("x.json", &opt, &profile, &said) == MT_OK);
     const char *const names[] = {parameter};
-    REQUIRE(t, mt_mechanism_new(model, NULL, 1, names, &mechanism, &said) == MT_OK);
+    REQUIRE(t, mt_mechanism_new(model, configuration, 1, names, &mechanism, &said) == MT_OK);
     REQUIRE(t, mt_study_solve(study, NULL, &result, &said) == MT_OK);
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_test_row(t, "%s, everything given", rows[i].name);

@@ -315,7 +315,7 @@ class Modes(unittest.TestCase):
 
     def test_pendulum_is_its_closed_form_in_lists(self):
         with without_numpy():
-            found = modetune.modes(pendulum())
+            found = modetune.modes(pendulum(), "hanging")
         self.check_pendulum(found)
         for name in ("hz", "error_hz", "values", "shapes", "hz_per_unit"):
             self.assertIs(type(found[name]), list)
@@ -324,7 +324,7 @@ class Modes(unittest.TestCase):
         found = modetune.modes(SOURCE / "tests/models/pendulum.json", "hanging")
         self.check_pendulum(found)
         with without_numpy():
-            lists = modetune.modes(pendulum())
+            lists = modetune.modes(pendulum(), "hanging")
         for name in ("hz", "error_hz", "values", "shapes", "hz_per_unit"):
             if HAS_NUMPY:
                 import numpy
@@ -352,41 +352,50 @@ class Modes(unittest.TestCase):
     def test_parameters_that_follow_others_are_taken_by_name_only(self):
         model = pendulum()
         model["parameters"]["L2"] = {"value": "2*L"}
-        self.assertEqual(modetune.modes(model)["parameters"], list(pendulum()["parameters"]))
-        found = modetune.modes(model, parameters=["L2"])
+        self.assertEqual(modetune.modes(model, "hanging")["parameters"], list(pendulum()["parameters"]))
+        found = modetune.modes(model, "hanging", parameters=["L2"])
         self.assertEqual((found["parameters"], found["units"], list(found["values"])), (["L2"], [None], [2.0]))
-        self.assertEqual(len(modetune.modes(model, parameters=[])["hz_per_unit"][0]), 0)
+        self.assertEqual(len(modetune.modes(model, "hanging", parameters=[])["hz_per_unit"][0]), 0)
 
     def test_set_takes_numbers_and_expressions(self):
         for value in (4, 4.0, "4*L"):
-            found = modetune.modes(pendulum(), None, {"L": value})
+            found = modetune.modes(pendulum(), "hanging", {"L": value})
             self.assertAlmostEqual(found["hz"][0], pendulum_hz(4), delta=1e-12)
 
     def test_no_mode_is_listed_beside_an_unstable_one(self):
-        found = modetune.modes(pendulum(), set={"g": "-g"})
+        found = modetune.modes(pendulum(), "hanging", set={"g": "-g"})
         self.assertEqual((len(found["hz"]), len(found["shapes"]), len(found["hz_per_unit"])), (0, 0, 0))
         self.assertEqual(found["unstable_modes"], 1)
 
     def test_rigid_body_modes_are_counted(self):
         model = pendulum()
         model.update(joints=[], configurations={"hanging": {}})
-        self.assertEqual(modetune.modes(model, set={"g": 0})["rigid_body_modes"], 3)
+        self.assertEqual(modetune.modes(model, "hanging", set={"g": 0})["rigid_body_modes"], 3)
+
+    def test_one_of_several_configurations_is_asked_for(self):
+        with self.assertRaisesRegex(modetune.Error, r'the model has 4 configurations: say which \("hanging", "upside_down", '):
+            modetune.modes(pendulum())
+        self.assertEqual(modetune.modes(SOURCE / "problems/three_masses.json")["configuration"], "default")
+
+    def test_names_are_those_of_the_interface(self):
+        self.assertEqual([name for name in dir(modetune) if not name.startswith("__")], sorted(modetune.__all__))
+        self.assertIn("__version__", dir(modetune))
 
     def test_wrong_names_are_told(self):
         for wrong in ({"configuration": "hangin"}, {"parameters": ["LL"]}, {"set": {"LL": 1}}):
             with self.assertRaises(modetune.Error) as caught:
-                modetune.modes(pendulum(), **wrong)
+                modetune.modes(pendulum(), **{"configuration": "hanging", **wrong})
             self.assertRegex(str(caught.exception), '"(hangin|LL)"')
 
     def test_doubts_are_warnings(self):
         model = pendulum()
         model["configurations"]["hanging"]["parameters"] = {"L": 2}
         with self.assertWarnsRegex(modetune.Doubt, r"^model\.json:\d+:\d+: warning: /conf.*changes nothing"):
-            modetune.modes(model, set={"L": 3})
+            modetune.modes(model, "hanging", set={"L": 3})
         model["configurations"]["other"] = {}
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            modetune.modes(pendulum())
+            modetune.modes(pendulum(), "hanging")
             modetune.modes(model, "other", set={"L": 3})  # the doubt is not about this one
 
     @unittest.skipUnless(HAS_NUMPY or "MODETUNE_INSTALLED" not in os.environ, "there is no NumPy here to give values of")
@@ -396,9 +405,9 @@ class Modes(unittest.TestCase):
         model["parameters"]["L"]["value"] = numpy.float32(2)
         model["dimension"] = numpy.int64(2)
         model["gravity_m_per_s2"] = numpy.array([0, -G])
-        self.assertAlmostEqual(modetune.modes(model)["hz"][0], pendulum_hz(2), delta=1e-12)
+        self.assertAlmostEqual(modetune.modes(model, "hanging")["hz"][0], pendulum_hz(2), delta=1e-12)
         with self.assertRaises(TypeError):
-            modetune.modes(dict(pendulum(), name=object()))
+            modetune.modes(dict(pendulum(), name=object()), "hanging")
 
 
 class Frames(html.parser.HTMLParser):

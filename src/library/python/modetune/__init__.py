@@ -42,6 +42,11 @@ MOST_START_S = 1.0  # a thread that has begun by then is waited for as long as i
 MOST_SEED = 2**31 - 1
 
 
+def __dir__() -> list[str]:
+    """What is meant for others, and what every module has."""
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})
+
+
 class Doubt(UserWarning):
     """What is hardly meant in a model, said as the command line says it."""
 
@@ -267,7 +272,7 @@ def modes(model: Union[PathLike, Mapping[str, Any]], configuration: Optional[str
     """The natural modes of one configuration of a model, with all that is known of them.
 
     model          path of a model, or what one holds
-    configuration  its name; None: the model's first
+    configuration  its name; None: the model's only one
     set            parameters that get other values, as in solve
     parameters     what to take derivatives by; None: all that do not follow others
 
@@ -285,12 +290,12 @@ def modes(model: Union[PathLike, Mapping[str, Any]], configuration: Optional[str
     with Files(given, _sets(set), None) as read, one_thread:
         with made("mt_model_read", "mt_model_delete", path, byref(read.options),
                   listed=read.diagnostics) as loaded:
-            which = lib.mt_model_configuration_name(loaded, 0) if configuration is None \
-                else encoded(configuration)
+            asked = None if configuration is None else encoded(configuration)
+            which = asked or lib.mt_model_configuration_name(loaded, 0)
             for doubt in _doubts(read.diagnostics.all(), which.decode()):
                 warnings.warn(str(doubt), Doubt, stacklevel=2)
             names = _parameters(loaded, parameters)
-            with made("mt_mechanism_new", "mt_mechanism_delete", loaded, which, len(names),
+            with made("mt_mechanism_new", "mt_mechanism_delete", loaded, asked, len(names),
                       (c_char_p * len(names))(*names)) as mechanism:
                 return {"configuration": which.decode(), "units": _units(loaded, names),
                         **_describe(mechanism, names)}
