@@ -9,8 +9,8 @@
 #include "io/shipped.h"
 #include "study/bands.h"
 
-#define KEY_ENUM(id, name, type, required) id,
-#define KEY(id, name, type, required)      {name, type, required},
+#define KEY_ENUM(id, ...)         id,
+#define KEY(id, label, kind, ...) {.name = (label), .type = (kind), MT_KEY_REST(__VA_ARGS__)},
 
 #define ROOT_KEYS(X)                                       \
     X(ROOT_SCHEMA, "$schema", MT_KEY_TEXT, false)          \
@@ -42,7 +42,7 @@ static const mt_key ROTOR[] = {ROTOR_KEYS(KEY)};
 static const mt_key_table ROTOR_TABLE = {"rotor", ROTOR, ROTOR_KEY_COUNT};
 
 #define VALUE_KEYS(X, type)                            \
-    X(VALUE_VALUE, "value", type, true)                \
+    X(VALUE_VALUE, "value", type, true, PROFILE)       \
     X(VALUE_SOURCE, "source", MT_KEY_TEXT, true)       \
     X(VALUE_CONFIRMED, "confirmed", MT_KEY_BOOL, true) \
     X(VALUE_DESCRIPTION, "description", MT_KEY_TEXT, false)

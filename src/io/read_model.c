@@ -18,33 +18,33 @@
 #include "model/setting.h"
 #include "model/values.h"
 
-#define MODEL_KEYS(X)                                 \
-    X(MODEL_SCHEMA, "$schema", TEXT, false)           \
-    X(MODEL_FORMAT, "format", TEXT, true)             \
-    X(MODEL_NAME, "name", TEXT, false)                \
-    X(MODEL_DESCRIPTION, "description", TEXT, false)  \
-    X(MODEL_SOURCE, "source", TEXT, false)            \
-    X(MODEL_ACCEPTED, "accepted", LIST, false)        \
-    X(MODEL_UNITS, "units", OBJECT, false)            \
-    X(MODEL_DIMENSION, "dimension", COUNT, true)      \
-    X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false) \
-    X(MODEL_PARAMETERS, "parameters", OBJECT, false)  \
-    X(MODEL_POINTS, "points", OBJECT, false)          \
-    X(MODEL_BODIES, "bodies", LIST, false)            \
-    X(MODEL_LINKS, "links", LIST, false)              \
-    X(MODEL_JOINTS, "joints", LIST, false)            \
-    X(MODEL_SPRINGS, "springs", LIST, false)          \
-    X(MODEL_DAMPERS, "dampers", LIST, false)          \
-    X(MODEL_LOADS, "loads", LIST, false)              \
-    X(MODEL_DAMPING, "damping", OBJECT, false)        \
-    X(MODEL_SENSORS, "sensors", LIST, false)          \
-    X(MODEL_MODES, "modes", OBJECT, false)            \
+#define MODEL_KEYS(X)                                          \
+    X(MODEL_SCHEMA, "$schema", TEXT, false)                    \
+    X(MODEL_FORMAT, "format", TEXT, true)                      \
+    X(MODEL_NAME, "name", TEXT, false)                         \
+    X(MODEL_DESCRIPTION, "description", TEXT, false)           \
+    X(MODEL_SOURCE, "source", TEXT, false)                     \
+    X(MODEL_ACCEPTED, "accepted", LIST, false)                 \
+    X(MODEL_UNITS, "units", OBJECT, false)                     \
+    X(MODEL_DIMENSION, "dimension", COUNT, true, WHOLE)        \
+    X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false, GRAVITY) \
+    X(MODEL_PARAMETERS, "parameters", OBJECT, false, ANY)      \
+    X(MODEL_POINTS, "points", OBJECT, false, POINT)            \
+    X(MODEL_BODIES, "bodies", LIST, false)                     \
+    X(MODEL_LINKS, "links", LIST, false)                       \
+    X(MODEL_JOINTS, "joints", LIST, false)                     \
+    X(MODEL_SPRINGS, "springs", LIST, false)                   \
+    X(MODEL_DAMPERS, "dampers", LIST, false)                   \
+    X(MODEL_LOADS, "loads", LIST, false)                       \
+    X(MODEL_DAMPING, "damping", OBJECT, false)                 \
+    X(MODEL_SENSORS, "sensors", LIST, false)                   \
+    X(MODEL_MODES, "modes", OBJECT, false)                     \
     X(MODEL_CONFIGURATIONS, "configurations", OBJECT, false)
 enum { MODEL_KEYS(MT_READ_ENUM) MODEL_COUNT };
 MT_READ_TABLE(mt_model_keys, "", MODEL_KEYS);
 
 #define PARAMETER_KEYS(X)                                \
-    X(PARAMETER_VALUE, "value", NUMBER, true)            \
+    X(PARAMETER_VALUE, "value", NUMBER, true, ANY)       \
     X(PARAMETER_UNIT, "unit", TEXT, false)               \
     X(PARAMETER_DESCRIPTION, "description", TEXT, false) \
     X(PARAMETER_SOURCE, "source", TEXT, false)           \
@@ -52,14 +52,14 @@ MT_READ_TABLE(mt_model_keys, "", MODEL_KEYS);
 enum { PARAMETER_KEYS(MT_READ_ENUM) PARAMETER_COUNT };
 MT_READ_TABLE(mt_parameter_keys, "parameter", PARAMETER_KEYS);
 
-#define BODY_KEYS(X)                                        \
-    X(BODY_NAME, "name", TEXT, true)                        \
-    X(BODY_MASS, "mass_kg", NUMBER, false)                  \
-    X(BODY_INERTIA, "inertia_kg_m2", NUMBER_OR_LIST, false) \
-    X(BODY_CENTRE, "centre", TEXT_OR_LIST, true)            \
-    X(BODY_IN, "in", LIST, false)                           \
-    X(BODY_DESCRIPTION, "description", TEXT, false)         \
-    X(BODY_SOURCE, "source", TEXT, false)                   \
+#define BODY_KEYS(X)                                                 \
+    X(BODY_NAME, "name", TEXT, true)                                 \
+    X(BODY_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE)             \
+    X(BODY_INERTIA, "inertia_kg_m2", NUMBER_OR_LIST, false, INERTIA) \
+    X(BODY_CENTRE, "centre", TEXT_OR_LIST, true, POINT)              \
+    X(BODY_IN, "in", LIST, false)                                    \
+    X(BODY_DESCRIPTION, "description", TEXT, false)                  \
+    X(BODY_SOURCE, "source", TEXT, false)                            \
     X(BODY_ORIGIN, "origin", TEXT, false)
 enum { BODY_KEYS(MT_READ_ENUM) BODY_COUNT };
 MT_READ_TABLE(mt_body_keys, "body", BODY_KEYS);

@@ -2,13 +2,13 @@
 /* Damping of a model and of its configurations. */
 #include "io/read_model_priv.h"
 
-#define DAMPING_KEYS(X)                                \
-    X(DAMPING_RATIO, "ratio", NUMBER, false)           \
-    X(DAMPING_RATIOS, "ratios", LIST, false)           \
-    X(DAMPING_MODES, "modes", OBJECT, false)           \
-    X(DAMPING_MASS, "mass_per_s", NUMBER, false)       \
-    X(DAMPING_STIFFNESS, "stiffness_s", NUMBER, false) \
-    X(DAMPING_DESCRIPTION, "description", TEXT, false) \
+#define DAMPING_KEYS(X)                                              \
+    X(DAMPING_RATIO, "ratio", NUMBER, false, RATIO)                  \
+    X(DAMPING_RATIOS, "ratios", LIST, false, RATIO)                  \
+    X(DAMPING_MODES, "modes", OBJECT, false, RATIO)                  \
+    X(DAMPING_MASS, "mass_per_s", NUMBER, false, NOT_NEGATIVE)       \
+    X(DAMPING_STIFFNESS, "stiffness_s", NUMBER, false, NOT_NEGATIVE) \
+    X(DAMPING_DESCRIPTION, "description", TEXT, false)               \
     X(DAMPING_SOURCE, "source", TEXT, false)
 enum { DAMPING_KEYS(MT_READ_ENUM) DAMPING_COUNT };
 MT_READ_TABLE(mt_damping_keys, "damping", DAMPING_KEYS);
@@ -23,6 +23,9 @@ static void read_named(mt_model_reader *mr, mt_addr object, mt_damping *d)
         m->mode_name = mt_reader_member_name(&mr->r, items.at, MT_NAME_TITLE);
         m->mode = MT_ABSENT;
         m->ratio = mt_read_num(mr, items.at);
+        if (m->ratio != MT_ABSENT) {
+            mr->m->nums[m->ratio].possible = mt_reader_possible(&mr->r, object);
+        }
     }
 }
 

@@ -2,58 +2,58 @@
 /* Joints, springs and dampers. */
 #include "io/read_model_priv.h"
 
-#define JOINT_KEYS(X)                                  \
-    X(JOINT_NAME, "name", TEXT, true)                  \
-    X(JOINT_TYPE, "type", TEXT, true)                  \
-    X(JOINT_BODIES, "bodies", LIST, false)             \
-    X(JOINT_AT, "at", TEXT_OR_LIST, false)             \
-    X(JOINT_AXIS, "axis", LIST, false)                 \
-    X(JOINT_AXIS_B, "axis_b", LIST, false)             \
-    X(JOINT_LENGTH, "length_m", NUMBER, false)         \
-    X(JOINT_MASS, "mass_kg", NUMBER, false)            \
-    X(JOINT_JOINTS, "joints", LIST, false)             \
-    X(JOINT_RATIO, "ratio", NUMBER, false)             \
-    X(JOINT_RATIO_M, "ratio_m_per_rad", NUMBER, false) \
-    X(JOINT_IN, "in", LIST, false)                     \
-    X(JOINT_DESCRIPTION, "description", TEXT, false)   \
+#define JOINT_KEYS(X)                                           \
+    X(JOINT_NAME, "name", TEXT, true)                           \
+    X(JOINT_TYPE, "type", TEXT, true)                           \
+    X(JOINT_BODIES, "bodies", LIST, false)                      \
+    X(JOINT_AT, "at", TEXT_OR_LIST, false, POINT)               \
+    X(JOINT_AXIS, "axis", LIST, false, AXIS)                    \
+    X(JOINT_AXIS_B, "axis_b", LIST, false, AXIS)                \
+    X(JOINT_LENGTH, "length_m", NUMBER, false, POSITIVE)        \
+    X(JOINT_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE)       \
+    X(JOINT_JOINTS, "joints", LIST, false)                      \
+    X(JOINT_RATIO, "ratio", NUMBER, false, NONZERO)             \
+    X(JOINT_RATIO_M, "ratio_m_per_rad", NUMBER, false, NONZERO) \
+    X(JOINT_IN, "in", LIST, false)                              \
+    X(JOINT_DESCRIPTION, "description", TEXT, false)            \
     X(JOINT_SOURCE, "source", TEXT, false)
 enum { JOINT_KEYS(MT_READ_ENUM) JOINT_COUNT };
 MT_READ_TABLE(mt_joint_keys, "joint", JOINT_KEYS);
 
-#define SPRING_KEYS(X)                                               \
-    X(SPRING_NAME, "name", TEXT, true)                               \
-    X(SPRING_TYPE, "type", TEXT, true)                               \
-    X(SPRING_BODIES, "bodies", LIST, false)                          \
-    X(SPRING_JOINT, "joint", TEXT, false)                            \
-    X(SPRING_AT, "at", TEXT_OR_LIST, false)                          \
-    X(SPRING_FORCE, "stiffness_n_per_m", NUMBER_OR_LIST, false)      \
-    X(SPRING_TORQUE, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false) \
-    X(SPRING_IN, "in", LIST, false)                                  \
-    X(SPRING_DESCRIPTION, "description", TEXT, false)                \
-    X(SPRING_SOURCE, "source", TEXT, false)                          \
-    X(SPRING_FREE_LENGTH, "free_length_m", NUMBER, false)            \
-    X(SPRING_FREE_ANGLE, "free_angle_rad", NUMBER, false)            \
-    X(SPRING_PRELOAD_N, "preload_n", NUMBER, false)                  \
-    X(SPRING_PRELOAD_N_M, "preload_n_m", NUMBER, false)              \
-    X(SPRING_YOUNG, "youngs_modulus_pa", NUMBER, false)              \
-    X(SPRING_AREA, "area_m2", NUMBER, false)                         \
-    X(SPRING_DENSITY, "density_kg_per_m3", NUMBER, false)            \
-    X(SPRING_LOSS, "loss_factor", NUMBER, false)                     \
-    X(SPRING_MATRIX, "stiffness_matrix", LIST, false)
+#define SPRING_KEYS(X)                                                    \
+    X(SPRING_NAME, "name", TEXT, true)                                    \
+    X(SPRING_TYPE, "type", TEXT, true)                                    \
+    X(SPRING_BODIES, "bodies", LIST, false)                               \
+    X(SPRING_JOINT, "joint", TEXT, false)                                 \
+    X(SPRING_AT, "at", TEXT_OR_LIST, false, POINT)                        \
+    X(SPRING_FORCE, "stiffness_n_per_m", NUMBER_OR_LIST, false, ANY)      \
+    X(SPRING_TORQUE, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false, ANY) \
+    X(SPRING_IN, "in", LIST, false)                                       \
+    X(SPRING_DESCRIPTION, "description", TEXT, false)                     \
+    X(SPRING_SOURCE, "source", TEXT, false)                               \
+    X(SPRING_FREE_LENGTH, "free_length_m", NUMBER, false, NOT_NEGATIVE)   \
+    X(SPRING_FREE_ANGLE, "free_angle_rad", NUMBER, false, ANY)            \
+    X(SPRING_PRELOAD_N, "preload_n", NUMBER, false, ANY)                  \
+    X(SPRING_PRELOAD_N_M, "preload_n_m", NUMBER, false, ANY)              \
+    X(SPRING_YOUNG, "youngs_modulus_pa", NUMBER, false, MODULUS)          \
+    X(SPRING_AREA, "area_m2", NUMBER, false, NOT_NEGATIVE)                \
+    X(SPRING_DENSITY, "density_kg_per_m3", NUMBER, false, DENSITY)        \
+    X(SPRING_LOSS, "loss_factor", NUMBER, false, LOSS)                    \
+    X(SPRING_MATRIX, "stiffness_matrix", LIST, false, MATRIX)
 enum { SPRING_KEYS(MT_READ_ENUM) SPRING_COUNT };
 MT_READ_TABLE(mt_spring_keys, "spring", SPRING_KEYS);
 
 /* The first ten of a spring's keys, in their order, so that one reader serves both. */
-#define DAMPER_KEYS(X)                                               \
-    X(DAMPER_NAME, "name", TEXT, true)                               \
-    X(DAMPER_TYPE, "type", TEXT, true)                               \
-    X(DAMPER_BODIES, "bodies", LIST, false)                          \
-    X(DAMPER_JOINT, "joint", TEXT, false)                            \
-    X(DAMPER_AT, "at", TEXT_OR_LIST, false)                          \
-    X(DAMPER_FORCE, "damping_n_s_per_m", NUMBER_OR_LIST, false)      \
-    X(DAMPER_TORQUE, "damping_n_m_s_per_rad", NUMBER_OR_LIST, false) \
-    X(DAMPER_IN, "in", LIST, false)                                  \
-    X(DAMPER_DESCRIPTION, "description", TEXT, false)                \
+#define DAMPER_KEYS(X)                                                    \
+    X(DAMPER_NAME, "name", TEXT, true)                                    \
+    X(DAMPER_TYPE, "type", TEXT, true)                                    \
+    X(DAMPER_BODIES, "bodies", LIST, false)                               \
+    X(DAMPER_JOINT, "joint", TEXT, false)                                 \
+    X(DAMPER_AT, "at", TEXT_OR_LIST, false, POINT)                        \
+    X(DAMPER_FORCE, "damping_n_s_per_m", NUMBER_OR_LIST, false, ANY)      \
+    X(DAMPER_TORQUE, "damping_n_m_s_per_rad", NUMBER_OR_LIST, false, ANY) \
+    X(DAMPER_IN, "in", LIST, false)                                       \
+    X(DAMPER_DESCRIPTION, "description", TEXT, false)                     \
     X(DAMPER_SOURCE, "source", TEXT, false)
 enum { DAMPER_KEYS(MT_READ_ENUM) DAMPER_COUNT };
 _Static_assert((int)DAMPER_COUNT == (int)SPRING_SOURCE + 1,

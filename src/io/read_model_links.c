@@ -4,53 +4,53 @@
 
 #include <limits.h>
 
-#define LINK_KEYS(X)                                                  \
-    X(LINK_NAME, "name", TEXT, true)                                  \
-    X(LINK_KIND, "kind", TEXT, false)                                 \
-    X(LINK_FROM, "from", TEXT_OR_LIST, true)                          \
-    X(LINK_TO, "to", TEXT_OR_LIST, true)                              \
-    X(LINK_ELEMENTS, "elements", COUNT, true)                         \
-    X(LINK_MASS, "mass_kg", NUMBER, false)                            \
-    X(LINK_DENSITY, "density_kg_per_m3", NUMBER, false)               \
-    X(LINK_YOUNG, "youngs_modulus_pa", NUMBER, false)                 \
-    X(LINK_SHEAR, "shear_modulus_pa", NUMBER, false)                  \
-    X(LINK_SHEAR_DATA, "shear", OBJECT, false)                        \
-    X(LINK_ROTARY, "rotary_inertia", BOOL, false)                     \
-    X(LINK_SECTION, "section", OBJECT, false)                         \
-    X(LINK_STIFFNESS, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false) \
-    X(LINK_LENGTH, "element_length_m", NUMBER_OR_LIST, false)         \
-    X(LINK_ELEMENT_MASS, "element_mass_kg", NUMBER_OR_LIST, false)    \
-    X(LINK_INERTIA, "element_inertia_kg_m2", NUMBER_OR_LIST, false)   \
-    X(LINK_HINGE_AXIS, "hinge_axis", LIST, false)                     \
-    X(LINK_GYRATION, "radius_of_gyration_m", NUMBER, false)           \
-    X(LINK_LOSS, "loss_factor", NUMBER, false)                        \
-    X(LINK_IN, "in", LIST, false)                                     \
-    X(LINK_DESCRIPTION, "description", TEXT, false)                   \
+#define LINK_KEYS(X)                                                                \
+    X(LINK_NAME, "name", TEXT, true)                                                \
+    X(LINK_KIND, "kind", TEXT, false)                                               \
+    X(LINK_FROM, "from", TEXT_OR_LIST, true, POINT)                                 \
+    X(LINK_TO, "to", TEXT_OR_LIST, true, POINT)                                     \
+    X(LINK_ELEMENTS, "elements", COUNT, true, WHOLE)                                \
+    X(LINK_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE)                            \
+    X(LINK_DENSITY, "density_kg_per_m3", NUMBER, false, DENSITY)                    \
+    X(LINK_YOUNG, "youngs_modulus_pa", NUMBER, false, MODULUS)                      \
+    X(LINK_SHEAR, "shear_modulus_pa", NUMBER, false, MODULUS)                       \
+    X(LINK_SHEAR_DATA, "shear", OBJECT, false)                                      \
+    X(LINK_ROTARY, "rotary_inertia", BOOL, false)                                   \
+    X(LINK_SECTION, "section", OBJECT, false)                                       \
+    X(LINK_STIFFNESS, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false, NOT_NEGATIVE) \
+    X(LINK_LENGTH, "element_length_m", NUMBER_OR_LIST, false, POSITIVE)             \
+    X(LINK_ELEMENT_MASS, "element_mass_kg", NUMBER_OR_LIST, false, NOT_NEGATIVE)    \
+    X(LINK_INERTIA, "element_inertia_kg_m2", NUMBER_OR_LIST, false, NOT_NEGATIVE)   \
+    X(LINK_HINGE_AXIS, "hinge_axis", LIST, false, AXIS)                             \
+    X(LINK_GYRATION, "radius_of_gyration_m", NUMBER, false, NOT_NEGATIVE)           \
+    X(LINK_LOSS, "loss_factor", NUMBER, false, LOSS)                                \
+    X(LINK_IN, "in", LIST, false)                                                   \
+    X(LINK_DESCRIPTION, "description", TEXT, false)                                 \
     X(LINK_SOURCE, "source", TEXT, false)
 enum { LINK_KEYS(MT_READ_ENUM) LINK_COUNT };
 MT_READ_TABLE(mt_link_keys, "link", LINK_KEYS);
 
-#define SECTION_KEYS(X)                                              \
-    X(SECTION_SHAPE, "shape", TEXT, true)                            \
-    X(SECTION_WIDTH, "width_m", NUMBER, false)                       \
-    X(SECTION_HEIGHT, "height_m", NUMBER, false)                     \
-    X(SECTION_DIAMETER, "diameter_m", NUMBER, false)                 \
-    X(SECTION_OUTER, "outer_diameter_m", NUMBER, false)              \
-    X(SECTION_INNER, "inner_diameter_m", NUMBER, false)              \
-    X(SECTION_AREA, "area_m2", NUMBER, false)                        \
-    X(SECTION_MOMENT, "second_moment_m4", NUMBER, false)             \
-    X(SECTION_MOMENT_OTHER, "second_moment_other_m4", NUMBER, false) \
-    X(SECTION_TORSION, "torsion_constant_m4", NUMBER, false)         \
-    X(SECTION_DESCRIPTION, "description", TEXT, false)               \
+#define SECTION_KEYS(X)                                                        \
+    X(SECTION_SHAPE, "shape", TEXT, true)                                      \
+    X(SECTION_WIDTH, "width_m", NUMBER, false, THICKNESS)                      \
+    X(SECTION_HEIGHT, "height_m", NUMBER, false, THICKNESS)                    \
+    X(SECTION_DIAMETER, "diameter_m", NUMBER, false, THICKNESS)                \
+    X(SECTION_OUTER, "outer_diameter_m", NUMBER, false, THICKNESS)             \
+    X(SECTION_INNER, "inner_diameter_m", NUMBER, false, INNER)                 \
+    X(SECTION_AREA, "area_m2", NUMBER, false, POSITIVE)                        \
+    X(SECTION_MOMENT, "second_moment_m4", NUMBER, false, POSITIVE)             \
+    X(SECTION_MOMENT_OTHER, "second_moment_other_m4", NUMBER, false, POSITIVE) \
+    X(SECTION_TORSION, "torsion_constant_m4", NUMBER, false, NOT_NEGATIVE)     \
+    X(SECTION_DESCRIPTION, "description", TEXT, false)                         \
     X(SECTION_SOURCE, "source", TEXT, false)
 enum { SECTION_KEYS(MT_READ_ENUM) SECTION_COUNT };
 MT_READ_TABLE(mt_section_keys, "section", SECTION_KEYS);
 
-#define SHEAR_KEYS(X)                                  \
-    X(SHEAR_COEFFICIENT, "coefficient", NUMBER, true)  \
-    X(SHEAR_OTHER, "coefficient_other", NUMBER, false) \
-    X(SHEAR_POISSON, "poissons_ratio", NUMBER, false)  \
-    X(SHEAR_DESCRIPTION, "description", TEXT, false)   \
+#define SHEAR_KEYS(X)                                            \
+    X(SHEAR_COEFFICIENT, "coefficient", NUMBER, true, POSITIVE)  \
+    X(SHEAR_OTHER, "coefficient_other", NUMBER, false, POSITIVE) \
+    X(SHEAR_POISSON, "poissons_ratio", NUMBER, false, POISSON)   \
+    X(SHEAR_DESCRIPTION, "description", TEXT, false)             \
     X(SHEAR_SOURCE, "source", TEXT, false)
 enum { SHEAR_KEYS(MT_READ_ENUM) SHEAR_COUNT };
 MT_READ_TABLE(mt_shear_keys, "shear", SHEAR_KEYS);

@@ -2,15 +2,15 @@
 /* Dead loads. */
 #include "io/read_model_priv.h"
 
-#define LOAD_KEYS(X)                                    \
-    X(LOAD_NAME, "name", TEXT, true)                    \
-    X(LOAD_ON, "on", TEXT, false)                       \
-    X(LOAD_JOINT, "joint", TEXT, false)                 \
-    X(LOAD_AT, "at", TEXT_OR_LIST, false)               \
-    X(LOAD_FORCE, "force_n", NUMBER_OR_LIST, false)     \
-    X(LOAD_MOMENT, "moment_n_m", NUMBER_OR_LIST, false) \
-    X(LOAD_IN, "in", LIST, false)                       \
-    X(LOAD_DESCRIPTION, "description", TEXT, false)     \
+#define LOAD_KEYS(X)                                         \
+    X(LOAD_NAME, "name", TEXT, true)                         \
+    X(LOAD_ON, "on", TEXT, false)                            \
+    X(LOAD_JOINT, "joint", TEXT, false)                      \
+    X(LOAD_AT, "at", TEXT_OR_LIST, false, POINT)             \
+    X(LOAD_FORCE, "force_n", NUMBER_OR_LIST, false, ANY)     \
+    X(LOAD_MOMENT, "moment_n_m", NUMBER_OR_LIST, false, ANY) \
+    X(LOAD_IN, "in", LIST, false)                            \
+    X(LOAD_DESCRIPTION, "description", TEXT, false)          \
     X(LOAD_SOURCE, "source", TEXT, false)
 enum { LOAD_KEYS(MT_READ_ENUM) LOAD_COUNT };
 MT_READ_TABLE(mt_load_keys, "load", LOAD_KEYS);

@@ -11,8 +11,13 @@
 mt_num mt_read_num_in(mt_model_reader *mr, mt_addr value, const mt_unit *unit)
 {
     mt_expr expr;
-    return mt_reader_expr_in(&mr->r, value, unit, &expr) ? mt_model_add_num(mr->m, expr, value)
-                                                         : MT_ABSENT;
+    const mt_num num = mt_reader_expr_in(&mr->r, value, unit, &expr)
+                           ? mt_model_add_num(mr->m, expr, value)
+                           : MT_ABSENT;
+    if (num != MT_ABSENT) {
+        mr->m->nums[num].possible = mt_reader_possible(&mr->r, value);
+    }
+    return num;
 }
 
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value)
@@ -46,9 +51,11 @@ static mt_num *read_nums(mt_model_reader *mr, mt_addr value, bool single, const 
         return NULL;
     }
     mt_num *const nums = mt_reader_room(&mr->r, &items, sizeof *nums);
+    const mt_possible_id possible = mt_reader_possible(&mr->r, value);
     while (mt_items_next(&items)) {
         nums[*n] = mt_read_num_in(mr, items.at, unit);
         if (nums[*n] != MT_ABSENT) {
+            mr->m->nums[nums[*n]].possible = possible;
             mt_reader_check_kind(&mr->r, items.at, &mr->m->nums[nums[*n]].expr, unit);
         }
         ++*n;

@@ -13,8 +13,9 @@ typedef struct mt_model_reader {
 /* One list of keys makes the enum of their places and the table:
  *     #define POINT_KEYS(X) X(POINT_X, "x", NUMBER, true) ...
  *     enum { POINT_KEYS(MT_READ_ENUM) POINT_COUNT }; */
-#define MT_READ_ENUM(id, name, type, required) id,
-#define MT_READ_KEY(id, name, type, required)  {(name), MT_KEY_##type, (required)},
+#define MT_READ_ENUM(id, ...) id,
+#define MT_READ_KEY(id, label, kind, ...) \
+    {.name = (label), .type = MT_KEY_##kind, MT_KEY_REST(__VA_ARGS__)},
 #define MT_READ_TABLE(table, what, KEYS)                      \
     static const mt_key table##_keys[] = {KEYS(MT_READ_KEY)}; \
     const mt_key_table table = {(what), table##_keys, MT_COUNT(table##_keys)}

@@ -7,42 +7,42 @@
 
 #include "io/read_units.h"
 
-#define SENSOR_KEYS(X)                                \
-    X(SENSOR_NAME, "name", TEXT, true)                \
-    X(SENSOR_ON, "on", TEXT, true)                    \
-    X(SENSOR_AT, "at", TEXT_OR_LIST, false)           \
-    X(SENSOR_FRACTION, "fraction", NUMBER, false)     \
-    X(SENSOR_DIRECTIONS, "directions", LIST, false)   \
-    X(SENSOR_DESCRIPTION, "description", TEXT, false) \
+#define SENSOR_KEYS(X)                                  \
+    X(SENSOR_NAME, "name", TEXT, true)                  \
+    X(SENSOR_ON, "on", TEXT, true)                      \
+    X(SENSOR_AT, "at", TEXT_OR_LIST, false, POINT)      \
+    X(SENSOR_FRACTION, "fraction", NUMBER, false, PART) \
+    X(SENSOR_DIRECTIONS, "directions", LIST, false)     \
+    X(SENSOR_DESCRIPTION, "description", TEXT, false)   \
     X(SENSOR_SOURCE, "source", TEXT, false)
 enum { SENSOR_KEYS(MT_READ_ENUM) SENSOR_COUNT };
 MT_READ_TABLE(mt_sensor_keys, "sensor", SENSOR_KEYS);
 
 #define MODE_KEYS(X)                                   \
     X(MODE_CONFIGURATION, "configuration", TEXT, true) \
-    X(MODE_INDEX, "index", COUNT, true)                \
+    X(MODE_INDEX, "index", COUNT, true, WHOLE)         \
     X(MODE_DESCRIPTION, "description", TEXT, false)    \
     X(MODE_SOURCE, "source", TEXT, false)
 enum { MODE_KEYS(MT_READ_ENUM) MODE_COUNT };
 MT_READ_TABLE(mt_mode_keys, "mode", MODE_KEYS);
 
-#define CONFIGURATION_KEYS(X)                                 \
-    X(CONFIGURATION_LIKE, "like", TEXT, false)                \
-    X(CONFIGURATION_PARAMETERS, "parameters", OBJECT, false)  \
-    X(CONFIGURATION_GRAVITY, "gravity_m_per_s2", LIST, false) \
-    X(CONFIGURATION_DRIVE, "drive", OBJECT, false)            \
-    X(CONFIGURATION_DAMPING, "damping", OBJECT, false)        \
-    X(CONFIGURATION_DESCRIPTION, "description", TEXT, false)  \
+#define CONFIGURATION_KEYS(X)                                          \
+    X(CONFIGURATION_LIKE, "like", TEXT, false)                         \
+    X(CONFIGURATION_PARAMETERS, "parameters", OBJECT, false, ANY)      \
+    X(CONFIGURATION_GRAVITY, "gravity_m_per_s2", LIST, false, GRAVITY) \
+    X(CONFIGURATION_DRIVE, "drive", OBJECT, false)                     \
+    X(CONFIGURATION_DAMPING, "damping", OBJECT, false)                 \
+    X(CONFIGURATION_DESCRIPTION, "description", TEXT, false)           \
     X(CONFIGURATION_SOURCE, "source", TEXT, false)
 enum { CONFIGURATION_KEYS(MT_READ_ENUM) CONFIGURATION_COUNT };
 MT_READ_TABLE(mt_configuration_keys, "configuration", CONFIGURATION_KEYS);
 
-#define DRIVE_KEYS(X)                                \
-    X(DRIVE_JOINT, "joint", TEXT, true)              \
-    X(DRIVE_RAD, "position_rad", NUMBER, false)      \
-    X(DRIVE_M, "position_m", NUMBER, false)          \
-    X(DRIVE_HOLD, "hold", TEXT_OR_OBJECT, false)     \
-    X(DRIVE_DESCRIPTION, "description", TEXT, false) \
+#define DRIVE_KEYS(X)                                  \
+    X(DRIVE_JOINT, "joint", TEXT, true)                \
+    X(DRIVE_RAD, "position_rad", NUMBER, false, ANGLE) \
+    X(DRIVE_M, "position_m", NUMBER, false, STROKE)    \
+    X(DRIVE_HOLD, "hold", TEXT_OR_OBJECT, false)       \
+    X(DRIVE_DESCRIPTION, "description", TEXT, false)   \
     X(DRIVE_SOURCE, "source", TEXT, false)
 enum { DRIVE_KEYS(MT_READ_ENUM) DRIVE_COUNT };
 MT_READ_TABLE(mt_drive_keys, "drive", DRIVE_KEYS);

@@ -23,36 +23,36 @@
 enum { ROOT_KEYS(MT_PROFILE_ENUM) ROOT_COUNT };
 MT_PROFILE_TABLE(ROOT, "", ROOT_KEYS);
 
-#define RANDOM_KEYS(X)                               \
-    X(RANDOM_G2, "psd_g2_per_hz", LIST, false)       \
-    X(RANDOM_SI, "psd_m2_per_s3", LIST, false)       \
-    X(RANDOM_RMS_G, "published_rms_g", VALUE, false) \
-    X(RANDOM_ORIGIN, "origin", TEXT, false)          \
-    X(RANDOM_SOURCE, "source", TEXT, false)          \
+#define RANDOM_KEYS(X)                                        \
+    X(RANDOM_G2, "psd_g2_per_hz", LIST, false, PROFILE)       \
+    X(RANDOM_SI, "psd_m2_per_s3", LIST, false, PROFILE)       \
+    X(RANDOM_RMS_G, "published_rms_g", VALUE, false, PROFILE) \
+    X(RANDOM_ORIGIN, "origin", TEXT, false)                   \
+    X(RANDOM_SOURCE, "source", TEXT, false)                   \
     X(RANDOM_DESCRIPTION, "description", TEXT, false)
 enum { RANDOM_KEYS(MT_PROFILE_ENUM) RANDOM_COUNT };
 MT_PROFILE_TABLE(RANDOM, "random", RANDOM_KEYS);
 
-#define POINT_KEYS(X)                        \
-    X(POINT_HZ, "frequency_hz", VALUE, true) \
-    X(POINT_SLOPE, "slope_db_per_octave", VALUE, true)
+#define POINT_KEYS(X)                                 \
+    X(POINT_HZ, "frequency_hz", VALUE, true, PROFILE) \
+    X(POINT_SLOPE, "slope_db_per_octave", VALUE, true, PROFILE)
 enum { POINT_KEYS(MT_PROFILE_ENUM) POINT_COUNT };
 MT_PROFILE_TABLE(POINT, "slope", POINT_KEYS);
 
-#define TONE_KEYS(X)                                  \
-    X(TONE_RANGE, "frequency_hz", LIST, false)        \
-    X(TONE_ROTOR, "rotor", OBJECT, false)             \
-    X(TONE_G, "acceleration_g", VALUE, false)         \
-    X(TONE_SI, "acceleration_m_per_s2", VALUE, false) \
-    X(TONE_ORIGIN, "origin", TEXT, false)             \
-    X(TONE_SOURCE, "source", TEXT, false)             \
+#define TONE_KEYS(X)                                           \
+    X(TONE_RANGE, "frequency_hz", LIST, false, PROFILE)        \
+    X(TONE_ROTOR, "rotor", OBJECT, false)                      \
+    X(TONE_G, "acceleration_g", VALUE, false, PROFILE)         \
+    X(TONE_SI, "acceleration_m_per_s2", VALUE, false, PROFILE) \
+    X(TONE_ORIGIN, "origin", TEXT, false)                      \
+    X(TONE_SOURCE, "source", TEXT, false)                      \
     X(TONE_DESCRIPTION, "description", TEXT, false)
 enum { TONE_KEYS(MT_PROFILE_ENUM) TONE_COUNT };
 MT_PROFILE_TABLE(TONE, "tone", TONE_KEYS);
 
-#define COMBINE_KEYS(X)                     \
-    X(COMBINE_SIGMA, "sigma", VALUE, false) \
-    X(COMBINE_TONES, "tones", TEXT, false)  \
+#define COMBINE_KEYS(X)                              \
+    X(COMBINE_SIGMA, "sigma", VALUE, false, PROFILE) \
+    X(COMBINE_TONES, "tones", TEXT, false)           \
     X(COMBINE_DESCRIPTION, "description", TEXT, false)
 enum { COMBINE_KEYS(MT_PROFILE_ENUM) COMBINE_COUNT };
 MT_PROFILE_TABLE(COMBINE, "combine", COMBINE_KEYS);

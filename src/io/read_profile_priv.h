@@ -14,8 +14,9 @@ typedef struct mt_read_profile {
     mt_err why;
 } mt_read_profile;
 
-#define MT_PROFILE_ENUM(id, name, type, required) id,
-#define MT_PROFILE_KEY(id, name, type, required)  {(name), MT_KEY_##type, (required)},
+#define MT_PROFILE_ENUM(id, ...) id,
+#define MT_PROFILE_KEY(id, label, kind, ...) \
+    {.name = (label), .type = MT_KEY_##kind, MT_KEY_REST(__VA_ARGS__)},
 #define MT_PROFILE_TABLE(id, what, KEYS)                      \
     static const mt_key id##_LIST[] = {KEYS(MT_PROFILE_KEY)}; \
     static const mt_key_table id##_TABLE = {(what), id##_LIST, MT_COUNT(id##_LIST)}

@@ -9,26 +9,26 @@
 #include "io/read_aircraft.h"
 #include "io/read_harmonics.h"
 
-#define ROTOR_KEYS(X)                                \
-    X(ROTOR_AIRCRAFT, "aircraft", TEXT, false)       \
-    X(ROTOR_SPEED_HZ, "speed_hz", VALUE, false)      \
-    X(ROTOR_SPEED_RPM, "speed_rpm", VALUE, false)    \
-    X(ROTOR_BLADES, "blades", COUNT, false)          \
-    X(ROTOR_TAIL, "tail", OBJECT, false)             \
-    X(ROTOR_NAME, "name", TEXT, false)               \
-    X(ROTOR_HARMONICS, "harmonics", LIST, true)      \
-    X(ROTOR_RANGE, "speed_range", LIST, false)       \
-    X(ROTOR_DESCRIPTION, "description", TEXT, false) \
+#define ROTOR_KEYS(X)                                      \
+    X(ROTOR_AIRCRAFT, "aircraft", TEXT, false)             \
+    X(ROTOR_SPEED_HZ, "speed_hz", VALUE, false, PROFILE)   \
+    X(ROTOR_SPEED_RPM, "speed_rpm", VALUE, false, PROFILE) \
+    X(ROTOR_BLADES, "blades", COUNT, false, WHOLE)         \
+    X(ROTOR_TAIL, "tail", OBJECT, false)                   \
+    X(ROTOR_NAME, "name", TEXT, false)                     \
+    X(ROTOR_HARMONICS, "harmonics", LIST, true)            \
+    X(ROTOR_RANGE, "speed_range", LIST, false, PROFILE)    \
+    X(ROTOR_DESCRIPTION, "description", TEXT, false)       \
     X(ROTOR_SOURCE, "source", TEXT, false)
 enum { ROTOR_KEYS(MT_PROFILE_ENUM) ROTOR_COUNT };
 static const mt_key ROTOR_LIST[] = {ROTOR_KEYS(MT_PROFILE_KEY)};
 const mt_key_table mt_profile_rotor_keys = {"rotor", ROTOR_LIST, ROTOR_COUNT};
 
-#define TAIL_KEYS(X)                                \
-    X(TAIL_SPEED_HZ, "speed_hz", VALUE, false)      \
-    X(TAIL_SPEED_RPM, "speed_rpm", VALUE, false)    \
-    X(TAIL_BLADES, "blades", COUNT, false)          \
-    X(TAIL_DESCRIPTION, "description", TEXT, false) \
+#define TAIL_KEYS(X)                                      \
+    X(TAIL_SPEED_HZ, "speed_hz", VALUE, false, PROFILE)   \
+    X(TAIL_SPEED_RPM, "speed_rpm", VALUE, false, PROFILE) \
+    X(TAIL_BLADES, "blades", COUNT, false, WHOLE)         \
+    X(TAIL_DESCRIPTION, "description", TEXT, false)       \
     X(TAIL_SOURCE, "source", TEXT, false)
 enum { TAIL_KEYS(MT_PROFILE_ENUM) TAIL_COUNT };
 static const mt_key TAIL_LIST[] = {TAIL_KEYS(MT_PROFILE_KEY)};

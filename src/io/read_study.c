@@ -13,44 +13,44 @@
 #include "io/read_units.h"
 #include "model/values.h"
 
-#define STUDY_KEYS(X)                                                \
-    X(STUDY_SCHEMA, "$schema", MT_KEY_TEXT, false)                   \
-    X(STUDY_FORMAT, "format", MT_KEY_TEXT, true)                     \
-    X(STUDY_NAME, "name", MT_KEY_TEXT, false)                        \
-    X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
-    X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                    \
-    X(STUDY_ACCEPTED, "accepted", MT_KEY_LIST, false)                \
-    X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                       \
-    X(STUDY_UNITS, "units", MT_KEY_OBJECT, false)                    \
-    X(STUDY_VARIABLES, "variables", MT_KEY_LIST, false)              \
-    X(STUDY_GOALS, "goals", MT_KEY_LIST, false)                      \
-    X(STUDY_OBJECTIVE, "objective", MT_KEY_OBJECT_OR_LIST, false)    \
-    X(STUDY_REFERENCES, "references", MT_KEY_OBJECT, false)          \
-    X(STUDY_MEASUREMENTS, "measurements", MT_KEY_OBJECT, false)      \
-    X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false) \
-    X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                  \
-    X(STUDY_SPREAD, "spread", MT_KEY_OBJECT, false)                  \
-    X(STUDY_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)                \
-    X(STUDY_TRADE, "trade", MT_KEY_OBJECT, false)                    \
-    X(STUDY_RESPONSES, "responses", MT_KEY_LIST, false)              \
+#define STUDY_KEYS(X)                                                       \
+    X(STUDY_SCHEMA, "$schema", MT_KEY_TEXT, false)                          \
+    X(STUDY_FORMAT, "format", MT_KEY_TEXT, true)                            \
+    X(STUDY_NAME, "name", MT_KEY_TEXT, false)                               \
+    X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)                 \
+    X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                           \
+    X(STUDY_ACCEPTED, "accepted", MT_KEY_LIST, false)                       \
+    X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                              \
+    X(STUDY_UNITS, "units", MT_KEY_OBJECT, false)                           \
+    X(STUDY_VARIABLES, "variables", MT_KEY_LIST, false)                     \
+    X(STUDY_GOALS, "goals", MT_KEY_LIST, false)                             \
+    X(STUDY_OBJECTIVE, "objective", MT_KEY_OBJECT_OR_LIST, false)           \
+    X(STUDY_REFERENCES, "references", MT_KEY_OBJECT, false)                 \
+    X(STUDY_MEASUREMENTS, "measurements", MT_KEY_OBJECT, false)             \
+    X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false, WHOLE) \
+    X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                         \
+    X(STUDY_SPREAD, "spread", MT_KEY_OBJECT, false)                         \
+    X(STUDY_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)                       \
+    X(STUDY_TRADE, "trade", MT_KEY_OBJECT, false)                           \
+    X(STUDY_RESPONSES, "responses", MT_KEY_LIST, false)                     \
     X(STUDY_PUBLISHED, "published", MT_KEY_LIST, false)
 enum { STUDY_KEYS(MT_STUDY_KEY_ENUM) STUDY_KEY_COUNT };
 static const mt_key KEYS[] = {STUDY_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_keys = {"", KEYS, STUDY_KEY_COUNT};
 
-#define SEARCH_KEYS(X)                                                \
-    X(SEARCH_SEED, "seed", MT_KEY_COUNT, false)                       \
-    X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false)                   \
-    X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false) \
-    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false)                  \
-    X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)          \
+#define SEARCH_KEYS(X)                                                       \
+    X(SEARCH_SEED, "seed", MT_KEY_COUNT, false, WHOLE)                       \
+    X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false, WHOLE)                   \
+    X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false, WHOLE) \
+    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false, STUDY)                  \
+    X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)                 \
     X(SEARCH_SOURCE, "source", MT_KEY_TEXT, false)
 enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
 static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_search_keys = {"search", SEARCH, SEARCH_KEY_COUNT};
 
 #define SPREAD_KEYS(X)                                       \
-    X(SPREAD_FACTOR, "factor", MT_KEY_NUMBER, true)          \
+    X(SPREAD_FACTOR, "factor", MT_KEY_NUMBER, true, STUDY)   \
     X(SPREAD_DESCRIPTION, "description", MT_KEY_TEXT, false) \
     X(SPREAD_SOURCE, "source", MT_KEY_TEXT, false)
 enum { SPREAD_KEYS(MT_STUDY_KEY_ENUM) SPREAD_KEY_COUNT };

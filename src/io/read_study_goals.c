@@ -4,7 +4,17 @@
 #include <string.h>
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
-#define KEY(slot, name, type, required, range) {name, MT_KEY_##type, required},
+#define KEY(slot, label, kind, given, limits) \
+    {.name = (label), .type = MT_KEY_##kind, .required = (given), .possible = POSSIBLE_##kind},
+/* their limits are the last column of the list */
+#define POSSIBLE_NUMBER        MT_POSSIBLE_STUDY
+#define POSSIBLE_COUNT         MT_POSSIBLE_WHOLE
+#define POSSIBLE_TEXT_OR_COUNT MT_POSSIBLE_WHOLE
+#define POSSIBLE_NUMBERS       MT_POSSIBLE_STUDY
+#define POSSIBLE_LIST          MT_POSSIBLE_NONE
+#define POSSIBLE_TEXT          MT_POSSIBLE_NONE
+#define POSSIBLE_OBJECT        MT_POSSIBLE_NONE
+#define POSSIBLE_BOOL          MT_POSSIBLE_NONE
 
 #define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
 MT_GOAL_LIST(KEYS)

@@ -2,27 +2,27 @@
 /* Machines whose orders and gear meshes are to be avoided. */
 #include "io/read_study_priv.h"
 
-#define MACHINE_KEYS(X)                                       \
-    X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false)        \
-    X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false)   \
-    X(MACHINE_RANGE, "speed_range", MT_KEY_LIST, false)       \
-    X(MACHINE_NAME, "name", MT_KEY_TEXT, false)               \
-    X(MACHINE_ORDERS, "orders", MT_KEY_LIST, false)           \
-    X(MACHINE_GEARS, "gears", MT_KEY_LIST, false)             \
-    X(MACHINE_MARGIN, "margin_percent", MT_KEY_NUMBER, false) \
-    X(MACHINE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+#define MACHINE_KEYS(X)                                              \
+    X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false, STUDY)        \
+    X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false, STUDY)   \
+    X(MACHINE_RANGE, "speed_range", MT_KEY_LIST, false, STUDY)       \
+    X(MACHINE_NAME, "name", MT_KEY_TEXT, false)                      \
+    X(MACHINE_ORDERS, "orders", MT_KEY_LIST, false)                  \
+    X(MACHINE_GEARS, "gears", MT_KEY_LIST, false)                    \
+    X(MACHINE_MARGIN, "margin_percent", MT_KEY_NUMBER, false, STUDY) \
+    X(MACHINE_DESCRIPTION, "description", MT_KEY_TEXT, false)        \
     X(MACHINE_SOURCE, "source", MT_KEY_TEXT, false)
 enum { MACHINE_KEYS(MT_STUDY_KEY_ENUM) MACHINE_KEY_COUNT };
 static const mt_key MACHINE[] = {MACHINE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_machine_keys = {"machine", MACHINE, MACHINE_KEY_COUNT};
 
-#define GEAR_KEYS(X)                                       \
-    X(GEAR_TEETH, "teeth", MT_KEY_COUNT, true)             \
-    X(GEAR_RATIO, "ratio", MT_KEY_NUMBER, false)           \
-    X(GEAR_ORDERS, "orders", MT_KEY_LIST, false)           \
-    X(GEAR_SIDEBANDS, "sidebands", MT_KEY_COUNT, false)    \
-    X(GEAR_NAME, "name", MT_KEY_TEXT, false)               \
-    X(GEAR_DESCRIPTION, "description", MT_KEY_TEXT, false) \
+#define GEAR_KEYS(X)                                           \
+    X(GEAR_TEETH, "teeth", MT_KEY_COUNT, true, WHOLE)          \
+    X(GEAR_RATIO, "ratio", MT_KEY_NUMBER, false, STUDY)        \
+    X(GEAR_ORDERS, "orders", MT_KEY_LIST, false)               \
+    X(GEAR_SIDEBANDS, "sidebands", MT_KEY_COUNT, false, WHOLE) \
+    X(GEAR_NAME, "name", MT_KEY_TEXT, false)                   \
+    X(GEAR_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
     X(GEAR_SOURCE, "source", MT_KEY_TEXT, false)
 enum { GEAR_KEYS(MT_STUDY_KEY_ENUM) GEAR_KEY_COUNT };
 static const mt_key GEAR[] = {GEAR_KEYS(MT_STUDY_KEY)};

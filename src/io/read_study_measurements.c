@@ -9,10 +9,10 @@
 
 #define MEASUREMENT_KEYS(X)                                        \
     X(MEASUREMENT_FILE, "file", MT_KEY_TEXT, true)                 \
-    X(MEASUREMENT_DATASET, "dataset", MT_KEY_COUNT, false)         \
+    X(MEASUREMENT_DATASET, "dataset", MT_KEY_COUNT, false, WHOLE)  \
     X(MEASUREMENT_RESPONSE, "response_node", MT_KEY_TEXT, false)   \
     X(MEASUREMENT_REFERENCE, "reference_node", MT_KEY_TEXT, false) \
-    X(MEASUREMENT_FACTOR, "factor", MT_KEY_NUMBER, false)          \
+    X(MEASUREMENT_FACTOR, "factor", MT_KEY_NUMBER, false, STUDY)   \
     X(MEASUREMENT_DESCRIPTION, "description", MT_KEY_TEXT, false)  \
     X(MEASUREMENT_SOURCE, "source", MT_KEY_TEXT, false)
 enum { MEASUREMENT_KEYS(MT_STUDY_KEY_ENUM) MEASUREMENT_KEY_COUNT };

@@ -27,8 +27,9 @@ typedef struct mt_study_reader {
 } mt_study_reader;
 
 /* One list of keys makes their places in `found` and the table. */
-#define MT_STUDY_KEY_ENUM(id, name, type, required) id,
-#define MT_STUDY_KEY(id, name, type, required)      {name, type, required},
+#define MT_STUDY_KEY_ENUM(id, ...) id,
+#define MT_STUDY_KEY(id, label, kind, ...) \
+    {.name = (label), .type = (kind), MT_KEY_REST(__VA_ARGS__)},
 
 /* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a
  * wrong type). */

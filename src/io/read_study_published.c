@@ -2,21 +2,21 @@
 #include "io/read_study_priv.h"
 
 /* The first five say what is published, in the order of mt_published_kind. */
-#define PUBLISHED_KEYS(X)                                                     \
-    X(PUBLISHED_PARAMETER, "parameter", MT_KEY_TEXT, false)                   \
-    X(PUBLISHED_QUANTITY, "quantity", MT_KEY_TEXT, false)                     \
-    X(PUBLISHED_FREQUENCY, "frequency", MT_KEY_OBJECT, false)                 \
-    X(PUBLISHED_MAC, "mac", MT_KEY_OBJECT, false)                             \
-    X(PUBLISHED_STATUS, "status", MT_KEY_TEXT, false)                         \
-    X(PUBLISHED_VALUE, "value", MT_KEY_NUMBER, false)                         \
-    X(PUBLISHED_AT_LEAST, "at_least", MT_KEY_NUMBER, false)                   \
-    X(PUBLISHED_AT_MOST, "at_most", MT_KEY_NUMBER, false)                     \
-    X(PUBLISHED_TOLERANCE, "tolerance", MT_KEY_NUMBER, false)                 \
-    X(PUBLISHED_TOLERANCE_PERCENT, "tolerance_percent", MT_KEY_NUMBER, false) \
-    X(PUBLISHED_DESIGN, "design", MT_KEY_TEXT, false)                         \
-    X(PUBLISHED_ROLE, "role", MT_KEY_TEXT, false)                             \
-    X(PUBLISHED_LABEL, "label", MT_KEY_TEXT, false)                           \
-    X(PUBLISHED_DESCRIPTION, "description", MT_KEY_TEXT, false)               \
+#define PUBLISHED_KEYS(X)                                                            \
+    X(PUBLISHED_PARAMETER, "parameter", MT_KEY_TEXT, false)                          \
+    X(PUBLISHED_QUANTITY, "quantity", MT_KEY_TEXT, false)                            \
+    X(PUBLISHED_FREQUENCY, "frequency", MT_KEY_OBJECT, false)                        \
+    X(PUBLISHED_MAC, "mac", MT_KEY_OBJECT, false)                                    \
+    X(PUBLISHED_STATUS, "status", MT_KEY_TEXT, false)                                \
+    X(PUBLISHED_VALUE, "value", MT_KEY_NUMBER, false, STUDY)                         \
+    X(PUBLISHED_AT_LEAST, "at_least", MT_KEY_NUMBER, false, STUDY)                   \
+    X(PUBLISHED_AT_MOST, "at_most", MT_KEY_NUMBER, false, STUDY)                     \
+    X(PUBLISHED_TOLERANCE, "tolerance", MT_KEY_NUMBER, false, STUDY)                 \
+    X(PUBLISHED_TOLERANCE_PERCENT, "tolerance_percent", MT_KEY_NUMBER, false, STUDY) \
+    X(PUBLISHED_DESIGN, "design", MT_KEY_TEXT, false)                                \
+    X(PUBLISHED_ROLE, "role", MT_KEY_TEXT, false)                                    \
+    X(PUBLISHED_LABEL, "label", MT_KEY_TEXT, false)                                  \
+    X(PUBLISHED_DESCRIPTION, "description", MT_KEY_TEXT, false)                      \
     X(PUBLISHED_SOURCE, "source", MT_KEY_TEXT, false)
 enum { PUBLISHED_KEYS(MT_STUDY_KEY_ENUM) PUBLISHED_KEY_COUNT };
 static const mt_key KEYS[] = {PUBLISHED_KEYS(MT_STUDY_KEY)};
@@ -25,11 +25,11 @@ const mt_key_table mt_study_published_keys = {"published", KEYS, PUBLISHED_KEY_C
 /* A published frequency's keys are the first ones of a MAC's. */
 #define MODE_KEYS(X)                                           \
     X(MODE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
-    X(MODE_MODE, "mode", MT_KEY_TEXT_OR_COUNT, true)
+    X(MODE_MODE, "mode", MT_KEY_TEXT_OR_COUNT, true, WHOLE)
 #define MAC_KEYS(X)                                  \
     MODE_KEYS(X)                                     \
     X(MAC_REFERENCE, "reference", MT_KEY_TEXT, true) \
-    X(MAC_REFERENCE_MODE, "reference_mode", MT_KEY_COUNT, false)
+    X(MAC_REFERENCE_MODE, "reference_mode", MT_KEY_COUNT, false, WHOLE)
 enum { MAC_KEYS(MT_STUDY_KEY_ENUM) MAC_KEY_COUNT };
 static const mt_key MODE[] = {MODE_KEYS(MT_STUDY_KEY)};
 static const mt_key MAC[] = {MAC_KEYS(MT_STUDY_KEY)};

@@ -5,7 +5,7 @@
     X(RESPONSE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
     X(RESPONSE_INPUT, "input", MT_KEY_TEXT, true)                  \
     X(RESPONSE_OUTPUT, "output", MT_KEY_TEXT, true)                \
-    X(RESPONSE_BAND, "band_hz", MT_KEY_LIST, true)                 \
+    X(RESPONSE_BAND, "band_hz", MT_KEY_LIST, true, STUDY)          \
     X(RESPONSE_PROFILE, "profile", MT_KEY_TEXT, false)             \
     X(RESPONSE_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
     X(RESPONSE_SOURCE, "source", MT_KEY_TEXT, false)

@@ -4,7 +4,8 @@
 #include "base/format.h"
 
 /* In the order of mt_dimension. */
-#define UNITS_KEY(id, name, text, si) {name, MT_KEY_TEXT, false},
+#define UNITS_KEY(id, label, text, si) \
+    {.name = (label), .type = MT_KEY_TEXT, .required = false},
 static const mt_key KEYS[] = {MT_DIMENSION_LIST(UNITS_KEY)};
 const mt_key_table mt_units_keys = {"units", KEYS, MT_DIMENSION_COUNT};
 

@@ -140,6 +140,8 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
         } else if (!seen[k]) { /* a second one has been noted as given twice */
             seen[k] = true;
             found[k] = mt_reader_type(r, m.at, table->keys[k].type) ? m.at : MT_NO_ADDR;
+            r->matched[r->n_matched++ % MT_MATCHED] =
+                (mt_matched){.addr = m.at, .possible = table->keys[k].possible};
         }
     }
     for (int i = 0; i < table->n; i++) {
@@ -148,6 +150,17 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
         }
     }
     return true;
+}
+
+mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value)
+{
+    for (unsigned i = 0; i < MT_MATCHED && i < r->n_matched; i++) {
+        const mt_matched *const m = &r->matched[(r->n_matched - 1 - i) % MT_MATCHED];
+        if (m->addr == value) {
+            return m->possible;
+        }
+    }
+    return MT_POSSIBLE_NONE;
 }
 
 static mt_items no_items(const mt_reader *r)

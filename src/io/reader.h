@@ -16,6 +16,14 @@
  * given" and is accepted everywhere: the answer is then the default that each function names,
  * without a message.
  */
+/* The members that were matched last, with their rows: objects lie in each other, and each
+ * reads its numbers soon after it was matched. */
+enum { MT_MATCHED = 256 };
+typedef struct mt_matched {
+    mt_addr addr;
+    mt_possible_id possible;
+} mt_matched;
+
 typedef struct mt_reader {
     mt_json *doc;
     mt_diags *diags;       /* of doc */
@@ -25,6 +33,8 @@ typedef struct mt_reader {
     const char *const *names; /* candidates for "did you mean" in expressions */
     int n_names;
     mt_kind_lookup kinds; /* of the parameters, with the context of lookup */
+    mt_matched matched[MT_MATCHED];
+    unsigned n_matched; /* so far; the last ones are kept */
 } mt_reader;
 
 /* id, JSON types, what a message calls it */
@@ -36,6 +46,7 @@ typedef struct mt_reader {
     X(MT_KEY_VALUE, MT_JSON_NUMBER, "a number")                                                \
     X(MT_KEY_BOOL, MT_JSON_BOOL, "true or false")                                              \
     X(MT_KEY_LIST, MT_JSON_ARRAY, "a list")                                                    \
+    X(MT_KEY_NUMBERS, MT_JSON_ARRAY, "a list")                                                 \
     X(MT_KEY_OBJECT, MT_JSON_OBJECT, "an object")                                              \
     X(MT_KEY_LIST_OR_OBJECT, MT_JSON_ARRAY | MT_JSON_OBJECT, "a list or an object")            \
     X(MT_KEY_TEXT_OR_LIST, MT_JSON_STRING | MT_JSON_ARRAY, "a string or a list")               \
@@ -54,7 +65,14 @@ typedef struct mt_key {
     const char *name;
     mt_key_type type;
     bool required;
+    mt_possible_id possible; /* of its numbers; MT_POSSIBLE_NONE: it has none */
 } mt_key;
+
+/* The last columns of a table of keys: required, and of a member that holds numbers which row
+ * of model/possible.h they have. */
+#define MT_KEY_REST(...) MT_KEY_REST_OF(__VA_ARGS__, NONE, )
+#define MT_KEY_REST_OF(given, numbers, ...) \
+    .required = (given), .possible = MT_POSSIBLE_##numbers
 
 /* The members of one kind of object. `what` names it in messages ("unknown member ... of a
  * body" is not said, the pointer tells) and is the name of its definition in the JSON Schema;
@@ -75,6 +93,8 @@ enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
  *   or no object; the latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
+/* The row of a member that was matched lately. */
+mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
 /* Is the document's "format" this one? Another text is noted, with what the file then is not
  * ("this is no study file"), before its members are held against the wrong table; what is no
  * text, or not there, the table of keys will tell. */

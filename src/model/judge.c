@@ -15,23 +15,8 @@
 #include "base/format.h"
 #include "model/values.h"
 
-/* Pa. Silicone rubber has some 1e6, steel 2e11, diamond 1.2e12; steel in MPa is 2.1e5,
- * aluminium in psi 1e7 (not seen), steel in GPa 210. */
-static const double LEAST_MODULUS_PA = 1e6;
-static const double MOST_MODULUS_PA = 1e13;
-/* kg/m^3. Foams have 20 and more, osmium 22 590; steel in g/cm^3 is 7.85, in t/mm^3 7.85e-9, in
- * kg/mm^3 7.85e-6. */
-static const double LEAST_DENSITY = 10.0;
-static const double MOST_DENSITY = 23000.0;
-/* m: a section wider than the trunk of a giant tree, or than the finest wire is thick, was
- * written in other units. */
-static const double MOST_SECTION_M = 10.0;
-static const double LEAST_SECTION_M = 1e-6;
 /* rad: more than one turn from the reference position is degrees, or a motor's shaft. */
 static const double ONE_TURN = 6.283185307179586;
-
-static const char TOO_SOFT[] =
-    "below %.0e Pa, less than any solid has: is it meant in MPa or GPa?";
 
 static double value_of(const mt_judge *j, mt_num num)
 {
@@ -71,15 +56,6 @@ static void fault(mt_judge *j, const mt_item *item, mt_num num, const char *memb
           item, num, member);
 }
 
-/* Not below 0, where `zero` is allowed; else above 0. */
-static void sign(mt_judge *j, const mt_item *item, mt_num num, const char *member, bool zero)
-{
-    const double v = value_of(j, num);
-    if (zero ? v < 0.0 : v <= 0.0) {
-        fault(j, item, num, member, zero ? "must not be negative" : "must be above 0");
-    }
-}
-
 /* A gear that passes nothing on. */
 static void nonzero(mt_judge *j, const mt_item *item, mt_num num, const char *member)
 {
@@ -90,66 +66,26 @@ static void nonzero(mt_judge *j, const mt_item *item, mt_num num, const char *me
     }
 }
 
-static void range(mt_judge *j, const mt_item *item, mt_num num, const char *member,
-                  const char *kind, const char *why)
+/* By the row that the member's table names. Returns false where it is impossible. */
+static bool number(mt_judge *j, const mt_item *item, mt_num num, const char *member)
 {
-    place(j,
-          mt_doubt_add(j->out, MT_LEVEL_DOUBT, kind, "%s \"%s\": %s (%g) is %s", item->what,
-                       item->name, member, j->value[num], why == NULL ? "" : why),
-          item, num, member);
-}
-
-static void modulus(mt_judge *j, const mt_item *item, mt_num num, const char *member)
-{
-    const double v = value_of(j, num);
-    sign(j, item, num, member, false);
-    if (v > 0.0 && v < LEAST_MODULUS_PA) {
-        range(j, item, num, member, "modulus",
-              mt_arena_printf(j->out->mem, TOO_SOFT, LEAST_MODULUS_PA));
-    } else if (v > MOST_MODULUS_PA) {
-        range(j, item, num, member, "modulus",
-              mt_arena_printf(j->out->mem,
-                              "above %.0e Pa, more than any solid has: is the unit Pa?",
-                              MOST_MODULUS_PA));
+    if (num == MT_ABSENT) {
+        return true;
     }
-}
-
-static void density(mt_judge *j, const mt_item *item, mt_num num)
-{
-    static const char member[] = "density_kg_per_m3";
-    const double v = value_of(j, num);
-    sign(j, item, num, member, false);
-    if (v > 0.0 && v < LEAST_DENSITY) {
-        range(j, item, num, member, "density",
-              "below 10 kg/m^3, less than any solid has: is it meant in g/cm^3, t/mm^3 or "
-              "kg/mm^3?");
-    } else if (v > MOST_DENSITY) {
-        range(j, item, num, member, "density",
-              "above 23000 kg/m^3, more than any solid has: is the unit kg/m^3?");
+    const mt_possible *const p = &mt_possible_of[j->model->nums[num].possible];
+    const double v = j->value[num];
+    if (v < p->least || (p->above && v == p->least) || v > p->most) {
+        fault(j, item, num, member, p->impossible);
+        return false;
     }
-}
-
-/* A width, a height, a diameter. */
-static void thickness(mt_judge *j, const mt_item *item, mt_num num, const char *member)
-{
-    const double v = value_of(j, num);
-    sign(j, item, num, member, false);
-    if (v > MOST_SECTION_M) {
-        range(j, item, num, member, "section",
-              "thicker than 10 m: is it meant in millimetres?");
-    } else if (v > 0.0 && v < LEAST_SECTION_M) {
-        range(j, item, num, member, "section", "thinner than a micrometre: is the unit m?");
+    const bool below = v < p->low;
+    if (p->warning != NULL && (below || v > p->high || (p->at_high && v == p->high))) {
+        place(j,
+              mt_doubt_add(j->out, MT_LEVEL_DOUBT, p->warning, "%s \"%s\": %s (%g) is %s",
+                           item->what, item->name, member, v, below ? p->below : p->beyond),
+              item, num, member);
     }
-}
-
-static void loss(mt_judge *j, const mt_item *item, mt_num num)
-{
-    static const char member[] = "loss_factor";
-    const char *const why = num == MT_ABSENT ? NULL : mt_judge_loss(j->value[num]);
-    sign(j, item, num, member, true);
-    if (why != NULL) {
-        range(j, item, num, member, "damping", why);
-    }
+    return true;
 }
 
 static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
@@ -158,13 +94,15 @@ static void inertia(mt_judge *j, const mt_item *item, const mt_body *b)
                                           "inertia_kg_m2/2"};
     const bool plane = j->model->dimension == 2;
     double v[6];
+    bool possible = true;
     for (int k = 0; k < (plane ? 1 : 3); k++) {
-        sign(j, item, b->inertia[k], plane ? "inertia_kg_m2" : members[k], true);
+        possible =
+            number(j, item, b->inertia[k], plane ? "inertia_kg_m2" : members[k]) && possible;
     }
     for (int k = 0; k < 6 && !plane; k++) {
         v[k] = b->inertia[k] == MT_ABSENT ? 0.0 : j->value[b->inertia[k]];
     }
-    if (plane || !(v[0] >= 0.0 && v[1] >= 0.0 && v[2] >= 0.0)) {
+    if (plane || !possible) {
         return;
     }
     int at = 0;
@@ -180,7 +118,7 @@ static void judge_bodies(mt_judge *j)
         const mt_body *const b = &j->model->bodies[i];
         const mt_item item = {"body", "bodies", i, b->name.s};
         if (mt_model_present(&b->in, j->configuration)) {
-            sign(j, &item, b->mass, "mass_kg", true);
+            (void)number(j, &item, b->mass, "mass_kg");
             if (!b->point_mass) {
                 inertia(j, &item, b);
             }
@@ -189,12 +127,12 @@ static void judge_bodies(mt_judge *j)
 }
 
 static void listed(mt_judge *j, const mt_item *item, int n, const mt_num *list,
-                   const char *member, bool zero)
+                   const char *member)
 {
     for (int k = 0; k < n; k++) {
         char entry[64]; /* a list of one may be written as a number */
         (void)mt_snprintf(entry, sizeof entry, n > 1 ? "%s/%d" : "%s", member, k);
-        sign(j, item, list[k], entry, zero);
+        (void)number(j, item, list[k], entry);
     }
 }
 
@@ -202,33 +140,27 @@ static void judge_section(mt_judge *j, const mt_item *item, const mt_section *s)
 {
     const bool tube = s->shape == MT_SECTION_TUBE;
     const char *const outer = tube ? "section/outer_diameter_m" : "section/diameter_m";
-    thickness(j, item, s->width, "section/width_m");
-    thickness(j, item, s->height, "section/height_m");
-    thickness(j, item, s->diameter, outer);
-    sign(j, item, s->inner_diameter, "section/inner_diameter_m", true);
+    (void)number(j, item, s->width, "section/width_m");
+    (void)number(j, item, s->height, "section/height_m");
+    (void)number(j, item, s->diameter, outer);
+    (void)number(j, item, s->inner_diameter, "section/inner_diameter_m");
     if (tube && value_of(j, s->inner_diameter) >= value_of(j, s->diameter)) {
         fault(j, item, s->inner_diameter, "section/inner_diameter_m",
               mt_arena_printf(j->out->mem,
                               "must be below outer_diameter_m (%g): the wall has no thickness",
                               value_of(j, s->diameter)));
     }
-    sign(j, item, s->area, "section/area_m2", false);
-    sign(j, item, s->second_moment, "section/second_moment_m4", false);
-    sign(j, item, s->second_moment_other, "section/second_moment_other_m4", false);
-    sign(j, item, s->torsion_constant, "section/torsion_constant_m4", true);
+    (void)number(j, item, s->area, "section/area_m2");
+    (void)number(j, item, s->second_moment, "section/second_moment_m4");
+    (void)number(j, item, s->second_moment_other, "section/second_moment_other_m4");
+    (void)number(j, item, s->torsion_constant, "section/torsion_constant_m4");
 }
 
 static void judge_shear(mt_judge *j, const mt_item *item, const mt_shear *s)
 {
-    sign(j, item, s->coefficient, "shear/coefficient", false);
-    sign(j, item, s->coefficient_other, "shear/coefficient_other", false);
-    if (s->poissons_ratio != MT_ABSENT) {
-        const double nu = j->value[s->poissons_ratio];
-        if (!(nu > -1.0 && nu <= 0.5)) {
-            fault(j, item, s->poissons_ratio, "shear/poissons_ratio",
-                  "must be above -1 and not above 0.5");
-        }
-    }
+    (void)number(j, item, s->coefficient, "shear/coefficient");
+    (void)number(j, item, s->coefficient_other, "shear/coefficient_other");
+    (void)number(j, item, s->poissons_ratio, "shear/poissons_ratio");
 }
 
 static void judge_links(mt_judge *j)
@@ -239,19 +171,18 @@ static void judge_links(mt_judge *j)
         if (!mt_model_present(&l->in, j->configuration)) {
             continue;
         }
-        sign(j, &item, l->mass, "mass_kg", true);
-        density(j, &item, l->density);
-        modulus(j, &item, l->youngs_modulus, "youngs_modulus_pa");
-        modulus(j, &item, l->shear_modulus, "shear_modulus_pa");
+        (void)number(j, &item, l->mass, "mass_kg");
+        (void)number(j, &item, l->density, "density_kg_per_m3");
+        (void)number(j, &item, l->youngs_modulus, "youngs_modulus_pa");
+        (void)number(j, &item, l->shear_modulus, "shear_modulus_pa");
         judge_section(j, &item, &l->section);
         judge_shear(j, &item, &l->shear);
-        listed(j, &item, l->n_stiffness, l->stiffness, "stiffness_n_m_per_rad", true);
-        listed(j, &item, l->n_element_length, l->element_length, "element_length_m", false);
-        listed(j, &item, l->n_element_mass, l->element_mass, "element_mass_kg", true);
-        listed(j, &item, l->n_element_inertia, l->element_inertia, "element_inertia_kg_m2",
-               true);
-        sign(j, &item, l->radius_of_gyration, "radius_of_gyration_m", true);
-        loss(j, &item, l->loss_factor);
+        listed(j, &item, l->n_stiffness, l->stiffness, "stiffness_n_m_per_rad");
+        listed(j, &item, l->n_element_length, l->element_length, "element_length_m");
+        listed(j, &item, l->n_element_mass, l->element_mass, "element_mass_kg");
+        listed(j, &item, l->n_element_inertia, l->element_inertia, "element_inertia_kg_m2");
+        (void)number(j, &item, l->radius_of_gyration, "radius_of_gyration_m");
+        (void)number(j, &item, l->loss_factor, "loss_factor");
     }
 }
 
@@ -268,11 +199,20 @@ static void judge_springs(mt_judge *j)
         if (!mt_model_present(&s->in, j->configuration)) {
             continue;
         }
-        modulus(j, &item, s->youngs_modulus, "youngs_modulus_pa");
-        sign(j, &item, s->area, "area_m2", true); /* 0: a bar that may be added */
-        density(j, &item, s->density);
-        sign(j, &item, s->free_length, "free_length_m", true);
-        loss(j, &item, s->loss_factor);
+        (void)number(j, &item, s->youngs_modulus, "youngs_modulus_pa");
+        (void)number(j, &item, s->area, "area_m2"); /* 0: a bar that may be added */
+        (void)number(j, &item, s->density, "density_kg_per_m3");
+        (void)number(j, &item, s->free_length, "free_length_m");
+        (void)number(j, &item, s->loss_factor, "loss_factor");
+    }
+}
+
+static void judge_sensors(mt_judge *j)
+{
+    for (int i = 0; i < j->model->n_sensors; i++) {
+        const mt_sensor *const s = &j->model->sensors[i];
+        const mt_item item = {"sensor", "sensors", i, s->name.s};
+        (void)number(j, &item, s->fraction, "fraction");
     }
 }
 
@@ -282,8 +222,8 @@ static void judge_joints(mt_judge *j)
         const mt_joint *const joint = &j->model->joints[i];
         const mt_item item = {"joint", "joints", i, joint->name.s};
         if (mt_model_present(&joint->in, j->configuration)) {
-            sign(j, &item, joint->length, "length_m", false);
-            sign(j, &item, joint->mass, "mass_kg", true);
+            (void)number(j, &item, joint->length, "length_m");
+            (void)number(j, &item, joint->mass, "mass_kg");
             nonzero(j, &item, joint->ratio, "ratio");
             nonzero(j, &item, joint->ratio_m_per_rad, "ratio_m_per_rad");
         }
@@ -334,6 +274,7 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     judge_links(&j);
     judge_springs(&j);
     judge_joints(&j);
+    judge_sensors(&j);
     judge_drive(&j);
     mt_judge_damping(&j);
     mt_judge_inherited(&j);

@@ -4,11 +4,6 @@
 
 #include <string.h>
 
-/* A mode with this ratio does not vibrate; 2 % that were written as 2 are far above. */
-static const double CRITICAL = 1.0;
-/* Constrained layers of rubber reach 2, steel has 1e-3; per cent are far above. */
-static const double MOST_LOSS = 2.0;
-
 /* Whose damping it is: NULL the model's, else the configuration that gives it. */
 static const mt_configuration *owner_of(const mt_judge *j)
 {
@@ -66,8 +61,15 @@ static void say(mt_judge *j, mt_num num, const place *at, mt_doubt_level level, 
 
 static void coefficient(mt_judge *j, mt_num num, const place *at)
 {
-    if (num != MT_ABSENT && j->value[num] < 0.0) {
-        say(j, num, at, MT_LEVEL_FAULT, "must not be negative");
+    if (num == MT_ABSENT) {
+        return;
+    }
+    const mt_possible *const p = &mt_possible_of[j->model->nums[num].possible];
+    const double v = j->value[num];
+    if (v < p->least) {
+        say(j, num, at, MT_LEVEL_FAULT, p->impossible);
+    } else if (p->warning != NULL && v >= p->high) {
+        say(j, num, at, MT_LEVEL_DOUBT, mt_arena_printf(j->out->mem, "is %s", p->beyond));
     }
 }
 
@@ -75,10 +77,6 @@ static void ratio(mt_judge *j, mt_num num, const char *member, const char *entry
 {
     const place at = {member, entry};
     coefficient(j, num, &at);
-    if (num != MT_ABSENT && j->value[num] >= CRITICAL) {
-        say(j, num, &at, MT_LEVEL_DOUBT,
-            "is critical or more, so that the mode does not vibrate: is it in percent?");
-    }
 }
 
 void mt_judge_damping(mt_judge *j)
@@ -96,10 +94,4 @@ void mt_judge_damping(mt_judge *j)
     }
     coefficient(j, d->mass, &(const place){"mass_per_s", NULL});
     coefficient(j, d->stiffness, &(const place){"stiffness_s", NULL});
-}
-
-const char *mt_judge_loss(double loss_factor)
-{
-    return loss_factor > MOST_LOSS ? "above 2, more than any material has: is it in percent?"
-                                   : NULL;
 }

@@ -3,6 +3,7 @@
 #define MODEL_JUDGE_PRIV_H
 
 #include "model/judge.h"
+#include "model/possible.h"
 
 /* What the files judge*.c share: one configuration, its numbers, and what is said of them. */
 typedef struct mt_judge {
@@ -27,8 +28,6 @@ mt_doubt *mt_judge_place(mt_judge *j, mt_doubt *doubt, mt_addr addr, const char 
 const char *mt_judge_drive_pointer(const mt_judge *j, const char *member);
 /* The damping in force (judge_damping.c). */
 void mt_judge_damping(mt_judge *j);
-/* What is doubtful about a loss factor; NULL: nothing. */
-const char *mt_judge_loss(double loss_factor);
 /* What its own drive and damping drop of inherited ones (judge_inherited.c). */
 void mt_judge_inherited(mt_judge *j);
 /* What is said of a tensor xx yy zz xy xz yz (moments not negative) that no body has, and of

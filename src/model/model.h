@@ -10,6 +10,7 @@
 #include "expr/expr.h"
 #include "expr/kind.h"
 #include "expr/units.h"
+#include "model/possible.h"
 
 /*
  * The description of one mechanism and its configurations. A reader fills the lists (names,
@@ -34,6 +35,7 @@ typedef int mt_num;
 typedef struct mt_number {
     mt_expr expr;
     mt_addr addr;
+    mt_possible_id possible; /* the row of its member, by the reader */
 } mt_number;
 
 /* A name in the file: what it says and where. s == NULL: absent. */

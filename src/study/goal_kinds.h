@@ -60,9 +60,9 @@
     X(AT_LEAST, "at_least", NUMBER, false, POSITIVE) \
     X(AT_MOST, "at_most", NUMBER, false, POSITIVE)   \
     X(WEIGHT, "weight", NUMBER, false, POSITIVE)
-#define MT_GOAL_RESPONSE_MEMBERS(X)      \
-    MT_GOAL_OF_PORTS(X, true)            \
-    X(BAND, "band_hz", LIST, false, ANY) \
+#define MT_GOAL_RESPONSE_MEMBERS(X)         \
+    MT_GOAL_OF_PORTS(X, true)               \
+    X(BAND, "band_hz", NUMBERS, false, ANY) \
     X(AT, "at_hz", NUMBER, false, POSITIVE)
 #define MT_GOAL_VIBRATION_MEMBERS(X)       \
     MT_GOAL_OF_PORTS(X, false)             \
@@ -73,7 +73,7 @@
     X(INPUT, "input", TEXT, true, ANY)             \
     X(OUTPUT, "output", TEXT, true, ANY)           \
     X(MEASUREMENT, "measurement", TEXT, true, ANY) \
-    X(BAND, "band_hz", LIST, false, ANY)           \
+    X(BAND, "band_hz", NUMBERS, false, ANY)        \
     X(COHERENCE, "coherence", BOOL, false, ANY)    \
     X(WEIGHT, "weight", NUMBER, true, POSITIVE)
 #define MT_GOAL_LIMIT_MEMBERS(X)                 \
@@ -84,7 +84,7 @@
     X(EQUALS, "equals", NUMBER, false, ANY)
 #define MT_GOAL_AVOID_MEMBERS(X)                        \
     MT_GOAL_OF_CONFIGURATIONS(X)                        \
-    X(BANDS, "bands_hz", LIST, false, ANY)              \
+    X(BANDS, "bands_hz", NUMBERS, false, ANY)           \
     X(ROTOR, "rotor", OBJECT, false, ANY)               \
     X(ROTORS, "rotors", LIST, false, ANY)               \
     X(MACHINE, "machine", OBJECT, false, ANY)           \

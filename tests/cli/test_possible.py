@@ -2,8 +2,9 @@
 """What no mechanism is like is refused where it stands, whatever number, expression, bound or configuration leads there."""
 import copy
 import json
+import re
 
-from common_cli import CliTest, main
+from common_cli import SOURCE, CliTest, main
 
 # Two bodies, one above the other, each on a hinge with a spring of its own.
 STICK = {
@@ -17,7 +18,28 @@ STICK = {
 }
 
 
+# Functions that rows of src/model/possible.c name, and what drives each from both sides: a test here, of doubts, or a wrong file.
+WITH = {
+    "nonzero": "tests/io/wrong/structure_space.json", "judge_matrix": "tests/io/wrong/structure_space.json",
+    "judge_axes": "tests/io/wrong/structure_space.json", "judge_line": "test_a_bound_at_which_points_coincide",
+    "mt_judge_tensor": "test_inertia_by_expressions_configurations_and_bounds", "judge_section": "test_bounds_at_which_nothing_can_be_built",
+    "judge_stout": "test_values_of_a_model", "judge_drive": "test_values_of_a_model", "judge_stroke": "test_a_stroke_longer_than_the_drawing",
+    "judge_gravity": "test_values_of_a_model", "mt_reader_count": "tests/io/wrong/study_counts.json",
+    "mt_study_finish": "test_values_of_a_study", "mt_vibration_finish": "tests/io/wrong/profile_density.json",
+}
+
+
 class Possible(CliTest):
+    def test_every_function_that_a_row_names_is_there_and_driven(self):
+        rows = (SOURCE / "src/model/possible.c").read_text(encoding="utf-8")
+        named = set(re.findall(r'\.with = "(\w+)"', rows))
+        self.assertEqual(named, set(WITH))
+        sources = "".join(p.read_text(encoding="utf-8") for p in sorted((SOURCE / "src").glob("*/*.c")))
+        tests = "".join((SOURCE / f"tests/cli/{name}.py").read_text(encoding="utf-8") for name in ("test_possible", "test_doubts"))
+        for function, where in WITH.items():
+            self.assertRegex(sources, rf"\b{function}\([^;]*\)\n{{", function)
+            self.assertTrue((SOURCE / where).is_file() if "/" in where else f"def {where}(" in tests, where)
+
     def put(self, model, name="problems/p.json"):
         return self.write(name, json.dumps(model, indent=1))
 

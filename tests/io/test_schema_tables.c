@@ -28,6 +28,46 @@ static bool is_required(const mt_json *doc, mt_addr object, const char *name)
     return false;
 }
 
+static mt_addr resolved(const mt_json *doc, mt_addr schema);
+
+/* Does what a schema allows hold numbers of its own, in itself, in a list or as members of free
+ * names? An object with properties has a table of its own. */
+static bool holds_numbers(const mt_json *doc, mt_addr schema)
+{
+    static const char *const several[] = {"anyOf", "oneOf"};
+    static const char *const parts[] = {"items", "additionalProperties", "then", "else"};
+    const mt_addr at = resolved(doc, schema);
+    if (mt_json_type_of(doc, at) != MT_JSON_OBJECT ||
+        mt_json_member(doc, at, "properties") != MT_NO_ADDR) {
+        return false;
+    }
+    const mt_addr type = mt_json_member(doc, at, "type");
+    const bool list = type != MT_NO_ADDR && mt_json_type_of(doc, type) == MT_JSON_ARRAY;
+    for (mt_addr i = list ? mt_json_first(doc, type) : type; i != MT_NO_ADDR;
+         i = list ? mt_json_next(doc, i) : MT_NO_ADDR) {
+        if (strcmp(mt_json_string(doc, i), "number") == 0 ||
+            strcmp(mt_json_string(doc, i), "integer") == 0) {
+            return true;
+        }
+    }
+    for (int k = 0; k < MT_COUNT(several); k++) {
+        const mt_addr any = mt_json_member(doc, at, several[k]);
+        for (mt_addr i = any == MT_NO_ADDR ? any : mt_json_first(doc, any); i != MT_NO_ADDR;
+             i = mt_json_next(doc, i)) {
+            if (holds_numbers(doc, i)) {
+                return true;
+            }
+        }
+    }
+    for (int k = 0; k < MT_COUNT(parts); k++) {
+        const mt_addr part = mt_json_member(doc, at, parts[k]);
+        if (part != MT_NO_ADDR && holds_numbers(doc, part)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void check_table(mt_test *t, const mt_json *doc, const mt_key_table *table)
 {
     const mt_addr definitions = mt_json_member(doc, MT_JSON_ROOT, "definitions");
@@ -46,6 +86,10 @@ static void check_table(mt_test *t, const mt_json *doc, const mt_key_table *tabl
         mt_test_row(t, "definition \"%s\", member \"%s\"", table->what, name);
         CHECK(t, mt_json_member(doc, properties, name) != MT_NO_ADDR);
         CHECK(t, is_required(doc, object, name) == table->keys[i].required);
+        /* a row of what is possible, for numbers and for nothing else */
+        const mt_addr member = mt_json_member(doc, properties, name);
+        CHECK(t, (table->keys[i].possible != MT_POSSIBLE_NONE) ==
+                     (member != MT_NO_ADDR && holds_numbers(doc, member)));
     }
 }
 
