@@ -15,11 +15,11 @@
 
 #include "model/model.h" /* MT_DRIVE_REACH */
 
-#define ALL          .least = -HUGE_VAL, .most = HUGE_VAL
+#define FROM_ZERO    .least = 0.0, .most = HUGE_VAL
 #define MEANT        .low = -HUGE_VAL, .high = HUGE_VAL
-#define FREELY       ALL, MEANT
-#define NOT_NEGATIVE .least = 0.0, .most = HUGE_VAL, .impossible = "must not be negative"
-#define POSITIVE     .least = 0.0, .above = true, .most = HUGE_VAL, .impossible = "must be above 0"
+#define FREELY       .least = -HUGE_VAL, .most = HUGE_VAL, MEANT
+#define NOT_NEGATIVE FROM_ZERO, .impossible = "must not be negative"
+#define POSITIVE     FROM_ZERO, .above = true, .impossible = "must be above 0"
 
 /* rad: more than one turn from the reference position is degrees, or a motor's shaft. */
 #define WHOLE_TURN 6.283185307179586
