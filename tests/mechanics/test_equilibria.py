@@ -123,7 +123,7 @@ class Equilibria(MechanismTest):
                 self.assertAlmostEqual(math.degrees(got["equilibrium"]["largest_turn_rad"]), abs(degrees), delta=1e-6)
                 told = [f["text"] for f in got["facts"] if f["kind"] == "settles"]
                 self.assertEqual(len(told), 0 if abs(degrees) < 1 else 1)
-        self.assertIn('it settles away from the drawing: "bob" turns by 91 degrees, "bob" moves by 1.43 m',
+        self.assertIn('it settles far away from the drawing: "bob" turns by 91 degrees, "bob" moves by 1.43 m',
                       self.run_on(pendulum(91).model(), "info").stdout)
 
     def test_what_is_drawn_in_equilibrium_stays(self):
