@@ -122,7 +122,7 @@ static mt_status search(mt_answer *a, mt_err *err)
         return search_gaps(a, err);
     }
     MT_TRY(mt_search_over_tolerances(a->workers, a->n_workers, &a->mem, &a->found, &a->stage,
-                                     &a->why, err));
+                                     &a->posed, &a->why, err));
     a->result->run.distinct_designs = a->found.compromise ? 0 : a->found.n_found;
     a->result->run.found_once = a->found.compromise ? 0 : a->found.n_once;
     a->result->run.estimated_missing = a->found.missing;
@@ -156,6 +156,7 @@ static mt_status recommend(mt_answer *a, int i, mt_err *err)
                               .discrete = discrete ? &a->discrete : NULL,
                               .gaps = kinds ? &a->gaps : NULL,
                               .below = kinds ? a->gaps.solutions[i].below : NULL,
+                              .posed = a->posed,
                               .held = kinds ? a->gaps.solutions[i].held : NULL,
                               .n_held = kinds ? a->gaps.solutions[i].n_held : 0};
     mt_recommendation *const rec = &result->recommendations[i];

@@ -72,10 +72,11 @@ typedef struct mt_answer {
     mt_result *result;
     mt_arena mem;
     mt_nlp_result found;
-    mt_gap_result gaps;          /* where there are bands: found is made from it */
-    mt_discrete_report discrete; /* where there are catalogues: what the search did */
-    int stage;                   /* of found */
-    mt_err why;                  /* no start of the search had a value */
+    const struct mt_posed_price *posed; /* of its designs (search.h) */
+    mt_gap_result gaps;                 /* where there are bands: found is made from it */
+    mt_discrete_report discrete;        /* where there are catalogues: what the search did */
+    int stage;                          /* of found */
+    mt_err why;                         /* no start of the search had a value */
     bool searched;
     bool infeasible; /* proven, and no compromise is asked for */
     bool impossible; /* proven that no design meets all goals */

@@ -27,6 +27,7 @@ typedef struct mt_design {
     const int *below;                          /* its assignment; NULL likewise */
     const struct mt_gap_held *held;            /* [n_held] between positions of a drive */
     int n_held;
+    const struct mt_posed_price *posed; /* likewise limits, of all designs (search.h) */
 } mt_design;
 
 /* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own).

@@ -13,6 +13,7 @@
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "search/gaps.h"
+#include "search/search.h"
 
 static const double PERCENT = 100.0;
 
@@ -159,6 +160,29 @@ static void say_between(mt_sentences *s)
     }
 }
 
+/* Limits likewise. */
+static void say_limits_between(mt_sentences *s)
+{
+    for (const mt_posed_price *h = s->design->posed; h != NULL; h = h->next) {
+        const mt_demand *const d = &s->p->demands[h->demand];
+        const mt_family *const f = &s->p->families[mt_family_of(s->p, d->view)];
+        const char *part = NULL;
+        const char *const saved =
+            h->t == s->design->found->t ? price(s, h->multiplier, &part) : NULL;
+        const char *const where =
+            saved == NULL ? NULL
+                          : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
+        if (where != NULL) {
+            mt_say_of(s, "cost", s->rec->goals[h->demand].pointer);
+            mt_say(
+                s,
+                "The limit of goal %s where %s is at %s, between the positions, has a price: "
+                "giving way by %s would %s %s.",
+                s->rec->goals[h->demand].pointer, f->joint, where, part, win(s), saved);
+        }
+    }
+}
+
 /* "0.1 kg more allowed on M_SAU" */
 static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
@@ -230,5 +254,6 @@ void mt_say_prices(mt_sentences *s)
     say_demands(s);
     say_edges(s);
     say_between(s);
+    say_limits_between(s);
     say_bounds(s);
 }

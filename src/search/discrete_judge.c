@@ -271,7 +271,7 @@ static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c
     int stage = 0;
     const bool bands = w->p->n_clears > 0;
     MT_TRY(bands ? mt_gaps_solve(&w, 1, NULL, mem, &gaps, err)
-                 : mt_search_over_tolerances(&w, 1, mem, &plain, &stage, &why, err));
+                 : mt_search_over_tolerances(&w, 1, mem, &plain, &stage, NULL, &why, err));
     const int n = bands ? gaps.n_solutions : plain.n_solutions;
     c->evals = bands ? gaps.evals : plain.evals;
     c->starts = bands ? gaps.starts : plain.starts;
@@ -309,7 +309,7 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {
         rc = bands ? mt_gaps_solve(&w, 1, NULL, mem, &gaps, err)
-                   : mt_search_over_tolerances(&w, 1, mem, out, &stage, &why, err);
+                   : mt_search_over_tolerances(&w, 1, mem, out, &stage, NULL, &why, err);
     }
     if (bands) {
         *out = (mt_nlp_result){.evals = gaps.evals,

@@ -22,15 +22,26 @@ struct mt_cut;
 mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
 
+/* A limit between the positions of a drive that holds a design. */
+typedef struct mt_posed_price {
+    const struct mt_posed_price *next;
+    const double *t; /* of the solution that it holds */
+    int demand;
+    double position;   /* [rad, m] */
+    double multiplier; /* of its row */
+} mt_posed_price;
+
 /*
  * search_tolerances.c: the same, and every design is held over its tolerances where the corners
  * of the case are samples (problem/robust_cut.h): what is worse within them becomes one more
  * corner, and the search goes on from there, within its budget. Limits of numbers are held
  * likewise between the positions of a drive that their goals name. A design that misses
- * something even so is none where another one meets everything.
+ * something even so is none where another one meets everything. *prices (NULL: not wanted):
+ * what limits between positions cost, of all designs, in mem.
  */
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
-                                    mt_nlp_result *out, int *stage, mt_err *why, mt_err *err);
+                                    mt_nlp_result *out, int *stage,
+                                    const mt_posed_price **prices, mt_err *why, mt_err *err);
 /* Judge one design, in the case that w is set to: *again, where there are new cuts to go on
  * with; without them, or the last time, a design that misses something is not feasible. */
 mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem,

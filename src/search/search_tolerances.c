@@ -47,6 +47,7 @@ typedef struct rounds {
     mt_posed_cuts posed;
     bool *kept;         /* [n_solutions] the limits over the positions, when last judged */
     const double *told; /* the design that undetermined directions are of */
+    const mt_posed_price *prices;
 } rounds;
 
 /* Has the budget less left? */
@@ -86,6 +87,30 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
     return MT_OK;
 }
 
+/* What the limits between positions cost the solution, which was searched with them. */
+static mt_status note_prices(rounds *r, const mt_nlp_solution *s, mt_err *err)
+{
+    const mt_case *const c = r->ws->c;
+    for (int i = 0; i < c->n_posed && s->mult_in != NULL; i++) {
+        double multiplier = 0.0;
+        for (int k = 0; k < c->posed[i].n_in; k++) {
+            multiplier += fmax(s->mult_in[c->posed[i].row_in + k], 0.0);
+        }
+        if (!(multiplier > 0.0)) {
+            continue;
+        }
+        mt_posed_price *const price = mt_arena_alloc(r->mem, 1, sizeof *price);
+        MT_TRY(mt_arena_check(r->mem, err));
+        *price = (mt_posed_price){.next = r->prices,
+                                  .t = s->t,
+                                  .demand = r->posed.items[i].demand,
+                                  .position = r->posed.items[i].position,
+                                  .multiplier = multiplier};
+        r->prices = price;
+    }
+    return MT_OK;
+}
+
 /* Solution i from where it is, in the case with the cuts, which the workspace is set to. */
 static mt_status go_on(rounds *r, int i, mt_err *err)
 {
@@ -112,7 +137,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
         r->out->undetermined = next.undetermined;
         r->out->undetermined_effect = next.undetermined_effect;
     }
-    return MT_OK;
+    return note_prices(r, s, err);
 }
 
 /* Nothing goes on when the budget is spent, or who asked wants no more. */
@@ -197,7 +222,8 @@ static mt_status sort_out(rounds *r, mt_err *err)
 }
 
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
-                                    mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
+                                    mt_nlp_result *out, int *stage,
+                                    const mt_posed_price **prices, mt_err *why, mt_err *err)
 {
     rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out, .stage = stage};
     r.over_tolerances = mt_robust_is_sampled(r.c);
@@ -227,6 +253,9 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
         rc = rc == MT_OK && any ? search_again(&r, err) : rc;
     }
     mt_posed_cuts_free(&r.posed); /* no case with them is left */
+    if (prices != NULL) {
+        *prices = r.prices;
+    }
     if (rc == MT_E_INTERRUPTED) {
         out->stop = MT_STOP_USER;
         return MT_OK;

@@ -15,6 +15,7 @@ import json
 import math
 import os
 import random
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -259,9 +260,16 @@ class Between(unittest.TestCase):
         a = {"k0": 4000, "k": 4000, "c": 18.73917217596472, "length": 0.013462997587195397, "k2": None,
              "place": [0.9992078337400331, 0.03979579114115576, 0.008975331724796932], "positions": [-0.5, 0, 0.5]}
         goal = {"type": "response", "configurations": ["c0", "c1", "c2"], "input": "o.x", "output": "o.x", "at_most": 0.0004613, "at_hz": 12.209}
-        c = self.answer(a, goal, [{"parameter": "c", "lower": 9, "upper": 562}])["recommendations"][0]["parameters"][0]["recommended"]
+        variables = [{"parameter": "c", "lower": 9, "upper": 562}]
+        design = self.answer(a, goal, variables)["recommendations"][0]
+        c = design["parameters"][0]["recommended"]
         self.assertAlmostEqual(worst(a | {"c": c}, goal) / 0.0004613, 1, delta=2e-6)
         self.assertAlmostEqual(c, 28.25, delta=5e-3)
+        told = [re.search(r"The limit of goal /goals/0 where p is at 0\.01[56]\d* rad, between the positions, has a price: "
+                          r"giving way by 1 % would save ([0-9.]+) of", r["text"]) for r in design["reasons"] if r["kind"] == "cost"]
+        self.assertEqual(len(told), 1)
+        less = self.answer(a, goal | {"at_most": 0.0004613 * 1.01}, variables)["recommendations"][0]["change"]
+        self.assertAlmostEqual(float(told[0][1]) / (design["change"] - less), 1, delta=0.02)
 
 
 if __name__ == "__main__":
