@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "problem/family.h"
+#include "search/search.h"
 
 /* Combinations between two looks at what is left to do: enough for any number of workers, few
  * enough to stop in time. Fixed, so that results do not depend on the workers. */
@@ -229,6 +230,18 @@ static mt_status collect(const mt_discrete *d, const ranking *r, mt_nlp_result *
     return MT_OK;
 }
 
+/* Where none keeps its limits between the positions, those that keep them at these stand. */
+static bool take_broken(const ranking *r, mt_combination *const *all, int n)
+{
+    bool any = false;
+    const bool none = r->n == 0 || !r->best[0]->feasible;
+    for (int i = 0; i < n && none; i++) {
+        any = any || all[i]->broken;
+        all[i]->feasible = all[i]->feasible || all[i]->broken;
+    }
+    return any;
+}
+
 /* An interrupt ends a part of the search, and what was found before it stands. */
 static mt_status unless_interrupted(mt_discrete *d, mt_status rc)
 {
@@ -273,12 +286,16 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
     }
     r.n = 0;
     MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
+    if (take_broken(&r, all, n_all)) {
+        r.n = 0;
+        MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
+    }
     for (int i = 0; i < n_all; i++) {
         report->judged += all[i]->judged ? 1 : 0;
         report->feasible += all[i]->feasible ? 1 : 0;
         report->followed += all[i]->followed && all[i]->feasible ? 1 : 0;
     }
-    report->driven = mt_family_any(d.p) && !d.mixed;
+    report->driven = (mt_family_any(d.p) || mt_search_has_positions(d.c)) && !d.mixed;
     MT_TRY(collect(&d, &r, out, err));
     const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;
     return known ? unless_interrupted(&d, mt_discrete_undetermined(&d, r.best[0], out, err))

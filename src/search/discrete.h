@@ -67,6 +67,7 @@ typedef struct mt_combination {
     bool singular;
     /* from position to position of its drives and over its tolerances, and judged by that */
     bool followed;
+    bool broken; /* it misses a limit between the positions alone: feasible, where all do */
     long evals;
     int starts;
     mt_stop stop;
@@ -83,6 +84,7 @@ typedef struct mt_discrete {
     int *variable; /* [n_discrete] */
     bool mixed;
     mt_nlp_values *values; /* [n_workers] where not mixed */
+    int n_broken;          /* combinations */
     long evals;
     int starts;
     mt_stop stop;
@@ -112,9 +114,9 @@ mt_status mt_discrete_undetermined(mt_discrete *d, const mt_combination *best,
  * (nothing of c is changed); memory of out->undetermined is mem's. */
 mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_arena *mem,
                                  mt_nlp_result *out, mt_err *err);
-/* Judge a feasible combination over the range of motion (motion.h) and over its tolerances
- * (problem/robust_cut.h), once; nothing where it is
- * mixed (its own search has done so). It may be feasible no more. */
+/* Judge a feasible combination over the range of motion (motion.h, motion_limit.h) and over its
+ * tolerances (problem/robust_cut.h), once; nothing where it is mixed (its own search has done
+ * so). It may be feasible no more. */
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
 /* Evaluations that this takes at most, of one combination; 0: nothing, or there is no limit. */
 long mt_discrete_judgement(const mt_discrete *d);

@@ -23,6 +23,9 @@
 enum { PER_TASK = 64 };
 /* Starts of the continuous search of one combination: 4 + 2 n, where the study does not say. */
 enum { STARTS_BASE = 4, STARTS_PER_VARIABLE = 2 };
+/* So many that miss a limit between the positions are enough to let the others stand as what
+ * they are at these: each takes some ten to some hundred analyses. */
+enum { BROKEN_MOST = 200 };
 
 typedef struct judging {
     mt_discrete *d;
@@ -139,6 +142,25 @@ static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_er
     return MT_OK;
 }
 
+/* Limits between the positions of drives that goals name. */
+static mt_status judge_positions(mt_discrete *d, mt_combination *c, mt_arena *mem, mt_err *err)
+{
+    mt_posed_cuts cuts = {.n = 0};
+    MT_TRY(mt_search_judge_positions(d->workers[0], c->t, true, mem, &cuts, err));
+    c->evals += cuts.evals;
+    c->broken = !cuts.holds;
+    c->feasible = c->feasible && cuts.holds;
+    d->n_broken += c->broken ? 1 : 0;
+    return MT_OK;
+}
+
+/* Is a combination judged over more than the positions that are named? */
+static bool is_followed(const mt_discrete *d)
+{
+    return !d->mixed &&
+           (mt_family_any(d->p) || mt_robust_is_sampled(d->c) || mt_search_has_positions(d->c));
+}
+
 /* The worst within the tolerances of the design at c, where corners are samples. */
 static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *mem,
                                   mt_err *err)
@@ -162,10 +184,9 @@ static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *
 
 long mt_discrete_judgement(const mt_discrete *d)
 {
-    const bool sampled = mt_robust_is_sampled(d->c);
-    return d->mixed || (!mt_family_any(d->p) && !sampled)
-               ? 0
-               : 1 + (sampled ? 1 : 0) + mt_motion_most(d->c);
+    const int more =
+        (mt_robust_is_sampled(d->c) ? 1 : 0) + (mt_search_has_positions(d->c) ? 1 : 0);
+    return is_followed(d) ? 1 + more + mt_motion_most(d->c) : 0;
 }
 
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
@@ -174,7 +195,7 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
     mt_arena mem;
     mt_err own = {0};
     const bool sampled = mt_robust_is_sampled(w->c);
-    if (d->mixed || !c->feasible || c->followed || (!mt_family_any(w->p) && !sampled)) {
+    if (!is_followed(d) || !c->feasible || c->followed) {
         return MT_OK;
     }
     const long most = d->c->search.max_evaluations;
@@ -189,6 +210,10 @@ mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err)
     mt_status rc = mt_workspace_eval(w, c->t, false, &d->values[0], &own);
     rc = rc == MT_OK && mt_family_any(w->p) ? follow(w, c, &mem, &own) : rc;
     rc = rc == MT_OK && sampled ? judge_tolerances(w, c, &mem, &own) : rc;
+    const bool over_positions = c->feasible && d->n_broken < BROKEN_MOST;
+    rc = rc == MT_OK && over_positions && mt_search_has_positions(w->c)
+             ? judge_positions(d, c, &mem, &own)
+             : rc;
     mt_arena_free(&mem);
     if (rc == MT_E_INTERRUPTED) {
         d->stop = MT_STOP_USER;

@@ -212,8 +212,16 @@ class Positions(unittest.TestCase):
         alone = [{"parameter": "c", "catalogue": [20, 24.6, 26]}]
         result = self.answer(damped(K1, 20.0), study([goal(limit)], alone))
         holds = [(d["parameters"][0]["recommended"], d["responses_between"][0]["holds"]) for d in result["recommendations"]]
-        self.assertTrue(all(h == (c > 25) for c, h in holds), holds)
-        self.assertIn("at the positions that are given alone", " ".join(result["warnings"]))
+        self.assertEqual(holds, [(26, True)])  # 24.6 keeps the limit at the positions alone
+        self.assertEqual(result["warnings"], [])
+        named = max(response(K1, 24.6, t) for t in NAMED.values())
+        self.assertLess(named, limit)
+        none = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [20, 24.6]}]))
+        self.assertEqual((none["status"], [d["parameters"][0]["recommended"] for d in none["recommendations"]]), ("solved", [24.6]))
+        self.assertFalse(none["recommendations"][0]["responses_between"][0]["holds"])
+        self.assertIn("at the positions that are given alone", " ".join(none["warnings"]))
+        poor = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [10, 12]}]))
+        self.assertEqual(poor["status"], "infeasible")
 
 
 if __name__ == "__main__":
