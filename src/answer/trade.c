@@ -188,6 +188,16 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
+/* Does the design keep its limits at all samples between the positions of drives? */
+static bool keeps_between(const mt_recommendation *r)
+{
+    bool kept = true;
+    for (int i = 0; i < r->n_between; i++) {
+        kept = kept && r->between[i].holds;
+    }
+    return kept;
+}
+
 /* Is a the better answer of one point, by more than searches leave open? The first objective's
  * score decides among designs that meet all goals. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
@@ -196,6 +206,9 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
     const mt_recommendation *const y = best_of(b);
     if (x == NULL || y == NULL) {
         return y == NULL && x != NULL;
+    }
+    if (x->feasible && y->feasible && keeps_between(x) != keeps_between(y)) {
+        return keeps_between(x);
     }
     const bool most =
         study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_MAXIMISED);
