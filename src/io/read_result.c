@@ -388,15 +388,14 @@ static void check_outputs(result_reader *s, mt_addr list)
 
 bool mt_result_check_format(mt_reader *r)
 {
-    static const char *const formats[] = {"modetune-result/1"};
-    if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT)) {
+    if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT) ||
+        !mt_reader_format(r, "modetune-result/1", "result")) {
         return false;
     }
     const mt_addr format = mt_json_member(r->doc, MT_JSON_ROOT, FORMAT);
     if (format == MT_NO_ADDR) {
         mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", FORMAT);
     }
-    (void)mt_reader_choice(r, format, FORMAT, formats, MT_COUNT(formats));
     return true;
 }
 

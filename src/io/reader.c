@@ -102,7 +102,9 @@ static const char *what_it_is(const char *format)
                   "it is a study, which \"modetune run\" answers; its \"model\" names "
                   "the model"},
                  {"modetune-result/1", "it is a result, which \"modetune report\" tells"},
-                 {"modetune-aircraft/1", "it is a catalogue of aircraft, which a study names"}};
+                 {"modetune-aircraft/1", "it is a catalogue of aircraft, which a study names"},
+                 {"modetune-profile/1",
+                  "it is a profile of vibration, which \"modetune profile\" tells"}};
     for (int i = 0; i < MT_COUNT(kinds); i++) {
         if (strcmp(kinds[i].format, format) == 0) {
             return kinds[i].text;

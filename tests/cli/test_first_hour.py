@@ -72,6 +72,18 @@ class FirstHour(CliTest):
                                  self.expect(0, command, "results/study/result.json").stdout)
         self.assertIn("error: results/result.json: No such file", self.expect(4, "explain", "results/").stderr)
 
+    def test_a_file_of_another_kind_is_one_error(self):
+        model, study, aircraft, profile = ("problems/inceptor.json", "studies/inceptor_tuning_1.json", "problems/aircraft.json",
+                                           "problems/profiles/truck_vertical.json")
+        wrong = [("modes", study), ("modes", aircraft), ("modes", profile), ("run", model), ("run", aircraft), ("run", profile), ("profile", model), ("profile", study)]
+        wrong += [(command, file) for command in ("explain", "report", "show", "diff") for file in (model, study, aircraft, profile) if (command, file) != ("show", model)]
+        for command, file in wrong:
+            done = self.expect(2, command, *[SOURCE / file] * (2 if command == "diff" else 1))
+            lines = done.stderr.splitlines()
+            self.assertEqual(len(lines), 2 if command == "diff" else 1, done.stderr)
+            for line in lines:
+                self.assertRegex(line, r':\d+:\d+: error: /format: the format is not "modetune-\w+/1": this is no .*; it is a ')
+
     def test_apply_writes_no_digit_more_than_the_number_has(self):
         self.expect(0, "init", "mine")
         self.expect(0, "run", "mine/study.json")

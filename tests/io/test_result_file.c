@@ -181,8 +181,7 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
         const char *want; /* the message behind path and line */
     } rows[] = {
         {"format", "modetune-result/1", "modetune-result/2", "modetune-result/2",
-         "13: error: /format: unknown format \"modetune-result/2\"; did you mean "
-         "\"modetune-result/1\"?\n"},
+         "13: error: /format: the format is not \"modetune-result/1\": this is no result\n"},
         {"member gone", "  \"status\": \"compromise\",\n", "", "{",
          "1: error: member \"status\" is missing\n"},
         {"rank", "\"rank\": 1", "\"rank\": 1.5", "\"rank\": 1.5",
