@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "analysis/tracking.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "mechanics/products.h"
 
 mt_status mt_track_weigh(mt_analysis *a, int pos, double *w, mt_err *err)
@@ -60,6 +63,53 @@ static void put_track(const mt_analysis *a, int n, const double *all, int r, int
                  : rivalled                   ? MT_TRACK_AMBIGUOUS
                  : out->share < MT_TRACK_LOST ? MT_TRACK_LOST_STATE
                                               : MT_TRACKED;
+}
+
+/* The mode's own vector in the cluster [first, first + size), and whether that holds it. */
+static void own_vector(const mt_analysis *a, const double *w, int first, int size, double *phi,
+                       double *y, bool *own)
+{
+    const mt_modes *const modes = &a->modes;
+    const int n = mt_linear_freedoms(a->lin);
+    double all = 0.0;
+    double held = 0.0;
+    memset(y, 0, (size_t)n * sizeof *y);
+    for (int k = 0; k < modes->count; k++) {
+        mt_linear_expand(a->lin, 1, mt_modal_shape(modes, k), phi);
+        const double c = mt_dot(a->sys->nq, w, phi);
+        all += c * c;
+        if (k >= first && k < first + size) {
+            held += c * c;
+            mt_axpy(n, c, mt_modal_shape(modes, k), y);
+        }
+    }
+    *own = held > MT_TRACK_EXCHANGE * all;
+    for (int i = 0; i < n && *own; i++) {
+        y[i] /= sqrt(held);
+    }
+}
+
+mt_status mt_track_dlambda(mt_analysis *a, const double *w, int pos, double *dlambda, bool *own,
+                           mt_err *err)
+{
+    int size = 1;
+    const int first = mt_modal_cluster(&a->modes, pos, &size);
+    if (a->modes.shaped < a->modes.count) {
+        return mt_fail(err, MT_E_INTERNAL, "a named mode's slope asked for without shapes");
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    double *const y = mt_arena_f64(&a->mem, (size_t)mt_linear_freedoms(a->lin), 1);
+    double *const phi = mt_arena_f64(&a->mem, (size_t)a->sys->nq, 1);
+    mt_status rc = mt_arena_check(&a->mem, err);
+    *own = false;
+    if (rc == MT_OK) {
+        own_vector(a, w, first, size, phi, y, own);
+    }
+    if (*own) {
+        rc = mt_linear_slopes(a->lin, a->modes.lambda[pos], y, dlambda, err);
+    }
+    mt_arena_rewind(&a->mem, mark);
+    return rc;
 }
 
 mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track *tracks,

@@ -76,6 +76,18 @@ mt_status mt_track_weigh(mt_analysis *a, int pos, double *w, mt_err *err);
 mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track *tracks,
                          mt_err *err);
 
+/*
+ * Where the named mode (weighed shape w) is at position pos, in a cluster of the last solve: the
+ * derivatives of its eigenvalue by all inputs, along the vector of the cluster that has its
+ * shape,
+ *     y = sum_k c_k y_k / |c|,   c_k = phi_0^T M_0 phi_k,
+ * which is the mode's own where frequencies cross. *own: the cluster holds more than
+ * MT_TRACK_EXCHANGE of the shape; else nothing is done. O(modes nq). Scratch from a->mem, given
+ * back. Fails: MT_E_MEMORY, MT_E_INTERNAL (no vectors).
+ */
+mt_status mt_track_dlambda(mt_analysis *a, const double *w, int pos, double *dlambda, bool *own,
+                           mt_err *err);
+
 /* Designs on the way: brings an analysis to the fraction s of it (0: the original design, 1:
  * the present one). What it fails with counts as ambiguous, but memory and our own errors. */
 typedef struct mt_track_way {

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/tracking.h"
 #include "problem/goal.h"
 #include "prove/box.h"
 #include "prove/enclosure.h"
@@ -58,6 +59,28 @@ mt_status mt_problem_dln_frequency(mt_workspace *w, mt_analysis *a, int pos, dou
     return MT_OK;
 }
 
+/* The same of a named mode: in a cluster by the vector of its own. */
+static mt_status dln_named(mt_workspace *w, const mt_demand *d, int pos, double *out,
+                           mt_err *err)
+{
+    const mt_view_work *const view = &w->views[d->view];
+    mt_analysis *const a = view->analysis;
+    int size = 1;
+    const double lambda = pos < 0 ? 0.0 : a->modes.lambda[pos];
+    bool own = pos >= 0 && d->named >= 0 && lambda > mt_enclosure_lambda(d->floor_hz);
+    if (own) {
+        (void)mt_modal_cluster(&a->modes, pos, &size);
+        own = size > 1;
+    }
+    if (own) {
+        MT_TRY(mt_track_dlambda(a, view->of->shape[d->named], pos, out, &own, err));
+    }
+    for (int i = 0; i < w->p->n && own; i++) {
+        out[i] *= mt_workspace_stretch(w, i) / (2.0 * lambda);
+    }
+    return own ? MT_OK : mt_problem_dln_frequency(w, a, pos, d->floor_hz, out, err);
+}
+
 /* The reference's frequency is the target. */
 static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
 {
@@ -80,7 +103,7 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": the mode has no frequency",
                        mt_analysis_configuration(a));
     }
-    return slope == NULL ? MT_OK : mt_problem_dln_frequency(w, a, pos, d->floor_hz, slope, err);
+    return slope == NULL ? MT_OK : dln_named(w, d, pos, slope, err);
 }
 
 const mt_goal_ops mt_goal_frequency = {.quantity = MT_QUANTITY_FREQUENCY,
