@@ -144,7 +144,7 @@ typedef struct mt_ports {
  * By modes, exact since all of them are used. O(n^3 + frequencies), allocates. Fails:
  * MT_E_USAGE (a name that there is not, a frequency that is not above 0, no evaluation that
  * succeeded, the force of a joint that is redundant with others), MT_E_EQUILIBRIUM (a mode is
- * unstable or undecided), MT_E_NO_CONVERGENCE, MT_E_MEMORY.
+ * unstable or undecided, or grows by itself), MT_E_NO_CONVERGENCE, MT_E_MEMORY.
  */
 MT_API mt_status mt_mechanism_response(mt_mechanism *mechanism, const mt_ports *ports, int n,
                                        const double *hz, double *re, double *im, double *error,

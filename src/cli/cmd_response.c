@@ -220,6 +220,7 @@ static mt_status run(job *j, mt_err *err)
     MT_TRY(mt_subject_admit_dense(j->s, j->c, "a response needs all modes", err));
     MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
     mt_status rc = open_response(j, err);
+    rc = rc == MT_OK ? mt_response_admit(&j->r, err) : rc;
     rc = rc == MT_OK ? shake(j, err) : rc;
     rc = rc == MT_OK ? choose_range(j, err) : rc;
     rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;

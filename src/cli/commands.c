@@ -326,8 +326,10 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "over the poles as it was found, whose own rounding the errors of the values tell. "
         "Where no sum over poles is to be had, numbers are by quadrature, and their errors "
         "estimates, which is said.\n"
-        "A configuration that is unstable, or whose stability rounding hides, is refused, and "
-        "so is the force of a joint that is redundant with others."),
+        "A configuration that is unstable, whose motions grow by themselves, or whose "
+        "stability "
+        "rounding hides, is refused, and so is the force of a joint that is redundant with "
+        "others."),
     COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
             "masses, mobility and redundancies of each configuration",
             "Prints the total mass, its centre and inertia, the freedoms, and the sets of "

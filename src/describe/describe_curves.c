@@ -2,7 +2,6 @@
 /* Responses of a design that its result shows: each from an analysis made anew there, with all
  * modes. */
 #include <complex.h>
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,22 +10,9 @@
 #include "vibration/profiled.h"
 
 static const double TWO_PI = 6.283185307179586477;
-/* Of a pole's size: what rounding may leave of a damping that is 0. */
-static const double UNDAMPED_ULPS = 64.0;
 
 /* Points that all curves have, of which the picture then takes what it needs. */
 enum { GRID = 100, MOST = 400 };
-
-/* Does a motion grow by itself? Poles of negative frequency are mirror images of others. */
-static bool is_unstable(const mt_response *r)
-{
-    bool grows = r->a->modes.n_unstable > 0;
-    for (int k = 0; k < r->n_poles; k++) {
-        const double complex s = r->poles[k];
-        grows = grows || (cimag(s) >= 0.0 && creal(s) > UNDAMPED_ULPS * DBL_EPSILON * cabs(s));
-    }
-    return grows;
-}
 
 /* The pole that is nearest to i w; NaN: there is none. */
 static double complex nearest_pole(const mt_response *r, double w)
@@ -154,7 +140,7 @@ static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vi
                                   .points = GRID,
                                   .log = true};
     mt_status rc = mt_response_open(a, &request, &r, err);
-    if (rc == MT_OK && is_unstable(&r)) {
+    if (rc == MT_OK && r.growing >= 0) {
         out->trouble = "a motion grows by itself here: there is no stationary response";
     } else if (rc == MT_OK) {
         rc = mt_response_curve(&r, &opt, &curve, err);

@@ -438,6 +438,7 @@ mt_status mt_mechanism_response(mt_mechanism *mechanism, const mt_ports *ports, 
     mt_response r = {.a = NULL};
     const mt_response_request request = request_of(ports);
     mt_status rc = mt_response_open(mechanism->a, &request, &r, err);
+    rc = rc == MT_OK ? mt_response_admit(&r, err) : rc;
     rc = rc == MT_OK ? respond(&r, n, hz, re, im, error, err) : rc;
     mt_response_free(&r);
     return rc;
@@ -461,6 +462,7 @@ mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *
     mt_response r = {.a = NULL};
     const mt_response_request request = request_of(ports);
     mt_status rc = mt_response_open(mechanism->a, &request, &r, err);
+    rc = rc == MT_OK ? mt_response_admit(&r, err) : rc;
     if (rc == MT_OK) {
         const ptrdiff_t size = (ptrdiff_t)r.ports.n_in * r.ports.n_out * mechanism->n_inputs;
         double complex *const dh = mt_arena_alloc(&r.mem, (size_t)size, sizeof *dh);

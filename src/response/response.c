@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
+#include "response/growth.h"
 #include "response/slopes_weighted.h"
 
 void mt_response_free(mt_response *r)
@@ -43,9 +44,24 @@ mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, m
         .f = &out->f, .mass = &a->mass, .modes = &a->modes, .keep = request->modes};
     MT_TRY(mt_basis_make(&problem, &out->mem, &out->basis, err));
     MT_TRY(mt_response_pole_list(&out->basis, &out->mem, &out->n_poles, &out->poles, err));
+    MT_TRY(
+        mt_response_growing(&out->f, out->n_poles, out->poles, &out->mem, &out->growing, err));
     MT_TRY(mt_transfer_direct(&out->f, &out->mem, &out->direct, err));
     out->chosen = request->direct ? &out->direct : &out->basis.t;
     return MT_OK;
+}
+
+mt_status mt_response_admit(const mt_response *r, mt_err *err)
+{
+    static const double TWO_PI = 6.283185307179586477;
+    if (r->growing < 0) {
+        return MT_OK;
+    }
+    const double complex s = r->poles[r->growing];
+    return mt_fail(err, MT_E_EQUILIBRIUM,
+                   "a motion grows by itself, at %.6g Hz by exp(%.6g t/s): there is no "
+                   "stationary response",
+                   cimag(s) / TWO_PI, creal(s));
 }
 
 mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curve *out,

@@ -31,12 +31,15 @@ typedef struct mt_response {
     const mt_transfer *chosen; /* &basis.t or &direct */
     int n_poles;
     double complex *poles;
+    int growing; /* the pole that grows by itself; -1: none, the response is stationary */
 } mt_response;
 
 /* Zeroed before; mt_response_free in any case. Fails: MT_E_USAGE (a port, no sensors and no
  * outputs), as mt_response_problem, mt_basis_make, mt_response_pole_list. */
 mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
                            mt_err *err);
+/* Is there a stationary response? Fails: MT_E_EQUILIBRIUM, with the pole that grows. */
+mt_status mt_response_admit(const mt_response *r, mt_err *err);
 /* Accepts a zeroed one. */
 void mt_response_free(mt_response *r);
 /* opt->poles and opt->interrupt are filled in here. Results in r->mem. */

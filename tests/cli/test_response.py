@@ -50,6 +50,26 @@ class Response(CliTest):
                     self.assertEqual((entry["input"], entry["output"], entry["unit"]), ("b0.x", f"b{o}.x:displacement", "m per N"))
                     self.assertTrue(numpy.all(numpy.array(entry["error"]) < 1e-9 * numpy.max(numpy.abs(want))))
 
+    def test_what_grows_by_itself_has_no_response(self):
+        """By one function, whichever damper has the wrong sign; a passive system never grows, however small its damping beside its stiffest mode."""
+        for c in (-0.4, -1e-6, -60):
+            rate = -c / 4 if abs(c) < 40 else (-c + math.sqrt(c * c - 1600)) / 4
+            for more in ((), ("--direct",), ("--sensitivity", "k"), ("--vibration", "white")):
+                port = ("--input", "base.x") if more[:1] == ("--vibration",) else ("--input", "a.x")
+                said = self.expect(3, "response", self.one, *port, "--set", f"c={c}", *more).stderr
+                self.assertIn("a motion grows by itself", said)
+                self.assertAlmostEqual(float(said.split("exp(")[1].split(" t/s")[0]) / rate, 1, delta=2e-6)
+            self.assertIn("unstable", self.expect(0, "modes", self.one, "--damped", "--set", f"c={c}").stdout)
+        self.expect(0, "response", self.one, "--input", "a.x", "--set", "c=0")
+        for seed in range(1, 9):  # one weak damper, springs over twelve decades
+            model, *_ = chain(seed, 6)
+            for i, spring in enumerate(model["springs"]):
+                spring["stiffness_n_per_m"] = 10.0 ** (12 - 2.4 * i)
+            for i, damper in enumerate(model["dampers"]):
+                damper["damping_n_s_per_m"] = 1e-3 if i == seed % 6 else 0
+            path = self.write("problems/chain.json", json.dumps(model))
+            self.expect(0, "response", path, "-c", "default", "--input", "b0.x")
+
     def test_peak_and_its_sensitivities_have_closed_forms(self):
         got = self.json_of("response", self.one, "-c", "default", "--input", "a.x", "--sensitivity", "m,k,c")
         peak, = got["responses"][0]["extremes"]
