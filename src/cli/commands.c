@@ -117,9 +117,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
              "motion; may be repeated (\"pivot=170*deg\")"),
     REPEATED(
         MT_OPT_RATE, "rate", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
-        "start with this joint at a velocity, rad/s or m/s, or the model's units a second, "
-        "the rest with the least kinetic "
-        "energy; may be repeated"),
+        "start with this joint at a velocity, rad/s or m/s, or the model's units a second: its "
+        "second body against its first, all with the least kinetic energy, so where both are "
+        "free the lighter one moves more, backwards where that is the first; may be repeated"),
     OPTION(MT_OPT_ALONG, '\0', "mode", "N:AMPLITUDE", BIT(MT_CMD_SIMULATE),
            "let go displaced along vibration mode N, so far at the sensor that moves most (m, "
            "or rad where sensors show rotations alone, or in the model's units)"),
@@ -304,7 +304,8 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "consistent mass move their mass with their frame. Steps follow the fastest vibration "
         "that the mechanism has: very stiff parts make them short.\n"
         "An interrupt (Ctrl-C) or the end of --time ends the motion; what there is of it is "
-        "printed, with exit status 130. Where a dead centre ends it, or a direction without "
+        "printed, with exit status 130 or 1. Where a dead centre ends it, or a direction "
+        "without "
         "mass is pushed, the exit status is 3."),
     COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
             "change of each frequency per per cent of each parameter",

@@ -139,15 +139,25 @@ static mt_status reserve(run *r, mt_err *err)
     return mt_arena_check(mem, err);
 }
 
-/* Potential energy of the rest position, at which all is measured. */
-static mt_status rest_energy(run *r, mt_err *err)
+/* Where all is measured from: potential energy and, for what is the integral of a velocity, the
+ * way from the rest position to the start (a rotation: the shortest one). */
+static mt_status measure_rest(run *r, mt_err *err)
 {
     mt_sim *const s = &r->s;
+    const mt_placement *const rest = &mt_linear_position(s->lin)->at;
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     double *const still = mt_arena_f64(s->mem, (size_t)s->nq, 1);
+    double *const way = mt_arena_f64(s->mem, (size_t)s->nq, 1);
     MT_TRY(mt_arena_check(s->mem, err));
-    mt_motion_eval(&s->motion, &mt_linear_position(s->lin)->at, still);
+    mt_poses_way(s->sys, rest->pose, s->start.pose, way);
+    mt_motion_eval(&s->motion, rest, still);
     r->rest_energy = s->motion.potential;
+    for (int g = 0; g < s->opt->n_gauges; g++) {
+        if (!mt_motion_has_value(s->sys, s->opt->gauges[g])) {
+            mt_motion_gauge(&s->motion, rest, still, s->opt->gauges[g], &s->gauge);
+            s->begin[((ptrdiff_t)2 * s->nq) + 1 + g] = mt_dot(s->nq, s->gauge.row, way);
+        }
+    }
     mt_arena_rewind(s->mem, mark);
     return MT_OK;
 }
@@ -370,7 +380,7 @@ static mt_status begin(run *r, mt_linear *lin, const mt_sim_start *start,
     MT_TRY(only_dampers(mt_linear_system(lin), err));
     MT_TRY(mt_sim_init(&r->s, lin, start, opt, mem, err));
     MT_TRY(reserve(r, err));
-    MT_TRY(rest_energy(r, err));
+    MT_TRY(measure_rest(r, err));
     MT_TRY(mt_sim_slope(&r->s, 0.0, r->s.begin, r->s.slope, err));
     r->potential0 = r->s.motion.potential;
     r->energy0 = r->s.motion.kinetic + r->s.motion.potential;

@@ -45,7 +45,8 @@ class Simulate(CliTest):
         self.assertTrue(answer["complete"])
 
     def test_damping_that_is_no_force_is_refused(self):
-        model = json.loads(open(PENDULUM, encoding="utf-8").read())
+        with open(PENDULUM, encoding="utf-8") as text:
+            model = json.load(text)
         for damping, what in (({"ratio": 0.02}, "damping ratios of modes"), ({"mass_per_s": 0.1}, "proportional damping")):
             with self.subTest(damping=damping):
                 path = self.write("damped.json", json.dumps(model | {"damping": damping}))
@@ -104,6 +105,30 @@ class Simulate(CliTest):
         self.refused("has no finite value", *hanging, "--duration", "1", "--input", "base.x=sqrt(0.5 - t)", code=3)
         self.refused("after", MASSLESS, "-c", "sprung", "--duration", "1", "--input", "base.x=t", code=3)
         self.refused("cannot turn or slide", FOUR_BAR, "-c", "locked", "--duration", "1", "--rate", "jA=1")
+
+    def test_rotations_count_from_the_position_at_rest(self):
+        """As the joint does that turns the body alone, whatever the start; in space about each axis."""
+        with open(PENDULUM, encoding="utf-8") as text:
+            model = json.load(text)
+        model["sensors"].append({"name": "turn", "on": model["bodies"][0]["name"], "directions": ["rz"]})
+        path = self.write("turned.json", json.dumps(model))
+        for start in (0.5, -2.5, 3.0):
+            told = self.json_of("simulate", path, "-c", "hanging", "--start", f"pivot={start}", "--duration", "1", "--dt-out", "0.05",
+                                "--output", "turn.r", "--output", "pivot")
+            turn, pivot = (o["values"] for o in told["outputs"])
+            self.assertAlmostEqual(turn[0], start, delta=1e-9)
+            for a, b in zip(turn, pivot):
+                self.assertAlmostEqual(a, b, delta=1e-6)
+        for axis, name in enumerate(("rx", "ry", "rz")):
+            along = [float(k == axis) for k in range(3)]
+            path = self.write("wheel.json", json.dumps({
+                "format": "modetune-model/1", "dimension": 3,
+                "bodies": [{"name": "a", "mass_kg": 1, "inertia_kg_m2": [1, 1, 1], "centre": [0, 0, 0]}],
+                "joints": [{"name": "j", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": along}],
+                "springs": [{"name": "k", "type": "torsion", "joint": "j", "stiffness_n_m_per_rad": 3}],
+                "sensors": [{"name": "s", "on": "a", "directions": ["rx", "ry", "rz"]}], "configurations": {"c": {}}}))
+            told = self.json_of("simulate", path, "--start", "j=0.7", "--duration", "0.1", "--output", f"s.{name}")
+            self.assertAlmostEqual(told["outputs"][0]["values"][0], 0.7, delta=1e-9)
 
     def test_dead_centres_are_refused_with_the_names_of_their_joints(self):
         bar = {"mass_kg": 1, "inertia_kg_m2": 0.01}
