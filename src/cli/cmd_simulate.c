@@ -57,6 +57,7 @@ static mt_status make(job *j, mt_err *err)
         j->lin = j->a->lin;
         return MT_OK;
     }
+    mt_subject_warn_dropped(s, j->c, "--input", drive.joint);
     MT_TRY(mt_system_new_driven(s->model, j->c, drive.joint == NULL ? NULL : &drive,
                                 s->n_inputs, s->inputs, s->at, &j->sys, err));
     MT_TRY(mt_linear_new(j->sys, &j->lin, err));

@@ -248,6 +248,7 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
     mt_err err = {.code = MT_OK};
     int code = MT_EXIT_DONE;
     j.v.configuration = mt_subject_configuration(s, c);
+    mt_subject_warn_dropped(s, c, "--drive", request->drive.joint);
     j.v.request = request;
     mt_subject_warn_overridden(s, c);
     mt_status rc = run(to->args, s, c, &j, &err);

@@ -227,6 +227,17 @@ const char *mt_subject_configuration(const mt_subject *s, int c)
     return s->model->configurations[c].name.s;
 }
 
+void mt_subject_warn_dropped(const mt_subject *s, int c, const char *option, const char *joint)
+{
+    const mt_configuration *const conf = &s->model->configurations[c];
+    const char *const own = conf->drive.given ? conf->drive.joint_name.s : NULL;
+    if (own != NULL && joint != NULL && strcmp(own, joint) != 0) {
+        mt_terminal_warning("%s: configuration \"%s\" drives \"%s\", which is dropped while "
+                            "\"%s\" is driven: \"%s\" is free and stands as it settles",
+                            option, conf->name.s, own, joint, own);
+    }
+}
+
 void mt_subject_warn_overridden(const mt_subject *s, int c)
 {
     const mt_configuration *const conf = &s->model->configurations[c];

@@ -59,6 +59,9 @@ const char *mt_cli_method(mt_lowest_way way);
 mt_status mt_subject_admit_dense(const mt_subject *s, int c, const char *why, mt_err *err);
 /* Warn where the configuration's own overrides win over --set. */
 void mt_subject_warn_overridden(const mt_subject *s, int c);
+/* Warn where `option` moves another joint than the configuration's own drive, which is dropped
+ * then: one joint is driven. */
+void mt_subject_warn_dropped(const mt_subject *s, int c, const char *option, const char *joint);
 const char *mt_subject_configuration(const mt_subject *s, int c);
 
 /* Facts about the modes that several commands tell. */

@@ -53,6 +53,17 @@ class Possible(CliTest):
                 if code:
                     self.assertIn(f'spring "kr" cannot hold "pitch": its force does no work when "pitch" moves (line {line}, column 14)', done.stderr)
 
+    def test_a_drive_that_an_option_drops(self):
+        """As with `like`: of two joints one is driven, and that is said."""
+        drive = {"joint": "pitch", "position_rad": 0.3, "hold": {"trim": "kp"}}
+        path = self.put(dict(STICK, configurations={"neutral": {}, "fwd": {"drive": drive}}))
+        said = 'configuration "fwd" drives "pitch", which is dropped while "roll" is driven'
+        for joint, want in (("roll", 1), ("pitch", 0)):
+            done = self.expect(0, "sweep", path, "--drive", f"{joint}=-0.1:0.1:3")
+            self.assertEqual(done.stderr.count(f"--drive: {said}"), want, done.stderr)
+            done = self.expect(0, "simulate", path, "-c", "fwd", "--input", f"{joint}=0.01*sin(t)", "--duration", "0.01")
+            self.assertEqual(done.stderr.count(f"--input: {said}"), want, done.stderr)
+
     def test_a_spring_that_holds_by_a_detour(self):
         """The ring's spring holds the stick where a gear ties the two angles."""
         model = copy.deepcopy(STICK)
