@@ -418,7 +418,8 @@ static void judge_stout(mt_judge *j, const mt_item *item, const mt_link *l)
     for (int k = 0; k < MT_COUNT(numbers); k++) {
         const bool tube = k == 2 && l->section.shape == MT_SECTION_TUBE;
         const char *const member = tube ? "outer_diameter_m" : members[k];
-        if (numbers[k] == MT_ABSENT || !(j->value[numbers[k]] > MOST_STOUT * length)) {
+        if (length == 0.0 || numbers[k] == MT_ABSENT ||
+            !(j->value[numbers[k]] > MOST_STOUT * length)) {
             continue;
         }
         (void)mt_judge_place(

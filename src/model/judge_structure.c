@@ -227,10 +227,31 @@ static void judge_axes(mt_judge *j, const mt_item *item, const mt_joint *joint)
     }
 }
 
+static void judge_ends(mt_judge *j, int i, const mt_link *l)
+{
+    double from[AXES];
+    double to[AXES];
+    if (!mt_judge_position(j, &l->from, from) || !mt_judge_position(j, &l->to, to) ||
+        are_apart(from, to)) {
+        return;
+    }
+    (void)mt_judge_place(j,
+                         mt_doubt_add(j->out, MT_LEVEL_FAULT, "coincident",
+                                      "link \"%s\" begins and ends at the same point (%g, %g, "
+                                      "%g)",
+                                      l->name.s, from[0], from[1], from[2]),
+                         l->name.addr, mt_arena_printf(j->out->mem, "/links/%d", i));
+}
+
 void mt_judge_structure(mt_judge *j)
 {
     const mt_model *const m = j->model;
     int dampers = 0;
+    for (int i = 0; i < m->n_links; i++) {
+        if (mt_model_present(&m->links[i].in, j->configuration)) {
+            judge_ends(j, i, &m->links[i]);
+        }
+    }
     for (int i = 0; i < m->n_springs; i++) {
         const mt_spring *const s = &m->springs[i];
         const mt_item item = {s->damper ? "damper" : "spring",

@@ -87,6 +87,16 @@ class Possible(CliTest):
             if code:
                 self.assertRegex(done.stderr, r"error: /variables/0/lower: with r at 0\.09, " + impossible)
 
+    def test_a_link_without_length(self):
+        beam = {"name": "arm", "kind": "beam", "from": [0, 0], "to": ["L", 0], "elements": 2, "density_kg_per_m3": 7850, "youngs_modulus_pa": 2e11,
+                "section": {"shape": "circle", "diameter_m": 0.02}}
+        model = {"format": "modetune-model/1", "dimension": 2, "parameters": {"L": 1}, "links": [beam],
+                 "configurations": {"a": {}, "b": {"parameters": {"L": "L0"}}}}
+        for length, code in ((0, 2), (0.5, 0)):
+            done = self.expect(code, "check", self.put(dict(model, parameters={"L": 1, "L0": length})))
+            if code:
+                self.assertRegex(done.stderr, r'/links/0/name: link "arm" begins and ends at the same point \(0, 0, 0\) in configuration "b"')
+
     def test_a_bound_at_which_points_coincide(self):
         model = copy.deepcopy(STICK)
         model["parameters"] = {"L": 0.1}

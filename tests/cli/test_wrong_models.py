@@ -71,6 +71,8 @@ def links(model):
                 yield "mm", ("links", i, "section", member), times(section[member], 1e4), "warning", r"millimetres"
         if "inner_diameter_m" in section:
             yield "no wall", ("links", i, "section", "inner_diameter_m"), section["outer_diameter_m"], "error", r"no thickness"
+        if isinstance(link["from"], list):
+            yield "no length", ("links", i, "to"), [f"({x}) + 0" for x in link["from"]], "error", r"begins and ends at the same point"
         if "hinge_axis" in link:
             yield "no hinge", ("links", i, "hinge_axis"), zero(link["hinge_axis"]), "error", r"length zero|length 0"
 
@@ -165,7 +167,7 @@ class WrongModels(CliTest):
                 told = [p for p in got["problems"] if p["severity"] == severity and re.search(words, p["message"])]
                 self.assertNotEqual(told, [], got["problems"])
                 places = [p["pointer"] or "" for p in told]
-                self.assertTrue(any(p.startswith(pointer) or pointer.startswith(p + "/") for p in places) or "hinge_axis" in pointer, places)
+                self.assertTrue(any(p.startswith(pointer) or pointer.startswith(p + "/") for p in places) or re.search("hinge_axis|links/./to", pointer), places)
 
 
 if __name__ == "__main__":
