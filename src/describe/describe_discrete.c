@@ -83,13 +83,15 @@ static const char *certificate_text(const mt_discrete_report *r, const mt_nlp_re
                                r->combinations, r->judged, rest);
     }
     const char *const between =
-        r->driven && r->followed < r->feasible
+        r->broken ? " at the named positions, and not between them"
+        : r->driven && r->followed < r->feasible
             ? mt_arena_printf(
                   mem,
                   " at the named positions (%d of these were followed between them, "
                   "those that rank)",
                   r->followed)
-            : "";
+        : r->driven ? " (between the named positions by samples)"
+                    : "";
     return mt_arena_printf(mem,
                            "Enumerated: all %.0f combinations of catalogue values were "
                            "judged, %d of them meet%s all goals%s.%s",

@@ -286,7 +286,8 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
     }
     r.n = 0;
     MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
-    if (take_broken(&r, all, n_all)) {
+    report->broken = take_broken(&r, all, n_all);
+    if (report->broken) {
         r.n = 0;
         MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
     }

@@ -38,6 +38,7 @@ typedef struct mt_discrete_report {
      * the objective alone; NaN: not known */
     double open_within;
     int followed; /* of the feasible ones */
+    bool broken;  /* none of these keeps its limits between the positions */
     int feasible; /* of those judged: combinations with a design that meets all goals */
     /* branch and bound with proofs alone (discrete_prove.c) */
     bool asked;        /* it was tried */

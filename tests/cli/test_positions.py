@@ -220,6 +220,7 @@ class Positions(unittest.TestCase):
         self.assertEqual((none["status"], [d["parameters"][0]["recommended"] for d in none["recommendations"]]), ("solved", [24.6]))
         self.assertFalse(none["recommendations"][0]["responses_between"][0]["holds"])
         self.assertIn("at the positions that are given alone", " ".join(none["warnings"]))
+        self.assertIn("1 of them meets all goals at the named positions, and not between them.", self.text)
         poor = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [10, 12]}]))
         self.assertEqual(poor["status"], "infeasible")
 
