@@ -36,8 +36,9 @@ typedef struct mt_mechanism mt_mechanism;
  * @param[in]  inputs [n_inputs] names of the parameters whose values will be given; others
  *   keep the model's own, and those that are expressions follow, unless they are inputs
  *   themselves. A value that the configuration itself fixes wins. NULL with n_inputs 0
- * @param[out] out owned by the caller; NULL on failure Fails: MT_E_USAGE (no such configuration
- *   or none said of several, no such parameter, one given twice, a name missing), and as mt_mechanism_evaluate.
+ * @param[out] out owned by the caller; NULL on failure. Fails: MT_E_USAGE (no such
+ *   configuration, none said of several, no such parameter, one given twice, a name missing),
+ *   and as mt_mechanism_evaluate.
  */
 MT_API mt_status mt_mechanism_new(const mt_model *model, const char *configuration,
                                   int n_inputs, const char *const *inputs, mt_mechanism **out,

@@ -120,26 +120,79 @@ static void say_free(const mt_analysis *a, mt_doubt_list *out)
                        "%d free motion%s: is a joint missing? Free to move: %s", n, s, name);
 }
 
-/* Sets of the same joints are told together. */
-static mt_status say_redundant(mt_linear *lin, mt_doubt_list *out, mt_err *err)
+/* Joints that redundant equations tie together. */
+typedef struct tied {
+    int equations; /* 0: it went into another */
+    int n;
+    const char **name;
+} tied;
+
+static bool is_tied(const tied *t, const char *name)
 {
-    const int n = mt_linear_redundant(lin);
-    const char *last = "";
-    int same = 0;
-    for (int k = 0; k <= n; k++) {
-        mt_joint_names joints = {.text = ""};
-        if (k < n) {
-            MT_TRY(mt_linear_redundant_set(lin, k, out->mem, &joints, err));
+    for (int i = 0; i < t->n; i++) {
+        if (t->name[i] == name) {
+            return true;
         }
-        if (same > 0 && strcmp(joints.text, last) != 0) {
+    }
+    return false;
+}
+
+/* Those of one set that t has not. Room for all was made. */
+static void tie(tied *t, int equations, int n, const char *const *name)
+{
+    t->equations += equations;
+    for (int i = 0; i < n; i++) {
+        if (!is_tied(t, name[i])) {
+            t->name[t->n++] = name[i];
+        }
+    }
+}
+
+/* One more set, and all that it shares a joint with, become one. */
+static void add_set(tied *list, int n, const mt_joint_names *set)
+{
+    tied *const own = &list[n];
+    tie(own, 1, set->n, set->name);
+    for (int i = 0; i < n; i++) {
+        bool shares = false;
+        for (int k = 0; k < own->n && !shares; k++) {
+            shares = is_tied(&list[i], own->name[k]);
+        }
+        if (shares && list[i].equations > 0) {
+            tie(own, list[i].equations, list[i].n, list[i].name);
+            list[i].equations = 0;
+        }
+    }
+}
+
+/* Which of the equations between the same joints are the redundant ones is of no use: sets with
+ * a joint in common are told together. */
+static mt_status say_redundant(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
+{
+    const int n = mt_linear_redundant(a->lin);
+    tied *const list = mt_arena_alloc(out->mem, (size_t)n, sizeof *list);
+    MT_TRY(mt_arena_check(out->mem, err));
+    for (int k = 0; k < n; k++) {
+        mt_joint_names set = {.text = ""};
+        MT_TRY(mt_linear_redundant_set(a->lin, k, out->mem, &set, err));
+        list[k].name = mt_arena_alloc(out->mem, (size_t)a->sys->n_joints, sizeof *list[k].name);
+        MT_TRY(mt_arena_check(out->mem, err));
+        add_set(list, k, &set);
+    }
+    for (int k = 0; k < n; k++) {
+        const char *names = "";
+        for (int i = 0; i < list[k].n && list[k].equations > 0 && names != NULL; i++) {
+            names = mt_arena_printf(out->mem, "%s%s\"%s\"", names, i == 0 ? "" : ", ",
+                                    list[k].name[i]);
+        }
+        MT_TRY(mt_arena_check(out->mem, err));
+        if (list[k].equations > 0) {
             (void)mt_doubt_add(out, MT_LEVEL_FACT, "redundant",
-                               same == 1 ? "redundant: %d equation of %s changes nothing"
-                                         : "redundant: %d equations of %s change nothing",
-                               same, last);
-            same = 0;
+                               list[k].equations == 1
+                                   ? "redundant: %d equation of %s changes nothing"
+                                   : "redundant: %d equations of %s change nothing",
+                               list[k].equations, names);
         }
-        last = joints.text;
-        same++;
     }
     return MT_OK;
 }
@@ -393,7 +446,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
                            n, n == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
     }
     MT_TRY(say_dead_centre(a->lin, out, err));
-    return say_redundant(a->lin, out, err);
+    return say_redundant(a, out, err);
 }
 
 static void say_lowest(const mt_lowest *l, mt_doubt_list *out)

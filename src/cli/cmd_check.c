@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune check: every problem of files, each as its format says. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "answer/doubts.h"
@@ -8,6 +9,7 @@
 #include "cli/cli.h"
 #include "cli/sarif.h"
 #include "io/file.h"
+#include "io/files.h"
 #include "io/json_print.h"
 #include "problem/problem.h"
 #include "report/summary.h"
@@ -202,6 +204,12 @@ static mt_status load(int kind, mt_json *doc, const char *path, const mt_io_opti
     return rc;
 }
 
+/* What was told of files that were asked for, and of those that these name. */
+typedef struct told_before {
+    mt_diagnostics of_their_own;
+    mt_diagnostics of_others;
+} told_before;
+
 /* What goes to standard output, whatever its form. */
 typedef struct output {
     mt_format format;
@@ -209,6 +217,7 @@ typedef struct output {
     mt_table table;
     mt_text *text;
     int left_out; /* problems of all files that are not told */
+    told_before told;
 } output;
 
 static void put_problem(output *to, const mt_file_problem *p)
@@ -291,6 +300,65 @@ static void put_file(output *to, const char *path, const char *kind,
     }
 }
 
+/* The same, at the same place of the same file? The paths lead there in their own ways. */
+static bool is_same(const mt_diagnostics *a, int i, const mt_diagnostics *b, int k)
+{
+    if (mt_diagnostics_line(a, i) != mt_diagnostics_line(b, k) ||
+        mt_diagnostics_column(a, i) != mt_diagnostics_column(b, k) ||
+        strcmp(mt_diagnostics_message(a, i), mt_diagnostics_message(b, k)) != 0) {
+        return false;
+    }
+    char *const one = mt_files_normal(mt_diagnostics_file(a, i));
+    char *const other = mt_files_normal(mt_diagnostics_file(b, k));
+    const bool same = one != NULL && other != NULL && strcmp(one, other) == 0;
+    free(one);
+    free(other);
+    return same;
+}
+
+static bool is_told(const mt_diagnostics *messages, int i, const mt_diagnostics *told)
+{
+    for (int k = 0; k < mt_diagnostics_count(told); k++) {
+        if (is_same(messages, i, told, k)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A study's model may be checked itself, and several studies may have the same: what was told of
+ * it is not told again. Those that are new, also behind what was told. */
+static void leave_told(const mt_diagnostics *messages, const char *path, told_before *told,
+                       mt_diagnostics *fresh)
+{
+    for (int i = 0; i < mt_diagnostics_count(messages); i++) {
+        const bool own = strcmp(mt_diagnostics_file(messages, i), path) == 0;
+        const bool again = is_told(messages, i, &told->of_others) ||
+                           (!own && is_told(messages, i, &told->of_their_own));
+        const mt_diagnostic_place place = {.file = mt_diagnostics_file(messages, i),
+                                           .line = mt_diagnostics_line(messages, i),
+                                           .column = mt_diagnostics_column(messages, i),
+                                           .pointer = mt_diagnostics_pointer(messages, i)};
+        if (!again) {
+            mt_diagnostics_add(fresh, mt_diagnostics_severity(messages, i), &place,
+                               mt_diagnostics_message(messages, i));
+            mt_diagnostics_add(own ? &told->of_their_own : &told->of_others,
+                               mt_diagnostics_severity(messages, i), &place,
+                               mt_diagnostics_message(messages, i));
+        }
+    }
+    if (mt_diagnostics_first_error(messages) >= 0 && mt_diagnostics_first_error(fresh) < 0) {
+        const mt_diagnostic_place place = {.file = path};
+        mt_diagnostics_add(fresh, MT_SEVERITY_ERROR, &place,
+                           "what is wrong with its model is told above");
+    }
+    if (mt_diagnostics_left_out(messages) > 0) {
+        mt_diagnostics_leave_out(fresh, path, mt_diagnostics_left_out(messages));
+    }
+    fresh->lines.failed = fresh->lines.failed || messages->lines.failed ||
+                          told->of_others.lines.failed || told->of_their_own.lines.failed;
+}
+
 static int check(const mt_args *args, const char *path, output *to)
 {
     const mt_io_options opt = mt_cli_io(args);
@@ -306,7 +374,9 @@ static int check(const mt_args *args, const char *path, output *to)
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     rc = rc == MT_OK ? examine(&read, path, &messages, &found, &err) : rc;
     add_messages(&found, path, &messages);
-    put_file(to, path, kind == KIND_COUNT ? NULL : kinds[kind], &messages, &found,
+    mt_diagnostics fresh = {.count = 0};
+    leave_told(&messages, path, &to->told, &fresh);
+    put_file(to, path, kind == KIND_COUNT ? NULL : kinds[kind], &fresh, &found,
              rc == MT_OK ? NULL : err.text);
     mt_arena_free(&read.mem);
     mt_model_delete(read.model);
@@ -314,7 +384,8 @@ static int check(const mt_args *args, const char *path, output *to)
     mt_result_delete(read.result);
     mt_vibration_delete(read.profile);
     mt_arena_free(&mem);
-    return mt_cli_loaded(rc, &messages, &err);
+    mt_diagnostics_free(&messages);
+    return mt_cli_loaded(rc, &fresh, &err);
 }
 
 int mt_cmd_check(const mt_args *args, mt_text *out)
@@ -349,5 +420,7 @@ int mt_cmd_check(const mt_args *args, mt_text *out)
         mt_table_csv(&to.table, out);
     }
     mt_table_free(&to.table);
+    mt_diagnostics_free(&to.told.of_their_own);
+    mt_diagnostics_free(&to.told.of_others);
     return code;
 }

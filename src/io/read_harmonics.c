@@ -1,6 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "io/read_harmonics.h"
 
+#include <string.h>
+
+const char *mt_read_multiple_meant(const mt_reader *r, const char *text, char letter)
+{
+    static const char *const ways[] = {"",        "p",     "/rev", "/turn",   "perrev",
+                                       "perturn", "omega", "x",    "\xC3\x97"};
+    char plain[16] = "";
+    size_t digits = 0;
+    size_t n = 0;
+    for (const char *s = text; *s != '\0'; s++) { /* without blanks, small letters */
+        const bool capital = *s >= 'A' && *s <= 'Z';
+        if (n + 1 >= sizeof plain) {
+            return NULL;
+        }
+        if (*s != ' ') {
+            plain[n++] = (char)(capital ? *s - 'A' + 'a' : *s);
+        }
+    }
+    plain[n] = '\0';
+    digits = strspn(plain, letter == 'P' || letter == 'T' ? "0123456789" : "0123456789.");
+    const bool blades = plain[digits] == 'n' && letter == 'P';
+    const char *const way = plain + digits + (blades ? 1 : 0);
+    bool known = way[0] != '\0' && way[1] == '\0' && way[0] == (char)(letter - 'A' + 'a');
+    for (int i = 0; i < MT_COUNT(ways); i++) {
+        known = known || strcmp(way, ways[i]) == 0;
+    }
+    return known && (digits > 0 || blades) ? mt_arena_printf(r->mem, "%.*s%s%c", (int)digits,
+                                                             plain, blades ? "n" : "", letter)
+                                           : NULL;
+}
+
 void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor)
 {
     mt_items items = mt_reader_some_items(r, list, "the list of harmonics");
@@ -12,10 +43,16 @@ void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor)
             h->addr = items.at;
             rotor->n_harmonics++;
         } else if (text != NULL) {
+            const size_t length = strlen(text);
+            const bool tail = length > 0 && text[length - 1] == 't';
+            const char *const meant = mt_read_multiple_meant(r, text, tail ? 'T' : 'P');
+            mt_harmonic is;
+            const bool good = meant != NULL && mt_harmonic_parse(meant, &is);
             mt_diag_structure(r->diags, items.at,
                               "\"%s\" is no harmonic: a number from 1 to 999, n (the number of "
-                              "blades) or both, then P (main rotor) or T (tail rotor)",
-                              text);
+                              "blades) or both, then P (main rotor) or T (tail rotor)%s%s%s",
+                              text, good ? "; did you mean \"" : "", good ? meant : "",
+                              good ? "\"?" : "");
         }
     }
 }

@@ -2,6 +2,8 @@
 /* Machines whose orders and gear meshes are to be avoided. */
 #include "io/read_study_priv.h"
 
+#include "io/read_harmonics.h"
+
 #define MACHINE_KEYS(X)                                              \
     X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false, STUDY)        \
     X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false, STUDY)   \
@@ -37,11 +39,15 @@ static mt_order *read_orders(mt_study_reader *s, mt_addr list, char letter, int 
         if (text != NULL && mt_order_parse(text, letter, &orders[*n])) {
             orders[(*n)++].addr = items.at;
         } else if (text != NULL) {
-            mt_diag_structure(s->r.diags, items.at,
-                              "\"%s\" is no order: a number above 0 and below 1000 with at "
-                              "most three decimals, then %c (%s)",
-                              text, letter,
-                              letter == 'E' ? "times per turn" : "multiples of the gear mesh");
+            const char *const meant = mt_read_multiple_meant(&s->r, text, letter);
+            mt_order is;
+            const bool good = meant != NULL && mt_order_parse(meant, letter, &is);
+            mt_diag_structure(
+                s->r.diags, items.at,
+                "\"%s\" is no order: a number above 0 and below 1000 with at "
+                "most three decimals, then %c (%s)%s%s%s",
+                text, letter, letter == 'E' ? "times per turn" : "multiples of the gear mesh",
+                good ? "; did you mean \"" : "", good ? meant : "", good ? "\"?" : "");
         }
     }
     return orders;

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "io/synonyms.h"
+
 #define OBJECTIVE_KEYS(X)                                       \
     X(OBJECTIVE_MINIMISE, "minimise", MT_KEY_TEXT, false)       \
     X(OBJECTIVE_MAXIMISE, "maximise", MT_KEY_TEXT, false)       \
@@ -12,6 +14,21 @@
 enum { OBJECTIVE_KEYS(MT_STUDY_KEY_ENUM) OBJECTIVE_KEY_COUNT };
 static const mt_key KEYS[] = {OBJECTIVE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_objective_keys = {"objective", KEYS, OBJECTIVE_KEY_COUNT};
+
+/* Is it another word for one of the objectives ("weight"), and no parameter? Noted. */
+static bool is_other_word(mt_study_reader *s, mt_addr value, const char *text)
+{
+    mt_objective_type types[MT_OBJECTIVE_TYPE_COUNT];
+    const char *names[MT_OBJECTIVE_TYPE_COUNT];
+    const mt_model *const m = s->study->model;
+    const int n = mt_objectives_with(MT_WORD, types, names);
+    const char *const meant = mt_synonym(text, names, n);
+    if (meant == NULL || (m != NULL && mt_model_find_parameter(m, text) != MT_ABSENT)) {
+        return false;
+    }
+    mt_diag_error(s->r.diags, value, "unknown name \"%s\"; did you mean \"%s\"?", text, meant);
+    return true;
+}
 
 /* What is minimised: the word of an objective, else an expression of parameters. */
 static void read_minimise(mt_study_reader *s, mt_addr value, mt_objective *o)
@@ -34,7 +51,9 @@ static void read_minimise(mt_study_reader *s, mt_addr value, mt_objective *o)
         o->type = mt_objective_is(type, MT_MAXIMISED) ? MT_OBJECTIVE_EXPRESSION : type;
         return;
     }
-    mt_read_study_expr(s, value, &o->expression, &o->expression_text);
+    if (!is_other_word(s, value, text)) {
+        mt_read_study_expr(s, value, &o->expression, &o->expression_text);
+    }
 }
 
 /* What is maximised is one of the words. */

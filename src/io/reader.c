@@ -35,6 +35,43 @@ bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type)
 
 enum { MEANT_MOST = 3 };
 
+/* The unit that a member's name ends in, and a constant of expressions is ("rpm" of
+ * "speed_range_rpm"), with *stem what is before it; NULL: none. */
+static const char *foreign_unit(const char *name, size_t *stem)
+{
+    static const char *const units[][2] = {{"rpm", "rpm"}, {"deg", "deg"},    {"mm", "mm"},
+                                           {"cm", "cm"},   {"in", "inch"},    {"inch", "inch"},
+                                           {"ft", "ft"},   {"inches", "inch"}};
+    const char *const last = strrchr(name, '_');
+    for (int i = 0; i < MT_COUNT(units) && last != NULL; i++) {
+        if (strcmp(last + 1, units[i][0]) == 0) {
+            *stem = (size_t)(last - name);
+            return units[i][1];
+        }
+    }
+    return NULL;
+}
+
+/* The key that is the same but for its unit, which is of SI; NULL: there is none. */
+static const char *key_in_si(const char *name, const char *const *names, int n,
+                             const char **constant)
+{
+    size_t stem = 0;
+    *constant = foreign_unit(name, &stem);
+    for (int i = 0; i < n && *constant != NULL; i++) {
+        const char *const rest = names[i] + stem;
+        const bool same = strlen(names[i]) > stem && strncmp(names[i], name, stem) == 0 &&
+                          *rest == '_' && strchr(rest + 1, '_') == NULL;
+        const char *const si = strcmp(*constant, "rpm") == 0   ? "hz"
+                               : strcmp(*constant, "deg") == 0 ? "rad"
+                                                               : "m";
+        if (same && strcmp(rest + 1, si) == 0) {
+            return names[i];
+        }
+    }
+    return NULL;
+}
+
 /* The keys that may be meant, most of them first: for which the name is another word ("joint"
  * for "bodies", "k" for either stiffness), or the nearest one, or those that only add a unit or
  * the like to the name ("mass" for "mass_kg"). Returns how many. */
@@ -73,6 +110,15 @@ static void unknown_member(mt_reader *r, mt_addr member, const mt_key_table *tab
     }
     const char *const name = mt_json_name(r->doc, member);
     const char *meant[MEANT_MOST] = {NULL};
+    const char *constant = NULL;
+    const char *const si = key_in_si(name, names, table->n, &constant);
+    if (si != NULL) {
+        mt_diag_structure(r->diags, mt_json_name_addr(r->doc, member),
+                          "unknown member \"%s\"; did you mean \"%s\", with numbers as "
+                          "\"...*%s\"?",
+                          name, si, constant);
+        return;
+    }
     const int n = mt_diag_may_suggest(r->diags) ? keys_meant(name, names, table->n, meant) : 0;
     mt_diag_structure(r->diags, mt_json_name_addr(r->doc, member),
                       "unknown member \"%s\"%s%s%s%s%s%s%s", name,

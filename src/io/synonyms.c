@@ -76,6 +76,10 @@ static const synonym table[] = {
     {"angle", " angles rotation "},
     {"speed", " speeds rotor rotor_speed "},
     /* studies */
+    {"mass", " weight weight_kg mass_kg total_mass total_weight "},
+    {"change", " redesign changes deviation modification "},
+    {"misfit", " residual residuals error fit "},
+    {"clearance", " margin clearances "},
     {"parameter", " name variable "},
     {"lower", " min minimum from low lower_bound at_least "},
     {"upper", " max maximum to high upper_bound at_most "},

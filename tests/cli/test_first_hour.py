@@ -112,6 +112,78 @@ class FirstHour(CliTest):
         self.assertIn("UH-60", self.expect(2, "check", "mine/study.json").stderr)
 
 
+class Slips(CliTest):
+    MODEL = {"format": "modetune-model/1", "dimension": 2, "parameters": {"k": 100, "m": 2},
+             "bodies": [{"name": "a", "mass_kg": "m", "inertia_kg_m2": 0.1, "centre": [0, 0]}],
+             "joints": [{"name": "g", "type": "prismatic", "bodies": ["ground", "a"], "at": [0, 0], "axis": [1, 0]}],
+             "springs": [{"name": "s", "type": "axial", "bodies": ["ground", "a"], "at": [[-1, 0], [0, 0]], "stiffness_n_per_m": "k"}]}
+    STUDY = {"format": "modetune-study/1", "model": "m.json", "variables": [{"parameter": "k", "lower": 50, "upper": 200}],
+             "goals": [{"type": "frequency", "mode": 1, "at_least_hz": 1.2}]}
+
+    def said(self, study=None, model=None, also=()):
+        self.write("m.json", json.dumps(dict(self.MODEL, **(model or {}))))
+        self.write("s.json", json.dumps(dict(self.STUDY, **(study or {}))))
+        done = self.run_program("check", *also, "s.json")
+        return done.returncode, done.stderr
+
+    def test_other_words_are_understood(self):
+        rotor = {"speed_hz": 6.6, "blades": 4, "margin_percent": 10}
+        machine = {"name": "m", "speed_hz": 20, "margin_percent": 10}
+        for study, why in (
+                *(({"goals": [{"type": "avoid", "rotor": dict(rotor, harmonics=[h]), "up_to_hz": 90}]}, f'did you mean "{meant}"?')
+                  for h, meant in (("4p", "4P"), ("4/rev", "4P"), ("4 / Rev", "4P"), ("4 per rev", "4P"), ("n/rev", "nP"), ("NP ", "nP"), ("4", "4P"),
+                                   ("2t", "2T"), ("2N/rev", "2nP"))),
+                *(({"goals": [{"type": "avoid", "machine": dict(machine, orders=[h]), "up_to_hz": 90}]}, f'did you mean "{meant}"?')
+                  for h, meant in (("2", "2E"), ("0.5/rev", "0.5E"), ("1.5x", "1.5E"), ("2e", "2E"))),
+                ({"goals": [{"type": "avoid", "machine": {"name": "m", "speed_rpm": 700, "orders": ["1E"]}}]},
+                 'unknown member "speed_rpm"; did you mean "speed_hz", with numbers as "...*rpm"?'),
+                ({"goals": [{"type": "avoid", "machine": {"name": "m", "speed_range_rpm": [700, 850], "orders": ["1E"]}}]},
+                 'did you mean "speed_range_hz", with numbers as "...*rpm"?'),
+                ({"goals": [{"type": "frequency", "mode": 1, "at_least_rpm": 60}]}, 'did you mean "at_least_hz", with numbers as "...*rpm"?'),
+                ({"objective": {"minimise": "weight"}}, 'unknown name "weight"; did you mean "mass"?')):
+            with self.subTest(study=study):
+                code, said = self.said(study)
+                self.assertEqual(code, 2)
+                self.assertIn(why, said)
+        for harmonic in ("p", "4Q", "four", "0P", "4//rev", "4P4P4P4P4P4P4P4P4P"):
+            with self.subTest(harmonic=harmonic):
+                said = self.said({"goals": [{"type": "avoid", "rotor": dict(rotor, harmonics=[harmonic]), "up_to_hz": 90}]})[1]
+                self.assertIn("is no harmonic", said)
+                self.assertNotIn("did you mean", said)
+        for model, why in (({"bodies": [dict(self.MODEL["bodies"][0], weight=3)]}, 'did you mean "mass_kg"'),
+                           ({"links": [{"name": "l", "from": [0, 0], "to": [1, 0], "section": {"type": "circle", "diameter_mm": 9}}]},
+                            'did you mean "diameter_m", with numbers as "...*mm"?')):
+            with self.subTest(model=model):
+                self.assertIn(why, self.said(model=model)[1])
+
+    def test_a_parameter_called_weight_may_be_minimised(self):
+        self.assertEqual(self.said({"objective": {"minimise": "weight"}, "variables": [{"parameter": "weight", "lower": 1, "upper": 3}]},
+                                   {"parameters": {"k": 100, "m": "weight", "weight": 2}})[0], 0)
+
+    def test_what_is_wrong_is_told_once(self):
+        twice = {"joints": self.MODEL["joints"] + [dict(self.MODEL["joints"][0], name="h")]}
+        code, said = self.said(model=twice, also=["m.json"])
+        self.assertEqual((code, said.count("redundant")), (0, 1), said)
+        self.assertEqual(self.said(model=twice)[1].count("redundant"), 1)
+        code, said = self.said(model={"gravity_m_per_s2": 9.81}, also=["m.json"])
+        self.assertEqual((code, said.count("gravity_m_per_s2")), (2, 1))
+        self.assertIn("s.json: error: what is wrong with its model is told above", said)
+        code, said = self.said({"objective": {"minimise": "weight"}}, {"gravity_m_per_s2": 9.81}, ["./m.json"])
+        self.assertEqual((code, said.count("gravity_m_per_s2")), (2, 1))
+
+    def test_redundant_equations_of_the_same_joints_are_one_line(self):
+        def held(name, at):
+            return {"name": name, "type": "fixed", "bodies": ["ground", "a"], "at": at}
+
+        space = {"dimension": 3, "springs": [], "joints": [held("e", [0, 0, 0]), held("f", [1, 2, 3]), held("g", [2, 0, 1])],
+                 "bodies": [{"name": "a", "mass_kg": 1, "inertia_kg_m2": [1, 1, 1], "centre": [0, 0, 0]},
+                            {"name": "b", "mass_kg": 1, "inertia_kg_m2": [1, 1, 1], "centre": [0, 0, 0]}]}
+        space["joints"].append({"name": "hinge", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0, 0], "axis": [0, 0, 1]})
+        self.write("m.json", json.dumps(dict(self.MODEL, **space)))
+        said = self.expect(0, "check", "m.json").stderr
+        self.assertEqual(re.findall(r"redundant: (\d+) equations of (.*) change nothing", said), [("12", '"e", "f", "g"')], said)
+
+
 class Universal(CliTest):
     FILE = "    -1\n    15\n         1         0         0        11  4.0E-01  0.0E+00  0.0E+00\n    -1\n" + "    -1\n    55\n" + "NONE\n" * 5 + \
         "         1         2         2         8         2         3\n         2         4         1         1\n  5.0E+00  1.0E+00  1.9E-02  0.0E+00\n" \
