@@ -326,8 +326,8 @@ static bool is_told(const mt_diagnostics *messages, int i, const mt_diagnostics 
     return false;
 }
 
-/* A study's model may be checked itself, and several studies may have the same: what was told of
- * it is not told again. Those that are new, also behind what was told. */
+/* A study's model may be checked itself, and several studies may have the same: what was told
+ * of it is not told again. Those that are new, also behind what was told. */
 static void leave_told(const mt_diagnostics *messages, const char *path, told_before *told,
                        mt_diagnostics *fresh)
 {
