@@ -170,7 +170,7 @@ typedef enum mt_vibration_end {
 typedef struct mt_vibration_answer {
     mt_vibration_end end; /* numbers that it takes away are NaN */
     double rms;           /* under the random parts together [unit of the output] */
-    /* |error of rms| is at most this, given the poles and residues as they were found; an
+    /* |error of rms| is at most this, the rounding of the poles to first order; an
      * estimate where not proven */
     double rms_error;
     double tones; /* the largest amplitudes under the tones, by the profile's rule */

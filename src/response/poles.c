@@ -235,14 +235,25 @@ static mt_status add_rest(mt_poles *k, mt_err *err)
     return MT_OK;
 }
 
-static void hand_out(const mt_poles *k, mt_pole_sum *out, double complex *residue)
+/* first: of the coupled ones. */
+static void hand_out(const mt_poles *k, int first, mt_pole_sum *out, double complex *residue)
 {
+    /* of an eigenvalue, beside the largest */
+    static const double ULPS = 8.0;
+    double largest = 0.0;
+    for (int i = first; i < k->count; i++) {
+        largest = fmax(largest, cabs(k->s[i]));
+    }
     for (ptrdiff_t pair = 0; pair < k->pairs; pair++) {
         double complex *const own = residue + (pair * k->count);
         for (int a = 0; a < k->count; a++) {
             own[a] = k->residue[pair + (a * k->pairs)];
         }
-        out[pair] = (mt_pole_sum){.n = k->count, .s = k->s, .residue = own};
+        out[pair] = (mt_pole_sum){.n = k->count,
+                                  .s = k->s,
+                                  .residue = own,
+                                  .first_coupled = first,
+                                  .rounding = ULPS * DBL_EPSILON * largest};
         for (int m = 0; m < 3; m++) {
             out[pair].d[m] = k->d[pair + (m * k->pairs)];
         }
@@ -310,6 +321,7 @@ static mt_status find(mt_poles *k, mt_pole_sum *out, mt_err *err)
     for (ptrdiff_t j = k->n - 1; j >= k->n_coupled; j--) {
         MT_TRY(mt_poles_alone(k, k->coupled[j], err));
     }
+    const int first = k->count;
     if (k->n_coupled > 0) {
         MT_TRY(coupled(k, err));
     }
@@ -317,7 +329,7 @@ static mt_status find(mt_poles *k, mt_pole_sum *out, mt_err *err)
     double complex *const residue =
         mt_arena_alloc(k->mem, pairs * (size_t)k->count, sizeof *residue);
     MT_TRY(mt_arena_check(k->mem, err));
-    hand_out(k, out, residue);
+    hand_out(k, first, out, residue);
     return k->n_coupled > 0 ? verify(k, out, err) : MT_OK;
 }
 

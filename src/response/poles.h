@@ -14,6 +14,11 @@ typedef struct mt_pole_sum {
     const double complex *s;       /* [n] [rad/s] */
     const double complex *residue; /* [n] [unit of H times rad/s] */
     double complex d[3];
+    /* Poles from this one on are eigenvalues of modes that damping couples, known to `rounding`
+     * [rad/s], of which a light damping may be little more; the others to their own last
+     * digits. */
+    int first_coupled;
+    double rounding;
 } mt_pole_sum;
 
 /*

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "vibration/respond.h"
 
+#include <complex.h>
 #include <math.h>
 
 static const double TWO_PI = 6.28318530717958647693;
@@ -13,6 +14,25 @@ static void note_end(mt_vibration_response *out, mt_forced_end end, int pole)
     }
 }
 
+/* What the rounding of the poles themselves takes of the mean square. The resonance of a pole
+ * re + i im, |H| = |rho| / |w - p|, makes |rho|^2 G / (2 im) of it where the density is G: next
+ * to an undamped pole all of that may be wrong. */
+static double pole_rounding(const mt_psd *psd, const mt_spectral *of)
+{
+    const mt_frf *const h = &of->h;
+    double sum = 0.0;
+    for (int k = 0; k < h->n; k++) {
+        const double im = fabs(h->im[k]);
+        if (h->re[k] <= 0.0 || im == 0.0 || h->index[k] < of->sum->first_coupled) {
+            continue;
+        }
+        const double size = cabs(h->rho[k]);
+        sum += size * size * mt_psd_at(psd, h->re[k] / TWO_PI) / (2.0 * im) *
+               (of->sum->rounding / im);
+    }
+    return sum;
+}
+
 static void add_random(const mt_vibration *v, const mt_spectral *of, mt_vibration_response *out)
 {
     double square = 0.0;
@@ -22,7 +42,7 @@ static void add_random(const mt_vibration *v, const mt_spectral *of, mt_vibratio
         note_end(out, a.end, a.pole);
         square += a.rms * a.rms;
         /* of sqrt(sum a_i^2), by each a_i at most 1 */
-        bound += a.bound;
+        bound += a.bound + mt_spectral_root_bound(pole_rounding(&v->random[i].psd, of), a.rms);
     }
     out->rms = sqrt(square);
     out->rms_bound = bound;

@@ -40,6 +40,41 @@ class Vibration(CliTest):
                 self.assertLessEqual(abs(found["peak"] / (3 * found["rms"]) - 1), 1e-15)
                 self.assertAlmostEqual(found["rms_g"] * G, found["rms"], delta=1e-14 * want)
 
+    def test_the_bound_holds_next_to_an_undamped_pole(self):
+        """Where the rounding of the pole itself decides; and it is no larger than that."""
+        profile = self.profile(axis="x", random={"psd_m2_per_s3": [[1e-9, 0.3], [1e9, 0.3]]})
+        for power in range(-40, -5):
+            zeta, hz = 10 ** (power / 4), 22.09
+            found = self.shaken(self.write("one.json", one(zeta, hz)), "--vibration", profile)["responses"][0]["vibration"]
+            outside = 4 * (zeta * hz) ** 2 / 1e9 + 1e-9
+            want = math.sqrt((math.pi / 2 * hz / (2 * zeta) * (1 + 4 * zeta ** 2) - outside) * 0.3)
+            self.assertLessEqual(abs(found["rms"] - want), found["rms_error_at_most"] + 1e-15 * want, zeta)
+            self.assertLessEqual(found["rms_error_at_most"], (2e-11 + 2e-15 / zeta) * want, zeta)
+
+    def test_the_bound_holds_where_damping_couples_modes(self):
+        """The same chain with all forces times 3: two computations of one number, which whole numbers times powers of 2 leave exact."""
+        profile = self.profile(axis="x", random={"psd_m2_per_s3": [[1e-3, 0.3], [1e3, 0.3]]})
+        differ = 0
+        for power in range(-36, -8, 2):
+            rms = []
+            for times in (1, 3, 5, 7):
+                model, *_ = chain(1, 4)
+                for i, body in enumerate(model["bodies"]):
+                    body["mass_kg"] = times * (1 + i)
+                for i, spring in enumerate(model["springs"]):
+                    spring["stiffness_n_per_m"] = times * (100 + 37 * i)
+                for i, damper in enumerate(model["dampers"]):
+                    damper["damping_n_s_per_m"] = times * (1 + i * i) * 2.0 ** power
+                path = self.write("chain.json", json.dumps(model))
+                found = self.shaken(path, "--vibration", profile, "--output", "b2.x:relative_displacement")["responses"][0]["vibration"]
+                rms.append((found["rms"], found["rms_error_at_most"]))
+            for a, error in rms:
+                for b, other in rms:
+                    self.assertLessEqual(abs(a - b), error + other, power)
+                    differ += abs(a - b) > 1e-11 * a
+                self.assertLessEqual(error, (1e-9 + 1e-12 * 2.0 ** -power) * a)
+        self.assertGreater(differ, 0, "rounding of the poles is not seen here")
+
     def test_a_chain_has_the_variances_of_lyapunov(self):
         profile = self.profile(axis="x", random={"psd_m2_per_s3": [[1e-9, 2.0], [1e9, 2.0]]})
         for seed, n in ((1, 3), (2, 6), (3, 12)):
