@@ -219,6 +219,16 @@ def huge_range(curve, points):
     points["magnitude"] = [10.0 ** (-300 + 600 * i / max(1, n - 1)) for i in range(n)]
 
 
+def largest(curve, points):
+    n = len(points["magnitude"])
+    points["magnitude"] = [1e308 if i % 3 else 1.7e308 for i in range(n)]
+
+
+def ends_of_range(curve, points):
+    n = len(points["magnitude"])
+    points["magnitude"] = [(5e-324, 1e308, 1.0)[i % 3] for i in range(n)]
+
+
 def trouble(curve, points):
     curve.update(trouble="a motion grows by itself here", extremes=[], vibration=None)
     for key in points:
@@ -244,7 +254,7 @@ KINDS.update({
 })
 # Of results that have curves.
 CURVES = {f"curve_{change.__name__}": (lambda r, c=change: (profile(r), drawn(r, c))) for change in
-          (infinite, first_only, unlike, huge_range, trouble)}
+          (infinite, first_only, unlike, huge_range, largest, ends_of_range, trouble)}
 CURVES.update({"profile": profile, "measured": measured, "curve_text_script": lambda r: texts(r, TEXTS["script"]), "curve_text_long": lambda r: texts(r, TEXTS["long"]),
                "curve_negative": lambda r: (profile(r), numbers(r, -1.0)), "curve_large": lambda r: (profile(r), numbers(r, 1e9)),
                "curve_zeros": lambda r: (profile(r), zeros(r)), "curve_nulls": lambda r: (profile(r), nulls(r))})

@@ -16,6 +16,9 @@
   const LOG10 = Math.LN10;
 
   const asked = () => D.clean(mt.result().curves).slice(0, MOST);
+  // Beyond these a scale has no room for what lies beside them; drawn there.
+  const DRAWN = [1e-290, 1e290];
+
   const positive = (x) => T.isNumber(x) && x > 0;
 
   // Points { f, m, p } of curve k at a design, phases turned on; pieces end at resonances that
@@ -32,7 +35,7 @@
       if (positive(f) && positive(m) && T.isNumber(p) && f >= c.lower_hz * (1 - 1e-6) &&
         f <= c.upper_hz * (1 + 1e-6) && (at.length === 0 || f >= at[at.length - 1].f)) {
         before = at.length === 0 ? p - 360 * Math.round(p / 360) : turned(p, before);
-        at.push({ f, m, p: before });
+        at.push({ f, m: Math.min(Math.max(m, DRAWN[0]), DRAWN[1]), p: before });
       }
     });
     const extremes = D.clean(own && own.extremes).filter((x) => positive(x.frequency_hz) &&
@@ -68,7 +71,7 @@
   // Straight over log f: phase, and magnitude in its logarithm.
   function between(a, b, f) {
     const part = b.f > a.f ? Math.log(f / a.f) / Math.log(b.f / a.f) : 0;
-    return { f, m: a.m * Math.exp(part * Math.log(b.m / a.m)), p: a.p + part * (b.p - a.p) };
+    return { f, m: Math.pow(a.m, 1 - part) * Math.pow(b.m, part), p: a.p + part * (b.p - a.p) };
   }
 
   // The points of a piece, and as many more between them as a turn of a few degrees needs, at
@@ -79,7 +82,7 @@
       if (i > 0) {
         const a = piece[i - 1];
         const n = Math.min(40, Math.ceil(Math.abs(b.p - a.p) / 4 +
-          Math.abs(Math.log(b.m / a.m)) * 5));
+          Math.abs(Math.log(b.m) - Math.log(a.m)) * 5));
         const inside = (more || []).filter((f) => f > a.f && f < b.f);
         for (let k = 1; k < n; k++) {
           inside.push(a.f * Math.pow(b.f / a.f, k / n));
@@ -151,13 +154,13 @@
     const high = real.length > 0 ? d3.max(real) : 1;
     const low = Math.max(real.length > 0 ? d3.min(real) : 1, high * Math.pow(10, -DECADES),
       Number.MIN_VALUE * 1e20);
-    const pad = Math.max(1.15, Math.pow(high / low, 0.05));
+    const pad = Math.max(1.15, Math.exp(0.05 * (Math.log(high) - Math.log(low))));
     return [low / pad, Math.min(high * pad, Number.MAX_VALUE / 10)];
   }
 
   // Values of a logarithmic scale: decades, or 1, 2, 5 of few.
   function ticks([low, high], most) {
-    const decades = Math.log(high / low) / LOG10;
+    const decades = (Math.log(high) - Math.log(low)) / LOG10;
     const step = Math.max(1, Math.ceil(decades / most));
     const parts = decades < most / 2.5 ? [1, 2, 5] : [1];
     const made = [];
