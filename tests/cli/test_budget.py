@@ -44,7 +44,7 @@ class Budget(CliTest):
     def test_the_best_design_is_analysed_again_however_short_the_time(self):
         asked = json.loads((self.folder / "studies/long.json").read_text())
         self.write("studies/hard.json", json.dumps({**asked, "recommendations": 9, "search": {**asked["search"], "starts": 400}}))
-        met = 0
+        seen = 0
         for seconds in ("0.02", "0.4", "1.2", "3.6", "10.8"):
             done = self.run_program("run", "studies/hard.json", "--time", seconds)
             self.assertIn(done.returncode, (0, 1), done.stderr)
@@ -54,7 +54,8 @@ class Budget(CliTest):
                 continue
             found = json.loads(path.read_bytes())
             path.unlink()
-            if found["status"] == "solved":
+            seen += len(found["recommendations"])
+            if found["status"] == "solved":  # the time was long enough
                 break
             self.assertEqual((found["status"], found["run"]["cut_by"]), ("time_limit", "time limit"))
             self.assertEqual(done.returncode, self.code_of(found))
@@ -64,8 +65,7 @@ class Budget(CliTest):
                 self.assertEqual(sorted(design["values"]), sorted(found["variables"]))
                 self.assertTrue(all(math.isfinite(x) for x in design["values"].values()))
                 self.assertIn(design["text"], done.stdout)
-            met += done.returncode == 0
-        self.assertGreater(met, 0, "no time was long enough")
+        self.assertGreater(seen, 0, "no time was long enough")
 
     def test_a_part_that_is_out_of_time_is_not_done(self):
         done = self.expect(1, "run", "studies/long.json", "-o", "parts", "--shard", "1/2", "--time", "0.2")
