@@ -333,10 +333,14 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "stability "
         "rounding hides, is refused, and so is the force of a joint that is redundant with "
         "others."),
-    COMMAND(MT_CMD_INFO, "info", "MODEL", 1, 1,
-            "masses, mobility and redundancies of each configuration",
-            "Prints the total mass, its centre and inertia, the freedoms, and the sets of "
-            "redundant joints of each configuration, in the position where it is linearised."),
+    COMMAND(
+        MT_CMD_INFO, "info", "MODEL", 1, 1,
+        "masses, mobility and redundancies of each configuration",
+        "Prints the total mass, its centre and inertia, the freedoms, and the sets of "
+        "redundant joints of each configuration, in the position where it is linearised; and "
+        "what signs, axes and orders of bodies were understood to mean, where the model has "
+        "numbers that depend on them: preloads, free angles, moments, gear ratios, products "
+        "of inertia, sections, bushings."),
     COMMAND(
         MT_CMD_SHOW, "show", "MODEL|RESULT.json", 1, 1, "the mechanism, in three dimensions",
         "Prints a page that shows the mechanism: bodies with their ellipsoids of inertia, "

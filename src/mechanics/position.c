@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/text.h"
 #include "base/tie.h"
 #include "mechanics/drive.h"
 #include "mechanics/newton_tangent.h"
@@ -96,7 +97,7 @@ static bool is_direct(const mt_state *p)
 /* A spring that is trimmed by less than this part of how far the mechanism moves does no work
  * on the motion of the driven joint: what is left is rounding of the walk. */
 static const double TRIM_LEAST = 1e-7;
-enum { PLACE_SIZE = 64 };
+enum { PLACE_SIZE = 320 };
 
 /*
  * The force tau of a trimmed spring acts along the gradient t of its stretch. Along v = dq/ds,
@@ -128,10 +129,13 @@ static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt
     const char *const joint = sys->joints[sys->drive_joint].name;
     int line = 0;
     int column = 0;
+    const bool known = c->drive.trim && strcmp(c->drive.trim_name.s, spring) == 0 &&
+                       m->path != NULL &&
+                       mt_model_place(m, c->drive.trim_name.addr, &line, &column);
     char place[PLACE_SIZE] = "";
-    if (c->drive.trim && strcmp(c->drive.trim_name.s, spring) == 0 &&
-        mt_model_place(m, c->drive.trim_name.addr, &line, &column)) {
-        (void)mt_snprintf(place, sizeof place, " (line %d, column %d)", line, column);
+    if (known) {
+        (void)mt_snprintf(place, sizeof place, " (%s:%d:%d)", mt_text_base_name(m->path), line,
+                          column);
     }
     return mt_fail(err, MT_E_INPUT,
                    "trim: spring \"%s\" cannot hold \"%s\": its force does no work when \"%s\" "

@@ -51,7 +51,7 @@ class Possible(CliTest):
             for command in ("check", "modes"):
                 done = self.expect(code, command, path)
                 if code:
-                    self.assertIn(f'spring "kr" cannot hold "pitch": its force does no work when "pitch" moves (line {line}, column 14)', done.stderr)
+                    self.assertIn(f'spring "kr" cannot hold "pitch": its force does no work when "pitch" moves (p.json:{line}:14)', done.stderr)
 
     def test_a_drive_that_an_option_drops(self):
         """As with `like`: of two joints one is driven, and that is said."""
