@@ -84,6 +84,7 @@ static mt_table csv_table(void)
     mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
     mt_table_column(&t, "Hz per %", "hz_per_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "Hz per unit", "hz_per_unit", MT_ALIGN_POINT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
     return t;
 }
 
@@ -99,6 +100,7 @@ static void fill_csv(mt_table *t, const mt_survey *v)
             mt_table_number(t, v->value[k], HZ_DIGITS);
             mt_table_number(t, mt_survey_per_percent(v, i, k), DIGITS);
             mt_table_number(t, v->per_unit[i + ((ptrdiff_t)k * v->room)], DIGITS);
+            mt_table_text(t, unit_of(v, k));
         }
     }
 }

@@ -11,10 +11,10 @@
 #include "expr/units.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/base.h"
+#include "base/digits.h"
 #include "expr/unit_list.h"
 
 #define PI  3.14159265358979323846
@@ -121,30 +121,6 @@ double mt_unit_from_si(const mt_unit *unit, double value)
     return unit == NULL ? value : scaled(unit, value, unit->denominator, unit->numerator);
 }
 
-/* The number of 15 digits, which every double keeps, next to x: an integer n below 1e15 over
- * (or times) a power of ten, which as p + e of two doubles is exact; the quotient is corrected
- * by its remainder. NaN where the power is not exact. */
-static double shortened(double x)
-{
-    enum { DIGITS = 15, EXACT = 22, SUM = 44 };
-    const int k = x == 0.0 ? 0 : DIGITS - 1 - (int)floor(log10(fabs(x)));
-    double power = 1.0;
-    double more = 1.0;
-    if (k > SUM || k < -EXACT) {
-        return nan("");
-    }
-    for (int i = 0; i < abs(k); i++) {
-        *(i < EXACT ? &power : &more) *= 10.0;
-    }
-    if (k < 0) {
-        return round(x / power) * power;
-    }
-    const double p = power * more;
-    const double n = round(x * p);
-    const double q = n / p;
-    return q + (fma(-q, p, n) - q * fma(power, more, -p)) / p;
-}
-
 double mt_unit_written(const mt_unit *unit, double value)
 {
     enum { NEAR = 2 };
@@ -152,7 +128,7 @@ double mt_unit_written(const mt_unit *unit, double value)
     if (unit == NULL || !isfinite(number)) {
         return number;
     }
-    const double few = shortened(number);
+    const double few = mt_few_digits(number);
     if (mt_unit_to_si(unit, few) == value) {
         return few;
     }

@@ -467,11 +467,11 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
     }
     for (int k = 0; k < result->n_variables; k++) {
         const bool has = k < r->n_parameters;
-        mt_table_number(t,
-                        !has          ? nan("")
-                        : is_baseline ? r->parameters[k].original
-                                      : r->parameters[k].recommended,
-                        VALUE_DIGITS);
+        mt_table_in_unit(t,
+                         !has          ? nan("")
+                         : is_baseline ? r->parameters[k].original
+                                       : r->parameters[k].recommended,
+                         has ? r->parameters[k].display_factor : nan(""), VALUE_DIGITS);
     }
     for (int k = 0; k < baseline->n_frequencies; k++) {
         const mt_result_frequency *const f = same_frequency(r, &baseline->frequencies[k]);
@@ -481,6 +481,24 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
             mt_table_number(t, f == NULL ? nan("") : f->highest_hz, HZ_DIGITS);
         }
     }
+}
+
+/* "k_1 [N/mm]" */
+static void variable_column(mt_table *t, const mt_result *result, int k)
+{
+    const bool has = k < result->baseline.n_parameters;
+    const mt_result_parameter *const p = has ? &result->baseline.parameters[k] : NULL;
+    const char *const unit = p == NULL                 ? NULL
+                             : p->display_unit != NULL ? p->display_unit
+                                                       : p->unit;
+    mt_text name = {.s = NULL};
+    mt_text_add(&name, result->variables[k]);
+    if (unit != NULL && *unit != '\0' && strcmp(unit, "1") != 0) {
+        mt_text_addf(&name, " [%s]", unit);
+    }
+    const char *const heading = name.failed || name.s == NULL ? result->variables[k] : name.s;
+    mt_table_column(t, heading, heading, MT_ALIGN_RIGHT);
+    mt_text_free(&name);
 }
 
 mt_table mt_report_designs(const mt_result *result)
@@ -501,7 +519,7 @@ mt_table mt_report_designs(const mt_result *result)
         mt_table_column(&t, "gap_assignment", "gap_assignment", MT_ALIGN_RIGHT);
     }
     for (int k = 0; k < result->n_variables; k++) {
-        mt_table_column(&t, result->variables[k], result->variables[k], MT_ALIGN_RIGHT);
+        variable_column(&t, result, k);
     }
     const int ranged = result->baseline.worst_case == NULL ? 1 : MT_COUNT(ends);
     for (int k = 0; k < ranged * result->baseline.n_frequencies; k++) {

@@ -570,7 +570,8 @@ mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
 /* All that it has borrowed becomes its own. Fails: MT_E_MEMORY. */
 mt_status mt_result_own(mt_result *result, mt_err *err);
 
-/* A value in the unit that people are shown (display_factor). */
+/* A value in the unit that people are shown (display_factor): of at most 15 digits where such a
+ * number is the same within rounding, 29.1 mm of 0.0291 m. */
 double mt_result_shown(double value, double factor);
 
 /* What these structs hold, member by member as in JSON. */

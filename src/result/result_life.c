@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The life of a result: made, filled, copied, taken back. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/digits.h"
 #include "result/result.h"
 
 mt_status mt_result_new(mt_result **out, mt_err *err)
@@ -33,7 +35,12 @@ void mt_result_delete(mt_result *result)
 
 double mt_result_shown(double value, double factor)
 {
-    return factor > 0.0 ? value / factor : value;
+    if (!(factor > 0.0) || factor == 1.0) {
+        return value;
+    }
+    const double number = value / factor;
+    const double few = mt_few_digits(number);
+    return fabs(few * factor - value) <= DBL_EPSILON * fabs(value) ? few : number;
 }
 
 mt_result_mark mt_result_get_mark(const mt_result *result)

@@ -65,7 +65,7 @@ class Run(CliTest):
             self.assertAlmostEqual(got[1], want[1], delta=1e-5)  # goals are met within 1e-4 %, and the slopes are about 1
         rows = list(csv.DictReader((folder / "recommendations.csv").read_text(encoding="utf-8").splitlines()))
         self.assertEqual([r["rank"] for r in rows], ["0", "1", "2"])
-        self.assertEqual((rows[0]["k1"], rows[0]["k2"]), ("3", "1"))
+        self.assertEqual((rows[0]["k1 [N/m]"], rows[0]["k2 [N/m]"]), ("3", "1"))
         page = (folder / "report.html").read_text(encoding="utf-8")
         self.assertTrue(page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n"))
         for part in ("Two springs\n", "\nParameters\n", "\nFrequencies\n", "\nWhy: what changes\n", "\nAll recommendations\n"):

@@ -3,6 +3,7 @@
 what is shown is in the units that were given; what looks like a number of another unit is refused. MT_EVERY=1: every quick study in two ways and every model in all
 of them, else each in one way, in turn, and no study of more than a sixth of a second."""
 import copy
+import csv
 import json
 import math
 import os
@@ -289,9 +290,11 @@ class Shown(CliTest):
         self.assertEqual(self.expect(0, "report", "out/ask/result.json").stdout, said)
         self.assertRegex(self.expect(0, "explain", "out/ask/result.json").stdout, rf" {re.escape(shown)} +in ")
         self.assertRegex(self.expect(0, "compare", "studies/ask.json").stdout, r"d \[in\] +6\.7 +6\.\d+ ")
-        table = (self.folder / "out/ask/recommendations.csv").read_text()
-        self.assertIn(f"{d['recommended']:.17g}", table)
-        self.assertNotIn("[in]", table)
+        rows = list(csv.DictReader((self.folder / "out/ask/recommendations.csv").read_text().splitlines()))
+        self.assertIn("k [N m/rad]", rows[0])
+        self.assertLessEqual(abs(float(rows[0]["d [in]"]) * 0.0254 - 0.17), math.ulp(0.17))
+        self.assertLessEqual(abs(float(rows[1]["d [in]"]) * 0.0254 - d["recommended"]), 2 * math.ulp(d["recommended"]))
+        self.assertEqual(float(rows[1]["k [N m/rad]"]), result["recommendations"][0]["parameters"][1]["recommended"])
         self.assertIn("<td>in</td>", (self.folder / "out/ask/report.html").read_text())
 
     def test_the_parameter_s_unit_holds_where_the_study_says_none(self):
@@ -427,6 +430,8 @@ class Shown(CliTest):
         self.assertEqual((a["unit"], a["display_unit"], a["display_factor"], a["lower"], a["upper"]), ("N m/rad", "N mm/rad", 0.001, 2000, 4000))
         self.assertEqual((b["unit"], b["display_unit"], b["display_factor"], b["lower"], b["upper"]), ("kg", "g", 0.001, 2, 2.6))
         applied = json.loads(self.expect(0, "apply", "out/shop/result.json").stdout)["parameters"]
+        row = list(csv.DictReader((self.folder / "out/shop/recommendations.csv").read_text().splitlines()))[0]
+        self.assertEqual((row["k [N mm/rad]"], row["m [g]"]), ("3000000", "2300"))
         for p, name in ((a, "k"), (b, "m")):
             self.assertEqual(applied[name]["unit"], p["display_unit"])
             self.assertLessEqual(abs(applied[name]["value"] / 1000 - p["recommended"]), math.ulp(p["recommended"]))

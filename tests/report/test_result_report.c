@@ -210,7 +210,7 @@ static void designs__have_the_baseline_first_and_one_column_per_variable(mt_test
     mt_table_csv(&designs, &out);
     CHECK_STR(t, out.s,
               "rank,feasible,grade,score,objective mass of <bar>* [kg],change,misfit,"
-              "violation_percent,k<1>,m,held.mode_1_hz,held.mode_2_hz\r\n"
+              "violation_percent,k<1> [N/m],m,held.mode_1_hz,held.mode_2_hz\r\n"
               "0,true,feasible,,1.25,0.5,,,50,1,1,2\r\n"
               "1,true,feasible,,1.25,0.5,,,92.941999999999993,0.5,1,2\r\n");
     mt_text_free(&out);
