@@ -77,8 +77,8 @@ mt_status mt_track_match(mt_analysis *a, int n, const double *const *w, mt_track
                          mt_err *err);
 
 /*
- * Where the named mode (weighed shape w) is at position pos, in a cluster of the last solve: the
- * derivatives of its eigenvalue by all inputs, along the vector of the cluster that has its
+ * Where the named mode (weighed shape w) is at position pos, in a cluster of the last solve:
+ * the derivatives of its eigenvalue by all inputs, along the vector of the cluster that has its
  * shape,
  *     y = sum_k c_k y_k / |c|,   c_k = phi_0^T M_0 phi_k,
  * which is the mode's own where frequencies cross. *own: the cluster holds more than
