@@ -87,20 +87,15 @@ static bool make_room(mt_sorted *t, mt_arena *mem)
 bool mt_sorted_add(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const void *context,
                    const void *key)
 {
-    int *path[DEEPEST];
+    int *path[DEEPEST] = {&t->root}; /* the links from the root to the new leaf */
     int depth = 0;
     if (!make_room(t, mem)) {
         return false;
     }
-    for (int *at = &t->root; *at != 0;) {
-        path[depth++] = at;
-        at = link_of(t, *at, compare(context, key, *at - 1) < 0 ? BEFORE : BEHIND);
-        if (*at == 0) {
-            path[depth] = at;
-        }
-    }
-    if (depth == 0) {
-        path[0] = &t->root;
+    while (*path[depth] != 0) {
+        const int at = *path[depth];
+        const int side = compare(context, key, at - 1) < 0 ? BEFORE : BEHIND;
+        path[++depth] = link_of(t, at, side);
     }
     t->n++;
     t->level[t->n - 1] = 1;

@@ -42,12 +42,12 @@ struct mt_journal {
     int n;
     int room;
     record *records; /* [n], by key once they are asked for */
-    bool sorted;
     mt_journal_counts counts;
-    char *path;   /* of new records; NULL: they go nowhere */
+    char *path; /* of new records; NULL: they go nowhere */
+    int fd;     /* has the lock of the file at `path`, which is ours; -1: not made yet */
+    bool sorted;
     bool torn;    /* a file that was read ends within its head: it is written anew */
-    int fd;       /* has the lock of the file at `path`, which is ours; -1: not made yet */
-    bool begun;   /* it has its head, and ends with a line */
+    bool begun;   /* the file has its head, and ends with a line */
     mt_text line; /* under way */
     mt_err err;   /* the first failure of writing: nothing is written after it */
 };
@@ -310,34 +310,53 @@ static bool remove_file(const mt_journal *j)
     return unlinkat(AT_FDCWD, j->path, 0) == 0 || errno == ENOENT || errno == ENOTDIR;
 }
 
-/* The same, to be put aside. */
-static mt_journal_place put_aside(mt_journal *j)
+/* For looking at it; -1 with errno also where it is no regular file. */
+static int open_regular(const char *path)
 {
-    mt_text old = {.s = NULL};
     struct stat st;
-    mt_journal_place place = MT_JOURNAL_FAILED;
-    const int fd = mt_file_open(MT_FILE_HERE, j->path);
-    mt_text_add(&old, j->path);
-    mt_text_add(&old, MT_JOURNAL_OLD);
-    if (fd < 0 && errno == ENOENT) {
-        place = MT_JOURNAL_NEW;
-    } else if (fd < 0 || fstat(fd, &st) != 0) {
-        fail(j);
-    } else if (!S_ISREG(st.st_mode)) {
-        errno = ENXIO;
-        fail(j);
-    } else if (is_held(fd)) {
-        place = MT_JOURNAL_HELD;
-    } else if (old.failed) {
-        (void)mt_fail_memory(&j->err);
-    } else if (renameat(AT_FDCWD, j->path, AT_FDCWD, old.s) != 0 || !remove_file(j)) {
-        fail(j); /* two names of one file do not replace each other */
-    } else {
-        place = MT_JOURNAL_KEPT;
+    const int fd = mt_file_open(MT_FILE_HERE, path);
+    const int code = fd < 0 || fstat(fd, &st) != 0 ? errno : S_ISREG(st.st_mode) ? 0 : ENXIO;
+    if (code == 0) {
+        return fd;
     }
     if (fd >= 0) {
         (void)close(fd);
     }
+    errno = code;
+    return -1;
+}
+
+/* Two names of one file do not replace each other: then one of them goes. */
+static bool rename_to(const mt_journal *j, const char *old)
+{
+    return renameat(AT_FDCWD, j->path, AT_FDCWD, old) == 0 && remove_file(j);
+}
+
+/* The same, to be put aside. */
+static mt_journal_place put_aside(mt_journal *j)
+{
+    mt_text old = {.s = NULL};
+    mt_journal_place place = MT_JOURNAL_FAILED;
+    const int fd = open_regular(j->path);
+    if (fd < 0 && errno == ENOENT) {
+        return MT_JOURNAL_NEW;
+    }
+    if (fd < 0) {
+        fail(j);
+        return MT_JOURNAL_FAILED;
+    }
+    mt_text_add(&old, j->path);
+    mt_text_add(&old, MT_JOURNAL_OLD);
+    if (is_held(fd)) {
+        place = MT_JOURNAL_HELD;
+    } else if (old.failed) {
+        (void)mt_fail_memory(&j->err);
+    } else if (rename_to(j, old.s)) {
+        place = MT_JOURNAL_KEPT;
+    } else {
+        fail(j);
+    }
+    (void)close(fd);
     mt_text_free(&old);
     return place;
 }
