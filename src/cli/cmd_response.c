@@ -260,6 +260,7 @@ static int one(sink *to, mt_subject *s, int c)
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             mt_response_print(&j.v, to->out);
+            mt_subject_note_links(s, c, to->out);
             break;
         }
     } else if (to->args->format == MT_FORMAT_JSON) {

@@ -194,6 +194,7 @@ static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_wr
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             write_text(out, &v);
+            mt_subject_note_links(s, c, out);
             break;
         }
     }

@@ -241,6 +241,7 @@ static int put(const job *j, mt_text *out)
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         mt_simulate_print(&j->view, out);
+        mt_subject_note_links(j->s, j->c, out);
         return MT_EXIT_DONE;
     }
     return MT_EXIT_DONE;

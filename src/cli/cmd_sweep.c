@@ -269,6 +269,7 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             mt_sweep_print(&j.v, to->out);
+            mt_subject_note_links(s, c, to->out);
             break;
         }
     } else if (to->args->format == MT_FORMAT_JSON) {

@@ -227,6 +227,22 @@ const char *mt_subject_configuration(const mt_subject *s, int c)
     return s->model->configurations[c].name.s;
 }
 
+void mt_subject_note_links(const mt_subject *s, int c, mt_text *out)
+{
+    mt_arena mem = {.first = NULL};
+    bool any = false;
+    for (int i = 0; i < s->model->n_links; i++) {
+        const char *const limit = mt_model_link_limit(s->model, c, i, &mem);
+        if (limit != NULL) {
+            mt_text_addf(out, "  Note: %s.\n", limit);
+            any = true;
+        }
+    }
+    mt_text_add(out, any ? "\n" : "");
+    out->failed = out->failed || mt_arena_failed(&mem);
+    mt_arena_free(&mem);
+}
+
 void mt_subject_warn_dropped(const mt_subject *s, int c, const char *option, const char *joint)
 {
     const mt_configuration *const conf = &s->model->configurations[c];

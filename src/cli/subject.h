@@ -4,6 +4,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/lowest.h"
+#include "base/text.h"
 #include "cli/args.h"
 #include "model/model.h"
 
@@ -59,6 +60,8 @@ const char *mt_cli_method(mt_lowest_way way);
 mt_status mt_subject_admit_dense(const mt_subject *s, int c, const char *why, mt_err *err);
 /* Warn where the configuration's own overrides win over --set. */
 void mt_subject_warn_overridden(const mt_subject *s, int c);
+/* What links of configuration c leave out, a note each, after an answer in text. */
+void mt_subject_note_links(const mt_subject *s, int c, mt_text *out);
 /* Warn where `option` moves another joint than the configuration's own drive, which is dropped
  * then: one joint is driven. */
 void mt_subject_warn_dropped(const mt_subject *s, int c, const char *option, const char *joint);

@@ -15,6 +15,10 @@
 void mt_model_judge(const mt_model *model, int configuration, const double *value,
                     mt_doubt_list *out);
 
+/* What a kind of link leaves out, in a sentence in mem, which every answer says; NULL: nothing. */
+const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
+                                mt_arena *mem);
+
 /* Are the numbers of a configuration those of a mechanism, with these inputs? Scratch from mem.
  * Fails: MT_E_USAGE (the first fault that mt_model_judge finds), as mt_model_numbers. */
 mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,

@@ -111,19 +111,20 @@ static void judge_bushing(mt_judge *j, const mt_item *item, const mt_spring *s, 
 }
 
 /* Rigid elements are joined by hinges about one axis. */
-static void judge_link(mt_judge *j, const mt_item *item, const mt_link *l)
+const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
+                                mt_arena *mem)
 {
-    if (j->model->dimension == 2 || l->kind == MT_LINK_BEAM || l->elements < 2) {
-        return;
+    const mt_link *const l = &model->links[link];
+    if (model->dimension == 2 || l->kind == MT_LINK_BEAM || l->elements < 2 ||
+        !mt_model_present(&l->in, configuration)) {
+        return NULL;
     }
-    (void)mt_judge_place(
-        j,
-        mt_doubt_add(j->out, MT_LEVEL_FACT, "one_axis",
-                     "link \"%s\" of rigid elements bends about its hinge axis only: about the "
-                     "other axis, and in torsion, it is rigid (\"kind\": \"beam\" bends about "
-                     "both)",
-                     item->name),
-        l->name.addr, mt_arena_printf(j->out->mem, "/links/%d", item->index));
+    return mt_arena_printf(
+        mem,
+        "link \"%s\" of rigid elements bends about its hinge axis only: about "
+        "the other axis, and in torsion, it is rigid (\"kind\": \"beam\" bends "
+        "about both)",
+        l->name.s);
 }
 
 void mt_judge_meant(mt_judge *j, double size)
@@ -141,9 +142,11 @@ void mt_judge_meant(mt_judge *j, double size)
         }
     }
     for (int i = 0; i < m->n_links; i++) {
-        const mt_item item = {"link", "links", i, m->links[i].name.s};
-        if (mt_model_present(&m->links[i].in, j->configuration)) {
-            judge_link(j, &item, &m->links[i]);
+        const char *const limit = mt_model_link_limit(m, j->configuration, i, j->out->mem);
+        if (limit != NULL) {
+            (void)mt_judge_place(
+                j, mt_doubt_add(j->out, MT_LEVEL_FACT, "one_axis", "%s", limit),
+                m->links[i].name.addr, mt_arena_printf(j->out->mem, "/links/%d", i));
         }
     }
 }

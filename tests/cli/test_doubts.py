@@ -251,11 +251,20 @@ class Doubts(CliTest):
         foot = {"name": "foot", "type": "fixed", "bodies": ["ground", "rod.start"], "at": [0, 0, 0]}
         beam = {k: v for k, v in dict(link, kind="beam", shear_modulus_pa=8e10).items() if k != "hinge_axis"}
         for one, want in ((link, ["one_axis"]), (beam, [])):
-            path = self.put_model(base={"format": "modetune-model/1", "dimension": 3, "links": [one], "joints": [foot]})
+            arm = {"name": "arm", "mass_kg": 1, "inertia_kg_m2": [1, 1, 1], "centre": [1, 0, 0]}
+            hinge = {"name": "hinge", "type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0, 0], "axis": [0, 0, 1]}
+            spring = {"name": "hold", "type": "torsion", "joint": "hinge", "stiffness_n_m_per_rad": "k"}
+            path = self.put_model(base={"format": "modetune-model/1", "dimension": 3, "links": [one], "joints": [foot, hinge], "bodies": [arm],
+                                        "parameters": {"k": 100}, "springs": [spring], "dampers": [{"name": "pot", "type": "torsion", "joint": "hinge", "damping_n_m_s_per_rad": 1}],
+                                        "sensors": [{"name": "hand", "on": "arm"}]})
             doubts, facts = self.found(path)
             self.assertEqual((doubts, [f["kind"] for f in facts]), ([], want))
-            for fact in facts:
-                self.assertIn(fact["text"], self.expect(0, "modes", path).stdout)
+            for command in (["modes"], ["info"], ["sensitivity"], ["sweep", "--drive", "hinge=0:0.1:2"],
+                            ["simulate", "--start", "hinge=0.01", "--duration", "0.001"], ["response", "--output", "hand.y", "--input", "hand.y"]):
+                done = self.expect(0, command[0], path, *command[1:])
+                for fact in facts:
+                    self.assertIn(fact["text"], done.stdout)
+                self.assertEqual("hinge axis only" in done.stdout, bool(facts))
 
     def test_measured_frequencies_in_other_units(self):
         self.put_model()
