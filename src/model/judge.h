@@ -15,7 +15,8 @@
 void mt_model_judge(const mt_model *model, int configuration, const double *value,
                     mt_doubt_list *out);
 
-/* What a kind of link leaves out, in a sentence in mem, which every answer says; NULL: nothing. */
+/* What a kind of link leaves out, in a sentence in mem, which every answer says; NULL:
+ * nothing. */
 const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
                                 mt_arena *mem);
 
