@@ -16,15 +16,28 @@
 
 #include "base/arena.h"
 #include "base/format.h"
+#include "io/locale.h"
+
+/* What failed, for the words of the system. */
+typedef struct failed {
+    const char *path;
+    int code;
+} failed;
+
+static mt_status say_failed(void *context, mt_err *err)
+{
+    const failed *const f = context;
+    char text[128];
+    if (strerror_r(f->code, text, sizeof text) != 0) {
+        (void)mt_snprintf(text, sizeof text, "error %d", f->code);
+    }
+    return mt_fail(err, MT_E_SYSTEM, "%s: %s", f->path, text);
+}
 
 mt_status mt_file_failed(const char *path, int code, mt_err *err)
 {
-    char text[128];
-    if (strerror_r(code, text, sizeof text) != 0) {
-        (void)mt_snprintf(text, sizeof text, "error %d", code);
-    }
-    return code == ENOMEM ? mt_fail_memory(err)
-                          : mt_fail(err, MT_E_SYSTEM, "%s: %s", path, text);
+    failed f = {path, code};
+    return code == ENOMEM ? mt_fail_memory(err) : mt_locale_plain(say_failed, &f, err);
 }
 
 /* Errors that say of a name that it leads to nothing. */

@@ -190,6 +190,8 @@ class Progress(unittest.TestCase):
                 with self.subTest(locale=name):
                     self.assertEqual(without_times(modetune.solve(TUNING, progress=False)), plain)
                     changed += locale.localeconv()["decimal_point"] != "."
+                    with self.assertRaisesRegex(modetune.Error, "No such file or directory"):
+                        modetune.solve("nowhere.json", progress=False)
         finally:
             locale.setlocale(locale.LC_ALL, "C")
         self.assertTrue(changed > 0 or "MODETUNE_INSTALLED" in os.environ)
