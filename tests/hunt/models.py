@@ -190,7 +190,7 @@ def levers(rng):
     body = lambda i: f"b{i}" if i < n else "ground"
     model = {
         "format": "modetune-model/1", "name": "Levers and rods", "dimension": 2, "parameters": {**ls, **ks, **js, **ts},
-        "bodies": [{"name": f"b{i}", "mass_kg": 1, "inertia_kg_m2": inertia[i], "centre": [i, 0]} for i in range(n)],
+        "bodies": [{"name": f"b{i}", "mass_kg": 40, "inertia_kg_m2": inertia[i], "centre": [i, 0]} for i in range(n)],
         "joints": [{"name": f"h{i}", "type": "revolute", "bodies": ["ground", f"b{i}"], "at": [i, 0]} for i in range(n)],
         "springs": [{"name": f"r{i}", "type": "axial", "bodies": [body(i), body(i + 1)], "at": [[i, height[i]], [i + 1, height[i]]],
                      "stiffness_n_per_m": stiffness[i]} for i in range(n)]
