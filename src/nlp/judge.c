@@ -325,7 +325,8 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     if (!mt_nlp_has_room(e, mem)) {
         return;
     }
-    for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, mem, &out->solutions[i]); i++) {
+    for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, out, mem, &out->solutions[i]);
+         i++) {
         out->solutions[i].singular = is_singular(e, all->at[i].p, all->at[i].merged);
         out->solutions[i].flat = all->at[i].p->n_loose > single_directions(e, out);
         out->solutions[i].start = all->at[i].start;

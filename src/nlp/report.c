@@ -67,7 +67,33 @@ static void no_multipliers(const mt_nlp_engine *e, mt_nlp_solution *out)
     }
 }
 
-bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem, mt_nlp_solution *out)
+/* The part of the residual z that does not lie along undetermined directions; z is used up. */
+static double determined_part(const mt_nlp_engine *e, const mt_nlp_result *all,
+                              mt_nlp_active *a)
+{
+    double whole = 0;
+    double rest = 0;
+    for (int i = 0; i < a->n_free; i++) {
+        whole += a->z[a->free[i]] * a->z[a->free[i]];
+    }
+    for (int k = 0; k < all->n_undetermined; k++) {
+        const double *const u = all->undetermined + ((ptrdiff_t)k * e->n);
+        double along = 0;
+        for (int i = 0; i < a->n_free; i++) {
+            along += u[a->free[i]] * a->z[a->free[i]];
+        }
+        for (int i = 0; i < a->n_free; i++) {
+            a->z[a->free[i]] -= along * u[a->free[i]];
+        }
+    }
+    for (int i = 0; i < a->n_free; i++) {
+        rest += a->z[a->free[i]] * a->z[a->free[i]];
+    }
+    return whole > 0 ? sqrt(rest / whole) : 1;
+}
+
+bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_result *all,
+                   mt_arena *mem, mt_nlp_solution *out)
 {
     const mt_nlp *const q = e->nlp;
     *out = (mt_nlp_solution){.f = p->f,
@@ -99,7 +125,8 @@ bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem, mt_nl
     }
     if (ok) {
         const bool isolated = out->feasible && a.n_free > 0 && q->n_eq >= a.n_free;
-        out->kkt = isolated && a.qr.rank == a.n_free ? nan("") : a.kkt;
+        out->kkt =
+            isolated && a.qr.rank == a.n_free ? nan("") : a.kkt * determined_part(e, all, &a);
     }
     mt_arena_rewind(&e->scratch, mark);
     return ok;
