@@ -235,20 +235,37 @@ static bool is_fitted(const mt_answer *a, const mt_recommendation *best)
            a->found.stop != MT_STOP_MAX_EVALS && mt_study_is_fit(a->study);
 }
 
-/* "1.3 to 57 times" */
+/* "; 2 designs fit exactly; another local minimum has a misfit above 0" */
+static const char *exact_text(const mt_answer *a, mt_arena *mem)
+{
+    const int n = a->found.n_solutions;
+    int exact = 0;
+    while (exact < n && !(shown_misfit(a->found.solutions[exact].f) > 0.0)) {
+        exact++;
+    }
+    const char *const all =
+        exact < 2 ? "" : mt_arena_printf(mem, "; %d designs have it", exact);
+    const char *const rest =
+        exact == n ? ""
+        : exact + 1 == n
+            ? "; another local minimum has a misfit above 0"
+            : mt_arena_printf(mem, "; %d other local minima have misfits above 0", n - exact);
+    return all == NULL || rest == NULL ? NULL : mt_arena_printf(mem, "%s%s", all, rest);
+}
+
+/* "; 4 other local minima have 1.3 to 57 times it" */
 static const char *others_text(const mt_answer *a, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
+    const double least = shown_misfit(a->found.solutions[0].f);
+    if (!(least > 0.0)) {
+        return exact_text(a, mem);
+    }
     if (n < 2) {
         return "";
     }
-    const double least = shown_misfit(a->found.solutions[0].f);
     const double first = shown_misfit(a->found.solutions[1].f) / least;
     const double last = shown_misfit(a->found.solutions[n - 1].f) / least;
-    if (!isfinite(last)) {
-        return mt_arena_printf(mem, "; %d other local minim%s misfits above 0", n - 1,
-                               n == 2 ? "um has a" : "a have");
-    }
     return n == 2 ? mt_arena_printf(mem, "; another local minimum has %.3g times it", first)
                   : mt_arena_printf(mem, "; %d other local minima have %.3g to %.3g times it",
                                     n - 1, first, last);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/spent.h"
+#include "base/tie.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
 #include "problem/robust.h"
@@ -154,9 +155,9 @@ static mt_status doubt(const mt_design *design, mt_result *result, mt_recommenda
 static void grade_fit(const mt_problem *p, const mt_design *design, mt_recommendation *rec)
 {
     if (mt_study_is_fit(p->study) && rec->feasible && rec->disagreement == NULL) {
-        rec->grade = design->cut || !mt_describe_is_optimum(rec) ? "not converged"
-                     : design->rank == 1                         ? "fitted"
-                                                                 : "local minimum";
+        rec->grade = design->cut || !mt_describe_is_optimum(rec)          ? "not converged"
+                     : design->rank == 1 || rec->misfit <= MT_RATIO_NOISE ? "fitted"
+                                                                          : "local minimum";
     }
 }
 

@@ -409,8 +409,11 @@ static void say_optimality(mt_sentences *s)
 static void say_minimum(mt_sentences *s, const mt_nlp_result *search)
 {
     const double least = mt_without_noise(sqrt(2.0 * search->solutions[0].f), MT_RATIO_NOISE);
-    const double ratio = s->rec->misfit / least;
-    if (s->rec->rank == 1) {
+    const double own = mt_without_noise(s->rec->misfit, MT_RATIO_NOISE);
+    const double ratio = own / least;
+    if (s->rec->rank > 1 && !(own > 0.0)) {
+        mt_say(s, "It fits exactly, as recommendation 1 does.");
+    } else if (s->rec->rank == 1) {
         mt_say(s, "Its misfit is the least of %d local minima found from %d starts.",
                search->n_solutions, search->starts);
     } else if (isfinite(ratio)) {
