@@ -343,6 +343,28 @@ static int look_at_spring(const mt_linear *lin, mt_term_kind kind, int t, bool *
     return t;
 }
 
+static void doubt_spring(const mt_model *m, int i, mt_doubt_list *out)
+{
+    const mt_spring *const s = &m->springs[i];
+    int before = 0; /* dampers stand behind the springs */
+    for (; s->damper && before < i && !m->springs[before].damper; before++) {
+    }
+    mt_doubt *const d = mt_doubt_add(
+        out, MT_LEVEL_DOUBT, "spring",
+        "%s \"%s\" has no effect here: joints forbid every motion that it acts against",
+        s->damper ? "damper" : "spring", s->name.s);
+    if (d == NULL) {
+        return;
+    }
+    d->addr = s->name.addr;
+    d->pointer = mt_arena_printf(out->mem, "/%s/%d", s->damper ? "dampers" : "springs",
+                                 s->damper ? i - before : i);
+    if (!mt_model_place(m, d->addr, &d->line, &d->column)) {
+        d->line = 0;
+        d->column = 0;
+    }
+}
+
 /* Springs and dampers whose every direction the joints forbid. A driven joint that is locked
  * forbids its own, which is what it is for. */
 static void doubt_springs(const mt_linear *lin, mt_doubt_list *out)
@@ -363,24 +385,7 @@ static void doubt_springs(const mt_linear *lin, mt_doubt_list *out)
             if (i < 0 || !given || acts) {
                 continue;
             }
-            const mt_spring *const s = &m->springs[i];
-            int before = 0; /* dampers stand behind the springs */
-            for (; s->damper && before < i && !m->springs[before].damper; before++) {
-            }
-            mt_doubt *const d = mt_doubt_add(
-                out, MT_LEVEL_DOUBT, "spring",
-                "%s \"%s\" has no effect here: joints forbid every motion that it acts against",
-                s->damper ? "damper" : "spring", s->name.s);
-            if (d != NULL) {
-                d->addr = s->name.addr;
-                d->pointer =
-                    mt_arena_printf(out->mem, "/%s/%d", s->damper ? "dampers" : "springs",
-                                    s->damper ? i - before : i);
-                if (!mt_model_place(m, d->addr, &d->line, &d->column)) {
-                    d->line = 0;
-                    d->column = 0;
-                }
-            }
+            doubt_spring(m, i, out);
         }
     }
 }

@@ -365,31 +365,44 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                      nearest);
 }
 
-mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
+static mt_result_status status_of(const mt_answer *a, const mt_recommendation *best)
 {
-    mt_result *const result = a->result;
-    const mt_recommendation *const best =
-        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
-    const bool nothing = a->searched && result->n_recommendations == 0;
-    result->status = mt_describe_is_doubted(result)             ? MT_RESULT_COMPROMISE
-                     : a->infeasible                            ? MT_RESULT_INFEASIBLE
-                     : is_fitted(a, best)                       ? MT_RESULT_FITTED
-                     : a->searched && mt_study_is_fit(a->study) ? MT_RESULT_COMPROMISE
-                     : best->feasible                           ? MT_RESULT_SOLVED
-                                                                : MT_RESULT_COMPROMISE;
-    if (nothing && result->status == MT_RESULT_SOLVED) {
-        result->status = MT_RESULT_COMPROMISE; /* the baseline is no answer of the search */
+    if (mt_describe_is_doubted(a->result)) {
+        return MT_RESULT_COMPROMISE;
     }
-    result->status_text = status_text(a, best);
+    if (a->infeasible) {
+        return MT_RESULT_INFEASIBLE;
+    }
+    if (a->searched && mt_study_is_fit(a->study)) {
+        return is_fitted(a, best) ? MT_RESULT_FITTED : MT_RESULT_COMPROMISE;
+    }
+    /* the baseline is no answer of a search */
+    return best->feasible && (best->rank > 0 || !a->searched) ? MT_RESULT_SOLVED
+                                                              : MT_RESULT_COMPROMISE;
+}
+
+/* A posture that settles far from the drawing is said first. */
+static void tell_posture(mt_result *result)
+{
     for (int i = 0; i < result->n_facts && result->status_text != NULL; i++) {
         const mt_doubt *const d = &result->facts[i];
         if (mt_doubts_settles_far(d)) {
             result->status_text = mt_arena_printf(
                 &result->mem, "%s%s%s. %s", d->configuration == NULL ? "" : d->configuration,
                 d->configuration == NULL ? "" : ": ", d->text, result->status_text);
-            break;
+            return;
         }
     }
+}
+
+mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
+{
+    mt_result *const result = a->result;
+    const mt_recommendation *const best =
+        result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
+    result->status = status_of(a, best);
+    result->status_text = status_text(a, best);
+    tell_posture(result);
     return mt_arena_check(&result->mem, err);
 }
 

@@ -60,6 +60,7 @@ typedef struct mt_doubt {
     X("target", "a target far from the original frequency")                            \
     X("tolerance", "a tolerance within which almost anything, or nothing, lies")
 enum {
+/* NOLINTNEXTLINE(bugprone-macro-parentheses): a term of a sum */
 #define MT_DOUBT_COUNT_ONE(name, of) +1
     MT_DOUBT_NAME_COUNT = 0 MT_DOUBT_NAMES(MT_DOUBT_COUNT_ONE)
 #undef MT_DOUBT_COUNT_ONE

@@ -105,39 +105,9 @@ static void fill_csv(mt_table *t, const mt_survey *v)
     }
 }
 
-static void write_text(mt_text *out, const mt_survey *v)
+static void write_notes(mt_text *out, const mt_survey *v, bool repeated, bool coordinates,
+                        bool overridden)
 {
-    mt_table t = mt_table_default();
-    bool repeated = false;
-    bool overridden = false;
-    bool coordinates = false;
-    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
-    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
-    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
-    for (int i = 0; i < v->modes; i++) {
-        char heading[HEADING_TEXT];
-        (void)mt_snprintf(heading, sizeof heading, "%d%s (%.5g Hz)", i + 1,
-                          v->repeated[i] ? "*" : "", v->hz[i]);
-        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
-        repeated = repeated || v->repeated[i];
-    }
-    for (int k = 0; k < v->n; k++) {
-        const bool percent = mt_survey_has_percent(v, k);
-        char name[NAME_TEXT];
-        (void)mt_snprintf(name, sizeof name, "%s (1 mm)", name_of(v, k));
-        mt_table_text(&t, percent ? name_of(v, k) : name);
-        coordinates = coordinates || !percent;
-        mt_table_number(&t, mt_unit_from_si(shown_in(v, k), v->value[k]), HZ_DIGITS);
-        mt_table_text(&t, mt_unit_name(shown_in(v, k), unit_of(v, k)));
-        for (int i = 0; i < v->modes; i++) {
-            mt_table_change(&t, mt_survey_shown(v, i, k), DIGITS);
-        }
-        overridden = overridden || v->overridden[k];
-    }
-    mt_text_addf(out, "%s: Hz for one per cent more of each parameter, by mode\n",
-                 mt_subject_configuration(v->s, v->c));
-    mt_table_print(&t, 2, mt_terminal_width(), out);
-    mt_table_free(&t);
     if (coordinates) {
         mt_text_add(out,
                     "  (1 mm): for one millimetre more; of a coordinate at or below 0 one per "
@@ -173,6 +143,42 @@ static void write_text(mt_text *out, const mt_survey *v)
         mt_text_add(out, "  UNSTABLE: this position does not hold.\n");
     }
     mt_text_add(out, "\n");
+}
+
+static void write_text(mt_text *out, const mt_survey *v)
+{
+    mt_table t = mt_table_default();
+    bool repeated = false;
+    bool overridden = false;
+    bool coordinates = false;
+    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    for (int i = 0; i < v->modes; i++) {
+        char heading[HEADING_TEXT];
+        (void)mt_snprintf(heading, sizeof heading, "%d%s (%.5g Hz)", i + 1,
+                          v->repeated[i] ? "*" : "", v->hz[i]);
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+        repeated = repeated || v->repeated[i];
+    }
+    for (int k = 0; k < v->n; k++) {
+        const bool percent = mt_survey_has_percent(v, k);
+        char name[NAME_TEXT];
+        (void)mt_snprintf(name, sizeof name, "%s (1 mm)", name_of(v, k));
+        mt_table_text(&t, percent ? name_of(v, k) : name);
+        coordinates = coordinates || !percent;
+        mt_table_number(&t, mt_unit_from_si(shown_in(v, k), v->value[k]), HZ_DIGITS);
+        mt_table_text(&t, mt_unit_name(shown_in(v, k), unit_of(v, k)));
+        for (int i = 0; i < v->modes; i++) {
+            mt_table_change(&t, mt_survey_shown(v, i, k), DIGITS);
+        }
+        overridden = overridden || v->overridden[k];
+    }
+    mt_text_addf(out, "%s: Hz for one per cent more of each parameter, by mode\n",
+                 mt_subject_configuration(v->s, v->c));
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+    write_notes(out, v, repeated, coordinates, overridden);
 }
 
 /* *wrong: parameters were asked for that there are not. */

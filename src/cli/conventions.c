@@ -191,27 +191,29 @@ static void write_gears(writer *w)
     }
 }
 
+static void write_load(writer *w, const mt_load *load)
+{
+    double v = 0.0;
+    const pair of = pair_of(w, load->joint, NULL);
+    const bool on_joint = load->joint_name.s != NULL;
+    if (load->has_moment && has(w, load->moment, &v) && begins(w)) {
+        mt_text_addf(w->out, "load \"%s\": moment_n_m %g turns \"%s\" %s%s%s%s\n", load->name.s,
+                     v, on_joint ? of.second : load->on.name.s, v > 0.0 ? along(w) : about(w),
+                     on_joint ? ", and \"" : "", on_joint ? of.first : "",
+                     on_joint ? "\" the other way" : "");
+    } else if (load->has_force && on_joint && has(w, load->force[0], &v) && begins(w)) {
+        mt_text_addf(w->out,
+                     "load \"%s\": force_n %g pushes \"%s\" %s the axis, and \"%s\" the other "
+                     "way\n",
+                     load->name.s, v, of.second, v > 0.0 ? "along" : "against", of.first);
+    }
+}
+
 static void write_loads(writer *w)
 {
     for (int i = 0; i < w->m->n_loads; i++) {
-        const mt_load *const load = &w->m->loads[i];
-        double v = 0.0;
-        if (!mt_model_present(&load->in, w->configuration)) {
-            continue;
-        }
-        const pair of = pair_of(w, load->joint, NULL);
-        const bool on_joint = load->joint_name.s != NULL;
-        if (load->has_moment && has(w, load->moment, &v) && begins(w)) {
-            mt_text_addf(w->out, "load \"%s\": moment_n_m %g turns \"%s\" %s%s%s%s\n",
-                         load->name.s, v, on_joint ? of.second : load->on.name.s,
-                         v > 0.0 ? along(w) : about(w), on_joint ? ", and \"" : "",
-                         on_joint ? of.first : "", on_joint ? "\" the other way" : "");
-        } else if (load->has_force && on_joint && has(w, load->force[0], &v) && begins(w)) {
-            mt_text_addf(
-                w->out,
-                "load \"%s\": force_n %g pushes \"%s\" %s the axis, and \"%s\" the other "
-                "way\n",
-                load->name.s, v, of.second, v > 0.0 ? "along" : "against", of.first);
+        if (mt_model_present(&w->m->loads[i].in, w->configuration)) {
+            write_load(w, &w->m->loads[i]);
         }
     }
 }

@@ -15,10 +15,10 @@
 static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
 {
     mt_result *result = NULL;
-    char digits[MT_ARITHMETIC_TEXT];
     MT_TRY(mt_result_new(&result, err));
     mt_status rc = mt_describe_run(study, result, err);
     if (rc == MT_OK) {
+        char digits[MT_ARITHMETIC_TEXT];
         mt_json_writer w = mt_json_writer_default(out);
         mt_json_open(&w, NULL, '{');
         mt_result_put_member(&w, "run", result);

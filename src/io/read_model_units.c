@@ -127,6 +127,7 @@ static bool unit_of_member(const char *name, mt_unit_worth *out)
         }
         text[--at] = ' ';
         at -= strlen(word);
+        /* NOLINTNEXTLINE(bugprone-not-null-terminated-result): what follows is there */
         memcpy(text + at, word, strlen(word));
         end = begin - 1;
     }

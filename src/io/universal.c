@@ -115,7 +115,7 @@ static bool is_delimiter(const line *l)
     while (end > i && (l->s[end - 1] == ' ' || l->s[end - 1] == '\t')) {
         end--;
     }
-    return end - i == 2 && l->s[i] == '-' && l->s[i + 1] == '1';
+    return end == i + 2 && l->s[i] == '-' && l->s[i + 1] == '1';
 }
 
 static void count(walk *w, long dataset, long kind, long number)

@@ -156,6 +156,9 @@ static void judge_number(mt_judge *j, mt_num num, part *stack)
             stack[n++] = leaf(j, c);
             continue;
         }
+        if (n < mt_op_operands(c->op)) { /* no expression that was parsed */
+            return;
+        }
         if (function != NULL && fabs(stack[n - 1].bare) > WHOLE_TURN) {
             say(j, num, &stack[n - 1], function);
             return;

@@ -96,8 +96,8 @@ static void judge_matrix(mt_judge *j, const mt_item *item, const mt_spring *s)
             const double below = k[(MATRIX * row) + column];
             const double above = k[(MATRIX * column) + row];
             const double size = fmax(fabs(below), fabs(above));
-            const double noise = sqrt(fabs(k[(MATRIX + 1) * row])) *
-                                 sqrt(fabs(k[(MATRIX + 1) * column])) * MATRIX_NOISE;
+            const double noise = sqrt(fabs(k[((ptrdiff_t)MATRIX + 1) * row])) *
+                                 sqrt(fabs(k[((ptrdiff_t)MATRIX + 1) * column])) * MATRIX_NOISE;
             if (!(fabs(below - above) > fmax(MATRIX_ROUNDING * size, noise))) {
                 continue;
             }

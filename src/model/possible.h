@@ -39,16 +39,16 @@ typedef enum mt_possible_id {
 
 typedef struct mt_possible {
     double least;
-    bool above; /* is `least` itself impossible? */
     double most;
-    const char *impossible; /* "must not be negative"; NULL: nothing is by itself */
     double low;
     double high;
-    bool at_high;        /* is `high` itself implausible? */
-    const char *warning; /* its name; NULL: nothing is implausible by itself */
-    const char *below;   /* "below 10 kg/m^3, ..." */
+    const char *impossible; /* "must not be negative"; NULL: nothing is by itself */
+    const char *warning;    /* its name; NULL: nothing is implausible by itself */
+    const char *below;      /* "below 10 kg/m^3, ..." */
     const char *beyond;
     const char *with; /* the function that judges it beside others; NULL: none */
+    bool above;       /* is `least` itself impossible? */
+    bool at_high;     /* is `high` itself implausible? */
 } mt_possible;
 
 extern const mt_possible mt_possible_of[MT_POSSIBLE_COUNT];

@@ -273,6 +273,24 @@ static void fill_run(mt_result *r)
                              .cut_by = "time limit"};
 }
 
+static inline void fill_published(sample *s)
+{
+    s->published[0] = mt_result_published_default();
+    s->published[0].label = "M_SAU";
+    s->published[0].pointer = "/published/0";
+    s->published[0].role = "verifies";
+    s->published[0].kind = "parameter";
+    s->published[0].published = 0.2;
+    s->published[0].computed = 0.2;
+    s->published[0].demand = "within 1 %";
+    s->published[0].holds = true;
+    s->published[1] = s->published[0];
+    s->published[1].kind = "status";
+    s->published[1].published_text = "solved";
+    s->published[1].computed_text = "compromise";
+    s->published[1].holds = false;
+}
+
 static inline bool make_sample(sample *s)
 {
     if (mt_result_new(&s->result, NULL) != MT_OK) {
@@ -311,20 +329,7 @@ static inline bool make_sample(sample *s)
     s->certificate.pointer = "/goals/0";
     s->certificate.reachable_upper_hz = 19.5;
     fill_bands(s);
-    s->published[0] = mt_result_published_default();
-    s->published[0].label = "M_SAU";
-    s->published[0].pointer = "/published/0";
-    s->published[0].role = "verifies";
-    s->published[0].kind = "parameter";
-    s->published[0].published = 0.2;
-    s->published[0].computed = 0.2;
-    s->published[0].demand = "within 1 %";
-    s->published[0].holds = true;
-    s->published[1] = s->published[0];
-    s->published[1].kind = "status";
-    s->published[1].published_text = "solved";
-    s->published[1].computed_text = "compromise";
-    s->published[1].holds = false;
+    fill_published(s);
     r->study = (mt_result_source){"Study \"1\"", "study_1.json"};
     r->model = (mt_result_source){"Inceptor", "../problems/inceptor.json"};
     r->n_doubts = MT_COUNT(DOUBTS);

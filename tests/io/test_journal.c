@@ -213,6 +213,7 @@ static void journal__is_a_regular_file_of_its_own(mt_test *t)
         mt_test_row(t, "%s%s", names[kind], adds ? ", resumed" : "");
         begin(t);
         REQUIRE(t, rename(path, old) == 0);
+        /* NOLINTNEXTLINE(readability-suspicious-call-argument): the old journal is linked to */
         const int made = kind == LINK      ? symlink(old, path)
                          : kind == NOWHERE ? symlink("nothing", path)
                          : kind == NAMES   ? link(old, path)

@@ -60,7 +60,7 @@ static said read_with(const subject *s, size_t offset, size_t token, mt_addr add
         return out;
     }
     memcpy(text, s->text, offset);
-    memcpy(text + offset, number, n);
+    memcpy(text + offset, number, n); /* NOLINT(bugprone-not-null-terminated-result) */
     memcpy(text + offset + n, s->text + offset + token, s->length - offset - token);
     if (mt_json_parse(text, s->length - token + n, &doc, NULL) == MT_OK) {
         (void)mt_model_from_json(doc, "text", &model, NULL);
