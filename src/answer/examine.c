@@ -300,7 +300,7 @@ static mt_status examine_configuration(const mt_study *s, int c, double *ratio,
                 continue;
             }
             const double hz = original_hz(s, goal, a);
-            ratio[g] = measured_hz(s, goal) / hz;
+            ratio[g] = hz > 0.0 ? measured_hz(s, goal) / hz : nan("");
             for (int slot = MT_SLOT_EQUALS; slot <= MT_SLOT_AT_MOST; slot++) {
                 doubt_target(of_study, goal, (mt_goal_slot)slot, hz);
             }

@@ -410,7 +410,7 @@ static void say_minimum(mt_sentences *s, const mt_nlp_result *search)
 {
     const double least = mt_without_noise(sqrt(2.0 * search->solutions[0].f), MT_RATIO_NOISE);
     const double own = mt_without_noise(s->rec->misfit, MT_RATIO_NOISE);
-    const double ratio = own / least;
+    const double ratio = least > 0.0 ? own / least : HUGE_VAL;
     if (s->rec->rank > 1 && !(own > 0.0)) {
         mt_say(s, "It fits exactly, as recommendation 1 does.");
     } else if (s->rec->rank == 1) {
