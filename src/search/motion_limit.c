@@ -171,8 +171,11 @@ static mt_status look(walk *w, int i, double at, bool given, mt_err *err)
 /* Slope of e from sample i to the next; NaN: there is none. */
 static double slope_after(const walk *w, int i)
 {
+    if (i < 0 || i + 1 >= w->n) {
+        return nan("");
+    }
     const sample *const s = &w->samples[i];
-    return i < 0 || i + 1 >= w->n ? nan("") : (s[1].off - s[0].off) / (s[1].at - s[0].at);
+    return (s[1].off - s[0].off) / (s[1].at - s[0].at);
 }
 
 /* How high e may be within the interval after sample i. */
@@ -189,8 +192,11 @@ static double height(const walk *w, int i)
     const double right = isfinite(after)    ? -after
                          : isfinite(before) ? (before - own) - own
                                             : -own;
+    if (!(left + right > 0.0)) {
+        return top;
+    }
     const double x = (b->off - a->off + (right * h)) / (left + right);
-    if (!(left + right > 0.0) || !(x > 0.0 && x < h)) {
+    if (!(x > 0.0 && x < h)) {
         return top;
     }
     return top + (BEYOND * (a->off + (left * x) - top));

@@ -165,6 +165,7 @@ class Between(unittest.TestCase):
                 "tones": [{"frequency_hz": [tone_low, tone_high], "acceleration_m_per_s2": 2, "origin": "assumed"}]}))
             done = run("run", "study.json", "-o", "out", "--quiet", cwd=folder)
             self.assertIn(done.returncode, (0, 1), done.stderr)
+            self.assertTrue((Path(folder) / "out/study/result.json").exists(), done.stderr)
             self.assertNotIn("holds over the range", done.stdout)
             return json.loads((Path(folder) / "out/study/result.json").read_text())
 

@@ -60,6 +60,7 @@ class Positions(unittest.TestCase):
             (here / "study.json").write_text(json.dumps(question))
             done = run("run", "study.json", "-o", "out", "--quiet", *options, cwd=folder)
             self.assertIn(done.returncode, (0, 1), done.stderr)
+            self.assertTrue((here / "out/study/result.json").exists(), done.stderr)
             self.text = done.stdout
             return json.loads((here / "out/study/result.json").read_text())
 
