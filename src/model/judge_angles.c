@@ -152,18 +152,19 @@ static void judge_number(mt_judge *j, mt_num num, part *stack)
     for (int i = 0; i < e->length; i++) {
         const mt_code *const c = &e->code[i];
         const char *const function = function_of(c->op);
-        if (mt_op_operands(c->op) == 0) {
+        const int operands = mt_op_operands(c->op);
+        if (operands <= 0) {
             stack[n++] = leaf(j, c);
             continue;
         }
-        if (n < mt_op_operands(c->op)) { /* no expression that was parsed */
+        if (n < operands) { /* no expression that was parsed */
             return;
         }
         if (function != NULL && fabs(stack[n - 1].bare) > WHOLE_TURN) {
             say(j, num, &stack[n - 1], function);
             return;
         }
-        if (mt_op_operands(c->op) == 1) {
+        if (operands == 1) {
             stack[n - 1] = unary(c->op, &stack[n - 1]);
         } else {
             stack[n - 2] = binary(c->op, &stack[n - 2], &stack[n - 1]);

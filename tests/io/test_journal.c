@@ -212,6 +212,7 @@ static void journal__is_a_regular_file_of_its_own(mt_test *t)
         const bool adds = i % 2 == 1;
         mt_test_row(t, "%s%s", names[kind], adds ? ", resumed" : "");
         begin(t);
+        /* NOLINTNEXTLINE(readability-suspicious-call-argument): it becomes the old one */
         REQUIRE(t, rename(path, old) == 0);
         /* NOLINTNEXTLINE(readability-suspicious-call-argument): the old journal is linked to */
         const int made = kind == LINK      ? symlink(old, path)
