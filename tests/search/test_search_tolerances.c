@@ -49,10 +49,7 @@ static void design__goes_to_the_worst_within(mt_test *t)
         mt_test_row(t, "%s", rows[i].name);
         for (int threads = 1; study_load(t, MODEL, rows[i].members, &c) && threads <= 8;
              threads *= 2) {
-            const mt_solve_options opt = {.size = sizeof opt, .threads = threads};
-            mt_test_row(t, "%s, %d threads", rows[i].name, threads);
-            CHECK_INT(t, mt_study_solve(c.study, &opt, &c.result, &c.err), MT_OK);
-            if (c.result == NULL || !CHECK(t, c.result->n_recommendations > 0)) {
+            if (!study_solve_threads(t, rows[i].name, threads, &c)) {
                 break;
             }
             const mt_recommendation *const best = &c.result->recommendations[0];

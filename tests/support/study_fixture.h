@@ -147,6 +147,16 @@ static inline bool study_solve(mt_test *t, const char *model, const char *member
     return ok;
 }
 
+/* Solve a study that is loaded with so many threads, for a row of that name; it must succeed,
+ * and recommend something. */
+static inline bool study_solve_threads(mt_test *t, const char *name, int threads, study_case *c)
+{
+    const mt_solve_options opt = {.size = sizeof opt, .threads = threads};
+    mt_test_row(t, "%s, %d threads", name, threads);
+    CHECK_INT(t, mt_study_solve(c->study, &opt, &c->result, &c->err), MT_OK);
+    return c->result != NULL && CHECK(t, c->result->n_recommendations > 0);
+}
+
 /* Value of a parameter in recommendation `rank` (from 1; 0: the baseline); NaN where there is
  * none. */
 static inline double study_value(const study_case *c, int rank, const char *parameter)
