@@ -4,7 +4,6 @@
 #include "answer/solve_priv.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "answer/doubts.h"
 #include "base/format.h"
@@ -121,19 +120,13 @@ static const char *early_text(const mt_answer *a, const mt_recommendation *best)
     return NULL;
 }
 
-/* Is the first objective the misfit of weighted goals? */
-static bool has_misfit(const mt_result *result)
-{
-    return result->n_objectives > 0 && strcmp(result->objectives[0].type, "misfit") == 0;
-}
-
 /* Of half its square; an exact fit leaves rounding. */
 static double shown_misfit(double f)
 {
     return mt_without_noise(sqrt(2.0 * f), MT_RATIO_NOISE);
 }
 
-/* Has the study goals besides limits that are but a scale? */
+/* There are goals besides limits that are but a scale. */
 static bool has_goals(const mt_recommendation *r)
 {
     for (int i = 0; i < r->n_goals; i++) {
@@ -213,7 +206,7 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
                                         n, doubt);
     }
     const char *const many = n == 1 ? " meets" : "s meet";
-    if (!has_misfit(a->result)) {
+    if (!mt_objective_is(a->p->aims[0].type, MT_RESIDUALS)) {
         return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n, many,
                                doubt);
     }
@@ -228,7 +221,7 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
                                     n, least, shown_misfit(a->found.solutions[n - 1].f), doubt);
 }
 
-/* Did the search of a fit end at a least misfit? */
+/* The search of a fit ended at a least misfit. */
 static bool is_fitted(const mt_answer *a, const mt_recommendation *best)
 {
     return a->searched && best->rank > 0 && best->feasible && mt_describe_is_optimum(best) &&
@@ -292,14 +285,15 @@ static const char *fit_text(const mt_answer *a, const mt_recommendation *best, m
     if (others == NULL || bounds == NULL) {
         return NULL;
     }
-    const char *const end = !mt_describe_is_optimum(best)
-                                ? ", which is not shown to be a local minimum"
-                            : is_fitted(a, best) ? ""
-                                                 : ", when the budget of evaluations ended";
+    const bool fitted = is_fitted(a, best);
+    const char *const end = fitted ? ""
+                            : mt_describe_is_optimum(best)
+                                ? ", when the budget of evaluations ended"
+                                : ", which is not shown to be a local minimum";
     return mt_arena_printf(
         mem, "%s: the least misfit found from %d start%s is %.4g%s%s%s%s.",
-        is_fitted(a, best) ? "Fitted" : "Not converged", a->found.starts,
-        a->found.starts == 1 ? "" : "s", mt_without_noise(best->misfit, MT_RATIO_NOISE), end,
+        fitted ? "Fitted" : "Not converged", a->found.starts, a->found.starts == 1 ? "" : "s",
+        mt_without_noise(best->misfit, MT_RATIO_NOISE), end,
         a->found.solutions[0].continuum ? "; a continuum of designs has it" : "", bounds,
         others);
 }

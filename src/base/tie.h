@@ -22,6 +22,8 @@ bool mt_exceeds(double a, double b);
  * searches and rounding leave open: a thousandth of the tolerance of a goal by default. */
 #define MT_RATIO_NOISE   1e-9
 #define MT_PERCENT_NOISE 1e-7
+/* What rounding alone makes of a slope that is 0, as part of the number, for 1 % more. */
+#define MT_SLOPE_NOISE 1e-12
 
 /* x, or 0 where it is smaller than the noise. */
 double mt_without_noise(double x, double noise);

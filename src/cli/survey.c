@@ -13,8 +13,6 @@
 
 static const double PER_CENT = 0.01;
 static const double MILLIMETRE = 1e-3;
-/* What rounding alone makes of a slope that is 0, as part of the frequency. */
-static const double SLOPE_NOISE = 1e-12;
 
 static bool is_overridden(const mt_survey *v, int parameter)
 {
@@ -223,5 +221,5 @@ double mt_survey_shown(const mt_survey *v, int i, int k)
     const double per_unit = v->per_unit[i + ((ptrdiff_t)k * v->room)];
     const double more =
         mt_survey_has_percent(v, k) ? mt_survey_per_percent(v, i, k) : MILLIMETRE * per_unit;
-    return mt_without_noise(more, SLOPE_NOISE * v->hz[i]);
+    return mt_without_noise(more, MT_SLOPE_NOISE * v->hz[i]);
 }

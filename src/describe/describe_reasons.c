@@ -15,8 +15,6 @@
 /* Changes of a parameter below this many percent, and errors of a frequency, are not worth a
  * number. */
 static const double WORTH_SAYING_PERCENT = 1e-4;
-/* What rounding alone makes of a slope that is 0, as part of the number for 1 % more. */
-static const double SLOPE_NOISE = 1e-12;
 enum { NUMBER_SIZE = 32, DEMAND_SIZE = 128 };
 
 void mt_say_of(mt_sentences *s, const char *kind, const char *about)
@@ -141,7 +139,7 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
     for (int i = 0; i < s->rec->n_parameters && f->sensitivity != NULL && !f->repeated; i++) {
         const char *text = NULL;
         const double one = f->sensitivity[i] * little_more(&s->rec->parameters[i], &text);
-        const bool noise = fabs(one) <= SLOPE_NOISE * f->recommended_hz;
+        const bool noise = fabs(one) <= MT_SLOPE_NOISE * f->recommended_hz;
         if (isfinite(one) && !noise && mt_exceeds(fabs(one), fabs(most))) {
             most = one;
             lever = i;

@@ -21,9 +21,6 @@ typedef struct moved {
     const double *slopes;
 } moved;
 
-/* What rounding alone makes of a slope that is 0, as part of the number for 1 % more. */
-static const double SLOPE_NOISE = 1e-12;
-
 /* What 1 % more of variable k adds to it. */
 static double move(const mt_recommendation *r, const moved *m, int k)
 {
@@ -37,8 +34,8 @@ static int next_mover(const mt_recommendation *r, const moved *g, const bool *ta
     int best = -1;
     for (int k = 0; k < r->n_parameters; k++) {
         const double own = fabs(move(r, g, k));
-        if (!taken[k] && own > 0.0 && !(own <= SLOPE_NOISE * fabs(g->value)) && isfinite(own) &&
-            (best < 0 || mt_exceeds(own, fabs(move(r, g, best))))) {
+        if (!taken[k] && own > 0.0 && !(own <= MT_SLOPE_NOISE * fabs(g->value)) &&
+            isfinite(own) && (best < 0 || mt_exceeds(own, fabs(move(r, g, best))))) {
             best = k;
         }
     }
