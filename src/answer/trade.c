@@ -188,7 +188,7 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
-/* Does the design keep its limits at all samples between the positions of drives? */
+/* The design keeps its limits at all samples between the positions of drives. */
 static bool keeps_between(const mt_recommendation *r)
 {
     bool kept = true;

@@ -64,7 +64,7 @@ static double front_value(const mt_study *study, mt_objective_type type,
     return mt_objective_is(type, MT_BANDS) ? -value : value;
 }
 
-/* Is a as good as b in both and better in one, by more than the searches' rounding? */
+/* a is as good as b in both and better in one, by more than the searches' rounding. */
 static bool dominates(const pair *p, const pair *q)
 {
     const double *const a = p->f;
@@ -74,7 +74,7 @@ static bool dominates(const pair *p, const pair *q)
     return MT_HAS(a[0] + a[1]) && first <= 0 && second <= 0 && first + second < 0;
 }
 
-/* Do two points have the same in both? */
+/* Two points have the same in both. */
 static bool ties(const pair *p, const pair *q)
 {
     const double *const a = p->f;

@@ -67,7 +67,7 @@ static bool is_cut(const mt_result *result)
     return result->status == MT_RESULT_INTERRUPTED || result->status == MT_RESULT_TIME_LIMIT;
 }
 
-/* Did the time end it, and no signal? */
+/* The time ended it, and no signal. */
 static bool is_late(const job *j)
 {
     return j->stopped && !mt_terminal_is_stopped();

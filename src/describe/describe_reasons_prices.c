@@ -29,7 +29,7 @@ static mt_price price_of(const mt_sentences *s, double df)
                       .first = s->design->stage == 0};
 }
 
-/* Does this design have prices: the slopes of a value at its optimum? */
+/* Prices are the slopes of a value at its optimum: this design has some. */
 static bool has_prices(const mt_sentences *s)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;

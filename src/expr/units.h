@@ -42,7 +42,7 @@ const char *mt_dimension_name(mt_dimension dimension); /* "length" */
 const char *mt_dimension_text(mt_dimension dimension); /* "a length" */
 const char *mt_dimension_si(mt_dimension dimension);   /* "m" */
 bool mt_unit_is_si(const mt_unit *unit);
-/* May the unit of all lengths, angles or speeds of a file be this one? */
+/* The unit of all lengths, angles or speeds of a file may be this one. */
 bool mt_unit_is_common(const mt_unit *unit);
 /* Its name; of NULL, which is SI, what else it is called (may be NULL). */
 const char *mt_unit_name(const mt_unit *unit, const char *si);

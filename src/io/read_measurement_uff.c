@@ -457,7 +457,7 @@ static mt_status skip_dataset(const reading *u)
     return unfinished(u);
 }
 
-/* Are these numbers alone, as the last line of values is filled up with? */
+/* These are numbers alone, as the last line of values is filled up with. */
 static bool is_filling(const record *r)
 {
     const char *s = r->text + strspn(r->text, " \t");

@@ -156,7 +156,7 @@ static double factor_of_labels(mt_measuring *m, const mt_measured_labels *l,
     return nan("");
 }
 
-/* Is the factor one of g, mg, ..., which no unit of length gives? */
+/* The factor is one of g, mg, ..., which no unit of length gives. */
 static bool is_gravity(double factor)
 {
     const double decades = log10(factor / 9.80665);

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-/* Does the text begin as a universal file, with a line "-1" and the number of a dataset? */
+/* The text begins as a universal file, with a line "-1" and the number of a dataset. */
 bool mt_universal_begins(const char *text, size_t length);
 /* What it holds, appended: "5 mode shapes (dataset 55), 12 nodes (dataset 15); no frequency
  * response". A line may end with NUL, as whoever reads records leaves them; O(length). */

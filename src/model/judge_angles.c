@@ -20,7 +20,7 @@ static const double WHOLE_TURN = 6.283185307179586;
 typedef struct part {
     double value;
     double bare;   /* the part of it without a unit */
-    bool unit;     /* has any of it a unit of angles? */
+    bool unit;     /* some of it has a unit of angles */
     int parameter; /* what makes it large; MT_ABSENT: a number of the expression */
 } part;
 

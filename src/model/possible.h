@@ -47,8 +47,8 @@ typedef struct mt_possible {
     const char *below;      /* "below 10 kg/m^3, ..." */
     const char *beyond;
     const char *with; /* the function that judges it beside others; NULL: none */
-    bool above;       /* is `least` itself impossible? */
-    bool at_high;     /* is `high` itself implausible? */
+    bool above;       /* `least` itself is impossible */
+    bool at_high;     /* `high` itself is implausible */
 } mt_possible;
 
 extern const mt_possible mt_possible_of[MT_POSSIBLE_COUNT];

@@ -49,7 +49,7 @@ static bool is_text(const char *a, const char *b)
     return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
 }
 
-/* Is the same shaken, and the same looked at? */
+/* The same is shaken, and the same looked at. */
 static bool same_shake(const mt_shake *a, const mt_shake *b)
 {
     if (a == NULL || b == NULL) {

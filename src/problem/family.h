@@ -50,11 +50,11 @@ mt_status mt_cut_init(const mt_problem *p, int family, double position, mt_cut *
 void mt_cut_free(mt_cut *cut);
 /* Does a family keep clear of bands in several positions? */
 bool mt_family_any(const mt_problem *p);
-/* Are two demands one limit, of one goal or of goals that ask the same elsewhere? */
+/* Two demands are one limit, of one goal or of goals that ask the same elsewhere. */
 bool mt_family_same_limit(const mt_demand *a, const mt_demand *b);
-/* Does the demand limit a number (a frequency, a damping ratio, a MAC, a forced vibration) in
- * several positions of its family, and is it the first of its goal, and of those that ask the
- * same, there? */
+/* The demand limits a number (a frequency, a damping ratio, a MAC, a forced vibration) in
+ * several positions of its family, and is the first of its goal there, and of those that ask
+ * the same. */
 bool mt_family_limits_first(const mt_problem *p, const mt_demand *d);
 /* Position of a view at its last solve [rad, m]. */
 double mt_family_position(const mt_analysis *a);

@@ -19,7 +19,7 @@ mt_table mt_report_objectives(const mt_recommendation *r);
 void mt_report_objective_columns(mt_table *t, const mt_result *result);
 void mt_report_objective_cells(mt_table *t, const mt_result *result,
                                const mt_recommendation *r);
-/* Is it one of the result's objectives? */
+/* It is one of the result's objectives. */
 bool mt_report_has_objective(const mt_result *result, const char *text);
 /* A cell of an objective's column. */
 void mt_report_objective_cell(mt_table *t, const char *unit, double value);

@@ -154,7 +154,7 @@ static mt_status judge_positions(mt_discrete *d, mt_combination *c, mt_arena *me
     return MT_OK;
 }
 
-/* Is a combination judged over more than the positions that are named? */
+/* A combination is judged over more than the positions that are named. */
 static bool is_followed(const mt_discrete *d)
 {
     return !d->mixed &&

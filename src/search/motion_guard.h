@@ -50,8 +50,8 @@ mt_status mt_guards_read(const mt_guards *g, mt_analysis *a, mt_arena *mem,
  * it is compared with (of a fiftieth, where it is nearer). */
 bool mt_guards_apart(const mt_guards *g, const mt_guard_sample *a, const mt_guard_sample *b,
                      double h);
-/* Is the middle one of three positions, before and after apart, another than the cubics
- * through values and slopes of its neighbours have it? */
+/* The middle one of three positions, before and after apart, is another than the cubics through
+ * values and slopes of its neighbours have it. */
 bool mt_guards_astray(const mt_guards *g, const mt_guard_sample *a, double before,
                       const mt_guard_sample *middle, double after, const mt_guard_sample *b);
 

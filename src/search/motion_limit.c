@@ -202,7 +202,7 @@ static double height(const walk *w, int i)
     return top + (BEYOND * (a->off + (left * x) - top));
 }
 
-/* May e be anything between sample i and the next? */
+/* e may be anything between sample i and the next. */
 static bool is_open(const walk *w, int i)
 {
     const sample *const a = &w->samples[i];
@@ -212,7 +212,7 @@ static bool is_open(const walk *w, int i)
            (a->apart || a->astray || b->astray || fabs(b->off - a->off) > STEEP);
 }
 
-/* May it be higher than all so far? */
+/* It may be higher than all so far. */
 static bool is_high(const walk *w, int i)
 {
     const sample *const a = &w->samples[i];

@@ -130,7 +130,7 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
     return MT_OK;
 }
 
-/* Is an optimum as good as s, and nearer? */
+/* An optimum is as good as s, and nearer. */
 static bool is_better(const nearest *n, const mt_nlp_solution *end, const mt_nlp_solution *s)
 {
     const double most = mt_case_change(n->first, s->t);

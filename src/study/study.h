@@ -392,8 +392,8 @@ const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);
 /* What a published `status` may say, in the order of mt_result_status; *n their number. */
 const char *const *mt_study_statuses(int *n);
-/* Is the misfit made least, and every goal a part of it, so that none decides whether a design
- * is good? */
+/* The misfit is made least, and every goal is a part of it: none decides whether a design is
+ * good. */
 bool mt_study_is_fit(const mt_study *study);
 
 #endif
