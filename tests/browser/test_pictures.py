@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The README's pictures are what pages look like: made again and compared, not pixel by pixel (another Chromium draws letters
+"""The documents' pictures are what pages look like: made again and compared, not pixel by pixel (another Chromium draws letters
 another way) but as an eye does from some steps away. MT_README_UPDATE=1 writes them anew."""
 import base64
 import os
@@ -101,9 +101,9 @@ class Pictures(Answers):
                         if EVERY and back:
                             self.assertEqual(self.judge(self.make(name, *ends), kept), [])
 
-    def test_the_readme_shows_them_all(self):
-        text = (SOURCE / "README.md").read_text(encoding="utf-8")
-        shown = set(re.findall(r"!\[[^]]+\]\((tests/browser/pictures/[^)]+)\)", text))
+    def test_the_documents_show_them_all(self):
+        text = "".join((SOURCE / page).read_text(encoding="utf-8") for page in ("README.md", "problems/README.md"))
+        shown = set(re.findall(r"!\[[^]]+\]\((?:\.\./)?(tests/browser/pictures/[^)]+)\)", text))
         self.assertEqual(shown, {f"tests/browser/pictures/{name}.png" for name, *_ in PICTURES})
         self.assertEqual({path.name for path in FOLDER.iterdir()}, {f"{name}.png" for name, *_ in PICTURES})
 

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""--help, the manual page and the README say the same; wrong use is answered helpfully."""
+"""--help, the manual page and the documents say the same; wrong use is answered helpfully."""
 import re
 import subprocess
+from pathlib import Path
 
 from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
 
+PAGES = [Path(SOURCE) / page for page in ("README.md", "problems/README.md", "studies/README.md", "studies/tutorial/README.md", "src/cli/README.md")]
 # Which options each command has: written down once more, so that a change is a decision.
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 ALONE = {"manual", "completion", "version"}
@@ -135,8 +137,8 @@ class Help(CliTest):
                 own = re.search(rf"^        {command}\) _arguments(.*?);;$", script, re.M | re.S).group(1)
                 self.assertEqual(set(re.findall(r"'\*?--([a-z-]+)=?\[", own)), OPTIONS[command] | EVERYWHERE)
 
-    def test_readme_names_real_commands_and_options(self):
-        text = (SOURCE / "README.md").read_text(encoding="utf-8")
+    def test_documents_name_real_commands_and_options(self):
+        text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
         found = set(re.findall(r"^(?:\$ )?(?:build/\w+/)?modetune ([a-z]+)\b", text, re.M))
         self.assertEqual(found - set(COMMANDS), set())
         self.assertGreaterEqual(len(found), len(COMMANDS))

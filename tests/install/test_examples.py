@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """
-The programs of the README's section on the library, against an installed package: a block ```c or ```python after
+The programs of the pages on the C and the Python interface, against an installed package: a block ```c or ```python after
 <!-- file: NAME --> is written to NAME, built with pkg-config or run by python3, and prints the block ```text that follows.
-The frequencies are those of the command line. MT_README_UPDATE=1 writes what they print now into the README.
+The frequencies are those of the command line. MT_README_UPDATE=1 writes what they print now into the pages.
 """
 import json
 import os
@@ -16,11 +16,11 @@ from pathlib import Path
 
 SOURCE = Path(os.environ["SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "tests/structure"))
-from test_readme import same_line  # noqa: E402  numbers may differ by two units of their last digit
+from common_document import same_line  # noqa: E402  numbers may differ by two units of their last digit
 
 BUILD = Path(os.environ["BUILD_DIR"])
-README = SOURCE / "README.md"
-FILE = re.compile(r"<!-- file: (\S+) -->\n```(json|c|python)\n(.*?)^```$(?:\n+```text\n(.*?)^```$)?", re.M | re.S)
+PAGES = [SOURCE / "include/README.md", SOURCE / "src/library/python/README.md"]
+FILE = re.compile(r"<!-- file: (\S+) -->\n```(c|python)\n(.*?)^```$(?:\n+```text\n(.*?)^```$)?", re.M | re.S)
 STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 
 
@@ -37,11 +37,12 @@ class Examples(unittest.TestCase):
                                PYTHONPATH=str(SOURCE / "src/library/python"),
                                OPENBLAS_NUM_THREADS="1")
         cls.blocks = {}
-        for name, kind, body, text in FILE.findall(README.read_text(encoding="utf-8")):
-            path = cls.folder / name
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(body, encoding="utf-8")
-            cls.blocks[name] = (kind, text)
+        for part in ("problems", "studies"):
+            shutil.copytree(SOURCE / part, cls.folder / part)
+        for page in PAGES:
+            for name, kind, body, text in FILE.findall(page.read_text(encoding="utf-8")):
+                (cls.folder / name).write_text(body, encoding="utf-8")
+                cls.blocks[name] = (page, kind, text)
 
     def run_in_folder(self, *command):
         done = subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True)
@@ -49,7 +50,7 @@ class Examples(unittest.TestCase):
         return done.stdout
 
     def said(self, name):
-        kind, want = self.blocks[name]
+        page, kind, want = self.blocks[name]
         if kind == "c":
             flags = self.run_in_folder("pkg-config", "--cflags", "--libs", "modetune").split()
             self.run_in_folder(os.environ.get("CC", "cc"), *STRICT, name, "-o", "example", *flags)
@@ -57,11 +58,11 @@ class Examples(unittest.TestCase):
         else:
             got = self.run_in_folder(sys.executable, "-B", name)
         if os.environ.get("MT_README_UPDATE"):
-            text = README.read_text(encoding="utf-8")
-            README.write_text(text.replace(f"```text\n{want}```", f"```text\n{got}```"), encoding="utf-8")
+            text = page.read_text(encoding="utf-8")
+            page.write_text(text.replace(f"```text\n{want}```", f"```text\n{got}```"), encoding="utf-8")
             return got
         a, b = want.splitlines(), got.splitlines()
-        self.assertTrue(len(a) == len(b) and all(map(same_line, a, b)), f"README:\n{want}now:\n{got}")
+        self.assertTrue(len(a) == len(b) and all(map(same_line, a, b)), f"{page}:\n{want}now:\n{got}")
         return got
 
     def test_c_program_says_what_the_command_line_says(self):

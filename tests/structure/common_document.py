@@ -2,6 +2,10 @@
 """
 What tests of pages share: a page is walked from its top in a folder, and what it shows must be what happens.
 - A block ```json after <!-- file: NAME --> is written to NAME, after <!-- anew: NAME --> in place of what is there.
+- A block ```json after <!-- add: NAME --> is a part of a model: added to NAME (lists grow, objects gain members), which then passes
+  `modetune check` without a warning. After <!-- ask: NAME --> it is a part of a study: its members take the place of NAME's (null: none),
+  and the study that comes of it is run from few starts, and answered (exit status 0, or what <!-- ask: NAME, exit: N --> says). NAME stays what it is.
+- A block ```json after <!-- of: NAME --> shows members of NAME as they are there.
 - A block ```diff after <!-- edit: NAME --> changes NAME: its lines without "+" stand there once, those without "-" come instead.
 - A block ```console holds commands after "$ " and what they print, which must be what the program prints now, except that
   numbers may differ by two units of their last digit or the tenth, rounding noise by itself, columns by their width, and
@@ -9,6 +13,7 @@ What tests of pages share: a page is walked from its top in a folder, and what i
   After <!-- only: REGEX | REGEX --> of each output only those paragraphs are shown whose first line one of them matches,
   with "..." for others. After <!-- exit: N --> the last command ends with this status; else with 0, or 1 (goals are missed).
 """
+import json
 import os
 import re
 import subprocess
@@ -18,7 +23,8 @@ NOISE = 1e-9  # numbers below this are rounding: residuals of goals that are met
 SEARCHED = 1e-9  # of a number with all its digits: how far searches go
 LAST_DIGITS = 2
 LEFT_OUT = "..."
-BLOCK = re.compile(r"(?:^<!-- (?P<mark>file|anew|edit|only|exit): (?P<value>[^\n]*?) -->\n)?^```(?P<kind>json|diff|console)\n(?P<body>.*?)^```$", re.M | re.S)
+PIXEL = 0.25
+BLOCK = re.compile(r"(?:^<!-- (?P<mark>file|anew|edit|add|ask|of|only|exit): (?P<value>[^\n]*?) -->\n)?^```(?P<kind>json|diff|console)\n(?P<body>.*?)^```$", re.M | re.S)
 # How long it took is of another day, how many evaluations of another processor.
 TIMES = re.compile(r"^(\S+): [0-9.e+-]+ s, .*; (written to \S+)$")
 # Of a mode, how well it was computed is rounding.
@@ -81,12 +87,24 @@ def edited(text, body):
     return ("\n" + text).replace("\n" + old, "\n" + new)[1:]
 
 
+def merged(base, part):
+    """A model with a part added: lists grow, objects gain members, anything else is replaced."""
+    if isinstance(base, dict) and isinstance(part, dict):
+        return {**base, **{key: merged(base[key], value) if key in base else value for key, value in part.items()}}
+    return base + part if isinstance(base, list) and isinstance(part, list) else part
+
+
+def replaced(base, part):
+    """A study with other members in place of its own; null takes one away."""
+    return {key: value for key, value in {**base, **part}.items() if value is not None}
+
+
 class Walk:
     """A page walked in a folder: `wrong` says what is not as it shows, `files` what it wrote, `now` is the page as it should be."""
 
     def __init__(self, text, folder, program, talk=False):
         self.folder, self.place, self.program, self.talk = folder, folder, program, talk
-        self.wrong, self.files, self.commands = [], [], 0
+        self.wrong, self.files, self.commands, self.parts = [], [], 0, 0
         self.now = BLOCK.sub(self.block, text)
 
     def run(self, command, status=None):
@@ -119,8 +137,37 @@ class Walk:
         if path not in self.files:
             self.files.append(path)
 
+    def part(self, match):
+        """A part of a model is checked, one of a study run, each in what it belongs to."""
+        name, _, status = match["value"].partition(", exit: ")
+        self.parts += 1
+        path = self.folder / name
+        try:
+            base, part = json.loads(path.read_text(encoding="utf-8")), json.loads(match["body"])
+        except json.JSONDecodeError as error:
+            self.wrong.append(f"a part of {name} is no JSON: {error}\n{match['body']}")
+            return
+        made = path.with_name("part.json")
+        asks = match["mark"] == "ask"
+        made.write_text(json.dumps((replaced if asks else merged)(base, part), indent=1), encoding="utf-8")
+        command = ["run", made, "--quiet", "--starts", "3", "--proof", "0.1", "-o", self.folder / "parts"] if asks else ["check", made]
+        done = subprocess.run([self.program, *command], capture_output=True, text=True, check=False)
+        if done.returncode != int(status or 0) or "warning:" in done.stderr:
+            self.wrong.append(f"{name} with this part ends with {done.returncode}\n{match['body']}{done.stdout}{done.stderr}")
+        made.unlink()
+
+    def excerpt(self, match):
+        """What is shown of a file is what it has."""
+        self.parts += 1
+        whole, shown = json.loads((self.folder / match["value"]).read_text(encoding="utf-8")), json.loads("{" + match["body"] + "}")
+        self.wrong += [f"{match['value']} has another {key}: {whole.get(key)}" for key in shown if shown[key] != whole.get(key)]
+
     def block(self, match):
         """The block as it should be; what is wrong with it is noted."""
+        if match["mark"] == "of":
+            self.excerpt(match)
+        if match["mark"] in ("add", "ask"):
+            self.part(match)
         if match["mark"] in ("file", "anew", "edit"):
             self.write(match)
         if match["kind"] != "console":
@@ -143,6 +190,29 @@ class Walk:
         return match[0] if len(self.wrong) == known else match[0].replace(match["body"], "".join(now))
 
 
+def anchor(heading):
+    """What a link to a heading says behind "#"."""
+    return re.sub(r"[^\w -]", "", heading.lstrip("# ").lower()).replace(" ", "-")
+
+
+def anchors(text):
+    return {anchor(heading) for heading in re.findall(r"^#+ .*$", BLOCK.sub("", text), re.M)}
+
+
 def links_to_nowhere(text, folder):
-    """Those links of a page, to files, that lead nowhere from its folder."""
-    return [link for link in re.findall(r"\]\(([^):#]+)(?:#[^)]*)?\)", text) if not (folder / link).exists()]
+    """Those links of a page that lead nowhere from its folder: no such file, or no such heading in it."""
+    wrong = []
+    for name, mark in re.findall(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]*))?\)", text):
+        path = folder / name
+        if not path.exists():
+            wrong.append(name)
+        elif mark and mark not in anchors(path.read_text(encoding="utf-8") if name else text):
+            wrong.append(f"{name}#{mark}")
+    return wrong
+
+
+def same_picture(a, b):
+    """The same elements, with the same texts, and no place more than a part of a pixel away."""
+    parts = [re.split(r"(-?\d+(?:\.\d+)?)", text) for text in (a, b)]
+    return len(parts[0]) == len(parts[1]) and all(
+        x == y or (i % 2 == 1 and abs(float(x) - float(y)) <= PIXEL) for i, (x, y) in enumerate(zip(*parts)))
