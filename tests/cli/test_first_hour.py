@@ -96,7 +96,7 @@ class FirstHour(CliTest):
 
     def test_schemas_are_those_of_the_sources(self):
         listed = {e["name"] for e in json.loads(self.expect(0, "schema", "--format", "json").stdout)}
-        self.assertEqual(listed, {p.name.removesuffix(".schema.json") for p in (SOURCE / "schemas").iterdir()})
+        self.assertEqual(listed, {p.name.removesuffix(".schema.json") for p in (SOURCE / "schemas").glob("*.schema.json")})
         for name in listed:
             self.assertEqual(self.expect(0, "schema", name).stdout, (SOURCE / f"schemas/{name}.schema.json").read_text(encoding="utf-8"))
         self.assertIn('no schema is called "modle"; did you mean "model"?', self.expect(2, "schema", "modle").stderr)

@@ -196,7 +196,13 @@ def anchor(heading):
 
 
 def anchors(text):
-    return {anchor(heading) for heading in re.findall(r"^#+ .*$", BLOCK.sub("", text), re.M)}
+    """What links to the headings of a page may say; of equal headings the second is "-1", the third "-2"."""
+    seen, names = {}, set()
+    for heading in re.findall(r"^#+ .*$", BLOCK.sub("", text), re.M):
+        name = anchor(heading)
+        names.add(f"{name}-{seen[name]}" if name in seen else name)
+        seen[name] = seen.get(name, 0) + 1
+    return names
 
 
 def links_to_nowhere(text, folder):
