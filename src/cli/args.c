@@ -36,7 +36,8 @@ bool mt_option_is_of(int option, int command)
 
 static bool takes(int command, int option)
 {
-    return mt_option_is_of(option, command) || option == MT_OPT_VERSION;
+    return mt_option_is_of(option, command) || option == MT_OPT_VERSION ||
+           option == MT_OPT_MANUAL;
 }
 
 static mt_status unknown_option(int command, const char *name, size_t length, mt_err *err)
@@ -162,15 +163,16 @@ const char *mt_format_of(int format, int command)
     enum {
         SHOW = 1 << MT_CMD_SHOW,
         PAGES = SHOW | 1 << MT_CMD_REPORT,
-        MODEL = 1 << MT_CMD_APPLY
+        MODEL = 1 << MT_CMD_APPLY,
+        PROSE = 1 << MT_CMD_HELP
     };
     static const struct {
         const char *name;
         unsigned commands;
     } formats[MT_FORMATS] = {
         [MT_FORMAT_TEXT] = {"text", MT_ALL_COMMANDS & ~(unsigned)SHOW},
-        [MT_FORMAT_JSON] = {"json", MT_ALL_COMMANDS},
-        [MT_FORMAT_CSV] = {"csv", MT_ALL_COMMANDS & ~(unsigned)(SHOW | MODEL)},
+        [MT_FORMAT_JSON] = {"json", MT_ALL_COMMANDS & ~(unsigned)PROSE},
+        [MT_FORMAT_CSV] = {"csv", MT_ALL_COMMANDS & ~(unsigned)(SHOW | MODEL | PROSE)},
         [MT_FORMAT_HTML] = {"html", PAGES},
         [MT_FORMAT_SARIF] = {"sarif", 1U << (unsigned)MT_CMD_CHECK}};
     const bool of = command == MT_CMD_NONE ? format <= MT_FORMAT_CSV

@@ -96,6 +96,7 @@ typedef enum mt_command_id {
     MT_CMD_EXAMPLES,
     MT_CMD_SCHEMA,
     MT_CMD_PROFILE,
+    MT_CMD_HELP,
     MT_CMD_IDS
 } mt_command_id;
 

@@ -35,6 +35,7 @@ int mt_cmd_init(const mt_args *args, mt_text *out);
 int mt_cmd_examples(const mt_args *args, mt_text *out);
 int mt_cmd_schema(const mt_args *args, mt_text *out);
 int mt_cmd_profile(const mt_args *args, mt_text *out);
+int mt_cmd_help(const mt_args *args, mt_text *out);
 
 /* The whole program but for its process-wide settings: parse, run, print. */
 int mt_cli_main(int argc, char *const argv[]);

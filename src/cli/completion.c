@@ -152,7 +152,9 @@ static void bash(mt_text *out)
 /* The first clause of a text between apostrophes, without what zsh would obey there. */
 static void zsh_text(const char *text, mt_text *out)
 {
-    const char *const end = text + strcspn(text, ";:(");
+    const char *const sentence = strstr(text, ". ");
+    const char *const clause = text + strcspn(text, ";:(");
+    const char *const end = sentence == NULL || clause < sentence ? clause : sentence;
     for (const char *at = text; at < end; at++) {
         if (*at == '\'') {
             mt_text_add(out, "'\\''");

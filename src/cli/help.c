@@ -17,8 +17,7 @@ static void spaces(int n, mt_text *out)
     }
 }
 
-/* Paragraphs of words, filled into lines that begin at `column`. */
-static void fill(const char *s, int column, mt_text *out)
+void mt_help_fill(const char *s, int column, mt_text *out)
 {
     int at = column;
     for (const char *word = s; *word != '\0'; word += strspn(word, " \n")) {
@@ -53,14 +52,14 @@ static void help_option(const mt_option *o, mt_text *out)
     } else {
         spaces(OPTION_COLUMN - n, out);
     }
-    fill(o->help, OPTION_COLUMN, out);
+    mt_help_fill(o->help, OPTION_COLUMN, out);
 }
 
 static void help_command(int command, mt_text *out)
 {
     const mt_command *const c = &mt_commands[command];
     mt_text_addf(out, "Usage: modetune %s %s [options]\n\n", c->name, c->operands);
-    fill(c->details, 0, out);
+    mt_help_fill(c->details, 0, out);
     mt_text_add(out, "\nOptions:\n");
     for (int i = 0; i < MT_OPT_IDS; i++) {
         if (mt_option_is_of(i, command)) {
@@ -91,6 +90,6 @@ void mt_help(int command, mt_text *out)
     mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command.\n\nExit status:\n");
     for (int i = 0; i < MT_EXITS; i++) {
         mt_text_addf(out, "  %-4d ", mt_exits[i].code);
-        fill(mt_exits[i].meaning, EXIT_COLUMN, out);
+        mt_help_fill(mt_exits[i].meaning, EXIT_COLUMN, out);
     }
 }

@@ -1,159 +1,173 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The manual page, from the tables behind --help: what they do not say, this file does. */
+/* The manual pages: from the tables behind --help, and from the document of the commands. */
 #include "cli/manual.h"
 
 #include "modetune/version.h"
 
-#include <ctype.h>
 #include <string.h>
 
 #include "cli/args.h"
+#include "cli/documents.h"
+#include "cli/man.h"
 
 static const char description[] =
     "A model describes a mechanism: bodies, joints, springs, flexible links, with numbers that "
     "may be expressions of parameters. A study names the parameters that may change, within "
     "bounds, and what is asked of the natural frequencies and mode shapes. Both are JSON "
-    "files; their schemas are part of the source distribution.";
-
-static const char text_from_files[] =
-    "Names, titles, paths and other texts from outside are shown, never obeyed: control "
-    "characters, marks of direction, zero-width characters and bytes that are no UTF-8 are "
-    "written as \\u001b or \\x9b. In CSV, text that a spreadsheet would take for a formula has "
-    "an apostrophe in front. What has no number is null in JSON, an empty cell in CSV, - or a "
-    "word in text.";
-
-static const char interrupts[] =
-    "The first SIGINT or SIGTERM ends a search, and run.incomplete of result.json says which "
-    "parts of the answer are missing; a second one ends the program at once, as the first one "
-    "does in every command that does not search. Where several studies or files are given, the "
-    "worst status counts.";
-
-/* Text of man(7): what it would obey is made visible, words --like-this are bold. */
-static void roff(const char *s, mt_text *out)
-{
-    bool bold = false;
-    for (const char *at = s; *at != '\0'; at++) {
-        const bool begins = at == s || strchr(" (\"\n", at[-1]) != NULL;
-        if (begins && strncmp(at, "--", 2) == 0 && isalpha((unsigned char)at[2]) != 0) {
-            mt_text_add(out, "\\fB");
-            bold = true;
-        } else if (bold && *at != '-' && isalpha((unsigned char)*at) == 0) {
-            mt_text_add(out, "\\fR");
-            bold = false;
-        }
-        if ((at == s || at[-1] == '\n') && (*at == '.' || *at == '\'')) {
-            mt_text_add(out, "\\&");
-        }
-        switch (*at) {
-        case '\\':
-            mt_text_add(out, "\\e");
-            break;
-        case '-':
-            mt_text_add(out, "\\-");
-            break;
-        case '\n':
-            mt_text_add(out, "\n.IP\n"); /* a paragraph, as deep as the one before */
-            break;
-        default:
-            mt_text_add_n(out, at, 1);
-        }
-    }
-    mt_text_add(out, bold ? "\\fR\n" : "\n");
-}
-
-/* A paragraph with a hanging tag: bold, then italic (NULL: nothing). */
-static void tag(const char *bold, const char *italic, mt_text *out)
-{
-    mt_text_add(out, ".TP\n\\fB");
-    for (const char *at = bold; *at != '\0'; at++) {
-        mt_text_add(out, *at == '-' ? "\\-" : (char[]){*at, '\0'});
-    }
-    mt_text_add(out, "\\fR");
-    if (italic != NULL) {
-        mt_text_add(out, " \\fI");
-        mt_text_add(out, italic);
-        mt_text_add(out, "\\fR");
-    }
-    mt_text_add(out, "\n");
-}
+    "files. \\fBmodetune help\\fR \\fITOPIC\\fR explains their members.";
 
 static void section(const char *title, mt_text *out)
 {
-    mt_text_add(out, ".SH ");
-    mt_text_add(out, title);
-    mt_text_add(out, "\n");
+    mt_man_section(title, strlen(title), out);
 }
 
-/* "modes, sweep: " before the help of an option that not all commands take. */
-static void owners(int option, mt_text *out)
+static void head(const char *command, const char *summary, mt_text *out)
 {
-    const char *before = "\\fB";
-    if (mt_options[option].commands == 0U || mt_options[option].commands == MT_ALL_COMMANDS) {
-        return;
+    mt_text_add(out, ".\\\" SPDX-License-Identifier: GPL-3.0-or-later\n"
+                     ".\\\" made by \"modetune");
+    mt_text_addf(out, "%s%s --manual\"\n.TH MODETUNE", *command == '\0' ? "" : " ", command);
+    for (const char *at = command; *at != '\0'; at++) {
+        mt_text_addf(out, "%s%c", at == command ? "\\-" : "", *at - 'a' + 'A');
     }
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        if (mt_option_is_of(option, i)) {
-            mt_text_add(out, before);
-            mt_text_add(out, mt_commands[i].name);
-            before = "\\fR, \\fB";
-        }
-    }
-    mt_text_add(out, "\\fR: ");
+    mt_text_add(out, " 1 \"\" \"modetune " MT_VERSION_STRING "\" \"User Commands\"\n");
+    section("NAME", out);
+    mt_text_addf(out, "modetune%s%s \\- %s\n", *command == '\0' ? "" : "\\-", command, summary);
+    section("SYNOPSIS", out);
 }
 
-static void options(mt_text *out)
+static void add_option(const mt_option *o, mt_text *out)
 {
-    for (int i = 0; i < MT_OPT_IDS; i++) {
-        const mt_option *const o = &mt_options[i];
-        mt_text form = {.s = NULL};
-        if (o->letter != '\0') {
-            mt_text_addf(&form, "-%c, ", o->letter);
-        }
-        mt_text_addf(&form, "--%s", o->name);
-        out->failed = out->failed || form.failed;
-        tag(form.failed ? "" : form.s, o->value, out);
-        mt_text_free(&form);
-        owners(i, out);
-        roff(o->help, out);
+    mt_text form = {.s = NULL};
+    if (o->letter != '\0') {
+        mt_text_addf(&form, "-%c, ", o->letter);
     }
+    mt_text_addf(&form, "--%s", o->name);
+    out->failed = out->failed || form.failed;
+    mt_man_tag(form.failed ? "" : form.s, o->value, out);
+    mt_text_free(&form);
+    mt_man_help(o->help, true, out);
 }
 
-void mt_manual(mt_text *out)
+static void add_exits(mt_text *out)
 {
-    mt_text_add(out,
-                ".\\\" SPDX-License-Identifier: GPL-3.0-or-later\n"
-                ".\\\" made by \"modetune --manual\"\n"
-                ".TH MODETUNE 1 \"\" \"modetune " MT_VERSION_STRING "\" \"User Commands\"\n"
-                ".SH NAME\n"
-                "modetune \\- what to change so that natural frequencies land where they must\n"
-                ".SH SYNOPSIS\n");
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_add(out, i == 0 ? "" : ".br\n");
-        mt_text_add(out, "\\fBmodetune ");
-        mt_text_add(out, mt_commands[i].name);
-        mt_text_add(out, "\\fR \\fI");
-        mt_text_add(out, mt_commands[i].operands);
-        mt_text_add(out, "\\fR [\\fIoptions\\fR]\n");
-    }
-    section("DESCRIPTION", out);
-    roff(description, out);
-    section("COMMANDS", out);
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        tag(mt_commands[i].name, mt_commands[i].operands, out);
-        roff(mt_commands[i].details, out);
-    }
-    section("OPTIONS", out);
-    options(out);
-    section("EXIT STATUS", out);
     for (int i = 0; i < MT_EXITS; i++) {
         mt_text_addf(out, ".TP\n\\fB%d\\fR\n", mt_exits[i].code);
-        roff(mt_exits[i].meaning, out);
+        mt_man_help(mt_exits[i].meaning, true, out);
     }
-    mt_text_add(out, ".PP\n");
-    roff(interrupts, out);
-    section("TEXT FROM FILES", out);
-    roff(text_from_files, out);
+}
+
+/* The next section of the page whose heading is of level 2. */
+static bool next_section(const mt_shipped *page, mt_passage *p)
+{
+    while (page != NULL && mt_passage_next(page->bytes, p)) {
+        if (p->level == 2) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Where the text is found within [begin, end), at the beginning of a line; end: nowhere. */
+static const char *line_with(const char *begin, const char *end, const char *text)
+{
+    for (const char *at = begin; at < end; at += strcspn(at, "\n") + 1) {
+        if (strncmp(at, text, strlen(text)) == 0) {
+            return at;
+        }
+    }
+    return end;
+}
+
+static const char *earlier(const char *a, const char *b)
+{
+    return a < b ? a : b;
+}
+
+static void manual_of(int command, mt_text *out)
+{
+    const mt_command *const c = &mt_commands[command];
+    const mt_shipped *const page = mt_documents_find(MT_DOCUMENT_COMMANDS);
+    mt_passage p = {.begin = NULL};
+    bool found = next_section(page, &p);
+    while (found && !mt_passage_is(&p, c->name)) {
+        found = next_section(page, &p);
+    }
+    const char *const end = found ? p.end : c->name;
+    const char *const body = found ? p.body : end;
+    /* before the first heading, behind it, and what pages end with */
+    const char *const last =
+        earlier(line_with(body, end, "### Examples\n"), line_with(body, end, "See also: "));
+    const char *const rest = earlier(line_with(body, last, "### "), last);
+    head(c->name, c->summary, out);
+    mt_text_addf(out, "\\fBmodetune %s\\fR \\fI%s\\fR [\\fIoptions\\fR]\n", c->name,
+                 c->operands);
+    section("DESCRIPTION", out);
+    mt_man_help(c->details, false, out);
+    mt_man_markdown(body, rest, false, out);
+    section("OPTIONS", out);
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_option_is_of(i, command)) {
+            add_option(&mt_options[i], out);
+        }
+    }
+    mt_man_markdown(rest, last, false, out);
+    section("EXIT STATUS", out);
+    add_exits(out);
+    mt_man_markdown(last, end, false, out);
+}
+
+/* The sections of the page that are of no command. */
+static void add_common(mt_text *out)
+{
+    static const char exits[] = "Exit status\n";
+    const mt_shipped *const page = mt_documents_find(MT_DOCUMENT_COMMANDS);
+    mt_passage p = {.begin = NULL};
+    while (next_section(page, &p)) {
+        const char *at = NULL;
+        const char *name = NULL;
+        const char *const title = p.begin + strlen("## ");
+        size_t length = 0;
+        if (mt_passage_name(&p, &at, &name, &length)) {
+            continue;
+        }
+        mt_man_section(title, strcspn(title, "\n"), out);
+        const bool of_exits = strncmp(title, exits, strlen(exits)) == 0;
+        if (of_exits) {
+            add_exits(out);
+        }
+        mt_man_markdown(p.body, p.end, !of_exits, out);
+    }
+}
+
+void mt_manual(int command, mt_text *out)
+{
+    if (command != MT_CMD_NONE) {
+        manual_of(command, out);
+        return;
+    }
+    head("", "what to change so that natural frequencies land where they must", out);
+    mt_text_add(out, "\\fBmodetune\\fR \\fICOMMAND\\fR ... [\\fIoptions\\fR]\n");
+    section("DESCRIPTION", out);
+    mt_text_add(out, description);
+    mt_text_add(out, "\n");
+    section("COMMANDS", out);
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_man_tag(mt_commands[i].name, mt_commands[i].operands, out);
+        mt_man_help(mt_commands[i].summary, true, out);
+    }
+    section("OPTIONS", out);
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_options[i].commands == MT_ALL_COMMANDS || mt_options[i].commands == 0U) {
+            add_option(&mt_options[i], out);
+        }
+    }
+    add_common(out);
     section("ENVIRONMENT", out);
-    tag("NO_COLOR", NULL, out);
-    roff("No colour on a terminal.", out);
+    mt_man_tag("NO_COLOR", NULL, out);
+    mt_man_help("No colour on a terminal.", true, out);
+    section("SEE ALSO", out);
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "\\fBmodetune\\-%s\\fR(1)%s\n", mt_commands[i].name,
+                     i + 1 < MT_CMD_IDS ? "," : "");
+    }
 }

@@ -4,7 +4,8 @@
 
 #include "base/text.h"
 
-/* The manual page, section 1, in the language of man(7). */
-void mt_manual(mt_text *out);
+/* A manual page, section 1, in the language of man(7): modetune(1) with MT_CMD_NONE, or
+ * modetune-COMMAND(1). */
+void mt_manual(int command, mt_text *out);
 
 #endif

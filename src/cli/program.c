@@ -20,6 +20,7 @@ static const command_function functions[MT_CMD_IDS] = {
     [MT_CMD_DIFF] = mt_cmd_diff,         [MT_CMD_CHECK] = mt_cmd_check,
     [MT_CMD_INIT] = mt_cmd_init,         [MT_CMD_EXAMPLES] = mt_cmd_examples,
     [MT_CMD_SCHEMA] = mt_cmd_schema,     [MT_CMD_PROFILE] = mt_cmd_profile,
+    [MT_CMD_HELP] = mt_cmd_help,
 };
 
 static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)
@@ -59,7 +60,7 @@ int mt_cli_main(int argc, char *const argv[])
         mt_text_addf(&out, "modetune %s (commit %s, compiled by %s)\n", mt_version(),
                      mt_build_commit(), mt_build_compiler());
     } else if (args.given[MT_OPT_MANUAL]) {
-        mt_manual(&out);
+        mt_manual(args.command, &out);
     } else if (args.given[MT_OPT_COMPLETION]) {
         mt_completion(args.shell, &out);
     } else if (args.given[MT_OPT_HELP]) {

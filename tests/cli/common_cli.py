@@ -11,7 +11,7 @@ from pathlib import Path
 SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
 PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
 COMMANDS = ["run", "merge", "compare", "modes", "mac", "sweep", "simulate", "sensitivity", "response", "info", "show", "report", "explain", "apply", "diff", "check",
-            "init", "examples", "schema", "profile"]
+            "init", "examples", "schema", "profile", "help"]
 
 # Two masses of 1 kg, ground - k1 - a - k2 - b, moving in x: omega^2 = 0.6972, 4.3028 for k1 = 3, k2 = 1 (closed form:
 # omega^4 - (k1 + 2 k2) omega^2 + k1 k2 = 0); "twice" has a redundant joint, "free" no k1, "heavy" other masses.

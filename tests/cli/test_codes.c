@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every exit status that a command can have is provoked and seen, and the commands, and the
- * README, know no other. */
+/* Every exit status that a command can have is provoked and seen, and the commands, and their
+ * document, know no other. */
 #include <ctype.h>
 #include <gsl/gsl_errno.h>
 #include <signal.h>
@@ -220,6 +220,12 @@ static const struct {
     {"profile %/none.json", MT_EXIT_SYSTEM, AS_IT_IS},
     {"profile tests/io/good/profile.json", MT_EXIT_SYSTEM, SHORT},
     {"profile tests/io/good/profile.json", MT_EXIT_SYSTEM, FULL},
+
+    {"help", MT_EXIT_DONE, AS_IT_IS},
+    {"help avoid", MT_EXIT_DONE, AS_IT_IS},
+    {"help avod", MT_EXIT_INPUT, AS_IT_IS},
+    {"help avoid", MT_EXIT_SYSTEM, SHORT},
+    {"help avoid", MT_EXIT_SYSTEM, FULL},
 };
 
 /* What each command can end with. */
@@ -249,6 +255,7 @@ static const struct {
     [MT_CMD_EXAMPLES] = {"examples", {true, false, true, false, true, false}},
     [MT_CMD_SCHEMA] = {"schema", {true, false, true, false, true, false}},
     [MT_CMD_PROFILE] = {"profile", {true, false, true, false, true, false}},
+    [MT_CMD_HELP] = {"help", {true, false, true, false, true, false}},
 };
 
 static void begin(void *context)
@@ -376,9 +383,9 @@ static void check_text(mt_test *t, const char *path, const char *begin)
     }
 }
 
-static void codes__are_those_of_the_readme(mt_test *t)
+static void codes__are_those_of_the_document(mt_test *t)
 {
-    check_text(t, MT_TEST_SOURCE_DIR "/README.md", "The exit status is 0");
+    check_text(t, MT_TEST_SOURCE_DIR "/src/cli/README.md", "The exit status is 0 if all goals");
 }
 
-MT_TEST_MAIN(MT_TEST(codes__each_is_seen), MT_TEST(codes__are_those_of_the_readme))
+MT_TEST_MAIN(MT_TEST(codes__each_is_seen), MT_TEST(codes__are_those_of_the_document))

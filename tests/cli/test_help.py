@@ -31,6 +31,7 @@ OPTIONS = {
     "examples": {"output"},
     "schema": set(),
     "profile": {"spectrum", "damping-ratio"},
+    "help": set(),
 }
 
 
@@ -74,26 +75,39 @@ class Help(CliTest):
         self.assertRegex(self.expect(0, "--version").stdout,
                          rf"^modetune {re.escape(version)} \(commit [-+.0-9A-Za-z]+, compiled by [A-Za-z]+ [0-9.]+\)\n$")
 
-    def test_manual_page_is_well_formed_and_says_what_help_says(self):
-        page = self.expect(0, "--manual").stdout
-        path = self.write("modetune.1", page)
+    def read(self, *command):
+        """A manual page as its source and as its words; mandoc has nothing to say against it."""
+        page = self.expect(0, *command, "--manual").stdout
+        path = self.folder / self.write("page.1", page)
         # a page that is made has no date, and needs none
-        self.assertEqual([line for line in linted(self.folder / path) if "missing date" not in line], [])
-        self.assertNotEqual(linted(self.folder / self.write("wrong.1", page + ".XX\n")), linted(self.folder / path))
-        self.assertEqual(set(re.findall(r"^\.SH (.*)$", page, re.M)),
-                         {"NAME", "SYNOPSIS", "DESCRIPTION", "COMMANDS", "OPTIONS", "EXIT STATUS", "TEXT FROM FILES", "ENVIRONMENT"})
-        words = shown(self.folder / path)
-        parts = {c: self.expect(0, c, "--help").stdout.split("\nOptions:\n") for c in COMMANDS}
-        options = {c: re.findall(r"^(?:  -| {6}-)(\S.*?)(?:  +|\n {31})(\S.*(?:\n {31}.*)*)$", said, re.M) for c, (_, said) in parts.items()}
+        self.assertEqual([line for line in linted(path) if "missing date" not in line], [])
+        return page, shown(path)
+
+    def test_manual_page_of_the_program_lists_commands_and_common_options(self):
+        page, words = self.read()
+        self.assertNotEqual(linted(self.folder / self.write("wrong.1", page + ".XX\n")), linted(self.folder / "page.1"))
+        self.assertLessEqual({"NAME", "SYNOPSIS", "DESCRIPTION", "COMMANDS", "OPTIONS", "EXIT STATUS", "PROGRESS", "TEXT FROM FILES", "ENVIRONMENT",
+                              "SEE ALSO"}, set(re.findall(r"^\.SH (.*)$", page, re.M)))
+        for command, summary in re.findall(r"^  ([a-z]+)  +(\S.*)$", self.expect(0, "--help").stdout, re.M):
+            self.assertIn(f" {summary} ", words)
+            self.assertIn(f"modetune-{command}(1)", words)
+        own = page[page.index(".SH OPTIONS\n"):].split(".SH ")[1]
+        self.assertEqual({name.replace("\\-", "-") for name in re.findall(r"^\\fB(?:\\-\w, )?\\-\\-([a-z\\-]+)\\fR", own, re.M)}, EVERYWHERE | ALONE)
+
+    def test_manual_page_of_a_command_says_what_help_says(self):
         for command in COMMANDS:
             with self.subTest(command):
-                self.assertTrue(f"modetune {command} " in words)
-                self.assertTrue(" ".join(parts[command][0].split("\n", 1)[1].split()) in words)
-                for form, text in options[command]:  # two commands may call different options alike
-                    owners = [c for c in COMMANDS if (form, text) in options[c]]
-                    of = "" if owners == COMMANDS else ", ".join(owners) + ": "
-                    self.assertTrue(f"-{form} {of}{' '.join(text.split())}" in words, form)
-        self.assertEqual(options_in(words), set().union(*OPTIONS.values()) | EVERYWHERE | ALONE)
+                page, words = self.read(command)
+                self.assertIn(f".TH MODETUNE\\-{command.upper()} 1 ", page)
+                sections = re.findall(r"^\.SH (.*)$", page, re.M)
+                self.assertEqual(sections[:4], ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS"])
+                self.assertLessEqual({"EXIT STATUS", "SEE ALSO"}, set(sections))
+                self.assertEqual(len(sections), len(set(sections)))
+                self.assertIn(f"modetune {command} ", words)
+                about, options = self.expect(0, command, "--help").stdout.split("\nOptions:\n")
+                self.assertIn(" ".join(about.split("\n", 1)[1].split()), words)
+                for form, text in re.findall(r"^(?:  -| {6}-)(\S.*?)(?:  +|\n {31})(\S.*(?:\n {31}.*)*)$", options, re.M):
+                    self.assertIn(f"-{form} {' '.join(text.split())}", words)
 
     def completed(self, *words):
         """What bash offers for the last word."""

@@ -48,6 +48,7 @@ LINES = {
     "examples": ["examples", "truss_72bar", "-o", "shipped"],
     "schema": ["schema", "model"],
     "profile": ["profile", "gevs_qualification", "--spectrum", "10:100:3"],
+    "help": ["help", "avoid"],
     "run": ["run", "studies/two.json", "--format", "csv"],
     "run two": ["run", "studies/two.json", "studies/judged.json", "--format", "csv"],
     "merge": ["merge", "studies/two.json", "results/two.1-of-1.journal", "--format", "csv"],

@@ -42,8 +42,9 @@ make_deb() {
     done
     dpkg-deb -c "$deb" >"$work/contents"
     for field in bin/modetune lib/libmodetune.so lib/libmodetune.so.${version%.*} lib/libmodetune.a include/modetune/study.h \
-        lib/pkgconfig/modetune.pc lib/cmake/modetune/modetune-config.cmake share/man/man1/modetune.1 \
-        share/bash-completion/completions/modetune share/zsh/vendor-completions/_modetune share/doc/modetune/copyright; do
+        lib/pkgconfig/modetune.pc lib/cmake/modetune/modetune-config.cmake share/man/man1/modetune.1 share/man/man1/modetune-run.1 \
+        share/bash-completion/completions/modetune share/zsh/vendor-completions/_modetune share/doc/modetune/copyright \
+        share/doc/modetune/README.md share/doc/modetune/schemas/README.md share/doc/modetune/src/cli/README.md; do
         grep -q " \./usr/$field\( -> .*\)\?\$" "$work/contents" || fail "$deb: has no /usr/$field"
     done
     ! grep -v " \./\(usr/.*\)\?\$" "$work/contents" | grep -v " -> " || fail "$deb: has files outside of /usr"

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* modetune help: what the documents say of a command, or of a member of a file. */
+#include <string.h>
+
+#include "base/format.h"
+#include "cli/cli.h"
+#include "cli/documents.h"
+#include "cli/help.h"
+
+/* Documents in the order in which they are shown. */
+typedef enum rank { OF_COMMANDS, WRITTEN, REFERENCE, RANKS } rank;
+
+static rank rank_of(const mt_shipped *document)
+{
+    return strcmp(document->path, MT_DOCUMENT_COMMANDS) == 0 ? OF_COMMANDS
+           : mt_document_is_reference(document)              ? REFERENCE
+                                                             : WRITTEN;
+}
+
+/* Is the same item, byte by byte, in the text already? */
+static bool has(const mt_text *out, const mt_passage *p)
+{
+    const size_t length = (size_t)(p->end - p->begin) - 1; /* the last one has no line feed */
+    for (const char *at = out->s; at != NULL && (at = strstr(at, "\n- `")) != NULL; at++) {
+        if (strncmp(at + 1, p->begin, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Its text without comments (<!-- ... -->), which are for programs. */
+static void add_passage(const mt_passage *p, mt_text *out)
+{
+    const char *at = p->begin;
+    while (at < p->end) {
+        const char *const comment = strstr(at, "<!--");
+        const char *const behind = comment == NULL ? NULL : strstr(comment, "-->");
+        if (behind == NULL || comment >= p->end) {
+            break;
+        }
+        mt_text_add_n(out, at, (size_t)(comment - at));
+        at = behind + strlen("-->");
+        at += strspn(at, "\n");
+    }
+    mt_text_add_n(out, at, at < p->end ? (size_t)(p->end - at) : 0);
+}
+
+static void trim(mt_text *out)
+{
+    while (out->length > 0 && out->s[out->length - 1] == '\n') {
+        out->s[--out->length] = '\0';
+    }
+}
+
+/* A passage, behind the name of its document where that is another one than before. */
+static void show(const mt_shipped *document, const mt_passage *p, const mt_shipped **last,
+                 mt_text *out)
+{
+    if (*last != document) {
+        mt_text_add(out, *last == NULL ? "" : "\n\n");
+        mt_text_addf(out, "From %s:", document->path);
+    }
+    mt_text_add(out, p->level > 0 || *last != document ? "\n\n" : "\n");
+    *last = document;
+    add_passage(p, out);
+    trim(out);
+}
+
+static void add_title(const mt_passage *heading, mt_text *out)
+{
+    const char *const title = heading->begin + heading->level + 1;
+    mt_text_add_n(out, title, strcspn(title, "\n"));
+}
+
+/* Items under the heading that they stand under, and the chapter (level 2) that has it. */
+static void show_items(const mt_shipped *document, const char *topic, const mt_shipped **last,
+                       mt_text *out)
+{
+    enum { CHAPTER = 2 };
+    mt_passage p = {.begin = NULL};
+    mt_passage chapter = {.level = 0};
+    mt_passage section = {.level = 0};
+    const char *shown = NULL;
+    while (mt_passage_next(document->bytes, &p)) {
+        chapter = p.level > 0 && p.level <= CHAPTER ? p : chapter;
+        section = p.level > 0 ? p : section;
+        if (p.level > 0 || !mt_passage_is(&p, topic) || has(out, &p)) {
+            continue;
+        }
+        if (section.level > 0 && shown != section.begin) {
+            mt_text heading = {.s = NULL};
+            add_title(&section, &heading);
+            if (section.level > CHAPTER && chapter.level > 0) {
+                mt_text_add(&heading, " (");
+                add_title(&chapter, &heading);
+                mt_text_add(&heading, ")");
+            }
+            mt_text_add(out, *last == NULL ? "" : "\n\n");
+            mt_text_addf(out, "From %s, %s:\n", document->path,
+                         heading.s == NULL ? "" : heading.s);
+            out->failed = out->failed || heading.failed;
+            mt_text_free(&heading);
+            *last = document;
+            shown = section.begin;
+        }
+        show(document, &p, last, out);
+    }
+}
+
+/* All sections that are headed by the topic, or, with `items`, items of lists. */
+static void show_all(const char *topic, bool items, const mt_shipped **last, mt_text *out)
+{
+    int n = 0;
+    const mt_shipped *const documents = mt_documents_all(&n);
+    for (int k = 0; k < RANKS * n; k++) {
+        const mt_shipped *const document = &documents[k % n];
+        mt_passage p = {.begin = NULL};
+        if ((int)rank_of(document) != k / n) {
+            continue;
+        }
+        if (items) {
+            show_items(document, topic, last, out);
+        }
+        while (!items && mt_passage_next(document->bytes, &p)) {
+            if (p.level > 0 && mt_passage_is(&p, topic)) {
+                show(document, &p, last, out);
+            }
+        }
+    }
+}
+
+/* ",a,b,": each name once. */
+static void add_names(rank of, bool items, mt_text *names)
+{
+    int n = 0;
+    const mt_shipped *const documents = mt_documents_all(&n);
+    for (int i = 0; i < n; i++) {
+        mt_passage p = {.begin = NULL};
+        while (rank_of(&documents[i]) == of && mt_passage_next(documents[i].bytes, &p)) {
+            const char *at = NULL;
+            const char *name = NULL;
+            size_t length = 0;
+            while ((p.level == 0) == items && mt_passage_name(&p, &at, &name, &length)) {
+                mt_text one = {.s = NULL};
+                mt_text_add(&one, ",");
+                mt_text_add_n(&one, name, length);
+                mt_text_add(&one, ",");
+                if (!one.failed && !names->failed && strcspn(name, ", /") >= length &&
+                    (names->s == NULL || strstr(names->s, one.s) == NULL)) {
+                    mt_text_add(names, names->s == NULL ? one.s : one.s + 1);
+                }
+                names->failed = names->failed || one.failed;
+                mt_text_free(&one);
+            }
+        }
+    }
+}
+
+static void list_names(const char *what, const mt_text *names, mt_text *out)
+{
+    mt_text line = {.s = NULL};
+    for (const char *at = names->s; at != NULL && at[1] != '\0';) {
+        const size_t length = strcspn(at + 1, ",");
+        mt_text_add(&line, line.s == NULL ? "" : ", ");
+        mt_text_add_n(&line, at + 1, length);
+        at += 1 + length;
+    }
+    if (line.s != NULL && !line.failed) {
+        mt_text_addf(out, "\n%s:\n  ", what);
+        mt_help_fill(line.s, 2, out);
+    }
+    out->failed = out->failed || line.failed || names->failed;
+    mt_text_free(&line);
+}
+
+static void list_topics(mt_text *out)
+{
+    static const char *const what[RANKS] = {"Commands", "Topics",
+                                            "Objects of files (and each of their members)"};
+    for (rank r = OF_COMMANDS; r < RANKS; r++) {
+        mt_text names = {.s = NULL};
+        if (r == OF_COMMANDS) {
+            for (int i = 0; i < MT_CMD_IDS; i++) {
+                mt_text_addf(&names, "%s%s,", i == 0 ? "," : "", mt_commands[i].name);
+            }
+        } else {
+            add_names(r, false, &names);
+        }
+        list_names(what[r], &names, out);
+        mt_text_free(&names);
+    }
+}
+
+/* Names that the topic may have been meant for: near ones, then those that contain it. */
+static void add_near(const char *topic, mt_text *out)
+{
+    enum { MOST = 5, LONG_ENOUGH = 3 };
+    mt_text names = {.s = NULL};
+    int n = 0;
+    const int length = (int)strlen(topic);
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(&names, "%s%s,", i == 0 ? "," : "", mt_commands[i].name);
+    }
+    for (rank r = OF_COMMANDS; r < RANKS; r++) {
+        add_names(r, false, &names);
+        add_names(r, true, &names);
+    }
+    for (int round = 0; round < 2; round++) {
+        for (const char *at = names.s; at != NULL && at[1] != '\0' && n < MOST;) {
+            char name[MT_TEXT_DISTANCE_MAX];
+            const size_t size = strcspn(at + 1, ",");
+            (void)mt_snprintf(name, sizeof name, "%.*s", (int)size, at + 1);
+            at += 1 + size;
+            const int most = 1 + length / 4;
+            const bool is_near = mt_text_distance(topic, name, most) <= most && most < length;
+            const bool contains = length >= LONG_ENOUGH && strstr(name, topic) != NULL;
+            if (round == 0 ? is_near : contains && !is_near) {
+                mt_text_addf(out, "%s\"%s\"", n == 0 ? "; did you mean " : " or ", name);
+                n++;
+            }
+        }
+    }
+    out->failed = out->failed || names.failed;
+    mt_text_free(&names);
+}
+
+static int unknown(const char *topic)
+{
+    mt_text near = {.s = NULL};
+    mt_text topics = {.s = NULL};
+    add_near(topic, &near);
+    list_topics(&topics);
+    if (near.failed || topics.failed) {
+        mt_err err = {.code = MT_OK};
+        mt_text_free(&near);
+        mt_text_free(&topics);
+        return mt_cli_failed(mt_fail_memory(&err), &err);
+    }
+    mt_terminal_error("no topic is called \"%s\"%s%s", topic, near.s == NULL ? "" : near.s,
+                      near.s == NULL ? "" : "?");
+    mt_terminal_say(topics.s, topics.length);
+    mt_text_free(&near);
+    mt_text_free(&topics);
+    return MT_EXIT_INPUT;
+}
+
+static int command_of(const char *name)
+{
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        if (strcmp(mt_commands[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return MT_CMD_NONE;
+}
+
+int mt_cmd_help(const mt_args *args, mt_text *out)
+{
+    const mt_shipped *last = NULL;
+    if (args->n_operands == 0) {
+        mt_help(MT_CMD_NONE, out);
+        mt_text_add(out,
+                    "\n\"modetune help TOPIC\" prints what the documents say of a topic: a "
+                    "command, or a\nword of a model, a study or a result.\n");
+        list_topics(out);
+        return MT_EXIT_DONE;
+    }
+    const char *const topic = args->operands[0];
+    show_all(topic, false, &last, out);
+    if (last == NULL && command_of(topic) != MT_CMD_NONE) {
+        mt_help(command_of(topic), out);
+        return MT_EXIT_DONE;
+    }
+    if (last == NULL) {
+        show_all(topic, true, &last, out);
+    }
+    mt_text_add(out, last == NULL ? "" : "\n");
+    return last == NULL && !out->failed ? unknown(topic) : MT_EXIT_DONE;
+}
