@@ -59,6 +59,7 @@ typedef enum mt_option_id {
     MT_OPT_PROGRESS,
     MT_OPT_MAX_MEMORY,
     MT_OPT_RANK,
+    MT_OPT_KIND,
     MT_OPT_MODEL,
     MT_OPT_REDO,
     MT_OPT_REL_TOL,

@@ -181,6 +181,11 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "limit of the memory that files may make the program use, in bytes, or with k, M, G "
            "or T (1024 each); what needs more ends with exit status 4 (default: half of the "
            "memory of the machine or its container)"),
+    OPTION(
+        MT_OPT_KIND, '\0', "kind", "stick|mounts|arm|updating|rotor", BIT(MT_CMD_INIT),
+        "a model in space and its study to begin with: a stick with two axes, a pump on "
+        "rubber mounts, an arm in two postures under gravity, a bracket to be updated from a "
+        "test, a camera ball to be kept clear of a rotor (default: a lever in the plane)"),
     OPTION(MT_OPT_RANK, '\0', "rank", "N", BIT(MT_CMD_APPLY) | BIT(MT_CMD_EXPLAIN),
            "which recommendation (default: 1, the best)"),
     OPTION(MT_OPT_MODEL, '\0', "model", "MODEL", BIT(MT_CMD_APPLY) | BIT(MT_CMD_SHOW),
@@ -358,8 +363,9 @@ const mt_command mt_commands[MT_CMD_IDS] = {
     COMMAND(MT_CMD_INIT, "init", "[DIR]", 0, 1, "a model and a study to begin with",
             "Writes model.json, study.json and their schemas, which let an editor complete "
             "them, into the folder (default: the current one), creates it if necessary, and "
-            "prints the paths. The model is a lever on a servo with a description of each "
-            "part; the study keeps it clear of a rotor. If one of the files exists with other "
+            "prints the paths. Each part of the model has a description; the study asks a "
+            "question that it answers within seconds. --kind chooses among models. If one of "
+            "the files exists with other "
             "contents, nothing is written."),
     COMMAND(MT_CMD_EXAMPLES, "examples", "[NAME...]", 0, -1,
             "the studies that are part of the program",

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From an empty folder to an answer: init, examples, schema, and the catalogue of aircraft that is found without a path."""
 import json
+import os
 import re
 
 import jsonschema
 from common_cli import SOURCE, CliTest, main
 
+EVERY = os.environ.get("MT_EVERY", "0") != "0"
+SLOW = ("arm", "stick")  # seconds: answered with MT_EVERY=1
 STUDY = """{ "format": "modetune-study/1", "name": "x", "model": "../mine/model.json",
   "variables": [ { "parameter": "servo", "lower": 200, "upper": 5000 } ],
   "goals": [ { "type": "avoid", "configuration": "held", "up_to_hz": 100,
@@ -37,6 +40,27 @@ class FirstHour(CliTest):
         result = json.loads(self.text("results/study/result.json"))
         self.assertEqual(result["status"], "solved")
         self.assertTrue(all(r["feasible"] for r in result["recommendations"]))
+
+    def test_every_kind_is_a_model_in_space_that_its_study_answers(self):
+        kinds = re.search(r"^ +--kind ([a-z|]+)", self.expect(0, "init", "--help").stdout, re.M).group(1).split("|")
+        self.assertEqual(set(kinds), {p.name for p in (SOURCE / "src/cli/init").iterdir() if p.is_dir()})
+        for kind in kinds:
+            with self.subTest(kind):
+                self.expect(0, "init", kind, "--kind", kind)
+                model, study = (json.loads(self.text(f"{kind}/{name}.json")) for name in ("model", "study"))
+                self.assertEqual(model["dimension"], 3)
+                for document, schema in ((model, "model"), (study, "study")):
+                    known = json.loads(self.text(f"{kind}/schemas/{schema}.schema.json"))
+                    self.assertEqual([e.message for e in jsonschema.Draft7Validator(known).iter_errors(document)], [])
+                self.assertNotIn("warning", self.expect(0, "check", f"{kind}/model.json", f"{kind}/study.json").stderr)
+                if kind in SLOW and not EVERY:
+                    continue
+                done = self.expect(0, "run", f"{kind}/study.json", "-o", f"{kind}/results", "--quiet")
+                self.assertRegex(done.stdout.splitlines()[1], "^(Solved|Fitted): ")
+                result = json.loads(self.text(f"{kind}/results/study/result.json"))
+                self.assertGreater(result["recommendations"][0]["change"], 0.01)  # something has to change
+        self.assertEqual(self.expect(2, "init", "x", "--kind", "stik").stderr.splitlines()[0],
+                         'modetune: error: no kind of model is called "stik"; --kind takes stick, mounts, arm, updating or rotor')
 
     def test_init_leaves_alone_what_is_there(self):
         self.expect(0, "init", "mine")

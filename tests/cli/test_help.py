@@ -27,7 +27,7 @@ OPTIONS = {
     "apply": {"rank", "model"},
     "diff": {"rel-tol", "abs-tol"},
     "check": set(),
-    "init": set(),
+    "init": {"kind"},
     "examples": {"output"},
     "schema": set(),
     "profile": {"spectrum", "damping-ratio"},
