@@ -434,6 +434,12 @@ static mt_interval cosine(mt_interval a, mt_interval v)
     return mt_interval_of(fmax(q.lo, -ONE), fmin(q.hi, ONE));
 }
 
+/* ln 10 itself, which no double is. */
+static mt_interval ln_10(void)
+{
+    return (mt_interval){down(MT_LN_10), up(MT_LN_10)};
+}
+
 static mt_interval_partials slope(mt_interval a)
 {
     return (mt_interval_partials){a, point(0.0)};
@@ -455,8 +461,7 @@ mt_interval_partials mt_interval_op_partials(mt_op op, mt_interval a, mt_interva
     case MT_OP_LN:
         return slope(a.lo <= 0.0 ? mt_interval_all() : inverse(a));
     case MT_OP_LOG10:
-        return slope(a.lo <= 0.0 ? mt_interval_all()
-                                 : inverse(mt_interval_mul(a, point(MT_LN_10))));
+        return slope(a.lo <= 0.0 ? mt_interval_all() : inverse(mt_interval_mul(a, ln_10())));
     case MT_OP_SIN:
         return slope(unary_op(MT_OP_COS, a));
     case MT_OP_COS:

@@ -3,15 +3,18 @@
 """
 Do the tests notice? Small faults, planted one at a time by rule in the rooms that compute bounds, slopes, rows and printed numbers: a
 comparison that takes the other end in, a sign, a bound for the other, an index, a margin left out, "and" for "or", a term left out. Each is
-built in a copy of the tree; the tests of its room judge it, then the quick suite. What both pass has survived, and is listed with its line.
+built in a copy of the tree and judged by tests until the first that fails: first those of its room and of the rooms right above it, by what
+they cost, then the quick suite. What both pass has survived, and is listed with its line.
 
     tests/planted/plant.py --count 100 --seed 1                of all rooms
     tests/planted/plant.py --rooms prove,expr --count 20
-    tests/planted/plant.py --only src/prove/box.c:120:less      one fault once more
+    tests/planted/plant.py --first --count 100                 without the quick suite
+    tests/planted/plant.py --only src/prove/box.c:120:less      one fault once more (more of them: separated by commas)
+    tests/planted/plant.py --again --seed 1                    what survived, once more: after a test was written
     tests/planted/plant.py --list                              how many there are of each kind
 
-Answers go to build/planted/SEED.jsonl, one line for each fault; a run that was stopped goes on there. A fault costs a minute of one core,
-one that survives four more.
+Answers go to build/planted/SEED.jsonl, one line for each fault; a run that was stopped goes on there. A fault costs ten seconds of one core,
+one that the first stage does not notice one minute, one that survives four more.
 """
 import argparse
 import collections
@@ -26,7 +29,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 ROOMS = ["prove", "expr", "modal", "problem", "search", "vibration", "describe", "report"]
-BUILD_LIMIT, ROOM_LIMIT, QUICK_LIMIT = 600, 900, 1800  # seconds: a fault may never end
+# Whose tests judge a fault first: its own room's, then those of rooms that rest upon it.
+ABOVE = {"prove": ["problem", "search", "answer", "cli"], "expr": ["prove", "model", "mechanics", "problem"], "modal": ["analysis", "response", "describe"],
+         "problem": ["describe", "answer", "search", "cli"], "search": ["answer", "cli", "describe"], "vibration": ["response", "answer", "cli"],
+         "describe": ["answer", "report", "library", "cli"], "report": ["library", "schema", "cli"]}
+FIRST_EACH, FIRST_ALL = 4.0, 60.0  # seconds that one test and all tests of the first stage may cost, beyond the room's own
+STEPS = (1.0, 6.0)  # it is built and run in steps: all tests below so many seconds, then the next
+BUILD_LIMIT, TEST_LIMIT, QUICK_LIMIT = 600, 200, 1800  # seconds: a fault may never end
+UNSUITED = "^(browser|structure|install)/"  # what does not judge the code, or not in a copy
 NAME = r"[A-Za-z_]\w*"
 # kind: what is found (group 1 is replaced), by what
 RULES = {
@@ -81,15 +91,48 @@ class Copy:
 
     def __init__(self, folder):
         self.folder, self.build = folder, folder / "build/release"
-        shutil.rmtree(folder, ignore_errors=True)
-        files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True).stdout.decode().split("\0")
-        for name in filter(None, files):
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, folder / name)
+        names = subprocess.run(["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True).stdout.decode().split("\0")
+        names = {name for name in names if name and (ROOT / name).is_file()}
+        for path in [p for p in folder.rglob("*") if p.is_file() and not p.is_relative_to(folder / "build") and str(p.relative_to(folder)) not in names]:
+            path.unlink()
+        for name in sorted(names):  # what has not changed stays, and is not built again
+            if not (folder / name).exists() or (folder / name).read_bytes() != (ROOT / name).read_bytes():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(ROOT / name, folder / name)
         self.environment = dict(os.environ, CMAKE_C_COMPILER_LAUNCHER="ccache", CCACHE_BASEDIR=str(folder), CCACHE_NOHASHDIR="1")
         for command in (["cmake", "--preset", "release"], ["cmake", "--build", "build/release"]):
             subprocess.run(command, cwd=folder, env=self.environment, check=True, stdout=subprocess.DEVNULL)
-        self.targets = subprocess.run(["ninja", "-C", self.build, "-t", "targets", "all"], capture_output=True, text=True, check=True).stdout.splitlines()
+        self.targets = set(re.findall(r"^(tests/\w+/\w+): ", self.output("ninja", "-C", self.build, "-t", "targets", "all"), re.M))
+        listed = json.loads(self.output("ctest", "--test-dir", self.build, "-LE", "long", "--show-only=json-v1"))
+        self.tests = [test["name"] for test in listed["tests"] if not re.match(UNSUITED, test["name"])]
+        self.costs = self.measured()
+
+    def output(self, *command):
+        return subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True, check=True).stdout
+
+    def measured(self):
+        """What each test cost when the suite ran last, here or in the tree: by that they are ordered."""
+        found = {}
+        for build in (ROOT / "build/release", self.build):
+            path = build / "Testing/Temporary/CTestCostData.txt"
+            if path.exists():
+                rows = (line.split() for line in path.read_text(encoding="utf-8").split("---")[0].splitlines())
+                found.update({row[0]: float(row[2]) for row in rows if row[0] not in found and float(row[2]) > 0})
+        return found
+
+    def first_stage(self, room):
+        """The tests of the room, and of the rooms above while their costs allow; in steps, cheap ones first."""
+        cost = lambda test: self.costs.get(test, 1.0)
+        own = [test for test in self.tests if test.startswith(room + "/")]
+        above = [test for test in self.tests if test.split("/")[0] in ABOVE[room] and cost(test) <= FIRST_EACH]
+        left = FIRST_ALL
+        picked = list(own)
+        for test in sorted(above, key=lambda test: (cost(test), test)):
+            left -= cost(test)
+            if left >= 0:
+                picked.append(test)
+        marks = (0.0, *STEPS, float("inf"))
+        return [sorted((t for t in picked if low <= cost(t) < high), key=cost) for low, high in zip(marks, marks[1:])]
 
     def run(self, command, limit):
         try:
@@ -97,20 +140,29 @@ class Copy:
         except subprocess.TimeoutExpired:
             return None
 
-    def built(self, room):
+    def built(self, wanted):
         """Does it compile, without a warning? A compiler that warns has noticed."""
-        wanted = ["modetune", "libmodetune.so"] + [t.split(":")[0] for t in self.targets if re.match(rf"tests/{room}/test_\w+: ", t)]
-        done = self.run(["ninja", "-C", str(self.build), *dict.fromkeys(wanted)], BUILD_LIMIT)
+        done = self.run(["ninja", "-C", str(self.build), *wanted], BUILD_LIMIT)
         return done is not None and done.returncode == 0 and "warning:" not in done.stdout
 
-    def first_failure(self, *arguments, limit):
-        done = self.run(["ctest", "--test-dir", str(self.build), "-LE", "long", "-j", str(os.cpu_count()), "--stop-on-failure", "--timeout", "300", *arguments], limit)
+    def first_failure(self, *arguments, limit=QUICK_LIMIT, jobs=1):
+        done = self.run(["ctest", "--test-dir", str(self.build), "-LE", "long", "-j", str(jobs), "--stop-on-failure", "--timeout", str(TEST_LIMIT), *arguments], limit)
         if done is None:
             return "without an end"
         failed = re.search(r"Test +#\d+: (\S+) \.*\*\*\*", done.stdout)
         return failed[1] if failed else None if done.returncode == 0 else "ctest"
 
-    def judge(self, fault):
+    def noticed_first(self, room):
+        for step in self.first_stage(room):
+            programs = [f"tests/{test}" for test in step if f"tests/{test}" in self.targets]
+            if not self.built(["modetune", "libmodetune.so", "tests/modetune_faults", *programs]):
+                return "the compiler"
+            found = step and self.first_failure("-R", "^(" + "|".join(step) + ")$")
+            if found:
+                return found
+        return None
+
+    def judge(self, fault, quick):
         """What notices it; None: nothing does."""
         name, line, column, _, was, new = fault
         path, room = self.folder / name, name.split("/")[1]
@@ -120,12 +172,9 @@ class Copy:
         lines[line - 1] = lines[line - 1][:column] + new + lines[line - 1][column + len(was):]
         path.write_text("\n".join(lines), encoding="utf-8")
         try:
-            if not self.built(room):
-                return "the compiler"
-            found = self.first_failure("-L", f"^{room}$", limit=ROOM_LIMIT)
-            if found is None:
-                done = self.run(["ninja", "-C", str(self.build)], BUILD_LIMIT)
-                found = "the compiler" if done is None or done.returncode != 0 else self.first_failure("-E", "^(browser|structure|install)/", limit=QUICK_LIMIT)
+            found = self.noticed_first(room)
+            if found is None and quick:
+                found = self.first_failure("-E", UNSUITED, jobs=os.cpu_count()) if self.built([]) else "the compiler"
             return found
         finally:
             path.write_text(sound, encoding="utf-8")
@@ -136,7 +185,9 @@ def main():
     parser.add_argument("--rooms", default=",".join(ROOMS))
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", metavar="FILE:LINE:KIND")
+    parser.add_argument("--only", metavar="FILE:LINE:KIND,...")
+    parser.add_argument("--first", action="store_true", help="the first stage alone")
+    parser.add_argument("--again", action="store_true", help="judges once more what survived")
     parser.add_argument("--list", action="store_true")
     asked = parser.parse_args()
     everything = faults(asked.rooms.split(","))
@@ -147,19 +198,22 @@ def main():
         return 0
     picked = chosen(everything, asked.count, random.Random(asked.seed))
     if asked.only:
-        name, line, kind = asked.only.split(":")
-        picked = [f for f in everything if (f[0], str(f[1]), f[3]) == (name, line, kind)]
+        meant = {tuple(one.split(":")) for one in asked.only.split(",")}
+        picked = [f for f in everything if (f[0], str(f[1]), f[3]) in meant]
     folder = ROOT / "build/planted"
     folder.mkdir(parents=True, exist_ok=True)
     answers = folder / ("only.jsonl" if asked.only else f"{asked.seed}.jsonl")
     known = {}
     if answers.exists() and not asked.only:
         known = {tuple(a["fault"]): a["noticed_by"] for a in map(json.loads, answers.read_text(encoding="utf-8").splitlines())}
+        if asked.again:
+            picked = [f for f in picked if f in known and known[f] is None]
+            known = {}
     copy = None
     for fault in picked:
         if fault not in known:
             copy = copy or Copy(folder / "tree")
-            known[fault] = copy.judge(fault)
+            known[fault] = copy.judge(fault, quick=not asked.first)
             with answers.open("a", encoding="utf-8") as out:
                 out.write(json.dumps({"fault": fault, "noticed_by": known[fault]}) + "\n")
         name, line, _, kind, was, new = fault
