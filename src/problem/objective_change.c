@@ -21,6 +21,18 @@ static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
     return f;
 }
 
+/* How far a box is from the original in coordinate i, less what its two logarithms or
+ * quotients are rounded by: next to the original their difference has few digits. */
+static double apart(const mt_problem *p, int i, double lo, double hi)
+{
+    const double origin = p->whole.origin_t[i];
+    const double low = mt_problem_t(p, i, lo);
+    const double high = mt_problem_t(p, i, hi);
+    const double d = origin > high ? origin - high : low - origin;
+    const double size = fmax(fabs(origin), fmax(fabs(low), fabs(high)));
+    return fmax(d - (MT_OBJECTIVE_ULPS * DBL_EPSILON * size), 0.0);
+}
+
 static double least(
     const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
     double *low,  /* NOLINT(readability-non-const-parameter): others write there */
@@ -31,9 +43,7 @@ static double least(
     (void)low;
     (void)high;
     for (int i = 0; i < p->n; i++) {
-        const double below = p->whole.origin_t[i] - mt_problem_t(p, i, hi[i]);
-        const double above = mt_problem_t(p, i, lo[i]) - p->whole.origin_t[i];
-        const double d = fmax(fmax(below, above), 0.0);
+        const double d = apart(p, i, lo[i], hi[i]);
         f += 0.5 * p->study->variables[i].weight * d * d;
     }
     return f * (1.0 - (MT_OBJECTIVE_ULPS * (double)p->n * DBL_EPSILON));
