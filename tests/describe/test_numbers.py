@@ -32,12 +32,13 @@ MODEL = {
     "springs": [{"name": "s1", "type": "axial", "bodies": ["ground", "a"], "at": [[0, 0], [1, 0]], "stiffness_n_per_m": "k1 + 1e-5*w"},
                 {"name": "s2", "type": "axial", "bodies": ["a", "b"], "stiffness_n_per_m": "k2"}],
     "dampers": [{"name": "d", "type": "axial", "bodies": ["ground", "a"], "at": [[0, 0], [1, 0]], "damping_n_s_per_m": "c"}],
-    "sensors": [{"name": n, "on": n, "directions": ["x"]} for n in "ab"],
+    "sensors": [{"name": n + i, "on": n, "directions": ["x"]} for n in "ab" for i in ("", "2")],
     "modes": {"first": {"configuration": "held", "index": 1}},
     "configurations": {"held": {}, "heavy": {"parameters": {"m": 4000}}}}
 MASS = {"held": 1.0, "heavy": 4.0}
 VARIABLES = [{"parameter": "k1", "lower": 3, "upper": 100}, {"parameter": "k2", "lower": 3, "upper": 40, "weight": 2}]
 REFERENCE = {"test": {"modes": [{"frequency_hz": 13.5, "shape": {"a.x": 0.3, "b.x": 1}}, {"frequency_hz": 31, "shape": {"a.x": 1, "b.x": -0.25}}]}}
+OTHER = {"other": {"modes": [{"frequency_hz": 7, "shape": {"b2.x": 1, "a2.x": 0.4, "a.x": 0.3}}, {"frequency_hz": 30, "shape": {"a.x": -1, "b2.x": 0.2, "b.x": 0.4}}]}}
 GOALS = [{"type": "frequency", "configuration": "held", "mode": "first", "target_hz": 14},
          {"type": "frequency", "configuration": "heavy", "mode": 2, "at_least_hz": 10, "at_most_hz": 15},
          {"type": "mac", "configuration": "held", "mode": 1, "reference": "test", "at_least": 0.99},
@@ -52,7 +53,17 @@ FIT = [{"type": "frequency", "configuration": "held", "mode": 1, "reference": "t
        {"type": "frequency", "configuration": "held", "mode": 2, "reference": "test", "reference_mode": 2, "weight": 1},
        {"type": "frequency", "configuration": "heavy", "mode": 2, "target_hz": 17, "weight": 1},
        {"type": "shape", "configuration": "held", "mode": 1, "reference": "test", "weight": 1}]
+# Two of each that differ: channel lists, tolerances and margins of bands of one configuration, weights; one mode is inside both tolerances' span.
+PAIRS = [{"type": "mac", "configuration": "held", "mode": 1, "reference": "test", "at_least": 0.9},
+         {"type": "mac", "configuration": "heavy", "mode": 1, "reference": "other", "at_least": 0.999},
+         {"type": "mac", "configuration": "held", "mode": 2, "reference": "other", "reference_mode": 2, "at_least": 0.8},
+         {"type": "avoid", "configuration": "held", "bands_hz": [[12, 13.3]], "margin_percent": 0.1, "tolerance_percent": 0.5},
+         {"type": "avoid", "configuration": "held", "bands_hz": [[32, 33]], "margin_percent": 0.2, "tolerance_percent": 0.1},
+         {"type": "frequency", "configuration": "heavy", "mode": 1, "at_least_hz": 6.65, "tolerance_percent": 0.2},
+         {"type": "frequency", "configuration": "heavy", "mode": 2, "at_most_hz": 16.5, "tolerance_percent": 0.01}]
 STUDIES = {
+    "pairs": {"goals": PAIRS, "objective": {"minimise": "change"}, "references": REFERENCE | OTHER},
+    "pairs_turned": {"goals": PAIRS[::-1], "objective": {"minimise": "change"}, "references": OTHER | REFERENCE},
     "missed": {"goals": GOALS, "objective": [{"minimise": "change"}, {"minimise": "k1 + 3*k2"}], "references": REFERENCE},
     "infeasible": {"goals": [g | ({"at_most_hz": 9.9, "at_least_hz": 9.8} if g["type"] == "frequency" and "at_most_hz" in g else {}) for g in GOALS],
                    "objective": {"minimise": "k1 + 3*k2"}, "references": REFERENCE},
@@ -96,7 +107,8 @@ class Truth:
         return -roots[mode - 1].real / abs(roots[mode - 1])
 
     def mac(self, configuration, mode, reference):
-        shape, wanted = self.modes(configuration)[1][:, mode - 1], np.array([reference["shape"]["a.x"], reference["shape"]["b.x"]])
+        mode_shape, wanted = self.modes(configuration)[1][:, mode - 1], np.array(list(reference["shape"].values()))
+        shape = np.array([mode_shape["ab".index(channel[0])] for channel in reference["shape"]])
         return (shape @ wanted) ** 2 / (shape @ shape) / (wanted @ wanted)
 
     def response(self, hz):
@@ -287,10 +299,11 @@ class Rules:
         return 100 * max(0.0, 1 - hz / least if least is not None else 0.0, hz / most - 1 if most is not None else 0.0)
 
     def design_frequencies_mac(self, d, f):
-        return self.at(d).mac(f["configuration"], f["mode"], self.study["references"]["test"]["modes"][self._shape(f) - 1])
+        return self.at(d).mac(f["configuration"], f["mode"], self.study["references"][f["reference"]]["modes"][self._shape(f) - 1])
 
     def _shape(self, f):
-        return next((g.get("reference_mode", 1) for g in self.study["goals"] if g["type"] in ("mac", "shape") and g["mode"] == f["mode"]), f["mode"])
+        asks = [g for g in self.study["goals"] if g["type"] in ("mac", "shape") and (g["configuration"], g["mode"]) == (f["configuration"], f["mode"])]
+        return asks[0].get("reference_mode", 1)
 
     def _share(self, d, f, mode):
         before, now = Truth(30000.0, 10000.0).modes(f["configuration"])[1][:, 0], self.at(d).modes(f["configuration"])[1][:, mode - 1]
@@ -324,7 +337,7 @@ class Rules:
         return self.at(d).mac(m["configuration"], row["mode"], self.study["references"][m["reference"]]["modes"][m["reference_modes"][i] - 1])
 
     def _bands(self):
-        return [(g["configuration"], g, band) for c in MASS for g in self.avoids(c) for band in g["bands_hz"]]
+        return [(c, g, band) for c in MASS for band, g in sorted(((band, g) for g in self.avoids(c) for band in g["bands_hz"]), key=lambda pair: pair[0])]
 
     def design_clearances_band_id(self, d, c):
         name = "{:g} to {:g} Hz"
@@ -342,7 +355,7 @@ class Rules:
 
     def design_clearances_percent(self, d, c):
         percent, side = clearance(c["hz"], self._band_of(c)[2])
-        self.test.assertEqual(c["side"], ("below", "above")[side] if percent >= 0 else "inside")
+        self.test.assertEqual(c["side"], ("below", "above")[side] if percent >= 0 else "inside", c)
         return percent
 
     def design_clearances_margin_percent(self, d, c):
@@ -398,13 +411,14 @@ class Rules:
         return self.limits(self.goal_of(g))[1]
 
     def design_goals_tolerance_percent(self, d, g):
-        return 1e-4
+        return self.goal_of(g).get("tolerance_percent", 1e-4)
 
     def design_goals_violation_percent(self, d, g):
         goal, truth = self.goal_of(g), self.at(d)
         worst = [truth] if g["worst"] is None else [Truth(**x) for x in self.corners(d)]
         off = max(self.violation(goal, self.value(goal, t), t) for t in worst)
-        self.test.assertEqual(g["met"], off <= g["tolerance_percent"])
+        if abs(off / g["tolerance_percent"] - 1) > 1e-2:  # there a search stops, and what it counts by logarithms is not told from it
+            self.test.assertEqual(g["met"], off <= g["tolerance_percent"], (g, off))
         return off
 
     def design_goals_worst(self, d, g):
@@ -429,6 +443,16 @@ class Rules:
     design_responses_frequency_hz = design_responses_lower_hz = design_responses_upper_hz = _at_13
 
     # of the result
+    def doubts_line(self, doubt):
+        return 1
+
+    def doubts_column(self, doubt):
+        """Of the member's number, from 1."""
+        goal = self.study["goals"][int(doubt["pointer"].split("/")[2])]
+        start = self.text.index(json.dumps(goal))
+        name = json.dumps(doubt["pointer"].split("/")[3]) + ": "
+        return start + self.text[start:].index(name) + len(name) + 1
+
     def relaxations_from(self, r):
         goal = self.goal_of(r)
         return goal[r["what"].split(" ")[0]]
@@ -566,6 +590,8 @@ def numbers(value, path=(), chain=()):
 
 
 class Numbers(unittest.TestCase):
+    maxDiff = None
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -630,7 +656,7 @@ class Numbers(unittest.TestCase):
     def rules(self, name):
         study, result = self.read(name)
         rules = Rules(study, result)
-        rules.test = self
+        rules.test, rules.text = self, (self.root / f"{name}.json").read_text()
         return study, result, rules
 
     def setUp(self):
@@ -747,7 +773,12 @@ class Numbers(unittest.TestCase):
             for goal in best["goals"]:
                 line = next(line for line in said.splitlines() if line.startswith(f"  - {goal['goal']}: "))
                 self.assertEqual("is not known" in line, goal["sensitivity"] is None and goal["type"] != "avoid", line)
-            for row in csv.DictReader(told.splitlines()):
+            rows = list(csv.DictReader(told.splitlines()))
+            moved = [(g["goal"], p["name"]) for g in best["goals"] if g["sensitivity"] is not None for p in best["parameters"]]
+            self.assertEqual(sorted((r["goal"], r["parameter"]) for r in rows if (r["goal"], "k1") in moved), sorted(moved))
+            for one, other in zip(rows, rows[1:]):  # of each goal the most first
+                self.assertTrue(one["goal"] != other["goal"] or 1.00001 * abs(float(one["change_per_percent"])) >= abs(float(other["change_per_percent"])), (one, other))
+            for row in rows:
                 goal = next((g for g in best["goals"] if g["goal"] == row["goal"]), None)
                 p = next(p for p in best["parameters"] if p["name"] == row["parameter"])
                 x = p["recommended"]
