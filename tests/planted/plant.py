@@ -32,7 +32,7 @@ ROOMS = ["prove", "expr", "modal", "problem", "search", "vibration", "describe",
 # What judges a fault first: its own room's tests, then these, which rest upon it.
 ABOVE = {"prove": ["problem/", "search/", "answer/", "cli/test_possible", "cli/test_tolerances", "reference/test_proofs"],
          "expr": ["prove/", "model/", "mechanics/", "problem/"],
-         "modal": ["analysis/", "response/", "describe/test_study", "stress/test_eigensolver", "mechanisms/"],
+         "modal": ["analysis/", "analysis/test_lowest", "analysis/test_lowest_trees", "response/", "describe/test_study", "stress/test_eigensolver"],
          "problem": ["describe/", "answer/", "search/", "cli/test_between", "cli/test_motion", "cli/test_tolerances"],
          "search": ["answer/", "describe/", "cli/test_possible", "cli/test_positions", "cli/test_motion", "cli/test_between"],
          "vibration": ["cli/test_response_vibration", "response/", "answer/test_study_vibration", "problem/test_study_gradient"],
