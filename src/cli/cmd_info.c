@@ -25,6 +25,7 @@ typedef struct view {
     mt_nearness nearness;
     mt_arena mem;
     mt_doubt_list doubts;
+    mt_convention_list conventions;
 } view;
 
 static void json_units(mt_json_writer *w, const mt_subject *s)
@@ -168,6 +169,7 @@ static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
     mt_json_put_number(w, "equilibrium_residual", i->residual);
     mt_json_put_number(w, "gap_m", i->gap_m);
     json_damping(w, v);
+    mt_cli_json_conventions(w, &v->conventions);
     mt_cli_json_dead_centre(w, &v->nearness);
     mt_json_close(w);
     return MT_OK;
@@ -184,25 +186,19 @@ static const char *point_text(const double *x, int n, char *text, size_t size)
 }
 
 /* Where another configuration has said the same (*last, which is taken over) nothing is. */
-static mt_status write_conventions(mt_text *out, view *v, mt_text *last, mt_err *err)
+static void write_conventions(mt_text *out, const view *v, mt_text *last)
 {
     mt_text text = {.s = NULL};
-    const mt_model *const m = v->s->model;
-    double *const value = mt_arena_f64(&v->mem, (size_t)m->n_nums, 1);
-    MT_TRY(mt_arena_check(&v->mem, err));
-    MT_TRY(
-        mt_model_numbers(m, v->c, v->s->n_inputs, v->s->inputs, v->s->at, &v->mem, value, err));
-    mt_cli_write_conventions(m, v->c, value, &text);
+    mt_cli_print_conventions(&v->conventions, &text);
     if (text.s != NULL && (last->s == NULL || strcmp(last->s, text.s) != 0)) {
         mt_text_add(out, text.s);
     }
     out->failed = out->failed || text.failed;
     mt_text_free(last);
     *last = text;
-    return MT_OK;
 }
 
-static mt_status write_text(mt_text *out, view *v, mt_text *last, mt_err *err)
+static void write_text(mt_text *out, const view *v, mt_text *last)
 {
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
@@ -233,9 +229,8 @@ static mt_status write_text(mt_text *out, view *v, mt_text *last, mt_err *err)
         mt_text_addf(out, "  equilibrium residual %.1e, largest gap of a joint %.1e m\n",
                      i->residual, i->gap_m);
     }
-    MT_TRY(write_conventions(out, v, last, err));
+    write_conventions(out, v, last);
     mt_text_add(out, "\n");
-    return MT_OK;
 }
 
 /* "170 mm = 0.17 m": of every parameter that the file gives in a unit other than SI. */
@@ -307,6 +302,18 @@ typedef struct sinks {
     mt_text *last; /* conventions, as they were said last */
 } sinks;
 
+static mt_status find_conventions(view *v, mt_err *err)
+{
+    const mt_model *const m = v->s->model;
+    double *const value = mt_arena_f64(&v->mem, (size_t)m->n_nums, 1);
+    MT_TRY(mt_arena_check(&v->mem, err));
+    MT_TRY(
+        mt_model_numbers(m, v->c, v->s->n_inputs, v->s->inputs, v->s->at, &v->mem, value, err));
+    v->conventions = (mt_convention_list){.mem = &v->mem};
+    mt_cli_find_conventions(m, v->c, value, &v->conventions);
+    return mt_arena_check(&v->mem, err);
+}
+
 static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
 {
     MT_TRY(mt_subject_analyse(v->s, v->c, 1, &v->a, err));
@@ -316,6 +323,7 @@ static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
     v->doubts = mt_doubt_list_default(&v->mem);
     MT_TRY(
         mt_doubts_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at, &v->doubts, err));
+    MT_TRY(find_conventions(v, err));
     switch (args->format) {
     case MT_FORMAT_JSON:
         return write_json(to->w, v, err);
@@ -325,7 +333,8 @@ static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
     case MT_FORMAT_HTML:  /* of report alone */
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
-        return write_text(to->out, v, to->last, err);
+        write_text(to->out, v, to->last);
+        return MT_OK;
     }
     return MT_OK;
 }

@@ -9,32 +9,20 @@
 #include "cli/conventions.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stddef.h>
 
 #include "model/joint.h"
 
-/* So many lines tell what is meant; a large model repeats itself. */
+/* So many lines tell people what is meant; a large model repeats itself. */
 enum { MOST_LINES = 24 };
 
 typedef struct writer {
     const mt_model *m;
     int configuration;
     const double *value;
-    mt_text *out;
-    int lines;
-    int left; /* not written any more */
+    mt_convention_list *out;
 } writer;
-
-/* Is another line wanted? Begins it. */
-static bool begins(writer *w)
-{
-    if (w->lines == MOST_LINES) {
-        w->left++;
-        return false;
-    }
-    mt_text_add(w->out, w->lines++ == 0 ? "  conventions\n    " : "    ");
-    return true;
-}
 
 /* A number that is given and not 0. */
 static bool has(const writer *w, mt_num num, double *v)
@@ -58,6 +46,42 @@ static pair pair_of(const writer *w, int joint, const mt_attach *bodies)
                   second == NULL ? "the element behind" : second};
 }
 
+/* Which member of which item a sentence is about, whose value it is, and between which bodies
+ * it acts. */
+typedef struct subject {
+    const char *list; /* "springs", with index -1 the whole pointer */
+    int index;
+    const char *member; /* "preload_n_m" */
+    double value;
+    pair of;
+} subject;
+
+static void say(writer *w, const subject *s, const char *fmt, ...) MT_PRINTF(3, 4);
+static void say(writer *w, const subject *s, const char *fmt, ...)
+{
+    mt_convention_list *const out = w->out;
+    va_list args;
+    va_start(args, fmt);
+    const char *const text = mt_arena_vprintf(out->mem, fmt, args);
+    va_end(args);
+    mt_convention *const items =
+        mt_arena_grow(out->mem, out->items, out->n, &out->capacity, sizeof *items);
+    if (items == NULL) {
+        return;
+    }
+    items[out->n++] = (mt_convention){
+        .pointer = s->index < 0 ? s->list
+                                : mt_arena_printf(out->mem, "/%s/%d%s%s", s->list, s->index,
+                                                  s->member == NULL ? "" : "/",
+                                                  s->member == NULL ? "" : s->member),
+        .value = s->value,
+        .first = s->of.first,
+        .second = s->of.second,
+        .text = text,
+    };
+    out->items = items;
+}
+
 static const char *about(const writer *w)
 {
     return w->m->dimension == 2 ? "clockwise" : "against the axis";
@@ -71,44 +95,58 @@ static const char *along(const writer *w)
 static void write_products(writer *w)
 {
     static const char *const names[] = {"xy", "xz", "yz"};
+    static const char *const members[] = {"inertia_kg_m2/3", "inertia_kg_m2/4",
+                                          "inertia_kg_m2/5"};
     for (int i = 0; i < w->m->n_bodies; i++) {
         const mt_body *const b = &w->m->bodies[i];
+        const char *text = "";
         double v = 0.0;
-        bool any = false;
+        subject first = {.list = "bodies", .index = i, .member = NULL};
         if (!mt_model_present(&b->in, w->configuration) || w->m->dimension == 2) {
             continue;
         }
-        for (int k = 0; k < 3; k++) {
-            any = any || has(w, b->inertia[3 + k], &v);
-        }
-        if (!any || !begins(w)) {
-            continue;
-        }
-        mt_text_addf(w->out, "body \"%s\": inertia", b->name.s);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3 && text != NULL; k++) {
             if (has(w, b->inertia[3 + k], &v)) {
-                mt_text_addf(w->out, " %s %g", names[k], v);
+                text = mt_arena_printf(w->out->mem, "%s %s %g", text, names[k], v);
+                first.value = first.member == NULL ? v : first.value;
+                first.member = first.member == NULL ? members[k] : first.member;
             }
         }
-        mt_text_add(w->out, ": elements of the tensor, minus the integrals of x y, x z, y z "
-                            "over the mass (a CAD system's positive integrals change sign)\n");
+        if (text != NULL && *text != '\0') {
+            say(w, &first,
+                "body \"%s\": inertia%s: elements of the tensor, minus the integrals of x y, x "
+                "z, y z over the mass (a CAD system's positive integrals change sign)",
+                b->name.s, text);
+        }
     }
+}
+
+/* A member of spring number i of the model, of those of the file's list. */
+static subject of_spring(const writer *w, const mt_spring *s, const char *member, double value,
+                         pair of)
+{
+    int index = 0;
+    for (const mt_spring *k = w->m->springs; k < s; k++) {
+        index += k->damper == s->damper ? 1 : 0;
+    }
+    return (subject){s->damper ? "dampers" : "springs", index, member, value, of};
 }
 
 static void write_torsion(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, s->joint, s->bodies);
     double v = 0.0;
-    if (has(w, s->preload, &v) && begins(w)) {
-        mt_text_addf(w->out,
-                     "spring \"%s\": preload_n_m %g turns \"%s\" against \"%s\" %s, as drawn\n",
-                     s->name.s, v, of.second, of.first, v > 0.0 ? about(w) : along(w));
+    if (has(w, s->preload, &v)) {
+        const subject at = of_spring(w, s, "preload_n_m", v, of);
+        say(w, &at, "spring \"%s\": preload_n_m %g turns \"%s\" against \"%s\" %s, as drawn",
+            s->name.s, v, of.second, of.first, v > 0.0 ? about(w) : along(w));
     }
-    if (has(w, s->free_angle, &v) && begins(w)) {
-        mt_text_addf(w->out,
-                     "spring \"%s\": no torque where \"%s\" is turned by %g rad %s against "
-                     "\"%s\", from the drawing\n",
-                     s->name.s, of.second, fabs(v), v > 0.0 ? along(w) : about(w), of.first);
+    if (has(w, s->free_angle, &v)) {
+        const subject at = of_spring(w, s, "free_angle_rad", v, of);
+        say(w, &at,
+            "spring \"%s\": no torque where \"%s\" is turned by %g rad %s against \"%s\", from "
+            "the drawing",
+            s->name.s, of.second, fabs(v), v > 0.0 ? along(w) : about(w), of.first);
     }
 }
 
@@ -116,31 +154,29 @@ static void write_axial(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, s->joint, s->bodies);
     double v = 0.0;
-    if (!has(w, s->preload, &v) || !begins(w)) {
+    if (!has(w, s->preload, &v)) {
         return;
     }
+    const subject at = of_spring(w, s, "preload_n", v, of);
     if (s->joint_name.s != NULL) {
-        mt_text_addf(w->out,
-                     "spring \"%s\": preload_n %g pushes \"%s\" %s the axis of \"%s\"\n",
-                     s->name.s, v, of.second, v > 0.0 ? "against" : "along", s->joint_name.s);
+        say(w, &at, "spring \"%s\": preload_n %g pushes \"%s\" %s the axis of \"%s\"",
+            s->name.s, v, of.second, v > 0.0 ? "against" : "along", s->joint_name.s);
     } else {
-        mt_text_addf(w->out, "spring \"%s\": preload_n %g is %s: it %s\n", s->name.s, v,
-                     v > 0.0 ? "tension" : "compression",
-                     v > 0.0 ? "draws its two points together" : "pushes its two points apart");
+        say(w, &at, "spring \"%s\": preload_n %g is %s: it %s", s->name.s, v,
+            v > 0.0 ? "tension" : "compression",
+            v > 0.0 ? "draws its two points together" : "pushes its two points apart");
     }
 }
 
 static void write_bushing(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, MT_ABSENT, s->bodies);
-    if (begins(w)) {
-        mt_text_addf(w->out,
-                     "%s \"%s\": along the drawing's x, y%s, carried by \"%s\"; about %s of "
-                     "\"%s\", where its forces act on both\n",
-                     s->damper ? "damper" : "spring", s->name.s,
-                     w->m->dimension == 2 ? "" : ", z", of.first,
-                     s->n_at > 0 ? "the point" : "the centre", of.second);
-    }
+    const subject at = of_spring(w, s, s->n_at > 0 ? "at" : NULL, nan(""), of);
+    say(w, &at,
+        "%s \"%s\": along the drawing's x, y%s, carried by \"%s\"; about %s of \"%s\", where "
+        "its forces act on both",
+        s->damper ? "damper" : "spring", s->name.s, w->m->dimension == 2 ? "" : ", z", of.first,
+        s->n_at > 0 ? "the point" : "the centre", of.second);
 }
 
 static void write_springs(writer *w)
@@ -175,37 +211,40 @@ static void write_gears(writer *w)
         if (!mt_model_present(&j->in, w->configuration)) {
             continue;
         }
-        if (has(w, j->ratio, &v) && begins(w)) {
-            mt_text_addf(w->out,
-                         "gear \"%s\": \"%s\" turns %g times as far as \"%s\", each about "
-                         "its own axis\n",
-                         j->name.s, j->gear_joints[1].s, v, j->gear_joints[0].s);
+        if (has(w, j->ratio, &v)) {
+            const subject at = {
+                "joints", i, "ratio", v, {j->gear_joints[0].s, j->gear_joints[1].s}};
+            say(w, &at,
+                "gear \"%s\": \"%s\" turns %g times as far as \"%s\", each about its own axis",
+                j->name.s, j->gear_joints[1].s, v, j->gear_joints[0].s);
         }
-        if (has(w, j->ratio_m_per_rad, &v) && begins(w)) {
-            mt_text_addf(
-                w->out,
-                "rack \"%s\": \"%s\" slides by %g m along its axis when \"%s\" turns by "
-                "1 rad\n",
+        if (has(w, j->ratio_m_per_rad, &v)) {
+            const subject at = {
+                "joints", i, "ratio_m_per_rad", v, {j->gear_joints[0].s, j->gear_joints[1].s}};
+            say(w, &at,
+                "rack \"%s\": \"%s\" slides by %g m along its axis when \"%s\" turns by 1 rad",
                 j->name.s, j->gear_joints[1].s, v, j->gear_joints[0].s);
         }
     }
 }
 
-static void write_load(writer *w, const mt_load *load)
+static void write_load(writer *w, int i)
 {
+    const mt_load *const load = &w->m->loads[i];
     double v = 0.0;
-    const pair of = pair_of(w, load->joint, NULL);
     const bool on_joint = load->joint_name.s != NULL;
-    if (load->has_moment && has(w, load->moment, &v) && begins(w)) {
-        mt_text_addf(w->out, "load \"%s\": moment_n_m %g turns \"%s\" %s%s%s%s\n", load->name.s,
-                     v, on_joint ? of.second : load->on.name.s, v > 0.0 ? along(w) : about(w),
-                     on_joint ? ", and \"" : "", on_joint ? of.first : "",
-                     on_joint ? "\" the other way" : "");
-    } else if (load->has_force && on_joint && has(w, load->force[0], &v) && begins(w)) {
-        mt_text_addf(w->out,
-                     "load \"%s\": force_n %g pushes \"%s\" %s the axis, and \"%s\" the other "
-                     "way\n",
-                     load->name.s, v, of.second, v > 0.0 ? "along" : "against", of.first);
+    const pair of =
+        on_joint ? pair_of(w, load->joint, NULL) : (pair){"ground", load->on.name.s};
+    if (load->has_moment && has(w, load->moment, &v)) {
+        const subject at = {"loads", i, "moment_n_m", v, of};
+        say(w, &at, "load \"%s\": moment_n_m %g turns \"%s\" %s%s%s%s", load->name.s, v,
+            of.second, v > 0.0 ? along(w) : about(w), on_joint ? ", and \"" : "",
+            on_joint ? of.first : "", on_joint ? "\" the other way" : "");
+    } else if (load->has_force && on_joint && has(w, load->force[0], &v)) {
+        const subject at = {"loads", i, "force_n", v, of};
+        say(w, &at,
+            "load \"%s\": force_n %g pushes \"%s\" %s the axis, and \"%s\" the other way",
+            load->name.s, v, of.second, v > 0.0 ? "along" : "against", of.first);
     }
 }
 
@@ -213,27 +252,26 @@ static void write_loads(writer *w)
 {
     for (int i = 0; i < w->m->n_loads; i++) {
         if (mt_model_present(&w->m->loads[i].in, w->configuration)) {
-            write_load(w, &w->m->loads[i]);
+            write_load(w, i);
         }
     }
 }
 
 static void write_sections(writer *w)
 {
+    const char *const axis = w->m->dimension == 2 ? "z, out of the plane" : "its hinge axis";
     for (int i = 0; i < w->m->n_links; i++) {
         const mt_link *const l = &w->m->links[i];
-        const mt_section_shape shape = l->section.shape;
+        const bool rectangle = l->section.shape == MT_SECTION_RECTANGLE;
         if (!mt_model_present(&l->in, w->configuration) ||
-            (shape != MT_SECTION_RECTANGLE && shape != MT_SECTION_GENERAL) || !begins(w)) {
+            (!rectangle && l->section.shape != MT_SECTION_GENERAL)) {
             continue;
         }
-        const char *const axis =
-            w->m->dimension == 2 ? "z, out of the plane" : "its hinge axis";
-        mt_text_addf(w->out,
-                     shape == MT_SECTION_RECTANGLE
-                         ? "link \"%s\": width_m is along %s, height_m across it\n"
-                         : "link \"%s\": second_moment_m4 is for bending about %s\n",
-                     l->name.s, axis);
+        const subject at = {.list = "links", .index = i, .member = "section", .value = nan("")};
+        say(w, &at,
+            rectangle ? "link \"%s\": width_m is along %s, height_m across it"
+                      : "link \"%s\": second_moment_m4 is for bending about %s",
+            l->name.s, axis);
     }
 }
 
@@ -241,19 +279,27 @@ static void write_drive(writer *w)
 {
     const mt_drive *const d = &w->m->configurations[w->configuration].drive;
     double v = 0.0;
-    if (!d->given || d->joint == MT_ABSENT || !has(w, d->position, &v) || !begins(w)) {
+    if (!d->given || d->joint == MT_ABSENT || !has(w, d->position, &v)) {
         return;
     }
     const pair of = pair_of(w, d->joint, NULL);
     const char *const way = d->position_is_angle ? v > 0.0 ? along(w) : about(w)
                             : v > 0.0 ? "along the axis"
                                                  : "against the axis";
-    mt_text_addf(w->out, "drive: \"%s\" stands %g %s %s against \"%s\", from the drawing\n",
-                 of.second, fabs(v), d->position_is_angle ? "rad" : "m", way, of.first);
+    const mt_configuration *owner = &w->m->configurations[w->configuration];
+    while (owner->drive.inherited && owner->like != MT_ABSENT) {
+        owner = &w->m->configurations[owner->like];
+    }
+    const subject at = {mt_arena_printf(w->out->mem, "/configurations/%s/drive/%s",
+                                        owner->name.s,
+                                        d->position_is_angle ? "position_rad" : "position_m"),
+                        -1, NULL, v, of};
+    say(w, &at, "drive: \"%s\" stands %g %s %s against \"%s\", from the drawing", of.second,
+        fabs(v), d->position_is_angle ? "rad" : "m", way, of.first);
 }
 
-void mt_cli_write_conventions(const mt_model *model, int configuration, const double *value,
-                              mt_text *out)
+void mt_cli_find_conventions(const mt_model *model, int configuration, const double *value,
+                             mt_convention_list *out)
 {
     writer w = {.m = model, .configuration = configuration, .value = value, .out = out};
     write_drive(&w);
@@ -262,7 +308,31 @@ void mt_cli_write_conventions(const mt_model *model, int configuration, const do
     write_gears(&w);
     write_springs(&w);
     write_loads(&w);
-    if (w.left > 0) {
-        mt_text_addf(out, "    and %d more of these kinds\n", w.left);
+}
+
+void mt_cli_print_conventions(const mt_convention_list *list, mt_text *out)
+{
+    for (int i = 0; i < list->n && i < MOST_LINES; i++) {
+        mt_text_addf(out, "%s%s\n", i == 0 ? "  conventions\n    " : "    ",
+                     list->items[i].text);
     }
+    if (list->n > MOST_LINES) {
+        mt_text_addf(out, "    and %d more of these kinds\n", list->n - MOST_LINES);
+    }
+}
+
+void mt_cli_json_conventions(mt_json_writer *w, const mt_convention_list *list)
+{
+    mt_json_open(w, "conventions", '[');
+    for (int i = 0; i < list->n; i++) {
+        const mt_convention *const c = &list->items[i];
+        mt_json_open_flat(w, NULL, '{');
+        mt_json_put_string(w, "pointer", c->pointer);
+        mt_json_put_number(w, "value", c->value);
+        mt_json_put_string(w, "first", c->first);
+        mt_json_put_string(w, "second", c->second);
+        mt_json_put_string(w, "text", c->text);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
 }

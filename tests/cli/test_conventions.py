@@ -18,7 +18,18 @@ BACK = dict(HINGE, bodies=["hand", "ground"])
 class Conventions(CliTest):
     def info(self, model):
         path = self.write("problems/c.json", json.dumps(model))
-        return self.json_of("info", path)[0], " ".join(self.expect(0, "info", path).stdout.split())
+        got, text = self.json_of("info", path)[0], " ".join(self.expect(0, "info", path).stdout.split())
+        for c in got["conventions"]:  # what is said in words is a member, at its place, with its value
+            self.assertIn(c["text"], text)
+            at = model
+            for key in c["pointer"].split("/")[1:]:
+                at = at[int(key) if isinstance(at, list) else key]
+            if c["value"] is not None:
+                self.assertEqual(at, c["value"])
+        return got, text
+
+    def told(self, got):
+        return [(c["pointer"], c["value"], c["first"], c["second"]) for c in got["conventions"]]
 
     def test_turning(self):
         rows = [  # changes, which way the pointer goes, what info says of it
@@ -52,6 +63,20 @@ class Conventions(CliTest):
                 got, text = self.info(dict(SLIDE, **change))
                 self.assertAlmostEqual(got["centre_m"][0], 1 + 0.01 * way, delta=1e-9)
                 self.assertIn(words, text)
+
+    def test_members_of_what_was_understood(self):
+        back = {"springs": [dict(SPRING, preload_n_m=2), dict(SPRING, name="t", free_angle_rad=0.1)], "loads": [{"name": "l", "on": "hand", "moment_n_m": -1}]}
+        got, _ = self.info(dict(PLANE, joints=[BACK], dampers=[{"name": "d", "type": "bushing", "bodies": ["ground", "hand"],
+                                                               "damping_n_s_per_m": [1, 1], "damping_n_m_s_per_rad": 1}], **back))
+        self.assertEqual(self.told(got), [("/springs/0/preload_n_m", 2, "hand", "ground"), ("/springs/1/free_angle_rad", 0.1, "hand", "ground"),
+                                          ("/dampers/0", None, "ground", "hand"), ("/loads/0/moment_n_m", -1, "ground", "hand")])
+        drive = {"x": {"drive": {"joint": "pin", "position_rad": 0.01}}, "y": {"like": "x"}}
+        path = self.write("problems/c.json", json.dumps(dict(PLANE, configurations=drive)))
+        for one in self.json_of("info", path):
+            self.assertEqual(self.told(one), [("/configurations/x/drive/position_rad", 0.01, "ground", "hand")])
+        self.assertEqual(self.info(PLANE)[0]["conventions"], [])
+        loads = [{"name": f"l{i}", "on": "hand", "moment_n_m": 1e-9} for i in range(30)]
+        self.assertEqual(len(self.json_of("info", self.write("problems/c.json", json.dumps(dict(PLANE, loads=loads))))[0]["conventions"]), 30)
 
     def test_axes_in_space_are_right_handed(self):
         model = {"format": "modetune-model/1", "dimension": 3,
