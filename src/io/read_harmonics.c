@@ -32,12 +32,32 @@ const char *mt_read_multiple_meant(const mt_reader *r, const char *text, char le
                                            : NULL;
 }
 
+/* A bare number: of which rotor nobody knows. */
+static void refuse_number(mt_reader *r, mt_addr at)
+{
+    const char *const main_rotor =
+        mt_arena_printf(r->mem, "%.10gP", mt_json_number(r->doc, at));
+    mt_harmonic is;
+    if (main_rotor != NULL && mt_harmonic_parse(main_rotor, &is)) {
+        mt_diag_structure(r->diags, at,
+                          "must be a string, not a number: harmonics are written \"%s\" (main "
+                          "rotor) or \"%.*sT\" (tail rotor)",
+                          main_rotor, (int)strlen(main_rotor) - 1, main_rotor);
+    } else {
+        mt_diag_structure(r->diags, at, "must be a string, not a number");
+    }
+}
+
 void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor)
 {
     mt_items items = mt_reader_some_items(r, list, "the list of harmonics");
     rotor->harmonics = mt_reader_room(r, &items, sizeof *rotor->harmonics);
     while (mt_items_next(&items)) {
         mt_harmonic *const h = &rotor->harmonics[rotor->n_harmonics];
+        if (mt_json_type_of(r->doc, items.at) == MT_JSON_NUMBER) {
+            refuse_number(r, items.at);
+            continue;
+        }
         const char *const text = mt_reader_text(r, items.at);
         if (text != NULL && mt_harmonic_parse(text, h)) {
             h->addr = items.at;
