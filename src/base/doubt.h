@@ -46,6 +46,7 @@ typedef struct mt_doubt {
     X("gap", "two points of a joint that are drawn apart")                             \
     X("gravity", "gravity that points up")                                             \
     X("inertia", "a radius of gyration beyond a body's size")                          \
+    X("level", "a level of vibration that none has")                                   \
     X("margin", "a margin that looks like a factor")                                   \
     X("mass", "a mass that no mechanism has")                                          \
     X("modulus", "a modulus that no solid has")                                        \
@@ -56,6 +57,7 @@ typedef struct mt_doubt {
     X("size", "a drawing that is too large or too small")                              \
     X("speed", "a speed that looks like turns per minute")                             \
     X("speed_range", "a range of speeds that looks like per cent")                     \
+    X("spread", "a factor of weights so large that one goal decides")                  \
     X("spring", "a spring that acts against what joints forbid")                       \
     X("target", "a target far from the original frequency")                            \
     X("tolerance", "a tolerance within which almost anything, or nothing, lies")

@@ -10,6 +10,7 @@
 #include "base/format.h"
 #include "base/workers.h"
 #include "cli/limits.h"
+#include "model/possible.h"
 #include "response/curve.h"
 #include "study/study.h"
 
@@ -284,7 +285,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     case MT_OPT_TOLERANCE:
         return read_tolerance(value, o->name, &args->tolerance, err);
     case MT_OPT_PROOF:
-        return read_seconds(value, o->name, true, MT_PROOF_S_MOST, &args->proof_s, err);
+        return read_seconds(value, o->name, true, mt_possible_of[MT_POSSIBLE_PROOF].most,
+                            &args->proof_s, err);
     case MT_OPT_SEED:
         return read_seed(value, o->name, &args->seed, err);
     case MT_OPT_REL_TOL:

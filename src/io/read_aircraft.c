@@ -17,6 +17,7 @@
     X(ROOT_FORMAT, "format", MT_KEY_TEXT, true)            \
     X(ROOT_DESCRIPTION, "description", MT_KEY_TEXT, false) \
     X(ROOT_SOURCE, "source", MT_KEY_TEXT, false)           \
+    X(ROOT_ACCEPTED, "accepted", MT_KEY_LIST, false)       \
     X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true)
 enum { ROOT_KEYS(KEY_ENUM) ROOT_KEY_COUNT };
 static const mt_key ROOT[] = {ROOT_KEYS(KEY)};
@@ -41,15 +42,15 @@ enum { ROTOR_KEYS(KEY_ENUM) ROTOR_KEY_COUNT };
 static const mt_key ROTOR[] = {ROTOR_KEYS(KEY)};
 static const mt_key_table ROTOR_TABLE = {"rotor", ROTOR, ROTOR_KEY_COUNT};
 
-#define VALUE_KEYS(X, type)                            \
-    X(VALUE_VALUE, "value", type, true, PROFILE)       \
+#define VALUE_KEYS(X, type, row)                       \
+    X(VALUE_VALUE, "value", type, true, row)           \
     X(VALUE_SOURCE, "source", MT_KEY_TEXT, true)       \
     X(VALUE_CONFIRMED, "confirmed", MT_KEY_BOOL, true) \
     X(VALUE_DESCRIPTION, "description", MT_KEY_TEXT, false)
-enum { VALUE_KEYS(KEY_ENUM, ) VALUE_KEY_COUNT };
-static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE)};
+enum { VALUE_KEYS(KEY_ENUM, , ) VALUE_KEY_COUNT };
+static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE, SPEED)};
 static const mt_key_table SPEED_TABLE = {"speed", SPEED, VALUE_KEY_COUNT};
-static const mt_key BLADES[] = {VALUE_KEYS(KEY, MT_KEY_COUNT)};
+static const mt_key BLADES[] = {VALUE_KEYS(KEY, MT_KEY_COUNT, WHOLE)};
 static const mt_key_table BLADES_TABLE = {"blades", BLADES, VALUE_KEY_COUNT};
 
 const mt_key_table *const *mt_aircraft_key_tables(int *n)
@@ -78,9 +79,8 @@ static void read_speed(mt_reader *r, mt_addr value, bool rpm, mt_aircraft_value 
         return;
     }
     const double speed = mt_json_number(r->doc, found[VALUE_VALUE]);
-    if (!(speed > 0.0)) {
-        mt_diag_error(r->diags, found[VALUE_VALUE], "the speed (%g) must be above 0", speed);
-    }
+    mt_reader_judge_as(r, rpm ? "speed_rpm" : "speed_hz", found[VALUE_VALUE], speed,
+                       rpm ? MT_POSSIBLE_RPM : MT_POSSIBLE_SPEED);
     out->value = rpm ? speed / 60.0 : speed;
     out->text = mt_arena_printf(r->mem, "%.10g %s", speed, rpm ? "rpm" : "Hz");
 }
@@ -151,6 +151,7 @@ static void read_root(mt_reader *r, mt_aircraft_list *list)
         !mt_reader_object(r, MT_JSON_ROOT, &ROOT_TABLE, found)) {
         return;
     }
+    r->accepted = mt_reader_accepted(r, found[ROOT_ACCEPTED]);
     mt_items items = mt_reader_some_items(r, found[ROOT_AIRCRAFT], "the list of aircraft");
     list->items = mt_reader_room(r, &items, sizeof *list->items);
     while (mt_items_next(&items)) {

@@ -15,6 +15,7 @@
     X(ROOT_NAME, "name", TEXT, false)               \
     X(ROOT_DESCRIPTION, "description", TEXT, false) \
     X(ROOT_SOURCE, "source", TEXT, false)           \
+    X(ROOT_ACCEPTED, "accepted", LIST, false)       \
     X(ROOT_AIRCRAFT, "aircraft", TEXT, false)       \
     X(ROOT_AXIS, "axis", TEXT, false)               \
     X(ROOT_RANDOM, "random", OBJECT_OR_LIST, false) \
@@ -24,35 +25,35 @@ enum { ROOT_KEYS(MT_PROFILE_ENUM) ROOT_COUNT };
 MT_PROFILE_TABLE(ROOT, "", ROOT_KEYS);
 
 #define RANDOM_KEYS(X)                                        \
-    X(RANDOM_G2, "psd_g2_per_hz", LIST, false, PROFILE)       \
-    X(RANDOM_SI, "psd_m2_per_s3", LIST, false, PROFILE)       \
-    X(RANDOM_RMS_G, "published_rms_g", VALUE, false, PROFILE) \
+    X(RANDOM_G2, "psd_g2_per_hz", LIST, false, PSD_G)         \
+    X(RANDOM_SI, "psd_m2_per_s3", LIST, false, PSD)           \
+    X(RANDOM_RMS_G, "published_rms_g", VALUE, false, LEVEL_G) \
     X(RANDOM_ORIGIN, "origin", TEXT, false)                   \
     X(RANDOM_SOURCE, "source", TEXT, false)                   \
     X(RANDOM_DESCRIPTION, "description", TEXT, false)
 enum { RANDOM_KEYS(MT_PROFILE_ENUM) RANDOM_COUNT };
 MT_PROFILE_TABLE(RANDOM, "random", RANDOM_KEYS);
 
-#define POINT_KEYS(X)                                 \
-    X(POINT_HZ, "frequency_hz", VALUE, true, PROFILE) \
-    X(POINT_SLOPE, "slope_db_per_octave", VALUE, true, PROFILE)
+#define POINT_KEYS(X)                            \
+    X(POINT_HZ, "frequency_hz", VALUE, true, HZ) \
+    X(POINT_SLOPE, "slope_db_per_octave", VALUE, true, SLOPE)
 enum { POINT_KEYS(MT_PROFILE_ENUM) POINT_COUNT };
 MT_PROFILE_TABLE(POINT, "slope", POINT_KEYS);
 
-#define TONE_KEYS(X)                                           \
-    X(TONE_RANGE, "frequency_hz", LIST, false, PROFILE)        \
-    X(TONE_ROTOR, "rotor", OBJECT, false)                      \
-    X(TONE_G, "acceleration_g", VALUE, false, PROFILE)         \
-    X(TONE_SI, "acceleration_m_per_s2", VALUE, false, PROFILE) \
-    X(TONE_ORIGIN, "origin", TEXT, false)                      \
-    X(TONE_SOURCE, "source", TEXT, false)                      \
+#define TONE_KEYS(X)                                         \
+    X(TONE_RANGE, "frequency_hz", LIST, false, HZ)           \
+    X(TONE_ROTOR, "rotor", OBJECT, false)                    \
+    X(TONE_G, "acceleration_g", VALUE, false, LEVEL_G)       \
+    X(TONE_SI, "acceleration_m_per_s2", VALUE, false, LEVEL) \
+    X(TONE_ORIGIN, "origin", TEXT, false)                    \
+    X(TONE_SOURCE, "source", TEXT, false)                    \
     X(TONE_DESCRIPTION, "description", TEXT, false)
 enum { TONE_KEYS(MT_PROFILE_ENUM) TONE_COUNT };
 MT_PROFILE_TABLE(TONE, "tone", TONE_KEYS);
 
-#define COMBINE_KEYS(X)                              \
-    X(COMBINE_SIGMA, "sigma", VALUE, false, PROFILE) \
-    X(COMBINE_TONES, "tones", TEXT, false)           \
+#define COMBINE_KEYS(X)                            \
+    X(COMBINE_SIGMA, "sigma", VALUE, false, SIGMA) \
+    X(COMBINE_TONES, "tones", TEXT, false)         \
     X(COMBINE_DESCRIPTION, "description", TEXT, false)
 enum { COMBINE_KEYS(MT_PROFILE_ENUM) COMBINE_COUNT };
 MT_PROFILE_TABLE(COMBINE, "combine", COMBINE_KEYS);
@@ -66,11 +67,18 @@ const mt_key_table *const *mt_profile_key_tables(int *n)
     return tables;
 }
 
-double mt_read_profile_number(mt_reader *r, mt_addr value)
+static double read_bare(mt_reader *r, mt_addr value)
 {
     return value == MT_NO_ADDR || !mt_reader_type(r, value, MT_KEY_VALUE)
                ? nan("")
                : mt_json_number(r->doc, value);
+}
+
+double mt_read_profile_number(mt_reader *r, mt_addr value)
+{
+    const double number = read_bare(r, value);
+    mt_reader_judge(r, value, value, number);
+    return number;
 }
 
 bool mt_read_profile_pair(mt_reader *r, mt_addr value, double *lower, double *upper)
@@ -83,8 +91,10 @@ bool mt_read_profile_pair(mt_reader *r, mt_addr value, double *lower, double *up
         mt_diag_structure(r->diags, value, "must be two numbers: [lower, upper]");
         return false;
     }
-    *lower = mt_read_profile_number(r, ends[0]);
-    *upper = mt_read_profile_number(r, ends[1]);
+    *lower = read_bare(r, ends[0]);
+    *upper = read_bare(r, ends[1]);
+    mt_reader_judge(r, value, ends[0], *lower);
+    mt_reader_judge(r, value, ends[1], *upper);
     return true;
 }
 
@@ -120,8 +130,8 @@ static mt_vibration_origin read_origin(mt_reader *r, mt_addr origin, mt_addr sou
         .source = mt_reader_text(r, source)};
 }
 
-/* [f, level], or an object with a slope. */
-static void read_point(mt_reader *r, mt_addr value, mt_vibration_random *out)
+/* [f, level], or an object with a slope, of the list of a density. */
+static void read_point(mt_reader *r, mt_addr list, mt_addr value, mt_vibration_random *out)
 {
     mt_vibration_point p = {.hz = nan(""),
                             .level = nan(""),
@@ -142,8 +152,10 @@ static void read_point(mt_reader *r, mt_addr value, mt_vibration_random *out)
         mt_diag_structure(r->diags, value, "must be two numbers: [frequency, density]");
         return;
     } else {
-        p.hz = mt_read_profile_number(r, p.hz_addr);
-        p.level = mt_read_profile_number(r, p.level_addr);
+        p.hz = read_bare(r, p.hz_addr);
+        p.level = read_bare(r, p.level_addr);
+        mt_reader_judge_as(r, "frequency", p.hz_addr, p.hz, MT_POSSIBLE_HZ);
+        mt_reader_judge(r, list, p.level_addr, p.level);
     }
     out->points[out->n_points++] = p;
 }
@@ -174,7 +186,7 @@ static void read_random(mt_reader *r, mt_addr value, mt_vibration *v)
     }
     out->points = mt_reader_room(r, &items, sizeof *out->points);
     while (mt_items_next(&items)) {
-        read_point(r, items.at, out);
+        read_point(r, found[which], items.at, out);
     }
 }
 
@@ -252,6 +264,7 @@ static void read_root(mt_read_profile *p)
     v->name = mt_reader_text(r, found[ROOT_NAME]);
     v->description = mt_reader_text(r, found[ROOT_DESCRIPTION]);
     v->source = mt_reader_text(r, found[ROOT_SOURCE]);
+    r->accepted = mt_reader_accepted(r, found[ROOT_ACCEPTED]);
     v->axis = mt_reader_choice(r, found[ROOT_AXIS], "axis", axes, MT_COUNT(axes));
     if (mt_json_member(r->doc, MT_JSON_ROOT, "random") == MT_NO_ADDR &&
         mt_json_member(r->doc, MT_JSON_ROOT, "tones") == MT_NO_ADDR) {

@@ -8,27 +8,28 @@
 #include "io/file.h"
 #include "io/read_aircraft.h"
 #include "io/read_harmonics.h"
+#include "study/rotor.h"
 
-#define ROTOR_KEYS(X)                                      \
-    X(ROTOR_AIRCRAFT, "aircraft", TEXT, false)             \
-    X(ROTOR_SPEED_HZ, "speed_hz", VALUE, false, PROFILE)   \
-    X(ROTOR_SPEED_RPM, "speed_rpm", VALUE, false, PROFILE) \
-    X(ROTOR_BLADES, "blades", COUNT, false, WHOLE)         \
-    X(ROTOR_TAIL, "tail", OBJECT, false)                   \
-    X(ROTOR_NAME, "name", TEXT, false)                     \
-    X(ROTOR_HARMONICS, "harmonics", LIST, true)            \
-    X(ROTOR_RANGE, "speed_range", LIST, false, PROFILE)    \
-    X(ROTOR_DESCRIPTION, "description", TEXT, false)       \
+#define ROTOR_KEYS(X)                                   \
+    X(ROTOR_AIRCRAFT, "aircraft", TEXT, false)          \
+    X(ROTOR_SPEED_HZ, "speed_hz", VALUE, false, SPEED)  \
+    X(ROTOR_SPEED_RPM, "speed_rpm", VALUE, false, RPM)  \
+    X(ROTOR_BLADES, "blades", COUNT, false, WHOLE)      \
+    X(ROTOR_TAIL, "tail", OBJECT, false)                \
+    X(ROTOR_NAME, "name", TEXT, false)                  \
+    X(ROTOR_HARMONICS, "harmonics", LIST, true)         \
+    X(ROTOR_RANGE, "speed_range", LIST, false, FACTORS) \
+    X(ROTOR_DESCRIPTION, "description", TEXT, false)    \
     X(ROTOR_SOURCE, "source", TEXT, false)
 enum { ROTOR_KEYS(MT_PROFILE_ENUM) ROTOR_COUNT };
 static const mt_key ROTOR_LIST[] = {ROTOR_KEYS(MT_PROFILE_KEY)};
 const mt_key_table mt_profile_rotor_keys = {"rotor", ROTOR_LIST, ROTOR_COUNT};
 
-#define TAIL_KEYS(X)                                      \
-    X(TAIL_SPEED_HZ, "speed_hz", VALUE, false, PROFILE)   \
-    X(TAIL_SPEED_RPM, "speed_rpm", VALUE, false, PROFILE) \
-    X(TAIL_BLADES, "blades", COUNT, false, WHOLE)         \
-    X(TAIL_DESCRIPTION, "description", TEXT, false)       \
+#define TAIL_KEYS(X)                                  \
+    X(TAIL_SPEED_HZ, "speed_hz", VALUE, false, SPEED) \
+    X(TAIL_SPEED_RPM, "speed_rpm", VALUE, false, RPM) \
+    X(TAIL_BLADES, "blades", COUNT, false, WHOLE)     \
+    X(TAIL_DESCRIPTION, "description", TEXT, false)   \
     X(TAIL_SOURCE, "source", TEXT, false)
 enum { TAIL_KEYS(MT_PROFILE_ENUM) TAIL_COUNT };
 static const mt_key TAIL_LIST[] = {TAIL_KEYS(MT_PROFILE_KEY)};
@@ -102,7 +103,15 @@ void mt_read_profile_rotor(mt_reader *r, mt_addr value, mt_rotor *rotor)
     read_tail(r, found[ROTOR_TAIL], rotor);
     mt_read_harmonics(r, found[ROTOR_HARMONICS], rotor);
     if (mt_read_profile_pair(r, found[ROTOR_RANGE], &rotor->range_lower, &rotor->range_upper)) {
+        const char *const doubt =
+            rotor->range_lower > 0.0 && rotor->range_upper > 0.0
+                ? mt_rotor_doubt_range(rotor->range_lower, rotor->range_upper,
+                                       MT_ROTOR_LEAST_SPEED, "rotor's", r->mem)
+                : NULL;
         rotor->range_addr = found[ROTOR_RANGE];
+        if (doubt != NULL) {
+            mt_reader_doubt(r, rotor->range_addr, "speed_range", "%s", doubt);
+        }
     }
 }
 

@@ -42,7 +42,7 @@ const mt_key_table mt_study_keys = {"", KEYS, STUDY_KEY_COUNT};
     X(SEARCH_SEED, "seed", MT_KEY_COUNT, false, WHOLE)                       \
     X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false, WHOLE)                   \
     X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false, WHOLE) \
-    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false, STUDY)                  \
+    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false, PROOF)                  \
     X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)                 \
     X(SEARCH_SOURCE, "source", MT_KEY_TEXT, false)
 enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
@@ -50,7 +50,7 @@ static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_search_keys = {"search", SEARCH, SEARCH_KEY_COUNT};
 
 #define SPREAD_KEYS(X)                                       \
-    X(SPREAD_FACTOR, "factor", MT_KEY_NUMBER, true, STUDY)   \
+    X(SPREAD_FACTOR, "factor", MT_KEY_NUMBER, true, SPREAD)  \
     X(SPREAD_DESCRIPTION, "description", MT_KEY_TEXT, false) \
     X(SPREAD_SOURCE, "source", MT_KEY_TEXT, false)
 enum { SPREAD_KEYS(MT_STUDY_KEY_ENUM) SPREAD_KEY_COUNT };
@@ -449,6 +449,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     const mt_io_options none = {0};
     s.files = opt == NULL ? none : *opt;
     s.r.mem = &s.study->mem;
+    s.r.doubts = &s.study->doubts;
     s.study->path = mt_arena_strdup(&s.study->mem, path);
     root = s.files.root == NULL ? mt_file_default_root(path) : NULL;
     if (root == NULL && s.files.root == NULL) {

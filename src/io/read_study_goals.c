@@ -4,17 +4,11 @@
 #include <string.h>
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
-#define KEY(slot, label, kind, given, limits) \
-    {.name = (label), .type = MT_KEY_##kind, .required = (given), .possible = POSSIBLE_##kind},
-/* their limits are the last column of the list */
-#define POSSIBLE_NUMBER        MT_POSSIBLE_STUDY
-#define POSSIBLE_COUNT         MT_POSSIBLE_WHOLE
-#define POSSIBLE_TEXT_OR_COUNT MT_POSSIBLE_WHOLE
-#define POSSIBLE_NUMBERS       MT_POSSIBLE_STUDY
-#define POSSIBLE_LIST          MT_POSSIBLE_NONE
-#define POSSIBLE_TEXT          MT_POSSIBLE_NONE
-#define POSSIBLE_OBJECT        MT_POSSIBLE_NONE
-#define POSSIBLE_BOOL          MT_POSSIBLE_NONE
+#define KEY(slot, label, kind, given, row) \
+    {.name = (label),                      \
+     .type = MT_KEY_##kind,                \
+     .required = (given),                  \
+     .possible = MT_POSSIBLE_##row},
 
 #define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
 MT_GOAL_LIST(KEYS)
@@ -98,7 +92,7 @@ static void read_bands(mt_study_reader *s, mt_addr list, mt_bands_source *source
     source->intervals = mt_reader_room(&s->r, &items, sizeof *source->intervals);
     while (mt_items_next(&items)) {
         double edges[2];
-        if (mt_read_study_pair(s, items.at, edges)) {
+        if (mt_read_study_pair(s, list, items.at, edges)) {
             source->intervals[source->n_intervals++] =
                 (mt_band_hz){edges[0], edges[1], items.at};
         }

@@ -4,15 +4,15 @@
 
 #include "io/read_harmonics.h"
 
-#define MACHINE_KEYS(X)                                              \
-    X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false, STUDY)        \
-    X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false, STUDY)   \
-    X(MACHINE_RANGE, "speed_range", MT_KEY_LIST, false, STUDY)       \
-    X(MACHINE_NAME, "name", MT_KEY_TEXT, false)                      \
-    X(MACHINE_ORDERS, "orders", MT_KEY_LIST, false)                  \
-    X(MACHINE_GEARS, "gears", MT_KEY_LIST, false)                    \
-    X(MACHINE_MARGIN, "margin_percent", MT_KEY_NUMBER, false, STUDY) \
-    X(MACHINE_DESCRIPTION, "description", MT_KEY_TEXT, false)        \
+#define MACHINE_KEYS(X)                                               \
+    X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false, MACHINE)       \
+    X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false, MACHINE)  \
+    X(MACHINE_RANGE, "speed_range", MT_KEY_LIST, false, FACTORS)      \
+    X(MACHINE_NAME, "name", MT_KEY_TEXT, false)                       \
+    X(MACHINE_ORDERS, "orders", MT_KEY_LIST, false)                   \
+    X(MACHINE_GEARS, "gears", MT_KEY_LIST, false)                     \
+    X(MACHINE_MARGIN, "margin_percent", MT_KEY_NUMBER, false, MARGIN) \
+    X(MACHINE_DESCRIPTION, "description", MT_KEY_TEXT, false)         \
     X(MACHINE_SOURCE, "source", MT_KEY_TEXT, false)
 enum { MACHINE_KEYS(MT_STUDY_KEY_ENUM) MACHINE_KEY_COUNT };
 static const mt_key MACHINE[] = {MACHINE_KEYS(MT_STUDY_KEY)};
@@ -20,7 +20,7 @@ const mt_key_table mt_study_machine_keys = {"machine", MACHINE, MACHINE_KEY_COUN
 
 #define GEAR_KEYS(X)                                           \
     X(GEAR_TEETH, "teeth", MT_KEY_COUNT, true, WHOLE)          \
-    X(GEAR_RATIO, "ratio", MT_KEY_NUMBER, false, STUDY)        \
+    X(GEAR_RATIO, "ratio", MT_KEY_NUMBER, false, POSITIVE)     \
     X(GEAR_ORDERS, "orders", MT_KEY_LIST, false)               \
     X(GEAR_SIDEBANDS, "sidebands", MT_KEY_COUNT, false, WHOLE) \
     X(GEAR_NAME, "name", MT_KEY_TEXT, false)                   \
@@ -30,11 +30,29 @@ enum { GEAR_KEYS(MT_STUDY_KEY_ENUM) GEAR_KEY_COUNT };
 static const mt_key GEAR[] = {GEAR_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_gear_keys = {"gear", GEAR, GEAR_KEY_COUNT};
 
+/* A bare number: times per turn, or of the mesh. */
+static void refuse_number(mt_study_reader *s, mt_addr at, char letter)
+{
+    const char *const meant =
+        mt_arena_printf(s->r.mem, "%.10g%c", mt_json_number(s->r.doc, at), letter);
+    mt_order is;
+    const bool good = meant != NULL && mt_order_parse(meant, letter, &is);
+    mt_diag_structure(s->r.diags, at, "must be a string, not a number%s%s%s",
+                      good ? ": orders are written \"" : "", good ? meant : "",
+                      !good           ? ""
+                      : letter == 'E' ? "\", times per turn"
+                                      : "\", multiples of the gear mesh");
+}
+
 static mt_order *read_orders(mt_study_reader *s, mt_addr list, char letter, int *n)
 {
     mt_items items = mt_reader_some_items(&s->r, list, "the list of orders");
     mt_order *const orders = mt_reader_room(&s->r, &items, sizeof *orders);
     while (mt_items_next(&items)) {
+        if (mt_json_type_of(s->r.doc, items.at) == MT_JSON_NUMBER) {
+            refuse_number(s, items.at, letter);
+            continue;
+        }
         const char *const text = mt_reader_text(&s->r, items.at);
         if (text != NULL && mt_order_parse(text, letter, &orders[*n])) {
             orders[(*n)++].addr = items.at;
@@ -78,7 +96,7 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
     machine->speed_hz = mt_read_study_member(s, o, MACHINE_SPEED, &machine->speed_addr);
     if (o->found[MACHINE_SPEEDS] != MT_NO_ADDR) {
         machine->range_addr = mt_read_study_place(s, o, MACHINE_SPEEDS);
-        if (mt_read_study_pair(s, o->found[MACHINE_SPEEDS], range)) {
+        if (mt_read_study_pair(s, o->found[MACHINE_SPEEDS], o->found[MACHINE_SPEEDS], range)) {
             machine->lower_hz = range[0];
             machine->upper_hz = range[1];
         }
@@ -92,7 +110,7 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
                           "\"speed_range\" multiplies \"speed_hz\", which is missing");
     }
     if (o->found[MACHINE_RANGE] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o->found[MACHINE_RANGE], range)) {
+        mt_read_study_pair(s, o->found[MACHINE_RANGE], o->found[MACHINE_RANGE], range)) {
         machine->range_lower = range[0];
         machine->range_upper = range[1];
     }

@@ -7,13 +7,13 @@
 
 #include "io/read_measurement.h"
 
-#define MEASUREMENT_KEYS(X)                                        \
-    X(MEASUREMENT_FILE, "file", MT_KEY_TEXT, true)                 \
-    X(MEASUREMENT_DATASET, "dataset", MT_KEY_COUNT, false, WHOLE)  \
-    X(MEASUREMENT_RESPONSE, "response_node", MT_KEY_TEXT, false)   \
-    X(MEASUREMENT_REFERENCE, "reference_node", MT_KEY_TEXT, false) \
-    X(MEASUREMENT_FACTOR, "factor", MT_KEY_NUMBER, false, STUDY)   \
-    X(MEASUREMENT_DESCRIPTION, "description", MT_KEY_TEXT, false)  \
+#define MEASUREMENT_KEYS(X)                                         \
+    X(MEASUREMENT_FILE, "file", MT_KEY_TEXT, true)                  \
+    X(MEASUREMENT_DATASET, "dataset", MT_KEY_COUNT, false, WHOLE)   \
+    X(MEASUREMENT_RESPONSE, "response_node", MT_KEY_TEXT, false)    \
+    X(MEASUREMENT_REFERENCE, "reference_node", MT_KEY_TEXT, false)  \
+    X(MEASUREMENT_FACTOR, "factor", MT_KEY_NUMBER, false, POSITIVE) \
+    X(MEASUREMENT_DESCRIPTION, "description", MT_KEY_TEXT, false)   \
     X(MEASUREMENT_SOURCE, "source", MT_KEY_TEXT, false)
 enum { MEASUREMENT_KEYS(MT_STUDY_KEY_ENUM) MEASUREMENT_KEY_COUNT };
 static const mt_key KEYS[] = {MEASUREMENT_KEYS(MT_STUDY_KEY)};
@@ -97,7 +97,8 @@ void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goa
     shake->measurement_name = mt_reader_ref(&s->r, o->found[named]);
     shake->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
     shake->band_addr = mt_read_study_place(s, o, band);
-    if (o->found[band] != MT_NO_ADDR && mt_read_study_pair(s, o->found[band], edges)) {
+    if (o->found[band] != MT_NO_ADDR &&
+        mt_read_study_pair(s, o->found[band], o->found[band], edges)) {
         shake->lower_hz = edges[0];
         shake->upper_hz = edges[1];
     }

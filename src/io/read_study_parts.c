@@ -68,7 +68,7 @@ int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first
     return which;
 }
 
-double mt_read_study_number(mt_study_reader *s, mt_addr value)
+static double number_of(mt_study_reader *s, mt_addr value)
 {
     if (value == MT_NO_ADDR || !mt_reader_type(&s->r, value, MT_KEY_NUMBER)) {
         return nan("");
@@ -93,6 +93,13 @@ double mt_read_study_number(mt_study_reader *s, mt_addr value)
     return rc == MT_OK ? number : nan("");
 }
 
+double mt_read_study_number(mt_study_reader *s, mt_addr value)
+{
+    const double number = number_of(s, value);
+    mt_reader_judge(&s->r, value, value, number);
+    return number;
+}
+
 double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
                             mt_addr *place)
 {
@@ -100,7 +107,7 @@ double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int ke
     return mt_read_study_number(s, o->found[key]);
 }
 
-bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2])
+bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2])
 {
     out[0] = nan("");
     out[1] = nan("");
@@ -112,8 +119,10 @@ bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2])
         mt_diag_structure(s->r.diags, value, "must be two numbers: [lower, upper]");
         return false;
     }
-    out[0] = mt_read_study_number(s, ends[0]);
-    out[1] = mt_read_study_number(s, ends[1]);
+    for (int i = 0; i < 2; i++) {
+        out[i] = number_of(s, ends[i]);
+        mt_reader_judge(&s->r, member, ends[i], out[i]);
+    }
     return true;
 }
 

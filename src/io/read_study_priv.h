@@ -48,7 +48,7 @@ mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, 
 int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n);
 
 /* A number; expressions are evaluated at the original design. NaN where absent or wrong
- * (noted). */
+ * (noted). What it cannot be, or hardly is, by the row of its member, is noted. */
 double mt_read_study_number(mt_study_reader *s, mt_addr value);
 /* A member that is a number, and its place. */
 double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
@@ -72,9 +72,9 @@ mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int
 int mt_read_study_index(mt_study_reader *s, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
 mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
-/* A list of two numbers, lower and upper; false (noted) where it is anything else. Numbers that
- * are wrong are NaN. */
-bool mt_read_study_pair(mt_study_reader *s, mt_addr value, double out[2]);
+/* A list of two numbers, lower and upper, a member or an item of it; false (noted) where it is
+ * anything else. Numbers that are wrong are NaN. */
+bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2]);
 /* Remember a file that was read, with the digest of its bytes. */
 void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256);
 /* A file was refused: its own diagnostics tell (`told`), or, where there are none, the address

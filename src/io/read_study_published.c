@@ -2,21 +2,21 @@
 #include "io/read_study_priv.h"
 
 /* The first five say what is published, in the order of mt_published_kind. */
-#define PUBLISHED_KEYS(X)                                                            \
-    X(PUBLISHED_PARAMETER, "parameter", MT_KEY_TEXT, false)                          \
-    X(PUBLISHED_QUANTITY, "quantity", MT_KEY_TEXT, false)                            \
-    X(PUBLISHED_FREQUENCY, "frequency", MT_KEY_OBJECT, false)                        \
-    X(PUBLISHED_MAC, "mac", MT_KEY_OBJECT, false)                                    \
-    X(PUBLISHED_STATUS, "status", MT_KEY_TEXT, false)                                \
-    X(PUBLISHED_VALUE, "value", MT_KEY_NUMBER, false, STUDY)                         \
-    X(PUBLISHED_AT_LEAST, "at_least", MT_KEY_NUMBER, false, STUDY)                   \
-    X(PUBLISHED_AT_MOST, "at_most", MT_KEY_NUMBER, false, STUDY)                     \
-    X(PUBLISHED_TOLERANCE, "tolerance", MT_KEY_NUMBER, false, STUDY)                 \
-    X(PUBLISHED_TOLERANCE_PERCENT, "tolerance_percent", MT_KEY_NUMBER, false, STUDY) \
-    X(PUBLISHED_DESIGN, "design", MT_KEY_TEXT, false)                                \
-    X(PUBLISHED_ROLE, "role", MT_KEY_TEXT, false)                                    \
-    X(PUBLISHED_LABEL, "label", MT_KEY_TEXT, false)                                  \
-    X(PUBLISHED_DESCRIPTION, "description", MT_KEY_TEXT, false)                      \
+#define PUBLISHED_KEYS(X)                                                               \
+    X(PUBLISHED_PARAMETER, "parameter", MT_KEY_TEXT, false)                             \
+    X(PUBLISHED_QUANTITY, "quantity", MT_KEY_TEXT, false)                               \
+    X(PUBLISHED_FREQUENCY, "frequency", MT_KEY_OBJECT, false)                           \
+    X(PUBLISHED_MAC, "mac", MT_KEY_OBJECT, false)                                       \
+    X(PUBLISHED_STATUS, "status", MT_KEY_TEXT, false)                                   \
+    X(PUBLISHED_VALUE, "value", MT_KEY_NUMBER, false, ANY)                              \
+    X(PUBLISHED_AT_LEAST, "at_least", MT_KEY_NUMBER, false, LIMIT)                      \
+    X(PUBLISHED_AT_MOST, "at_most", MT_KEY_NUMBER, false, LIMIT)                        \
+    X(PUBLISHED_TOLERANCE, "tolerance", MT_KEY_NUMBER, false, POSITIVE)                 \
+    X(PUBLISHED_TOLERANCE_PERCENT, "tolerance_percent", MT_KEY_NUMBER, false, POSITIVE) \
+    X(PUBLISHED_DESIGN, "design", MT_KEY_TEXT, false)                                   \
+    X(PUBLISHED_ROLE, "role", MT_KEY_TEXT, false)                                       \
+    X(PUBLISHED_LABEL, "label", MT_KEY_TEXT, false)                                     \
+    X(PUBLISHED_DESCRIPTION, "description", MT_KEY_TEXT, false)                         \
     X(PUBLISHED_SOURCE, "source", MT_KEY_TEXT, false)
 enum { PUBLISHED_KEYS(MT_STUDY_KEY_ENUM) PUBLISHED_KEY_COUNT };
 static const mt_key KEYS[] = {PUBLISHED_KEYS(MT_STUDY_KEY)};

@@ -14,10 +14,10 @@ enum { REFERENCE_KEYS(MT_STUDY_KEY_ENUM) REFERENCE_KEY_COUNT };
 static const mt_key KEYS[] = {REFERENCE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_reference_keys = {"reference", KEYS, REFERENCE_KEY_COUNT};
 
-#define MEASURED_KEYS(X)                                               \
-    X(MEASURED_FREQUENCY, "frequency_hz", MT_KEY_NUMBER, false, STUDY) \
-    X(MEASURED_SHAPE, "shape", MT_KEY_OBJECT, false, STUDY)            \
-    X(MEASURED_DESCRIPTION, "description", MT_KEY_TEXT, false)         \
+#define MEASURED_KEYS(X)                                                  \
+    X(MEASURED_FREQUENCY, "frequency_hz", MT_KEY_NUMBER, false, MEASURED) \
+    X(MEASURED_SHAPE, "shape", MT_KEY_OBJECT, false, ANY)                 \
+    X(MEASURED_DESCRIPTION, "description", MT_KEY_TEXT, false)            \
     X(MEASURED_SOURCE, "source", MT_KEY_TEXT, false)
 enum { MEASURED_KEYS(MT_STUDY_KEY_ENUM) MEASURED_KEY_COUNT };
 static const mt_key MODE_KEYS[] = {MEASURED_KEYS(MT_STUDY_KEY)};

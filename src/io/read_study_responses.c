@@ -5,7 +5,7 @@
     X(RESPONSE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
     X(RESPONSE_INPUT, "input", MT_KEY_TEXT, true)                  \
     X(RESPONSE_OUTPUT, "output", MT_KEY_TEXT, true)                \
-    X(RESPONSE_BAND, "band_hz", MT_KEY_LIST, true, STUDY)          \
+    X(RESPONSE_BAND, "band_hz", MT_KEY_LIST, true, RANGE)          \
     X(RESPONSE_PROFILE, "profile", MT_KEY_TEXT, false)             \
     X(RESPONSE_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
     X(RESPONSE_SOURCE, "source", MT_KEY_TEXT, false)
@@ -26,7 +26,7 @@ static bool read_response(mt_study_reader *s, mt_addr value, mt_study_response *
     r->shake.output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
     r->shake.band_addr = mt_read_study_place(s, &o, RESPONSE_BAND);
     if (o.found[RESPONSE_BAND] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o.found[RESPONSE_BAND], band)) {
+        mt_read_study_pair(s, o.found[RESPONSE_BAND], o.found[RESPONSE_BAND], band)) {
         r->shake.lower_hz = band[0];
         r->shake.upper_hz = band[1];
     }

@@ -10,27 +10,27 @@
 #include "io/file.h"
 #include "io/read_harmonics.h"
 
-#define ROTOR_KEYS(X)                                              \
-    X(ROTOR_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)              \
-    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false, STUDY)     \
-    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false, STUDY)   \
-    X(ROTOR_BLADES, "blades", MT_KEY_COUNT, false, WHOLE)          \
-    X(ROTOR_TAIL, "tail", MT_KEY_OBJECT, false)                    \
-    X(ROTOR_NAME, "name", MT_KEY_TEXT, false)                      \
-    X(ROTOR_HARMONICS, "harmonics", MT_KEY_LIST, true)             \
-    X(ROTOR_RANGE, "speed_range", MT_KEY_LIST, false, STUDY)       \
-    X(ROTOR_MARGIN, "margin_percent", MT_KEY_NUMBER, false, STUDY) \
-    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false)        \
+#define ROTOR_KEYS(X)                                               \
+    X(ROTOR_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)               \
+    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false, SPEED)      \
+    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false, RPM)      \
+    X(ROTOR_BLADES, "blades", MT_KEY_COUNT, false, WHOLE)           \
+    X(ROTOR_TAIL, "tail", MT_KEY_OBJECT, false)                     \
+    X(ROTOR_NAME, "name", MT_KEY_TEXT, false)                       \
+    X(ROTOR_HARMONICS, "harmonics", MT_KEY_LIST, true)              \
+    X(ROTOR_RANGE, "speed_range", MT_KEY_LIST, false, FACTORS)      \
+    X(ROTOR_MARGIN, "margin_percent", MT_KEY_NUMBER, false, MARGIN) \
+    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false)         \
     X(ROTOR_SOURCE, "source", MT_KEY_TEXT, false)
 enum { ROTOR_KEYS(MT_STUDY_KEY_ENUM) ROTOR_KEY_COUNT };
 static const mt_key ROTOR[] = {ROTOR_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_rotor_keys = {"rotor", ROTOR, ROTOR_KEY_COUNT};
 
-#define TAIL_KEYS(X)                                            \
-    X(TAIL_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false, STUDY)   \
-    X(TAIL_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false, STUDY) \
-    X(TAIL_BLADES, "blades", MT_KEY_COUNT, false, WHOLE)        \
-    X(TAIL_DESCRIPTION, "description", MT_KEY_TEXT, false)      \
+#define TAIL_KEYS(X)                                          \
+    X(TAIL_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false, SPEED) \
+    X(TAIL_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false, RPM) \
+    X(TAIL_BLADES, "blades", MT_KEY_COUNT, false, WHOLE)      \
+    X(TAIL_DESCRIPTION, "description", MT_KEY_TEXT, false)    \
     X(TAIL_SOURCE, "source", MT_KEY_TEXT, false)
 enum { TAIL_KEYS(MT_STUDY_KEY_ENUM) TAIL_KEY_COUNT };
 static const mt_key TAIL[] = {TAIL_KEYS(MT_STUDY_KEY)};
@@ -128,7 +128,7 @@ void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
     mt_read_harmonics(&s->r, o.found[ROTOR_HARMONICS], rotor);
     rotor->range_addr = mt_read_study_place(s, &o, ROTOR_RANGE);
     if (o.found[ROTOR_RANGE] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o.found[ROTOR_RANGE], range)) {
+        mt_read_study_pair(s, o.found[ROTOR_RANGE], o.found[ROTOR_RANGE], range)) {
         rotor->range_lower = range[0];
         rotor->range_upper = range[1];
     }

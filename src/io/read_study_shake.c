@@ -196,7 +196,8 @@ static void read_frequencies(const reading *g, mt_shake *shake)
         shake->lower_hz = mt_read_study_number(g->s, found(g, MT_SLOT_AT));
         shake->upper_hz = shake->lower_hz;
     } else if (found(g, MT_SLOT_BAND) != MT_NO_ADDR &&
-               mt_read_study_pair(g->s, found(g, MT_SLOT_BAND), edges)) {
+               mt_read_study_pair(g->s, found(g, MT_SLOT_BAND), found(g, MT_SLOT_BAND),
+                                  edges)) {
         shake->lower_hz = edges[0];
         shake->upper_hz = edges[1];
     }

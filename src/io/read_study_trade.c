@@ -13,22 +13,22 @@ enum { TRADE_KEYS(MT_STUDY_KEY_ENUM) TRADE_KEY_COUNT };
 static const mt_key TRADE[] = {TRADE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_trade_keys = {"trade", TRADE, TRADE_KEY_COUNT};
 
-#define VARY_KEYS(X)                                             \
-    X(VARY_VARIABLE, "variable", MT_KEY_TEXT, false)             \
-    X(VARY_GOAL, "goal", MT_KEY_COUNT, false, WHOLE)             \
-    X(VARY_PARAMETER, "parameter", MT_KEY_TEXT, false)           \
-    X(VARY_BOUND, "bound", MT_KEY_TEXT, false)                   \
-    X(VARY_MEMBER, "member", MT_KEY_TEXT, false)                 \
-    X(VARY_VALUES, "values", MT_KEY_LIST_OR_OBJECT, true, STUDY) \
-    X(VARY_DESCRIPTION, "description", MT_KEY_TEXT, false)       \
+#define VARY_KEYS(X)                                              \
+    X(VARY_VARIABLE, "variable", MT_KEY_TEXT, false)              \
+    X(VARY_GOAL, "goal", MT_KEY_COUNT, false, WHOLE)              \
+    X(VARY_PARAMETER, "parameter", MT_KEY_TEXT, false)            \
+    X(VARY_BOUND, "bound", MT_KEY_TEXT, false)                    \
+    X(VARY_MEMBER, "member", MT_KEY_TEXT, false)                  \
+    X(VARY_VALUES, "values", MT_KEY_LIST_OR_OBJECT, true, VARIED) \
+    X(VARY_DESCRIPTION, "description", MT_KEY_TEXT, false)        \
     X(VARY_SOURCE, "source", MT_KEY_TEXT, false)
 enum { VARY_KEYS(MT_STUDY_KEY_ENUM) VARY_KEY_COUNT };
 static const mt_key VARY[] = {VARY_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_vary_keys = {"vary", VARY, VARY_KEY_COUNT};
 
-#define SPAN_KEYS(X)                                 \
-    X(SPAN_FROM, "from", MT_KEY_NUMBER, true, STUDY) \
-    X(SPAN_TO, "to", MT_KEY_NUMBER, true, STUDY)     \
+#define SPAN_KEYS(X)                                  \
+    X(SPAN_FROM, "from", MT_KEY_NUMBER, true, VARIED) \
+    X(SPAN_TO, "to", MT_KEY_NUMBER, true, VARIED)     \
     X(SPAN_COUNT, "count", MT_KEY_COUNT, true, WHOLE)
 enum { SPAN_KEYS(MT_STUDY_KEY_ENUM) SPAN_KEY_COUNT };
 static const mt_key SPAN[] = {SPAN_KEYS(MT_STUDY_KEY)};

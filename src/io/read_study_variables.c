@@ -3,15 +3,15 @@
 
 #include "study/catalogue.h"
 
-#define VARIABLE_KEYS(X)                                                    \
-    X(VARIABLE_PARAMETER, "parameter", MT_KEY_TEXT, true)                   \
-    X(VARIABLE_LOWER, "lower", MT_KEY_NUMBER, false, STUDY)                 \
-    X(VARIABLE_UPPER, "upper", MT_KEY_NUMBER, false, STUDY)                 \
-    X(VARIABLE_CATALOGUE, "catalogue", MT_KEY_LIST_OR_OBJECT, false, STUDY) \
-    X(VARIABLE_WEIGHT, "weight", MT_KEY_NUMBER, false, STUDY)               \
-    X(VARIABLE_SCALE, "scale", MT_KEY_NUMBER, false, STUDY)                 \
-    X(VARIABLE_TOLERANCE, "tolerance_percent", MT_KEY_NUMBER, false, STUDY) \
-    X(VARIABLE_DESCRIPTION, "description", MT_KEY_TEXT, false)              \
+#define VARIABLE_KEYS(X)                                                        \
+    X(VARIABLE_PARAMETER, "parameter", MT_KEY_TEXT, true)                       \
+    X(VARIABLE_LOWER, "lower", MT_KEY_NUMBER, false, BOUND)                     \
+    X(VARIABLE_UPPER, "upper", MT_KEY_NUMBER, false, BOUND)                     \
+    X(VARIABLE_CATALOGUE, "catalogue", MT_KEY_LIST_OR_OBJECT, false, VALUES)    \
+    X(VARIABLE_WEIGHT, "weight", MT_KEY_NUMBER, false, POSITIVE)                \
+    X(VARIABLE_SCALE, "scale", MT_KEY_NUMBER, false, POSITIVE)                  \
+    X(VARIABLE_TOLERANCE, "tolerance_percent", MT_KEY_NUMBER, false, TOLERANCE) \
+    X(VARIABLE_DESCRIPTION, "description", MT_KEY_TEXT, false)                  \
     X(VARIABLE_SOURCE, "source", MT_KEY_TEXT, false)
 enum { VARIABLE_KEYS(MT_STUDY_KEY_ENUM) VARIABLE_KEY_COUNT };
 static const mt_key KEYS[] = {VARIABLE_KEYS(MT_STUDY_KEY)};
@@ -19,9 +19,9 @@ const mt_key_table mt_study_variable_keys = {"variable", KEYS, VARIABLE_KEY_COUN
 
 #define CATALOGUE_KEYS(X)                                       \
     X(CATALOGUE_SERIES, "series", MT_KEY_TEXT, false)           \
-    X(CATALOGUE_STEP, "step", MT_KEY_NUMBER, false, STUDY)      \
-    X(CATALOGUE_LOWER, "lower", MT_KEY_NUMBER, true, STUDY)     \
-    X(CATALOGUE_UPPER, "upper", MT_KEY_NUMBER, true, STUDY)     \
+    X(CATALOGUE_STEP, "step", MT_KEY_NUMBER, false, POSITIVE)   \
+    X(CATALOGUE_LOWER, "lower", MT_KEY_NUMBER, true, RULE)      \
+    X(CATALOGUE_UPPER, "upper", MT_KEY_NUMBER, true, RULE)      \
     X(CATALOGUE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
     X(CATALOGUE_SOURCE, "source", MT_KEY_TEXT, false)
 enum { CATALOGUE_KEYS(MT_STUDY_KEY_ENUM) CATALOGUE_KEY_COUNT };
@@ -51,8 +51,9 @@ static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule
     const mt_unit *const unit = mt_read_study_unit(s, v->parameter_name.s);
     mt_diags *const diags = s->r.diags;
     if (r->series == MT_ABSENT && !(r->step > 0.0)) {
-        mt_diag_error(diags, o->found[CATALOGUE_STEP], "step (%g) must be above 0", r->step);
-    } else if (r->series != MT_ABSENT && !(r->lower > 0.0)) {
+        return; /* noted, with its row */
+    }
+    if (r->series != MT_ABSENT && !(r->lower > 0.0)) {
         mt_diag_error(diags, o->found[CATALOGUE_LOWER], "lower (%g) must be above 0", r->lower);
     } else if (r->lower > r->upper) {
         mt_diag_error(diags, o->found[CATALOGUE_UPPER], "upper (%g) is below lower (%g)",

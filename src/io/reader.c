@@ -3,6 +3,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 #include "io/json_print.h"
@@ -189,7 +190,7 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
             seen[k] = true;
             found[k] = mt_reader_type(r, m.at, table->keys[k].type) ? m.at : MT_NO_ADDR;
             r->matched[r->n_matched++ % MT_MATCHED] =
-                (mt_matched){.addr = m.at, .possible = table->keys[k].possible};
+                (mt_matched){.addr = m.at, .key = &table->keys[k]};
         }
     }
     for (int i = 0; i < table->n; i++) {
@@ -200,15 +201,74 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
     return true;
 }
 
-mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value)
+/* What it was matched with; NULL: nothing, or too long ago. */
+static const mt_key *key_of(const mt_reader *r, mt_addr value)
 {
     for (unsigned i = 0; i < MT_MATCHED && i < r->n_matched; i++) {
         const mt_matched *const m = &r->matched[(r->n_matched - 1 - i) % MT_MATCHED];
         if (m->addr == value) {
-            return m->possible;
+            return m->key;
         }
     }
-    return MT_POSSIBLE_NONE;
+    return NULL;
+}
+
+mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value)
+{
+    const mt_key *const key = key_of(r, value);
+    return key == NULL ? MT_POSSIBLE_NONE : key->possible;
+}
+
+static bool is_accepted(const mt_reader *r, const char *name)
+{
+    bool accepted = false;
+    for (int i = 0; i < r->accepted.n; i++) {
+        accepted = accepted || strcmp(r->accepted.names[i], name) == 0;
+    }
+    return accepted;
+}
+
+void mt_reader_doubt(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
+{
+    va_list args;
+    va_start(args, fmt);
+    const char *const text = mt_arena_vprintf(r->mem, fmt, args);
+    va_end(args);
+    if (text == NULL) {
+        return; /* as the arena knows */
+    }
+    if (r->doubts == NULL && !is_accepted(r, name)) {
+        mt_diag_warning(r->diags, value, "%s", text);
+    } else if (r->doubts != NULL) {
+        mt_doubt *const d = mt_doubt_add(r->doubts, MT_LEVEL_DOUBT, name, "%s", text);
+        if (d != NULL) {
+            d->addr = value;
+        }
+    }
+}
+
+void mt_reader_judge_as(mt_reader *r, const char *name, mt_addr value, double number,
+                        mt_possible_id row)
+{
+    const mt_possible *const p = &mt_possible_of[row];
+    const char *const doubted = mt_possible_doubted(p, number);
+    const bool possible = mt_possible_is(p, number);
+    if (value == MT_NO_ADDR || (possible && doubted == NULL)) {
+        return;
+    }
+    if (!possible) {
+        mt_diag_error(r->diags, value, "%s (%g) %s", name, number, p->impossible);
+    } else {
+        mt_reader_doubt(r, value, p->warning, "%s (%g) is %s", name, number, doubted);
+    }
+}
+
+void mt_reader_judge(mt_reader *r, mt_addr member, mt_addr value, double number)
+{
+    const mt_key *const key = key_of(r, member);
+    if (key != NULL) {
+        mt_reader_judge_as(r, key->name, value, number, key->possible);
+    }
 }
 
 static mt_items no_items(const mt_reader *r)

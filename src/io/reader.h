@@ -19,9 +19,10 @@
 /* The members that were matched last, with their rows: objects lie in each other, and each
  * reads its numbers soon after it was matched. */
 enum { MT_MATCHED = 256 };
+struct mt_key;
 typedef struct mt_matched {
     mt_addr addr;
-    mt_possible_id possible;
+    const struct mt_key *key;
 } mt_matched;
 
 typedef struct mt_reader {
@@ -34,7 +35,9 @@ typedef struct mt_reader {
     int n_names;
     mt_kind_lookup kinds; /* of the parameters, with the context of lookup */
     mt_matched matched[MT_MATCHED];
-    unsigned n_matched; /* so far; the last ones are kept */
+    unsigned n_matched;    /* so far; the last ones are kept */
+    mt_doubt_list *doubts; /* of mt_reader_judge; NULL: warned of at once */
+    mt_accepted accepted;  /* names of warnings that are not told at once */
 } mt_reader;
 
 /* id, JSON types, what a message calls it */
@@ -95,6 +98,17 @@ enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
 /* The row of a member that was matched lately. */
 mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
+/* Hold a number (NaN: not known), the value of a member that was matched lately or an item of
+ * it, against the member's row: what is impossible is noted at it ("weight (0) must be above
+ * 0"), what is implausible becomes a doubt. */
+void mt_reader_judge(mt_reader *r, mt_addr member, mt_addr value, double number);
+/* The same of what is called `name`, by this row: of numbers in one member that differ in
+ * kind. */
+void mt_reader_judge_as(mt_reader *r, const char *name, mt_addr value, double number,
+                        mt_possible_id row);
+/* A doubt of this name: kept for the file's list, or warned of unless the file accepts it. */
+void mt_reader_doubt(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
+    MT_PRINTF(4, 5);
 /* Is the document's "format" this one? Another text is noted, with what the file then is not
  * ("this is no study file"), before its members are held against the wrong table; what is no
  * text, or not there, the table of keys will tell. */

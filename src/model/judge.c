@@ -74,15 +74,15 @@ static bool number(mt_judge *j, const mt_item *item, mt_num num, const char *mem
     }
     const mt_possible *const p = &mt_possible_of[j->model->nums[num].possible];
     const double v = j->value[num];
-    if (v < p->least || (p->above && v == p->least) || v > p->most) {
+    if (!mt_possible_is(p, v)) {
         fault(j, item, num, member, p->impossible);
         return false;
     }
-    const bool below = v < p->low;
-    if (p->warning != NULL && (below || v > p->high || (p->at_high && v == p->high))) {
+    const char *const doubted = mt_possible_doubted(p, v);
+    if (doubted != NULL) {
         place(j,
               mt_doubt_add(j->out, MT_LEVEL_DOUBT, p->warning, "%s \"%s\": %s (%g) is %s",
-                           item->what, item->name, member, v, below ? p->below : p->beyond),
+                           item->what, item->name, member, v, doubted),
               item, num, member);
     }
     return true;

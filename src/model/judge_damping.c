@@ -66,10 +66,11 @@ static void coefficient(mt_judge *j, mt_num num, const place *at)
     }
     const mt_possible *const p = &mt_possible_of[j->model->nums[num].possible];
     const double v = j->value[num];
-    if (v < p->least) {
+    const char *const doubted = mt_possible_doubted(p, v);
+    if (!mt_possible_is(p, v)) {
         say(j, num, at, MT_LEVEL_FAULT, p->impossible);
-    } else if (p->warning != NULL && v >= p->high) {
-        say(j, num, at, MT_LEVEL_DOUBT, mt_arena_printf(j->out->mem, "is %s", p->beyond));
+    } else if (doubted != NULL) {
+        say(j, num, at, MT_LEVEL_DOUBT, mt_arena_printf(j->out->mem, "is %s", doubted));
     }
 }
 

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#define MEMBER(slot, name, type, required, range) \
-    {MT_SLOT_##slot, name, required, MT_RANGE_##range},
+#define MEMBER(slot, name, type, required, row) \
+    {MT_SLOT_##slot, name, required, MT_POSSIBLE_##row},
 #define MEMBERS(id, ...) \
     static const mt_goal_member id##_MEMBERS[] = {MT_GOAL_##id##_MEMBERS(MEMBER)};
 MT_GOAL_LIST(MEMBERS)
@@ -39,37 +39,6 @@ const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot)
 double mt_measure_unit(mt_goal_measure measure, double asked)
 {
     return measure == MT_MEASURE_PART && fabs(asked) > 0.0 ? fabs(asked) : 1.0;
-}
-
-bool mt_goal_in_range(mt_goal_range range, double value)
-{
-    static const double GREATEST_PERCENT = 100.0; /* a margin of it would reach down to 0 Hz */
-    switch (range) {
-    case MT_RANGE_POSITIVE:
-        return value > 0.0;
-    case MT_RANGE_SHARE:
-        return value > 0.0 && value <= 1.0;
-    case MT_RANGE_PERCENT:
-        return value >= 0.0 && value < GREATEST_PERCENT;
-    case MT_RANGE_ANY:
-        break;
-    }
-    return true;
-}
-
-const char *mt_goal_range_text(mt_goal_range range)
-{
-    switch (range) {
-    case MT_RANGE_POSITIVE:
-        return "above 0";
-    case MT_RANGE_SHARE:
-        return "above 0 and at most 1";
-    case MT_RANGE_PERCENT:
-        return "at least 0 and below 100";
-    case MT_RANGE_ANY:
-        break;
-    }
-    return "a number";
 }
 
 bool mt_goal_may_vary(const mt_goal_member *member)

@@ -4,47 +4,49 @@
 
 #include <stdbool.h>
 
+#include "model/possible.h"
+
 /*
  * The kinds of goals as a table: what files call them, the members that each reads, what their
  * numbers may be, and how a value is measured against them. Readers, checks, trade studies and
  * sentences go through it.
  *
- * X(slot, name, type, required, range) for each member: where it goes in an mt_goal, its name
- * in files, its type there (MT_KEY_... of io/reader.h), whether it must be there, and what a
- * number may be.
+ * X(slot, name, type, required, row) for each member: where it goes in an mt_goal, its name in
+ * files, its type there (MT_KEY_... of io/reader.h), whether it must be there, and what its
+ * numbers can be, a row of model/possible.h.
  */
-#define MT_GOAL_ANY(X)                              \
-    X(TYPE, "type", TEXT, true, ANY)                \
-    X(DESCRIPTION, "description", TEXT, false, ANY) \
-    X(SOURCE, "source", TEXT, false, ANY)           \
-    X(TOLERANCE, "tolerance_percent", NUMBER, false, POSITIVE)
-#define MT_GOAL_OF_CONFIGURATIONS(X)                    \
-    MT_GOAL_ANY(X)                                      \
-    X(CONFIGURATION, "configuration", TEXT, false, ANY) \
-    X(CONFIGURATIONS, "configurations", LIST, false, ANY)
+#define MT_GOAL_ANY(X)                               \
+    X(TYPE, "type", TEXT, true, NONE)                \
+    X(DESCRIPTION, "description", TEXT, false, NONE) \
+    X(SOURCE, "source", TEXT, false, NONE)           \
+    X(TOLERANCE, "tolerance_percent", NUMBER, false, MET)
+#define MT_GOAL_OF_CONFIGURATIONS(X)                     \
+    MT_GOAL_ANY(X)                                       \
+    X(CONFIGURATION, "configuration", TEXT, false, NONE) \
+    X(CONFIGURATIONS, "configurations", LIST, false, NONE)
 #define MT_GOAL_OF_MODE(X)       \
     MT_GOAL_OF_CONFIGURATIONS(X) \
-    X(MODE, "mode", TEXT_OR_COUNT, true, ANY)
+    X(MODE, "mode", TEXT_OR_COUNT, true, WHOLE)
 
-#define MT_GOAL_FREQUENCY_MEMBERS(X)                       \
-    MT_GOAL_OF_MODE(X)                                     \
-    X(EQUALS, "target_hz", NUMBER, false, POSITIVE)        \
-    X(REFERENCE, "reference", TEXT, false, ANY)            \
-    X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
-    X(AT_LEAST, "at_least_hz", NUMBER, false, POSITIVE)    \
-    X(AT_MOST, "at_most_hz", NUMBER, false, POSITIVE)      \
+#define MT_GOAL_FREQUENCY_MEMBERS(X)                         \
+    MT_GOAL_OF_MODE(X)                                       \
+    X(EQUALS, "target_hz", NUMBER, false, ASKED)             \
+    X(REFERENCE, "reference", TEXT, false, NONE)             \
+    X(REFERENCE_MODE, "reference_mode", COUNT, false, WHOLE) \
+    X(AT_LEAST, "at_least_hz", NUMBER, false, ASKED)         \
+    X(AT_MOST, "at_most_hz", NUMBER, false, ASKED)           \
     X(WEIGHT, "weight", NUMBER, false, POSITIVE)
-#define MT_GOAL_SHAPE_MEMBERS(X)                           \
-    MT_GOAL_OF_MODE(X)                                     \
-    X(REFERENCE, "reference", TEXT, true, ANY)             \
-    X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
-    X(LENGTH, "length_m", NUMBER, false, POSITIVE)         \
+#define MT_GOAL_SHAPE_MEMBERS(X)                             \
+    MT_GOAL_OF_MODE(X)                                       \
+    X(REFERENCE, "reference", TEXT, true, NONE)              \
+    X(REFERENCE_MODE, "reference_mode", COUNT, false, WHOLE) \
+    X(LENGTH, "length_m", NUMBER, false, POSITIVE)           \
     X(WEIGHT, "weight", NUMBER, true, POSITIVE)
-#define MT_GOAL_MAC_MEMBERS(X)                             \
-    MT_GOAL_OF_MODE(X)                                     \
-    X(REFERENCE, "reference", TEXT, true, ANY)             \
-    X(REFERENCE_MODE, "reference_mode", COUNT, false, ANY) \
-    X(LENGTH, "length_m", NUMBER, false, POSITIVE)         \
+#define MT_GOAL_MAC_MEMBERS(X)                               \
+    MT_GOAL_OF_MODE(X)                                       \
+    X(REFERENCE, "reference", TEXT, true, NONE)              \
+    X(REFERENCE_MODE, "reference_mode", COUNT, false, WHOLE) \
+    X(LENGTH, "length_m", NUMBER, false, POSITIVE)           \
     X(AT_LEAST, "at_least", NUMBER, true, SHARE)
 #define MT_GOAL_DAMPING_MEMBERS(X)                \
     MT_GOAL_OF_MODE(X)                            \
@@ -54,44 +56,44 @@
     X(WEIGHT, "weight", NUMBER, false, POSITIVE)
 #define MT_GOAL_OF_PORTS(X, needs_input)             \
     MT_GOAL_OF_CONFIGURATIONS(X)                     \
-    X(INPUT, "input", TEXT, needs_input, ANY)        \
-    X(OUTPUT, "output", TEXT, true, ANY)             \
+    X(INPUT, "input", TEXT, needs_input, NONE)       \
+    X(OUTPUT, "output", TEXT, true, NONE)            \
     X(EQUALS, "target", NUMBER, false, POSITIVE)     \
     X(AT_LEAST, "at_least", NUMBER, false, POSITIVE) \
     X(AT_MOST, "at_most", NUMBER, false, POSITIVE)   \
     X(WEIGHT, "weight", NUMBER, false, POSITIVE)
-#define MT_GOAL_RESPONSE_MEMBERS(X)         \
-    MT_GOAL_OF_PORTS(X, true)               \
-    X(BAND, "band_hz", NUMBERS, false, ANY) \
+#define MT_GOAL_RESPONSE_MEMBERS(X)           \
+    MT_GOAL_OF_PORTS(X, true)                 \
+    X(BAND, "band_hz", NUMBERS, false, RANGE) \
     X(AT, "at_hz", NUMBER, false, POSITIVE)
-#define MT_GOAL_VIBRATION_MEMBERS(X)       \
-    MT_GOAL_OF_PORTS(X, false)             \
-    X(PROFILE, "profile", TEXT, true, ANY) \
-    X(QUANTITY, "quantity", TEXT, false, ANY)
-#define MT_GOAL_FREQUENCY_RESPONSE_MEMBERS(X)      \
-    MT_GOAL_OF_CONFIGURATIONS(X)                   \
-    X(INPUT, "input", TEXT, true, ANY)             \
-    X(OUTPUT, "output", TEXT, true, ANY)           \
-    X(MEASUREMENT, "measurement", TEXT, true, ANY) \
-    X(BAND, "band_hz", NUMBERS, false, ANY)        \
-    X(COHERENCE, "coherence", BOOL, false, ANY)    \
+#define MT_GOAL_VIBRATION_MEMBERS(X)        \
+    MT_GOAL_OF_PORTS(X, false)              \
+    X(PROFILE, "profile", TEXT, true, NONE) \
+    X(QUANTITY, "quantity", TEXT, false, NONE)
+#define MT_GOAL_FREQUENCY_RESPONSE_MEMBERS(X)       \
+    MT_GOAL_OF_CONFIGURATIONS(X)                    \
+    X(INPUT, "input", TEXT, true, NONE)             \
+    X(OUTPUT, "output", TEXT, true, NONE)           \
+    X(MEASUREMENT, "measurement", TEXT, true, NONE) \
+    X(BAND, "band_hz", NUMBERS, false, BAND)        \
+    X(COHERENCE, "coherence", BOOL, false, NONE)    \
     X(WEIGHT, "weight", NUMBER, true, POSITIVE)
-#define MT_GOAL_LIMIT_MEMBERS(X)                 \
-    MT_GOAL_ANY(X)                               \
-    X(EXPRESSION, "expression", TEXT, true, ANY) \
-    X(AT_LEAST, "at_least", NUMBER, false, ANY)  \
-    X(AT_MOST, "at_most", NUMBER, false, ANY)    \
+#define MT_GOAL_LIMIT_MEMBERS(X)                  \
+    MT_GOAL_ANY(X)                                \
+    X(EXPRESSION, "expression", TEXT, true, NONE) \
+    X(AT_LEAST, "at_least", NUMBER, false, LIMIT) \
+    X(AT_MOST, "at_most", NUMBER, false, LIMIT)   \
     X(EQUALS, "equals", NUMBER, false, ANY)
-#define MT_GOAL_AVOID_MEMBERS(X)                        \
-    MT_GOAL_OF_CONFIGURATIONS(X)                        \
-    X(BANDS, "bands_hz", NUMBERS, false, ANY)           \
-    X(ROTOR, "rotor", OBJECT, false, ANY)               \
-    X(ROTORS, "rotors", LIST, false, ANY)               \
-    X(MACHINE, "machine", OBJECT, false, ANY)           \
-    X(MACHINES, "machines", LIST, false, ANY)           \
-    X(MARGIN, "margin_percent", NUMBER, false, PERCENT) \
-    X(UP_TO, "up_to_hz", NUMBER, false, ANY)            \
-    X(CLUSTER, "cluster", COUNT, false, ANY)
+#define MT_GOAL_AVOID_MEMBERS(X)                       \
+    MT_GOAL_OF_CONFIGURATIONS(X)                       \
+    X(BANDS, "bands_hz", NUMBERS, false, BAND)         \
+    X(ROTOR, "rotor", OBJECT, false, NONE)             \
+    X(ROTORS, "rotors", LIST, false, NONE)             \
+    X(MACHINE, "machine", OBJECT, false, NONE)         \
+    X(MACHINES, "machines", LIST, false, NONE)         \
+    X(MARGIN, "margin_percent", NUMBER, false, MARGIN) \
+    X(UP_TO, "up_to_hz", NUMBER, false, POSITIVE)      \
+    X(CLUSTER, "cluster", COUNT, false, WHOLE)
 
 /* X(id, name in files, unit of the numbers, how a value is measured against them). Its members
  * are MT_GOAL_<id>_MEMBERS, its operations mt_goal_<name> of problem/goal.h. */
@@ -145,14 +147,6 @@ typedef enum mt_goal_slot {
     MT_SLOT_COHERENCE
 } mt_goal_slot;
 
-/* What a number may be. */
-typedef enum mt_goal_range {
-    MT_RANGE_ANY,
-    MT_RANGE_POSITIVE,
-    MT_RANGE_SHARE,  /* above 0, at most 1 */
-    MT_RANGE_PERCENT /* at least 0, below 100 */
-} mt_goal_range;
-
 /* What a value v is off by, where v0 is asked for. */
 typedef enum mt_goal_measure {
     MT_MEASURE_RATIO,      /* ln(v / v0) */
@@ -164,7 +158,7 @@ typedef struct mt_goal_member {
     mt_goal_slot slot;
     const char *name;
     bool required;
-    mt_goal_range range;
+    mt_possible_id possible;
 } mt_goal_member;
 
 typedef struct mt_goal_kind {
@@ -182,9 +176,6 @@ int mt_goal_member_at(const mt_goal_kind *kind, mt_goal_slot slot);
 const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
 /* What a difference from `asked` is divided by. */
 double mt_measure_unit(mt_goal_measure measure, double asked);
-bool mt_goal_in_range(mt_goal_range range, double value);
-/* "above 0": what a number of this range must be. */
-const char *mt_goal_range_text(mt_goal_range range);
 /* Numbers that a trade study may vary. Is the member one of them? */
 bool mt_goal_may_vary(const mt_goal_member *member);
 

@@ -78,11 +78,31 @@ void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft
     }
 }
 
+const char *mt_rotor_doubt_range(double lower, double upper, double least, const char *whose,
+                                 mt_arena *mem)
+{
+    static const double MOST_SPEED = 2.0;
+    static const double PERCENT = 100.0;
+    if (lower >= least && upper <= MOST_SPEED) {
+        return NULL;
+    }
+    if (upper > MOST_SPEED && upper >= PERCENT * MT_ROTOR_LEAST_SPEED) {
+        return mt_arena_printf(
+            mem,
+            "speed_range [%g, %g] says %g to %g times the %s speed: it takes "
+            "factors, and these look like per cent; [%g, %g] is meant?",
+            lower, upper, lower, upper, whose, lower / PERCENT, upper / PERCENT);
+    }
+    return mt_arena_printf(
+        mem, "speed_range [%g, %g] says %g to %g times the %s speed: is such a range meant?",
+        lower, upper, lower, upper, whose);
+}
+
 void mt_rotor_check_range(const mt_rotor *rotor, mt_diags *diags)
 {
-    if (!(rotor->range_lower > 0.0) || rotor->range_lower > rotor->range_upper) {
+    if (rotor->range_lower > rotor->range_upper) {
         mt_diag_error(diags, rotor->range_addr,
-                      "the range of speeds (%g to %g) must be above 0 and ascending",
-                      rotor->range_lower, rotor->range_upper);
+                      "the range of speeds (%g to %g) must be ascending", rotor->range_lower,
+                      rotor->range_upper);
     }
 }

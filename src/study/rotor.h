@@ -23,7 +23,14 @@ int mt_rotor_doubts(const mt_rotor *rotor, const mt_aircraft *aircraft,
 /* Harmonics given twice, or of what is not known; aircraft NULL: the rotor is as given. */
 void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft,
                               mt_diags *diags);
-/* The range of speeds is above 0 and ascending. */
+/* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3;
+ * [95, 105] is per cent. */
+#define MT_ROTOR_LEAST_SPEED 0.5
+/* What is hardly meant of factors of the speed of a rotor or a machine ("rotor's"), which is
+ * plausible from `least` on; in mem. NULL: nothing. */
+const char *mt_rotor_doubt_range(double lower, double upper, double least, const char *whose,
+                                 mt_arena *mem);
+/* The range of speeds is ascending. */
 void mt_rotor_check_range(const mt_rotor *rotor, mt_diags *diags);
 
 /* More than a thousand of something are refused: each is compared with all others. what:

@@ -19,6 +19,7 @@ mt_status mt_study_new(mt_study **out, mt_err *err)
         free(study);
         return rc;
     }
+    study->doubts = mt_doubt_list_default(&study->mem);
     study->recommendations = DEFAULT_RECOMMENDATIONS;
     study->search =
         (mt_search){.seed = DEFAULT_SEED, .proof_s = nan(""), .proof_addr = MT_NO_ADDR};

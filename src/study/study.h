@@ -249,9 +249,6 @@ typedef struct mt_search {
     mt_addr proof_addr;
 } mt_search;
 
-/* Of proof_s. */
-#define MT_PROOF_S_MOST 1e6
-
 /* How far the best design of a misfit moves when single weights are changed: the uncertainty
  * that a choice of weights hides. */
 typedef struct mt_spread {

@@ -8,22 +8,11 @@
 
 #include "study/rotor.h"
 
-static void check_margin(mt_study_check *c, double margin, mt_addr addr)
-{
-    if (MT_HAS(margin) && !mt_goal_in_range(MT_RANGE_PERCENT, margin)) {
-        mt_diag_error(c->diags, addr, "margin_percent (%g) must be %s", margin,
-                      mt_goal_range_text(MT_RANGE_PERCENT));
-    }
-}
-
 static void check_intervals(mt_study_check *c, const mt_bands_source *source)
 {
     for (int i = 0; i < source->n_intervals; i++) {
         const mt_band_hz *const band = &source->intervals[i];
-        if (band->lower_hz < 0.0) {
-            mt_diag_error(c->diags, band->addr, "the band begins below 0 Hz (%g)",
-                          band->lower_hz);
-        } else if (band->lower_hz >= band->upper_hz) {
+        if (band->lower_hz >= band->upper_hz) {
             mt_diag_error(c->diags, band->addr, "the band's end (%g Hz) is not above %g Hz",
                           band->upper_hz, band->lower_hz);
         }
@@ -50,9 +39,6 @@ static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
 static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *rotor)
 {
     const mt_aircraft *const aircraft = mt_check_aircraft(c, rotor->aircraft);
-    mt_check_positive(c, rotor->speed_hz, rotor->speed_addr, "the rotor's speed");
-    mt_check_positive(c, rotor->tail_speed_hz, rotor->tail_speed_addr,
-                      "the tail rotor's speed");
     if (aircraft != NULL) {
         mt_rotor_take(rotor, aircraft);
         warn_unconfirmed(c, rotor, aircraft);
@@ -62,7 +48,6 @@ static void check_rotor(mt_study_check *c, const mt_avoid *avoid, mt_rotor *roto
         mt_rotor_check_harmonics(rotor, aircraft, c->diags);
     }
     mt_rotor_check_range(rotor, c->diags);
-    check_margin(c, rotor->margin_percent, rotor->margin_addr);
     const double margin =
         MT_HAS(rotor->margin_percent) ? rotor->margin_percent : avoid->source.margin_percent;
     if (rotor->range_lower == rotor->range_upper && !(margin > 0.0)) {
@@ -90,7 +75,6 @@ static void check_orders(mt_study_check *c, const mt_order *orders, int n)
 static void check_gear(mt_study_check *c, const mt_gear *gear)
 {
     double least = 1.0;
-    mt_check_positive(c, gear->ratio, gear->ratio_addr, "the ratio");
     check_orders(c, gear->orders, gear->n_orders);
     for (int i = 0; i < gear->n_orders; i++) {
         const double times = (double)gear->orders[i].thousandths / 1000.0;
@@ -107,13 +91,10 @@ static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_mac
 {
     const double lower = mt_machine_speed_hz(machine, 0);
     const double upper = mt_machine_speed_hz(machine, 1);
-    mt_check_positive(c, machine->speed_hz, machine->speed_addr, "the machine's speed");
-    if (!(machine->speed_hz <= 0.0) && (lower <= 0.0 || lower > upper)) {
+    if (!(machine->speed_hz <= 0.0) && lower > upper) {
         mt_diag_error(c->diags, machine->range_addr,
-                      "the range of speeds (%g to %g Hz) must be above 0 and ascending", lower,
-                      upper);
+                      "the range of speeds (%g to %g Hz) must be ascending", lower, upper);
     }
-    check_margin(c, machine->margin_percent, machine->margin_addr);
     check_orders(c, machine->orders, machine->n_orders);
     for (int i = 0; i < machine->n_gears; i++) {
         check_gear(c, &machine->gears[i]);
@@ -191,8 +172,6 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
         mt_diag_error(c->diags, goal->addr, "the goal names no bands");
         return;
     }
-    check_margin(c, avoid->source.margin_percent, avoid->margin_addr);
-    mt_check_positive(c, avoid->source.up_to_hz, avoid->up_to_addr, "up_to_hz");
     check_intervals(c, &avoid->source);
     /* several rotors or machines without a name are told apart by number */
     for (int i = 0; i < avoid->source.n_rotors; i++) {

@@ -193,13 +193,6 @@ bool mt_check_given(double value, mt_addr value_addr, mt_addr owner)
     return MT_HAS(value) || value_addr != owner;
 }
 
-void mt_check_positive(mt_study_check *c, double value, mt_addr addr, const char *what)
-{
-    if (MT_HAS(value) && !(value > 0.0)) {
-        mt_diag_error(c->diags, addr, "%s (%g) must be above 0", what, value);
-    }
-}
-
 /* Values at the original design, once: variables start from them. */
 static mt_status evaluate_original(mt_study_check *c, mt_err *err)
 {
@@ -243,8 +236,10 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
         mt_diag_error(diags, study->recommendations_addr,
                       "recommendations (%d) must be above 0", study->recommendations);
     }
-    if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
+    if (!mt_arena_failed(&study->mem)) {
         mt_study_check_doubts(&c);
+    }
+    if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
         mt_study_check_bounds(&c);
     }
     if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {

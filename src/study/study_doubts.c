@@ -8,11 +8,10 @@
 #include "study/study_priv.h"
 
 #include <math.h>
+#include <string.h>
 
-/* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3;
- * [95, 105] is per cent. */
-static const double LEAST_SPEED = 0.5;
-static const double MOST_SPEED = 2.0;
+#include "study/rotor.h"
+
 /* An engine idles at a tenth of its nominal speed, and turns at less than 30 000 per minute. */
 static const double LEAST_MACHINE = 0.05;
 static const double MOST_SPEED_HZ = 500.0;
@@ -21,10 +20,9 @@ static const double SECONDS = 60.0;
 static const double LEAST_MARGIN_PERCENT = 1.0;
 /* A band narrower than a thousandth of its frequency forbids less than a model is exact to. */
 static const double LEAST_WIDTH = 1e-3;
-/* A goal met within half of what it asks asks for nothing. */
-static const double MOST_TOLERANCE_PERCENT = 50.0;
-/* No part is made to a hundredth of a per cent; 0.005 is the factor that half a per cent is. */
-static const double LEAST_TOLERANCE_PERCENT = 0.01;
+/* A micrometre is lapped; springs are sorted to a half of a per cent, made to 5. */
+static const double LEAST_TOLERANCE_M = 1e-6;
+static const double LEAST_STIFFNESS_PERCENT = 0.1;
 /* Bounds that span more than eight decades, or lie three from the original, have a power of ten
  * wrong more often than not. */
 static const double MOST_SPAN = 1e8;
@@ -49,24 +47,11 @@ typedef struct factors {
 
 static void doubt_range(mt_doubt_list *out, const factors *range)
 {
-    const double a = range->a;
-    const double b = range->b;
-    if (a >= range->least && b <= MOST_SPEED) {
-        return;
+    const char *const text =
+        mt_rotor_doubt_range(range->a, range->b, range->least, range->whose, out->mem);
+    if (text != NULL) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range", "%s", text), range->addr);
     }
-    if (b > MOST_SPEED && b >= PERCENT * LEAST_SPEED) {
-        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range",
-                        "speed_range [%g, %g] says %g to %g times the %s speed: it takes "
-                        "factors, and these look like per cent; [%g, %g] is meant?",
-                        a, b, a, b, range->whose, a / PERCENT, b / PERCENT),
-           range->addr);
-        return;
-    }
-    at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range",
-                    "speed_range [%g, %g] says %g to %g times the %s speed: is such a "
-                    "range meant?",
-                    a, b, a, b, range->whose),
-       range->addr);
 }
 
 /* Speeds are in turns per second; what is meant for turns per minute is sixty times too
@@ -100,8 +85,8 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
     doubt_margin(out, avoid->source.margin_percent, avoid->margin_addr);
     for (int i = 0; i < avoid->source.n_rotors; i++) {
         const mt_rotor *const rotor = &avoid->source.rotors[i];
-        doubt_range(out, &(factors){rotor->range_lower, rotor->range_upper, LEAST_SPEED,
-                                    "rotor's", rotor->range_addr});
+        doubt_range(out, &(factors){rotor->range_lower, rotor->range_upper,
+                                    MT_ROTOR_LEAST_SPEED, "rotor's", rotor->range_addr});
         doubt_margin(out, rotor->margin_percent, rotor->margin_addr);
     }
     for (int i = 0; i < avoid->source.n_machines; i++) {
@@ -154,13 +139,41 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
     }
 }
 
-static void doubt_fine(mt_doubt_list *out, double tolerance, mt_addr addr)
+static bool is_stiffness(const char *unit)
 {
-    if (tolerance > 0.0 && tolerance < LEAST_TOLERANCE_PERCENT) {
+    static const char *const units[] = {"N/m", "N m/rad", "N s/m", "N m s/rad"};
+    bool is = false;
+    for (int i = 0; i < MT_COUNT(units); i++) {
+        is = is || strcmp(unit, units[i]) == 0;
+    }
+    return is;
+}
+
+/* What is made to its number is made to a part of it, and lengths to so many metres. */
+static void doubt_fine(mt_doubt_list *out, const mt_study *s, const mt_variable *v)
+{
+    const char *const unit =
+        v->parameter == MT_ABSENT ? NULL : s->model->parameters[v->parameter].unit;
+    const double percent = v->tolerance_percent;
+    const double size = fmax(fabs(v->lower), fabs(v->upper));
+    if (unit == NULL || !(percent >= mt_possible_of[MT_POSSIBLE_TOLERANCE].low)) {
+        return; /* by itself, its row says it */
+    }
+    if (strcmp(unit, "m") == 0) {
+        if (percent / PERCENT * size < LEAST_TOLERANCE_M) {
+            at(mt_doubt_add(out, MT_LEVEL_DOUBT, "tolerance",
+                            "tolerance_percent %g of %s is at most %.2g m: no part is made so "
+                            "exactly; is %g %% meant?",
+                            percent, v->parameter_name.s, percent / PERCENT * size,
+                            PERCENT * percent),
+               v->tolerance_addr);
+        }
+    } else if (is_stiffness(unit) && percent < LEAST_STIFFNESS_PERCENT) {
         at(mt_doubt_add(out, MT_LEVEL_DOUBT, "tolerance",
-                        "tolerance_percent %g is %g %%, next to nothing: is %g %% meant?",
-                        tolerance, tolerance, PERCENT * tolerance),
-           addr);
+                        "tolerance_percent %g of %s: no spring or damper is made so exactly; "
+                        "is %g %% meant?",
+                        percent, v->parameter_name.s, PERCENT * percent),
+           v->tolerance_addr);
     }
 }
 
@@ -179,29 +192,27 @@ static void doubt_trade(mt_doubt_list *out, const mt_trade *trade)
     }
 }
 
+static void doubt_all(const mt_study *s, mt_doubt_list *out)
+{
+    for (int i = 0; i < s->n_variables; i++) {
+        doubt_variable(out, &s->variables[i]);
+        doubt_fine(out, s, &s->variables[i]);
+    }
+    for (int i = 0; i < s->n_goals; i++) {
+        if (s->goals[i].avoid != NULL) {
+            doubt_avoid(out, &s->goals[i]);
+        }
+    }
+    doubt_trade(out, &s->trade);
+}
+
 void mt_study_check_doubts(mt_study_check *c)
 {
     mt_study *const s = c->study;
     mt_doubt_list *const out = &s->doubts;
-    *out = mt_doubt_list_default(&s->mem);
-    for (int i = 0; i < s->n_variables; i++) {
-        doubt_variable(out, &s->variables[i]);
-        doubt_fine(out, s->variables[i].tolerance_percent, s->variables[i].tolerance_addr);
+    if (c->diags->errors == 0) {
+        doubt_all(s, out);
     }
-    for (int i = 0; i < s->n_goals; i++) {
-        const mt_goal *const goal = &s->goals[i];
-        if (goal->tolerance_percent >= MOST_TOLERANCE_PERCENT) {
-            at(mt_doubt_add(
-                   out, MT_LEVEL_DOUBT, "tolerance",
-                   "tolerance_percent %g: within so much almost anything meets the goal",
-                   goal->tolerance_percent),
-               goal->tolerance_addr);
-        }
-        if (goal->avoid != NULL) {
-            doubt_avoid(out, goal);
-        }
-    }
-    doubt_trade(out, &s->trade);
     mt_doubt_accept(out, 0, &s->accepted);
     for (int i = 0; i < out->n; i++) {
         if (out->items[i].level == MT_LEVEL_DOUBT) {

@@ -71,28 +71,11 @@ static void check_demands(mt_study_check *c, const mt_goal *goal, const mt_goal_
     }
 }
 
-/* Numbers of the goal within what their kind allows. */
-static void check_numbers(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
-{
-    for (int i = 0; i < kind->n; i++) {
-        const mt_goal_member *const m = &kind->members[i];
-        if (m->slot >= MT_GOAL_NUMBERS) {
-            continue;
-        }
-        const double value = goal->number[m->slot];
-        if (MT_HAS(value) && !mt_goal_in_range(m->range, value)) {
-            mt_diag_error(c->diags, goal->number_addr[m->slot], "%s (%g) must be %s", m->name,
-                          value, mt_goal_range_text(m->range));
-        }
-    }
-}
-
 static void check_goal(mt_study_check *c, mt_goal *goal)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
     const bool values = mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0;
     int index = 0;
-    check_numbers(c, goal, kind);
     if (mt_goal_member_at(kind, MT_SLOT_CONFIGURATION) >= 0) {
         resolve_configurations(c, goal);
     }

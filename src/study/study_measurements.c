@@ -116,7 +116,6 @@ void mt_study_check_measurements(mt_study_check *c)
             mt_diag_error(c->diags, m->name.addr, "measurement \"%s\" is given twice",
                           m->name.s);
         }
-        mt_check_positive(c, m->factor, m->factor_addr, "factor");
         if (!m->read) {
             continue;
         }
@@ -132,10 +131,5 @@ void mt_study_check_measurements(mt_study_check *c)
 void mt_study_check_measured(mt_study_check *c, mt_shake *s)
 {
     s->measurement = mt_check_measurement(c, s->measurement_name);
-    if (MT_HAS(s->lower_hz) && MT_HAS(s->upper_hz) &&
-        !(s->lower_hz >= 0.0 && s->lower_hz < s->upper_hz)) {
-        mt_diag_error(c->diags, s->band_addr,
-                      "band_hz (%g to %g) must be two frequencies from 0 on in ascending order",
-                      s->lower_hz, s->upper_hz);
-    }
+    mt_check_range(c, s);
 }

@@ -93,10 +93,6 @@ static void check_spread(mt_study_check *c)
         mt_diag_error(c->diags, spread->factor_addr,
                       "a spread needs \"objective\": {\"minimise\": \"misfit\"}");
     }
-    if (MT_HAS(spread->factor) && !(spread->factor > 1.0)) {
-        mt_diag_error(c->diags, spread->factor_addr, "factor (%g) must be above 1",
-                      spread->factor);
-    }
 }
 
 /* What comes before it would be searched without the goals that it is made of. */
@@ -114,16 +110,6 @@ static void check_vibration(mt_study_check *c)
     }
 }
 
-static void check_proof(mt_study_check *c)
-{
-    const mt_search *const search = &c->study->search;
-    if (MT_HAS(search->proof_s) &&
-        !(search->proof_s >= 0.0 && search->proof_s <= MT_PROOF_S_MOST)) {
-        mt_diag_error(c->diags, search->proof_addr, "proof_s (%g) must be from 0 to %g",
-                      search->proof_s, MT_PROOF_S_MOST);
-    }
-}
-
 void mt_study_check_objectives(mt_study_check *c)
 {
     mt_study *const s = c->study;
@@ -132,7 +118,6 @@ void mt_study_check_objectives(mt_study_check *c)
     }
     check_misfit(c);
     check_spread(c);
-    check_proof(c);
     check_vibration(c);
     const mt_objective *const clearance = find(s, MT_BANDS);
     if (clearance != NULL && !mt_study_has_bands(s)) {

@@ -28,7 +28,7 @@ void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 void mt_study_check_bounds(mt_study_check *c);     /* study_bounds.c; where nothing is wrong */
 void mt_study_check_redundant(mt_study_check *c);  /* study_redundant.c; after them, likewise */
-/* study_doubts.c; last, where nothing is wrong */
+/* study_doubts.c; after them; what is beside others is doubted where nothing is wrong */
 void mt_study_check_doubts(mt_study_check *c);
 
 /* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a
@@ -59,7 +59,7 @@ void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mod
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
 /* Was a number given, even if it could not be read (then its own address is known)? */
 bool mt_check_given(double value, mt_addr value_addr, mt_addr owner);
-/* A number that must be above 0 where it is given; `what` names the member. */
-void mt_check_positive(mt_study_check *c, double value, mt_addr addr, const char *what);
+/* Do its two frequencies ascend? (study_shake.c) */
+void mt_check_range(mt_study_check *c, const mt_shake *s);
 
 #endif

@@ -10,8 +10,6 @@ static void check_judgement(mt_study_check *c, const mt_published *p)
         mt_check_given(p->tolerance_percent, p->tolerance_percent_addr, p->addr);
     const bool value = mt_check_given(p->value, p->value_addr, p->addr);
     const bool limits = MT_HAS(p->at_least) || MT_HAS(p->at_most);
-    mt_check_positive(c, p->tolerance, p->tolerance_addr, "tolerance");
-    mt_check_positive(c, p->tolerance_percent, p->tolerance_percent_addr, "tolerance_percent");
     if (!value && !limits) {
         mt_diag_error(c->diags, p->addr, "give \"value\", \"at_least\" or \"at_most\"");
     } else if (limits && (absolute || relative)) {

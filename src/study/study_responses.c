@@ -10,13 +10,6 @@ void mt_study_check_responses(mt_study_check *c)
         r->configuration = r->configuration_name.s == NULL
                                ? mt_check_only_configuration(c, c->model, r->addr)
                                : mt_check_configuration(c, c->model, r->configuration_name);
-        const mt_shake *const s = &r->shake;
-        if (MT_HAS(s->lower_hz) && MT_HAS(s->upper_hz) &&
-            (!(s->lower_hz > 0.0) || !(s->lower_hz < s->upper_hz))) {
-            mt_diag_error(
-                c->diags, s->band_addr,
-                "band_hz (%g to %g) must be two frequencies above 0 in ascending order",
-                s->lower_hz, s->upper_hz);
-        }
+        mt_check_range(c, &r->shake);
     }
 }

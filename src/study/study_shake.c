@@ -87,6 +87,15 @@ static void find_unit(mt_study_check *c, mt_shake *s)
     }
 }
 
+void mt_check_range(mt_study_check *c, const mt_shake *s)
+{
+    if (s->lower_hz >= s->upper_hz) {
+        mt_diag_error(c->diags, s->band_addr,
+                      "band_hz (%g to %g) must be two frequencies in ascending order",
+                      s->lower_hz, s->upper_hz);
+    }
+}
+
 static void check_frequencies(mt_study_check *c, const mt_goal *goal, const mt_shake *s)
 {
     const bool single = s->at_addr != goal->addr;
@@ -94,14 +103,9 @@ static void check_frequencies(mt_study_check *c, const mt_goal *goal, const mt_s
         return; /* noted by the reader */
     }
     if (single) {
-        mt_check_positive(c, s->lower_hz, s->at_addr, "at_hz");
         return;
     }
-    if (!(s->lower_hz > 0.0) || !(s->lower_hz < s->upper_hz)) {
-        mt_diag_error(c->diags, s->band_addr,
-                      "band_hz (%g to %g) must be two frequencies above 0 in ascending order",
-                      s->lower_hz, s->upper_hz);
-    }
+    mt_check_range(c, s);
     for (int k = MT_SLOT_EQUALS; k <= MT_SLOT_AT_LEAST; k++) {
         if (MT_HAS(goal->number[k])) {
             mt_diag_error(c->diags, goal->number_addr[k],

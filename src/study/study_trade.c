@@ -131,7 +131,7 @@ static void vary_goal(mt_study_check *c, const mt_vary *v)
         /* limits on both sides must leave room, whichever of them varies; both: check_sides */
         const bool crosses = (m->slot == MT_SLOT_AT_LEAST && v->values[i] >= goal->at_most) ||
                              (m->slot == MT_SLOT_AT_MOST && v->values[i] <= goal->at_least);
-        if (!mt_goal_in_range(m->range, v->values[i]) ||
+        if (!mt_possible_is(&mt_possible_of[m->possible], v->values[i]) ||
             (crosses && other_side(c, v) == NULL)) {
             mt_diag_error(c->diags, v->values_addr, "%s cannot be %g", v->member, v->values[i]);
         }

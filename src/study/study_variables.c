@@ -59,18 +59,6 @@ static void check_range(mt_study_check *c, mt_variable *v)
     }
 }
 
-static void check_weights(mt_study_check *c, mt_variable *v)
-{
-    mt_check_positive(c, v->weight, v->weight_addr, "weight");
-    mt_check_positive(c, v->scale, v->scale_addr, "scale");
-    mt_check_positive(c, v->tolerance_percent, v->tolerance_addr, "tolerance_percent");
-    if (v->tolerance_percent >= 100.0) {
-        mt_diag_error(c->diags, v->tolerance_addr, "tolerance_percent (%g) must be below 100",
-                      v->tolerance_percent);
-    }
-    v->range = v->upper > v->lower ? v->upper - v->lower : 1.0; /* one value: any scale */
-}
-
 static void check_original(mt_study_check *c, mt_variable *v)
 {
     if (c->study->original == NULL) {
@@ -102,7 +90,7 @@ void mt_study_check_variables(mt_study_check *c)
         v->parameter = mt_check_parameter(c, v->parameter_name);
         v->shown = v->parameter == MT_ABSENT ? NULL : mt_study_unit(s, v->parameter);
         check_range(c, v);
-        check_weights(c, v);
+        v->range = v->upper > v->lower ? v->upper - v->lower : 1.0; /* one value: any scale */
         if (v->parameter == MT_ABSENT) {
             continue;
         }

@@ -5,15 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/possible.h"
 #include "study/rotor.h"
 
 static const double DEFAULT_SIGMA = 3.0;
-static const double MOST_SIGMA = 100.0;
-static const double LEAST_HZ = 1e-9;
-static const double MOST_HZ = 1e9;
-/* Levels, of either unit: what no mechanism meets, and no square over- or underflows. */
-static const double LEAST_LEVEL = 1e-30;
-static const double MOST_LEVEL = 1e30;
 static const double DB_PER_DECADE = 10.0;
 /* An RMS that is printed has some digits; one that is further off is a typing error. */
 static const double PUBLISHED_TOL = 0.01;
@@ -48,24 +43,10 @@ void mt_vibration_delete(mt_vibration *v)
     }
 }
 
-static bool check_hz(mt_diags *d, double hz, mt_addr addr)
+/* Is it a number, and one that it can be? Else the reader has noted it. */
+static bool is_good(mt_possible_id row, double value)
 {
-    if (hz == hz && !(hz >= LEAST_HZ && hz <= MOST_HZ)) {
-        mt_diag_error(d, addr, "a frequency (%g Hz) must be within %g and %g", hz, LEAST_HZ,
-                      MOST_HZ);
-        return false;
-    }
-    return hz == hz;
-}
-
-static bool check_level(mt_diags *d, double level, mt_addr addr, const char *what)
-{
-    if (level == level && !(level >= LEAST_LEVEL && level <= MOST_LEVEL)) {
-        mt_diag_error(d, addr, "%s (%g) must be within %g and %g", what, level, LEAST_LEVEL,
-                      MOST_LEVEL);
-        return false;
-    }
-    return level == level;
+    return value == value && mt_possible_is(&mt_possible_of[row], value);
 }
 
 static bool check_order(mt_diags *d, const mt_vibration_random *r)
@@ -120,7 +101,10 @@ static bool follow_slopes(mt_diags *d, mt_vibration_random *r)
         }
     }
     for (int i = 0; i < r->n_points; i++) {
-        if (!check_level(d, r->points[i].level, r->points[i].addr, "the level that follows")) {
+        const mt_vibration_point *const p = &r->points[i];
+        if (!is_good(MT_POSSIBLE_PSD, p->level)) {
+            mt_diag_error(d, p->addr, "the level that follows (%g) %s", p->level,
+                          mt_possible_of[MT_POSSIBLE_PSD].impossible);
             return false;
         }
     }
@@ -143,13 +127,10 @@ static void finish_random(mt_vibration *v, mt_vibration_random *r, mt_diags *d)
     bool right = r->n_points >= 2;
     for (int i = 0; i < r->n_points; i++) {
         const mt_vibration_point *const p = &r->points[i];
-        right = check_hz(d, p->hz, p->hz_addr) && right;
-        if (p->slope_db != p->slope_db) {
-            right = check_level(d, p->level, p->level_addr, "the density") && right;
-        }
+        right = right && is_good(MT_POSSIBLE_HZ, p->hz);
+        right = right && (p->slope_db == p->slope_db || is_good(MT_POSSIBLE_PSD, p->level));
     }
-    const bool printed =
-        check_level(d, r->published_rms, r->published_addr, "the published RMS");
+    const bool printed = is_good(MT_POSSIBLE_LEVEL, r->published_rms);
     if (!right || !check_order(d, r) || !follow_slopes(d, r)) {
         return;
     }
@@ -219,18 +200,9 @@ static const mt_aircraft *find_aircraft(mt_vibration *v, mt_name name, mt_diags 
     return found;
 }
 
-static void check_positive(mt_diags *d, double value, mt_addr addr, const char *what)
-{
-    if (value == value && !(value > 0.0)) {
-        mt_diag_error(d, addr, "%s (%g) must be above 0", what, value);
-    }
-}
-
 static void check_rotor(mt_vibration *v, mt_rotor *rotor, mt_diags *d)
 {
     const mt_aircraft *const aircraft = find_aircraft(v, rotor->aircraft, d);
-    check_positive(d, rotor->speed_hz, rotor->speed_addr, "the rotor's speed");
-    check_positive(d, rotor->tail_speed_hz, rotor->tail_speed_addr, "the tail rotor's speed");
     if (aircraft != NULL) {
         mt_rotor_take(rotor, aircraft);
     }
@@ -242,13 +214,11 @@ static void check_rotor(mt_vibration *v, mt_rotor *rotor, mt_diags *d)
 
 static void check_source(mt_vibration *v, mt_vibration_source *s, mt_diags *d)
 {
-    (void)check_level(d, s->level, s->level_addr, "the acceleration");
     if (s->has_rotor) {
         check_rotor(v, &s->rotor, d);
         return;
     }
-    if (check_hz(d, s->lower_hz, s->range_addr) && check_hz(d, s->upper_hz, s->range_addr) &&
-        s->lower_hz > s->upper_hz) {
+    if (s->lower_hz > s->upper_hz) {
         mt_diag_error(d, s->range_addr, "the range (%g to %g Hz) must be ascending",
                       s->lower_hz, s->upper_hz);
     }
@@ -265,9 +235,11 @@ static void add_tone(mt_vibration *v, int source, double lower, double upper, co
                      mt_diags *d)
 {
     const mt_vibration_source *const s = &v->sources[source];
-    if (!(lower >= LEAST_HZ && upper <= MOST_HZ)) {
-        mt_diag_error(d, s->addr, "%s: its frequency (%g to %g Hz) must be within %g and %g",
-                      label, lower, upper, LEAST_HZ, MOST_HZ);
+    if (!is_good(MT_POSSIBLE_HZ, lower) || !is_good(MT_POSSIBLE_HZ, upper)) {
+        if (s->has_rotor) { /* else the reader has noted it */
+            mt_diag_error(d, s->addr, "%s: its frequency (%g to %g Hz) %s", label, lower, upper,
+                          mt_possible_of[MT_POSSIBLE_HZ].impossible);
+        }
         return;
     }
     v->tones[v->n_tones++] = (mt_vibration_tone){
@@ -379,10 +351,6 @@ static void make_marks(mt_vibration *v, mt_diags *diags)
 
 void mt_vibration_finish(mt_vibration *v, mt_diags *diags)
 {
-    if (v->sigma == v->sigma && !(v->sigma >= 0.0 && v->sigma <= MOST_SIGMA)) {
-        mt_diag_error(diags, v->sigma_addr, "sigma (%g) must be within 0 and %g", v->sigma,
-                      MOST_SIGMA);
-    }
     for (int i = 0; i < v->n_random; i++) {
         finish_random(v, &v->random[i], diags);
     }

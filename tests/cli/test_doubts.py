@@ -284,11 +284,16 @@ class Doubts(CliTest):
         self.assertEqual(self.found(self.put_study(base=dict(study, references={"test": {"modes": modes}})))[0], [])
 
     def test_tolerances_of_variables(self):
-        self.put_model()
-        for tolerance, want in ((0.0099, ["tolerance"]), (0.01, [])):
-            study = changed(STUDY, ("variables", 0, "tolerance_percent"), tolerance)
-            doubts, _ = self.found(self.put_study(base=study))
-            self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [(k, "/variables/0/tolerance_percent") for k in want])
+        """By itself; and of what no part is made to: a spring to 0.1 %, a length to a micrometre."""
+        length = changed(MODEL, ("parameters", "d"), {"value": 0.02, "unit": "m"})
+        self.put_model(("links", 0, "section", "diameter_m"), "d", length)
+        rows = [({"parameter": "m", "lower": 0.5, "upper": 2}, 0.0099, 0.01), ({"parameter": "k", "lower": 200, "upper": 20000}, 0.099, 0.1),
+                ({"parameter": "d", "lower": 0.001, "upper": 0.009}, 0.011, 0.012)]
+        for variable, fine, good in rows:
+            for tolerance, want in ((fine, ["tolerance"]), (good, [])):
+                study = dict(STUDY, variables=[dict(variable, tolerance_percent=tolerance)])
+                doubts, _ = self.found(self.put_study(base=study))
+                self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [(k, "/variables/0/tolerance_percent") for k in want])
 
     def test_no_doubt_of_the_very_large_and_the_very_small(self):
         """A ship and a resonator: the same two numbers of frequency and damping as any."""

@@ -25,19 +25,25 @@ WITH = {
     "mt_judge_tensor": "test_inertia_by_expressions_configurations_and_bounds", "judge_section": "test_bounds_at_which_nothing_can_be_built",
     "judge_stout": "test_values_of_a_model", "judge_drive": "test_values_of_a_model", "judge_stroke": "test_a_stroke_longer_than_the_drawing",
     "judge_gravity": "test_values_of_a_model", "mt_reader_count": "tests/io/wrong/study_counts.json",
-    "mt_study_finish": "test_values_of_a_study", "mt_vibration_finish": "tests/io/wrong/profile_density.json",
+    "doubt_target": "test_values_of_a_study", "doubt_reference": "test_measured_frequencies_in_other_units",
 }
+# ... and functions that the test of studies, profiles and catalogues drives member by member, each from both sides.
+BY_MEMBER = "tests/io/test_possible_files.c"
 
 
 class Possible(CliTest):
     def test_every_function_that_a_row_names_is_there_and_driven(self):
         rows = (SOURCE / "src/model/possible.c").read_text(encoding="utf-8")
         named = set(re.findall(r'\.with = "(\w+)"', rows))
-        self.assertEqual(named, set(WITH))
+        kinds = re.search(r"ANALYSED\[\] = \{(.*?)\}", (SOURCE / BY_MEMBER).read_text(encoding="utf-8"))[1]
+        self.assertEqual(set(re.findall(r'"(\w+)"', kinds)), {"doubt_target", "doubt_reference"})
+        models = re.findall(r'\.with = "(\w+)"', rows[:rows.index("[MT_POSSIBLE_WHOLE]")])
+        self.assertEqual(set(models) | {"mt_reader_count", "doubt_target", "doubt_reference"}, set(WITH))
         sources = "".join(p.read_text(encoding="utf-8") for p in sorted((SOURCE / "src").glob("*/*.c")))
         tests = "".join((SOURCE / f"tests/cli/{name}.py").read_text(encoding="utf-8") for name in ("test_possible", "test_doubts"))
-        for function, where in WITH.items():
+        for function in named:
             self.assertRegex(sources, rf"\b{function}\([^;]*\)\n{{", function)
+        for where in WITH.values():
             self.assertTrue((SOURCE / where).is_file() if "/" in where else f"def {where}(" in tests, where)
 
     def put(self, model, name="problems/p.json"):

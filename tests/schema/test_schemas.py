@@ -99,6 +99,9 @@ def main():
                 for holder in [mutant] + (list(references.values()) if isinstance(references, dict) else []):
                     if isinstance(holder, dict) and isinstance(holder.get("model"), str):
                         holder["model"] = str((path.parent / holder["model"]).resolve())
+                for goal in mutant["goals"] if isinstance(mutant.get("goals"), list) else []:
+                    if isinstance(goal, dict) and isinstance(goal.get("profile"), str) and (path.parent / goal["profile"]).is_file():
+                        goal["profile"] = str((path.parent / goal["profile"]).resolve())
                 measurements = mutant.get("measurements")
                 for holder in measurements.values() if isinstance(measurements, dict) else []:
                     if isinstance(holder, dict) and isinstance(holder.get("file"), str):
