@@ -60,7 +60,8 @@ typedef struct mt_doubt {
     X("spread", "a factor of weights so large that one goal decides")                  \
     X("spring", "a spring that acts against what joints forbid")                       \
     X("target", "a target far from the original frequency")                            \
-    X("tolerance", "a tolerance within which almost anything, or nothing, lies")
+    X("tolerance", "a tolerance within which almost anything, or nothing, lies")       \
+    X("weight", "a goal without a weight beside others of a misfit")
 enum {
 /* NOLINTNEXTLINE(bugprone-macro-parentheses): a term of a sum */
 #define MT_DOUBT_COUNT_ONE(name, of) +1

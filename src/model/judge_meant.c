@@ -11,6 +11,10 @@
 /* A bushing's two points so far apart, in parts of the drawing's size, are two points. */
 static const double BUSHING_APART = 0.01;
 
+/* Of the drawing's size, what a point is placed away from the origin, and a unit is small. */
+static const double LEAST_PLACED = 0.05;
+static const double MOST_NEAR = 100.0;
+
 enum { AXES = 3, PLACE = 96 };
 
 /* Whose gravity is in force: its pointer, and its numbers. */
@@ -127,11 +131,57 @@ const char *mt_model_link_limit(const mt_model *model, int configuration, int li
         l->name.s);
 }
 
+static bool is_bare(const mt_number *number)
+{
+    return number->expr.length == 1 && number->expr.code[0].op == MT_OP_CONST;
+}
+
+/* In a file of millimetres a point at (-0.42, 0.15, -0.06) is next to the origin, and as metres
+ * within the drawing: two bare coordinates or more below one unit, and none above. */
+static void judge_point(mt_judge *j, const mt_point *p, const mt_unit *unit, double size)
+{
+    const mt_number *const nums = j->model->nums;
+    const double factor = mt_unit_factor(unit);
+    double metres = 0.0; /* if they are */
+    int small = 0;
+    mt_num first = MT_ABSENT;
+    for (int k = 0; k < j->model->dimension; k++) {
+        const double x = fabs(j->value[p->x[k]]);
+        if (!(x < factor) || (x > 0.0 && !is_bare(&nums[p->x[k]]))) {
+            return;
+        }
+        metres = fmax(metres, x / factor);
+        small += x > 0.0 ? 1 : 0;
+        first = x > 0.0 && first == MT_ABSENT ? p->x[k] : first;
+    }
+    if (small < 2 || !(metres > LEAST_PLACED * size) || !(metres < size) ||
+        !(size > MOST_NEAR * factor)) {
+        return;
+    }
+    (void)mt_judge_place(
+        j,
+        mt_doubt_add(
+            j->out, MT_LEVEL_DOUBT, "size",
+            "point \"%s\" lies within 1 %s of the origin, in a drawing %.4g m wide: is "
+            "it meant in metres?",
+            p->name.s, unit->name, size),
+        nums[first].addr, mt_arena_printf(j->out->mem, "/points/%s", p->name.s));
+}
+
+static void judge_points(mt_judge *j, double size)
+{
+    const mt_unit *const unit = j->model->units[MT_LENGTH];
+    for (int i = 0; unit != NULL && !mt_unit_is_si(unit) && i < j->model->n_points; i++) {
+        judge_point(j, &j->model->points[i], unit, size);
+    }
+}
+
 void mt_judge_meant(mt_judge *j, double size)
 {
     const mt_model *const m = j->model;
     int dampers = 0;
     judge_gravity(j);
+    judge_points(j, size);
     for (int i = 0; i < m->n_springs; i++) {
         const mt_spring *const s = &m->springs[i];
         const mt_item item = {s->damper ? "damper" : "spring",

@@ -192,6 +192,39 @@ static void doubt_trade(mt_doubt_list *out, const mt_trade *trade)
     }
 }
 
+/* A measured frequency that a goal is to meet exactly, where other goals with references make
+ * a misfit: a weight was forgotten, unless a tolerance says that it is meant. */
+static void doubt_weights(mt_doubt_list *out, const mt_study *s)
+{
+    const mt_goal *first = NULL;
+    bool fitted = false;
+    int n = 0;
+    for (int i = 0; i < s->n_goals; i++) {
+        const mt_goal *const goal = &s->goals[i];
+        if (goal->reference == MT_ABSENT ||
+            s->references[goal->reference].model_path.s != NULL) {
+            continue;
+        }
+        fitted = fitted || MT_HAS(goal->weight);
+        const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
+        const bool value = mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0; /* else a shape */
+        if (!MT_HAS(goal->weight) && value && goal->tolerance_addr == goal->addr) {
+            first = first == NULL ? goal : first;
+            n++;
+        }
+    }
+    if (fitted && first != NULL) {
+        at(mt_doubt_add(
+               out, MT_LEVEL_DOUBT, "weight",
+               "%d goal%s of a measured frequency %s no weight: %s to be met exactly, "
+               "and %s no part of the misfit, while others of reference \"%s\" are; if "
+               "that is meant, say \"tolerance_percent\"",
+               n, n == 1 ? "" : "s", n == 1 ? "has" : "have", n == 1 ? "it is" : "they are",
+               n == 1 ? "is" : "are", s->references[first->reference].name.s),
+           first->addr);
+    }
+}
+
 static void doubt_all(const mt_study *s, mt_doubt_list *out)
 {
     for (int i = 0; i < s->n_variables; i++) {
@@ -203,6 +236,7 @@ static void doubt_all(const mt_study *s, mt_doubt_list *out)
             doubt_avoid(out, &s->goals[i]);
         }
     }
+    doubt_weights(out, s);
     doubt_trade(out, &s->trade);
 }
 

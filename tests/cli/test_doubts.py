@@ -295,6 +295,26 @@ class Doubts(CliTest):
                 doubts, _ = self.found(self.put_study(base=study))
                 self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [(k, "/variables/0/tolerance_percent") for k in want])
 
+    def test_a_point_in_metres_in_a_file_of_millimetres(self):
+        base = dict(MODEL, units={"length": "mm"}, points={"far": [0, 1000]}, links=[dict(MODEL["links"][0], to="far")], joints=[
+            MODEL["joints"][0], dict(MODEL["joints"][1], at="far")], bodies=[dict(MODEL["bodies"][0], centre="far")])
+        for point, want in (([0.3, 0.5], ["size"]), ([0.3, 0], []), ([0.3, 1.5], []), ([0.01, 0.02], []), (["0.3*mm", "0.5*mm + 0*k"], [])):
+            doubts, _ = self.found(self.put_model(("points",), dict(base["points"], foot=point), base))
+            self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [(k, "/points/foot") for k in want], point)
+        self.assertEqual(self.found(self.put_model(("points",), {"foot": [0.3, 0.5]}))[0], [])  # in a file of metres
+
+    def test_a_weight_that_is_forgotten(self):
+        self.put_model(("sensors",), [{"name": "top", "on": "tip", "directions": ["x", "y"]}])
+        modes = [{"frequency_hz": 5.2, "shape": {"top.x": 1, "top.y": 0.1}}, {"frequency_hz": 60}]
+        frequency = {"type": "frequency", "mode": 1, "reference": "test"}
+        shape = {"type": "shape", "mode": 1, "reference": "test", "weight": 1}
+        rows = [([frequency, shape], True), ([dict(frequency, weight=1), shape], False), ([dict(frequency, tolerance_percent=1), shape], False),
+                ([{"type": "frequency", "mode": 1, "target_hz": 5}, shape], False)]
+        for goals, doubted in rows:
+            study = dict(STUDY, goals=goals, references={"test": {"modes": modes}}, objective={"minimise": "misfit"})
+            doubts, _ = self.found(self.put_study(base=study))
+            self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [("weight", "/goals/0")] if doubted else [], goals)
+
     def test_no_doubt_of_the_very_large_and_the_very_small(self):
         """A ship and a resonator: the same two numbers of frequency and damping as any."""
         ship = {"format": "modetune-model/1", "dimension": 2, "gravity_m_per_s2": [0, -9.81],
