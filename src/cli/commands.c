@@ -107,7 +107,8 @@ const mt_option mt_options[MT_OPT_IDS] = {
         "start at rest with this joint (or link's hinge) at a position counted from the "
         "reference position, in rad or m or the model's units (\"pivot=170*deg\"). One joint "
         "is held there until the rest of the mechanism is in equilibrium; several are moved "
-        "there together, and the rest follows with the least motion; may be repeated"),
+        "there together, and the rest follows with the least motion; closed loops begin in the "
+        "assembly of the drawing, or are refused; may be repeated"),
     REPEATED(MT_OPT_RATE, "rate", "JOINT=VALUE", BIT(MT_CMD_SIMULATE),
              "start with this joint at a velocity, in rad/s or m/s or the model's units a "
              "second: its second body against its first. Of all motions with these velocities "

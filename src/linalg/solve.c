@@ -60,3 +60,34 @@ mt_status mt_lu_solve(int n, double *a, int nrhs, double *b, double *rcond, mt_a
     mt_arena_rewind(scratch, mark);
     return rc;
 }
+
+static mt_status lu_sign(int n, double *a, int *sign, mt_arena *scratch, mt_err *err)
+{
+    lapack_int *const ipiv = mt_arena_alloc(scratch, (size_t)n, sizeof *ipiv);
+    MT_TRY(mt_arena_check(scratch, err));
+    const lapack_int info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, ipiv);
+    if (info < 0) {
+        return mt_lapack_bug("dgetrf", info, err);
+    }
+    *sign = info > 0 ? 0 : 1;
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const bool swapped = ipiv[i] != i + 1;
+        *sign = swapped == (a[i + (i * n)] < 0.0) ? *sign : -*sign;
+    }
+    return MT_OK;
+}
+
+mt_status mt_lu_sign(int n, double *a, int *sign, mt_arena *scratch, mt_err *err)
+{
+    *sign = 1;
+    if (n == 0) {
+        return MT_OK;
+    }
+    if (!mt_all_finite((ptrdiff_t)n * n, a)) {
+        return mt_lapack_not_finite("dgetrf", err);
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = lu_sign(n, a, sign, scratch, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}

@@ -10,5 +10,7 @@
  * looks at rcond. */
 mt_status mt_lu_solve(int n, double *a, int nrhs, double *b, double *rcond, mt_arena *scratch,
                       mt_err *err);
+/* *sign of det A, -1, 0 or 1, by LU with partial pivoting; A (n x n) is destroyed. n = 0: 1. */
+mt_status mt_lu_sign(int n, double *a, int *sign, mt_arena *scratch, mt_err *err);
 
 #endif

@@ -10,7 +10,8 @@
  * a step h goes to q (+) h dq/ds and is closed again by Newton from there (briefly: by the
  * smallest steps, where they converge as they should, newton_close.c). The correction is of
  * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not
- * close the mechanism, the step is halved, so that the way never leaves its branch. Towards a
+ * close the mechanism, or the equations turn over (branch.c), the step is halved, so that the
+ * way never leaves its branch. Towards a
  * limit position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step closes beyond it,
  * and halving closes in on it geometrically.
  */
@@ -20,6 +21,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "mechanics/branch.h"
 #include "mechanics/newton_step.h"
 #include "mechanics/singular.h"
 
@@ -29,6 +31,9 @@ static const double BODY_STEP = 0.3;
 /* A step is taken where the way back to the constraints is at most this part of it: on one
  * branch it is about h |q''| / (2 |q'|) of it, beside what a closure leaves to rounding. */
 static const double CORRECTION = 0.3;
+/* Links that miss being in line by so little [rad, model lengths] are in line: a drawing has
+ * six digits of their lengths, whose square root this is. The way goes straight on there. */
+static const double MEETING = 1e-3;
 /* Gap [model lengths] that may be left where the walk only passes: far below the corrections
  * that tell a branch, and the next closure takes it away. */
 static const double PASSING = 1e-6;
@@ -61,7 +66,17 @@ typedef struct walk {
     double *rate;   /* [nq] dq/ds */
     double *motion; /* [nq] */
     bool held;      /* by the other joints, where the walk stands */
-    mt_err why;     /* what the last closure that failed said */
+    mt_branch branch;
+    /* over a position where branches meet or nearly do: the first step that turned the
+     * equations over, and where the last one that did ended */
+    struct {
+        bool known;
+        double to;
+        double turned;
+        mt_pose *pose; /* [bodies] */
+    } beyond;
+    mt_lagrangian equations; /* of their gradients alone, where few enough are held */
+    mt_err why;              /* what the last closure that failed said */
 } walk;
 
 static mt_status walk_init(walk *w, mt_err *err)
@@ -73,8 +88,13 @@ static mt_status walk_init(walk *w, mt_err *err)
     w->goal = creal(mt_data_scalar(w->data, sys->drive, 0.0));
     w->trial = mt_arena_alloc(w->mem, n, sizeof *w->trial);
     w->guess = mt_arena_alloc(w->mem, n, sizeof *w->guess);
+    w->beyond.pose = mt_arena_alloc(w->mem, n, sizeof *w->beyond.pose);
     w->rate = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
     w->motion = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
+    MT_TRY(mt_branch_init(&w->branch, sys, sys->n_constraints, w->mem, err));
+    if (w->branch.most > 0) {
+        MT_TRY(mt_lagrangian_init(&w->equations, sys, false, w->mem, err));
+    }
     return mt_arena_check(w->mem, err);
 }
 
@@ -138,6 +158,22 @@ static mt_status relax_sparse(walk *w, mt_newton_work *work, bool *sure, mt_err 
     return *sure ? mt_saddle_solve(&saddle, NULL, work->c, work->v, NULL, w->mem, err) : MT_OK;
 }
 
+/* The gradients of all equations at a place. */
+static const double *gradients(walk *w, const mt_placement *at)
+{
+    mt_lagrangian_eval(w->data, MT_ENERGY_ANCHOR, at->pose, at, w->sys->n_constraints, NULL,
+                       MT_CURVATURE_NONE, &w->equations);
+    return w->equations.a;
+}
+
+/* e: the elimination where the walk stands; NULL: the equations are independent. */
+static void stand(walk *w, const mt_elimination *e)
+{
+    if (w->branch.most > 0) {
+        mt_branch_stand(&w->branch, w->sys->n_constraints, gradients(w, w->at), e);
+    }
+}
+
 /* work->v := dq/ds in a basis of the freedoms, unless the other joints hold the driven one. */
 static mt_status relax_dense(walk *w, mt_newton_work *work, mt_err *err)
 {
@@ -149,6 +185,7 @@ static mt_status relax_dense(walk *w, mt_newton_work *work, mt_err *err)
     work->c[w->row] = 1.0;
     MT_TRY(mt_eliminate_particular(&e, work->c, work->v, w->mem, err));
     w->held = !(misfit(&e, work->a, w->row, work->v) <= HELD);
+    stand(w, &e);
     return w->held ? MT_OK : relax(w, work, &e, err);
 }
 
@@ -166,7 +203,9 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
         MT_TRY(relax_sparse(w, &work, &sure, err));
     }
     w->held = false;
-    if (!sure) {
+    if (sure) {
+        stand(w, NULL);
+    } else {
         MT_TRY(relax_dense(w, &work, err));
     }
     if (!w->held) {
@@ -178,8 +217,9 @@ static mt_status find_rate(walk *w, double *size, mt_err *err)
 }
 
 /* Close the mechanism with the joint at `to`, from the guess; *good: closed, and still on the
- * branch. */
-static mt_status try_step(walk *w, double to, double length, bool *good, mt_err *err)
+ * branch; *turned: closed, but the equations have turned over. */
+static mt_status try_step(walk *w, double to, double length, bool *good, bool *turned,
+                          mt_err *err)
 {
     const mt_system *const sys = w->sys;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
@@ -208,7 +248,49 @@ static mt_status try_step(walk *w, double to, double length, bool *good, mt_err 
     }
     *good = rc == MT_OK &&
             mt_poses_distance(sys, w->trial, w->guess) <= (CORRECTION * length) + MT_STEP_DONE;
+    *turned = false;
+    if (*good && w->branch.most > 0) {
+        MT_TRY(mt_branch_kept(&w->branch, sys->n_constraints, gradients(w, &trial), good,
+                              w->mem, err));
+        *turned = !*good;
+    }
     return MT_OK;
+}
+
+/* Where a step towards the goal ends: no crumb is left for the last. */
+static double step_end(const walk *w, double step)
+{
+    const double way = w->goal - w->at->drive;
+    const bool last = step >= fabs(way) - (SHORTEST * DRIVE_STEP * w->unit);
+    return last ? w->goal : w->at->drive + copysign(step, way);
+}
+
+static void take(walk *w, const mt_pose *poses, double to)
+{
+    memcpy(w->at->pose, poses, (size_t)w->sys->n_bodies * sizeof *poses);
+    mt_data_turns(w->data, w->at);
+    w->at->drive = to;
+    if (fabs(w->goal - to) <= fabs(w->goal - w->beyond.to)) {
+        w->beyond.known = false; /* passed on the branch */
+    }
+}
+
+/* The step to `to` has turned the equations over, w->trial is where it ended. */
+static void note_turned(walk *w, double to)
+{
+    w->beyond.turned = to;
+    if (!w->beyond.known) {
+        w->beyond.known = true;
+        w->beyond.to = to;
+        memcpy(w->beyond.pose, w->trial, (size_t)w->sys->n_bodies * sizeof *w->trial);
+    }
+}
+
+/* Where branches meet no step but a long one leads over, and both sides look like one straight
+ * line: the first that did is taken. */
+static void go_straight(walk *w)
+{
+    take(w, w->beyond.pose, w->beyond.to);
 }
 
 /* One step of at most *h towards the goal, halved until it holds. *h: what to try next; 0: no
@@ -226,20 +308,27 @@ static mt_status advance(walk *w, double *h, mt_err *err)
     }
     double step = fmin(fmin(*h, fabs(way)), BODY_STEP * w->unit / size);
     while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
-        const bool last = step >= fabs(way) - (SHORTEST * DRIVE_STEP * w->unit);
-        const double to = last ? w->goal : w->at->drive + copysign(step, way);
+        bool turned = false;
+        const double to = step_end(w, step);
         for (int j = 0; j < sys->nq; j++) {
             w->motion[j] = (to - w->at->drive) * w->rate[j];
         }
         memcpy(w->guess, w->at->pose, (size_t)sys->n_bodies * sizeof *w->guess);
         mt_poses_move(sys, w->guess, w->motion);
-        MT_TRY(try_step(w, to, step * size / w->unit, &good, err));
+        MT_TRY(try_step(w, to, step * size / w->unit, &good, &turned, err));
+        if (turned) {
+            note_turned(w, to);
+        }
+        if (!good && w->beyond.known &&
+            fabs(w->beyond.turned - w->at->drive) <= 2.0 * MEETING * w->unit) {
+            go_straight(w);
+            *h = step;
+            break;
+        }
         *h = good ? 2.0 * step : 0.0;
         step = good ? step : 0.5 * step;
         if (good) {
-            memcpy(w->at->pose, w->trial, (size_t)sys->n_bodies * sizeof *w->trial);
-            mt_data_turns(w->data, w->at);
-            w->at->drive = to;
+            take(w, w->trial, to);
         }
     }
     *h = fmin(*h, DRIVE_STEP * w->unit);

@@ -4,6 +4,11 @@
  *     [A; G] dq = -[c; s - s_given],
  * solved by least-norm steps until they hold; and the velocities of least energy,
  *     min 1/2 v^T M v   under   [A; G] v = [drive; rates].
+ * A walk takes short steps and stays on its branch (mechanics/branch.h).
+ *     An equilibrium may be in another assembly of the loops than the drawing, where loads have
+ * pulled links through a line. Joints are moved from the drawing, then; what they leave free
+ * goes to where it stands when they are moved from the equilibrium, if with them held there a
+ * way leads there.
  */
 #include "simulate/start.h"
 
@@ -11,11 +16,19 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/branch.h"
 #include "simulate/accelerate.h"
 
 /* A walk goes so far in one step [rad, model lengths]. */
 static const double STRIDE = 0.05;
 enum { STRIDES_MOST = 100000, NEWTON_STEPS = 30 };
+/* Strides shorter than this are not tried; links that miss being in line by less are in line
+ * (mechanics/drive.c) [rad, model lengths]. */
+static const double SHORTEST = 1e-3;
+/* Places are the same below this, and a way on which a stride gains less than this part of it
+ * leads elsewhere. */
+static const double ARRIVED = 1e-6;
+static const double GAIN = 1e-3;
 /* Equations hold to so many rounding errors [model lengths]. */
 static const double HOLDS = 64.0 * DBL_EPSILON;
 /* A step of Newton's method beyond this [rad, model lengths] has left the branch. */
@@ -34,6 +47,8 @@ typedef struct augmented {
     double *c;
     double *v;
     mt_gauge_motion gauge;
+    mt_branch branch;
+    mt_placement before; /* where a stride begins */
 } augmented;
 
 static mt_status augmented_init(augmented *g, mt_linear *lin, int n, mt_arena *mem, mt_err *err)
@@ -47,6 +62,8 @@ static mt_status augmented_init(augmented *g, mt_linear *lin, int n, mt_arena *m
     g->c = mt_arena_f64(mem, (size_t)g->n, 1);
     g->v = mt_arena_f64(mem, nq, 1);
     g->gauge.row = mt_arena_f64(mem, nq, 1);
+    MT_TRY(mt_branch_init(&g->branch, g->sys, g->n, mem, err));
+    MT_TRY(mt_placement_init(&g->before, g->sys, mem, err));
     return mt_arena_check(mem, err);
 }
 
@@ -128,6 +145,51 @@ static void read_joints(augmented *g, const mt_placement *at, int n, mt_sim_join
     }
 }
 
+/* The place that a stride may leave. */
+static mt_status stand(augmented *g, const mt_placement *at, int n, const mt_sim_joint *joints,
+                       mt_arena *mem, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    mt_elimination e;
+    augmented_eval(g, at, g->v, n, joints);
+    MT_TRY(mt_eliminate_factor(g->sys, g->n, g->a, mem, &e, err));
+    mt_branch_stand(&g->branch, g->n, g->a, &e);
+    mt_placement_copy(g->sys, at, &g->before);
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+/* Closes `at`, which was moved from where the walk stands, on its branch; straight: or on
+ * another one that meets it. Where that fails, back to where it stood. */
+static mt_status stride(augmented *g, mt_placement *at, int n, const mt_sim_joint *to,
+                        bool straight, bool *good, mt_arena *mem, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    MT_TRY(close_all(g, at, n, to, good, mem, err));
+    if (*good && !straight) {
+        augmented_eval(g, at, g->v, n, to);
+        MT_TRY(mt_branch_kept(&g->branch, g->n, g->a, good, mem, err));
+    }
+    if (*good) {
+        mt_motion_turns(&g->motion, at);
+    } else {
+        mt_placement_copy(g->sys, &g->before, at);
+    }
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+static mt_status refuse_walk(const augmented *g, const mt_sim_joint *joint, double at,
+                             mt_err *err)
+{
+    const mt_system_joint *const j = &g->sys->joints[joint->joint];
+    return mt_fail(err, MT_E_ASSEMBLY,
+                   "the mechanism does not get there: in the assembly of the drawing it stays "
+                   "closed to where joint \"%s\" is at %.6g %s",
+                   j->name, at, j->angle ? "rad" : "m");
+}
+
+/* From where `at` stands, joint by joint in proportion. */
 static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placement *at,
                       mt_arena *mem, mt_err *err)
 {
@@ -143,32 +205,59 @@ static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placem
         const double way = fabs(joints[k].value - from[k].value);
         most = fmax(most, j->angle ? way : way / g->sys->length_m);
     }
-    const double wanted = ceil(most / STRIDE);
-    if (!(wanted <= STRIDES_MOST)) {
+    if (!(most <= STRIDES_MOST * STRIDE)) {
         return mt_fail(err, MT_E_ASSEMBLY, "the joints are too far from where they start");
     }
-    const int strides = wanted < 1.0 ? 1 : (int)wanted;
-    for (int i = 1; i <= strides; i++) {
-        bool holds = false;
-        const double share = (double)i / strides;
+    double done = 0.0; /* of `most` */
+    double next = STRIDE;
+    for (bool arrived = false; !arrived;) {
+        bool good = false;
+        arrived = done + next >= most;
+        const double share = arrived ? 1.0 : (done + next) / most;
         for (int k = 0; k < n; k++) {
-            to[k].value = i == strides
-                              ? joints[k].value
-                              : from[k].value + (share * (joints[k].value - from[k].value));
+            to[k].value = arrived ? joints[k].value
+                                  : from[k].value + (share * (joints[k].value - from[k].value));
         }
-        MT_TRY(close_all(g, at, n, to, &holds, mem, err));
-        if (!holds) {
-            const mt_system_joint *const j = &g->sys->joints[joints[0].joint];
-            return mt_fail(err, MT_E_ASSEMBLY,
-                           "the mechanism does not get there: it stays closed to where joint "
-                           "\"%s\" is at %.6g %s",
-                           j->name,
-                           from[0].value +
-                               ((i - 1.0) / strides * (joints[0].value - from[0].value)),
-                           j->angle ? "rad" : "m");
+        MT_TRY(stand(g, at, n, to, mem, err));
+        const bool straight = next <= SHORTEST;
+        MT_TRY(stride(g, at, n, to, straight, &good, mem, err));
+        if (!good && straight) {
+            return refuse_walk(
+                g, &joints[0],
+                from[0].value + (done / most * (joints[0].value - from[0].value)), err);
         }
-        mt_motion_turns(&g->motion, at);
+        arrived = arrived && good;
+        done += good ? next : 0.0;
+        next = good ? fmin(2.0 * next, STRIDE) : 0.5 * next;
     }
+    return MT_OK;
+}
+
+/* With the joints held, does a way lead from `from`, which goes along it, to `to`? */
+static mt_status leads(augmented *g, int n, const mt_sim_joint *joints, mt_placement *from,
+                       const mt_placement *to, bool *there, mt_arena *mem, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    double *const way = mt_arena_f64(mem, (size_t)g->sys->nq, 1);
+    double left = HUGE_VAL;
+    bool good = true;
+    MT_TRY(mt_arena_check(mem, err));
+    while (good) {
+        const double before = left;
+        left = mt_poses_distance(g->sys, from->pose, to->pose);
+        good = left > ARRIVED && left < (1.0 - GAIN) * before;
+        if (good) {
+            mt_poses_way(g->sys, from->pose, to->pose, way);
+            for (int j = 0; j < g->sys->nq; j++) {
+                way[j] *= fmin(1.0, STRIDE / left);
+            }
+            MT_TRY(stand(g, from, n, joints, mem, err));
+            mt_poses_move(g->sys, from->pose, way);
+            MT_TRY(stride(g, from, n, joints, false, &good, mem, err));
+        }
+    }
+    *there = left <= ARRIVED;
+    mt_arena_rewind(mem, mark);
     return MT_OK;
 }
 
@@ -176,9 +265,29 @@ mt_status mt_start_joints(mt_linear *lin, int n, const mt_sim_joint *joints, mt_
                           mt_sim_start *start, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_system *const sys = mt_linear_system(lin);
+    const mt_state *const p = mt_linear_position(lin);
     augmented g;
+    mt_placement drawn;
+    bool there = false;
     MT_TRY(augmented_init(&g, lin, n, mem, err));
-    MT_TRY(walk(&g, n, joints, &start->at, mem, err));
+    MT_TRY(mt_placement_init(&drawn, sys, mem, err));
+    mt_placement_copy(sys, sys->driven ? &p->driven : &p->reference, &drawn);
+    const bool settled = mt_poses_distance(sys, drawn.pose, start->at.pose) > 0.0;
+    MT_TRY(walk(&g, n, joints, &drawn, mem, err));
+    const mt_status rc = settled ? walk(&g, n, joints, &start->at, mem, NULL) : MT_E_ASSEMBLY;
+    if (rc == MT_E_MEMORY) {
+        return mt_fail_memory(err);
+    }
+    if (rc == MT_OK) {
+        mt_placement way;
+        MT_TRY(mt_placement_init(&way, sys, mem, err));
+        mt_placement_copy(sys, &drawn, &way);
+        MT_TRY(leads(&g, n, joints, &way, &start->at, &there, mem, err));
+    }
+    if (!there) {
+        mt_placement_copy(sys, &drawn, &start->at);
+    }
     mt_arena_rewind(mem, mark);
     return MT_OK;
 }

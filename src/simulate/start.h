@@ -15,8 +15,10 @@ typedef struct mt_sim_joint {
 /* At the rest position. Fails: MT_E_MEMORY. */
 mt_status mt_start_rest(mt_linear *lin, mt_arena *mem, mt_sim_start *out, mt_err *err);
 /* Joints moved to their places over small steps, the rest of the mechanism following with the
- * least motion; start: in, out. Fails: MT_E_ASSEMBLY (they do not all get there; the text says
- * how far), MT_E_MEMORY. */
+ * least motion: from start (in: the rest position; out), or, where that is another assembly of
+ * closed loops than the drawing, from the reference position (of a driven system, from where
+ * the drive brings it). Fails: MT_E_ASSEMBLY (in the drawing's assembly they do not all get
+ * there; the text says how far), MT_E_MEMORY. */
 mt_status mt_start_joints(mt_linear *lin, int n, const mt_sim_joint *joints, mt_arena *mem,
                           mt_sim_start *start, mt_err *err);
 /* Moved along dq[nq] (a shape times its amplitude), then closed by the least motion. Fails:
