@@ -24,6 +24,7 @@
 #include <string.h>
 
 #include "linalg/dense.h"
+#include "modal/growth.h"
 
 static const double TWO_PI = 6.283185307179586477;
 
@@ -236,7 +237,8 @@ static void shape(const mt_damped_parts *s, const double *u, const double *w, do
 
 mt_damped_kind mt_damped_kind_of(double re, double im, double noise)
 {
-    if (re > noise) {
+    const double complex s = re + (im * (double complex)I);
+    if (mt_modal_growing_pole(1, &s, noise) == 0) {
         return MT_DAMPED_UNSTABLE;
     }
     return im > 0.0 ? MT_DAMPED_OSCILLATING : MT_DAMPED_OVERDAMPED;
@@ -305,6 +307,26 @@ static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *e
     return MT_OK;
 }
 
+/* About a position that holds, what grows in a passive system is rounding. */
+static mt_status settle_kinds(const mt_damped_problem *p, mt_damped_modes *out, mt_arena *mem,
+                              mt_err *err)
+{
+    bool passive = false;
+    bool grows = false;
+    for (int i = 0; i < out->count; i++) {
+        grows = grows || out->kind[i] == MT_DAMPED_UNSTABLE;
+    }
+    if (grows && p->modes->n_unstable == 0) {
+        MT_TRY(mt_modal_is_passive(p->n, p->c, p->h, mem, &passive, err));
+    }
+    for (int i = 0; i < out->count && passive; i++) {
+        if (out->kind[i] == MT_DAMPED_UNSTABLE) {
+            out->kind[i] = out->im[i] > 0.0 ? MT_DAMPED_OSCILLATING : MT_DAMPED_OVERDAMPED;
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err)
 {
@@ -320,6 +342,7 @@ mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_m
     }
     MT_TRY(prepare(&s, err));
     MT_TRY(p->h == NULL ? solve(&s, out, err) : mt_damped_structural(&s, out, err));
+    MT_TRY(settle_kinds(p, out, mem, err));
     return mt_damped_check(p, out, mem, err);
 }
 

@@ -4,6 +4,7 @@
 
 #include "modal/bordered.h"
 #include "modal/derivative.h"
+#include "modal/growth.h"
 #include "modal/judge.h"
 #include "modal/mac.h"
 #include "modal/mass.h"

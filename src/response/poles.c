@@ -20,6 +20,7 @@
 
 #include "linalg/complex_ldl.h"
 #include "linalg/dense.h"
+#include "modal/growth.h"
 
 /* What the sum may differ by from a direct solve, of the largest of them. */
 static const double AGREEMENT = 1e-9;
@@ -368,6 +369,11 @@ mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
     *n = k.count;
     *s = k.s;
     return MT_OK;
+}
+
+int mt_pole_sum_growing(const mt_pole_sum *p)
+{
+    return p->judged ? p->growing : mt_modal_growing_pole(p->n, p->s, 0.0);
 }
 
 double complex mt_pole_sum_at(const mt_pole_sum *p, double w)

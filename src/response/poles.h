@@ -19,6 +19,10 @@ typedef struct mt_pole_sum {
      * digits. */
     int first_coupled;
     double rounding;
+    /* Which of the poles grows by itself, -1: none, where the system was asked
+     * (mt_response_sums); else the poles alone tell (mt_pole_sum_growing). */
+    bool judged;
+    int growing;
 } mt_pole_sum;
 
 /*
@@ -39,6 +43,8 @@ mt_status mt_response_poles(const mt_basis *basis, mt_arena *mem, mt_pole_sum *o
 mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
                                 double complex **s, mt_err *err);
 
+/* The pole that grows by itself, by the rule of modal/growth.h; -1: none. */
+int mt_pole_sum_growing(const mt_pole_sum *p);
 /* Its value at w. */
 double complex mt_pole_sum_at(const mt_pole_sum *p, double w);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
-#include "response/growth.h"
+#include "modal/growth.h"
 #include "response/slopes_weighted.h"
 
 void mt_response_free(mt_response *r)
@@ -33,6 +33,18 @@ static mt_status read_ports(mt_response *r, const mt_response_request *q, mt_err
     return MT_OK;
 }
 
+/* The position holds: mt_response_problem refuses one that does not. */
+static mt_status find_growing(mt_response *r, mt_err *err)
+{
+    bool passive = true;
+    r->growing = mt_modal_growing_pole(r->n_poles, r->poles, 0.0);
+    if (r->growing >= 0) {
+        MT_TRY(mt_modal_is_passive(r->f.n, r->f.c, r->f.h, &r->mem, &passive, err));
+    }
+    r->growing = passive ? -1 : r->growing;
+    return MT_OK;
+}
+
 mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
                            mt_err *err)
 {
@@ -44,8 +56,7 @@ mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, m
         .f = &out->f, .mass = &a->mass, .modes = &a->modes, .keep = request->modes};
     MT_TRY(mt_basis_make(&problem, &out->mem, &out->basis, err));
     MT_TRY(mt_response_pole_list(&out->basis, &out->mem, &out->n_poles, &out->poles, err));
-    MT_TRY(
-        mt_response_growing(&out->f, out->n_poles, out->poles, &out->mem, &out->growing, err));
+    MT_TRY(find_growing(out, err));
     MT_TRY(mt_transfer_direct(&out->f, &out->mem, &out->direct, err));
     out->chosen = request->direct ? &out->direct : &out->basis.t;
     return MT_OK;
@@ -74,9 +85,23 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
     return mt_curve_trace(r->chosen, &own, &r->mem, out, err);
 }
 
+static int nearest(const mt_pole_sum *sum, double complex s)
+{
+    int best = -1;
+    for (int k = 0; k < sum->n; k++) {
+        best = best < 0 || cabs(sum->s[k] - s) < cabs(sum->s[best] - s) ? k : best;
+    }
+    return best;
+}
+
 mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err)
 {
-    return mt_response_poles(&r->basis, &r->mem, out, err);
+    MT_TRY(mt_response_poles(&r->basis, &r->mem, out, err));
+    for (int p = 0; p < r->ports.n_in * r->ports.n_out; p++) {
+        out[p].judged = true;
+        out[p].growing = r->growing < 0 ? -1 : nearest(&out[p], r->poles[r->growing]);
+    }
+    return MT_OK;
 }
 
 /* The basis of all modes. */

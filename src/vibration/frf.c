@@ -109,7 +109,8 @@ mt_status mt_frf_init(mt_frf *h, const mt_pole_sum *sum, mt_arena *mem, mt_err *
         .slope = mt_arena_f64(mem, n, 1),
         .constant = mt_arena_f64(mem, n, 1),
         .size = mt_arena_f64(mem, n, 1),
-        .c = {sum->d[0], mt_frf_complex(-cimag(sum->d[1]), creal(sum->d[1])), -sum->d[2]}};
+        .c = {sum->d[0], mt_frf_complex(-cimag(sum->d[1]), creal(sum->d[1])), -sum->d[2]},
+        .growing = mt_pole_sum_growing(sum)};
     bool *const used = mt_arena_alloc(mem, n, sizeof *used);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < sum->n; k++) {
@@ -187,15 +188,14 @@ void mt_frf_jet(const mt_frf *h, mt_near w, double complex *jet)
 mt_forced_end mt_frf_judge(const mt_frf *h, double lower, double upper, int *pole)
 {
     mt_forced_end end = MT_FORCED_FINITE;
+    if (h->growing >= 0) {
+        *pole = h->growing;
+        return MT_FORCED_UNSTABLE;
+    }
     for (int k = 0; k < h->n; k++) {
+        /* what does not grow, and yet is beyond the axis, is there by rounding */
         const bool undamped =
-            fabs(h->im[k]) <= UNDAMPED_ULPS * DBL_EPSILON * hypot(h->re[k], h->im[k]);
-        /* poles of negative frequency are the mirror images of others, or, with structural
-         * damping, part of what the sum is for w >= 0: they do not move by themselves */
-        if (!undamped && h->im[k] < 0.0 && h->re[k] >= 0.0) {
-            *pole = h->index[k];
-            return MT_FORCED_UNSTABLE;
-        }
+            h->im[k] <= UNDAMPED_ULPS * DBL_EPSILON * hypot(h->re[k], h->im[k]);
         if (undamped && h->re[k] >= lower && h->re[k] <= upper && end == MT_FORCED_FINITE) {
             *pole = h->index[k];
             end = MT_FORCED_INFINITE;

@@ -23,6 +23,7 @@ typedef struct mt_frf {
     double *constant;    /* constant - i w slope */
     double *size;        /* [n_pairs] of the summands of the constant */
     double complex c[3];
+    int growing; /* mt_pole_sum_growing; -1: none */
 } mt_frf;
 
 /* A frequency anchor + t [rad/s], t given with all its digits: next to a pole, its distance. */

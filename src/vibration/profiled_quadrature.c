@@ -189,7 +189,11 @@ static mt_status make(work *k, mt_err *err)
     MT_TRY(mt_arena_check(mem, err));
     k->out->n_poles = k->r->n_poles;
     k->out->poles = k->r->poles;
-    const mt_pole_sum sum = {.n = k->r->n_poles, .s = k->r->poles, .residue = none};
+    const mt_pole_sum sum = {.n = k->r->n_poles,
+                             .s = k->r->poles,
+                             .residue = none,
+                             .judged = true,
+                             .growing = k->r->growing};
     MT_TRY(mt_frf_init(&k->h, &sum, mem, err));
     mt_panels_gauss(&k->gauss);
     for (size_t p = 0; p < pairs; p++) {

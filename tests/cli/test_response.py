@@ -69,6 +69,7 @@ class Response(CliTest):
                 damper["damping_n_s_per_m"] = 1e-3 if i == seed % 6 else 0
             path = self.write("problems/chain.json", json.dumps(model))
             self.expect(0, "response", path, "-c", "default", "--input", "b0.x")
+            self.assertNotIn("unstable", self.expect(0, "modes", path, "-c", "default", "--damped").stdout)
 
     def test_peak_and_its_sensitivities_have_closed_forms(self):
         got = self.json_of("response", self.one, "-c", "default", "--input", "a.x", "--sensitivity", "m,k,c")

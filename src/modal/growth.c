@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "response/growth.h"
+#include "modal/growth.h"
 
 #include <float.h>
 #include <math.h>
@@ -34,23 +34,25 @@ static mt_status find_negative(int n, const double *a, mt_arena *mem, bool *nega
     return rc;
 }
 
-mt_status mt_response_growing(const mt_forced *f, int n, const double complex *poles,
-                              mt_arena *mem, int *growing, mt_err *err)
+int mt_modal_growing_pole(int n, const double complex *s, double rounding)
 {
-    *growing = -1;
+    int growing = -1;
     for (int k = 0; k < n; k++) {
-        const double complex s = poles[k]; /* of negative frequency: the image of another */
-        const bool right = cimag(s) >= 0.0 && creal(s) > ULPS * DBL_EPSILON * cabs(s);
-        if (right && (*growing < 0 || creal(s) > creal(poles[*growing]))) {
-            *growing = k;
+        const double least = fmax(ULPS * DBL_EPSILON * cabs(s[k]), rounding);
+        const bool right = cimag(s[k]) >= 0.0 && creal(s[k]) > least;
+        if (right && (growing < 0 || creal(s[k]) > creal(s[growing]))) {
+            growing = k;
         }
     }
-    if (*growing < 0) {
-        return MT_OK;
-    }
+    return growing;
+}
+
+mt_status mt_modal_is_passive(int n, const double *c, const double *h, mt_arena *mem,
+                              bool *passive, mt_err *err)
+{
     bool negative = false;
-    MT_TRY(find_negative(f->n, f->c, mem, &negative, err));
-    MT_TRY(find_negative(f->n, f->h, mem, &negative, err));
-    *growing = negative ? *growing : -1;
+    MT_TRY(find_negative(n, c, mem, &negative, err));
+    MT_TRY(find_negative(n, h, mem, &negative, err));
+    *passive = !negative;
     return MT_OK;
 }
