@@ -438,7 +438,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
         char name[NAME_SIZE];
         name_motion(a, MT_MODE_UNSTABLE, name);
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "unstable",
-                           "unstable in %d direction%s: it falls over from here%s%s", unstable,
+                           "the equilibrium is unstable in %d direction%s%s%s", unstable,
                            unstable == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
     }
     if (a->modes.n_undecided > 0) {

@@ -183,13 +183,14 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
     const int n = a->found.n_solutions;
     if (a->gaps.n_solutions > 0) {
         const char *const left = mt_describe_gaps_left(&a->gaps, mem);
-        return left == NULL ? NULL
-                            : mt_arena_printf(
-                                  mem,
-                                  "Solved: %d kind%s of design keep%s clear of the bands and "
-                                  "meet%s all goals (of %.0f gap assignments, %s).%s",
-                                  n, n == 1 ? "" : "s", n == 1 ? "s" : "", n == 1 ? "s" : "",
-                                  a->gaps.n_possible, left, doubt);
+        return left == NULL
+                   ? NULL
+                   : mt_arena_printf(
+                         mem,
+                         "Solved: %d of %.0f mode placement%s keep%s clear of the bands "
+                         "and meet%s all goals (%s).%s",
+                         n, a->gaps.n_possible, a->gaps.n_possible > 1.0 ? "s" : "",
+                         n == 1 ? "s" : "", n == 1 ? "s" : "", left, doubt);
     }
     bool continuum = false;
     for (int i = 0; i < n; i++) {
@@ -309,7 +310,7 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
     if (a->infeasible) {
         return mt_arena_printf(mem,
                                "Infeasible: no design within the bounds meets all goals, which "
-                               "is proven (see the certificates).%s%s",
+                               "is proven (see \"What is proven\").%s%s",
                                a->result->n_relaxations > 0 ? " " : "",
                                a->result->n_relaxations > 0 ? a->result->relaxations[0].text
                                                             : "");
@@ -354,7 +355,7 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                : mt_arena_printf(
                      mem, "Compromise: no design %swithin the bounds meets all goals%s; %s.",
                      a->impossible ? "" : "found ",
-                     a->impossible ? ", which is proven (see the certificates)"
+                     a->impossible ? ", which is proven (see \"What is proven\")"
                                    : " (sampled, not proven)",
                      nearest);
 }

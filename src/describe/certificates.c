@@ -46,32 +46,32 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
         return state(
             result, "infeasible", true, err,
             "No design within the bounds keeps clear of the bands and meets the other limits: "
-            "all %.0f gap assignments are proven infeasible (branch and bound, %ld boxes).",
+            "all %.0f mode placements are proven infeasible (branch and bound, %ld boxes).",
             gaps->n_possible, gaps->boxes);
     }
     if (gaps->proven) {
         const int open = gaps->n_candidates - gaps->n_feasible;
         MT_TRY(open == 0
                    ? state(result, "gap_assignments", true, err,
-                           "Of %.0f gap assignments %d can be met within the bounds; all "
+                           "Of %.0f mode placements %d can be met within the bounds; all "
                            "others are proven infeasible (branch and bound, %ld boxes).",
                            gaps->n_possible, gaps->n_candidates, gaps->boxes)
                    : state(result, "gap_assignments", true, err,
-                           "Of %.0f gap assignments all but %d are proven infeasible (branch "
+                           "Of %.0f mode placements all but %d are proven infeasible (branch "
                            "and bound, %ld boxes%s); in %d of these no design was found that "
                            "meets all goals, which is sampled.",
                            gaps->n_possible, gaps->n_candidates, gaps->boxes,
                            gaps->tolerances ? ", the tolerances of the variables left out" : "",
                            open));
         return state(result, "optimality", false, err,
-                     "That each design is the best of its gap assignment: %d starts found none "
+                     "That each design is the best of its mode placement: %d starts found none "
                      "better.",
                      gaps->starts);
     }
     return state(result, "gap_assignments", false, err,
-                 "Of %.0f gap assignments %d were searched, those met by samples over the "
-                 "bounds: others may exist (no proof: %s).",
-                 gaps->n_possible, gaps->n_candidates,
+                 "%d of %.0f mode placements were searched; the others were ruled out by samples, "
+                 "not by proof (no proof: %s).",
+                 gaps->n_candidates, gaps->n_possible,
                  gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
                                                                  : "not asked for");
 }

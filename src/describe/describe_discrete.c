@@ -143,7 +143,7 @@ static mt_status describe_kinds(const mt_discrete_report *r, mt_result *result, 
     return mt_describe_certificate(
         result, "gap_assignments", true,
         mt_arena_printf(mem,
-                        "Of %.0f gap assignments %d %s be met by catalogue values%s; "
+                        "Of %.0f mode placements %d %s be met by catalogue values%s; "
                         "all others are proven infeasible (branch and bound).",
                         r->n_possible, r->n_kinds, r->complete ? "can" : "may", with_others(r)),
         err);

@@ -302,11 +302,12 @@ static void say_lines(mt_sentences *s)
         const mt_result_goal *const g = &s->rec->goals[i];
         if (isfinite(g->off_most_hz) && isfinite(g->off_most_ratio)) {
             mt_say_of(s, "rank", g->pointer);
-            mt_say(s,
-                   "%s: off by %.3g %% rms, most at %.6g Hz, where the response is %.4g times "
-                   "what was measured and its phase %+.3g deg from it.",
-                   g->text, 100.0 * g->value, g->off_most_hz, g->off_most_ratio,
-                   g->off_most_phase_deg);
+            mt_say(
+                s,
+                "%s: deviation %.3g %% rms, most at %.6g Hz, where the response is %.4g times "
+                "what was measured and its phase %+.3g deg from it.",
+                g->text, 100.0 * g->value, g->off_most_hz, g->off_most_ratio,
+                g->off_most_phase_deg);
         }
     }
 }
@@ -342,8 +343,8 @@ static void say_misfit(mt_sentences *s)
     say_lines(s);
     mt_say_of(s, "rank", NULL);
     if (weighted > 0 && MT_HAS(s->rec->misfit) && isfinite(sum)) {
-        mt_say(s, "The %d weighted goal%s off by %.3g %% rms.", weighted,
-               weighted == 1 ? " is" : "s are",
+        mt_say(s, "The %d weighted goal%s deviate%s by %.3g %% rms.", weighted,
+               weighted == 1 ? "" : "s", weighted == 1 ? "s" : "",
                mt_without_noise(sqrt(sum / s->p->weights), MT_PERCENT_NOISE));
     }
 }
@@ -366,12 +367,14 @@ static void say_kind_rank(mt_sentences *s, const char *first)
     const mt_gap_result *const g = s->design->gaps;
     const char *const sure = mt_describe_gaps_left(g, &s->result->mem);
     if (g->n_solutions == 1) {
-        mt_say(s, "It is the only kind of design among %.0f gap assignments (%s).",
+        mt_say(s, "It is the only one of %.0f mode placements that meets all goals (%s).",
                g->n_possible, sure);
     } else {
-        mt_say(
-            s, "It ranks %d of %d kinds of design among %.0f gap assignments, by %s %s (%s).",
-            s->rec->rank, g->n_solutions, g->n_possible, best_of(&s->p->aims[0]), first, sure);
+        mt_say(s,
+               "It ranks %d of the %d mode placements that meet all goals, of %.0f in all, by "
+               "%s %s (%s).",
+               s->rec->rank, g->n_solutions, g->n_possible, best_of(&s->p->aims[0]), first,
+               sure);
     }
 }
 

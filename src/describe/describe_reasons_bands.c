@@ -38,22 +38,31 @@ static const char *band_text(mt_sentences *s, const mt_result_clearance *c)
                : mt_arena_printf(&s->result->mem, "%s (%s)", numbers, c->band);
 }
 
-/* "installed keeps 0, 1, 2 and 4 modes below its bands." */
+/* "In installed, no mode lies below 1P and 4P, 1 mode below 8P." Bands with one number of modes
+ * stand together. */
 static void say_kind(mt_sentences *s, int first, int n)
 {
     const mt_result_gap *const g = &s->rec->gaps[first];
     const char *text = "";
-    for (int i = 0; i < n; i++) {
-        const char *const before = i == 0 ? "" : i == n - 1 ? " and " : ", ";
-        text = mt_arena_printf(&s->result->mem, "%s%s%d", text, before, g[i].modes_below);
+    for (int i = 0; i < n;) {
+        int same = 1;
+        while (i + same < n && g[i + same].modes_below == g[i].modes_below) {
+            same++;
+        }
+        const int modes = g[i].modes_below;
+        text = modes == 0 ? mt_arena_printf(&s->result->mem, "%sno mode lies below ", text)
+                          : mt_arena_printf(&s->result->mem, "%s%s%d mode%s below ", text,
+                                            i == 0 ? "" : ", ", modes,
+                                            i > 0        ? modes == 1 ? "" : "s"
+                                            : modes == 1 ? " lies"
+                                                         : "s lie");
+        for (int k = 0; k < same; k++) {
+            const char *const before = k == 0 ? "" : k == same - 1 ? " and " : ", ";
+            text = mt_arena_printf(&s->result->mem, "%s%s%s", text, before, g[i + k].band);
+        }
+        i += same;
     }
-    if (n == 1) {
-        mt_say(s, "%s has %s mode%s below the band %s.", g->configuration, text,
-               g->modes_below == 1 ? "" : "s", g->band);
-    } else {
-        mt_say(s, "%s has %s modes below its %d bands, in their order.", g->configuration, text,
-               n);
-    }
+    mt_say(s, "In %s, %s.", g->configuration, text);
 }
 
 static void say_kinds(mt_sentences *s)

@@ -36,7 +36,7 @@ static bool has_prices(const mt_sentences *s)
     return ops->price != NULL && s->rec->feasible && mt_describe_is_optimum(s->rec);
 }
 
-/* Of the objective, what a change df of its value f is called: "0.12 kg". NULL: nothing but
+/* Of the objective, what a change df of its value f is called: "the mass by 0.12 kg". NULL: nothing but
  * rounding, further than a slope tells, not known, or out of memory. */
 static const char *worth(mt_sentences *s, double df)
 {
@@ -63,7 +63,7 @@ static const char *price(mt_sentences *s, double slope, const char **part)
 static const char *win(const mt_sentences *s)
 {
     const mt_objective_type type = s->p->aims[s->design->stage].type;
-    return mt_objective_is(type, MT_MAXIMISED) ? "gain" : "save";
+    return mt_objective_is(type, MT_MAXIMISED) ? "raise" : "reduce";
 }
 
 /* A demand that the variables hardly move: at an optimum its slope by them, the other rows
@@ -79,7 +79,7 @@ static void say_hardly(mt_sentences *s, const mt_demand *d, const mt_result_goal
     if (left != NULL) {
         mt_say(s,
                "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of "
-               "%.3g %% leaves open is worth %s.",
+               "%.3g %% leaves open may change %s.",
                g->pointer, g->text, why, PERCENT * d->tolerance, left);
     } else if (why != NULL) {
         mt_say(s, "Goal %s (%s) hardly depends on the variables here: %s.", g->pointer, g->text,
@@ -100,16 +100,16 @@ static void say_demands(mt_sentences *s)
             const double mult = found->mult_in[d->row_in + k];
             const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
             if (saved != NULL) {
-                mt_say(s, "Goal %s (%s) has a price: giving way by %s would %s %s.", g->pointer,
-                       g->text, part, win(s), saved);
+                mt_say(s, "Relaxing goal %s (%s) by %s would %s %s.", g->pointer, g->text, part,
+                       win(s), saved);
             }
         }
         const double slope =
             d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
         const char *const cost = price(s, fabs(slope), &part);
         if (cost != NULL) {
-            mt_say(s, "Goal %s (%s) has a price: asking for %s %s would %s %s.", g->pointer,
-                   g->text, part, slope > 0.0 ? "less" : "more", win(s), cost);
+            mt_say(s, "A target %s %s in goal %s (%s) would %s %s.", part,
+                   slope > 0.0 ? "lower" : "higher", g->pointer, g->text, win(s), cost);
         }
         say_hardly(s, d, g, slope);
     }
@@ -129,9 +129,7 @@ static void say_edges(mt_sentences *s)
         const char *part = NULL;
         const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
         if (saved != NULL) {
-            mt_say(s,
-                   "The %s edge of %s, which holds %s mode %d, has a price: giving way by "
-                   "%s would %s %s.",
+            mt_say(s, "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.",
                    row.above ? "upper" : "lower", c->bands.items[row.band].label,
                    mt_view_name(s->p, &s->p->views[c->view]), row.mode, part, win(s), saved);
         }
@@ -152,8 +150,8 @@ static void say_between(mt_sentences *s)
                           : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
         if (where != NULL) {
             mt_say(s,
-                   "The %s edge of %s, which holds mode %d where %s is at %s, between the "
-                   "positions, has a price: giving way by %s would %s %s.",
+                   "Relaxing the %s edge of %s, which holds mode %d where %s is at %s, between "
+                   "the positions, by %s would %s %s.",
                    h->above ? "upper" : "lower", h->band, h->mode, f->joint, where, part,
                    win(s), saved);
         }
@@ -176,21 +174,22 @@ static void say_limits_between(mt_sentences *s)
             mt_say_of(s, "cost", s->rec->goals[h->demand].pointer);
             mt_say(
                 s,
-                "The limit of goal %s where %s is at %s, between the positions, has a price: "
-                "giving way by %s would %s %s.",
+                "Relaxing the limit of goal %s where %s is at %s, between the positions, by %s "
+                "would %s %s.",
                 s->rec->goals[h->demand].pointer, f->joint, where, part, win(s), saved);
         }
     }
 }
 
-/* "0.1 kg more allowed on M_SAU" */
+/* "An upper bound of M_SAU that is 0.1 kg higher" */
 static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
     const char *const unit = p->display_unit != NULL ? p->display_unit : p->unit;
-    return mt_arena_printf(&s->result->mem, "%.6g%s%s %s allowed on %s",
+    const bool upper = strcmp(p->at_bound, "upper") == 0;
+    return mt_arena_printf(&s->result->mem, "%s bound of %s that is %.6g%s%s %s",
+                           upper ? "An upper" : "A lower", p->name,
                            mt_result_shown(amount, p->display_factor), unit != NULL ? " " : "",
-                           unit != NULL ? unit : "",
-                           strcmp(p->at_bound, "upper") == 0 ? "more" : "less", p->name);
+                           unit != NULL ? unit : "", upper ? "higher" : "lower");
 }
 
 /* Where the objective tells: the multiplier, chained to the parameter, for the largest amount
@@ -227,8 +226,8 @@ static void say_bound_frequency(mt_sentences *s, int i, double amount,
     const bool raise = f->recommended_hz < f->target_hz || f->recommended_hz < f->at_least_hz;
     const bool lower = f->recommended_hz > f->target_hz || f->recommended_hz > f->at_most_hz;
     if ((raise && hz > 0.0) || (lower && hz < 0.0)) {
-        mt_say(s, "%s buys %.3g Hz of %s mode %d.", room_text(s, p, amount), fabs(hz),
-               f->configuration, f->mode);
+        mt_say(s, "%s would bring %s mode %d nearer to its goal by %.3g Hz.",
+               room_text(s, p, amount), f->configuration, f->mode, fabs(hz));
     }
 }
 

@@ -96,10 +96,10 @@ static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
         fabs(m->from) > 0.0 ? mt_arena_printf(mem, " (%+.3g %%)", out->change_percent) : "";
     out->text =
         mt_arena_printf(mem,
-                        "With the %s at %.6g%s%s instead of %.6g%s and nothing else changed, a "
-                        "design meets all goals: %s.",
-                        out->what, m->to / factor, unit != NULL ? " " : "",
-                        unit != NULL ? unit : "", m->from / factor, percent, design);
+                        "Changing the %s from %.6g to %.6g%s%s%s, and nothing else, lets a "
+                        "design meet all goals: %s.",
+                        out->what, m->from / factor, m->to / factor, unit != NULL ? " " : "",
+                        unit != NULL ? unit : "", percent, design);
     return mt_arena_check(mem, err);
 }
 

@@ -323,7 +323,7 @@ mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
         }
         equations(&w, true);
         if (!stays_closed(&w)) {
-            refuse(&w, why, "a joint opens that is closed as drawn");
+            refuse(&w, why, "a joint opens that is closed in the reference position");
         } else if (modes->dependent) {
             refuse(&w, why, "equations of joints that follow from others may cease to do so");
         }

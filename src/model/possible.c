@@ -135,7 +135,7 @@ const mt_possible mt_possible_of[MT_POSSIBLE_COUNT] = {
                                      "meant?"},
     [MT_POSSIBLE_RPM] = {POSITIVE, .low = 0.6, .high = 30000.0, .warning = "speed",
                          .below = "less than one turn in 100 s: are turns per second meant?",
-                         .beyond = "more than 500 turns per second: is the unit 1/min?"},
+                         .beyond = "more than 500 turns per second: is the unit rpm?"},
     [MT_POSSIBLE_MACHINE] = {POSITIVE, MEANT, .with = "doubt_speed"},
     [MT_POSSIBLE_FACTORS] = {POSITIVE, MEANT, .with = "doubt_range"},
     [MT_POSSIBLE_HZ] = {.least = 1e-9,

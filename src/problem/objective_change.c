@@ -54,7 +54,8 @@ static const char *price(const mt_price *q, mt_arena *mem)
 {
     return !(q->change > 0.0) || fabs(q->df) > 0.25 * q->change * q->change
                ? NULL
-               : mt_arena_printf(mem, "%.3g of the size of the redesign", q->df / q->change);
+               : mt_arena_printf(mem, "the total change by %.3g %%",
+                                 100.0 * q->df / (q->change * q->change));
 }
 
 /* At the optimum c u = mult g + ..., u of unit length: with the other rows held, the slope of
@@ -63,7 +64,7 @@ static const char *hardly(const mt_price *q, mt_arena *mem)
 {
     return !(q->change > 0.0) || !(q->df > q->change)
                ? NULL
-               : mt_arena_printf(mem, "moving it by 1 %% takes a redesign of size %.2g or more",
+               : mt_arena_printf(mem, "moving it by 1 %% takes a total change of %.2g or more",
                                  q->df / q->change);
 }
 

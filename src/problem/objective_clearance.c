@@ -26,7 +26,7 @@ static double shown(double f)
 
 static const char *price(const mt_price *q, mt_arena *mem)
 {
-    return mt_arena_printf(mem, "%.3g percentage points of the least clearance",
+    return mt_arena_printf(mem, "the least clearance by %.3g percentage points",
                            (PERCENT + q->score) * q->df);
 }
 

@@ -27,7 +27,7 @@ static double least(const mt_problem *p, const mt_aim *a, const double *lo, cons
 
 static const char *price(const mt_price *q, mt_arena *mem)
 {
-    return mt_arena_printf(mem, "%.3g", q->df);
+    return mt_arena_printf(mem, "the objective by %.3g", q->df);
 }
 
 const mt_objective_ops mt_objective_expression = {

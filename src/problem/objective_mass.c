@@ -67,7 +67,9 @@ static double least(const mt_problem *p, const mt_aim *a, const double *lo, cons
 
 static const char *price(const mt_price *q, mt_arena *mem)
 {
-    return q->first && fabs(q->df) > q->score ? NULL : mt_arena_printf(mem, "%.3g kg", q->df);
+    return q->first && fabs(q->df) > q->score
+               ? NULL
+               : mt_arena_printf(mem, "the mass by %.3g kg", q->df);
 }
 
 static const char *hardly(const mt_price *q, mt_arena *mem)

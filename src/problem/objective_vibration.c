@@ -28,7 +28,7 @@ static double shown(double f)
 
 static const char *price(const mt_price *q, mt_arena *mem)
 {
-    return mt_arena_printf(mem, "%.3g percentage points of the largest part of a limit",
+    return mt_arena_printf(mem, "the largest part of a limit by %.3g percentage points",
                            q->score * q->df);
 }
 

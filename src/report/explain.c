@@ -178,7 +178,7 @@ static void add_goal_line(const mt_result_goal *g, mt_text *out)
         mt_text_add(out, "not met");
     }
     if (g->sensitivity == NULL && strcmp(g->type, "avoid") != 0) {
-        mt_text_add(out, "; what moves it is not known (a mode that repeats, or a distance)");
+        mt_text_add(out, "; no sensitivity (the mode is repeated, or the value is a distance)");
     }
     mt_text_add(out, "\n");
 }

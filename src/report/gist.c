@@ -103,7 +103,7 @@ static void add_best(const mt_recommendation *r, mt_text *out)
     add_changes(r, out);
     mt_text_add(out, ". Graded ");
     mt_html_escape(r->grade == NULL ? "not at all" : r->grade, out);
-    mt_text_addf(out, "; size of the redesign %s.",
+    mt_text_addf(out, "; total change %s.",
                  mt_report_number(r->change, DIGITS, change));
     close_item(out);
 }
@@ -173,7 +173,7 @@ static void add_proof(const mt_result *result, mt_text *out)
     mt_text_add(out, best                           ? "that the best design meets the goals."
                      : result->certificates == NULL ? "nothing: the run was stopped before."
                      : sampled > 0
-                         ? "nothing; what was found by sampling is told under Certificates."
+                         ? "nothing; what was sampled is listed below."
                          : "nothing; designs were found by local searches from many starts.");
     close_item(out);
 }
@@ -182,7 +182,7 @@ static void add_others(const mt_result *result, mt_text *out)
 {
     const int others = result->n_recommendations - 1;
     if (others > 0) {
-        open_item("Else", out);
+        open_item("Alternatives", out);
         mt_text_addf(out, "%d other recommendation%s below; choose one and the page shows it.",
                      others, others == 1 ? "" : "s");
         close_item(out);

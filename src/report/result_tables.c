@@ -206,7 +206,7 @@ mt_table mt_report_goals(const mt_recommendation *r)
         mt_table_column(&t, "at worst", "worst", MT_ALIGN_POINT);
     }
     mt_table_column(&t, "asked", "demand", MT_ALIGN_POINT);
-    mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "verdict", "verdict", MT_ALIGN_LEFT);
     for (int i = 0; i < r->n_goals; i++) {
         const mt_result_goal *const g = &r->goals[i];
@@ -356,7 +356,7 @@ mt_table mt_report_alternatives(const mt_result *result)
     mt_table_column(&t, "rank", "rank", MT_ALIGN_RIGHT);
     mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
     mt_report_objective_columns(&t, result);
-    mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
     const bool bands = result->baseline.n_gaps > 0;
     if (bands) {
         mt_report_clearance_column(&t, result);

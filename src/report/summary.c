@@ -215,7 +215,7 @@ static void write_fact(int i, int n, const mt_doubt *items, mt_text *text)
 
 static void tell_facts(const mt_teller *to, int n, const mt_doubt *items)
 {
-    if (open_list(to, "Facts of the model", n)) {
+    if (open_list(to, "Notes on the model", n)) {
         for (int i = 0; i < n; i++) {
             mt_text text = {.s = NULL};
             write_fact(i, n, items, &text);
@@ -232,7 +232,7 @@ void mt_tell_doubts(const mt_teller *to, const mt_result *result)
     if (result->n_doubts > 0 && to->html) {
         mt_text_add(to->out, "<div class=\"doubts\">\n");
     }
-    add_doubts(to, "Doubts", result->n_doubts, result->doubts);
+    add_doubts(to, "Warnings of the model and the study", result->n_doubts, result->doubts);
     if (result->n_doubts > 0 && to->html) {
         mt_text_add(to->out, "</div>\n");
     }
@@ -257,14 +257,33 @@ static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
     }
 }
 
-/* "Recommendation 1 (feasible), size of the redesign 0.0828" */
+/* ": mass 16.94 kg (was 11.92)" of what the study makes least or greatest, where that is not the
+ * change. */
+static void add_objective(const mt_recommendation *r, mt_text *out)
+{
+    char now[MT_NUMBER_TEXT];
+    char was[MT_NUMBER_TEXT];
+    const mt_design_objective *const o = r->n_objectives > 0 ? &r->objectives[0] : NULL;
+    if (o == NULL || !isfinite(o->recommended) || o->recommended == r->change) {
+        return;
+    }
+    mt_text_addf(out, ": %s %s%s%s", o->text, mt_report_number(o->recommended, DIGITS, now),
+                 o->unit != NULL && o->unit[0] != '\0' ? " " : "",
+                 o->unit != NULL ? o->unit : "");
+    if (isfinite(o->original)) {
+        mt_text_addf(out, " (was %s)", mt_report_number(o->original, DIGITS, was));
+    }
+}
+
+/* "Recommendation 1 (feasible): mass 16.94 kg (was 11.92), total change 0.0828" */
 static void tell_rank(const mt_teller *to, const mt_recommendation *r)
 {
     char change[MT_NUMBER_TEXT];
     mt_text title = {0};
-    mt_text_addf(&title, "Recommendation %d (%s), size of the redesign %s%s", r->rank,
-                 r->grade == NULL ? "not graded" : r->grade,
-                 mt_report_number(r->change, DIGITS, change),
+    mt_text_addf(&title, "Recommendation %d (%s)", r->rank,
+                 r->grade == NULL ? "not graded" : r->grade);
+    add_objective(r, &title);
+    mt_text_addf(&title, ", total change %s%s", mt_report_number(r->change, DIGITS, change),
                  r->singular ? ", a double solution: its parameters are sensitive" : "");
     add_heading(to, title.s == NULL ? "" : title.s);
     to->out->failed = to->out->failed || title.failed;
@@ -305,7 +324,8 @@ static void tell_design(const mt_teller *to, const mt_recommendation *r)
 
 void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
 {
-    static const char undetermined[] = "Undetermined: the goals hardly change along";
+    static const char undetermined[] =
+        "Not identifiable: directions along which the goals hardly change";
     static const char spread[] =
         "Sensitivity to the weights (the scatter of repeated tests may be many times larger)";
     if (is_known(to, undetermined, result->undetermined) &&
@@ -316,7 +336,7 @@ void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
             mt_text_addf(&text, "%s", u->text);
             if (!isnan(u->effect_percent)) {
                 char effect[MT_NUMBER_TEXT];
-                mt_text_addf(&text, " (at most %s %% from bound to bound)",
+                mt_text_addf(&text, " (changes no goal by more than %s %% from bound to bound)",
                              mt_report_number(fmax(u->effect_percent, MT_PERCENT_NOISE), DIGITS,
                                               effect));
             }
@@ -331,7 +351,7 @@ void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
 
 static void tell_certificates(const mt_teller *to, const mt_result *result)
 {
-    static const char title[] = "Certificates";
+    static const char title[] = "What is proven";
     if (is_known(to, title, result->certificates) &&
         open_list(to, title, result->n_certificates)) {
         for (int i = 0; i < result->n_certificates; i++) {
@@ -405,7 +425,7 @@ void mt_report_spent(const mt_result_run *run, mt_text *out)
 
 static void tell_relaxations(const mt_teller *to, const mt_result *result)
 {
-    static const char title[] = "What would let a design exist, one change at a time";
+    static const char title[] = "What would make it feasible, one change at a time";
     if (is_known(to, title, result->relaxations) &&
         open_list(to, title, result->n_relaxations)) {
         for (int i = 0; i < result->n_relaxations; i++) {

@@ -119,7 +119,7 @@ mt_table mt_report_trade(const mt_result *result)
     mt_report_objective_columns(&t, result);
     front_columns(&t, result);
     mt_report_clearance_column(&t, result);
-    mt_table_column(&t, "off by [%]", "violation_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
     if (result->trade->n_objectives == 2) {
         mt_table_column(&t, "front", "pareto", MT_ALIGN_LEFT);
     }

@@ -469,7 +469,7 @@ static mt_status search_rest(const job *first, job *j, long spent, int n_workers
     out->evals = first->candidates->evals + j->candidates->evals;
     carry(first, j, &out->evals);
     share_out(j, spent + j->candidates->evals, 1);
-    const mt_tasks tasks = {j->candidates->n, search_candidate, NULL, j, "gap assignments"};
+    const mt_tasks tasks = {j->candidates->n, search_candidate, NULL, j, "mode placements"};
     MT_TRY(mt_workers_run(n_workers, j->workers[0]->scope, &tasks, err));
     MT_TRY(collect(j->p, j, mem, out, err));
     out->proven = out->proven || is_settled(j);
@@ -512,7 +512,7 @@ static mt_status search_and_prove(job *first, job *j, int n_workers, const mt_ga
     if (begin->n > 0) {
         MT_TRY(claim_slots(first, mem, err));
         share_out(first, begin->evals, FIRST_PART);
-        const mt_tasks tasks = {begin->n, search_candidate, NULL, first, "gap assignments"};
+        const mt_tasks tasks = {begin->n, search_candidate, NULL, first, "mode placements"};
         MT_TRY(mt_workers_run(n_workers, w->scope, &tasks, err));
     }
     /* what they were given, not what they took: parts of a run agree on the rest */

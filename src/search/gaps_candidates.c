@@ -348,7 +348,7 @@ mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, m
             ? mt_arena_strdup(mem, proof->reason)
             : mt_arena_printf(mem,
                               "%s; with the geometry held, at %d of %d samples of it, all "
-                              "other assignments are proven infeasible",
+                              "other placements are proven infeasible",
                               proof->reason, slices.n_settled, slices.n);
     return sample(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST, spent,
                   &slices, mem, out, err);

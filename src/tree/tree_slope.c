@@ -474,7 +474,7 @@ static bool stays_closed(mt_tree_slope *w)
                                              mt_pose_of(w->pose, def->body[1]));
         if (!(fabs(cx_derivative(value - w->data.target[i])) <=
               DRAWN_CLOSED * fmax(most, fabs(cx_derivative(w->data.target[i]))))) {
-            mt_tree_slope_refuse(w, "a joint opens that is closed as drawn");
+            mt_tree_slope_refuse(w, "a joint opens that is closed in the reference position");
             return false;
         }
     }

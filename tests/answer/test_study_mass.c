@@ -134,7 +134,7 @@ static void least_mass__agrees_with_an_independent_optimum(mt_test *t)
         const double slope =
             (least_mass(LEAST_HZ * 1.001, &u, &v) - least_mass(LEAST_HZ * 0.999, &u, &v)) /
             0.002;
-        CHECK_NEAR(t, number_after(&c, "giving way by 1 % would save "), 0.01 * slope, 0.01);
+        CHECK_NEAR(t, number_after(&c, "by 1 % would reduce the mass by "), 0.01 * slope, 0.01);
     }
     study_free(&c);
 }
@@ -155,7 +155,7 @@ static void least_mass__is_stopped_by_a_bound_and_names_it(mt_test *t)
         CHECK_STR(t, c.result->recommendations[0].parameters[0].at_bound, "lower");
         CHECK(t, study_reasons(&c, 1, "A1 stands at its lower bound"));
         /* the sentence speaks of a round amount: of 1e-6 m^2, a tenth */
-        CHECK_NEAR(t, number_after(&c, "1e-07 m^2 less allowed on A1 would save "),
+        CHECK_NEAR(t, number_after(&c, "1e-07 m^2 lower would reduce the mass by "),
                    mass_of(1e-7, 0.0), 0.01);
     }
     study_free(&c);

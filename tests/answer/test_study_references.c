@@ -61,7 +61,7 @@ static void measured_frequencies_and_shapes__are_identified_exactly(mt_test *t)
         CHECK_NEAR(t, study_value(&c, 1, "k2"), 1.0, TOL);
         CHECK_NEAR_ABS(t, r->misfit, 0.0, 1e-9);
         CHECK_NEAR_ABS(t, r->score, 0.0, 1e-9);
-        CHECK(t, study_reasons(&c, 1, "The 4 weighted goals are off by"));
+        CHECK(t, study_reasons(&c, 1, "The 4 weighted goals deviate by"));
         const mt_result_frequency *const f = study_row(&c, 1, "default", 1);
         if (CHECK(t, f != NULL)) { /* the opposite sign counts for nothing */
             CHECK_NEAR(t, f->mac, 1.0, 1e-12);
@@ -124,7 +124,7 @@ static void contradicting_measurements__leave_the_least_misfit(mt_test *t)
         study_hz(study_two_lambda(3.0, 1.2, 1.0, 1)), w);
     if (study_solve(t, MODEL, members, &c)) {
         char rms[64];
-        (void)snprintf(rms, sizeof rms, "The 2 weighted goals are off by %.3g %% rms.",
+        (void)snprintf(rms, sizeof rms, "The 2 weighted goals deviate by %.3g %% rms.",
                        off_by(low, w));
         CHECK_INT(t, c.result->status, MT_RESULT_FITTED);
         CHECK_NEAR(t, study_value(&c, 1, "k1"), low, 1e-6);

@@ -22,7 +22,7 @@ FIGURES_OF = {
     "three_masses_identification": {"bode-1", "bode-2"},
     "beam_reference": {"published"}, "engine_orders": {"rotor-1", "frequencies"},
 }
-GISTS = {"inceptor_rotor": ["k_servo +8.21 %", "Graded feasible;", "all 4 are met", "Of 10 gap assignments"],
+GISTS = {"inceptor_rotor": ["k_servo +8.21 %", "Graded feasible;", "all 4 are met", "Of 10 mode placements"],
          "six_masses_infeasible": ["Infeasible", "the goal is missed by", "No design within the bounds"],
          "beam_identification": ["and 4 others", "nothing; designs were found by local searches"]}
 CUT = "six_masses_infeasible"

@@ -388,7 +388,7 @@ class Doubts(CliTest):
         held_twice = changed(MODEL, ("joints",), MODEL["joints"] + [dict(MODEL["joints"][0], name="again")])
         rows = [("loose", loose, "free_motion", "1 free motion: is a joint missing? Free to move: "),
                 ("floating", floating, "free_motion", "3 free motions: nothing holds it to the ground"),
-                ("falling", falling, "unstable", "unstable in 1 direction: it falls over from here, moving "),
+                ("falling", falling, "unstable", "the equilibrium is unstable in 1 direction, moving "),
                 ("twice", held_twice, "redundant", 'redundant: 2 equations of "foot", "again" change nothing')]
         for name, base, kind, words in rows:
             with self.subTest(name):
@@ -458,7 +458,7 @@ class Doubts(CliTest):
         self.put_model()
         asked = dict(changed(STUDY, ("goals", 0, "rotor", "margin_percent"), 0.1), published=[{"status": "solved"}])
         lines = self.expect(0, "compare", self.put_study(base=asked)).stdout.splitlines()
-        self.assertEqual(lines[2], "Doubts")
+        self.assertEqual(lines[2], "Warnings of the model and the study")
         self.assertEqual([d["kind"] for d in self.json_of("compare", "studies/s.json")["doubts"]], ["margin"])
 
     def test_a_doubt_takes_no_proof_from_the_points_of_a_trade(self):
@@ -523,15 +523,15 @@ class Doubts(CliTest):
         asked = changed(STUDY, ("goals", 0, "rotor", "speed_range"), [95, 105])
         done = self.run_program("run", self.put_study(base=asked))
         lines = done.stdout.splitlines()
-        self.assertTrue(lines[1].startswith("Solved: 1 kind of design keeps clear of the bands"), lines[1])
-        self.assertEqual(lines[3], "Doubts")
+        self.assertTrue(lines[1].startswith("Solved: 1 of "), lines[1])
+        self.assertEqual(lines[3], "Warnings of the model and the study")
         self.assertRegex(lines[4], r"^  - s\.json:1:\d+: /goals/0/rotor/speed_range: speed_range \[95, 105\] .*\[0\.95, 1\.05\] is meant\?$")
         self.assertRegex(done.stderr, r"studies/s\.json:1:\d+: warning: /goals/0/rotor/speed_range: ")
         result = json.loads((self.folder / "results/s/result.json").read_text(encoding="utf-8"))
         self.assertEqual(result["status_text"], lines[1])
         self.assertEqual([d["kind"] for d in result["doubts"]][0], "speed_range")
         page = (self.folder / "results/s/report.html").read_text(encoding="utf-8")
-        self.assertLess(page.index("<h2>Doubts</h2>"), page.index("<h2>Parameters</h2>"))
+        self.assertLess(page.index("<h2>Warnings of the model and the study</h2>"), page.index("<h2>Parameters</h2>"))
         good = self.expect(0, "run", self.put_study())
         self.assertIn("feasible and proven", good.stdout)
         self.assertNotIn("oubt", good.stdout)
@@ -539,7 +539,7 @@ class Doubts(CliTest):
     def test_facts_of_the_model_stand_at_the_top_of_run(self):
         self.put_model(("joints", 0, "at"), [0.4, 0])
         lines = self.expect(0, "run", self.put_study()).stdout.splitlines()
-        self.assertEqual(lines[3:5], ["Facts of the model", '  - default: joint "foot" lies 0.4 m off "rod.start"'])
+        self.assertEqual(lines[3:5], ["Notes on the model", '  - default: joint "foot" lies 0.4 m off "rod.start"'])
 
     def test_what_turns_and_is_a_body_is_at_rest_in_the_modes(self):
         self.put_model()

@@ -760,7 +760,7 @@ class Numbers(unittest.TestCase):
             for row, g in zip(self.rows(name, "Goals"), best["goals"], strict=True):
                 value, off = g["value"], g["violation_percent"]
                 self.near(row["value"], value, f"{name} {row}")
-                self.near(row["off by [%]"], off if off > 1e-4 else 0.0, f"{name} % {row}")
+                self.near(row["deviation [%]"], off if off > 1e-4 else 0.0, f"{name} % {row}")
                 self.assertEqual(row["verdict"], "weighted" if g["weighted"] else "met" if g["met"] else "not met")
 
     def test_explain_says_what_one_per_cent_more_does(self):
@@ -772,7 +772,7 @@ class Numbers(unittest.TestCase):
             told = subprocess.run(command + ["--format", "csv"], cwd=self.root, capture_output=True, text=True, check=True).stdout
             for goal in best["goals"]:
                 line = next(line for line in said.splitlines() if line.startswith(f"  - {goal['goal']}: "))
-                self.assertEqual("is not known" in line, goal["sensitivity"] is None and goal["type"] != "avoid", line)
+                self.assertEqual("no sensitivity" in line, goal["sensitivity"] is None and goal["type"] != "avoid", line)
             rows = list(csv.DictReader(told.splitlines()))
             moved = [(g["goal"], p["name"]) for g in best["goals"] if g["sensitivity"] is not None for p in best["parameters"]]
             self.assertEqual(sorted((r["goal"], r["parameter"]) for r in rows if (r["goal"], "k1") in moved), sorted(moved))
@@ -793,7 +793,7 @@ class Numbers(unittest.TestCase):
     def test_uncertainty_is_said_in_its_numbers(self):
         _, result, _ = self.rules("undetermined")
         said = subprocess.run([PROGRAM, "report", "results/undetermined/result.json"], cwd=self.root, capture_output=True, text=True, check=True).stdout
-        told = float(re.search(r"at most (\S+) % from bound to bound", said)[1])
+        told = float(re.search(r"by more than (\S+) % from bound to bound", said)[1])
         self.assertLessEqual(abs(told - result["undetermined"][0]["effect_percent"]), 6e-3 * told)
 
 

@@ -5,6 +5,7 @@ Every sentence that describes a design is reached by some study, and its claim i
 from the rest of the result and from closed forms, or in the test that ELSEWHERE names. A sentence in the sources that nothing reaches, or
 that nobody computes again, fails.
 """
+import itertools
 import json
 import math
 import os
@@ -27,16 +28,16 @@ SHIPPED = ("beam_identification", "inceptor_identification", "inceptor_tuning_1"
 ELSEWHERE = {
     "NOT VERIFIED, do not use: %s.": "answer/test_verify.c plants a disagreement",
     "The search was interrupted: better designs may exist.": "cli/test_interrupts.py",
-    "It is the only kind of design among %.0f gap assignments (%s).": "hunt/check_claims.py searches all assignments",
-    "It ranks %d of %d kinds of design among %.0f gap assignments, by %s %s (%s).": "hunt/check_claims.py searches all assignments",
+    "It is the only one of %.0f mode placements that meets all goals (%s).": "hunt/check_claims.py searches all assignments",
+    "It ranks %d of the %d mode placements that meet all goals, of %.0f in all, by %s %s (%s).": "hunt/check_claims.py searches all assignments",
     "It is not shown to be a local optimum: its KKT residual is %.2g, where an optimum has 0; a design near it may be better.": "hunt/check_claims.py",
-    "Goal %s (%s) has a price: giving way by %s would %s %s.": "hunt/check_words.py solves again",
-    "Goal %s (%s) has a price: asking for %s %s would %s %s.": "describe/test_prices.py",
+    "Relaxing goal %s (%s) by %s would %s %s.": "hunt/check_words.py solves again",
+    "A target %s %s in goal %s (%s) would %s %s.": "describe/test_prices.py",
     "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of %.3g %% leaves open is worth %s.": "describe/test_prices.py",
     "Goal %s (%s) hardly depends on the variables here: %s.": "describe/test_prices.py",
-    "The %s edge of %s, which holds %s mode %d, has a price: giving way by %s would %s %s.": "describe/test_study_bands.c solves again",
-    "The %s edge of %s, which holds mode %d where %s is at %s, between the positions, has a price: giving way by %s would %s %s.": "cli/test_motion.py",
-    "The limit of goal %s where %s is at %s, between the positions, has a price: giving way by %s would %s %s.": "cli/test_between.py",
+    "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.": "describe/test_study_bands.c solves again",
+    "Relaxing the %s edge of %s, which holds mode %d where %s is at %s, between the positions, by %s would %s %s.": "cli/test_motion.py",
+    "Relaxing the limit of goal %s where %s is at %s, between the positions, by %s would %s %s.": "cli/test_between.py",
     "Between the positions that are given %s.": "cli/test_between.py has closed forms",
     "Over the motion: %s.": "cli/test_motion.py",
     "The goals do not settle %s: they change by at most %.3g %% across its bounds, so the design keeps what it had there.": "hunt/check_words.py moves along it",
@@ -128,9 +129,8 @@ UNREACHED = {"%s mode %d%s%s%s has no frequency here.", "Goal %s (%s) does not c
              "Goal %s (%s) is missed by far."}
 ELSEWHERE.update({
     "T%s.": "cli/test_response_vibration.py and vibration/test_* have the responses in closed form",
-    "%s: off by %.3g %% rms, most at %.6g Hz, where the response is %.4g times what was measured and its phase %+.3g deg from it.":
+    "%s: deviation %.3g %% rms, most at %.6g Hz, where the response is %.4g times what was measured and its phase %+.3g deg from it.":
         "answer/test_frequency_response.py has the misfit",
-    "%s has %s modes below its %d bands, in their order.": "hunt/check_claims.py counts modes below bands",
     "It is one of a continuum of equally good designs that %d start%s found.": "search/test_search_continuum.c",
     "A continuum of designs is as good as this one: those between it and others that were found meet all goals, too, and have the same %s.":
         "search/test_search_continuum.c",
@@ -216,7 +216,7 @@ def valueless(m, rec, _):
 
 
 def weighted(m, rec, _):
-    return int(m[1]) == sum(g["weighted"] for g in rec["goals"]) and float(m[3]) >= 0
+    return int(m[1]) == sum(g["weighted"] for g in rec["goals"]) and float(m[4]) >= 0
 
 
 def least(m, rec, result):
@@ -249,9 +249,18 @@ def ranks(m, rec, result):
 
 
 def below(m, rec, _):
-    f = [f for f in rec["frequencies"] if f["configuration"] == m[1] and f["recommended_hz"] is not None]
-    edge = float(m[4].split()[0])
-    return int(m[2]) == sum(x["recommended_hz"] < edge for x in f)
+    """How many frequencies lie below each band, one within it counting either way; bands with one number of modes stand together."""
+    hz = [f["recommended_hz"] for f in rec["frequencies"] if f["configuration"] == m[1] and f["recommended_hz"] is not None]
+    bands = [g for g in rec["gap_assignment"] if g["configuration"] == m[1]]
+    if not all(sum(x < g["lower_hz"] for x in hz) <= g["modes_below"] <= sum(x < g["upper_hz"] for x in hz) for g in bands):
+        return False
+    counts, parts = [(g["band"], g["modes_below"]) for g in bands], []
+    for n, group in itertools.groupby(counts, key=lambda c: c[1]):
+        names = [name for name, _ in group]
+        listed = names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
+        verb = "" if parts and n > 0 else " lies" if n < 2 else " lie"
+        parts.append(f"{n or 'no'} mode{'s' if n > 1 else ''}{verb} below {listed}")
+    return m[2] == ", ".join(parts)
 
 
 def clearance(m, rec, side, percent):
@@ -263,18 +272,21 @@ def on_edge(m, rec, _):
     return abs(f["recommended_hz"] / float(m[4]) - 1) < 1e-5
 
 
+BOUND = re.compile(r"An? (?:upper|lower) bound of (\w+) that is ([-+\d.e]+).* (?:higher|lower)$")
+
+
 def buys(m, rec, _):
     """100 N/m more of the one spring."""
-    amount, name = re.match(r"([-+\d.e]+).* (?:more|less) allowed on (\w+)", m[1]).groups()
-    p, f = parameter(rec, name), mode_of(rec, m[3], m[4])
+    name, amount = BOUND.match(m[1]).groups()
+    p, f = parameter(rec, name), mode_of(rec, m[2], m[3])
     step = float(amount) * (p["display_factor"] or 1)
-    return close(m[2], 0.5 * f["recommended_hz"] * step / p["recommended"], 3)
+    return close(m[4], 0.5 * f["recommended_hz"] * step / p["recommended"], 3)
 
 
 def saves(m, rec, result):
     """Of an objective that is the variable itself the room at its bound is what it saves; else hunt/check_words.py solves again."""
-    text = re.match(r"([-+\d.e]+).* (?:more|less) allowed on (\w+)", m[1])
-    return text is not None and (result["objectives"][0]["text"] != text[2] or float(text[1]) == float(re.match(r"[-+\d.e]+", m[3])[0]))
+    text = BOUND.match(m[1])
+    return text is not None and (result["objectives"][0]["text"] != text[1] or float(text[2]) == float(re.match(r"the objective by ([-+\d.e]+)$", m[3])[1]))
 
 
 def double(_, rec, __):
@@ -287,19 +299,19 @@ CHECKS = {
     "%s stands at its %s bound: a wider bound may give a better design.": at_bound, "The original design stays as it is.": stays, "%s keep%s original value%s.": kept,
     "%s mode %d%s%s%s comes to %s Hz%s, %s%s.": comes, "%s mode %d%s%s%s stays at %s Hz%s, %s%s.": remains, "%s mode %d%s%s%s moves from %s to %s Hz%s, %s%s.": moves,
     "%s mode %d is at 0 Hz: nothing holds it at this design%s%s%s.": slack, "Goal %s (%s) has no value here and does not count as met.": valueless,
-    "Goal %s (%s) is missed by %.3g %%.": missed, "The %d weighted goal%s off by %.3g %% rms.": weighted,
+    "Goal %s (%s) is missed by %.3g %%.": missed, "The %d weighted goal%s deviate%s by %.3g %% rms.": weighted,
     "Its misfit is the least of %d local minima found from %d starts.": least, "It is a local minimum of the misfit, %.3g times that of recommendation 1.": times,
     "It is a local minimum of the misfit, where recommendation 1 has none.": no_fit, "It fits exactly, as recommendation 1 does.": exact,
     "It is the only local optimum, by %s %s, that %d start%s found (sampled, not proven).": single,
     "It is the only design that %d start%s found (sampled, not proven).": single,
     "None of the designs that %d start%s found meets all goals; this one %s.": none_meets, "It ranks %d of %d distinct designs found from %d starts, by %s %s.": ranks,
     "It is a double solution: two designs that meet the goals coincide here, so small errors in the targets move it far.": double,
-    "%s has %s mode%s below the band %s.": below, "%s mode %d stands on the %s edge (%.6g Hz) of band %s.": on_edge,
+    "In %s, %s.": below, "%s mode %d stands on the %s edge (%.6g Hz) of band %s.": on_edge,
     "%s mode %d (%.6g Hz) lies inside band %s, %.3g %% from its nearest edge.": lambda m, rec, _: clearance(m, rec, "inside", m[5]),
     "%s mode %d (%.6g Hz) keeps just the %.3g %% asked for %s band %s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s mode %d (%.6g Hz) keeps only %.3g %% %s band %s, of %.3g %% asked.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s mode %d (%.6g Hz) keeps %.3g %% %s band %s%s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
-    "%s would %s %s.": saves, "%s buys %.3g Hz of %s mode %d.": buys,
+    "%s would %s %s.": saves, "%s would bring %s mode %d nearer to its goal by %.3g Hz.": buys,
 }
 
 
@@ -336,7 +348,7 @@ class Sentences(unittest.TestCase):
     def test_a_false_sentence_is_noticed(self):
         with tempfile.TemporaryDirectory() as folder:
             result = run(Path(folder), "bound")
-        for was, false in (("by 100 %", "by 99 %"), ("upper bound", "lower bound"), ("to 7.11763 Hz", "to 7.21763 Hz"), ("by 18.4 %", "by 18.5 %"), ("buys 0.178", "buys 0.179")):
+        for was, false in (("by 100 %", "by 99 %"), ("upper bound", "lower bound"), ("to 7.11763 Hz", "to 7.21763 Hz"), ("by 18.4 %", "by 18.5 %"), ("goal by 0.178", "goal by 0.179")):
             text = json.dumps(result)
             self.assertIn(was, text)
             with self.assertRaises(AssertionError):

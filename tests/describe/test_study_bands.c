@@ -63,13 +63,13 @@ static double best_change(mt_test *t, const char *lower_edge, double *price)
                    lower_edge);
     if (study_solve(t, ROW, members, &c) && c.result->n_recommendations > 0) {
         const mt_recommendation *const r = &c.result->recommendations[0];
-        const char *const s = reason_with(r, "has a price: giving way by 1 %");
+        const char *const s = reason_with(r, "by 1 % would reduce the total change");
         change = r->change;
         CHECK(t, r->feasible && r->goals[0].met);
         CHECK(t, reason_with(r, "mode 2 stands on the lower edge") != NULL);
-        CHECK(t, reason_with(r, "default has 2 modes below the band") != NULL);
+        CHECK(t, reason_with(r, "In default, 2 modes lie below ") != NULL);
         if (price != NULL && CHECK(t, s != NULL)) {
-            *price = strtod(strstr(s, "would save") + strlen("would save"), NULL);
+            *price = 0.01 * change * strtod(strstr(s, "change by ") + strlen("change by "), NULL);
         }
     }
     study_free(&c);
@@ -124,10 +124,10 @@ static double middle_score(mt_test *t, const char *upper_edge, double *price)
                    upper_edge);
     if (study_solve(t, ROW, members, &c) && CHECK(t, c.result->n_recommendations > 0)) {
         const mt_recommendation *const r = &c.result->recommendations[0];
-        const char *const s = reason_with(r, "which holds default mode 2, has a price");
+        const char *const s = reason_with(r, "which holds default mode 2, by 1 % would raise");
         score = r->score;
         if (price != NULL && CHECK(t, s != NULL && strstr(s, "percentage points") != NULL)) {
-            *price = strtod(strstr(s, "would gain") + strlen("would gain"), NULL);
+            *price = strtod(strstr(s, "clearance by ") + strlen("clearance by "), NULL);
         }
     }
     study_free(&c);
@@ -164,9 +164,9 @@ static void bounds__say_what_more_room_buys(mt_test *t)
                            &c));
     REQUIRE(t, c.result->n_recommendations > 0);
     const char *const s =
-        reason_with(&c.result->recommendations[0], "0.1 more allowed on k1 buys");
+        reason_with(&c.result->recommendations[0], "An upper bound of k1 that is 0.1 higher would bring");
     if (CHECK(t, s != NULL)) {
-        const double hz = strtod(strstr(s, "buys") + strlen("buys"), NULL);
+        const double hz = strtod(strstr(s, "goal by ") + strlen("goal by "), NULL);
         const double rise = study_hz(study_two_lambda(4.05, 1.0, 1.0, -1)) -
                             study_hz(study_two_lambda(3.95, 1.0, 1.0, -1));
         CHECK_NEAR(t, hz, rise, 0.01); /* three digits, third order of the step */

@@ -125,7 +125,7 @@ def _assignments(run, certificate):
     good, _ = _counterexamples(run)
     x, missed = _samples(run)
     feasible = np.concatenate([x[missed <= SURE], good]) if len(good) else x[missed <= SURE]
-    found = re.match(r"Of (\d+) gap assignments (\d+) can be met (within the bounds|by catalogue values)?", certificate["text"])
+    found = re.match(r"Of (\d+) mode placements (\d+) can be met (within the bounds|by catalogue values)?", certificate["text"])
     if not found:
         return
     kinds = {kind: design for design, kind in zip(feasible, q.kind(feasible))}

@@ -73,6 +73,14 @@ def _bound_mover(variable, index, bound, amount):
     return change
 
 
+WORTH = r" would (?:reduce|raise) (?P<of>.*) by (?P<worth>[\d.]+(?:e[+-]?\d+)?)(?P<unit>.*)\.$"
+
+
+def _worth(found, best):
+    """What a price says in the objective's own measure: of the total change it is a percentage."""
+    return float(found["worth"]) * (best["change"] / 100.0 if found["of"] == "the total change" else 1.0)
+
+
 def prices(run):
     """By solving again with what has a price moved a little."""
     best, q = _best(run), run.question
@@ -82,20 +90,22 @@ def prices(run):
     for reason in (r["text"] for r in best["reasons"]):
         if told_of == PRICES:
             return
-        goal = re.match(r"Goal /goals/(\d+) \(.*\) has a price: (?:giving way by|asking for) ([\d.e-]+) % ?(less|more|)\s?would (?:save|gain) " + NUMBER, reason)
-        bound = re.match(NUMBER + r" ?(.*) (more|less) allowed on (\w+) would (?:save|gain) " + NUMBER, reason)
+        goal = re.match(r"Relaxing goal /goals/(?P<goal>\d+) \(.*\) by (?P<part>[\d.e-]+) %()" + WORTH, reason) or \
+            re.match(r"A target (?P<part>[\d.e-]+) % (?P<way>lower|higher) in goal /goals/(?P<goal>\d+) \(.*\)" + WORTH, reason)
+        bound = re.match(r"An? (?P<side>upper|lower) bound of (?P<name>\w+) that is " + NUMBER + r" ?(.*) (?:higher|lower)" + WORTH, reason)
         if goal:
-            two = [m for m in run.study["goals"][int(goal[1])] if m.startswith("at_")]
-            if len(two) > 1 or q.demands[[d[0] for d in q.demands].index(int(goal[1]))][1]["type"] == "avoid":
+            at, higher = int(goal["goal"]), goal.groupdict().get("way") == "higher"
+            two = [m for m in run.study["goals"][at] if m.startswith("at_")]
+            if len(two) > 1 or q.demands[[d[0] for d in q.demands].index(at)][1]["type"] == "avoid":
                 continue
-            if len(run.study["goals"][int(goal[1])].get("configurations", [1])) > 1:
+            if len(run.study["goals"][at].get("configurations", [1])) > 1:
                 continue
-            told = float(goal[4]) / float(goal[2])  # by 1 %
-            slopes = _slopes(run, _goal_mover(int(goal[1]), reason, -1.0 if goal[3] == "more" else 1.0), start)
+            told = _worth(goal, best) / float(goal["part"])  # by 1 %
+            slopes = _slopes(run, _goal_mover(at, reason, -1.0 if higher else 1.0), start)
         elif bound:
-            index = [v.name for v in q.variables].index(bound[4])
-            told = float(bound[5])
-            slopes = _slopes(run, _bound_mover(q.variables[index], index, "upper" if bound[3] == "more" else "lower", float(bound[1])), start)
+            index = [v.name for v in q.variables].index(bound["name"])
+            told = _worth(bound, best)
+            slopes = _slopes(run, _bound_mover(q.variables[index], index, bound["side"], float(bound[3])), start)
             slopes = None if slopes is None else 10.0 * slopes
         else:
             continue

@@ -151,7 +151,7 @@ def _range(run):
 
 def _assignment(run):
     for c in run.result["certificates"]:
-        found = re.match(r"Of (\d+) gap assignments (\d+) can be met", c["text"])
+        found = re.match(r"Of (\d+) mode placements (\d+) can be met", c["text"])
         if found and c["proven"] and int(found[2]) > 1 and len(run.result["recommendations"]) == int(found[2]):
             c["text"] = c["text"].replace(f" {found[2]} can", f" {int(found[2]) - 1} can", 1)
             del run.result["recommendations"][0]
@@ -171,7 +171,7 @@ def _box(run):
 def _price(run):
     best = _first(run.result)
     for i, reason in enumerate([r["text"] for r in best["reasons"]] if best else []):
-        found = re.match(r"(Goal .* has a price: (?:giving way by|asking for) [\d.e-]+ % ?(?:less|more|)\s?would save )(\d[\d.]*)( .*)", reason)
+        found = re.match(r"((?:Relaxing goal|A target) .* would reduce .* by )(\d[\d.]*)( .*)", reason)
         if found and float(found[2]) > 1e-3 and "from" not in found[1]:
             best["reasons"][i]["text"] = f"{found[1]}{1.2 * float(found[2]):.3g}{found[3]}"
             return True

@@ -55,7 +55,7 @@ static void gist__tells_changes_goals_and_proof(mt_test *t)
            "zero to 3.00 N/m, b&lt;i&gt; -50.0 %, c +20.0 %, d +10.0 % and 1 other.");
     expect(t, "feasible", 0, false, "the goal is met.");
     expect(t, "feasible", 0, false, "nothing; designs were found by local searches");
-    expect(t, "feasible", 1, false, "nothing; what was found by sampling is told");
+    expect(t, "feasible", 1, false, "nothing; what was sampled is listed below");
     expect(t, "feasible", 1, true, "<b>Proven</b>: None is lower.</li>");
     expect(t, "feasible and proven", 0, false, "that the best design meets the goals.");
 }

@@ -165,18 +165,18 @@ static void sections__that_an_interrupt_cut_say_so(mt_test *t)
     static const char *incomplete[] = {"spread", "trade"};
     mt_result *const r = make(t);
     REQUIRE(t, r != NULL);
-    check_missing(t, r, "Certificates", 0);
+    check_missing(t, r, "What is proven", 0);
     r->undetermined = NULL;
-    check_missing(t, r, "Undetermined: the goals hardly change along", 1);
+    check_missing(t, r, "Not identifiable: directions along which the goals hardly change", 1);
     r->spread = NULL;
     check_missing(
         t, r,
         "Sensitivity to the weights (the scatter of repeated tests may be many times larger)",
         2);
     r->certificates = NULL;
-    check_missing(t, r, "Certificates", 3);
+    check_missing(t, r, "What is proven", 3);
     r->relaxations = NULL;
-    check_missing(t, r, "What would let a design exist, one change at a time", 4);
+    check_missing(t, r, "What would make it feasible, one change at a time", 4);
     r->published = NULL;
     r->n_published = 0;
     check_missing(t, r, "Published against computed", 5);
@@ -282,7 +282,7 @@ static void designs__with_bands_have_clearance_and_assignment(mt_test *t)
 /* Of two clearances side by side each says which it is. */
 static void alternatives__tell_the_objective_from_the_bare_clearance(mt_test *t)
 {
-    static const char *const headings[] = {"  clearance [%]  modes below", "change  off by",
+    static const char *const headings[] = {"  clearance [%]  modes below", "change  deviation",
                                            "clearance [%]    change",
                                            "without margin [%]  modes"};
     static mt_result_objective best[] = {{"clearance", "clearance", "%"}};
