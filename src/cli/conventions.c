@@ -313,8 +313,8 @@ void mt_cli_find_conventions(const mt_model *model, int configuration, const dou
 void mt_cli_print_conventions(const mt_convention_list *list, mt_text *out)
 {
     for (int i = 0; i < list->n && i < MOST_LINES; i++) {
-        mt_text_addf(out, "%s%s\n", i == 0 ? "  conventions\n    " : "    ",
-                     list->items[i].text);
+        mt_text_add(out, i == 0 ? "  conventions\n" : "");
+        mt_text_addf(out, "    %s\n", list->items[i].text);
     }
     if (list->n > MOST_LINES) {
         mt_text_addf(out, "    and %d more of these kinds\n", list->n - MOST_LINES);
