@@ -73,56 +73,134 @@ static void add_title(const mt_passage *heading, mt_text *out)
     mt_text_add_n(out, title, strcspn(title, "\n"));
 }
 
-/* Items under the heading that they stand under, and the chapter (level 2) that has it. */
-static void show_items(const mt_shipped *document, const char *topic, const mt_shipped **last,
+/* Is the topic one of the values that an item of the reference lists, `"revolute"`? */
+static bool has_value(const mt_passage *p, const char *topic)
+{
+    mt_text value = {.s = NULL};
+    mt_text_add(&value, "`\"");
+    mt_text_add(&value, topic);
+    mt_text_add(&value, "\"`");
+    const char *const at = value.failed ? NULL : strstr(p->begin, value.s);
+    mt_text_free(&value);
+    return at != NULL && at < p->end;
+}
+
+/* Whatever stands for a topic. */
+typedef enum way { BY_HEADINGS, BY_ITEMS, BY_VALUES, BY_MENTIONS, WAYS } way;
+
+/* Where an item stands. */
+typedef struct place {
+    mt_passage section; /* its heading */
+    mt_passage chapter; /* the heading of level 2 that has this */
+    const char *shown;  /* the heading that was shown last */
+} place;
+
+/* "From PAGE, SECTION (CHAPTER):" where that is another one than before. */
+static void show_place(const mt_shipped *document, place *at, const mt_shipped **last,
                        mt_text *out)
 {
-    enum { CHAPTER = 2 };
-    mt_passage p = {.begin = NULL};
-    mt_passage chapter = {.level = 0};
-    mt_passage section = {.level = 0};
-    const char *shown = NULL;
-    while (mt_passage_next(document->bytes, &p)) {
-        chapter = p.level > 0 && p.level <= CHAPTER ? p : chapter;
-        section = p.level > 0 ? p : section;
-        if (p.level > 0 || !mt_passage_is(&p, topic) || has(out, &p)) {
-            continue;
-        }
-        if (section.level > 0 && shown != section.begin) {
-            mt_text heading = {.s = NULL};
-            add_title(&section, &heading);
-            if (section.level > CHAPTER && chapter.level > 0) {
-                mt_text_add(&heading, " (");
-                add_title(&chapter, &heading);
-                mt_text_add(&heading, ")");
-            }
-            mt_text_add(out, *last == NULL ? "" : "\n\n");
-            mt_text_addf(out, "From %s, %s:\n", document->path,
-                         heading.s == NULL ? "" : heading.s);
-            out->failed = out->failed || heading.failed;
-            mt_text_free(&heading);
-            *last = document;
-            shown = section.begin;
-        }
-        show(document, &p, last, out);
+    mt_text heading = {.s = NULL};
+    if (at->section.level == 0 || at->shown == at->section.begin) {
+        return;
+    }
+    add_title(&at->section, &heading);
+    if (at->chapter.level > 0 && at->chapter.begin != at->section.begin) {
+        mt_text_add(&heading, " (");
+        add_title(&at->chapter, &heading);
+        mt_text_add(&heading, ")");
+    }
+    mt_text_add(out, *last == NULL ? "" : "\n\n");
+    mt_text_addf(out, "From %s, %s:\n", document->path, heading.s == NULL ? "" : heading.s);
+    out->failed = out->failed || heading.failed;
+    mt_text_free(&heading);
+    *last = document;
+    at->shown = at->section.begin;
+}
+
+/* An item with its place; of a row the section that has its table. */
+static void show_item(const mt_shipped *document, const mt_passage *p, place *at,
+                      const mt_shipped **last, mt_text *out)
+{
+    if (!mt_passage_is_row(p)) {
+        show_place(document, at, last, out);
+        show(document, p, last, out);
+    } else if (at->section.level > 0 && at->shown != at->section.begin) {
+        show(document, &at->section, last, out);
+        at->shown = at->section.begin;
     }
 }
 
-/* All sections that are headed by the topic, or, with `items`, items of lists. */
-static void show_all(const char *topic, bool items, const mt_shipped **last, mt_text *out)
+/* Items that are called so, or that list such a value. */
+static void show_items(const mt_shipped *document, const char *topic, way by,
+                       const mt_shipped **last, mt_text *out)
+{
+    enum { CHAPTER = 2 };
+    mt_passage p = {.begin = NULL};
+    place at = {.shown = NULL};
+    while (mt_passage_next(document->bytes, &p)) {
+        if (p.level > 0) {
+            at.chapter = p.level <= CHAPTER ? p : at.chapter;
+            at.section = p;
+        } else if ((by == BY_ITEMS ? mt_passage_is(&p, topic) : has_value(&p, topic)) &&
+                   !has(out, &p)) {
+            show_item(document, &p, &at, last, out);
+        }
+    }
+}
+
+/* Is `topic`, or `topic(...)`, within [begin, end)? */
+static bool mentions(const char *begin, const char *end, const char *topic)
+{
+    const size_t length = strlen(topic);
+    for (const char *at = begin; (at = strchr(at, '`')) != NULL && at < end; at++) {
+        if (strncmp(at + 1, topic, length) == 0 && strchr("`(", at[1 + length]) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The first sections, each up to the next heading, that mention the topic. */
+static void show_mentions(const mt_shipped *document, const char *topic,
+                          const mt_shipped **last, mt_text *out)
+{
+    enum { MOST = 3 };
+    mt_passage p = {.begin = NULL};
+    mt_passage section = {.begin = NULL};
+    bool more = true;
+    for (int n = 0; more && n < MOST;) {
+        more = mt_passage_next(document->bytes, &p);
+        if (more && p.level == 0) {
+            continue;
+        }
+        section.end = more ? p.begin : section.end;
+        if (section.level > 1 && mentions(section.body, section.end, topic)) {
+            show(document, &section, last, out);
+            n++;
+        }
+        section = p;
+    }
+}
+
+/* All that the documents say of the topic in one way. */
+static void show_all(const char *topic, way by, const mt_shipped **last, mt_text *out)
 {
     int n = 0;
     const mt_shipped *const documents = mt_documents_all(&n);
     for (int k = 0; k < RANKS * n; k++) {
         const mt_shipped *const document = &documents[k % n];
         mt_passage p = {.begin = NULL};
-        if ((int)rank_of(document) != k / n) {
+        const rank r = rank_of(document);
+        if ((int)r != k / n || (by == BY_VALUES && r != REFERENCE) ||
+            (by == BY_MENTIONS && r != WRITTEN)) {
             continue;
         }
-        if (items) {
-            show_items(document, topic, last, out);
+        if (by == BY_MENTIONS) {
+            show_mentions(document, topic, last, out);
+        } else if (by != BY_HEADINGS) {
+            show_items(document, topic, by, last, out);
         }
-        while (!items && mt_passage_next(document->bytes, &p)) {
+        while (by == BY_HEADINGS && mt_passage_next(document->bytes, &p)) {
             if (p.level > 0 && mt_passage_is(&p, topic)) {
                 show(document, &p, last, out);
             }
@@ -267,13 +345,13 @@ int mt_cmd_help(const mt_args *args, mt_text *out)
         return MT_EXIT_DONE;
     }
     const char *const topic = args->operands[0];
-    show_all(topic, false, &last, out);
+    show_all(topic, BY_HEADINGS, &last, out);
     if (last == NULL && command_of(topic) != MT_CMD_NONE) {
         mt_help(command_of(topic), out);
         return MT_EXIT_DONE;
     }
-    if (last == NULL) {
-        show_all(topic, true, &last, out);
+    for (way by = BY_ITEMS; by < WAYS && last == NULL; by++) {
+        show_all(topic, by, &last, out);
     }
     mt_text_add(out, last == NULL ? "" : "\n");
     return last == NULL && !out->failed ? unknown(topic) : MT_EXIT_DONE;

@@ -71,8 +71,21 @@ static const char *section_end(const char *at, int level)
     return at;
 }
 
+static bool is_row(const char *line)
+{
+    return strncmp(line, "| `", 3) == 0;
+}
+
+bool mt_passage_is_row(const mt_passage *p)
+{
+    return is_row(p->begin);
+}
+
 static const char *item_end(const char *at)
 {
+    if (is_row(at)) {
+        return behind_line(at);
+    }
     do {
         at = behind_line(at);
     } while (strncmp(at, "  ", 2) == 0);
@@ -95,7 +108,7 @@ bool mt_passage_next(const char *text, mt_passage *p)
                 .level = level, .begin = at, .body = body, .end = section_end(body, level)};
             return true;
         }
-        if (is_item(at)) {
+        if (is_item(at) || is_row(at)) {
             *p = (mt_passage){.begin = at, .end = item_end(at)};
             return true;
         }
@@ -105,11 +118,11 @@ bool mt_passage_next(const char *text, mt_passage *p)
 
 bool mt_passage_name(const mt_passage *p, const char **at, const char **name, size_t *length)
 {
-    if (p->level == 0 && *at != NULL) {
+    if (p->level == 0 && *at != NULL && !is_row(p->begin)) {
         return false;
     }
-    const char *const from = *at == NULL ? p->begin : *at;
-    const char *const open = from + strcspn(from, "`\n");
+    const char *const from = *at == NULL ? p->begin + 1 : *at;
+    const char *const open = from + strcspn(from, is_row(p->begin) ? "`|\n" : "`\n");
     const char *const close = *open == '`' ? open + 1 + strcspn(open + 1, "`\n") : open;
     if (*close != '`') {
         return false;

@@ -50,8 +50,8 @@ void mt_man_help(const char *s, bool hanging, mt_text *out)
 {
     bool bold = false;
     for (const char *at = s; *at != '\0'; at++) {
-        const bool begins = at == s || strchr(" (\"\n", at[-1]) != NULL;
-        if (begins && strncmp(at, "--", 2) == 0 && isalpha((unsigned char)at[2]) != 0) {
+        const bool starts = at == s || strchr(" (\"\n", at[-1]) != NULL;
+        if (starts && strncmp(at, "--", 2) == 0 && isalpha((unsigned char)at[2]) != 0) {
             mt_text_add(out, "\\fB");
             bold = true;
         } else if (bold && *at != '-' && isalpha((unsigned char)*at) == 0) {
@@ -71,7 +71,7 @@ void mt_man_help(const char *s, bool hanging, mt_text *out)
 }
 
 /* The character c in s[0 .. n); NULL: there is none. */
-static const char *find(const char *s, size_t n, char c)
+static const char *find_char(const char *s, size_t n, char c)
 {
     return memchr(s, c, n);
 }
@@ -102,7 +102,8 @@ static void add_words(const char *s, size_t n, bool references, mt_text *out)
     const char *link = NULL; /* where the text of the link that we are in ends */
     for (const char *at = s; at < end; at++) {
         const size_t left = (size_t)(end - at) - 1;
-        const char *const close = *at == '`' || *at == '*' ? find(at + 1, left, *at) : NULL;
+        const char *const close =
+            *at == '`' || *at == '*' ? find_char(at + 1, left, *at) : NULL;
         if (*at == '`' && close != NULL) {
             add_code(at + 1, (size_t)(close - at) - 1, references, out);
             at = close;
@@ -113,11 +114,11 @@ static void add_words(const char *s, size_t n, bool references, mt_text *out)
             mt_text_add(out, "\\fR");
             at = close;
         } else if (*at == '[' && link == NULL) {
-            const char *const middle = find(at, left, ']');
+            const char *const middle = find_char(at, left, ']');
             link = middle != NULL && middle + 1 < end && middle[1] == '(' ? middle : NULL;
             mt_text_add(out, link == NULL ? "[" : "");
         } else if (at == link) {
-            const char *const behind = find(at, left, ')');
+            const char *const behind = find_char(at, left, ')');
             at = behind == NULL ? at : behind;
             link = NULL;
         } else {
@@ -135,7 +136,7 @@ typedef struct block {
 
 static const char *line_end(const block *b, const char *line)
 {
-    const char *const end = find(line, (size_t)(b->end - line), '\n');
+    const char *const end = find_char(line, (size_t)(b->end - line), '\n');
     return end == NULL ? b->end : end;
 }
 
@@ -205,7 +206,7 @@ void mt_man_markdown(const char *begin, const char *end, bool headed, mt_text *o
     static const char see[] = "See also: ";
     block b = {.at = begin, .end = end, .headed = headed, .out = out};
     while (b.at < b.end) {
-        if (*b.at == '\n') {
+        if (*b.at == '\n' || begins(&b, b.at, "<!--")) {
             next_line(&b);
         } else if (begins(&b, b.at, "```")) {
             add_code_block(&b);
@@ -216,8 +217,6 @@ void mt_man_markdown(const char *begin, const char *end, bool headed, mt_text *o
             b.headed = true;
         } else if (begins(&b, b.at, "![")) {
             skip_paragraph(&b, "\n");
-        } else if (begins(&b, b.at, "<!--")) {
-            next_line(&b);
         } else if (begins(&b, b.at, see)) {
             mt_man_section(see, strlen(see) - 2, out);
             b.at += strlen(see);

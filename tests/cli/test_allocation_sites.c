@@ -62,7 +62,7 @@ static struct {
     {"runn", MT_EXIT_INPUT, FULL},
     {"help", MT_EXIT_DONE, FULL},
     {"help margin_percent", MT_EXIT_DONE, FULL},
-    {"help margin", MT_EXIT_INPUT, FULL},
+    {"help marign", MT_EXIT_INPUT, FULL},
     {"modes --shapes --damped " MODELS "space_body.json", MT_EXIT_DONE, FULL},
     {"modes --shapes --set h=0.11 --format json " MODELS "space_frame.json", MT_EXIT_DONE,
      FULL},

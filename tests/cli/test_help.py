@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""--help, the manual page and the documents say the same; wrong use is answered helpfully."""
+"""--help, the manual pages and the documents say the same, help finds topics; wrong use is answered helpfully."""
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -160,6 +161,82 @@ class Help(CliTest):
             line = "".join(line)
             command = re.search(r"modetune ([a-z]+)", line).group(1)
             self.assertLessEqual(options_in(line), OPTIONS[command] | EVERYWHERE, line)
+
+
+class Topics(CliTest):
+    def pages(self):
+        """Text of the documents that the program has, by path."""
+        names = ("README.md", "include/README.md", "problems/README.md", "schemas/README.md", "src/cli/README.md", "src/library/python/README.md",
+                 "studies/README.md", "studies/tutorial/README.md", "tests/bench/README.md", "tests/reference/README.md")
+        return {name: (SOURCE / name).read_text(encoding="utf-8") for name in names if (SOURCE / name).exists()}
+
+    @staticmethod
+    def headings(text):
+        """(names, text of the section without comments) of every heading, code blocks passed over."""
+        lines = text.splitlines()
+        fenced, found = False, []
+        for i, line in enumerate(lines):
+            fenced ^= line.startswith("```")
+            if not fenced and re.match(r"#+ ", line):
+                found.append((i, len(line) - len(line.lstrip("#"))))
+        for k, (i, level) in enumerate(found):
+            end = next((j for j, other in found[k + 1:] if other <= level), len(lines))
+            yield re.findall(r"`([^`]+)`", lines[i]), re.sub(r"<!--.*?-->\n+", "", "\n".join(lines[i:end]) + "\n", flags=re.S).strip()
+
+    def test_a_name_in_a_heading_prints_the_section_of_every_page(self):
+        want = {}
+        for name, text in sorted(self.pages().items(), key=lambda page: (page[0] != "src/cli/README.md", page[0] == "schemas/README.md", page[0])):
+            for names, section in self.headings(text):
+                for one in set(names):
+                    want.setdefault(one, []).append((name, section))
+        self.assertGreater(len(want), 80)
+        for topic in [t for t in want if " " not in t][::1 if os.environ.get("MT_EVERY") else 12] + ["avoid", "search"]:
+            with self.subTest(topic):
+                if topic in COMMANDS and want[topic][0][0] != "src/cli/README.md":
+                    continue
+                said = self.expect(0, "help", topic).stdout
+                at = 0
+                for name, section in want[topic]:
+                    self.assertIn(f"From {name}:\n\n", said)
+                    at = said.index(section, at) + len(section)
+                self.assertEqual(said[at:], "\n")
+                self.assertNotIn("<!--", said)
+
+    def test_a_member_without_a_heading_prints_its_entries(self):
+        said = self.expect(0, "help", "margin_percent").stdout
+        self.assertIn("From schemas/README.md, `avoid` (Study: `modetune-study/1`):\n\n- `margin_percent` (", said)
+        self.assertIn("From schemas/README.md, `rotor`, `rotors` (Study: `modetune-study/1`):\n\n- `margin_percent` (", said)
+        entries = re.findall(r"^- `.*(?:\n  .*)*", said, re.M)
+        self.assertEqual(len(entries), len(set(entries)))
+        reference = (SOURCE / "schemas/README.md").read_text(encoding="utf-8")
+        self.assertLessEqual(set(re.findall(r"^- `margin_percent`.*(?:\n  .*)*", reference, re.M)), set(entries))
+
+    def test_a_row_a_value_and_a_function_lead_to_what_explains_them(self):
+        self.assertIn("| `revolute` |", self.expect(0, "help", "revolute").stdout)
+        self.assertTrue(self.expect(0, "help", "revolute").stdout.startswith("From problems/README.md:\n\n### `joints`"))
+        said = self.expect(0, "help", "E24").stdout
+        self.assertTrue(said.startswith("From schemas/README.md, `catalogue` (Study: `modetune-study/1`):\n\n- `series` ("))
+        for function in ("sin", "atan2"):
+            said = self.expect(0, "help", function).stdout
+            self.assertIn("From problems/README.md:\n\n## Numbers and expressions\n", said)
+            self.assertLessEqual(len(re.findall(r"^From ", said, re.M)), 10)
+
+    def test_an_unknown_topic_names_near_ones_and_lists_all(self):
+        for topic, near in (("avod", '"avoid"'), ("margin_perc", '"margin_percent"'), ("modse", '"modes"')):
+            done = self.expect(2, "help", topic)
+            self.assertEqual(done.stdout, "")
+            self.assertRegex(done.stderr, rf'^modetune: error: no topic is called "{topic}"; did you mean .*{near}')
+            for word in ("compare", "tolerance_box", "Commands:"):
+                self.assertIn(word, done.stderr)
+        self.assertEqual(self.expect(2, "help", "xyzzyq").stderr.splitlines()[0], 'modetune: error: no topic is called "xyzzyq"')
+        self.assertIn("\\u001b", self.expect(2, "help", "\x1b[31m").stderr)
+
+    def test_alone_it_says_how_to_ask(self):
+        said = self.expect(0, "help").stdout
+        self.assertTrue(said.startswith(self.expect(0, "--help").stdout))
+        self.assertIn('"modetune help TOPIC"', said)
+        listed = set(re.findall(r"[a-z_0-9]+", said.split("Objects of files")[1]))
+        self.assertLessEqual({"avoid", "catalogue", "tolerance_box", "ellipsoid"}, listed)
 
 
 class WrongUse(CliTest):

@@ -17,8 +17,6 @@ TREE = Path(os.environ["SOURCE_DIR"])
 sys.path.append(str(TREE / "schemas"))
 import reference  # noqa: E402: where it is, is known now
 
-WRITTEN_LATER = {"../problems/README.md", "../studies/README.md"}
-
 
 def members(schema):
     """(name, description) of every member in a schema, however deep."""
@@ -58,15 +56,8 @@ class Reference(unittest.TestCase):
         self.assertGreater(found, 500)
 
     def test_links_lead_to_sections(self):
-        slugs, anchors = {}, set()
-        for heading in re.findall(r"^#+ (.*)$", self.made, re.M):
-            slug = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
-            slugs[slug] = slugs.get(slug, -1) + 1
-            anchors.add(slug if slugs[slug] == 0 else f"{slug}-{slugs[slug]}")
-        links = set(re.findall(r"\]\(#([^)]*)\)", self.made))
-        self.assertGreater(len(links), 80)
-        self.assertEqual(links - anchors, set())
-        self.assertLessEqual(set(links_to_nowhere(self.made, TREE / "schemas")), WRITTEN_LATER)
+        self.assertGreater(len(re.findall(r"\]\(#", self.made)), 80)
+        self.assertEqual(links_to_nowhere(self.made, TREE / "schemas"), [])
         self.assertEqual([line for line in self.made.splitlines() if len(line) > reference.WIDTH and "`" not in line], [])
 
     def test_a_changed_schema_changes_the_page(self):
