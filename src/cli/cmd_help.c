@@ -338,9 +338,6 @@ int mt_cmd_help(const mt_args *args, mt_text *out)
     const mt_shipped *last = NULL;
     if (args->n_operands == 0) {
         mt_help(MT_CMD_NONE, out);
-        mt_text_add(out,
-                    "\n\"modetune help TOPIC\" prints what the documents say of a topic: a "
-                    "command, or a\nword of a model, a study or a result.\n");
         list_topics(out);
         return MT_EXIT_DONE;
     }

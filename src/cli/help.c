@@ -87,7 +87,9 @@ void mt_help(int command, mt_text *out)
             help_option(&mt_options[i], out);
         }
     }
-    mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command.\n\nExit status:\n");
+    mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command, \"modetune help "
+                     "TOPIC\" a command or a "
+                     "word of a\nmodel, a study or a result.\n\nExit status:\n");
     for (int i = 0; i < MT_EXITS; i++) {
         mt_text_addf(out, "  %-4d ", mt_exits[i].code);
         mt_help_fill(mt_exits[i].meaning, EXIT_COLUMN, out);
