@@ -201,7 +201,8 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     }
     if (rc == MT_OK) {
         const double own_worst = fresh->worst;
-        fresh->worst = fmax(others, own_worst);
+        const bool none = d->row_soft >= 0 && !isfinite(g->value); /* a resonance undamped */
+        fresh->worst = none || isnan(others) ? nan("") : fmax(others, own_worst);
         violation = demand_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
         percent = PERCENT * mt_describe_off_by(d, g->value, violation);

@@ -42,6 +42,17 @@ static mt_status trace(mt_response *r, double lower, double upper, mt_curve *out
     return mt_response_curve(r, &opt, out, err);
 }
 
+/* An undamped resonance within the curve, which its points need not hit; NULL: none. */
+static const mt_extreme *resonance(const mt_curve *curve)
+{
+    for (int i = 0; i < curve->n_extremes; i++) {
+        if (curve->extremes[i].infinite) {
+            return &curve->extremes[i];
+        }
+    }
+    return NULL;
+}
+
 mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_peak *out,
                           double *by_omega, mt_err *err)
 {
@@ -51,6 +62,10 @@ mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_pe
     *by_omega = 0.0;
     if (lower < upper) {
         MT_TRY(trace(r, lower, upper, &curve, err));
+    }
+    if (resonance(&curve) != NULL) {
+        *out = (mt_sine_peak){.end = MT_FORCED_INFINITE, .pole = -1, .value = nan("")};
+        return MT_OK;
     }
     for (int i = 0; i < curve.n; i++) {
         const double size = cabs(curve.h[i]);
