@@ -60,6 +60,10 @@ mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_pe
     double most = -1.0;
     *out = (mt_sine_peak){.end = MT_FORCED_FINITE, .pole = -1, .omega = lower};
     *by_omega = 0.0;
+    if (r->growing >= 0) {
+        *out = (mt_sine_peak){.end = MT_FORCED_UNSTABLE, .pole = r->growing, .value = nan("")};
+        return MT_OK;
+    }
     if (lower < upper) {
         MT_TRY(trace(r, lower, upper, &curve, err));
     }
