@@ -38,7 +38,7 @@ ABOVE = {"prove": ["problem/", "search/", "answer/", "cli/test_possible", "cli/t
          "vibration": ["cli/test_response_vibration", "response/", "answer/test_study_vibration", "problem/test_study_gradient"],
          "describe": ["answer/", "report/", "library/", "cli/test_explain", "cli/test_doubts", "cli/test_trade_table", "cli/test_words", "hunt/"],
          "report": ["describe/test_numbers", "library/", "cli/test_show", "cli/test_trade_table", "cli/test_words", "cli/test_hostile_text", "schema/test_results"]}
-FIRST_EACH, FIRST_ALL = 4.0, 40.0  # seconds that one test and all tests of the first stage may cost, beyond the room's own and what is named in full
+FIRST_EACH, FIRST_ALL = 4.0, 60.0  # seconds that one test, unless it is named in full, and all of them may cost beyond the room's own
 STEPS = (1.0, 6.0)  # it is built and run in steps: all tests below so many seconds, then the next
 BUILD_LIMIT, TEST_LIMIT, QUICK_LIMIT = 600, 200, 1800  # seconds: a fault may never end
 UNSUITED = "^(browser|structure|install)/"  # what does not judge the code, or not in a copy
@@ -94,7 +94,8 @@ def chosen(all_of, count, rng):
 class Copy:
     """A copy of the tree with a build of its own, where faults are planted."""
 
-    def __init__(self, folder, without):
+    def __init__(self, folder, without, budget):
+        self.budget = budget
         self.folder, self.build = folder, folder / "build/release"
         names = subprocess.run(["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True).stdout.decode().split("\0")
         names = {name for name in names if name and (ROOT / name).is_file()}
@@ -128,10 +129,10 @@ class Copy:
     def first_stage(self, room):
         """The tests of the room, and of the rooms above while their costs allow; in steps, cheap ones first."""
         cost = lambda test: self.costs.get(test, 1.0)
-        named = {test for test in self.tests if test.startswith(room + "/") or test in ABOVE[room]}
-        above = [test for test in self.tests if test.startswith(tuple(ABOVE[room])) and test not in named and cost(test) <= FIRST_EACH]
-        left, picked = FIRST_ALL, [test for test in self.tests if test in named]
-        for test in sorted(above, key=lambda test: (cost(test), test)):
+        picked = [test for test in self.tests if test.startswith(room + "/")]
+        above = [test for test in self.tests if test in ABOVE[room] or (test.startswith(tuple(ABOVE[room])) and cost(test) <= FIRST_EACH)]
+        left = self.budget
+        for test in sorted(set(above) - set(picked), key=lambda test: (cost(test), test)):
             left -= cost(test)
             if left >= 0:
                 picked.append(test)
@@ -191,6 +192,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", metavar="FILE:LINE:KIND,...")
     parser.add_argument("--first", action="store_true", help="the first stage alone")
+    parser.add_argument("--budget", type=float, default=FIRST_ALL, metavar="SECONDS", help="of the tests of the rooms above, in the first stage")
     parser.add_argument("--without", metavar="REGEX", help="as if these tests were not there")
     parser.add_argument("--again", action="store_true", help="judges once more what survived")
     parser.add_argument("--list", action="store_true")
@@ -217,7 +219,7 @@ def main():
     copy = None
     for fault in picked:
         if fault not in known:
-            copy = copy or Copy(folder / "tree", asked.without)
+            copy = copy or Copy(folder / "tree", asked.without, asked.budget)
             known[fault] = copy.judge(fault, quick=not asked.first)
             with answers.open("a", encoding="utf-8") as out:
                 out.write(json.dumps({"fault": fault, "noticed_by": known[fault]}) + "\n")
