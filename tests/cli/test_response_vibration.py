@@ -122,6 +122,19 @@ class Vibration(CliTest):
                     if abs(f - 60) > 1e-6 and 5.001 < f < 399.999:
                         self.assertLessEqual(abs(psd - size(f) ** 2 * density(f)), 1e-10 * psd, (f, psd))
 
+    def test_tones_have_their_largest_response_within_or_at_either_end(self):
+        """Critically damped, where there is no sum over poles: |H|^2 = (1 + 4 r^2) / (1 + r^2)^2, greatest at r^2 = 1/2."""
+        ranges = [[8, 16], [12, 12.1], [5, 9], [20, 30], [12, 400], [1, 12.02]]
+        profile = self.profile(axis="x", tones=[{"frequency_hz": r, "acceleration_m_per_s2": 2} for r in ranges])
+        got = self.shaken(self.write("one.json", one(1.0, 17.0)), "--vibration", profile)
+        self.assertEqual(got["vibration_method"], "quadrature")
+        tones = got["responses"][0]["vibration"]["tones"]
+        for (low, high), tone in zip(ranges, tones, strict=True):
+            r2 = (min(max(17 / math.sqrt(2), low), high) / 17) ** 2
+            want = 2 * math.sqrt((1 + 4 * r2) / (1 + r2) ** 2)
+            self.assertLessEqual(abs(tone["peak"] - want), 1e-10 * want, tone)
+            self.assertLessEqual(abs(tone["frequency_hz"] / 17 - math.sqrt(r2)), 1e-4, tone)
+
     def test_every_form_says_the_same(self):
         profile = self.profile(**SINE_ON_RANDOM)
         model = self.write("one.json", one(0.05, 17.0))
