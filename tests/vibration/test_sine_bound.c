@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What the search for the largest response calls a bound of an interval, tried as one: no
+ * frequency of it has more, in 113 bits, rising, falling or with its top within; and it is close
+ * where the interval is short. The search itself finds the largest response mostly without it.
+ */
+#include "exact_sum.h"
+#include "mt_test.h"
+#include "vibration/sine.c" /* NOLINT(bugprone-suspicious-include) */
+
+enum { SUMS = 60, PLACES = 12, CUTS = 6 };
+
+static double exact_square(const rig *g, const mt_panel *p, double part)
+{
+    const double t = fmin(fmax(p->a + (part * (p->b - p->a)), p->a), p->b);
+    const quad w = (quad)p->anchor + (quad)t;
+    const quad_complex h = exact_value(g, w);
+    return (double)((h.re * h.re) + (h.im * h.im));
+}
+
+/* The bound of one interval against places within, and its tightness: *above. */
+static void check(mt_test *t, mt_random *random, const rig *g, const mt_frf *h,
+                  const mt_panel *p, double *above)
+{
+    const double most = bound(h, p, centre_of(p));
+    double seen = 0.0;
+    for (int k = 0; k <= PLACES; k++) {
+        const double part = k < 2 ? k : mt_random_in(random, 0.0, 1.0);
+        seen = fmax(seen, exact_square(g, p, part));
+    }
+    CHECK(t, most >= seen * (1.0 - (4.0 * DBL_EPSILON)));
+    *above = (most / seen) - 1.0;
+}
+
+static void bound__is_above_every_frequency_of_an_interval(mt_test *t)
+{
+    mt_random random = mt_random_seed(112);
+    mt_arena mem = {0};
+    int panels = 0;
+    int close = 0;
+    REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
+    for (int i = 0; i < SUMS; i++) {
+        const mt_arena_mark mark = mt_arena_get_mark(&mem);
+        rig g;
+        mt_frf h;
+        mt_panels walk;
+        mt_panel p;
+        any_sum(&random, &g);
+        mt_test_row(t, "sum %d", i);
+        if (!CHECK_INT(t, mt_frf_init(&h, &g.sum, &mem, NULL), MT_OK)) {
+            break;
+        }
+        const double lower = pow(10.0, mt_random_in(&random, -2.0, 1.0));
+        mt_panels_begin(&walk, &h, lower, 10.0 * lower, 0.0);
+        while (mt_panels_next(&walk, &p)) {
+            double above = 0.0;
+            for (int cut = 0; cut < CUTS && p.a < p.b; cut++) {
+                check(t, &random, &g, &h, &p, &above);
+                const double middle = 0.5 * (p.a + p.b);
+                p = mt_random_int(&random, 2) == 0 ? (mt_panel){p.anchor, p.a, middle}
+                                                   : (mt_panel){p.anchor, middle, p.b};
+            }
+            panels++;
+            close += above < 0.01 ? 1 : 0;
+        }
+        mt_arena_rewind(&mem, mark);
+    }
+    mt_arena_free(&mem);
+    mt_test_row(t, "all");
+    CHECK(t, panels > SUMS);
+    CHECK(t, 10 * close > 9 * panels);
+}
+
+MT_TEST_MAIN(MT_TEST(bound__is_above_every_frequency_of_an_interval))
