@@ -101,11 +101,12 @@ static void interval__holds_what_113_bits_make_of_points_within(mt_test *t)
                 const double y = any_within(&r, b);
                 mt_test_row(t, "%s of [%a, %a], [%a, %a] at %a, %a", mt_op_name(d->op), a.lo,
                             a.hi, b.lo, b.hi, x, y);
-                CHECK(t, holds(v, exact_op(d->op, x, y)));
+                CHECK(t, holds(v, exact_op(d->op, (quad)x, (quad)y)));
                 if (!has_kink(d->op, x, y)) {
-                    CHECK(t, nearly_holds(p.a, exact_partial(d->op, x, y, false)));
-                    CHECK(t, mt_op_operands(d->op) == 1 || (d->op == MT_OP_POW && x <= 0.0) ||
-                                 nearly_holds(p.b, exact_partial(d->op, x, y, true)));
+                    CHECK(t, nearly_holds(p.a, exact_partial(d->op, (quad)x, (quad)y, false)));
+                    CHECK(t,
+                          mt_op_operands(d->op) == 1 || (d->op == MT_OP_POW && x <= 0.0) ||
+                              nearly_holds(p.b, exact_partial(d->op, (quad)x, (quad)y, true)));
                 }
             }
         }
@@ -138,7 +139,7 @@ static void interval__of_points_is_as_narrow_as_it_says(mt_test *t)
                                    : mt_random_in(&r, d->y[0], d->y[1]);
             const mt_interval v =
                 mt_interval_op(d->op, mt_interval_of(x, x), mt_interval_of(y, y));
-            const quad want = exact_op(d->op, x, y);
+            const quad want = exact_op(d->op, (quad)x, (quad)y);
             if (x < d->x[0] || x > d->x[1] || y < d->y[0] || y > d->y[1] || want == 0) {
                 continue; /* rounded out of the range */
             }
@@ -158,8 +159,8 @@ static void interval__of_points_is_as_narrow_as_it_says(mt_test *t)
 static quad wave_extreme(mt_op op, mt_interval a, quad crest, quad extreme)
 {
     const quad turn = 2 * exact_pi();
-    const quad at_lo = exact_op(op, a.lo, 0);
-    const quad at_hi = exact_op(op, a.hi, 0);
+    const quad at_lo = exact_op(op, (quad)a.lo, 0);
+    const quad at_hi = exact_op(op, (quad)a.hi, 0);
     const double first = ceil((double)(((quad)a.lo - crest) / turn));
     const bool within = crest + (turn * (quad)first) <= (quad)a.hi;
     return within ? extreme : (at_lo > at_hi) == (extreme > 0) ? at_lo : at_hi;

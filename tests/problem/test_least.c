@@ -81,10 +81,10 @@ static double least_of(const rig *g, const double *lo, const double *hi)
 /* The coordinate in which changes count. */
 static quad coordinate(const mt_problem *p, int i, double x)
 {
-    const quad floor = p->floor[i];
+    const quad floor = (quad)p->floor[i];
     return MT_HAS(p->scale[i]) ? (quad)x / (quad)p->scale[i]
            : (quad)x < floor   ? exact_log(floor) + (((quad)x - floor) / floor)
-                               : exact_log(x);
+                               : exact_log((quad)x);
 }
 
 static quad exact_change(const mt_problem *p, const double *x)
@@ -114,7 +114,8 @@ static quad exact_sum(const mt_problem *p, const double *x)
 static quad exact_waves(const mt_problem *p, const double *x)
 {
     (void)p;
-    return ((quad)x[1] * exact_sin(2 * (quad)x[0])) + quad_abs(x[3]) - exact_cos((quad)x[2]);
+    return ((quad)x[1] * exact_sin(2 * (quad)x[0])) + quad_abs((quad)x[3]) -
+           exact_cos((quad)x[2]);
 }
 
 /* Used twice: its interval alone is wide. */

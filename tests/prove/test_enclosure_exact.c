@@ -62,15 +62,15 @@ static quad lightest(quad p)
 }
 
 static const form springs[] = {
-    {"1e4*p%d", straight, NAN, true},
+    {"1e4*p%d", straight, (double)NAN, true},
     {"1e4*p%d*(3 - p%d)", hill, 1.5, true},
     {"2000 + 1e4*(p%d - 1)^2", valley, 1.0, false},
     {"6000 + 5000*sin(3*p%d)", swing, 1.5707963267948966, false},
-    {"2e4*p%d/(1 + p%d)", saturating, NAN, true},
-    {"1e4/p%d", falling, NAN, false},
+    {"2e4*p%d/(1 + p%d)", saturating, (double)NAN, true},
+    {"1e4/p%d", falling, (double)NAN, false},
 };
 static const form bodies[] = {
-    {"0.25 + p%d", light, NAN, true},
+    {"0.25 + p%d", light, (double)NAN, true},
     {"1 + (p%d - 1)^2", lightest, 1.0, false},
 };
 
@@ -215,8 +215,8 @@ static void exact_modes(const rig *g, const double *x, quad *lambda)
     quad m[MASSES];
     quad a[MASSES * MASSES] = {0};
     for (int i = 0; i < g->n; i++) {
-        k[i] = g->form[i]->value(x[i]);
-        m[i] = g->form[g->n + i]->value(x[g->n + i]);
+        k[i] = g->form[i]->value((quad)x[i]);
+        m[i] = g->form[g->n + i]->value((quad)x[g->n + i]);
     }
     for (int i = 0; i < g->n; i++) {
         a[i * (g->n + 1)] = (k[i] + k[i + 1]) / m[i];

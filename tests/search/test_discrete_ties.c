@@ -28,7 +28,7 @@ static const row rows[] = {
     {"k1*k2", 131.5, "{'minimise': 'k1 + k2'}, {'minimise': 'k1'}", 11, 12},
     {"k1*k2", 131.5, "{'minimise': 'k1 + k2'}, {'minimise': 'k2'}", 12, 11},
     {"k1*k2", 131.5, "{'minimise': '2*k1 + k2'}, {'minimise': 'k2'}", 11, 12},
-    {"k1*k2", 144.5, "{'minimise': 'k1 + k2'}, {'minimise': 'k2'}", NAN, NAN},
+    {"k1*k2", 144.5, "{'minimise': 'k1 + k2'}, {'minimise': 'k2'}", (double)NAN, (double)NAN},
     {"-k1*k2", -1.5, "{'minimise': '-k1 - k2'}, {'minimise': 'k2'}", 1, 1},
 };
 

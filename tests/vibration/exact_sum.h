@@ -74,7 +74,7 @@ static inline quad size_of(quad_complex a)
 
 static inline quad_complex exactly(double complex a)
 {
-    return (quad_complex){creal(a), cimag(a)};
+    return (quad_complex){(quad)creal(a), (quad)cimag(a)};
 }
 
 /* H(i w) = sum r / (i w - s) + d0 + d1 i w + d2 (i w)^2 */
@@ -89,7 +89,7 @@ static inline quad_complex exact_value(const rig *g, quad w)
         sum = (quad_complex){sum.re + term.re, sum.im + term.im};
     }
     for (int k = 0; k < g->n; k++) {
-        const quad_complex below = {-creal(g->s[k]), w - (quad)cimag(g->s[k])};
+        const quad_complex below = {-(quad)creal(g->s[k]), w - (quad)cimag(g->s[k])};
         const quad_complex term = over(exactly(g->r[k]), below);
         sum = (quad_complex){sum.re + term.re, sum.im + term.im};
     }

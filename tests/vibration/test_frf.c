@@ -21,15 +21,15 @@ static quad exact_size(const rig *g, double w)
     quad sum = size_of(exactly(g->sum.d[0])) + ((quad)w * size_of(exactly(g->sum.d[1]))) +
                ((quad)w * (quad)w * size_of(exactly(g->sum.d[2])));
     for (int k = 0; k < g->n; k += k < 2 * PAIRS ? 2 : 1) {
-        const quad_complex below = {-creal(g->s[k]), (quad)w - (quad)cimag(g->s[k])};
+        const quad_complex below = {-(quad)creal(g->s[k]), (quad)w - (quad)cimag(g->s[k])};
         if (k >= 2 * PAIRS) {
             sum += size_of(over(exactly(g->r[k]), below));
             continue;
         }
-        const quad_complex mirror = {-creal(g->s[k]), (quad)w + (quad)cimag(g->s[k])};
+        const quad_complex mirror = {-(quad)creal(g->s[k]), (quad)w + (quad)cimag(g->s[k])};
         const quad a = quad_abs((quad)creal(g->r[k]) * (quad)creal(g->s[k]));
         const quad b = quad_abs((quad)cimag(g->r[k]) * (quad)cimag(g->s[k]));
-        const quad slope = (quad)w * quad_abs(creal(g->r[k]));
+        const quad slope = (quad)w * quad_abs((quad)creal(g->r[k]));
         sum += 2 * (a + b + slope) / size_of(times(below, mirror));
     }
     return sum;
@@ -54,7 +54,7 @@ static void frf__is_off_by_roundings_of_the_size_it_tells(mt_test *t)
             const double w = k == 0 ? 0.0 : pow(10.0, mt_random_in(&random, -3.0, 3.0));
             double size = nan("");
             const double complex got = mt_frf_value(&h, (mt_near){.anchor = w}, &size);
-            const quad_complex want = exact_value(&g, w);
+            const quad_complex want = exact_value(&g, (quad)w);
             const quad_complex off = {(quad)creal(got) - want.re, (quad)cimag(got) - want.im};
             CHECK(t, (double)size_of(off) <= ROUNDINGS * size);
             CHECK_NEAR(t, size, (double)exact_size(&g, w), 1e-12);
