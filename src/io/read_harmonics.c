@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "study/rotor.h"
+
 const char *mt_read_multiple_meant(const mt_reader *r, const char *text, char letter)
 {
     static const char *const ways[] = {"",        "p",     "/rev", "/turn",   "perrev",
@@ -74,5 +76,16 @@ void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor)
                               text, good ? "; did you mean \"" : "", good ? meant : "",
                               good ? "\"?" : "");
         }
+    }
+}
+
+void mt_read_doubt_range(mt_reader *r, double lower, double upper, double least,
+                         const char *whose, mt_addr addr)
+{
+    const char *const doubt = lower > 0.0 && lower <= upper
+                                  ? mt_rotor_doubt_range(lower, upper, least, whose, r->mem)
+                                  : NULL;
+    if (doubt != NULL) {
+        mt_reader_doubt(r, addr, "speed_range", "%s", doubt);
     }
 }

@@ -103,15 +103,9 @@ void mt_read_profile_rotor(mt_reader *r, mt_addr value, mt_rotor *rotor)
     read_tail(r, found[ROTOR_TAIL], rotor);
     mt_read_harmonics(r, found[ROTOR_HARMONICS], rotor);
     if (mt_read_profile_pair(r, found[ROTOR_RANGE], &rotor->range_lower, &rotor->range_upper)) {
-        const char *const doubt =
-            rotor->range_lower > 0.0 && rotor->range_upper > 0.0
-                ? mt_rotor_doubt_range(rotor->range_lower, rotor->range_upper,
-                                       MT_ROTOR_LEAST_SPEED, "rotor's", r->mem)
-                : NULL;
         rotor->range_addr = found[ROTOR_RANGE];
-        if (doubt != NULL) {
-            mt_reader_doubt(r, rotor->range_addr, "speed_range", "%s", doubt);
-        }
+        mt_read_doubt_range(r, rotor->range_lower, rotor->range_upper, MT_ROTOR_LEAST_SPEED,
+                            "rotor's", rotor->range_addr);
     }
 }
 

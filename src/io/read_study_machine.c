@@ -3,6 +3,7 @@
 #include "io/read_study_priv.h"
 
 #include "io/read_harmonics.h"
+#include "study/rotor.h"
 
 #define MACHINE_KEYS(X)                                               \
     X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false, MACHINE)       \
@@ -113,6 +114,8 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
         mt_read_study_pair(s, o->found[MACHINE_RANGE], o->found[MACHINE_RANGE], range)) {
         machine->range_lower = range[0];
         machine->range_upper = range[1];
+        mt_read_doubt_range(&s->r, range[0], range[1], MT_MACHINE_LEAST_SPEED, "machine's",
+                            machine->range_addr);
     }
 }
 

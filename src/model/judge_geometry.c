@@ -473,7 +473,11 @@ static void judge_gyration(mt_judge *j, const mt_item *item, const mt_body *b, d
     }
     const double radius = mass > 0.0 ? sqrt(most) / sqrt(mass) : 0.0;
     const char *const of = own > 0.0 ? "of a body whose points are at most" : "in a drawing";
-    if (own > 0.0 ? radius > MOST_GYRATION * own : size > 0.0 && radius > MOST_ALONE * size) {
+    /* a drawing of one point: as a body of such a size is judged */
+    const bool vast = radius > MOST_SIZE_M && mass / radius / radius / radius < LEAST_FILLED;
+    if (own > 0.0    ? radius > MOST_GYRATION * own
+        : size > 0.0 ? radius > MOST_ALONE * size
+                     : vast) {
         (void)mt_judge_place(
             j,
             mt_doubt_add(j->out, MT_LEVEL_DOUBT, "inertia",

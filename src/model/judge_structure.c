@@ -227,6 +227,40 @@ static void judge_axes(mt_judge *j, const mt_item *item, const mt_joint *joint)
     }
 }
 
+/* The plane that a link bends in is that of its length and what is across its hinge axis. */
+static void judge_hinge_axis(mt_judge *j, int i, const mt_link *l)
+{
+    static const double NOT_PERPENDICULAR = 1e-6; /* cosine; as the mechanism is built */
+    const mt_item item = {"link", "links", i, l->name.s};
+    double axis[AXES];
+    double from[AXES];
+    double to[AXES];
+    if (!l->has_hinge_axis || j->model->dimension == 2) {
+        return;
+    }
+    if (length_of(j, l->hinge_axis, axis) == 0.0) {
+        fault_axis(j, &item, l->hinge_axis, l->name.addr, "hinge_axis",
+                   "has length 0 and no direction");
+        return;
+    }
+    if (!mt_judge_position(j, &l->from, from) || !mt_judge_position(j, &l->to, to)) {
+        return;
+    }
+    double dot = 0.0;
+    double a = 0.0;
+    double b = 0.0;
+    for (int k = 0; k < AXES; k++) {
+        const double along = to[k] - from[k];
+        dot += axis[k] * along;
+        a = hypot(a, axis[k]);
+        b = hypot(b, along);
+    }
+    if (fabs(dot) > NOT_PERPENDICULAR * a * b) {
+        fault_axis(j, &item, l->hinge_axis, l->name.addr, "hinge_axis",
+                   "is not perpendicular to the link");
+    }
+}
+
 static void judge_ends(mt_judge *j, int i, const mt_link *l)
 {
     double from[AXES];
@@ -250,6 +284,7 @@ void mt_judge_structure(mt_judge *j)
     for (int i = 0; i < m->n_links; i++) {
         if (mt_model_present(&m->links[i].in, j->configuration)) {
             judge_ends(j, i, &m->links[i]);
+            judge_hinge_axis(j, i, &m->links[i]);
         }
     }
     for (int i = 0; i < m->n_springs; i++) {

@@ -137,7 +137,7 @@ const mt_possible mt_possible_of[MT_POSSIBLE_COUNT] = {
                          .below = "less than one turn in 100 s: are turns per second meant?",
                          .beyond = "more than 500 turns per second: is the unit rpm?"},
     [MT_POSSIBLE_MACHINE] = {POSITIVE, MEANT, .with = "doubt_speed"},
-    [MT_POSSIBLE_FACTORS] = {POSITIVE, MEANT, .with = "doubt_range"},
+    [MT_POSSIBLE_FACTORS] = {POSITIVE, MEANT, .with = "mt_rotor_doubt_range"},
     [MT_POSSIBLE_HZ] = {.least = 1e-9,
                         .most = 1e9,
                         .impossible = "must be within 1e-09 and 1e+09 Hz",

@@ -26,6 +26,8 @@ void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft
 /* A rotor turns at 0.9 to 1.1 of its nominal speed, between idle and overspeed at 0.5 to 1.3;
  * [95, 105] is per cent. */
 #define MT_ROTOR_LEAST_SPEED 0.5
+/* An engine idles at a tenth of its nominal speed. */
+#define MT_MACHINE_LEAST_SPEED 0.05
 /* What is hardly meant of factors of the speed of a rotor or a machine ("rotor's"), which is
  * plausible from `least` on; in mem. NULL: nothing. */
 const char *mt_rotor_doubt_range(double lower, double upper, double least, const char *whose,

@@ -10,10 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "study/rotor.h"
-
-/* An engine idles at a tenth of its nominal speed, and turns at less than 30 000 per minute. */
-static const double LEAST_MACHINE = 0.05;
+/* A machine turns at less than 30 000 per minute. */
 static const double MOST_SPEED_HZ = 500.0;
 static const double SECONDS = 60.0;
 /* A separation margin is 5 to 20 per cent; 0.1 is the factor that 10 per cent are. */
@@ -33,24 +30,6 @@ static void at(mt_doubt *doubt, mt_addr addr)
 {
     if (doubt != NULL) {
         doubt->addr = addr;
-    }
-}
-
-/* Factors a to b of the speed of a rotor or a machine. */
-typedef struct factors {
-    double a;
-    double b;
-    double least; /* a slower speed is hardly meant */
-    const char *whose;
-    mt_addr addr;
-} factors;
-
-static void doubt_range(mt_doubt_list *out, const factors *range)
-{
-    const char *const text =
-        mt_rotor_doubt_range(range->a, range->b, range->least, range->whose, out->mem);
-    if (text != NULL) {
-        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "speed_range", "%s", text), range->addr);
     }
 }
 
@@ -85,14 +64,10 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
     doubt_margin(out, avoid->source.margin_percent, avoid->margin_addr);
     for (int i = 0; i < avoid->source.n_rotors; i++) {
         const mt_rotor *const rotor = &avoid->source.rotors[i];
-        doubt_range(out, &(factors){rotor->range_lower, rotor->range_upper,
-                                    MT_ROTOR_LEAST_SPEED, "rotor's", rotor->range_addr});
         doubt_margin(out, rotor->margin_percent, rotor->margin_addr);
     }
     for (int i = 0; i < avoid->source.n_machines; i++) {
         const mt_machine *const machine = &avoid->source.machines[i];
-        doubt_range(out, &(factors){machine->range_lower, machine->range_upper, LEAST_MACHINE,
-                                    "machine's", machine->range_addr});
         doubt_speed(out, machine);
         doubt_margin(out, machine->margin_percent, machine->margin_addr);
     }

@@ -6,11 +6,17 @@ each kind in a model)."""
 import copy
 import json
 import os
+import random
 import re
+import sys
 
 from common_cli import SOURCE, CliTest, main
 
+sys.path.insert(0, str(SOURCE / "tests/mechanisms"))
+from makers import KINDS  # noqa: E402
+
 PLACES = 10 ** 6 if "MT_EVERY" in os.environ else 1
+SEEDS = 3 if "MT_EVERY" in os.environ else 1
 FOLDERS = ("problems", "tests/models", "src/cli/init")
 COINCIDE = r"two points coincide|is a point mass and can be held at its centre only"
 LINES = ("axial", "bar")  # springs that act along the line between two points
@@ -137,11 +143,22 @@ def changed(model, path, value):
 
 
 class WrongModels(CliTest):
+    def generated(self):
+        """Mechanisms that chance makes, of each kind."""
+        made = {}
+        for kind, make in KINDS.items():
+            for seed in range(SEEDS):
+                name = f"problems/{kind}_{seed}.json"
+                model = json.loads(json.dumps(make(random.Random(f"{kind} {seed}"))))
+                made[self.write(name, json.dumps(model))] = model
+        return made
+
     def sound(self):
         """The models of the tree that can be analysed as they are."""
         paths = [p for folder in FOLDERS for p in sorted((SOURCE / folder).glob("*.json"))]
         models = {str(p): json.loads(p.read_text(encoding="utf-8")) for p in paths}
         models = {p: m for p, m in models.items() if m.get("format") == "modetune-model/1"}
+        models.update(self.generated())
         answer = json.loads(self.run_program("check", "--format", "json", *models).stdout)
         return {got["file"]: models[got["file"]] for got in answer if not any(p["severity"] == "error" for p in got["problems"])}
 
