@@ -50,7 +50,7 @@ typedef struct mt_doubt {
     X("margin", "a margin that looks like a factor")                                   \
     X("mass", "a mass that no mechanism has")                                          \
     X("modulus", "a modulus that no solid has")                                        \
-    X("no_effect", "bands without effect")                                             \
+    X("no_effect", "bands, or a shape of one number, without effect")                  \
     X("off", "a joint or spring that lies off what it holds")                          \
     X("reference", "measured frequencies that are all off by 2 pi or 60")              \
     X("section", "a section that is too thick or too thin")                            \

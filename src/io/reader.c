@@ -501,10 +501,28 @@ bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback)
     return mt_reader_type(r, value, MT_KEY_BOOL) ? mt_json_bool(r->doc, value) : fallback;
 }
 
+/* "10 %" where the number is one of per cent: dividing it by 100 would be wrong. */
+static bool says_percent(mt_reader *r, mt_addr value, const char *text)
+{
+    static const char PERCENT[] = "_percent";
+    const mt_key *const key = strchr(text, '%') == NULL ? NULL : key_of(r, value);
+    const size_t n = key == NULL ? 0 : strlen(key->name);
+    const size_t end = sizeof PERCENT - 1;
+    if (n < end || strcmp(key->name + n - end, PERCENT) != 0) {
+        return false;
+    }
+    mt_diag_error(r->diags, value, "%s is in per cent already: leave out \"%%\"", key->name);
+    return true;
+}
+
 bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out)
 {
     mt_err err = {MT_OK, ""};
     const int n_names = mt_diag_may_suggest(r->diags) ? r->n_names : 0;
+    if (says_percent(r, addr, text)) {
+        *out = (mt_expr){0};
+        return false;
+    }
     const mt_status rc =
         mt_expr_parse(text, r->lookup, r->context, r->names, n_names, r->mem, out, &err);
     if (rc == MT_OK) {

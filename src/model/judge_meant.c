@@ -15,6 +15,11 @@ static const double BUSHING_APART = 0.01;
 static const double LEAST_PLACED = 0.05;
 static const double MOST_NEAR = 100.0;
 
+/* m/s^2: a load factor of an aircraft or a rocket is below 20. */
+static const double MOST_GRAVITY = 200.0;
+static const double LEAST_MULTIPLE = 0.5;
+static const double MOST_MULTIPLE = 1.5;
+
 enum { AXES = 3, PLACE = 96 };
 
 /* Whose gravity is in force: its pointer, and its numbers. */
@@ -35,6 +40,26 @@ static const char *gravity_pointer(const mt_judge *j)
                            m->configurations[c].name.s);
 }
 
+/* In cm/s^2 or mm/s^2, or as a multiple of the earth's: between the moon's 1.62 and nothing. */
+static void judge_gravity_size(mt_judge *j, const double g[AXES], int most)
+{
+    const mt_configuration *const c = &j->model->configurations[j->configuration];
+    const double size = hypot(hypot(g[0], g[1]), g[2]);
+    const bool multiple = size > LEAST_MULTIPLE && size < MOST_MULTIPLE;
+    if (!multiple && !(size > MOST_GRAVITY)) {
+        return;
+    }
+    (void)mt_judge_place(j,
+                         mt_doubt_add(j->out, MT_LEVEL_DOUBT, "gravity",
+                                      multiple
+                                          ? "gravity_m_per_s2 has a size of %.4g m/s^2: is "
+                                            "a multiple of 9.81 m/s^2 meant?"
+                                          : "gravity_m_per_s2 has a size of %.4g m/s^2, more "
+                                            "than 20 times the earth's: is the unit m/s^2?",
+                                      size),
+                         j->model->nums[c->gravity[most]].addr, gravity_pointer(j));
+}
+
 /* Along +y of a plane, +y or +z of space, more than along any other axis. */
 static void judge_gravity(mt_judge *j)
 {
@@ -49,6 +74,7 @@ static void judge_gravity(mt_judge *j)
         g[k] = c->gravity[k] == MT_ABSENT ? 0.0 : j->value[c->gravity[k]];
         most = fabs(g[k]) > fabs(g[most]) ? k : most;
     }
+    judge_gravity_size(j, g, most);
     if (most == 0 || !(g[most] > 0.0)) {
         return;
     }
@@ -59,6 +85,27 @@ static void judge_gravity(mt_judge *j)
                      "%g meant?",
                      g[most], axes[most], axes[most], -g[most]),
         j->model->nums[c->gravity[most]].addr, gravity_pointer(j));
+}
+
+/* What gives a motion energy instead of taking it. */
+static void judge_damper(mt_judge *j, const mt_item *item, const mt_spring *s)
+{
+    const mt_num all[] = {s->stiffness,      s->translation[0], s->translation[1],
+                          s->translation[2], s->rotation[0],    s->rotation[1],
+                          s->rotation[2]};
+    for (int k = 0; k < MT_COUNT(all); k++) {
+        if (all[k] != MT_ABSENT && j->value[all[k]] < 0.0) {
+            (void)mt_judge_place(
+                j,
+                mt_doubt_add(j->out, MT_LEVEL_FACT, "damper",
+                             "damper \"%s\" has a negative coefficient (%g): it feeds the "
+                             "motion",
+                             item->name, j->value[all[k]]),
+                j->model->nums[all[k]].addr,
+                mt_arena_printf(j->out->mem, "/%s/%d", item->list, item->index));
+            return;
+        }
+    }
 }
 
 static const char *point_text(const mt_judge *j, const double x[3], char out[PLACE])
@@ -187,8 +234,14 @@ void mt_judge_meant(mt_judge *j, double size)
         const mt_item item = {s->damper ? "damper" : "spring",
                               s->damper ? "dampers" : "springs", s->damper ? dampers++ : i,
                               s->name.s};
-        if (s->type == MT_SPRING_BUSHING && mt_model_present(&s->in, j->configuration)) {
+        if (!mt_model_present(&s->in, j->configuration)) {
+            continue;
+        }
+        if (s->type == MT_SPRING_BUSHING) {
             judge_bushing(j, &item, s, size);
+        }
+        if (s->damper) {
+            judge_damper(j, &item, s);
         }
     }
     for (int i = 0; i < m->n_links; i++) {

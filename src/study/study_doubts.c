@@ -25,6 +25,8 @@ static const double LEAST_STIFFNESS_PERCENT = 0.1;
 static const double MOST_SPAN = 1e8;
 static const double MOST_SHIFT = 1e3;
 static const double PERCENT = 100.0;
+/* Two modes that are asked to nearly the same frequency may change places within tolerances. */
+static const double MOST_SLACK = 1.01;
 
 static void at(mt_doubt *doubt, mt_addr addr)
 {
@@ -84,7 +86,17 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
     }
 }
 
-static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
+static bool is_stiffness(const char *unit)
+{
+    static const char *const units[] = {"N/m", "N m/rad", "N s/m", "N m s/rad"};
+    bool is = false;
+    for (int i = 0; i < MT_COUNT(units); i++) {
+        is = is || strcmp(unit, units[i]) == 0;
+    }
+    return is;
+}
+
+static void doubt_variable(mt_doubt_list *out, const mt_study *s, const mt_variable *v)
 {
     const char *const name = v->parameter_name.s;
     const double ratio = v->lower > 0.0 ? v->upper / v->lower : 0.0;
@@ -97,6 +109,15 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
                name, mt_unit_from_si(v->shown, v->lower), mt_unit_from_si(v->shown, v->upper),
                v->shown == NULL ? "" : " ", mt_unit_name(v->shown, ""), floor(decades)),
            v->addr);
+    }
+    const char *const unit =
+        v->parameter == MT_ABSENT ? NULL : s->model->parameters[v->parameter].unit;
+    if (v->lower < 0.0 && v->original > 0.0 && unit != NULL && is_stiffness(unit)) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "bounds",
+                        "the bounds of %s reach below 0, to a spring or damper that gives "
+                        "energy: its original value is above",
+                        name),
+           v->lower_addr);
     }
     const bool below =
         v->original > 0.0 && v->upper > 0.0 && v->original / v->upper > MOST_SHIFT;
@@ -112,16 +133,6 @@ static void doubt_variable(mt_doubt_list *out, const mt_variable *v)
                mt_unit_from_si(v->shown, v->original)),
            v->addr);
     }
-}
-
-static bool is_stiffness(const char *unit)
-{
-    static const char *const units[] = {"N/m", "N m/rad", "N s/m", "N m s/rad"};
-    bool is = false;
-    for (int i = 0; i < MT_COUNT(units); i++) {
-        is = is || strcmp(unit, units[i]) == 0;
-    }
-    return is;
 }
 
 /* What is made to its number is made to a part of it, and lengths to so many metres. */
@@ -167,6 +178,14 @@ static void doubt_trade(mt_doubt_list *out, const mt_trade *trade)
     }
 }
 
+/* Of a mode, a number that a reference can give. */
+static bool asks_frequency(const mt_goal *goal)
+{
+    const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
+    return mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0 &&
+           mt_goal_member_at(kind, MT_SLOT_REFERENCE) >= 0;
+}
+
 /* A measured frequency that a goal is to meet exactly, where other goals with references make
  * a misfit: a weight was forgotten, unless a tolerance says that it is meant. */
 static void doubt_weights(mt_doubt_list *out, const mt_study *s)
@@ -181,9 +200,8 @@ static void doubt_weights(mt_doubt_list *out, const mt_study *s)
             continue;
         }
         fitted = fitted || MT_HAS(goal->weight);
-        const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
-        const bool value = mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0; /* else a shape */
-        if (!MT_HAS(goal->weight) && value && goal->tolerance_addr == goal->addr) {
+        if (!MT_HAS(goal->weight) && asks_frequency(goal) &&
+            goal->tolerance_addr == goal->addr) {
             first = first == NULL ? goal : first;
             n++;
         }
@@ -200,16 +218,88 @@ static void doubt_weights(mt_doubt_list *out, const mt_study *s)
     }
 }
 
+/* Shapes are compared whatever their size: two of one number are always the same. */
+static void doubt_shape(mt_doubt_list *out, const mt_study *s, const mt_goal *goal)
+{
+    const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
+    const int index = goal->reference_mode > 0 ? goal->reference_mode : goal->mode.index;
+    if (goal->reference == MT_ABSENT || mt_goal_member_at(kind, MT_SLOT_EQUALS) >= 0) {
+        return;
+    }
+    const mt_reference *const r = &s->references[goal->reference];
+    if (r->model_path.s == NULL && index >= 1 && index <= r->n_modes &&
+        mt_count_common_channels(s->model, &r->modes[index - 1]) == 1) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                        "mode %d of reference \"%s\" has one number in common with the model: "
+                        "any shape is the same as that",
+                        index, r->name.s),
+           goal->addr);
+    }
+}
+
+/* The lowest frequency that a goal allows a mode, and the highest. */
+static void limits_of(const mt_study *s, const mt_goal *goal, double *low, double *high)
+{
+    double equal = goal->number[MT_SLOT_EQUALS];
+    if (goal->reference != MT_ABSENT && s->references[goal->reference].model_path.s == NULL) {
+        const mt_reference *const r = &s->references[goal->reference];
+        const int index = goal->reference_mode > 0 ? goal->reference_mode : goal->mode.index;
+        equal = index >= 1 && index <= r->n_modes ? r->modes[index - 1].frequency_hz : equal;
+    }
+    *low = MT_HAS(equal) ? equal : goal->at_least;
+    *high = MT_HAS(equal) ? equal : goal->at_most;
+}
+
+static bool share_configuration(const mt_goal *a, const mt_goal *b)
+{
+    for (int i = 0; i < a->n_configurations; i++) {
+        for (int k = 0; k < b->n_configurations; k++) {
+            if (a->configurations[i] == b->configurations[k]) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* Modes are counted by ascending frequency: a higher one is not lower. */
+static void doubt_order(mt_doubt_list *out, const mt_study *s, const mt_goal *goal)
+{
+    for (int i = 0; i < s->n_goals && asks_frequency(goal); i++) {
+        const mt_goal *const other = &s->goals[i];
+        double low = 0.0;
+        double high = 0.0;
+        double unused = 0.0;
+        if (!asks_frequency(other) || other->mode.mode_name.s != NULL ||
+            goal->mode.mode_name.s != NULL || other->mode.index >= goal->mode.index ||
+            !share_configuration(goal, other)) {
+            continue;
+        }
+        limits_of(s, other, &low, &unused);
+        limits_of(s, goal, &unused, &high);
+        if (low > high * MOST_SLACK) {
+            at(mt_doubt_add(out, MT_LEVEL_DOUBT, "target",
+                            "mode %d is asked to at most %.6g Hz and mode %d to at least %.6g "
+                            "Hz: modes are counted by ascending frequency",
+                            goal->mode.index, high, other->mode.index, low),
+               goal->addr);
+            return;
+        }
+    }
+}
+
 static void doubt_all(const mt_study *s, mt_doubt_list *out)
 {
     for (int i = 0; i < s->n_variables; i++) {
-        doubt_variable(out, &s->variables[i]);
+        doubt_variable(out, s, &s->variables[i]);
         doubt_fine(out, s, &s->variables[i]);
     }
     for (int i = 0; i < s->n_goals; i++) {
         if (s->goals[i].avoid != NULL) {
             doubt_avoid(out, &s->goals[i]);
         }
+        doubt_shape(out, s, &s->goals[i]);
+        doubt_order(out, s, &s->goals[i]);
     }
     doubt_weights(out, s);
     doubt_trade(out, &s->trade);

@@ -54,6 +54,8 @@ int mt_check_mode(mt_study_check *c, mt_mode_ref *mode);
  * reference_mode 0: mode_index. Problems noted at addr. */
 void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mode,
                              int mode_index, bool shape, mt_addr addr);
+/* Channels of a measured mode that the model has, too (study_references.c). */
+int mt_count_common_channels(const mt_model *model, const mt_measured_mode *mode);
 /* A shape or a MAC needs a sensor and a direction that the model and the reference's model both
  * have. (study_references.c) */
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);

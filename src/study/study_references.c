@@ -46,6 +46,15 @@ static bool share_channel(const mt_model *a, const mt_model *b)
     return false;
 }
 
+int mt_count_common_channels(const mt_model *model, const mt_measured_mode *mode)
+{
+    int n = 0;
+    for (int k = 0; k < mode->n_values; k++) {
+        n += has_channel(model, mode->channels[k].s) ? 1 : 0;
+    }
+    return n;
+}
+
 static void check_measured(mt_study_check *c, mt_reference *r)
 {
     for (int i = 0; i < r->n_modes; i++) {

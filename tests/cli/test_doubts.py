@@ -145,6 +145,9 @@ class Doubts(CliTest):
             (("links", 0, "to"), [0, 500], "size", [0, 1]),
             (("gravity_m_per_s2",), [0, 9.81], "gravity", [0, -9.81]),
             (("gravity_m_per_s2",), [1, 2], "gravity", [2, 1]),
+            (("gravity_m_per_s2",), [0, -981], "gravity", [0, -199]),
+            (("gravity_m_per_s2",), [0, -1], "gravity", [0, -1.6]),
+            (("gravity_m_per_s2",), [0, -1.4], "gravity", [0, -0.4]),
             (("parameters", "q"), {"value": "sin(90)"}, "angle", {"value": "sin(90*deg)"}),
             (("parameters", "q"), {"value": "cos(6.3 + pi/2)"}, "angle", {"value": "cos(6.2 + 4*pi)"}),
             (("joints", 0, "at"), [[0, 0], [0.5, 0]], "gap", [[0, 0], [0.05, 0]]),
@@ -302,6 +305,40 @@ class Doubts(CliTest):
             doubts, _ = self.found(self.put_model(("points",), dict(base["points"], foot=point), base))
             self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [(k, "/points/foot") for k in want], point)
         self.assertEqual(self.found(self.put_model(("points",), {"foot": [0.3, 0.5]}))[0], [])  # in a file of metres
+
+    def test_goals_that_contradict_the_order_of_modes(self):
+        self.put_model()
+        modes = [{"frequency_hz": 60}, {"frequency_hz": 5.2}]
+        measured = [{"type": "frequency", "mode": m, "reference": "test", "weight": 1} for m in (1, 2)]
+        rows = [(measured, modes, True), (measured, modes[::-1], False), ([dict(measured[0], reference_mode=2), dict(measured[1], reference_mode=1)], modes, False),
+                ([{"type": "frequency", "mode": 2, "at_most_hz": 60}, {"type": "frequency", "mode": 1, "at_least_hz": 61}], modes, True),
+                ([{"type": "frequency", "mode": 2, "at_most_hz": 60}, {"type": "frequency", "mode": 1, "at_least_hz": 60}], modes, False)]
+        for goals, frequencies, doubted in rows:
+            study = dict(STUDY, goals=goals, references={"test": {"modes": frequencies}})
+            if "weight" in goals[0]:
+                study["objective"] = {"minimise": "misfit"}
+            doubts = [d for d in self.found(self.put_study(base=study))[0] if "ascending" in d["text"]]
+            self.assertEqual([d["kind"] for d in doubts], ["target"] if doubted else [], goals)
+
+    def test_a_shape_of_one_number(self):
+        self.put_model(("sensors",), [{"name": "top", "on": "tip", "directions": ["x", "y"]}])
+        for shape, doubted in (({"top.x": 1}, True), ({"top.x": 1, "other.x": 2}, True), ({"top.x": 1, "top.y": 0.1}, False)):
+            study = dict(STUDY, goals=[{"type": "mac", "mode": 1, "reference": "test", "at_least": 0.9}], references={"test": {"modes": [{"shape": shape}]}})
+            doubts = self.found(self.put_study(base=study))[0]
+            self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [("no_effect", "/goals/0")] if doubted else [], shape)
+
+    def test_bounds_of_a_stiffness_below_0(self):
+        self.put_model()
+        for lower, doubted in ((-1, True), (0, False)):
+            study = dict(STUDY, variables=[{"parameter": "k", "lower": lower, "upper": 20000, "scale": 1000}])
+            doubts = self.found(self.put_study(base=study))[0]
+            self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [("bounds", "/variables/0/lower")] if doubted else [])
+
+    def test_a_damper_that_feeds_the_motion(self):
+        for coefficient, told in ((-0.1, ["damper"]), (0.1, [])):
+            damper = {"name": "d", "type": "torsion", "joint": "foot", "damping_n_m_s_per_rad": coefficient}
+            doubts, facts = self.found(self.put_model(("dampers",), [damper]))
+            self.assertEqual((doubts, [f["kind"] for f in facts]), ([], told))
 
     def test_a_weight_that_is_forgotten(self):
         self.put_model(("sensors",), [{"name": "top", "on": "tip", "directions": ["x", "y"]}])
