@@ -33,9 +33,12 @@ static mt_status find_ratios(mt_analysis *a, work *w, mt_err *err)
     const bool listed = d->n_ratios > 0 || d->n_named > 0;
     if (listed && !mt_modal_indexed(modes)) {
         return mt_fail(err, MT_E_DOMAIN,
-                       "configuration \"%s\" is unstable, so that its modes have no index and "
-                       "damping ratios no mode",
-                       mt_analysis_configuration(a));
+                       "configuration \"%s\" %s, so that its modes have no index and damping "
+                       "ratios no mode",
+                       mt_analysis_configuration(a),
+                       modes->n_unstable > 0
+                           ? "is unstable"
+                           : "has an undecided mode (rounding hides whether it holds)");
     }
     if (d->n_ratios > a->n_most - a->n_null) {
         return mt_fail(err, MT_E_INPUT,

@@ -33,7 +33,7 @@ int mt_damped_oscillating(const mt_damped_modes *d, int index)
     int at = -1;
     int seen = 0;
     for (int i = 0; i < d->count; i++) {
-        if (d->kind[i] == MT_DAMPED_UNSTABLE) {
+        if (d->kind[i] == MT_DAMPED_UNSTABLE || d->kind[i] == MT_DAMPED_UNDECIDED) {
             return -1;
         }
         seen += d->kind[i] == MT_DAMPED_OSCILLATING ? 1 : 0;
@@ -141,7 +141,8 @@ mt_status mt_analysis_dpole(mt_analysis *a, int i, double *dre, double *dim, boo
 {
     const mt_damped_modes *d = NULL;
     MT_TRY(mt_analysis_damped(a, &d, err));
-    const bool many = d->kind[i] == MT_DAMPED_RIGID_BODY || is_repeated(d, i);
+    const bool many = d->kind[i] == MT_DAMPED_RIGID_BODY || d->kind[i] == MT_DAMPED_UNDECIDED ||
+                      is_repeated(d, i);
     if (repeated != NULL) {
         *repeated = many;
     }

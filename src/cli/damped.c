@@ -17,20 +17,28 @@ static const char *kind_name(mt_damped_kind kind)
         return "overdamped";
     case MT_DAMPED_RIGID_BODY:
         return "rigid_body";
+    case MT_DAMPED_UNDECIDED:
+        return "undecided";
     case MT_DAMPED_UNSTABLE:
         break;
     }
     return "unstable";
 }
 
-/* 1-based number of an oscillating mode; 0 for the others. */
+/* 1-based number of an oscillating mode; 0 for the others, and where one is undecided. */
 static int index_of(const mt_damped_modes *d, int i)
 {
     int index = 0;
     for (int k = 0; k <= i; k++) {
         index += d->kind[k] == MT_DAMPED_OSCILLATING ? 1 : 0;
     }
-    return d->kind[i] == MT_DAMPED_OSCILLATING ? index : 0;
+    return d->kind[i] == MT_DAMPED_OSCILLATING && mt_damped_indexed(d) ? index : 0;
+}
+
+/* Of an undecided root nothing is known but that it is small. */
+static double known(const mt_damped_modes *d, int i, double x)
+{
+    return d->kind[i] == MT_DAMPED_UNDECIDED ? nan("") : x;
 }
 
 static bool shown(const mt_damped_modes *d, int i, int count)
@@ -74,10 +82,10 @@ void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count, const char
         mt_table_text(t, configuration == NULL && d->kind[i] == MT_DAMPED_RIGID_BODY
                              ? "rigid body"
                              : kind_name(d->kind[i]));
-        mt_table_number(t, mt_damped_natural_hz(d, i), DIGITS);
-        mt_table_number(t, damped_hz(d, i), DIGITS);
-        mt_table_number(t, 100.0 * mt_damped_ratio(d, i), DIGITS);
-        mt_table_number(t, 0.0 - d->re[i], DIGITS);
+        mt_table_number(t, known(d, i, mt_damped_natural_hz(d, i)), DIGITS);
+        mt_table_number(t, known(d, i, damped_hz(d, i)), DIGITS);
+        mt_table_number(t, known(d, i, 100.0 * mt_damped_ratio(d, i)), DIGITS);
+        mt_table_number(t, known(d, i, 0.0 - d->re[i]), DIGITS);
         mt_table_number(t, d->residual[i], RATIO_DIGITS);
     }
 }
@@ -115,10 +123,11 @@ void mt_damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
             mt_json_put_null(w, "index");
         }
         mt_json_put_string(w, "kind", kind_name(d->kind[i]));
-        mt_json_put_number(w, "natural_frequency_hz", mt_damped_natural_hz(d, i));
-        mt_json_put_number(w, "damped_frequency_hz", damped_hz(d, i));
-        mt_json_put_number(w, "damping_ratio_percent", 100.0 * mt_damped_ratio(d, i));
-        mt_json_put_number(w, "decay_per_s", 0.0 - d->re[i]);
+        mt_json_put_number(w, "natural_frequency_hz", known(d, i, mt_damped_natural_hz(d, i)));
+        mt_json_put_number(w, "damped_frequency_hz", known(d, i, damped_hz(d, i)));
+        mt_json_put_number(w, "damping_ratio_percent",
+                           known(d, i, 100.0 * mt_damped_ratio(d, i)));
+        mt_json_put_number(w, "decay_per_s", known(d, i, 0.0 - d->re[i]));
         mt_json_put_number(w, "residual", d->residual[i]);
         mt_json_close(w);
     }

@@ -307,10 +307,26 @@ static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *e
     return MT_OK;
 }
 
-/* About a position that holds, what grows in a passive system is rounding. */
+/* |s|^2 up to which a root is that of an undecided mode: what its eigenvalue may be, and a few
+ * times more for what dampers make of it. */
+static double undecided_square(const mt_modes *modes)
+{
+    static const double times = 4.0;
+    double most = -1.0;
+    for (int i = 0; i < modes->count; i++) {
+        if (modes->kind[i] == MT_MODE_UNDECIDED) {
+            most = fmax(most, times * (fabs(modes->lambda[i]) + modes->error[i]));
+        }
+    }
+    return most;
+}
+
+/* About a position that holds, what grows in a passive system is rounding; the last digits of
+ * the roots have been mended since their kinds were told. */
 static mt_status settle_kinds(const mt_damped_problem *p, mt_damped_modes *out, mt_arena *mem,
                               mt_err *err)
 {
+    const double undecided = undecided_square(p->modes);
     bool passive = false;
     bool grows = false;
     for (int i = 0; i < out->count; i++) {
@@ -319,9 +335,13 @@ static mt_status settle_kinds(const mt_damped_problem *p, mt_damped_modes *out, 
     if (grows && p->modes->n_unstable == 0) {
         MT_TRY(mt_modal_is_passive(p->n, p->c, p->h, mem, &passive, err));
     }
-    for (int i = 0; i < out->count && passive; i++) {
-        if (out->kind[i] == MT_DAMPED_UNSTABLE) {
-            out->kind[i] = out->im[i] > 0.0 ? MT_DAMPED_OSCILLATING : MT_DAMPED_OVERDAMPED;
+    for (int i = p->modes->n_rigid; i < out->count; i++) {
+        const double re = out->re[i];
+        const double im = out->im[i];
+        if ((re * re) + (im * im) <= undecided) {
+            out->kind[i] = MT_DAMPED_UNDECIDED;
+        } else if (out->kind[i] != MT_DAMPED_UNSTABLE || passive) {
+            out->kind[i] = im > 0.0 ? MT_DAMPED_OSCILLATING : MT_DAMPED_OVERDAMPED;
         }
     }
     return MT_OK;
@@ -342,8 +362,18 @@ mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_m
     }
     MT_TRY(prepare(&s, err));
     MT_TRY(p->h == NULL ? solve(&s, out, err) : mt_damped_structural(&s, out, err));
-    MT_TRY(settle_kinds(p, out, mem, err));
-    return mt_damped_check(p, out, mem, err);
+    MT_TRY(mt_damped_check(p, out, mem, err));
+    return settle_kinds(p, out, mem, err);
+}
+
+bool mt_damped_indexed(const mt_damped_modes *d)
+{
+    for (int i = 0; i < d->count; i++) {
+        if (d->kind[i] == MT_DAMPED_UNDECIDED) {
+            return false;
+        }
+    }
+    return true;
 }
 
 double mt_damped_natural_hz(const mt_damped_modes *d, int i)

@@ -22,7 +22,9 @@ typedef enum mt_damped_kind {
     /* s = 0: one entry for each rigid-body mode of the undamped system; where it is damped, its
      * other root is real */
     MT_DAMPED_RIGID_BODY,
-    MT_DAMPED_UNSTABLE /* Re s > 0 */
+    MT_DAMPED_UNSTABLE, /* Re s > 0 */
+    /* of an undecided mode of the undamped system: s^2 is rounding beside its stiffness */
+    MT_DAMPED_UNDECIDED
 } mt_damped_kind;
 
 typedef struct mt_damped_problem {
@@ -56,6 +58,8 @@ typedef struct mt_damped_modes {
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err);
 
+/* Has each oscillating motion an index, from 1 by |s|: is none undecided? */
+bool mt_damped_indexed(const mt_damped_modes *d);
 /* |s|/2 pi and Im s/2 pi [Hz]; -Re s/|s| (NaN where s = 0). */
 double mt_damped_natural_hz(const mt_damped_modes *d, int i);
 double mt_damped_hz(const mt_damped_modes *d, int i);
