@@ -28,14 +28,15 @@ static double way_up(const mt_band *band, double hz)
     return PERCENT * (band->upper_hz - hz) / band->base_upper_hz;
 }
 
-/* How a mode at hz stands to one edge without margin; negative where that is crossed. */
+/* The clearance of a mode at hz from one edge without margin; negative where that is crossed.
+ */
 static double beyond(const mt_band *band, bool lower, double hz)
 {
-    return lower ? PERCENT * (band->base_lower_hz - hz) / band->base_lower_hz
-                 : PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+    return mt_edge_clearance_percent(lower ? band->base_lower_hz : band->base_upper_hz, lower,
+                                     hz);
 }
 
-/* What an edge is moved out by. */
+/* What an edge is moved out by, as a clearance: 10 % of the lower edge are 11.1 %. */
 static double margin(const mt_band *band, bool lower)
 {
     return beyond(band, lower, lower ? band->lower_hz : band->upper_hz);
@@ -72,7 +73,7 @@ static double clearance(const mt_band *band, double hz, mt_band_side *side)
     return percent;
 }
 
-/* The margin that the edge of the band nearest to hz has, in percent of the edge. */
+/* The margin that the edge of the band nearest to hz has, as a clearance. */
 static double margin_percent(const mt_band *band, double hz)
 {
     return margin(band, by_lower_edge(band, hz));
@@ -87,7 +88,7 @@ static double standing(const mt_band *band, double hz, double *asked)
         inside ? way_down(band, hz) <= way_up(band, hz) : by_lower_edge(band, hz);
     const double has = beyond(band, lower, hz);
     *asked = margin(band, lower);
-    return fabs(has) <= ON_EDGE_PERCENT ? 0.0 : has;
+    return !isfinite(has) ? nan("") : fabs(has) <= ON_EDGE_PERCENT ? 0.0 : has;
 }
 
 int mt_describe_avoid_count(const mt_problem *p)
@@ -221,12 +222,14 @@ static mt_status add_clearance(const listing *l, int band, int mode, double hz, 
                                .hz = hz};
     c->worst_hz = mt_describe_worst_hz(l->fresh, l->view, mode, b, hz, &at);
     c->worst_percent = MT_HAS(c->worst_hz) ? clearance(b, c->worst_hz, &side) : nan("");
-    c->percent = clearance(b, hz, &side);
+    c->worst_percent = isfinite(c->worst_percent) ? c->worst_percent : nan("");
+    c->percent = clearance(b, hz, &side); /* infinite at 0 Hz, which no ratio reaches */
+    c->percent = isfinite(c->percent) ? c->percent : nan("");
     c->margin_percent = margin_percent(b, hz);
     c->side = mt_band_side_name(side);
     c->band = mt_arena_strdup(&l->result->mem, b->label);
     l->rec->n_clearances++;
-    if (!(c->percent >= l->rec->clearance_percent)) {
+    if (isfinite(c->percent) && !(c->percent >= l->rec->clearance_percent)) {
         l->rec->clearance_percent = c->percent;
     }
     return mt_arena_check(&l->result->mem, err);

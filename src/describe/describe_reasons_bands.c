@@ -82,7 +82,7 @@ static void say_active(mt_sentences *s, const mt_result_clearance *c)
 {
     const char *const edge = strcmp(c->side, "above") == 0 ? "upper" : "lower";
     if (c->margin_percent > 0.0) {
-        mt_say(s, "%s mode %d (%.6g Hz) keeps just the %.3g %% asked for %s band %s.",
+        mt_say(s, "%s mode %d (%.6g Hz) keeps just the margin asked for, %.3g %% %s band %s.",
                c->configuration, c->mode, c->hz, c->margin_percent, c->side, band_text(s, c));
     } else {
         mt_say(s, "%s mode %d stands on the %s edge (%.6g Hz) of band %s.", c->configuration,
@@ -108,6 +108,9 @@ static void say_clearances(mt_sentences *s)
     const mt_result_clearance *least = NULL;
     for (int i = 0; i < s->rec->n_clearances; i++) {
         const mt_result_clearance *const c = &s->rec->clearances[i];
+        if (!MT_HAS(c->percent)) {
+            continue; /* at 0 Hz, infinitely far from every band */
+        }
         if (fabs(c->percent - c->margin_percent) <= ACTIVE_PERCENT) {
             say_active(s, c);
         } else if (c->percent < c->margin_percent) {

@@ -110,8 +110,10 @@ typedef struct mt_result_clearance {
     int band_id;      /* as in mt_result_gap */
     int mode;         /* vibration index at this design */
     double hz;
-    double percent; /* of the nearest edge of the band without its margin; negative inside */
-    double margin_percent; /* what was asked for at that edge */
+    /* clearance (study/bands.h) from the nearest edge of the band without its margin; negative
+     * inside */
+    double percent;
+    double margin_percent; /* what was asked for at that edge, as a clearance */
     const char *side;      /* where the mode lies: "below", "inside", "above" */
     /* over the tolerances of the variables: nearest to the band, or deepest inside; NaN:
      * none */
@@ -193,7 +195,7 @@ typedef struct mt_result_motion {
     int positions; /* that were looked at; 0: none */
     /* of an edge of a band without its margin, negative beyond it; NaN: not followed */
     double least_clearance_percent;
-    double margin_percent; /* asked for there */
+    double margin_percent; /* asked for there, as a clearance */
     double at;             /* where it is */
     double hz;
     int mode;         /* whose it is, or which crosses; 0: none */

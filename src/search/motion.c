@@ -158,9 +158,9 @@ static void keep_least(walk *w, const edge *e, double at, double room)
     out->tie = e->band->tie;
     out->band = *band;
     out->hz = exp(e->log_hz + (e->sign * room));
-    out->percent = e->sign * 100.0 * (out->hz - edge_hz) / edge_hz;
+    out->percent = mt_edge_clearance_percent(edge_hz, e->sign < 0.0, out->hz);
     out->percent = fabs(out->percent) <= ON_EDGE_PERCENT ? 0.0 : out->percent;
-    out->margin_percent = e->sign * 100.0 * (exp(e->log_hz) - edge_hz) / edge_hz;
+    out->margin_percent = mt_edge_clearance_percent(edge_hz, e->sign < 0.0, exp(e->log_hz));
 }
 
 static mt_status note_break(walk *w, double at, mt_motion_end end, const char *why, mt_err *err)

@@ -36,7 +36,7 @@ typedef struct mt_motion {
      * keeps on that side; negative: it crosses the edge. HUGE_VAL: no mode beside a band */
     double room;
     double tolerance; /* of the band there */
-    /* clearance there from the band without its margin, percent of the edge; negative: beyond
+    /* clearance there from the band without its margin, as a ratio less 1 [%]; negative: beyond
      * it */
     double percent;
     double margin_percent; /* asked for at that edge */

@@ -300,11 +300,17 @@ double mt_log_ratio(double a_hz, double b_hz)
     return b_hz <= 0.0 ? HUGE_VAL : log(a_hz / b_hz);
 }
 
+double mt_edge_clearance_percent(double edge_hz, bool below, double hz)
+{
+    const double ahead = below ? edge_hz - hz : hz - edge_hz;
+    const double smaller = fmin(edge_hz, hz);
+    return smaller > 0.0 ? PERCENT * ahead / smaller : ahead > 0.0 ? HUGE_VAL : -HUGE_VAL;
+}
+
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side)
 {
-    const double lower = band->base_lower_hz;
-    const double below = lower > 0.0 ? PERCENT * (lower - hz) / lower : -HUGE_VAL;
-    const double above = PERCENT * (hz - band->base_upper_hz) / band->base_upper_hz;
+    const double below = mt_edge_clearance_percent(band->base_lower_hz, true, hz);
+    const double above = mt_edge_clearance_percent(band->base_upper_hz, false, hz);
     const bool is_below = hz < band->base_lower_hz;
     const bool is_above = hz > band->base_upper_hz;
     if (side != NULL) {

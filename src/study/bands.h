@@ -129,10 +129,12 @@ mt_status mt_bands_unite(int n, const mt_bands *const *lists, mt_arena *mem, mt_
 typedef enum mt_band_side { MT_BELOW_BAND, MT_INSIDE_BAND, MT_ABOVE_BAND } mt_band_side;
 const char *mt_band_side_name(mt_band_side side);
 /**
- * Clearance of a frequency from a band in percent of the nearest edge of its base: what
- * compares with a margin. Negative inside: then how far the frequency would have to move to the
- * nearest edge, in percent of that edge. side: NULL, or where it lies.
+ * Clearance |ln(f/edge)| of a frequency from an edge, as the greater of the two over the
+ * smaller less 1, in percent; negative beyond it. below: is it clear below the edge, or above?
+ * Of two that are not both above 0: infinite.
  */
+double mt_edge_clearance_percent(double edge_hz, bool below, double hz);
+/** That of the nearest edge of a band's base; negative inside. side: NULL, or where it lies. */
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side);
 
 /** ln(a/b) of frequencies or edges, a >= 0; HUGE_VAL where b is not above 0: a mode that

@@ -208,7 +208,7 @@ class Motion(unittest.TestCase):
             dense = [hz_at(k1, -1.1 + 2.0 * i / 2000) for i in range(2001)]
             least = min(max(11 / f, f / 12.5) for f in dense) - 1
             self.assertAlmostEqual(design["motion"][0]["least_clearance_percent"] / 100,
-                                   min(min((11 - f) / 11 if f < 11.7 else (f - 12.5) / 12.5 for f in dense), 1e9),
+                                   min(min(11 / f - 1 if f < 11.7 else f / 12.5 - 1 for f in dense), 1e9),
                                    delta=1e-5)
             self.assertGreater(least, 0)
 

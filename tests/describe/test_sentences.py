@@ -308,7 +308,7 @@ CHECKS = {
     "It is a double solution: two designs that meet the goals coincide here, so small errors in the targets move it far.": double,
     "In %s, %s.": below, "%s mode %d stands on the %s edge (%.6g Hz) of band %s.": on_edge,
     "%s mode %d (%.6g Hz) lies inside band %s, %.3g %% from its nearest edge.": lambda m, rec, _: clearance(m, rec, "inside", m[5]),
-    "%s mode %d (%.6g Hz) keeps just the %.3g %% asked for %s band %s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
+    "%s mode %d (%.6g Hz) keeps just the margin asked for, %.3g %% %s band %s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s mode %d (%.6g Hz) keeps only %.3g %% %s band %s, of %.3g %% asked.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s mode %d (%.6g Hz) keeps %.3g %% %s band %s%s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s would %s %s.": saves, "%s would bring %s mode %d nearer to its goal by %.3g Hz.": buys,

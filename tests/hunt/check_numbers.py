@@ -89,6 +89,8 @@ def clearances(run):
             if not same_hz(item["hz"], own, finite_max(modes)):
                 yield f"rank {rec['rank']}: mode {item['mode']} beside {item['band']}: {item['hz']} Hz, dense solve {own}"
             percents = [band.clearance_percent(own) for band in q.bands[item["configuration"]]]
+            if item["percent"] is None and any(math.isnan(p) for p in percents):
+                continue  # at 0 Hz, infinitely far
             if not any(near(item["percent"], p, SLACK, 1.0) for p in percents):
                 yield f"rank {rec['rank']}: mode {item['mode']} beside {item['band']}: {item['percent']} %, none of {percents}"
         bands = [(c, band) for c in q.configurations for band in q.bands[c]]

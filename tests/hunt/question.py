@@ -37,14 +37,15 @@ class Band:
         return max(0.0, min(up, down))
 
     def clearance_percent(self, hz):
-        """Of the nearest edge without margin; negative inside."""
+        """From the nearest edge without margin, the greater over the smaller less 1; negative inside."""
         low, high = self.base
-        if hz >= high:
-            return 100.0 * (hz - high) / high
-        if low > 0.0 and hz <= low:
-            return 100.0 * (low - hz) / low
-        out = 100.0 * (hz - high) / high
-        return max(out, 100.0 * (low - hz) / low) if low > 0.0 else out
+        if not hz > 0.0:
+            return math.nan
+
+        def ratio(ahead):
+            return 100.0 * (ahead - 1.0) if ahead >= 1.0 else -100.0 * (1.0 / ahead - 1.0)
+
+        return max(ratio(hz / high), ratio(low / hz)) if low > 0.0 else ratio(hz / high)
 
 
 def merged(bands, up_to=math.inf):

@@ -302,7 +302,7 @@ static void bands__of_several_goals_are_united(mt_test *t)
     mt_arena_free(&s.mem);
 }
 
-static void bands__clearance_is_a_percentage_of_the_nearest_edge(mt_test *t)
+static void bands__clearance_is_a_ratio_on_both_sides(mt_test *t)
 {
     static const mt_band band = {10.0, 20.0, 9.0, 22.0, "test"};
     static const mt_band low = {0.0, 20.0, 0.0, 22.0, "from zero"};
@@ -312,11 +312,16 @@ static void bands__clearance_is_a_percentage_of_the_nearest_edge(mt_test *t)
         double percent;
         mt_band_side side;
     } rows[] = {
-        {&band, 9.0, 10.0, MT_BELOW_BAND},    {&band, 22.0, 10.0, MT_ABOVE_BAND},
-        {&band, 0.0, 100.0, MT_BELOW_BAND},   {&band, 40.0, 100.0, MT_ABOVE_BAND},
-        {&band, 10.0, 0.0, MT_INSIDE_BAND},   {&band, 20.0, 0.0, MT_INSIDE_BAND},
-        {&band, 11.0, -10.0, MT_INSIDE_BAND}, {&band, 19.0, -5.0, MT_INSIDE_BAND},
-        {&low, 19.0, -5.0, MT_INSIDE_BAND},   {&low, 0.0, -100.0, MT_INSIDE_BAND},
+        {&band, 9.0, 100.0 / 9.0, MT_BELOW_BAND},
+        {&band, 22.0, 10.0, MT_ABOVE_BAND},
+        {&band, 5.0, 100.0, MT_BELOW_BAND},
+        {&band, 40.0, 100.0, MT_ABOVE_BAND},
+        {&band, 10.0, 0.0, MT_INSIDE_BAND},
+        {&band, 20.0, 0.0, MT_INSIDE_BAND},
+        {&band, 11.0, -10.0, MT_INSIDE_BAND},
+        {&band, 19.0, -100.0 / 19.0, MT_INSIDE_BAND},
+        {&low, 19.0, -100.0 / 19.0, MT_INSIDE_BAND},
+        {&low, 10.0, -100.0, MT_INSIDE_BAND},
         {&low, 30.0, 50.0, MT_ABOVE_BAND},
     };
     for (int i = 0; i < MT_COUNT(rows); i++) {
@@ -358,5 +363,5 @@ MT_TEST_MAIN(MT_TEST(bands__harmonics_are_read_as_written),
              MT_TEST(bands__margins_can_be_replaced),
              MT_TEST(bands__what_is_not_known_is_left_out),
              MT_TEST(bands__of_several_goals_are_united),
-             MT_TEST(bands__clearance_is_a_percentage_of_the_nearest_edge),
+             MT_TEST(bands__clearance_is_a_ratio_on_both_sides),
              MT_TEST(bands__every_failing_allocation_is_survived))
