@@ -69,8 +69,8 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
                      gaps->starts);
     }
     return state(result, "gap_assignments", false, err,
-                 "%d of %.0f mode placements were searched; the others were ruled out by samples, "
-                 "not by proof (no proof: %s).",
+                 "%d of %.0f mode placements were searched; the others were ruled out by "
+                 "samples, not by proof (no proof: %s).",
                  gaps->n_candidates, gaps->n_possible,
                  gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
                                                                  : "not asked for");

@@ -36,8 +36,8 @@ static bool has_prices(const mt_sentences *s)
     return ops->price != NULL && s->rec->feasible && mt_describe_is_optimum(s->rec);
 }
 
-/* Of the objective, what a change df of its value f is called: "the mass by 0.12 kg". NULL: nothing but
- * rounding, further than a slope tells, not known, or out of memory. */
+/* Of the objective, what a change df of its value f is called: "the mass by 0.12 kg". NULL:
+ * nothing but rounding, further than a slope tells, not known, or out of memory. */
 static const char *worth(mt_sentences *s, double df)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;

@@ -231,7 +231,9 @@ static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt
         n += mt_absolute_holds_already(o, (int)i) ? 0 : 1;
         *closed = fabs(l.c[i]) <= DRAWN_CLOSED * sys->length_m;
         if (!*closed) {
-            (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "joint \"%s\" is not closed in the reference position",
+            (void)mt_snprintf(why, MT_ABSOLUTE_WHY,
+                              "joint \"%s\" is not closed in the reference "
+                              "position",
                               sys->joints[sys->constraints[i].joint].name);
         }
     }

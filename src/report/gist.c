@@ -103,8 +103,7 @@ static void add_best(const mt_recommendation *r, mt_text *out)
     add_changes(r, out);
     mt_text_add(out, ". Graded ");
     mt_html_escape(r->grade == NULL ? "not at all" : r->grade, out);
-    mt_text_addf(out, "; total change %s.",
-                 mt_report_number(r->change, DIGITS, change));
+    mt_text_addf(out, "; total change %s.", mt_report_number(r->change, DIGITS, change));
     close_item(out);
 }
 

@@ -257,8 +257,8 @@ static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
     }
 }
 
-/* ": mass 16.94 kg (was 11.92)" of what the study makes least or greatest, where that is not the
- * change. */
+/* ": mass 16.94 kg (was 11.92)" of what the study makes least or greatest, where that is not
+ * the change. */
 static void add_objective(const mt_recommendation *r, mt_text *out)
 {
     char now[MT_NUMBER_TEXT];

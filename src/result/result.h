@@ -486,14 +486,12 @@ typedef struct mt_result_run {
     mt_result_digest *inputs;
     int n_outputs; /* files written beside the result; 0: it is written alone */
     mt_result_digest *outputs;
-    /* phases that an interrupt cut, or that were not begun because of it, by the names of what
-     * they write ("search", "spread", ...) */
+    /* phases that an interrupt cut, by the names of what they write ("search", ...) */
     int n_incomplete;
     const char **incomplete;
     const char *cut_by; /* "interrupt" | "time limit"; NULL: nothing was cut */
 } mt_result_run;
 
-/* What the designs are best in, first of all in the first. */
 /* A KKT residual (relative to the objective's gradient) above this is told. Along the way that
  * is left, of at most a few in ln x, it costs less than a thousandth of the objective; Newton's
  * iteration reaches 1e-9 wherever the modes are simple. */

@@ -242,7 +242,9 @@ static bool is_closed(mt_tree_maker *m)
                                                   mt_pose_of(m->pose, def->body[1]))) -
                            creal(m->data.target[i]);
         if (!(fabs(gap) <= DRAWN_CLOSED * sys->length_m)) {
-            (void)mt_snprintf(m->why, MT_TREE_WHY, "joint \"%s\" is not closed in the reference position",
+            (void)mt_snprintf(m->why, MT_TREE_WHY,
+                              "joint \"%s\" is not closed in the reference "
+                              "position",
                               sys->joints[c->joint].name);
             return false;
         }

@@ -3,8 +3,8 @@
  * The lowest modes of random trees against the dense way, in the plane and in space: joints,
  * springs and bushings of every kind that a tree may have, point masses, free parts,
  * stiffnesses over decades; and hanging, or standing, along gravity, or each body pulled apart
- * by two forces in any direction. The same with loops: more springs, and joints, between any two
- * of the bodies, redundant ones among them.
+ * by two forces in any direction. The same with loops: more springs, and joints, between any
+ * two of the bodies, redundant ones among them.
  * MT_STRESS_ROUNDS=N: N times as many.
  */
 #include <float.h>

@@ -125,10 +125,34 @@ def edges(goal, margin=0.0):
     return [(low * (1 - part), high * (1 + part)) for low, high in goal["bands_hz"]]
 
 
+def apart(inner, outer):
+    """The greater over the smaller less 1, in percent; negative where they stand the other way round."""
+    return 100 * (outer / inner - 1) if inner <= outer else -100 * (inner / outer - 1)
+
+
 def clearance(hz, band):
-    """In percent of the nearest edge; negative inside. The edge, too: 0 the lower, 1 the upper."""
-    below, above = 100 * (1 - hz / band[0]), 100 * (hz / band[1] - 1)
-    return max((below, 0), (above, 1))
+    """|ln(hz/edge)| of the nearest edge as the greater over the smaller less 1, in percent; negative inside. The edge, too: 0 the lower, 1 the upper."""
+    return max((apart(hz, band[0]), 0), (apart(band[1], hz), 1))
+
+
+def margin(goal, side):
+    """A margin in percent of an edge, as a clearance."""
+    return goal["margin_percent"] if side == 1 else 100 * (1 / (1 - goal["margin_percent"] / 100) - 1)
+
+
+def missing(goal, hz, base, wide):
+    """How far a mode within a band and its margin has to go, down and up, in percent of the band's edges."""
+    return 100 * (hz - wide[0]) / base[0], 100 * (wide[1] - hz) / base[1]
+
+
+def standings(goal, frequencies):
+    """(clearance, margin as one, what is missing) of each mode beside each band, by the edge that is left sooner, else by the nearer one."""
+    for hz in frequencies:
+        for base, wide in zip(edges(goal), edges(goal, goal["margin_percent"])):
+            down, up = missing(goal, hz, base, wide)
+            inside = min(down, up) > 0
+            side = int(down > up) if inside else clearance(hz, base)[1]
+            yield (apart(hz, base[0]), apart(base[1], hz))[side], margin(goal, side), max(min(down, up), 0.0)
 
 
 class Rules:
@@ -173,7 +197,7 @@ class Rules:
             return truth.damping(configuration, goal["mode"])
         if kind == "response":
             return truth.response(goal["at_hz"])
-        return min(clearance(hz, band)[0] for hz in truth.modes(configuration)[0] for band in edges(goal))
+        return min(standings(goal, truth.modes(configuration)[0]), key=lambda s: s[0] - s[1])[0]
 
     def limits(self, goal):
         return goal.get("at_least_hz", goal.get("at_least")), goal.get("at_most_hz", goal.get("at_most"))
@@ -181,7 +205,7 @@ class Rules:
     def violation(self, goal, value, truth):
         """In percent: of the limit or target; a MAC, a shape and a damping ratio as their kinds are measured."""
         if goal["type"] == "avoid":
-            return max(0.0, goal["margin_percent"] - value)
+            return max(s[2] for s in standings(goal, truth.modes(goal["configuration"])[0]))
         if goal["type"] == "shape":
             return 100 * value
         least, most = self.limits(goal)
@@ -233,7 +257,8 @@ class Rules:
         return max(g["violation_percent"] for g in d["goals"] if not g["weighted"]) if any(not g["weighted"] for g in d["goals"]) else 0.0
 
     def design_clearance_percent(self, d):
-        return min(self.value(g, self.at(d)) for g in self.avoids())
+        truth, avoids = self.at(d), self.avoids()
+        return min((clearance(hz, band)[0] for g in avoids for hz in truth.modes(g["configuration"])[0] for band in edges(g)), default=None)
 
     def design_score(self, d):
         first = d["objectives"][0]
@@ -359,7 +384,7 @@ class Rules:
         return percent
 
     def design_clearances_margin_percent(self, d, c):
-        return self._band_of(c)[1]["margin_percent"]
+        return margin(self._band_of(c)[1], clearance(c["hz"], self._band_of(c)[2])[1])
 
     def design_clearances_worst_percent(self, d, c):
         return min(clearance(Truth(**x).hz(c["configuration"], c["mode"]), self._band_of(c)[2])[0] for x in self.corners(d))
@@ -405,7 +430,9 @@ class Rules:
 
     def design_goals_at_least(self, d, g):
         goal = self.goal_of(g)
-        return goal["margin_percent"] if goal["type"] == "avoid" else self.limits(goal)[0]
+        if goal["type"] == "avoid":
+            return min(standings(goal, self.at(d).modes(goal["configuration"])[0]), key=lambda s: s[0] - s[1])[1]
+        return self.limits(goal)[0]
 
     def design_goals_at_most(self, d, g):
         return self.limits(self.goal_of(g))[1]

@@ -33,7 +33,7 @@ ELSEWHERE = {
     "It is not shown to be a local optimum: its KKT residual is %.2g, where an optimum has 0; a design near it may be better.": "hunt/check_claims.py",
     "Relaxing goal %s (%s) by %s would %s %s.": "hunt/check_words.py solves again",
     "A target %s %s in goal %s (%s) would %s %s.": "describe/test_prices.py",
-    "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of %.3g %% leaves open is worth %s.": "describe/test_prices.py",
+    "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of %.3g %% leaves open may change %s.": "describe/test_prices.py",
     "Goal %s (%s) hardly depends on the variables here: %s.": "describe/test_prices.py",
     "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.": "describe/test_study_bands.c solves again",
     "Relaxing the %s edge of %s, which holds mode %d where %s is at %s, between the positions, by %s would %s %s.": "cli/test_motion.py",

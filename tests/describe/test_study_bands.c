@@ -69,7 +69,8 @@ static double best_change(mt_test *t, const char *lower_edge, double *price)
         CHECK(t, reason_with(r, "mode 2 stands on the lower edge") != NULL);
         CHECK(t, reason_with(r, "In default, 2 modes lie below ") != NULL);
         if (price != NULL && CHECK(t, s != NULL)) {
-            *price = 0.01 * change * strtod(strstr(s, "change by ") + strlen("change by "), NULL);
+            static const char by[] = "change by ";
+            *price = 0.01 * change * strtod(strstr(s, by) + strlen(by), NULL);
         }
     }
     study_free(&c);
@@ -163,8 +164,8 @@ static void bounds__say_what_more_room_buys(mt_test *t)
                            " 'target_hz': 0.145}]",
                            &c));
     REQUIRE(t, c.result->n_recommendations > 0);
-    const char *const s =
-        reason_with(&c.result->recommendations[0], "An upper bound of k1 that is 0.1 higher would bring");
+    const char *const s = reason_with(&c.result->recommendations[0],
+                                      "An upper bound of k1 that is 0.1 higher would bring");
     if (CHECK(t, s != NULL)) {
         const double hz = strtod(strstr(s, "goal by ") + strlen("goal by "), NULL);
         const double rise = study_hz(study_two_lambda(4.05, 1.0, 1.0, -1)) -

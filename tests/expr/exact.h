@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Operations of expressions and their derivatives in 113 bits, for arguments of moderate size: to
- * 1e-28 of themselves or of 1. Series and Newton's method only, no library of functions.
+ * Operations of expressions and their derivatives in 113 bits, for arguments of moderate size:
+ * to 1e-28 of themselves or of 1. Series and Newton's method only, no library of functions.
  */
 #ifndef EXPR_EXACT_H
 #define EXPR_EXACT_H

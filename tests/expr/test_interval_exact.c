@@ -154,8 +154,8 @@ static void interval__of_points_is_as_narrow_as_it_says(mt_test *t)
     }
 }
 
-/* The extremes over an interval: 1 where a crest (at `crest` + 2 k pi) lies within, else that of
- * the ends. */
+/* The extremes over an interval: 1 where a crest (at `crest` + 2 k pi) lies within, else that
+ * of the ends. */
 static quad wave_extreme(mt_op op, mt_interval a, quad crest, quad extreme)
 {
     const quad turn = 2 * exact_pi();
@@ -204,8 +204,8 @@ static void interval__of_a_tangent_knows_its_poles(mt_test *t)
     }
 }
 
-/* What has a kink has the slopes of both its sides where it lies on an end, too. At 0 itself the
- * slope of abs is 1 by convention. */
+/* What has a kink has the slopes of both its sides where it lies on an end, too. At 0 itself
+ * the slope of abs is 1 by convention. */
 static void interval__slopes_at_a_kink_are_those_of_both_sides(mt_test *t)
 {
     static const struct {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * What the search for the largest response calls a bound of an interval, tried as one: no
- * frequency of it has more, in 113 bits, rising, falling or with its top within; and it is close
- * where the interval is short. The search itself finds the largest response mostly without it.
+ * frequency of it has more, in 113 bits, rising, falling or with its top within; and it is
+ * close where the interval is short. The search itself finds the largest response mostly
+ * without it.
  */
 #include "exact_sum.h"
 #include "mt_test.h"
