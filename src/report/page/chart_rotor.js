@@ -105,7 +105,7 @@
       if (o.order > 0 && hz >= o.order * e.speed_lower_hz && hz <= o.order * e.speed_upper_hz) {
         const speed = hz / o.order * PER_MINUTE;
         F.mark(g, 'circle', x(speed), y(hz), { colour: tint, filled, size: 90 })
-          .append('title').text(`${o.label} meets ${words} at ${T.sig(speed)} 1/min`);
+          .append('title').text(`${o.label} meets ${words} at ${T.sig(speed)} rpm`);
       }
     }
   }
@@ -150,7 +150,7 @@
   function legendItems(e, changed) {
     const items = [
       { words: 'operating range, ' + T.short(e.speed_lower_hz * PER_MINUTE) + ' to ' +
-        T.short(e.speed_upper_hz * PER_MINUTE) + ' 1/min',
+        T.short(e.speed_upper_hz * PER_MINUTE) + ' rpm',
       draw: (g, x, y) => F.rect(g, x - 11, y - 6, 22, 12, C.range) },
       { words: 'order (n per turn)', draw: (g, x, y) =>
         F.line(g, x - 11, y + 5, x + 11, y - 5, C.bad, { 'stroke-width': 2 }) },
@@ -183,7 +183,7 @@
       box.bottom - box.top, C.paper);
     const inside = g.append('g').attr('clip-path', `url(#${id})`);
     shade(inside, p);
-    F.axisBelow(g, x, [box.left, box.right], 'speed [1/min]', box);
+    F.axisBelow(g, x, [box.left, box.right], 'speed [rpm]', box);
     F.axisLeft(g, y, [box.bottom, box.top].reverse(), 'frequency [Hz]', box);
     orders(g.append('g').attr('clip-path', `url(#${id})`), p);
     const higher = modes(g, p, changed);

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""
+Every string that can reach a user, in the field's words. Strings are read from the sources (literals of C and of the pages' scripts, joined
+where they stand side by side), from descriptions of the schemas and from the documents' prose; those of fewer than three words are names.
+    test_english.py --list     all of them, a line each with its place (also: cmake --build build/release --target strings)
+"""
+import json
+import re
+import sys
+from pathlib import Path
+
+from common import ROOT, verdict
+
+# What nobody says, and what is said instead.
+WORDS = {
+    r"gap assignments?": "mode placement", r"kinds? of design": "mode placement", r"size of the redesign": "total change", r"ha(?:s|ve) a price": "relaxing ... would reduce",
+    r"giving way by": "relaxing ... by", r"nothing is told": "(say what follows)", r"in their order": "(name each)", r"hardly meant": "suspicious", r"anew": "again",
+    r"likewise": "(say it)", r"falls? over": "is unstable", r"rotor diagram": "Campbell diagram", r"1/min": "rpm", r"as drawn": "reference position", r"\boff by \[": "deviation",
+    r"Else:": "Alternatives:", r"nothing else changed": "and nothing else", r"per cent less would save": "relaxing by ... would reduce",
+}
+# Strings of another kind: words of a format that is read, places of drawings on pages whose names the files keep, quotations.
+LEFT = {
+    "src/io/read_measurement_uff.c": {"1/min"},          # labels of universal files
+    "src/report/page": {"as drawn"},                     # the position of a drive that the page shows
+    "src/cli/conventions.c": {"as drawn"}, "src/model": {"as drawn"}, "src/mechanics": {"as drawn"}, "src/answer": {"as drawn"}, "schemas": {"as drawn"},
+    "problems/README.md": {"as drawn"}, "src/cli/README.md": {"as drawn", "anew"}, "studies/tutorial/README.md": {"as drawn", "anew"},
+}
+LONGEST = 420  # characters of a string that is printed in one piece; help texts have paragraphs
+LITERAL = re.compile(r'"(?:\\.|[^"\\\n])*"(?:\s*"(?:\\.|[^"\\\n])*")*')
+COMMENT = re.compile(r"/\*.*?\*/|^\s*#include[^\n]*$", re.S | re.M)
+SCRIPT = re.compile(r"""\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`""")
+
+
+def literals(path, pattern):
+    text = path.read_text(encoding="utf-8")
+    blank = COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+    for match in pattern.finditer(blank):
+        parts = re.findall(r'"((?:\\.|[^"\\\n])*)"', match[0]) if pattern is LITERAL else [match[0][1:-1]]
+        yield blank.count("\n", 0, match.start()) + 1, "".join(parts).replace('\\"', '"')
+
+
+def descriptions(node):
+    if isinstance(node, dict):
+        if isinstance(node.get("description"), str):
+            yield node["description"]
+        for key, value in node.items():
+            if key != "examples":
+                yield from descriptions(value)
+    elif isinstance(node, list):
+        for value in node:
+            yield from descriptions(value)
+
+
+def prose(text):
+    """Paragraphs of a page without its blocks and what stands in backquotes."""
+    bare = re.sub(r"^```.*?^```$", lambda m: "\n" * m[0].count("\n"), text, flags=re.S | re.M)
+    line = 1
+    for paragraph in re.split(r"(\n\n+)", bare):
+        if paragraph.strip():
+            yield line, re.sub(r"`[^`\n]*`", "x", paragraph)
+        line += paragraph.count("\n")
+
+
+def strings():
+    """(place, text) of all that may be read."""
+    for path in sorted((ROOT / "src").rglob("*.c")):
+        yield from ((f"{path.relative_to(ROOT)}:{line}", text) for line, text in literals(path, LITERAL))
+    for path in sorted((ROOT / "src").rglob("*.js")):
+        yield from ((f"{path.relative_to(ROOT)}:{line}", text) for line, text in literals(path, SCRIPT))
+    for path in sorted((ROOT / "schemas").glob("*.schema.json")):
+        yield from ((str(path.relative_to(ROOT)), text) for text in descriptions(json.loads(path.read_text(encoding="utf-8"))))
+    for path in [ROOT / "README.md", *sorted(p for folder in ("problems", "studies", "include", "src") for p in (ROOT / folder).rglob("README.md"))]:
+        yield from ((f"{path.relative_to(ROOT)}:{line}", text) for line, text in prose(path.read_text(encoding="utf-8")))
+
+
+def faults(place, text):
+    left = {word for start, words in LEFT.items() if place.startswith(start) for word in words}
+    for pattern, better in WORDS.items():
+        found = re.search(rf"(?<![\w_]){pattern}", text)
+        if found and found[0] not in left:
+            yield f"{place}: \"{found[0]}\": write {better}"
+    if place.startswith("src/") and ".md" not in place and "\\n" not in text and len(text) > LONGEST and not place.startswith("src/cli/"):
+        yield f"{place}: {len(text)} characters in one piece"
+
+
+def self_test():
+    bad = ["Of 3 gap assignments", "it falls over", "is done anew", "x" * (LONGEST + 1)]
+    return [f"self-test: {text[:40]!r} passed" for text in bad if not list(faults("src/x/y.c:1", text))]
+
+
+if __name__ == "__main__":
+    found = [(place, text) for place, text in strings() if len(re.findall(r"[A-Za-z]{2,}", text)) >= 3]
+    if "--list" in sys.argv:
+        for where, what in found:
+            print(f"{where}: {' '.join(what.split())}")
+        sys.exit(0)
+    wrong = [fault for where, what in found for fault in faults(where, what)]
+    verdict("english", len(found), wrong + self_test() + ([] if len(found) > 1500 else [f"only {len(found)} strings were found"]))
