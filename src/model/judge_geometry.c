@@ -14,9 +14,11 @@
 
 /* A joint this part of a link's length away from it is told: less is a drawing's rounding. */
 static const double TOLD_OFF = 0.01;
-/* A joint farther from its link than the link is long, or from its body than all else is wide,
- * is hardly meant to hold it. */
+/* A joint farther from its link than the link is long is hardly meant to hold it. Of a body
+ * with its joint on one end and all else at the other, as the long arm of a short pendulum, the
+ * rest may be narrow: inches for millimetres make 25 of it, centimetres for metres 100. */
 static const double DOUBTED_OFF = 1.0;
+static const double DOUBTED_OFF_BODY = 20.0;
 /* A pair of points so far apart, in parts of the drawing's size, is told; so far, doubted, or a
  * metre. */
 static const double TOLD_GAP = 1e-3;
@@ -292,10 +294,10 @@ static void judge_side(mt_judge *j, const holder *h, int side)
         const box others = box_without(j, h->joint, h->spring);
         const double off = distance_to_body(j, a->index, h->joint, h->spring, x);
         const double size = size_of(&others);
-        if (size > 0.0 && off > DOUBTED_OFF * size && isfinite(off)) {
-            say_off(j, h, side, MT_LEVEL_DOUBT, off,
-                    (phrase_around){"everything else of ",
-                                    ", farther than the rest of the drawing is wide"});
+        if (size > 0.0 && off > DOUBTED_OFF_BODY * size && isfinite(off)) {
+            say_off(
+                j, h, side, MT_LEVEL_DOUBT, off,
+                (phrase_around){"everything else of ", ", far beyond the rest of the drawing"});
         }
         return;
     }

@@ -340,6 +340,17 @@ class Doubts(CliTest):
             doubts, facts = self.found(self.put_model(("dampers",), [damper]))
             self.assertEqual((doubts, [f["kind"] for f in facts]), ([], told))
 
+    def test_a_joint_far_from_its_body(self):
+        """A long arm with a short one at its end is no reason for a doubt; the same joint in other units is."""
+        arms = {"format": "modetune-model/1", "dimension": 2,
+                "bodies": [{"name": n, "mass_kg": 1, "inertia_kg_m2": 0.01, "centre": [x, 0]} for n, x in (("a", 0.5), ("b", 0.6))],
+                "joints": [{"name": "hip", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0]},
+                           {"name": "knee", "type": "revolute", "bodies": ["a", "b"], "at": [0.5, 0]}],
+                "springs": [{"name": n, "type": "torsion", "joint": j, "stiffness_n_m_per_rad": 50} for n, j in (("s", "hip"), ("t", "knee"))]}
+        for at, want in ((0, []), (-1.4, []), (-1.6, ["off"]), (-50, ["off"])):
+            doubts, _ = self.found(self.put_model(("joints", 0, "at"), [at, 0], arms))
+            self.assertEqual([d["kind"] for d in doubts], want, at)
+
     def test_a_weight_that_is_forgotten(self):
         self.put_model(("sensors",), [{"name": "top", "on": "tip", "directions": ["x", "y"]}])
         modes = [{"frequency_hz": 5.2, "shape": {"top.x": 1, "top.y": 0.1}}, {"frequency_hz": 60}]
