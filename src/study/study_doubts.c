@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "model/values.h"
+
 /* A machine turns at less than 30 000 per minute. */
 static const double MOST_SPEED_HZ = 500.0;
 static const double SECONDS = 60.0;
@@ -25,6 +27,8 @@ static const double LEAST_STIFFNESS_PERCENT = 0.1;
 static const double MOST_SPAN = 1e8;
 static const double MOST_SHIFT = 1e3;
 static const double PERCENT = 100.0;
+/* Of one limit: a longer look than a search would take is not worth it. */
+static const double MOST_WORK = 1e6;
 /* Two modes that are asked to nearly the same frequency may change places within tolerances. */
 static const double MOST_SLACK = 1.01;
 
@@ -288,6 +292,59 @@ static void doubt_order(mt_doubt_list *out, const mt_study *s, const mt_goal *go
     }
 }
 
+/* Does a limit's expression have another value where one of the variables is at a bound? True
+ * where that is not known. */
+static bool follows_variables(const mt_study *s, const mt_goal *goal, mt_arena *mem)
+{
+    const size_t n = (size_t)s->n_variables;
+    const mt_number number = {.expr = goal->expression, .addr = goal->addr};
+    int *const inputs = mt_arena_int(mem, n);
+    double *const x = mt_arena_f64(mem, n, 1);
+    mt_numbers numbers;
+    double original = 0.0;
+    bool follows = false;
+    if (mt_arena_failed(mem)) {
+        return true;
+    }
+    for (int i = 0; i < s->n_variables; i++) {
+        inputs[i] = s->variables[i].parameter;
+        x[i] = s->variables[i].original;
+    }
+    if (mt_numbers_new(s->model, MT_ABSENT, s->n_variables, inputs, 1, &number, mem, &numbers,
+                       NULL) != MT_OK ||
+        mt_numbers_at(&numbers, x, &original, NULL, NULL) != MT_OK) {
+        return true;
+    }
+    for (int i = 0; i < s->n_variables && !follows; i++) {
+        const double ends[] = {s->variables[i].lower, s->variables[i].upper};
+        for (int k = 0; k < 2 && !follows; k++) {
+            double value = 0.0;
+            x[i] = ends[k];
+            follows =
+                mt_numbers_at(&numbers, x, &value, NULL, NULL) != MT_OK || !(value == original);
+        }
+        x[i] = s->variables[i].original;
+    }
+    return follows;
+}
+
+static void doubt_limit(mt_doubt_list *out, const mt_study *s, const mt_goal *goal)
+{
+    const double work = (double)s->n_variables * (double)s->model->n_parameters;
+    mt_arena mem;
+    if (goal->expression_text == NULL || s->n_variables == 0 || work > MOST_WORK ||
+        mt_arena_init(&mem, 0, NULL) != MT_OK) {
+        return;
+    }
+    if (!follows_variables(s, goal, &mem)) {
+        at(mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
+                        "no variable changes \"%s\": the limit has no effect",
+                        goal->expression_text),
+           goal->addr);
+    }
+    mt_arena_free(&mem);
+}
+
 static void doubt_all(const mt_study *s, mt_doubt_list *out)
 {
     for (int i = 0; i < s->n_variables; i++) {
@@ -298,6 +355,7 @@ static void doubt_all(const mt_study *s, mt_doubt_list *out)
         if (s->goals[i].avoid != NULL) {
             doubt_avoid(out, &s->goals[i]);
         }
+        doubt_limit(out, s, &s->goals[i]);
         doubt_shape(out, s, &s->goals[i]);
         doubt_order(out, s, &s->goals[i]);
     }

@@ -351,6 +351,13 @@ class Doubts(CliTest):
             doubts, _ = self.found(self.put_model(("joints", 0, "at"), [at, 0], arms))
             self.assertEqual([d["kind"] for d in doubts], want, at)
 
+    def test_a_limit_that_no_variable_changes(self):
+        self.put_model(("parameters", "twice"), "2*m")
+        for expression, doubted in (("twice", False), ("m + 0*k", False), ("k*0 + 3", True), ("sqrt(4)", True)):
+            goals = [*STUDY["goals"], {"type": "limit", "expression": expression, "at_most": 1000}]
+            doubts = self.found(self.put_study(("goals",), goals))[0]
+            self.assertEqual([(d["kind"], d["pointer"]) for d in doubts], [("no_effect", "/goals/1")] if doubted else [], expression)
+
     def test_a_weight_that_is_forgotten(self):
         self.put_model(("sensors",), [{"name": "top", "on": "tip", "directions": ["x", "y"]}])
         modes = [{"frequency_hz": 5.2, "shape": {"top.x": 1, "top.y": 0.1}}, {"frequency_hz": 60}]
