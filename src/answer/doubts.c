@@ -96,17 +96,17 @@ static void name_motion(const mt_analysis *a, mt_mode_kind kind, char *text)
     cut(text);
 }
 
-static void say_free(const mt_analysis *a, mt_doubt_list *out)
+static mt_status say_free(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
 {
     const mt_model *const m = a->sys->model;
     const int n = a->modes.n_rigid;
     const int floating = m->dimension == 2 ? STATES_2D : STATES_3D;
     const char *const s = n == 1 ? "" : "s";
     char name[NAME_SIZE];
+    int rods = 0;
     if (n == 0) {
-        return;
+        return MT_OK;
     }
-    name_motion(a, MT_MODE_RIGID_BODY, name);
     if (!is_grounded(m, a->sys->configuration)) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
                            n == floating
@@ -114,10 +114,20 @@ static void say_free(const mt_analysis *a, mt_doubt_list *out)
                                : "%d free motion%s: nothing holds it to the ground, and "
                                  "its parts are not all held to each other",
                            n, s);
-        return;
+        return MT_OK;
     }
+    MT_TRY(mt_doubts_spins(a, name, sizeof name, &rods, err));
+    if (rods > 0) {
+        cut(name);
+        (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
+                           "%d free motion%s: %s spin%s freely between %s ball joints", n, s,
+                           name, rods == 1 ? "s" : "", rods == 1 ? "its" : "their");
+        return MT_OK;
+    }
+    name_motion(a, MT_MODE_RIGID_BODY, name);
     (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
                        "%d free motion%s: is a joint missing? Free to move: %s", n, s, name);
+    return MT_OK;
 }
 
 /* Joints that redundant equations tie together. */
@@ -431,7 +441,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
     const int unstable = a->modes.n_unstable;
     doubt_springs(a->lin, out);
     say_motion(a->lin, out);
-    say_free(a, out);
+    MT_TRY(say_free(a, out, err));
     fault_damping(a, out);
     say_idle(a->lin, out);
     if (unstable > 0) {

@@ -23,6 +23,11 @@ mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
 mt_status mt_doubts_of_lowest(const mt_lowest *l, int n_inputs, const int *inputs,
                               const double *at, mt_doubt_list *out, mt_err *err);
 
+/* Are all free motions those of rods that spin between their ball joints? *rods: how many, 0
+ * where they are not; text: their names, as many as fit (doubts_spins.c). Fails: MT_E_MEMORY. */
+mt_status mt_doubts_spins(const mt_analysis *a, char *text, size_t size, int *rods,
+                          mt_err *err);
+
 /* Is it said of a posture that settles more than ten degrees, or a tenth of the model, away? It
  * is the first line of any answer. */
 bool mt_doubts_settles_far(const mt_doubt *d);

@@ -436,6 +436,34 @@ class Doubts(CliTest):
         gap = [d["text"] for d in doubts if d["kind"] == "gap"]
         self.assertRegex(gap[0], r'^joint "foot": its two points are drawn 0.5 m apart; .* \(to \d\.\de[-+]\d\d m\)$')
 
+    def test_a_rod_that_spins_between_its_ball_joints_is_no_missing_joint(self):
+        def body(name, x):
+            return {"name": name, "mass_kg": 1, "inertia_kg_m2": [0.1, 0.2, 0.25], "centre": [x, 0.5, 0]}
+
+        def ball(name, bodies, at):
+            return {"name": name, "type": "spherical", "bodies": bodies, "at": at}
+
+        crank = {"format": "modetune-model/1", "dimension": 3, "bodies": [body("crank", 0), body("rod", 1)],
+                 "joints": [{"name": "pivot", "type": "revolute", "bodies": ["ground", "crank"], "at": [0, 0, 0], "axis": [0, 0, 1]},
+                            ball("near", ["crank", "rod"], [0.2, 0.7, 0]), ball("far", ["rod", "ground"], [1.5, 0.9, 0.3])],
+                 "springs": [{"name": "s", "type": "torsion", "joint": "pivot", "stiffness_n_m_per_rad": 10}], "configurations": {"c": {}}}
+        two = changed(crank, ("bodies",), crank["bodies"] + [body("other", 2)])
+        two = changed(two, ("joints",), crank["joints"] + [ball("a", ["crank", "other"], [0.3, 0.6, 0]), ball("b", ["other", "ground"], [2, 0.4, -0.5])])
+        split = changed(crank, ("bodies",), crank["bodies"] + [body("half", 1.2)])
+        split = changed(split, ("joints",), crank["joints"][:2] + [ball("far", ["half", "ground"], [1.5, 0.9, 0.3]), {
+            "name": "weld", "type": "fixed", "bodies": ["rod", "half"], "at": [1, 0.8, 0.1]}])
+        hanging = changed(crank, ("joints",), crank["joints"][:2])
+        missing = "3 free motions: is a joint missing? Free to move: "
+        for model, words in ((crank, '"rod" spins freely between its ball joints'), (two, 'free motions: "rod", "other" spin freely between their ball joints'),
+                             (split, '"rod" spins freely between its ball joints'), (hanging, missing)):
+            with self.subTest(words):
+                path = self.put_model(base=model)
+                for command in ("info", "modes"):
+                    said = [f["text"] for f in self.json_of(command, path)[0]["facts"] if f["kind"] == "free_motion"]
+                    self.assertEqual(len(said), 1)
+                    self.assertIn(words, said[0])
+                    self.assertEqual("missing" in said[0], words is missing)
+
     def test_freedoms_come_first_and_in_words(self):
         loose = changed(MODEL, ("springs",), None)
         floating = changed(loose, ("joints", 0), {"name": "foot", "type": "fixed", "bodies": ["rod.end", "tip"], "at": [0, 1]})
