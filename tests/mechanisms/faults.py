@@ -65,6 +65,21 @@ def proportion_lost(model):
     return model["damping"].pop("mass_per_s", None) is not None
 
 
+def _tones(motion):
+    return [tone for reading in motion["readings"] for tone in reading["tones"]]
+
+
+def rings_higher(motion):
+    for tone in _tones(motion):
+        tone["frequency_hz"] *= 1.0001
+
+
+def rings_longer(motion):
+    for tone in _tones(motion):
+        tone["damping_ratio"] -= 1e-4
+
+
+RINGING_FAULTS = [rings_higher, rings_longer]  # put into motions that are read; all are found
 DAMPING_FAULTS = [(damper_lost, 8), (loss_off, 6), (proportion_lost, 8)]  # put into damped mechanisms: as below
 FAULTS = [(no_gravity, ("loaded2", "loaded3", "hanging"), 6), (heavier, ("free2", "free3", "loaded2"), 4), (tension_reversed, ("loaded2", "loaded3"), 7),
           (spring_lost, ("loaded2", "loaded3"), 8), (joint_lost, ("loaded2", "loaded3"), 8), (joint_moved, ("loaded2", "driven3"), 5),

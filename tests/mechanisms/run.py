@@ -22,6 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
 
 import damped  # noqa: E402
+import ring  # noqa: E402
 import statics  # noqa: E402
 from changes import CHANGES  # noqa: E402
 from exact import binary, number  # noqa: E402
@@ -69,6 +70,7 @@ class Case:
         self.modes = statics.modes(model)
         self.expected = {**self.modes.counts(), "redundant": self.modes.redundant}
         self.hz = self.modes.hz()
+        self.tones = 0  # of a motion, that were compared
 
     def agree(self, answer, factor=1):
         """Sentences on what an answer of the program has wrong."""
@@ -212,6 +214,24 @@ class Case:
             wrong = damped.compare(answer.said, expected)
             yield from [("damped", wrong)] if wrong else []
 
+    def ringing(self, answer, spoil=None):
+        """A damped motion against complex modes; spoil: a fault, put into the motion that is read."""
+        made = ring.prepare(self.rng, self.model, answer.said)
+        if made is None:
+            return
+        model, amplitude, start = made
+        modes = Answer(self.folder, "ring", model, "modes", "--damped")
+        motion = Answer(self.folder, "ring", model, "simulate", *start)
+        if modes.code or motion.code:
+            bad = modes if modes.code else motion
+            if not any(words in bad.words for words in ring.EXCUSES):
+                yield "ring", f"exit code {bad.code}: {bad.words.strip()[-300:]}"
+            return
+        if spoil:
+            spoil(motion.said)
+        self.tones, wrong = ring.compare(motion.said, modes.said, amplitude)
+        yield from [("ring", wrong)] if wrong else []
+
     def findings(self):
         """(check, sentence)."""
         answer = Answer(self.folder, "as_made", self.model, "modes", "--shapes")
@@ -234,6 +254,7 @@ class Case:
             yield from self.rest()
             yield from self.slopes()
             yield from self.damping()
+            yield from self.ringing(answer) if not answer.code else ()
 
 
 def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
@@ -257,6 +278,7 @@ def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
                         continue
                     for check, text in case.findings():
                         yield kind, index, check, text, reason(check, case)
+                    tally["tones"] = tally.get("tones", 0) + case.tones
                 except Exception as fault:  # a fault of this reference ends one case, never the hunt
                     yield kind, index, "reference", repr(fault), None
 

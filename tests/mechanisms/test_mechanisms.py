@@ -13,7 +13,7 @@ from pathlib import Path
 import exact
 import run
 import statics
-from faults import DAMPING_FAULTS, FAULTS
+from faults import DAMPING_FAULTS, FAULTS, RINGING_FAULTS
 from known import reason
 
 SEED = "1"
@@ -103,6 +103,18 @@ class Faults(unittest.TestCase):
         for plant, least in DAMPING_FAULTS:
             with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
                 self.assertGreaterEqual(self._damped(Path(folder), plant), least)
+
+    def test_faults_of_motions_are_found(self):
+        for plant in RINGING_FAULTS:
+            with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
+                tried = found = 0
+                for index in range(6):
+                    case = run.Case(Path(folder), "free2", random.Random(f"ring:{index}"), made("loaded2", index))
+                    answer = run.Answer(Path(folder), "as_made", case.model)
+                    wrong = list(case.ringing(answer, plant)) if not answer.code else []
+                    tried, found = tried + (case.tones > 0), found + bool(wrong)
+                self.assertGreater(tried, 1)
+                self.assertEqual(found, tried)
 
     def _damped(self, folder, plant, of=10):
         tried, found, index = [], 0, 0
