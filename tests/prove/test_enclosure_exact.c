@@ -74,7 +74,7 @@ static const form bodies[] = {
     {"1 + (p%d - 1)^2", lightest, 1.0, false},
 };
 
-/* Of all of these the slopes keep their signs here but where they turn (3 p in 1.8 to 5.1). */
+/* All of these keep the signs of their slopes here but where they turn (3 p: 1.8 to 5.1). */
 static const double LEAST = 0.6;
 static const double MOST = 1.7;
 
