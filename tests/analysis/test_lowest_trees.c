@@ -439,13 +439,18 @@ static int number_of_trees(kind what)
     return number / (getenv("MT_TEST_LAUNCHED") != NULL ? 10 : part);
 }
 
+/* Is it free to move under its load, which other ways refuse? */
+static bool is_adrift(kind what, const mech *dense)
+{
+    return what == PULLED && dense->a->modes.n_rigid > 0;
+}
+
 /* least: parts of a hundred that are answered. */
 static void check_trees(mt_test *t, kind what, int least)
 {
     writer w = {.text = malloc(TEXT)};
     static const int input[INPUTS] = {0, 1, 2, 3, 4, 5, 6};
     const int trees = number_of_trees(what);
-    int held = trees; /* those that should be answered */
     int found = 0;
     int refused = 0;
     int told = 0;
@@ -474,14 +479,10 @@ static void check_trees(mt_test *t, kind what, int least)
         write_loads(&w, &m);
         ADD(&w, "}");
         mt_test_row(t, "seed %d", i + 1);
-        if (!mech_open(t, mech_parse(t, w.text), NULL, "m J k L W a g", &dense)) {
+        if (!mech_open(t, mech_parse(t, w.text), NULL, "m J k L W a g", &dense) ||
+            is_adrift(what, &dense)) {
             mech_free(&dense);
             continue; /* a mechanism that the dense way refuses: a dead centre */
-        }
-        if (what == PULLED && dense.a->modes.n_rigid > 0) {
-            held--; /* what is free to move under its load is refused */
-            mech_free(&dense);
-            continue;
         }
         CHECK_INT(t,
                   mt_lowest_new(dense.model, 0, INPUTS, input, dense.at,
@@ -503,11 +504,10 @@ static void check_trees(mt_test *t, kind what, int least)
         mech_free(&dense);
     }
     mt_test_row(t, "all");
-    CHECK(t, held > trees / 3);
-    CHECK(t, 100 * found >= least * held);
+    CHECK(t, 100 * found >= least * trees);
     CHECK(t, rough <= trees / 1000);
     CHECK(t, refused <= (what == LOOPED ? trees / 200 : 0));
-    CHECK(t, told >= (least * held / 100) - (10 * rounds()));
+    CHECK(t, told >= (least * trees / 100) - (10 * rounds()));
     free(w.text);
 }
 
@@ -525,7 +525,7 @@ static void lowest__of_random_trees_under_gravity_likewise(mt_test *t)
 /* Under loads along all axes that leave them as drawn. */
 static void lowest__of_random_trees_that_are_pulled_likewise(mt_test *t)
 {
-    check_trees(t, PULLED, 80);
+    check_trees(t, PULLED, 33);
 }
 
 /* Where they are no trees, in coordinates of their bodies. */

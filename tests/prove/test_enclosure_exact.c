@@ -214,16 +214,17 @@ static void exact_modes(const rig *g, const double *x, quad *lambda)
     quad k[MASSES + 1] = {0};
     quad m[MASSES];
     quad a[MASSES * MASSES] = {0};
-    for (int i = 0; i < g->n; i++) {
+    const ptrdiff_t n = g->n;
+    for (ptrdiff_t i = 0; i < n; i++) {
         k[i] = g->form[i]->value((quad)x[i]);
         m[i] = g->form[g->n + i]->value((quad)x[g->n + i]);
     }
-    for (int i = 0; i < g->n; i++) {
-        a[i * (g->n + 1)] = (k[i] + k[i + 1]) / m[i];
+    for (ptrdiff_t i = 0; i < n; i++) {
+        a[i + (i * n)] = (k[i] + k[i + 1]) / m[i];
         if (i > 0) {
             const quad coupling = -k[i] / quad_root(m[i] * m[i - 1]);
-            a[i + ((i - 1) * g->n)] = coupling;
-            a[i - 1 + (i * g->n)] = coupling;
+            a[i + ((i - 1) * n)] = coupling;
+            a[i - 1 + (i * n)] = coupling;
         }
     }
     quad_eigenvalues(g->n, a, lambda);
