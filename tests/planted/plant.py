@@ -23,6 +23,7 @@ import os
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -40,7 +41,7 @@ ABOVE = {"prove": ["problem/", "search/", "answer/", "cli/test_tolerances"],
          "report": ["describe/test_numbers", "library/", "cli/test_explain", "cli/test_trade_table", "cli/test_show", "cli/test_words"]}
 FIRST_EACH, FIRST_ALL = 4.0, 40.0  # seconds that one of the others, and all of them, may cost
 STEPS = (1.0, 6.0)  # it is built and run in steps: all tests below so many seconds, then the next
-BUILD_LIMIT, TEST_LIMIT, QUICK_LIMIT = 600, 200, 1800  # seconds: a fault may never end
+BUILD_LIMIT, STEP_LIMIT, QUICK_LIMIT = 600, 60, 1800  # seconds: a fault may never end; of a step beside ten times what its tests cost
 UNSUITED = "^(browser|structure|install)/"  # what does not judge the code, or not in a copy
 NAME = r"[A-Za-z_]\w*"
 # kind: what is found (group 1 is replaced), by what
@@ -140,18 +141,23 @@ class Copy:
         return [sorted((t for t in picked if low <= cost(t) < high), key=cost) for low, high in zip(marks, marks[1:])]
 
     def run(self, command, limit):
+        """None: it had no end, and was killed with all that it had started."""
+        done = subprocess.Popen(command, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
         try:
-            return subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=limit)
+            said, _ = done.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
+            os.killpg(done.pid, signal.SIGKILL)
+            done.communicate()
             return None
+        return subprocess.CompletedProcess(command, done.returncode, said)
 
     def built(self, wanted):
         """Does it compile, without a warning? A compiler that warns has noticed."""
         done = self.run(["ninja", "-C", str(self.build), *wanted], BUILD_LIMIT)
         return done is not None and done.returncode == 0 and "warning:" not in done.stdout
 
-    def first_failure(self, *arguments, limit=QUICK_LIMIT, jobs=1):
-        done = self.run(["ctest", "--test-dir", str(self.build), "-LE", "long", "-j", str(jobs), "--stop-on-failure", "--timeout", str(TEST_LIMIT), *arguments], limit)
+    def first_failure(self, *arguments, limit, jobs=1):
+        done = self.run(["ctest", "--test-dir", str(self.build), "-LE", "long", "-j", str(jobs), "--stop-on-failure", *arguments], limit)
         if done is None:
             return "without an end"
         failed = re.search(r"Test +#\d+: (\S+) \.*\*\*\*", done.stdout)
@@ -162,7 +168,8 @@ class Copy:
             programs = [f"tests/{test}" for test in step if f"tests/{test}" in self.targets]
             if not self.built(["modetune", "libmodetune.so", "tests/modetune_faults", *programs]):
                 return "the compiler"
-            found = step and self.first_failure("-R", "^(" + "|".join(step) + ")$")
+            limit = STEP_LIMIT + 10 * sum(self.costs.get(test, 1.0) for test in step)
+            found = step and self.first_failure("-R", "^(" + "|".join(step) + ")$", limit=limit)
             if found:
                 return found
         return None
@@ -179,7 +186,7 @@ class Copy:
         try:
             found = self.noticed_first(room)
             if found is None and quick:
-                found = self.first_failure("-E", UNSUITED, jobs=os.cpu_count()) if self.built([]) else "the compiler"
+                found = self.first_failure("-E", UNSUITED, limit=QUICK_LIMIT, jobs=os.cpu_count()) if self.built([]) else "the compiler"
             return found
         finally:
             path.write_text(sound, encoding="utf-8")
