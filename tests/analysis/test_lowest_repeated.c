@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The lowest modes where the last one that is asked for is a repeated one: all of its multiplicity
- * are told, in closed form. Point masses, each on springs of one stiffness along all axes: modes
- * come in threes.
+ * The lowest modes where the last one that is asked for is a repeated one: all of its
+ * multiplicity are told, in closed form. Point masses, each on springs of one stiffness along
+ * all axes: modes come in threes.
  */
 #include "analysis/lowest.h"
 #include "mechanics/mech.h"
