@@ -38,7 +38,7 @@ static const domain domains[] = {
     {MT_OP_MAX, {-9, 9}, {-9, 9}},       {MT_OP_HYPOT, {-9, 9}, {-9, 9}},
 };
 
-enum { BOXES = 150, POINTS = 5 };
+enum { BOXES = 100, POINTS = 4 };
 
 /* A point, a needle, a short or a long part of the range; now and then with an end at a whole
  * number, 0 among them. */

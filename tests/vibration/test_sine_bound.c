@@ -9,7 +9,7 @@
 #include "mt_test.h"
 #include "vibration/sine.c" /* NOLINT(bugprone-suspicious-include) */
 
-enum { SUMS = 60, PLACES = 12, CUTS = 6 };
+enum { SUMS = 40, PLACES = 12, CUTS = 6 };
 
 static double exact_square(const rig *g, const mt_panel *p, double part)
 {
