@@ -73,6 +73,25 @@ static void ruler__has_every_mark_at_its_place(mt_test *t)
     }
 }
 
+/* A band that begins next to the modes and has no end to speak of leaves them their places. */
+static void ruler__ends_within_a_band_that_goes_far_beyond(mt_test *t)
+{
+    mt_result_frequency f[MODES];
+    mt_result_gap gap;
+    mt_recommendation r = make(f, &gap);
+    mt_text out = {.s = NULL};
+    r.n_frequencies = 2;
+    gap.upper_hz = 5000.0;
+    gap.margin_upper_hz = 6000.0;
+    r.frequencies[1].target_hz = 33.0;
+    mt_report_ruler(&r, 100, &out);
+    REQUIRE(t, out.s != NULL && !out.failed);
+    const char *const end = strchr(out.s, '\n');
+    const char *const target = strchr(out.s, '|');
+    CHECK(t, target != NULL && target < end && fabs(hz_at(out.s, target) - 33.0) < 1.3);
+    mt_text_free(&out);
+}
+
 static void ruler__is_not_drawn_where_nothing_is_asked(mt_test *t)
 {
     mt_result_frequency f[MODES];
@@ -89,4 +108,5 @@ static void ruler__is_not_drawn_where_nothing_is_asked(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(ruler__has_every_mark_at_its_place),
+             MT_TEST(ruler__ends_within_a_band_that_goes_far_beyond),
              MT_TEST(ruler__is_not_drawn_where_nothing_is_asked))
