@@ -24,7 +24,7 @@ mt_status mt_doubts_of_lowest(const mt_lowest *l, int n_inputs, const int *input
                               const double *at, mt_doubt_list *out, mt_err *err);
 
 /* Are all free motions those of rods that spin between their ball joints? *rods: how many, 0
- * where they are not; text: their names, as many as fit (doubts_spins.c). Fails: MT_E_MEMORY. */
+ * where they are not; text: their names, as many as fit. Fails: MT_E_MEMORY. */
 mt_status mt_doubts_spins(const mt_analysis *a, char *text, size_t size, int *rods,
                           mt_err *err);
 

@@ -110,9 +110,7 @@ typedef struct mt_result_clearance {
     int band_id;      /* as in mt_result_gap */
     int mode;         /* vibration index at this design */
     double hz;
-    /* clearance (study/bands.h) from the nearest edge of the band without its margin; negative
-     * inside */
-    double percent;
+    double percent; /* clearance from the band's nearest edge (bands.h); negative inside */
     double margin_percent; /* what was asked for at that edge, as a clearance */
     const char *side;      /* where the mode lies: "below", "inside", "above" */
     /* over the tolerances of the variables: nearest to the band, or deepest inside; NaN:
