@@ -25,6 +25,11 @@ def hz(family, theta, k1=K1):
     return math.sqrt((k1 + K2 * math.cos(theta) ** 2) / MASS[family]) / TWO_PI
 
 
+def apart(inner, outer):
+    """A clearance: the greater over the smaller less 1, in percent; negative where they stand the other way round."""
+    return 100 * (outer / inner - 1) if inner <= outer else -100 * (inner / outer - 1)
+
+
 class Families(unittest.TestCase):
     def answer(self, goals):
         more = {name: {"drive": drive(theta), "parameters": {"m": MASS["d"]}} for name, theta in zip(NAMES["d"], POSITIONS["d"])}
@@ -69,7 +74,7 @@ class Families(unittest.TestCase):
                 for i, family in enumerate("dc" if turned else "cd"):
                     row, goal = rows[f"/goals/{i}"], BANDS["cd".index(family)]
                     (low, high), margin = goal["bands_hz"][0], goal["margin_percent"]
-                    nearest = lambda thetas: min((max(100 * (1 - f / low), 100 * (f / high - 1)), t) for t in thetas for f in [hz(family, t, k1)])
+                    nearest = lambda thetas: min((max(apart(f, low), apart(high, f)), t) for t in thetas for f in [hz(family, t, k1)])
                     if row["grade"] == "not followed":
                         self.assertLess(nearest(POSITIONS[family])[0], margin)
                         continue
@@ -78,8 +83,9 @@ class Families(unittest.TestCase):
                     percent, _ = nearest(thetas)
                     self.check_range(row, family)
                     self.assertAlmostEqual(row["least_clearance_percent"], percent, delta=0.01 + 0.002 * abs(percent))
-                    self.assertAlmostEqual(row["margin_percent"], margin, delta=1e-9)
-                    self.assertEqual(row["crosses"], percent < margin)
+                    below = 100 * (1 / (1 - margin / 100) - 1)  # the margin of the lower edge, as a clearance
+                    self.assertLess(min(abs(row["margin_percent"] - margin), abs(row["margin_percent"] - below)), 1e-9)
+                    self.assertEqual(row["crosses"], percent < row["margin_percent"])
                     self.assertAlmostEqual(row["hz"] / hz(family, row["at"], k1), 1, delta=1e-6)
         self.assertTrue(all(followed.values()), followed)
 

@@ -334,7 +334,7 @@ class Shown(CliTest):
         self.write("studies/never.json", json.dumps(altered(ASK, published=None, variables=ASK["variables"][:1], goals=[
             {"type": "frequency", "configuration": "as_is", "mode": 1, "target_hz": 23}])))
         said = self.run_program("run", "studies/never.json", "-o", "out").stdout
-        self.assertRegex(said, r"With the lower bound of d at ([0-9.]+) in instead of 4 .*: d = \1 in\.")
+        self.assertRegex(said, r"Changing the lower bound of d from 4 to ([0-9.]+) in .*: d = \1 in\.")
 
     def test_what_an_expression_is_held_against_is_shown_in_its_unit(self):
         """The number stays in SI; what people see of it is in the unit of the expression's parameter, or in the study's."""
@@ -359,7 +359,7 @@ class Shown(CliTest):
         self.write("studies/wide.json", json.dumps(altered(study, published=None, goals=[
             {"type": "limit", "expression": "2*d", "at_least": "16*inch"}])))
         said = self.run_program("run", "studies/wide.json", "-o", "out").stdout
-        self.assertRegex(said, r"With the at_least of goal /goals/0 at (15|14\.9999\d*) in instead of 16 ")
+        self.assertRegex(said, r"Changing the at_least of goal /goals/0 from 16 to (15|14\.9999\d*) in ")
         self.write("studies/grid.json", json.dumps(altered(study, published=None, goals=study["goals"][:1], trade={
             "vary": [{"goal": 0, "member": "at_least", "values": ["9*inch", "10*inch"]}]})))
         self.assertRegex(self.expect(0, "run", "studies/grid.json", "-o", "out").stdout, r"at_least of [^\n]*\[in\]")
