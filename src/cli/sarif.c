@@ -17,7 +17,7 @@
     X(RULE_ERROR, "bad-input", "error", "An input file is wrong",                            \
       "Something that is missing, of a wrong type, unknown, out of its range or "            \
       "contradictory: the file cannot be used before it is mended.")                         \
-    X(RULE_WARNING, "hardly-meant", "warning", "A value is allowed but suspicious",        \
+    X(RULE_WARNING, "hardly-meant", "warning", "A value is allowed but suspicious",          \
       "Values that look like other units, joints off their links, bands that no mode comes " \
       "near. While such a doubt stands, no answer of a study is graded as proven.")          \
     X(RULE_NOTE, "good-to-know", "note", "A fact of the model",                              \
