@@ -19,6 +19,7 @@ from known import reason
 SEED = "1"
 COUNT = 2 if "MT_EVERY" in os.environ else 1  # of each kind
 FEW = not {"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ)
+TRIED = 4 if FEW else 10  # mechanisms that each fault is planted in; `least` is of ten
 # In turn the one in a plane and the one in space of two kinds that differ in that alone.
 TWINS = [name for name in run.KINDS if name.endswith("2") and name[:-1] + "3" in run.KINDS]
 LEFT_OUT = {name if place % 2 else name[:-1] + "3" for place, name in enumerate(TWINS)} if FEW else set()
@@ -97,18 +98,18 @@ class Faults(unittest.TestCase):
     def test_faults_are_found(self):
         for plant, kinds, least in FAULTS:
             with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
-                self.assertGreaterEqual(self._found(Path(folder), plant, kinds), least)
+                self.assertGreaterEqual(self._found(Path(folder), plant, kinds), least * TRIED // 10)
 
     def test_faults_of_damping_are_found(self):
         for plant, least in DAMPING_FAULTS:
             with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
-                self.assertGreaterEqual(self._damped(Path(folder), plant), least)
+                self.assertGreaterEqual(self._damped(Path(folder), plant), least * TRIED // 10)
 
     def test_faults_of_motions_are_found(self):
         for plant in RINGING_FAULTS:
             with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
                 tried = found = 0
-                for index in range(6):
+                for index in range(3 if FEW else 6):
                     case = run.Case(Path(folder), "free2", random.Random(f"ring:{index}"), made("loaded2", index))
                     answer = run.Answer(Path(folder), "as_made", case.model)
                     wrong = list(case.ringing(answer, plant)) if not answer.code else []
@@ -116,7 +117,7 @@ class Faults(unittest.TestCase):
                 self.assertGreater(tried, 1)
                 self.assertEqual(found, tried)
 
-    def _damped(self, folder, plant, of=10):
+    def _damped(self, folder, plant, of=TRIED):
         tried, found, index = [], 0, 0
         while len(tried) < of:
             self.assertLess(index, 100, "the fault has no place in these mechanisms")
@@ -126,7 +127,7 @@ class Faults(unittest.TestCase):
             found += bool(list(case.damping(lambda model: plant(model) and tried.append(model) is None)))
         return found
 
-    def _found(self, folder, plant, kinds, of=10):
+    def _found(self, folder, plant, kinds, of=TRIED):
         tried = found = index = 0
         while tried < of:
             self.assertLess(index, 100, "the fault has no place in these mechanisms")
