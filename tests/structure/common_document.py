@@ -183,6 +183,8 @@ class Walk:
             patterns = match["value"].split(" | ") if match["mark"] == "only" else []
             got = "".join(part.rstrip("\n") + "\n" for part in (only(out, patterns), said) if part.strip())
             now.append(f"$ {command}\n{got}")
+            if "|" in command and not got.strip():
+                self.wrong.append(f"$ {command}\nshows nothing")
             a, b = want.rstrip("\n").splitlines(), got.splitlines()
             if len(a) != len(b):
                 self.wrong.append(f"$ {command}\nnow prints {len(b)} lines, not {len(a)}:\n{got}")
