@@ -507,7 +507,8 @@ static void check_trees(mt_test *t, kind what, int least)
     CHECK(t, 100 * found >= least * trees);
     CHECK(t, rough <= trees / 1000);
     CHECK(t, refused <= (what == LOOPED ? trees / 200 : 0));
-    CHECK(t, told >= (least * trees / 100) - (10 * rounds()));
+    /* where loads pull, only a parameter that leaves the drawing at rest has slopes here */
+    CHECK(t, told >= (what == PULLED ? trees / 5 : (least * trees / 100) - (10 * rounds())));
     free(w.text);
 }
 

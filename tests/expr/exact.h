@@ -88,17 +88,17 @@ static inline quad exact_atan(quad x)
     return y;
 }
 
-static inline quad exact_asin(quad x)
-{
-    return exact_atan(x / quad_root((1 - x) * (1 + x)));
-}
-
 static inline quad exact_atan2(quad y, quad x)
 {
     if (quad_abs(y) > quad_abs(x)) {
         return ((y > 0 ? exact_pi() : -exact_pi()) / 2) - exact_atan(x / y);
     }
     return exact_atan(y / x) + (x > 0 ? 0 : (y >= 0 ? exact_pi() : -exact_pi()));
+}
+
+static inline quad exact_asin(quad x)
+{
+    return exact_atan2(x, quad_root((1 - x) * (1 + x)));
 }
 
 /* Integers exactly, other powers of positive numbers by the logarithm. */
