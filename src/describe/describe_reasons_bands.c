@@ -38,29 +38,44 @@ static const char *band_text(mt_sentences *s, const mt_result_clearance *c)
                : mt_arena_printf(&s->result->mem, "%s (%s)", numbers, c->band);
 }
 
+/* "no mode lies below ", "2 modes lie below "; behind others without a verb. */
+static const char *count_text(mt_arena *mem, int modes, bool first)
+{
+    if (modes == 0) {
+        return first ? "no mode lies below " : ", no mode lies below ";
+    }
+    const char *const before = first ? "" : ", ";
+    if (modes == 1) {
+        return mt_arena_printf(mem, "%s1 mode%s below ", before, first ? " lies" : "");
+    }
+    return mt_arena_printf(mem, "%s%d modes%s below ", before, modes, first ? " lie" : "");
+}
+
+/* Labels of n bands: "1P, 2P and 4P". */
+static const char *bands_text(mt_arena *mem, const mt_result_gap *g, int n)
+{
+    const char *text = g[0].band;
+    for (int k = 1; k < n; k++) {
+        text = mt_arena_printf(mem, "%s%s%s", text, k == n - 1 ? " and " : ", ", g[k].band);
+    }
+    return text;
+}
+
 /* "In installed, no mode lies below 1P and 4P, 1 mode below 8P." Bands with one number of modes
  * stand together. */
 static void say_kind(mt_sentences *s, int first, int n)
 {
     const mt_result_gap *const g = &s->rec->gaps[first];
+    mt_arena *const mem = &s->result->mem;
     const char *text = "";
-    for (int i = 0; i < n;) {
-        int same = 1;
+    int same = 1;
+    for (int i = 0; i < n; i += same) {
+        same = 1;
         while (i + same < n && g[i + same].modes_below == g[i].modes_below) {
             same++;
         }
-        const int modes = g[i].modes_below;
-        text = modes == 0 ? mt_arena_printf(&s->result->mem, "%sno mode lies below ", text)
-                          : mt_arena_printf(&s->result->mem, "%s%s%d mode%s below ", text,
-                                            i == 0 ? "" : ", ", modes,
-                                            i > 0        ? modes == 1 ? "" : "s"
-                                            : modes == 1 ? " lies"
-                                                         : "s lie");
-        for (int k = 0; k < same; k++) {
-            const char *const before = k == 0 ? "" : k == same - 1 ? " and " : ", ";
-            text = mt_arena_printf(&s->result->mem, "%s%s%s", text, before, g[i + k].band);
-        }
-        i += same;
+        text = mt_arena_printf(mem, "%s%s%s", text, count_text(mem, g[i].modes_below, i == 0),
+                               bands_text(mem, &g[i], same));
     }
     mt_say(s, "In %s, %s.", g->configuration, text);
 }

@@ -262,7 +262,6 @@ static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
 static void add_objective(const mt_recommendation *r, mt_text *out)
 {
     char now[MT_NUMBER_TEXT];
-    char was[MT_NUMBER_TEXT];
     const mt_design_objective *const o = r->n_objectives > 0 ? &r->objectives[0] : NULL;
     if (o == NULL || !isfinite(o->recommended) || o->recommended == r->change) {
         return;
@@ -274,6 +273,7 @@ static void add_objective(const mt_recommendation *r, mt_text *out)
                  o->unit != NULL && o->unit[0] != '\0' ? " " : "",
                  o->unit != NULL ? o->unit : "");
     if (isfinite(o->original)) {
+        char was[MT_NUMBER_TEXT];
         mt_text_addf(out, " (was %s)",
                      mt_report_number(mt_without_noise(o->original, noise), DIGITS, was));
     }

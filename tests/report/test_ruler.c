@@ -81,8 +81,8 @@ static void ruler__ends_within_a_band_that_goes_far_beyond(mt_test *t)
     mt_recommendation r = make(f, &gap);
     mt_text out = {.s = NULL};
     r.n_frequencies = 2;
-    gap.upper_hz = 5000.0;
-    gap.margin_upper_hz = 6000.0;
+    r.gaps[0].upper_hz = 5000.0;
+    r.gaps[0].margin_upper_hz = 6000.0;
     r.frequencies[1].target_hz = 33.0;
     mt_report_ruler(&r, 100, &out);
     REQUIRE(t, out.s != NULL && !out.failed);
