@@ -79,7 +79,7 @@ class Report(Answers):
         values = self.browser.run(VALUES)
         self.assertEqual(set(values), {p["name"] for p in design["parameters"]})
         for p in design["parameters"]:
-            self.near(values[p["name"]].split(" ")[-1], p["recommended"], p["name"])
+            self.near(values[p["name"]].split(" ")[-1], p["recommended"] / (p["display_factor"] or 1), p["name"])
 
     def check_told(self, rank):
         ranks = self.browser.run("return [...document.querySelectorAll('[data-rank]')].filter((s) => !s.hidden)"

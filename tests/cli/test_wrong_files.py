@@ -43,8 +43,13 @@ def level(change):
 
 
 def beyond(other, way):
-    """On the wrong side of the member beside it; None where there is none."""
-    return lambda v, parent: f"({parent[other]}) + {way}*(1 + abs({parent[other]}))" if other in parent else None
+    """On the wrong side of the member beside it, a number where that is one; None where there is none."""
+    def change(v, parent):
+        if other not in parent:
+            return None
+        edge = parent[other]
+        return edge + way * (1 + abs(edge)) if isinstance(edge, (int, float)) else f"({edge}) + {way}*(1 + abs({edge}))"
+    return change
 
 
 def upwards(v, parent):
