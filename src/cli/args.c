@@ -357,16 +357,26 @@ static mt_status read_short(mt_args *args, int argc, char *const argv[], int *at
     return mt_fail(err, MT_E_USAGE, "unknown option \"-%s\"", text);
 }
 
+int mt_command_named(const char *name)
+{
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        if (strcmp(mt_commands[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return MT_CMD_NONE;
+}
+
 static mt_status read_command(mt_args *args, const char *name, mt_err *err)
 {
     const char *names[MT_CMD_IDS];
     char suggestion[SUGGESTION_TEXT];
+    args->command = mt_command_named(name);
+    if (args->command != MT_CMD_NONE) {
+        return MT_OK;
+    }
     for (int i = 0; i < MT_CMD_IDS; i++) {
         names[i] = mt_commands[i].name;
-        if (strcmp(name, names[i]) == 0) {
-            args->command = i;
-            return MT_OK;
-        }
     }
     return mt_fail(err, MT_E_USAGE, "unknown command \"%s\"%s", name,
                    did_you_mean(name, names, MT_CMD_IDS, "", suggestion));

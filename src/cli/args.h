@@ -130,6 +130,8 @@ enum { MT_EXITS = 6 };
 
 extern const mt_option mt_options[MT_OPT_IDS];
 extern const mt_command mt_commands[MT_CMD_IDS];
+/* The command of that name; MT_CMD_NONE: there is none. */
+int mt_command_named(const char *name);
 extern const mt_exit mt_exits[MT_EXITS];
 
 /* Does the command take the option, or the program where it is MT_CMD_NONE? */

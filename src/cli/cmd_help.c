@@ -17,7 +17,7 @@ static rank rank_of(const mt_shipped *document)
                                                              : WRITTEN;
 }
 
-/* Is the same item, byte by byte, in the text already? */
+/* The text has the same item already, byte by byte. */
 static bool has(const mt_text *out, const mt_passage *p)
 {
     const size_t length = (size_t)(p->end - p->begin) - 1; /* the last one has no line feed */
@@ -73,7 +73,7 @@ static void add_title(const mt_passage *heading, mt_text *out)
     mt_text_add_n(out, title, strcspn(title, "\n"));
 }
 
-/* Is the topic one of the values that an item of the reference lists, `"revolute"`? */
+/* The topic is one of the values that an item of the reference lists, `"revolute"`. */
 static bool has_value(const mt_passage *p, const char *topic)
 {
     mt_text value = {.s = NULL};
@@ -148,7 +148,7 @@ static void show_items(const mt_shipped *document, const char *topic, way by,
     }
 }
 
-/* Is `topic`, or `topic(...)`, within [begin, end)? */
+/* `topic`, or `topic(...)`, stands within [begin, end). */
 static bool mentions(const char *begin, const char *end, const char *topic)
 {
     const size_t length = strlen(topic);
@@ -235,6 +235,14 @@ static void add_names(rank of, bool items, mt_text *names)
     }
 }
 
+/* The same of the commands, where no name is there yet. */
+static void add_commands(mt_text *names)
+{
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(names, "%s%s,", i == 0 ? "," : "", mt_commands[i].name);
+    }
+}
+
 static void list_names(const char *what, const mt_text *names, mt_text *out)
 {
     mt_text line = {.s = NULL};
@@ -259,9 +267,7 @@ static void list_topics(mt_text *out)
     for (rank r = OF_COMMANDS; r < RANKS; r++) {
         mt_text names = {.s = NULL};
         if (r == OF_COMMANDS) {
-            for (int i = 0; i < MT_CMD_IDS; i++) {
-                mt_text_addf(&names, "%s%s,", i == 0 ? "," : "", mt_commands[i].name);
-            }
+            add_commands(&names);
         } else {
             add_names(r, false, &names);
         }
@@ -277,9 +283,7 @@ static void add_near(const char *topic, mt_text *out)
     mt_text names = {.s = NULL};
     int n = 0;
     const int length = (int)strlen(topic);
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        mt_text_addf(&names, "%s%s,", i == 0 ? "," : "", mt_commands[i].name);
-    }
+    add_commands(&names);
     for (rank r = OF_COMMANDS; r < RANKS; r++) {
         add_names(r, false, &names);
         add_names(r, true, &names);
@@ -323,16 +327,6 @@ static int unknown(const char *topic)
     return MT_EXIT_INPUT;
 }
 
-static int command_of(const char *name)
-{
-    for (int i = 0; i < MT_CMD_IDS; i++) {
-        if (strcmp(mt_commands[i].name, name) == 0) {
-            return i;
-        }
-    }
-    return MT_CMD_NONE;
-}
-
 int mt_cmd_help(const mt_args *args, mt_text *out)
 {
     const mt_shipped *last = NULL;
@@ -343,8 +337,9 @@ int mt_cmd_help(const mt_args *args, mt_text *out)
     }
     const char *const topic = args->operands[0];
     show_all(topic, BY_HEADINGS, &last, out);
-    if (last == NULL && command_of(topic) != MT_CMD_NONE) {
-        mt_help(command_of(topic), out);
+    const int command = mt_command_named(topic);
+    if (last == NULL && command != MT_CMD_NONE) {
+        mt_help(command, out);
         return MT_EXIT_DONE;
     }
     for (way by = BY_ITEMS; by < WAYS && last == NULL; by++) {

@@ -21,12 +21,7 @@ const mt_shipped *mt_documents_all(int *n)
 
 const mt_shipped *mt_documents_find(const char *path)
 {
-    for (int i = 0; i < MT_COUNT(files); i++) {
-        if (strcmp(files[i].path, path) == 0) {
-            return &files[i];
-        }
-    }
-    return NULL;
+    return mt_shipped_among(files, MT_COUNT(files), path);
 }
 
 bool mt_document_is_reference(const mt_shipped *document)

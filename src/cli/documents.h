@@ -10,7 +10,7 @@
 const mt_shipped *mt_documents_all(int *n);
 /* NULL: there is none. */
 const mt_shipped *mt_documents_find(const char *path);
-/* Is it a reference that is made from schemas, so that other pages come before it? */
+/* It is a reference that is made from schemas: other pages come before it. */
 bool mt_document_is_reference(const mt_shipped *document);
 /* The page of the commands. */
 #define MT_DOCUMENT_COMMANDS "src/cli/README.md"
@@ -31,7 +31,7 @@ bool mt_passage_next(const char *text, mt_passage *p);
  * the first. *at is NULL before the first; *name, *length: not terminated. false: there are no
  * more. */
 bool mt_passage_name(const mt_passage *p, const char **at, const char **name, size_t *length);
-/* Is that one of its names? */
+/* That is one of its names. */
 bool mt_passage_is(const mt_passage *p, const char *name);
 bool mt_passage_is_row(const mt_passage *p);
 

@@ -65,6 +65,12 @@ static void say_change(mt_sentences *s, const mt_result_parameter *p)
     }
 }
 
+const char *mt_say_listed(mt_sentences *s, const char *list, const char *name, int left)
+{
+    const char *const behind = left == 0 ? "" : left == 1 ? " and " : ", ";
+    return mt_arena_printf(&s->result->mem, "%s%s%s", list, name, behind);
+}
+
 /* Parameters that stay, in one sentence: "a, b and c keep their original values." */
 static void say_kept(mt_sentences *s, int kept)
 {
@@ -75,10 +81,7 @@ static void say_kept(mt_sentences *s, int kept)
         if (!unchanged(p)) {
             continue;
         }
-        const char *const after = left == 2 ? " and " : ", ";
-        text =
-            mt_arena_printf(&s->result->mem, "%s%s%s", text, p->name, left == 1 ? "" : after);
-        left--;
+        text = mt_say_listed(s, text, p->name, --left);
     }
     mt_say_of(s, "change", NULL);
     if (kept > 0 && kept == s->rec->n_parameters) {

@@ -51,16 +51,6 @@ static const char *count_text(mt_arena *mem, int modes, bool first)
     return mt_arena_printf(mem, "%s%d modes%s below ", before, modes, first ? " lie" : "");
 }
 
-/* Labels of n bands: "1P, 2P and 4P". */
-static const char *bands_text(mt_arena *mem, const mt_result_gap *g, int n)
-{
-    const char *text = g[0].band;
-    for (int k = 1; k < n; k++) {
-        text = mt_arena_printf(mem, "%s%s%s", text, k == n - 1 ? " and " : ", ", g[k].band);
-    }
-    return text;
-}
-
 /* "In installed, no mode lies below 1P and 4P, 1 mode below 8P." Bands with one number of modes
  * stand together. */
 static void say_kind(mt_sentences *s, int first, int n)
@@ -74,8 +64,10 @@ static void say_kind(mt_sentences *s, int first, int n)
         while (i + same < n && g[i + same].modes_below == g[i].modes_below) {
             same++;
         }
-        text = mt_arena_printf(mem, "%s%s%s", text, count_text(mem, g[i].modes_below, i == 0),
-                               bands_text(mem, &g[i], same));
+        text = mt_arena_printf(mem, "%s%s", text, count_text(mem, g[i].modes_below, i == 0));
+        for (int k = 0; k < same; k++) {
+            text = mt_say_listed(s, text, g[i + k].band, same - 1 - k);
+        }
     }
     mt_say(s, "In %s, %s.", g->configuration, text);
 }

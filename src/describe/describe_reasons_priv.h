@@ -19,6 +19,10 @@ void mt_say_of(mt_sentences *s, const char *kind, const char *about);
 /* Add a sentence. */
 void mt_say(mt_sentences *s, const char *fmt, ...) MT_PRINTF(2, 3);
 
+/* A list of names with one more at its end, "a, b and c"; left: how many are to come behind it.
+ * NULL, or what is there: out of memory. */
+const char *mt_say_listed(mt_sentences *s, const char *list, const char *name, int left);
+
 /* How the modes lie between the bands and which of them stand on an edge.
  * Nothing without bands. */
 void mt_say_bands(mt_sentences *s);

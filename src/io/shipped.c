@@ -19,12 +19,17 @@ const mt_shipped *mt_shipped_all(int *n)
     return files;
 }
 
-const mt_shipped *mt_shipped_find(const char *path)
+const mt_shipped *mt_shipped_among(const mt_shipped *of, int n, const char *path)
 {
-    for (int i = 0; i < MT_COUNT(files); i++) {
-        if (strcmp(files[i].path, path) == 0) {
-            return &files[i];
+    for (int i = 0; i < n; i++) {
+        if (strcmp(of[i].path, path) == 0) {
+            return &of[i];
         }
     }
     return NULL;
+}
+
+const mt_shipped *mt_shipped_find(const char *path)
+{
+    return mt_shipped_among(files, MT_COUNT(files), path);
 }

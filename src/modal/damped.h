@@ -58,7 +58,7 @@ typedef struct mt_damped_modes {
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err);
 
-/* Has each oscillating motion an index, from 1 by |s|: is none undecided? */
+/* Each oscillating motion has an index, from 1 by |s|: none is undecided. */
 bool mt_damped_indexed(const mt_damped_modes *d);
 /* |s|/2 pi and Im s/2 pi [Hz]; -Re s/|s| (NaN where s = 0). */
 double mt_damped_natural_hz(const mt_damped_modes *d, int i);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/tie.h"
 #include "report/number.h"
 
 /* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more
@@ -87,10 +88,19 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
     return t;
 }
 
-/* Of objectives without a unit, and of percentages, it is known what is noise. */
+static bool is_ratio(const char *unit)
+{
+    return unit == NULL || unit[0] == '\0' || strcmp(unit, "%") == 0;
+}
+
+double mt_report_objective_value(const char *unit, double value)
+{
+    return is_ratio(unit) ? mt_without_noise(value, MT_RATIO_NOISE) : value;
+}
+
 void mt_report_objective_cell(mt_table *t, const char *unit, double value)
 {
-    if (unit == NULL || unit[0] == '\0' || strcmp(unit, "%") == 0) {
+    if (is_ratio(unit)) {
         mt_table_ratio(t, value, VALUE_DIGITS);
     } else {
         mt_table_number(t, value, VALUE_DIGITS);

@@ -21,6 +21,9 @@ void mt_report_objective_cells(mt_table *t, const mt_result *result,
                                const mt_recommendation *r);
 /* It is one of the result's objectives. */
 bool mt_report_has_objective(const mt_result *result, const char *text);
+/* An objective's value without what rounding has made of it, where that is known: of objectives
+ * without a unit, and of percentages. */
+double mt_report_objective_value(const char *unit, double value);
 /* A cell of an objective's column. */
 void mt_report_objective_cell(mt_table *t, const char *unit, double value);
 /* The column of the least clearance from the bands without their margin, beside an objective

@@ -266,16 +266,15 @@ static void add_objective(const mt_recommendation *r, mt_text *out)
     if (o == NULL || !isfinite(o->recommended) || o->recommended == r->change) {
         return;
     }
-    const bool is_ratio = o->unit == NULL || o->unit[0] == '\0' || strcmp(o->unit, "%") == 0;
-    const double noise = is_ratio ? MT_RATIO_NOISE : 0.0;
-    mt_text_addf(out, ": %s %s%s%s", o->text,
-                 mt_report_number(mt_without_noise(o->recommended, noise), DIGITS, now),
-                 o->unit != NULL && o->unit[0] != '\0' ? " " : "",
-                 o->unit != NULL ? o->unit : "");
+    mt_text_addf(
+        out, ": %s %s%s%s", o->text,
+        mt_report_number(mt_report_objective_value(o->unit, o->recommended), DIGITS, now),
+        o->unit != NULL && o->unit[0] != '\0' ? " " : "", o->unit != NULL ? o->unit : "");
     if (isfinite(o->original)) {
         char was[MT_NUMBER_TEXT];
-        mt_text_addf(out, " (was %s)",
-                     mt_report_number(mt_without_noise(o->original, noise), DIGITS, was));
+        mt_text_addf(
+            out, " (was %s)",
+            mt_report_number(mt_report_objective_value(o->unit, o->original), DIGITS, was));
     }
 }
 

@@ -233,7 +233,7 @@ static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placem
     return MT_OK;
 }
 
-/* With the joints held, does a way lead from `from`, which goes along it, to `to`? */
+/* *there: with the joints held, a way leads from `from`, which goes along it, to `to`. */
 static mt_status leads(augmented *g, int n, const mt_sim_joint *joints, mt_placement *from,
                        const mt_placement *to, bool *there, mt_arena *mem, mt_err *err)
 {

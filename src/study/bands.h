@@ -130,7 +130,7 @@ typedef enum mt_band_side { MT_BELOW_BAND, MT_INSIDE_BAND, MT_ABOVE_BAND } mt_ba
 const char *mt_band_side_name(mt_band_side side);
 /**
  * Clearance |ln(f/edge)| of a frequency from an edge, as the greater of the two over the
- * smaller less 1, in percent; negative beyond it. below: is it clear below the edge, or above?
+ * smaller less 1, in percent; negative beyond it. below: clear is below the edge, not above.
  * Of two that are not both above 0: infinite.
  */
 double mt_edge_clearance_percent(double edge_hz, bool below, double hz);

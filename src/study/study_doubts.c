@@ -292,8 +292,8 @@ static void doubt_order(mt_doubt_list *out, const mt_study *s, const mt_goal *go
     }
 }
 
-/* Does a limit's expression have another value where one of the variables is at a bound? True
- * where that is not known. */
+/* A limit's expression has another value where one of the variables is at a bound, or that is
+ * not known. */
 static bool follows_variables(const mt_study *s, const mt_goal *goal, mt_arena *mem)
 {
     const size_t n = (size_t)s->n_variables;
