@@ -15,7 +15,7 @@ typedef struct mt_shipped {
 /* All of them, by path; *n their number. */
 const mt_shipped *mt_shipped_all(int *n);
 /* Of n files the one of that path. NULL: there is none. */
-const mt_shipped *mt_shipped_among(const mt_shipped *files, int n, const char *path);
+const mt_shipped *mt_shipped_among(const mt_shipped *of, int n, const char *path);
 /* Of all of them. */
 const mt_shipped *mt_shipped_find(const char *path);
 
