@@ -169,6 +169,7 @@ static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_resu
     out->type = mt_goal_kind_of(g->type)->name;
     out->configuration = mt_analysis_configuration(view->analysis);
     out->text = avoid_text(g, out->configuration, mem);
+    out->quantity = out->configuration;
     out->pointer = mt_arena_printf(mem, "/goals/%d", goal);
     out->unit = "%";
     out->value = nominal.has;

@@ -60,17 +60,17 @@ static const char *interval_text(const mt_problem *p, const mt_demand *d, mt_are
     return mt_arena_printf(mem, " at %s %.10g%s", least ? "least" : "most", number, unit);
 }
 
-/* What a demand asks for, as text. NULL where memory is out. */
-static const char *demand_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
+/* What a demand limits, and that with what it asks for, as texts. */
+static void name_goal(const mt_problem *p, const mt_demand *d, mt_arena *mem, mt_result_goal *g)
 {
     const char *const quantity = quantity_text(p, d, mem);
-    const char *const subject = quantity == NULL || d->ops->subject == NULL
-                                    ? quantity
-                                    : d->ops->subject(d, quantity, mem);
     const char *const interval = interval_text(p, d, mem);
-    return subject == NULL || interval == NULL
-               ? NULL
-               : mt_arena_printf(mem, "%s%s", subject, interval);
+    g->quantity = quantity == NULL || d->ops->subject == NULL
+                      ? quantity
+                      : d->ops->subject(d, quantity, mem);
+    g->text = g->quantity == NULL || interval == NULL
+                  ? NULL
+                  : mt_arena_printf(mem, "%s%s", g->quantity, interval);
 }
 
 /* Of two parts of a violation the greater; NaN is the greatest. */
@@ -217,7 +217,7 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
         }
     }
     g->weighted = d->row_res >= 0 || d->row_soft >= 0;
-    g->text = demand_text(fresh->p, d, &result->mem);
+    name_goal(fresh->p, d, &result->mem, g);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);

@@ -242,6 +242,7 @@ static mt_status put_goal(const described *d, const char *range, mt_recommendati
                                     "\"%s\" and \"%s\"",
                                     range, c->mode, c->band, c->from, c->to)
                   : mt_arena_printf(mem, "%s clear of its bands between the positions", range);
+    g->quantity = mt_arena_strdup(mem, range);
     g->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
     return mt_arena_check(mem, err);
 }

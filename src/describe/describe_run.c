@@ -39,6 +39,40 @@ static mt_status describe_objectives(const mt_study *study, mt_result *result, m
     return mt_arena_check(&result->mem, err);
 }
 
+static bool is_variable(const mt_study *study, int parameter)
+{
+    for (int i = 0; i < study->n_variables; i++) {
+        if (study->variables[i].parameter == parameter) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What the model calls assumed: a reader of the answer has to know what it stands on. */
+static mt_status describe_assumptions(const mt_study *study, mt_result *result, mt_err *err)
+{
+    const mt_model *const m = study->model;
+    result->assumptions =
+        mt_arena_alloc(&result->mem, (size_t)m->n_parameters, sizeof *result->assumptions);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    for (int i = 0; i < m->n_parameters; i++) {
+        const mt_parameter *const p = &m->parameters[i];
+        if (p->origin == MT_ORIGIN_ASSUMED) {
+            result->assumptions[result->n_assumptions++] = (mt_result_assumption){
+                .parameter = p->name.s,
+                .unit = p->unit,
+                .display_unit = mt_unit_name(p->written, NULL),
+                .display_factor = mt_unit_display(p->written),
+                .value = study->original[i],
+                .source = p->source,
+                .variable = is_variable(study, i),
+            };
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
 {
     mt_result_run *const run = &result->run;
@@ -77,13 +111,14 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     for (int i = 0; i < study->n_variables; i++) {
         result->variables[i] = study->variables[i].parameter_name.s;
     }
+    MT_TRY(describe_assumptions(study, result, err));
     return describe_objectives(study, result, err);
 }
 
 mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err)
 {
-    result->study.name = study->name;
-    result->study.file = mt_text_base_name(study->path);
+    result->study = (mt_result_study){study->name, mt_text_base_name(study->path),
+                                      study->author, study->revision, study->date};
     result->model.name = study->model->name;
     result->model.file = study->model_path.s;
     return mt_result_own(result, err);

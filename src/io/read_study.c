@@ -19,6 +19,9 @@
     X(STUDY_NAME, "name", MT_KEY_TEXT, false)                               \
     X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)                 \
     X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                           \
+    X(STUDY_AUTHOR, "author", MT_KEY_TEXT, false)                           \
+    X(STUDY_REVISION, "revision", MT_KEY_TEXT, false)                       \
+    X(STUDY_DATE, "date", MT_KEY_TEXT, false)                               \
     X(STUDY_ACCEPTED, "accepted", MT_KEY_LIST, false)                       \
     X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                              \
     X(STUDY_UNITS, "units", MT_KEY_OBJECT, false)                           \
@@ -353,6 +356,9 @@ static void read_root(mt_study_reader *s)
     }
     study->name = mt_reader_text(&s->r, o.found[STUDY_NAME]);
     study->description = mt_reader_text(&s->r, o.found[STUDY_DESCRIPTION]);
+    study->author = mt_reader_text(&s->r, o.found[STUDY_AUTHOR]);
+    study->revision = mt_reader_text(&s->r, o.found[STUDY_REVISION]);
+    study->date = mt_reader_text(&s->r, o.found[STUDY_DATE]);
     study->accepted = mt_reader_accepted(&s->r, o.found[STUDY_ACCEPTED]);
     study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);
     study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,

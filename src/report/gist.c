@@ -8,9 +8,10 @@
 #include "base/base.h"
 #include "base/tie.h"
 #include "report/number.h"
+#include "report/result_tables.h"
 #include "report/table.h"
 
-enum { LISTED = 4, DIGITS = 3 };
+enum { LISTED = 4, DIGITS = 3, VALUE_DIGITS = 4 };
 
 /* "Solved: 2 designs ...": its first word is the status, and stands out. */
 static void add_status(const mt_result *result, mt_text *out)
@@ -96,10 +97,37 @@ static void add_changes(const mt_recommendation *r, mt_text *out)
     mt_text_add(out, changed == 0 ? "no parameter changes" : "");
 }
 
+bool mt_report_headline(const mt_recommendation *r, mt_text *out)
+{
+    char now[MT_NUMBER_TEXT];
+    const mt_design_objective *const o = r->n_objectives > 0 ? &r->objectives[0] : NULL;
+    if (o == NULL || !isfinite(o->recommended) || o->recommended == r->change) {
+        return false;
+    }
+    mt_text_addf(
+        out, "%s %s%s%s", o->text,
+        mt_report_number(mt_report_objective_value(o->unit, o->recommended), VALUE_DIGITS, now),
+        o->unit != NULL && o->unit[0] != '\0' ? " " : "", o->unit != NULL ? o->unit : "");
+    if (isfinite(o->original)) {
+        char was[MT_NUMBER_TEXT];
+        mt_text_addf(out, " (was %s)",
+                     mt_report_number(mt_report_objective_value(o->unit, o->original),
+                                      VALUE_DIGITS, was));
+    }
+    return true;
+}
+
 static void add_best(const mt_recommendation *r, mt_text *out)
 {
     char change[MT_NUMBER_TEXT];
+    mt_text headline = {.s = NULL};
     open_item("Best design", out);
+    if (mt_report_headline(r, &headline)) {
+        mt_html_escape(headline.s == NULL ? "" : headline.s, out);
+        mt_text_add(out, "; ");
+    }
+    out->failed = out->failed || headline.failed;
+    mt_text_free(&headline);
     add_changes(r, out);
     mt_text_add(out, ". Graded ");
     mt_html_escape(r->grade == NULL ? "not at all" : r->grade, out);
@@ -182,7 +210,7 @@ static void add_others(const mt_result *result, mt_text *out)
     const int others = result->n_recommendations - 1;
     if (others > 0) {
         open_item("Alternatives", out);
-        mt_text_addf(out, "%d other recommendation%s below; choose one and the page shows it.",
+        mt_text_addf(out, "%d other recommendation%s, side by side with the original below.",
                      others, others == 1 ? "" : "s");
         close_item(out);
     }

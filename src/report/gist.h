@@ -10,4 +10,8 @@
  * out->failed. */
 void mt_report_gist(const mt_result *result, mt_text *out);
 
+/* "mass 16.94 kg (was 11.92)": what the study makes least or greatest, at this design; false
+ * (and nothing) where that is the change. */
+bool mt_report_headline(const mt_recommendation *r, mt_text *out);
+
 #endif

@@ -8,6 +8,7 @@
 #include "report/page.h"
 #include "report/summary.h"
 #include "report/table.h"
+#include "report/title.h"
 
 static void add_footer(const mt_result_run *run, mt_text *out)
 {
@@ -29,6 +30,7 @@ static void add_footer(const mt_result_run *run, mt_text *out)
 
 void mt_report_html_told(const mt_result *result, mt_text *out)
 {
+    mt_report_title(result, out);
     mt_report_gist(result, out);
     mt_text_add(out, "<noscript><p>Figures are drawn by the page's own script, which is "
                      "switched off here.</p></noscript>\n");

@@ -175,63 +175,6 @@ void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_re
     }
 }
 
-/* The target or the limit; "7.00000 to 9.00000" where there are two. */
-static void asked_cell(mt_table *t, const mt_result_goal *g)
-{
-    if (isnan(g->target) && !isnan(g->at_least) && !isnan(g->at_most)) {
-        char low[MT_NUMBER_TEXT];
-        char high[MT_NUMBER_TEXT];
-        char text[DEMAND_TEXT];
-        (void)mt_snprintf(text, sizeof text, "%s to %s",
-                          mt_report_number(mt_result_shown(g->at_least, g->display_factor),
-                                           VALUE_DIGITS, low),
-                          mt_report_number(mt_result_shown(g->at_most, g->display_factor),
-                                           VALUE_DIGITS, high));
-        mt_table_text(t, text);
-        return;
-    }
-    mt_table_shown(t,
-                   !isnan(g->target)     ? g->target
-                   : !isnan(g->at_least) ? g->at_least
-                                         : g->at_most,
-                   g->display_factor, VALUE_DIGITS);
-}
-
-/* A limit that is the scale of an objective decides nothing, but it is kept or not. */
-static const char *verdict_of(const mt_result_goal *g)
-{
-    const bool kept = g->violation_percent <= 0.0;
-    if (!g->weighted) {
-        return g->met ? "met" : "not met";
-    }
-    return isnan(g->target) && !isnan(g->at_most) ? kept ? "kept" : "exceeded" : "weighted";
-}
-
-mt_table mt_report_goals(const mt_recommendation *r)
-{
-    mt_table t = mt_table_default();
-    mt_table_column(&t, "goal", "goal", MT_ALIGN_LEFT);
-    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
-    if (r->worst_case != NULL) {
-        mt_table_column(&t, "at worst", "worst", MT_ALIGN_POINT);
-    }
-    mt_table_column(&t, "asked", "demand", MT_ALIGN_POINT);
-    mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
-    mt_table_column(&t, "verdict", "verdict", MT_ALIGN_LEFT);
-    for (int i = 0; i < r->n_goals; i++) {
-        const mt_result_goal *const g = &r->goals[i];
-        mt_table_text(&t, g->text);
-        mt_table_shown(&t, g->value, g->display_factor, VALUE_DIGITS);
-        if (r->worst_case != NULL) {
-            mt_table_shown(&t, g->worst, g->display_factor, VALUE_DIGITS);
-        }
-        asked_cell(&t, g);
-        mt_table_off_by(&t, g->violation_percent, g->met, PERCENT_DIGITS);
-        mt_table_text(&t, verdict_of(g));
-    }
-    return t;
-}
-
 static void percent_cells(mt_table *t, const mt_recommendation *r, const mt_result_clearance *c)
 {
     mt_table_clearance(t, c != NULL ? c->percent : nan(""), c != NULL ? c->margin_percent : 0.0,
@@ -360,6 +303,24 @@ static const char *assignment(const mt_recommendation *r, char *s, size_t size)
     return r->n_gaps > 0 ? s : NULL;
 }
 
+static void alternative_cells(mt_table *t, const mt_result *result, const mt_recommendation *r)
+{
+    if (r->rank > 0) {
+        mt_table_integer(t, r->rank);
+    } else {
+        mt_table_text(t, "original");
+    }
+    mt_table_text(t, r->rank > 0 ? r->grade : NULL);
+    mt_report_objective_cells(t, result, r);
+    mt_table_off_by(t, r->violation_percent, r->feasible, PERCENT_DIGITS);
+    if (result->baseline.n_gaps > 0) {
+        char text[DEMAND_TEXT];
+        mt_table_number(t, r->clearance_percent, PERCENT_DIGITS);
+        mt_table_text(t, assignment(r, text, sizeof text));
+    }
+    mt_report_variable_cells(t, result, r);
+}
+
 mt_table mt_report_alternatives(const mt_result *result)
 {
     mt_table t = mt_table_default();
@@ -367,26 +328,18 @@ mt_table mt_report_alternatives(const mt_result *result)
     mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
     mt_report_objective_columns(&t, result);
     mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
-    const bool bands = result->baseline.n_gaps > 0;
-    if (bands) {
+    if (result->baseline.n_gaps > 0) {
         mt_report_clearance_column(&t, result);
         mt_table_column(&t, "modes below bands", "gap_assignment", MT_ALIGN_LEFT);
     }
     const mt_recommendation *const first =
         result->n_recommendations > 0 ? &result->recommendations[0] : NULL;
     mt_report_variable_columns(&t, result, first);
+    if (result->baseline.n_parameters == result->n_variables) {
+        alternative_cells(&t, result, &result->baseline);
+    }
     for (int i = 0; i < result->n_recommendations; i++) {
-        const mt_recommendation *const r = &result->recommendations[i];
-        mt_table_integer(&t, r->rank);
-        mt_table_text(&t, r->grade);
-        mt_report_objective_cells(&t, result, r);
-        mt_table_off_by(&t, r->violation_percent, r->feasible, PERCENT_DIGITS);
-        if (bands) {
-            char text[DEMAND_TEXT];
-            mt_table_number(&t, r->clearance_percent, PERCENT_DIGITS);
-            mt_table_text(&t, assignment(r, text, sizeof text));
-        }
-        mt_report_variable_cells(&t, result, r);
+        alternative_cells(&t, result, &result->recommendations[i]);
     }
     return t;
 }

@@ -40,8 +40,6 @@ mt_table mt_report_parameters(const mt_recommendation *r);
 /* How the change of a parameter counts, as a sentence; false (and nothing) where it is the
  * plain logarithm. */
 bool mt_report_measure(const mt_result_parameter *p, mt_text *out);
-/* goal, value, target or limits, violation, verdict. */
-mt_table mt_report_goals(const mt_recommendation *r);
 /* Each mode beside its neighbouring bands, one line per mode: the band below it and the band
  * above it with the distance to each. */
 mt_table mt_report_clearances(const mt_recommendation *r);
@@ -50,7 +48,7 @@ mt_table mt_report_clearances(const mt_recommendation *r);
 mt_table mt_report_motions(const mt_recommendation *r);
 /* Bands and how many modes lie below each. */
 mt_table mt_report_gaps(const mt_recommendation *r);
-/* One line per recommendation. */
+/* One line per recommendation, below that of the original design. */
 mt_table mt_report_alternatives(const mt_result *result);
 /* Under other weights: parameter, unit, value, low, high, change of both, and what takes them
  * there. */

@@ -5,8 +5,11 @@
 #include <string.h>
 
 #include "base/tie.h"
+#include "report/compliance.h"
 #include "report/curves.h"
+#include "report/gist.h"
 #include "report/number.h"
+#include "report/question.h"
 #include "report/result_tables.h"
 #include "report/ruler.h"
 #include "report/trade.h"
@@ -257,45 +260,29 @@ static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
     }
 }
 
-/* ": mass 16.94 kg (was 11.92)" of what the study makes least or greatest, where that is not
- * the change. */
-static void add_objective(const mt_recommendation *r, mt_text *out)
-{
-    char now[MT_NUMBER_TEXT];
-    const mt_design_objective *const o = r->n_objectives > 0 ? &r->objectives[0] : NULL;
-    if (o == NULL || !isfinite(o->recommended) || o->recommended == r->change) {
-        return;
-    }
-    mt_text_addf(
-        out, ": %s %s%s%s", o->text,
-        mt_report_number(mt_report_objective_value(o->unit, o->recommended), DIGITS, now),
-        o->unit != NULL && o->unit[0] != '\0' ? " " : "", o->unit != NULL ? o->unit : "");
-    if (isfinite(o->original)) {
-        char was[MT_NUMBER_TEXT];
-        mt_text_addf(
-            out, " (was %s)",
-            mt_report_number(mt_report_objective_value(o->unit, o->original), DIGITS, was));
-    }
-}
-
 /* "Recommendation 1 (feasible): mass 16.94 kg (was 11.92), total change 0.0828" */
 static void tell_rank(const mt_teller *to, const mt_recommendation *r)
 {
     char change[MT_NUMBER_TEXT];
     mt_text title = {0};
+    mt_text headline = {0};
     mt_text_addf(&title, "Recommendation %d (%s)", r->rank,
                  r->grade == NULL ? "not graded" : r->grade);
-    add_objective(r, &title);
+    mt_text_add(&title, mt_report_headline(r, &headline) ? ": " : "");
+    mt_text_add(&title, headline.s == NULL ? "" : headline.s);
     mt_text_addf(&title, ", total change %s%s", mt_report_number(r->change, DIGITS, change),
                  r->singular ? ", a double solution: its parameters are sensitive" : "");
     add_heading(to, title.s == NULL ? "" : title.s);
-    to->out->failed = to->out->failed || title.failed;
+    to->out->failed = to->out->failed || title.failed || headline.failed;
+    mt_text_free(&headline);
     mt_text_free(&title);
 }
 
 /* Its numbers; the original design has no parameters to tell. */
-static void tell_numbers(const mt_teller *to, const mt_recommendation *r)
+static void tell_numbers(const mt_teller *to, const mt_result *result,
+                         const mt_recommendation *r)
 {
+    (void)result;
     const bool found = r->rank > 0;
     if (!(found && r->n_parameters > 0 && r->n_objectives == 1 &&
           r->objectives[0].recommended == r->change)) { /* else its heading has it */
@@ -313,15 +300,25 @@ static void tell_numbers(const mt_teller *to, const mt_recommendation *r)
     }
     add_table(to, mt_report_clearances(r), "Clearances from bands");
     add_table(to, mt_report_motions(r), "Over the range of motion");
-    add_table(to, mt_report_goals(r), "Goals");
 }
 
-static void tell_design(const mt_teller *to, const mt_recommendation *r)
+/* What was asked against what this design does. */
+static void tell_compliance(const mt_teller *to, const mt_result *result,
+                            const mt_recommendation *r)
+{
+    mt_text_add(to->out, to->html ? "<div class=\"compliance\">\n" : "");
+    add_table(to, mt_report_compliance(result, r), "Requirements");
+    mt_text_add(to->out, to->html ? "</div>\n" : "");
+}
+
+static void tell_design(const mt_teller *to, const mt_result *result,
+                        const mt_recommendation *r)
 {
     if (r->rank > 0 && r->n_parameters > 0) {
         tell_rank(to, r);
     }
-    tell_numbers(to, r);
+    tell_compliance(to, result, r);
+    tell_numbers(to, result, r);
     tell_reasons(to, r);
 }
 
@@ -482,10 +479,10 @@ static void tell_answer(const mt_teller *to, const mt_result *result, bool with_
     mt_tell_doubts(to, result);
     const mt_recommendation *const best =
         result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
-    tell_design(to, best);
+    tell_design(to, result, best);
     tell_responses(to, result, best);
     if (result->n_recommendations > 1) {
-        add_table(to, mt_report_alternatives(result), "All recommendations");
+        add_table(to, mt_report_alternatives(result), "Designs side by side");
     }
     mt_tell_uncertainty(to, result);
     tell_trade(to, result);
@@ -504,26 +501,27 @@ static void keep_place(const mt_teller *to, const char *id)
     mt_text_addf(to->out, "<div id=\"%s\"></div>\n", id);
 }
 
-/* A part of the page for each design, the first of which is shown until another is chosen. */
-static void tell_each(const mt_teller *to, const mt_result *result,
-                      void (*tell)(const mt_teller *, const mt_recommendation *))
+typedef void mt_tell_one(const mt_teller *to, const mt_result *result,
+                         const mt_recommendation *r);
+
+/* A part of the page for each design, the first of which is shown until another is chosen; of
+ * the original one where there is none. */
+static void tell_each(const mt_teller *to, const mt_result *result, mt_tell_one *tell)
 {
-    const int n = result->n_recommendations < SHOWN ? result->n_recommendations : SHOWN;
-    for (int i = 0; i < n; i++) {
-        mt_text_addf(to->out, "<section data-rank=\"%d\"%s>\n", result->recommendations[i].rank,
+    const int found = result->n_recommendations < SHOWN ? result->n_recommendations : SHOWN;
+    const mt_recommendation *const first =
+        found > 0 ? result->recommendations : &result->baseline;
+    for (int i = 0; i < (found > 0 ? found : 1); i++) {
+        mt_text_addf(to->out, "<section data-rank=\"%d\"%s>\n", first[i].rank,
                      i == 0 ? "" : " hidden");
-        tell(to, &result->recommendations[i]);
-        mt_text_add(to->out, "</section>\n");
-    }
-    if (n == 0) {
-        mt_text_add(to->out, "<section data-rank=\"0\">\n");
-        tell(to, &result->baseline);
+        tell(to, result, &first[i]);
         mt_text_add(to->out, "</section>\n");
     }
 }
 
-static void tell_why(const mt_teller *to, const mt_recommendation *r)
+static void tell_why(const mt_teller *to, const mt_result *result, const mt_recommendation *r)
 {
+    (void)result;
     if (r->rank > 0 && r->n_parameters > 0) {
         tell_rank(to, r);
     }
@@ -537,6 +535,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     const mt_teller to = {.out = out, .html = true};
     mt_tell_overrides(&to, &result->run);
     mt_tell_doubts(&to, result);
+    tell_each(&to, result, tell_compliance);
     for (int i = 0; i < MT_COUNT(first); i++) {
         keep_place(&to, first[i]);
     }
@@ -553,7 +552,7 @@ void mt_tell_page(mt_text *out, const mt_result *result)
     tell_each(&to, result, tell_numbers);
     if (result->n_recommendations > 1) {
         mt_text_add(out, "<div class=\"drawn\">\n");
-        add_table(&to, mt_report_alternatives(result), "All recommendations");
+        add_table(&to, mt_report_alternatives(result), "Designs side by side");
         mt_text_add(out, "</div>\n");
     }
     add_table(&to, mt_report_extremes(result, SHOWN), "Peaks and antiresonances");

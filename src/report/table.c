@@ -61,7 +61,7 @@ void mt_table_column(mt_table *t, const char *heading, const char *member, mt_al
 
 static void add_cell(mt_table *t, const char *text, const char *exact)
 {
-    const mt_cell cell = {copy_visible(t, text), copy(t, exact)};
+    const mt_cell cell = {copy_visible(t, text), copy(t, exact), NULL};
     if (t->failed) {
         return;
     }
@@ -78,6 +78,14 @@ static void add_cell(mt_table *t, const char *text, const char *exact)
 void mt_table_text(mt_table *t, const char *text)
 {
     add_cell(t, text == NULL ? "-" : text, text == NULL ? "" : text);
+}
+
+void mt_table_verdict(mt_table *t, const char *text, bool good)
+{
+    mt_table_text(t, text);
+    if (!t->failed) {
+        t->cells[t->n_cells - 1].mark = good ? "good" : "bad";
+    }
 }
 
 void mt_table_integer(mt_table *t, long long value)
@@ -283,9 +291,16 @@ void mt_html_escape(const char *s, mt_text *out)
     }
 }
 
-static void html_cell(const char *tag, mt_align align, const char *text, mt_text *out)
+/* mark: a class of the cell's own; NULL */
+static void html_cell(const char *tag, mt_align align, const char *mark, const char *text,
+                      mt_text *out)
 {
-    mt_text_addf(out, align == MT_ALIGN_LEFT ? "<%s>" : "<%s class=\"n\">", tag);
+    const char *const class = mark != NULL ? mark : align != MT_ALIGN_LEFT ? "n" : NULL;
+    mt_text_addf(out, "<%s", tag);
+    if (class != NULL) {
+        mt_text_addf(out, " class=\"%s\"", class);
+    }
+    mt_text_add(out, ">");
     mt_html_escape(text, out);
     mt_text_addf(out, "</%s>", tag);
 }
@@ -296,12 +311,12 @@ void mt_table_html(const mt_table *t, mt_text *out)
     out->failed = out->failed || t->failed;
     mt_text_add(out, "<table>\n<thead><tr>");
     for (int c = 0; !t->failed && c < n; c++) {
-        html_cell("th", t->columns[c].align, t->columns[c].heading, out);
+        html_cell("th", t->columns[c].align, NULL, t->columns[c].heading, out);
     }
     mt_text_add(out, "</tr></thead>\n<tbody>\n");
     for (int i = 0; !t->failed && i < t->n_cells; i++) {
         mt_text_add(out, i % n == 0 ? "<tr>" : "");
-        html_cell("td", t->columns[i % n].align, t->cells[i].text, out);
+        html_cell("td", t->columns[i % n].align, t->cells[i].mark, t->cells[i].text, out);
         mt_text_add(out, i % n == n - 1 ? "</tr>\n" : "");
     }
     mt_text_add(out, "</tbody>\n</table>\n");

@@ -25,6 +25,7 @@ typedef struct mt_column {
 typedef struct mt_cell {
     const char *text;  /* for people */
     const char *exact; /* for machines */
+    const char *mark;  /* class of the cell on a page; NULL: none */
 } mt_cell;
 
 typedef struct mt_table {
@@ -45,6 +46,8 @@ void mt_table_free(mt_table *t);
 void mt_table_column(mt_table *t, const char *heading, const char *member, mt_align align);
 /* Cells. NULL and NaN are "-" for people and empty for machines. */
 void mt_table_text(mt_table *t, const char *text);
+/* One that a page shows as good or as bad. */
+void mt_table_verdict(mt_table *t, const char *text, bool good);
 void mt_table_integer(mt_table *t, long long value);
 void mt_table_number(mt_table *t, double value, int digits);
 void mt_table_rounded(mt_table *t, double value, int digits); /* for machines, too */

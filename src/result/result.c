@@ -143,6 +143,7 @@ static const char *const GOAL_TYPES[] = {MT_GOAL_LIST(GOAL_NAME)};
 #undef GOAL_NAME
 static const mt_field GOAL_FIELDS[] = {
     MT_F_TEXT("goal", text),
+    MT_F_TEXT("quantity", quantity),
     MT_F_TEXT("pointer", pointer),
     MT_F_CHOICE("type", type, GOAL_TYPES),
     MT_F_TEXT_OR_NULL("configuration", configuration),
@@ -495,14 +496,37 @@ static const mt_field SOURCE_FIELDS[] = {
 static const mt_record SOURCE = MT_F_RECORD_OF(SOURCE_FIELDS);
 #undef THIS
 
+#define THIS mt_result_study
+static const mt_field STUDY_FIELDS[] = {
+    MT_F_TEXT_OR_NULL("name", name),     MT_F_TEXT("file", file),
+    MT_F_TEXT_OR_NULL("author", author), MT_F_TEXT_OR_NULL("revision", revision),
+    MT_F_TEXT_OR_NULL("date", date),
+};
+static const mt_record STUDY = MT_F_RECORD_OF(STUDY_FIELDS);
+#undef THIS
+
+#define THIS mt_result_assumption
+static const mt_field ASSUMPTION_FIELDS[] = {
+    MT_F_TEXT("parameter", parameter),
+    MT_F_TEXT_OR_NULL("unit", unit),
+    MT_F_TEXT_OR_NULL("display_unit", display_unit),
+    MT_F_NUMBER_OR_NULL("display_factor", display_factor),
+    MT_F_NUMBER("value", value),
+    MT_F_TEXT_OR_NULL("source", source),
+    MT_F_FLAG("variable", variable),
+};
+static const mt_record ASSUMPTION = MT_F_RECORD_OF(ASSUMPTION_FIELDS);
+#undef THIS
+
 #define THIS mt_result
 static const mt_field RESULT_FIELDS[] = {
-    MT_F_RECORD("study", study, mt_result_source, SOURCE),
+    MT_F_RECORD("study", study, mt_result_study, STUDY),
     MT_F_RECORD("model", model, mt_result_source, SOURCE),
     MT_F_ENUM("status", status, mt_result_status, STATUSES),
     MT_F_TEXT_OR_NULL("status_text", status_text),
     MT_F_LIST("doubts", doubts, n_doubts, mt_doubt, mt_doubt_record),
     MT_F_LIST("facts", facts, n_facts, mt_doubt, mt_doubt_record),
+    MT_F_LIST("assumptions", assumptions, n_assumptions, mt_result_assumption, ASSUMPTION),
     MT_F_TEXTS("variables", variables, n_variables),
     MT_F_LIST("objectives", objectives, n_objectives, mt_result_objective, OBJECTIVE),
     MT_F_RECORD("baseline", baseline, mt_recommendation, mt_design_record),

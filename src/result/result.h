@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "base/doubt.h"
 #include "result/curves.h"
+#include "result/made_from.h"
 #include "result/record.h"
 
 /*
@@ -70,6 +71,7 @@ typedef struct mt_result_frequency {
  * motion of a drive between its named positions, or of an expression. */
 typedef struct mt_result_goal {
     const char *text;          /* "installed mode 1 at 18 Hz" */
+    const char *quantity;      /* of it what is limited: "installed mode 1" */
     const char *pointer;       /* "/goals/0" */
     const char *type;          /* as files call it: "frequency" */
     const char *configuration; /* NULL: of none, or of several */
@@ -417,79 +419,6 @@ typedef struct mt_result_excitation {
     mt_result_order *orders;
 } mt_result_excitation;
 
-/* A file that the result names with the SHA-256 of its bytes. */
-typedef struct mt_result_digest {
-    const char *file;
-    const char *sha256; /* hexadecimal */
-} mt_result_digest;
-
-/* What the program was made from. */
-typedef struct mt_result_build {
-    const char *commit; /* "unknown" where the sources were no repository */
-    const char *compiler;
-} mt_result_build;
-
-/* A number that was asked for instead of what the files say. */
-typedef struct mt_result_override {
-    const char *kind; /* "parameter" of the model, "search": member of the study's search */
-    const char *name;
-    const char *unit;         /* NULL: none given */
-    const char *display_unit; /* as in mt_result_parameter */
-    double display_factor;
-    double value;
-    double original; /* what the files say; NaN: nothing */
-} mt_result_override;
-
-/* What an answer cost: evaluations of a design in all configurations, or of one more position
- * of a drive, by what they were for; run.evaluations is their sum. */
-typedef struct mt_result_spent {
-    long search;
-    long positions;    /* of drives, wherever a design was followed */
-    long descriptions; /* analyses anew of the original design and of those recommended */
-    long spread;
-    long relaxations;
-    long trade;           /* all points, with all of this */
-    long multiplications; /* of proofs, about */
-} mt_result_spent;
-
-/* A design that a search met that was better than all before it. */
-typedef struct mt_result_step {
-    int objective;    /* that was made least, from 1 */
-    int round;        /* from 1: what follows counts more closely, or under more conditions */
-    long evaluations; /* up to there, as if one worker had done all of it */
-    double value;     /* of that objective, as mt_design_objective has it; NaN: none */
-    double violation; /* the most that a goal or bound is missed by, of its tolerance */
-    bool feasible;
-} mt_result_step;
-
-typedef struct mt_result_run {
-    const char *modetune_version;
-    mt_result_build build;
-    const char *blas;
-    const char *nlopt_version;
-    const char *gsl_version;
-    long seed;
-    long evaluations;
-    mt_result_spent spent;
-    int starts;
-    /* of a search from starts; -1, NaN: not applicable */
-    int distinct_designs;
-    int found_once;           /* of them, by one start only */
-    double estimated_missing; /* isolated designs that no start met, at least */
-    int n_history;            /* 0: nothing was searched, or an interrupt cut it */
-    mt_result_step *history;
-    int n_overrides;
-    mt_result_override *overrides;
-    int n_inputs;
-    mt_result_digest *inputs;
-    int n_outputs; /* files written beside the result; 0: it is written alone */
-    mt_result_digest *outputs;
-    /* phases that an interrupt cut, by the names of what they write ("search", ...) */
-    int n_incomplete;
-    const char **incomplete;
-    const char *cut_by; /* "interrupt" | "time limit"; NULL: nothing was cut */
-} mt_result_run;
-
 /* A KKT residual (relative to the objective's gradient) above this is told. Along the way that
  * is left, of at most a few in ln x, it costs less than a thousandth of the objective; Newton's
  * iteration reaches 1e-9 wherever the modes are simple. */
@@ -501,14 +430,9 @@ typedef struct mt_result_objective {
     const char *unit; /* "": none; NULL: the expression's own */
 } mt_result_objective;
 
-typedef struct mt_result_source {
-    const char *name; /* NULL: the file gives none */
-    const char *file;
-} mt_result_source;
-
 typedef struct mt_result {
     mt_arena mem;
-    mt_result_source study;  /* its file name, without folder */
+    mt_result_study study;
     mt_result_source model;  /* as the study writes it, relative to its folder: for `apply` */
     const char *status_text; /* one sentence */
     mt_result_status status;
@@ -520,6 +444,8 @@ typedef struct mt_result {
     mt_doubt *doubts;
     mt_doubt *facts; /* of the model, said next */
     int n_facts;
+    int n_assumptions;
+    mt_result_assumption *assumptions;
     int n_recommendations;
     mt_recommendation baseline; /* the original design, rank 0 */
     mt_recommendation *recommendations;

@@ -285,6 +285,9 @@ typedef struct mt_study {
     const char *path;
     const char *name;
     const char *description;
+    const char *author; /* who asks, which issue of the question, when: as written; NULL */
+    const char *revision;
+    const char *date;
     mt_name model_path;
     mt_model *model; /* owned */
     /* what numbers for parameters are in; NULL: each in its own. Those of the study are in SI

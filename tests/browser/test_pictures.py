@@ -12,7 +12,7 @@ FOLDER = SOURCE / "tests/browser/pictures"
 UPDATE = "MT_README_UPDATE" in os.environ
 MOST_BYTES = 200_000
 # Name, study, first and last element (up to its lower edge) that a picture shows.
-PICTURES = [("report", "inceptor_rotor", "h1", "#figure-parameters figure"),
+PICTURES = [("report", "pump_on_mounts", "h1", "#figure-frequencies figure"),
             ("mechanism", "inceptor_rotor", "#figure-mechanism h2", "#figure-mechanism .legend")]
 # What may happen to each, and what takes it back.
 HARMS = {
@@ -21,7 +21,7 @@ HARMS = {
                    "document.querySelectorAll('.legend svg').forEach((s) => { s.style.display = ''; })"),
                   ("mt.shown.views.forEach((view) => view.setMode(2))", "")],
     "report": [("document.querySelector('.gist').style.visibility = 'hidden'", "document.querySelector('.gist').style.visibility = ''"),
-               ("document.querySelector('#figure-parameters').style.marginTop = '80px'", "document.querySelector('#figure-parameters').style.marginTop = ''"),
+               ("document.querySelector('#figure-frequencies').style.marginTop = '80px'", "document.querySelector('#figure-frequencies').style.marginTop = ''"),
                ("document.querySelectorAll('#figure-frequencies rect').forEach((r) => r.remove())", "")],
 }
 WIDTH = 1000

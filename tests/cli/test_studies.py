@@ -68,7 +68,7 @@ class Run(CliTest):
         self.assertEqual((rows[0]["k1 [N/m]"], rows[0]["k2 [N/m]"]), ("3", "1"))
         page = (folder / "report.html").read_text(encoding="utf-8")
         self.assertTrue(page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n"))
-        for part in ("Two springs\n", "\nParameters\n", "\nFrequencies\n", "\nWhy: what changes\n", "\nAll recommendations\n"):
+        for part in ("Two springs\n", "\nParameters\n", "\nFrequencies\n", "\nWhy: what changes\n", "\nDesigns side by side\n"):
             self.assertIn(part, done.stdout)
         self.assertNotIn("Published", done.stdout)
         self.assertRegex(done.stderr, r"^studies/two.json: \S+ s, \d+ evaluations \(search \d+, descriptions 6\); written to results/two/\n$")

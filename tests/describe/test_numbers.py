@@ -784,11 +784,68 @@ class Numbers(unittest.TestCase):
                         self.near(row[column], f[member], f"{name} % {column}")
                 asked = [f[m] for m in ("target_hz", "at_least_hz", "at_most_hz") if f[m] is not None]
                 self.assertEqual([float(n) for n in re.findall(r"\d+\.?\d*", row["asked [Hz]"])], [float(f"{a:.6g}") for a in asked])
-            for row, g in zip(self.rows(name, "Goals"), best["goals"], strict=True):
-                value, off = g["value"], g["violation_percent"]
-                self.near(row["value"], value, f"{name} {row}")
-                self.near(row["deviation [%]"], off if off > 1e-4 else 0.0, f"{name} % {row}")
-                self.assertEqual(row["verdict"], "weighted" if g["weighted"] else "met" if g["met"] else "not met")
+
+    def test_requirements_say_what_is_asked_and_what_was_and_is(self):
+        for name in STUDIES:
+            study, result, rules = self.rules(name)
+            best, base = result["recommendations"][0], result["baseline"]
+            now, was = rules.at(best), rules.at(base)
+            rows, seen = iter(self.rows(name, "Requirements")), set()
+            for told in best["goals"]:
+                goal = rules.goal_of(told)
+                if goal["type"] == "avoid":
+                    if goal["configuration"] not in seen:
+                        seen.add(goal["configuration"])
+                        self.check_bands(rows, rules, goal["configuration"], now, was, best)
+                    continue
+                row = next(rows)
+                self.assertIn(row["requirement"], told["goal"])
+                shown = N_PER_MM if told["display_unit"] else 1.0
+                for column, truth in (("before", was), ("after", now)):
+                    self.near(row[column].split(" ")[0], rules.value(goal, truth) / shown, f"{name} {column} {row}")
+                limits, target = [x for x in rules.limits(goal) if x is not None], rules.target(goal)
+                asked = [float(n) for n in re.findall(r"(?<![\w^])-?\d+\.?\d*(?:e-?\d+)?", row["limit"].split(" within")[0])]
+                want = limits or [target] * bool(target)
+                self.assertTrue(len(asked) == len(want) and all(abs(a * shown / b - 1) < 1e-9 for a, b in zip(asked, want)), row)
+                judged = told["worst"] if told["worst"] is not None else rules.value(goal, now)
+                if told["worst"] is not None:
+                    self.near(row["at worst"].split(" ")[0], judged / shown, f"{name} worst {row}")
+                least, most = rules.limits(goal)
+                if limits:
+                    rooms = [(judged - x) / abs(x) for x in [least] if x is not None] + [(x - judged) / abs(x) for x in [most] if x is not None]
+                    self.margin(row["margin"], 100 * min(rooms), row)
+                elif target:
+                    self.near(re.fullmatch(r"off by (\S+) %", row["margin"])[1], 100 * abs(judged / target - 1), f"{name} % {row}")
+                self.assertEqual(row["verdict"], "weighted" if "weight" in goal else "met" if told["met"] else "not met", row)
+            self.assertEqual(list(rows), [])
+
+    def margin(self, text, room, row):
+        self.assertLessEqual(abs(float(text.removesuffix(" %")) - room), 6e-3 * abs(room) + 2e-6, row)
+
+    def check_bands(self, rows, rules, configuration, now, was, best):
+        """A row for each band: the mode that is nearest to it with its margin, before and after."""
+        goals = rules.avoids(configuration)
+        bands = sorted(band for g in goals for band in edges(g, g["margin_percent"]))
+        away = lambda hz, band: max(band[0] / hz, hz / band[1]) - 1
+        met = all(g["met"] for g in best["goals"] if g["type"] == "avoid" and g["configuration"] == configuration)
+        for band in bands:
+            row = next(rows)
+            self.assertTrue(row["requirement"].startswith(configuration + ": no mode in "), row)
+            said = [float(x) for x in re.fullmatch(r"outside (\S+) to (\S+) Hz", row["limit"]).groups()]
+            self.assertTrue(all(abs(a / b - 1) < DIGITS for a, b in zip(said, band)), row)
+            for column, truth in (("before", was), ("after", now)):
+                hz = truth.modes(configuration)[0]
+                mode = min(range(2), key=lambda i: away(hz[i], band)) + 1
+                if "at worst" not in row:
+                    self.assertTrue(row[column].endswith(f" Hz (mode {mode})"), row)
+                    self.near(row[column].split(" ")[0], hz[mode - 1], f"{column} {row}")
+            corners = rules.corners(best) if "at worst" in row else []
+            lowest = min((away(hz, band) for at in corners for hz in Truth(**at).modes(configuration)[0]), default=None)
+            room = 100 * (lowest if corners else min(away(hz, band) for hz in now.modes(configuration)[0]))
+            self.margin(row["margin"], room, row)
+            if corners:
+                self.assertLessEqual(abs(100 * away(float(row["at worst"].split(" ")[0]), band) - room), 1e-3, row)
+            self.assertEqual(row["verdict"], "met" if met or room >= -1e-7 else "not met", row)
 
     def test_explain_says_what_one_per_cent_more_does(self):
         for name in ("missed", "fitted", "met"):

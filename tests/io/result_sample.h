@@ -30,6 +30,7 @@ static mt_result_parameter PARAMETERS[] = {
 };
 static double SENSITIVITY[] = {1.25e-3, -2.0};
 static mt_result_goal GOALS[] = {{.text = "installed mode 1 at 18 Hz",
+                                  .quantity = "installed mode 1",
                                   .pointer = "/goals/0",
                                   .value = 18.0,
                                   .type = "frequency",
@@ -63,6 +64,7 @@ static mt_doubt DOUBTS[] = {{.kind = "margin",
                              .column = 3}};
 static mt_doubt FACTS[] = {
     {.kind = "free_motion", .text = "2 free motions", .configuration = "installed"}};
+static mt_result_assumption ASSUMPTIONS[] = {{"l", "m", "mm", 1e-3, 0.25, NULL, true}};
 static double DESIGN[] = {1e4, 0.25};
 static mt_relaxation RELAXATIONS[] = {{.kind = "bound",
                                        .pointer = "/variables/0",
@@ -330,12 +332,14 @@ static inline bool make_sample(sample *s)
     s->certificate.reachable_upper_hz = 19.5;
     fill_bands(s);
     fill_published(s);
-    r->study = (mt_result_source){"Study \"1\"", "study_1.json"};
+    r->study = (mt_result_study){"Study \"1\"", "study_1.json", "A. Engineer", "B", NULL};
     r->model = (mt_result_source){"Inceptor", "../problems/inceptor.json"};
     r->n_doubts = MT_COUNT(DOUBTS);
     r->doubts = DOUBTS;
     r->n_facts = MT_COUNT(FACTS);
     r->facts = FACTS;
+    r->n_assumptions = MT_COUNT(ASSUMPTIONS);
+    r->assumptions = ASSUMPTIONS;
     r->n_relaxations = MT_COUNT(RELAXATIONS);
     r->relaxations = RELAXATIONS;
     r->n_excitations = MT_COUNT(EXCITATIONS);

@@ -10,7 +10,8 @@
 
   function columns(result) {
     const made = [
-      { name: 'grade', value: (d) => d.grade || (d.feasible ? 'feasible' : 'not feasible') },
+      { name: 'grade', value: (d) => d.rank === 0 ? '\u2013'
+        : d.grade || (d.feasible ? 'feasible' : 'not feasible') },
     ];
     D.clean(result.objectives).forEach((o, i) => made.push({ name: objectiveTitle(o),
       number: true, value: (d) => d.objectives[i] ? d.objectives[i].recommended : null }));
@@ -26,31 +27,39 @@
       made.push({ name: T.titled(name, p ? p.unit : ''), number: true,
         value: (d) => d.parameters[i] ? d.parameters[i].recommended : null });
     });
-    const designs = result.recommendations;
+    const designs = [result.baseline].concat(result.recommendations);
     return made.filter((c) => !c.optional || designs.some((d) => T.isNumber(c.value(d))));
   }
 
   // The table with a radio button in every row: arrow keys choose, as they do everywhere.
   function table(into) {
     const result = mt.result();
-    const own = mt.designs().map((d, i) => Object.assign({ at: i }, d))
+    const found = mt.designs().map((d, i) => Object.assign({ at: i }, d))
       .filter((d) => d.kind === 'recommendation');
-    if (own.length < 2) {
+    if (found.length === 0 || D.clean(result.variables).length === 0) {
       return;
     }
+    // what they are compared with stands above them, and is not chosen: all figures show it
+    const original = { at: -1, kind: 'original', rank: 'original', design: result.baseline };
+    const own = [original].concat(found);
     const section = d3.select(into).append('section').attr('class', 'alternatives')
       .attr('id', 'alternatives');
-    section.append('h2').text('Recommendations side by side');
-    section.append('p').attr('class', 'lead')
-      .text('Choose one, by click or arrow keys: the whole page shows it.');
+    section.append('h2').text('Designs side by side');
+    if (found.length > 1) {
+      section.append('p').attr('class', 'lead screen')
+        .text('Choose one, by click or arrow keys: the whole page shows it.');
+    }
     const made = section.append('div').attr('class', 'wide').append('table');
     const shown = columns(result);
-    made.append('thead').append('tr').selectAll('th').data(['', 'rank'].concat(
-      shown.map((c) => c.name))).join('th').attr('scope', 'col').text((d) => d);
-    const rows = made.append('tbody').selectAll('tr').data(own).join('tr');
+    made.append('thead').append('tr').selectAll('th').data([{ name: '' },
+      { name: 'rank', number: true }].concat(shown)).join('th').attr('scope', 'col')
+      .attr('class', (d) => d.number ? 'n' : null).text((d) => d.name);
+    const rows = made.append('tbody').selectAll('tr').data(own).join('tr')
+      .classed('original', (d) => d.kind === 'original');
     mt.figure.on(rows, 'click', (event, d) => mt.choose(d.at));
-    const radios = rows.append('td').append('input').attr('type', 'radio')
-      .attr('name', 'design').attr('aria-label', (d) => 'Show ' + d.label.toLowerCase());
+    const radios = rows.append('td').filter((d) => d.at >= 0 && found.length > 1)
+      .append('input').attr('type', 'radio').attr('name', 'design')
+      .attr('aria-label', (d) => 'Show ' + d.label.toLowerCase());
     mt.figure.on(radios, 'change', (event, d) => mt.choose(d.at));
     rows.append('td').attr('class', 'n').text((d) => d.rank);
     rows.each(function (d) {

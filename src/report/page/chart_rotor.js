@@ -225,7 +225,7 @@
   }
 
   mt.chartRotor = () => D.clean(mt.result().excitations).map((e, i) => ({
-    id: 'rotor-' + (i + 1), place: 'rotor', title: 'Rotor diagram of ' + e.name,
+    id: 'rotor-' + (i + 1), place: 'rotor', title: 'Campbell diagram of ' + e.name,
     lead: () => lead(e), draw: (g, w) => draw(g, w, e, i), table: () => table(e),
     has: () => e.orders.length > 0 && modesOf(e).length > 0,
   }));

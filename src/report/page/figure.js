@@ -310,8 +310,7 @@
   // Paper has its own width, and shows what is folded on a screen.
   function print(now) {
     printing = now;
-    const told = document.getElementById('told');
-    if (told) {
+    for (const told of document.querySelectorAll('#told, .title details')) {
       told.open = now;
     }
     for (const table of document.querySelectorAll('main table')) {

@@ -1,0 +1,452 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/compliance.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/base.h"
+#include "base/tie.h"
+#include "report/number.h"
+
+enum {
+    HZ_DIGITS = 6,
+    VALUE_DIGITS = 6,
+    PERCENT_DIGITS = 3,
+    ASKED_DIGITS = 10, /* of limits, that a person wrote */
+    BANDS_TOLD = 12    /* of more, one row a configuration */
+};
+static const double PERCENT = 100.0;
+static const double TOLD_PERCENT = 1e-3; /* a lesser tolerance is one of searches */
+
+/* The cells of a row are made in the memory of the table. */
+typedef struct sheet {
+    mt_table t;
+    const mt_recommendation *before; /* NULL: what is judged is the original design */
+    const mt_recommendation *after;
+    bool worst; /* a column of the worst over the tolerances */
+} sheet;
+
+typedef struct row {
+    const char *requirement;
+    const char *limit;
+    const char *before;
+    const char *after;
+    const char *worst;
+    const char *margin;
+    const char *verdict;
+    bool good;
+} row;
+
+static void put(sheet *s, const row *r)
+{
+    mt_table_text(&s->t, r->requirement);
+    mt_table_text(&s->t, r->limit);
+    if (s->before != NULL) {
+        mt_table_text(&s->t, r->before);
+    }
+    mt_table_text(&s->t, r->after);
+    if (s->worst) {
+        mt_table_text(&s->t, r->worst);
+    }
+    mt_table_text(&s->t, r->margin);
+    if (strcmp(r->verdict, "weighted") == 0) {
+        mt_table_text(&s->t, r->verdict);
+    } else {
+        mt_table_verdict(&s->t, r->verdict, r->good);
+    }
+}
+
+/* "10.6 %", with its sign */
+static const char *margin_text(sheet *s, double percent)
+{
+    char number[MT_NUMBER_TEXT];
+    return isfinite(percent)
+               ? mt_arena_printf(&s->t.mem, "%s %%",
+                                 mt_report_change(mt_without_noise(percent, MT_PERCENT_NOISE),
+                                                  PERCENT_DIGITS, number))
+               : NULL;
+}
+
+/* A limit that is the scale of an objective decides nothing, but it is kept or not. */
+static const char *verdict_of(const mt_result_goal *g)
+{
+    const bool kept = g->violation_percent <= 0.0;
+    if (!g->weighted) {
+        return g->met ? "met" : "not met";
+    }
+    return isnan(g->target) && !isnan(g->at_most) ? kept ? "kept" : "exceeded" : "weighted";
+}
+
+static bool is_good(const mt_result_goal *g)
+{
+    return g->weighted ? g->violation_percent <= 0.0 : g->met;
+}
+
+/*
+ * Bands
+ */
+
+/* The mode beside a band that is left the least room by its margin, or is deepest within it. */
+typedef struct nearest {
+    double room; /* of the frequency that is judged, as room_of has it; NaN: no mode */
+    double hz;
+    double worst_hz;
+    int mode;
+} nearest;
+
+/* How far f is outside an interval, as a part of its nearer end; negative inside. */
+static double room_of(const mt_result_gap *band, double hz)
+{
+    const double below = band->margin_lower_hz / hz - 1.0;
+    const double above = hz / band->margin_upper_hz - 1.0;
+    return fmax(below, above);
+}
+
+/* Modes stand with their neighbouring bands; one with none beside it has further ones. */
+static nearest nearest_to(const mt_recommendation *r, const mt_result_gap *band)
+{
+    nearest n = {.room = nan(""), .hz = nan(""), .worst_hz = nan("")};
+    bool beside = false;
+    for (int pass = 0; pass < 2 && !beside; pass++) {
+        for (int i = 0; i < r->n_clearances; i++) {
+            const mt_result_clearance *const c = &r->clearances[i];
+            const double room = room_of(band, isnan(c->worst_hz) ? c->hz : c->worst_hz);
+            const bool own = pass == 0 ? c->band_id == band->id
+                                       : strcmp(c->configuration, band->configuration) == 0;
+            beside = beside || own;
+            if (own && !(room >= n.room)) {
+                n = (nearest){room, c->hz, c->worst_hz, c->mode};
+            }
+        }
+    }
+    return n;
+}
+
+static const char *mode_text(sheet *s, double hz, int mode)
+{
+    char number[MT_NUMBER_TEXT];
+    return isnan(hz) ? NULL
+                     : mt_arena_printf(&s->t.mem, "%s Hz (mode %d)",
+                                       mt_report_number(hz, HZ_DIGITS, number), mode);
+}
+
+static const char *outside_text(sheet *s, const mt_result_gap *band, bool named)
+{
+    char low[MT_NUMBER_TEXT];
+    char high[MT_NUMBER_TEXT];
+    (void)mt_report_number(band->margin_lower_hz, HZ_DIGITS, low);
+    (void)mt_report_number(band->margin_upper_hz, HZ_DIGITS, high);
+    return band->margin_lower_hz > 0.0
+               ? mt_arena_printf(&s->t.mem, "outside %s to %s Hz%s%s%s", low, high,
+                                 named ? " (" : "", named ? band->band : "", named ? ")" : "")
+               : mt_arena_printf(&s->t.mem, "above %s Hz%s%s%s", high, named ? " (" : "",
+                                 named ? band->band : "", named ? ")" : "");
+}
+
+/* " with 10 % margin"; nothing without one */
+static const char *with_margin(sheet *s, const mt_result_gap *band)
+{
+    const double percent = PERCENT * (band->margin_upper_hz / band->upper_hz - 1.0);
+    return percent > MT_PERCENT_NOISE
+               ? mt_arena_printf(&s->t.mem, " with %.*g %% margin", PERCENT_DIGITS, percent)
+               : "";
+}
+
+static const mt_result_gap *band_of(const mt_recommendation *r, int id)
+{
+    for (int i = 0; i < r->n_gaps; i++) {
+        if (r->gaps[i].id == id) {
+            return &r->gaps[i];
+        }
+    }
+    return NULL;
+}
+
+/* Are all goals met that keep this configuration clear of bands? Their bands are united. */
+static bool is_clear(const mt_recommendation *r, const char *configuration)
+{
+    for (int i = 0; i < r->n_goals; i++) {
+        const mt_result_goal *const g = &r->goals[i];
+        if (strcmp(g->type, "avoid") == 0 && g->configuration != NULL &&
+            strcmp(g->configuration, configuration) == 0 && !g->met) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Within the tolerance of its goals, which are met, or outside the band. */
+static bool is_kept(double room, bool clear)
+{
+    return clear || !(PERCENT * room < -MT_PERCENT_NOISE);
+}
+
+static void put_band(sheet *s, const mt_result_gap *band, bool clear, const char *requirement,
+                     bool named)
+{
+    const nearest was = s->before != NULL ? nearest_to(s->before, band) : (nearest){.mode = 0};
+    const nearest is = nearest_to(s->after, band);
+    const bool kept = is_kept(is.room, clear);
+    const row r = {.requirement = requirement,
+                   .limit = outside_text(s, band, named),
+                   .before = was.mode > 0 ? mode_text(s, was.hz, was.mode) : NULL,
+                   .after = mode_text(s, is.hz, is.mode),
+                   .worst = mode_text(s, is.worst_hz, is.mode),
+                   .margin = margin_text(s, PERCENT * is.room),
+                   .verdict = kept ? "met" : "not met",
+                   .good = kept};
+    put(s, &r);
+}
+
+/* The band of a configuration that leaves the least room, which is told; NULL: it has none. */
+static const mt_result_gap *tightest_of(const mt_recommendation *r, const char *configuration,
+                                        double *room)
+{
+    const mt_result_gap *tightest = NULL;
+    *room = HUGE_VAL;
+    for (int i = 0; i < r->n_gaps; i++) {
+        const double own = nearest_to(r, &r->gaps[i]).room;
+        if (strcmp(r->gaps[i].configuration, configuration) == 0 &&
+            (tightest == NULL || own < *room)) {
+            tightest = &r->gaps[i];
+            *room = isnan(own) ? HUGE_VAL : own;
+        }
+    }
+    return tightest;
+}
+
+/* All bands of the configuration of goal i, or, of many, the one that leaves least room, at the
+ * first of its goals; false where no band shows why a goal is not met. */
+static bool put_bands(sheet *s, int i)
+{
+    const mt_recommendation *const d = s->after;
+    const mt_result_goal *const g = &d->goals[i];
+    const bool clear = is_clear(d, g->configuration);
+    double least = 0.0;
+    const mt_result_gap *const tightest = tightest_of(d, g->configuration, &least);
+    if (tightest == NULL || is_kept(least, clear) != clear) {
+        return false;
+    }
+    for (int k = 0; k < i; k++) {
+        const mt_result_goal *const other = &d->goals[k];
+        if (strcmp(other->type, "avoid") == 0 && other->configuration != NULL &&
+            strcmp(other->configuration, g->configuration) == 0) {
+            return true;
+        }
+    }
+    for (int k = 0; k < d->n_gaps && d->n_gaps <= BANDS_TOLD; k++) {
+        const mt_result_gap *const b = &d->gaps[k];
+        if (strcmp(b->configuration, g->configuration) == 0) {
+            put_band(s, b, clear,
+                     mt_arena_printf(&s->t.mem, "%s: no mode in %s%s", g->configuration,
+                                     b->band, with_margin(s, b)),
+                     false);
+        }
+    }
+    if (d->n_gaps > BANDS_TOLD) {
+        put_band(s, tightest, clear, g->text, true);
+    }
+    return true;
+}
+
+/* Between positions of a drive: the mode that comes nearest to a band there. */
+static bool put_motion(sheet *s, const mt_result_goal *g, int which)
+{
+    const mt_result_motion *const m =
+        which < s->after->n_motions ? &s->after->motions[which] : NULL;
+    const mt_result_gap *const band = m == NULL ? NULL : band_of(s->after, m->band_id);
+    char at[MT_NUMBER_TEXT];
+    if (m == NULL || band == NULL || isnan(m->hz)) {
+        return false;
+    }
+    const double room = room_of(band, m->hz);
+    const char *const unit = m->display_unit != NULL ? m->display_unit : m->unit;
+    const row r = {
+        .requirement = mt_arena_printf(&s->t.mem, "%s: no mode in a band", g->quantity),
+        .limit = outside_text(s, band, true),
+        .after = mt_arena_printf(
+            &s->t.mem, "%s at %s %s", mode_text(s, m->hz, m->mode),
+            mt_report_number(mt_result_shown(m->at, m->display_factor), PERCENT_DIGITS, at),
+            unit),
+        .margin = margin_text(s, PERCENT * room),
+        .verdict = verdict_of(g),
+        .good = is_good(g)};
+    put(s, &r);
+    return true;
+}
+
+/*
+ * Numbers
+ */
+
+static const char *unit_of(const mt_result_goal *g)
+{
+    return g->display_unit != NULL ? g->display_unit : g->unit != NULL ? g->unit : "";
+}
+
+static const char *value_text(sheet *s, const mt_result_goal *g, double value, int digits)
+{
+    char number[MT_NUMBER_TEXT];
+    const char *const unit = unit_of(g);
+    return isnan(value)
+               ? NULL
+               : mt_arena_printf(&s->t.mem, "%s%s%s",
+                                 mt_report_number(mt_result_shown(value, g->display_factor),
+                                                  digits, number),
+                                 unit[0] != '\0' ? " " : "", unit);
+}
+
+/* A limit as a person wrote it: without the zeros that fill a column. */
+static const char *limit_text(sheet *s, const mt_result_goal *g)
+{
+    mt_arena *const mem = &s->t.mem;
+    const char *const unit = unit_of(g);
+    const char *const gap = unit[0] != '\0' ? " " : "";
+    const double low = mt_result_shown(g->at_least, g->display_factor);
+    const double high = mt_result_shown(g->at_most, g->display_factor);
+    if (g->target == 0.0 && g->weighted) {
+        return "least";
+    }
+    if (!isnan(g->target)) {
+        const double target = mt_result_shown(g->target, g->display_factor);
+        return g->weighted || !(g->tolerance_percent > TOLD_PERCENT)
+                   ? mt_arena_printf(mem, "%.*g%s%s", ASKED_DIGITS, target, gap, unit)
+                   : mt_arena_printf(mem, "%.*g%s%s within %.3g %%", ASKED_DIGITS, target, gap,
+                                     unit, g->tolerance_percent);
+    }
+    if (!isnan(low) && !isnan(high)) {
+        return mt_arena_printf(mem, "%.*g to %.*g%s%s", ASKED_DIGITS, low, ASKED_DIGITS, high,
+                               gap, unit);
+    }
+    if (isnan(low) && isnan(high)) {
+        return NULL;
+    }
+    return mt_arena_printf(mem, "at %s %.*g%s%s%s", isnan(low) ? "most" : "least", ASKED_DIGITS,
+                           isnan(low) ? high : low, gap, unit,
+                           strcmp(g->type, "avoid") == 0 ? " clearance" : "");
+}
+
+/* Of a limit the room to it, of a target the way off it. */
+static const char *number_margin(sheet *s, const mt_result_goal *g, double value)
+{
+    char number[MT_NUMBER_TEXT];
+    if (!isnan(g->target)) {
+        const double off = g->target == 0.0 ? nan("") : PERCENT * fabs(value / g->target - 1.0);
+        return isnan(off)
+                   ? NULL
+                   : mt_arena_printf(
+                         &s->t.mem, "off by %s %%",
+                         mt_report_number(
+                             g->met && !g->weighted && off <= MT_PERCENT_NOISE ? 0.0 : off,
+                             PERCENT_DIGITS, number));
+    }
+    double room = HUGE_VAL;
+    if (!isnan(g->at_least)) {
+        room = (value - g->at_least) / fabs(g->at_least);
+    }
+    if (!isnan(g->at_most)) {
+        room = fmin(room, (g->at_most - value) / fabs(g->at_most));
+    }
+    return margin_text(s, PERCENT * room);
+}
+
+static void put_number(sheet *s, const mt_result_goal *g, const mt_result_goal *was)
+{
+    const double judged = isnan(g->worst) ? g->value : g->worst;
+    const row r = {.requirement = g->quantity,
+                   .limit = limit_text(s, g),
+                   .before = was == NULL ? NULL : value_text(s, was, was->value, VALUE_DIGITS),
+                   .after = value_text(s, g, g->value, VALUE_DIGITS),
+                   .worst = value_text(s, g, g->worst, VALUE_DIGITS),
+                   .margin = number_margin(s, g, judged),
+                   .verdict = verdict_of(g),
+                   .good = is_good(g)};
+    put(s, &r);
+}
+
+/* What a goal limits, in whatever configuration. */
+static const char *anywhere(const mt_result_goal *g)
+{
+    const size_t n = g->configuration == NULL ? 0 : strlen(g->configuration);
+    const bool led = n > 0 && strncmp(g->quantity, g->configuration, n) == 0;
+    return led && g->quantity[n] == ' ' ? g->quantity + n + 1 : g->quantity;
+}
+
+/* A limit between the positions that the goal names: looked at, not asked. */
+static void put_between(sheet *s, const mt_result_between *b)
+{
+    char number[MT_NUMBER_TEXT];
+    const mt_recommendation *const d = s->after;
+    for (int i = 0; i < d->n_goals; i++) {
+        const mt_result_goal *const g = &d->goals[i];
+        if (strcmp(g->pointer, b->pointer) == 0) {
+            const row r = {
+                .requirement = mt_arena_printf(&s->t.mem, "between the positions of %s: %s",
+                                               b->drive, anywhere(g)),
+                .limit = limit_text(s, g),
+                .after = value_text(s, g, b->value, VALUE_DIGITS),
+                .margin = isfinite(b->violation_percent) && b->violation_percent > 0.0
+                              ? mt_arena_printf(&s->t.mem, "-%s %%",
+                                                mt_report_number(b->violation_percent,
+                                                                 PERCENT_DIGITS, number))
+                              : number_margin(s, g, b->value),
+                .verdict = b->holds ? "kept (sampled)" : "exceeded",
+                .good = b->holds};
+            put(s, &r);
+            return;
+        }
+    }
+}
+
+/* Do these ask the same? The original design's goals stand in the same order, but that of a
+ * motion may be missing. */
+static const mt_result_goal *goal_before(const sheet *s, int i)
+{
+    const mt_result_goal *const g = &s->after->goals[i];
+    if (s->before == NULL || i >= s->before->n_goals ||
+        strcmp(s->before->goals[i].quantity, g->quantity) != 0 ||
+        strcmp(s->before->goals[i].pointer, g->pointer) != 0) {
+        return NULL;
+    }
+    return &s->before->goals[i];
+}
+
+static sheet sheet_of(const mt_result *result, const mt_recommendation *r)
+{
+    sheet s = {.t = mt_table_default(), .after = r, .worst = r->worst_case != NULL};
+    s.before = r->rank > 0 && r->n_parameters > 0 ? &result->baseline : NULL;
+    mt_table_column(&s.t, "requirement", "requirement", MT_ALIGN_LEFT);
+    mt_table_column(&s.t, "limit", "limit", MT_ALIGN_LEFT);
+    if (s.before != NULL) {
+        mt_table_column(&s.t, "before", "before", MT_ALIGN_LEFT);
+    }
+    mt_table_column(&s.t, s.before != NULL ? "after" : "value", "after", MT_ALIGN_LEFT);
+    if (s.worst) {
+        mt_table_column(&s.t, "at worst", "worst", MT_ALIGN_LEFT);
+    }
+    mt_table_column(&s.t, "margin", "margin", MT_ALIGN_RIGHT);
+    mt_table_column(&s.t, "verdict", "verdict", MT_ALIGN_LEFT);
+    return s;
+}
+
+mt_table mt_report_compliance(const mt_result *result, const mt_recommendation *r)
+{
+    sheet s = sheet_of(result, r);
+    int motions = 0;
+    for (int i = 0; i < r->n_goals && !s.t.failed; i++) {
+        const mt_result_goal *const g = &r->goals[i];
+        const bool avoid = strcmp(g->type, "avoid") == 0;
+        const bool motion = avoid && g->configuration == NULL;
+        const bool put_as_bands = motion  ? put_motion(&s, g, motions++)
+                                  : avoid ? put_bands(&s, i)
+                                          : false;
+        if (!put_as_bands) {
+            put_number(&s, g, goal_before(&s, i));
+        }
+    }
+    for (int i = 0; i < r->n_between && !s.t.failed; i++) {
+        put_between(&s, &r->between[i]);
+    }
+    s.t.failed = s.t.failed || mt_arena_check(&s.t.mem, NULL) != MT_OK;
+    return s.t;
+}

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef REPORT_TITLE_H
+#define REPORT_TITLE_H
+
+#include "base/text.h"
+#include "result/result.h"
+
+/* The title block of a page: study, author, revision, date, model with its digest, the question
+ * and what the model assumes. Memory running out shows in out->failed. */
+void mt_report_title(const mt_result *result, mt_text *out);
+
+#endif
