@@ -13,8 +13,8 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <suitesparse/cholmod.h>
 
+#include "linalg/cholmod.h"
 #include "linalg/kernels.h"
 
 /* Columns of a block that are eliminated one by one before the rest is brought up to date. */
@@ -71,11 +71,13 @@ mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern 
                             mt_err *err)
 {
     mt_factor_pattern *const p = mt_arena_alloc(mem, 1, sizeof *p);
+    mt_cholmod cholmod;
     cholmod_common c;
     *out = NULL;
     MT_TRY(mt_arena_check(mem, err));
     *p = (mt_factor_pattern){.n = h->n};
-    if (!cholmod_start(&c)) {
+    MT_TRY(mt_cholmod_load(&cholmod, err));
+    if (!cholmod.start(&c)) {
         return mt_fail_memory(err);
     }
     c.print = 0;
@@ -91,7 +93,7 @@ mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern 
                         .dtype = CHOLMOD_DOUBLE,
                         .sorted = 1,
                         .packed = 1};
-    cholmod_factor *l = cholmod_analyze(&a, &c);
+    cholmod_factor *l = cholmod.analyze(&a, &c);
     mt_status rc = MT_OK;
     if (l == NULL || c.status != CHOLMOD_OK || !l->is_super) {
         rc = c.status == CHOLMOD_OUT_OF_MEMORY || c.status == CHOLMOD_TOO_LARGE
@@ -100,8 +102,8 @@ mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern 
     } else {
         rc = copy_pattern(l, mem, p, err);
     }
-    cholmod_free_factor(&l, &c);
-    cholmod_finish(&c);
+    cholmod.free_factor(&l, &c);
+    cholmod.finish(&c);
     *out = rc == MT_OK ? p : NULL;
     return rc;
 }
