@@ -37,7 +37,7 @@ make_deb() {
     done
     local depends
     depends=$(dpkg-deb -f "$deb" Depends)
-    for field in libc6 libnlopt0 libgsl libopenblas0 liblapacke libcholmod libcjson1; do
+    for field in libc6 libnlopt0 libgsl libopenblas0 libcholmod libcjson1; do
         [[ $depends == *"$field"* ]] || fail "$deb: does not depend on $field"
     done
     dpkg-deb -c "$deb" >"$work/contents"
