@@ -96,37 +96,49 @@ static void name_motion(const mt_analysis *a, mt_mode_kind kind, char *text)
     cut(text);
 }
 
+/* "a", "b" spin freely between their ball joints */
+static const char *spin_in_words(const mt_doubts_rods *rods, mt_arena *mem)
+{
+    char *const names = mt_arena_strdup(mem, rods->names);
+    if (names == NULL) {
+        return NULL;
+    }
+    cut(names);
+    return mt_arena_printf(mem,
+                           rods->n == 1 ? "%s spins freely between its ball joints"
+                                        : "%s spin freely between their ball joints",
+                           names);
+}
+
 static mt_status say_free(const mt_analysis *a, mt_doubt_list *out, mt_err *err)
 {
     const mt_model *const m = a->sys->model;
     const int n = a->modes.n_rigid;
     const int floating = m->dimension == 2 ? STATES_2D : STATES_3D;
-    const char *const s = n == 1 ? "" : "s";
-    char name[NAME_SIZE];
-    int rods = 0;
+    char other[NAME_SIZE] = "";
+    mt_doubts_rods rods;
     if (n == 0) {
         return MT_OK;
     }
+    MT_TRY(mt_doubts_spins(a, out->mem, &rods, err));
+    const char *spin = rods.n == 0 ? "" : spin_in_words(&rods, out->mem);
+    const char *why = "";
     if (!is_grounded(m, a->sys->configuration)) {
-        (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
-                           n == floating
-                               ? "%d free motion%s: nothing holds it to the ground"
-                               : "%d free motion%s: nothing holds it to the ground, and "
-                                 "its parts are not all held to each other",
-                           n, s);
-        return MT_OK;
+        why = n - rods.n == floating ? "nothing holds it to the ground"
+                                     : "nothing holds it to the ground, and its parts are not "
+                                       "all held to each other";
+    } else if (rods.n == 0 || rods.other != NULL) {
+        if (rods.n == 0) {
+            name_motion(a, MT_MODE_RIGID_BODY, other);
+        } else {
+            mt_linear_name_direction(a->lin, rods.other, other, sizeof other);
+            cut(other);
+        }
+        why = mt_arena_printf(out->mem, "is a joint missing? Free to move: %s", other);
     }
-    MT_TRY(mt_doubts_spins(a, name, sizeof name, &rods, err));
-    if (rods > 0) {
-        cut(name);
-        (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
-                           "%d free motion%s: %s spin%s freely between %s ball joints", n, s,
-                           name, rods == 1 ? "s" : "", rods == 1 ? "its" : "their");
-        return MT_OK;
-    }
-    name_motion(a, MT_MODE_RIGID_BODY, name);
-    (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
-                       "%d free motion%s: is a joint missing? Free to move: %s", n, s, name);
+    MT_TRY(mt_arena_check(out->mem, err));
+    (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion", "%d free motion%s: %s%s%s", n,
+                       n == 1 ? "" : "s", why, *why != '\0' && *spin != '\0' ? "; " : "", spin);
     return MT_OK;
 }
 

@@ -23,9 +23,14 @@ mt_status mt_doubts_of_analysis(mt_analysis *a, int n_inputs, const int *inputs,
 mt_status mt_doubts_of_lowest(const mt_lowest *l, int n_inputs, const int *inputs,
                               const double *at, mt_doubt_list *out, mt_err *err);
 
-/* Are all free motions those of rods that spin between their ball joints? *rods: how many, 0
- * where they are not; text: their names, as many as fit. Fails: MT_E_MEMORY. */
-mt_status mt_doubts_spins(const mt_analysis *a, char *text, size_t size, int *rods,
+/* Free motions that are no missing joint: rods that spin between their ball joints, beside
+ * whatever else is free. Fails: MT_E_MEMORY, MT_E_NO_CONVERGENCE. */
+typedef struct mt_doubts_rods {
+    int n;
+    const char *names; /* of each a body, quoted, separated by commas */
+    double *other;     /* shape y of a free motion that is no spin; NULL: there is none */
+} mt_doubts_rods;
+mt_status mt_doubts_spins(const mt_analysis *a, mt_arena *mem, mt_doubts_rods *out,
                           mt_err *err);
 
 /* Is it said of a posture that settles more than ten degrees, or a tenth of the model, away? It

@@ -464,6 +464,45 @@ class Doubts(CliTest):
                     self.assertIn(words, said[0])
                     self.assertEqual("missing" in said[0], words is missing)
 
+    def test_rods_that_share_ball_joints_or_stand_beside_a_missing_one_are_told_as_such(self):
+        """Rods that meet at one ball joint of a held crank, all on its point; a tripod of rods alone, which holds that point by its three
+        lengths; two rods alone, which swing about the line through their feet; a door without a spring; nothing at the ground."""
+        near, feet = [0.2, 0.7, 0], {"a": [1.5, 0.9, 0.3], "b": [1.5, -0.4, -0.5], "c": [0.5, -0.4, -1.5]}
+        soft = {"type": "bushing", "at": [0, 0, 0], "stiffness_n_per_m": [1e4, 2e4, 3e4], "stiffness_n_m_per_rad": [100, 200, 300]}
+        hold = dict(soft, name="h", bodies=["ground", "crank"])
+        hinge = {"name": "hinge", "type": "revolute", "bodies": ["ground", "door"], "at": [1, 0.5, 0.2], "axis": [0, 0, 1]}
+
+        def body(name):
+            return {"name": name, "mass_kg": 1, "inertia_kg_m2": [0.1, 0.2, 0.25], "centre": [1, 0.5, 0.2]}
+
+        def ball(one, other, at):
+            return {"name": one + other, "type": "spherical", "bodies": [one, other], "at": at}
+
+        def rods(names, *ends):
+            return [ball(name, "ground", feet[name]) for name in names] + [ball(one, other, near) for one, other in ends]
+
+        def model(bodies, joints, springs):
+            return {"format": "modetune-model/1", "dimension": 3, "bodies": [body(b) for b in bodies], "joints": joints, "springs": springs,
+                    "configurations": {"c": {}}}
+
+        both = '"a", "b" spin freely between their ball joints'
+        rows = [("two", model(["crank", "a", "b"], rods("ab", ("crank", "a"), ("a", "b")), [hold]), "2 free motions: " + both),
+                ("three", model(["crank", "a", "b", "c"], rods("abc", ("crank", "a"), ("a", "b"), ("b", "c")), [hold]),
+                 '3 free motions: "a", "b", "c" spin freely between their ball joints'),
+                ("tripod", model(["a", "b", "c", "pump"], rods("abc", ("a", "b"), ("b", "c")), [dict(soft, name="h", bodies=["ground", "pump"])]),
+                 '3 free motions: "a", "b", "c" spin freely between their ball joints'),
+                ("bipod", model(["a", "b"], rods("ab", ("a", "b")), []), r'3 free motions: is a joint missing\? Free to move: "a" .*; ' + both),
+                ("door", model(["crank", "a", "door"], [*rods("a", ("crank", "a")), hinge], [hold]),
+                 r'2 free motions: is a joint missing\? Free to move: "door" \(rotation about z\); "a" spins freely between its ball joints'),
+                ("afloat", model(["crank", "a", "b"], [ball("crank", "a", near), ball("a", "b", feet["a"])], [dict(hold, bodies=["crank", "b"])]),
+                 '7 free motions: nothing holds it to the ground; "a" spins freely between its ball joints')]
+        for name, base, words in rows:
+            with self.subTest(name):
+                _, facts = self.found(self.put_model(base=base))
+                said = [f["text"] for f in facts if f["kind"] == "free_motion"]
+                self.assertEqual(len(said), 1)
+                self.assertRegex(said[0], f"^{words}$")
+
     def test_freedoms_come_first_and_in_words(self):
         loose = changed(MODEL, ("springs",), None)
         floating = changed(loose, ("joints", 0), {"name": "foot", "type": "fixed", "bodies": ["rod.end", "tip"], "at": [0, 1]})
