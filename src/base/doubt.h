@@ -61,6 +61,7 @@ typedef struct mt_doubt {
     X("spring", "a spring that acts against what joints forbid")                       \
     X("target", "a target far from the original frequency")                            \
     X("tolerance", "a tolerance within which almost anything, or nothing, lies")       \
+    X("unit", "a number in another unit than its member")                              \
     X("weight", "a goal without a weight beside others of a misfit")
 enum {
 /* NOLINTNEXTLINE(bugprone-macro-parentheses): a term of a sum */

@@ -238,6 +238,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     m->damping = mt_read_damping(mr, at[MODEL_DAMPING]);
     mt_read_settle_units(mr);
     mt_read_configurations(mr, at[MODEL_CONFIGURATIONS]);
+    mt_read_doubt_units(mr);
 }
 
 static int compare_addrs(const void *a, const void *b)

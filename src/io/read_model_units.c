@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "expr/measures.h"
 #include "expr/unit_text.h"
 #include "io/synonyms.h"
 
@@ -110,12 +111,12 @@ static const char *unit_word(const char *word, size_t length)
     return NULL;
 }
 
-/* The unit that a member's name ends in, "N m/rad" of "stiffness_n_m_per_rad". False: none. */
-static bool unit_of_member(const char *name, mt_unit_worth *out)
+/* The unit that a member's name ends in, "N m / rad" of "stiffness_n_m_per_rad"; in text. */
+static const char *unit_of_member(const char *name, char text[MEMBER_UNIT])
 {
-    char text[MEMBER_UNIT] = "";
-    size_t at = sizeof text - 1;
+    size_t at = MEMBER_UNIT - 1;
     size_t end = strlen(name);
+    text[at] = '\0';
     while (end > 0) {
         size_t begin = end;
         while (begin > 0 && name[begin - 1] != '_') {
@@ -125,13 +126,15 @@ static bool unit_of_member(const char *name, mt_unit_worth *out)
         if (word == NULL || at < strlen(word) + 1) {
             break;
         }
-        text[--at] = ' ';
+        if (at < MEMBER_UNIT - 1) {
+            text[--at] = ' ';
+        }
         at -= strlen(word);
         /* NOLINTNEXTLINE(bugprone-not-null-terminated-result): what follows is there */
         memcpy(text + at, word, strlen(word));
         end = begin - 1;
     }
-    return mt_unit_read(text + at, MT_READ_MASSES, out);
+    return text + at;
 }
 
 /* The member that a number is the value of, or stands in a list of; NULL: none. */
@@ -143,17 +146,28 @@ static const char *member_of(const mt_model_reader *mr, mt_addr value)
     return mt_json_name(mr->r.doc, value);
 }
 
-/* What a number has to measure: by the member that it is the value of, or, as the value of a
- * parameter (MT_ABSENT: of none), by its unit. False: nobody says. */
+/* The unit of what a number has to measure: by the member that it is the value of, or, as the
+ * value of a parameter (MT_ABSENT: of none), that of the parameter; perhaps in text. NULL:
+ * nobody says. */
+static const char *unit_of_number(const mt_model_reader *mr, const mt_number *number,
+                                  int parameter, char text[MEMBER_UNIT])
+{
+    if (parameter != MT_ABSENT) {
+        return mr->m->parameters[parameter].unit;
+    }
+    if (number->possible == MT_POSSIBLE_POINT) {
+        return "m";
+    }
+    const char *const member = member_of(mr, number->addr);
+    return member == NULL ? NULL : unit_of_member(member, text);
+}
+
 static bool measured(const mt_model_reader *mr, const mt_number *number, int parameter,
                      mt_unit_worth *out)
 {
-    const mt_parameter *const p = parameter == MT_ABSENT ? NULL : &mr->m->parameters[parameter];
-    const char *const text = p == NULL ? member_of(mr, number->addr) : p->unit;
-    if (text == NULL) {
-        return false;
-    }
-    return p == NULL ? unit_of_member(text, out) : mt_unit_read(text, MT_READ_MASSES, out);
+    char text[MEMBER_UNIT];
+    const char *const unit = unit_of_number(mr, number, parameter, text);
+    return unit != NULL && mt_unit_read(unit, MT_READ_MASSES, out);
 }
 
 /* The parameter that an expression is, with whatever sign; MT_ABSENT: it is something else. */
@@ -270,5 +284,113 @@ void mt_read_settle_units(mt_model_reader *mr)
     }
     for (int k = 0; k < m->n_nums && any; k++) {
         check_use(mr, &m->nums[k], owner[k]);
+    }
+}
+
+/* Does an expression say what it measures? */
+static bool has_unit(const mt_expr *e)
+{
+    for (int i = 0; i < e->length; i++) {
+        const mt_code *const c = &e->code[i];
+        if (c->op == MT_OP_PARAM || (c->op == MT_OP_CONST && c->param >= (int)MT_KIND_LENGTH)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool unit_of_parameter(const void *context, int parameter, mt_unit_worth *out)
+{
+    const mt_model *const m = context;
+    const char *const unit = m->parameters[parameter].unit;
+    return unit != NULL && mt_unit_read(unit, MT_READ_MASSES, out);
+}
+
+/* The name of what measures this, of SI; its powers, in text, where it has none. */
+static const char *name_of_powers(const mt_unit_worth *is, char text[MEMBER_UNIT])
+{
+    static const char *const bases[] = {"m", "kg", "s"};
+    int n = 0;
+    size_t used = 0;
+    mt_unit_worth has;
+    const char *const *const names = mt_model_units(&n);
+    for (int i = 0; i < n; i++) {
+        if (mt_unit_read(names[i], MT_READ_MASSES, &has) && has.factor == 1.0 &&
+            mt_unit_same_powers(is, &has, true)) {
+            return names[i];
+        }
+    }
+    text[0] = '\0';
+    for (int k = 0; k < MT_BASE_RAD; k++) {
+        if (is->power[k] != 0) {
+            (void)mt_snprintf(text + used, MEMBER_UNIT - used, "%s%s^%d", used == 0 ? "" : " ",
+                              bases[k], is->power[k]);
+            used = strlen(text);
+        }
+    }
+    return text;
+}
+
+/* Between rad/s and Hz lies a factor of 2 pi, which an expression may have. */
+static bool is_turned(const char *a, const char *b)
+{
+    return strcmp(a, "rad/s") == 0 && (strcmp(b, "Hz") == 0 || strcmp(b, "1/s") == 0);
+}
+
+static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner)
+{
+    const mt_model *const m = mr->m;
+    const int alone = parameter_alone(&number->expr);
+    char text[MEMBER_UNIT];
+    char is_text[MEMBER_UNIT];
+    char wanted_text[MEMBER_UNIT];
+    mt_unit_worth is;
+    mt_unit_worth wanted;
+    const char *const unit = unit_of_number(mr, number, owner, text);
+    if (unit == NULL || !mt_unit_read(unit, MT_READ_MASSES, &wanted) ||
+        !mt_expr_measures(&number->expr, unit_of_parameter, m, &is)) {
+        return;
+    }
+    const char *const has =
+        alone == MT_ABSENT ? name_of_powers(&is, is_text) : m->parameters[alone].unit;
+    const bool turned = alone != MT_ABSENT && (is_turned(has, unit) || is_turned(unit, has));
+    if (mt_unit_same_powers(&is, &wanted, false) && !turned) {
+        return;
+    }
+    const char *const member =
+        owner == MT_ABSENT ? member_of(mr, number->addr) : m->parameters[owner].name.s;
+    number->unit_doubt = mt_arena_printf(
+        &mr->m->mem, "%s%s%s is in %s, and \"%s\" in %s", alone == MT_ABSENT ? "" : "\"",
+        alone == MT_ABSENT ? "this expression" : m->parameters[alone].name.s,
+        alone == MT_ABSENT ? "" : "\"", has, member == NULL ? "" : member,
+        owner == MT_ABSENT ? name_of_powers(&wanted, wanted_text) : unit);
+}
+
+void mt_read_doubt_units(mt_model_reader *mr)
+{
+    mt_model *const m = mr->m;
+    int *const owner = mt_arena_int(&m->mem, (size_t)m->n_nums); /* 1 + parameter */
+    if (mt_arena_failed(&m->mem)) {
+        return;
+    }
+    for (int i = 0; i < m->n_parameters; i++) {
+        if (m->parameters[i].value != MT_ABSENT) {
+            owner[m->parameters[i].value] = i + 1;
+        }
+    }
+    for (int c = 0; c < m->n_configurations; c++) {
+        for (int i = 0; i < m->configurations[c].n_overrides; i++) {
+            const mt_override *const o = &m->configurations[c].overrides[i];
+            const char *const name = o->parameter_name.s;
+            const int parameter = name == NULL ? -1 : mt_model_find_parameter(m, name);
+            if (o->value != MT_ABSENT && parameter >= 0) {
+                owner[o->value] = parameter + 1;
+            }
+        }
+    }
+    for (int k = 0; k < m->n_nums; k++) {
+        if (has_unit(&m->nums[k].expr)) {
+            doubt_unit(mr, &m->nums[k], owner[k] - 1);
+        }
     }
 }

@@ -280,6 +280,7 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
     mt_judge_inherited(&j);
     mt_judge_structure(&j);
     mt_judge_angles(&j);
+    mt_judge_units(&j);
     mt_judge_geometry(&j);
     mt_doubt_accept(out, first, &model->accepted);
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Angles in expressions: what goes into sin, cos or tan is in rad. A part of it that has no
- * unit (no parameter with a unit of angles, no "*deg", no pi) and is more than a whole turn is
- * in degrees, most likely. Each expression is walked once: b is the part without unit of v,
+ * Units of expressions: whole ones, which their reader has looked at, and angles. What goes
+ * into sin, cos or tan is in rad. A part of it that has no unit (no parameter with a unit of
+ * angles, no "*deg", no pi) and is more than a whole turn is in degrees, most likely. Each
+ * expression is walked once: b is the part without unit of v,
  *     number, parameter: b = v; with a unit of angles: b = 0;   a + b: both parts;
  *     a * b, one of them with a unit: its b times the other's v;   anything else of numbers: v.
  */
@@ -178,5 +179,17 @@ void mt_judge_angles(mt_judge *j)
     part stack[MT_EXPR_MAX_CODE];
     for (mt_num num = 0; num < j->model->n_nums; num++) {
         judge_number(j, num, stack);
+    }
+}
+
+void mt_judge_units(mt_judge *j)
+{
+    for (mt_num num = 0; num < j->model->n_nums; num++) {
+        const mt_number *const number = &j->model->nums[num];
+        if (number->unit_doubt != NULL) {
+            (void)mt_judge_place(
+                j, mt_doubt_add(j->out, MT_LEVEL_DOUBT, "unit", "%s", number->unit_doubt),
+                number->addr, NULL);
+        }
     }
 }

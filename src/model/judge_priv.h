@@ -41,6 +41,8 @@ void mt_judge_structure(mt_judge *j);
 void mt_judge_meant(mt_judge *j, double size);
 /* Angles without a unit beyond a turn (judge_angles.c). */
 void mt_judge_angles(mt_judge *j);
+/* Numbers in other units than their members, as their reader found them. */
+void mt_judge_units(mt_judge *j);
 /* The coordinates of a position; false: they are not known (judge_geometry.c). */
 bool mt_judge_position(const mt_judge *j, const mt_position *p, double x[3]);
 /* Joints and springs off what they hold, pairs of points that are apart, sizes

@@ -36,6 +36,7 @@ typedef struct mt_number {
     mt_expr expr;
     mt_addr addr;
     mt_possible_id possible; /* the row of its member, by the reader */
+    const char *unit_doubt;  /* why it is no number of its member, by units; NULL: it may be */
 } mt_number;
 
 /* A name in the file: what it says and where. s == NULL: absent. */

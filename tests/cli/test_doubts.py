@@ -220,7 +220,7 @@ class Doubts(CliTest):
 
     def test_springs_that_joints_block(self):
         slide = {"name": "foot", "type": "prismatic", "bodies": ["ground", "rod.start"], "at": [0, 0], "axis": [1, 0]}
-        along = {"name": "hold", "type": "axial", "bodies": ["ground", "rod.start"], "at": [[-1, 0], [0, 0]], "stiffness_n_per_m": "k"}
+        along = {"name": "hold", "type": "axial", "bodies": ["ground", "rod.start"], "at": [[-1, 0], [0, 0]], "stiffness_n_per_m": "k*0.5"}
         across = dict(along, name="blocked", at=[[0, -1], [0, 0]])
         oblique = dict(along, name="blocked", at=[[-1e-6, -1], [0, 0]])
         pot = {"name": "pot", "type": "axial", "bodies": ["ground", "rod.start"], "at": [[0, -1], [0, 0]], "damping_n_s_per_m": 1}
@@ -503,6 +503,32 @@ class Doubts(CliTest):
                 self.assertEqual(len(said), 1)
                 self.assertRegex(said[0], f"^{words}$")
 
+    def test_what_is_in_another_unit_than_its_member_is_doubted(self):
+        """Powers of single parameters, products and roots; what a number without a unit may stand for is not judged."""
+        base = changed(MODEL, ("parameters",), {**MODEL["parameters"], "c": {"value": 100, "unit": "N/m"}, "L": {"value": 0.5, "unit": "m"}, "u": 3,
+                                                "w": {"value": 30, "unit": "rad/s"}, "E": {"value": 2e11, "unit": "Pa"}, "n": {"value": 0.5, "unit": "1"}})
+        stiffness, mass, end = ("springs", 0, "stiffness_n_m_per_rad"), ("bodies", 0, "mass_kg"), ("bodies", 0, "centre", 1)
+        line = {"name": "line", "type": "axial", "bodies": ["ground", "tip"], "at": [[1, 0], [0, 1]], "stiffness_n_per_m": 10}
+        lined = changed(base, ("springs",), [*MODEL["springs"], line])
+        axial = ("springs", 1, "stiffness_n_per_m")
+        per, is_in = '"stiffness_n_m_per_rad" in N m/rad', "this expression is in "
+        rows = [(stiffness, "c", f'"c" is in N/m, and {per}'), (stiffness, "-c", f'"c" is in N/m, and {per}'), (stiffness, "k", None),
+                (stiffness, "c*L", f"{is_in}N, and {per}"), (stiffness, "c*L^2", None), (stiffness, "2*c*L*L/3", None), (stiffness, "c*0.25", None),
+                (stiffness, "40*c", None), (stiffness, "c*u", None), (stiffness, "max(c, 1)", f"{is_in}N/m, and {per}"),
+                (stiffness, "c*sin(1)", f"{is_in}N/m, and {per}"), (stiffness, "E*L^4/12/L", None), (stiffness, "E*pi*L^2", f"{is_in}N, and {per}"),
+                (stiffness, "sqrt(c*m)*w*L^2", None), (stiffness, "sqrt(c*m)*w*L", f"{is_in}N, and {per}"), (stiffness, "m*w^2*L^4", f"{is_in}m^4 kg^1 s^-2, and {per}"),
+                (mass, "L", '"L" is in m, and "mass_kg" in kg'), (mass, "1000*mm", f'{is_in}m, and "mass_kg" in kg'), (mass, "m*n", None), (mass, "2*n", None),
+                (mass, "cbrt(m*m*m)", None), (mass, "abs(-m)*2^0.5", None), (end, "2*L", None), (end, "1 + 0*L", None), (end, "m", '"m" is in kg, and "centre" in m'),
+                (("parameters", "f"), {"value": "w", "unit": "Hz"}, '"w" is in rad/s, and "f" in Hz'), (("parameters", "f"), {"value": "w/(2*pi)", "unit": "Hz"}, None),
+                (("parameters", "f"), {"value": "60*rpm", "unit": "rad/s"}, None), (("configurations",), {"a": {"parameters": {"k": "c"}}}, '"c" is in N/m, and "k" in N m/rad'),
+                (axial, "k", '"k" is in N m/rad, and "stiffness_n_per_m" in N/m'), (axial, "k/L^2", None), (axial, "E*(20*mm)^2/(1500*mm)", None)]
+        for path, value, words in rows:
+            with self.subTest(value):
+                doubts, _ = self.found(self.put_model(path, value, lined))
+                self.assertEqual([d["text"] for d in doubts if d["kind"] == "unit"], [words] if words else [])
+        self.assertIn(': warning: /springs/0/stiffness_n_m_per_rad: "c" is in N/m', self.expect(0, "check", self.put_model(stiffness, "c", base)).stderr)
+        self.assertEqual(self.found(self.put_model(stiffness, "c", changed(base, ("accepted",), ["unit"])))[0], [])
+
     def test_freedoms_come_first_and_in_words(self):
         loose = changed(MODEL, ("springs",), None)
         floating = changed(loose, ("joints", 0), {"name": "foot", "type": "fixed", "bodies": ["rod.end", "tip"], "at": [0, 1]})
@@ -594,7 +620,7 @@ class Doubts(CliTest):
 
     def test_a_stroke_longer_than_the_drawing(self):
         slide = {"name": "foot", "type": "prismatic", "bodies": ["ground", "rod.start"], "at": [0, 0], "axis": [1, 0]}
-        spring = {"name": "hold", "type": "axial", "bodies": ["ground", "rod.start"], "at": [[-1, 0], [0, 0]], "stiffness_n_per_m": "k"}
+        spring = {"name": "hold", "type": "axial", "bodies": ["ground", "rod.start"], "at": [[-1, 0], [0, 0]], "stiffness_n_per_m": "k*0.5"}
         base = dict(MODEL, joints=[slide, MODEL["joints"][1]], springs=[spring])
         for position, want in ((20, ["drive"]), (0.02, [])):
             base["configurations"] = {"out": {"drive": {"joint": "foot", "position_m": position}}}

@@ -115,6 +115,16 @@ def springs(model):
                 yield "per cent", (name, i, "loss_factor"), 2.5, "warning", r"percent"
 
 
+def units(model):
+    """A number of metres where something else is measured, of 1 in SI."""
+    for name, members in (("bodies", ("mass_kg",)), ("springs", ("stiffness_n_per_m", "stiffness_n_m_per_rad")), ("dampers", ("damping_n_s_per_m",)),
+                          ("links", ("mass_kg", "youngs_modulus_pa", "density_kg_per_m3"))):
+        for i, item in items(model, name):
+            for member in members:
+                if isinstance(item.get(member), (int, float, str)):
+                    yield "unit", (name, i, member), "1000*mm", "warning", f'is in m, and "{member}" in '
+
+
 def whole(model):
     gravity = model.get("gravity_m_per_s2")
     if gravity and gravity[-1] not in (0, "0") and not any("gravity_m_per_s2" in c for c in (model.get("configurations") or {}).values()):
@@ -167,7 +177,7 @@ class WrongModels(CliTest):
         kinds = {}
         for path, model in self.sound().items():
             done = {}
-            for make in (bodies, links, joints, springs, whole):
+            for make in (bodies, links, joints, springs, units, whole):
                 for kind, place, value, severity, words in make(model):
                     done[kind] = done.get(kind, 0) + 1
                     if done[kind] > PLACES:
