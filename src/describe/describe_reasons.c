@@ -215,11 +215,6 @@ static void say_frequency(mt_sentences *s, const mt_result_frequency *f)
     const char *const name = f->name != NULL ? f->name : "";
     const char *const open = f->name != NULL ? " (" : "";
     const char *const close = f->name != NULL ? ")" : "";
-    if (!MT_HAS(f->recommended_hz)) {
-        mt_say(s, "%s mode %d%s%s%s has no frequency here.", f->configuration, f->mode, open,
-               name, close);
-        return;
-    }
     demand_text(f, demand);
     const char *const range =
         MT_HAS(f->lowest_hz) && MT_HAS(f->highest_hz)
@@ -272,7 +267,9 @@ static void say_frequencies(mt_sentences *s)
     mt_say_of(s, "change", NULL);
     for (int i = 0; i < s->rec->n_frequencies; i++) {
         const mt_result_frequency *const f = &s->rec->frequencies[i];
-        if (MT_HAS(f->target_hz) || MT_HAS(f->at_least_hz) || MT_HAS(f->at_most_hz)) {
+        const bool asked =
+            MT_HAS(f->target_hz) || MT_HAS(f->at_least_hz) || MT_HAS(f->at_most_hz);
+        if (asked && MT_HAS(f->recommended_hz)) { /* else its goal has no value */
             say_frequency(s, f);
         }
     }

@@ -29,11 +29,12 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ["prove", "expr", "modal", "problem", "search", "vibration", "describe", "report"]
+ROOMS = ["prove", "expr", "modal", "nlp", "problem", "search", "vibration", "describe", "report"]
 # What judges a fault first: its own room's tests, then these, which rest upon it; those named in full whatever they cost.
 ABOVE = {"prove": ["problem/", "search/", "answer/", "cli/test_tolerances"],
          "expr": ["prove/", "model/", "mechanics/", "problem/"],
          "modal": ["analysis/test_lowest", "analysis/test_lowest_trees", "analysis/", "response/", "describe/test_study", "stress/test_eigensolver"],
+         "nlp": ["answer/test_study", "answer/", "search/", "problem/test_robust"],
          "problem": ["describe/test_numbers", "cli/test_motion", "describe/", "answer/", "search/"],
          "search": ["cli/test_possible", "cli/test_motion", "answer/", "describe/"],
          "vibration": ["cli/test_response_vibration", "response/", "answer/test_study_vibration", "problem/test_study_gradient"],
