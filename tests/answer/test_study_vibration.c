@@ -327,6 +327,86 @@ static void vibration__is_told_where_change_is_made_least(mt_test *t)
     study_free(&s);
 }
 
+#define HELD(k, c)                                                                           \
+    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': " k ", 'c': " c "}," \
+    "'bodies': [{'name': 'main', 'mass_kg': 1, 'inertia_kg_m2': 1, 'centre': [1, 0]}],"      \
+    "'joints': [{'name': 's', 'type': 'prismatic', 'bodies': ['ground', 'main'],"            \
+    " 'at': [1, 0], 'axis': [1, 0]}],"                                                       \
+    "'springs': [{'name': 'k', 'type': 'axial', 'joint': 's', 'stiffness_n_per_m': 'k'}],"   \
+    "'dampers': [{'name': 'c', 'type': 'axial', 'joint': 's', 'damping_n_s_per_m': 'c'}],"   \
+    "'sensors': [{'name': 'main', 'on': 'main', 'at': [1, 0], 'directions': ['x']}]}"
+
+/* |H| = 1/k far below the resonance, with limits ten decades apart: half of the lower one is
+ * missed by 50 %, and the least change to it is ln 2. */
+static void response__has_two_limits_however_far_apart(mt_test *t)
+{
+    study_case s;
+    if (study_solve(t, HELD("2e10", "1"),
+                    "'variables': [{'parameter': 'k', 'lower': 1e9, 'upper': 1e11}],"
+                    "'goals': [{'type': 'response', 'input': 'main.x', 'output': 'main.x',"
+                    " 'at_hz': 1, 'at_least': 1e-10, 'at_most': 1}]",
+                    &s)) {
+        CHECK_NEAR(t, s.result->baseline.goals[0].violation_percent, 50.0, 1e-4);
+        CHECK(t, !s.result->baseline.goals[0].met);
+        CHECK_NEAR(t, study_value(&s, 1, "k"), 1e10, 1e-5 * 1e10);
+        CHECK_NEAR(t, s.result->recommendations[0].change, log(2.0), 1e-5);
+    }
+    study_free(&s);
+}
+
+/* What has no value at the original design has none there in the objective either: a negative
+ * spring has no response. The least has k as large as may be: 1/(c w) at its resonance. */
+static void objective__of_a_response_that_is_not_there_has_no_value(mt_test *t)
+{
+    study_case s;
+    if (study_solve(t, HELD("-100", "1"),
+                    "'variables': [{'parameter': 'k', 'lower': -200, 'upper': 400}],"
+                    "'goals': [{'type': 'response', 'input': 'main.x', 'output': 'main.x',"
+                    " 'band_hz': [0.1, 10], 'at_most': 1}],"
+                    "'objective': {'minimise': 'vibration'}",
+                    &s)) {
+        const double peak = 1.0 / sqrt(400.0 - 0.25); /* c = m = 1 */
+        CHECK(t, isnan(s.result->baseline.goals[0].value));
+        CHECK(t, isnan(s.result->baseline.objectives[0].recommended));
+        CHECK(t, isnan(s.result->baseline.score));
+        CHECK_NEAR(t, study_value(&s, 1, "k"), 400.0, 1e-6);
+        CHECK_NEAR(t, s.result->recommendations[0].score, 100.0 * peak, 1e-6 * 100.0 * peak);
+    }
+    study_free(&s);
+}
+
+/* Without a damper the response in the band of the resonance has no end, and neither has the
+ * largest part of a limit, whichever goal stands first. */
+static void objective__of_two_responses_has_no_value_where_one_has_none(mt_test *t)
+{
+#define IN_BAND                                                                     \
+    "{'type': 'response', 'input': 'main.x', 'output': 'main.x', 'band_hz': [0.1, " \
+    "10], 'at_most': 1}"
+#define STATIC                                                                               \
+    "{'type': 'response', 'input': 'main.x', 'output': 'main.x', 'at_hz': 1e-6, 'at_most': " \
+    "1}"
+    static const char *const goals[] = {IN_BAND ", " STATIC, STATIC ", " IN_BAND};
+    for (int i = 0; i < MT_COUNT(goals); i++) {
+        char members[700];
+        study_case s;
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'c', 'lower': 0, 'upper': 2}],"
+                       "'goals': [%s], 'objective': {'minimise': 'vibration'}",
+                       goals[i]);
+        mt_test_row(t, "%s", goals[i]);
+        if (study_solve(t, HELD("400", "0"), members, &s)) {
+            const mt_recommendation *const b = &s.result->baseline;
+            const double peak = 1.0 / (2.0 * sqrt(400.0 - 1.0)); /* c = 2 */
+            CHECK(t, isnan(b->goals[i].value));
+            CHECK_NEAR(t, b->goals[1 - i].value, 1.0 / 400.0, 1e-9);
+            CHECK(t, isnan(b->objectives[0].recommended) && isnan(b->score));
+            CHECK_NEAR(t, s.result->recommendations[0].score, 100.0 * peak,
+                       1e-6 * 100.0 * peak);
+        }
+        study_free(&s);
+    }
+}
+
 /* What a study cannot mean is refused in words where it stands. */
 static void ports__that_are_not_there_are_told(mt_test *t)
 {
@@ -362,4 +442,7 @@ MT_TEST_MAIN(MT_TEST(absorber__is_tuned_from_ten_times_off),
              MT_TEST(catalogue__of_absorbers_is_judged_by_the_peak),
              MT_TEST(vibration__is_one_side_of_a_front),
              MT_TEST(vibration__is_told_where_change_is_made_least),
+             MT_TEST(response__has_two_limits_however_far_apart),
+             MT_TEST(objective__of_a_response_that_is_not_there_has_no_value),
+             MT_TEST(objective__of_two_responses_has_no_value_where_one_has_none),
              MT_TEST(ports__that_are_not_there_are_told))

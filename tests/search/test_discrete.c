@@ -381,6 +381,32 @@ static void discrete__the_rank_says_least_of_what_begins_like_clearance(mt_test 
     study_free(&c);
 }
 
+/* How many of three combinations meet a limit is told, whether all, some or none do. */
+static void discrete__how_many_combinations_meet_the_goals_is_told(mt_test *t)
+{
+    static const char *const limits[] = {"0.5", "1.5", "2.5", "3.5"};
+    static const char *const words[] = {
+        "all 3 combinations of catalogue values were judged, 3 of "
+        "them meet all goals",
+        "2 of them meet all goals", "1 of them meets all goals",
+        "None of the 3 combinations of catalogue values meets"};
+    for (int i = 0; i < MT_COUNT(limits); i++) {
+        char members[400];
+        study_case c;
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]}],"
+                       "'goals': [{'type': 'limit', 'expression': 'k1', 'at_least': %s}]",
+                       limits[i]);
+        mt_test_row(t, "at least %s", limits[i]);
+        if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 1, 'm': 1", ""), members, &c)) {
+            const mt_certificate *const told = enumeration(c.result);
+            CHECK(t, told != NULL && told->proven && strstr(told->text, words[i]) != NULL);
+            CHECK_INT(t, c.result->status, i < 3 ? MT_RESULT_SOLVED : MT_RESULT_INFEASIBLE);
+        }
+        study_free(&c);
+    }
+}
+
 static void discrete__a_budget_is_kept(mt_test *t)
 {
     six s;
@@ -412,4 +438,5 @@ MT_TEST_MAIN(MT_TEST(discrete__enumeration_agrees_with_brute_force),
              MT_TEST(discrete__without_an_enclosure_nothing_is_proven),
              MT_TEST(discrete__of_too_many_combinations_the_best_is_proven),
              MT_TEST(discrete__the_rank_says_least_of_what_begins_like_clearance),
+             MT_TEST(discrete__how_many_combinations_meet_the_goals_is_told),
              MT_TEST(discrete__a_budget_is_kept))

@@ -153,6 +153,10 @@ static const struct {
      "'variables': [{'parameter': 'k1', 'lower': 1000, 'upper': 60000}]," QUICK
      "'goals': [{'type': 'avoid', 'configurations': ['left', 'right'], 'bands_hz': [[10, 11], "
      "[23.7, 25]]}]"},
+    {"a limit over a motion", ARM,
+     "'variables': [{'parameter': 'k1', 'lower': 1000, 'upper': 60000}]," QUICK
+     "'goals': [{'type': 'frequency', 'mode': 1, 'configurations': ['left', 'right'], "
+     "'at_most_hz': 22}]"},
     {"bands over a motion, with tolerances", ARM,
      "'variables': [{'parameter': 'k1', 'lower': 1000, 'upper': 60000, 'tolerance_percent': "
      "1}]," QUICK "'goals': [{'type': 'avoid', 'configurations': ['left', 'right'], "
