@@ -34,9 +34,27 @@ static uint32_t rotate(uint32_t x, int n)
     return (x >> n) | (x << (32 - n));
 }
 
+/* A round. Instead of moving all eight words to the next letter, letters move: at round t
+ * letter i is word (i - t) mod 8. added: the round's constant and word of the message. */
+static inline void turn(uint32_t s[WORDS], int t, uint32_t added)
+{
+    const uint32_t a = s[(8 - t) & 7];
+    const uint32_t b = s[(9 - t) & 7];
+    const uint32_t c = s[(10 - t) & 7];
+    const uint32_t e = s[(12 - t) & 7];
+    const uint32_t f = s[(13 - t) & 7];
+    const uint32_t g = s[(14 - t) & 7];
+    uint32_t *const h = &s[(15 - t) & 7];
+    const uint32_t t1 =
+        *h + (rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25)) + (g ^ (e & (f ^ g))) + added;
+    s[(11 - t) & 7] += t1;
+    *h = t1 + (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) + ((a & b) | (c & (a | b)));
+}
+
 static void compress(uint32_t hash[WORDS], const unsigned char *block)
 {
     uint32_t w[ROUNDS];
+    uint32_t s[WORDS];
     for (size_t t = 0; t < 16; t++) {
         const unsigned char *const p = block + 4 * t;
         w[t] =
@@ -48,31 +66,20 @@ static void compress(uint32_t hash[WORDS], const unsigned char *block)
         w[t] = w[t - 16] + (rotate(x, 7) ^ rotate(x, 18) ^ (x >> 3)) + w[t - 7] +
                (rotate(y, 17) ^ rotate(y, 19) ^ (y >> 10));
     }
-    uint32_t a = hash[0];
-    uint32_t b = hash[1];
-    uint32_t c = hash[2];
-    uint32_t d = hash[3];
-    uint32_t e = hash[4];
-    uint32_t f = hash[5];
-    uint32_t g = hash[6];
-    uint32_t h = hash[7];
-    for (int t = 0; t < ROUNDS; t++) {
-        const uint32_t t1 = h + (rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25)) +
-                            ((e & f) ^ (~e & g)) + round_constant[t] + w[t];
-        const uint32_t t2 =
-            (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
-        h = g;
-        g = f;
-        f = e;
-        e = d + t1;
-        d = c;
-        c = b;
-        b = a;
-        a = t1 + t2;
+    memcpy(s, hash, sizeof s);
+    for (int t = 0; t < ROUNDS; t += 8) {
+        const uint32_t *const k = round_constant + t;
+        turn(s, 0, k[0] + w[t]);
+        turn(s, 1, k[1] + w[t + 1]);
+        turn(s, 2, k[2] + w[t + 2]);
+        turn(s, 3, k[3] + w[t + 3]);
+        turn(s, 4, k[4] + w[t + 4]);
+        turn(s, 5, k[5] + w[t + 5]);
+        turn(s, 6, k[6] + w[t + 6]);
+        turn(s, 7, k[7] + w[t + 7]);
     }
-    const uint32_t after[WORDS] = {a, b, c, d, e, f, g, h};
     for (int i = 0; i < WORDS; i++) {
-        hash[i] += after[i];
+        hash[i] += s[i];
     }
 }
 

@@ -209,6 +209,17 @@ static mt_status read_format(const char *s, int command, mt_format *out, mt_err 
     return rc;
 }
 
+static mt_status read_report(const char *s, const char *option, bool *none, mt_err *err)
+{
+    static const char *const names[] = {"html", "none"};
+    char suggestion[SUGGESTION_TEXT];
+    *none = strcmp(s, names[1]) == 0;
+    return *none || strcmp(s, names[0]) == 0
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is none of html, none%s", option, s,
+                         did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+}
+
 static mt_status read_progress(const char *s, const char *option, mt_progress_form *out,
                                mt_err *err)
 {
@@ -297,6 +308,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return read_part(value, o->name, args, err);
     case MT_OPT_MAX_MEMORY:
         return mt_limits_read_size(value, &args->max_memory, err);
+    case MT_OPT_REPORT:
+        return read_report(value, o->name, &args->no_report, err);
     case MT_OPT_PROGRESS:
         return read_progress(value, o->name, &args->progress, err);
     case MT_OPT_COMPLETION:

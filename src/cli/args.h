@@ -53,6 +53,7 @@ typedef enum mt_option_id {
     MT_OPT_STARTS,
     MT_OPT_MAX_EVALUATIONS,
     MT_OPT_PROOF,
+    MT_OPT_REPORT,
     MT_OPT_RESUME,
     MT_OPT_SHARD,
     MT_OPT_PROFILE,
@@ -173,6 +174,7 @@ typedef struct mt_args {
     int command; /* mt_command_id, MT_CMD_NONE */
     mt_format format;
     mt_progress_form progress;
+    bool no_report; /* --report none */
     mt_shell shell; /* --completion; read it where it is given */
     bool given[MT_OPT_IDS];
     const char *value[MT_OPT_IDS]; /* of the last one */

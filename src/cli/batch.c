@@ -115,6 +115,7 @@ int mt_batch_note(mt_batch *batch, int i, const mt_batch_end *end)
         s->status = mt_result_status_name(r->status);
         s->seconds = end->seconds;
         s->sha256 = mt_arena_strdup(mem, end->sha256);
+        s->has_report = !batch->args->no_report;
         if (r->n_recommendations > 0) {
             s->grade = mt_arena_strdup(mem, r->recommendations[0].grade);
             s->change = r->recommendations[0].change;

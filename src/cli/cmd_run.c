@@ -186,7 +186,9 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
             &j->result->mem, "%s `run --resume` goes on from here.", j->result->status_text);
     }
     mt_status rc = mt_arena_check(&j->result->mem, &j->err);
-    rc = rc != MT_OK ? rc : mt_scene_of_result(j->study->model, j->result, &scene, &j->err);
+    if (rc == MT_OK && !j->args->no_report) {
+        rc = mt_scene_of_result(j->study->model, j->result, &scene, &j->err);
+    }
     if (rc != MT_OK) { /* no other answer than with memory */
         mt_text_free(&scene);
         return mt_cli_failed(rc, &j->err);

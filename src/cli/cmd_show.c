@@ -98,12 +98,13 @@ static int load(const mt_args *args, subject *o)
         return mt_cli_failed(rc, &err);
     }
     code = mt_subject_load(args, o->path, configuration, &o->s);
-    rc = code == MT_EXIT_DONE
-             ? mt_scene_designs(o->s.model, o->result, &o->s.mem, &o->asks, &o->n, &err)
-             : MT_OK;
-    if (code == MT_EXIT_DONE && rc == MT_OK && configuration == NULL) {
+    if (code == MT_EXIT_DONE && configuration == NULL) {
         (void)mt_scene_order(o->s.model, o->result, o->s.configurations); /* all of them */
     }
+    rc = code == MT_EXIT_DONE
+             ? mt_scene_designs(o->s.model, o->result, o->s.n_configurations,
+                                o->s.configurations, &o->s.mem, &o->asks, &o->n, &err)
+             : MT_OK;
     (void)mt_err_in(&err, rc, "%s", operand);
     return rc == MT_OK ? code : mt_cli_failed(rc, &err);
 }
@@ -229,8 +230,9 @@ int mt_cmd_show(const mt_args *args, mt_text *out)
     }
     /* a picture is of one configuration and one design */
     const int n = args->given[MT_OPT_SVG] ? 1 : o.s.n_configurations;
-    rc = mt_scene_new(o.s.model, o.n, o.asks, n, o.s.configurations, MT_SCENE_WORK, &scene,
-                      &err);
+    const mt_scene_extent extent = {
+        .n_configurations = n, .configurations = o.s.configurations, .work = MT_SCENE_WORK};
+    rc = mt_scene_new(o.s.model, o.n, o.asks, &extent, &scene, &err);
     if (rc == MT_OK) {
         warn(scene, o.s.path);
         rc = write(args, &o, scene, out, &err);

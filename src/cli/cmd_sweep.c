@@ -130,7 +130,7 @@ static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt
 static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt_err *err)
 {
     const mt_sweep_request *const r = j->v.request;
-    const mt_sweep_visitor visitor = {visit, j};
+    const mt_sweep_visitor visitor = {.visit = visit, .context = j};
     const size_t n = (size_t)s->n_inputs;
     MT_TRY(mt_arena_init(&j->mem, 0, err));
     double *const at = mt_arena_f64(&j->mem, n + 1, 1);

@@ -161,6 +161,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
     OPTION(MT_OPT_PROOF, '\0', "proof", "SECONDS", ON_STUDIES,
            "limit of each proof in nominal seconds (1e9 multiplications on any machine) "
            "instead of the study's \"proof_s\" (default: 5); 0: no proof"),
+    OPTION(MT_OPT_REPORT, '\0', "report", "html|none", SOLVES,
+           "none: write no report.html, and remove an old one with the result that it belongs "
+           "to; `modetune report --output` makes it later (default: html)"),
     OPTION(MT_OPT_RESUME, '\0', "resume", NULL, BIT(MT_CMD_RUN),
            "continue from the journal of a run that was killed or interrupted, if there is "
            "one; the result is that of a run without a break"),

@@ -275,14 +275,16 @@ void mt_save_print(const mt_args *args, const mt_result *result, const char *sce
 }
 
 /* The files that result.json names, and itself with its digest. */
-static mt_status write_texts(mt_result *result, saving *s)
+static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
 {
     const char *names[MT_RESULT_FILE_COUNT] = {NULL};
     mt_text outputs[MT_RESULT_FILE_COUNT];
     int n = 0;
     for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
         const mt_result_file which = (mt_result_file)i;
-        write_output(result, s->scene, which, &s->texts[i]);
+        if (which != MT_RESULT_FILE_REPORT || !args->no_report) {
+            write_output(result, s->scene, which, &s->texts[i]);
+        }
         MT_TRY(s->texts[i].failed ? mt_fail_memory(&s->err) : MT_OK);
         if (s->texts[i].s != NULL) {
             names[n] = mt_result_file_name(which);
@@ -299,7 +301,7 @@ static mt_status write_texts(mt_result *result, saving *s)
 static mt_status begin(const mt_args *args, mt_result *result, saving *s)
 {
     s->folder = mt_save_folder(args, s->study_path);
-    return s->folder == NULL ? mt_fail_memory(&s->err) : write_texts(result, s);
+    return s->folder == NULL ? mt_fail_memory(&s->err) : write_texts(args, result, s);
 }
 
 static int end(const mt_args *args, mt_status rc, const char *told, saving *s)

@@ -61,6 +61,8 @@ static mt_status name_tracked(const mt_model *model, const mt_recommendation *r,
 typedef struct source {
     const mt_model *model;
     const mt_result *result;
+    int n_configurations;
+    const int *configurations; /* that are shown */
     mt_arena *mem;
 } source;
 
@@ -95,8 +97,9 @@ static mt_status fill(const source *s, const mt_recommendation *r, bool original
             MT_TRY(take(model, v->name, v->value, inputs, at, &ask->n_inputs, err));
         }
     }
-    for (int i = 0; i < model->n_configurations; i++) {
-        MT_TRY(mt_model_admit(model, i, ask->n_inputs, inputs, at, mem, err));
+    for (int i = 0; i < s->n_configurations; i++) {
+        MT_TRY(
+            mt_model_admit(model, s->configurations[i], ask->n_inputs, inputs, at, mem, err));
     }
     if (original) {
         return set ? MT_OK : mt_scene_name_modes(model, mem, ask, err);
@@ -104,11 +107,12 @@ static mt_status fill(const source *s, const mt_recommendation *r, bool original
     return name_tracked(model, r, mem, ask, err);
 }
 
-mt_status mt_scene_designs(const mt_model *model, const mt_result *result, mt_arena *mem,
-                           mt_scene_ask **asks, int *n, mt_err *err)
+mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n_configurations,
+                           const int *configurations, mt_arena *mem, mt_scene_ask **asks,
+                           int *n, mt_err *err)
 {
     static const mt_recommendation none = {.rank = 0};
-    const source s = {model, result, mem};
+    const source s = {model, result, n_configurations, configurations, mem};
     const int count = result->n_recommendations;
     *n = 0;
     *asks = mt_arena_alloc(mem, (size_t)count + 1, sizeof **asks);
@@ -146,18 +150,56 @@ int mt_scene_order(const mt_model *model, const mt_result *result, int *configur
     return asked;
 }
 
+static void ask_travel(const mt_model *model, const char *joint, mt_scene_travel *travel)
+{
+    const int j = mt_model_find_joint(model, joint);
+    if (j != MT_ABSENT) {
+        travel[j] = MT_TRAVEL_MODES;
+    }
+}
+
+/* Modes along the ranges that goals are held over, poses along those in which a configuration
+ * that is shown holds its joint. travel[joints]. */
+static void find_travel(const mt_model *model, const mt_result *result, int n,
+                        const int *configurations, mt_scene_travel *travel)
+{
+    for (int i = 0; i < n; i++) {
+        const mt_drive *const d = &model->configurations[configurations[i]].drive;
+        if (d->given) {
+            travel[d->joint] = MT_TRAVEL_POSES;
+        }
+    }
+    for (int r = 0; r <= result->n_recommendations; r++) {
+        const mt_recommendation *const design =
+            r == 0 ? &result->baseline : &result->recommendations[r - 1];
+        for (int i = 0; i < design->n_motions; i++) {
+            ask_travel(model, design->motions[i].drive, travel);
+        }
+        for (int i = 0; i < design->n_between; i++) {
+            ask_travel(model, design->between[i].drive, travel);
+        }
+    }
+}
+
 static mt_status look(const mt_model *model, const mt_result *result, mt_arena *mem,
                       mt_scene **out, mt_err *err)
 {
     const int all = model->n_configurations;
     int *const configurations = mt_arena_int(mem, (size_t)all);
+    mt_scene_travel *const travel =
+        mt_arena_alloc(mem, (size_t)model->n_joints, sizeof *travel);
     mt_scene_ask *asks = NULL;
     int n = 0;
-    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_arena_check(mem, err)); /* zero: MT_TRAVEL_NONE */
     const int asked = mt_scene_order(model, result, configurations);
-    MT_TRY(mt_scene_designs(model, result, mem, &asks, &n, err));
-    return mt_scene_new(model, n, asks, asked > 0 ? asked : all, configurations,
-                        MT_SCENE_WORK_ALONG, out, err);
+    const mt_scene_extent extent = {.n_configurations = asked > 0 ? asked : all,
+                                    .configurations = configurations,
+                                    .work = MT_SCENE_WORK_ALONG,
+                                    .travel = travel};
+    MT_TRY(mt_scene_designs(model, result, extent.n_configurations, configurations, mem, &asks,
+                            &n, err));
+    find_travel(model, result, extent.n_configurations, configurations, travel);
+    return mt_scene_new(model, n, asks, &extent, out, err);
 }
 
 mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, mt_text *json,

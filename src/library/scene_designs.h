@@ -8,10 +8,12 @@
 
 /* The designs of a result as what a scene is asked (mt_scene_new): the original one, with what
  * was set when the study was asked, then the recommended ones. asks[n] in mem, with texts of
- * the result. Fails: MT_E_INPUT (a parameter that the model has not, or has no value),
- * MT_E_USAGE (the model is no mechanism there), MT_E_MEMORY. */
-mt_status mt_scene_designs(const mt_model *model, const mt_result *result, mt_arena *mem,
-                           mt_scene_ask **asks, int *n, mt_err *err);
+ * the result. configurations[n_configurations]: that are to be shown. Fails: MT_E_INPUT (a
+ * parameter that the model has not, or has no value), MT_E_USAGE (the model is no mechanism in
+ * one of these), MT_E_MEMORY. */
+mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n_configurations,
+                           const int *configurations, mt_arena *mem, mt_scene_ask **asks,
+                           int *n, mt_err *err);
 /* All configurations of the model, configurations[n_configurations]: first those of which
  * the result has frequencies, in its order; returns how many these are. */
 int mt_scene_order(const mt_model *model, const mt_result *result, int *configurations);

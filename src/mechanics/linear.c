@@ -290,19 +290,29 @@ static void assemble_stiffness(mt_linear *lin)
     lin->stiffness_version++;
 }
 
-static mt_status place(mt_linear *lin, mt_err *err)
+static mt_status find_position(mt_linear *lin, mt_err *err)
 {
     mt_geometry_renew(lin);
     mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
-    MT_TRY(mt_position_solve(lin->sys, &lin->data,
+    return mt_position_solve(lin->sys, &lin->data,
                              lin->follow && lin->has_last ? &lin->last : NULL,
-                             &lin->geometry->mem, &lin->position, err));
-    MT_TRY(constrain(lin, err));
-    if (lin->sys->driven) { /* not from a dead centre: which way led on would be open */
+                             &lin->geometry->mem, &lin->position, err);
+}
+
+static void keep_last(mt_linear *lin)
+{
+    if (lin->sys->driven) {
         mt_placement_copy(lin->sys, &lin->position.driven, &lin->last);
         lin->has_last = true;
     }
+}
+
+static mt_status place(mt_linear *lin, mt_err *err)
+{
+    MT_TRY(find_position(lin, err));
+    MT_TRY(constrain(lin, err));
+    keep_last(lin); /* not from a dead centre: which way led on would be open */
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));
     return mt_interrupt_check(lin->sys->model->interrupt, err);
@@ -445,6 +455,18 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
         return mt_fail(err, MT_E_INTERRUPTED, "interrupted");
     }
     return with_gradient ? run_tangent(lin, inputs, err) : MT_OK;
+}
+
+mt_status mt_linear_place(mt_linear *lin, const double *inputs, mt_err *err)
+{
+    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
+    MT_TRY(run_program(lin, inputs, false, err));
+    lin->stages.valid[MT_STAGE_GEOMETRY] = false;
+    lin->stages.valid[MT_STAGE_TANGENT] = false;
+    lin->stages.valid[MT_STAGE_REDUCTION] = false;
+    MT_TRY(find_position(lin, err));
+    keep_last(lin);
+    return MT_OK;
 }
 
 void mt_linear_follow(mt_linear *lin, bool on)

@@ -26,6 +26,9 @@ void mt_linear_delete(mt_linear *lin);
  * (names the number by its address in the text). No heap after the first calls. */
 mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradient,
                            mt_err *err);
+/* Of an update the position alone, for who only draws it: mt_linear_position has it, all else
+ * is void until the next update. */
+mt_status mt_linear_place(mt_linear *lin, const double *inputs, mt_err *err);
 /* From now on a driven joint begins where the last update left it, instead of at the reference
  * position: for sweeps. The first update after this call begins at the reference position; so
  * do all of them after `on` false. */

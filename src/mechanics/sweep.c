@@ -59,6 +59,10 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
     s->inputs[sys->n_inputs - 1] = point->drive;
     MT_TRY(s->visitor != NULL ? s->visitor->visit(s->visitor->context, i, s->inputs, err)
                               : mt_linear_update(lin, s->inputs, true, err));
+    s->out->n_reached++;
+    if (s->visitor != NULL && s->visitor->places) {
+        return MT_OK;
+    }
     lin->dual.input = sys->n_inputs - 1;
     MT_TRY(mt_position_tangent(p, &lin->dual, &lin->scratch, err));
     for (int j = 0; j < sys->n_joints; j++) {
@@ -77,9 +81,7 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
     mt_nearness *const near = mt_arena_alloc(s->mem, 1, sizeof *near);
     MT_TRY(mt_arena_check(s->mem, err));
     point->near = near;
-    MT_TRY(mt_linear_nearness(lin, s->mem, near, err));
-    s->out->n_reached++;
-    return MT_OK;
+    return mt_linear_nearness(lin, s->mem, near, err);
 }
 
 /* Points first, first + step, ... up to the end of the list; where one cannot be reached the

@@ -37,13 +37,13 @@ static void add_study(const mt_index_study *s, mt_text *out)
 {
     char number[MT_NUMBER_TEXT];
     mt_text_add(out, "<tr><td>");
-    if (s->sha256 != NULL) {
+    if (s->has_report) {
         mt_text_add(out, "<a href=\"");
         mt_text_add_uri(out, s->folder);
         mt_text_add(out, "/report.html\">");
     }
     mt_html_escape(s->file, out);
-    mt_text_add(out, s->sha256 != NULL ? "</a></td>" : "</td>");
+    mt_text_add(out, s->has_report ? "</a></td>" : "</td>");
     add_cell(s->name, out);
     add_cell(s->status == NULL ? s->state : s->status, out);
     add_cell(s->grade, out);

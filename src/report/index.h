@@ -15,6 +15,7 @@ typedef struct mt_index_study {
     const char *grade;   /* of the best design; NULL: there is none */
     double change;       /* of it, the size of the redesign */
     const char *sha256;  /* of result.json */
+    bool has_report;     /* report.html stands beside it */
     const char *message; /* why it was not answered; NULL: it was */
     int exit_status;     /* what running it alone would have ended with; -1: not run */
     double seconds;      /* of the solution */

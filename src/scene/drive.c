@@ -3,6 +3,8 @@
  * The range of a driven joint: from the lowest to the highest position that any configuration
  * of the model drives it to; where there is one alone, from the reference position to that. A
  * configuration that drives nothing, but has the joint that others drive, shows their range.
+ * Each position is found from the one before it. Modes cost many times what a position does
+ * and are found where somebody asks for them.
  */
 #include "mechanics/drive.h"
 
@@ -21,6 +23,12 @@ typedef struct range {
     double high;
     double own; /* NaN: the configuration drives nothing */
 } range;
+
+static mt_scene_travel travel_of(const mt_scene_frame *f, const mt_drive *drive)
+{
+    const mt_scene_travel *const travel = f->extent->travel;
+    return travel == NULL ? MT_TRAVEL_MODES : travel[drive->joint];
+}
 
 /* The configuration's own drive, else the first of another one whose joint, and whose spring,
  * it has. */
@@ -86,7 +94,9 @@ static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
 /* At work on one range. */
 typedef struct walk {
     mt_scene_frame *f;
-    mt_analysis *a;
+    mt_analysis *a; /* where modes are asked for; else a system and its positions */
+    mt_system *sys;
+    mt_linear *lin;
     mt_scene_drive *out;
 } walk;
 
@@ -94,7 +104,7 @@ typedef struct walk {
 static void fill_pose(const walk *w, double *pose)
 {
     const mt_scene_frame *const f = w->f;
-    const mt_pose *const now = mt_linear_position(w->a->lin)->at.pose;
+    const mt_pose *const now = mt_linear_position(w->a != NULL ? w->a->lin : w->lin)->at.pose;
     for (int b = 0; b < f->view->n_bodies; b++) {
         const mt_pose *const p = mt_pose_of(now, b - 1);
         const mt_pose *const rest = mt_pose_of(f->pose, b - 1);
@@ -114,7 +124,23 @@ static void fill_pose(const walk *w, double *pose)
     }
 }
 
-static mt_status visit(void *context, int point, const double *inputs, mt_err *err)
+static mt_status put_pose(const walk *w, int point, mt_err *err)
+{
+    mt_scene_position *const p = &w->out->positions[point];
+    p->pose = mt_arena_f64(w->f->mem, 12, (size_t)w->f->view->n_bodies);
+    MT_TRY(mt_arena_check(w->f->mem, err));
+    fill_pose(w, p->pose);
+    return MT_OK;
+}
+
+static mt_status visit_place(void *context, int point, const double *inputs, mt_err *err)
+{
+    const walk *const w = context;
+    MT_TRY(mt_linear_place(w->lin, inputs, err));
+    return put_pose(w, point, err);
+}
+
+static mt_status visit_modes(void *context, int point, const double *inputs, mt_err *err)
 {
     const walk *const w = context;
     mt_scene_position *const p = &w->out->positions[point];
@@ -123,10 +149,9 @@ static mt_status visit(void *context, int point, const double *inputs, mt_err *e
     opt.check = false;
     opt.bounds = false;
     MT_TRY(mt_analysis_solve(w->a, inputs, &opt, err));
-    p->pose = mt_arena_f64(w->f->mem, 12, (size_t)w->f->view->n_bodies);
+    MT_TRY(put_pose(w, point, err));
     p->hz = mt_arena_f64(w->f->mem, MT_SCENE_MODES, 1);
     MT_TRY(mt_arena_check(w->f->mem, err));
-    fill_pose(w, p->pose);
     for (int i = 0; i < MT_SCENE_MODES; i++) {
         const int at = mt_modal_flexible(&w->a->modes, i + 1);
         if (at >= 0) {
@@ -155,7 +180,9 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
     const mt_system_drive drive = {
         .joint = m->joints[r->drive->joint].name.s,
         .spring = r->drive->trim ? m->springs[r->drive->trim_spring].name.s : NULL};
-    const mt_sweep_visitor visitor = {visit, w};
+    const bool modes = travel_of(f, r->drive) == MT_TRAVEL_MODES;
+    const mt_sweep_visitor visitor = {
+        .visit = modes ? visit_modes : visit_place, .context = w, .places = !modes};
     double *const at = mt_arena_f64(f->work, (size_t)ask->n_inputs + 1, 1);
     double *const positions = mt_arena_f64(f->work, (size_t)n, 1);
     mt_sweep found;
@@ -168,10 +195,17 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
         w->out->positions[i].at = positions[i];
     }
     at[ask->n_inputs] = nearest_of(n, positions);
-    MT_TRY(mt_analysis_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs, at,
-                                  &w->a, err));
-    w->a->recount = true; /* a spring may get hold of a direction on the way */
-    MT_TRY(mt_sweep_run(w->a->lin, at, n, positions, &visitor, f->work, &found, err));
+    if (modes) {
+        MT_TRY(mt_analysis_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs,
+                                      at, &w->a, err));
+        w->a->recount = true; /* a spring may get hold of a direction on the way */
+    } else {
+        MT_TRY(mt_system_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs, at,
+                                    &w->sys, err));
+        MT_TRY(mt_linear_new(w->sys, &w->lin, err));
+    }
+    MT_TRY(mt_sweep_run(modes ? w->a->lin : w->lin, at, n, positions, &visitor, f->work, &found,
+                        err));
     for (int i = 0; i < n; i++) {
         mt_scene_position *const p = &w->out->positions[i];
         if (found.points[i].status != MT_OK) {
@@ -188,7 +222,7 @@ mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     range r;
     mt_scene_view *const v = f->view;
     MT_TRY(find_range(f, &r, err));
-    if (r.drive == NULL) {
+    if (r.drive == NULL || travel_of(f, r.drive) == MT_TRAVEL_NONE) {
         return MT_OK;
     }
     mt_scene_drive *const out = mt_arena_alloc(f->mem, 1, sizeof *out);
@@ -213,6 +247,8 @@ mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     mt_err why = {.code = MT_OK};
     const mt_status rc = sweep(&w, &r, &why);
     mt_analysis_delete(w.a);
+    mt_linear_delete(w.lin);
+    mt_system_delete(w.sys);
     if (rc == MT_OK) {
         return MT_OK;
     }

@@ -196,8 +196,7 @@ static mt_status list_parameters(const mt_model *model, const mt_scene_ask *ask,
 /* What mt_scene_new was asked. */
 typedef struct question {
     const mt_model *model;
-    int n_configurations;
-    const int *configurations;
+    const mt_scene_extent *extent;
     mt_scene_room left;
     mt_arena work;
 } question;
@@ -207,12 +206,13 @@ static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
 {
     *out = (mt_scene_design){.label = mt_arena_strdup(mem, ask->label), .rank = ask->rank};
     MT_TRY(list_parameters(q->model, ask, mem, out, err));
-    out->views = mt_arena_alloc(mem, (size_t)q->n_configurations, sizeof *out->views);
+    out->views = mt_arena_alloc(mem, (size_t)q->extent->n_configurations, sizeof *out->views);
     MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < q->n_configurations; i++) {
+    for (int i = 0; i < q->extent->n_configurations; i++) {
         mt_scene_frame f = {.model = q->model,
-                            .configuration = q->configurations[i],
+                            .configuration = q->extent->configurations[i],
                             .ask = ask,
+                            .extent = q->extent,
                             .mem = mem,
                             .work = &q->work,
                             .view = &out->views[i]};
@@ -327,8 +327,9 @@ static mt_status find_gravity(const question *q, const mt_scene_ask *ask, mt_sce
                               mt_arena *work, mt_err *err)
 {
     const int all = q->model->n_configurations;
-    for (int i = 0; i < q->n_configurations + all && !scene->has_gravity; i++) {
-        const int c = i < q->n_configurations ? q->configurations[i] : i - q->n_configurations;
+    const int shown = q->extent->n_configurations;
+    for (int i = 0; i < shown + all && !scene->has_gravity; i++) {
+        const int c = i < shown ? q->extent->configurations[i] : i - shown;
         mt_arena_clear(work);
         MT_TRY(gravity_in(q->model, c, ask, scene, work, err));
     }
@@ -357,13 +358,11 @@ static mt_status fill(mt_scene *scene, question *q, int n_designs, const mt_scen
 }
 
 mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask *designs,
-                       int n_configurations, const int *configurations, double work,
-                       mt_scene **out, mt_err *err)
+                       const mt_scene_extent *extent, mt_scene **out, mt_err *err)
 {
     question q = {.model = model,
-                  .n_configurations = n_configurations,
-                  .configurations = configurations,
-                  .left = {MT_SCENE_ALL_ITEMS, MT_SCENE_POSES, work}};
+                  .extent = extent,
+                  .left = {MT_SCENE_ALL_ITEMS, MT_SCENE_POSES, extent->work}};
     mt_scene *const scene = calloc(1, sizeof *scene);
     *out = NULL;
     if (scene == NULL) {

@@ -20,6 +20,13 @@ enum { MT_SCENE_MODES = 12, MT_SCENE_POSITIONS = 21 };
  * one configuration; those of all configurations and designs; and bodies times the positions of
  * their drives. What exceeds this is left out, and says so. */
 enum { MT_SCENE_ITEMS = 3000, MT_SCENE_ALL_ITEMS = 9000, MT_SCENE_POSES = 40000 };
+/* What is shown of the ranges of driven joints. */
+typedef enum mt_scene_travel {
+    MT_TRAVEL_NONE,
+    MT_TRAVEL_POSES, /* where everything stands at each position */
+    MT_TRAVEL_MODES  /* and the frequencies of the lowest modes there */
+} mt_scene_travel;
+
 /* What looking may cost in all, in operations: about a minute where somebody asks to see a
  * mechanism, a few seconds where it goes along with an answer. Beyond it drives are not
  * followed, and of large mechanisms without a short way to their lowest modes no modes are
@@ -109,7 +116,7 @@ typedef struct mt_scene_position {
     double *pose; /* 12 x bodies: mass centre, rotation (row by row) from the pose of
                         the configuration; NULL: there is none */
     int n_hz;
-    double *hz;      /* [n_hz] lowest vibration modes */
+    double *hz;      /* [n_hz] lowest vibration modes; none where they were not asked for */
     const char *why; /* NULL: all went well */
 } mt_scene_position;
 
@@ -206,16 +213,23 @@ typedef struct mt_scene_ask {
     const int *shown;
 } mt_scene_ask;
 
+/* What to show of all designs. */
+typedef struct mt_scene_extent {
+    int n_configurations;
+    const int *configurations; /* [n_configurations] */
+    double work;               /* what it may cost */
+    /* [joints of the model]: of the range of each, in all configurations that have it; NULL:
+     * of all of them, with modes */
+    const mt_scene_travel *travel;
+} mt_scene_extent;
+
 /**
- * @param[in]  configurations  [n_configurations]
- * @param[in]  work            what it may cost
  * @param[out] out             the caller's (mt_scene_delete); its texts are copies
  * What fails in one configuration is said there. Fails: MT_E_MEMORY, MT_E_INTERRUPTED,
  * MT_E_INTERNAL.
  */
 mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask *designs,
-                       int n_configurations, const int *configurations, double work,
-                       mt_scene **out, mt_err *err);
+                       const mt_scene_extent *extent, mt_scene **out, mt_err *err);
 /* Accepts NULL. */
 void mt_scene_delete(mt_scene *scene);
 

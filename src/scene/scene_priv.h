@@ -11,6 +11,7 @@ typedef struct mt_scene_frame {
     const mt_model *model;
     int configuration;
     const mt_scene_ask *ask;
+    const mt_scene_extent *extent;
     const mt_system *sys;
     const double *number; /* [numbers of the model] */
     const double *value;  /* [nodes of the system's program] */

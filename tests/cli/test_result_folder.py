@@ -110,6 +110,24 @@ class Belonging(FolderTest):
         self.assertEqual(self.json_of("run", "studies/two.json")["run"]["outputs"], [])
         self.assertEqual(sorted(self.files()), FILES)
 
+    def test_without_a_report_the_old_one_goes_and_is_made_later(self):
+        path = self.results / "result.json"
+        full, page = path.read_bytes(), (self.results / "report.html").read_bytes()
+        self.expect(0, "run", "studies/two.json", "--report", "none")
+        self.assertEqual(sorted(self.files()), [name for name in FILES if name != "report.html"])
+        bare = json.loads(path.read_text(encoding="utf-8"))
+        self.assertEqual([o["file"] for o in bare["run"]["outputs"]], ["recommendations.csv"])
+        self.assertEqual({**bare, "run": None}, {**json.loads(full), "run": None})
+        self.expect(0, "report", "results/two", "--output", "results")
+        self.assertEqual((self.results / "report.html").read_bytes(), page)
+        self.assertEqual(path.read_bytes(), full)
+        self.expect(0, "run", "studies/two.json", "--report", "html")
+        self.assertEqual(path.read_bytes(), full)
+        self.assertIn('--report: "htm" is none of html, none; did you mean "html"?',
+                      self.expect(2, "run", "studies/two.json", "--report", "htm").stderr)
+        self.expect(0, "run", "studies/two.json", "studies/judged.json", "--report", "none", "--quiet")
+        self.assertNotIn("<a ", (self.folder / "results/index.html").read_text(encoding="utf-8"))
+
     def test_a_changed_file_is_named_and_what_to_do(self):
         for name in FILES:
             with self.subTest(name):

@@ -27,8 +27,10 @@ static mt_scene *scene_of(mt_test *t, mt_model *model)
     for (int i = 0; i < model->n_configurations; i++) {
         configurations[i] = i;
     }
-    if (!CHECK(t, mt_scene_new(model, 1, &ask, model->n_configurations, configurations,
-                               MT_SCENE_WORK, &scene, &err) == MT_OK)) {
+    const mt_scene_extent extent = {.n_configurations = model->n_configurations,
+                                    .configurations = configurations,
+                                    .work = MT_SCENE_WORK};
+    if (!CHECK(t, mt_scene_new(model, 1, &ask, &extent, &scene, &err) == MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);
     }
     mt_model_delete(model);
@@ -249,7 +251,9 @@ static void scene__places_are_those_of_the_file(mt_test *t)
     const int first = 1; /* "installed" */
     double *const value = mt_arena_f64(&mem, (size_t)model->n_nums, 1);
     CHECK(t, mt_model_numbers(model, first, 0, NULL, NULL, &mem, value, &err) == MT_OK);
-    CHECK(t, mt_scene_new(model, 1, &ask, 1, &first, MT_SCENE_WORK, &scene, &err) == MT_OK);
+    const mt_scene_extent extent = {
+        .n_configurations = 1, .configurations = &first, .work = MT_SCENE_WORK};
+    CHECK(t, mt_scene_new(model, 1, &ask, &extent, &scene, &err) == MT_OK);
     int seen = 0;
     for (int i = 0; scene != NULL && i < view_of(scene, 0)->n_points; i++) {
         const mt_scene_point *const p = &view_of(scene, 0)->points[i];
@@ -316,6 +320,59 @@ static void scene__a_driven_joint_has_its_range(mt_test *t)
     mt_scene_delete(scene);
 }
 
+/* Of the same ranges the poses alone, and nothing. */
+static void scene__poses_are_those_of_the_modes(mt_test *t)
+{
+    static const char *const files[] = {"driven_rod", "../../problems/inceptor"};
+    for (int f = 0; f < MT_COUNT(files); f++) {
+        mt_model *const model = mech_load(t, files[f]);
+        mt_scene *scene[MT_TRAVEL_MODES + 1] = {NULL};
+        mt_err err = {.text = ""};
+        enum { MOST = 40 };
+        if (model == NULL || !CHECK(t, model->n_joints <= MOST)) {
+            continue;
+        }
+        int configuration = 0;
+        for (int c = 0; c < model->n_configurations; c++) {
+            configuration = model->configurations[c].drive.given ? c : configuration;
+        }
+        const mt_scene_ask ask = {.label = "original", .n_shown = 0};
+        for (int kind = MT_TRAVEL_NONE; kind <= MT_TRAVEL_MODES; kind++) {
+            mt_scene_travel travel[MOST];
+            for (int j = 0; j < model->n_joints; j++) {
+                travel[j] = (mt_scene_travel)kind;
+            }
+            const mt_scene_extent extent = {.n_configurations = 1,
+                                            .configurations = &configuration,
+                                            .work = MT_SCENE_WORK,
+                                            .travel = travel};
+            CHECK(t, mt_scene_new(model, 1, &ask, &extent, &scene[kind], &err) == MT_OK);
+        }
+        const mt_scene_drive *const poses = view_of(scene[MT_TRAVEL_POSES], 0)->drive;
+        const mt_scene_drive *const modes = view_of(scene[MT_TRAVEL_MODES], 0)->drive;
+        const int n = view_of(scene[MT_TRAVEL_POSES], 0)->n_bodies;
+        mt_test_row(t, "%s", files[f]);
+        CHECK(t, view_of(scene[MT_TRAVEL_NONE], 0)->drive == NULL);
+        if (CHECK(t, poses != NULL && modes != NULL &&
+                         poses->n_positions == modes->n_positions && n > 1)) {
+            for (int i = 0; i < poses->n_positions; i++) {
+                const mt_scene_position *const p = &poses->positions[i];
+                const mt_scene_position *const q = &modes->positions[i];
+                mt_test_row(t, "%s, position %d", files[f], i);
+                CHECK(t, p->n_hz == 0 && q->n_hz > 0);
+                for (int k = 0; k < 12 * n && CHECK(t, p->pose != NULL && q->pose != NULL);
+                     k++) {
+                    CHECK_NEAR_ABS(t, p->pose[k], q->pose[k], 1e-9);
+                }
+            }
+        }
+        for (int kind = MT_TRAVEL_NONE; kind <= MT_TRAVEL_MODES; kind++) {
+            mt_scene_delete(scene[kind]);
+        }
+        mt_model_delete(model);
+    }
+}
+
 static void scene__what_cannot_be_analysed_is_drawn_and_says_why(mt_test *t)
 {
     mt_scene *const scene =
@@ -371,5 +428,6 @@ MT_TEST_MAIN(MT_TEST(scene__pendulum_rests_below_its_pivot),
              MT_TEST(scene__shares_never_exceed_one), MT_TEST(scene__a_joint_far_off_is_found),
              MT_TEST(scene__places_are_those_of_the_file),
              MT_TEST(scene__a_driven_joint_has_its_range),
+             MT_TEST(scene__poses_are_those_of_the_modes),
              MT_TEST(scene__what_cannot_be_analysed_is_drawn_and_says_why),
              MT_TEST(distance__to_solids_is_that_of_closed_forms))

@@ -129,16 +129,23 @@
         return root;
     }
 
+    // A report has frequencies along the range where its study asks for them.
+    const counted = (drives) => drives.some((drive) =>
+        drive.positions.some((position) => listOf(position).length > 0));
+
     function say(drives, labels, k) {
         if (k === null) {
             return 'as drawn';
         }
+        const known = counted(drives);
         return drives.map((drive, d) => {
             const position = drive.positions[k];
+            const hz = !position ? [] : listOf(position).slice(0, 6);
             const found = !position ? 'no position' : position.error
-                || listOf(position).slice(0, 6).map((hz) => digits(hz, 5)).join(', ') + ' Hz';
-            return (drives.length > 1 ? labels[d] + ': ' : '') + found;
-        }).join('; ');
+                || (known ? hz.map((x) => digits(x, 5)).join(', ') + ' Hz' : '');
+            return found && (drives.length > 1 ? labels[d] + ': ' : '') + found;
+        }).filter((words) => words)
+            .concat(known ? [] : ['frequencies along the range: modetune show']).join('; ');
     }
 
     // Tells choose(k or null) which position was chosen; null: as drawn.
@@ -184,7 +191,8 @@
 
             function paint() {
                 painted = size().width;
-                picture.replaceChildren(chart(drives, labels, chosen, size()));
+                picture.replaceChildren(...(counted(drives)
+                    ? [chart(drives, labels, chosen, size())] : []));
             }
 
             function set(k) {
