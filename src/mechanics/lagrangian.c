@@ -77,13 +77,15 @@ static void add_entry(mt_lagrangian *out, int nq, int r, int c, double value)
     }
 }
 
-/* h += scale * jet.h + outer * (ga gb^T + gb ga^T)/2. */
+/* h += scale * jet.h + outer * (ga gb^T + gb ga^T)/2. The jet needs its h where scale is not
+ * 0. */
 static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *jet, mt_cx scale,
                         mt_cx outer, const mt_jet *other, mt_lagrangian *out)
 {
     int dof[MT_LOCAL];
     int moves[MT_LOCAL];
     int n = 0;
+    const bool curved = creal(scale) != 0.0 || cimag(scale) != 0.0;
     local_dofs(sys, body, dof);
     for (int k = 0; k < MT_LOCAL; k++) {
         moves[n] = k;
@@ -93,7 +95,7 @@ static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *j
         const int c = moves[i];
         for (int k = 0; k < n; k++) {
             const int r = moves[k];
-            mt_cx v = cx_mul(scale, jet->h[r + (MT_LOCAL * c)]);
+            mt_cx v = curved ? cx_mul(scale, jet->h[r + (MT_LOCAL * c)]) : 0.0;
             if (other != NULL) {
                 const mt_cx product =
                     cx_mul(jet->g[r], other->g[c]) + cx_mul(other->g[r], jet->g[c]);
@@ -232,6 +234,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
                         mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
+    const bool bends = curvature == MT_CURVATURE_FULL || curvature == MT_CURVATURE_GEOMETRIC;
     mt_jet jet[2];
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
@@ -244,7 +247,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            mt_data_eval(d, def, at, curvature != MT_CURVATURE_NONE, &jet[side]);
+            mt_data_eval(d, def, at, bends, &jet[side]);
             way[side] = left_way(out, sys, def->body, &jet[side]);
             stretch[side] = jet[side].value - d->rest[i][side];
         }
