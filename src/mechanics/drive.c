@@ -28,6 +28,13 @@
 /* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
 static const double DRIVE_STEP = 0.1;
 static const double BODY_STEP = 0.3;
+/* A brief walk's steps grow from there as long as corrections stay below this part of them, and
+ * it is seen that the equations do not turn over: a rotor behind gears turns far, and straight
+ * along dq/ds. The most keeps the angle between two bodies below half a turn. */
+static const double STRAIGHT = 0.02;
+static const double DRIVE_STEP_MOST = 0.4;
+static const double BODY_STEP_MOST = 1.2;
+static const double GROWTH = 4.0;
 /* A step is taken where the way back to the constraints is at most this part of it: on one
  * branch it is about h |q''| / (2 |q'|) of it, beside what a closure leaves to rounding. */
 static const double CORRECTION = 0.3;
@@ -56,6 +63,7 @@ typedef struct walk {
     const mt_data *data;
     mt_placement *at; /* where it stands */
     bool brief;       /* closures by the smallest steps */
+    double growth;    /* of the longest step */
     int iterations;
     mt_arena *mem;
     int row;        /* of the drive */
@@ -133,11 +141,8 @@ static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, m
 /* The first m equations where the walk stands. */
 static mt_newton_problem problem_here(const walk *w, int m)
 {
-    return (mt_newton_problem){.data = w->data,
-                               .energy = MT_ENERGY_ANCHOR,
-                               .drawn = w->at->pose,
-                               .m = m,
-                               .trim = false};
+    return (mt_newton_problem){
+        .data = w->data, .energy = MT_ENERGY_NONE, .m = m, .trim = false};
 }
 
 /* work->v := dq/ds, sparse; *sure: it is that. */
@@ -161,7 +166,7 @@ static mt_status relax_sparse(walk *w, mt_newton_work *work, bool *sure, mt_err 
 /* The gradients of all equations at a place. */
 static const double *gradients(walk *w, const mt_placement *at)
 {
-    mt_lagrangian_eval(w->data, MT_ENERGY_ANCHOR, at->pose, at, w->sys->n_constraints, NULL,
+    mt_lagrangian_eval(w->data, MT_ENERGY_NONE, NULL, at, w->sys->n_constraints, NULL,
                        MT_CURVATURE_NONE, &w->equations);
     return w->equations.a;
 }
@@ -293,6 +298,15 @@ static void go_straight(walk *w)
     take(w, w->beyond.pose, w->beyond.to);
 }
 
+/* After a step whose correction was this part of it. */
+static double next_growth(const walk *w, double part)
+{
+    const double most = DRIVE_STEP_MOST / DRIVE_STEP;
+    const bool straight = w->brief && w->branch.most > 0 && part <= STRAIGHT;
+    const double by = part > 0.0 ? fmin(STRAIGHT / part, GROWTH) : GROWTH;
+    return straight ? fmin(w->growth * by, most) : 1.0;
+}
+
 /* One step of at most *h towards the goal, halved until it holds. *h: what to try next; 0: no
  * step holds. */
 static mt_status advance(walk *w, double *h, mt_err *err)
@@ -306,7 +320,8 @@ static mt_status advance(walk *w, double *h, mt_err *err)
         *h = 0.0;
         return MT_OK;
     }
-    double step = fmin(fmin(*h, fabs(way)), BODY_STEP * w->unit / size);
+    const double body = fmin(w->growth * BODY_STEP, BODY_STEP_MOST);
+    double step = fmin(fmin(*h, fabs(way)), body * w->unit / size);
     while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
         bool turned = false;
         const double to = step_end(w, step);
@@ -325,13 +340,16 @@ static mt_status advance(walk *w, double *h, mt_err *err)
             *h = step;
             break;
         }
-        *h = good ? 2.0 * step : 0.0;
+        const double part =
+            mt_poses_distance(sys, w->trial, w->guess) * w->unit / (step * size);
+        w->growth = good ? next_growth(w, part) : 1.0;
+        *h = good ? fmax(2.0, w->growth) * step : 0.0;
         step = good ? step : 0.5 * step;
         if (good) {
             take(w, w->trial, to);
         }
     }
-    *h = fmin(*h, DRIVE_STEP * w->unit);
+    *h = fmin(*h, fmin(w->growth * DRIVE_STEP, DRIVE_STEP_MOST) * w->unit);
     return MT_OK;
 }
 
@@ -451,7 +469,8 @@ static mt_status refuse_far(const walk *w, mt_err *err)
 mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int *iterations,
                          mt_arena *mem, mt_err *err)
 {
-    walk w = {.sys = data->sys, .data = data, .at = at, .brief = brief, .mem = mem};
+    walk w = {
+        .sys = data->sys, .data = data, .at = at, .brief = brief, .growth = 1.0, .mem = mem};
     MT_TRY(walk_init(&w, err));
     if (!(fabs(w.goal) <= mt_drive_reach(w.sys, w.sys->drive_joint))) {
         return refuse_far(&w, err);
@@ -472,7 +491,7 @@ mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int 
 mt_status mt_drive_motion(const mt_data *data, mt_placement *at, double *rate, double *size,
                           bool *held, mt_arena *mem, mt_err *err)
 {
-    walk w = {.sys = data->sys, .data = data, .at = at, .mem = mem};
+    walk w = {.sys = data->sys, .data = data, .at = at, .growth = 1.0, .mem = mem};
     MT_TRY(walk_init(&w, err));
     MT_TRY(find_rate(&w, size, err));
     memcpy(rate, w.rate, (size_t)w.sys->nq * sizeof *rate);

@@ -514,7 +514,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
     if (energy == MT_ENERGY_PHYSICAL) {
         add_springs(d, at, curvature, out);
         add_loads(d, at, hessian && curvature != MT_CURVATURE_ELASTIC, out);
-    } else {
+    } else if (energy == MT_ENERGY_ANCHOR) {
         add_anchor(d, drawn, at->pose, hessian, out);
     }
     add_constraints(d, at, m, out);

@@ -11,9 +11,10 @@
  * Hessian of L, all in the left exponential chart at those positions. V is the physical energy
  * (springs, preloads, dead loads), or the anchor 1/2 sum |x - x0|^2 + 1/2 l^2 |R - R0|^2/2 that
  * pulls every body to its drawn position (l: of the joints' arms; |R - R0|_F^2/2 = 3 - tr(R0^T
- * R), about theta^2): closing a loop is minimising the anchor under the constraints.
+ * R), about theta^2): closing a loop is minimising the anchor under the constraints. V = 0 is
+ * for who wants the constraints alone.
  */
-typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR } mt_energy;
+typedef enum mt_energy { MT_ENERGY_PHYSICAL, MT_ENERGY_ANCHOR, MT_ENERGY_NONE } mt_energy;
 
 /* What is wanted of the Hessian: nothing, all of it, the geometric part alone (no k grad grad^T
  * of springs), or the rest of it (k grad grad^T alone; that of the trimmed spring is left out,

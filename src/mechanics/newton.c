@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * One stage of the position analysis from start to verdict. Plain Newton (newton_step.c) finds
- * any stationary point of the energy, a saddle as well as a minimum. What is drawn in
+ * any stationary point of the energy, a saddle as well as a minimum. Where a drive has brought
+ * the mechanism beside a trimmed equilibrium the way back begins with the elastic stiffness
+ * alone: what the way has strained pushes with forces that are gone at its end, and their
+ * geometric stiffness leads astray. What is drawn in
  * equilibrium, to the rounding of its forces, stays there, stable or not, and though a step
  * against what hardly holds it would lead far. Else it settles: where Newton does not converge,
  * ends uphill, or in a saddle that the drawing lies beside (its distance has a part along
@@ -131,6 +134,18 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
     return MT_OK;
 }
 
+/* Steps that are longer than this are of the elastic stiffness alone [model lengths]. */
+static const double NEAR = 1e-3;
+
+/* Is the step that was found with the elastic stiffness alone to be taken? w->elastic: is the
+ * next one of that kind, too? Freedoms that only forces hold have no part in it. */
+static bool use_elastic(mt_newton_work *w, double previous)
+{
+    const bool shrinks = w->moved <= 0.5 * previous;
+    w->elastic = shrinks && w->moved > NEAR;
+    return shrinks;
+}
+
 /* Plain Newton from the present position; *done tells whether it converged. */
 static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
                          bool *done, mt_err *err)
@@ -138,6 +153,7 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
     double previous = HUGE_VAL;
     double unbalanced = HUGE_VAL;
     *done = false;
+    w->elastic = w->p->trim && w->p->energy == MT_ENERGY_PHYSICAL;
     for (int it = 0; it < NEWTON_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         const bool dense = w->h != NULL;
@@ -152,6 +168,17 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
         if (it == 0 && w->watch && !solver.sparse && mt_newton_at_rest(w, &solver.e)) {
             memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
             w->moved = 0.0;
+        }
+        if (w->elastic && !solver.sparse) {
+            if (!use_elastic(w, previous)) {
+                w->tau = tau;
+                previous = HUGE_VAL;
+                continue;
+            }
+            previous = w->moved;
+            mt_newton_take_step(w, at, MT_STEP_LIMIT);
+            mt_newton_follow(w, at);
+            continue;
         }
         const bool rest = rests(w, previous);
         if (rest && balanced(w)) {

@@ -214,6 +214,36 @@ static double stiffness_scale(const mt_newton_work *w, const mt_elimination *e)
     return most;
 }
 
+/* inverse := k^-1 where no singular value can be below `tolerance` of the largest: the
+ * Frobenius norms of both bound their ratio, and rounding leaves less than half of the
+ * inverse's. */
+static mt_status invert_regular(int n, const double *k, double tolerance, double *inverse,
+                                bool *regular, mt_arena *mem, mt_err *err)
+{
+    static const double ROUNDED = 2.0;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const ptrdiff_t entries = (ptrdiff_t)n * n;
+    double *const copy = mt_arena_f64(mem, (size_t)n, (size_t)n);
+    MT_TRY(mt_arena_check(mem, err));
+    *regular = false;
+    if (!mt_all_finite(entries, k)) {
+        mt_arena_rewind(mem, mark);
+        return MT_OK;
+    }
+    memcpy(copy, k, (size_t)entries * sizeof *copy);
+    memset(inverse, 0, (size_t)entries * sizeof *inverse);
+    for (ptrdiff_t i = 0; i < n; i++) {
+        inverse[i + (i * n)] = 1.0;
+    }
+    const mt_status rc = mt_lu_solve(n, copy, n, inverse, NULL, mem, NULL);
+    if (rc == MT_OK) {
+        const double norms = mt_norm2((int)entries, k) * mt_norm2((int)entries, inverse);
+        *regular = norms * tolerance * ROUNDED < 1.0;
+    }
+    mt_arena_rewind(mem, mark);
+    return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
+}
+
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err)
 {
@@ -234,7 +264,13 @@ mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena 
     }
     const double most = mt_max_abs((ptrdiff_t)order * order, k);
     const double tolerance = fmax(NO_STIFFNESS, most > 0.0 ? noise / most : 0.0);
-    MT_TRY(mt_pinv(order, order, k, tolerance, *inverse, &rank, mem, err));
+    bool regular = false;
+    MT_TRY(invert_regular(order, k, tolerance, *inverse, &regular, mem, err));
+    if (regular) {
+        rank = order;
+    } else {
+        MT_TRY(mt_pinv(order, order, k, tolerance, *inverse, &rank, mem, err));
+    }
     w->null_freedoms = order - rank;
     for (int c = 0; c < order && w->p->trim; c++) { /* undone: the inverse's rows belong to the
                                                        columns of what was inverted */
@@ -312,14 +348,16 @@ static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *me
     w->l.trim_force = w->tau;
     w->l.trim_force_derivative = 0.0;
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, w->p->m, NULL,
-                       MT_CURVATURE_FULL, &w->l);
+                       w->elastic ? MT_CURVATURE_ELASTIC : MT_CURVATURE_FULL, &w->l);
     MT_TRY(eliminate(w, mem, e, err));
     for (int j = 0; j < w->sys->nq; j++) {
         w->v[j] = -w->g[j];
     }
     MT_TRY(mt_eliminate_multipliers(e, w->v, w->lambda, mem, err));
-    load_multipliers(w);
-    mt_lagrangian_curve(w->p->data, at, w->p->m, w->lambda_cx, &w->l);
+    if (!w->elastic) {
+        load_multipliers(w);
+        mt_lagrangian_curve(w->p->data, at, w->p->m, w->lambda_cx, &w->l);
+    }
     find_unbalanced(w, w->v);
     mt_eliminate_project(e, w->v, w->reduced);
     weigh(w, &w->l, mt_max_abs(e->n, w->reduced));

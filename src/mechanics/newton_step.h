@@ -33,6 +33,8 @@ typedef struct mt_newton_work {
     /* leave plain Newton at once where the Hessian is indefinite and the start no
      * equilibrium */
     bool watch;
+    /* dense: leave out of the Hessian what forces make of it */
+    bool elastic;
 } mt_newton_work;
 
 /* Converged: the step is below this fraction of the model length (quadratic convergence makes

@@ -58,8 +58,8 @@ static mt_status balance(mt_state *p, const mt_data *data, mt_arena *mem, mt_err
  * alone, with a derivative. Where that closure or the equilibrium from there fails (far from
  * the drawing the anchor pulls no longer), what was found stands.
  */
-static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, mt_arena *mem,
-                                       mt_err *err)
+static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, bool *anchored,
+                                       mt_arena *mem, mt_err *err)
 {
     const mt_newton_problem problem = {.data = data,
                                        .energy = MT_ENERGY_ANCHOR,
@@ -73,6 +73,7 @@ static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, mt_aren
     if (rc == MT_OK) {
         rc = balance(&other, data, mem, NULL);
     }
+    *anchored = rc == MT_OK;
     if (rc == MT_OK) {
         *p = other;
     }
@@ -82,16 +83,53 @@ static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, mt_aren
 /* Of an equilibrium that does not depend on where exactly the walk came to: plain Newton finds
  * it in so few iterations, no further than one of its steps may be from there [model lengths,
  * rad]. */
-enum { DIRECT_ITERATIONS = 8 };
+enum { DIRECT_ITERATIONS = 12 };
 static const double DIRECT = 0.3;
 
-/* A minimum of the energy that stands by itself, straight from where the drive came to? */
-static bool is_direct(const mt_state *p)
+/* Eigenvalues of Z^T H Z below this part of the largest, of all that the joints and the drive
+ * leave free, are not told from 0. */
+static const double CONVEX = 1e-10;
+
+/* Is the equilibrium, with the driven joint locked where it is, a minimum of the energy but for
+ * the freedoms without stiffness? The Hessian and all gradients are those of the stage. */
+static mt_status is_minimum_locked(const mt_state *p, bool *minimum, mt_arena *mem, mt_err *err)
 {
     const mt_stage *const stage = &p->equilibrium;
-    return stage->active && stage->solver.sparse && stage->null_freedoms == 0 &&
-           mt_saddle_convex(&stage->solver.saddle) && stage->iterations <= DIRECT_ITERATIONS &&
-           mt_poses_distance(p->sys, p->driven.pose, p->at.pose) <= DIRECT;
+    const int nq = p->sys->nq;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    mt_elimination e;
+    MT_TRY(mt_eliminate(p->sys, stage->m, stage->a, mem, &e, err));
+    double *const hz = mt_arena_f64(mem, (size_t)nq, (size_t)e.n);
+    double *const k = mt_arena_f64(mem, (size_t)e.n, (size_t)e.n);
+    double *const values = mt_arena_f64(mem, (size_t)e.n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_gemm(false, false, nq, e.n, nq, 1.0, stage->h, nq, e.z, nq, 0.0, hz, nq);
+    mt_gemm(true, false, e.n, e.n, nq, 1.0, e.z, nq, hz, nq, 0.0, k, e.n);
+    MT_TRY(mt_eig_sym(e.n, k, values, false, mem, err));
+    const double noise = e.n > 0 ? CONVEX * values[e.n - 1] : 0.0;
+    int loose = 0;
+    while (loose < e.n && values[loose] <= noise) {
+        loose++;
+    }
+    *minimum = loose == stage->null_freedoms && (e.n == 0 || values[0] >= -noise);
+    mt_arena_rewind(mem, mark);
+    return MT_OK;
+}
+
+/* *direct: a minimum of the energy that stands by itself, or beside the drawing where freedoms
+ * have no stiffness (anchored), straight from where the drive came to. */
+static mt_status is_direct(const mt_state *p, bool anchored, bool *direct, mt_arena *mem,
+                           mt_err *err)
+{
+    const mt_stage *const stage = &p->equilibrium;
+    *direct = stage->active && (stage->null_freedoms == 0 || anchored) &&
+              stage->iterations <= DIRECT_ITERATIONS &&
+              mt_poses_distance(p->sys, p->driven.pose, p->at.pose) <= DIRECT;
+    if (*direct && stage->solver.sparse) {
+        *direct = mt_saddle_convex(&stage->solver.saddle);
+        return MT_OK;
+    }
+    return *direct ? is_minimum_locked(p, direct, mem, err) : MT_OK;
 }
 
 /* A spring that is trimmed by less than this part of how far the mechanism moves does no work
@@ -145,37 +183,46 @@ static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt
 
 /* From `from` to the driven position, and to the equilibrium beside it. */
 static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *from, bool brief,
-                       mt_arena *mem, mt_err *err)
+                       bool *anchored, mt_arena *mem, mt_err *err)
 {
+    *anchored = false;
     mt_placement_copy(p->sys, from, &p->driven);
     MT_TRY(mt_drive_solve(data, brief, &p->driven, &p->iterations, mem, err));
     mt_placement_copy(p->sys, &p->driven, &p->at);
     const mt_status rc = balance(p, data, mem, err);
-    return rc == MT_E_EQUILIBRIUM && p->sys->trim ? explain_trim(p, data, rc, mem, err) : rc;
+    if (rc != MT_OK) {
+        return rc == MT_E_EQUILIBRIUM && p->sys->trim ? explain_trim(p, data, rc, mem, err)
+                                                      : rc;
+    }
+    return p->equilibrium.null_freedoms > 0 ? anchor_loose_freedoms(p, data, anchored, mem, err)
+                                            : MT_OK;
 }
 
 /*
  * Of walks to the same place on the same branch the brief one is enough where the equilibrium
  * is direct: then it is the same one, from wherever beside it Newton begins. All else (saddles,
- * freedoms without stiffness, energies that are followed downhill, and whatever fails) may
- * depend on the place, and is found with the exact one.
+ * freedoms without stiffness that nothing anchors, energies that are followed downhill, and
+ * whatever fails) may depend on the place, and is found with the exact one.
  */
 static mt_status drive_from_reference(mt_state *p, const mt_data *data, mt_arena *mem,
                                       mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_state before = *p;
     mt_err own = {0};
-    const mt_status rc = drive(p, data, &p->reference, true, mem, &own);
-    if (rc == MT_OK && is_direct(p)) {
+    bool anchored = false;
+    bool direct = false;
+    mt_status rc = drive(p, data, &p->reference, true, &anchored, mem, &own);
+    rc = rc == MT_OK ? is_direct(p, anchored, &direct, mem, &own) : rc;
+    if (direct) {
         return MT_OK;
     }
     if (rc == MT_E_INTERRUPTED || mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
     mt_arena_rewind(mem, mark);
-    p->iterations = 0;
-    p->equilibrium = (mt_stage){.active = false};
-    return drive(p, data, &p->reference, false, mem, err);
+    *p = before; /* what was anchored stood in memory that is gone */
+    return drive(p, data, &p->reference, false, &anchored, mem, err);
 }
 
 /* Angle of R0^T R: sin from its skew part, cos from its trace. */
@@ -240,13 +287,11 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
     mt_data_rest(data, out->reference.pose);
     mt_placement_copy(sys, &out->reference, &out->at);
     if (sys->driven) {
-        MT_TRY(start != NULL ? drive(out, data, start, false, mem, err)
+        bool anchored = false;
+        MT_TRY(start != NULL ? drive(out, data, start, false, &anchored, mem, err)
                              : drive_from_reference(out, data, mem, err));
     } else if (sys->loaded) {
         MT_TRY(balance(out, data, mem, err));
-    }
-    if (sys->driven && out->equilibrium.null_freedoms > 0) {
-        MT_TRY(anchor_loose_freedoms(out, data, mem, err));
     }
     out->iterations += out->closure.iterations + out->anchored.iterations;
     out->iterations += out->equilibrium.iterations;
