@@ -38,13 +38,14 @@ static mt_status find_ratios(mt_analysis *a, work *w, mt_err *err)
                        mt_analysis_configuration(a),
                        modes->n_unstable > 0
                            ? "is unstable"
-                           : "has an undecided mode (rounding hides whether it holds)");
+                           : "has an undecided mode (rounding hides whether it is stable)");
     }
     if (d->n_ratios > a->n_most - a->n_null) {
-        return mt_fail(err, MT_E_INPUT,
-                       "damping has ratios of %d vibration modes, and configuration \"%s\" has "
-                       "%d of them",
-                       d->n_ratios, mt_analysis_configuration(a), a->n_most - a->n_null);
+        return mt_fail(
+            err, MT_E_INPUT,
+            "damping lists ratios for %d vibration modes, but configuration \"%s\" has "
+            "%d of them",
+            d->n_ratios, mt_analysis_configuration(a), a->n_most - a->n_null);
     }
     for (int i = 0; i < w->r; i++) {
         const int index = listed ? mt_modal_index(modes, i) - slack : 0;

@@ -41,11 +41,10 @@ double mt_doubts_work(const mt_model *model, int configuration)
 
 void mt_doubts_left_out(int left, mt_doubt_list *out)
 {
-    (void)mt_doubt_add(
-        out, MT_LEVEL_FACT, "left_out",
-        "%d configuration%s not looked at for free motions and redundant joints: "
-        "too large, or too many",
-        left, left == 1 ? " is" : "s are");
+    (void)mt_doubt_add(out, MT_LEVEL_FACT, "left_out",
+                       "%d configuration%s not checked for free motions and redundant joints: "
+                       "too large, or too many of them",
+                       left, left == 1 ? " is" : "s are");
 }
 
 static bool is_grounded(const mt_model *m, int c)
@@ -264,8 +263,8 @@ static mt_status say_dead_centre(mt_linear *lin, mt_doubt_list *out, mt_err *err
     MT_TRY(mt_linear_nearness(lin, out->mem, &near, err));
     if (near.near) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "dead_centre",
-                           "near a dead centre: about %.2g rad (or model lengths) on, joints "
-                           "%s depend on each other; motions must stay far below that",
+                           "near a dead centre: about %.2g rad (or model lengths) from here, "
+                           "joints %s become dependent; keep motions far below that",
                            near.distance, near.joints.text);
     }
     return MT_OK;
@@ -311,12 +310,13 @@ static void fault_damping(const mt_analysis *a, mt_doubt_list *out)
     const char *const name = m->configurations[c].name.s;
     const int most = a->n_most - a->n_null;
     if (d->n_ratios > most) {
-        fault_ratio(m, d->ratios[most],
-                    mt_arena_printf(out->mem,
-                                    "damping has ratios of %d vibration modes, and "
-                                    "configuration \"%s\" has %d of them",
-                                    d->n_ratios, name, most),
-                    out);
+        fault_ratio(
+            m, d->ratios[most],
+            mt_arena_printf(
+                out->mem,
+                "damping lists ratios of %d vibration modes, but configuration \"%s\" has %d",
+                d->n_ratios, name, most),
+            out);
     }
     for (int i = 0; i < d->n_named; i++) {
         const mt_named_mode *const mode = &m->modes[d->named[i].mode];
@@ -324,7 +324,7 @@ static void fault_damping(const mt_analysis *a, mt_doubt_list *out)
             fault_ratio(m, d->named[i].ratio,
                         mt_arena_printf(out->mem,
                                         "damping names mode \"%s\", vibration mode %d of "
-                                        "configuration \"%s\", which has %d of them",
+                                        "configuration \"%s\", which has only %d",
                                         mode->name.s, mode->index, name, most),
                         out);
         }
@@ -468,8 +468,8 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
         const int n = a->modes.n_undecided;
         name_motion(a, MT_MODE_UNDECIDED, name);
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "undecided",
-                           "undecided in %d direction%s: springs and loads cancel to the last "
-                           "digit, and rounding hides whether it holds%s%s",
+                           "stability undecided in %d direction%s: springs and loads cancel to "
+                           "the last digit, so rounding hides whether it is stable%s%s",
                            n, n == 1 ? "" : "s", name[0] == '\0' ? "" : ", moving ", name);
     }
     MT_TRY(say_dead_centre(a->lin, out, err));

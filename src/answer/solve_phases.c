@@ -193,11 +193,11 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     }
     a->mark = mt_result_get_mark(result);
     if (found->n_solutions > n) {
-        MT_TRY(mt_describe_warn(result, err, "%d more distinct designs were found; %s",
-                                found->n_solutions - n,
-                                n < asked ? "\"max_evaluations\" leaves nothing to analyse them"
-                                          : "\"recommendations\" in the study says how many to "
-                                            "report"));
+        MT_TRY(mt_describe_warn(
+            result, err, "%d more distinct designs were found; %s", found->n_solutions - n,
+            n < asked ? "\"max_evaluations\" leaves no evaluations to check them"
+                      : "\"recommendations\" in the study says how many to "
+                        "report"));
     }
     return MT_OK;
 }
@@ -248,10 +248,10 @@ mt_status mt_answer_relax(mt_answer *a, mt_err *err)
     a->found.evals += moves.evals;
     a->found.starts += moves.starts;
     if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {
-        return mt_describe_warn(a->result, err,
-                                "which single change would let a design exist is not known: "
-                                "there are too many combinations, or \"max_evaluations\" left "
-                                "nothing for it");
+        return mt_describe_warn(
+            a->result, err,
+            "the single change that would make the study feasible is not known: there are too "
+            "many combinations, or \"max_evaluations\" left no evaluations for it");
     }
     return mt_describe_relaxations(a->p, &moves, a->result, err);
 }

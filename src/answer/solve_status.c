@@ -24,11 +24,11 @@ static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
         (void)mt_snprintf(more, sizeof more, "about %.0f more, at least, are to be expected",
                           f->missing);
     }
-    return mt_describe_warn(a->result, err,
-                            "%d of the %d designs found %s met by one of %d starts only: %s; "
-                            "more \"starts\" or \"max_evaluations\" may find them",
-                            f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts,
-                            more);
+    return mt_describe_warn(
+        a->result, err,
+        "%d of the %d designs found %s reached from one of %d starts only: %s; more "
+        "\"starts\" or \"max_evaluations\" may find them",
+        f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts, more);
 }
 
 /* What the engineer should know of the search besides its answers. */
@@ -101,9 +101,9 @@ static const char *early_text(const mt_answer *a, const mt_recommendation *best)
                                         : "No design was found so far.";
     }
     if (mt_describe_is_doubted(a->result)) {
-        return "Not verified: a fresh analysis disagrees with what the search read, so that "
-               "nothing here is proven and designs graded \"not verified\" must not be used "
-               "(see the warnings).";
+        return "Not verified: recomputed, designs differ from what the search used. Nothing "
+               "here is proven, and designs graded \"not verified\" must not be used (see the "
+               "warnings).";
     }
     if (best->n_goals == 0) {
         return "No goals: the model as it is, against published values.";
@@ -212,14 +212,15 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
                                doubt);
     }
     const double least = shown_misfit(a->found.solutions[0].f);
-    return n == 1 ? mt_arena_printf(mem,
-                                    "Solved: 1 distinct design meets all goals without a "
-                                    "weight, with a misfit of %.4g of the others.%s",
-                                    least, doubt)
-                  : mt_arena_printf(mem,
-                                    "Solved: %d distinct designs meet all goals without a "
-                                    "weight, with misfits from %.4g to %.4g of the others.%s",
-                                    n, least, shown_misfit(a->found.solutions[n - 1].f), doubt);
+    return n == 1
+               ? mt_arena_printf(mem,
+                                 "Solved: 1 distinct design meets all goals without a weight; "
+                                 "those with a weight have a misfit of %.4g.%s",
+                                 least, doubt)
+               : mt_arena_printf(mem,
+                                 "Solved: %d distinct designs meet all goals without a weight; "
+                                 "those with a weight have misfits from %.4g to %.4g.%s",
+                                 n, least, shown_misfit(a->found.solutions[n - 1].f), doubt);
 }
 
 /* The search of a fit ended at a least misfit. */
@@ -289,7 +290,7 @@ static const char *fit_text(const mt_answer *a, const mt_recommendation *best, m
     const bool fitted = is_fitted(a, best);
     const char *const end = fitted ? ""
                             : mt_describe_is_optimum(best)
-                                ? ", when the budget of evaluations ended"
+                                ? ", when the evaluations ran out"
                                 : ", which is not shown to be a local minimum";
     return mt_arena_printf(
         mem, "%s: the least misfit found from %d start%s is %.4g%s%s%s%s.",
@@ -341,9 +342,8 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
         return solved_text(a, doubt, mem);
     }
     if (is_doubtful(best)) {
-        return "Compromise: by their numbers all goals can be met, but which modes the named "
-               "ones "
-               "are cannot be told there (see the goals).";
+        return "Compromise: the numbers of all goals can be met, but there the named modes "
+               "cannot be identified (see the goals).";
     }
     const char *const nearest =
         isfinite(best->violation_percent)

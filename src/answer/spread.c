@@ -86,8 +86,8 @@ static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem,
     }
     if (found.n_solutions == 0 || found.compromise || found.stop != MT_STOP_DONE) {
         return mt_describe_warn(s->result, err,
-                                "spread: with the weight of /goals/%d times %g no design "
-                                "was found; its part is missing",
+                                "sensitivity to the weights: no design was found with the "
+                                "weight of /goals/%d times %g; that part is missing",
                                 goal, factor);
     }
     const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", goal);
@@ -167,7 +167,8 @@ mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena
     if (most < LONG_MAX && s.most < EVALUATIONS_LEAST) {
         result->n_spread = 0;
         return mt_describe_warn(result, err,
-                                "spread: \"max_evaluations\" leaves nothing for it");
+                                "sensitivity to the weights: not computed, since "
+                                "\"max_evaluations\" leaves no evaluations for it");
     }
     mt_workspace_back(w, &s.c);
     const mt_status rc = search_all(&s, mem, err);

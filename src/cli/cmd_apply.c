@@ -127,10 +127,9 @@ static mt_status apply(const mt_args *args, const mt_result *result, mt_text *ou
     }
     const char *const version = result->run.modetune_version;
     if (rc == MT_OK && (version == NULL || strcmp(version, MT_VERSION_STRING) != 0)) {
-        mt_terminal_warning("%s was written by modetune %s, this is %s: what it says may be "
-                            "judged otherwise today",
-                            path, version == NULL ? "of an unknown version" : version,
-                            MT_VERSION_STRING);
+        mt_terminal_warning(
+            "%s was written by modetune %s, this is %s: its grades may differ today", path,
+            version == NULL ? "of an unknown version" : version, MT_VERSION_STRING);
     }
     if (rc == MT_OK && !chosen->feasible) {
         mt_terminal_warning("recommendation %d does not meet all goals", chosen->rank);

@@ -350,7 +350,7 @@ static void leave_told(const mt_diagnostics *messages, const char *path, told_be
     if (mt_diagnostics_first_error(messages) >= 0 && mt_diagnostics_first_error(fresh) < 0) {
         const mt_diagnostic_place place = {.file = path};
         mt_diagnostics_add(fresh, MT_SEVERITY_ERROR, &place,
-                           "what is wrong with its model is told above");
+                           "the errors of its model are listed above");
     }
     if (mt_diagnostics_left_out(messages) > 0) {
         mt_diagnostics_leave_out(fresh, path, mt_diagnostics_left_out(messages));

@@ -54,11 +54,12 @@ static mt_status range_end(job *j, int option, double hz, double *w, mt_err *err
         MT_TRY(mt_subject_number(j->s, name, NULL, text, strlen(text), &hz, err));
     }
     if (!(hz > 0.0 && isfinite(TWO_PI * hz))) {
-        return text == NULL
-                   ? mt_fail(err, MT_E_USAGE,
-                             "there is no vibration to choose frequencies by: give --%s", name)
-                   : mt_fail(err, MT_E_USAGE, "--%s: %s is not a frequency above 0", name,
-                             text);
+        return text == NULL ? mt_fail(err, MT_E_USAGE,
+                                      "there is no vibration mode from which to choose "
+                                      "frequencies: give --%s",
+                                      name)
+                            : mt_fail(err, MT_E_USAGE, "--%s: %s is not a frequency above 0",
+                                      name, text);
     }
     *w = TWO_PI * hz;
     return MT_OK;

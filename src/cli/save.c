@@ -105,8 +105,8 @@ static int clash(const place *a, const place *b)
 {
     const place *const first = a->order < b->order ? a : b;
     const place *const second = first == a ? b : a;
-    mt_terminal_error("%s and %s would both be written to \"%s\": run one of them apart, with "
-                      "another -o",
+    mt_terminal_error("%s and %s would both be written to \"%s\": run one of them separately, "
+                      "with another -o",
                       first->study, second->study, second->folder);
     return MT_EXIT_INPUT;
 }
@@ -121,8 +121,8 @@ static int check_place(place *p, bool index)
     }
     for (int i = 0; i < MT_INDEX_FILES && index; i++) {
         if (strcasecmp(mt_text_base_name(p->folder), mt_index_names[i]) == 0) {
-            mt_terminal_error("%s would be written to \"%s\", where the index of all studies "
-                              "goes: run it apart",
+            mt_terminal_error("%s would be written to \"%s\", which is the place of the index "
+                              "of all studies: run it separately",
                               p->study, p->folder);
             return MT_EXIT_INPUT;
         }

@@ -204,7 +204,7 @@ mt_status mt_subject_lowest(const mt_subject *s, int c, int n_inputs, const int 
                             const double *at, mt_lowest_want want, mt_lowest **out, mt_err *err)
 {
     const double bodies = mt_lowest_bodies(s->model, c);
-    char why[MT_LOWEST_WHY + 50] = "ask for the lowest modes alone, without dampers (--count)";
+    char why[MT_LOWEST_WHY + 50] = "ask for the lowest modes only, without dampers (--count)";
     *out = NULL;
     if (want.count > 0 && want.count <= bodies / 2 && bodies >= MT_LOWEST_BODIES) {
         const mt_status rc = mt_lowest_new(s->model, c, n_inputs, inputs, at, want, out, err);
@@ -214,8 +214,8 @@ mt_status mt_subject_lowest(const mt_subject *s, int c, int n_inputs, const int 
         if ((*out)->way != MT_LOWEST_NONE) {
             return MT_OK;
         }
-        (void)mt_snprintf(why, sizeof why, "the way for large trees is not open, as %s",
-                          (*out)->why);
+        (void)mt_snprintf(why, sizeof why,
+                          "the method for large trees does not apply, because %s", (*out)->why);
         mt_lowest_delete(*out);
         *out = NULL;
     }

@@ -123,7 +123,7 @@ static void tell_undecided(const mt_sweep_view *v, mt_text *out)
         mt_text_addf(
             out,
             "  UNDECIDED at %d position%s: springs and loads cancel, and rounding hides "
-            "whether it holds.\n",
+            "whether it is stable.\n",
             n, n == 1 ? "" : "s");
     }
 }

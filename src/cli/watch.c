@@ -132,7 +132,7 @@ static void words(const mt_progress_view *v, double now, char text[TEXT])
         add(text, &n, ", best %s %.4g", v->what, v->best);
     }
     if (v->impossible) {
-        add(text, &n, ", no design meets all goals (proven): the nearest is sought");
+        add(text, &n, ", no design meets all goals (proven): searching for the nearest");
     }
     if (isfinite(step)) {
         add(text, &n, ", about %s left of this step", duration(step, time));

@@ -61,7 +61,7 @@ static mt_status tell_place(const mt_args *args, const char *study_path, const c
     switch (place) {
     case MT_JOURNAL_NEW:
         if (args->given[MT_OPT_RESUME]) {
-            mt_terminal_talk(quiet, "%s: there is no %s to resume: all of it is done",
+            mt_terminal_talk(quiet, "%s: there is no %s to resume, so everything is computed",
                              study_path, path);
         }
         break;

@@ -63,10 +63,10 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
                            gaps->n_possible, gaps->n_candidates, gaps->boxes,
                            gaps->tolerances ? ", the tolerances of the variables left out" : "",
                            open));
-        return state(result, "optimality", false, err,
-                     "That each design is the best of its mode placement: %d starts found none "
-                     "better.",
-                     gaps->starts);
+        return state(
+            result, "optimality", false, err,
+            "Each design is the best of its mode placement: %d starts found none better.",
+            gaps->starts);
     }
     return state(result, "gap_assignments", false, err,
                  "%d of %.0f mode placements were searched; the others were ruled out by "
@@ -100,12 +100,12 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
     }
     return gaps->motion
                ? state(result, "positions", false, err,
-                       "Positions of one drive have one number of modes below each band, as a "
-                       "mode would cross it between two that differ. Between the positions the "
-                       "motion of each recommendation is sampled, not proven.")
+                       "All positions of a drive have the same number of modes below each "
+                       "band: if two differed, a mode would cross the band between them. "
+                       "Between the positions each recommendation is sampled, not proven.")
                : state(result, "positions", false, err,
-                       "What is said of driven positions holds at the positions named; what "
-                       "lies between is not searched.");
+                       "Statements on driven positions hold at the named positions; between "
+                       "them the design space is not searched.");
 }
 
 /* In words: what one limit's mode can reach. */
@@ -117,7 +117,7 @@ static mt_status say_reach(const mt_demand *d, const char *configuration,
         return state(result, impossible ? "infeasible" : "range", impossible, err,
                      impossible
                          ? "Goal /goals/%d cannot be met: %s has no mode %d at any design."
-                         : "Goal /goals/%d: nothing is known of the range of %s mode %d.",
+                         : "Goal /goals/%d: the range of %s mode %d is not known.",
                      d->goal_index, configuration, d->mode);
     }
     if (impossible) {
@@ -158,10 +158,9 @@ static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result
     }
     if (!found.proven) {
         return state(result, "infeasible", false, err,
-                     "That no design meets all limits together is sampled, not proven: the "
-                     "budget of the "
-                     "proof ended after %ld boxes, with %.3g %% of the designs within the "
-                     "bounds undecided.",
+                     "No design was found that meets all limits together; this is not proven: "
+                     "the budget of the proof ended after %ld boxes, with %.3g %% of the "
+                     "designs within the bounds undecided.",
                      found.boxes, 100.0 * found.undecided);
     }
     *infeasible = true;
@@ -179,7 +178,7 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_
     mt_status rc = mt_proof_init(&proof, &p->whole, mem, err);
     if (rc == MT_OK && !proof.possible && proof.reason[0] != '\0') {
         rc = state(result, "infeasible", false, err,
-                   "That no design meets all goals is sampled, not proven: no certificate, %s.",
+                   "No design was found that meets all goals; this is not proven, because %s.",
                    proof.reason);
     }
     /* one budget for all questions: each limit alone, and all of them together */

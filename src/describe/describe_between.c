@@ -41,16 +41,16 @@ static const char *worst_text(const mt_study *study, const mt_family *f, const m
         return mt_arena_printf(mem, "%s is not finite at %s", subject, at);
     }
     if (!MT_HAS(r->value)) {
-        return mt_arena_printf(mem,
-                               "%s has no bound at %s: nothing damps a motion that is "
-                               "shaken at its natural frequency",
-                               subject, at);
+        return mt_arena_printf(
+            mem,
+            "%s is unbounded at %s: an undamped motion is excited at its natural frequency",
+            subject, at);
     }
     const char *const beside = mt_describe_shaken_beside(g, r->value, mem);
     return beside == NULL
                ? NULL
                : mt_arena_printf(mem, "%s is worst at %s%s: %.4g%s%s%s%s", subject, at,
-                                 r->named ? ", a position that is given" : "", r->value,
+                                 r->named ? ", a named position" : "", r->value,
                                  r->value_unit[0] != '\0' ? " " : "", r->value_unit,
                                  g->shake != NULL ? mt_describe_shaken_kind(g->shake) : "",
                                  beside);
@@ -78,9 +78,9 @@ static const char *text_of(const mt_study *study, const mt_family *f, const mt_d
     }
     if (m->why != NULL) {
         const char *const where = mt_describe_position(study, f, m->broken_at, mem);
-        return where == NULL ? NULL
-                             : mt_arena_printf(mem, "%s; nothing is known at %s: %s", worst,
-                                               where, m->why);
+        return where == NULL
+                   ? NULL
+                   : mt_arena_printf(mem, "%s; not known at %s: %s", worst, where, m->why);
     }
     return mt_arena_printf(mem, "%s; %s", worst, verdict_text(m, r));
 }
@@ -122,10 +122,9 @@ static mt_status warn(const mt_design *design, const mt_result_between *r, mt_re
     if (design->found == NULL || r->holds || !rec->feasible) {
         return MT_OK;
     }
-    return mt_describe_warn(result, err,
-                            "recommendation %d keeps the limit of %s at the positions that are "
-                            "given alone: %s",
-                            design->rank, r->pointer, r->text);
+    return mt_describe_warn(
+        result, err, "recommendation %d keeps the limit of %s only at the named positions: %s",
+        design->rank, r->pointer, r->text);
 }
 
 mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,

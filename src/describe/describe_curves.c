@@ -141,7 +141,7 @@ static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vi
                                   .log = true};
     mt_status rc = mt_response_open(a, &request, &r, err);
     if (rc == MT_OK && r.growing >= 0) {
-        out->trouble = "a motion grows by itself here: there is no stationary response";
+        out->trouble = "unstable: a motion grows by itself, so there is no steady response";
     } else if (rc == MT_OK) {
         rc = mt_response_curve(&r, &opt, &curve, err);
         rc = rc == MT_OK ? put_curve(&r, &curve, mem, out, err) : rc;

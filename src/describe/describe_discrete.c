@@ -109,15 +109,14 @@ static mt_status describe_kinds(const mt_discrete_report *r, mt_result *result, 
 {
     mt_arena *const mem = &result->mem;
     if (r->reason != NULL) {
-        return r->feasible > 0
-                   ? MT_OK
-                   : mt_describe_certificate(
-                         result, "infeasible", false,
-                         mt_arena_printf(mem,
-                                         "That no combination meets all goals is sampled, not "
-                                         "proven: no certificate, %s.",
-                                         r->reason),
-                         err);
+        return r->feasible > 0 ? MT_OK
+                               : mt_describe_certificate(
+                                     result, "infeasible", false,
+                                     mt_arena_printf(mem,
+                                                     "No combination was found that meets all "
+                                                     "goals; this is not proven, because %s.",
+                                                     r->reason),
+                                     err);
     }
     if (excluded(r)) {
         return mt_describe_certificate(
@@ -181,12 +180,11 @@ mt_status mt_describe_discrete_certificate(const mt_discrete_report *report,
     if (report->cut && isnan(report->best_within)) {
         return mt_describe_certificate(
             result, "optimal", false,
-            mt_arena_printf(
-                &result->mem,
-                "That no combination of catalogue values%s is better in the first "
-                "objective is sampled, not proven: the budget of branch and bound ended "
-                "after %ld boxes.",
-                with_others(report), report->boxes),
+            mt_arena_printf(&result->mem,
+                            "No combination of catalogue values%s was found that is better in "
+                            "the first objective; this is not proven: the budget of branch and "
+                            "bound ended after %ld boxes.",
+                            with_others(report), report->boxes),
             err);
     }
     return MT_HAS(report->best_within) ? describe_best(report, result, err) : MT_OK;

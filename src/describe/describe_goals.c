@@ -249,17 +249,18 @@ static mt_status doubt_data(const mt_workspace *fresh, const mt_demand *d,
     double hz = 0.0;
     const double rise = design->found == NULL ? mt_fit_rise(d, &hz) : 0.0;
     if (rise > CONJUGATED) {
-        MT_TRY(mt_describe_warn(result, err,
-                                "/goals/%d: the data look conjugated: through the peak at "
-                                "%.6g Hz the measured phase rises by %.0f degrees, where that "
-                                "of a damped mechanism falls (exp(-i w t) was meant?)",
-                                d->goal_index, hz, rise * HALF_TURN_DEG / HALF_TURN));
+        MT_TRY(mt_describe_warn(
+            result, err,
+            "/goals/%d: the data look conjugated: through the peak at %.6g Hz the measured "
+            "phase rises by %.0f degrees, where that of a damped mechanism falls; check the "
+            "sign convention of the phase, exp(i w t) or exp(-i w t)",
+            d->goal_index, hz, rise * HALF_TURN_DEG / HALF_TURN));
     }
     return design->rank <= 1 && mt_fit_is_reversed(fresh, d)
                ? mt_describe_warn(result, err,
                                   "/goals/%d: the data look reversed: with the other sign of "
-                                  "the measured response its phases would fit better (a "
-                                  "sensor or a force that points the other way?)",
+                                  "the measured response its phases would fit better; check "
+                                  "the direction of the sensor and of the force",
                                   d->goal_index)
                : MT_OK;
 }

@@ -188,16 +188,16 @@ static const char *end_text(const described *d)
     }
     switch (d->followed ? m->end : MT_MOTION_WHOLE) {
     case MT_MOTION_CAPPED:
-        return "; the steps that the slopes ask for are shorter than these positions allow";
+        return "; sampled more coarsely than the slopes of the frequencies call for";
     case MT_MOTION_BROKEN:
-        return mt_arena_printf(mem, "; nothing is known at %s: %s", where, m->why);
+        return mt_arena_printf(mem, "; not known at %s: %s", where, m->why);
     case MT_MOTION_UNSTABLE:
         return mt_arena_printf(mem, "; unstable at %s", where);
     case MT_MOTION_WHOLE:
     case MT_MOTION_NONE:
         break;
     }
-    return d->fresh->c->robust != NULL ? "; tolerances are judged at the named positions alone"
+    return d->fresh->c->robust != NULL ? "; tolerances are judged only at the named positions"
                                        : "";
 }
 
@@ -213,7 +213,9 @@ static const char *sentence(const described *d, const char *range)
             c->mode, c->band, c->from, c->to, c->from_below, c->to_below);
     }
     if (!d->followed) {
-        return mt_arena_printf(mem, "%s is not followed: a named position misses its bands",
+        return mt_arena_printf(mem,
+                               "%s is not checked between the positions: a named position "
+                               "violates its bands already",
                                range);
     }
     const char *const nearest = nearest_text(d, range);

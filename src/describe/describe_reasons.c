@@ -104,12 +104,11 @@ static void say_changes(mt_sentences *s)
     }
     say_kept(s, kept);
     for (int i = 0; i < s->result->n_undetermined; i++) {
-        mt_say(
-            s,
-            "The goals do not settle %s: they change by at most %.3g %% across its bounds, so "
-            "the design keeps what it had there.",
-            s->result->undetermined[i].text,
-            fmax(s->result->undetermined[i].effect_percent, MT_PERCENT_NOISE));
+        mt_say(s,
+               "Not identifiable: %s changes no goal by more than %.3g %% across its bounds "
+               "and keeps its original value.",
+               s->result->undetermined[i].text,
+               fmax(s->result->undetermined[i].effect_percent, MT_PERCENT_NOISE));
     }
 }
 
@@ -323,7 +322,7 @@ static void say_responses(mt_sentences *s)
     for (int i = 0; i < s->rec->n_between; i++) {
         const mt_result_between *const r = &s->rec->between[i];
         mt_say_of(s, "hold", r->pointer);
-        mt_say(s, "Between the positions that are given %s.", r->text);
+        mt_say(s, "Between the named positions %s.", r->text);
     }
 }
 
@@ -440,7 +439,7 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
         mt_say(s, "None of the designs that %d start%s found meets all goals; this one %s.",
                search->starts, search->starts == 1 ? "" : "s",
                s->rec->rank == 1 ? "comes nearest"
-                                 : "is a place from which only worse ones are near");
+                                 : "has the least deviation of all designs near it");
     } else if (s->design->gaps != NULL) {
         say_kind_rank(s, first);
     } else if (search->n_solutions == 1 && s->design->found->continuum) {

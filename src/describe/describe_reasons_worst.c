@@ -25,13 +25,13 @@ void mt_say_worst(mt_sentences *s)
     mt_say_of(s, "hold", NULL);
     if (strcmp(s->rec->worst_case, "proven") == 0) {
         mt_say(s,
-               "Over the tolerances (%s) goals are judged at their worst corner, which is "
-               "proven to be that.",
+               "Goals are judged at the worst corner of the tolerances (%s), which is proven "
+               "to be the worst case.",
                text);
     } else {
         mt_say(s,
-               "Over the tolerances (%s) goals are judged by the worst that corners and "
-               "samples within found: sampled, not proven.",
+               "Goals are judged by the worst of the corners of the tolerances (%s) and of "
+               "samples within them: sampled, not proven.",
                text);
     }
 }

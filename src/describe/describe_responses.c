@@ -96,8 +96,8 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
     if (!MT_HAS(r->value)) {
         return strcmp(r->end, "infinite") == 0
                    ? mt_arena_printf(mem,
-                                     "%s has no bound: nothing damps a motion that is shaken "
-                                     "at its natural frequency",
+                                     "%s is unbounded: an undamped motion is excited at its "
+                                     "natural frequency",
                                      subject)
                    : mt_arena_printf(mem, "%s has no value", subject);
     }

@@ -40,11 +40,9 @@ mt_status mt_describe_withdraw(mt_result *result, mt_err *err)
     for (int i = 0; i < result->n_certificates; i++) {
         mt_certificate *const c = &result->certificates[i];
         c->proven = false;
-        c->text =
-            mt_arena_printf(&result->mem,
-                            "Withdrawn, since a fresh analysis disagrees with the readings "
-                            "that it rests on: %s",
-                            c->text);
+        c->text = mt_arena_printf(
+            &result->mem,
+            "Withdrawn, because recomputed values differ from those it rests on: %s", c->text);
     }
     return mt_arena_check(&result->mem, err);
 }

@@ -388,7 +388,7 @@ static mt_status parse_product(parser *p)
     for (char c = peek(p); c == '*' || c == '/'; c = peek(p)) {
         if (c == '*' && p->text[p->at + 1] == '*') {
             return mt_fail(p->err, MT_E_INPUT,
-                           "at character %d: \"**\" is no operator; did you mean \"^\"?",
+                           "at character %d: \"**\" is not an operator; did you mean \"^\"?",
                            character(p, p->at));
         }
         p->at++;
@@ -434,7 +434,7 @@ static mt_status left_over(parser *p)
     }
     if (apart && mt_unit_meant(number, digits, left, length, meant, sizeof meant)) {
         return mt_fail(p->err, MT_E_INPUT,
-                       "at character %d: \"%.*s\" is no part of a number; did you mean %s?",
+                       "at character %d: \"%.*s\" is not part of a number; did you mean %s?",
                        character(p, p->at), shown(length), left, meant);
     }
     size_t more = 1;

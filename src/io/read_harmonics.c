@@ -71,8 +71,8 @@ void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor)
             mt_harmonic is;
             const bool good = meant != NULL && mt_harmonic_parse(meant, &is);
             mt_diag_structure(r->diags, items.at,
-                              "\"%s\" is no harmonic: a number from 1 to 999, n (the number of "
-                              "blades) or both, then P (main rotor) or T (tail rotor)%s%s%s",
+                              "\"%s\" is not a harmonic: a number from 1 to 999, n (the number "
+                              "of blades) or both, then P (main rotor) or T (tail rotor)%s%s%s",
                               text, good ? "; did you mean \"" : "", good ? meant : "",
                               good ? "\"?" : "");
         }

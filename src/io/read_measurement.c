@@ -152,7 +152,7 @@ static mt_status read_text(void *context, mt_err *err)
     const char *const nul = memchr(m->at, '\0', (size_t)(m->end - m->at));
     if (nul != NULL) {
         return mt_measuring_refuse(m, 1, 1,
-                                   "this is no text: neither a table (CSV) nor a universal "
+                                   "this is not text: neither a table (CSV) nor a universal "
                                    "file, which begins with a line \"-1\"");
     }
     return mt_read_measurement_csv(m);

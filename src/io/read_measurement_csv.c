@@ -249,7 +249,7 @@ static mt_status number(const table *t, int column, double *out)
     return *f->text == '\0' ? mt_measuring_refuse(t->m, f->line, f->column,
                                                   "\"%s\" has no value here", NAMES[column])
                             : mt_measuring_refuse(t->m, f->line, f->column,
-                                                  "\"%s\" (%.40s) is no finite number",
+                                                  "\"%s\" (%.40s) is not a finite number",
                                                   NAMES[column], f->text);
 }
 

@@ -127,7 +127,7 @@ static mt_status decimal(const reading *u, const record *r, int from, int width,
         return MT_OK;
     }
     return mt_measuring_refuse(u->m, r->line, (int)(s - r->text) + 1,
-                               "\"%.*s\" is no finite number (columns %d to %d)", length, s,
+                               "\"%.*s\" is not a finite number (columns %d to %d)", length, s,
                                from + 1, from + width);
 }
 
@@ -138,7 +138,7 @@ static mt_status integer(const reading *u, const record *r, int from, int width,
     *out = 0;
     if (!(fabs(value) < 2147483647.0) || value != floor(value)) {
         return mt_measuring_refuse(u->m, r->line, from + 1,
-                                   "%.10g is no whole number (columns %d to %d)", value,
+                                   "%.10g is not a whole number (columns %d to %d)", value,
                                    from + 1, from + width);
     }
     *out = (int)value;
@@ -288,7 +288,7 @@ static mt_status next_value(const reading *u, int which, int count, double *out,
     const int length = (int)(m->at - s);
     return mt_measuring_number(s, (size_t)length, out)
                ? MT_OK
-               : mt_measuring_refuse(m, m->line, *column, "\"%.*s\" is no finite number",
+               : mt_measuring_refuse(m, m->line, *column, "\"%.*s\" is not a finite number",
                                      length < 40 ? length : 40, s);
 }
 

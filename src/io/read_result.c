@@ -168,7 +168,7 @@ static double *read_by_variable(result_reader *s, mt_addr value, bool nullable)
         const int k = find_variable(s, name, members);
         if (k == MT_ABSENT) {
             mt_diag_error(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
-                          "\"%s\" is no variable", name);
+                          "\"%s\" is not a variable", name);
             known = false;
         } else {
             values[k] = read_number(s, i.at, nullable);
@@ -381,7 +381,7 @@ static void check_outputs(result_reader *s, mt_addr list)
         const char *const name = is_text ? mt_json_string(s->r.doc, file) : "";
         if (is_text && (name[0] == '\0' || strchr(name, '/') != NULL ||
                         strcmp(name, ".") == 0 || strcmp(name, "..") == 0)) {
-            mt_diag_error(s->r.diags, file, "\"%s\" is no file beside it", name);
+            mt_diag_error(s->r.diags, file, "\"%s\" is not a file beside it", name);
         }
     }
 }

@@ -63,8 +63,8 @@ static mt_order *read_orders(mt_study_reader *s, mt_addr list, char letter, int 
             const bool good = meant != NULL && mt_order_parse(meant, letter, &is);
             mt_diag_structure(
                 s->r.diags, items.at,
-                "\"%s\" is no order: a number above 0 and below 1000 with at "
-                "most three decimals, then %c (%s)%s%s%s",
+                "\"%s\" is not an order: a number above 0 and below 1000 with at most three "
+                "decimals, then %c (%s)%s%s%s",
                 text, letter, letter == 'E' ? "times per turn" : "multiples of the gear mesh",
                 good ? "; did you mean \"" : "", good ? meant : "", good ? "\"?" : "");
         }

@@ -47,7 +47,7 @@ static mt_name read_freedom(mt_study_reader *s, mt_addr value)
     mt_name name = mt_reader_ref(&s->r, value);
     if (name.s != NULL && !mt_measured_freedom_parse(name.s, &f)) {
         mt_diag_structure(s->r.diags, value,
-                          "\"%s\" is no node and direction (\"12+Z\", \"12-RX\")", name.s);
+                          "\"%s\" is not a node and direction (\"12+Z\", \"12-RX\")", name.s);
         name.s = NULL;
     }
     return name;

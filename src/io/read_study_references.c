@@ -53,7 +53,7 @@ static void read_shape(mt_study_reader *s, mt_addr object, mt_measured_mode *mod
         const double value = mt_read_study_number(s, items.at);
         if (channel.s != NULL && *channel.s != '\0' && !is_channel(channel.s)) {
             mt_diag_structure(s->r.diags, channel.addr,
-                              "\"%s\" is no sensor and direction (\"c1.y\")", channel.s);
+                              "\"%s\" is not a sensor and direction (\"c1.y\")", channel.s);
         } else if (channel.s != NULL) {
             zero = zero && value == 0.0;
             mode->channels[mode->n_values] = channel;

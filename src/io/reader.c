@@ -148,10 +148,10 @@ static const char *what_it_is(const char *format)
                  {"modetune-study/1",
                   "it is a study, which \"modetune run\" answers; its \"model\" names "
                   "the model"},
-                 {"modetune-result/1", "it is a result, which \"modetune report\" tells"},
+                 {"modetune-result/1", "it is a result, which \"modetune report\" prints"},
                  {"modetune-aircraft/1", "it is a catalogue of aircraft, which a study names"},
                  {"modetune-profile/1",
-                  "it is a profile of vibration, which \"modetune profile\" tells"}};
+                  "it is a profile of vibration, which \"modetune profile\" prints"}};
     for (int i = 0; i < MT_COUNT(kinds); i++) {
         if (strcmp(kinds[i].format, format) == 0) {
             return kinds[i].text;
@@ -168,7 +168,7 @@ bool mt_reader_format(mt_reader *r, const char *format, const char *not_this)
         return true;
     }
     const char *const other = what_it_is(mt_json_string(r->doc, at));
-    mt_diag_structure(r->diags, at, "the format is not \"%s\": this is no %s%s%s", format,
+    mt_diag_structure(r->diags, at, "the format is not \"%s\": this is not a %s%s%s", format,
                       not_this, other == NULL ? "" : "; ", other == NULL ? "" : other);
     return false;
 }
@@ -383,11 +383,11 @@ static void check_form(mt_reader *r, mt_addr at, const char *s, mt_name_form for
         mt_diag_structure(r->diags, at, "a name must not be empty");
     } else if (form == MT_NAME_PARAMETER) {
         mt_diag_structure(r->diags, at,
-                          "\"%s\" is no name: a letter or _, then letters, digits and _", s);
+                          "\"%s\" is not a name: a letter or _, then letters, digits and _", s);
     } else {
-        mt_diag_structure(r->diags, at,
-                          "\"%s\" is no name: a letter or _, then letters, digits, _, + and -",
-                          s);
+        mt_diag_structure(
+            r->diags, at,
+            "\"%s\" is not a name: a letter or _, then letters, digits, _, + and -", s);
     }
 }
 

@@ -27,6 +27,7 @@ typedef struct list_rule {
 } list_rule;
 
 static const list_rule RULES[] = {
+    {"assumptions", "assumption", {"parameter"}, NULL},
     {"certificates", "certificate", {"kind", "pointer"}, NULL},
     {"clearances", "clearance", {"configuration", "mode", "band"}, NULL},
     {"curves", "curve", {"configuration", "pointer"}, NULL},

@@ -300,5 +300,5 @@ mt_status mt_scene_write(const mt_scene *scene, mt_text *out, mt_err *err)
         return MT_OK;
     }
     return out->failed ? mt_fail_memory(err)
-                       : mt_fail(err, MT_E_INTERNAL, "the scene is no JSON document");
+                       : mt_fail(err, MT_E_INTERNAL, "the scene is not a JSON document");
 }

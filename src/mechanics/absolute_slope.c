@@ -304,7 +304,7 @@ mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
     if (sys->loaded) {
         (void)mt_snprintf(
             why, MT_ABSOLUTE_WHY,
-            "the forces of its joints change with it, which is done for trees alone");
+            "the forces of its joints change with it, which is computed only for trees");
         return MT_OK;
     }
     memset(slope, 0, (size_t)modes->n_pairs * (size_t)sys->n_inputs * sizeof *slope);

@@ -404,9 +404,8 @@ static mt_status refuse(walk *w, mt_err *err)
     }
     return mt_fail(err, MT_E_ASSEMBLY, "joint \"%s\" cannot be driven beyond %.6g %s: %s",
                    joint->name, w->at->drive, unit,
-                   w->why.text[0] != '\0'
-                       ? w->why.text
-                       : "singular position, from which several ways lead on");
+                   w->why.text[0] != '\0' ? w->why.text
+                                          : "singular position, where the motion can branch");
 }
 
 /* From a dead centre of the other joints several ways lead on. */
@@ -449,8 +448,8 @@ static mt_status refuse_steps(const walk *w, mt_err *err)
     const mt_system *const sys = w->sys;
     const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
     return mt_fail(err, MT_E_ASSEMBLY,
-                   "joint \"%s\" came to %g %s in %d steps, and not to %g %s: other parts move "
-                   "too far for that",
+                   "joint \"%s\" reached %g %s in %d steps, not %g %s: other parts would have "
+                   "to move too far",
                    joint->name, w->at->drive, joint->angle ? "rad" : "m", (int)MOST_STEPS,
                    w->goal, joint->angle ? "rad" : "m");
 }

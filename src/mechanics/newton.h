@@ -60,7 +60,8 @@ mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt
                           mt_stage *stage, mt_err *err);
 /* Close the first m constraints by the smallest steps from `at`, which is moved: to a gap of
  * `enough` model lengths, 0: to rounding. *closed false: the steps do not converge as they do
- * beside a regular position, or joints contradict each other; `at` is then anywhere. *iterations grows. (newton_close.c) Fails: MT_E_MEMORY. */
+ * beside a regular position, or joints contradict each other; `at` is then anywhere.
+ * *iterations grows. (newton_close.c) Fails: MT_E_MEMORY. */
 mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_placement *at,
                           int *iterations, bool *closed, mt_arena *mem, mt_err *err);
 

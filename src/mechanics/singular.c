@@ -251,11 +251,10 @@ static mt_status say(const near *v, const double *w, mt_arena *mem, mt_err *err)
     mt_joint_names names;
     MT_TRY(mt_name_joints(v->d->sys, v->e->m, w, mem, &names, err));
     return mt_fail(err, MT_E_DEAD_CENTRE,
-                   "dead centre: joints %s depend on each other in this very position, and not "
-                   "beside it. How it moves on from here is not determined (several ways, or "
-                   "none), nor are the forces of these joints: it has no small vibrations to "
-                   "compute. Put it a little out of this position, or leave out what is "
-                   "superfluous",
+                   "dead centre: joints %s become dependent in exactly this position. Neither "
+                   "the direction of motion nor the forces of these joints are determined "
+                   "here, so there are no small vibrations to compute. Move the mechanism "
+                   "slightly out of this position, or remove the joint that is superfluous",
                    names.text);
 }
 

@@ -146,8 +146,8 @@ static mt_status hold(mt_sparse *s, bool *held, char *why, mt_err *err)
     }
     if (!*held) {
         (void)mt_snprintf(why, MT_SPARSE_WHY,
-                          "a motion without stiffness has no mass, it is not stable, or "
-                          "sixteen digits do not hold all of its motions");
+                          "a motion without stiffness has no mass, the mechanism is unstable, "
+                          "or sixteen digits do not resolve all of its motions");
     }
     return MT_OK;
 }
@@ -286,7 +286,7 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
     if (rc == MT_OK && *answered) {
         rc = find(&s, mem, out, answered, err);
         if (!*answered) {
-            (void)mt_snprintf(why, MT_SPARSE_WHY, "it is not stable");
+            (void)mt_snprintf(why, MT_SPARSE_WHY, "the mechanism is unstable");
         }
         rc = rc == MT_OK && *answered && p->shapes ? shape(&s, mem, out, mu, err) : rc;
     }

@@ -221,9 +221,9 @@ static void judge_axes(mt_judge *j, const mt_item *item, const mt_joint *joint)
         across = fmax(across, fabs((a[k] * b[n]) - (a[n] * b[k])));
     }
     if (across < PARALLEL) {
-        fault_axis(j, item, joint->axis_b, joint->name.addr, "axis_b",
-                   "is parallel to axis: two axes that turn about the same line are no "
-                   "universal joint");
+        fault_axis(
+            j, item, joint->axis_b, joint->name.addr, "axis_b",
+            "is parallel to axis: two axes along the same line do not make a universal joint");
     }
 }
 

@@ -11,8 +11,8 @@ static mt_status check_shaken(const mt_study_response *r, const mt_port *in, int
     return accelerates || r->shake.profile_name.s == NULL
                ? MT_OK
                : mt_fail(err, MT_E_INPUT,
-                         "/responses/%d/input: \"%s\" is no acceleration of the ground, as a "
-                         "profile is: that is \"base.x\", \"base.y\" or \"base.z\"",
+                         "/responses/%d/input: \"%s\" is not an acceleration of the ground, as "
+                         "a profile is: write \"base.x\", \"base.y\" or \"base.z\"",
                          index, r->shake.input.s);
 }
 

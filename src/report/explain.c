@@ -205,21 +205,23 @@ static const char *no_price(const mt_result *result, const mt_recommendation *r)
     const bool misfit =
         result->n_objectives > 0 && strcmp(result->objectives[0].type, "misfit") == 0;
     if (r->rank == 0) {
-        return "not known: only an optimum has prices, and the original design is none";
+        return "not available: what relaxing a limit gains is known at an optimum, which the "
+               "original design is not";
     }
     if (!r->feasible) {
-        return "not known: only a design that meets all goals has prices";
+        return "not available: this design does not meet all goals";
     }
     if (isnan(r->kkt_residual)) {
-        return "not known: the design is no optimum of variables that can move (goals or "
-               "catalogues leave single designs)";
+        return "not available: the goals or the catalogues leave single designs, so no "
+               "variable can move";
     }
     if (r->kkt_residual > MT_KKT_TOLD) {
-        return "not known: only an optimum has prices, and this design is not shown to be one";
+        return "not available: what relaxing a limit gains is known at an optimum, which this "
+               "design is not shown to be";
     }
-    return misfit ? "not known: a misfit of weighted goals has no prices"
-                  : "nothing: no goal, band or bound that gives way a little would make the "
-                    "design better";
+    return misfit ? "not available: all goals have a weight, so no limit can be relaxed"
+                  : "nothing: relaxing a goal, a band or a bound a little would not improve "
+                    "the design";
 }
 
 void mt_report_explain(const mt_result *result, const mt_recommendation *r, int width,
@@ -242,8 +244,7 @@ void mt_report_explain(const mt_result *result, const mt_recommendation *r, int 
         mt_text_add(out, "\nWhat moves each goal, the most first\n");
         mt_table_print(&t, INDENT, width, out);
     }
-    add_reasons(r, "hold", "What holds it",
-                "nothing: no bound, band or limit stands in its way", out);
+    add_reasons(r, "hold", "What holds it", "nothing: no bound, band or limit is active", out);
     add_reasons(r, "cost", "What it costs", no_price(result, r), out);
     mt_table_free(&t);
 }

@@ -291,7 +291,8 @@ static void tell_numbers(const mt_teller *to, const mt_result *result,
     if (found) {
         tell_parameters(to, r);
     }
-    add_table(to, mt_report_frequencies(r), found ? "Frequencies" : "Frequencies as they are");
+    add_table(to, mt_report_frequencies(r),
+              found ? "Frequencies" : "Frequencies of the original design");
     if (!to->html) {
         tell_ruler(to, r);
     }
@@ -459,7 +460,7 @@ static void tell_responses(const mt_teller *to, const mt_result *result,
 /* Values alone: nothing else is known of them. */
 static void tell_unchecked(const mt_teller *to, const mt_result *result)
 {
-    if (open_list(to, "Not re-checked before the end, nothing is verified of them",
+    if (open_list(to, "Not re-checked before the end: values of the variables, unverified",
                   result->n_unchecked)) {
         for (int i = 0; i < result->n_unchecked; i++) {
             mt_text text = {0};

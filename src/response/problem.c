@@ -239,7 +239,7 @@ static mt_status add_output(build *k, int o, mt_err *err)
     case MT_PORT_BASE:
         break;
     }
-    return mt_fail(err, MT_E_INTERNAL, "the ground is no output");
+    return mt_fail(err, MT_E_INTERNAL, "the ground is not an output");
 }
 
 /* About a position that does not hold nothing vibrates. */
@@ -247,13 +247,12 @@ static mt_status admit(const mt_modes *m, mt_err *err)
 {
     if (m->n_unstable > 0) {
         return mt_fail(err, MT_E_EQUILIBRIUM,
-                       "the position is unstable: it does not hold, and nothing vibrates about "
-                       "it");
+                       "the position is unstable: nothing vibrates about it");
     }
     if (m->n_undecided > 0) {
-        return mt_fail(err, MT_E_EQUILIBRIUM,
-                       "rounding hides whether the position is stable: there is no response "
-                       "that could be trusted");
+        return mt_fail(
+            err, MT_E_EQUILIBRIUM,
+            "rounding hides whether the position is stable, so no response can be trusted");
     }
     return MT_OK;
 }

@@ -69,10 +69,10 @@ mt_status mt_response_admit(const mt_response *r, mt_err *err)
         return MT_OK;
     }
     const double complex s = r->poles[r->growing];
-    return mt_fail(err, MT_E_EQUILIBRIUM,
-                   "a motion grows by itself, at %.6g Hz by exp(%.6g t/s): there is no "
-                   "stationary response",
-                   cimag(s) / TWO_PI, creal(s));
+    return mt_fail(
+        err, MT_E_EQUILIBRIUM,
+        "unstable: a motion at %.6g Hz grows by exp(%.6g t/s), so there is no steady response",
+        cimag(s) / TWO_PI, creal(s));
 }
 
 mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curve *out,

@@ -343,13 +343,12 @@ mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, m
     const int wanted = SAMPLES_PER_VARIABLE * (w->p->n + 1);
     mt_slices slices = no_slices;
     MT_TRY(proof->possible ? MT_OK : mt_slices_search(w, mem, &slices, err));
-    out->reason =
-        slices.n == 0
-            ? mt_arena_strdup(mem, proof->reason)
-            : mt_arena_printf(mem,
-                              "%s; with the geometry held, at %d of %d samples of it, all "
-                              "other placements are proven infeasible",
-                              proof->reason, slices.n_settled, slices.n);
+    out->reason = slices.n == 0
+                      ? mt_arena_strdup(mem, proof->reason)
+                      : mt_arena_printf(mem,
+                                        "%s; at %d of %d samples of the geometry, held fixed, "
+                                        "all other placements are proven infeasible",
+                                        proof->reason, slices.n_settled, slices.n);
     return sample(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST, spent,
                   &slices, mem, out, err);
 }

@@ -367,11 +367,12 @@ static mt_status only_dampers(const mt_system *sys, mt_err *err)
     } else if (d->modal) {
         what = "damping ratios of modes";
     }
-    return what == NULL ? MT_OK
-                        : mt_fail(err, MT_E_INPUT,
-                                  "%s: meant for small vibrations, no force in a motion in "
-                                  "time; simulate a configuration without (\"damping\": {})",
-                                  what);
+    return what == NULL
+               ? MT_OK
+               : mt_fail(err, MT_E_INPUT,
+                         "%s: defined for small vibrations, not as a force in a motion in "
+                         "time; simulate a configuration without it (\"damping\": {})",
+                         what);
 }
 
 static mt_status begin(run *r, mt_linear *lin, const mt_sim_start *start,

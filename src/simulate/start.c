@@ -184,8 +184,8 @@ static mt_status refuse_walk(const augmented *g, const mt_sim_joint *joint, doub
 {
     const mt_system_joint *const j = &g->sys->joints[joint->joint];
     return mt_fail(err, MT_E_ASSEMBLY,
-                   "the mechanism does not get there: in the assembly of the drawing it stays "
-                   "closed to where joint \"%s\" is at %.6g %s",
+                   "the mechanism cannot reach that: from the reference position its joints "
+                   "stay closed up to joint \"%s\" at %.6g %s",
                    j->name, at, j->angle ? "rad" : "m");
 }
 
@@ -302,7 +302,8 @@ mt_status mt_start_along(mt_linear *lin, const double *dq, mt_arena *mem, mt_sim
     mt_poses_move(g.sys, start->at.pose, dq);
     MT_TRY(close_all(&g, &start->at, 0, NULL, &holds, mem, err));
     if (!holds) {
-        return mt_fail(err, MT_E_ASSEMBLY, "displaced so far the mechanism does not close");
+        return mt_fail(err, MT_E_ASSEMBLY,
+                       "the mechanism does not close at such a displacement");
     }
     mt_motion_turns(&g.motion, &start->at);
     mt_arena_rewind(mem, mark);

@@ -201,8 +201,7 @@ static mt_status look_out(mt_sim *s, const mt_elimination *e, mt_err *err)
         return MT_OK;
     }
     return mt_fail(err, MT_E_DEAD_CENTRE,
-                   "a dead centre: joints %s depend on each other here, and the motion may go "
-                   "on in more than one way",
+                   "dead centre: joints %s become dependent here, and the motion can branch",
                    near.near ? near.joints.text : "of a loop");
 }
 

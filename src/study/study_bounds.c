@@ -174,8 +174,8 @@ static void tell_corner(corners *k, const mt_doubt *fault)
     }
     const char *const text = mt_arena_printf(
         &k->c->study->mem,
-        "with %s, %s: a goal of type \"limit\" keeps the search away from there", where,
-        fault->text);
+        "with %s, %s: add a goal of type \"limit\" that keeps the search away from there",
+        where, fault->text);
     mt_check_warn_result(k->c, text);
     mt_diag_warning(k->c->diags, addr, "%s", text == NULL ? "" : text);
     mt_doubt_copy(&k->told, fault);

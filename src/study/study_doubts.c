@@ -82,8 +82,8 @@ static void doubt_avoid(mt_doubt_list *out, const mt_goal *goal)
         if (band->upper_hz - band->lower_hz < LEAST_WIDTH * band->upper_hz) {
             const bool cut = band->upper_hz == avoid->source.up_to_hz;
             at(mt_doubt_add(out, MT_LEVEL_DOUBT, "band",
-                            "the band %s has no width to speak of, %.6g to %.6g Hz%s",
-                            band->label, band->lower_hz, band->upper_hz,
+                            "the band %s has almost no width, %.6g to %.6g Hz%s", band->label,
+                            band->lower_hz, band->upper_hz,
                             cut ? ": up_to_hz cuts the rest off" : ""),
                cut ? avoid->up_to_addr : avoid->bands_addr);
         }

@@ -121,7 +121,7 @@ static void check_input(mt_study_check *c, const mt_goal *goal, mt_shake *s)
     const mt_vibration *const v = s->profile;
     if (s->input.s == NULL && s->input.addr == goal->addr && v->axis == MT_ABSENT) {
         mt_diag_error(c->diags, s->profile_name.addr,
-                      "the profile \"%s\" says no axis: give \"input\", as \"base.z\"",
+                      "the profile \"%s\" names no axis: give \"input\", such as \"base.z\"",
                       s->profile_name.s);
     } else if (s->input.s == NULL && s->input.addr == goal->addr) {
         s->input.s = mt_arena_printf(&c->study->mem, "%s%c", BASE, AXES[v->axis]);
@@ -131,10 +131,10 @@ static void check_input(mt_study_check *c, const mt_goal *goal, mt_shake *s)
                       "input is \"base.x\", \"base.y\" or \"base.z\"",
                       s->input.s);
     } else if (s->input.s != NULL && motion_of(s->input.s, 2) != 2) {
-        mt_diag_error(c->diags, s->input.addr,
-                      "\"%s\" is no acceleration, and a profile says how the ground "
-                      "accelerates",
-                      s->input.s);
+        mt_diag_error(
+            c->diags, s->input.addr,
+            "\"%s\" is not an acceleration, and a profile says how the ground accelerates",
+            s->input.s);
     }
 }
 

@@ -79,7 +79,7 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
     }
     if (v->variable == MT_ABSENT) {
         if (v->name.s != NULL) {
-            mt_diag_error(c->diags, v->name.addr, "\"%s\" is no variable of the study",
+            mt_diag_error(c->diags, v->name.addr, "\"%s\" is not a variable of the study",
                           v->name.s);
         }
         return;
@@ -216,7 +216,7 @@ static void check_front(mt_study_check *c)
                           "with \"at_most\" alone");
         } else if (mt_objective_is(type, MT_OF_STUDY) && !has_objective(s, type)) {
             mt_diag_error(c->diags, trade->objectives_addr,
-                          "\"%s\" is no objective of the study",
+                          "\"%s\" is not an objective of the study",
                           mt_objective_kind_of(type)->name);
         }
     }

@@ -134,7 +134,7 @@ static bool stays_at_rest(const along *l, int i, const double *g)
             most = fmax(most, fabs(b[k]) * unit_of(t, k));
         }
         if (!(fabs(mt_dot(t->s, b, g)) <= NOT_AT_REST * most * l->size[i])) {
-            mt_tree_slope_refuse(l->w, "the drawing comes to rest elsewhere");
+            mt_tree_slope_refuse(l->w, "the equilibrium is not the reference position");
             return false;
         }
     }

@@ -461,7 +461,7 @@ static void damping__ratios_of_no_mode_are_refused(mt_test *t)
         const char *says;
     } rows[] = {
         {"too many", TWO("1", "0", "0.05", "0.1", "\"ratios\": [0.1, 0.1, 0.1]"), MT_E_INPUT,
-         "ratios of 3 vibration modes"},
+         "ratios for 3 vibration modes"},
         {"unstable", TWO("-1", "0", "0.05", "0.1", "\"ratios\": [0.1]"), MT_E_DOMAIN,
          "unstable"},
         {"unstable, ratio for all", TWO("-1", "0", "0.05", "0.1", "\"ratio\": 0.1"), MT_OK, ""},

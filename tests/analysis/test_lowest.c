@@ -303,8 +303,8 @@ static void lowest__say_what_is_no_tree(mt_test *t)
          "\"revolute\", \"bodies\": [\"a\", \"b\"], \"at\": [1, 2]}, {\"name\": \"k\", "
          "\"type\": \"fixed\", \"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
          "it is free to move, or not stable, under its load; nor the sparse one, as a motion "
-         "without stiffness has no mass, it is not stable, or sixteen digits do not hold all "
-         "of its motions"},
+         "without stiffness has no mass, the mechanism is unstable, or sixteen digits do not "
+         "resolve all of its motions"},
         {"\"gravity_m_per_s2\": [0, -9.81], \"joints\": [{\"name\": \"j\", \"type\": "
          "\"revolute\", \"bodies\": [\"a\", \"b\"], \"at\": [1, 2]}, {\"name\": \"k\", "
          "\"type\": \"fixed\", \"bodies\": [\"ground\", \"a\"], \"at\": [1, 0]}]",
@@ -313,8 +313,8 @@ static void lowest__say_what_is_no_tree(mt_test *t)
          "\"at\": [0, 0]}], \"springs\": [{\"name\": \"s\", \"type\": \"torsion\", \"joint\": "
          "\"j\", \"stiffness_n_m_per_rad\": -1}]",
          "spring \"s\" has a negative stiffness; nor the sparse one, as a motion without "
-         "stiffness has no mass, it is not stable, or sixteen digits do not hold all "
-         "of its motions"},
+         "stiffness has no mass, the mechanism is unstable, or sixteen digits do not resolve "
+         "all of its motions"},
         {"\"joints\": [{\"name\": \"j\", \"type\": \"fixed\", \"bodies\": [\"a\", \"b\"], "
          "\"at\": [0, 0]}, {\"name\": \"k\", \"type\": \"revolute\", \"bodies\": [\"b\", "
          "\"a\"], "

@@ -55,7 +55,7 @@ static void undetermined_parameter__keeps_its_value_and_is_named(mt_test *t)
         CHECK_INT(t, c.result->n_undetermined, 1);
         CHECK_STR(t, c.result->undetermined[0].text, "idle");
         CHECK(t, c.result->undetermined[0].effect_percent <= 1e-4);
-        CHECK(t, study_reasons(&c, 1, "The goals do not settle idle"));
+        CHECK(t, study_reasons(&c, 1, "Not identifiable: idle"));
         CHECK(t, study_reasons(&c, 1, "idle keeps its original value."));
     }
     study_free(&c);

@@ -130,7 +130,7 @@ static void study_undetermined__is_told_of_bands_and_catalogues(mt_test *t)
             if (c.result->n_undetermined == 1 && rows[i].text != NULL) {
                 CHECK_STR(t, c.result->undetermined[0].text, rows[i].text);
                 CHECK_NEAR(t, study_value(&c, 1, "p"), rows[i].p, 0.0);
-                CHECK(t, study_reasons(&c, 1, "do not settle p"));
+                CHECK(t, study_reasons(&c, 1, "Not identifiable: p changes"));
             }
         }
         study_free(&c);

@@ -103,7 +103,7 @@ class Batch(CliTest):
         os.symlink("../studies/a.json", self.folder / "other/d.json")  # a study may be run under two names
         self.expect(0, "run", a, "other/d.json", "--quiet")
         for name in ("index.json", "INDEX.html"):
-            self.refused("where the index of all studies goes", b, self.write(f"other/{name}.json", study()))
+            self.refused("which is the place of the index of all studies", b, self.write(f"other/{name}.json", study()))
         self.refused('"studies/" is not the name of a file', a, "studies/")
 
     def test_an_index_that_cannot_be_written_is_4(self):

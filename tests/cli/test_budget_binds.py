@@ -115,7 +115,7 @@ class Binds(CliTest):
 
     def test_what_does_not_fit_is_said(self):
         warned = " ".join(self.answer("spread", "--max-evaluations", "60")["warnings"])
-        self.assertIn('spread: "max_evaluations" leaves nothing for it', warned)
+        self.assertIn('sensitivity to the weights: not computed, since "max_evaluations" leaves no evaluations for it', warned)
         few = self.answer("pedal", "--max-evaluations", "300")
         self.assertIn("the budget of evaluations ran out (", " ".join(few["warnings"]))
         self.assertIn("of 300 were made in the search)", " ".join(few["warnings"]))

@@ -106,7 +106,7 @@ class FirstHour(CliTest):
             lines = done.stderr.splitlines()
             self.assertEqual(len(lines), 2 if command == "diff" else 1, done.stderr)
             for line in lines:
-                self.assertRegex(line, r':\d+:\d+: error: /format: the format is not "modetune-\w+/1": this is no .*; it is a ')
+                self.assertRegex(line, r':\d+:\d+: error: /format: the format is not "modetune-\w+/1": this is not a .*; it is a ')
 
     def test_apply_writes_no_digit_more_than_the_number_has(self):
         self.expect(0, "init", "mine")
@@ -172,7 +172,7 @@ class Slips(CliTest):
         for harmonic in ("p", "4Q", "four", "0P", "4//rev", "4P4P4P4P4P4P4P4P4P"):
             with self.subTest(harmonic=harmonic):
                 said = self.said({"goals": [{"type": "avoid", "rotor": dict(rotor, harmonics=[harmonic]), "up_to_hz": 90}]})[1]
-                self.assertIn("is no harmonic", said)
+                self.assertIn("is not a harmonic", said)
                 self.assertNotIn("did you mean", said)
         for model, why in (({"bodies": [dict(self.MODEL["bodies"][0], weight=3)]}, 'did you mean "mass_kg"'),
                            ({"links": [{"name": "l", "from": [0, 0], "to": [1, 0], "section": {"type": "circle", "diameter_mm": 9}}]},
@@ -191,7 +191,7 @@ class Slips(CliTest):
         self.assertEqual(self.said(model=twice)[1].count("redundant"), 1)
         code, said = self.said(model={"gravity_m_per_s2": 9.81}, also=["m.json"])
         self.assertEqual((code, said.count("gravity_m_per_s2")), (2, 1))
-        self.assertIn("s.json: error: what is wrong with its model is told above", said)
+        self.assertIn("s.json: error: the errors of its model are listed above", said)
         code, said = self.said({"objective": {"minimise": "weight"}}, {"gravity_m_per_s2": 9.81}, ["./m.json"])
         self.assertEqual((code, said.count("gravity_m_per_s2")), (2, 1))
 

@@ -130,7 +130,7 @@ class Positions(unittest.TestCase):
         self.assertTrue(design["feasible"])
         self.assertFalse(design["responses_between"][0]["holds"])
         self.assertIn("does not hold over the range", self.text)
-        self.assertIn("keeps the limit of /goals/0 at the positions that are given alone", " ".join(result["warnings"]))
+        self.assertIn("keeps the limit of /goals/0 only at the named positions", " ".join(result["warnings"]))
 
     def test_a_limit_from_below(self):
         """Two positions beside the node of a peak: the least lies between, at an end of neither."""
@@ -220,7 +220,7 @@ class Positions(unittest.TestCase):
         none = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [20, 24.6]}]))
         self.assertEqual((none["status"], [d["parameters"][0]["recommended"] for d in none["recommendations"]]), ("solved", [24.6]))
         self.assertFalse(none["recommendations"][0]["responses_between"][0]["holds"])
-        self.assertIn("at the positions that are given alone", " ".join(none["warnings"]))
+        self.assertIn("only at the named positions", " ".join(none["warnings"]))
         self.assertIn("1 of them meets all goals at the named positions, and not between them.", self.text)
         poor = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [10, 12]}]))
         self.assertEqual(poor["status"], "infeasible")

@@ -174,7 +174,7 @@ class Belonging(FolderTest):
         path = self.results / "result.json"
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace('"report.html"', '"../../studies/two.json"'), encoding="utf-8")
-        self.assertIn('error: /run/outputs/1/file: "../../studies/two.json" is no file beside it', self.refused())
+        self.assertIn('error: /run/outputs/1/file: "../../studies/two.json" is not a file beside it', self.refused())
         result = json.loads(text)
         result["run"]["outputs"] *= 9
         path.write_text(json.dumps(result), encoding="utf-8")

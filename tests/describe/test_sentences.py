@@ -38,11 +38,11 @@ ELSEWHERE = {
     "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.": "describe/test_study_bands.c solves again",
     "Relaxing the %s edge of %s, which holds mode %d where %s is at %s, between the positions, by %s would %s %s.": "cli/test_motion.py",
     "Relaxing the limit of goal %s where %s is at %s, between the positions, by %s would %s %s.": "cli/test_between.py",
-    "Between the positions that are given %s.": "cli/test_between.py has closed forms",
+    "Between the named positions %s.": "cli/test_between.py has closed forms",
     "Over the motion: %s.": "cli/test_motion.py",
-    "The goals do not settle %s: they change by at most %.3g %% across its bounds, so the design keeps what it had there.": "hunt/check_words.py moves along it",
-    "Over the tolerances (%s) goals are judged at their worst corner, which is proven to be that.": "cli/test_tolerances.py",
-    "Over the tolerances (%s) goals are judged by the worst that corners and samples within found: sampled, not proven.": "cli/test_tolerances.py",
+    "Not identifiable: %s changes no goal by more than %.3g %% across its bounds and keeps its original value.": "hunt/check_words.py moves along it",
+    "Goals are judged at the worst corner of the tolerances (%s), which is proven to be the worst case.": "cli/test_tolerances.py",
+    "Goals are judged by the worst of the corners of the tolerances (%s) and of samples within them: sampled, not proven.": "cli/test_tolerances.py",
 }
 
 

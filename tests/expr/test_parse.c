@@ -179,11 +179,11 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
         {"2x", "at character 1: \"2x\" is not a number; did you mean \"2*x\"?"},
         {"1 + 2sin(x)", "at character 5: \"2sin\" is not a number; did you mean \"2*sin\"?"},
         {"2qqq", "at character 1: \"2qqq\" is not a number; a product needs \"*\""},
-        {"15\xC2\xB0", "at character 3: \"\xC2\xB0\" is no part of a number; did you mean "
+        {"15\xC2\xB0", "at character 3: \"\xC2\xB0\" is not part of a number; did you mean "
                        "\"15*deg\"?"},
-        {"5 %", "at character 3: \"%\" is no part of a number; did you mean \"5/100\"?"},
+        {"5 %", "at character 3: \"%\" is not part of a number; did you mean \"5/100\"?"},
         {"x %", "at character 3: \"%\" where an operator or the end is expected"},
-        {"x**2", "at character 2: \"**\" is no operator; did you mean \"^\"?"},
+        {"x**2", "at character 2: \"**\" is not an operator; did you mean \"^\"?"},
         {"x* *2", "at character 4: \"*\" where a number, a name or \"(\" is expected"},
         {"0x10", "at character 1: \"0x10\" is not a number; a product needs \"*\""},
         {"1e", "at character 1: \"1e\" is not a number"},
@@ -196,7 +196,7 @@ static void parse__problems_are_named_with_their_place(mt_test *t)
         {"1,5", "at character 2: \",\" where an operator or the end is expected; did you mean "
                 "\"1.5\"?"},
         {"1.2,5", "at character 4: \",\" where an operator or the end is expected"},
-        {"x ** y", "at character 3: \"**\" is no operator; did you mean \"^\"?"},
+        {"x ** y", "at character 3: \"**\" is not an operator; did you mean \"^\"?"},
         {"x %y", "at character 3: \"%\" where an operator or the end is expected"},
         /* characters are counted, not bytes: omega, a minus sign of typography */
         {"x+\xCF\x89",

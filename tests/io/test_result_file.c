@@ -181,7 +181,7 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
         const char *want; /* the message behind path and line */
     } rows[] = {
         {"format", "modetune-result/1", "modetune-result/2", "modetune-result/2",
-         "13: error: /format: the format is not \"modetune-result/1\": this is no result\n"},
+         "13: error: /format: the format is not \"modetune-result/1\": this is not a result\n"},
         {"member gone", "  \"status\": \"compromise\",\n", "", "{",
          "1: error: member \"status\" is missing\n"},
         {"rank", "\"rank\": 1", "\"rank\": 1.5", "\"rank\": 1.5",
@@ -190,7 +190,7 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
          "\"extra\": 0, \"rank\": 1",
          "7: error: /recommendations/0: unknown member \"extra\"\n"},
         {"no such variable", "\"K_T1\": 0.00125", "\"K_T2\": 0.00125", "\"K_T2\": 0.00125",
-         "11: error: /baseline/frequencies/0/sensitivity: \"K_T2\" is no variable\n"},
+         "11: error: /baseline/frequencies/0/sensitivity: \"K_T2\" is not a variable\n"},
         {"values of a point", "[10, 0.25]", "[10]", "\"values\": [10]",
          "19: error: /trade/points/0/values: must have 2 values, as many as vary\n"},
         {"side", "\"side\": \"above\"", "\"side\": \"beside\"", "\"side\": \"beside\"",

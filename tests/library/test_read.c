@@ -119,7 +119,8 @@ static void read__every_problem_is_listed_with_its_place(mt_test *t)
         const char *message;
     } rows[] = {
         {"/dimension", 1, 45, "must be 2 or 3"},
-        {"/parameters", 2, 17, "\"a/b\" is no name: a letter or _, then letters, digits and _"},
+        {"/parameters", 2, 17,
+         "\"a/b\" is not a name: a letter or _, then letters, digits and _"},
         {"/bodies/0", 3, 13, "member \"name\" is missing"},
         {"/bodies/0", 3, 14, "unknown member \"nme\"; did you mean \"name\"?"},
     };

@@ -130,7 +130,7 @@ static void study__result_is_read_back(mt_test *t)
     CHECK_STR(t, page[1], page[0]);
     CHECK(t, page[0] != NULL && strncmp(page[0], "<!DOCTYPE html>", 15) == 0);
     mt_result_delete(again);
-    /* what is no result is said with its place */
+    /* what is not a result is said with its place */
     const mt_file_text wrong = {"r.json", "{\n \"status\": \"merry\"}"};
     opt.files = &wrong;
     REQUIRE(t, mt_diagnostics_new(&opt.diagnostics, NULL) == MT_OK);

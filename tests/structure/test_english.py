@@ -16,6 +16,8 @@ WORDS = {
     r"gap assignments?": "mode placement", r"kinds? of design": "mode placement", r"size of the redesign": "total change", r"ha(?:s|ve) a price": "relaxing ... would reduce",
     r"giving way by": "relaxing ... by", r"nothing is told": "(say what follows)", r"in their order": "(name each)", r"hardly meant": "suspicious", r"anew": "again",
     r"likewise": "(say it)", r"falls? over": "is unstable", r"rotor diagram": "Campbell diagram", r"1/min": "rpm", r"as drawn": "reference position", r"\boff by \[": "deviation",
+    r"(?<![Tt]here )\bis no (?!longer\b|more\b|less\b)": "is not a", r"stationary response": "steady response", r"no certificate": "not proven, because ...",
+    r"that are given alone": "named", r"to speak of": "almost no ...", r"hides whether it holds": "hides whether it is stable",
     r"Else:": "Alternatives:", r"nothing else changed": "and nothing else", r"per cent less would save": "relaxing by ... would reduce",
 }
 # Strings of another kind: words of a format that is read, places of drawings on pages whose names the files keep, quotations.

@@ -342,7 +342,7 @@
     const c = all.reduce((a, b) => beyond(b) < beyond(a) ? b : a);
     const where = c.configuration + ' mode ' + c.mode + ' (' + T.sig(c.hz) + ' Hz), ';
     const asked = c.margin_percent > 0
-      ? T.short(c.margin_percent, 3) + ' % are asked for.' : '';
+      ? T.short(c.margin_percent, 3) + ' % is required.' : '';
     if (c.side === 'inside') {
       return 'Deepest inside a band: ' + where + T.short(-c.percent, 3) + ' % within ' +
         D.bandName(c) + '.';

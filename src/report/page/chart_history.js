@@ -115,7 +115,7 @@
     const list = met(steps(k));
     const all = steps(k);
     if (list.length === 0) {
-      return 'No design that meets all goals was met.';
+      return 'No design that meets all goals was found.';
     }
     const end = list[list.length - 1];
     const size = Math.max(Math.abs(end.value), 1e-9);

@@ -58,7 +58,7 @@
   };
 
   function spent() {
-    const names = { search: 'looking for designs', positions: 'positions of drives',
+    const names = { search: 'search', positions: 'positions of drives',
       descriptions: 'descriptions', spread: 'other weights', relaxations: 'relaxations',
       trade: 'trade study' };
     return Object.entries(names).map(([key, name]) => ({ name, value: run().spent[key] }))

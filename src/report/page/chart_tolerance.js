@@ -77,7 +77,7 @@
   function lead() {
     const b = box();
     const sure = b.proven ? 'Proven' : 'Sampled, not proven';
-    return T.isNumber(b.all_percent) ? `${sure}: all parameters may be off by ` +
+    return T.isNumber(b.all_percent) ? `${sure}: all parameters may deviate by ` +
       `${T.short(b.all_percent, 3)} % at once` + (b.edge ? '; then ' + b.edge + '.' : '.') : '';
   }
 

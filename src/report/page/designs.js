@@ -59,7 +59,7 @@
   }
 
   function objectiveTitle(name) {
-    const words = { change: 'size of the change', clearance: 'least clearance' };
+    const words = { change: 'total change', clearance: 'least clearance' };
     return T.titled(words[name] || name, objectiveUnit(name));
   }
 

@@ -204,8 +204,8 @@
                         + (k === null ? ' (as drawn)' : '');
                 out.textContent = text;
                 slider.setAttribute('aria-valuetext', text);
-                told.textContent = k === null ? 'Modes move at the position that is drawn.'
-                    : say(drives, labels, k);
+                told.textContent = k === null
+                    ? 'Mode shapes are animated at the position drawn.' : say(drives, labels, k);
                 paint();
                 choose(k);
             }

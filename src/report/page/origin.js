@@ -14,14 +14,14 @@
     const f = D.clean(design.frequencies);
     if (f.some((m) => T.isNumber(m.residual))) {
       rows.push(['backward error of modes, at most',
-        T.short(greatest(f.map((m) => m.residual)), 3) + ' (a few units are perfect)']);
+        T.short(greatest(f.map((m) => m.residual)), 3) + ' (of order 1: exact to rounding)']);
     }
     if (f.some((m) => T.isNumber(m.orthogonality))) {
       rows.push(['loss of orthogonality, at most',
         T.short(greatest(f.map((m) => m.orthogonality)), 3)]);
     }
     if (T.isNumber(design.kkt_residual)) {
-      rows.push(['optimality conditions missed by', T.short(design.kkt_residual, 3)]);
+      rows.push(['KKT residual', T.short(design.kkt_residual, 3)]);
     }
     return rows;
   }
