@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """
 What `./bootstrap test` leaves out is known: the tests with the label "long" (tests/CMakeLists.txt: long_tests, and every_tests with
-".every" behind their names) are the rows of the table in CONTRIBUTING, each with the defect that only it would find.
+".every" behind their names, which alone stand for those in both) are the rows of the table in CONTRIBUTING, each with the defect that only it would find.
 """
 import os
 import re
@@ -28,7 +28,8 @@ class Long(unittest.TestCase):
 
     def test_the_table_has_all_that_is_left_out(self):
         self.assertGreater(len(self.whole) + len(self.every), 0)
-        self.assertEqual(sorted(name for name, _ in self.rows), sorted(self.whole + [name + ".every" for name in self.every]))
+        whole = [name for name in self.whole if name not in self.every]
+        self.assertEqual(sorted(name for name, _ in self.rows), sorted(whole + [name + ".every" for name in self.every]))
         for name, defect in self.rows:
             self.assertGreater(len(defect.split()), 5, name)
 
