@@ -11,6 +11,7 @@ from decimal import Decimal
 from pathlib import Path
 
 import exact
+import ring
 import run
 import statics
 from faults import DAMPING_FAULTS, FAULTS, RINGING_FAULTS
@@ -23,6 +24,8 @@ TRIED = 4 if FEW else 10  # mechanisms that each fault is planted in; `least` is
 # In turn the one in a plane and the one in space of two kinds that differ in that alone.
 TWINS = [name for name in run.KINDS if name.endswith("2") and name[:-1] + "3" in run.KINDS]
 LEFT_OUT = {name if place % 2 else name[:-1] + "3" for place, name in enumerate(TWINS)} if FEW else set()
+if FEW:
+    ring.SPREAD = 20  # three motions of stiffer ones are half of the time; .every lets them ring, too
 CASES = Path(__file__).resolve().parent / "cases"
 G = 9.81
 
