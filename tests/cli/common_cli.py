@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+PROGRAM = os.path.abspath(os.environ.get("MODETUNE", SOURCE / "build/release/modetune"))
 COMMANDS = ["run", "merge", "compare", "modes", "mac", "sweep", "simulate", "sensitivity", "response", "info", "show", "report", "explain", "apply", "diff", "check",
             "init", "examples", "schema", "profile", "help"]
 
