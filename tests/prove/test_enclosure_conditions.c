@@ -368,6 +368,37 @@ static void enclosure__a_tolerance_box_is_as_large_as_it_can_be(mt_test *t)
     end(&r);
 }
 
+/* All stiffnesses follow from one input and all masses from another, in both orders: alone,
+ *     1 + p = 1.44 of the stiffness,   1/(1 - p) = 1.44 of the mass. */
+static void enclosure__a_tolerance_box_of_each_input_alone(mt_test *t)
+{
+    static const pair_text one = {"m1", "0.5*m1", "L", "k1", "", "2*k1"};
+    static const char *const inputs[] = {"k1 m1", "m1 k1"};
+    for (int order = 0; order < 2; order++) {
+        rig r;
+        mt_test_row(t, "%s", inputs[order]);
+        if (enclose_pair(t, &one, inputs[order], WIDE, &r) && CHECK(t, r.e != NULL)) {
+            const double edge = 1.2 * mech_hz(&r.s, 1);
+            const mt_certify_band band = {0, edge, edge * 1.01, 1e-6};
+            static const int below[1] = {1};
+            mt_tolerance all;
+            mt_tolerance each[INPUTS];
+            mt_arena mem = {0};
+            mt_err err;
+            mt_certify c = {
+                .n_views = 1, .views = &r.e, .n_bands = 1, .bands = &band, .n = r.s.n};
+            const mt_tolerance_question q = {r.s.at, NULL, below, 90.0, 0};
+            CHECK(t, mt_arena_init(&mem, 0, &err) == MT_OK);
+            CHECK(t, mt_certify_tolerance(&c, &q, &mem, &all, each, &err) == MT_OK);
+            CHECK_NEAR(t, all.percent, 100.0 * 0.44 / 2.44, 2e-4);
+            CHECK_NEAR(t, each[order].percent, 44.0, 2e-4);
+            CHECK_NEAR(t, each[1 - order].percent, 100.0 * 0.44 / 1.44, 2e-4);
+            mt_arena_free(&mem);
+        }
+        end(&r);
+    }
+}
+
 static void enclosure__corners_are_where_modes_are_lowest_and_highest(mt_test *t)
 {
     rig r;
@@ -456,5 +487,6 @@ MT_TEST_MAIN(MT_TEST(enclosure__conditions_are_checked_and_named),
              MT_TEST(enclosure__stiffnesses_far_apart_stay_enclosed),
              MT_TEST(enclosure__an_edge_that_is_touched_exactly),
              MT_TEST(enclosure__a_tolerance_box_is_as_large_as_it_can_be),
+             MT_TEST(enclosure__a_tolerance_box_of_each_input_alone),
              MT_TEST(enclosure__corners_are_where_modes_are_lowest_and_highest),
              MT_TEST(enclosure__bands_are_counted_by_inertia_alone))

@@ -125,4 +125,55 @@ static void hopeless__no_sample_is_a_design(mt_test *t)
     CHECK(t, n.hopeless > ROWS / 6 && n.possible > ROWS / 6 && n.without > 0);
 }
 
-MT_TEST_MAIN(MT_TEST(hopeless__no_sample_is_a_design))
+/* One mode at sqrt(k)/(2 pi), and a tolerance of 5 %: what lies beyond an edge by 2 or 3 % is a
+ * design, by 8 or 9 % none, which is proven. */
+static void hopeless__tolerances_of_goals_are_granted(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *goal;
+        double from_hz;
+        bool possible;
+    } rows[] = {
+        {"lower edge", "'avoid', 'bands_hz': [[10, 20]]", 10.2, true},
+        {"upper edge", "'avoid', 'bands_hz': [[10, 20]]", 19.4, true},
+        {"beyond the lower edge", "'avoid', 'bands_hz': [[10, 20]]", 10.8, false},
+        {"beyond the upper edge", "'avoid', 'bands_hz': [[10, 20]]", 18.2, false},
+        {"at most", "'frequency', 'mode': 1, 'at_most_hz': 10", 10.2, true},
+        {"beyond at most", "'frequency', 'mode': 1, 'at_most_hz': 10", 10.8, false},
+        {"at least", "'frequency', 'mode': 1, 'at_least_hz': 20", 19.4, true},
+        {"beyond at least", "'frequency', 'mode': 1, 'at_least_hz': 20", 18.2, false},
+    };
+    static const double WIDE = 1.01; /* of the range of frequencies */
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        const double lower = pow(2.0 * STUDY_PI * rows[i].from_hz, 2.0);
+        char members[400];
+        study_case c;
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k', 'lower': %.17g, 'upper': %.17g}],"
+                       "'goals': [{'type': %s, 'tolerance_percent': 5}]",
+                       lower, lower * WIDE * WIDE, rows[i].goal);
+        mt_test_row(t, "%s", rows[i].name);
+        if (study_solve(t,
+                        "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': "
+                        "4000}, 'bodies': [{'name': 'm', 'mass_kg': 1, 'inertia_kg_m2': 1, "
+                        "'centre': [1, 0]}], 'joints': [{'name': 'j', 'type': 'prismatic', "
+                        "'bodies': ['ground', 'm'], 'at': [1, 0], 'axis': [1, 0]}], 'springs': "
+                        "[{'name': 's', 'type': 'axial', 'joint': 'j', 'stiffness_n_per_m': "
+                        "'k'}]}",
+                        members, &c)) {
+            CHECK_INT(t, c.result->status,
+                      rows[i].possible ? MT_RESULT_SOLVED : MT_RESULT_INFEASIBLE);
+            bool none = false;
+            for (int k = 0; k < c.result->n_certificates; k++) {
+                const mt_certificate *const told = &c.result->certificates[k];
+                none = none || (told->proven && strncmp(told->text, "No design", 9) == 0);
+            }
+            CHECK(t, !(none && rows[i].possible));
+        }
+        study_free(&c);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(hopeless__no_sample_is_a_design),
+             MT_TEST(hopeless__tolerances_of_goals_are_granted))

@@ -58,6 +58,7 @@ static void design__goes_to_the_worst_within(mt_test *t)
             CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
             CHECK(t, best->feasible);
             CHECK_STR(t, best->worst_case, "sampled");
+            CHECK(t, !study_reasons(&c, 1, "None of the designs"));
             CHECK_NEAR(t, rows[i].frequency ? hz / HZ : WORST_K1 * k2 / 3.0, 1.0, MET);
             first = threads == 1 ? k2 : first;
             CHECK(t, k2 == first);
