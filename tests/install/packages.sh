@@ -42,13 +42,21 @@ make_deb() {
     done
     dpkg-deb -c "$deb" >"$work/contents"
     for field in bin/modetune lib/libmodetune.so lib/libmodetune.so.${version%.*} lib/libmodetune.a include/modetune/study.h \
-        lib/pkgconfig/modetune.pc lib/cmake/modetune/modetune-config.cmake share/man/man1/modetune.1 share/man/man1/modetune-run.1 \
+        lib/pkgconfig/modetune.pc lib/cmake/modetune/modetune-config.cmake share/man/man1/modetune.1.gz share/man/man1/modetune-run.1.gz \
         share/bash-completion/completions/modetune share/zsh/vendor-completions/_modetune share/doc/modetune/copyright \
         share/doc/modetune/README.md share/doc/modetune/schemas/README.md share/doc/modetune/src/cli/README.md; do
         grep -q " \./usr/$field\( -> .*\)\?\$" "$work/contents" || fail "$deb: has no /usr/$field"
     done
     ! grep -v " \./\(usr/.*\)\?\$" "$work/contents" | grep -v " -> " || fail "$deb: has files outside of /usr"
     say "$(basename "$deb"): $(stat -c %s "$deb") bytes"
+}
+
+# What breaks Debian's policy.
+look_with_lintian() {
+    command -v lintian >/dev/null || { say "without lintian"; return 0; }
+    lintian --allow-root --fail-on error --tag-display-limit 0 "$deb" >"$work/lintian.log" 2>&1 ||
+        { grep '^E:' "$work/lintian.log" >&2; fail "$(basename "$deb"): breaks Debian's policy"; }
+    say "lintian: no error"
 }
 
 # The fresh Debian; 1: there is none, and $why says why.
@@ -145,6 +153,7 @@ try_wheel() { # environment, does it have NumPy
 }
 
 make_deb
+look_with_lintian
 why=
 tried=
 if make_root; then try_in_root; else try_unpacked; fi
