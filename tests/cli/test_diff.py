@@ -13,7 +13,7 @@ from common_cli import SOURCE, CliTest, main, study
 # What is not compared, wherever it stands.
 SENTENCES = {"history", "column", "goal", "kkt_residual", "line", "orthogonality", "outputs", "reasons", "residual", "status_text", "text", "warnings"}
 # Lists whose items are found by what they are about. A change of that makes another item of it.
-KEYS = {"certificates": ["kind", "pointer"], "curves": ["configuration", "pointer"], "extremes": ["kind"], "limits": ["pointer"], "tones": ["tone"],
+KEYS = {"assumptions": ["parameter"], "certificates": ["kind", "pointer"], "curves": ["configuration", "pointer"], "extremes": ["kind"], "limits": ["pointer"], "tones": ["tone"],
          "clearances": ["configuration", "mode", "band"], "doubts": ["kind", "configuration", "pointer"],
         "excitations": ["pointer", "name"], "facts": ["kind", "configuration", "pointer"],
         "frequencies": ["configuration", "mode", "name", "reference"], "gap_assignment": ["configuration", "band"], "goals": ["pointer"],

@@ -205,7 +205,8 @@
                 out.textContent = text;
                 slider.setAttribute('aria-valuetext', text);
                 told.textContent = k === null
-                    ? 'Mode shapes are animated at the position drawn.' : say(drives, labels, k);
+                    ? 'Mode shapes are animated at the position drawn.'
+                    : say(drives, labels, k);
                 paint();
                 choose(k);
             }
