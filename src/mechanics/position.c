@@ -204,15 +204,15 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
  * freedoms without stiffness that nothing anchors, energies that are followed downhill, and
  * whatever fails) may depend on the place, and is found with the exact one.
  */
-static mt_status drive_from_reference(mt_state *p, const mt_data *data, mt_arena *mem,
-                                      mt_err *err)
+static mt_status drive_from(mt_state *p, const mt_data *data, const mt_placement *from,
+                            mt_arena *mem, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     const mt_state before = *p;
     mt_err own = {0};
     bool anchored = false;
     bool direct = false;
-    mt_status rc = drive(p, data, &p->reference, true, &anchored, mem, &own);
+    mt_status rc = drive(p, data, from, true, &anchored, mem, &own);
     rc = rc == MT_OK ? is_direct(p, anchored, &direct, mem, &own) : rc;
     if (direct) {
         return MT_OK;
@@ -222,7 +222,7 @@ static mt_status drive_from_reference(mt_state *p, const mt_data *data, mt_arena
     }
     mt_arena_rewind(mem, mark);
     *p = before; /* what was anchored stood in memory that is gone */
-    return drive(p, data, &p->reference, false, &anchored, mem, err);
+    return drive(p, data, from, false, &anchored, mem, err);
 }
 
 /* Angle of R0^T R: sin from its skew part, cos from its trace. */
@@ -278,7 +278,7 @@ static mt_status state_init(mt_state *p, const mt_system *sys, mt_arena *mem, mt
 }
 
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
-                            mt_arena *mem, mt_state *out, mt_err *err)
+                            bool exact, mt_arena *mem, mt_state *out, mt_err *err)
 {
     MT_TRY(state_init(out, sys, mem, err));
     mt_data_drawn(data, out->drawn);
@@ -287,9 +287,10 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
     mt_data_rest(data, out->reference.pose);
     mt_placement_copy(sys, &out->reference, &out->at);
     if (sys->driven) {
+        const mt_placement *const from = start != NULL ? start : &out->reference;
         bool anchored = false;
-        MT_TRY(start != NULL ? drive(out, data, start, false, &anchored, mem, err)
-                             : drive_from_reference(out, data, mem, err));
+        MT_TRY(exact ? drive(out, data, from, false, &anchored, mem, err)
+                     : drive_from(out, data, from, mem, err));
     } else if (sys->loaded) {
         MT_TRY(balance(out, data, mem, err));
     }

@@ -60,7 +60,7 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
     MT_TRY(s->visitor != NULL ? s->visitor->visit(s->visitor->context, i, s->inputs, err)
                               : mt_linear_update(lin, s->inputs, true, err));
     s->out->n_reached++;
-    if (s->visitor != NULL && s->visitor->places) {
+    if (s->visitor != NULL && s->visitor->alone) {
         return MT_OK;
     }
     lin->dual.input = sys->n_inputs - 1;

@@ -40,9 +40,9 @@ typedef struct mt_sweep {
 typedef struct mt_sweep_visitor {
     mt_status (*visit)(void *context, int point, const double *inputs, mt_err *err);
     void *context;
-    /* mt_linear_place is all that it does: points have neither coordinates nor ratios, forces
-     * or residuals, and those in a dead centre are as good as others */
-    bool places;
+    /* it has all that is wanted: points get neither coordinates nor ratios, forces or
+     * residuals, and it may do without the gradient */
+    bool alone;
 } mt_sweep_visitor;
 
 /* `steps` >= 2 positions from `from` to `to` (or 1: `from`), evenly spaced, both ends exact:

@@ -3,6 +3,7 @@
  * The range of a driven joint: from the lowest to the highest position that any configuration
  * of the model drives it to; where there is one alone, from the reference position to that. A
  * configuration that drives nothing, but has the joint that others drive, shows their range.
+ * Configurations that are the same but for where they hold the joint share their positions.
  * Each position is found from the one before it. Modes cost many times what a position does
  * and are found where somebody asks for them.
  */
@@ -12,6 +13,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "mechanics/sweep.h"
 #include "model/values.h"
@@ -95,7 +97,7 @@ static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
 typedef struct walk {
     mt_scene_frame *f;
     mt_analysis *a; /* where modes are asked for; else a system and its positions */
-    mt_system *sys;
+    mt_system *sys; /* driven from outside */
     mt_linear *lin;
     mt_scene_drive *out;
 } walk;
@@ -145,7 +147,7 @@ static mt_status visit_modes(void *context, int point, const double *inputs, mt_
     const walk *const w = context;
     mt_scene_position *const p = &w->out->positions[point];
     mt_analysis_options opt = mt_analysis_options_default();
-    opt.gradient = true; /* of the position */
+    opt.vectors = false;
     opt.check = false;
     opt.bounds = false;
     MT_TRY(mt_analysis_solve(w->a, inputs, &opt, err));
@@ -171,6 +173,87 @@ static double nearest_of(int n, const double *positions)
     return least;
 }
 
+/* The positions of w->out, and the system that is driven through them. at[n_inputs + 1]. */
+static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive, double *at,
+                         mt_err *err)
+{
+    mt_scene_frame *const f = w->f;
+    const mt_scene_ask *const ask = f->ask;
+    const int n = w->out->n_positions;
+    double *const positions = mt_arena_f64(f->work, (size_t)n, 1);
+    MT_TRY(mt_arena_check(f->work, err));
+    mt_sweep_range(r->low, r->high, n, positions);
+    for (int i = 0; i < ask->n_inputs; i++) {
+        at[i] = ask->at[i];
+    }
+    for (int i = 0; i < n; i++) {
+        w->out->positions[i].at = positions[i];
+    }
+    at[ask->n_inputs] = nearest_of(n, positions);
+    return mt_system_new_driven(f->model, f->configuration, drive, ask->n_inputs, ask->inputs,
+                                at, &w->sys, err);
+}
+
+/* pose: R R0^T of the body `from`, to what it is of the body `to`. */
+static void turn_back(const mt_scene_body *from, const mt_scene_body *to,
+                      const double *rotation, double *out)
+{
+    double now[3][3]; /* R */
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            now[i][k] = 0.0;
+            for (int c = 0; c < 3; c++) {
+                now[i][k] += rotation[(3 * i) + c] * from->rotation[c + (3 * k)];
+            }
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            double sum = 0.0;
+            for (int c = 0; c < 3; c++) {
+                sum += now[i][c] * to->rotation[k + (3 * c)];
+            }
+            out[(3 * i) + k] = sum;
+        }
+        mt_scene_clean(1.0, out + ((ptrdiff_t)3 * i));
+    }
+}
+
+/* *shared: the positions are those of the configuration that was followed last. */
+static mt_status share(walk *w, bool *shared, mt_err *err)
+{
+    const mt_scene_frame *const f = w->f;
+    const mt_scene_view *const other = f->followed->view;
+    const int bodies = f->view->n_bodies;
+    const int n = w->out->n_positions;
+    bool same = false;
+    *shared = false;
+    if (f->followed->sys != NULL && other->n_bodies == bodies &&
+        other->drive->n_positions == n) {
+        MT_TRY(mt_system_same_drive(f->followed->sys, w->sys, &same, err));
+    }
+    for (int i = 0; i < n && same; i++) {
+        same = other->drive->positions[i].at == w->out->positions[i].at;
+    }
+    for (int i = 0; i < n && same; i++) {
+        const mt_scene_position *const from = &other->drive->positions[i];
+        mt_scene_position *const to = &w->out->positions[i];
+        *to = *from;
+        if (from->pose == NULL) {
+            continue;
+        }
+        to->pose = mt_arena_f64(f->mem, 12, (size_t)bodies);
+        MT_TRY(mt_arena_check(f->mem, err));
+        memcpy(to->pose, from->pose, (size_t)12 * (size_t)bodies * sizeof *to->pose);
+        for (int b = 0; b < bodies; b++) {
+            const ptrdiff_t at = ((ptrdiff_t)12 * b) + 3;
+            turn_back(&other->bodies[b], &f->view->bodies[b], from->pose + at, to->pose + at);
+        }
+    }
+    *shared = same;
+    return MT_OK;
+}
+
 static mt_status sweep(walk *w, const range *r, mt_err *err)
 {
     mt_scene_frame *const f = w->f;
@@ -182,26 +265,25 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
         .spring = r->drive->trim ? m->springs[r->drive->trim_spring].name.s : NULL};
     const bool modes = travel_of(f, r->drive) == MT_TRAVEL_MODES;
     const mt_sweep_visitor visitor = {
-        .visit = modes ? visit_modes : visit_place, .context = w, .places = !modes};
+        .visit = modes ? visit_modes : visit_place, .context = w, .alone = true};
     double *const at = mt_arena_f64(f->work, (size_t)ask->n_inputs + 1, 1);
     double *const positions = mt_arena_f64(f->work, (size_t)n, 1);
+    bool shared = false;
     mt_sweep found;
     MT_TRY(mt_arena_check(f->work, err));
-    mt_sweep_range(r->low, r->high, n, positions);
-    for (int i = 0; i < ask->n_inputs; i++) {
-        at[i] = ask->at[i];
+    MT_TRY(prepare(w, r, &drive, at, err));
+    MT_TRY(share(w, &shared, err));
+    if (shared) {
+        return MT_OK;
     }
     for (int i = 0; i < n; i++) {
-        w->out->positions[i].at = positions[i];
+        positions[i] = w->out->positions[i].at;
     }
-    at[ask->n_inputs] = nearest_of(n, positions);
     if (modes) {
         MT_TRY(mt_analysis_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs,
                                       at, &w->a, err));
         w->a->recount = true; /* a spring may get hold of a direction on the way */
     } else {
-        MT_TRY(mt_system_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs, at,
-                                    &w->sys, err));
         MT_TRY(mt_linear_new(w->sys, &w->lin, err));
     }
     MT_TRY(mt_sweep_run(modes ? w->a->lin : w->lin, at, n, positions, &visitor, f->work, &found,
@@ -215,6 +297,15 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
         }
     }
     return mt_arena_check(f->mem, err);
+}
+
+/* What the next configuration may share. */
+static void keep(walk *w)
+{
+    mt_scene_followed *const followed = w->f->followed;
+    mt_system_delete(followed->sys);
+    *followed = (mt_scene_followed){.sys = w->sys, .view = w->f->view};
+    w->sys = NULL;
 }
 
 mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
@@ -248,6 +339,9 @@ mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     const mt_status rc = sweep(&w, &r, &why);
     mt_analysis_delete(w.a);
     mt_linear_delete(w.lin);
+    if (rc == MT_OK) {
+        keep(&w);
+    }
     mt_system_delete(w.sys);
     if (rc == MT_OK) {
         return MT_OK;

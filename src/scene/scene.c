@@ -199,6 +199,7 @@ typedef struct question {
     const mt_scene_extent *extent;
     mt_scene_room left;
     mt_arena work;
+    mt_scene_followed followed;
 } question;
 
 static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
@@ -215,11 +216,14 @@ static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
                             .extent = q->extent,
                             .mem = mem,
                             .work = &q->work,
-                            .view = &out->views[i]};
+                            .view = &out->views[i],
+                            .followed = &q->followed};
         mt_arena_clear(&q->work);
         MT_TRY(view_new(&f, &q->left, err));
         out->n_views++;
     }
+    mt_system_delete(q->followed.sys);
+    q->followed.sys = NULL;
     return MT_OK;
 }
 
@@ -369,6 +373,7 @@ mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask 
         return mt_fail_memory(err);
     }
     const mt_status rc = fill(scene, &q, n_designs, designs, err);
+    mt_system_delete(q.followed.sys);
     mt_arena_free(&q.work);
     if (rc != MT_OK) {
         mt_scene_delete(scene);

@@ -6,6 +6,12 @@
 #include "analysis/lowest.h"
 #include "scene/scene.h"
 
+/* The range that was followed last at a design: another configuration may have the same. */
+typedef struct mt_scene_followed {
+    mt_system *sys; /* owned, driven from outside; NULL: none */
+    const mt_scene_view *view;
+} mt_scene_followed;
+
 /* What the files of this room share while one configuration of one design is looked at. */
 typedef struct mt_scene_frame {
     const mt_model *model;
@@ -25,6 +31,7 @@ typedef struct mt_scene_frame {
     mt_arena *mem;   /* of the scene */
     mt_arena *work;
     mt_scene_view *view;
+    mt_scene_followed *followed;
 } mt_scene_frame;
 
 /* What is left of what a page can show. */
