@@ -46,9 +46,9 @@ typedef struct mt_state {
 /* data holds values (input -1) with vectors loaded; targets and rest values are filled here.
  * Results and work in mem. start: NULL, or where a driven joint begins instead of at the
  * reference position: a sweep's last point. exact: no closure by the smallest steps, which is
- * the slow way that the quick one is judged by. Fails: MT_E_ASSEMBLY (a gap, named with its joint;
- * contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under load),
- * MT_E_DEAD_CENTRE (singular.h: where it begins). */
+ * the slow way that the quick one is judged by. Fails: MT_E_ASSEMBLY (a gap, named with its
+ * joint; contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under
+ * load), MT_E_DEAD_CENTRE (singular.h: where it begins). */
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
                             bool exact, mt_arena *mem, mt_state *out, mt_err *err);
 /* Derivative with respect to data->input (vectors, targets loaded with derivatives here). Fills
