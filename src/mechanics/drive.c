@@ -322,6 +322,7 @@ static mt_status advance(walk *w, double *h, mt_err *err)
     }
     const double body = fmin(w->growth * BODY_STEP, BODY_STEP_MOST);
     double step = fmin(fmin(*h, fabs(way)), body * w->unit / size);
+    *h = 0.0; /* also where bodies move so far that no step is long enough to be tried */
     while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
         bool turned = false;
         const double to = step_end(w, step);
