@@ -137,9 +137,9 @@ ELSEWHERE.update({
     "T%s.": "cli/test_response_vibration.py and vibration/test_* have the responses in closed form",
     "%s: deviation %.3g %% rms, most at %.6g Hz, where the response is %.4g times what was measured and its phase %+.3g deg from it.":
         "answer/test_frequency_response.py has the misfit",
-    "It is one of a continuum of equally good designs that %d start%s found.": "search/test_search_continuum.c",
+    "It is one of a continuum of equally good designs that %d start%s found.": "describe/test_study_reasons.c",
     "A continuum of designs is as good as this one: those between it and others that were found meet all goals, too, and have the same %s.":
-        "search/test_search_continuum.c",
+        "describe/test_study_reasons.c",
     "It is a repeated mode and has no sensitivity of its own.": "reference/test_repeated_modes.py",
     "With the %s %s held, it has the %s %s near it.": "answer/test_study_objectives.c",
 })

@@ -217,10 +217,29 @@ static void a_continuum_of_designs__is_one_and_said_to_be(mt_test *t)
     study_free(&c);
 }
 
+/* A hill between two valleys that meet all goals, the one below the other: none is as good as
+ * what lies between. */
+static void two_minima__are_no_continuum(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t, CONTINUUM("k"),
+                    "'variables': [{'parameter': 'k', 'lower': 1, 'upper': 16}],"
+                    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.01}],"
+                    "'objective': {'minimise': '((k - 4)*(k - 12))^2 + 20*k'}",
+                    &c) &&
+        CHECK_INT(t, c.result->n_recommendations, 2)) {
+        CHECK(t, fabs(study_value(&c, 1, "k") - 4.0) < 0.5);
+        CHECK(t, fabs(study_value(&c, 2, "k") - 12.0) < 0.5);
+        CHECK_INT(t, count_said(&c, "ontinuum"), 0);
+    }
+    study_free(&c);
+}
+
 MT_TEST_MAIN(MT_TEST(target_that_is_reached__is_said_plainly),
              MT_TEST(target_that_is_met_already__stays),
              MT_TEST(target_out_of_reach__is_told_from_which_side),
              MT_TEST(limits__are_at_clear_or_between),
              MT_TEST(percentages__are_those_of_the_numbers_beside_them),
              MT_TEST(parameters_that_stay__are_listed),
-             MT_TEST(a_continuum_of_designs__is_one_and_said_to_be))
+             MT_TEST(a_continuum_of_designs__is_one_and_said_to_be),
+             MT_TEST(two_minima__are_no_continuum))
