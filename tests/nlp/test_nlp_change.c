@@ -205,6 +205,70 @@ static void nlp_change__active_bound_has_its_multiplier(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* t between two limits that meet at 1, where 2 is wished: the first would push the wrong way,
+ * and is left out; the second holds. */
+static mt_status wall(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                      mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->in[0] = t[0] - 1.0;
+    out->din[0] = 1.0;
+    out->in[1] = 1.0 - t[0];
+    out->din[1] = -1.0;
+    return MT_OK;
+}
+
+static void nlp_change__of_two_limits_the_one_that_holds_has_a_multiplier(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 1, wall, -3, 3);
+    c.nlp.n_in = 2;
+    c.origin[0] = 2;
+    const mt_nlp_options opt = mt_nlp_options_default();
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, c.result.n_solutions == 1);
+    const mt_nlp_solution *const s = &c.result.solutions[0];
+    CHECK_NEAR(t, s->t[0], 1.0, 2e-6);
+    CHECK_NEAR_ABS(t, s->mult_in[0], 0.0, 1e-9);
+    CHECK_NEAR(t, s->mult_in[1], 1.0, 1e-5);
+    CHECK(t, s->kkt < 1e-6);
+    mt_arena_free(&c.mem);
+}
+
+/* r = (t - 1, 2 t + 2): least at t = -3/5, where |r|^2/2 = 8/5. */
+static mt_status residuals(void *context, const double *t, bool with_gradient,
+                           mt_nlp_values *out, mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    change(c, t, out);
+    out->r[0] = t[0] - 1.0;
+    out->r[1] = (2.0 * t[0]) + 2.0;
+    out->dr[0] = 1.0;
+    out->dr[1] = 2.0;
+    return MT_OK;
+}
+
+static void nlp_change__a_misfit_is_half_the_sum_of_squares(mt_test *t)
+{
+    nlp_case c = {0};
+    case_begin(&c, 1, residuals, -3, 3);
+    c.nlp.n_res = 2;
+    mt_nlp_options opt = mt_nlp_options_default();
+    opt.least_change = false;
+    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, c.result.n_solutions == 1);
+    CHECK_NEAR(t, c.result.solutions[0].t[0], -0.6, 1e-9);
+    CHECK_NEAR(t, c.result.solutions[0].f, 1.6, 1e-9);
+    mt_arena_free(&c.mem);
+}
+
 /* Feasible already: nothing changes, exactly. */
 static void nlp_change__feasible_origin_is_the_answer(mt_test *t)
 {
@@ -265,5 +329,7 @@ MT_TEST_MAIN(MT_TEST(nlp_change__both_minima_are_kept_and_vertices_are_not),
              MT_TEST(nlp_change__a_minimum_is_polished_once),
              MT_TEST(nlp_change__weight_under_inequalities_from_an_infeasible_start),
              MT_TEST(nlp_change__active_bound_has_its_multiplier),
+             MT_TEST(nlp_change__of_two_limits_the_one_that_holds_has_a_multiplier),
+             MT_TEST(nlp_change__a_misfit_is_half_the_sum_of_squares),
              MT_TEST(nlp_change__feasible_origin_is_the_answer),
              MT_TEST(nlp_change__combination_without_influence_is_named))
