@@ -25,11 +25,11 @@ static const double MOST_SIXTHS = 100.0;
 static const double WHOLE = 1e-9;
 
 typedef struct powers {
+    double value; /* of a literal number, for exponents; NaN: none */
+    int sixths[MT_BASE_RAD];
     bool known;
     bool number;  /* it has no unit in it: in a sum it is what the other is */
     bool literal; /* a unit: a number in front of it is one of these */
-    double value; /* of a literal number, for exponents; NaN: none */
-    int sixths[MT_BASE_RAD];
 } powers;
 
 static powers constant(const mt_code *c)
@@ -154,18 +154,17 @@ static powers leaf(const mt_code *c, mt_measures_lookup lookup, const void *cont
     return p;
 }
 
-bool mt_expr_measures(const mt_expr *e, mt_measures_lookup lookup, const void *context,
-                      mt_unit_worth *out)
+/* The whole expression, in stack[0]; false: none that was parsed. */
+static bool walk(const mt_expr *e, mt_measures_lookup lookup, const void *context,
+                 powers *stack)
 {
-    powers stack[MT_EXPR_MAX_CODE];
     int n = 0;
-    *out = (mt_unit_worth){.factor = 1.0};
     for (int i = 0; i < e->length; i++) {
         const mt_op op = e->code[i].op;
         const int operands = mt_op_operands(op);
         if (operands <= 0) {
             stack[n++] = leaf(&e->code[i], lookup, context);
-        } else if (n < operands) { /* no expression that was parsed */
+        } else if (n < operands) {
             return false;
         } else if (operands == 1) {
             stack[n - 1] = unary(op, &stack[n - 1]);
@@ -174,7 +173,15 @@ bool mt_expr_measures(const mt_expr *e, mt_measures_lookup lookup, const void *c
             n--;
         }
     }
-    if (n != 1 || !stack[0].known || stack[0].number) {
+    return n == 1;
+}
+
+bool mt_expr_measures(const mt_expr *e, mt_measures_lookup lookup, const void *context,
+                      mt_unit_worth *out)
+{
+    powers stack[MT_EXPR_MAX_CODE];
+    *out = (mt_unit_worth){.factor = 1.0};
+    if (!walk(e, lookup, context, stack) || !stack[0].known || stack[0].number) {
         return false;
     }
     bool any = e->length == 1; /* a multiple of a ratio may be a multiple of anything */
