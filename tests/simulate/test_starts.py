@@ -148,7 +148,7 @@ class Starts(unittest.TestCase):
                 else:
                     ends["refused"] += 1
                     self.assertEqual(code, 3)
-                    self.assertRegex(said, "limit position|stays closed to where")
+                    self.assertRegex(said, "limit position|its joints stay closed up to")
                     self.assertLess(least, 1e-4)
         self.assertLessEqual(ends["no rest"], EACH // 8)
         return ends
