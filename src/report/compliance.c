@@ -332,13 +332,8 @@ static const char *number_margin(sheet *s, const mt_result_goal *g, double value
     char number[MT_NUMBER_TEXT];
     if (!isnan(g->target)) {
         const double off = g->target == 0.0 ? nan("") : PERCENT * fabs(value / g->target - 1.0);
-        return isnan(off)
-                   ? NULL
-                   : mt_arena_printf(
-                         &s->t.mem, "off by %s %%",
-                         mt_report_number(
-                             g->met && !g->weighted && off <= MT_PERCENT_NOISE ? 0.0 : off,
-                             PERCENT_DIGITS, number));
+        (void)mt_report_number(mt_without_noise(off, MT_PERCENT_NOISE), PERCENT_DIGITS, number);
+        return isnan(off) ? NULL : mt_arena_printf(&s->t.mem, "off by %s %%", number);
     }
     double room = HUGE_VAL;
     if (!isnan(g->at_least)) {
