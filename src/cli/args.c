@@ -203,8 +203,8 @@ static mt_status read_format(const char *s, int command, mt_format *out, mt_err 
     }
     const mt_status rc = list.failed
                              ? mt_fail(err, MT_E_MEMORY, "out of memory")
-                             : mt_fail(err, MT_E_USAGE, "--format: \"%s\" is none of %s%s", s,
-                                       list.s, did_you_mean(s, names, n, "", suggestion));
+                             : mt_fail(err, MT_E_USAGE, "--format: \"%s\" is not one of %s%s",
+                                       s, list.s, did_you_mean(s, names, n, "", suggestion));
     mt_text_free(&list);
     return rc;
 }
@@ -216,7 +216,7 @@ static mt_status read_report(const char *s, const char *option, bool *none, mt_e
     *none = strcmp(s, names[1]) == 0;
     return *none || strcmp(s, names[0]) == 0
                ? MT_OK
-               : mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is none of html, none%s", option, s,
+               : mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not one of html, none%s", option, s,
                          did_you_mean(s, names, MT_COUNT(names), "", suggestion));
 }
 
@@ -231,8 +231,8 @@ static mt_status read_progress(const char *s, const char *option, mt_progress_fo
             return MT_OK;
         }
     }
-    return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is none of auto, line, json, none%s", option,
-                   s, did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+    return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not one of auto, line, json, none%s",
+                   option, s, did_you_mean(s, names, MT_COUNT(names), "", suggestion));
 }
 
 static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt_err *err)

@@ -73,11 +73,12 @@ static int load(const mt_args *args, subject *o)
     }
     if (!result && args->given[MT_OPT_MODEL]) {
         return mt_cli_failed(
-            mt_fail(&err, MT_E_USAGE, "--model is of a result, and %s is none", operand), &err);
+            mt_fail(&err, MT_E_USAGE, "--model needs a result, and %s is not one", operand),
+            &err);
     }
     if (result && args->all[MT_OPT_SET].n > 0) {
         return mt_cli_failed(
-            mt_fail(&err, MT_E_USAGE, "--set is of a model: a result has its own values"),
+            mt_fail(&err, MT_E_USAGE, "--set needs a model: a result has its own values"),
             &err);
     }
     if (!result) {
@@ -188,7 +189,7 @@ static mt_status keep(const char *path, const mt_text *text, mt_err *err)
 static mt_status check_use(const mt_args *args, mt_err *err)
 {
     if (args->given[MT_OPT_MODE] && !args->given[MT_OPT_SVG]) {
-        return mt_fail(err, MT_E_USAGE, "--mode is of --svg: the page shows all modes");
+        return mt_fail(err, MT_E_USAGE, "--mode needs --svg: the page shows all modes");
     }
     if (args->given[MT_OPT_FORMAT] && args->given[MT_OPT_SVG]) {
         return mt_fail(err, MT_E_USAGE, "--svg and --format exclude each other");

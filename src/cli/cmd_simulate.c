@@ -49,7 +49,9 @@ static mt_status make(job *j, mt_err *err)
         MT_TRY(mt_sim_start_of(j->args, s, drive.joint, &given, &drive.position, err));
     }
     if (j->args->given[MT_OPT_ALONG] && drive.joint != NULL) {
-        return mt_fail(err, MT_E_USAGE, "--mode starts a motion in which no joint is moved");
+        return mt_fail(err, MT_E_USAGE,
+                       "--mode excludes --start and --rate: it starts a motion in which no "
+                       "joint is moved");
     }
     if (j->args->given[MT_OPT_ALONG]) {
         MT_TRY(mt_analysis_new(s->model, j->c, s->n_inputs, s->inputs, s->at, &j->a, err));

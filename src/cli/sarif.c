@@ -19,7 +19,7 @@
       "contradictory: the file cannot be used before it is mended.")                         \
     X(RULE_WARNING, "hardly-meant", "warning", "A value is allowed but suspicious",          \
       "Values that look like other units, joints off their links, bands that no mode comes " \
-      "near. While such a doubt stands, no answer of a study is graded as proven.")          \
+      "near. They stand before the answer and change no grade.")                             \
     X(RULE_NOTE, "good-to-know", "note", "A fact of the model",                              \
       "Free motions, unstable directions, redundant joints, gaps that were closed: welcome " \
       "where they are meant.")                                                               \

@@ -307,9 +307,18 @@ static void tell_numbers(const mt_teller *to, const mt_result *result,
 static void tell_compliance(const mt_teller *to, const mt_result *result,
                             const mt_recommendation *r)
 {
-    mt_text_add(to->out, to->html ? "<div class=\"compliance\">\n" : "");
-    add_table(to, mt_report_compliance(result, r), "Requirements");
-    mt_text_add(to->out, to->html ? "</div>\n" : "");
+    static const char title[] = "Requirements";
+    if (!to->html) {
+        add_table(to, mt_report_compliance(result, r), title);
+        return;
+    }
+    mt_text_add(to->out, "<div class=\"compliance\">\n");
+    add_table(to, mt_report_compliance(result, r), title);
+    if (r->n_goals > 0) {
+        mt_text_add(to->out, "<p class=\"lead\">Margin: what is left to the limit, in per "
+                             "cent of it; below 0 the limit is exceeded.</p>\n");
+    }
+    mt_text_add(to->out, "</div>\n");
 }
 
 static void tell_design(const mt_teller *to, const mt_result *result,

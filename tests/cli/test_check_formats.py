@@ -135,9 +135,9 @@ class CheckFormats(CliTest):
         self.assertRegex(text, r"many.json: \d+ more not shown\n")
 
     def test_sarif_is_of_check_alone(self):
-        self.assertIn('--format: "sarif" is none of text, json, csv\n', self.expect(2, "modes", self.model, "--format", "sarif").stderr)
-        self.assertIn('is none of text, json, csv, html; did you mean "html"?', self.expect(2, "report", "x", "--format", "htm").stderr)
-        self.assertIn('is none of text, json, csv, sarif; did you mean "sarif"?', self.expect(2, "check", "x", "--format", "sarf").stderr)
+        self.assertIn('--format: "sarif" is not one of text, json, csv\n', self.expect(2, "modes", self.model, "--format", "sarif").stderr)
+        self.assertIn('is not one of text, json, csv, html; did you mean "html"?', self.expect(2, "report", "x", "--format", "htm").stderr)
+        self.assertIn('is not one of text, json, csv, sarif; did you mean "sarif"?', self.expect(2, "check", "x", "--format", "sarf").stderr)
 
 
 if __name__ == "__main__":

@@ -130,7 +130,7 @@ class Help(CliTest):
                                ("show", "json html"), ("apply", "text json")):
             self.assertEqual(self.completed(command, "--format", ""), set(forms.split()))
             for form in {"text", "json", "csv", "html", "sarif"} - set(forms.split()):
-                self.assertIn(f'--format: "{form}" is none of', self.expect(2, command, "--format", form, "x").stderr)
+                self.assertIn(f'--format: "{form}" is not one of', self.expect(2, command, "--format", form, "x").stderr)
         self.assertEqual(self.completed("schema", "s"), {"study", "scene"})
         self.assertEqual(self.completed("examples", ""), {p.stem for p in (SOURCE / "studies").glob("*.json")})
         self.write("study.json", "{}")
@@ -271,7 +271,7 @@ class WrongUse(CliTest):
         self.wrong('--threads: "-1" is not a whole number from 1 to 1024', "run", "x", "--threads", "-1")
         self.wrong('--shapes takes no value', "modes", self.model, "--shapes=yes")
         self.wrong('--format is given twice', "modes", self.model, "--format", "csv", "--format=json")
-        self.wrong('--format: "jsn" is none of text, json, csv; did you mean "json"?', "modes", "--format=jsn", "m")
+        self.wrong('--format: "jsn" is not one of text, json, csv; did you mean "json"?', "modes", "--format=jsn", "m")
         self.wrong('--output: the value is empty', "run", "x", "--output=")
         self.wrong('unknown configuration "hold"; did you mean "held"?', "modes", self.model, "-c", "hold")
         self.wrong('--set: "k1" is not NAME=VALUE', "modes", self.model, "--set", "k1")

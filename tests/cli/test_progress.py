@@ -186,7 +186,7 @@ class Progress(CliTest):
 
     def test_values_that_are_none(self):
         done = self.expect(2, "run", self.short, "--progress", "lines")
-        self.assertIn('--progress: "lines" is none of auto, line, json, none; did you mean "line"?', done.stderr)
+        self.assertIn('--progress: "lines" is not one of auto, line, json, none; did you mean "line"?', done.stderr)
         self.assertIn('"check" has no option "--progress"', self.expect(2, "check", self.short, "--progress", "json").stderr)
 
 

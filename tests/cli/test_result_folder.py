@@ -123,7 +123,7 @@ class Belonging(FolderTest):
         self.assertEqual(path.read_bytes(), full)
         self.expect(0, "run", "studies/two.json", "--report", "html")
         self.assertEqual(path.read_bytes(), full)
-        self.assertIn('--report: "htm" is none of html, none; did you mean "html"?',
+        self.assertIn('--report: "htm" is not one of html, none; did you mean "html"?',
                       self.expect(2, "run", "studies/two.json", "--report", "htm").stderr)
         self.expect(0, "run", "studies/two.json", "studies/judged.json", "--report", "none", "--quiet")
         self.assertNotIn("<a ", (self.folder / "results/index.html").read_text(encoding="utf-8"))

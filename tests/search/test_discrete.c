@@ -386,8 +386,8 @@ static void discrete__how_many_combinations_meet_the_goals_is_told(mt_test *t)
 {
     static const char *const limits[] = {"0.5", "1.5", "2.5", "3.5"};
     static const char *const words[] = {
-        "all 3 combinations of catalogue values were judged, 3 of "
-        "them meet all goals",
+        ("all 3 combinations of catalogue values were judged, 3 of "
+         "them meet all goals"),
         "2 of them meet all goals", "1 of them meets all goals",
         "None of the 3 combinations of catalogue values meets"};
     for (int i = 0; i < MT_COUNT(limits); i++) {
