@@ -221,6 +221,9 @@ static bool put_bands(sheet *s, int i)
 {
     const mt_recommendation *const d = s->after;
     const mt_result_goal *const g = &d->goals[i];
+    if (g->configuration == NULL) {
+        return false;
+    }
     const bool clear = is_clear(d, g->configuration);
     double least = 0.0;
     const mt_result_gap *const tightest = tightest_of(d, g->configuration, &least);
@@ -329,8 +332,8 @@ static const char *limit_text(sheet *s, const mt_result_goal *g)
 /* Of a limit the room to it, of a target the way off it. */
 static const char *number_margin(sheet *s, const mt_result_goal *g, double value)
 {
-    char number[MT_NUMBER_TEXT];
     if (!isnan(g->target)) {
+        char number[MT_NUMBER_TEXT];
         const double off = g->target == 0.0 ? nan("") : PERCENT * fabs(value / g->target - 1.0);
         (void)mt_report_number(mt_without_noise(off, MT_PERCENT_NOISE), PERCENT_DIGITS, number);
         return isnan(off) ? NULL : mt_arena_printf(&s->t.mem, "off by %s %%", number);

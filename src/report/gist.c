@@ -210,8 +210,7 @@ static void add_others(const mt_result *result, mt_text *out)
     const int others = result->n_recommendations - 1;
     if (others > 0) {
         open_item("Alternatives", out);
-        mt_text_addf(out, "%d other recommendation%s.",
-                     others, others == 1 ? "" : "s");
+        mt_text_addf(out, "%d other recommendation%s.", others, others == 1 ? "" : "s");
         close_item(out);
     }
 }

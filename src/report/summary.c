@@ -518,10 +518,10 @@ typedef void mt_tell_one(const mt_teller *to, const mt_result *result,
  * the original one where there is none. */
 static void tell_each(const mt_teller *to, const mt_result *result, mt_tell_one *tell)
 {
-    const int found = result->n_recommendations < SHOWN ? result->n_recommendations : SHOWN;
+    const int found = result->n_recommendations;
     const mt_recommendation *const first =
         found > 0 ? result->recommendations : &result->baseline;
-    for (int i = 0; i < (found > 0 ? found : 1); i++) {
+    for (int i = 0; i < SHOWN && (i < found || i == 0); i++) {
         mt_text_addf(to->out, "<section data-rank=\"%d\"%s>\n", first[i].rank,
                      i == 0 ? "" : " hidden");
         tell(to, result, &first[i]);

@@ -63,9 +63,9 @@ static void add_assumption(const mt_result_assumption *a, mt_text *out)
         if (point != NULL && strchr(number, 'e') == NULL) { /* a value, not a column of them */
             size_t n = strlen(number);
             while (number[n - 1] == '0') {
-                number[--n] = '\0';
+                n--;
             }
-            number[n - 1] = number[n - 1] == '.' ? '\0' : number[n - 1];
+            number[number[n - 1] == '.' ? n - 1 : n] = '\0';
         }
         mt_text_addf(out, " = %s", number);
         if (unit != NULL && unit[0] != '\0' && strcmp(unit, "1") != 0) {

@@ -320,6 +320,45 @@ static void scene__a_driven_joint_has_its_range(mt_test *t)
     mt_scene_delete(scene);
 }
 
+/* One scene of the last configuration that drives a joint, of whose range so much is asked. */
+static mt_scene *scene_of_range(mt_test *t, const mt_model *model, mt_scene_travel kind)
+{
+    enum { MOST = 40 };
+    mt_scene_travel travel[MOST];
+    mt_scene *scene = NULL;
+    mt_err err = {.text = ""};
+    int configuration = 0;
+    if (!CHECK(t, model->n_joints <= MOST)) {
+        return NULL;
+    }
+    for (int c = 0; c < model->n_configurations; c++) {
+        configuration = model->configurations[c].drive.given ? c : configuration;
+    }
+    for (int j = 0; j < model->n_joints; j++) {
+        travel[j] = kind;
+    }
+    const mt_scene_ask ask = {.label = "original", .n_shown = 0};
+    const mt_scene_extent extent = {.n_configurations = 1,
+                                    .configurations = &configuration,
+                                    .work = MT_SCENE_WORK,
+                                    .travel = travel};
+    CHECK(t, mt_scene_new(model, 1, &ask, &extent, &scene, &err) == MT_OK);
+    return scene;
+}
+
+static void check_same_poses(mt_test *t, const mt_scene_drive *poses,
+                             const mt_scene_drive *modes, int n)
+{
+    for (int i = 0; i < poses->n_positions; i++) {
+        const mt_scene_position *const p = &poses->positions[i];
+        const mt_scene_position *const q = &modes->positions[i];
+        CHECK(t, p->n_hz == 0 && q->n_hz > 0);
+        for (int k = 0; k < 12 * n && CHECK(t, p->pose != NULL && q->pose != NULL); k++) {
+            CHECK_NEAR_ABS(t, p->pose[k], q->pose[k], 1e-9);
+        }
+    }
+}
+
 /* Of the same ranges the poses alone, and nothing. */
 static void scene__poses_are_those_of_the_modes(mt_test *t)
 {
@@ -327,43 +366,19 @@ static void scene__poses_are_those_of_the_modes(mt_test *t)
     for (int f = 0; f < MT_COUNT(files); f++) {
         mt_model *const model = mech_load(t, files[f]);
         mt_scene *scene[MT_TRAVEL_MODES + 1] = {NULL};
-        mt_err err = {.text = ""};
-        enum { MOST = 40 };
-        if (model == NULL || !CHECK(t, model->n_joints <= MOST)) {
-            continue;
+        for (int kind = MT_TRAVEL_NONE; model != NULL && kind <= MT_TRAVEL_MODES; kind++) {
+            scene[kind] = scene_of_range(t, model, (mt_scene_travel)kind);
         }
-        int configuration = 0;
-        for (int c = 0; c < model->n_configurations; c++) {
-            configuration = model->configurations[c].drive.given ? c : configuration;
-        }
-        const mt_scene_ask ask = {.label = "original", .n_shown = 0};
-        for (int kind = MT_TRAVEL_NONE; kind <= MT_TRAVEL_MODES; kind++) {
-            mt_scene_travel travel[MOST];
-            for (int j = 0; j < model->n_joints; j++) {
-                travel[j] = (mt_scene_travel)kind;
-            }
-            const mt_scene_extent extent = {.n_configurations = 1,
-                                            .configurations = &configuration,
-                                            .work = MT_SCENE_WORK,
-                                            .travel = travel};
-            CHECK(t, mt_scene_new(model, 1, &ask, &extent, &scene[kind], &err) == MT_OK);
-        }
-        const mt_scene_drive *const poses = view_of(scene[MT_TRAVEL_POSES], 0)->drive;
-        const mt_scene_drive *const modes = view_of(scene[MT_TRAVEL_MODES], 0)->drive;
-        const int n = view_of(scene[MT_TRAVEL_POSES], 0)->n_bodies;
         mt_test_row(t, "%s", files[f]);
-        CHECK(t, view_of(scene[MT_TRAVEL_NONE], 0)->drive == NULL);
-        if (CHECK(t, poses != NULL && modes != NULL &&
-                         poses->n_positions == modes->n_positions && n > 1)) {
-            for (int i = 0; i < poses->n_positions; i++) {
-                const mt_scene_position *const p = &poses->positions[i];
-                const mt_scene_position *const q = &modes->positions[i];
-                mt_test_row(t, "%s, position %d", files[f], i);
-                CHECK(t, p->n_hz == 0 && q->n_hz > 0);
-                for (int k = 0; k < 12 * n && CHECK(t, p->pose != NULL && q->pose != NULL);
-                     k++) {
-                    CHECK_NEAR_ABS(t, p->pose[k], q->pose[k], 1e-9);
-                }
+        if (CHECK(t, scene[MT_TRAVEL_NONE] != NULL && scene[MT_TRAVEL_POSES] != NULL &&
+                         scene[MT_TRAVEL_MODES] != NULL)) {
+            const mt_scene_drive *const poses = view_of(scene[MT_TRAVEL_POSES], 0)->drive;
+            const mt_scene_drive *const modes = view_of(scene[MT_TRAVEL_MODES], 0)->drive;
+            const int n = view_of(scene[MT_TRAVEL_POSES], 0)->n_bodies;
+            CHECK(t, view_of(scene[MT_TRAVEL_NONE], 0)->drive == NULL);
+            if (CHECK(t, poses != NULL && modes != NULL &&
+                             poses->n_positions == modes->n_positions && n > 1)) {
+                check_same_poses(t, poses, modes, n);
             }
         }
         for (int kind = MT_TRAVEL_NONE; kind <= MT_TRAVEL_MODES; kind++) {
