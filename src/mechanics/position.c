@@ -214,7 +214,7 @@ static mt_status drive_from(mt_state *p, const mt_data *data, const mt_placement
     bool direct = false;
     mt_status rc = drive(p, data, from, true, &anchored, mem, &own);
     rc = rc == MT_OK ? is_direct(p, anchored, &direct, mem, &own) : rc;
-    if (direct) {
+    if (rc == MT_OK && direct) {
         return MT_OK;
     }
     if (rc == MT_E_INTERRUPTED || mt_is_final(rc)) {

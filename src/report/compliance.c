@@ -97,7 +97,7 @@ typedef struct nearest {
 /* How far f is outside an interval, as a part of its nearer end; negative inside. */
 static double room_of(const mt_result_gap *band, double hz)
 {
-    const double below = band->margin_lower_hz / hz - 1.0;
+    const double below = hz > 0.0 ? band->margin_lower_hz / hz - 1.0 : HUGE_VAL;
     const double above = hz / band->margin_upper_hz - 1.0;
     return fmax(below, above);
 }
@@ -329,22 +329,24 @@ static const char *limit_text(sheet *s, const mt_result_goal *g)
                            strcmp(g->type, "avoid") == 0 ? " clearance" : "");
 }
 
+/* A part of a number; of 0 there is none. */
+static double part_of(double way, double of)
+{
+    return of < 0.0 || of > 0.0 ? way / fabs(of) : nan("");
+}
+
 /* Of a limit the room to it, of a target the way off it. */
 static const char *number_margin(sheet *s, const mt_result_goal *g, double value)
 {
     if (!isnan(g->target)) {
         char number[MT_NUMBER_TEXT];
-        const double off = g->target == 0.0 ? nan("") : PERCENT * fabs(value / g->target - 1.0);
+        const double off = PERCENT * fabs(part_of(value - g->target, g->target));
         (void)mt_report_number(mt_without_noise(off, MT_PERCENT_NOISE), PERCENT_DIGITS, number);
         return isnan(off) ? NULL : mt_arena_printf(&s->t.mem, "off by %s %%", number);
     }
-    double room = HUGE_VAL;
-    if (!isnan(g->at_least)) {
-        room = (value - g->at_least) / fabs(g->at_least);
-    }
-    if (!isnan(g->at_most)) {
-        room = fmin(room, (g->at_most - value) / fabs(g->at_most));
-    }
+    const double above = part_of(value - g->at_least, g->at_least);
+    const double below = part_of(g->at_most - value, g->at_most);
+    const double room = isnan(above) || below < above ? below : above;
     return margin_text(s, PERCENT * room);
 }
 

@@ -88,10 +88,10 @@ static mt_result *solve(mt_test *t, const mt_study *study, int threads)
     return r;
 }
 
-/* Drives whose motion is followed, as the original design says. */
+/* Drives whose motion is followed for bands or limits, as the original design says. */
 static int motions_of(const mt_result *r)
 {
-    return r->baseline.n_motions;
+    return r->baseline.n_motions + r->baseline.n_between;
 }
 
 /* One problem; a workspace for each worker, for the original design and for each design that is

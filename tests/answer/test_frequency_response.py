@@ -227,12 +227,12 @@ def refusals(folder):
         ("no line in the band", {"goal": goal(3, 1, "hammer", band_hz=[60, 70])}, "no line of", "study.json"),
         ("a band that descends", {"goal": goal(3, 1, "hammer", band_hz=[30, 20])}, "ascending", "study.json"),
         ("coherence", {"goal": goal(3, 1, "hammer", coherence=True)}, "has no coherence", "study.json"),
-        ("a wrong number", {"measurements": {"hammer": {"file": "bad.csv"}}}, "no finite number", "bad.csv:2:5"),
+        ("a wrong number", {"measurements": {"hammer": {"file": "bad.csv"}}}, "not a finite number", "bad.csv:2:5"),
         ("no file", {"measurements": {"hammer": {"file": "absent.csv"}}}, "absent.csv", "study.json"),
         ("two datasets", {"measurements": {"hammer": {"file": "two.uff"}}}, "say which", "study.json"),
         ("no such dataset", {"measurements": {"hammer": {"file": "two.uff", "dataset": 3}}}, "dataset 2: 3+X by 1+X", "study.json"),
         ("a dataset of a table", {"measurements": {"hammer": {"file": "good.csv", "dataset": 1}}}, "is a table", "study.json"),
-        ("no freedom", {"measurements": {"hammer": {"file": "two.uff", "response_node": "X"}}}, "no node and direction", "study.json"),
+        ("no freedom", {"measurements": {"hammer": {"file": "two.uff", "response_node": "X"}}}, "not a node and direction", "study.json"),
         ("a factor below 0", {"measurements": {"hammer": {"file": "good.csv", "factor": -1}}}, "above 0", "study.json"),
     ]
     for what, changed, says, where in cases:

@@ -206,7 +206,7 @@ class DeadCentres(MechanismTest):
             with self.subTest(command):
                 done = self.run_on(model, command, *args)
                 self.assertEqual(done.returncode, 3)
-                self.assertIn('dead centre: joints "j0", "j1", "j2", "j3" depend on each other', done.stderr)
+                self.assertIn('dead centre: joints "j0", "j1", "j2", "j3" become dependent', done.stderr)
 
     def test_the_frequency_stays_right_up_to_the_refusal(self):
         # both cranks turn about their ends, the coupler is carried along: the same inertia at every angle
