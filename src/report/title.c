@@ -53,11 +53,11 @@ static void add_model(const mt_result *result, mt_text *out)
 /* "k = 1200 N/m (Fig. 16)" */
 static void add_assumption(const mt_result_assumption *a, mt_text *out)
 {
-    char number[MT_NUMBER_TEXT];
     const char *const unit = a->display_unit != NULL ? a->display_unit : a->unit;
     const double value = mt_result_shown(a->value, a->display_factor);
     mt_html_escape(a->parameter, out);
     if (isfinite(value)) {
+        char number[MT_NUMBER_TEXT];
         (void)mt_report_number(value, VALUE_DIGITS, number);
         char *const point = strpbrk(number, ".e") == NULL ? NULL : strchr(number, '.');
         if (point != NULL && strchr(number, 'e') == NULL) { /* a value, not a column of them */

@@ -72,8 +72,8 @@ class Large(CliTest):
 
     def test_what_is_too_large_is_refused_with_the_reason(self):
         model = large.link(6000)
-        for options, said in (((), "ask for the lowest modes alone, without dampers \\(--count\\)"),
-                              (("--count", "3", "--damped"), "ask for the lowest modes alone"),):
+        for options, said in (((), "ask for the lowest modes only, without dampers \\(--count\\)"),
+                              (("--count", "3", "--damped"), "ask for the lowest modes only"),):
             done = self.expect(2, "modes", self.write("large.json", json.dumps(model)), *options)
             self.assertRegex(done.stderr, "6001 bodies are too many for dense matrices; " + said)
         model["parameters"] = {"m": {"value": 1}}

@@ -42,7 +42,7 @@ EXACT = {"N/mm": 1000, "kN/m": 1000, "kN/mm": 10 ** 6, "N/um": 10 ** 6, "MPa": 1
          "mm": Fraction(1, 1000), "cm": Fraction(1, 100), "deg": DEG, "rpm": Fraction(1, 60), "kN": 1000, "kN m": 1000, "deg/s": DEG,
          "in/s^2": INCH, "kg/mm": 1000, "g/mm": 1, "lb/in": LB / INCH, "lb/ft": LB / FT}
 # What tells people, or of files, and which unit that was shown in; it may differ, all else may not.
-TOLD = {"display_unit", "display_factor", "text", "reasons", "inputs", "outputs", "demand", "label", "unit", "goal", "what", "line", "column"}
+TOLD = {"quantity", "display_unit", "display_factor", "text", "reasons", "inputs", "outputs", "demand", "label", "unit", "goal", "what", "line", "column"}
 
 
 def neighbours(x):
