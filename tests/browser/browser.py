@@ -84,6 +84,12 @@ return [...document.querySelectorAll('main *')].filter((e) => !e.closest('svg') 
     && getComputedStyle(e).overflowX !== 'visible').slice(0, 5).map((e) => e.tagName + ' is cut on paper: ' + e.textContent.slice(0, 40))
     .concat(document.documentElement.scrollWidth > document.documentElement.clientWidth ? ['wider than paper'] : []);
 """
+# What paper has no use for: words for hands, and designs that are not chosen (the original stands above the one that is).
+HANDS = """
+const rows = [...document.querySelectorAll('.alternatives tbody tr')].filter((row) => row.getClientRects().length > 0);
+return (document.querySelector('main').innerText.match(/.*\\b([Cc]lick|[Dd]rag|[Cc]hoose)\\b.*/g) || []).map((line) => 'on paper: ' + line)
+    .concat(rows.length > 2 ? [rows.length + ' designs on paper'] : []);
+"""
 # Numbers that are none, wherever they show.
 NO_NUMBERS = r"""
 const told = [...document.querySelectorAll('main *')].flatMap((e) => [...e.attributes].map((a) => a.value)
@@ -173,7 +179,7 @@ class Browser:
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
         self.run("window.dispatchEvent(new Event('beforeprint'))")
         self.settle()
-        found = self.layout() + self.run(CUT)
+        found = self.layout() + self.run(CUT) + self.run(HANDS)
         self.run("window.dispatchEvent(new Event('afterprint'))")
         return found
 

@@ -168,8 +168,9 @@
 
   mt.chartParallel = {
     id: 'parallel', title: 'All designs', draw, table,
-    lead: () => 'Each line is a design. Drag along an axis to keep those within; click a ' +
-      'line to show its design everywhere.',
+    lead: () => 'Each line is a design.',
+    hint: 'Drag along an axis to keep those within; click a line to show its design ' +
+      'everywhere.',
     has: () => designs().length > 2 && axes().length > 1,
   };
 })();

@@ -186,13 +186,13 @@
   function lead() {
     const n = trade().points.length;
     const solved = trade().points.filter((p) => T.isNumber(value(p))).length;
-    return solved + ' of ' + n + ' points have a design that meets all goals. A click on one ' +
-      'shows its best design everywhere.';
+    return solved + ' of ' + n + ' points have a design that meets all goals.';
   }
 
   mt.tradeMarks = { choosable, isChosen, words, padded };
   mt.chartTrade = {
     id: 'trade', title: 'Trade study', lead, table,
+    hint: 'A click on a point shows its best design everywhere.',
     draw: (g, w) => trade().vary.length === 1 ? drawCurve(g, w) : drawMap(g, w),
     has: () => trade() !== null && D.clean(trade().points).length > 0 &&
       [1, 2].includes(trade().vary.length),

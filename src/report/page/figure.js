@@ -271,8 +271,9 @@
     }
   }
 
-  // spec: id, title() or title, lead() (a sentence, may be missing), has() (is there anything
-  // to draw?), draw(svg, width) -> height, table() -> { columns, rows }. `into`: its place.
+  // spec: id, title() or title, lead() and hint (sentences, may be missing), has() (is there
+  // anything to draw?), draw(svg, width) -> height, table() -> { columns, rows }. `into`: its
+  // place.
   function add(spec, into) {
     const f = Object.assign({ file: 'modetune_' + spec.id, width: 0, height: 0 }, spec);
     f.title = typeof spec.title === 'function' ? spec.title : () => spec.title;
@@ -280,6 +281,9 @@
       .attr('id', 'figure-' + f.id);
     f.heading = f.section.append('h2');
     f.words = f.section.append('p').attr('class', 'lead');
+    if (f.hint) { // what hands can do with it, which paper has no use for
+      f.section.append('p').attr('class', 'lead screen').text(f.hint);
+    }
     f.box = f.section.append('figure');
     f.svg = f.box.append('svg').attr('role', 'img').attr('font-family', T.FONT)
       .attr('font-size', T.SIZE);
