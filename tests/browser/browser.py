@@ -87,7 +87,7 @@ return [...document.querySelectorAll('main *')].filter((e) => !e.closest('svg') 
 # What paper has no use for: words for hands, and designs that are not chosen (the original stands above the one that is).
 HANDS = """
 const rows = [...document.querySelectorAll('.alternatives tbody tr')].filter((row) => row.getClientRects().length > 0);
-return (document.querySelector('main').innerText.match(/.*\\b([Cc]lick|[Dd]rag|[Cc]hoose)\\b.*/g) || []).map((line) => 'on paper: ' + line)
+return (document.querySelector('main').innerText.match(/.*\\b([Cc]lick|Drag|Choose)\\b.*/g) || []).map((line) => 'on paper: ' + line)
     .concat(rows.length > 2 ? [rows.length + ' designs on paper'] : []);
 """
 # Numbers that are none, wherever they show.
