@@ -67,19 +67,20 @@ static const char *margin_text(sheet *s, double percent)
                : NULL;
 }
 
-/* A limit that is the scale of an objective decides nothing, but it is kept or not. */
-static const char *verdict_of(const mt_result_goal *g)
-{
-    const bool kept = g->violation_percent <= 0.0;
-    if (!g->weighted) {
-        return g->met ? "met" : "not met";
-    }
-    return isnan(g->target) && !isnan(g->at_most) ? kept ? "kept" : "exceeded" : "weighted";
-}
-
 static bool is_good(const mt_result_goal *g)
 {
     return g->weighted ? g->violation_percent <= 0.0 : g->met;
+}
+
+/* A limit that is the scale of an objective decides nothing, but it is kept or not. */
+static const char *verdict_of(const mt_result_goal *g)
+{
+    if (!g->weighted) {
+        return is_good(g) ? "met" : "not met";
+    }
+    return !isnan(g->target) || isnan(g->at_most) ? "weighted"
+           : is_good(g)                           ? "kept"
+                                                  : "exceeded";
 }
 
 /*
@@ -136,11 +137,11 @@ static const char *outside_text(sheet *s, const mt_result_gap *band, bool named)
     char high[MT_NUMBER_TEXT];
     (void)mt_report_number(band->margin_lower_hz, HZ_DIGITS, low);
     (void)mt_report_number(band->margin_upper_hz, HZ_DIGITS, high);
-    return band->margin_lower_hz > 0.0
-               ? mt_arena_printf(&s->t.mem, "outside %s to %s Hz%s%s%s", low, high,
-                                 named ? " (" : "", named ? band->band : "", named ? ")" : "")
-               : mt_arena_printf(&s->t.mem, "above %s Hz%s%s%s", high, named ? " (" : "",
-                                 named ? band->band : "", named ? ")" : "");
+    const char *const range = band->margin_lower_hz > 0.0
+                                  ? mt_arena_printf(&s->t.mem, "outside %s to %s Hz", low, high)
+                                  : mt_arena_printf(&s->t.mem, "above %s Hz", high);
+    return range == NULL || !named ? range
+                                   : mt_arena_printf(&s->t.mem, "%s (%s)", range, band->band);
 }
 
 /* " with 10 % margin"; nothing without one */
@@ -162,13 +163,23 @@ static const mt_result_gap *band_of(const mt_recommendation *r, int id)
     return NULL;
 }
 
-/* Are all goals met that keep this configuration clear of bands? Their bands are united. */
+static bool avoids_bands(const mt_result_goal *g)
+{
+    return strcmp(g->type, "avoid") == 0;
+}
+
+/* The goal keeps this configuration clear of bands; those of all such goals are united. */
+static bool clears(const mt_result_goal *g, const char *configuration)
+{
+    return avoids_bands(g) && g->configuration != NULL &&
+           strcmp(g->configuration, configuration) == 0;
+}
+
+/* All goals are met that keep it clear. */
 static bool is_clear(const mt_recommendation *r, const char *configuration)
 {
     for (int i = 0; i < r->n_goals; i++) {
-        const mt_result_goal *const g = &r->goals[i];
-        if (strcmp(g->type, "avoid") == 0 && g->configuration != NULL &&
-            strcmp(g->configuration, configuration) == 0 && !g->met) {
+        if (clears(&r->goals[i], configuration) && !r->goals[i].met) {
             return false;
         }
     }
@@ -205,9 +216,11 @@ static const mt_result_gap *tightest_of(const mt_recommendation *r, const char *
     const mt_result_gap *tightest = NULL;
     *room = HUGE_VAL;
     for (int i = 0; i < r->n_gaps; i++) {
+        if (strcmp(r->gaps[i].configuration, configuration) != 0) {
+            continue;
+        }
         const double own = nearest_to(r, &r->gaps[i]).room;
-        if (strcmp(r->gaps[i].configuration, configuration) == 0 &&
-            (tightest == NULL || own < *room)) {
+        if (tightest == NULL || own < *room) {
             tightest = &r->gaps[i];
             *room = isnan(own) ? HUGE_VAL : own;
         }
@@ -231,9 +244,7 @@ static bool put_bands(sheet *s, int i)
         return false;
     }
     for (int k = 0; k < i; k++) {
-        const mt_result_goal *const other = &d->goals[k];
-        if (strcmp(other->type, "avoid") == 0 && other->configuration != NULL &&
-            strcmp(other->configuration, g->configuration) == 0) {
+        if (clears(&d->goals[k], g->configuration)) {
             return true;
         }
     }
@@ -262,7 +273,6 @@ static bool put_motion(sheet *s, const mt_result_goal *g, int which)
     if (m == NULL || band == NULL || isnan(m->hz)) {
         return false;
     }
-    const double room = room_of(band, m->hz);
     const char *const unit = m->display_unit != NULL ? m->display_unit : m->unit;
     const row r = {
         .requirement = mt_arena_printf(&s->t.mem, "%s: no mode in a band", g->quantity),
@@ -271,7 +281,7 @@ static bool put_motion(sheet *s, const mt_result_goal *g, int which)
             &s->t.mem, "%s at %s %s", mode_text(s, m->hz, m->mode),
             mt_report_number(mt_result_shown(m->at, m->display_factor), PERCENT_DIGITS, at),
             unit),
-        .margin = margin_text(s, PERCENT * room),
+        .margin = margin_text(s, PERCENT * room_of(band, m->hz)),
         .verdict = verdict_of(g),
         .good = is_good(g)};
     put(s, &r);
@@ -287,7 +297,7 @@ static const char *unit_of(const mt_result_goal *g)
     return g->display_unit != NULL ? g->display_unit : g->unit != NULL ? g->unit : "";
 }
 
-static const char *value_text(sheet *s, const mt_result_goal *g, double value, int digits)
+static const char *value_text(sheet *s, const mt_result_goal *g, double value)
 {
     char number[MT_NUMBER_TEXT];
     const char *const unit = unit_of(g);
@@ -295,7 +305,7 @@ static const char *value_text(sheet *s, const mt_result_goal *g, double value, i
                ? NULL
                : mt_arena_printf(&s->t.mem, "%s%s%s",
                                  mt_report_number(mt_result_shown(value, g->display_factor),
-                                                  digits, number),
+                                                  VALUE_DIGITS, number),
                                  unit[0] != '\0' ? " " : "", unit);
 }
 
@@ -326,7 +336,7 @@ static const char *limit_text(sheet *s, const mt_result_goal *g)
     }
     return mt_arena_printf(mem, "at %s %.*g%s%s%s", isnan(low) ? "most" : "least", ASKED_DIGITS,
                            isnan(low) ? high : low, gap, unit,
-                           strcmp(g->type, "avoid") == 0 ? " clearance" : "");
+                           avoids_bands(g) ? " clearance" : "");
 }
 
 /* A part of a number; of 0 there is none. */
@@ -355,9 +365,9 @@ static void put_number(sheet *s, const mt_result_goal *g, const mt_result_goal *
     const double judged = isnan(g->worst) ? g->value : g->worst;
     const row r = {.requirement = g->quantity,
                    .limit = limit_text(s, g),
-                   .before = was == NULL ? NULL : value_text(s, was, was->value, VALUE_DIGITS),
-                   .after = value_text(s, g, g->value, VALUE_DIGITS),
-                   .worst = value_text(s, g, g->worst, VALUE_DIGITS),
+                   .before = was == NULL ? NULL : value_text(s, was, was->value),
+                   .after = value_text(s, g, g->value),
+                   .worst = value_text(s, g, g->worst),
                    .margin = number_margin(s, g, judged),
                    .verdict = verdict_of(g),
                    .good = is_good(g)};
@@ -384,7 +394,7 @@ static void put_between(sheet *s, const mt_result_between *b)
                 .requirement = mt_arena_printf(&s->t.mem, "between the positions of %s: %s",
                                                b->drive, anywhere(g)),
                 .limit = limit_text(s, g),
-                .after = value_text(s, g, b->value, VALUE_DIGITS),
+                .after = value_text(s, g, b->value),
                 .margin = isfinite(b->violation_percent) && b->violation_percent > 0.0
                               ? mt_arena_printf(&s->t.mem, "-%s %%",
                                                 mt_report_number(b->violation_percent,
@@ -398,8 +408,8 @@ static void put_between(sheet *s, const mt_result_between *b)
     }
 }
 
-/* Do these ask the same? The original design's goals stand in the same order, but that of a
- * motion may be missing. */
+/* What the original design has of goal i, NULL: nothing. Its goals stand in the same order, but
+ * that of a motion may be missing. */
 static const mt_result_goal *goal_before(const sheet *s, int i)
 {
     const mt_result_goal *const g = &s->after->goals[i];
@@ -435,7 +445,7 @@ mt_table mt_report_compliance(const mt_result *result, const mt_recommendation *
     int motions = 0;
     for (int i = 0; i < r->n_goals && !s.t.failed; i++) {
         const mt_result_goal *const g = &r->goals[i];
-        const bool avoid = strcmp(g->type, "avoid") == 0;
+        const bool avoid = avoids_bands(g);
         const bool motion = avoid && g->configuration == NULL;
         const bool put_as_bands = motion  ? put_motion(&s, g, motions++)
                                   : avoid ? put_bands(&s, i)

@@ -9,7 +9,6 @@
 #include "report/curves.h"
 #include "report/gist.h"
 #include "report/number.h"
-#include "report/question.h"
 #include "report/result_tables.h"
 #include "report/ruler.h"
 #include "report/trade.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "report/number.h"
 #include "report/question.h"
 #include "report/table.h"
 
@@ -57,17 +56,7 @@ static void add_assumption(const mt_result_assumption *a, mt_text *out)
     const double value = mt_result_shown(a->value, a->display_factor);
     mt_html_escape(a->parameter, out);
     if (isfinite(value)) {
-        char number[MT_NUMBER_TEXT];
-        (void)mt_report_number(value, VALUE_DIGITS, number);
-        char *const point = strpbrk(number, ".e") == NULL ? NULL : strchr(number, '.');
-        if (point != NULL && strchr(number, 'e') == NULL) { /* a value, not a column of them */
-            size_t n = strlen(number);
-            while (number[n - 1] == '0') {
-                n--;
-            }
-            number[number[n - 1] == '.' ? n - 1 : n] = '\0';
-        }
-        mt_text_addf(out, " = %s", number);
+        mt_text_addf(out, " = %.*g", VALUE_DIGITS, value); /* no column: without its zeros */
         if (unit != NULL && unit[0] != '\0' && strcmp(unit, "1") != 0) {
             mt_text_add(out, " ");
             mt_html_escape(unit, out);

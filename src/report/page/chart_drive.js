@@ -96,8 +96,12 @@
   function drawCurves(g, curves, x, y, look) {
     const line = d3.line().defined((p) => T.isNumber(p.hz) && p.hz <= y.domain()[1])
       .x((p) => x(p.at)).y((p) => y(p.hz));
-    for (const c of curves.filter((k) => line(k.points))) {
-      g.append('path').attr('d', line(c.points)).attr('fill', 'none')
+    for (const c of curves) {
+      const path = line(c.points);
+      if (!path) {
+        continue; // all of it is above the scale
+      }
+      g.append('path').attr('d', path).attr('fill', 'none')
         .attr('stroke', look.colour).attr('stroke-width', look.width)
         .attr('stroke-dasharray', look.dash || null).append('title')
         .text(c.configuration + ' mode ' + c.mode);
