@@ -314,7 +314,7 @@ static void fault_damping(const mt_analysis *a, mt_doubt_list *out)
             m, d->ratios[most],
             mt_arena_printf(
                 out->mem,
-                "damping lists ratios of %d vibration modes, but configuration \"%s\" has %d",
+                "damping lists ratios for %d vibration modes, but configuration \"%s\" has %d",
                 d->n_ratios, name, most),
             out);
     }

@@ -181,72 +181,72 @@ const char *mt_format_of(int format, int command)
     return of ? formats[format].name : NULL;
 }
 
-static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
+/* One of a few words: *out its place among them. */
+static mt_status read_word(const char *s, const char *option, const char *const *names, int n,
+                           int *out, mt_err *err)
 {
-    const char *names[MT_FORMATS];
     char suggestion[SUGGESTION_TEXT];
     mt_text list = {.s = NULL};
-    int n = 0;
-    for (int i = 0; i < MT_FORMATS; i++) {
-        const char *const known = mt_format_of(i, command);
-        if (known == NULL) {
-            continue;
-        }
-        if (strcmp(s, known) == 0) {
-            *out = (mt_format)i;
+    for (int i = 0; i < n; i++) {
+        if (strcmp(s, names[i]) == 0) {
+            *out = i;
             mt_text_free(&list);
             return MT_OK;
         }
-        mt_text_add(&list, n == 0 ? "" : ", ");
-        mt_text_add(&list, known);
-        names[n++] = known;
+        mt_text_addf(&list, "%s%s", i == 0 ? "" : ", ", names[i]);
     }
-    const mt_status rc = list.failed
-                             ? mt_fail(err, MT_E_MEMORY, "out of memory")
-                             : mt_fail(err, MT_E_USAGE, "--format: \"%s\" is not one of %s%s",
-                                       s, list.s, did_you_mean(s, names, n, "", suggestion));
+    const mt_status rc =
+        list.failed ? mt_fail_memory(err)
+                    : mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not one of %s%s", option, s,
+                              list.s, did_you_mean(s, names, n, "", suggestion));
     mt_text_free(&list);
     return rc;
+}
+
+static mt_status read_format(const char *s, int command, mt_format *out, mt_err *err)
+{
+    const char *names[MT_FORMATS];
+    mt_format of[MT_FORMATS];
+    int at = 0;
+    int n = 0;
+    for (int i = 0; i < MT_FORMATS; i++) {
+        const char *const known = mt_format_of(i, command);
+        if (known != NULL) {
+            of[n] = (mt_format)i;
+            names[n++] = known;
+        }
+    }
+    MT_TRY(read_word(s, "format", names, n, &at, err));
+    *out = of[at];
+    return MT_OK;
 }
 
 static mt_status read_report(const char *s, const char *option, bool *none, mt_err *err)
 {
     static const char *const names[] = {"html", "none"};
-    char suggestion[SUGGESTION_TEXT];
-    *none = strcmp(s, names[1]) == 0;
-    return *none || strcmp(s, names[0]) == 0
-               ? MT_OK
-               : mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not one of html, none%s", option, s,
-                         did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+    int at = 0;
+    MT_TRY(read_word(s, option, names, MT_COUNT(names), &at, err));
+    *none = at == 1;
+    return MT_OK;
 }
 
 static mt_status read_progress(const char *s, const char *option, mt_progress_form *out,
                                mt_err *err)
 {
     static const char *const names[] = {"auto", "line", "json", "none"};
-    char suggestion[SUGGESTION_TEXT];
-    for (int i = 0; i < MT_COUNT(names); i++) {
-        if (strcmp(s, names[i]) == 0) {
-            *out = (mt_progress_form)i;
-            return MT_OK;
-        }
-    }
-    return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not one of auto, line, json, none%s",
-                   option, s, did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+    int at = 0;
+    MT_TRY(read_word(s, option, names, MT_COUNT(names), &at, err));
+    *out = (mt_progress_form)at;
+    return MT_OK;
 }
 
 static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt_err *err)
 {
-    static const char *const names[] = {"bash", "zsh"};
-    char suggestion[SUGGESTION_TEXT];
-    for (int i = 0; i < MT_SHELL_COUNT; i++) {
-        if (strcmp(s, names[i]) == 0) {
-            *out = (mt_shell)i;
-            return MT_OK;
-        }
-    }
-    return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is none of bash, zsh%s", option, s,
-                   did_you_mean(s, names, MT_COUNT(names), "", suggestion));
+    static const char *const names[MT_SHELL_COUNT] = {"bash", "zsh"};
+    int at = 0;
+    MT_TRY(read_word(s, option, names, MT_COUNT(names), &at, err));
+    *out = (mt_shell)at;
+    return MT_OK;
 }
 
 static mt_status store(mt_args *args, int option, const char *value, mt_err *err)

@@ -255,24 +255,36 @@ static void check_use(mt_model_reader *mr, const mt_number *number, int owner)
                   p->name.s, p->written->name, mt_unit_factor(p->written), p->unit);
 }
 
-void mt_read_settle_units(mt_model_reader *mr)
+/* [n_nums] the parameter that a number is the value of, MT_ABSENT: of none; NULL where memory
+ * is out. */
+static int *find_owners(mt_model *m)
 {
-    mt_model *const m = mr->m;
-    int *const owner = mt_arena_int(&m->mem, (size_t)m->n_nums); /* parameter of a number */
-    int(*const uses)[USES] = mt_arena_alloc(&m->mem, (size_t)m->n_parameters, sizeof *uses);
+    int *const owner = mt_arena_int(&m->mem, (size_t)m->n_nums);
     if (mt_arena_failed(&m->mem)) {
-        return;
+        return NULL;
     }
-    bool any = false;
     for (int k = 0; k < m->n_nums; k++) {
         owner[k] = MT_ABSENT;
     }
     for (int i = 0; i < m->n_parameters; i++) {
-        const mt_parameter *const p = &m->parameters[i];
-        any = any || is_other(p);
-        if (p->value != MT_ABSENT) {
-            owner[p->value] = i;
+        if (m->parameters[i].value != MT_ABSENT) {
+            owner[m->parameters[i].value] = i;
         }
+    }
+    return owner;
+}
+
+void mt_read_settle_units(mt_model_reader *mr)
+{
+    mt_model *const m = mr->m;
+    const int *const owner = find_owners(m);
+    int(*const uses)[USES] = mt_arena_alloc(&m->mem, (size_t)m->n_parameters, sizeof *uses);
+    if (owner == NULL || mt_arena_failed(&m->mem)) {
+        return;
+    }
+    bool any = false;
+    for (int i = 0; i < m->n_parameters; i++) {
+        any = any || is_other(&m->parameters[i]);
     }
     for (int k = 0; k < m->n_nums && any; k++) {
         count_uses(mr, &m->nums[k], owner[k], uses);
@@ -287,7 +299,7 @@ void mt_read_settle_units(mt_model_reader *mr)
     }
 }
 
-/* Does an expression say what it measures? */
+/* An expression that says what it measures. */
 static bool has_unit(const mt_expr *e)
 {
     for (int i = 0; i < e->length; i++) {
@@ -369,14 +381,9 @@ static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner)
 void mt_read_doubt_units(mt_model_reader *mr)
 {
     mt_model *const m = mr->m;
-    int *const owner = mt_arena_int(&m->mem, (size_t)m->n_nums); /* 1 + parameter */
-    if (mt_arena_failed(&m->mem)) {
+    int *const owner = find_owners(m);
+    if (owner == NULL) {
         return;
-    }
-    for (int i = 0; i < m->n_parameters; i++) {
-        if (m->parameters[i].value != MT_ABSENT) {
-            owner[m->parameters[i].value] = i + 1;
-        }
     }
     for (int c = 0; c < m->n_configurations; c++) {
         for (int i = 0; i < m->configurations[c].n_overrides; i++) {
@@ -384,13 +391,13 @@ void mt_read_doubt_units(mt_model_reader *mr)
             const char *const name = o->parameter_name.s;
             const int parameter = name == NULL ? -1 : mt_model_find_parameter(m, name);
             if (o->value != MT_ABSENT && parameter >= 0) {
-                owner[o->value] = parameter + 1;
+                owner[o->value] = parameter;
             }
         }
     }
     for (int k = 0; k < m->n_nums; k++) {
         if (has_unit(&m->nums[k].expr)) {
-            doubt_unit(mr, &m->nums[k], owner[k] - 1);
+            doubt_unit(mr, &m->nums[k], owner[k]);
         }
     }
 }

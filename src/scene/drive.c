@@ -173,15 +173,14 @@ static double nearest_of(int n, const double *positions)
     return least;
 }
 
-/* The positions of w->out, and the system that is driven through them. at[n_inputs + 1]. */
-static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive, double *at,
-                         mt_err *err)
+/* positions[n], those of w->out, and the system that is driven through them.
+ * at[n_inputs + 1]. */
+static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive,
+                         double *positions, double *at, mt_err *err)
 {
-    mt_scene_frame *const f = w->f;
+    const mt_scene_frame *const f = w->f;
     const mt_scene_ask *const ask = f->ask;
     const int n = w->out->n_positions;
-    double *const positions = mt_arena_f64(f->work, (size_t)n, 1);
-    MT_TRY(mt_arena_check(f->work, err));
     mt_sweep_range(r->low, r->high, n, positions);
     for (int i = 0; i < ask->n_inputs; i++) {
         at[i] = ask->at[i];
@@ -271,13 +270,10 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
     bool shared = false;
     mt_sweep found;
     MT_TRY(mt_arena_check(f->work, err));
-    MT_TRY(prepare(w, r, &drive, at, err));
+    MT_TRY(prepare(w, r, &drive, positions, at, err));
     MT_TRY(share(w, &shared, err));
     if (shared) {
         return MT_OK;
-    }
-    for (int i = 0; i < n; i++) {
-        positions[i] = w->out->positions[i].at;
     }
     if (modes) {
         MT_TRY(mt_analysis_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs,
