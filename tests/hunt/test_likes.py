@@ -9,7 +9,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import likes  # noqa: E402
 
-COUNT = 80 if "MT_EVERY" in os.environ else 4
+COUNT = 20 if "MT_EVERY" in os.environ else 4
 
 
 def _forget(member):
