@@ -274,7 +274,13 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
     case MT_OPT_KEEP:
         return read_count(value, o->name, INT_MAX, &args->keep, err);
     case MT_OPT_COUNT:
-        return read_count(value, o->name, INT_MAX, &args->count, err);
+        args->count = INT_MAX;
+        return strcmp(value, "all") == 0 ||
+                       read_count(value, o->name, INT_MAX, &args->count, NULL) == MT_OK
+                   ? MT_OK
+                   : mt_fail(err, MT_E_USAGE,
+                             "--%s: \"%s\" is neither \"all\" nor a whole number from 1 to %d",
+                             o->name, value, INT_MAX);
     case MT_OPT_RANK:
         return read_count(value, o->name, INT_MAX, &args->rank, err);
     case MT_OPT_MODE:

@@ -178,7 +178,7 @@ typedef struct mt_args {
     mt_shell shell; /* --completion; read it where it is given */
     bool given[MT_OPT_IDS];
     const char *value[MT_OPT_IDS]; /* of the last one */
-    int count;                     /* --count, 0: not given */
+    int count;                     /* --count, 0: not given; INT_MAX: all */
     int rank;                      /* --rank, default 1 */
     int mode;                      /* --mode, 0: not given */
     int starts;                    /* --starts, 0: not given */

@@ -12,6 +12,9 @@
 #include "cli/watch.h"
 #include "report/table.h"
 
+/* Without --count: more modes than this are rarely read, and of large mechanisms the lowest are
+ * found in a small part of the time. */
+enum { DEFAULT_MODES = 20 };
 enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
 /* A table on paper tells the error of a frequency from this part of it on: the digits that it
  * prints. */
@@ -29,7 +32,8 @@ typedef struct view {
     const mt_modes *m; /* of one of them */
     int shown;         /* positions of modes to write */
     mt_shapes shapes;  /* n 0: not asked for */
-    int count;         /* --count */
+    int count;         /* of vibration modes to write */
+    bool asked;        /* by --count */
     bool with_damping;
     const mt_damped_modes *damped;
     mt_doubt_list doubts;
@@ -98,6 +102,11 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
         mt_json_put_number(w, "complete_below_hz", complete_below_hz(v->l));
     }
     mt_json_put_integer(w, "freedoms", m->n);
+    if (v->l == NULL) {
+        mt_json_put_integer(w, "vibration_modes", mt_modal_vibrations(m));
+    } else {
+        mt_json_put_null(w, "vibration_modes"); /* that takes the directions without mass */
+    }
     mt_json_put_integer(w, "rigid_body_modes", m->n_rigid);
     mt_json_put_integer(w, "unstable_modes", m->n_unstable);
     mt_json_put_integer(w, "undecided_modes", m->n_undecided);
@@ -235,6 +244,16 @@ static void print_shapes(const view *v, mt_text *out)
     mt_table_free(&t);
 }
 
+/* Says so where modes are left out that nobody has declined. */
+static void tell_others(const view *v, mt_text *out)
+{
+    const int all = mt_modal_vibrations(v->m);
+    if (!v->asked && all > v->count) {
+        mt_text_addf(out, "  The lowest %d of %s%d vibration modes; --count N or all: more.\n",
+                     v->count, v->l == NULL ? "" : "at most ", all);
+    }
+}
+
 static void tell(const view *v, mt_text *out)
 {
     const mt_modes *const m = v->m;
@@ -293,6 +312,7 @@ static void text_view(const view *v, mt_text *out)
     if (v->with_damping) {
         mt_damped_print(v->damped, v->count, out);
     }
+    tell_others(v, out);
     mt_text_add(out, "\n");
 }
 
@@ -330,7 +350,7 @@ static mt_status csv_view(sink *to, const view *v)
 static mt_status look(const mt_args *args, view *v, mt_err *err)
 {
     const mt_subject *const s = v->s;
-    const mt_lowest_want want = {.count = args->given[MT_OPT_DAMPED] ? 0 : args->count,
+    const mt_lowest_want want = {.count = args->given[MT_OPT_DAMPED] ? 0 : v->count,
                                  .shapes = args->given[MT_OPT_SHAPES]};
     MT_TRY(mt_subject_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
     if (v->l != NULL) {
@@ -345,7 +365,8 @@ static mt_status look(const mt_args *args, view *v, mt_err *err)
 
 static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
 {
-    view v = {.s = s, .c = c, .count = to->args->count};
+    const bool asked = to->args->given[MT_OPT_COUNT];
+    view v = {.s = s, .c = c, .count = asked ? to->args->count : DEFAULT_MODES, .asked = asked};
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
     v.doubts = mt_doubt_list_default(&mem);
@@ -356,7 +377,7 @@ static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
     if (rc != MT_OK || v.m == NULL) {
         goto done;
     }
-    v.shown = mt_modes_shown(v.m, to->args->count);
+    v.shown = mt_modes_shown(v.m, v.count);
     if (to->args->given[MT_OPT_SHAPES]) {
         rc = v.l != NULL ? mt_shapes_of_lowest(v.l, v.shown, &mem, &v.shapes, err)
                          : mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);

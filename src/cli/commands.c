@@ -30,10 +30,12 @@ const mt_option mt_options[MT_OPT_IDS] = {
              "give a parameter another value: a number in the parameter's unit, or an "
              "expression in SI units, which may use the model's own values (\"k=1.1*k\"); may "
              "be repeated; with a study: a parameter that the study does not vary"),
-    OPTION(MT_OPT_COUNT, '\0', "count", "N",
-           BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
-           "only the first N vibration modes; `modes` and `sensitivity` find them without the "
-           "others in most mechanisms of 100 bodies or more"),
+    OPTION(
+        MT_OPT_COUNT, '\0', "count", "N",
+        BIT(MT_CMD_MODES) | BIT(MT_CMD_MAC) | BIT(MT_CMD_SWEEP) | BIT(MT_CMD_SENSITIVITY),
+        "only the lowest N vibration modes, or \"all\" (default: 20 in `modes`, 6 in `sweep` "
+        "and `sensitivity`); `modes` and `sensitivity` find them without the others in "
+        "most mechanisms of 100 bodies or more"),
     OPTION(MT_OPT_SHAPES, '\0', "shapes", NULL, BIT(MT_CMD_MODES),
            "mode shapes at the sensors, or of the bodies if there are no sensors"),
     OPTION(MT_OPT_DAMPED, '\0', "damped", NULL, BIT(MT_CMD_MODES),

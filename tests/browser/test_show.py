@@ -35,7 +35,7 @@ def model_of(study):
 
 def frequencies(model):
     """Configuration to the frequencies of its vibration modes, by their index."""
-    told = json.loads(program("modes", model, "--format", "json"))
+    told = json.loads(program("modes", model, "--count", "all", "--format", "json"))
     return {one["configuration"]: {mode["index"]: mode["frequency_hz"] for mode in one.get("modes", []) if mode["index"]}
             for one in (told if isinstance(told, list) else [told])}
 

@@ -35,6 +35,7 @@ class Large(CliTest):
             self.assertIn(f"/links/0/elements: must be a whole number from 1 to {ELEMENTS}", done.stderr)
 
     def modes(self, model, *options):
+        options = options if "--count" in options else ("--count", "all", *options)
         done = self.expect(0, "modes", model, "--format", "json", *options)
         return json.loads(done.stdout)[0]
 
@@ -72,7 +73,7 @@ class Large(CliTest):
 
     def test_what_is_too_large_is_refused_with_the_reason(self):
         model = large.link(6000)
-        for options, said in (((), "ask for the lowest modes only, without dampers \\(--count\\)"),
+        for options, said in ((("--count", "all"), "ask for the lowest modes only, without dampers \\(--count\\)"),
                               (("--count", "3", "--damped"), "ask for the lowest modes only"),):
             done = self.expect(2, "modes", self.write("large.json", json.dumps(model)), *options)
             self.assertRegex(done.stderr, "6001 bodies are too many for dense matrices; " + said)

@@ -2,6 +2,7 @@
 """modes, mac, sensitivity, info and check on small models with known answers."""
 import csv
 import io
+import json
 import math
 
 from common_cli import MASSLESS, REPEATED, CliTest, main
@@ -91,6 +92,27 @@ class Modes(CliTest):
         self.assertIn("has a mode of which rounding hides whether it is stable, so that its modes have no index", done.stdout)
         self.assertIn("not met", done.stdout)
         self.assertIn("Goal /goals/0 (default mode 1 at 0.2 Hz) has no value here and does not count as met.", done.stdout)
+
+    def test_the_lowest_twenty_unless_more_are_asked_for(self):
+        chain = {"format": "modetune-model/1", "dimension": 2, "points": {"a": [0, 0], "b": [1, 0]},
+                 "links": [{"name": "l", "kind": "beam", "from": "a", "to": "b", "elements": 12, "density_kg_per_m3": 7800, "youngs_modulus_pa": 2e11,
+                            "section": {"shape": "circle", "diameter_m": 0.02}}],
+                 "joints": [{"name": "wall", "type": "fixed", "bodies": ["ground", "l.start"], "at": "a"}],
+                 "configurations": {"default": {}}}
+        path = self.write("problems/chain.json", json.dumps(chain))
+        whole = self.json_of("modes", path, "-c", "default", "--count", "all")
+        self.assertGreater(len(whole["modes"]), 20)
+        self.assertEqual(whole["vibration_modes"], len(whole["modes"]))
+        lowest = self.json_of("modes", path, "-c", "default")
+        self.assertEqual([m["index"] for m in lowest["modes"]], list(range(1, 21)))
+        self.assertEqual(lowest["vibration_modes"], whole["vibration_modes"])
+        for one, other in zip(lowest["modes"], whole["modes"]):
+            self.assertAlmostEqual(one["frequency_hz"] / other["frequency_hz"], 1, delta=1e-10)
+        told = f"The lowest 20 of {whole['vibration_modes']} vibration modes; --count N or all: more."
+        self.assertIn(told, self.expect(0, "modes", path).stdout)
+        for count in ("20", "all"):  # who asks for a number knows that there may be more
+            self.assertNotIn("--count", self.expect(0, "modes", path, "--count", count).stdout)
+        self.assertNotIn("--count", self.expect(0, "modes", self.model).stdout)
 
     def test_count_counts_vibration_modes(self):
         got = self.json_of("modes", self.model, "-c", "free", "--count", "1")["modes"]

@@ -198,7 +198,7 @@ class Show(CliTest):
 
     def test_frequencies_are_those_of_modes(self):
         path = SOURCE / "problems/inceptor.json"
-        for view, told in zip(scene_of(path)["designs"][0]["configurations"], json.loads(self.expect(0, "modes", "--format", "json", str(path)).stdout)):
+        for view, told in zip(scene_of(path)["designs"][0]["configurations"], json.loads(self.expect(0, "modes", "--format", "json", "--count", "all", str(path)).stdout)):
             hz = {m["index"]: (m["frequency_hz"], m["name"]) for m in told["modes"] if m["index"]}
             for mode in view["modes"]:
                 if mode["mode"]:

@@ -157,7 +157,7 @@ class Twins(CliTest):
         done = 0
         for i, (path, model) in enumerate(self.models()):
             self.write(f"problems/{path.name}", json.dumps(model))
-            wanted = self.run_program("modes", f"problems/{path.name}", "--format", "json")
+            wanted = self.run_program("modes", f"problems/{path.name}", "--count", "all", "--format", "json")
             for way in WAYS if EVERY else WAYS[i % len(WAYS):][:1]:
                 try:
                     rewriter = Rewriter(way)
@@ -165,7 +165,7 @@ class Twins(CliTest):
                 except LookupError:
                     continue
                 with self.subTest(model=path.name, way=way):
-                    got = self.run_program("modes", twin, "--format", "json")
+                    got = self.run_program("modes", twin, "--count", "all", "--format", "json")
                     self.assertEqual(got.returncode, wanted.returncode, got.stderr)
                     self.assertEqual(bare(json.loads(got.stdout)), bare(json.loads(wanted.stdout)))
                     done += rewriter.turned > 0

@@ -18,7 +18,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
 WHOLE = ("gravity_m_per_s2", "drive", "damping")  # members that an override replaces as a whole
-COMMANDS = (("modes", "--damped"), ("info",), ("response", "--input", "s2.x", "--from", "0.5", "--to", "30", "--points", "5"))
+COMMANDS = (("modes", "--damped", "--count", "all"), ("info",), ("response", "--input", "s2.x", "--from", "0.5", "--to", "30", "--points", "5"))
 
 
 def base(rng):

@@ -47,6 +47,7 @@ class Answer:
     def __init__(self, folder, name, model, command="modes", *more):
         path = folder / f"{name}.json"
         path.write_text(json.dumps(model, indent=1))
+        more = [*more, "--count", "all"] if command == "modes" else more
         done = subprocess.run([PROGRAM, command, str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
         self.code, self.words = done.returncode, done.stderr
         answer = json.loads(done.stdout) if done.returncode == 0 else None

@@ -148,7 +148,7 @@ def _commands(case):
         yield ["run", file, "-o", "out", "--quiet"]
         return
     yield ["info", file, "--format", "json"]
-    yield ["modes", file, "--format", "json", "--shapes", "--damped"]
+    yield ["modes", file, "--format", "json", "--shapes", "--damped", "--count", "all"]
     yield ["sensitivity", file, "--format", "json"]
     yield ["response", file, "--input", "base.x", "--points", "5", "--format", "json"]
 

@@ -23,7 +23,7 @@ def modes(model, *args):
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
         json.dump(model, file)
         file.flush()
-        done = subprocess.run([PROGRAM, "modes", file.name, "--format", "json", *args], capture_output=True, text=True, check=False)
+        done = subprocess.run([PROGRAM, "modes", file.name, "--count", "all", "--format", "json", *args], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise AssertionError(done.stdout + done.stderr)
     return json.loads(done.stdout)[0]

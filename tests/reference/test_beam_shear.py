@@ -22,7 +22,7 @@ def modes(model):
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
         json.dump(model, file)
         file.flush()
-        done = subprocess.run([PROGRAM, "modes", file.name, "--format", "json"], capture_output=True, text=True, check=False)
+        done = subprocess.run([PROGRAM, "modes", file.name, "--count", "all", "--format", "json"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise AssertionError(done.stdout + done.stderr)
     return sorted(m["omega_squared"] for m in json.loads(done.stdout)[0]["modes"])

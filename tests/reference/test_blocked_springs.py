@@ -344,7 +344,7 @@ class BlockedSprings(CliTest):
             o[2] = 0
         model = mechanism.model(turning(rng, dimension), l, o)
         self.write("blocked.json", json.dumps(model))
-        done = self.run_program("modes", "blocked.json", "--format", "json", "--quiet")
+        done = self.run_program("modes", "blocked.json", "--count", "all", "--format", "json", "--quiet")
         where = f"MT_SEED={SEED} dimension {dimension} index {index}"
         self.assertEqual(done.returncode, 0, f"{where}: {done.stderr}\n{json.dumps(model)}")
         modes = json.loads(done.stdout)[0]["modes"]
@@ -381,7 +381,7 @@ class BlockedSprings(CliTest):
                      "sensors": [{"name": "c", "on": "s", "at": [rng.uniform(-9, 9), rng.uniform(-9, 9)],
                                   "directions": ["x", "y", "r"]}]}
             self.write("slide.json", json.dumps(model))
-            done = self.run_program("modes", "slide.json", "--format", "json", "--quiet", "--shapes")
+            done = self.run_program("modes", "slide.json", "--count", "all", "--format", "json", "--quiet", "--shapes")
             self.assertEqual(done.returncode, 0, done.stderr)
             shape = json.loads(done.stdout)[0]["modes"][0]["shape"]
             self.assertAlmostEqual(abs(shape["c.x"]), 1.0, 14, f"MT_SEED={SEED} index {index}")

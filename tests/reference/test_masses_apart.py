@@ -125,7 +125,7 @@ class MassesApart(CliTest):
         model = make(rng, m, k)
         where = f"MT_SEED={SEED} {make.__name__} decades {decades} index {index}"
         self.write("row.json", json.dumps(model))
-        done = self.run_program("modes", "row.json", "--format", "json", "--quiet")
+        done = self.run_program("modes", "row.json", "--count", "all", "--format", "json", "--quiet")
         self.assertEqual(done.returncode, 0, f"{where}: {done.stderr}\n{json.dumps(model)}")
         modes = json.loads(done.stdout)[0]["modes"]
         want = eigenvalues(m, k)

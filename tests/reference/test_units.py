@@ -115,7 +115,7 @@ def mechanism(rng):
 class UnitsDoNotMatter(CliTest):
     def answer(self, model):
         self.write("units.json", json.dumps(model))
-        modes = self.run_program("modes", "units.json", "--format", "json", "--quiet")
+        modes = self.run_program("modes", "units.json", "--count", "all", "--format", "json", "--quiet")
         slopes = self.run_program("sensitivity", "units.json", "--format", "json", "--quiet")
         return modes, slopes
 

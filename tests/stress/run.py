@@ -206,6 +206,7 @@ def ask(folder, model, *more):
     path = Path(folder) / "model.json"
     path.write_text(json.dumps(model, indent=1))
     started = time.monotonic()
+    more = more or ("--count", "all")
     done = subprocess.run([PROGRAM, "modes", str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
     return done, time.monotonic() - started
 
