@@ -172,6 +172,8 @@ static mt_status solve(mt_lowest *l, mt_lowest_want want, mt_err *err)
     return rc;
 }
 
+enum { WHY_SIZE = MT_ABSOLUTE_WHY + MT_SPARSE_WHY };
+
 /* The iterations in coordinates of the bodies. */
 typedef struct turns {
     const mt_model *model;
@@ -185,7 +187,7 @@ static mt_status go_on(void *context, mt_err *err)
     return mt_interrupt_check(t->model->interrupt, err);
 }
 
-/* What loads make of the bodies' stiffness, where they rest as drawn. */
+/* What loads make of the bodies' stiffness, where they rest. */
 static mt_status load_bodies(mt_lowest *l, const mt_sparse_problem *p, mt_absolute_load *load,
                              bool *is, char *why, mt_err *err)
 {
@@ -205,7 +207,7 @@ static mt_status load_bodies(mt_lowest *l, const mt_sparse_problem *p, mt_absolu
 }
 
 /* What small motions under load do not tell: whether equations that follow from others do so
- * beside the drawing, and how far it goes where nothing holds it. */
+ * beside where it rests, and how far it goes where nothing holds it. */
 static bool is_held(const mt_lowest *l, char *why)
 {
     const mt_absolute *const o = &l->bodies;
@@ -219,52 +221,91 @@ static bool is_held(const mt_lowest *l, char *why)
     return !dependent && m->n_rigid == 0;
 }
 
-/* In coordinates of the bodies, where those of a tree are not to be had. */
-static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
+/* In coordinates of the bodies, as drawn or settled. *rests: closed there, and at rest. */
+static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state *settled,
+                              bool *is, bool *rests, char *why, mt_err *err)
 {
     mt_absolute_load load = {.mu = NULL};
     turns t = {.model = l->sys->model};
-    const size_t told = strlen(l->why);
-    char why[(int)MT_ABSOLUTE_WHY + (int)MT_SPARSE_WHY] = "";
     mt_err own = {.code = MT_OK};
     mt_absolute *const o = &l->bodies;
-    bool is = false;
     t.told = mt_progress_begin(t.model->progress, "matrices of the bodies", 0);
-    const mt_status made = mt_absolute_new(l->sys, l->at, &l->mem, o, &is, why, err);
+    const mt_status made = mt_absolute_new(l->sys, l->at, settled, &l->mem, o, is, why, err);
     mt_progress_end(t.model->progress, t.told);
     MT_TRY(made);
-    if (is) {
-        mt_sparse_problem p = {.n = o->n,
-                               .k = o->k,
-                               .m = o->m,
-                               .a = o->a,
-                               .unit = o->unit,
-                               .count = want.count,
-                               .shapes = want.shapes,
-                               .check = go_on,
-                               .context = &t};
-        if (l->sys->loaded) {
-            MT_TRY(load_bodies(l, &p, &load, &is, why, err));
-            p.g = &load.g;
-            p.g_noise = load.noise;
+    mt_sparse_problem p = {.n = o->n,
+                           .k = o->k,
+                           .m = o->m,
+                           .a = o->a,
+                           .unit = o->unit,
+                           .count = want.count,
+                           .shapes = want.shapes,
+                           .check = go_on,
+                           .context = &t};
+    if (*is && l->sys->loaded) {
+        MT_TRY(load_bodies(l, &p, &load, is, why, err));
+        p.g = &load.g;
+        p.g_noise = load.noise;
+    }
+    *rests = *is;
+    if (!*is) {
+        return MT_OK;
+    }
+    t.told = mt_progress_begin(t.model->progress, ITERATIONS, 0);
+    const mt_status rc = mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, is, why, &own);
+    mt_progress_end(t.model->progress, t.told);
+    if (rc == MT_E_NO_CONVERGENCE) {
+        *is = false;
+        (void)mt_snprintf(why, WHY_SIZE, "%s", own.text);
+    } else if (rc != MT_OK) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    *is = *is && (!l->sys->loaded || is_held(l, why));
+    return MT_OK;
+}
+
+/* Where loads bring it, without dense matrices; *is: it rests there. */
+static mt_status settle(mt_lowest *l, bool *is, char *why, mt_err *err)
+{
+    mt_data data;
+    mt_placement at;
+    mt_err own = {.code = MT_OK};
+    MT_TRY(mt_absolute_stand(l->sys, NULL, l->at, &data, &at, &l->mem, err));
+    const mt_status rc =
+        mt_position_solve(l->sys, &data, NULL, MT_POSITION_SPARSE, &l->mem, &l->position, &own);
+    *is = rc == MT_OK;
+    if (mt_is_final(rc)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    if (!*is) {
+        (void)mt_snprintf(why, WHY_SIZE,
+                          "without dense matrices no place is found where it settles");
+        l->position.sys = NULL;
+    }
+    return MT_OK;
+}
+
+/* In coordinates of the bodies, where those of a tree are not to be had. */
+static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
+{
+    const size_t told = strlen(l->why);
+    char why[WHY_SIZE] = "";
+    bool is = false;
+    bool rests = false;
+    MT_TRY(solve_bodies(l, want, NULL, &is, &rests, why, err));
+    if (!is && !rests && l->sys->loaded && !l->sys->driven && !want.drawn) {
+        MT_TRY(settle(l, &is, why, err));
+        if (is) {
+            MT_TRY(solve_bodies(l, want, &l->position, &is, &rests, why, err));
         }
-        t.told = mt_progress_begin(t.model->progress, ITERATIONS, 0);
-        const mt_status rc =
-            is ? mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, &is, why, &own) : MT_OK;
-        mt_progress_end(t.model->progress, t.told);
-        if (rc != MT_OK && rc != MT_E_NO_CONVERGENCE) {
-            return mt_fail(err, rc, "%s", own.text);
-        }
-        is = is && rc == MT_OK && (!l->sys->loaded || is_held(l, why));
     }
     if (is) {
         l->way = MT_LOWEST_SPARSE;
-        l->mass_kg = o->mass_kg;
+        l->mass_kg = l->bodies.mass_kg;
         l->equations = l->sys->n_constraints;
         return MT_OK;
     }
-    (void)mt_snprintf(l->why + told, sizeof l->why - told, "; nor the sparse one, as %s",
-                      own.code != MT_OK ? own.text : why);
+    (void)mt_snprintf(l->why + told, sizeof l->why - told, "; nor the sparse one, as %s", why);
     return MT_OK;
 }
 
@@ -371,7 +412,8 @@ mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err)
     double *const phi = mt_arena_f64(&l->mem, (size_t)l->sys->nq, (size_t)n);
     MT_TRY(mt_arena_check(&l->mem, err));
     MT_TRY(mt_lowest_shapes(l, n, phi, err));
-    MT_TRY(mt_drawn_sense(l->sys, l->at, n, phi, value, &l->mem, err));
+    const mt_state *const settled = l->position.sys == NULL ? NULL : &l->position;
+    MT_TRY(mt_absolute_sense(l->sys, settled, l->at, n, phi, value, &l->mem, err));
     mt_arena_rewind(&l->mem, mark);
     return MT_OK;
 }

@@ -13,6 +13,7 @@ enum { MT_LOWEST_WHY = MT_TREE_WHY + MT_ABSOLUTE_WHY + 100 };
 typedef struct mt_lowest_want {
     int count;   /* vibration modes, at least 1 */
     bool shapes; /* or slopes of them */
+    bool drawn;  /* only where it rests as drawn: slopes and scenes have no others */
 } mt_lowest_want;
 
 /*
@@ -26,6 +27,7 @@ typedef struct mt_lowest {
     mt_lowest_way way;
     mt_tree *tree;           /* NULL: the configuration is no such tree */
     mt_absolute bodies;      /* of the sparse way */
+    mt_state position;       /* where loads bring it; sys NULL: as drawn */
     double *mu;              /* of that, forces of its constraints: mt_modal_sparse */
     char why[MT_LOWEST_WHY]; /* why there is no way */
     double mass_kg;

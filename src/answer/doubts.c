@@ -225,10 +225,9 @@ static const double MUCH_OF_LENGTH = 0.01;
 static const double FAR_RAD = 0.17453292519943295;
 static const double FAR_OF_LENGTH = 0.1;
 
-static void say_motion(const mt_linear *lin, mt_doubt_list *out)
+static void say_motion(const mt_state *p, mt_doubt_list *out)
 {
-    const mt_state *const p = mt_linear_position(lin);
-    const mt_system *const sys = mt_linear_system(lin);
+    const mt_system *const sys = p->sys;
     const char *const from = sys->driven ? "where it is driven to" : "the drawing";
     const bool turns = p->turned_body >= 0 && p->turned_rad > MUCH_RAD;
     const bool moves = p->moved_body >= 0 && p->moved_m > MUCH_OF_LENGTH * sys->length_m;
@@ -452,7 +451,7 @@ static mt_status say_analysis(mt_analysis *a, mt_doubt_list *out, mt_err *err)
     doubt_frequency(&a->modes, out);
     const int unstable = a->modes.n_unstable;
     doubt_springs(a->lin, out);
-    say_motion(a->lin, out);
+    say_motion(mt_linear_position(a->lin), out);
     MT_TRY(say_free(a, out, err));
     fault_damping(a, out);
     say_idle(a->lin, out);
@@ -481,6 +480,9 @@ static void say_lowest(const mt_lowest *l, mt_doubt_list *out)
     const mt_modes *const modes = &l->found.modes;
     doubt_mass(l->mass_kg, out);
     doubt_frequency(modes, out);
+    if (l->position.sys != NULL) {
+        say_motion(&l->position, out);
+    }
     if (modes->n_rigid > 0) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",
                            "%d free motion%s: is a joint or a spring missing?", modes->n_rigid,

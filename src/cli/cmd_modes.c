@@ -85,12 +85,21 @@ static int n_redundant(const mt_lowest *l)
                : 0;
 }
 
+/* Where it was linearised; NULL: as drawn. */
+static const mt_state *position_of(const view *v)
+{
+    if (v->a != NULL) {
+        return mt_linear_position(v->a->lin);
+    }
+    return v->l->position.sys == NULL ? NULL : &v->l->position;
+}
+
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
 {
     /* what is answered without an analysis is at rest as drawn */
     const mt_state drawn = {.equilibrium.active = v->l != NULL && v->l->sys->loaded};
     const mt_modes *const m = v->m;
-    const mt_state *const at = v->a == NULL ? &drawn : mt_linear_position(v->a->lin);
+    const mt_state *const at = position_of(v) == NULL ? &drawn : position_of(v);
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
     mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
@@ -257,7 +266,7 @@ static void tell_others(const view *v, mt_text *out)
 static void tell(const view *v, mt_text *out)
 {
     const mt_modes *const m = v->m;
-    const mt_state *const at = v->a == NULL ? NULL : mt_linear_position(v->a->lin);
+    const mt_state *const at = position_of(v);
     if (v->l != NULL) {
         const bool tree = v->l->way == MT_LOWEST_TREE;
         mt_text_addf(out,
@@ -270,7 +279,8 @@ static void tell(const view *v, mt_text *out)
             mt_text_addf(out, "  Of the joints' %d equations %d follow from others.\n",
                          v->l->equations, n_redundant(v->l));
         }
-    } else if (at != NULL && at->equilibrium.active) {
+    }
+    if (at != NULL && at->equilibrium.active) {
         if (at->equilibrium.residual > MOST_LEFT) {
             mt_text_addf(out, "  Equilibrium found in %d iterations, to rounding.\n",
                          at->iterations);

@@ -112,7 +112,7 @@ static mt_status answer_by_all(mt_survey *v, const question *q, mt_err *err)
 static mt_status answer_by_lowest(mt_survey *v, const question *q, bool *done, mt_err *err)
 {
     char why[MT_TREE_WHY] = "";
-    const mt_lowest_want want = {.count = q->wanted, .shapes = true};
+    const mt_lowest_want want = {.count = q->wanted, .shapes = true, .drawn = true};
     mt_lowest *l = NULL;
     double *slope = NULL;
     mt_status rc = mt_subject_lowest(v->s, v->c, q->count, q->inputs, q->at, want, &l, err);

@@ -274,29 +274,41 @@ static mt_status measure(mt_absolute *o, const groups *g, mt_arena *mem, mt_aren
     return MT_OK;
 }
 
+mt_status mt_absolute_stand(const mt_system *sys, const mt_state *settled, const double *inputs,
+                            mt_data *data, mt_placement *at, mt_arena *mem, mt_err *err)
+{
+    double *const value = mt_arena_f64(mem, (size_t)sys->program.count, 1);
+    MT_TRY(mt_data_init(data, sys, mem, err));
+    MT_TRY(mt_placement_init(at, sys, mem, err));
+    MT_TRY(mt_program_eval(&sys->program, inputs, value, NULL, err));
+    data->value = value;
+    mt_data_vecs(data);
+    mt_data_targets(data);
+    if (settled == NULL) {
+        mt_data_drawn(data, at->pose);
+        mt_data_rest(data, at->pose);
+    } else {
+        mt_placement_copy(sys, &settled->at, at);
+        mt_data_rest(data, settled->reference.pose);
+    }
+    return MT_OK;
+}
+
 static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_arena *scratch,
                       bool *is, char *why, mt_err *err)
 {
     const mt_system *const sys = o->sys;
-    double *const value = mt_arena_f64(scratch, (size_t)sys->program.count, 1);
     mt_data data;
     mt_placement at;
     mt_term_list list[MT_TERM_KINDS];
-    MT_TRY(mt_data_init(&data, sys, scratch, err));
-    MT_TRY(mt_placement_init(&at, sys, scratch, err));
     MT_TRY(mt_terms_new(sys, scratch, list, err));
-    MT_TRY(mt_program_eval(&sys->program, inputs, value, NULL, err));
+    MT_TRY(mt_absolute_stand(sys, o->settled, inputs, &data, &at, scratch, err));
     MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
     *is = !sys->driven;
     if (!*is) {
         (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "a joint is driven");
         return MT_OK;
     }
-    data.value = value;
-    mt_data_vecs(&data);
-    mt_data_targets(&data);
-    mt_data_drawn(&data, at.pose);
-    mt_data_rest(&data, at.pose);
     groups g = {.sys = sys, .at = &at};
     MT_TRY(group(&g, mem, scratch, err));
     MT_TRY(measure_arms(&g, mem, err));
@@ -316,11 +328,12 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
     return mt_interrupt_check(sys->model->interrupt, err);
 }
 
-mt_status mt_absolute_new(const mt_system *sys, const double *inputs, mt_arena *mem,
-                          mt_absolute *out, bool *is, char why[MT_ABSOLUTE_WHY], mt_err *err)
+mt_status mt_absolute_new(const mt_system *sys, const double *inputs, const mt_state *settled,
+                          mt_arena *mem, mt_absolute *out, bool *is, char why[MT_ABSOLUTE_WHY],
+                          mt_err *err)
 {
     mt_arena scratch = {.first = NULL};
-    *out = (mt_absolute){.sys = sys};
+    *out = (mt_absolute){.sys = sys, .settled = settled};
     *is = false;
     why[0] = '\0';
     mt_status rc = mt_arena_init(&scratch, 0, err);

@@ -7,14 +7,15 @@
 #include "mechanics/position.h"
 
 /*
- * A mechanism of any size and form, as drawn, in the coordinates of its bodies, those that
- * fixed joints hold together being one: K and M as sums of squares of sparse rows, one for each
- * spring and each part of a mass, and the rows of the Jacobian A of the constraints that are
- * left. All costs are O(bodies).
+ * A mechanism of any size and form, as drawn or where it has settled, in the coordinates of its
+ * bodies, those that fixed joints hold together being one: K and M as sums of squares of sparse
+ * rows, one for each spring and each part of a mass, and the rows of the Jacobian A of the
+ * constraints that are left. All costs are O(bodies).
  */
 typedef struct mt_absolute {
     const mt_system *sys;
-    int n; /* coordinates */
+    const mt_state *settled; /* NULL: as drawn */
+    int n;                   /* coordinates */
     mt_squares k;
     mt_squares m;
     mt_rows a;
@@ -28,13 +29,20 @@ typedef struct mt_absolute {
 enum { MT_ABSOLUTE_WHY = 200 };
 
 /**
- * @param[in]  inputs  [n_inputs] of the system
- * @param[out] out     its arrays in mem
- * @param[out] why     the reason where *is false: driven, or not closed as drawn
+ * @param[in]  inputs   [n_inputs] of the system
+ * @param[in]  settled  where it stands at these inputs, outlives out; NULL: as drawn
+ * @param[out] out      its arrays in mem
+ * @param[out] why      the reason where *is false: driven, or not closed as drawn
  * Fails: MT_E_DOMAIN (a number has no value), MT_E_INTERRUPTED, MT_E_MEMORY.
  */
-mt_status mt_absolute_new(const mt_system *sys, const double *inputs, mt_arena *mem,
-                          mt_absolute *out, bool *is, char why[MT_ABSOLUTE_WHY], mt_err *err);
+mt_status mt_absolute_new(const mt_system *sys, const double *inputs, const mt_state *settled,
+                          mt_arena *mem, mt_absolute *out, bool *is, char why[MT_ABSOLUTE_WHY],
+                          mt_err *err);
+
+/* All numbers at these inputs, and the place; arrays in mem. Fails: MT_E_DOMAIN,
+ * MT_E_MEMORY. */
+mt_status mt_absolute_stand(const mt_system *sys, const mt_state *settled, const double *inputs,
+                            mt_data *data, mt_placement *at, mt_arena *mem, mt_err *err);
 
 /* Do these bodies (n, or MT_GROUND) move together? */
 bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
@@ -42,12 +50,13 @@ bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
 bool mt_absolute_holds_already(const mt_absolute *o, int i);
 /* phi[nq] := x[n] by states. */
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
-/* The system's channels, as drawn, for n such shapes, phi nq x n: value n_channels x n. Scratch
- * is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
-mt_status mt_drawn_sense(const mt_system *sys, const double *inputs, int n, const double *phi,
-                         double *value, mt_arena *scratch, mt_err *err);
+/* The system's channels, as drawn or where it has settled, for n such shapes, phi nq x n: value
+ * n_channels x n. Scratch is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const double *inputs,
+                            int n, const double *phi, double *value, mt_arena *scratch,
+                            mt_err *err);
 
-/* f[n] := the forces of loads and springs that the constraints have to hold, at the drawing.
+/* f[n] := the forces of loads and springs that the constraints have to hold, where it stands.
  * Scratch is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_absolute_forces(const mt_absolute *o, const double *inputs, double *f,
                              mt_arena *scratch, mt_err *err);
@@ -63,7 +72,8 @@ typedef struct mt_absolute_load {
 /**
  * That of the loads and of the constraints that hold them. O(bodies log bodies).
  * @param[out] out  mu and open given; the other arrays in mem
- * @param[out] why  the body where *at_rest is false: f - A^T mu is more than rounding
+ * @param[out] why  the body where *at_rest is false: f - A^T mu is more than rounding, of
+ *                  what the positions leave of the springs' forces, too
  * Fails: MT_E_DOMAIN, MT_E_INTERRUPTED, MT_E_MEMORY.
  */
 mt_status mt_absolute_load_new(const mt_absolute *o, const double *inputs, mt_arena *mem,

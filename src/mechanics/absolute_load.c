@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Loads on a mechanism that is drawn at rest. Of V and of mu times the constraints, measure by
+ * Loads on a mechanism at rest. Of V and of mu times the constraints, measure by
  * measure with the force c, gradient c g and Hessian c h over the motions (dx, theta) of two
  * bodies. A body with the arm r from the first of its group moves by theta and
  *     dx = dx_1 + theta x r + theta x (theta x r)/2,
@@ -15,6 +15,7 @@
 
 #include "base/format.h"
 #include "base/interrupt.h"
+#include "linalg/dense.h"
 #include "mechanics/absolute.h"
 #include "mechanics/forces.h"
 #include "mechanics/pieces.h"
@@ -24,6 +25,8 @@ enum { L = MT_LOCAL };
 /* Forces that do not balance, relative to all those that meet there: beyond rounding, the
  * drawing is not at rest. */
 static const double NOT_AT_REST = 1e-11;
+/* What Newton's method leaves unbalanced, in what rounding of the positions may be of it. */
+static const double ROOM = 8.0;
 /* Roundings of an entry's terms. */
 static const double TERM_ULPS = 16.0;
 
@@ -39,11 +42,16 @@ typedef struct work {
     const mt_absolute *o;
     mt_data data;
     mt_placement at;
-    double *g;    /* [n] gradient */
-    double *push; /* [n] of all forces that meet at a body, at its coordinates */
-    entry *list;  /* NULL: counted alone */
+    double *g;     /* [n] gradient */
+    double *push;  /* [n] of all forces that meet at a body, at its coordinates */
+    double *round; /* [n] of that, what rounding of the positions leaves open */
+    /* [nq] of a place where it settled: the motion to where the forces balance, what is open of
+     * that, and what was unbalanced before */
+    double *left;
+    double *more;
+    double *unbalanced;
+    entry *list; /* NULL: counted alone */
     size_t n;
-    double open; /* of the present force */
 } work;
 
 /* One measure over the coordinates of its bodies. */
@@ -167,9 +175,9 @@ static void make_patch(const work *w, const int body[2], double c, const mt_jet 
     }
 }
 
-static void add_entries(work *w, double c, const patch *p)
+/* open: of what the entries' sizes are made of. */
+static void add_entries(work *w, double open, const patch *p)
 {
-    const double open = fabs(c) > 0.0 ? w->open / fabs(c) : 0.0;
     for (int k = 0; k < L; k++) {
         for (int j = 0; j < L; j++) {
             if (p->place[k] < 0 || p->place[j] < p->place[k] || p->size[j + (L * k)] == 0.0) {
@@ -188,26 +196,51 @@ static void add_entries(work *w, double c, const patch *p)
     }
 }
 
-static bool add_force(void *context, const int body[2], double c, const mt_jet *jet)
+/* Largest entry of the forces on a side, in units. */
+static double largest(const work *w, const patch *p, int side)
+{
+    double most = 0.0;
+    for (int k = 6 * side; k < 6 + (6 * side); k++) {
+        if (p->place[k] >= 0) {
+            most = fmax(most, fabs(p->g[k]) * w->o->unit[p->place[k]]);
+        }
+    }
+    return most;
+}
+
+/* A force that is known to within `noise`. */
+static void add(work *w, const int body[2], double c, double noise, const mt_jet *jet, patch *p)
+{
+    const double size = fmax(fabs(c), noise);
+    make_patch(w, body, c, jet, p);
+    if (size > fabs(c)) {
+        patch whole;
+        make_patch(w, body, size, jet, &whole);
+        memcpy(p->size, whole.size, sizeof whole.size);
+    }
+    add_entries(w, size > 0.0 ? noise / size : 0.0, p);
+    for (int k = 0; k < L && w->list == NULL; k++) {
+        if (p->place[k] >= 0) {
+            w->g[p->place[k]] += p->g[k];
+            w->push[p->place[k]] += largest(w, p, k / 6);
+        }
+    }
+}
+
+static bool add_force(void *context, const int body[2], double c, double noise,
+                      const mt_jet *jet)
 {
     work *const w = context;
     patch p;
     if (mt_absolute_together(w->o, body, 2)) {
         return true;
     }
-    make_patch(w, body, c, jet, &p);
-    add_entries(w, c, &p);
-    for (int side = 0; side < 2; side++) {
-        double most = 0.0;
-        for (int k = 6 * side; k < 6 + (6 * side); k++) {
+    add(w, body, c, noise, jet, &p);
+    if (noise > 0.0 && w->list == NULL) {
+        make_patch(w, body, noise, jet, &p);
+        for (int k = 0; k < L; k++) {
             if (p.place[k] >= 0) {
-                most = fmax(most, fabs(p.g[k]) * w->o->unit[p.place[k]]);
-            }
-        }
-        for (int k = 6 * side; k < 6 + (6 * side) && w->list == NULL; k++) {
-            if (p.place[k] >= 0) {
-                w->g[p.place[k]] += p.g[k];
-                w->push[p.place[k]] += most;
+                w->round[p.place[k]] += largest(w, &p, k / 6);
             }
         }
     }
@@ -228,14 +261,13 @@ static void add_constraints(work *w, const double *mu, const double *open)
             const mt_measure_data measure = mt_data_measure(&w->data, def);
             const double factor = creal(mt_data_scalar(&w->data, c->coefficient[t], 1.0));
             mt_jet jet;
+            patch p;
             mt_measure_eval(&measure, mt_pose_of(w->at.pose, def->body[0]),
                             mt_pose_of(w->at.pose, def->body[1]), true, &jet);
-            w->open = fabs(factor) * open[j];
-            (void)add_force(w, def->body, factor * mu[j], &jet);
+            add(w, def->body, factor * mu[j], fabs(factor) * open[j], &jet, &p);
         }
         j++;
     }
-    w->open = 0.0;
 }
 
 static int by_place(const void *a, const void *b)
@@ -273,29 +305,85 @@ static mt_status sum_entries(work *w, mt_arena *mem, mt_absolute_load *out, mt_e
     return MT_OK;
 }
 
-static mt_status open_at(work *w, const double *inputs, mt_arena *scratch, mt_err *err)
+/* c g, over the states. */
+static bool add_gradient(void *context, const int body[2], double c, double noise,
+                         const mt_jet *jet)
+{
+    const work *const w = context;
+    (void)noise;
+    for (int k = 0; k < L; k++) {
+        const int dof = mt_local_dof(w->o->sys, body, k);
+        if (dof >= 0) {
+            w->unbalanced[dof] += c * creal(jet->g[k]);
+        }
+    }
+    return true;
+}
+
+/*
+ * Positions are rounded, and what rounding makes of a stiff spring's force may be far above
+ * that of the forces themselves: the step that Newton's method did not take goes from there to
+ * where they balance. What a second one from there would add tells how well that is known.
+ */
+static mt_status balance(work *w, mt_arena *scratch, mt_err *err)
 {
     const mt_system *const sys = w->o->sys;
-    double *const value = mt_arena_f64(scratch, (size_t)sys->program.count, 1);
-    MT_TRY(mt_data_init(&w->data, sys, scratch, err));
-    MT_TRY(mt_placement_init(&w->at, sys, scratch, err));
-    MT_TRY(mt_program_eval(&sys->program, inputs, value, NULL, err));
-    w->data.value = value;
-    mt_data_vecs(&w->data);
-    mt_data_targets(&w->data);
-    mt_data_drawn(&w->data, w->at.pose);
-    mt_data_rest(&w->data, w->at.pose);
+    const mt_stage *const stage = &w->o->settled->equilibrium;
+    const size_t nq = (size_t)sys->nq;
+    w->left = mt_arena_f64(scratch, nq, 1);
+    w->more = mt_arena_f64(scratch, nq, 1);
+    w->unbalanced = mt_arena_f64(scratch, nq, 1);
+    mt_lagrangian l = {.g = mt_arena_f64(scratch, nq, 1)};
+    l.trim = mt_arena_f64(scratch, nq, 1);
+    l.c = mt_arena_f64(scratch, (size_t)sys->n_constraints, 1);
+    l.row = mt_arena_alloc(scratch, (size_t)sys->n_constraints, sizeof *l.row);
+    MT_TRY(mt_arena_check(scratch, err));
+    memcpy(w->left, stage->left.q, nq * sizeof *w->left);
+    (void)mt_forces_at(&w->data, &w->at, w->left, w->more, add_gradient, w);
+    mt_lagrangian_eval(&w->data, MT_ENERGY_NONE, NULL, &w->at, sys->n_constraints, NULL,
+                       MT_CURVATURE_NONE, &l);
+    for (int i = 0; i < sys->n_constraints; i++) {
+        for (int k = 0; k < l.row[i].n; k++) {
+            w->unbalanced[l.row[i].dof[k]] +=
+                l.row[i].a[k] * (stage->lambda[i] + stage->left.lambda[i]);
+        }
+    }
+    for (size_t j = 0; j < nq; j++) {
+        w->unbalanced[j] = -w->unbalanced[j];
+    }
+    MT_TRY(mt_saddle_solve(&stage->solver.saddle, w->unbalanced, NULL, w->more, NULL, scratch,
+                           err));
+    mt_axpy(sys->nq, 1.0, w->more, w->left);
     return MT_OK;
+}
+
+static mt_status open_at(work *w, const double *inputs, mt_arena *scratch, mt_err *err)
+{
+    const mt_state *const settled = w->o->settled;
+    w->push = mt_arena_f64(scratch, (size_t)w->o->n, 1);
+    w->round = mt_arena_f64(scratch, (size_t)w->o->n, 1);
+    MT_TRY(mt_absolute_stand(w->o->sys, settled, inputs, &w->data, &w->at, scratch, err));
+    return settled == NULL ? MT_OK : balance(w, scratch, err);
+}
+
+/* Of loads and springs. */
+static void add_forces(work *w)
+{
+    if (w->o->settled == NULL) {
+        (void)mt_forces_each(&w->data, w->at.pose, add_force, w);
+    } else {
+        (void)mt_forces_at(&w->data, &w->at, w->left, w->more, add_force, w);
+    }
 }
 
 mt_status mt_absolute_forces(const mt_absolute *o, const double *inputs, double *f,
                              mt_arena *scratch, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    work w = {.o = o, .g = f, .push = mt_arena_f64(scratch, (size_t)o->n, 1)};
+    work w = {.o = o, .g = f};
     MT_TRY(open_at(&w, inputs, scratch, err));
     memset(f, 0, (size_t)o->n * sizeof *f);
-    (void)mt_forces_each(&w.data, w.at.pose, add_force, &w);
+    add_forces(&w);
     for (int j = 0; j < o->n; j++) {
         f[j] = -f[j];
     }
@@ -309,15 +397,19 @@ static bool is_at_rest(const work *w, char *why)
     const mt_system *const sys = w->o->sys;
     for (int dof = 0; dof < sys->nq; dof++) {
         const int j = w->o->place[dof];
-        if (j < 0 || fabs(w->g[j]) * w->o->unit[j] <= NOT_AT_REST * w->push[j]) {
+        if (j < 0 || fabs(w->g[j]) * w->o->unit[j] <=
+                         (NOT_AT_REST * w->push[j]) + (ROOM * w->round[j])) {
             continue;
         }
         for (int b = 0; b < sys->n_bodies; b++) {
             for (int k = 0; k < 6; k++) {
                 if (sys->bodies[b].dof[k] == dof) {
-                    (void)mt_snprintf(why, MT_ABSOLUTE_WHY,
-                                      "\"%s\" is not drawn at rest under its load",
-                                      sys->bodies[b].name);
+                    (void)mt_snprintf(
+                        why, MT_ABSOLUTE_WHY,
+                        w->o->settled == NULL
+                            ? "\"%s\" is not drawn at rest under its load"
+                            : "forces on \"%s\" cancel beyond rounding where it has settled",
+                        sys->bodies[b].name);
                 }
             }
         }
@@ -334,7 +426,6 @@ mt_status mt_absolute_load_new(const mt_absolute *o, const double *inputs, mt_ar
     work w = {.o = o};
     mt_status rc = mt_arena_init(&scratch, 0, err);
     w.g = mt_arena_f64(&scratch, (size_t)o->n, 1);
-    w.push = mt_arena_f64(&scratch, (size_t)o->n, 1);
     rc = rc == MT_OK ? open_at(&w, inputs, &scratch, err) : rc;
     rc = rc == MT_OK ? mt_arena_check(&scratch, err) : rc;
     for (int round = 0; round < 2 && rc == MT_OK; round++) {
@@ -344,7 +435,7 @@ mt_status mt_absolute_load_new(const mt_absolute *o, const double *inputs, mt_ar
         rc = mt_arena_check(&scratch, err);
         rc = rc == MT_OK ? mt_interrupt_check(o->sys->model->interrupt, err) : rc;
         if (rc == MT_OK) {
-            (void)mt_forces_each(&w.data, w.at.pose, add_force, &w);
+            add_forces(&w);
             add_constraints(&w, out->mu, out->open);
         }
     }

@@ -77,24 +77,20 @@ void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi)
     expand(o, x, o->arm, true, phi);
 }
 
-mt_status mt_drawn_sense(const mt_system *sys, const double *inputs, int n, const double *phi,
-                         double *value, mt_arena *scratch, mt_err *err)
+mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const double *inputs,
+                            int n, const double *phi, double *value, mt_arena *scratch,
+                            mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    double *const nodes = mt_arena_f64(scratch, (size_t)sys->program.count, 1);
-    mt_pose *const pose = mt_arena_alloc(scratch, (size_t)sys->n_bodies, sizeof *pose);
     mt_data d;
-    MT_TRY(mt_data_init(&d, sys, scratch, err));
-    MT_TRY(mt_program_eval(&sys->program, inputs, nodes, NULL, err));
-    d.value = nodes;
-    mt_data_vecs(&d);
-    mt_data_drawn(&d, pose);
+    mt_placement at;
+    MT_TRY(mt_absolute_stand(sys, settled, inputs, &d, &at, scratch, err));
     for (int i = 0; i < sys->n_channels; i++) {
         const int *const body = sys->channels[i].body;
         const mt_term term = {
             .coefficient = MT_NO_NODE, .count = 1, .body = {body[0], body[1]}, .source = i};
         mt_cx row[MT_LOCAL];
-        mt_term_rows(&d, MT_TERM_CHANNEL, &term, pose, row);
+        mt_term_rows(&d, MT_TERM_CHANNEL, &term, at.pose, row);
         for (int a = 0; a < n; a++) {
             double sum = 0.0;
             for (int k = 0; k < MT_LOCAL; k++) {

@@ -152,8 +152,8 @@ static mt_status relax_sparse(walk *w, mt_newton_work *work, bool *sure, mt_err 
     mt_saddle saddle;
     mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, m, NULL,
                        MT_CURVATURE_ELASTIC, &work->sparse);
-    MT_TRY(mt_saddle_factor(w->sys, m, &work->sparse, false, work->sparse.h, w->mem, &saddle,
-                            err));
+    MT_TRY(mt_saddle_factor(w->sys, m, &work->sparse, MT_SADDLE_REGULAR, work->sparse.h, w->mem,
+                            &saddle, err));
     *sure = saddle.whole;
     if (*sure) {
         MT_TRY(mt_newton_is_firm(&saddle, w->mem, sure, err));

@@ -296,8 +296,8 @@ static mt_status find_position(mt_linear *lin, mt_err *err)
     mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
     return mt_position_solve(lin->sys, &lin->data,
-                             lin->follow && lin->has_last ? &lin->last : NULL, false,
-                             &lin->geometry->mem, &lin->position, err);
+                             lin->follow && lin->has_last ? &lin->last : NULL,
+                             MT_POSITION_QUICK, &lin->geometry->mem, &lin->position, err);
 }
 
 static void keep_last(mt_linear *lin)

@@ -112,7 +112,8 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
     if (w->least != NULL) {
         const bool physical = w->p->energy == MT_ENERGY_PHYSICAL;
         MT_TRY(mt_newton_linearise_sparse(w, at, first && physical, mem, solver, &sure, err));
-        if (sure && w->gap <= MT_STEP_DONE && balanced(w)) { /* the step is rounding, or none */
+        if (sure && !w->p->sparse && w->gap <= MT_STEP_DONE &&
+            balanced(w)) { /* the step is rounding, or none */
             MT_TRY(mt_newton_is_firm(&solver->saddle, mem, &sure, err));
         }
     }

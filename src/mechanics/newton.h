@@ -15,6 +15,9 @@ typedef struct mt_newton_problem {
     /* The last constraint (the drive) is held by the unknown force of the trimmed spring
      * instead of by its multiplier. */
     bool trim;
+    /* No dense matrices: MT_E_EQUILIBRIUM where the sparse ones do not do. Freedoms without
+     * stiffness are not looked for. */
+    bool sparse;
 } mt_newton_problem;
 
 /*

@@ -74,6 +74,9 @@ mt_status mt_newton_dense(mt_newton_work *w, mt_arena *mem, mt_err *err)
     if (w->h != NULL) {
         return MT_OK;
     }
+    if (w->p->sparse) {
+        return mt_fail(err, MT_E_EQUILIBRIUM, "equations that are not regular beyond doubt");
+    }
     const size_t nq = (size_t)w->sys->nq;
     w->a = mt_arena_f64(mem, (size_t)w->sys->n_constraints, nq);
     w->h = mt_arena_f64(mem, nq, nq);
@@ -387,7 +390,8 @@ mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
                                   mt_saddle *least, bool *sure, mt_err *err)
 {
     w->factors++;
-    MT_TRY(mt_saddle_factor(w->sys, w->p->m, &w->sparse, true, w->least, mem, least, err));
+    MT_TRY(mt_saddle_factor(w->sys, w->p->m, &w->sparse, MT_SADDLE_LEAST_SQUARES, w->least, mem,
+                            least, err));
     *sure = least->whole;
     return *sure && apart ? mt_saddle_below(least, FAR_FROM_DEPENDENT, mem, sure, err) : MT_OK;
 }
@@ -403,7 +407,7 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
     mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_FULL,
                        &w->sparse);
-    MT_TRY(mt_newton_least_squares(w, first, mem, &least, sure, err));
+    MT_TRY(mt_newton_least_squares(w, first && !p->sparse, mem, &least, sure, err));
     if (!*sure) {
         return MT_OK;
     }
@@ -415,8 +419,9 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     mt_lagrangian_curve(p->data, at, p->m, w->lambda_cx, &w->sparse);
     weigh(w, &w->sparse, unbalanced(w, &least));
     w->factors++;
-    MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse, false, w->sparse.h, mem, &solver->saddle,
-                            err));
+    MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse,
+                            p->sparse ? MT_SADDLE_SOFT : MT_SADDLE_REGULAR, w->sparse.h, mem,
+                            &solver->saddle, err));
     *sure = solver->saddle.whole && (!first || mt_saddle_convex(&solver->saddle));
     if (!*sure) {
         return MT_OK;
@@ -431,7 +436,9 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     w->moved = mt_newton_scaled_norm(w, w->step);
     w->null_freedoms = 0;
     const bool convex = mt_saddle_convex(&solver->saddle);
-    *sure = w->moved <= (convex ? LITTLE_LONGER : 1.0) * MT_STEP_LIMIT;
+    /* (with nothing to compare, one that is too long is shortened as a whole) */
+    *sure = w->moved <= (convex ? LITTLE_LONGER : 1.0) * MT_STEP_LIMIT ||
+            (p->sparse && w->moved < HUGE_VAL);
     return MT_OK;
 }
 

@@ -27,7 +27,8 @@ static mt_status close_loops(mt_state *p, const mt_data *data, mt_arena *mem, mt
                                        .energy = MT_ENERGY_ANCHOR,
                                        .drawn = p->drawn,
                                        .m = assembly_constraints(sys),
-                                       .trim = false};
+                                       .trim = false,
+                                       .sparse = p->sparse};
     double gap = 0.0;
     memcpy(p->reference.pose, p->drawn, (size_t)sys->n_bodies * sizeof *p->drawn);
     if (sys->drawn_closed) {
@@ -48,7 +49,8 @@ static mt_status balance(mt_state *p, const mt_data *data, mt_arena *mem, mt_err
                                        .energy = MT_ENERGY_PHYSICAL,
                                        .drawn = p->drawn,
                                        .m = p->sys->n_constraints,
-                                       .trim = p->sys->trim};
+                                       .trim = p->sys->trim,
+                                       .sparse = p->sparse};
     return mt_newton_solve(&problem, &p->at, mem, &p->equilibrium, err);
 }
 
@@ -278,9 +280,10 @@ static mt_status state_init(mt_state *p, const mt_system *sys, mt_arena *mem, mt
 }
 
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
-                            bool exact, mt_arena *mem, mt_state *out, mt_err *err)
+                            mt_position_way way, mt_arena *mem, mt_state *out, mt_err *err)
 {
     MT_TRY(state_init(out, sys, mem, err));
+    out->sparse = way == MT_POSITION_SPARSE;
     mt_data_drawn(data, out->drawn);
     mt_data_targets(data);
     MT_TRY(close_loops(out, data, mem, err));
@@ -289,8 +292,8 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
     if (sys->driven) {
         const mt_placement *const from = start != NULL ? start : &out->reference;
         bool anchored = false;
-        MT_TRY(exact ? drive(out, data, from, false, &anchored, mem, err)
-                     : drive_from(out, data, from, mem, err));
+        MT_TRY(way == MT_POSITION_EXACT ? drive(out, data, from, false, &anchored, mem, err)
+                                        : drive_from(out, data, from, mem, err));
     } else if (sys->loaded) {
         MT_TRY(balance(out, data, mem, err));
     }

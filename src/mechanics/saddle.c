@@ -17,9 +17,10 @@
 /* Pivots below these are none, and the dense way decides. Least squares have the squares of A's
  * singular values as pivots: that is 1e-6 of a row, and eliminate.c calls 1e-9 dependent. A
  * freedom without stiffness has rounding of what the joints hold, 1e-13, and off its
- * equilibrium more: no step along it means anything. */
-static const double NO_PIVOT_LEAST = 1e-12;
-static const double NO_PIVOT = 1e-9;
+ * equilibrium more: no step along it means anything. A slender beam of many elements has as
+ * little, and steps that shrink all the same. */
+static const double NO_PIVOT[] = {
+    [MT_SADDLE_LEAST_SQUARES] = 1e-12, [MT_SADDLE_REGULAR] = 1e-9, [MT_SADDLE_SOFT] = 1e-15};
 /* Open rows beside those that the order makes, for pivots that are put off. */
 enum { ROOM = 24 };
 /* A multiplication here, in a loop over a short row, against one in a matrix product. */
@@ -36,8 +37,20 @@ bool mt_saddle_pays(const mt_system *sys)
     return SLOWER * 2.0 * sys->layout->work <= dense;
 }
 
+/* A state's scale by its own stiffness, where it has some: then a beam's turns weigh as its
+ * displacements do, however short its elements are, and nothing need wait for a partner. */
+static void scale_softly(const mt_saddle *s, const double *h)
+{
+    const mt_envelope *const e = &s->sys->layout->envelope;
+    for (int j = 0; j < s->sys->nq; j++) {
+        const int p = s->sys->layout->state[j];
+        const double own = h[e->row[p] + p];
+        s->d[p] = own > 0.0 && own < HUGE_VAL ? 1.0 / sqrt(own) : s->d[p];
+    }
+}
+
 /* d[places]: D_c for states, D_r for equations. */
-static void find_scales(const mt_saddle *s, const mt_lagrangian *l)
+static void find_scales(const mt_saddle *s, const mt_lagrangian *l, mt_saddle_kind kind)
 {
     const mt_system *const sys = s->sys;
     const mt_layout *const o = sys->layout;
@@ -48,6 +61,9 @@ static void find_scales(const mt_saddle *s, const mt_lagrangian *l)
                 s->d[o->state[dof]] = k < 3 ? 1.0 : 1.0 / sys->length_m;
             }
         }
+    }
+    if (kind == MT_SADDLE_SOFT) {
+        scale_softly(s, l->h);
     }
     for (int i = 0; i < sys->n_constraints; i++) {
         double length = 0.0;
@@ -74,16 +90,17 @@ static double scale_hessian(const mt_envelope *e, const double *d, double *value
     return most > 0.0 ? most : 1.0;
 }
 
-mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l, bool identity,
-                           double *value, mt_arena *mem, mt_saddle *out, mt_err *err)
+mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l,
+                           mt_saddle_kind kind, double *value, mt_arena *mem, mt_saddle *out,
+                           mt_err *err)
 {
     const mt_layout *const o = sys->layout;
     const mt_envelope *const e = &o->envelope;
     *out = (mt_saddle){.sys = sys, .m = m, .scale = 1.0};
     out->d = mt_arena_f64(mem, (size_t)e->n, 1);
     MT_TRY(mt_arena_check(mem, err));
-    find_scales(out, l);
-    if (identity) {
+    find_scales(out, l, kind);
+    if (kind == MT_SADDLE_LEAST_SQUARES) {
         memset(value, 0, e->count * sizeof *value);
         for (int j = 0; j < sys->nq; j++) {
             value[e->row[o->state[j]] + o->state[j]] = 1.0;
@@ -101,8 +118,7 @@ mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l, 
         }
         value[e->row[p] + p] = i < m ? 0.0 : -1.0;
     }
-    const double least = identity ? NO_PIVOT_LEAST : NO_PIVOT;
-    MT_TRY(mt_ldl_factor(e, value, least, (2 * e->front) + ROOM, mem, &out->f, err));
+    MT_TRY(mt_ldl_factor(e, value, NO_PIVOT[kind], (2 * e->front) + ROOM, mem, &out->f, err));
     out->whole = out->f.whole && out->f.rank == out->f.n;
     return MT_OK;
 }

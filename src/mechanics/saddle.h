@@ -23,13 +23,22 @@ typedef struct mt_saddle {
     bool whole; /* regular, and factored */
 } mt_saddle;
 
+/* LEAST_SQUARES: H = I. REGULAR: H = l->h, and pivots that may be a freedom's without stiffness
+ * are none. SOFT: pivots are all that are above rounding; what is free is for others to see. */
+typedef enum mt_saddle_kind {
+    MT_SADDLE_LEAST_SQUARES,
+    MT_SADDLE_REGULAR,
+    MT_SADDLE_SOFT
+} mt_saddle_kind;
+
 /* Is this way cheaper than the dense one (eliminate.h)? */
 bool mt_saddle_pays(const mt_system *sys);
-/* The system with H = l->h, or with H = I, and the first m rows of A = l->row. value: of all
+/* The system with the first m rows of A = l->row. value: of all
  * entries of the layout's envelope, overwritten; may be l->h where H is. Results in mem.
  * Fails: MT_E_MEMORY, MT_E_DOMAIN. */
-mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l, bool identity,
-                           double *value, mt_arena *mem, mt_saddle *out, mt_err *err);
+mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l,
+                           mt_saddle_kind kind, double *value, mt_arena *mem, mt_saddle *out,
+                           mt_err *err);
 /* f [nq] or NULL (0), b [m] or NULL (0); x [nq] and y [m], each may be NULL. */
 mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, double *x,
                           double *y, mt_arena *scratch, mt_err *err);

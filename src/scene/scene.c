@@ -93,7 +93,7 @@ static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     const mt_scene_ask *const a = f->ask;
     const double bodies = mt_lowest_bodies(f->model, f->configuration);
     const double work = mt_scene_work(bodies * (f->model->dimension == 2 ? 3.0 : 6.0));
-    const mt_lowest_want want = {.count = MT_SCENE_MODES, .shapes = true};
+    const mt_lowest_want want = {.count = MT_SCENE_MODES, .shapes = true, .drawn = true};
     mt_lowest *l = NULL;
     mt_analysis *by = NULL;
     mt_status rc = MT_OK;

@@ -82,8 +82,10 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
 }
 
 /* A force that a potential -c times the measure makes. */
-static bool add_force(void *context, const int body[2], double c, const mt_jet *jet)
+static bool add_force(void *context, const int body[2], double c, double noise,
+                      const mt_jet *jet)
 {
+    (void)noise; /* as drawn there is none */
     const loading *const l = context;
     const mt_tree *const t = l->m->t;
     for (int side = 0; side < 2; side++) {

@@ -6,6 +6,7 @@ which are negative, knots without mass, redundant joints, under gravity or not. 
 and unstable modes must agree; directions without mass are counted by the dense way alone. MT_EVERY=1: many more.
 """
 import json
+import math
 import os
 import random
 import subprocess
@@ -14,6 +15,9 @@ import tempfile
 import unittest
 from collections import Counter
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import large  # noqa: E402
 
 PROGRAM = os.environ["MODETUNE"]
 EVERY = "MT_EVERY" in os.environ
@@ -57,6 +61,22 @@ def part(rng, model, origin, size, held, negative, shapes=("chain", "chain", "st
         model["springs"].append({"name": f"s{len(model['springs'])}", "type": "axial", "bodies": [names[0], names[-1]],
                                  "at": [[origin + 0.5, 1], [origin + size - 0.5, 1.5]], "stiffness_n_per_m": 20})
     return names
+
+
+def settling_model(rng):
+    """A cantilever, drawn straight or with a bend, in the plane or a frame in space, that its weight brings elsewhere: little or far."""
+    if rng.random() < 0.3:
+        model = large.frame(3, 3, 3, 2)
+        model["gravity_m_per_s2"] = [round(rng.uniform(-5, 5), 3) for _ in range(2)] + [-9.81]
+        return model
+    n = rng.randint(LEAST + 1, LEAST + 30)
+    model = rng.choice([large.link, large.beam, large.chain])(n)
+    size = 10 ** rng.uniform(-2, 0.8)
+    model["gravity_m_per_s2"] = [round(rng.uniform(-0.3, 1) * size, 4), round(-size, 4)]
+    tip = f"b{n - 1}" if "links" not in model else "beam.end"
+    model["springs"] = [*model.get("springs", []), {"name": "stay", "type": "axial", "bodies": ["ground", tip],
+                                                    "at": [[1.3, 0.4], [1, 0]], "stiffness_n_per_m": round(rng.uniform(0.1, 5), 3)}]
+    return model
 
 
 def random_model(rng):
@@ -124,6 +144,28 @@ class Ways(unittest.TestCase):
                 ways[self.compare(random_model(random.Random(f"ways.{index}")))] += 1
         print(dict(ways), file=sys.stderr)
         self.assertGreaterEqual({"tree", "sparse"} & set(ways), {"tree", "sparse"}, ways)
+
+    def test_what_settles_elsewhere_has_the_modes_of_where_it_settles(self):
+        found = Counter()
+        for index in range(8 if EVERY else 2):
+            with self.subTest(seed=f"sags.{index}"):
+                model = settling_model(random.Random(f"sags.{index}"))
+                whole, code, said = self.modes(model, "--count", "all", "--shapes")
+                few, _, _ = self.modes(model, "--count", str(COUNT), "--shapes")
+                self.assertEqual(code, 0, said)
+                found[few["method"]] += 1
+                self.assertEqual(few["rigid_body_modes"] + few["unstable_modes"], 0)
+                for a, b in zip(whole["modes"], few["modes"]):
+                    off = abs(a["omega_squared"] - b["omega_squared"])
+                    self.assertLessEqual(off, a["omega_squared_error"] + b["omega_squared_error"])
+                    self.assertLessEqual(b["omega_squared_error"], 1e-7 * b["omega_squared"])
+                    most = max(map(abs, a["shape"].values()))
+                    sign = math.copysign(1, sum(value * b["shape"][name] for name, value in a["shape"].items()))  # of two equal entries either leads
+                    for name, value in a["shape"].items():
+                        self.assertLessEqual(abs(sign * b["shape"][name] - value), 1e-6 * most, name)
+                for name in ("largest_motion_m", "largest_turn_rad"):
+                    self.assertLessEqual(abs(whole["equilibrium"][name] - few["equilibrium"][name]), 1e-9)
+        self.assertGreaterEqual(found["sparse"], found.total() - 1, found)
 
     def test_a_direction_without_mass_is_unstable_once(self):
         """A knot of -1500 + 700 N/m: one unstable direction; the block beside it sees k1 k2/(k1 + k2)."""

@@ -118,8 +118,11 @@ static void compare_walks(mt_test *t, closing *c, double same, bool *fewer)
     mt_state brief;
     mt_state exact;
     mt_err err = {.text = ""};
-    const mt_status rc = mt_position_solve(sys, &c->data, NULL, false, &c->mem, &brief, &err);
-    CHECK_INT(t, mt_position_solve(sys, &c->data, NULL, true, &c->mem, &exact, &err), rc);
+    const mt_status rc =
+        mt_position_solve(sys, &c->data, NULL, MT_POSITION_QUICK, &c->mem, &brief, &err);
+    CHECK_INT(t,
+              mt_position_solve(sys, &c->data, NULL, MT_POSITION_EXACT, &c->mem, &exact, &err),
+              rc);
     if (rc == MT_OK) {
         CHECK(t, mt_poses_distance(sys, brief.at.pose, exact.at.pose) <= same);
         *fewer = brief.iterations < exact.iterations;
