@@ -338,10 +338,56 @@ static void two_masses__moves_of_random_studies_are_least(mt_test *t)
     }
 }
 
+static bool is_warned(const study_case *c, const char *what)
+{
+    bool is = false;
+    for (int i = 0; i < c->result->n_warnings; i++) {
+        is = is || strstr(c->result->warnings[i], what) != NULL;
+    }
+    return is;
+}
+
+/* Whatever the budget is: moves, or why there are none. With variables, and catalogues, and
+ * both; a goal, and a band. */
+static void budget__moves_or_why_there_are_none(mt_test *t)
+{
+    static const char *const variables[][2] = {
+        {"'lower': 800, 'upper': 1200", "'lower': 0.9, 'upper': 1.1"},
+        {"'lower': 800, 'upper': 1200", "'catalogue': [0.9, 1, 1.1]"},
+        {"'catalogue': [800, 900, 1000, 1100, 1200]", "'catalogue': [0.9, 1, 1.1]"}};
+    static const char *const goals[] = {"{'type': 'frequency', 'mode': 1, 'at_least_hz': 9}",
+                                        "{'type': 'avoid', 'bands_hz': [[3, 9]]}"};
+    for (int i = 0; i < MT_COUNT(variables) * MT_COUNT(goals); i++) {
+        const char *const *const of = variables[i / 2];
+        int with = 0;
+        int too_few = 0; /* left for the moves, though enough for the search */
+        for (long most = 3; most < 20000; most += 1 + (most / 4)) {
+            study_case c;
+            char members[1024];
+            mt_test_row(t, "k %s, m %s, %s, %ld evaluations", of[0], of[1], goals[i % 2], most);
+            (void)snprintf(members, sizeof members,
+                           "'variables': [{'parameter': 'k', %s}, {'parameter': 'm', %s}], "
+                           "'goals': [%s], 'search': {'max_evaluations': %ld}",
+                           of[0], of[1], goals[i % 2], most);
+            if (study_solve(t, ONE_MASS_OF("m"), members, &c)) {
+                const bool ended = is_warned(&c, "budget of evaluations ran out");
+                const bool unknown = is_warned(&c, "single change");
+                CHECK(t, c.result->n_relaxations > 0 || ended || unknown);
+                CHECK(t, c.result->n_relaxations == 0 || !unknown);
+                with += c.result->n_relaxations > 0;
+                too_few += unknown && !ended;
+            }
+            study_free(&c);
+        }
+        CHECK(t, with > 0 && too_few > 0);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(one_mass__every_kind_of_move_is_exact), MT_TEST(solved__has_no_move),
              MT_TEST(equal_moves__least_change_in_the_order_of_the_question),
              MT_TEST(contradiction__only_a_goal_can_move),
              MT_TEST(catalogue__goals_and_edges_can_move),
              MT_TEST(catalogue__every_mode_of_a_band_counts),
              MT_TEST(catalogue_and_continuous__both_kinds_of_move),
-             MT_TEST(two_masses__moves_of_random_studies_are_least))
+             MT_TEST(two_masses__moves_of_random_studies_are_least),
+             MT_TEST(budget__moves_or_why_there_are_none))
