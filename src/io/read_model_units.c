@@ -349,7 +349,27 @@ static bool is_turned(const char *a, const char *b)
     return strcmp(a, "rad/s") == 0 && (strcmp(b, "Hz") == 0 || strcmp(b, "1/s") == 0);
 }
 
-static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner)
+/* [n_nums] moments of inertia of bodies whose mass is written as a number: it may be one of the
+ * expression's factors, or the 1 that nobody writes, as in a^2/12. NULL where memory is out. */
+static bool *find_numbered_masses(mt_model *m)
+{
+    bool *const numbered = mt_arena_alloc(&m->mem, (size_t)m->n_nums, sizeof *numbered);
+    for (int i = 0; i < m->n_bodies && numbered != NULL; i++) {
+        const mt_body *const b = &m->bodies[i];
+        const mt_expr *const mass = b->mass == MT_ABSENT ? NULL : &m->nums[b->mass].expr;
+        const bool number =
+            mass != NULL && mass->length == 1 && mass->code[0].op == MT_OP_CONST;
+        for (int k = 0; k < MT_COUNT(b->inertia) && number; k++) {
+            if (b->inertia[k] != MT_ABSENT) {
+                numbered[b->inertia[k]] = true;
+            }
+        }
+    }
+    return numbered;
+}
+
+/* numbered: a number in it, or none, may be a mass. */
+static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner, bool numbered)
 {
     const mt_model *const m = mr->m;
     const int alone = parameter_alone(&number->expr);
@@ -369,6 +389,11 @@ static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner)
     if (mt_unit_same_powers(&is, &wanted, false) && !turned) {
         return;
     }
+    mt_unit_worth times_kg = is;
+    times_kg.power[MT_BASE_KG]++;
+    if (numbered && mt_unit_same_powers(&times_kg, &wanted, false)) {
+        return;
+    }
     const char *const member =
         owner == MT_ABSENT ? member_of(mr, number->addr) : m->parameters[owner].name.s;
     number->unit_doubt = mt_arena_printf(
@@ -382,7 +407,8 @@ void mt_read_doubt_units(mt_model_reader *mr)
 {
     mt_model *const m = mr->m;
     int *const owner = find_owners(m);
-    if (owner == NULL) {
+    const bool *const numbered = find_numbered_masses(m);
+    if (owner == NULL || numbered == NULL) {
         return;
     }
     for (int c = 0; c < m->n_configurations; c++) {
@@ -397,7 +423,7 @@ void mt_read_doubt_units(mt_model_reader *mr)
     }
     for (int k = 0; k < m->n_nums; k++) {
         if (has_unit(&m->nums[k].expr)) {
-            doubt_unit(mr, &m->nums[k], owner[k]);
+            doubt_unit(mr, &m->nums[k], owner[k], numbered[k]);
         }
     }
 }

@@ -526,6 +526,15 @@ class Doubts(CliTest):
             with self.subTest(value):
                 doubts, _ = self.found(self.put_model(path, value, lined))
                 self.assertEqual([d["text"] for d in doubts if d["kind"] == "unit"], [words] if words else [])
+        # A mass that is a number may be a factor of the inertia, or the 1 that nobody writes; a mass that is a parameter is missing.
+        wanted = 'and "inertia_kg_m2" in kg m^2'
+        rows = [("m", "L^2/12", f"{is_in}m^2, {wanted}"), ("m", "m*L^2/12", None), ("m", "m*L", f"{is_in}kg m, {wanted}"), (1, "L^2/12", None), ("1", "L^2/12", None),
+                (3, "3*L^2/12", None), (2.5, "L^2/12", None), (1, "L^2*(1/12 + 1/4)", None), (1, "L", '"L" is in m, ' + wanted), (1, "L*L*L/12", f"{is_in}m^3, {wanted}"),
+                (1, "c*L^2", f"{is_in}N m, {wanted}"), (1, "m*m*L^2", f"{is_in}m^2 kg^2, {wanted}"), ("1 + 0*m", "L^2/12", f"{is_in}m^2, {wanted}")]
+        for mass_is, inertia, words in rows:
+            with self.subTest(f"mass {mass_is}, inertia {inertia}"):
+                doubts, _ = self.found(self.put_model(("bodies", 0), {"name": "tip", "mass_kg": mass_is, "inertia_kg_m2": inertia, "centre": [0, 1]}, base))
+                self.assertEqual([d["text"] for d in doubts if d["kind"] == "unit"], [words] if words else [])
         self.assertIn(': warning: /springs/0/stiffness_n_m_per_rad: "c" is in N/m', self.expect(0, "check", self.put_model(stiffness, "c", base)).stderr)
         self.assertEqual(self.found(self.put_model(stiffness, "c", changed(base, ("accepted",), ["unit"])))[0], [])
 
