@@ -29,15 +29,19 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ["prove", "expr", "modal", "nlp", "problem", "search", "vibration", "describe", "report"]
+ROOMS = ["prove", "expr", "mechanics", "modal", "analysis", "nlp", "problem", "search", "vibration", "result", "describe", "answer", "report"]
 # What judges a fault first: its own room's tests, then these, which rest upon it; those named in full whatever they cost.
 ABOVE = {"prove": ["problem/", "search/", "answer/", "cli/test_tolerances"],
          "expr": ["prove/", "model/", "mechanics/", "problem/"],
+         "mechanics": ["analysis/", "mechanisms/", "problem/", "tree/", "scene/", "simulate/", "response/"],
          "modal": ["analysis/test_lowest", "analysis/test_lowest_trees", "analysis/", "response/", "describe/test_study", "stress/test_eigensolver"],
+         "analysis": ["prove/", "problem/", "response/", "search/", "answer/", "mechanisms/", "describe/"],
          "nlp": ["answer/test_study", "answer/", "search/", "problem/test_robust"],
          "problem": ["describe/test_numbers", "cli/test_motion", "describe/", "answer/", "search/"],
          "search": ["cli/test_possible", "cli/test_motion", "answer/", "describe/"],
          "vibration": ["cli/test_response_vibration", "response/", "answer/test_study_vibration", "problem/test_study_gradient"],
+         "result": ["io/", "report/", "library/", "describe/", "cli/test_diff", "cli/test_result_folder", "cli/test_trade_table"],
+         "answer": ["describe/", "search/", "library/", "cli/test_motion", "cli/test_budget", "cli/test_proof_budget", "cli/test_trade_table", "cli/test_models"],
          "describe": ["cli/test_motion", "answer/", "report/", "library/", "cli/test_explain", "cli/test_trade_table"],
          "report": ["describe/test_numbers", "library/", "cli/test_explain", "cli/test_trade_table", "cli/test_show", "cli/test_words"]}
 FIRST_EACH, FIRST_ALL = 4.0, 40.0  # seconds that one of the others, and all of them, may cost
