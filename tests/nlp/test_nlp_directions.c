@@ -253,6 +253,53 @@ static void nlp_directions__flat_is_what_is_open_beside_single_variables(mt_test
     }
 }
 
+/* f = sum of k_j (exp(d_j) - d_j), d_j = t_j - 0.5 - j/10, a bowl that no parabola is. */
+static mt_status steep_bowl(void *context, const double *t, bool with_gradient,
+                            mt_nlp_values *out, mt_err *err)
+{
+    const nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    out->f = 0.0;
+    for (int j = 0; j < c->nlp.n; j++) {
+        const double d = t[j] - 0.5 - (0.1 * j);
+        out->f += c->target[j] * (exp(d) - d);
+        out->df[j] = c->target[j] * (exp(d) - 1.0);
+    }
+    for (int j = 0; j < c->nlp.n && c->nlp.n_eq > 0; j++) { /* t0 t1 t2 = 0.2 */
+        out->eq[0] = (t[0] * t[1] * t[2]) - 0.2;
+        out->deq[j] = t[(j + 1) % 3] * t[(j + 2) % 3];
+    }
+    return MT_OK;
+}
+
+/* A bowl is not flat, wherever the search for its bottom is cut off: what was not looked at is
+ * not told. */
+static void nlp_directions__a_bowl_is_not_flat_whatever_the_budget(mt_test *t)
+{
+    static const double curvature[] = {1.0, 2.0, 3.0};
+    for (int n_eq = 0; n_eq < 2; n_eq++) {
+        bool done = false;
+        for (long most = 1; most < 1000 && !done; most++) {
+            nlp_case c = {0};
+            mt_nlp_options opt = mt_nlp_options_default();
+            opt.least_change = false;
+            opt.max_evals = most;
+            case_begin(&c, 3, steep_bowl, 0.0, 1.0);
+            memcpy(c.target, curvature, sizeof curvature);
+            c.nlp.n_eq = n_eq;
+            mt_test_row(t, "%d equations, %ld evaluations", n_eq, most);
+            REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+            for (int i = 0; i < c.result.n_solutions; i++) {
+                CHECK(t, !c.result.solutions[i].flat);
+            }
+            done = c.result.stop == MT_STOP_DONE;
+            mt_arena_free(&c.mem);
+        }
+        CHECK(t, done);
+    }
+}
+
 /* Two valleys: 1 + |t0 - 0.2| has a kink, where no search comes to rest, and is the lower one;
  * beyond 0.6 it is 1.1 + 10/3 (t0 - 0.9)^2 + (t0 - 0.6)^2 (t1 - 0.5)^2. */
 static mt_status valleys(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
@@ -301,4 +348,5 @@ MT_TEST_MAIN(MT_TEST(nlp_directions__a_combination_through_a_corner_is_still_fou
              MT_TEST(nlp_directions__a_plane_has_one_basis),
              MT_TEST(nlp_directions__an_objective_of_0_sees_what_it_changes_with),
              MT_TEST(nlp_directions__flat_is_what_is_open_beside_single_variables),
+             MT_TEST(nlp_directions__a_bowl_is_not_flat_whatever_the_budget),
              MT_TEST(nlp_directions__directions_are_the_best_solutions))
