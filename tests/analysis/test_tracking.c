@@ -335,9 +335,127 @@ static void tracking__dissolved_shapes_are_followed(mt_test *t)
     study_free(&s);
 }
 
+/* A way to a design whose last part, from the share `before` of it on, lies in a gap, where
+ * designs have no value: over that no step that keeps shapes leads, only a leap. */
+typedef struct gap_way {
+    mt_workspace *w;
+    const double *origin;
+    const double *to;
+    double before;
+    double from; /* of the gap */
+    double end;
+} gap_way;
+
+static mt_status solve_beside_gap(void *context, double s, mt_analysis **out, mt_err *err)
+{
+    enum { N = 6 };
+    const gap_way *const way = context;
+    mt_view_work *const view = &way->w->views[0];
+    const double part = s < way->end ? way->before * s / way->from : 1.0;
+    double t[N];
+    if (s > way->from && s < way->end) {
+        return mt_fail(err, MT_E_DOMAIN, "in the gap");
+    }
+    for (int i = 0; i < N; i++) {
+        t[i] = way->origin[i] + (part * (way->to[i] - way->origin[i]));
+    }
+    *out = view->analysis;
+    MT_TRY(mt_workspace_place(way->w, t, false, err));
+    return mt_view_solve(way->w, view, false, err);
+}
+
+/* How many modes are told beyond a gap of so many shortest steps that ends so many before the
+ * design, which w stands at. */
+static int told_beyond(mt_test *t, const mt_workspace *w, gap_way *way, double wide,
+                       double left, mt_arena *mem)
+{
+    enum { N = 6, STEPS = 64 };
+    const mt_view_work *const view = &w->views[0];
+    const mt_track_way path = {
+        .solve = solve_beside_gap, .context = way, .resolution = 1.0 / STEPS};
+    mt_track tracks[N];
+    int told = 0;
+    way->end = 1.0 - (left / STEPS);
+    way->from = way->end - (wide / STEPS);
+    CHECK_INT(t, mt_track_follow(&path, N, view->of->shape, view->analysis, mem, tracks, NULL),
+              MT_OK);
+    for (int i = 0; i < N; i++) {
+        told += tracks[i].state == MT_TRACKED;
+    }
+    return told;
+}
+
+/* Shortest steps between a gap and the design. */
+static const double LEFT[] = {0.1, 0.5, 0.9, 1.5, 2.2, 5.0, 16.4, 48.0};
+
+/* Does a leap tell all half way, where no other step does? Then leapt[k]: it does at LEFT[k].
+ */
+static bool leap_gaps(mt_test *t, mt_workspace *w, gap_way *way, mt_arena *mem, int *leapt)
+{
+    enum { N = 6 };
+    static const double narrow = 2.5;
+    static const double wide = 5.0;
+    CHECK_INT(t, mt_workspace_place(w, way->to, false, NULL), MT_OK);
+    CHECK_INT(t, mt_view_solve(w, &w->views[0], false, NULL), MT_OK);
+    const bool half_way = told_beyond(t, w, way, narrow, 32.0, mem) == N &&
+                          told_beyond(t, w, way, wide, 32.0, mem) < N;
+    for (int k = 0; half_way && k < MT_COUNT(LEFT); k++) {
+        leapt[k] += told_beyond(t, w, way, narrow, LEFT[k], mem) == N;
+    }
+    return half_way;
+}
+
+/* What leaps do half way they do anywhere, up to the end; nearly: where a shape keeps just what
+ * a step must, it depends on where the steps are. */
+static void tracking__a_gap_of_less_than_three_steps_is_leapt(mt_test *t)
+{
+    enum { DESIGNS = 60, N = 6 };
+    mt_text model = {0};
+    mt_text study = {0};
+    study_case s;
+    mt_arena mem = {0};
+    mt_problem *p = NULL;
+    mt_workspace *w[2] = {NULL, NULL};
+    mt_random random = mt_random_seed(7);
+    int checked = 0;
+    int leapt[MT_COUNT(LEFT)] = {0};
+    write_row(&model, &study);
+    REQUIRE(t, model.s != NULL && study.s != NULL && study_load(t, model.s, study.s, &s));
+    CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
+    CHECK_INT(t, mt_problem_new(s.study, &p, NULL), MT_OK);
+    CHECK_INT(t, mt_workspace_new(p, &w[0], NULL), MT_OK);
+    CHECK_INT(t, mt_workspace_new(p, &w[1], NULL), MT_OK);
+    for (int d = 0; d < DESIGNS && w[1] != NULL; d++) {
+        double origin[N];
+        double to[N];
+        for (int i = 0; i < N; i++) {
+            origin[i] = log(i + 1.0);
+            to[i] = log((i + 1.0) * exp(mt_random_in(&random, -1.0, 1.0)));
+        }
+        for (int k = 0; k < 5; k++) {
+            gap_way way = {.w = w[1], .origin = origin, .to = to, .before = 0.5 + (0.1 * k)};
+            mt_test_row(t, "design %d, %g of the way before the gap", d, way.before);
+            checked += leap_gaps(t, w[0], &way, &mem, leapt);
+        }
+    }
+    CHECK(t, checked > 20);
+    for (int k = 0; k < MT_COUNT(LEFT); k++) {
+        mt_test_row(t, "%g steps left: %d of %d", LEFT[k], leapt[k], checked);
+        CHECK(t, 10 * leapt[k] >= 9 * checked);
+    }
+    mt_workspace_delete(w[0]);
+    mt_workspace_delete(w[1]);
+    mt_problem_delete(p);
+    mt_arena_free(&mem);
+    mt_text_free(&model);
+    mt_text_free(&study);
+    study_free(&s);
+}
+
 MT_TEST_MAIN(MT_TEST(tracking__a_crossing_keeps_the_names),
              MT_TEST(tracking__a_veering_hands_the_names_over),
              MT_TEST(tracking__dissolved_shapes_are_followed),
+             MT_TEST(tracking__a_gap_of_less_than_three_steps_is_leapt),
              MT_TEST(tracking__equal_frequencies_are_ambiguous),
              MT_TEST(tracking__a_goal_inside_a_veering_is_not_met),
              MT_TEST(tracking__a_named_goal_is_solved_through_a_swap))

@@ -177,14 +177,16 @@ static void mass__negative_masses_are_errors(mt_test *t)
         "mass matrix: negative mass -1 at coordinate 2",
         "mass matrix: a direction has negative mass (-1 of its own)",
         "mass matrix: coordinate 2 or 1 has no mass but is coupled (0.5)",
+        "mass matrix: coordinate 2 or 1 has no mass but is coupled (-0.5)",
+        "mass matrix: coordinate 2 or 1 has no mass but is coupled (1e-06)",
+        "mass matrix: coordinate 2 or 1 has no mass but is coupled (-1e-06)",
     };
-    const double m[3][4] = {
-        {1.0, 0.0, nil, -1.0},
-        {1.0, 2.0, nil, 1.0},
-        {1.0, 0.5, nil, 0.0},
+    const double m[][4] = {
+        {1.0, 0.0, nil, -1.0}, {1.0, 2.0, nil, 1.0},  {1.0, 0.5, nil, 0.0},
+        {1.0, -0.5, nil, 0.0}, {0.0, 1e-6, nil, 1.0}, {0.0, -1e-6, nil, 1.0},
     };
     const double k[4] = {1.0, 0.0, nil, 1.0};
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < MT_COUNT(m); r++) {
         mt_modes modes;
         mt_err err;
         mt_test_row(t, "%s", texts[r]);
