@@ -4,6 +4,7 @@
  * comes near, targets far from where the mode is, references in another unit. One mass, whose
  * frequency is 1 Hz sqrt(stiffness), and two.
  */
+#include "answer/doubts.h"
 #include "answer/examine.h"
 #include "study_fixture.h"
 
@@ -178,6 +179,40 @@ static void examine__references_in_another_unit_are_doubted(mt_test *t)
     }
 }
 
+/* What looking takes: each configuration that is asked for once; for each goal with bands, in
+ * each of its configurations, as much as the largest of them 2 n + 3 times. */
+static void examine__bands_take_an_analysis_for_every_bound(mt_test *t)
+{
+    static const struct {
+        const char *goals;
+        double times; /* what one configuration takes, with two variables */
+    } rows[] = {
+        {"{'type': 'frequency', 'mode': 1, 'at_least_hz': 1}", 1.0},
+        {"{'type': 'avoid', 'bands_hz': [[1, 2]]}", 8.0},
+        {"{'type': 'avoid', 'bands_hz': [[1, 2], [3, 4]]}", 8.0},
+        {"{'type': 'avoid', 'bands_hz': [[1, 2]]}, {'type': 'avoid', 'bands_hz': [[3, 4]]}",
+         15.0},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        char model[TEXT];
+        char members[TEXT];
+        study_case c;
+        (void)snprintf(model, sizeof model, MODEL, "a*b");
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'a', 'lower': 0.5, 'upper': 2}, "
+                       "{'parameter': 'b', 'lower': 0.5, 'upper': 2}], 'goals': [%s]",
+                       rows[i].goals);
+        mt_test_row(t, "%s", rows[i].goals);
+        if (study_load(t, model, members, &c)) {
+            const double work = rows[i].times * mt_doubts_work(c.study->model, 0);
+            CHECK(t, work > 0.0 && mt_study_takes_more(c.study, work * (1.0 - 1e-12)));
+            CHECK(t, !mt_study_takes_more(c.study, work * (1.0 + 1e-12)));
+        }
+        study_free(&c);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(examine__bands_without_effect_are_those_no_mode_comes_near),
              MT_TEST(examine__targets_a_hundred_times_away_are_doubted),
+             MT_TEST(examine__bands_take_an_analysis_for_every_bound),
              MT_TEST(examine__references_in_another_unit_are_doubted))

@@ -265,6 +265,66 @@ static void print__folds_to_the_width(mt_test *t)
     mt_table_free(&table);
 }
 
+/* The cell in the last row of a table, for people; for machines. */
+static void check_cell(mt_test *t, const mt_table *table, const char *people,
+                       const char *machines)
+{
+    mt_text out = {.s = NULL};
+    char want[2 * MT_NUMBER_TEXT];
+    mt_table_print(table, 0, 0, &out);
+    const char *const at = strstr(out.s, "\na");
+    const char *const cell = at == NULL ? out.s : at + 2 + strspn(at + 2, " ");
+    (void)snprintf(want, sizeof want, "%s\n", people);
+    CHECK_STR(t, cell, want);
+    mt_text_free(&out);
+    mt_table_csv(table, &out);
+    (void)snprintf(want, sizeof want, "name,frequency_hz\r\na,%s\r\n", machines);
+    CHECK_STR(t, out.s, want);
+    mt_text_free(&out);
+}
+
+/* People are shown the margin that a clearance keeps, up to what searches leave open, a
+ * relative 1e-6 of the frequency: 1e-4 percent of 100 + margin percent. Likewise 0 of a goal
+ * that is met, and of what is noise. Machines have what was computed. */
+static void numbers__that_searches_leave_open_are_what_was_asked(mt_test *t)
+{
+    static const struct {
+        double percent;
+        double margin;
+        const char *people;
+    } rows[] = {{12.5, 10.0, "12.5000000"},       {9.9, 10.0, "9.90000000"},
+                {10.0, 10.0, "10.0000000"},       {9.9998925, 10.0, "10.0000000"},
+                {9.9998875, 10.0, "9.99988750"},  {10.0001075, 10.0, "10.0000000"},
+                {10.0001125, 10.0, "10.0001125"}, {49.9998525, 50.0, "50.0000000"},
+                {49.9998475, 50.0, "49.9998475"}, {-0.9e-4, 0.0, "0"},
+                {-1.1e-4, 0.0, "-0.000110000000"}};
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_table table = two_columns();
+        char machines[MT_NUMBER_TEXT];
+        mt_test_row(t, "%.10g beside %g", rows[i].percent, rows[i].margin);
+        mt_table_text(&table, "a");
+        mt_table_clearance(&table, rows[i].percent, rows[i].margin, 9);
+        check_cell(t, &table, rows[i].people, mt_report_exact(rows[i].percent, machines));
+        mt_table_free(&table);
+    }
+    static const struct {
+        double percent;
+        bool met;
+        const char *people;
+    } off[] = {{0.9e-4, true, "0"},       {-0.9e-4, true, "0"}, {1.1e-4, true, "+0.000110"},
+               {0.9e-4, false, "+9e-05"}, {0.9e-7, false, "0"}, {-1.1e-7, false, "-1.1e-07"},
+               {-2.5, false, "-2.50"}};
+    for (int i = 0; i < MT_COUNT(off); i++) {
+        mt_table table = two_columns();
+        char machines[MT_NUMBER_TEXT];
+        mt_test_row(t, "off by %g", off[i].percent);
+        mt_table_text(&table, "a");
+        mt_table_off_by(&table, off[i].percent, off[i].met, 3);
+        check_cell(t, &table, off[i].people, mt_report_exact(off[i].percent, machines));
+        mt_table_free(&table);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
              MT_TEST(print__leaves_out_what_is_empty), MT_TEST(print__folds_to_the_width),
              MT_TEST(table__aligns_decimal_points_and_counts_characters_not_bytes),
@@ -273,4 +333,5 @@ MT_TEST_MAIN(MT_TEST(number__shows_significant_digits),
              MT_TEST(csv__quotes_what_rfc_4180_asks_for),
              MT_TEST(csv__protects_formulas_and_leaves_numbers),
              MT_TEST(csv__has_members_exact_numbers_and_crlf),
+             MT_TEST(numbers__that_searches_leave_open_are_what_was_asked),
              MT_TEST(html__escapes_every_special_character))
