@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* When there is no certificate, and why; corners; what touches an edge exactly. */
+#include <stdlib.h>
+
 #include "mechanics/mech.h"
 #include "prove/band_count.h"
 #include "prove/certify.h"
@@ -220,6 +222,76 @@ static void enclosure__a_coupling_of_either_sign_is_bounded_or_named(mt_test *t)
         CHECK_STR(t, r.reason, "the mechanism may be unstable within the bounds");
     }
     end(&r);
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* A coupling of x and y that is a part r of the stiffness itself, k = p q u, whichever way it
+ * is written, beside a fixed one: k [1, r; r, 1] + [500, 300; 300, 500] has the eigenvalues
+ * 800 + (1 + r) k and 200 + (1 - r) k, m = 1, and those of z and of rotations are k, k, k/2 and
+ * k/3. All rise with k, so the bounds over k are those at its ends. */
+static void enclosure__a_coupling_in_proportion_is_tight_however_written(mt_test *t)
+{
+    static const struct {
+        const char *text;
+        double r;
+    } couplings[] = {
+        {"0.4*p*q*u", 0.4},         {"u*q*p/2.5", 0.4},          {"-0.4*q*u*p", -0.4},
+        {"-(0.4*u*p*q)", -0.4},     {"0.4*p*(-q)*u", -0.4},      {"-p*u*q*0.4", -0.4},
+        {"-u*q*p/2.5", -0.4},       {"u*(q*p)/(-2.5)", -0.4},    {"0.4*p*p*q*u/(-p)", -0.4},
+        {"-(-(-u))*p*q*0.4", -0.4}, {"-(-p)*u*q*0.4", 0.4},      {"(-p)*(-0.4)*q*u", 0.4},
+        {"-(q*u*p/(-2.5))", 0.4},   {"0.4*u*q*(-u)*p/u", -0.4},  {"0.4/(-(1/(p*q*u)))", -0.4},
+        {"-0.4*q*p*q*u/(-q)", 0.4}, {"-(2*u)*p/(-5)*(-q)", -0.4}};
+    static const double range[2][3] = {{8.0, 10.0, 10.0}, {12.5, 10.0, 10.0}};
+    for (int i = 0; i < MT_COUNT(couplings); i++) {
+        rig r;
+        char text[TEXT];
+        const char *const c = couplings[i].text;
+        (void)snprintf(
+            text, sizeof text,
+            "{\"format\": \"modetune-model/1\", \"name\": \"bushing\", \"dimension\": 3, "
+            "\"parameters\": {\"p\": 10, \"q\": 10, \"u\": 10}, \"bodies\": [{\"name\": "
+            "\"body\", \"mass_kg\": 1, "
+            "\"inertia_kg_m2\": [1, 2, 3], \"centre\": [0, 0, 0]}], \"springs\": [{\"name\": "
+            "\"soft\", \"type\": \"bushing\", \"bodies\": [\"ground\", \"body\"], \"at\": [0, "
+            "0, 0], \"stiffness_matrix\": [[\"p*q*u\", \"%s\", 0, 0, 0, 0], [\"%s\", "
+            "\"p*q*u\", 0, 0, "
+            "0, 0], [0, 0, \"p*q*u\", 0, 0, 0], [0, 0, 0, \"p*q*u\", 0, 0], [0, 0, 0, 0, "
+            "\"p*q*u\", 0], "
+            "[0, 0, 0, 0, 0, \"p*q*u\"]]}, {\"name\": \"fixed\", \"type\": \"bushing\", "
+            "\"bodies\": [\"ground\", \"body\"], \"at\": [0, 0, 0], \"stiffness_matrix\": "
+            "[[500, 300, 0, 0, 0, 0], [300, 500, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, "
+            "0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]]}], \"configurations\": {\"one\": "
+            "{}}}",
+            c, c);
+        mt_test_row(t, "%s", c);
+        if (enclose(t, mech_parse(t, text), NULL, "p q u", WIDE, &r) && CHECK(t, r.e != NULL)) {
+            double bound[2][6];
+            mt_err err;
+            CHECK(t, mt_enclosure_set(r.e, range[0], range[1]));
+            CHECK(t, mt_enclosure_ranges(r.e, bound[0], bound[1], &err) == MT_OK);
+            for (int end_of = 0; end_of < 2; end_of++) {
+                const double *const at = range[end_of];
+                const double k = at[0] * at[1] * at[2];
+                double lambda[6] = {800.0 + ((1.0 + couplings[i].r) * k),
+                                    200.0 + ((1.0 - couplings[i].r) * k),
+                                    k,
+                                    k,
+                                    k / 2.0,
+                                    k / 3.0};
+                qsort(lambda, 6, sizeof lambda[0], compare_numbers);
+                for (int mode = 0; mode < 6; mode++) {
+                    CHECK_NEAR(t, mt_enclosure_lambda(bound[end_of][mode]), lambda[mode], 1e-9);
+                }
+            }
+        }
+        end(&r);
+    }
 }
 
 /* Stiffnesses that lie 1e10 apart: the slack is that of the stiff ones, and bounds stay
@@ -484,6 +556,7 @@ static void enclosure__bands_are_counted_by_inertia_alone(mt_test *t)
 MT_TEST_MAIN(MT_TEST(enclosure__conditions_are_checked_and_named),
              MT_TEST(enclosure__a_hanging_double_pendulum_gets_no_certificate),
              MT_TEST(enclosure__a_coupling_of_either_sign_is_bounded_or_named),
+             MT_TEST(enclosure__a_coupling_in_proportion_is_tight_however_written),
              MT_TEST(enclosure__stiffnesses_far_apart_stay_enclosed),
              MT_TEST(enclosure__an_edge_that_is_touched_exactly),
              MT_TEST(enclosure__a_tolerance_box_is_as_large_as_it_can_be),
