@@ -185,8 +185,8 @@ static void nlp_directions__an_objective_of_0_sees_what_it_changes_with(mt_test 
     }
 }
 
-/* f = 1/2 sum of k_j (t_j - 0.5)^2 over the first variables, k_j = target[j]; the others are in
- * nothing. */
+/* f = 1 + 1/2 sum of k_j (t_j - middle_j)^2, k_j = target[j], middle_j = target[3 + j] or,
+ * where that is 0, 0.5. */
 static mt_status bowls(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                        mt_err *err)
 {
@@ -195,7 +195,7 @@ static mt_status bowls(void *context, const double *t, bool with_gradient, mt_nl
     (void)err;
     out->f = 1.0;
     for (int j = 0; j < c->nlp.n; j++) {
-        const double d = t[j] - 0.5;
+        const double d = t[j] - (c->target[3 + j] > 0.0 ? c->target[3 + j] : 0.5);
         out->f += 0.5 * c->target[j] * d * d;
         out->df[j] = c->target[j] * d;
     }
@@ -248,6 +248,59 @@ static void nlp_directions__flat_is_what_is_open_beside_single_variables(mt_test
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         REQUIRE(t, c.result.n_solutions >= 1);
         CHECK_INT(t, c.result.n_undetermined, rows[i].n);
+        CHECK_INT(t, c.result.solutions[0].flat, rows[i].flat);
+        mt_arena_free(&c.mem);
+    }
+}
+
+/* The same bowls where rows bound t0 and t1 from below: in_i = t_i - 0.3. */
+static mt_status bowls_above(void *context, const double *t, bool with_gradient,
+                             mt_nlp_values *out, mt_err *err)
+{
+    const nlp_case *const c = context;
+    MT_TRY(bowls(context, t, with_gradient, out, err));
+    for (int i = 0; i < c->nlp.n_in; i++) {
+        out->in[i] = t[i] - 0.3;
+        for (int j = 0; j < c->nlp.n; j++) {
+            out->din[i + (j * c->nlp.n_in)] = i == j ? 1.0 : 0.0;
+        }
+    }
+    return MT_OK;
+}
+
+/* A row that holds the design and presses with nothing leaves the side beyond it open: t0, and
+ * t1, which are in nothing, come from 0.1 to 0.3 and would do as well above. Where they have a
+ * bowl below 0.3 that presses, nothing is open. */
+static void nlp_directions__a_row_without_a_multiplier_leaves_a_side_open(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        double curvature[3];
+        double middle[2]; /* of the bowls of t0 and t1, as targets[3 ...] */
+        int n_in;
+        bool flat;
+    } rows[] = {
+        {"one row, pressed", {1.0, 1.0, 1.0}, {0.1, 0.6}, 1, false},
+        {"one row, not pressed", {0.0, 1.0, 1.0}, {0.1, 0.6}, 1, true},
+        {"two rows, pressed", {1.0, 1.0, 1.0}, {0.1, 0.1}, 2, false},
+        {"two rows, the first not pressed", {0.0, 1.0, 1.0}, {0.1, 0.1}, 2, true},
+        {"two rows, the second not pressed", {1.0, 0.0, 1.0}, {0.1, 0.1}, 2, true},
+        {"two rows, both not pressed", {0.0, 0.0, 1.0}, {0.1, 0.1}, 2, true},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        nlp_case c = {0};
+        mt_nlp_options opt = mt_nlp_options_default();
+        opt.least_change = false;
+        case_begin(&c, 3, bowls_above, 0.0, 1.0);
+        memcpy(c.target, rows[i].curvature, sizeof rows[i].curvature);
+        memcpy(c.target + 3, rows[i].middle, sizeof rows[i].middle);
+        c.nlp.n_in = rows[i].n_in;
+        c.origin[0] = 0.1;
+        c.origin[1] = 0.1;
+        c.origin[2] = 0.75;
+        mt_test_row(t, "%s", rows[i].name);
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        REQUIRE(t, c.result.n_solutions >= 1 && c.result.solutions[0].feasible);
         CHECK_INT(t, c.result.solutions[0].flat, rows[i].flat);
         mt_arena_free(&c.mem);
     }
@@ -348,5 +401,6 @@ MT_TEST_MAIN(MT_TEST(nlp_directions__a_combination_through_a_corner_is_still_fou
              MT_TEST(nlp_directions__a_plane_has_one_basis),
              MT_TEST(nlp_directions__an_objective_of_0_sees_what_it_changes_with),
              MT_TEST(nlp_directions__flat_is_what_is_open_beside_single_variables),
+             MT_TEST(nlp_directions__a_row_without_a_multiplier_leaves_a_side_open),
              MT_TEST(nlp_directions__a_bowl_is_not_flat_whatever_the_budget),
              MT_TEST(nlp_directions__directions_are_the_best_solutions))

@@ -356,12 +356,53 @@ static void page__is_self_contained_and_escaped(mt_test *t)
     mt_result_delete(r);
 }
 
+/* Modes below each band, however many there are: what a cell does not hold is cut. */
+static void designs__with_many_bands_have_the_first_of_them(mt_test *t)
+{
+    enum { BANDS = 400, LIST = 4 * BANDS };
+    static const int counts[] = {1, 2, 20, 40, 41, 42, 43, 44, 60, BANDS};
+    static mt_result_gap many[BANDS];
+    static const size_t room = 120; /* of a cell, its end included */
+    mt_result *const r = make(t);
+    for (int i = 0; i < BANDS; i++) {
+        many[i] = (mt_result_gap){.id = i + 1, .configuration = "held", .modes_below = i};
+    }
+    for (int k = 0; r != NULL && k < MT_COUNT(counts); k++) {
+        char list[LIST];
+        size_t used = 0;
+        size_t kept = 0;
+        mt_text out = {.s = NULL};
+        for (int i = 0; i < counts[k]; i++) {
+            used +=
+                (size_t)snprintf(list + used, sizeof list - used, "%s%d", i == 0 ? "" : " ", i);
+            kept = used < room ? used : kept;
+        }
+        r->baseline.gaps = many;
+        r->baseline.n_gaps = counts[k];
+        recommendations[0].gaps = many;
+        recommendations[0].n_gaps = counts[k];
+        mt_test_row(t, "%d bands", counts[k]);
+        mt_table table = mt_report_alternatives(r);
+        mt_table_csv(&table, &out);
+        char *const at = out.s == NULL ? NULL : strstr(out.s, list[1] == ' ' ? "0 1" : ",0,");
+        if (CHECK(t, at != NULL)) {
+            const char *const cell = at + (*at == ',' ? 1 : 0);
+            const size_t length = strcspn(cell, ",\r");
+            CHECK(t, length >= kept && length < room && strncmp(cell, list, length) == 0);
+        }
+        mt_text_free(&out);
+        mt_table_free(&table);
+    }
+    mt_result_delete(r);
+}
+
 MT_TEST_MAIN(MT_TEST(alternatives__tell_the_objective_from_the_bare_clearance),
              MT_TEST(sections__that_an_interrupt_cut_say_so),
              MT_TEST(summary__says_status_numbers_and_reasons),
              MT_TEST(verification__ignores_only_what_is_not_comparable),
              MT_TEST(designs__have_the_baseline_first_and_one_column_per_variable),
              MT_TEST(clearances__stand_in_one_line_per_mode),
+             MT_TEST(designs__with_many_bands_have_the_first_of_them),
              MT_TEST(designs__with_bands_have_clearance_and_assignment),
              MT_TEST(designs__find_frequencies_by_configuration_and_mode),
              MT_TEST(page__is_self_contained_and_escaped))
