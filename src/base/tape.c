@@ -124,8 +124,11 @@ void mt_tape_text(mt_tape *t, const char **text, mt_arena *mem)
         const size_t size = left < WORD ? left : WORD;
         uint64_t word = 0;
         if (own != NULL) {
+            uint64_t kept = 0;
             word = get(t);
             memcpy(own + (i * WORD), &word, size);
+            memcpy(&kept, own + (i * WORD), size);
+            t->failed = t->failed || kept != word; /* behind the text there is nothing */
         } else if (*text != NULL) {
             memcpy(&word, *text + (i * WORD), size);
             put(t, word);

@@ -180,7 +180,7 @@ static void tape_field(const mt_field *f, void *at, void *other, int n_variables
         break;
     case MT_FIELD_OPTION:
         tape_list(f->record, at, &one, n_variables, tape, mem);
-        tape->failed = tape->failed || one > 1;
+        tape->failed = tape->failed || one != (mt_record_get_pointer(at) != NULL ? 1 : 0);
         break;
     case MT_FIELD_LIST:
         tape_list(f->record, at, other, n_variables, tape, mem);

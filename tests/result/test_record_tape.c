@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A design's record as words, as a journal keeps it. What is read is believed in nothing: words
+ * that are cut, or changed one at a time, are refused, or are those of another design, which
+ * says the same words again.
+ */
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "result/record.h"
+#include "result/result.h"
+#include "support/mt_test.h"
+
+enum { VARIABLES = 2 };
+
+static mt_result_tolerance tolerances[VARIABLES];
+static mt_tolerance_box box = {.all_percent = 2.5,
+                               .edge = "mode 2 at the lower edge",
+                               .proven = true,
+                               .n_variables = VARIABLES,
+                               .variables = tolerances};
+static mt_result_parameter parameters[VARIABLES];
+static mt_result_gap gaps[1] = {
+    {.id = 1, .configuration = "held", .band = "4P", .upper_hz = 3.5, .modes_below = 2}};
+static mt_reason reasons[1] = {{"change", NULL, "k rises by 3 %."}};
+
+static mt_recommendation design(bool with_box)
+{
+    mt_recommendation r = mt_recommendation_default();
+    for (int i = 0; i < VARIABLES; i++) {
+        parameters[i].name = i == 0 ? "k" : "mass of the end";
+        parameters[i].recommended = 1.25 * i;
+        tolerances[i].name = parameters[i].name;
+    }
+    r.rank = 3;
+    r.feasible = true;
+    r.grade = "feasible";
+    r.worst_case = "sampled";
+    r.score = nan("");
+    r.parameters = parameters;
+    r.n_parameters = VARIABLES;
+    r.tolerance_box = with_box ? &box : NULL;
+    r.gaps = gaps;
+    r.n_gaps = 1;
+    r.reasons = reasons;
+    r.n_reasons = 1;
+    return r;
+}
+
+/* Its words; to be freed. */
+static mt_tape written(mt_recommendation *r)
+{
+    mt_tape tape = {.words = NULL};
+    mt_record_tape(&mt_design_record, r, VARIABLES, &tape, NULL);
+    return tape;
+}
+
+/* Are these words refused, or those of the design that is read of them? */
+static bool are_honest(const uint64_t *words, size_t n, bool *read)
+{
+    mt_recommendation r = mt_recommendation_default();
+    mt_arena mem = {0};
+    bool honest = mt_arena_init(&mem, 0, NULL) == MT_OK;
+    mt_tape tape = mt_tape_of(words, n);
+    mt_record_tape(&mt_design_record, &r, VARIABLES, &tape, &mem);
+    *read = mt_tape_is_read(&tape);
+    if (*read) {
+        mt_tape again = written(&r);
+        honest = honest && !again.failed && again.n == n &&
+                 memcmp(again.words, words, n * sizeof *words) == 0;
+        mt_tape_free(&again);
+    }
+    mt_arena_free(&mem);
+    return honest;
+}
+
+static void record_tape__reads_what_was_written_and_nothing_else(mt_test *t)
+{
+    for (int with_box = 0; with_box < 2; with_box++) {
+        bool read = false;
+        mt_recommendation r = design(with_box == 1);
+        mt_tape tape = written(&r);
+        mt_test_row(t, "%s box", with_box == 1 ? "a" : "no");
+        REQUIRE(t, !tape.failed && tape.n > 50);
+        CHECK(t, are_honest(tape.words, tape.n, &read) && read);
+        for (size_t n = 0; n < tape.n; n++) {
+            mt_test_row(t, "cut behind word %d", (int)n);
+            CHECK(t, are_honest(tape.words, n, &read) && !read);
+        }
+        mt_tape_free(&tape);
+    }
+}
+
+static void record_tape__changed_words_are_refused_or_another_design(mt_test *t)
+{
+    static const uint64_t values[] = {
+        0, 1, 2, 3, 7, 1000, INT_MAX, (uint64_t)INT_MAX + 1, UINT64_C(1) << 40, UINT64_MAX};
+    for (int with_box = 0; with_box < 2; with_box++) {
+        mt_recommendation r = design(with_box == 1);
+        mt_tape tape = written(&r);
+        int refused = 0;
+        REQUIRE(t, !tape.failed);
+        for (size_t i = 0; i < tape.n; i++) {
+            const uint64_t was = tape.words[i];
+            for (int k = 0; k < MT_COUNT(values) + 2; k++) {
+                bool read = false;
+                tape.words[i] = k < MT_COUNT(values)    ? values[k]
+                                : k == MT_COUNT(values) ? was + 1
+                                                        : was ^ 1;
+                mt_test_row(t, "%s box, word %d: %llx in place of %llx",
+                            with_box == 1 ? "a" : "no", (int)i,
+                            (unsigned long long)tape.words[i], (unsigned long long)was);
+                CHECK(t, are_honest(tape.words, tape.n, &read));
+                refused += !read;
+            }
+            tape.words[i] = was;
+        }
+        CHECK(t, refused > 100);
+        mt_tape_free(&tape);
+    }
+}
+
+/* Where there is an option there is one: neither none nor two of it. */
+static void record_tape__of_an_option_there_is_one(mt_test *t)
+{
+    mt_recommendation r = design(false);
+    mt_tape without = written(&r);
+    r = design(true);
+    mt_tape with = written(&r);
+    size_t flag = 0;
+    REQUIRE(t, !without.failed && !with.failed && with.n > without.n);
+    while (flag < without.n && with.words[flag] == without.words[flag]) {
+        flag++;
+    }
+    const size_t own = with.n - without.n - 1; /* words of the box, behind flag and count */
+    for (uint64_t count = 0; count < 4; count++) {
+        uint64_t words[1024];
+        size_t n = flag + 2;
+        bool read = false;
+        REQUIRE(t, (size_t)count * own + with.n < MT_COUNT(words));
+        memcpy(words, with.words, flag * sizeof *words);
+        words[flag] = 1;
+        words[flag + 1] = count;
+        for (uint64_t k = 0; k < count; k++, n += own) {
+            memcpy(words + n, with.words + flag + 2, own * sizeof *words);
+        }
+        memcpy(words + n, without.words + flag + 1, (without.n - flag - 1) * sizeof *words);
+        n += without.n - flag - 1;
+        mt_test_row(t, "%d of it", (int)count);
+        CHECK(t, are_honest(words, n, &read));
+        CHECK(t, read == (count == 1));
+    }
+    mt_tape_free(&without);
+    mt_tape_free(&with);
+}
+
+MT_TEST_MAIN(MT_TEST(record_tape__reads_what_was_written_and_nothing_else),
+             MT_TEST(record_tape__changed_words_are_refused_or_another_design),
+             MT_TEST(record_tape__of_an_option_there_is_one))
