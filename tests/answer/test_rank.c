@@ -525,7 +525,55 @@ static void rank__a_fresh_analysis_decides(mt_test *t)
     }
 }
 
+#define NEGATIVE(bodies, springs)                                                           \
+    "{'format': 'modetune-model/1', 'dimension': 3, 'parameters': {'k': 1000},"             \
+    "'bodies': [{'name': 'm', 'mass_kg': 2, 'inertia_kg_m2': [1, 1, 1], 'centre': [1, 0, "  \
+    "0]}" bodies "], 'joints': [{'name': 'r', 'type': 'prismatic', 'bodies': ['ground', "   \
+    "'m'], 'at': [1, 0, 0], 'axis': [1, 0, 0]}], 'springs': [{'name': 's', 'type': "        \
+    "'axial', 'bodies': ['ground', 'm'], 'at': [[0, 0, 0], [1, 0, 0]], "                    \
+    "'stiffness_n_per_m': 'k'}, {'name': 'n', 'type': 'axial', 'bodies': ['ground', 'm'], " \
+    "'at': [[0, 0, 0], [1, 0, 0]], 'stiffness_n_per_m': -1000}" springs "]}"
+
+/* Beside a spring of -1000 N/m the other one is worth what it has above that: at the original
+ * design nothing is left, and mode 1 is at 0 Hz, where it still counts. */
+static void rank__a_negative_spring_does_not_take_a_mode(mt_test *t)
+{
+    /* the second body's springs couple its directions: stiffness is no sum of squares then */
+    static const char *const negative[] = {
+        NEGATIVE("", ""),
+        NEGATIVE(
+            ", {'name': 'b', 'mass_kg': 1, 'inertia_kg_m2': [1, 1, 1], 'centre': [2, 0, 0]}",
+            ", {'name': 'c', 'type': 'bushing', 'bodies': ['ground', 'b'], 'at': [2, 0, 0], "
+            "'stiffness_matrix': [[1e5, 2e4, 0, 0, 0, 0], [2e4, 1e5, 0, 0, 0, 0], [0, 0, "
+            "1e5, 0, 0, 0], [0, 0, 0, 1e5, 0, 0], [0, 0, 0, 0, 1e5, 0], [0, 0, 0, 0, 0, "
+            "1e5]]}")};
+    static const struct {
+        const char *goal;
+        double hz;
+    } rows[] = {{"{'type': 'frequency', 'mode': 1, 'at_least_hz': 1.25}", 1.25},
+                {"{'type': 'frequency', 'mode': 1, 'target_hz': 2}", 2.0}};
+    for (int i = 0; i < 2 * MT_COUNT(rows); i++) {
+        char members[STUDY_PATH];
+        study_case c;
+        const char *const goal = rows[i / 2].goal;
+        const double hz = rows[i / 2].hz;
+        const double w = 2.0 * STUDY_PI * hz;
+        mt_test_row(t, "%s%s", goal, i % 2 == 0 ? "" : ", beside a coupling");
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'k', 'lower': 1000, 'upper': 2000}], "
+                       "'goals': [%s]",
+                       goal);
+        if (study_solve(t, negative[i % 2], members, &c)) {
+            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_NEAR(t, study_value(&c, 1, "k"), 1000.0 + (2.0 * w * w), 1e-6);
+            CHECK_NEAR(t, study_frequency(&c, 1, "default", 1), hz, 1e-6);
+        }
+        study_free(&c);
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(rank__an_added_spring_is_sized_from_zero),
+             MT_TEST(rank__a_negative_spring_does_not_take_a_mode),
              MT_TEST(rank__a_band_sees_the_mode_that_the_spring_brings),
              MT_TEST(rank__what_a_spring_can_do_is_not_called_impossible),
              MT_TEST(rank__catalogues_may_hold_no_spring),
