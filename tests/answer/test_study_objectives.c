@@ -100,6 +100,35 @@ static void inexact_misfit__is_held(mt_test *t)
     study_free(&c);
 }
 
+/* k1 falls and rises again with a: two designs near the frequencies that are asked for, of
+ * which k2 makes one worse. The misfits that are told are those of the first and of the
+ * last. */
+static void misfits__are_told_from_the_least_to_the_greatest(mt_test *t)
+{
+    study_case c;
+    if (study_solve(
+            t,
+            "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'a': 1.2, 'k1': '1 "
+            "+ "
+            "(a - 2)^2', 'k2': '1 + 0.05*a', 'm': 1}," STUDY_TWO_MASSES_ROW "}",
+            "'variables': [{'parameter': 'a', 'lower': 0.5, 'upper': 4}], 'goals': [{'type': "
+            "'limit', 'expression': 'a', 'at_least': 0.6}, {'type': 'frequency', 'mode': 1, "
+            "'target_hz': 0.115, 'weight': 1}, {'type': 'frequency', 'mode': 2, 'target_hz': "
+            "0.28, 'weight': 1}], 'objective': {'minimise': 'misfit'}",
+            &c)) {
+        const mt_recommendation *const r = c.result->recommendations;
+        const char *const from = strstr(c.result->status_text, "misfits from ");
+        double told[2] = {nan(""), nan("")};
+        CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+        REQUIRE(t, c.result->n_recommendations == 2 && from != NULL);
+        CHECK_INT(t, sscanf(from, "misfits from %lg to %lg", &told[0], &told[1]), 2);
+        CHECK_NEAR(t, told[0], r[0].misfit, 1e-3);
+        CHECK_NEAR(t, told[1], r[1].misfit, 1e-3);
+        CHECK(t, r[1].misfit > 1.1 * r[0].misfit);
+    }
+    study_free(&c);
+}
+
 /* Weighted goals beside another first objective are residuals that the first stage does not
  * see. */
 static void misfit_as_second_objective__follows_the_first(mt_test *t)
@@ -168,7 +197,8 @@ static void equal_first_objective__the_second_decides_the_order(mt_test *t)
     }
 }
 
-MT_TEST_MAIN(MT_TEST(equal_first_objective__the_second_decides_the_order),
+MT_TEST_MAIN(MT_TEST(misfits__are_told_from_the_least_to_the_greatest),
+             MT_TEST(equal_first_objective__the_second_decides_the_order),
              MT_TEST(exact_misfit__leaves_the_rest_to_the_next_objective),
              MT_TEST(flat_optimum__is_settled_by_the_next_objective),
              MT_TEST(inexact_misfit__is_held),
