@@ -296,7 +296,8 @@ static const char *assignment(const mt_recommendation *r, char *s, size_t size)
         const int n = mt_snprintf(s + used, size - used, "%s%d", i == 0 ? "" : " ",
                                   r->gaps[i].modes_below);
         if (n < 0 || (size_t)n >= size - used) {
-            break; /* more bands than a cell holds: cut */
+            s[used] = '\0';
+            break; /* more bands than a cell holds: the first of them */
         }
         used += (size_t)n;
     }

@@ -26,6 +26,9 @@ static mt_result_gap gaps[1] = {
     {.id = 1, .configuration = "held", .band = "4P", .upper_hz = 3.5, .modes_below = 2}};
 static mt_reason reasons[1] = {{"change", NULL, "k rises by 3 %."}};
 
+static double slopes[VARIABLES] = {0.25, -1.5};
+static mt_result_frequency frequencies[1];
+
 static mt_recommendation design(bool with_box)
 {
     mt_recommendation r = mt_recommendation_default();
@@ -34,6 +37,11 @@ static mt_recommendation design(bool with_box)
         parameters[i].recommended = 1.25 * i;
         tolerances[i].name = parameters[i].name;
     }
+    frequencies[0] = mt_result_frequency_default();
+    frequencies[0].configuration = "held";
+    frequencies[0].sensitivity = slopes;
+    r.frequencies = frequencies;
+    r.n_frequencies = 1;
     r.rank = 3;
     r.feasible = true;
     r.grade = "feasible";
