@@ -452,9 +452,58 @@ static void tracking__a_gap_of_less_than_three_steps_is_leapt(mt_test *t)
     study_free(&s);
 }
 
+/* The only mode has no rival, and a mode that is lost has none either. */
+static void tracking__without_another_mode_there_is_no_rival(mt_test *t)
+{
+    study_case s;
+    mt_arena mem = {0};
+    mt_problem *p = NULL;
+    mt_workspace *w = NULL;
+    mt_err err = {.text = ""};
+    if (!study_load(t,
+                    "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k': 1000}, "
+                    "'bodies': [{'name': 'm1', 'mass_kg': 1, 'centre': [1, 0]}], 'joints': "
+                    "[{'name': 'r1', 'type': 'pin-in-slot', 'bodies': ['ground', 'm1'], 'at': "
+                    "[1, 0], 'axis': [1, 0]}], 'springs': [{'name': 's1', 'type': 'axial', "
+                    "'bodies': ['ground', 'm1'], 'at': [[0, 0], [1, 0]], 'stiffness_n_per_m': "
+                    "'k'}], 'modes': {'only': {'configuration': 'default', 'index': 1}}}",
+                    "'variables': [{'parameter': 'k', 'lower': -100, 'upper': 2000}], 'goals': "
+                    "[{'type': 'frequency', 'mode': 'only', 'at_least_hz': 1}]",
+                    &s)) {
+        return;
+    }
+    CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
+    if (CHECK_INT(t, mt_problem_new(s.study, &p, &err), MT_OK) &&
+        CHECK_INT(t, mt_workspace_new(p, &w, &err), MT_OK)) {
+        static const double stiffness[] = {1000.0, 2000.0, 500.0};
+        for (int i = 0; i < MT_COUNT(stiffness); i++) {
+            const mt_view_work *const view = track_at(w, stiffness[i], &err);
+            mt_test_row(t, "k = %g", stiffness[i]);
+            if (CHECK(t, view != NULL)) {
+                CHECK_INT(t, (int)view->track[0].state, (int)MT_TRACKED);
+                CHECK_INT(t, view->track[0].pos, 0);
+                CHECK_INT(t, view->track[0].rival, -1);
+                CHECK(t, view->track[0].rival_share == 0.0);
+            }
+        }
+        const mt_view_work *const unstable = track_at(w, -100.0, &err);
+        mt_test_row(t, "k = -100");
+        if (CHECK(t, unstable != NULL)) {
+            CHECK_INT(t, (int)unstable->track[0].state, (int)MT_TRACK_LOST_STATE);
+            CHECK_INT(t, unstable->track[0].pos, -1);
+            CHECK_INT(t, unstable->track[0].rival, -1);
+        }
+    }
+    mt_workspace_delete(w);
+    mt_problem_delete(p);
+    mt_arena_free(&mem);
+    study_free(&s);
+}
+
 MT_TEST_MAIN(MT_TEST(tracking__a_crossing_keeps_the_names),
              MT_TEST(tracking__a_veering_hands_the_names_over),
              MT_TEST(tracking__dissolved_shapes_are_followed),
+             MT_TEST(tracking__without_another_mode_there_is_no_rival),
              MT_TEST(tracking__a_gap_of_less_than_three_steps_is_leapt),
              MT_TEST(tracking__equal_frequencies_are_ambiguous),
              MT_TEST(tracking__a_goal_inside_a_veering_is_not_met),
