@@ -538,6 +538,21 @@ class Doubts(CliTest):
         self.assertIn(': warning: /springs/0/stiffness_n_m_per_rad: "c" is in N/m', self.expect(0, "check", self.put_model(stiffness, "c", base)).stderr)
         self.assertEqual(self.found(self.put_model(stiffness, "c", changed(base, ("accepted",), ["unit"])))[0], [])
 
+    def test_damping_ratios_of_more_modes_than_there_are_are_a_fault(self):
+        """A row of three masses, held by a spring or afloat: as many vibration modes as masses, or one less."""
+        masses = [{"name": f"m{i}", "mass_kg": 1, "centre": [i, 0]} for i in range(1, 4)]
+        joints = [{"name": f"g{i}", "type": "pin-in-slot", "bodies": ["ground", f"m{i}"], "at": [i, 0], "axis": [1, 0]} for i in range(1, 4)]
+        springs = [{"name": f"s{i}", "type": "axial", "bodies": ["ground" if i == 1 else f"m{i - 1}", f"m{i}"], "at": [[i - 1, 0], [i, 0]], "stiffness_n_per_m": 1000}
+                   for i in range(1, 4)]
+        for held, modes in ((True, 3), (False, 2)):
+            for n in (1, 2, 3, 4, 5):
+                with self.subTest(f"held {held}, {n} ratios"):
+                    base = {"format": "modetune-model/1", "dimension": 2, "bodies": masses, "joints": joints, "springs": springs if held else springs[1:],
+                            "configurations": {"row": {"damping": {"ratios": [0.01 * (k + 1) for k in range(n)]}}}}
+                    done = self.run_program("check", self.put_model(base=base), "--format", "json")
+                    said = f'damping lists ratios for {n} vibration modes, but configuration "row" has {modes}'
+                    self.assertEqual(said in done.stdout + done.stderr, n > modes, done.stdout + done.stderr)
+
     def test_freedoms_come_first_and_in_words(self):
         loose = changed(MODEL, ("springs",), None)
         floating = changed(loose, ("joints", 0), {"name": "foot", "type": "fixed", "bodies": ["rod.end", "tip"], "at": [0, 1]})
