@@ -39,6 +39,9 @@ double mt_result_shown(double value, double factor)
         return value;
     }
     const double number = value / factor;
+    if (!isfinite(number)) {
+        return number;
+    }
     const double few = mt_few_digits(number);
     return fabs(few * factor - value) <= DBL_EPSILON * fabs(value) ? few : number;
 }
