@@ -101,4 +101,38 @@ static void follow__goes_from_the_first_position_to_the_last(mt_test *t)
     }
 }
 
-MT_TEST_MAIN(MT_TEST(follow__goes_from_the_first_position_to_the_last))
+/* A band that the mode comes into within the bounds of k1, wherever it stands, and is above all
+ * of from where k1 makes it so at theta = 0.9. The bound may move so far; an edge is of one
+ * position, which says nothing of what is between. */
+static void follow__bounds_move_by_what_the_whole_way_asks(mt_test *t)
+{
+    static const double at[] = {-0.6, 0.9};
+    static const double above = 23000.0;
+    static const double below_hz = 16.0;
+    char model[TEXT];
+    char members[512];
+    study_case c;
+    const double cosine = cos(0.9);
+    const double above_hz = study_hz((above + (K2 * cosine * cosine)) / M);
+    double to = nan("");
+    put_model(at, 2, model);
+    (void)snprintf(
+        members, sizeof members,
+        "'variables': [{'parameter': 'k1', 'lower': 19000, 'upper': 21000}], 'goals': "
+        "[{'type': 'avoid', 'configurations': ['p0', 'p1'], 'bands_hz': [[%.17g, "
+        "%.17g]], 'margin_percent': 0}]",
+        below_hz, above_hz);
+    if (study_solve(t, model, members, &c)) {
+        CHECK(t, c.result->status != MT_RESULT_SOLVED);
+        for (int i = 0; i < c.result->n_relaxations; i++) {
+            const mt_relaxation *const r = &c.result->relaxations[i];
+            to = strstr(r->what, "upper bound of k1") != NULL ? r->to : to;
+            CHECK(t, strstr(r->what, "edge") == NULL);
+        }
+        CHECK_NEAR(t, to, above, 1e-5);
+    }
+    study_free(&c);
+}
+
+MT_TEST_MAIN(MT_TEST(follow__bounds_move_by_what_the_whole_way_asks),
+             MT_TEST(follow__goes_from_the_first_position_to_the_last))
