@@ -40,7 +40,7 @@ static void absolute_load__is_told_no_more_exactly_than_it_is(mt_test *t)
                                                   "S") ", " SPRING("s", "0", "-0.3", "S") "]}"),
                NULL, "T S", &s));
     const mt_system *const sys = s.a->sys;
-    REQUIRE(t, mt_absolute_new(sys, s.at, &mem, &o, &is, why, &err) == MT_OK && is);
+    REQUIRE(t, mt_absolute_new(sys, s.at, NULL, &mem, &o, &is, why, &err) == MT_OK && is);
     REQUIRE(t, o.a.n_rows == 0);
     load.mu = mt_arena_f64(&mem, 1, 1);
     load.open = mt_arena_f64(&mem, 1, 1);
