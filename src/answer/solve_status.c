@@ -419,6 +419,7 @@ void mt_answer_note_spent(const mt_answer *a)
     }
     to->positions += mt_spent_of(s, MT_SPENT_POSITIONS);
     to->multiplications += mt_spent_of(s, MT_SPENT_MULTIPLICATIONS);
+    run->modal_solutions += mt_spent_of(s, MT_SPENT_MODAL);
     run->evaluations = to->search + to->positions + to->descriptions + to->spread +
                        to->relaxations + to->trade;
 }

@@ -22,6 +22,7 @@ typedef struct point {
     mt_result *again; /* of the second, where a neighbour knew better; owned, or NULL */
     long evaluations;
     long multiplications;
+    long solutions; /* modal ones */
 } point;
 
 /* Points that are compiled at a time: each has about a quarter of a megabyte, or what its model
@@ -140,6 +141,7 @@ static void note_spent(point *p, int sign)
         p->evaluations +=
             sign * (mt_spent_of(s, MT_SPENT_DESIGNS) + mt_spent_of(s, MT_SPENT_POSITIONS));
         p->multiplications += sign * mt_spent_of(s, MT_SPENT_MULTIPLICATIONS);
+        p->solutions += sign * mt_spent_of(s, MT_SPENT_MODAL);
     }
 }
 
@@ -275,6 +277,7 @@ static mt_status solve_warm(void *context, int worker, int task, mt_scope *own, 
     if (known && rc == MT_OK) { /* a budget is of both passes */
         mt_spent_note(&p->q->spent, MT_SPENT_DESIGNS, p->evaluations);
         mt_spent_note(&p->q->spent, MT_SPENT_MULTIPLICATIONS, p->multiplications);
+        mt_spent_note(&p->q->spent, MT_SPENT_MODAL, p->solutions);
     }
     note_spent(p, -1); /* of the first pass: it is noted already */
     rc = rc == MT_OK ? mt_workspace_new(p->q->p, &w, err) : rc;
@@ -325,9 +328,10 @@ static void tape_point(const trade *t, int task, bool warm, mt_tape *tape)
 {
     point *const p = &t->points[t->from + task];
     mt_result **const r = warm ? &p->again : &p->first;
-    const long before[] = {p->evaluations, p->multiplications};
+    const long before[] = {p->evaluations, p->multiplications, p->solutions};
     mt_tape_long(tape, &p->evaluations, 0, LONG_MAX);
     mt_tape_long(tape, &p->multiplications, 0, LONG_MAX);
+    mt_tape_long(tape, &p->solutions, 0, LONG_MAX);
     tape_result(t, r, tape);
     tape->failed = tape->failed || (!warm && *r == NULL);
     if (tape->reads && !mt_tape_is_read(tape)) {
@@ -335,6 +339,7 @@ static void tape_point(const trade *t, int task, bool warm, mt_tape *tape)
         *r = NULL;
         p->evaluations = before[0];
         p->multiplications = before[1];
+        p->solutions = before[2];
     } else if (tape->reads && warm) {
         forget(p);
     }
@@ -440,6 +445,7 @@ static mt_status describe(const trade *t, mt_result *result, mt_err *err)
         }
         result->run.spent.trade += p->evaluations;
         result->run.spent.multiplications += p->multiplications;
+        result->run.modal_solutions += p->solutions;
     }
     result->trade = out;
     return mt_trade_front(t->study, best, &result->baseline, mem, out, err);

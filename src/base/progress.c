@@ -17,6 +17,7 @@ mt_status mt_progress_init(mt_progress *p, mt_err *err)
     p->now.proof = never;
     atomic_init(&p->done, 0);
     atomic_init(&p->evaluations, 0);
+    atomic_init(&p->solutions, 0);
     atomic_init(&p->boxes, 0);
     atomic_init(&p->ppm, -1);
     atomic_init(&p->designs, false);
@@ -105,6 +106,13 @@ void mt_progress_evaluated(mt_progress *p)
     }
 }
 
+void mt_progress_solved(mt_progress *p, long n)
+{
+    if (p != NULL) {
+        (void)atomic_fetch_add_explicit(&p->solutions, n, memory_order_relaxed);
+    }
+}
+
 void mt_progress_boxed(mt_progress *p)
 {
     if (p != NULL) {
@@ -181,6 +189,7 @@ mt_progress_view mt_progress_look(mt_progress *p)
     v.share = share_of(&v, atomic_load(&p->ppm));
     (void)pthread_mutex_unlock(&p->lock);
     v.evaluations = atomic_load(&p->evaluations);
+    v.solutions = atomic_load(&p->solutions);
     v.boxes = atomic_load(&p->boxes);
     return v;
 }

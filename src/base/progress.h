@@ -33,6 +33,7 @@ typedef struct mt_progress_view {
     double share;     /* of the step, 0 to 1; NaN: not known */
     bool ended;       /* the step has */
     long evaluations; /* of designs */
+    long solutions;   /* modal ones that these and others took (base/spent.h) */
     long boxes;       /* of proofs */
     const char *what; /* the objective that `best` is the value of; NULL: none yet */
     double best;
@@ -54,6 +55,7 @@ typedef struct mt_progress {
     atomic_bool designs; /* the phase looks for them */
     atomic_long done;
     atomic_long evaluations;
+    atomic_long solutions;
     atomic_long boxes;
     atomic_int ppm; /* share of a step that is not counted, in millionths; -1: not known */
 } mt_progress;
@@ -73,8 +75,9 @@ bool mt_progress_begin(mt_progress *p, const char *unit, long total);
 void mt_progress_done(mt_progress *p, bool outermost);
 void mt_progress_share(mt_progress *p, bool outermost, double share);
 void mt_progress_end(mt_progress *p, bool outermost);
-/* A design was evaluated; a box of a proof was looked at. */
+/* A design was evaluated; n modal solutions were made; a box of a proof was looked at. */
 void mt_progress_evaluated(mt_progress *p);
+void mt_progress_solved(mt_progress *p, long n);
 void mt_progress_boxed(mt_progress *p);
 /* Is the phase one that looks for designs? */
 bool mt_progress_seeks(mt_progress *p);

@@ -12,8 +12,11 @@
  * its record, is noted by who reads it: the sums are those of a run without a break.
  */
 typedef enum mt_spent_kind {
-    MT_SPENT_DESIGNS,         /* evaluated in all configurations */
-    MT_SPENT_POSITIONS,       /* of a drive, looked at beside those that are named */
+    MT_SPENT_DESIGNS,   /* evaluated in all configurations */
+    MT_SPENT_POSITIONS, /* of a drive, looked at beside those that are named */
+    /* of one configuration each, at a design, a position or a corner of tolerances; without
+     * what named modes take on the way */
+    MT_SPENT_MODAL,
     MT_SPENT_MULTIPLICATIONS, /* of proofs, about */
     MT_SPENT_KINDS
 } mt_spent_kind;

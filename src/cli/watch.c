@@ -144,6 +144,9 @@ static void words(const mt_progress_view *v, double now, char text[TEXT])
     if (v->evaluations > 0) {
         add(text, &n, ", %ld designs evaluated", v->evaluations);
     }
+    if (v->solutions > 0) {
+        add(text, &n, ", %ld modal solutions", v->solutions);
+    }
     if (v->boxes > 0) {
         add(text, &n, ", %ld boxes", v->boxes);
     }
@@ -184,6 +187,7 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
     }
     mt_json_put_number(&w, "share", v->share);
     mt_json_put_integer(&w, "evaluations", v->evaluations);
+    mt_json_put_integer(&w, "modal_solutions", v->solutions);
     mt_json_put_integer(&w, "boxes", v->boxes);
     mt_json_put_string(&w, "objective", v->what);
     mt_json_put_number(&w, "best", v->what == NULL ? nan("") : v->best);

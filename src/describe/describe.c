@@ -205,6 +205,7 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
     mt_workspace *fresh = NULL;
     MT_TRY(mt_workspace_new(p, &fresh, err));
     mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, ANALYSES);
+    mt_problem_note_modal(p, ANALYSES * mt_case_solutions(&p->whole));
     mt_status rc = describe(fresh, design, baseline, result, rec, err);
     rc = rc == MT_OK ? mt_describe_slopes(fresh, design, result, rec, err) : rc;
     mt_workspace_delete(fresh);

@@ -217,3 +217,12 @@ mt_status mt_case_values_init(const mt_case *c, mt_arena *mem, mt_nlp_values *ou
     };
     return mt_arena_check(mem, err);
 }
+
+long mt_case_solutions(const mt_case *c)
+{
+    long n = c->n_views;
+    for (int i = 0; c->robust != NULL && i < c->n_views; i++) {
+        n += c->robust->views[i].n;
+    }
+    return n;
+}

@@ -110,6 +110,9 @@ void mt_case_x(const mt_case *c, const double *t, double *x);
 /* The change of the design t[n], 1/2 sum w_i (t_i - t_i(original))^2: what decides among
  * designs that are as good. */
 double mt_case_change(const mt_case *c, const double *t);
+/* Modal solutions that one evaluation takes: each configuration, and each corner of the
+ * tolerances that is held there. */
+long mt_case_solutions(const mt_case *c);
 /* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held
  * objectives. */
 int mt_case_rows_in(const mt_case *c);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/progress.h"
+#include "base/spent.h"
 #include "problem/family.h"
 #include "problem/goal_avoid.h"
 #include "prove/certify.h"
@@ -160,4 +162,10 @@ mt_status mt_problem_try(const mt_study *study, mt_err *err)
     const mt_status rc = mt_problem_new(study, &p, err);
     mt_problem_delete(p);
     return rc;
+}
+
+void mt_problem_note_modal(const mt_problem *p, long n)
+{
+    mt_spent_note(p->study->model->spent, MT_SPENT_MODAL, n);
+    mt_progress_solved(p->study->model->progress, n);
 }

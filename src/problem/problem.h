@@ -160,6 +160,8 @@ typedef struct mt_problem {
 mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err);
 /* Accepts NULL. */
 void mt_problem_delete(mt_problem *p);
+/* n modal solutions were made: to who counts them and to who watches. */
+void mt_problem_note_modal(const mt_problem *p, long n);
 /* Compile and forget: can the study be asked? Fails as mt_problem_new. */
 mt_status mt_problem_try(const mt_study *study, mt_err *err);
 /* The coordinate of value x of variable i. */

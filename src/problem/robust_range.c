@@ -89,6 +89,7 @@ static mt_status range_of(const box *b, mt_robust_probe *q, bool proven, mt_robu
 }
 
 typedef struct modes_of {
+    const mt_problem *p;
     mt_analysis *a;
     int m;
     int sloped; /* of which slopes are asked for */
@@ -102,6 +103,7 @@ static mt_status eval_modes(void *context, const double *x, bool with_gradient, 
                                      .gradient = with_gradient,
                                      .vectors = with_gradient,
                                      .accuracy = MT_MODAL_ACCURACY};
+    mt_problem_note_modal(c->p, 1);
     MT_TRY(mt_analysis_solve(c->a, x, &opt, err));
     for (int k = 0; k < c->m; k++) {
         const int pos = mt_modal_flexible(&c->a->modes, k + 1);
@@ -122,7 +124,7 @@ static mt_status range_of_modes(const box *b, int view, int modes, mt_analysis *
 {
     char reason[MT_REASON_SIZE] = "";
     mt_enclosure *e = NULL;
-    modes_of c = {.a = a, .m = b->out->n[view], .sloped = modes};
+    modes_of c = {.p = b->w->p, .a = a, .m = b->out->n[view], .sloped = modes};
     mt_robust_probe q = {.n = b->w->p->n,
                          .m = c.m,
                          .n_descend = modes,
@@ -142,6 +144,7 @@ static mt_status range_view(const box *b, int view, int modes, mt_err *err)
 {
     mt_ranges *const r = b->out;
     mt_analysis *a = NULL;
+    mt_problem_note_modal(b->w->p, 1);
     mt_status rc = mt_view_analyse(b->w->views[view].of, b->w->x, &a, err);
     const int all = rc == MT_OK ? mt_modal_vibrations(&a->modes) : 0;
     r->hz[view] = mt_arena_alloc(b->mem, (size_t)all, sizeof *r->hz[view]);

@@ -319,6 +319,7 @@ static void say_found(const mt_workspace *w, const mt_nlp_values *v)
 {
     const mt_case *const c = w->c;
     mt_progress_evaluated(w->p->study->model->progress);
+    mt_progress_solved(w->p->study->model->progress, mt_case_solutions(c));
     if (!is_wanted(w) || judged_later(w)) {
         return;
     }
@@ -329,11 +330,18 @@ static void say_found(const mt_workspace *w, const mt_nlp_values *v)
     }
 }
 
+void mt_workspace_note_designs(const mt_workspace *w, long n)
+{
+    mt_spent *const spent = w->p->study->model->spent;
+    mt_spent_note(spent, MT_SPENT_DESIGNS, n);
+    mt_spent_note(spent, MT_SPENT_MODAL, n * mt_case_solutions(w->c));
+}
+
 mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
                             mt_nlp_values *out, mt_err *err)
 {
     const mt_workspace *const w = context;
-    mt_spent_note(w->p->study->model->spent, MT_SPENT_DESIGNS, 1);
+    mt_workspace_note_designs(w, 1);
     return mt_workspace_eval_uncounted(context, t, with_gradient, out, err);
 }
 
@@ -342,7 +350,7 @@ mt_status mt_workspace_solve(const mt_workspace *w, const mt_nlp *nlp,
                              mt_err *err)
 {
     const mt_status rc = mt_nlp_solve(nlp, opt, mem, out, err);
-    mt_spent_note(w->p->study->model->spent, MT_SPENT_DESIGNS, out->evals);
+    mt_workspace_note_designs(w, out->evals);
     return rc;
 }
 

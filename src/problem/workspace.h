@@ -78,6 +78,8 @@ mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
 /* The same for who counts his evaluations himself, or has mt_workspace_solve do it. */
 mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_gradient,
                                       mt_nlp_values *out, mt_err *err);
+/* n designs were evaluated with w in its case, with all modal solutions that this takes. */
+void mt_workspace_note_designs(const mt_workspace *w, long n);
 /* mt_nlp_solve of an nlp whose callback does not count; its evaluations are (base/spent.h). */
 mt_status mt_workspace_solve(const mt_workspace *w, const mt_nlp *nlp,
                              const mt_nlp_options *opt, mt_arena *mem, mt_nlp_result *out,

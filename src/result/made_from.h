@@ -88,6 +88,9 @@ typedef struct mt_result_run {
     const char *gsl_version;
     long seed;
     long evaluations;
+    /* of one configuration at a design, a position or a corner of tolerances each: what the
+     * evaluations and the judgement over tolerances took */
+    long modal_solutions;
     mt_result_spent spent;
     int starts;
     /* of a search from starts; -1, NaN: not applicable */

@@ -466,6 +466,7 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
     MT_F_LIST("history", history, n_history, mt_result_step, STEP),
     MT_F_LONG("evaluations", evaluations),
+    MT_F_LONG("modal_solutions", modal_solutions),
     MT_F_RECORD("spent", spent, mt_result_spent, SPENT),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
     MT_F_CHOICE_OR_NULL("cut_by", cut_by, CAUSES),

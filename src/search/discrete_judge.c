@@ -423,6 +423,6 @@ mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long bu
         d->starts += list[i].starts;
         d->stop = list[i].stop > d->stop ? list[i].stop : d->stop;
     }
-    mt_spent_note(d->p->study->model->spent, MT_SPENT_DESIGNS, n_designs);
+    mt_workspace_note_designs(d->workers[0], n_designs);
     return MT_OK;
 }

@@ -255,6 +255,7 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent, const mt_s
         }
         out->evals++;
         mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, 1);
+        mt_problem_note_modal(p, w->c->n_clears);
     }
     MT_TRY(rc);
     bool kept[CANDIDATES_MOST] = {false};

@@ -210,6 +210,7 @@ static mt_status look(walk *w, double position, int next, mt_err *err)
     MT_TRY(mt_arena_check(w->mem, err));
     w->out->positions++;
     mt_spent_note(w->ws->p->study->model->spent, MT_SPENT_POSITIONS, 1);
+    mt_problem_note_modal(w->ws->p, 1);
     w->inputs[w->ws->p->n] = at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
     if (rc == MT_OK && w->a->modes.n_unstable > 0) {

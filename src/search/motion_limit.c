@@ -93,6 +93,7 @@ static mt_status find(walk *w, sample *s, mt_shaken_value *v, mt_err *err)
     *v = (mt_shaken_value){.value = nan(""), .end = MT_FORCED_UNSTABLE};
     w->out->positions++;
     mt_spent_note(w->ws->p->study->model->spent, MT_SPENT_POSITIONS, 1);
+    mt_problem_note_modal(w->ws->p, 1);
     w->inputs[w->ws->p->n] = s->at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);
     if (rc == MT_OK && !mt_modal_indexed(&w->a->modes)) {

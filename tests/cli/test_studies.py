@@ -71,7 +71,7 @@ class Run(CliTest):
         for part in ("Two springs\n", "\nParameters\n", "\nFrequencies\n", "\nWhy: what changes\n", "\nDesigns side by side\n"):
             self.assertIn(part, done.stdout)
         self.assertNotIn("Published", done.stdout)
-        self.assertRegex(done.stderr, r"^studies/two.json: \S+ s, \d+ evaluations \(search \d+, descriptions 6\); written to results/two/\n$")
+        self.assertRegex(done.stderr, r"^studies/two.json: \S+ s, \d+ evaluations \(search \d+, descriptions 6\), \d+ modal solutions; written to results/two/\n$")
 
     def test_results_hold_no_time_or_path_and_repeat_byte_for_byte(self):
         path = self.write("studies/two.json", study(extra=HOLDS))
