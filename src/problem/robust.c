@@ -16,9 +16,6 @@ enum { COMBINED_MOST = 5 };
 /* A target's range is kept within this, relatively. */
 static const double ROW_TOLERANCE = MT_DEFAULT_TOLERANCE_PERCENT / 100.0;
 
-/* What raising a variable does. */
-enum { FALLS = -1, NOTHING, RISES, UNKNOWN };
-
 double mt_robust_tolerance(const mt_problem *p, int i)
 {
     const double percent = p->study->variables[i].tolerance_percent;
@@ -50,8 +47,7 @@ static void widen(const mt_case *c)
     }
 }
 
-/* Factor of input i where it is low (side -1), high (1) or does not matter (0). */
-static double factor_of(const mt_case *c, int i, int side)
+double mt_robust_factor(const mt_case *c, int i, int side)
 {
     const double sign = c->upper[i] > 0.0 ? 1.0 : -1.0;
     return 1.0 + (sign * (double)side * mt_robust_tolerance(c->p, i));
@@ -79,10 +75,10 @@ static mt_status make_corner(const mt_case *c, const int *signs, int sides, int 
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < c->p->n; i++) {
         int at = side == MT_LOWEST ? -signs[i] : signs[i];
-        if (signs[i] == UNKNOWN) {
+        if (signs[i] == MT_UNKNOWN) {
             at = is_high(k / sides, j++, unknown) ? 1 : -1;
         }
-        out->factor[i] = factor_of(c, i, at);
+        out->factor[i] = mt_robust_factor(c, i, at);
     }
     return MT_OK;
 }
@@ -95,8 +91,8 @@ static mt_status make_corners(const mt_case *c, const int *signs, bool ranged, m
     int known = 0;
     int unknown = 0;
     for (int i = 0; i < c->p->n; i++) {
-        known += signs[i] == RISES || signs[i] == FALLS ? 1 : 0;
-        unknown += signs[i] == UNKNOWN ? 1 : 0;
+        known += signs[i] == MT_RISES || signs[i] == MT_FALLS ? 1 : 0;
+        unknown += signs[i] == MT_UNKNOWN ? 1 : 0;
     }
     *out = (mt_corner_set){.exact = unknown == 0};
     if (known + unknown == 0 && !ranged) {
@@ -118,9 +114,9 @@ static int sign_of(const mt_case *c, int i, bool rises, bool falls)
 {
     const bool turns = c->lower[i] < 0.0 && c->upper[i] > 0.0;
     if (!(mt_robust_tolerance(c->p, i) > 0.0) || (!rises && !falls)) {
-        return NOTHING;
+        return MT_NOTHING;
     }
-    return turns || (rises && falls) ? UNKNOWN : rises ? RISES : FALLS;
+    return turns || (rises && falls) ? MT_UNKNOWN : rises ? MT_RISES : MT_FALLS;
 }
 
 /* Signs over the whole box of all variables. */
@@ -168,6 +164,39 @@ static mt_status check_demand(const mt_demand *d, mt_err *err)
                                  d->goal_index, d->goal->mode.mode_name.s);
 }
 
+/* Can a search go on from a design that misses a corner? */
+static bool goes_on(const mt_problem *p)
+{
+    bool any = false;
+    for (int i = 0; i < p->n; i++) {
+        any = any || p->study->variables[i].n_catalogue == 0;
+    }
+    return any;
+}
+
+static bool any_unknown(const mt_problem *p, const int *signs)
+{
+    bool any = false;
+    for (int i = 0; i < p->n; i++) {
+        any = any || signs[i] == MT_UNKNOWN;
+    }
+    return any;
+}
+
+/* Corners of one view. Those of a cut (a position of a drive) are judged by nobody later. */
+static mt_status init_view(mt_case *c, int view, mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    mt_corner_set *const set = &c->robust->views[view];
+    int *const signs = mt_arena_int(mem, (size_t)p->n);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(signs_of_view(c, c->views[view].original, signs, err));
+    if (view < p->n_views && goes_on(p) && any_unknown(p, signs)) {
+        MT_TRY(mt_robust_first(c, view, signs, mem, set, err));
+    }
+    return set->n > 0 ? MT_OK : make_corners(c, signs, has_range(p, view), mem, set, err);
+}
+
 /* Corners of the views that constraints or bands look at; those of the problem's own may be
  * known. */
 static mt_status init_views(mt_case *c, const mt_robust *known, mt_arena *mem, mt_err *err)
@@ -190,10 +219,7 @@ static mt_status init_views(mt_case *c, const mt_robust *known, mt_arena *mem, m
         if (known != NULL && i < p->n_views) {
             c->robust->views[i] = known->views[i];
         } else if (wanted[i]) {
-            int *const signs = mt_arena_int(mem, (size_t)p->n);
-            MT_TRY(mt_arena_check(mem, err));
-            MT_TRY(signs_of_view(c, c->views[i].original, signs, err));
-            MT_TRY(make_corners(c, signs, has_range(p, i), mem, &c->robust->views[i], err));
+            MT_TRY(init_view(c, i, mem, err));
         }
     }
     return MT_OK;

@@ -21,10 +21,13 @@
  *         gravity loads the mechanism) stands at either end, in all
  *     combinations while there are few of them, and the design itself is judged as well.
  * Without any of the second kind the corners are the worst there is, at every design: two of
- * them, exact. Otherwise they are samples. Then a design that the search ends with is judged
- * over its own tolerances (mt_robust_ranges): there more signs are proven, and where they are
- * not, the worst is searched within. A point that is worse than the corners becomes one more of
- * them, and the search goes on from there (robust_cut.h).
+ * them, exact. Otherwise they are samples, and where the search can go on from a design that
+ * misses one (some variable is no catalogue), it begins with those that slopes at the original
+ * design name for each mode and side (robust_first.c): 2^k analyses become one or two. Then a
+ * design that the search ends with is judged over its own tolerances (mt_robust_ranges): there
+ * more signs are proven, and where they are not, the worst is searched within. A point that is
+ * worse than the corners becomes one more of them, and the search goes on from there
+ * (robust_cut.h).
  *
  * What is reported of a design is found anew in the same way.
  *
@@ -94,6 +97,19 @@ typedef struct mt_robust_work {
     const mt_ranges *ranges; /* of the design that is described; NULL: not known */
 } mt_robust_work;
 
+/*
+ * robust_first.c: of a view whose signs[n] do not decide the corners, those that slopes name as
+ * the worst, for each mode m that a goal limits and each side,
+ *     x_i (1 -+ tolerance_i)   by the sign of dlambda_m/dx_i   where the sign is not known,
+ * at the design within the bounds that is nearest to the original one. Each once. out->n = 0:
+ * none has slopes there. Cost: one analysis. Fails: MT_E_MEMORY, MT_E_INTERNAL.
+ */
+mt_status mt_robust_first(const mt_case *c, int view, const int *signs, mt_arena *mem,
+                          mt_corner_set *out, mt_err *err);
+/* Factor of input i where it is low (side -1), high (1) or does not matter (0). */
+double mt_robust_factor(const mt_case *c, int i, int side);
+/* What raising a variable does. */
+enum { MT_FALLS = -1, MT_NOTHING, MT_RISES, MT_UNKNOWN };
 /* c->robust (NULL where no variable has a tolerance), in mem: adds rows to `in` behind those of
  * the bands. known: corners over the same bounds, of another assignment; NULL: none. Fails:
  * MT_E_INPUT where a goal cannot
@@ -135,6 +151,9 @@ double mt_robust_room(const mt_workspace *w, const mt_clear *c);
  * analyses where proven, else some hundreds.
  */
 mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err);
+/* The same, where only what the rows of w's case limit is searched by descent: what it may be
+ * beside that is as corners and points within have it. */
+mt_status mt_robust_ranges_of_rows(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err);
 /* Of vibration mode `mode` of a view; NULL: not computed. r may be NULL, as below. */
 const mt_robust_range *mt_ranges_hz(const mt_ranges *r, int view, int mode);
 /* Of the design that is described with w. */
@@ -142,13 +161,22 @@ const mt_ranges *mt_robust_known(const mt_workspace *w);
 /* Are all ranges proven? */
 bool mt_ranges_proven(const mt_ranges *r);
 
+/* How closely an extreme is searched for behind the samples. */
+typedef enum mt_robust_descent {
+    MT_DESCENT_NONE,
+    MT_DESCENT_COARSE,
+    MT_DESCENT_FINE
+} mt_robust_descent;
+
 /* robust_sample.c: the least and greatest of m numbers over a box, sampled. */
 typedef struct mt_robust_probe {
     int n;            /* inputs */
     const double *lo; /* [n] */
     const double *hi;
     int m;
-    int n_descend; /* so many of them by descent too */
+    int n_descend; /* of the first so many of them by descent too, */
+    /* [n_descend][side] as far as this says; NULL: MT_DESCENT_FINE */
+    const mt_robust_descent (*descents)[MT_ROBUST_SIDES];
     void *context;
     /* value[m] at x (slopes may be asked for next where with_gradient). Failures but memory and
      * internal ones mean that the numbers do not exist there. */

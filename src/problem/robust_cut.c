@@ -129,19 +129,24 @@ static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_nlp_va
     return MT_OK;
 }
 
+static void begin_judging(mt_robust_cuts *cuts)
+{
+    cuts->added = 0;
+    cuts->missed = (mt_missed){0.0, 0.0};
+    cuts->band_room = HUGE_VAL;
+}
+
 mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
                           mt_robust_cuts *cuts, mt_err *err)
 {
     mt_arena own;
     mt_ranges ranges;
-    cuts->added = 0;
-    cuts->missed = (mt_missed){0.0, 0.0};
-    cuts->band_room = HUGE_VAL;
+    begin_judging(cuts);
     if (!mt_robust_is_sampled(w->c)) {
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&own, 0, err));
-    mt_status rc = mt_robust_ranges(w, &own, &ranges, err);
+    mt_status rc = mt_robust_ranges_of_rows(w, &own, &ranges, err);
     /* what is cut off has no value at some sample: nothing is known */
     rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
     rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
@@ -149,13 +154,84 @@ mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
     return rc;
 }
 
+/* x[n] := the corner that is worst to first order for the mode of a row at the design that w
+ * was evaluated at with slopes; false: it has none. */
+static bool name_worst(mt_workspace *w, const mt_robust_row *row, int mode, double *x)
+{
+    mt_analysis *const a = w->views[view_of(w->c, row)].analysis;
+    const int pos = mt_modal_flexible(&a->modes, mode);
+    mt_err own = {.code = MT_OK};
+    if (pos < 0 || mt_analysis_dlambda_raw(a, pos, w->robust->slope, &own) != MT_OK) {
+        return false;
+    }
+    for (int i = 0; i < w->p->n; i++) {
+        const double half = mt_robust_tolerance(w->p, i) * fabs(w->x[i]);
+        const bool low = (w->robust->slope[i] > 0.0) == (row->side == MT_LOWEST);
+        x[i] = w->x[i] + (low ? -half : half);
+    }
+    return true;
+}
+
+/* A row of a mode at the corner that its slopes name, solved with an analysis of a corner. */
+static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *x,
+                             mt_arena *mem, mt_robust_cuts *cuts, mt_err *err)
+{
+    const mt_case *const c = w->c;
+    const int mode = row->demand >= 0 ? c->p->demands[row->demand].mode : row->at.mode;
+    const mt_view_work *const view = &w->views[view_of(c, row)];
+    const mt_analysis_options opt = mt_view_asks(w, view, false);
+    mt_analysis *const a = view->corners[0];
+    mt_err own = {.code = MT_OK};
+    if (!name_worst(w, row, mode, x)) {
+        return MT_OK;
+    }
+    mt_problem_note_modal(w->p, 1);
+    const mt_status rc = mt_analysis_solve(a, x, &opt, &own);
+    const int pos = rc == MT_OK ? mt_modal_flexible(&a->modes, mode) : -1;
+    MT_TRY(mt_pass_final(rc, &own, err));
+    if (pos < 0) {
+        return MT_OK; /* what is not there is judged by samples */
+    }
+    const double room = mt_robust_row_room(c, row, mt_modal_hz(&a->modes, pos));
+    const double wanted = row->demand < 0 && c->clearance ? w->t[c->p->n] : 0.0;
+    if (room - wanted < -row->tolerance) {
+        mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
+        MT_TRY(add_cut(w, row, x, mem, cuts, err));
+    }
+    return MT_OK;
+}
+
+/* All rows of modes that are held at samples. */
+static mt_status judge_by_slopes(mt_workspace *w, mt_arena *mem, mt_robust_cuts *cuts,
+                                 mt_err *err)
+{
+    const mt_case *const c = w->c;
+    const mt_robust_row *before = NULL;
+    double *const x = mt_arena_f64(mem, (size_t)c->p->n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int k = 0; k < c->robust->n_rows; k++) {
+        const mt_robust_row *const row = &c->robust->rows[k];
+        const bool again = before != NULL && is_same(before, row);
+        before = row;
+        if (!again && is_judged(c, row) && view_of(c, row) >= 0) {
+            MT_TRY(judge_first(w, row, x, mem, cuts, err));
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
                           mt_err *err)
 {
     mt_nlp_values v;
+    begin_judging(cuts);
+    if (!mt_robust_is_sampled(w->c)) {
+        return MT_OK;
+    }
     MT_TRY(mt_case_values_init(w->c, mem, &v, err));
-    MT_TRY(mt_workspace_eval(w, t, false, &v, err));
-    return mt_robust_lower(w, &v, mem, cuts, err);
+    MT_TRY(mt_workspace_eval(w, t, true, &v, err));
+    MT_TRY(judge_by_slopes(w, mem, cuts, err));
+    return cuts->added > 0 ? MT_OK : mt_robust_lower(w, &v, mem, cuts, err);
 }
 
 /* The corners of one set, and those of its cuts. */

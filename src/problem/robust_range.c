@@ -19,6 +19,7 @@ typedef struct box {
     double *soft; /* work */
     double *stiff;
     int *effects;
+    bool of_rows; /* descent only to what rows limit */
     mt_ranges *out;
 } box;
 
@@ -120,14 +121,43 @@ static mt_status slope_modes(void *context, int k, double *slope, mt_err *err)
                     : mt_fail(err, MT_E_DOMAIN, "no such mode");
 }
 
+/* What a row limits is searched closely, anything else as `others` says: [modes][side]. */
+static void choose_descents(const mt_workspace *w, int view, int modes,
+                            mt_robust_descent others,
+                            mt_robust_descent (*descents)[MT_ROBUST_SIDES])
+{
+    const mt_case *const c = w->c;
+    /* without an assignment bands have no rows yet, and limit all modes up to theirs */
+    const int reach = c->below == NULL ? mt_clears_reach(w, view) : 0;
+    for (int i = 0; i < MT_ROBUST_SIDES * modes; i++) {
+        const bool reached = reach > 0 && i / MT_ROBUST_SIDES <= reach;
+        descents[i / MT_ROBUST_SIDES][i % MT_ROBUST_SIDES] = reached ? MT_DESCENT_FINE : others;
+    }
+    for (int k = 0; k < c->robust->n_rows; k++) {
+        const mt_robust_row *const row = &c->robust->rows[k];
+        const mt_demand *const d = row->demand >= 0 ? &c->p->demands[row->demand] : NULL;
+        const int of = d != NULL ? d->view : c->clears[row->at.clear].view;
+        const int mode = d != NULL ? d->mode : row->at.mode;
+        if (of == view && mode >= 1 && mode <= modes) {
+            descents[mode - 1][row->side] = MT_DESCENT_FINE;
+        }
+    }
+}
+
 static mt_status range_of_modes(const box *b, int view, int modes, mt_analysis *a, mt_err *err)
 {
     char reason[MT_REASON_SIZE] = "";
     mt_enclosure *e = NULL;
+    mt_robust_descent(*const descents)[MT_ROBUST_SIDES] =
+        mt_arena_alloc(b->mem, (size_t)modes, sizeof *descents);
+    MT_TRY(mt_arena_check(b->mem, err));
+    choose_descents(b->w, view, modes, b->of_rows ? MT_DESCENT_NONE : MT_DESCENT_COARSE,
+                    descents);
     modes_of c = {.p = b->w->p, .a = a, .m = b->out->n[view], .sloped = modes};
     mt_robust_probe q = {.n = b->w->p->n,
                          .m = c.m,
                          .n_descend = modes,
+                         .descents = (const mt_robust_descent(*)[MT_ROBUST_SIDES])descents,
                          .context = &c,
                          .eval = eval_modes,
                          .slope = slope_modes};
@@ -239,7 +269,20 @@ static void count_modes(const mt_workspace *w, int *modes)
     }
 }
 
-mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err)
+/* Does a row that is held at samples limit a mode of the view? */
+static bool is_sampled_view(const mt_case *c, int view)
+{
+    bool any = false;
+    for (int k = 0; k < c->robust->n_rows && !c->robust->views[view].exact; k++) {
+        const mt_robust_row *const row = &c->robust->rows[k];
+        any = any || view == (row->demand >= 0 ? c->p->demands[row->demand].view
+                                               : c->clears[row->at.clear].view);
+    }
+    return any;
+}
+
+static mt_status find_ranges(mt_workspace *w, bool of_rows, mt_arena *mem, mt_ranges *out,
+                             mt_err *err)
 {
     const mt_problem *const p = w->p;
     const size_t n_views = (size_t)p->n_views;
@@ -253,13 +296,24 @@ mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_er
                     .number = mt_arena_alloc(mem, (size_t)p->n_demands, sizeof *out->number)};
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(make_box(w, mem, out, &b, err));
+    b.of_rows = of_rows;
     count_modes(w, modes);
     for (int i = 0; i < p->n_views; i++) {
-        if (modes[i] > 0) {
+        if (modes[i] > 0 && (!of_rows || is_sampled_view(w->c, i))) {
             MT_TRY(range_view(&b, i, modes[i], err));
         }
     }
     return range_numbers(&b, err);
+}
+
+mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err)
+{
+    return find_ranges(w, false, mem, out, err);
+}
+
+mt_status mt_robust_ranges_of_rows(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err)
+{
+    return find_ranges(w, true, mem, out, err);
 }
 
 bool mt_ranges_proven(const mt_ranges *r)

@@ -22,8 +22,12 @@ enum {
     ROUNDS_MOST = 3,
     MOVES_MOST = 4,
     AROUND_PER_INPUT = 8,
-    HALVINGS = 9, /* of the boxes about the best so far: to a thousandth */
-    SECTIONS = 14 /* of a line: to some thousandth of its length */
+    HALVINGS = 9,  /* of the boxes about the best so far: to a thousandth */
+    SECTIONS = 14, /* of a line: to some thousandth of its length */
+    /* at a corner from which every slope leads to worse: near it there is nothing better */
+    HALVINGS_AT_CORNER = 2,
+    SECTIONS_AT_CORNER = 2,
+    HALVINGS_COARSE = 3 /* of numbers that nobody limits */
 };
 /* A step that gains less, relatively, has arrived. */
 static const double GAIN = 1e-9;
@@ -63,9 +67,14 @@ typedef struct sampler {
     double *from;
     double *to;
     double *slope;
-    int n_free; /* inputs whose interval is not a point */
+    int n_free;     /* inputs whose interval is not a point */
+    bool at_corner; /* the last step began at a corner from which every slope leads to worse */
+    int halvings;   /* elsewhere */
     int n_spread;
     const double *spread; /* n x n_spread, the first in the middle */
+    /* n x n_explored: corners about which all numbers are known already */
+    double *explored;
+    int n_explored;
 } sampler;
 
 /* Values at x, noted; NaN where there are none. */
@@ -148,7 +157,8 @@ static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err
         MT_TRY(visit_between(s, at[i], err));
         value[i] = sign * s->value[k];
     }
-    for (int turn = 0; turn < SECTIONS; turn++) {
+    const int sections = s->at_corner ? SECTIONS_AT_CORNER : SECTIONS;
+    for (int turn = 0; turn < sections; turn++) {
         const int which = value[0] < value[1] ? 0 : 1;
         const int other = 1 - which;
         end[other] = at[other];
@@ -168,6 +178,8 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
     const mt_robust_probe *const q = s->q;
     const double before = s->out[k].value[side];
+    bool flat = false;
+    s->at_corner = false;
     memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
     MT_TRY(visit(s, s->from, true, err));
     if (!MT_HAS(s->value[k])) {
@@ -181,8 +193,10 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
     for (int i = 0; i < q->n; i++) {
         const bool down = (s->slope[i] > 0.0) == (side == MT_LOWEST);
         s->to[i] = s->slope[i] == 0.0 ? s->from[i] : down ? q->lo[i] : q->hi[i];
+        flat = flat || (is_free(q, i) && !(fabs(s->slope[i]) > 0.0));
     }
     if (memcmp(s->from, s->to, (size_t)q->n * sizeof *s->from) == 0) {
+        s->at_corner = !flat;
         return MT_OK;
     }
     MT_TRY(visit(s, s->to, false, err));
@@ -195,7 +209,8 @@ static mt_status step_around(sampler *s, int k, mt_robust_side side, mt_err *err
 {
     const mt_robust_probe *const q = s->q;
     double part = 1.0;
-    for (int turn = 0; turn < HALVINGS; turn++) {
+    const int halvings = s->at_corner ? HALVINGS_AT_CORNER : s->halvings;
+    for (int turn = 0; turn < halvings; turn++) {
         part *= 0.5;
         memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
         for (int c = 1; c <= AROUND_PER_INPUT * s->n_free && c < s->n_spread; c++) {
@@ -241,14 +256,39 @@ static mt_status repeat(sampler *s, move step_of, int k, mt_robust_side side, mt
     return MT_OK;
 }
 
+/* Has another number been looked at about the corner where number k is best? All are noted
+ * wherever one is. */
+static bool is_explored(const sampler *s, const double *at)
+{
+    const size_t n = (size_t)s->q->n;
+    bool known = false;
+    for (int i = 0; i < s->n_explored && !known; i++) {
+        known = memcmp(s->explored + ((size_t)i * n), at, n * sizeof *at) == 0;
+    }
+    return known;
+}
+
+static void note_explored(sampler *s, const double *at)
+{
+    if (s->at_corner && !is_explored(s, at)) {
+        memcpy(s->explored + ((ptrdiff_t)s->n_explored++ * s->q->n), at,
+               (size_t)s->q->n * sizeof *at);
+    }
+}
+
 /* All kinds of moves, until none gains. */
 static mt_status descend(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
     const double *const best = &s->out[k].value[side];
+    const double *const at = s->out[k].at[side];
     double gain = HUGE_VAL;
     for (int turn = 0; turn < ROUNDS_MOST && gain > GAIN * fabs(*best); turn++) {
         const double before = *best;
         MT_TRY(repeat(s, step, k, side, err));
+        if (s->at_corner && is_explored(s, at)) {
+            return MT_OK;
+        }
+        note_explored(s, at);
         MT_TRY(repeat(s, step_along_inputs, k, side, err));
         MT_TRY(repeat(s, step_around, k, side, err));
         gain = fabs(*best - before);
@@ -260,13 +300,16 @@ mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_ra
                            mt_err *err)
 {
     const size_t n = (size_t)q->n;
+    const int n_descend = q->m < q->n_descend ? q->m : q->n_descend;
+    const size_t corners = (size_t)ROUNDS_MOST * MT_ROBUST_SIDES * (size_t)n_descend;
     sampler s = {.q = q,
                  .out = out,
                  .value = mt_arena_f64(mem, (size_t)q->m, 1),
                  .x = mt_arena_f64(mem, n, 1),
                  .from = mt_arena_f64(mem, n, 1),
                  .to = mt_arena_f64(mem, n, 1),
-                 .slope = mt_arena_f64(mem, n, 1)};
+                 .slope = mt_arena_f64(mem, n, 1),
+                 .explored = mt_arena_f64(mem, n, corners)};
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < q->n; i++) {
         s.n_free += is_free(q, i) ? 1 : 0;
@@ -274,11 +317,14 @@ mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_ra
     MT_TRY(spread(&s, mem, err));
     MT_TRY(visit_corners(&s, err));
     MT_TRY(visit_spread(&s, err));
-    const int n_descend = q->m < q->n_descend ? q->m : q->n_descend;
     for (int i = 0; i < MT_ROBUST_SIDES * n_descend; i++) {
         const mt_robust_side side = (mt_robust_side)(i % MT_ROBUST_SIDES);
         const int k = i / MT_ROBUST_SIDES;
-        MT_TRY(MT_HAS(out[k].value[side]) ? descend(&s, k, side, err) : MT_OK);
+        const mt_robust_descent how =
+            q->descents == NULL ? MT_DESCENT_FINE : q->descents[k][side];
+        s.halvings = how == MT_DESCENT_FINE ? HALVINGS : HALVINGS_COARSE;
+        MT_TRY(how != MT_DESCENT_NONE && MT_HAS(out[k].value[side]) ? descend(&s, k, side, err)
+                                                                    : MT_OK);
     }
     return MT_OK;
 }

@@ -53,7 +53,7 @@ enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
 /* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
 /* Of the evaluations that are left, one in so many for what is searched before the proof. */
 enum { FIRST_PART = 4 };
-enum { CUT_ROUNDS = 8, CUTS_MOST = 32, CUT_STARTS = 6 };
+enum { CUT_ROUNDS = 12, CUTS_MOST = 32, CUT_STARTS = 6 };
 
 /* The caller's design where it is of this kind, else the one that the candidate comes with;
  * NULL: none. */
@@ -169,9 +169,6 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     if (best->feasible && mt_family_any(w->p)) {
         MT_TRY(follow_best(s, w, last, &added, &room, err));
     }
-    if (best->feasible && w->c->clearance && isfinite(room)) {
-        tell_clearance(s, room, w->c->n_aims);
-    }
     if (best->feasible && mt_search_has_positions(w->c)) {
         MT_TRY(mt_search_judge_positions(w, best->t, last, &s->mem, &s->posed, err));
         s->evals += s->posed.evals;
@@ -180,6 +177,11 @@ static mt_status judge_best(slot *s, mt_workspace *w, bool last, bool *again, mt
     if (best->feasible && mt_robust_is_sampled(w->c)) {
         MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));
         s->evals++;
+        /* the worst within the tolerances, where they were looked at for it */
+        room = fmin(room, s->corners.band_room);
+    }
+    if (best->feasible && w->c->clearance && isfinite(room)) {
+        tell_clearance(s, room, w->c->n_aims);
     }
     *again = added > 0 || worse;
     return MT_OK;

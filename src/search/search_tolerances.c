@@ -5,8 +5,9 @@
  *     g(t, c) <= 0    for all corners c of C,
  * its design t may miss a goal at some other point c' of its tolerances. With c' in C as well
  * the search goes on from t. The worst within moves as t does, and where it lies inside, its
- * value by the square of that: a few rounds end it. All designs are held at the same C. So it
- * is with limits over the positions of a drive, c being one.
+ * value by the square of that: a few rounds end it. Then a few starts are searched with the C
+ * there is by then, for optima that were none without it. All designs are held at the same C.
+ * So it is with limits over the positions of a drive, c being one.
  */
 #include <math.h>
 
@@ -15,7 +16,7 @@
 #include "search/motion.h"
 #include "search/search.h"
 
-enum { ROUNDS = 8 };
+enum { ROUNDS = 12, STARTS = 6 };
 
 mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem, mt_robust_cuts *cuts,
                           mt_nlp_solution *s, bool *again, mt_err *err)
@@ -32,6 +33,14 @@ mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem, mt_robust_c
     return MT_OK;
 }
 
+/* Directions that the goals do not settle at the design t. */
+typedef struct directions {
+    const double *t;
+    int n;
+    double *undetermined;
+    double *effect;
+} directions;
+
 typedef struct rounds {
     mt_workspace *ws;
     const mt_case *c; /* the caller's */
@@ -45,10 +54,17 @@ typedef struct rounds {
     bool over_positions;
     long judgement; /* most evaluations that a design takes over the positions */
     mt_posed_cuts posed;
-    bool *kept;         /* [n_solutions] the limits over the positions, when last judged */
-    const double *told; /* the design that undetermined directions are of */
+    bool *kept;       /* [n_solutions] the limits over the positions, when last judged */
+    directions first; /* of the best design of the search, */
+    directions again; /* and of that with the cuts */
     const mt_posed_price *prices;
 } rounds;
+
+static directions directions_of(const mt_nlp_result *found)
+{
+    return (directions){found->solutions[0].t, found->n_undetermined, found->undetermined,
+                        found->undetermined_effect};
+}
 
 /* Has the budget less left? */
 static bool lacks(const rounds *r, long evals)
@@ -64,6 +80,7 @@ static mt_status judge(rounds *r, int i, bool last, mt_err *err)
     r->open[i] = false;
     if (r->over_tolerances) {
         MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
+        r->out->evals++;
     }
     if (r->over_positions && s->feasible && !lacks(r, r->judgement)) {
         MT_TRY(mt_search_judge_positions(r->ws, s->t, last, r->mem, &r->posed, err));
@@ -131,12 +148,8 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
     s->start = old.start;
     s->hits = old.hits;
     *r->stage = stage;
-    if (i == 0) {
-        r->told = s->t;
-        r->out->n_undetermined = next.n_undetermined;
-        r->out->undetermined = next.undetermined;
-        r->out->undetermined_effect = next.undetermined_effect;
-    }
+    r->first = old.t == r->first.t ? directions_of(&next) : r->first;
+    r->again = old.t == r->again.t ? directions_of(&next) : r->again;
     return note_prices(r, s, err);
 }
 
@@ -148,16 +161,22 @@ static bool is_spent(rounds *r)
     return spent || r->out->stop == MT_STOP_USER;
 }
 
+/* The case with the cuts so far, which the workspace is set to. */
+static mt_status hold_cuts(rounds *r, mt_case *held, mt_err *err)
+{
+    MT_TRY(mt_case_copy(r->c, r->mem, held, err));
+    if (r->over_tolerances) {
+        MT_TRY(mt_robust_add_cuts(r->c, &r->cuts, r->mem, &held->robust, err));
+    }
+    return mt_case_lay_out(held, NULL, r->posed.n, r->posed.items, r->ws, r->mem, err);
+}
+
 /* All that is open once more, with the cuts so far. */
 static mt_status search_again(rounds *r, mt_err *err)
 {
     const mt_case *const c = r->c;
     mt_case held;
-    MT_TRY(mt_case_copy(c, r->mem, &held, err));
-    if (r->over_tolerances) {
-        MT_TRY(mt_robust_add_cuts(c, &r->cuts, r->mem, &held.robust, err));
-    }
-    MT_TRY(mt_case_lay_out(&held, NULL, r->posed.n, r->posed.items, r->ws, r->mem, err));
+    MT_TRY(hold_cuts(r, &held, err));
     mt_status rc = MT_OK;
     for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
         if (r->open[i] && !is_spent(r)) {
@@ -170,6 +189,104 @@ static mt_status search_again(rounds *r, mt_err *err)
     }
     mt_workspace_back(r->ws, c);
     return rc;
+}
+
+static mt_status open_all(rounds *r, mt_err *err)
+{
+    const size_t n = (size_t)r->out->n_solutions;
+    r->first = directions_of(r->out);
+    r->open = mt_arena_alloc(r->mem, n, sizeof *r->open);
+    r->kept = mt_arena_alloc(r->mem, n, sizeof *r->kept);
+    MT_TRY(mt_arena_check(r->mem, err));
+    for (size_t i = 0; i < n; i++) {
+        r->open[i] = true;
+        r->kept[i] = true;
+    }
+    return MT_OK;
+}
+
+/* Judge, and search on with the cuts, until nothing is open. *cut: there are some. */
+static mt_status go_round(rounds *r, bool *cut, mt_err *err)
+{
+    bool any = true;
+    for (int round = 0; round < ROUNDS && any; round++) {
+        /* with more cuts less is feasible: what was better counts no more */
+        r->round++;
+        MT_TRY(judge_open(r, round + 1 == ROUNDS || is_spent(r), &any, err));
+        *cut = *cut || r->cuts.n > 0 || r->posed.n > 0;
+        MT_TRY(any ? search_again(r, err) : MT_OK);
+    }
+    return MT_OK;
+}
+
+static bool any_feasible(const rounds *r)
+{
+    bool any = false;
+    for (int i = 0; i < r->out->n_solutions; i++) {
+        any = any || r->out->solutions[i].feasible;
+    }
+    return any;
+}
+
+/* Designs of one more search join those that there are; those that met nothing go. */
+static mt_status join(rounds *r, const mt_nlp_result *more, mt_err *err)
+{
+    mt_nlp_result *const out = r->out;
+    const bool any = any_feasible(r);
+    const int old = any ? out->n_solutions : 0;
+    const size_t n = (size_t)old + (size_t)more->n_solutions;
+    mt_nlp_solution *const all = mt_arena_alloc(r->mem, n, sizeof *all);
+    bool *const open = mt_arena_alloc(r->mem, n, sizeof *open);
+    bool *const kept = mt_arena_alloc(r->mem, n, sizeof *kept);
+    MT_TRY(mt_arena_check(r->mem, err));
+    for (int i = 0; i < old; i++) {
+        all[i] = out->solutions[i];
+        kept[i] = r->kept[i];
+    }
+    for (int i = 0; i < more->n_solutions; i++) {
+        all[old + i] = more->solutions[i];
+        open[old + i] = true;
+        kept[old + i] = true;
+    }
+    r->again = directions_of(more);
+    out->solutions = all;
+    out->n_solutions = (int)n;
+    r->open = open;
+    r->kept = kept;
+    return MT_OK;
+}
+
+/* The designs of the first search are optima of less than is asked for: with the cuts there may
+ * be others that no way from them leads to, one on each side of what the cuts left. So the
+ * search begins at a few of its starts once more; at all of them where it has nothing. *found:
+ * there are designs to be judged. */
+static mt_status start_again(rounds *r, bool *found, mt_err *err)
+{
+    const mt_case *const c = r->c;
+    mt_nlp_result next = {0};
+    mt_err why = {.code = MT_OK};
+    mt_case held;
+    int stage = 0;
+    *found = false;
+    MT_TRY(hold_cuts(r, &held, err));
+    held.search.max_evaluations = c->search.max_evaluations > 0
+                                      ? c->search.max_evaluations - r->out->evals - r->judgement
+                                      : 0;
+    if (any_feasible(r)) {
+        held.search.starts =
+            r->out->starts > 0 && r->out->starts < STARTS ? r->out->starts : STARTS;
+    }
+    const mt_status rc = mt_search_designs(&r->ws, 1, r->mem, &next, &stage, &why, err);
+    mt_workspace_back(r->ws, c);
+    MT_TRY(rc);
+    mt_steps_append(&r->out->steps, &next.steps, r->out->evals, 0, r->round);
+    r->out->evals += next.evals;
+    r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
+    if (next.n_solutions == 0 || next.compromise || stage != *r->stage) {
+        return MT_OK;
+    }
+    *found = true;
+    return join(r, &next, err);
 }
 
 /* Those that do not keep their limits between the positions are none where others do; where
@@ -206,9 +323,13 @@ static mt_status sort_out(rounds *r, mt_err *err)
     }
     out->compromise = n == 0;
     out->n_solutions = n > 0 ? n : out->n_solutions;
-    if (out->solutions[0].t != r->told) {
-        out->n_undetermined = 0;
-    }
+    const double *const best = out->solutions[0].t;
+    const directions known = best == r->first.t   ? r->first
+                             : best == r->again.t ? r->again
+                                                  : (directions){.n = 0};
+    out->n_undetermined = known.n;
+    out->undetermined = known.undetermined;
+    out->undetermined_effect = known.effect;
     if (out->n_solutions == before) {
         return MT_OK;
     }
@@ -228,29 +349,20 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out, .stage = stage};
     r.over_tolerances = mt_robust_is_sampled(r.c);
     r.over_positions = mt_search_has_positions(r.c);
-    r.judgement = r.over_positions ? 2 + mt_motion_most(r.c) : 0;
+    r.judgement =
+        (r.over_tolerances ? 1 : 0) + (r.over_positions ? 2 + mt_motion_most(r.c) : 0);
     MT_TRY(mt_search_designs(workers, n_workers, mem, out, stage, why, err));
     if (!(r.over_tolerances || r.over_positions) || out->n_solutions == 0 || out->compromise ||
         out->stop == MT_STOP_USER) {
         return MT_OK;
     }
-    bool any = true;
     bool cut = false;
-    r.told = out->solutions[0].t;
-    r.open = mt_arena_alloc(mem, (size_t)out->n_solutions, sizeof *r.open);
-    r.kept = mt_arena_alloc(mem, (size_t)out->n_solutions, sizeof *r.kept);
-    MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < out->n_solutions; i++) {
-        r.open[i] = true;
-        r.kept[i] = true;
-    }
-    mt_status rc = MT_OK;
-    for (int round = 0; round < ROUNDS && any && rc == MT_OK; round++) {
-        /* with more cuts less is feasible: what was better counts no more */
-        r.round = round + 1;
-        rc = judge_open(&r, round + 1 == ROUNDS || is_spent(&r), &any, err);
-        cut = cut || r.cuts.n > 0 || r.posed.n > 0;
-        rc = rc == MT_OK && any ? search_again(&r, err) : rc;
+    bool again = false;
+    MT_TRY(open_all(&r, err));
+    mt_status rc = go_round(&r, &cut, err);
+    if (rc == MT_OK && r.cuts.n > 0 && !is_spent(&r)) {
+        rc = start_again(&r, &again, err);
+        rc = rc == MT_OK && again ? go_round(&r, &cut, err) : rc;
     }
     mt_posed_cuts_free(&r.posed); /* no case with them is left */
     if (prices != NULL) {
