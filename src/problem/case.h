@@ -63,7 +63,8 @@ typedef struct mt_case {
     double proof_work;  /* multiplications of each proof (prove/certify.h), about; 0: none */
     /* local solves of a search where the study does not say; 0: by the number of variables */
     int starts;
-    int n_t; /* n, or n + 1 */
+    bool best_alone; /* nobody asks for other designs than the best one that is found */
+    int n_t;         /* n, or n + 1 */
     int n_aims;
     int stage; /* of aims */
     int n_views;

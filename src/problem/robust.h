@@ -147,8 +147,8 @@ double mt_robust_room(const mt_workspace *w, const mt_clear *c);
  * expressions of all limits, do over the tolerances of the design at w->x, from fresh analyses;
  * after the views have been solved there. Proven where enclosures over these tolerances show
  * every sign; else sampled: corners, points within, and for the first modes (those that goals
- * name, that bands reach, and four at least) descent from the best of them. In mem. Cost: two
- * analyses where proven, else some hundreds.
+ * name, that bands reach, and four at least) descent from the best of them, closely where they
+ * are limited. In mem. Cost: two analyses where proven, else some hundreds.
  */
 mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err);
 /* The same, where only what the rows of w's case limit is searched by descent: what it may be

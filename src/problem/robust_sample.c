@@ -27,7 +27,9 @@ enum {
     /* at a corner from which every slope leads to worse: near it there is nothing better */
     HALVINGS_AT_CORNER = 2,
     SECTIONS_AT_CORNER = 2,
-    HALVINGS_COARSE = 3 /* of numbers that nobody limits */
+    /* of numbers that nobody limits */
+    HALVINGS_COARSE = 3,
+    ROUNDS_COARSE = 1
 };
 /* A step that gains less, relatively, has arrived. */
 static const double GAIN = 1e-9;
@@ -70,6 +72,7 @@ typedef struct sampler {
     int n_free;     /* inputs whose interval is not a point */
     bool at_corner; /* the last step began at a corner from which every slope leads to worse */
     int halvings;   /* elsewhere */
+    int rounds;     /* of all kinds of moves */
     int n_spread;
     const double *spread; /* n x n_spread, the first in the middle */
     /* n x n_explored: corners about which all numbers are known already */
@@ -173,6 +176,28 @@ static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err
     return visit_between(s, 1.0, err);
 }
 
+/* Does number k change along input i, through the point that it is best at, by more than
+ * rounding? Its ends say so where its slope is nothing. */
+static mt_status changes_along(sampler *s, int k, int i, double value, bool *changes,
+                               mt_err *err)
+{
+    const mt_robust_probe *const q = s->q;
+    *changes = false;
+    for (int end = 0; end < 2; end++) {
+        memcpy(s->x, s->from, (size_t)q->n * sizeof *s->x);
+        s->x[i] = end == 0 ? q->lo[i] : q->hi[i];
+        MT_TRY(visit(s, s->x, false, err));
+        *changes = *changes || !(fabs(s->value[k] - value) <= GAIN * fabs(value));
+    }
+    return MT_OK;
+}
+
+/* The slope along input i over its interval. */
+static double across(const sampler *s, int i)
+{
+    return fabs(s->slope[i]) * (s->q->hi[i] - s->q->lo[i]);
+}
+
 /* One step from where number k is best so far. */
 static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
 {
@@ -190,10 +215,19 @@ static mt_status step(sampler *s, int k, mt_robust_side side, mt_err *err)
     if (rc != MT_OK) {
         return mt_pass_final(rc, &own, err);
     }
+    double most = 0.0;
+    for (int i = 0; i < q->n; i++) {
+        most = fmax(most, across(s, i));
+    }
     for (int i = 0; i < q->n; i++) {
         const bool down = (s->slope[i] > 0.0) == (side == MT_LOWEST);
-        s->to[i] = s->slope[i] == 0.0 ? s->from[i] : down ? q->lo[i] : q->hi[i];
-        flat = flat || (is_free(q, i) && !(fabs(s->slope[i]) > 0.0));
+        const bool moves = across(s, i) > GAIN * most;
+        bool changes = false;
+        s->to[i] = !moves ? s->from[i] : down ? q->lo[i] : q->hi[i];
+        if (is_free(q, i) && !moves) {
+            MT_TRY(changes_along(s, k, i, before, &changes, err));
+        }
+        flat = flat || changes;
     }
     if (memcmp(s->from, s->to, (size_t)q->n * sizeof *s->from) == 0) {
         s->at_corner = !flat;
@@ -282,7 +316,7 @@ static mt_status descend(sampler *s, int k, mt_robust_side side, mt_err *err)
     const double *const best = &s->out[k].value[side];
     const double *const at = s->out[k].at[side];
     double gain = HUGE_VAL;
-    for (int turn = 0; turn < ROUNDS_MOST && gain > GAIN * fabs(*best); turn++) {
+    for (int turn = 0; turn < s->rounds && gain > GAIN * fabs(*best); turn++) {
         const double before = *best;
         MT_TRY(repeat(s, step, k, side, err));
         if (s->at_corner && is_explored(s, at)) {
@@ -323,6 +357,7 @@ mt_status mt_robust_sample(const mt_robust_probe *q, mt_arena *mem, mt_robust_ra
         const mt_robust_descent how =
             q->descents == NULL ? MT_DESCENT_FINE : q->descents[k][side];
         s.halvings = how == MT_DESCENT_FINE ? HALVINGS : HALVINGS_COARSE;
+        s.rounds = how == MT_DESCENT_FINE ? ROUNDS_MOST : ROUNDS_COARSE;
         MT_TRY(how != MT_DESCENT_NONE && MT_HAS(out[k].value[side]) ? descend(&s, k, side, err)
                                                                     : MT_OK);
     }

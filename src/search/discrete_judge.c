@@ -270,6 +270,7 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
     out->search.max_evaluations = budget > 1 ? budget - 1 : budget; /* its objectives */
     out->proof_work = fmin(out->proof_work, MT_CERTIFY_WORK);       /* there are many */
     out->hint = c->from;
+    out->best_alone = true;
     return MT_OK;
 }
 

@@ -34,7 +34,8 @@ typedef struct mt_posed_price {
 /*
  * search_tolerances.c: the same, and every design is held over its tolerances where the corners
  * of the case are samples (problem/robust_cut.h): what is worse within them becomes one more
- * corner, and the search goes on from there, within its budget. Limits of numbers are held
+ * corner, and the search goes on from there, within its budget, a part of which is kept for
+ * these judgements; what it has none left for is not feasible. Limits of numbers are held
  * likewise between the positions of a drive that their goals name. A design that misses
  * something even so is none where another one meets everything. *prices (NULL: not wanted):
  * what limits between positions cost, of all designs, in mem.

@@ -17,6 +17,8 @@
 #include "search/search.h"
 
 enum { ROUNDS = 12, STARTS = 6 };
+/* Of a budget, for judging what a search ends with: so many evaluations, or one in so many. */
+enum { JUDGED = 16, PART = 4 };
 
 mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem, mt_robust_cuts *cuts,
                           mt_nlp_solution *s, bool *again, mt_err *err)
@@ -78,6 +80,11 @@ static mt_status judge(rounds *r, int i, bool last, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
     r->open[i] = false;
+    if (r->over_tolerances && lacks(r, 1)) {
+        s->feasible = false; /* not known */
+        r->out->stop = r->out->stop == MT_STOP_DONE ? MT_STOP_MAX_EVALS : r->out->stop;
+        return MT_OK;
+    }
     if (r->over_tolerances) {
         MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
         r->out->evals++;
@@ -99,6 +106,10 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
         if (r->open[i]) {
             MT_TRY(judge(r, i, last, err));
             *any = *any || r->open[i];
+        }
+        const bool holds = r->out->solutions[i].feasible && !r->open[i];
+        if (r->c->best_alone && r->round == 1 && holds) {
+            r->out->n_solutions = i + 1; /* what the search ranked behind it is worse */
         }
     }
     return MT_OK;
@@ -342,6 +353,25 @@ static mt_status sort_out(rounds *r, mt_err *err)
     return MT_OK;
 }
 
+/* The designs, by what a budget has left beside their judgement. */
+static mt_status search_first(const rounds *r, mt_workspace *const *workers, int n_workers,
+                              mt_err *why, mt_err *err)
+{
+    const long most = r->c->search.max_evaluations;
+    const long part = most / PART < JUDGED ? most / PART : JUDGED;
+    mt_case less = *r->c;
+    less.search.max_evaluations -= r->over_tolerances ? part : 0;
+    for (int i = 0; i < n_workers; i++) {
+        mt_workspace_back(workers[i], &less);
+    }
+    const mt_status rc =
+        mt_search_designs(workers, n_workers, r->mem, r->out, r->stage, why, err);
+    for (int i = 0; i < n_workers; i++) {
+        mt_workspace_back(workers[i], r->c);
+    }
+    return rc;
+}
+
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                                     mt_nlp_result *out, int *stage,
                                     const mt_posed_price **prices, mt_err *why, mt_err *err)
@@ -351,7 +381,7 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     r.over_positions = mt_search_has_positions(r.c);
     r.judgement =
         (r.over_tolerances ? 1 : 0) + (r.over_positions ? 2 + mt_motion_most(r.c) : 0);
-    MT_TRY(mt_search_designs(workers, n_workers, mem, out, stage, why, err));
+    MT_TRY(search_first(&r, workers, n_workers, why, err));
     if (!(r.over_tolerances || r.over_positions) || out->n_solutions == 0 || out->compromise ||
         out->stop == MT_STOP_USER) {
         return MT_OK;
