@@ -131,7 +131,12 @@ static mt_status search(mt_answer *a, mt_err *err)
 
 mt_status mt_answer_search(mt_answer *a, mt_err *err)
 {
+    const bool alone = a->study->recommendations == 1 || !a->study->alternatives;
     allow_search(a);
+    if (alone && mt_answer_original_is_best(a)) {
+        MT_TRY(mt_answer_take_original(a, err));
+        return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
+    }
     MT_TRY(tell_hopeless(a, err));
     MT_TRY(search(a, err));
     return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
@@ -146,13 +151,14 @@ static bool is_cut(const mt_answer *a, mt_phase which)
 static mt_status recommend(mt_answer *a, int i, mt_err *err)
 {
     mt_result *const result = a->result;
-    const bool discrete = mt_study_is_discrete(a->study);
+    const bool discrete = mt_study_is_discrete(a->study) && !a->unsearched;
     const bool kinds = a->gaps.n_solutions > 0;
     const mt_design design = {.t = a->found.solutions[i].t,
                               .found = &a->found.solutions[i],
                               .stage = a->stage,
                               .rank = i + 1,
                               .cut = is_cut(a, MT_PHASE_SEARCH),
+                              .unsearched = a->unsearched,
                               .discrete = discrete ? &a->discrete : NULL,
                               .gaps = kinds ? &a->gaps : NULL,
                               .below = kinds ? a->gaps.solutions[i].below : NULL,
@@ -212,6 +218,11 @@ mt_status mt_answer_spread(mt_answer *a, mt_err *err)
 
 mt_status mt_answer_certify(mt_answer *a, mt_err *err)
 {
+    if (a->unsearched) {
+        return mt_describe_certificate(
+            a->result, "least_change", true,
+            "The original design meets all goals, and every other design changes more.", err);
+    }
     if (mt_study_is_discrete(a->study)) {
         return mt_describe_discrete_certificate(&a->discrete, &a->found, a->result,
                                                 &a->infeasible, err);

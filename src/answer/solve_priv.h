@@ -77,7 +77,8 @@ typedef struct mt_answer {
     mt_discrete_report discrete;        /* where there are catalogues: what the search did */
     int stage;                          /* of found */
     mt_err why;                         /* no start of the search had a value */
-    bool searched;
+    bool searched;                      /* there is something to search for */
+    bool unsearched; /* and no need: the original is the answer (solve_original.c) */
     bool infeasible; /* proven, and no compromise is asked for */
     bool impossible; /* proven that no design meets all goals */
 } mt_answer;
@@ -86,6 +87,12 @@ typedef struct mt_answer {
 #define MT_PHASE_DECLARE(id, name, makes_ready, work) mt_status work(mt_answer *a, mt_err *err);
 MT_PHASE_LIST(MT_PHASE_DECLARE)
 #undef MT_PHASE_DECLARE
+
+/* solve_original.c: does the original meet all goals, where nothing counts before the change?
+ * After the baseline. */
+bool mt_answer_original_is_best(const mt_answer *a);
+/* Then it is what is found, without a search. */
+mt_status mt_answer_take_original(mt_answer *a, mt_err *err);
 
 /* Result.found of result.gaps. */
 mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err);

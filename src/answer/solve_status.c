@@ -325,8 +325,13 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
     if (best->feasible && mt_study_is_fit(a->study)) {
         return fit_text(a, best, mem);
     }
+    if (a->unsearched) {
+        return "Solved: the original design meets all goals; nothing has to change.";
+    }
     const char *const doubt =
-        mt_describe_is_optimum(best)
+        mt_answer_original_is_best(a)
+            ? " The original design meets all goals; nothing has to change."
+        : mt_describe_is_optimum(best)
             ? ""
             : mt_arena_printf(
                   mem, " The best is not shown to be a local optimum (KKT residual %.2g).",

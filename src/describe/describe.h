@@ -22,6 +22,7 @@ typedef struct mt_design {
     /* the search was interrupted: what it knew of the design is not used, and a better one may
      * be near */
     bool cut;
+    bool unsearched; /* the original design, which meets all goals: the least change there is */
     const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
     const struct mt_gap_result *gaps;          /* NULL: no gap assignments were searched */
     const int *below;                          /* its assignment; NULL likewise */

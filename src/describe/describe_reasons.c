@@ -428,6 +428,11 @@ static void say_rank(mt_sentences *s, const mt_nlp_result *search)
 {
     const char *const first = aim_text(&s->p->aims[0]);
     mt_say_of(s, "rank", NULL);
+    if (s->design->unsearched) {
+        mt_say(s, "The original design meets all goals, so no design changes less. Others were "
+                  "not searched, as the study asks for none.");
+        return;
+    }
     if (s->design->discrete != NULL) {
         mt_arena *const mem = &s->result->mem;
         const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);

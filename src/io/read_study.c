@@ -363,6 +363,7 @@ static void read_root(mt_study_reader *s)
     study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);
     study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
                                              MAX_RECOMMENDATIONS, study->recommendations);
+    study->alternatives = o.found[STUDY_RECOMMENDATIONS] != MT_NO_ADDR;
     read_model(s, o.found[STUDY_MODEL]);
     mt_read_units(&s->r, o.found[STUDY_UNITS], study->units);
     note_settings(s);

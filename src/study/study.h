@@ -323,6 +323,7 @@ typedef struct mt_study {
     MT_LIST_OF(mt_study_place, places);
     bool examined;       /* doubts have been told already: a point of a trade study */
     int recommendations; /* how many to report; default 5 */
+    bool alternatives;   /* that is said: others are wanted where the original is the best */
     mt_addr recommendations_addr;
     mt_search search;
     mt_spread spread;

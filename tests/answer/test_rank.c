@@ -135,7 +135,8 @@ static void rank__catalogues_may_hold_no_spring(mt_test *t)
         mt_test_row(t, "%s", rows[i].goal);
         (void)snprintf(
             members, sizeof members,
-            "'variables': [{'parameter': 'k1', 'catalogue': [0, 100, 200]}], 'goals': [%s]",
+            "'variables': [{'parameter': 'k1', 'catalogue': [0, 100, 200]}], 'goals': [%s],"
+            "'recommendations': 3",
             rows[i].goal);
         if (study_solve(t, ADDED, members, &c)) {
             CHECK_INT(t, c.result->status == MT_RESULT_SOLVED, rows[i].solutions > 0);

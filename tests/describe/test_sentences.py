@@ -258,6 +258,10 @@ def single(_, __, result):
     return len(result["recommendations"]) == 1 and result["run"]["distinct_designs"] <= 1
 
 
+def least_of_all(_, rec, result):
+    return rec["feasible"] and stays(_, rec, result) and rec["change"] == 0 and result["run"]["spent"]["search"] == 0
+
+
 def none_meets(_, rec, result):
     return not any(r["feasible"] for r in result["recommendations"]) and not rec["feasible"]
 
@@ -331,6 +335,7 @@ CHECKS = {
     "%s mode %d (%.6g Hz) keeps just the margin asked for, %.3g %% %s band %s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s mode %d (%.6g Hz) keeps only %.3g %% %s band %s, of %.3g %% asked.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
     "%s mode %d (%.6g Hz) keeps %.3g %% %s band %s%s.": lambda m, rec, _: clearance(m, rec, m[5], m[4]),
+    "The original design meets all goals, so no design changes less. Others were not searched, as the study asks for none.": least_of_all,
     "%s would %s %s.": saves, "%s would bring %s mode %d nearer to its goal by %.3g Hz.": buys,
 }
 

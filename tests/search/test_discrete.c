@@ -395,7 +395,8 @@ static void discrete__how_many_combinations_meet_the_goals_is_told(mt_test *t)
         study_case c;
         (void)snprintf(members, sizeof members,
                        "'variables': [{'parameter': 'k1', 'catalogue': [1, 2, 3]}],"
-                       "'goals': [{'type': 'limit', 'expression': 'k1', 'at_least': %s}]",
+                       "'goals': [{'type': 'limit', 'expression': 'k1', 'at_least': %s}],"
+                       "'recommendations': 3",
                        limits[i]);
         mt_test_row(t, "at least %s", limits[i]);
         if (study_solve(t, STUDY_TWO_MASSES("'k1': 2, 'k2': 1, 'm': 1", ""), members, &c)) {
