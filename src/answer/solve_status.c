@@ -183,14 +183,18 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
     const int n = a->found.n_solutions;
     if (a->gaps.n_solutions > 0) {
         const char *const left = mt_describe_gaps_left(&a->gaps, mem);
-        return left == NULL
-                   ? NULL
-                   : mt_arena_printf(
-                         mem,
-                         "Solved: %d of %.0f mode placement%s keep%s clear of the bands "
-                         "and meet%s all goals (%s).%s",
-                         n, a->gaps.n_possible, a->gaps.n_possible > 1.0 ? "s" : "",
-                         n == 1 ? "s" : "", n == 1 ? "s" : "", left, doubt);
+        return left == NULL ? NULL
+                            : mt_arena_printf(
+                                  mem,
+                                  "Solved: %d of %.0f mode placement%s %s clear of the bands "
+                                  "and meet%s all goals (%s).%s",
+                                  n, a->gaps.n_possible, a->gaps.n_possible > 1.0 ? "s" : "",
+                                  mt_describe_gaps_unsearched(&a->gaps)
+                                      ? n == 1 ? "was found to keep" : "were found to keep"
+                                  : n == 1 ? "keeps"
+                                           : "keep",
+                                  n == 1 && !mt_describe_gaps_unsearched(&a->gaps) ? "s" : "",
+                                  left, doubt);
     }
     bool continuum = false;
     for (int i = 0; i < n; i++) {

@@ -39,6 +39,63 @@ mt_status mt_describe_certificate(mt_result *result, const char *kind, bool prov
     return MT_OK;
 }
 
+bool mt_describe_gaps_unsearched(const mt_gap_result *gaps)
+{
+    return gaps->ended && (!gaps->proven || gaps->n_searched < gaps->n_candidates);
+}
+
+/* A least change to four digits, never above what is proven. */
+static double shown_least(double rest)
+{
+    static const double DIGITS = 1e3;
+    const double change = sqrt(2.0 * rest);
+    const double unit = change > 0.0 ? pow(10.0, floor(log10(change))) / DIGITS : 1.0;
+    return floor(change / unit) * unit;
+}
+
+/* The search ended when no other placement could be among the designs that are asked for. */
+static mt_status describe_best_first(const mt_gap_result *gaps, mt_result *result, mt_err *err)
+{
+#define WHICH "which of the others can be met is not known"
+    const int open = gaps->n_searched - gaps->n_feasible;
+    const bool unknown = isfinite(gaps->rest);
+    if (gaps->proven) {
+        MT_TRY(state(result, "gap_assignments", true, err,
+                     "Of %.0f mode placements %d can be met within the bounds; all others are "
+                     "proven infeasible (branch and bound, %ld boxes).",
+                     gaps->n_possible, gaps->n_candidates, gaps->boxes));
+    }
+    if (unknown) {
+        MT_TRY(state(result, "least_change", true, err,
+                     "%d of %.0f mode placements were searched, in the order of the least "
+                     "change that each can do with by bounds of its stiffnesses and masses. "
+                     "Every design in one of the others changes by %.4g or more%s.",
+                     gaps->n_searched, gaps->n_possible, shown_least(gaps->rest),
+                     gaps->bounded ? ""
+                                   : ", which leaves open whether one is better than those "
+                                     "recommended"));
+    } else if ((double)gaps->n_searched < gaps->n_possible && !gaps->proven) {
+        MT_TRY(state(result, "gap_assignments", true, err,
+                     "%d of %.0f mode placements were searched; by bounds of the stiffnesses "
+                     "and masses the others have no design within the bounds.",
+                     gaps->n_searched, gaps->n_possible));
+    }
+    if (!gaps->proven && open > 0) {
+        MT_TRY(state(result, "gap_assignments", false, err,
+                     "In %d of the %d mode placements that were searched no design was found "
+                     "that meets all goals%s (no proof: %s).",
+                     open, gaps->n_searched, unknown ? ", and " WHICH : "", gaps->reason));
+    } else if (!gaps->proven && unknown) {
+        MT_TRY(state(result, "gap_assignments", false, err,
+                     "All that were searched have a design, and " WHICH " (no proof: %s).",
+                     gaps->reason));
+    }
+    return state(result, "optimality", false, err,
+                 "Each design is the best of its mode placement: %d starts found none better.",
+                 gaps->starts);
+#undef WHICH
+}
+
 static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, bool infeasible,
                                mt_err *err)
 {
@@ -48,6 +105,9 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
             "No design within the bounds keeps clear of the bands and meets the other limits: "
             "all %.0f mode placements are proven infeasible (branch and bound, %ld boxes).",
             gaps->n_possible, gaps->boxes);
+    }
+    if (mt_describe_gaps_unsearched(gaps)) {
+        return describe_best_first(gaps, result, err);
     }
     if (gaps->proven) {
         const int open = gaps->n_candidates - gaps->n_feasible;
@@ -78,8 +138,12 @@ static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, boo
 
 const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem)
 {
-    const int open = gaps->n_candidates - gaps->n_feasible;
-    if (!gaps->proven) {
+    const int open = (gaps->ended ? gaps->n_searched : gaps->n_candidates) - gaps->n_feasible;
+    const bool excluded = gaps->proven || (gaps->ended && !isfinite(gaps->rest));
+    if (gaps->ended && gaps->bounded && isfinite(gaps->rest)) {
+        return "those that were not searched change more, which is proven";
+    }
+    if (!excluded || (gaps->ended && !gaps->bounded)) {
         return "sampled, not proven";
     }
     return open == 0

@@ -10,6 +10,9 @@ mt_status mt_describe_certificate(mt_result *result, const char *kind, bool prov
 /* What the answer may claim as proven. infeasible: it is a proof that no design exists. */
 mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
                                       bool *infeasible, mt_err *err);
+/* The search ended before all assignments that may have a design were searched: those that are
+ * left change too much. */
+bool mt_describe_gaps_unsearched(const mt_gap_result *gaps);
 /* What is known of the assignments that no solution has, to stand in brackets; NULL: no
  * memory. */
 const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem);

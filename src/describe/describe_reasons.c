@@ -365,7 +365,13 @@ static void say_kind_rank(mt_sentences *s, const char *first)
 {
     const mt_gap_result *const g = s->design->gaps;
     const char *const sure = mt_describe_gaps_left(g, &s->result->mem);
-    if (g->n_solutions == 1) {
+    if (mt_describe_gaps_unsearched(g)) {
+        mt_say(s,
+               "It ranks %d of the %d mode placements that were found to meet all goals, of "
+               "%.0f in all, by %s %s (%s).",
+               s->rec->rank, g->n_solutions, g->n_possible, best_of(&s->p->aims[0]), first,
+               sure);
+    } else if (g->n_solutions == 1) {
         mt_say(s, "It is the only one of %.0f mode placements that meets all goals (%s).",
                g->n_possible, sure);
     } else {

@@ -291,7 +291,8 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     rank(e, all);
     drop_useless(all);
     out->compromise = all->count > 0 && !mt_nlp_feasible(all->at[0].p);
-    if (all->count > 0 && all->at[0].p != all->directed &&
+    const bool unused = out->compromise && e->opt.no_compromise;
+    if (all->count > 0 && !unused && all->at[0].p != all->directed &&
         !mt_nlp_undetermined(e, all->at[0].p, mem, out)) {
         return;
     }
@@ -300,7 +301,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     }
     rank(e, all);
     merge(e, all);
-    if (out->compromise && e->n_free > 0) {
+    if (out->compromise && !unused && e->n_free > 0) {
         const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
         for (int i = 0; i < all->count && !e->ended; i++) {
             settle(e, all->at[i].p);

@@ -35,6 +35,8 @@ static const double GAIN = 1e-5;
 /* Violation (in tolerances) below which an end is worth a Newton polish before a
  * restoration. */
 static const double NEARLY = 1e4;
+/* ... before anything more, where a compromise is of no use. */
+static const double WORTH = 100.0;
 
 bool mt_nlp_nearly_feasible(const mt_nlp_point *p)
 {
@@ -58,12 +60,20 @@ const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s)
                : s->p;
 }
 
+/* Where compromises are of no use, an end that is far from feasible is. */
+static bool is_given_up(const mt_nlp_engine *e, const mt_nlp_local *s)
+{
+    return e->opt.no_compromise && !(s->p->violation <= WORTH) &&
+           !(s->last->violation <= WORTH);
+}
+
 /* SLSQP from p, close where Newton's method has been tried; an end far from feasible is
  * restored, if it can be. */
 static void descend(mt_nlp_engine *e, bool close, mt_nlp_local *s)
 {
     mt_nlp_slsqp(e, s->n_rows, s->rows, close, s->p, s->last);
-    s->restored = !mt_nlp_feasible(s->p) && !mt_nlp_nearly_feasible(s->last);
+    s->abandoned = is_given_up(e, s);
+    s->restored = !s->abandoned && !mt_nlp_feasible(s->p) && !mt_nlp_nearly_feasible(s->last);
     if (s->restored) {
         mt_nlp_least_squares(e, MT_NLP_SQUARES, s->p);
         mt_nlp_point_copy(e, s->last, s->p);
@@ -218,9 +228,12 @@ void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s)
     mt_nlp_point *const before = mt_nlp_point_new(e, &e->scratch);
     double *const saddle = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
     const bool room = mt_nlp_has_room(e, &e->scratch);
-    for (int round = 0; room && round < ROUNDS; round++) {
+    for (int round = 0; room && !s->abandoned && round < ROUNDS; round++) {
         if (round > 0) {
             approach(e, s);
+        }
+        if (s->abandoned) {
+            break;
         }
         if (s->aim == MT_NLP_OBJECTIVE) {
             finish_minimum(e, s);

@@ -14,13 +14,14 @@ typedef struct mt_nlp_local {
     int *rows;     /* [n_rows] the equalities that are independent */
     bool begun;    /* the start has values */
     bool restored; /* SLSQP had no feasible end, and the least squares of the violations is p */
-    bool curve;    /* solutions form a curve here: no isolated root */
-    bool polished; /* nothing is left to be done */
-    double *from;  /* [n] where the approach ended */
-    double kkt;    /* relative KKT residual there */
-    int start;     /* which start found it first */
-    int hits;      /* how many starts ended here */
-    bool merged;   /* another root was merged into it */
+    bool abandoned; /* it is far from feasible, and compromises are of no use */
+    bool curve;     /* solutions form a curve here: no isolated root */
+    bool polished;  /* nothing is left to be done */
+    double *from;   /* [n] where the approach ended */
+    double kkt;     /* relative KKT residual there */
+    int start;      /* which start found it first */
+    int hits;       /* how many starts ended here */
+    bool merged;    /* another root was merged into it */
 } mt_nlp_local;
 
 /* A search with its room in mem. */

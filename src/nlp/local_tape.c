@@ -42,6 +42,7 @@ static void tape_state(const mt_nlp_engine *e, mt_nlp_local *s, mt_tape *tape)
         mt_tape_int(tape, &s->rows[i], 0, e->nlp->n_eq - 1);
     }
     mt_tape_flag(tape, &s->restored);
+    mt_tape_flag(tape, &s->abandoned);
     mt_tape_flag(tape, &s->curve);
     mt_tape_flag(tape, &s->polished);
     mt_tape_numbers(tape, (size_t)e->n, s->from);
@@ -75,6 +76,7 @@ static bool read(mt_nlp_engine *e, mt_nlp_local *s, mt_tape *tape)
     s->aim = got.aim;
     s->n_rows = got.n_rows;
     s->restored = got.restored;
+    s->abandoned = got.abandoned;
     s->curve = got.curve;
     s->polished = got.polished;
     s->kkt = got.kkt;

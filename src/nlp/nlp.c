@@ -223,7 +223,7 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n, mt_steps *step
     }
     job.t = t + (ptrdiff_t)all->starts * e->n;
     run_job(e, &job, BEGIN, before);
-    for (int k = 0; k < n && all->starts == 0; k++) {
+    for (int k = 0; k < n && all->starts == e->opt.skip; k++) {
         e->df_scale = fmax(e->df_scale, first[k].begun ? mt_norm2(e->n, first[k].p->df) : 0.0);
     }
     if (e->fatal == MT_OK && e->stop != MT_STOP_USER) {
@@ -291,7 +291,9 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_
  */
 static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_nlp_result *out)
 {
-    const int first = e->n_free > 0 ? e->opt.starts : 1;
+    e->opt.skip = e->n_free > 0 && e->opt.skip < e->opt.starts ? e->opt.skip : 0;
+    const int first = e->n_free > 0 ? e->opt.starts - e->opt.skip : 1;
+    all->starts = e->opt.skip;
     bool more = add_starts(e, all, first, steps) && e->open_starts;
     int before = 1;
     while (more && e->stop == MT_STOP_DONE && all->starts < ROOT_ROUNDS * first) {
@@ -304,7 +306,7 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_n
         before = roots;
         more = add_starts(e, all, all->starts < left ? all->starts : left, steps);
     }
-    out->starts = all->starts;
+    out->starts = all->starts - e->opt.skip;
 }
 
 mt_nlp_options mt_nlp_options_default(void)

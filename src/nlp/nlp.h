@@ -75,11 +75,15 @@ typedef struct mt_nlp_options {
      * + 4 n, at most 64, and where roots are sought up to twelve times as many, until every
      * root was met twice */
     int starts;
+    int skip; /* so many of them, the first ones, have been made before: fewer than starts */
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
     /* f is the change: it does not count when undetermined directions are sought (without
      * residuals) */
     bool least_change;
+    /* ends that are infeasible are of no use: those far from feasible are given up, instead of
+     * being brought to the least sum of squares */
+    bool no_compromise;
 } mt_nlp_options;
 mt_nlp_options mt_nlp_options_default(void);
 

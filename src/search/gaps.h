@@ -42,7 +42,14 @@ typedef struct mt_gap_result {
     /* assignments that may have a design; 0: proven that none has, the solutions are the
      * nearest misses */
     int n_candidates;
-    int n_feasible;    /* of them with a design that meets all goals */
+    int n_searched; /* of all */
+    int n_feasible; /* of them with a design that meets all goals */
+    /* candidates came best first, until the designs that are asked for were known. No design
+     * of one that was not searched has a first objective below `rest`, which is proven
+     * (HUGE_VAL: none has a design), and, where it is `bounded`, below those that are listed */
+    bool ended;
+    double rest;
+    bool bounded;
     double n_possible; /* all monotone assignments there are */
     /* a configuration is a driven position: what lies between the positions is not searched */
     bool driven;
@@ -111,13 +118,16 @@ enum { MT_GAP_SAMPLES_NEAR = 512 };
 typedef struct mt_gap_candidates {
     int n;
     int *below;
-    double *at;   /* n rows of p->n: a design t to start from, NaN: none; NULL: none at all */
+    double *at; /* n rows of p->n: a design t to start from, NaN: none; NULL: none at all */
+    /* [n] no design with it has less of the first objective (gaps_bounds.h); NULL: not known */
+    double *least;
     int n_proven; /* the first ones: a design that has them is known */
     double possible;
     bool proven; /* all assignments that are not listed are proven infeasible */
     bool all;    /* likewise, but which of those listed can be met is open */
     const char *reason;
     long boxes;
+    double undecided; /* share of the bounds that the proof left open */
     long evals;
 } mt_gap_candidates;
 /* Monotone assignments of m bands to n modes, C(n + m, m), over all configurations; positions
@@ -130,11 +140,19 @@ mt_status mt_gap_assignment(mt_workspace *w, const double *t, int *below, double
 /*
  * What to search before a proof: where a little of its work settles the question, that is `all`
  * (proven) and there is no first; else `first` are the assignments that it met, or the one that
- * a few samples come nearest to. proof: of w's case.
+ * a few samples come nearest to. A quarter of that work where candidates come best_first.
+ * proof: of w's case.
  */
-mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *mem,
-                                  mt_gap_candidates *all, mt_gap_candidates *first,
-                                  mt_err *err);
+mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, bool best_first,
+                                  mt_arena *mem, mt_gap_candidates *all,
+                                  mt_gap_candidates *first, mt_err *err);
+/* When the designs that are asked for are known: what a little more work settles, where that
+ * promises to. */
+mt_status mt_gap_candidates_settle(mt_workspace *w, mt_proof *proof, mt_arena *mem,
+                                   mt_gap_candidates *all, mt_err *err);
+/* The designs that `met` has for rows of c become those that their searches start from. */
+void mt_gap_candidates_start(const mt_gap_candidates *met, const mt_problem *p,
+                             mt_gap_candidates *c);
 /* With all the work that the case allows; spent: evaluations so far. */
 mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, mt_arena *mem,
                                  mt_gap_candidates *out, mt_err *err);

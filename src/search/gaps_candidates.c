@@ -30,10 +30,13 @@ enum {
     EVALUATIONS_LEAST = 30 /* of a candidate's search, or it is not worth one */
 };
 /* Of a proof before the first search: tens of milliseconds. Most are settled by then, and what
- * is hopeless is told at once. */
+ * is hopeless is told at once. A quarter of it, where candidates come best first. */
 static const double FIRST_WORK = 2e8;
+static const double BEST_FIRST_WORK = 5e7;
 /* Of a smaller budget, so that the proof after it has more. */
 static const double FIRST_SHARE = 0.04;
+/* The rest of it is spent later, where no more than this share of the designs is undecided. */
+static const double NEARLY_SETTLED = 0.5;
 
 /* Of what a proof has a design for: less than of any sample. */
 static const double KNOWN = -HUGE_VAL;
@@ -292,6 +295,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     out->n_proven = found->n_found;
     out->proven = found->proven;
     out->boxes = found->boxes;
+    out->undecided = found->undecided;
     out->all = !found->more && !found->stopped;
     out->reason =
         found->proven
@@ -314,13 +318,15 @@ static mt_status prove(const mt_workspace *w, mt_proof *proof, double work, mt_a
 
 static const mt_slices no_slices = {.n = 0};
 
-mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *mem,
-                                  mt_gap_candidates *all, mt_gap_candidates *first, mt_err *err)
+mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, bool best_first,
+                                  mt_arena *mem, mt_gap_candidates *all,
+                                  mt_gap_candidates *first, mt_err *err)
 {
     *all = (mt_gap_candidates){.possible = mt_gap_count_possible(w->p)};
     *first = (mt_gap_candidates){.possible = all->possible};
     if (proof->possible) {
-        const double most = fmin(FIRST_WORK, FIRST_SHARE * w->c->proof_work);
+        const double first_work = best_first ? BEST_FIRST_WORK : FIRST_WORK;
+        const double most = fmin(first_work, FIRST_SHARE * w->c->proof_work);
         MT_TRY(prove(w, proof, most, mem, all, err));
     }
     if (all->proven) {
@@ -329,6 +335,27 @@ mt_status mt_gap_candidates_first(mt_workspace *w, mt_proof *proof, mt_arena *me
     *first = *all;
     first->n = all->n_proven;
     return first->n > 0 ? MT_OK : sample(w, SAMPLES_FIRST, 1, 0, &no_slices, mem, first, err);
+}
+
+mt_status mt_gap_candidates_settle(mt_workspace *w, mt_proof *proof, mt_arena *mem,
+                                   mt_gap_candidates *all, mt_err *err)
+{
+    return all->undecided <= NEARLY_SETTLED
+               ? prove(w, proof, FIRST_WORK - BEST_FIRST_WORK, mem, all, err)
+               : MT_OK;
+}
+
+void mt_gap_candidates_start(const mt_gap_candidates *met, const mt_problem *p,
+                             mt_gap_candidates *c)
+{
+    for (int k = 0; k < met->n && met->at != NULL; k++) {
+        const int *const own = met->below + ((ptrdiff_t)k * p->n_bands);
+        const int at = mt_certify_place(c->below, c->n, own, p->n_bands);
+        if (at < c->n) {
+            memcpy(c->at + ((ptrdiff_t)at * p->n), met->at + ((ptrdiff_t)k * p->n),
+                   (size_t)p->n * sizeof *c->at);
+        }
+    }
 }
 
 mt_status mt_gap_candidates_find(mt_workspace *w, mt_proof *proof, long spent, mt_arena *mem,

@@ -121,7 +121,7 @@ class Journal(CliTest):
             (self.folder / "killed" / name / "result.json").unlink()
 
     def test_design_is_safe_before_a_long_proof(self):
-        asked = {"variables": variables(8), "goals": [AVOID], "search": {"starts": 2}}
+        asked = {"variables": variables(8), "goals": [AVOID], "search": {"starts": 2}, "recommendations": 1000}  # more than there are
         self.write("studies/long.json", json.dumps({"format": "modetune-study/1", "model": "../problems/chain.json", **asked}))
         proof = ("--proof", "1")  # long enough to be killed in
         early = self.folder / "killed" / "long" / "result.json"

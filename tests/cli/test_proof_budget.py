@@ -47,8 +47,8 @@ class ProofBudget(CliTest):
         return json.loads((self.folder / folder / kind / "result.json").read_text(encoding="utf-8"))
 
     def claims(self, result):
-        """What is proven, without how."""
-        return {(c["kind"], BY_BOXES.sub("", c["text"])) for c in result["certificates"] or () if c["proven"]}
+        """What is proven, without how; what mode placements change at least (search/test_best_first) depends on how many were searched."""
+        return {(c["kind"], BY_BOXES.sub("", c["text"])) for c in result["certificates"] or () if c["proven"] and c["kind"] != "least_change"}
 
     def boxes_within(self, few, all_of):
         """Tolerances that are proven with less work are no larger, where the designs are the same ones."""

@@ -30,6 +30,7 @@ ELSEWHERE = {
     "The search was interrupted: better designs may exist.": "cli/test_interrupts.py",
     "It is the only one of %.0f mode placements that meets all goals (%s).": "hunt/check_claims.py searches all assignments",
     "It ranks %d of the %d mode placements that meet all goals, of %.0f in all, by %s %s (%s).": "hunt/check_claims.py searches all assignments",
+    "It ranks %d of the %d mode placements that were found to meet all goals, of %.0f in all, by %s %s (%s).": "search/test_best_first.py searches all",
     "It is not shown to be a local optimum: its KKT residual is %.2g, where an optimum has 0; a design near it may be better.": "hunt/check_claims.py",
     "Relaxing goal %s (%s) by %s would %s %s.": "hunt/check_words.py solves again",
     "A target %s %s in goal %s (%s) would %s %s.": "describe/test_prices.py",

@@ -46,7 +46,8 @@ static bool open_row(mt_test *t, mt_random *r, row *s)
                    "{'parameter': 'x4', 'lower': -0.65, 'upper': 0.65},"
                    "{'parameter': 'x5', 'lower': -0.65, 'upper': 0.65},"
                    "{'parameter': 'x6', 'lower': -0.65, 'upper': 0.65}],"
-                   "'goals': [{'type': 'avoid', 'bands_hz': [%s]}], 'search': {'starts': 3}",
+                   "'goals': [{'type': 'avoid', 'bands_hz': [%s]}], 'search': {'starts': 3},"
+                   "'recommendations': 1000",
                    bands);
     good = CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) &&
            study_load(t, "six_masses", members, &s->c) &&

@@ -16,6 +16,7 @@ MEANT = {
         "src/search/relax_moves.c",  # the nearest design
         "src/search/search_nearest.c",  # of optima that are as good
         "src/search/search.c", "src/search/gaps.c",  # what no goal settles stays at the original
+        "src/search/gaps_bounds.c",  # how far a box is from the original
         "src/search/discrete.c",  # combinations come in the order of their change
         "src/answer/solve_original.c",  # the original itself
         "src/answer/trade_front.c",  # results tell the change of every design
