@@ -135,7 +135,7 @@ void mt_tape_text(mt_tape *t, const char **text, mt_arena *mem)
         }
     }
     if (t->reads) {
-        t->failed = t->failed || (own != NULL && strlen(own) + 1 != (size_t)n);
+        t->failed = t->failed || (own != NULL && memchr(own, '\0', (size_t)n) != own + n - 1);
         *text = t->failed ? NULL : own;
     }
 }

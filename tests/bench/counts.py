@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""
+What whole runs cost, in instructions: a count that repeats where times do not. Each run is counted by valgrind with one thread and the
+plainest kernels, as a multiple of a small program that is counted beside it (`modetune --version`, which is the start of a process).
+    counts.py            fails where one is above what counts.csv says by a tenth; says so where one is below by as much
+    counts.py --update   writes what it finds; what has grown by a tenth since `first` needs a line in CHANGELOG.md under Unreleased
+                         that has the name of the run in backquotes and the word "instructions", or this fails
+SOURCE_DIR and MODETUNE as in the tests.
+"""
+import argparse
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+SOURCE = Path(os.environ["SOURCE_DIR"])
+PROGRAM = os.environ["MODETUNE"]
+sys.path.insert(0, str(SOURCE / "tests/support"))
+import large  # noqa: E402
+
+TABLE = SOURCE / "tests/bench/counts.csv"
+MOST = 1e9  # of one run: what is longer belongs to bench.py
+GROWTH = 1.1
+PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-AVX512F,-AVX512VL,-ERMS,-FSRM",
+         "LC_ALL": "C"}
+STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
+# name: command. {sag} is a link of 300 elements that its weight bends, {out} a folder for results.
+RUNS = {
+    "start": ("--version",),
+    "check": ("check", "studies/inceptor_rotor.json"),
+    "info": ("info", "problems/stick.json"),
+    "modes": ("modes", "problems/inceptor.json"),
+    "modes_driven": ("modes", "problems/stick.json"),
+    "modes_settled": ("modes", "{sag}", "--count", "4"),
+    "sensitivity": ("sensitivity", "problems/inceptor.json"),
+    "response": ("response", "problems/den_hartog.json", "--input", "machine.x", "--from", "1", "--to", "20", "--points", "200"),
+    "inceptor_catalogue": (*STUDY, "studies/inceptor_catalogue.json"),
+    "inceptor_catalogue_page": (*STUDY[:4], "--output", "{out}", "studies/inceptor_catalogue.json"),
+    "inceptor_tuning_1": (*STUDY, "studies/inceptor_tuning_1.json"),
+    "six_masses_bands": (*STUDY, "studies/six_masses_bands.json"),
+}
+
+
+def count(name, folder):
+    places = {"out": str(folder / name), "sag": str(folder / "sag.json")}
+    command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
+    done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
+                          env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
+    found = re.search(r"Collected : (\d+)", done.stderr)
+    if done.returncode not in (0, 1) or found is None:
+        raise SystemExit(f"{name}: {' '.join(command)} ended with {done.returncode}:\n{done.stderr[-2000:]}")
+    return int(found[1])
+
+
+def measure():
+    with tempfile.TemporaryDirectory() as top:
+        folder = Path(top)
+        (folder / "sag.json").write_text(json.dumps({**large.link(300), "gravity_m_per_s2": [0, -9.81]}), encoding="utf-8")
+        with ThreadPoolExecutor(os.cpu_count()) as workers:
+            return dict(zip(RUNS, workers.map(lambda name: count(name, folder), RUNS)))
+
+
+def explained(name):
+    """Does CHANGELOG say why this run takes more?"""
+    text = (SOURCE / "CHANGELOG.md").read_text(encoding="utf-8")
+    unreleased = text.split("## [Unreleased]", 1)[1].split("\n## [", 1)[0]
+    return any(f"`{name}`" in item and "instructions" in item for item in re.split(r"\n(?=- )", unreleased))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--update", action="store_true")
+    args = parser.parse_args()
+    kept = {row["run"]: row for row in csv.DictReader(TABLE.open(encoding="utf-8"))} if TABLE.exists() else {}
+    found = measure()
+    wrong, rows = [], []
+    print(f"{'run':30}{'instructions':>16}{'starts':>10}{'kept':>10}{'first':>10}")
+    for name, n in found.items():
+        ratio = n / found["start"]
+        old = kept.get(name, {})
+        first = float(old.get("first", ratio))
+        before = float(old.get("starts", "nan"))
+        print(f"{name:30}{n:16d}{ratio:10.2f}{before:10.2f}{first:10.2f}")
+        rows.append({"run": name, "starts": f"{ratio:.3g}", "first": f"{first:.3g}"})
+        if n > MOST:
+            wrong.append(f"{name}: {n} instructions are more than a count is for ({MOST:.0e})")
+        if not args.update and not ratio <= GROWTH * before:
+            wrong.append(f"{name}: {ratio:.3g} starts instead of {before:.3g}: find out why, or counts.py --update")
+        elif ratio < before / GROWTH:
+            print(f"{name}: less by more than a tenth (counts.py --update keeps it)")
+        if not ratio <= GROWTH * first and not explained(name):
+            wrong.append(f"{name}: {ratio:.3g} starts, {first:.3g} at first, and CHANGELOG does not say why `{name}` takes more instructions")
+    if set(kept) - set(found):
+        wrong.append(f"counts.csv has runs that there are not: {sorted(set(kept) - set(found))}")
+    if args.update:
+        with TABLE.open("w", encoding="utf-8", newline="") as out:
+            writer = csv.DictWriter(out, ["run", "starts", "first"], lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+    print("\n".join(wrong))
+    print(f"{len(found)} runs, {len(wrong)} of them have grown")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
