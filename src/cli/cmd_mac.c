@@ -277,6 +277,10 @@ static mt_status write_json(comparison *c, mt_json_writer *w, mt_err *err)
     }
     mt_json_close(w);
     MT_TRY(json_subspaces(c, w, err));
+    mt_json_open_flat(w, "vibration_modes", '[');
+    mt_json_put_integer(w, NULL, mt_modal_vibrations(&c->a.a->modes));
+    mt_json_put_integer(w, NULL, mt_modal_vibrations(&c->b.a->modes));
+    mt_json_close(w);
     mt_json_open_flat(w, "channels", '[');
     for (int k = 0; k < c->ns; k++) {
         mt_json_put_string(w, NULL, c->a.a->sys->channels[c->a.channels[k]].name);
@@ -316,10 +320,23 @@ static void text_matrix(const comparison *c, mt_text *out)
     mt_table_free(&t);
 }
 
+/* Which of its modes take part. */
+static void write_side(const side *x, mt_text *out)
+{
+    const int all = mt_modal_vibrations(&x->a->modes);
+    mt_text_addf(out, "%s: %s, %s, ", x->letter, x->s.path, name_of(x));
+    if (x->n < all) {
+        mt_text_addf(out, "the lowest %d of %d vibration modes\n", x->n, all);
+    } else {
+        mt_text_addf(out, "all %d vibration modes\n", x->n);
+    }
+}
+
 static mt_status write_text(comparison *c, mt_text *out, mt_err *err)
 {
-    mt_text_addf(out, "A: %s, %s\nB: %s, %s\n%d common sensor channels\n\n", c->a.s.path,
-                 name_of(&c->a), c->b.s.path, name_of(&c->b), c->ns);
+    write_side(&c->a, out);
+    write_side(&c->b, out);
+    mt_text_addf(out, "%d common sensor channels\n\n", c->ns);
     mt_table t = pairs_table(c);
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);

@@ -185,6 +185,12 @@ class Mac(CliTest):
                       got["notes"])
         self.assertIn("modes 1 and 2 of A look the same at the sensors (MAC 1.0000)", got["notes"])
         self.assertEqual(len(self.json_of("mac", f"{one}:held", f"{one}:held")["pairs"]), 1)
+        self.assertEqual(got["vibration_modes"], [2, 2])
+        text = self.expect(0, "mac", f"{one}:held", f"{self.model}:held").stdout
+        self.assertEqual(text.splitlines()[:2], [f"A: {one}, held, the lowest 1 of 2 vibration modes",
+                                                 f"B: {self.model}, held, the lowest 1 of 2 vibration modes"])
+        text = self.expect(0, "mac", f"{one}:held", f"{self.model}:held", "--count", "all").stdout
+        self.assertEqual(text.splitlines()[0], f"A: {one}, held, all 2 vibration modes")
 
     def test_no_common_sensor_is_an_error(self):
         path = self.write("problems/repeated.json", REPEATED)
