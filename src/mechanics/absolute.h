@@ -44,9 +44,9 @@ mt_status mt_absolute_new(const mt_system *sys, const double *inputs, const mt_s
 mt_status mt_absolute_stand(const mt_system *sys, const mt_state *settled, const double *inputs,
                             mt_data *data, mt_placement *at, mt_arena *mem, mt_err *err);
 
-/* Do these bodies (n, or MT_GROUND) move together? */
+/* Whether these bodies (n, or MT_GROUND) move together. */
 bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
-/* Does constraint i of the system hold bodies that do? Then it is none of the rows of a. */
+/* Whether constraint i of the system holds bodies that do: then it is none of the rows of a. */
 bool mt_absolute_holds_already(const mt_absolute *o, int i);
 /* phi[nq] := x[n] by states. */
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);

@@ -4,8 +4,8 @@
 
 #include "mechanics/linear.h"
 
-/* Does the spring that a term of K comes from couple its measures (a bushing's matrix), and
- * does any of its terms depend on an input? */
+/* Whether the spring that a term of K comes from couples its measures (a bushing's matrix), and
+ * whether any of its terms depends on an input. */
 typedef enum mt_coupling {
     MT_COUPLING_NONE,
     MT_COUPLING_WHOLE,

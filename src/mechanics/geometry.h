@@ -16,8 +16,8 @@ typedef struct mt_geometry {
     mt_arena mem;
     int users;              /* systems that stand on it */
     const mt_linear *maker; /* whose factors may point into its system */
-    bool made;              /* is all of this there, of the inputs `at`? */
-    bool sloped;            /* and the derivatives? */
+    bool made;              /* all of this is there, of the inputs `at` */
+    bool sloped;            /* and the derivatives */
     mt_state position;
     mt_elimination e; /* without z, which is of the reduction */
     double *a;

@@ -84,8 +84,8 @@ static void add_inertia(const mt_linear *lin, int row_at, tensor *list)
     }
 }
 
-/* Is the least principal moment certainly more than rounding? Of positive ones, by Sylvester,
- * the least is at least det J / (trace/2)^2. */
+/* True where the least principal moment is certainly more than rounding. Of positive ones, by
+ * Sylvester, the least is at least det J / (trace/2)^2. */
 static bool is_regular(const tensor *own)
 {
     const double *const j = own->j;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Do redundant equations stay redundant as an input moves? The derivatives of rows of unit
+ * Whether redundant equations stay redundant as an input moves. The derivatives of rows of unit
  * length are judged against the sum of their own terms: what should vanish is rounding of them,
  * also through the position's derivative; what does not is of their size.
  */

@@ -84,7 +84,7 @@ void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn
 /* h += curvature of lambda c, for an evaluation that was made without lambda. */
 void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const mt_cx *lambda,
                          mt_lagrangian *out);
-/* hessian: will h be asked for? Without, it has no memory and curvature is
+/* hessian: h will be asked for. Without, it has no memory and curvature is
  * MT_CURVATURE_NONE. */
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err);

@@ -160,7 +160,7 @@ void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double
     }
 }
 
-/* Is what is summed to be left as it is? Who sums asks again. */
+/* True where what is summed is to be left as it is. Who sums asks again. */
 static bool is_left(const mt_linear *lin)
 {
     return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->model->interrupt);

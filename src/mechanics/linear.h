@@ -59,7 +59,7 @@ typedef struct mt_reduced {
     /* changes whenever k, or anything of its factor, is made again */
     unsigned long stiffness_version;
     unsigned long mass_version; /* likewise of m */
-    bool loaded;                /* has K_r a geometric part? */
+    bool loaded;                /* K_r has a geometric part */
     int rows;
     const double *b;     /* rows x n */
     const double *c;     /* [rows] */

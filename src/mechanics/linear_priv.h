@@ -58,13 +58,13 @@ struct mt_linear {
     unsigned long stiffness_version; /* changes when K_r is made again */
     unsigned long mass_version;      /* when M_r is */
     bool unstressed;   /* driven to its place with no spring stretched: as good as unloaded */
-    bool has_factor_g; /* is there a factor_g? */
+    bool has_factor_g; /* there is a factor_g */
     bool graded;       /* grad belongs to value */
     bool started;      /* value has what depends on no input */
     /* a driven joint begins where the last update left it, instead of at the reference
      * position: for sweeps */
     bool follow;
-    bool has_last;              /* is last some place? */
+    bool has_last;              /* `last` is some place */
     bool idle_varies;           /* whether there are idle spins depends on inputs */
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
 };

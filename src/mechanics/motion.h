@@ -67,7 +67,7 @@ typedef struct mt_gauge_motion {
 /* After an evaluation at the same place. */
 void mt_motion_gauge(mt_motion *o, const mt_placement *at, const double *v, mt_gauge gauge,
                      mt_gauge_motion *out);
-/* Does it have a value of its own? */
+/* Whether a gauge has a value of its own. */
 bool mt_motion_has_value(const mt_system *sys, mt_gauge gauge);
 
 #endif

@@ -85,8 +85,8 @@ static mt_status keep(mt_newton_work *w, const mt_newton_solver *solver, double 
     return MT_OK;
 }
 
-/* Is a plain Newton iteration where it ends: the step is rounding, no longer shrinking or
- * negligible, and the constraints are closed? */
+/* True where a plain Newton iteration ends: the step is rounding, no longer shrinking or
+ * negligible, and the constraints are closed. */
 static bool rests(const mt_newton_work *w, double previous)
 {
     const bool small = w->moved <= MT_STEP_DONE &&
@@ -138,8 +138,9 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
 /* Steps that are longer than this are of the elastic stiffness alone [model lengths]. */
 static const double NEAR = 1e-3;
 
-/* Is the step that was found with the elastic stiffness alone to be taken? w->elastic: is the
- * next one of that kind, too? Freedoms that only forces hold have no part in it. */
+/* True where the step that was found with the elastic stiffness alone is to be taken;
+ * w->elastic: the next one is of that kind, too. Freedoms that only forces hold have no part in
+ * it. */
 static bool use_elastic(mt_newton_work *w, double previous)
 {
     const bool shrinks = w->moved <= 0.5 * previous;
@@ -278,8 +279,8 @@ typedef struct ending {
     double before; /* the energy where the stage began */
 } ending;
 
-/* Is the stationary point that was last evaluated a saddle, with the drive held, that the way
- * from the start leads down from? That direction goes into w->step. */
+/* end->saddle: the stationary point that was last evaluated is, with the drive held, a saddle
+ * that the way from the start leads down from. That direction goes into w->step. */
 static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_placement *at,
                        const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
 {

@@ -35,7 +35,7 @@ typedef struct mt_newton_solver {
 
 /* Its solution. */
 typedef struct mt_stage {
-    bool active;             /* did this stage run? */
+    bool active;             /* this stage ran */
     int iterations;          /* also where it was not solved */
     int factors;             /* of matrices, in them */
     mt_newton_solver solver; /* at the solution */

@@ -6,8 +6,8 @@
 
 /* Energy descent along the constraints as far as rounding of the energy lets it. */
 mt_status mt_newton_descend(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_err *err);
-/* Move from a stationary point along w->step, or against it, to a lower energy; *lower: is
- * there one? */
+/* Move from a stationary point along w->step, or against it, to a lower energy; *lower: there
+ * is one. */
 mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *lower,
                                  mt_arena *mem, mt_err *err);
 

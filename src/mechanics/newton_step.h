@@ -69,7 +69,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
 mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
                                      mt_arena *mem, mt_newton_solver *solver, bool *sure,
                                      mt_err *err);
-/* Has the sparse Z^T H Z an inverse, beyond doubt? Before a solution is told. */
+/* *firm: the sparse Z^T H Z has an inverse, beyond doubt. Before a solution is told. */
 mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *firm,
                             mt_err *err);
 /* Least squares of the w->sparse last evaluated. *sure: the equations are independent; apart:
@@ -85,9 +85,9 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
  * freedoms without stiffness into w. */
 mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                            double **inverse, mt_err *err);
-/* Is what was last evaluated dense, with its elimination, at rest: closed, and nothing
- * unbalanced but rounding of the forces that meet in each body? However little holds it, it
- * then stays. */
+/* True where what was last evaluated dense, with its elimination, is at rest: closed, and
+ * nothing unbalanced but rounding of the forces that meet in each body. However little holds
+ * it, it then stays. */
 bool mt_newton_at_rest(mt_newton_work *w, const mt_elimination *e);
 /* Move the place along w->step, at most `limit` model lengths. */
 void mt_newton_take_step(mt_newton_work *w, mt_placement *at, double limit);
@@ -98,9 +98,9 @@ void mt_newton_follow(const mt_newton_work *w, mt_placement *at);
 double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq);
 /* Largest violation of the constraints last evaluated, in model lengths. */
 double mt_newton_gap_of(const mt_newton_work *w);
-/* *falls: has Z^T H Z of the w->h last evaluated eigenvalues below 0 by more than rounding, and
+/* *falls: Z^T H Z of the w->h last evaluated has eigenvalues below 0 by more than rounding, and
  * the motion `way`[nq] a part along their vectors that is more than the digits of a drawing
- * leave open? That part, reversed, goes into w->step, which else stays. */
+ * leave open. That part, reversed, goes into w->step, which else stays. */
 mt_status mt_newton_falls(mt_newton_work *w, const mt_elimination *e, const double *way,
                           bool *falls, mt_arena *mem, mt_err *err);
 

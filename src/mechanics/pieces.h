@@ -32,13 +32,13 @@ static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
     const int b = body[k / 6];
     return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
 }
-/* Is it an angle or a cosine, not a length? */
+/* True for an angle or a cosine, false for a length. */
 bool mt_piece_is_angle(const mt_measure_def *def);
 /* What rounding makes of a measure: positions are known to eps of the coordinates that they are
  * the difference of, angles to eps, the slope of a beam element's chord to eps of the
  * coordinates over its length. */
 double mt_piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_pose *poses);
-/* Do the bodies of a measure stand where they do in `rest`, to the bit? */
+/* Whether the bodies of a measure stand where they do in `rest`, to the bit. */
 bool mt_piece_is_still(const mt_measure_def *def, const mt_pose *poses, const mt_pose *rest);
 /* A piece with this jet, of no spring or equation yet. terms (nq x nq) += size |jet.h|, and
  * force times the coordinates' size: two lengths that cancel in an entry between rotations have

@@ -92,8 +92,9 @@ static const double DIRECT = 0.3;
  * leave free, are not told from 0. */
 static const double CONVEX = 1e-10;
 
-/* Is the equilibrium, with the driven joint locked where it is, a minimum of the energy but for
- * the freedoms without stiffness? The Hessian and all gradients are those of the stage. */
+/* *minimum: the equilibrium, with the driven joint locked where it is, is a minimum of the
+ * energy but for the freedoms without stiffness. The Hessian and all gradients are those of the
+ * stage. */
 static mt_status is_minimum_locked(const mt_state *p, bool *minimum, mt_arena *mem, mt_err *err)
 {
     const mt_stage *const stage = &p->equilibrium;

@@ -29,7 +29,7 @@ typedef struct mt_term {
     int first; /* rows first .. first + count - 1 */
     int count;
     bool pair;   /* two rows a, b: coefficient * (a b^T + b a^T)/2; else the sum of squares */
-    bool varies; /* does the coefficient depend on an input? */
+    bool varies; /* the coefficient depends on an input */
     int body[2];
     int source; /* spring, inertia or channel it comes from */
 } mt_term;

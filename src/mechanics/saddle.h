@@ -31,7 +31,7 @@ typedef enum mt_saddle_kind {
     MT_SADDLE_SOFT
 } mt_saddle_kind;
 
-/* Is this way cheaper than the dense one (eliminate.h)? */
+/* True where this way is cheaper than the dense one (eliminate.h). */
 bool mt_saddle_pays(const mt_system *sys);
 /* The system with the first m rows of A = l->row. value: of all
  * entries of the layout's envelope, overwritten; may be l->h where H is. Results in mem.
@@ -42,9 +42,9 @@ mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l,
 /* f [nq] or NULL (0), b [m] or NULL (0); x [nq] and y [m], each may be NULL. */
 mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, double *x,
                           double *y, mt_arena *scratch, mt_err *err);
-/* Are all eigenvalues of H on the motions that A allows above 0? */
+/* True where all eigenvalues of H on the motions that A allows are above 0. */
 bool mt_saddle_convex(const mt_saddle *s);
-/* Is the inverse, in scaled units, certainly below `most`? */
+/* *below: the inverse, in scaled units, is certainly below `most`. */
 mt_status mt_saddle_below(const mt_saddle *s, double most, mt_arena *scratch, bool *below,
                           mt_err *err);
 

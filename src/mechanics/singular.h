@@ -9,7 +9,7 @@
 /* How near a position is to one where the equations of joints depend on each other there
  * only. */
 typedef struct mt_nearness {
-    bool near; /* is one within MT_NEAR_DISTANCE? Else nothing below means anything */
+    bool near; /* one is within MT_NEAR_DISTANCE; else nothing below means anything */
     /* what is left of the equations' independence: a singular value of the equations in rows of
      * unit length, about 1 far away, 0 there */
     double independence;
@@ -21,8 +21,8 @@ typedef struct mt_nearness {
 static const double MT_NEAR_DISTANCE = 0.05;
 
 /**
- * Is this a position like any other beside it? It is not where equations of joints depend on
- * each other here only (a dead centre, a folded parallelogram, a rope just taut): then the
+ * Refuses a position that is not like any other beside it: one where equations of joints depend
+ * on each other here only (a dead centre, a folded parallelogram, a rope just taut). Then the
  * motions that A allows to first order are not the motions that there are, and the forces of
  * the joints are not determined. Joints that are redundant everywhere are none of this.
  * @param[in] d, at     closed position (to rounding)
@@ -32,7 +32,7 @@ static const double MT_NEAR_DISTANCE = 0.05;
  */
 mt_status mt_singular_refuse(const mt_data *d, const mt_placement *at, const mt_elimination *e,
                              mt_arena *scratch, mt_err *err);
-/* How near is such a position? Arguments as above; names are in mem. */
+/* How near such a position is. Arguments as above; names are in mem. */
 mt_status mt_singular_nearness(const mt_data *d, const mt_placement *at,
                                const mt_elimination *e, mt_arena *scratch, mt_arena *mem,
                                mt_nearness *out, mt_err *err);

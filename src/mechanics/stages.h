@@ -28,19 +28,19 @@ typedef struct mt_stages {
 /* lists[MT_TERM_KINDS]. Lives in mem; a failure is the arena's. */
 void mt_stages_init(mt_stages *s, const mt_system *sys, const mt_term_list *lists,
                     mt_arena *mem);
-/* Has the stage to be done, where it depends on the inputs of `set` alone? Bits are compared.
- * A stage that has is not valid until mt_stages_done, one that has not is counted as
+/* Whether the stage has to be done, where it depends on the inputs of `set` alone. Bits are
+ * compared. A stage that has is not valid until mt_stages_done, one that has not is counted as
  * skipped. */
 bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set,
                      const double *inputs);
 void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs);
 /* Instead of done: what it would make was taken from another system. */
 void mt_stages_shared(mt_stages *s, mt_stage_id stage, const double *inputs);
-/* Have the inputs of the set the same bits? */
+/* Whether the inputs of the set have the same bits. */
 bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
                     const double *inputs);
 bool mt_stages_has(const uint64_t *set, int input);
-/* Is nothing in the set? */
+/* True where nothing is in the set. */
 bool mt_stages_empty(const mt_stages *s, const uint64_t *set);
 
 #endif

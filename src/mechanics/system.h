@@ -156,7 +156,7 @@ typedef struct mt_item_def { /* what `mass` counts: bodies, links, bars */
 typedef struct mt_damping_def {
     mt_node mass;      /* 1/s */
     mt_node stiffness; /* s */
-    bool modal;        /* is any ratio given? Then C takes all modes (analysis/damping.h) */
+    bool modal;        /* a ratio is given: C takes all modes (analysis/damping.h) */
     mt_node ratio;
     int n_ratios;
     mt_node *ratios; /* [n_ratios] */
@@ -236,8 +236,8 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
                                const double *at, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 /*
- * Are two configurations of one model the same mechanism but for the position of one driven
- * joint? *same: bodies, joints, springs, inertias and loads are the same, number by number as
+ * *same: two configurations of one model are the same mechanism but for the position of one
+ * driven joint. Bodies, joints, springs, inertias and loads are the same, number by number as
  * expressions of the same inputs (system_same.c); both drive the same joint and hold it alike,
  * or one of them has no drive, nothing loads it, and a trimmed spring holds the other: it then
  * is that mechanism in its reference position. Two configurations without a drive are not.
@@ -246,14 +246,15 @@ void mt_system_delete(mt_system *sys);
 mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
 /*
- * Do two configurations of one model have the same geometry at every design, and rows of K, C,
- * M and the sensors in the same places? As above, but for the coefficients of springs, dampers
- * and inertias, preload and free lengths; without drive and loads. Fails: MT_E_MEMORY.
+ * *same: two configurations of one model have the same geometry at every design, and rows of K,
+ * C, M and the sensors in the same places. As above, but for the coefficients of springs,
+ * dampers and inertias, preload and free lengths; without drive and loads. Fails: MT_E_MEMORY.
  */
 mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
-/* Do the numbers of the beams' strains shape the stiffness of the unloaded system? Straight,
- * without force, a beam's strains change with none of them. */
+/* Whether the numbers of the beams' strains shape the geometry of stiffness. In an unloaded
+ * system that is closed as drawn they do not: straight, without force, a beam's strains change
+ * with none of them. */
 bool mt_system_beams_shape(const mt_system *sys);
 
 /* What a displacement is compared with (system_length.c), of the values v of all nodes; above

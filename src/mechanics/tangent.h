@@ -6,7 +6,7 @@
 
 /* What depends on one input beyond the coefficients: geometry, position, constraint forces. */
 struct mt_linear_tangent {
-    bool moves;                  /* anything below non-zero? */
+    bool moves;                  /* something below is not 0 */
     mt_rows rows[MT_TERM_KINDS]; /* derivative of lin->full */
     double *a;                   /* m x nq, derivative of the constraint Jacobian */
     /* [m] derivative of the constraints along the motion of the position: 0 where it stays
