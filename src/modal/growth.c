@@ -11,7 +11,7 @@
  * damping that is 0. */
 static const double ULPS = 64.0;
 
-/* Has the symmetric matrix a negative direction? NULL: 0. */
+/* *negative is set where the symmetric matrix has a negative direction, else left. NULL: 0. */
 static mt_status find_negative(int n, const double *a, mt_arena *mem, bool *negative,
                                mt_err *err)
 {

@@ -17,7 +17,7 @@
 int mt_modal_growing_pole(int n, const double complex *s, double rounding);
 
 /*
- * Does nothing push the motions on? About a position that holds (K without a negative
+ * *passive: nothing pushes the motions on. About a position that holds (K without a negative
  * direction), a pole grows only where C or H has a negative direction: for
  * x^H (s^2 M + s C + K + i H) x = 0 with Im s >= 0 and C, H >= 0 there is no Re s > 0. So a
  * pole that rounding puts to the right of a passive system's axis is none that grows.

@@ -17,8 +17,8 @@ typedef struct mt_mode_energies {
     double *given_noise; /* [count] the part of stiffness_noise, and of mass_noise times lambda,
                             that is in K and M as they are given, and that no solution of them
                             can be without */
-    bool *strained; /* [count] does any spring move by more than the rounding of its terms? */
-    int count;      /* the lowest modes; the others have no doubts to be judged */
+    bool *strained;      /* [count] a spring moves by more than the rounding of its terms */
+    int count;           /* the lowest modes; the others have no doubts to be judged */
     /* NULL, or mt_modal_groups: then stiffness, mass and their noises go on, behind count, with
      * those of mt_modal_pair_shapes, and what they say of y_i^T (K - lambda M) y_k is known */
     const int *group;
@@ -40,7 +40,7 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes);
  * last mode of which the kind could be wrong or the error is above 1e-9 of its lambda. */
 int mt_modal_doubtful(const mt_modes *modes);
 
-/* Is the error of a vibration that has a shape above 1e-9 of its lambda? */
+/* Whether the error of a vibration that has a shape is above 1e-9 of its lambda. */
 bool mt_modal_rough(const mt_modes *modes);
 
 /* Neighbours that stand too close for a gap between them, up to eight: group[count], the first

@@ -235,7 +235,7 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
                          *tau);
 }
 
-/* Are the intervals of k and k + 1 apart? */
+/* Whether the intervals of k and k + 1 are apart. */
 static bool apart(const finding *f, int k)
 {
     return f->theta[k] - f->rho[k] > f->theta[k + 1] + f->rho[k + 1];

@@ -23,7 +23,7 @@ typedef struct mt_lowest_problem {
     int most;    /* modes that there may be among them */
     int n_rigid; /* rigid-body modes beside them */
     int count;   /* vibration modes wanted */
-    bool shapes; /* are they of use themselves? */
+    bool shapes; /* they are wanted for themselves, too */
     /* y := A x */
     mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
     double shift;

@@ -52,7 +52,7 @@ typedef struct mt_modes {
  * nobody asked for it (modes->shaped). */
 const double *mt_modal_shape(const mt_modes *modes, int i);
 
-/* Has each flexible mode an index: is no mode unstable or undecided? */
+/* Whether each flexible mode has an index: no mode is unstable or undecided. */
 bool mt_modal_indexed(const mt_modes *modes);
 /* lambda -> Hz: sqrt(lambda)/(2 pi); 0 for rigid-body modes; NaN for unstable and undecided
  * ones. */

@@ -45,9 +45,9 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
 /* Errors of eigenvalues that quotients make the 1e-9 of mt_modal_rough of, by the square. */
 static const double SHAPES = 3e-5;
 
-/* Is the plain result good enough? Signs and ranks are in doubt where a factor (K semidefinite
- * by construction) shows instability, rigid-body modes that nobody announced, or announced ones
- * that stiffness seems to hold. */
+/* True where the plain result is not good enough. Signs and ranks are in doubt where a factor
+ * (K semidefinite by construction) shows instability, rigid-body modes that nobody announced,
+ * or announced ones that stiffness seems to hold. */
 static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
 {
     if (modes->n_unstable > 0 || modes->n_held > 0 ||
@@ -107,8 +107,8 @@ static double kinds(mt_modes *out, int n_rigid)
     return most;
 }
 
-/* May fewer shapes than all be wanted, and be had for less? Of modes up to a frequency nobody
- * knows before. */
+/* True where fewer shapes than all may be wanted, and be had for less. How many modes lie up to
+ * a frequency nobody knows before. */
 static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
 {
     const int modes = opt->modes.first > 0 ? opt->modes.first : mass->rank;

@@ -21,7 +21,7 @@ typedef struct mt_sparse_problem {
     const double *unit; /* [n] a state times this is a displacement: 1, or 1/length of a turn */
     int count;          /* vibration modes wanted, at least 1 */
     bool shapes;        /* x as exactly as can be, and the constraints' forces */
-    mt_status (*check)(void *context, mt_err *err); /* asked before each product: go on? */
+    mt_status (*check)(void *context, mt_err *err); /* before each product: MT_OK to go on */
     void *context;
 } mt_sparse_problem;
 

@@ -19,8 +19,8 @@ typedef struct mt_sparse {
     mt_factor held;            /* H */
     mt_factor count;           /* of counts */
     int freedoms;              /* states less independent rows of A */
-    bool refined;              /* is a product refined? */
-    bool sound;                /* was the last step of a solution a small part of it? */
+    bool refined;              /* products are refined */
+    bool sound;                /* the last step of a solution was a small part of it */
     double *x, *f, *r, *s, *w; /* [n] */
     double *mu;                /* [rows of A] */
     double *gap;               /* A x + A dx */

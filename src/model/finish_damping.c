@@ -2,7 +2,7 @@
 /* Damping: the modes that it names. */
 #include "model/finish_priv.h"
 
-/* Has configuration c the damping of `owner`, as far as its `like` says? */
+/* Whether configuration c has the damping of `owner`, as far as its `like` says. */
 static bool takes_over(const mt_model *m, int c, int owner)
 {
     while (c != owner && c != MT_ABSENT && !m->configurations[c].damping.given) {

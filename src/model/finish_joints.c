@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Joints: has each what its type needs (joint.h)? */
+/* Joints: each has what its type needs (joint.h). */
 #include "model/finish_priv.h"
 
 #include "model/joint.h"

@@ -23,9 +23,9 @@ void mt_finish_unknown(mt_finish *f, mt_name name, const mt_names *table, const 
 void mt_finish_position(mt_finish *f, mt_position *p);
 /* What stands where a body may. */
 void mt_finish_attach(mt_finish *f, mt_attach *a);
-/* Do both hold on to the same? */
+/* True where both hold on to the same. */
 bool mt_finish_same_attach(const mt_attach *a, const mt_attach *b);
-/* The body is a point mass? */
+/* Whether the body is a point mass. */
 bool mt_finish_is_point_mass(const mt_finish *f, const mt_attach *a);
 /* Two positions that are the same by the way they are written, whatever the parameters are. */
 bool mt_finish_same_position(const mt_model *m, const mt_position *a, const mt_position *b);

@@ -37,8 +37,8 @@ bool mt_finish_hinge(mt_finish *f, mt_name name, int *at, int *number)
     return true;
 }
 
-/* Has the joint what the spring acts on: an angle, or a way along its axis? Of a type that
- * could not be read nothing is known. */
+/* Whether the joint has what the spring acts on: an angle, or a way along its axis. Of a type
+ * that could not be read nothing is known, and nothing said against it. */
 static bool has_freedom(const mt_joint *joint, bool torsion)
 {
     if (joint->type == MT_JOINT_TYPE_COUNT) {

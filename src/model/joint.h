@@ -23,7 +23,7 @@ typedef enum mt_closes {
 
 /* What a type of joint is and needs; its equations are in mechanics/build_joints.c. */
 typedef struct mt_joint_kind {
-    bool in[2]; /* is there such a joint in two, in three dimensions? */
+    bool in[2]; /* there is such a joint in two, in three dimensions */
     mt_coordinate coordinate;
     mt_closes closes;
     int least_at; /* points */
@@ -38,7 +38,7 @@ typedef struct mt_joint_kind {
 
 /* type: a type that there is (not MT_JOINT_TYPE_COUNT). */
 const mt_joint_kind *mt_joint_kind_of(mt_joint_type type);
-/* Does its second body move along the axis of the joint against the first? */
+/* Whether its second body moves along the axis of the joint against the first. */
 bool mt_joint_slides(mt_joint_type type);
 const char *mt_joint_article(mt_joint_type type);
 

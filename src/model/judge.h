@@ -20,8 +20,9 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
 const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
                                 mt_arena *mem);
 
-/* Are the numbers of a configuration those of a mechanism, with these inputs? Scratch from mem.
- * Fails: MT_E_USAGE (the first fault that mt_model_judge finds), as mt_model_numbers. */
+/* Succeeds where the numbers of a configuration are those of a mechanism, with these inputs.
+ * Scratch from mem. Fails: MT_E_USAGE (the first fault that mt_model_judge finds), as
+ * mt_model_numbers. */
 mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
                          const int *inputs, const double *at, mt_arena *mem, mt_err *err);
 

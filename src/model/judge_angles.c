@@ -91,7 +91,7 @@ static part binary(mt_op op, const part *a, const part *b)
     return (part){v, 0.0, true, MT_ABSENT};
 }
 
-/* Has it been said of this number here? What goes into cos() goes into sin(), too. */
+/* Whether it has been said of this number here. What goes into cos() goes into sin(), too. */
 static bool is_said(const mt_judge *j, mt_addr addr)
 {
     const char *const here = j->model->configurations[j->configuration].name.s;

@@ -24,7 +24,7 @@ static const double MATRIX_NOISE = 1e-9;
 /* Of the coordinates' size: points that differ by rounding are the same point. */
 static const double SAME_POINT = 1e-14;
 
-/* The symmetric 3 x 3 matrix xx yy zz xy xz yz, without an eigenvalue below -noise? By its
+/* Whether the symmetric 3 x 3 matrix xx yy zz xy xz yz has no eigenvalue below -noise: by its
  * principal minors, each with what `noise` on the diagonal can make of it. */
 static bool is_positive(const double v[6], double noise)
 {

@@ -468,7 +468,7 @@ int mt_model_find_sensor(const mt_model *model, const char *name);
 /* Line and column in model->path of what stands at an address (of a number, a position, a name,
  * a drive); false where it is not known. */
 bool mt_model_place(const mt_model *model, mt_addr addr, int *line, int *column);
-/* Is the item present in configuration c? */
+/* Whether the item is present in configuration c. */
 bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);
 const char *mt_spring_type_name(mt_spring_type type);

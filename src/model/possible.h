@@ -78,7 +78,7 @@ typedef struct mt_possible {
 
 extern const mt_possible mt_possible_of[MT_POSSIBLE_COUNT];
 
-/* Can it be, by itself? So can a NaN, which nobody knows. */
+/* Whether a value can be, by itself. So can a NaN, which nobody knows. */
 bool mt_possible_is(const mt_possible *p, double value);
 /* What a value that can be is hardly meant as: `below` or `beyond`; NULL: it is plausible. */
 const char *mt_possible_doubted(const mt_possible *p, double value);

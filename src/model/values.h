@@ -70,7 +70,7 @@ mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
  * @param[in]  at     [n_inputs]
  * @param[out] value  [n]; NaN where a number has no finite value (or stands behind one that has
  *                    none)
- * @param[out] whole  may be NULL: have all of them, and all parameters, a finite value?
+ * @param[out] whole  may be NULL; true: all of them, and all parameters, have a finite value
  * Fails: MT_E_INTERNAL.
  */
 mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
