@@ -19,7 +19,7 @@ void mt_axpy(int n, double alpha, const double *x, double *y);
 double mt_max_abs(ptrdiff_t n, const double *x);
 /* Where the first entry of the largest size stands; n >= 1, finite. */
 int mt_max_index(int n, const double *x);
-/* Are all n entries (of the lower triangle of an n x n matrix) finite? */
+/* True where all n entries (of the lower triangle of an n x n matrix) are finite. */
 bool mt_all_finite(ptrdiff_t n, const double *x);
 bool mt_lower_finite(int n, const double *a);
 /* C := A B with symmetric A (n x n, lower read), B and C n x nrhs. */

@@ -29,7 +29,7 @@ typedef struct front {
     int n;       /* open rows */
     int room;    /* leading dimension */
     int *row;    /* [room] of A */
-    bool *whole; /* [room] are all of its entries there? */
+    bool *whole; /* [room] all of its entries are there */
     double *f;   /* room x room, both triangles */
     int *place;  /* [n of A] in the front; -1: not there */
     double *l[2];

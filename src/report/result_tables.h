@@ -59,8 +59,8 @@ mt_table mt_report_published(const mt_result *result);
  * recommendations.csv. */
 mt_table mt_report_designs(const mt_result *result);
 
-/* Does every published entry that can be compared hold? *judged (may be NULL): how many of them
- * there are. */
+/* True where every published entry that can be compared holds. *judged (may be NULL): how many
+ * of them there are. */
 bool mt_report_verified(const mt_result *result, int *judged);
 
 #endif

@@ -218,7 +218,7 @@ static void add_legend(const ruler *u)
     mt_text_add(u->out, "\n");
 }
 
-/* The first row of its configuration? */
+/* True for the first row of its configuration. */
 static bool is_first(const mt_recommendation *r, int i)
 {
     for (int k = 0; k < i; k++) {

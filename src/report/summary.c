@@ -63,7 +63,7 @@ static void add_line(const mt_teller *to, mt_text *line)
     add_paragraph(to, "  ", line);
 }
 
-/* Was it computed? A section that a stopped run left out says so. */
+/* Whether it was computed. A section that a stopped run left out says so. */
 static bool is_known(const mt_teller *to, const char *title, const void *items)
 {
     if (items == NULL) {
@@ -192,7 +192,7 @@ static void add_doubts(const mt_teller *to, const char *title, int n, const mt_d
     }
 }
 
-/* Do both say the same, of whatever configuration? */
+/* True where both say the same, of whatever configuration. */
 static bool is_same_fact(const mt_doubt *a, const mt_doubt *b)
 {
     return a->configuration != NULL && b->configuration != NULL &&

@@ -217,10 +217,10 @@ static bool is_number(const char *s)
 }
 
 /*
- * Would a spreadsheet take the cell for a formula? They do where it begins with = + - @ (tabs
- * and line ends are escaped before), some with their full-width forms, some after blanks. A
- * cell that has an apostrophe there already is counted in, so that taking one away always gives
- * the text back.
+ * True for a cell that spreadsheets take for a formula: all do where it begins with one
+ * of = + - @ (tabs and line ends are escaped before), some with their full-width forms, some
+ * after blanks. A cell that has an apostrophe there already is counted in, so that taking one
+ * away always gives the text back.
  */
 static bool is_formula(const char *s)
 {

@@ -193,7 +193,7 @@ static mt_status sample(run *r, double t, mt_err *err)
     return MT_OK;
 }
 
-/* Does a gauge turn in a step that it ends with this velocity? What is rounding beside the
+/* Whether a gauge turns in a step that it ends with this velocity. What is rounding beside the
  * motion of the bodies does not count. */
 static bool turns(const mt_sim *s, int g, double end)
 {
@@ -201,7 +201,7 @@ static bool turns(const mt_sim *s, int g, double end)
     return s->speed[g] * end < 0.0 && fmax(fabs(s->speed[g]), fabs(end)) > least;
 }
 
-/* The gauge's velocity changes its sign in the step from t to t + h: where? Newton on the
+/* Where the gauge's velocity changes its sign in the step from t to t + h: by Newton on the
  * velocity at the ends of shorter steps, from the root of the chord. */
 static mt_status find_turning(run *r, double t, double h, int g, const double end[3],
                               mt_err *err)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Is a system a tree, and in what order do its bodies stand? Breadth first from the ground,
- * then from the first body of each part that nothing ties to it. */
+/* Whether a system is a tree, and the order in which its bodies stand: breadth first from the
+ * ground, then from the first body of each part that nothing ties to it. */
 #include "tree/tree.h"
 
 #include "tree/tree_priv.h"
@@ -226,7 +226,7 @@ static bool has_form(const mt_tree_maker *m)
     return true;
 }
 
-/* Do the joints hold as drawn? */
+/* Whether the joints hold as drawn. */
 static bool is_closed(mt_tree_maker *m)
 {
     const mt_system *const sys = m->t->sys;

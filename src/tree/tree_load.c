@@ -102,7 +102,7 @@ static bool add_force(void *context, const int body[2], double c, double noise,
     return add_curvature(l->m, body, c, jet);
 }
 
-/* Does G_i balance where the edge is free? */
+/* Whether G_i balances where the edge is free. */
 static bool is_at_rest(const loading *l, int i)
 {
     const mt_tree *const t = l->m->t;

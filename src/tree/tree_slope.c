@@ -168,7 +168,7 @@ void mt_tree_slope_refuse(const mt_tree_slope *w, const char *text)
                       parameter < 0 ? "" : "\"", text);
 }
 
-/* Does any input move this node? */
+/* True where some input moves this node. */
 static bool varies(const mt_tree_slope *w, mt_node node)
 {
     const double *const g = w->data.grad + ((ptrdiff_t)node * w->sys->n_inputs);
@@ -453,7 +453,7 @@ static void add_inertia(mt_tree_slope *w, int i)
     }
 }
 
-/* Do the joints stay closed as drawn? */
+/* Whether the joints stay closed as drawn. */
 static bool stays_closed(mt_tree_slope *w)
 {
     const mt_system *const sys = w->sys;

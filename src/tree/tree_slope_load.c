@@ -123,7 +123,7 @@ static void add_load(const along *l, const mt_load_def *load)
     add_force(l, body, -1.0, &jet);
 }
 
-/* Does what is left balance where the edge is free? */
+/* Whether what is left balances where the edge is free. */
 static bool stays_at_rest(const along *l, int i, const double *g)
 {
     const mt_tree *const t = l->w->t;

@@ -26,7 +26,7 @@ typedef struct mt_tree_slope {
     mt_arena *scratch;
 } mt_tree_slope;
 
-/* Does the present input move what the measure is made of? */
+/* Whether the present input moves what the measure is made of. */
 bool mt_tree_slope_moves(const mt_tree_slope *w, const mt_measure_def *def);
 bool mt_tree_slope_moves_vec(const mt_tree_slope *w, int vec);
 /* Derivative of a node by the present input. */

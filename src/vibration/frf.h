@@ -58,8 +58,8 @@ double complex mt_frf_from_pole(const mt_frf *h, int k, mt_near w);
 void mt_frf_pull(const mt_frf *h, mt_near w, double complex weight, double complex *by_s,
                  double complex *by_residue, double complex *by_d);
 
-/* Is there a finite answer to an input within [lower, upper] (rad/s)? Where not, *pole: the
- * index, in the sum, of the pole that is in the way. */
+/* Whether there is a finite answer to an input within [lower, upper] (rad/s). Where not, *pole:
+ * the index, in the sum, of the pole that is in the way. */
 mt_forced_end mt_frf_judge(const mt_frf *h, double lower, double upper, int *pole);
 
 /* re + i im, finite. */

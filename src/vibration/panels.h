@@ -53,7 +53,7 @@ void mt_panels_begin(mt_panels *p, const mt_frf *h, double lower, double upper,
                      double exponent);
 bool mt_panels_next(mt_panels *p, mt_panel *out);
 
-/* Does the pole lie outside the ellipse `clear` of the panel? */
+/* Whether the pole lies outside the ellipse `clear` of the panel. */
 bool mt_panels_clears(const mt_frf *h, int k, const mt_panel *panel, double clear);
 /* A bound of |H| on the ellipse MT_PANEL_INNER of a panel that all poles clear. */
 double mt_panels_bound(const mt_frf *h, const mt_panel *panel);
