@@ -242,8 +242,8 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
     return MT_OK;
 }
 
-/* Are vibration modes missing that were asked for and that there are? Judged, a mode may be
- * no vibration any more. */
+/* True where vibration modes are missing that were asked for and that there are. Judged, a mode
+ * may be no vibration any more. */
 static bool is_short(const mt_modes *modes, int first)
 {
     return first > 0 && modes->count < modes->all && mt_modal_indexed(modes) &&
@@ -388,7 +388,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     return MT_OK;
 }
 
-/* Are there derivatives of the mode at pos? */
+/* Succeeds where there are derivatives of the mode at pos. */
 static mt_status has_slopes(const mt_analysis *a, int pos, mt_err *err)
 {
     if (!a->with_gradient) {

@@ -197,8 +197,8 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
                                   box->parameter, f->at, &f->a, err);
 }
 
-/* Is the rank of K a matter of which coefficients vanish? Couplings that vary may cancel what
- * they couple. */
+/* Whether the rank of K is a matter of which coefficients vanish. Couplings that vary may
+ * cancel what they couple. */
 static bool is_structural(const mt_linear *lin)
 {
     const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);
@@ -253,7 +253,7 @@ bool mt_analysis_is_infinite(const mt_analysis *a, int index)
            index <= a->n_most - a->n_rigid;
 }
 
-/* Does row . y differ from 0 by more than rounding for a vector of the cluster? */
+/* True where row . y differs from 0 by more than rounding for a vector of the cluster. */
 static bool acts_on(const mt_analysis *a, const double *row, int first, int size)
 {
     const ptrdiff_t n = mt_linear_freedoms(a->lin);

@@ -21,8 +21,8 @@ mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
  * first design alone, without the vibrations of 0 Hz that only a family has. -1: as
  * mt_modal_flexible. */
 int mt_analysis_named(const mt_analysis *a, int index);
-/* Has the family more vibration modes than the last solve's design, and this index one of those
- * that are missing there (a mass is 0)? It is at infinity. */
+/* True where the family has more vibration modes than the last solve's design, and this index
+ * is one of those that are missing there (a mass is 0): it is at infinity. */
 bool mt_analysis_is_infinite(const mt_analysis *a, int index);
 /* Directions that remain free where only the terms of K with holds[t] (one for each of
  * mt_linear_terms(lin, MT_TERM_STIFFNESS)) resist: the null directions of their sum, whatever
@@ -31,8 +31,8 @@ bool mt_analysis_is_infinite(const mt_analysis *a, int index);
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
                                       const bool *holds, mt_arena *scratch, int *n,
                                       mt_err *err);
-/* Is the mode at pos a vibration of 0 Hz (after a solve with vectors)? And the springs of zero
- * stiffness that would hold it: "\"ground\", \"k2\"", perhaps "", in text[size]. */
+/* Whether the mode at pos is a vibration of 0 Hz (after a solve with vectors), and the springs
+ * of zero stiffness that would hold it: "\"ground\", \"k2\"", perhaps "", in text[size]. */
 bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size);
 
 #endif

@@ -17,7 +17,7 @@
 
 /*
  * After a solve: C and H, both n x n, column-major, both triangles; either NULL: not wanted.
- * *structural (may be NULL): is H not 0? Kept until the next solve. O(n^3) with modal ratios.
+ * *structural (may be NULL): H is not 0. Kept until the next solve. O(n^3) with modal ratios.
  * Fails: MT_E_INTERNAL (modal ratios, and the solve had not all modes with vectors), MT_E_INPUT
  * (a ratio of a mode that there is not), MT_E_DOMAIN (ratios by index or name where modes have
  * none), MT_E_MEMORY.

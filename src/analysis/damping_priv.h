@@ -16,7 +16,7 @@ struct mt_damping_work {
     double *n_phi;  /* n x r: M Phi */
     double *c;      /* n x n */
     double *h;      /* n x n; NULL: 0 */
-    bool solved;    /* are there complex modes? */
+    bool solved;    /* there are complex modes */
     mt_damped_modes damped;
 };
 

@@ -330,8 +330,8 @@ static void fault_damping(const mt_analysis *a, mt_doubt_list *out)
     }
 }
 
-/* Of the terms of spring `name`, from term t on: has any a coefficient, and does any act on a
- * motion that the joints leave? Returns the first term of another spring. */
+/* Of the terms of a spring, from term t on: *given, one has a coefficient; *acts, one acts on a
+ * motion that the joints leave. Returns the first term of another spring. */
 static int look_at_spring(const mt_linear *lin, mt_term_kind kind, int t, bool *given,
                           bool *acts)
 {

@@ -33,8 +33,8 @@ typedef struct mt_doubts_rods {
 mt_status mt_doubts_spins(const mt_analysis *a, mt_arena *mem, mt_doubts_rods *out,
                           mt_err *err);
 
-/* Is it said of a posture that settles more than ten degrees, or a tenth of the model, away? It
- * is the first line of any answer. */
+/* True where it is said of a posture that settles more than ten degrees, or a tenth of the
+ * model, away. It is the first line of any answer. */
 bool mt_doubts_settles_far(const mt_doubt *d);
 
 /* What looking at configurations may cost where nobody asked for an analysis (`check`), in

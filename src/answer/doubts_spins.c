@@ -113,7 +113,7 @@ static bool turns_as_one(const spins *s, int part)
     return turn > 0.0 && apart <= AT_REST * turn;
 }
 
-/* Is there one motion of this part alone, as of a rod? Then it is the next of s->spin. */
+/* *spin: there is one motion of this part alone, as of a rod; it is the next of s->spin. */
 static mt_status look_at_part(spins *s, int part, int rods, bool *spin, mt_arena *mem,
                               mt_err *err)
 {

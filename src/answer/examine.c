@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * A study held against its model: is what it asks for anywhere near what the model does?
+ * A study held against its model: whether what it asks for is anywhere near what it does.
  * Frequencies f_k(x) are looked at where x is the original design and where one variable, or
  * all, stand at a bound; a band that no f_k comes within a factor of there has no part in the
  * answer. Where two of these designs differ in how many modes lie above a band, one comes

@@ -15,7 +15,7 @@
  */
 mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_list *out,
                            mt_err *err);
-/* Does looking at what it asks about take more? */
+/* Whether looking at what it asks about takes more. */
 bool mt_study_takes_more(const mt_study *study, double most_work);
 
 #endif

@@ -16,7 +16,7 @@
 #include "base/workers.h"
 #include "describe/describe.h"
 
-/* Does the study ask for what this phase writes? */
+/* Whether the study asks for what this phase writes. */
 static bool is_asked(const mt_answer *a, mt_phase which)
 {
     switch (which) {
@@ -38,8 +38,8 @@ static bool is_asked(const mt_answer *a, mt_phase which)
     return true;
 }
 
-/* Would the phase speak of what is not known: of a search that was cut, or of a recommendation
- * that it did not find? */
+/* True where the phase would speak of what is not known: of a search that was cut, or of a
+ * recommendation that it did not find. */
 static bool is_groundless(const mt_answer *a, mt_phase which)
 {
     const mt_interrupt *const i = a->interrupt;

@@ -8,7 +8,7 @@
  */
 #include "answer/solve_priv.h"
 
-/* Is x within the bounds, or a value of the catalogue, of variable v? */
+/* Whether x is within the bounds of variable v and, if it has one, a value of its catalogue. */
 static bool is_allowed(const mt_variable *v, double x)
 {
     bool listed = v->n_catalogue == 0;

@@ -88,8 +88,8 @@ typedef struct mt_answer {
 MT_PHASE_LIST(MT_PHASE_DECLARE)
 #undef MT_PHASE_DECLARE
 
-/* solve_original.c: does the original meet all goals, where nothing counts before the change?
- * After the baseline. */
+/* solve_original.c: true where the original meets all goals, and nothing counts before the
+ * change. After the baseline. */
 bool mt_answer_original_is_best(const mt_answer *a);
 /* Then it is what is found, without a search. */
 mt_status mt_answer_take_original(mt_answer *a, mt_err *err);

@@ -73,7 +73,7 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-/* Is a named mode that cannot be told all that is wrong? */
+/* True where a named mode that cannot be told is all that is wrong. */
 static bool is_doubtful(const mt_recommendation *best)
 {
     bool doubtful = false;

@@ -10,7 +10,7 @@
  * does not ask for it. Evaluations are added to
  * *evaluations. Cost: one local search for each weighted goal and side.
  */
-/* Does the study ask for it? */
+/* Whether the study asks for it. */
 bool mt_spread_is_asked(const mt_problem *p);
 mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena *mem,
                           long most, long *evaluations, mt_result *result, mt_err *err);

@@ -200,8 +200,8 @@ static bool keeps_between(const mt_recommendation *r)
     return kept;
 }
 
-/* Is a the better answer of one point, by more than searches leave open? The first objective's
- * score decides among designs that meet all goals. */
+/* Whether a is the better answer of one point, by more than searches leave open. The first
+ * objective's score decides among designs that meet all goals. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
 {
     const mt_recommendation *const x = best_of(a);

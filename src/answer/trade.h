@@ -31,9 +31,9 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
 mt_status mt_trade_front(const mt_study *study, const mt_recommendation *const *best,
                          const mt_recommendation *baseline, mt_arena *mem, mt_trade_result *out,
                          mt_err *err);
-/* trade_warm.c: does a local search from x[n_variables] find a design of the point that w is of
- * (set to the whole of it, and again afterwards) that is better than best_x (NULL: any that
- * meets all goals)? In `most` evaluations at most, about. */
+/* trade_warm.c; *better: a local search from x[n_variables] finds a design of the point that w
+ * is of (set to the whole of it, and again afterwards) that is better than best_x (NULL: any
+ * that meets all goals), in `most` evaluations at most, about. */
 mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best_x,
                             bool *better, long most, mt_err *err);
 

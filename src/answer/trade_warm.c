@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Is a neighbour's best design a better start than all that a point was searched from? One
- * local search tells, at a small part of the cost of the point. */
+/* Whether a neighbour's best design is a better start than all that a point was searched from.
+ * One local search tells, at a small part of the cost of the point. */
 #include <math.h>
 
 #include "answer/trade.h"

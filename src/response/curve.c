@@ -244,8 +244,8 @@ static mt_status note(trace *c, const mt_extreme *e, mt_err *err)
     return MT_OK;
 }
 
-/* Is a minimum next to a zero? There H is about linear, |H| at an end of the interval about
- * |H'| times how far it is; where H turns round instead, H' is small. */
+/* True for a minimum next to a zero. There H is about linear, |H| at an end of the interval
+ * about |H'| times how far it is; where H turns round instead, H' is small. */
 static bool is_zero(const mt_extreme *e, const point *a, const point *b, double complex dh)
 {
     const point *const far = b->w - e->w > e->w - a->w ? b : a;

@@ -29,7 +29,7 @@ static const double AGREEMENT = 1e-9;
 static const double SHARP = 1e-6;
 static const double BESIDE = 1e-3;
 
-/* Are coordinates i and j tied to each other? */
+/* Whether coordinates i and j are tied to each other. */
 static bool is_tied(const mt_poles *k, ptrdiff_t i, ptrdiff_t j)
 {
     return mt_poles_damping(k, i, j) != 0.0 || k->b->g[i + (j * k->n)] != 0.0 ||
@@ -261,7 +261,7 @@ static void hand_out(const mt_poles *k, int first, mt_pole_sum *out, double comp
     }
 }
 
-/* Is the sum what direct solves say, at the frequencies of all poles? */
+/* Refuses a sum that is not what direct solves say, at the frequencies of all poles. */
 static mt_status verify(const mt_poles *k, const mt_pole_sum *sum, mt_err *err)
 {
     const mt_sample got = {.h = mt_arena_alloc(k->mem, (size_t)k->pairs, sizeof *got.h)};

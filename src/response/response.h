@@ -38,7 +38,8 @@ typedef struct mt_response {
  * outputs), as mt_response_problem, mt_basis_make, mt_response_pole_list. */
 mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
                            mt_err *err);
-/* Is there a stationary response? Fails: MT_E_EQUILIBRIUM, with the pole that grows. */
+/* Succeeds where there is a stationary response. Fails: MT_E_EQUILIBRIUM, with the pole that
+ * grows. */
 mt_status mt_response_admit(const mt_response *r, mt_err *err);
 /* Accepts a zeroed one. */
 void mt_response_free(mt_response *r);

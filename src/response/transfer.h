@@ -30,7 +30,7 @@ typedef struct mt_transfer {
     const double *error;
     const double complex *beta[MT_FORCED_POWERS];  /* n x n_in; NULL: 0 */
     const double complex *sigma[MT_FORCED_POWERS]; /* n_out x n; NULL: 0 */
-    bool real[MT_FORCED_POWERS];                   /* has sigma[p] no imaginary part? */
+    bool real[MT_FORCED_POWERS];                   /* sigma[p] has no imaginary part */
     /* n_out x n_in, of power p at p - MT_REST_LOWEST; NULL: 0 */
     const double complex *rest[MT_REST_POWERS];
 } mt_transfer;
