@@ -120,7 +120,8 @@ static double condition_of(const basis *b)
     return most;
 }
 
-/* Does no varying spring act on the directions without mass, and does no varying mass fade? */
+/* *ok: false where a varying spring acts on the directions without mass, or a varying mass may
+ * fade. */
 static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena *scratch,
                                 bool *ok, char *reason, mt_err *err)
 {

@@ -12,8 +12,8 @@ bool mt_enclosure_set(mt_enclosure *e, const double *lo, const double *hi);
  * two boxes, one in the other, are equal, the corners are (but for one pair in 2^31: then what
  * was counted at the outer one still bounds what the inner one has). At least 0. */
 int mt_enclosure_corner_key(const mt_enclosure *e, mt_side side);
-/* Note which stiffnesses are positive all over the box that is set; and are they so all over
- * the one that is set later? Where one is not, a design of that box may have one more
+/* Note which stiffnesses are positive all over the box that is set; and whether they are so all
+ * over the one that is set later. Where one is not, a design of that box may have one more
  * rigid-body mode. */
 void mt_enclosure_note_held(mt_enclosure *e);
 bool mt_enclosure_keeps_held(const mt_enclosure *e);

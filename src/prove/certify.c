@@ -254,7 +254,7 @@ static int unknown(search *s)
     return count;
 }
 
-/* Can the bounds be met in the box (all: everywhere in it)? */
+/* Whether the bounds can be met in the box (all: are met everywhere in it). */
 static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
 {
     const mt_certify *const c = s->c;
@@ -273,7 +273,7 @@ static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
     return true;
 }
 
-/* Can limit i be met in the box? */
+/* Whether limit i can be met in the box. */
 static bool limit_possible(search *s, int i)
 {
     const mt_certify_limit *const l = &s->c->limits[i];
@@ -302,7 +302,7 @@ static bool band_possible(search *s, int i)
     return s->least[i] <= s->most[i];
 }
 
-/* May a design of the box have an objective below the cap? */
+/* True where a design of the box may have an objective below the cap. */
 static bool below_cap(const mt_certify *c, const double *lo, const double *hi)
 {
     return c->cap == NULL || c->cap->least(c->cap->context, lo, hi) < c->cap->below;
@@ -347,7 +347,8 @@ static bool same_counts(const search *s, const int *tuple)
     return true;
 }
 
-/* Has the design that is set at least so many modes below the edge? Fewer? */
+/* Whether the design that is set has at least so many modes below the edge; then, whether
+ * fewer. */
 static bool has_below(const search *s, int edge, int modes)
 {
     const mt_edge *const g = &s->edges.edges[edge];
@@ -390,8 +391,8 @@ static bool bands_met(search *s)
     return met;
 }
 
-/* Does the middle of the box meet everything? Its assignment goes to `single` (in a search for
- * one: it must have that). Limits first: hardly a design is on a target. */
+/* True where the middle of the box meets everything. Its assignment goes to `single` (in a
+ * search for one: it must have that). Limits first: hardly a design is on a target. */
 static bool witnessed(search *s)
 {
     const mt_boxes *const b = &s->boxes;
@@ -515,7 +516,7 @@ static mt_status visit(search *s, bool *deeper)
     return note_open(s);
 }
 
-/* Is what was found all that is asked for? */
+/* Whether what was found is all that is asked for. */
 static bool satisfied(const search *s)
 {
     return (s->only != NULL || s->c->any) && s->out->n_found > 0;

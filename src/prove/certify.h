@@ -125,8 +125,8 @@ typedef enum mt_verdict {
     MT_VERDICT_COUNT
 } mt_verdict;
 
-/* Can a design of the box have this assignment[n_bands] and meet limits and bounds? at[n] (may
- * be NULL): one that does, where POSSIBLE. boxes may be NULL. */
+/* Whether a design of the box can have this assignment[n_bands] and meet limits and bounds.
+ * at[n] (may be NULL): one that does, where POSSIBLE. boxes may be NULL. */
 mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
                               mt_verdict *verdict, double *at, long *boxes, mt_err *err);
 

@@ -4,7 +4,7 @@
 
 #include "prove/enclosure.h"
 
-/* Is the analysis one that can be enclosed over lower <= x <= upper? False with the reason.
+/* True where the analysis can be enclosed over lower <= x <= upper; false with the reason.
  * frozen[n_inputs]: mt_enclosure_shaping. */
 bool mt_enclosure_admits(const mt_analysis *a, const double *lower, const double *upper,
                          bool *frozen, char *reason);

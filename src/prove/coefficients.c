@@ -64,7 +64,8 @@ static mt_status extract(mt_enclosure *e, const mt_program *from, mt_err *err)
     return mt_program_finish(&e->program, err);
 }
 
-/* Does an input reach the node on two ways? (x * x is a square, enclosed as one.) */
+/* Find which coefficients an input reaches on two ways. (x * x is a square, enclosed as
+ * one.) */
 static mt_status find_dependent(mt_enclosure *e, mt_err *err)
 {
     const mt_program *const p = &e->program;
@@ -245,7 +246,7 @@ static void corner_of(mt_enclosure *e, const mt_enclosure_coefficient *c, mt_sid
     }
 }
 
-/* Is the box one of the bounds' own? */
+/* True where the box lies within the bounds. */
 static bool within(const mt_enclosure *e, const double *lo, const double *hi)
 {
     bool inside = true;

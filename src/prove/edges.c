@@ -78,7 +78,7 @@ int mt_edges_count(mt_edges *d, int edge)
     int *const known = &d->now[asked == MT_LOW ? d->n + edge : edge];
     const int before = *known;
     count(d, edge, asked);
-    if (*known == before) { /* halving no longer helps: is there anything left to know? */
+    if (*known == before) { /* halving no longer helps: the other side tells if all is known */
         count(d, edge, asked == MT_LOW ? MT_HIGH : MT_LOW);
     }
     return *known;

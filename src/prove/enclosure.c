@@ -54,8 +54,8 @@ static mt_status note_inputs(mt_enclosure *e, mt_err *err)
     return MT_OK;
 }
 
-/* Does the analysis count a direction as free that some design of the bounds holds? A term can
- * hold wherever its coefficient can be positive. */
+/* *ok: false where the analysis counts a direction as free that some design of the bounds
+ * holds. A term can hold wherever its coefficient can be positive. */
 static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, char *reason,
                              mt_err *err)
 {

@@ -39,8 +39,8 @@ typedef struct mt_enclosure_part {
     double trace;
 } mt_enclosure_part;
 
-/* Is a coefficient required to be positive over the bounds? A coupling of two rows has two of
- * either sign: its own, and minus that (terms.c). */
+/* Whether a coefficient is required to be positive over the bounds. A coupling of two rows has
+ * two of either sign: its own, and minus that (terms.c). */
 typedef enum mt_sign { MT_SIGN_POSITIVE, MT_SIGN_ANY, MT_SIGN_NEGATED } mt_sign;
 
 typedef struct mt_enclosure_coefficient {
@@ -106,7 +106,7 @@ typedef struct mt_enclosure {
     double *fixed[MT_MATRICES]; /* n x n, lower */
     double fixed_norm;          /* of K0 */
     double roundoff;            /* relative slack: see box.c */
-    bool *in[MT_MATRICES];      /* [n_inputs] does the input enter this matrix? */
+    bool *in[MT_MATRICES];      /* [n_inputs] the input enters this matrix */
     /* of the box that is set */
     double *value[2];           /* [n_coefficients] */
     double *node[2];            /* [program.count] work */
@@ -151,8 +151,8 @@ bool mt_enclosure_corners(mt_enclosure *e, const mt_model *model, const int *inp
  */
 enum { MT_STIFFENS = 1, MT_SOFTENS = 2 };
 void mt_enclosure_effects(mt_enclosure *e, const double *lo, const double *hi, int *effects);
-/* Does input i enter both K and M (then only smaller boxes make the enclosure tight)? And does
- * it enter at all? */
+/* Whether input i enters both K and M (then only smaller boxes make the enclosure tight); then,
+ * whether it enters at all. */
 bool mt_enclosure_loose(const mt_enclosure *e, int i);
 bool mt_enclosure_depends(const mt_enclosure *e, int i);
 

@@ -232,7 +232,7 @@ typedef struct mt_result_mac_row {
     double *values; /* [n_values] one for each mode of the reference that is compared */
 } mt_result_mac_row;
 
-/* The modes of a configuration and those of a reference: whose shape is whose? */
+/* The modes of a configuration and those of a reference: whose shape is whose. */
 typedef struct mt_result_mac {
     const char *configuration;
     const char *reference;

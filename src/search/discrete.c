@@ -113,8 +113,8 @@ static mt_status rank(mt_discrete *d, mt_combination *const *list, int n, int mo
     return MT_OK;
 }
 
-/* Can no combination from here on rank among the best? All of them change more than the last of
- * these. */
+/* True where no combination from `next` on can rank among the best: all of them change more
+ * than the last of these. */
 static bool settled(const mt_discrete *d, const mt_combination *next, int most,
                     mt_combination *const *best, int n_best)
 {

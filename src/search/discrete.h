@@ -121,7 +121,7 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
 mt_status mt_discrete_follow(mt_discrete *d, mt_combination *c, mt_err *err);
 /* Evaluations that this takes at most, of one combination; 0: nothing, or there is no limit. */
 long mt_discrete_judgement(const mt_discrete *d);
-/* Is a ahead of b? Feasible ones first, by the objectives; the others by squares. */
+/* True where a is ahead of b. Feasible ones first, by the objectives; the others by squares. */
 bool mt_discrete_before(const mt_discrete *d, const mt_combination *a, const mt_combination *b);
 /* Room for n combinations. */
 mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err);

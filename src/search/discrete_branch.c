@@ -167,8 +167,8 @@ static void tape_look(void *context, int task, mt_tape *tape)
     }
 }
 
-/* Is there a certificate for the geometry of a combination that has been judged? Then there is
- * for others. */
+/* Find whether there is a certificate for the geometry of a combination that has been judged;
+ * then there is for others. */
 static mt_status probe(branching *v, mt_err *err)
 {
     const mt_discrete *const d = v->d;

@@ -68,7 +68,7 @@ void mt_discrete_geometry(const mt_discrete_proofs *s, int which, double *lower,
     }
 }
 
-/* Of the geometry of the box? */
+/* True where the proof in the slot is of the geometry of the box. */
 static bool is_of(const mt_discrete_proofs *s, int slot, const double *lower)
 {
     for (int k = 0; k < s->n_shaping; k++) {

@@ -26,7 +26,7 @@ mt_status mt_discrete_proofs_init(mt_discrete_proofs *s, const mt_case *c, mt_ar
                                   mt_err *err);
 /* Accepts a zeroed set. */
 void mt_discrete_proofs_free(mt_discrete_proofs *s);
-/* Is variable i a catalogue that shapes the geometry? */
+/* Whether variable i is a catalogue that shapes the geometry. */
 bool mt_discrete_shapes(const mt_discrete_proofs *s, int i);
 /* How many geometries the catalogues have. The relaxed problem at number `which` of them:
  * lower[n], upper[n]. */

@@ -5,8 +5,8 @@
  * between them, so whatever is excluded is excluded for every combination in it; halving leaves
  * the gaps between values out, and a box of single values is a combination. First: which gap
  * assignments can be met; their designs are judged like any other combination. Then, with the
- * objective of the best as a cap: is there a better one? What is found moves the cap, until
- * nothing is left, which proves the best to be the best, or an effort is spent. Where
+ * objective of the best as a cap: whether there is a better one. What is found moves the cap,
+ * until nothing is left, which proves the best to be the best, or an effort is spent. Where
  * catalogues shape the geometry each of their combinations is asked by itself, if they are not
  * too many.
  */
@@ -207,7 +207,8 @@ static double cap_of(const mt_problem *p, double f, double share)
     return squares ? f * (1.0 - share) * (1.0 - share) : f - (share * fabs(f));
 }
 
-/* Is the best the best, but for a share of its objective? */
+/* Prove the best to be the best, but for a share of its objective; a better one that is found
+ * takes its place. */
 static mt_status improve(prover *v, double share, mt_err *err)
 {
     for (int round = 0; round < ROUNDS; round++) {

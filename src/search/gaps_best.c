@@ -91,7 +91,7 @@ static const double *nearest(const mt_gap_job *j, int k)
     return best < 0 ? NULL : j->slots[best].found.solutions[0].t;
 }
 
-/* Is the later search of the same candidate the better one? */
+/* Whether the later search of the same candidate is the better one. */
 static bool is_better(const mt_gap_job *j, const mt_gap_slot *later, const mt_gap_slot *before)
 {
     if (later->found.n_solutions == 0 || before->found.n_solutions == 0) {

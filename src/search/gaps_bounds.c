@@ -79,7 +79,7 @@ static mt_status look(const mt_proof *proof, const double *lo, const double *hi,
     return MT_OK;
 }
 
-/* Can `below` modes lie below the band, and the others above it? */
+/* True where `below` modes can lie below the band, and the others above it. */
 static bool allows(const mt_proof *proof, const ranges *r, int band, int below)
 {
     const mt_certify_band *const b = &proof->bands[band];

@@ -115,7 +115,7 @@ static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
     memcpy(list[at].below, below, (size_t)p->n_bands * sizeof *below);
 }
 
-/* Is clear i tied to an earlier one? */
+/* Whether clear i is tied to an earlier one. */
 static bool tied_before(const mt_problem *p, int i)
 {
     for (int b = 0; b < p->clears[i].bands.n; b++) {

@@ -152,7 +152,7 @@ static mt_status judge_best(mt_gap_slot *s, mt_workspace *w, bool last, bool *ag
     return MT_OK;
 }
 
-/* Is there something left of a candidate's share for one more round? */
+/* True while enough of a candidate's share is left for one more round. */
 static bool has_round(const mt_gap_job *j, long evals)
 {
     const long most = j->options.max_evals;

@@ -12,10 +12,10 @@ typedef struct mt_hopeless_question {
 } mt_hopeless_question;
 
 /**
- * Does no design within the bounds of a case meet its limits, targets and bands? What little
- * work can say, before a search of thousands is paid for: the frequencies at the soft and the
- * stiff corner of its enclosures (two eigensolves for each configuration with limits), then
- * some boxes of branch and bound. True is proven; false says nothing (a box that cannot be
+ * Whether no design within the bounds of a case meets its limits, targets and bands, as far as
+ * little work can say, before a search of thousands is paid for: the frequencies at the soft
+ * and the stiff corner of its enclosures (two eigensolves for each configuration with limits),
+ * then some boxes of branch and bound. True is proven; false says nothing (a box that cannot be
  * enclosed, no proof asked for). Tolerances of variables are left out: a design meets the
  * limits itself. Fails: MT_E_MEMORY, numerical failures of LAPACK.
  */

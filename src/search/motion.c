@@ -129,8 +129,8 @@ static double base_room(const edge *e, double room)
     return room + (e->sign * (e->log_hz - e->log_base_hz));
 }
 
-/* Is `room` at a position less than the least so far? Of equal ones (both ends of a travel that
- * is alike on either side) the lower position is meant, then the first edge. */
+/* True where `room` at a position is less than the least so far. Of equal ones (both ends of a
+ * travel that is alike on either side) the lower position is meant, then the first edge. */
 static bool is_less(double room, double at, double least, double least_at)
 {
     const bool equal = fabs(room - least) <= EQUAL_ROOM;
@@ -259,7 +259,7 @@ static double cubic_least(double a, double da, double b, double db, double *at)
     return least;
 }
 
-/* Does the interval from i to its neighbour need one more position? *at: where. */
+/* True where the interval from i to its neighbour needs one more position; *at: where. */
 static bool needs_more(const walk *w, int i, double *at)
 {
     const sample *const a = &w->samples[i];

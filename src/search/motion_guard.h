@@ -44,10 +44,10 @@ void mt_guards_ask(const mt_demand *d, mt_analysis_options *opt);
 /* After a solve with gradient. Fails: MT_E_MEMORY, as mt_motion_rate. */
 mt_status mt_guards_read(const mt_guards *g, mt_analysis *a, mt_arena *mem,
                          mt_guard_sample *out, mt_err *err);
-/* Are two positions, h apart, too far from each other? A body or the line of a spring turns
- * by more than a third of a radian, a length changes by as much of itself, or a mode moves,
- * by the slopes at both or as it turned out, by more than a fourth of its distance from what
- * it is compared with (of a fiftieth, where it is nearer). */
+/* True where two positions, h apart, are too far from each other: a body or the line of a
+ * spring turns by more than a third of a radian, a length changes by as much of itself, or a
+ * mode moves, by the slopes at both or as it turned out, by more than a fourth of its distance
+ * from what it is compared with (of a fiftieth, where it is nearer). */
 bool mt_guards_apart(const mt_guards *g, const mt_guard_sample *a, const mt_guard_sample *b,
                      double h);
 /* The middle one of three positions, before and after apart, is another than the cubics through

@@ -153,7 +153,7 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, ans
     }
     a->value = mt_relax_value(w, m, &v);
     memcpy(a->x, w->x, (size_t)w->p->n * sizeof *a->x);
-    /* Does the design hold between the positions of its drives, too? An edge is moved in one
+    /* The design has to hold between the positions of its drives, too. An edge is moved in one
      * position only, which says nothing of the others. */
     if (mt_family_any(w->p) && w->c->below != NULL) {
         bool kept = m->kind != MT_MOVE_EDGE;

@@ -8,7 +8,7 @@
 
 /*
  * Where no design meets all goals: which single number of the question, moved by how little and
- * everything else as it is, would let one exist? A move is a bound of a continuous variable, an
+ * everything else as it is, would let one exist. A move is a bound of a continuous variable, an
  * edge of a band (with its margin), or the target or limit of a goal. For each of them
  *     minimise s  subject to
  *         all bounds and rows of the study, those of the moved number relaxed by s,
@@ -110,8 +110,8 @@ static const double MT_RELAX_MOST = 2.302585092994046;
 /* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too
  * far to be of help. */
 double mt_relax_size(const mt_problem *p, const mt_move *m, double to);
-/* Is a move of this size, with a design of this change, less than what was found for m: by its
- * size or, where sizes are equal, by its change? */
+/* True where a move of this size, with a design of this change, is less than what was found for
+ * m: by its size or, where sizes are equal, by its change. */
 bool mt_relax_is_less(const mt_move *m, double size, double change);
 /* Into m, what is less: the move to `to` with the design x[n]. */
 void mt_relax_keep(mt_move *m, double size, double change, double to, const double *x, int n);
@@ -119,7 +119,7 @@ void mt_relax_keep(mt_move *m, double size, double change, double to, const doub
 void mt_relax_merge(mt_moves *to, const mt_moves *from, int n);
 /* Found ones only, least first, equal ones in the order of the question. */
 void mt_relax_rank(mt_moves *moves);
-/* Is this row of `in` (of the equalities, where eq) the move's? */
+/* Whether this row of `in` (of the equalities, where eq) is the move's. */
 bool mt_relax_is_row(const mt_case *c, const mt_move *m, bool eq, int row);
 
 #endif

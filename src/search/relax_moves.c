@@ -238,7 +238,7 @@ void mt_relax_merge(mt_moves *to, const mt_moves *from, int n)
     }
 }
 
-/* Is a before b? By size, or where both count as equal by the question. */
+/* Whether a comes before b: by size, or where both count as equal by the question. */
 static bool is_before(const mt_move *a, const mt_move *b, bool equal)
 {
     return equal ? a->order < b->order : a->size < b->size;

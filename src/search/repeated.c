@@ -13,7 +13,7 @@ static const double SAME_LIMIT = 1e-9;
  * symmetry. */
 static const double INDEPENDENT = 1e-6;
 
-/* Do they ask the same of modes of one analysis? */
+/* Whether both ask the same of modes of one analysis. */
 static bool alike(const mt_repeated_side *a, const mt_repeated_side *b)
 {
     return a->analysis == b->analysis && a->moves == b->moves &&
@@ -36,7 +36,8 @@ static bool known(const mt_repeated *m, const mt_repeated_side *s)
     return false;
 }
 
-/* Is there a block for the same modes, from the other side? Then that stands for both. */
+/* True where there is a block for the same modes, from the other side; that then stands for
+ * both. */
 static bool joined(mt_repeated *m, const mt_repeated_side *s, int index, int r)
 {
     for (int b = 0; b < m->n_blocks; b++) {
@@ -111,7 +112,7 @@ static mt_status find_blocks(mt_repeated *m, const mt_repeated_side *sides, int 
     return MT_OK;
 }
 
-/* Which rows of the problem do the blocks stand for? */
+/* Find the rows of the problem that the blocks stand for. */
 static void find_rows(mt_repeated *m, const mt_repeated_side *sides, int n)
 {
     for (int i = 0; i < n; i++) {

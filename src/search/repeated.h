@@ -79,7 +79,7 @@ typedef struct mt_repeated {
  */
 mt_status mt_repeated_find(mt_workspace *ws, const double *t, double near, mt_arena *mem,
                            mt_repeated *out, mt_err *err);
-/* Of one problem at one design: are they the same modes at the same limits? */
+/* Of one problem at one design: whether they are the same modes at the same limits. */
 bool mt_repeated_same(const mt_repeated *a, const mt_repeated *b);
 /* The problem with B = 0 in place of the rows replaced: context of the search is m. */
 mt_nlp mt_repeated_nlp(mt_repeated *m);

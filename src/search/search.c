@@ -148,7 +148,8 @@ static bool is_nearer(const stages *s, const mt_nlp_solution *a, const mt_nlp_so
     return a->feasible && a->flat && b->flat && mt_search_nearer(s->first, a->t, b->t);
 }
 
-/* Is `one` the same design as one of the first `kept`? The nearer of two flat ones stays. */
+/* True where `one` is the same design as one of the first `kept`. The nearer of two flat ones
+ * stays. */
 static bool is_twin(const stages *s, int kept, const mt_nlp_solution *one)
 {
     mt_nlp_solution *const all = s->out->solutions;

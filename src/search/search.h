@@ -57,7 +57,7 @@ typedef struct mt_posed_cuts {
     bool holds; /* every limit, at all positions that were looked at */
     long evals;
 } mt_posed_cuts;
-/* Is there anything to judge so? */
+/* Whether there is anything to judge so. */
 bool mt_search_has_positions(const mt_case *c);
 /* Judge the design at t, and add the positions where it misses a limit, but the last time.
  * Fails: as an evaluation, as mt_motion_limit. */
@@ -76,7 +76,7 @@ mt_status mt_search_from(mt_workspace *ws, const double *from, mt_arena *mem,
 mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_result *out,
                          mt_err *err);
 
-/* Are designs at a[n] and b[n] one, as in the search itself? */
+/* Whether designs at a[n] and b[n] are one, as in the search itself. */
 bool mt_search_same(int n, const double *a, const double *b);
 /* search_continuum.c: mt_is_nearer (nlp/merit.h) from the original of the case. */
 bool mt_search_nearer(const mt_case *c, const double *s, const double *t);

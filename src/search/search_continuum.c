@@ -71,7 +71,7 @@ static bool equal(const mt_workspace *ws, const double *a, const double *b)
     return true;
 }
 
-/* Is all that is between solutions i and k as good as they are? */
+/* True where all that is between solutions i and k is as good as they are. */
 static bool connected(continua *c, int i, int k)
 {
     const double *const a = c->out->solutions[i].t;

@@ -38,9 +38,9 @@ typedef struct nearest {
     double close; /* the last of them within this; 0: as any other one */
 } nearest;
 
-/* Is there a change to be made least that is no objective already, with objectives that can be
- * held? A coordinate of the search has its objective, which elsewhere is looked up afterwards;
- * what a misfit leaves open is told as undetermined. */
+/* True where there is a change to be made least that is no objective already, with objectives
+ * that can be held. A coordinate of the search has its objective, which elsewhere is looked up
+ * afterwards; what a misfit leaves open is told as undetermined. */
 static bool applies(const mt_case *c)
 {
     for (int k = 0; k < c->n_aims; k++) {

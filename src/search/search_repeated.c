@@ -48,7 +48,7 @@ typedef struct refine {
     mt_stop stop;
 } refine;
 
-/* Would `more` evaluations be too many? */
+/* Whether `more` evaluations would be too many. */
 static bool spent(const refine *w, long more)
 {
     return w->evals + more > w->most;
@@ -104,7 +104,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     return fatal ? mt_fail(err, rc, "%s", own.text) : MT_OK;
 }
 
-/* Is f a gain? Then the design goes into s. */
+/* True where f is a gain; then the design goes into s. */
 static bool take_better(const refine *w, const double *t, double f, mt_nlp_solution *s)
 {
     const bool better = f < s->f - GAIN * fabs(s->f);

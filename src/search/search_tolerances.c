@@ -68,7 +68,7 @@ static directions directions_of(const mt_nlp_result *found)
                         found->undetermined_effect};
 }
 
-/* Has the budget less left? */
+/* True where the budget has less than `evals` left. */
 static bool lacks(const rounds *r, long evals)
 {
     const long most = r->c->search.max_evaluations;
@@ -98,7 +98,7 @@ static mt_status judge(rounds *r, int i, bool last, mt_err *err)
     return MT_OK;
 }
 
-/* Judge what is open; is any of it still? */
+/* Judge what is open; *any: whether any of it is open still. */
 static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
 {
     *any = false;
