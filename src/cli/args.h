@@ -135,7 +135,7 @@ extern const mt_command mt_commands[MT_CMD_IDS];
 int mt_command_named(const char *name);
 extern const mt_exit mt_exits[MT_EXITS];
 
-/* Does the command take the option, or the program where it is MT_CMD_NONE? */
+/* Whether the command takes the option, or the program where it is MT_CMD_NONE. */
 bool mt_option_is_of(int option, int command);
 
 /* Which of them a command takes says mt_format_of. */

@@ -300,7 +300,8 @@ static void put_file(output *to, const char *path, const char *kind,
     }
 }
 
-/* The same, at the same place of the same file? The paths lead there in their own ways. */
+/* True where both say the same, at the same place of the same file. The paths lead there in
+ * their own ways. */
 static bool is_same(const mt_diagnostics *a, int i, const mt_diagnostics *b, int k)
 {
     if (mt_diagnostics_line(a, i) != mt_diagnostics_line(b, k) ||

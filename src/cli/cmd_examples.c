@@ -6,8 +6,8 @@
 #include "cli/cli.h"
 #include "cli/shipped.h"
 
-/* Does the text of a file name the other one, be it by its path from its own folder, or, a
- * catalogue of aircraft, by one of these? */
+/* True where the text of a file names the other one, be it by its path from its own folder, or,
+ * a catalogue of aircraft, by one of these. */
 static bool names(const mt_shipped *file, const mt_shipped *other)
 {
     const char *const base = strrchr(other->path, '/') + 1;

@@ -136,8 +136,8 @@ static int answer(job *j)
     return late && ended == MT_EXIT_INTERRUPTED ? MT_EXIT_GOALS : ended;
 }
 
-/* Is there a design that was analysed anew and meets all goals? A fit that was cut has not
- * converged, whatever its misfit. */
+/* True where there is a design that was analysed anew and meets all goals. A fit that was cut
+ * has not converged, whatever its misfit. */
 static bool is_met_by_best(const mt_result *r)
 {
     const mt_recommendation *const best = r->recommendations;

@@ -22,8 +22,8 @@ typedef struct subject {
     mt_scene_ask *asks;
 } subject;
 
-/* Does the file say that it is a result? What is wrong with its text is told by who reads it
- * whole. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+/* *is: whether the file says that it is a result. What is wrong with its text is told by who
+ * reads it whole. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
 static mt_status is_result(const char *path, bool *is, mt_err *err)
 {
     static const char format[] = "modetune-result/";

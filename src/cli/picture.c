@@ -179,7 +179,7 @@ static void put_line(const picture *p, const double a[2], const double b[2], con
                  a[0], a[1], b[0], b[1], colour, width);
 }
 
-/* Would a name there lie on another one? */
+/* Whether a name there would lie on another one. */
 static bool is_taken(const picture *p, double x, double y, double width)
 {
     bool taken = false;

@@ -111,7 +111,7 @@ static int clash(const place *a, const place *b)
     return MT_EXIT_INPUT;
 }
 
-/* Can a result be written there, beside an index where there are several? */
+/* Check that a result can be written there, beside an index where there are several. */
 static int check_place(place *p, bool index)
 {
     struct stat link;

@@ -7,8 +7,8 @@
 #include "io/io.h"
 #include "result/result.h"
 
-/* Before anything is run: has every study a folder of its own? Returns MT_EXIT_DONE, or the
- * exit status, everything said. */
+/* Check, before anything is run, that every study has a folder of its own. Returns
+ * MT_EXIT_DONE, or the exit status, everything said. */
 int mt_save_plan(const mt_args *args);
 
 /* The folder for the results of all studies, and that for the result of one of them (heap, NULL

@@ -11,7 +11,7 @@ typedef struct mt_shapes {
     bool sensors;
     int n;             /* channels; 0: nothing */
     const char **name; /* [n] "c1.y", "crank.rz" */
-    bool *turns;       /* [n] is it an angle? */
+    bool *turns;       /* [n] it is an angle */
     double *value;     /* n x modes, mass-normalised */
     double length_m;   /* what an angle is compared with a displacement by */
     double *largest;   /* [modes] displacement of any body, or what a sensor reads */

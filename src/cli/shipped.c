@@ -148,7 +148,7 @@ mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
                          kind->what, name, near);
 }
 
-/* Is there something else under the path? *same: the very bytes. */
+/* Fails where there is something else under the path; *same: the very bytes are there. */
 static mt_status look(const char *path, const mt_shipped *file, bool *same, mt_err *err)
 {
     mt_file there = {.bytes = NULL};

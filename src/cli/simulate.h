@@ -46,7 +46,7 @@ typedef struct mt_sim_request {
  * (two), MT_E_MEMORY. */
 mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_arena *mem,
                              const char **name, mt_err *err);
-/* Value of --start for the joint of this name; *given: is there one? */
+/* Value of --start for the joint of this name; *given: whether there is one. */
 mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint, bool *given,
                           double *value, mt_err *err);
 /* Everything else, for a system; profile: of --vibration, or NULL. Fails: MT_E_USAGE,

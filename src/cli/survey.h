@@ -38,8 +38,8 @@ mt_status mt_survey_take(const mt_subject *s, int c, const char *parameters, int
 void mt_survey_free(mt_survey *v);
 /* Hz for one per cent more of parameter k, mode i. */
 double mt_survey_per_percent(const mt_survey *v, int i, int k);
-/* Is 1 % more of parameter k what people are told? Of a coordinate at or below 0 it means
- * nothing: they are told of 1 mm more. */
+/* True where 1 % more of parameter k is what people are told. Of a coordinate at or below 0 it
+ * means nothing: they are told of 1 mm more. */
 bool mt_survey_has_percent(const mt_survey *v, int k);
 /* That [Hz], rounding as 0. */
 double mt_survey_shown(const mt_survey *v, int i, int k);

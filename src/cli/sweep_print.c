@@ -49,7 +49,7 @@ static double shown_ratio(const mt_sweep_view *v, bool angle, double ratio)
     return shown(v, angle, mt_unit_to_si(shown_in(v, driven(v)->angle), tidy(ratio)));
 }
 
-/* Does what holds the joint push along an angle? */
+/* True where what holds the joint pushes along an angle. */
 static bool hold_is_moment(const mt_sweep_view *v)
 {
     if (!v->sys->trim) {

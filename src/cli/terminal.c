@@ -87,7 +87,8 @@ int mt_exit_worse(int a, int b)
     return lost ? MT_EXIT_SYSTEM : a > b ? a : b;
 }
 
-/* Is standard output (descriptor 1) or error (2) a terminal where colour is welcome? */
+/* True where standard output (descriptor 1) or error (2) is a terminal where colour is
+ * welcome. */
 static bool takes_colour(int descriptor)
 {
     const char *const refused = getenv("NO_COLOR");

@@ -16,7 +16,7 @@ enum {
     MT_EXIT_INTERRUPTED = 130
 };
 int mt_exit_of(mt_status status);
-/* Has anything ended as MT_E_MEMORY so far? */
+/* Whether anything has ended as MT_E_MEMORY so far. */
 bool mt_exit_without_memory(void);
 /* The worse of two: 4 (something is lost), then 130, 3, 2, 1, 0. */
 int mt_exit_worse(int a, int b);
@@ -49,7 +49,7 @@ void mt_terminal_diagnostics(const char *lines);
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
 /* Columns of the terminal that standard output is; 0: it is none, or does not say. */
 int mt_terminal_width(void);
-/* Is standard error a terminal? */
+/* Whether standard error is a terminal. */
 bool mt_terminal_is_watched(void);
 /* Lines to standard error as they are. */
 void mt_terminal_say(const char *text, size_t length);
@@ -67,7 +67,7 @@ void mt_terminal_ignore_signals(void);
  */
 void mt_terminal_hold_signals(void);
 void mt_terminal_release_signals(void);
-/* Has one been noted since the program began? */
+/* Whether one has been noted since the program began. */
 bool mt_terminal_is_stopped(void);
 /* After so many seconds from now (0: never, at most MT_SECONDS_MOST) mt_terminal_wish wishes as
  * after a signal. While no worker runs. */

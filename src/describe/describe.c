@@ -113,7 +113,7 @@ static mt_status describe_objectives(const mt_workspace *fresh, double motion_ro
     return MT_OK;
 }
 
-/* Does the fresh objective agree with the one that the search ended with? */
+/* Warn where the fresh objective does not agree with the one that the search ended with. */
 static mt_status compare(const mt_workspace *fresh, const mt_design *design, double motion_room,
                          mt_result *result, mt_err *err)
 {

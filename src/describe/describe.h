@@ -76,7 +76,8 @@ double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const
 /* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL:
  * memory. */
 const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *mem);
-/* Is it certain enough which mode the demand means? A frequency that all candidates have is. */
+/* True where it is certain enough which mode the demand means. A frequency that all candidates
+ * have is. */
 bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d);
 /* describe_responses.c: likewise. */
 mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
@@ -107,8 +108,8 @@ mt_status mt_describe_mac(const mt_problem *p, int view, mt_analysis *a, int lis
  */
 const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
                                      const char *configuration, mt_arena *mem);
-/* describe_withdraw.c: does a fresh analysis disagree at any design of the result? Then its
- * certificates and tolerance boxes are withdrawn, and such a design is graded "not
+/* describe_withdraw.c: true where a fresh analysis disagrees at any design of the result. Then
+ * its certificates and tolerance boxes are withdrawn, and such a design is graded "not
  * verified". */
 bool mt_describe_is_doubted(const mt_result *result);
 mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
@@ -155,8 +156,8 @@ mt_status mt_describe_own(const mt_study *study, mt_result *result, mt_err *err)
 mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
     MT_PRINTF(3, 4);
 
-/* Is the design stationary for its objective, as far as that was asked? A residual above this
- * is told. */
+/* True where the design is stationary for its objective, as far as that was asked. A residual
+ * above this is told. */
 bool mt_describe_is_optimum(const mt_recommendation *rec);
 
 #endif

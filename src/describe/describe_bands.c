@@ -42,8 +42,8 @@ static double margin(const mt_band *band, bool lower)
     return beyond(band, lower, lower ? band->lower_hz : band->upper_hz);
 }
 
-/* Is the lower edge the one that a mode at hz is judged by? It is the nearer one; where a band
- * has been cut off to a point, the one that is left sooner. */
+/* True where the lower edge is the one that a mode at hz is judged by. It is the nearer one;
+ * where a band has been cut off to a point, the one that is left sooner. */
 static bool by_lower_edge(const mt_band *band, double hz)
 {
     if (!(band->base_lower_hz > 0.0)) {

@@ -13,7 +13,7 @@ static bool proves(const mt_discrete_report *report)
     return report->all && !report->mixed;
 }
 
-/* Does branch and bound exclude every combination? */
+/* Whether branch and bound excludes every combination. */
 static bool excluded(const mt_discrete_report *report)
 {
     return report->settled && report->n_kinds == 0 && report->feasible == 0;

@@ -187,8 +187,8 @@ static double original_hz(const mt_recommendation *baseline, const mt_result_fre
     return baseline == NULL ? f->recommended_hz : nan("");
 }
 
-/* The analysis has just been made here, with its own count: does it agree? From now on it
- * counts as the study does, as far as it can. */
+/* Note where the analysis that has just been made here, with its own count, disagrees. From now
+ * on it counts as the study does, as far as it can. */
 static mt_status verify(listing *l, mt_err *err)
 {
     const mt_analysis *const had = l->view->analysis;

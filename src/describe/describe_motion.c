@@ -100,8 +100,8 @@ static void find_crossing(described *d, const int *below)
     }
 }
 
-/* Do the named positions keep their bands with one number of modes below each? If so the motion
- * is followed. */
+/* Find whether the named positions keep their bands with one number of modes below each. If so
+ * the motion is followed. */
 static mt_status examine(described *d, mt_err *err)
 {
     mt_workspace *const fresh = d->fresh;

@@ -7,9 +7,9 @@
 #include "base/arena.h"
 
 /*
- * Is a point stationary where eigenvalues repeat? For minimise f under rows c_i (>= 0, or = 0)
- * and symmetric matrices B_b(t) that must stay positive semidefinite, all of them active at t,
- * stationarity is
+ * Whether a point is stationary where eigenvalues repeat. For minimise f under rows c_i (>= 0,
+ * or = 0) and symmetric matrices B_b(t) that must stay positive semidefinite, all of them
+ * active at t, stationarity is
  *
  *     grad f = sum_i x_i grad c_i + sum_b <U_b, dB_b>,   x_i >= 0 (free for an equality),
  *         U_b positive semidefinite.

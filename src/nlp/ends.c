@@ -90,7 +90,7 @@ static double apart(int n, const double *a, const double *b, const mt_nlp_result
     return mt_max_abs(n, d);
 }
 
-/* Would Newton from b, which is not polished, end where it does, or did, from a? */
+/* True where Newton from b, which is not polished, would end where it does, or did, from a. */
 static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_local *b,
                   const mt_nlp_result *directions, double *d)
 {

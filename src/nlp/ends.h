@@ -20,9 +20,9 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once);
  * at one that is polished are dropped. Returns how many. */
 int mt_nlp_ends_choose(mt_nlp_engine *e, mt_nlp_ends *all, const mt_nlp_result *directions,
                        mt_nlp_local **chosen);
-/* Did Newton come to rest there? */
+/* Whether Newton came to rest there. */
 bool mt_nlp_came_to_rest(const mt_nlp_local *s);
-/* Ends nearer than this are one; does the problem ask for isolated roots? */
+/* Ends nearer than this are one; then, whether the problem asks for isolated roots. */
 double mt_nlp_same_distance(const mt_nlp_engine *e);
 bool mt_nlp_seeks_roots(const mt_nlp_engine *e);
 

@@ -218,7 +218,7 @@ static void shift(const mt_nlp_engine *e, mt_nlp_point *p)
     }
 }
 
-/* Does this status of the callback end the search? */
+/* Whether this status of the callback ends the search. */
 static bool is_final(mt_nlp_engine *e, mt_status rc, const mt_err *here)
 {
     if (rc == MT_E_INTERRUPTED) {

@@ -64,8 +64,8 @@ typedef enum mt_nlp_aim { MT_NLP_OBJECTIVE, MT_NLP_RESIDUALS, MT_NLP_SQUARES } m
 mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_options *opt,
                              mt_err *err);
 void mt_nlp_engine_free(mt_nlp_engine *e);
-/* Is all well? A failure (memory, linear algebra) ends the search, and mt_nlp_solve returns
- * it. */
+/* True where all is well. A failure (memory, linear algebra) ends the search, and mt_nlp_solve
+ * returns it. */
 bool mt_nlp_ok(mt_nlp_engine *e, mt_status rc);
 /* The same of all requests to mem: asked once, before what they were for is used. */
 bool mt_nlp_has_room(mt_nlp_engine *e, mt_arena *mem);

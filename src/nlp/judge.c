@@ -116,7 +116,7 @@ static void rank_equals(mt_nlp_ends *all)
     }
 }
 
-/* Is a as good as b, as far as a search tells? */
+/* True where a is as good as b, as far as a search tells. */
 static bool is_equal(const mt_nlp_point *a, const mt_nlp_point *b)
 {
     const bool feasible = mt_nlp_feasible(a);

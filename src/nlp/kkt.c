@@ -58,8 +58,8 @@ double mt_nlp_row_tol(const mt_nlp_engine *e, int i)
                           : q->in_tol[q->next_of[in - q->n_in]];
 }
 
-/* Has a row among those before it the same slopes? Of modes that stay together by symmetry one
- * is enough. */
+/* True where a row among those before it has the same slopes. Of modes that stay together by
+ * symmetry one is enough. */
 static bool is_twin(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a,
                     int row)
 {

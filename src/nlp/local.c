@@ -123,7 +123,7 @@ static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
     return moved;
 }
 
-/* Do rows change places at p, on their limit? */
+/* Whether rows change places at p, on their limit. */
 static bool is_crossing(const mt_nlp_engine *e, const mt_nlp_point *p)
 {
     for (int i = 0; i < e->nlp->n_next; i++) {

@@ -36,7 +36,7 @@ void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s);
  * are read, and the record is taken only where they are those that it was written with. False:
  * it is not, and s is as it was. */
 bool mt_nlp_local_tape(mt_nlp_engine *e, mt_nlp_local *s, mt_tape *tape);
-/* Is it worth Newton's method before a restoration? */
+/* Whether it is worth Newton's method before a restoration. */
 bool mt_nlp_nearly_feasible(const mt_nlp_point *p);
 /* The point of it that counts. */
 const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s);

@@ -24,7 +24,7 @@ typedef struct mt_missed {
 void mt_miss(mt_missed *m, double short_of, double tolerance);
 mt_missed mt_missed_of(int n_eq, const double *eq, const double *eq_tol, int n_in,
                        const double *in, const double *in_tol);
-/* Does a search hold its rows? It has to reach their tolerances themselves. */
+/* True where a search holds its rows. It has to reach their tolerances themselves. */
 bool mt_is_held(double violation);
 
 /* What designs are ranked by. */
@@ -47,16 +47,17 @@ typedef struct mt_merit {
  * are smaller); NaN is neither less nor more. */
 int mt_compare(double a, double b, double equal);
 
-/* Is a better than b? One that meets all goals is better than one that does not, of two that do
- * not the one that misses less; then the objectives decide in their order, each as mt_compare
- * has it. */
+/* True where a is better than b. One that meets all goals is better than one that does not, of
+ * two that do not the one that misses less; then the objectives decide in their order, each as
+ * mt_compare has it. */
 bool mt_merit_before(const mt_merit *a, const mt_merit *b, double equal);
 
 /* The change of the design t[n] from the original, 1/2 sum w_j (t_j - origin_j)^2; weight NULL:
  * 1 each. */
 double mt_change(int n, const double *origin, const double *weight, const double *t);
-/* Of two designs s[n] and t[n] that are as good, does s count? The one of less change does; of
- * those that mirror each other the one with less of the first coordinate that differs. */
+/* Of two designs s[n] and t[n] that are as good: true where s counts. The one of less change
+ * does; of those that mirror each other the one with less of the first coordinate that
+ * differs. */
 bool mt_is_nearer(int n, const double *origin, const double *weight, const double *s,
                   const double *t);
 

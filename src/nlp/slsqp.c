@@ -205,7 +205,7 @@ static bool run_once(slsqp *w, double radius)
     return !w->failed && !w->e->ended;
 }
 
-/* Did the run stop at the box and not at the bounds of the problem? */
+/* Whether the run stopped at the box and not at the bounds of the problem. */
 static bool at_box(const slsqp *w)
 {
     const mt_nlp *const q = w->e->nlp;

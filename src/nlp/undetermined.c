@@ -400,7 +400,7 @@ void mt_nlp_drop_roomless(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_
     out->n_undetermined = kept;
 }
 
-/* Is variable j one of the directions by itself? */
+/* Whether variable j is one of the directions by itself. */
 static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
 {
     for (int k = 0; k < u->n_undetermined; k++) {
@@ -411,10 +411,10 @@ static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
     return false;
 }
 
-/* Is a point as good as before? Nothing may be paid for an undetermined direction: not the
- * demands, not the objective beyond what counts as unchanged, not that the point is a local
- * solution. A compromise may be farther from the demands by the tolerances together: that much
- * the directions may do by what they are. */
+/* True where a point is as good as before. Nothing may be paid for an undetermined direction:
+ * not the demands, not the objective beyond what counts as unchanged, not that the point is a
+ * local solution. A compromise may be farther from the demands by the tolerances together: that
+ * much the directions may do by what they are. */
 static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
                     const mt_nlp_point *before)
 {

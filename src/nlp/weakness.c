@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Is a solution a double root, or a point on a curve of solutions? Both have weak directions v,
- * |C v| <= sqrt(tolerance) in every active constraint C t = 0: a step of sqrt(tolerance) along
- * v is not seen. More of them than there are variables without a constraint decide nothing yet:
- * step h = 10 sqrt(tolerance) along v and go back to the constraints (least squares, steps of
- * least norm).
+ * Whether a solution is a double root, or a point on a curve of solutions. Both have weak
+ * directions v, |C v| <= sqrt(tolerance) in every active constraint C t = 0: a step of
+ * sqrt(tolerance) along v is not seen. More of them than there are variables without a
+ * constraint decide nothing yet: step h = 10 sqrt(tolerance) along v and go back to the
+ * constraints (least squares, steps of least norm).
  *
  *     stays away:                     a curve of solutions
  *     returns, and |C v| grew with h: a double root (the constraints are quadratic along v)
