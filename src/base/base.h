@@ -23,8 +23,8 @@ mt_status mt_check_argument(const void *argument, const char *function, const ch
 #define MT_NOT_NULL(argument, err) \
     MT_TRY(mt_check_argument((argument), __func__, #argument, (err)))
 
-/* Does this failure end the work, instead of telling something about what was tried (a design
- * without an equilibrium)? Memory that is out must never be taken for an answer. */
+/* True where this failure ends the work, instead of telling something about what was tried (a
+ * design without an equilibrium). Memory that is out must never be taken for an answer. */
 static inline bool mt_is_final(mt_status rc)
 {
     return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;

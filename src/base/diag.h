@@ -40,10 +40,10 @@ mt_diags mt_diags_default(mt_arena *mem);
 void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 /* An error of structure: a schema (types, names of members, choices) sees it as well. */
 void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
-/* Will another problem be kept? */
+/* Whether another problem will be kept. */
 bool mt_diag_has_room(const mt_diags *d);
-/* Is a suggestion ("did you mean") still worth its search? For the first MT_DIAG_SUGGESTIONS
- * errors. */
+/* True where a suggestion ("did you mean") is still worth its search: for the first
+ * MT_DIAG_SUGGESTIONS errors. */
 bool mt_diag_may_suggest(const mt_diags *d);
 void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 

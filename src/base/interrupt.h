@@ -44,7 +44,8 @@ void mt_interrupt_init(mt_interrupt *i, int (*wish)(void *context), void *contex
                        mt_interrupt *whole);
 /* The phase that begins. */
 void mt_interrupt_enter(mt_interrupt *i, int phase, bool makes_ready);
-/* Is the next unit of work to be left undone? Then the phase is cut. NULL: no. Any thread. */
+/* True where the next unit of work is to be left undone; then the phase is cut. NULL: false.
+ * Any thread. */
 bool mt_interrupted(mt_interrupt *i);
 /* The same as a status: MT_E_INTERRUPTED. */
 mt_status mt_interrupt_check(mt_interrupt *i, mt_err *err);
@@ -54,7 +55,7 @@ bool mt_interrupt_is_cut(const mt_interrupt *i, int phase);
 /* Why anything is cut, an mt_cause: of the outermost work. NULL:
  * MT_CAUSE_INTERRUPT. */
 int mt_interrupt_cause(const mt_interrupt *i);
-/* Is any phase cut? */
+/* Whether any phase is cut. */
 bool mt_interrupt_any(const mt_interrupt *i);
 
 #endif

@@ -79,7 +79,7 @@ void mt_progress_end(mt_progress *p, bool outermost);
 void mt_progress_evaluated(mt_progress *p);
 void mt_progress_solved(mt_progress *p, long n);
 void mt_progress_boxed(mt_progress *p);
-/* Is the phase one that looks for designs? */
+/* Whether the phase is one that looks for designs. */
 bool mt_progress_seeks(mt_progress *p);
 /* A design that meets all goals has the value f, which is made least, of an objective, shown
  * as `value`. */

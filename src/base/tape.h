@@ -28,7 +28,7 @@ typedef struct mt_tape {
 
 mt_tape mt_tape_of(const uint64_t *words, size_t n); /* to be read */
 void mt_tape_free(mt_tape *t);
-/* Was all of it read, and no more? */
+/* Whether all of it was read, and no more. */
 bool mt_tape_is_read(const mt_tape *t);
 
 void mt_tape_numbers(mt_tape *t, size_t n, double *x);

@@ -37,8 +37,8 @@ int mt_text_distance(const char *a, const char *b, int most);
  * + length / 4 and below the length, so that something of the name is left). The first of
  * several equally near. */
 const char *mt_text_nearest(const char *name, const char *const *names, int n);
-/* Does `name` match `pattern`, where * stands for any run of characters and ? for one? (Bytes:
- * names are ASCII.) */
+/* True where `name` matches `pattern`, in which * stands for any run of characters and ? for
+ * one. (Bytes: names are ASCII.) */
 bool mt_text_matches(const char *pattern, const char *name);
 /* What a path ends with, "beam.json" of "studies/beam.json"; "" after a last slash; NULL of
  * NULL. */

@@ -42,8 +42,8 @@ bool mt_file_write(int fd, const char *bytes, size_t length);
 mt_status mt_file_read(const char *path, const char *root, size_t limit, mt_file *out,
                        mt_err *err);
 void mt_file_free(mt_file *f);
-/* Is it sure that the name leads to nothing? False for what is there, and for what cannot be
- * told. */
+/* True where it is sure that the name leads to nothing; false for what is there, and for what
+ * cannot be told. */
 bool mt_file_absent(const char *path);
 /* The system's error number as a failure of the path: MT_E_SYSTEM, or MT_E_MEMORY. */
 mt_status mt_file_failed(const char *path, int code, mt_err *err);

@@ -20,9 +20,9 @@ mt_status mt_files_read(const mt_files *files, const char *path, const char *roo
 /* A path without "." and "a/.." and doubled slashes, by its text alone; heap, NULL when out of
  * memory. */
 char *mt_files_normal(const char *path);
-/* *out: is it among those that are given by their texts? Fails: MT_E_MEMORY. */
+/* *out: whether it is among those that are given by their texts. Fails: MT_E_MEMORY. */
 mt_status mt_files_give(const mt_files *files, const char *path, bool *out, mt_err *err);
-/* Is it sure that the path leads to nothing there? */
+/* Whether it is sure that the path leads to nothing there. */
 bool mt_files_lack(const mt_files *files, const char *path);
 
 #endif

@@ -43,8 +43,8 @@ mt_status mt_folder_lock(const char *folder, bool shared, int patience_ms, int *
                          mt_err *err);
 void mt_folder_unlock(int lock);
 
-/* Is a replacement of the files that `last` decides about under way in the folder, or was it
- * cut? */
+/* True where a replacement of the files that `last` decides about is under way in the folder,
+ * or was cut. */
 bool mt_folder_unfinished(const char *folder, const char *last);
 
 #endif

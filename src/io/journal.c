@@ -248,7 +248,8 @@ mt_status mt_journal_read(mt_journal *j, const char *path, bool *foreign, mt_err
     return torn ? MT_OK : read_records(j, s, records, err);
 }
 
-/* Is the file held by another run? Where the file system knows no locks it is not. */
+/* True where the file is held by another run. Where the file system knows no locks it is
+ * not. */
 static bool is_held(int fd)
 {
     while (flock(fd, LOCK_EX | LOCK_NB) != 0) {

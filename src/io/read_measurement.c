@@ -133,7 +133,7 @@ mt_status mt_measuring_add(mt_measuring *m, mt_measured_response *r,
     return mt_arena_check(m->mem, m->err);
 }
 
-/* Does the text begin as a universal file, with a line "-1"? */
+/* True where the text begins as a universal file, with a line "-1". */
 static bool is_universal(const char *s)
 {
     s += strspn(s, " \t\r\n");

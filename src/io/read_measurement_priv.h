@@ -39,7 +39,7 @@ mt_measured_response *mt_measuring_response(mt_measuring *m);
 typedef struct mt_measured_labels {
     int numerator; /* codes of what is measured */
     int denominator;
-    bool turns[2]; /* is that about an axis: numerator, denominator */
+    bool turns[2]; /* it is about an axis: numerator, denominator */
     const char *numerator_unit;
     const char *denominator_unit;
     double length; /* so many of the file's are a metre, by dataset 164; NaN: it has none */

@@ -92,7 +92,7 @@ static bool is_delimiter(const char *s)
     return s[0] == '-' && s[1] == '1' && s[2 + strspn(s + 2, " \t")] == '\0';
 }
 
-/* Is the line that `at` is in, from here on, a delimiter? It is not changed. */
+/* True where the line that `at` is in, from here on, is a delimiter. It is not changed. */
 static bool at_delimiter(const mt_measuring *m)
 {
     const char *s = m->at + strspn(m->at, " \t"); /* a NUL ends the text */

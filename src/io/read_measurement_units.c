@@ -66,7 +66,8 @@ static bool is_none(const char *label)
     return false;
 }
 
-/* Is the label a unit of top/bottom (bottom NULL: of top), by any reading? What it is worth. */
+/* True where the label is a unit of top/bottom (bottom NULL: of top), by any reading; *factor:
+ * what it is worth. */
 static bool is_unit_of(const char *label, const quantity *top, const quantity *bottom,
                        double *factor)
 {

@@ -16,7 +16,8 @@
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
                          mt_diagnostics *messages, mt_err *err);
 
-/* Is the document an object? Where it does not say that it is a result, that is noted. */
+/* True where the document is an object. Where it does not say that it is a result, that is
+ * noted. */
 bool mt_result_check_format(mt_reader *r);
 
 #endif

@@ -15,7 +15,8 @@ enum { OBJECTIVE_KEYS(MT_STUDY_KEY_ENUM) OBJECTIVE_KEY_COUNT };
 static const mt_key KEYS[] = {OBJECTIVE_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_objective_keys = {"objective", KEYS, OBJECTIVE_KEY_COUNT};
 
-/* Is it another word for one of the objectives ("weight"), and no parameter? Noted. */
+/* True where it is another word for one of the objectives ("weight"), and no parameter.
+ * Noted. */
 static bool is_other_word(mt_study_reader *s, mt_addr value, const char *text)
 {
     mt_objective_type types[MT_OBJECTIVE_TYPE_COUNT];

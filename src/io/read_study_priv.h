@@ -40,11 +40,11 @@ typedef struct mt_study_object {
 } mt_study_object;
 bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table *table,
                           mt_study_object *out);
-/* Is the member there, be it of a wrong type? Then its address, else the object's. */
+/* Whether the member is there, be it of a wrong type; then its address, else the object's. */
 bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key);
 mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key);
-/* Which one of n members (neighbours in the table, from `first`) is there? MT_ABSENT where none
- * or several are (noted). */
+/* The one of n members (neighbours in the table, from `first`) that is there; MT_ABSENT where
+ * none or several are (noted). */
 int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n);
 
 /* A number; expressions are evaluated at the original design. NaN where absent or wrong

@@ -39,7 +39,8 @@ const mt_key_table mt_study_tail_keys = {"tail_rotor", TAIL, TAIL_KEY_COUNT};
 
 static const double RPM_PER_HZ = 60.0;
 
-/* Does the text multiply by rpm, as speeds in Hz do ("258*rpm", or meant so: "258 rpm")? */
+/* True where the text multiplies by rpm, as speeds in Hz do ("258*rpm", or meant so: "258
+ * rpm"). */
 static bool times_rpm(const char *text)
 {
     static const char RPM[] = "rpm";

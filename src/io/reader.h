@@ -109,12 +109,12 @@ void mt_reader_judge_as(mt_reader *r, const char *name, mt_addr value, double nu
 /* A doubt of this name: kept for the file's list, or warned of unless the file accepts it. */
 void mt_reader_doubt(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
     MT_PRINTF(4, 5);
-/* Is the document's "format" this one? Another text is noted, with what the file then is not
- * ("this is no study file"), before its members are held against the wrong table; what is no
- * text, or not there, the table of keys will tell. */
+/* True where the document's "format" is this one. Another text is noted, with what the file
+ * then is not ("this is no study file"), before its members are held against the wrong table;
+ * what is no text, or not there, the table of keys will tell. */
 bool mt_reader_format(mt_reader *r, const char *format, const char *not_this);
-/* Is the value of this type? Notes it where not ("must be a number or an expression, not a
- * list"). */
+/* True where the value is of this type; noted where not ("must be a number or an expression,
+ * not a list"). */
 bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);
 
 /*

@@ -31,11 +31,11 @@ mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *na
  * digest; else nothing. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out,
                                 mt_err *err);
-/* Is this a result that was written as a folder, and still called so? A copy under another name
- * belongs to nothing. */
+/* True where this is a result that was written as a folder, and still called so. A copy under
+ * another name belongs to nothing. */
 bool mt_result_has_folder(const char *path, const mt_result *result);
-/* Do the files beside such a result, as far as they are there, belong to it? sha256: of its own
- * bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
+/* Whether the files beside such a result, as far as they are there, belong to it. sha256: of
+ * its own bytes. Fails: MT_E_INPUT where they do not, MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_result *result,
                                  mt_err *err);
 

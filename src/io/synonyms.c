@@ -119,7 +119,7 @@ static bool plain(const char *word, char *out)
     return true;
 }
 
-/* Does it stand among the words, as a whole? */
+/* Whether it stands among the words, as a whole. */
 static bool has(const char *words, const char *word)
 {
     const size_t n = strlen(word);
@@ -131,7 +131,7 @@ static bool has(const char *words, const char *word)
     return false;
 }
 
-/* "pin_joint" says no more than "pin". Is there something to leave out? */
+/* "pin_joint" says no more than "pin": true where there was something to leave out. */
 static bool shorten(char *word)
 {
     static const char *const of[] = {"_joint", "_spring", "_section"};

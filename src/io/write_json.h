@@ -48,7 +48,8 @@ void mt_json_put_bool(mt_json_writer *w, const char *name, bool value);
 /* Text, escaped; NULL becomes null. Bytes are taken as UTF-8; ill-formed ones become U+FFFD. */
 void mt_json_put_string(mt_json_writer *w, const char *name, const char *value);
 void mt_json_put_null(mt_json_writer *w, const char *name);
-/* Everything closed, nothing misused, memory held out? Adds the final line feed. */
+/* Adds the final line feed. True where everything is closed, nothing was misused, and memory
+ * held out. */
 bool mt_json_done(mt_json_writer *w);
 
 /* The number as mt_json_put_number writes it; "null" where it is not finite. Returns buffer. */

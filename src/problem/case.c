@@ -178,7 +178,7 @@ int mt_case_rows_res(const mt_case *c)
     return mt_objective_is(c->aims[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;
 }
 
-/* Is a misfit among the objectives before the present one? */
+/* Whether a misfit is among the objectives before the present one. */
 static bool misfit_held(const mt_case *c)
 {
     for (int k = 0; k < c->stage; k++) {

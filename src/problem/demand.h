@@ -6,12 +6,12 @@
 
 struct mt_shaken_value;
 
-/* Does it limit the frequency of a mode by its index? Those are sorted: what holds for one
- * holds for all beyond it. */
+/* True where it limits the frequency of a mode by its index. Those are sorted: what holds for
+ * one holds for all beyond it. */
 bool mt_demand_is_frequency(const mt_demand *d);
-/* Is the last coordinate that of the objective "vibration", and given? */
+/* Whether the last coordinate is that of the objective "vibration", and given. */
 bool mt_shaken_given(const mt_workspace *w);
-/* Does it speak of a mode, by index or name? */
+/* Whether it speaks of a mode, by index or name. */
 bool mt_demand_is_modal(const mt_demand *d);
 /* Values (and gradients, unless NULL where out holds none) of one demand after its view has
  * been solved; rows as numbered. *value (may be NULL): the number that is held (infinite of a

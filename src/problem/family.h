@@ -48,7 +48,7 @@ mt_status mt_cut_init(const mt_problem *p, int family, double position, mt_cut *
                       mt_err *err);
 /* Accepts a zeroed one. */
 void mt_cut_free(mt_cut *cut);
-/* Does a family keep clear of bands in several positions? */
+/* Whether a family keeps clear of bands in several positions. */
 bool mt_family_any(const mt_problem *p);
 /* Two demands are one limit, of one goal or of goals that ask the same elsewhere. */
 bool mt_family_same_limit(const mt_demand *a, const mt_demand *b);
@@ -60,7 +60,7 @@ bool mt_family_limits_first(const mt_problem *p, const mt_demand *d);
 double mt_family_position(const mt_analysis *a);
 /* Family that a view belongs to; -1. */
 int mt_family_of(const mt_problem *p, int view);
-/* Have tied bands the same number of modes below them? */
+/* Whether tied bands have the same number of modes below them. */
 bool mt_ties_agree(const mt_problem *p, const int *below);
 /* below made so that they do: the least (most: the greatest) number of each set of tied
  * bands. */

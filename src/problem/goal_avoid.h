@@ -17,8 +17,8 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
 mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err);
 /* mt_bands_look (beside.h) of its bands; NaN where the configuration is unstable. */
 double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below);
-/* Which mode and edge does row `row` (0: the first of the bands, behind those of the demands)
- * of a search with an assignment below[n_bands] hold? false: there is no such row. */
+/* The mode and the edge that row `row` (0: the first of the bands, behind those of the demands)
+ * of a search with an assignment below[n_bands] holds; false: there is no such row. */
 typedef struct mt_clear_row {
     int clear;
     int band; /* of its list */

@@ -36,7 +36,8 @@ static bool same(const char *has, const char *asked)
     return has == NULL || strcmp(has, asked) == 0;
 }
 
-/* Does the file's name of a port mean this one? In full, or as files may abbreviate it. */
+/* True where the file's name of a port means this one: in full, or as files may abbreviate
+ * it. */
 static bool is_port(const mt_system *sys, const char *name, const mt_port *port, bool input)
 {
     mt_arena own = {0};

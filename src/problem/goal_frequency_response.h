@@ -18,8 +18,8 @@ typedef struct mt_fit {
     int *line;         /* [n] of the file */
 } mt_fit;
 
-/* Is it such a demand? Then its line of the greatest residual at the last evaluation: its
- * frequency [Hz], and ln(H/H_measured) there. NaN where it has no value. */
+/* True where it is such a demand; then its line of the greatest residual at the last
+ * evaluation: its frequency [Hz], and ln(H/H_measured) there. NaN where it has no value. */
 bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double complex *off);
 
 /* By how much [rad] the measured phase rises through its highest peak, and the peak's frequency
@@ -27,9 +27,9 @@ bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double 
  * it falls, or there is no peak that lines resolve. */
 double mt_fit_rise(const mt_demand *d, double *hz);
 
-/* Would the squares of the phases' residuals at the last evaluation be less than half if the
- * measured response had the other sign? Lines between a peak and the model's speak against it,
- * at both signs. */
+/* True where the squares of the phases' residuals at the last evaluation would be less than
+ * half if the measured response had the other sign. Lines between a peak and the model's speak
+ * against it, at both signs. */
 bool mt_fit_is_reversed(const mt_workspace *w, const mt_demand *d);
 
 #endif

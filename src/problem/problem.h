@@ -162,7 +162,7 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err);
 void mt_problem_delete(mt_problem *p);
 /* n modal solutions were made: to who counts them and to who watches. */
 void mt_problem_note_modal(const mt_problem *p, long n);
-/* Compile and forget: can the study be asked? Fails as mt_problem_new. */
+/* Compile and forget: whether the study can be asked. Fails as mt_problem_new. */
 mt_status mt_problem_try(const mt_study *study, mt_err *err);
 /* The coordinate of value x of variable i. */
 double mt_problem_t(const mt_problem *p, int i, double x);

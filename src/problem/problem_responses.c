@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Are there the ports of the responses that results show? */
+/* Checks that there are the ports of the responses that results show. */
 #include "problem/problem.h"
 #include "problem/shaken.h"
 

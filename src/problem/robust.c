@@ -53,7 +53,7 @@ double mt_robust_factor(const mt_case *c, int i, int side)
     return 1.0 + (sign * (double)side * mt_robust_tolerance(c->p, i));
 }
 
-/* Is the j-th of n variables of unknown sign high in combination c? */
+/* Whether the j-th of n variables of unknown sign is high in combination c. */
 static bool is_high(int c, int j, int n)
 {
     if (n <= COMBINED_MOST) {
@@ -164,7 +164,7 @@ static mt_status check_demand(const mt_demand *d, mt_err *err)
                                  d->goal_index, d->goal->mode.mode_name.s);
 }
 
-/* Can a search go on from a design that misses a corner? */
+/* Whether a search can go on from a design that misses a corner. */
 static bool goes_on(const mt_problem *p)
 {
     bool any = false;

@@ -119,8 +119,8 @@ mt_status mt_robust_init(mt_case *c, const mt_robust *known, mt_arena *mem, mt_e
 mt_status mt_robust_work_init(mt_workspace *w, mt_err *err);
 /* Half the width of variable i's tolerance, as a part of its value. */
 double mt_robust_tolerance(const mt_problem *p, int i);
-/* Is a demand for a target (or "equals") one for a range over the tolerances? Asked before its
- * rows are numbered; then demand->ranged. */
+/* True where a demand for a target (or "equals") is one for a range over the tolerances. Asked
+ * before its rows are numbered; then demand->ranged. */
 bool mt_robust_is_range(const mt_problem *p, const mt_demand *d);
 /* robust_eval.c: modes of all corners of the design at w->x. Nothing where there are no
  * tolerances, likewise below. */
@@ -131,7 +131,7 @@ mt_status mt_robust_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out
 /* The row of `in` that stands on top of the design's own ones; NULL where it is none of
  * these. */
 const mt_robust_row *mt_robust_corner_row(const mt_case *c, int row);
-/* Is row i of `in` judged at a corner (in place of the design itself, or on top)? */
+/* True where row i of `in` is judged at a corner (in place of the design itself, or on top). */
 bool mt_robust_at_corner(const mt_case *c, int i);
 /* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one
  * on an expression. */
@@ -158,7 +158,7 @@ mt_status mt_robust_ranges_of_rows(mt_workspace *w, mt_arena *mem, mt_ranges *ou
 const mt_robust_range *mt_ranges_hz(const mt_ranges *r, int view, int mode);
 /* Of the design that is described with w. */
 const mt_ranges *mt_robust_known(const mt_workspace *w);
-/* Are all ranges proven? */
+/* Whether all ranges are proven. */
 bool mt_ranges_proven(const mt_ranges *r);
 
 /* How closely an extreme is searched for behind the samples. */

@@ -27,7 +27,7 @@ static bool is_judged(const mt_case *c, const mt_robust_row *row)
     return view < c->p->n_views && !set_of(c, view, row->demand)->exact;
 }
 
-/* Do two rows hold one number on one side, at two corners? */
+/* Whether two rows hold one number on one side, at two corners. */
 static bool is_same(const mt_robust_row *a, const mt_robust_row *b)
 {
     return a->demand == b->demand && a->side == b->side &&

@@ -29,7 +29,7 @@ typedef struct mt_robust_cuts {
     double band_room; /* least of the bands; HUGE_VAL: none is held so */
 } mt_robust_cuts;
 
-/* Is anything that the case holds judged at samples? */
+/* Whether anything that the case holds is judged at samples. */
 bool mt_robust_is_sampled(const mt_case *c);
 /*
  * Judge the design at t[c->n_t], and add what is worse there than the corners of the case and

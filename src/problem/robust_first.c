@@ -14,7 +14,7 @@
 
 #include "problem/robust.h"
 
-/* Does the corner become one of the set? Sides of one that is there are added to it. */
+/* The corner becomes one of the set; where it is there already its sides are added to it. */
 static void add_corner(const mt_corner *corner, int n, mt_corner_set *out)
 {
     for (int k = 0; k < out->n; k++) {

@@ -269,7 +269,7 @@ static void count_modes(const mt_workspace *w, int *modes)
     }
 }
 
-/* Does a row that is held at samples limit a mode of the view? */
+/* Whether a row that is held at samples limits a mode of the view. */
 static bool is_sampled_view(const mt_case *c, int view)
 {
     bool any = false;

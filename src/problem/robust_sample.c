@@ -176,8 +176,8 @@ static mt_status search_line(sampler *s, int k, mt_robust_side side, mt_err *err
     return visit_between(s, 1.0, err);
 }
 
-/* Does number k change along input i, through the point that it is best at, by more than
- * rounding? Its ends say so where its slope is nothing. */
+/* *changes: whether number k changes along input i, through the point that it is best at, by
+ * more than rounding. Its ends say so where its slope is nothing. */
 static mt_status changes_along(sampler *s, int k, int i, double value, bool *changes,
                                mt_err *err)
 {
@@ -290,8 +290,8 @@ static mt_status repeat(sampler *s, move step_of, int k, mt_robust_side side, mt
     return MT_OK;
 }
 
-/* Has another number been looked at about the corner where number k is best? All are noted
- * wherever one is. */
+/* True where another number has been looked at about the corner where number k is best. All are
+ * noted wherever one is. */
 static bool is_explored(const sampler *s, const double *at)
 {
     const size_t n = (size_t)s->q->n;

@@ -48,7 +48,7 @@ static mt_status open_ports(mt_analysis *a, const mt_shaken_pair *pair, mt_respo
     return rc;
 }
 
-/* The forced problem of one goal alone at the original design: does it have one? */
+/* Check that one goal alone has a forced problem at the original design. */
 static mt_status try_ports(const mt_view *view, const mt_demand *d, mt_err *err)
 {
     const mt_shaken_pair pair = {d->goal->shake->input.s, d->goal->shake->output.s};

@@ -293,7 +293,8 @@ static bool judged_later(const mt_workspace *w)
     return mt_family_any(w->p) || mt_robust_is_sampled(w->c);
 }
 
-/* Does anybody want to know of a design that meets all goals, and can be told its value? */
+/* True where somebody wants to know of a design that meets all goals, and can be told its
+ * value. */
 static bool is_wanted(const mt_workspace *w)
 {
     const mt_case *const c = w->c;
