@@ -209,8 +209,9 @@ static mt_status lone_unit(parser *p, size_t from, size_t length)
                    character(p, from), (int)length, name, (int)length, name);
 }
 
-/* Is the name that began at `from`, and has just been read, multiplied, divided or raised? A
- * unit of length that is not is a slip of somebody who has a parameter of nearly that name. */
+/* True where the name that began at `from`, and has just been read, is multiplied, divided or
+ * raised. A unit of length that is not is a slip of somebody who has a parameter of nearly that
+ * name. */
 static bool is_factor(parser *p, size_t from)
 {
     const char next = peek(p);
@@ -266,7 +267,7 @@ static mt_status bad_number(parser *p, size_t from, const char *what)
                    shown(end - from), p->text + from, what);
 }
 
-/* Does a name of `length` bytes stand for something? */
+/* Whether a name of `length` bytes stands for something. */
 static bool is_known(const parser *p, const char *name, size_t length)
 {
     double value = 0.0;

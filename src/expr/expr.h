@@ -85,8 +85,8 @@ mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *con
                         mt_err *err);
 /* The expression that is one number. */
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err);
-/* Is there no parameter in it? Then *value is its value, which may be infinite or NaN ("1/0"):
- * look. */
+/* True where there is no parameter in it. Then *value is its value, which may be infinite or
+ * NaN ("1/0"): look. */
 bool mt_expr_is_constant(const mt_expr *e, double *value);
 
 #endif

@@ -61,8 +61,8 @@ static double down(double x)
     return -up(-x);
 }
 
-/* Is s = fl(a + b) exact? The rounding error by Knuth's two-sum; NaN after an overflow says
- * no. */
+/* True where s = fl(a + b) is exact: the rounding error by Knuth's two-sum is 0. NaN after an
+ * overflow says no. */
 static bool sum_exact(double a, double b, double s)
 {
     const double bb = s - a;
@@ -73,7 +73,7 @@ static bool sum_exact(double a, double b, double s)
  * nothing. */
 static const double EXACT_ABOVE = DBL_MIN / DBL_EPSILON;
 
-/* Is p = fl(a * b) exact, p /= 0? */
+/* True where p = fl(a * b) is exact, p /= 0. */
 static bool product_exact(double a, double b, double p)
 {
     return fabs(p) > EXACT_ABOVE && isfinite(p) && fma(a, b, -p) == 0.0;
@@ -216,7 +216,7 @@ static mt_interval logarithm(double (*f)(double), mt_interval a)
 }
 
 /*
- * Does the interval hold a point (k + phase) * period, k an integer? With t = x / period -
+ * Whether the interval holds a point (k + phase) * period, k an integer. With t = x / period -
  * phase the question is for an integer between t(lo) and t(hi). The four roundings (period,
  * quotient, product and difference) leave an error below 4 eps (|t| + 1); twice that is allowed
  * for, and "yes" is the safe side.

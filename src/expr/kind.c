@@ -70,7 +70,8 @@ static mt_kind sum_kind(mt_kind a, mt_kind b)
     return a == MT_KIND_UNKNOWN ? b : MT_KIND_UNKNOWN;
 }
 
-/* Is a, beside b in a sum, of another kind? What is not known goes with all but a number. */
+/* True where a, beside b in a sum, is of another kind. What is not known goes with all but a
+ * number. */
 static bool differs(mt_kind a, mt_kind b)
 {
     if (a == b || a == MT_KIND_ZERO || b == MT_KIND_ZERO || (is_number(a) && is_number(b))) {

@@ -9,7 +9,7 @@
  * such. A constant is of a kind (expr/kind.h): "mm" is a length. */
 bool mt_expr_find_function(const char *name, size_t length, mt_op *op);
 bool mt_expr_find_constant(const char *name, size_t length, double *value, mt_kind *kind);
-/* Is the name taken by a function or a constant? */
+/* Whether the name is taken by a function or a constant. */
 bool mt_expr_reserved(const char *name);
 /* Names of all functions and constants, for "did you mean"; *n their number. */
 const char *const *mt_expr_names(int *n);

@@ -59,13 +59,13 @@ mt_node mt_program_div(mt_program *p, mt_node a, mt_node b);
 /* Close the program. Fails MT_E_MEMORY. */
 mt_status mt_program_finish(mt_program *p, mt_err *err);
 
-/* Is the value of the node fixed (no input in it)? Only after finish. */
+/* Whether the value of the node is fixed (no input in it). Only after finish. */
 bool mt_program_is_constant(const mt_program *p, mt_node node);
-/* depends[i] = does the node depend on input i (structurally); [n_inputs]. */
+/* depends[i] = whether the node depends on input i (structurally); [n_inputs]. */
 void mt_program_depends(const mt_program *p, mt_node node, bool *depends);
 /* The same added to a set of bits, set[p->words]. MT_NO_NODE adds nothing. */
 void mt_program_include_inputs(const mt_program *p, mt_node node, uint64_t *set);
-/* Is the input in such a set? */
+/* Whether the input is in such a set. */
 bool mt_program_has_input(const uint64_t *set, int input);
 
 /* value[count]: values of all nodes at inputs[n_inputs]. O(count). Fails MT_E_DOMAIN where a

@@ -28,7 +28,7 @@ typedef enum mt_unit_reading {
  * SI, with its prefixes, and of inches and pounds. False: it is none.
  */
 bool mt_unit_read(const char *text, mt_unit_reading reading, mt_unit_worth *out);
-/* Do they measure the same? A radian counts where `radians` says so. */
+/* Whether they measure the same. A radian counts where `radians` says so. */
 bool mt_unit_same_powers(const mt_unit_worth *a, const mt_unit_worth *b, bool radians);
 /* Factors that are equal, but for their rounding. */
 bool mt_unit_same_factor(double a, double b);

@@ -176,7 +176,7 @@ int mt_goal_member_at(const mt_goal_kind *kind, mt_goal_slot slot);
 const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
 /* What a difference from `asked` is divided by. */
 double mt_measure_unit(mt_goal_measure measure, double asked);
-/* Numbers that a trade study may vary. Is the member one of them? */
+/* Whether the member is one of the numbers that a trade study may vary. */
 bool mt_goal_may_vary(const mt_goal_member *member);
 
 #endif

@@ -58,7 +58,7 @@ const mt_objective_kind *mt_objective_kind_of(mt_objective_type type);
 /* All that have these properties, in the order of the table: types[] and names[], both of
  * MT_OBJECTIVE_TYPE_COUNT. Returns their number. */
 int mt_objectives_with(unsigned properties, mt_objective_type *types, const char **names);
-/* Has it all of these properties? */
+/* Whether it has all of these properties. */
 bool mt_objective_is(mt_objective_type type, unsigned properties);
 
 #endif

@@ -374,14 +374,16 @@ const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
 /* MT_ABSENT where there is none. */
 int mt_study_find_reference(const mt_study *study, const char *name);
 int mt_study_find_measurement(const mt_study *study, const char *name);
-/* Is there a goal that keeps clear of bands? */
+/* Whether there is a goal that keeps clear of bands. */
 bool mt_study_has_bands(const mt_study *study);
-/* Does the goal limit a forced vibration from above? Is there one that does? */
+/* Whether the goal limits a forced vibration from above; then, whether there is one that
+ * does. */
 bool mt_goal_is_limit(const mt_goal *goal);
 bool mt_study_has_limits(const mt_study *study);
-/* Does the objective take the goal's limit as its scale? Then nothing else is asked of it. */
+/* Whether the objective takes the goal's limit as its scale. Then nothing else is asked of
+ * it. */
 bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
-/* Does a goal ask for this configuration? */
+/* Whether a goal asks for this configuration. */
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */
 void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);

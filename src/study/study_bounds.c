@@ -79,7 +79,7 @@ static mt_status compile(corners *k)
     return MT_OK;
 }
 
-/* Does every limit of an expression hold at x? Equalities are the search's to find. */
+/* True where every limit of an expression holds at x. Equalities are the search's to find. */
 static bool is_allowed(corners *k)
 {
     bool allowed = false;

@@ -18,8 +18,8 @@ int mt_study_find_measurement(const mt_study *study, const char *name)
     return MT_ABSENT;
 }
 
-/* Is one of the file the one that was asked for? A node alone means any direction; against a
- * direction is the same freedom, the sign is in the values. */
+/* True where one of the file is the one that was asked for. A node alone means any direction;
+ * against a direction is the same freedom, the sign is in the values. */
 static bool is_freedom(mt_name asked, const mt_measured_freedom *has)
 {
     mt_measured_freedom f;

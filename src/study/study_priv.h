@@ -50,8 +50,8 @@ int mt_check_only_configuration(mt_study_check *c, const mt_model *model, mt_add
 /* Resolve a mode and check its index (absent: noted). Returns its index, that of a named mode
  * included; 0 where there is none. */
 int mt_check_mode(mt_study_check *c, mt_mode_ref *mode);
-/* Does the reference have the mode, and of it what is compared: its shape, else its frequency?
- * reference_mode 0: mode_index. Problems noted at addr. */
+/* Check that the reference has the mode, and of it what is compared: its shape, else its
+ * frequency. reference_mode 0: mode_index. Problems noted at addr. */
 void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mode,
                              int mode_index, bool shape, mt_addr addr);
 /* Channels of a measured mode that the model has, too (study_references.c). */
@@ -59,9 +59,9 @@ int mt_count_common_channels(const mt_model *model, const mt_measured_mode *mode
 /* A shape or a MAC needs a sensor and a direction that the model and the reference's model both
  * have. (study_references.c) */
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
-/* Was a number given, even if it could not be read (then its own address is known)? */
+/* Whether a number was given, even if it could not be read (then its own address is known). */
 bool mt_check_given(double value, mt_addr value_addr, mt_addr owner);
-/* Do its two frequencies ascend? (study_shake.c) */
+/* Check that its two frequencies ascend. (study_shake.c) */
 void mt_check_range(mt_study_check *c, const mt_shake *s);
 
 #endif

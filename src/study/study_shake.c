@@ -24,7 +24,7 @@ static int motion_of(const char *port, int none)
     return none;
 }
 
-/* Does the last part of the name, before its motion, turn: "grip.rx"? */
+/* True where the last part of the name, before its motion, turns: "grip.rx". */
 static bool turns(const char *port)
 {
     const size_t length = strcspn(port, ":");

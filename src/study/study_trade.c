@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Do two that vary limit one number from its two sides? */
+/* Whether two that vary limit one number from its two sides. */
 static bool opposite(const mt_vary *a, const mt_vary *b)
 {
     if (a->kind != b->kind || a == b) {

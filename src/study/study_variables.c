@@ -113,8 +113,8 @@ static bool overrides(const mt_configuration *configuration, int parameter)
     return false;
 }
 
-/* Does some configuration that a goal names, or a goal without one, follow the parameter?
- * *asked: is there any goal? */
+/* True where some configuration that a goal names, or a goal without one, follows the
+ * parameter. *asked: set where there is any goal. */
 static bool is_followed(const mt_study *s, int parameter, bool *asked)
 {
     for (int i = 0; i < s->n_goals; i++) {

@@ -43,7 +43,7 @@ void mt_vibration_delete(mt_vibration *v)
     }
 }
 
-/* Is it a number, and one that it can be? Else the reader has noted it. */
+/* True where it is a number, and one that it can be. Else the reader has noted it. */
 static bool is_good(mt_possible_id row, double value)
 {
     return value == value && mt_possible_is(&mt_possible_of[row], value);
