@@ -178,23 +178,29 @@ static const char *least_text(const mt_answer *a, const mt_recommendation *best,
                                            scale, doubt);
 }
 
+/* Of a study with bands. */
+static const char *placed_text(const mt_answer *a, const char *doubt, mt_arena *mem)
+{
+    const int n = a->found.n_solutions;
+    const bool some = mt_describe_gaps_unsearched(&a->gaps);
+    const char *const left = mt_describe_gaps_left(&a->gaps, mem);
+    const char *const keep = some     ? n == 1 ? "was found to keep" : "were found to keep"
+                             : n == 1 ? "keeps"
+                                      : "keep";
+    return left == NULL
+               ? NULL
+               : mt_arena_printf(mem,
+                                 "Solved: %d of %.0f mode placement%s %s clear of the bands "
+                                 "and meet%s all goals (%s).%s",
+                                 n, a->gaps.n_possible, a->gaps.n_possible > 1.0 ? "s" : "",
+                                 keep, n == 1 && !some ? "s" : "", left, doubt);
+}
+
 static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
     if (a->gaps.n_solutions > 0) {
-        const char *const left = mt_describe_gaps_left(&a->gaps, mem);
-        return left == NULL ? NULL
-                            : mt_arena_printf(
-                                  mem,
-                                  "Solved: %d of %.0f mode placement%s %s clear of the bands "
-                                  "and meet%s all goals (%s).%s",
-                                  n, a->gaps.n_possible, a->gaps.n_possible > 1.0 ? "s" : "",
-                                  mt_describe_gaps_unsearched(&a->gaps)
-                                      ? n == 1 ? "was found to keep" : "were found to keep"
-                                  : n == 1 ? "keeps"
-                                           : "keep",
-                                  n == 1 && !mt_describe_gaps_unsearched(&a->gaps) ? "s" : "",
-                                  left, doubt);
+        return placed_text(a, doubt, mem);
     }
     bool continuum = false;
     for (int i = 0; i < n; i++) {
@@ -304,10 +310,35 @@ static const char *fit_text(const mt_answer *a, const mt_recommendation *best, m
         others);
 }
 
+static const char *nothing_text(const mt_answer *a)
+{
+    return a->why.code != MT_OK ? "No design that was tried could be evaluated."
+           : a->found.stop == MT_STOP_MAX_EVALS
+               ? "The budget ended before any design was found."
+               : "No design was found within the bounds (sampled, not proven).";
+}
+
+static const char *compromise_text(const mt_answer *a, const mt_recommendation *best,
+                                   mt_arena *mem)
+{
+    const char *const nearest =
+        isfinite(best->violation_percent)
+            ? mt_arena_printf(mem, "the nearest %smisses by %.3g %% at most",
+                              a->impossible ? "that was found " : "", best->violation_percent)
+            : "at the nearest not every goal has a value";
+    return nearest == NULL
+               ? NULL
+               : mt_arena_printf(
+                     mem, "Compromise: no design %swithin the bounds meets all goals%s; %s.",
+                     a->impossible ? "" : "found ",
+                     a->impossible ? ", which is proven (see \"What is proven\")"
+                                   : " (sampled, not proven)",
+                     nearest);
+}
+
 static const char *status_text(const mt_answer *a, const mt_recommendation *best)
 {
     mt_arena *const mem = &a->result->mem;
-    const int n = a->found.n_solutions;
     const char *const early = early_text(a, best);
     if (early != NULL) {
         return early;
@@ -320,11 +351,8 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
                                a->result->n_relaxations > 0 ? a->result->relaxations[0].text
                                                             : "");
     }
-    if (n == 0) {
-        return a->why.code != MT_OK ? "No design that was tried could be evaluated."
-               : a->found.stop == MT_STOP_MAX_EVALS
-                   ? "The budget ended before any design was found."
-                   : "No design was found within the bounds (sampled, not proven).";
+    if (a->found.n_solutions == 0) {
+        return nothing_text(a);
     }
     if (best->feasible && mt_study_is_fit(a->study)) {
         return fit_text(a, best, mem);
@@ -354,19 +382,7 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
         return "Compromise: the numbers of all goals can be met, but there the named modes "
                "cannot be identified (see the goals).";
     }
-    const char *const nearest =
-        isfinite(best->violation_percent)
-            ? mt_arena_printf(mem, "the nearest %smisses by %.3g %% at most",
-                              a->impossible ? "that was found " : "", best->violation_percent)
-            : "at the nearest not every goal has a value";
-    return nearest == NULL
-               ? NULL
-               : mt_arena_printf(
-                     mem, "Compromise: no design %swithin the bounds meets all goals%s; %s.",
-                     a->impossible ? "" : "found ",
-                     a->impossible ? ", which is proven (see \"What is proven\")"
-                                   : " (sampled, not proven)",
-                     nearest);
+    return compromise_text(a, best, mem);
 }
 
 static mt_result_status status_of(const mt_answer *a, const mt_recommendation *best)

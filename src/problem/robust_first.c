@@ -64,6 +64,33 @@ static void find_sides(const mt_case *c, int view, int mode, double hz_before, b
     }
 }
 
+/* The corners that the slopes of one mode name. */
+static mt_status add_sides(const mt_case *c, const int *signs, const double *slope,
+                           const bool sides[MT_ROBUST_SIDES], mt_arena *mem, mt_corner_set *out,
+                           mt_err *err)
+{
+    for (int k = 0; k < MT_ROBUST_SIDES; k++) {
+        mt_corner corner;
+        if (sides[k]) {
+            MT_TRY(make_first(c, signs, slope, (mt_robust_side)k, mem, &corner, err));
+            add_corner(&corner, c->p->n, out);
+        }
+    }
+    return MT_OK;
+}
+
+/* A row that nobody thought of is held somewhere all the same. */
+static void hold_somewhere(mt_corner_set *out)
+{
+    for (int side = 0; side < MT_ROBUST_SIDES && out->n > 0; side++) {
+        bool any = false;
+        for (int k = 0; k < out->n; k++) {
+            any = any || out->corners[k].may[side];
+        }
+        out->corners[0].may[side] = out->corners[0].may[side] || !any;
+    }
+}
+
 static mt_status name_corners(const mt_case *c, int view, mt_analysis *a, const int *signs,
                               mt_arena *mem, mt_corner_set *out, mt_err *err)
 {
@@ -88,22 +115,11 @@ static mt_status name_corners(const mt_case *c, int view, mt_analysis *a, const 
         }
         const mt_status rc = mt_analysis_dlambda_raw(a, pos, slope, &own);
         MT_TRY(mt_pass_final(rc, &own, err));
-        for (int k = 0; k < MT_ROBUST_SIDES && rc == MT_OK; k++) {
-            mt_corner corner;
-            if (sides[k]) {
-                MT_TRY(make_first(c, signs, slope, (mt_robust_side)k, mem, &corner, err));
-                add_corner(&corner, n, out);
-            }
+        if (rc == MT_OK) {
+            MT_TRY(add_sides(c, signs, slope, sides, mem, out, err));
         }
     }
-    /* a row that nobody thought of is held somewhere all the same */
-    for (int side = 0; side < MT_ROBUST_SIDES && out->n > 0; side++) {
-        bool any = false;
-        for (int k = 0; k < out->n; k++) {
-            any = any || out->corners[k].may[side];
-        }
-        out->corners[0].may[side] = out->corners[0].may[side] || !any;
-    }
+    hold_somewhere(out);
     return MT_OK;
 }
 

@@ -144,12 +144,13 @@ static void choose_descents(const mt_workspace *w, int view, int modes,
     }
 }
 
+typedef mt_robust_descent sides_descent[MT_ROBUST_SIDES];
+
 static mt_status range_of_modes(const box *b, int view, int modes, mt_analysis *a, mt_err *err)
 {
     char reason[MT_REASON_SIZE] = "";
     mt_enclosure *e = NULL;
-    mt_robust_descent(*const descents)[MT_ROBUST_SIDES] =
-        mt_arena_alloc(b->mem, (size_t)modes, sizeof *descents);
+    sides_descent *const descents = mt_arena_alloc(b->mem, (size_t)modes, sizeof *descents);
     MT_TRY(mt_arena_check(b->mem, err));
     choose_descents(b->w, view, modes, b->of_rows ? MT_DESCENT_NONE : MT_DESCENT_COARSE,
                     descents);

@@ -347,8 +347,7 @@ static bool same_counts(const search *s, const int *tuple)
     return true;
 }
 
-/* Whether the design that is set has at least so many modes below the edge; then, whether
- * fewer. */
+/* Whether the design that is set has at least so many modes below the edge; or fewer. */
 static bool has_below(const search *s, int edge, int modes)
 {
     const mt_edge *const g = &s->edges.edges[edge];

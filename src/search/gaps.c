@@ -241,15 +241,10 @@ static void note_proof(const mt_gap_candidates *all, mt_gap_result *out)
 
 /* The list is full, or the work interrupted: what the candidates that were searched came to,
  * and what the proof says of them and of the rest. */
-static mt_status end_full(mt_gap_job *first, int n_workers, mt_proof *proof, double last,
-                          double rest, mt_arena *mem, mt_gap_candidates *all,
-                          mt_gap_result *out, mt_err *err)
+static mt_status end_full(mt_gap_job *first, double last, double rest, mt_arena *mem,
+                          const mt_gap_candidates *all, mt_gap_result *out, mt_err *err)
 {
     const mt_gap_candidates *const c = first->candidates;
-    if (!all->proven) {
-        MT_TRY(mt_gap_candidates_settle(first->workers[0], proof, mem, all, err));
-    }
-    MT_TRY(mt_gap_search_known(first, n_workers, all, mem, err));
     note_proof(all, out);
     out->n_searched = first->searched;
     out->n_candidates = all->proven ? all->n : first->searched;
@@ -340,7 +335,9 @@ static mt_status search_and_prove(mt_gap_job *first, mt_gap_job *j, int n_worker
         MT_TRY(claim_slots(first, mem, err));
         MT_TRY(mt_gap_search_best(first, n_workers, asked, mem, &last, err));
         if (last < HUGE_VAL || mt_interrupted(j->p->study->model->interrupt)) {
-            return end_full(first, n_workers, proof, last, rest, mem, all, out, err);
+            MT_TRY(all->proven ? MT_OK : mt_gap_candidates_settle(w, proof, mem, all, err));
+            MT_TRY(mt_gap_search_known(first, n_workers, all, mem, err));
+            return end_full(first, last, rest, mem, all, out, err);
         }
         MT_TRY(keep_met(first, listed, mem, err));
         *begin = *listed;

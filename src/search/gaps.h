@@ -47,8 +47,8 @@ typedef struct mt_gap_result {
     /* candidates came best first, until the designs that are asked for were known. No design
      * of one that was not searched has a first objective below `rest`, which is proven
      * (HUGE_VAL: none has a design), and, where it is `bounded`, below those that are listed */
-    bool ended;
     double rest;
+    bool ended;
     bool bounded;
     double n_possible; /* all monotone assignments there are */
     /* a configuration is a driven position: what lies between the positions is not searched */

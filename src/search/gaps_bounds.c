@@ -159,8 +159,9 @@ static mt_status find_levels(const mt_proof *proof, double whole, mt_arena *mem,
         b->least[k + 1] = 0.5 * change * change * (1.0 - ROUNDING);
         for (int box = 0; box < b->n_boxes; box++) {
             const int wide = b->n_boxes > 1 ? box : -1;
-            if (set_box(b->c, last ? 2.0 * whole : change, wide, t, lo, hi)) {
-                MT_TRY(look(proof, lo, hi, &r, err));
+            const bool some = set_box(b->c, last ? 2.0 * whole : change, wide, t, lo, hi);
+            MT_TRY(some ? look(proof, lo, hi, &r, err) : MT_OK);
+            if (some) {
                 note_level(proof, &r, box, k, b);
             }
         }

@@ -42,7 +42,7 @@ typedef struct mt_gap_job {
 
 /* gaps_search.c: search candidate job->from + k (a task of mt_tasks). One without a value
  * anywhere is no failure of the study: it has no solution. */
-mt_status mt_gap_search_candidate(void *job, int worker, int k, mt_scope *own, mt_err *err);
+mt_status mt_gap_search_candidate(void *context, int worker, int k, mt_scope *own, mt_err *err);
 /* Its best design meets all goals. */
 bool mt_gap_is_met(const mt_gap_slot *s);
 

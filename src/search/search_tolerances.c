@@ -376,7 +376,8 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
                                     mt_nlp_result *out, int *stage,
                                     const mt_posed_price **prices, mt_err *why, mt_err *err)
 {
-    rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out, .stage = stage};
+    rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out};
+    r.stage = stage;
     r.over_tolerances = mt_robust_is_sampled(r.c);
     r.over_positions = mt_search_has_positions(r.c);
     r.judgement =

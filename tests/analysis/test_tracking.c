@@ -429,7 +429,7 @@ static void tracking__a_gap_of_less_than_three_steps_is_leapt(mt_test *t)
         double origin[N];
         double to[N];
         for (int i = 0; i < N; i++) {
-            origin[i] = log(i + 1.0);
+            origin[i] = log1p(i);
             to[i] = log((i + 1.0) * exp(mt_random_in(&random, -1.0, 1.0)));
         }
         for (int k = 0; k < 5; k++) {

@@ -121,7 +121,10 @@ static void misfits__are_told_from_the_least_to_the_greatest(mt_test *t)
         double told[2] = {nan(""), nan("")};
         CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
         REQUIRE(t, c.result->n_recommendations == 2 && from != NULL);
-        CHECK_INT(t, sscanf(from, "misfits from %lg to %lg", &told[0], &told[1]), 2);
+        char *end = NULL;
+        told[0] = strtod(from + strlen("misfits from "), &end);
+        REQUIRE(t, strncmp(end, " to ", 4) == 0);
+        told[1] = strtod(end + 4, &end);
         CHECK_NEAR(t, told[0], r[0].misfit, 1e-3);
         CHECK_NEAR(t, told[1], r[1].misfit, 1e-3);
         CHECK(t, r[1].misfit > 1.1 * r[0].misfit);

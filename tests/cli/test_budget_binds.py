@@ -93,7 +93,10 @@ class Binds(CliTest):
             with self.subTest(kind):
                 free = self.answer(kind)
                 bound = self.answer(kind, "--max-evaluations", "1000000")
-                self.assertEqual(free["run"]["spent"], bound["run"]["spent"])
+                spent = [dict(r["run"]["spent"]) for r in (free, bound)]
+                if kind == "bands":  # least changes of placements are computed where no budget has to be shared out
+                    self.assertLessEqual(*(s.pop("multiplications") for s in reversed(spent)))
+                self.assertEqual(*spent)
                 for r in (free, bound):
                     r.pop("run")
                 self.assertEqual(free, bound)

@@ -160,7 +160,7 @@ class Progress(CliTest):
         told = [line for line in done.stderr.splitlines() if line.startswith("search")]
         self.assertEqual(len(told), 1, done.stderr)
         self.assertRegex(told[0], r"^search: \d+ of 50000 (first values|starts), \d+ %, (best change 0\.\d+, )?(about .* left of this step, )?"
-                                  r"\d s left of --time, 1\d s, \d+ designs evaluated$")
+                                  r"\d s left of --time, 1\d s, \d+ designs evaluated, \d+ modal solutions$")
 
     def test_nothing_where_nothing_is_asked_for(self):
         for option in (("--progress", "none"), ("--quiet",)):

@@ -317,7 +317,7 @@ static mt_status steep_bowl(void *context, const double *t, bool with_gradient,
     for (int j = 0; j < c->nlp.n; j++) {
         const double d = t[j] - 0.5 - (0.1 * j);
         out->f += c->target[j] * (exp(d) - d);
-        out->df[j] = c->target[j] * (exp(d) - 1.0);
+        out->df[j] = c->target[j] * expm1(d);
     }
     for (int j = 0; j < c->nlp.n && c->nlp.n_eq > 0; j++) { /* t0 t1 t2 = 0.2 */
         out->eq[0] = (t[0] * t[1] * t[2]) - 0.2;

@@ -37,7 +37,8 @@ static void shown__is_what_was_meant(mt_test *t)
         for (int k = 0; k <= 6; k++) {
             mt_test_row(t, "%s, %d decimals", units[u].name, k);
             int wrong = 0;
-            for (double n = 1.0; n < 4000.0 && n * units[u].digits < most; n += 1.0) {
+            for (int i = 1; i < 4000 && i * units[u].digits < most; i++) {
+                const double n = i;
                 const double x = n * units[u].digits / ten_to(units[u].places + k);
                 const double meant = n / ten_to(k);
                 wrong += mt_result_shown(meant * factor, factor) != meant;
