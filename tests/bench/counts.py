@@ -27,7 +27,7 @@ import large  # noqa: E402
 TABLE = SOURCE / "tests/bench/counts.csv"
 MOST = 1e9  # of one run: what is longer belongs to bench.py
 GROWTH = 1.1
-PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-AVX512F,-AVX512VL,-ERMS,-FSRM",
+PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX512VL,-ERMS,-FSRM",
          "LC_ALL": "C"}
 STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
 # name: command. {sag} is a link of 300 elements that its weight bends, {out} a folder for results.
