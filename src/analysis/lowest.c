@@ -384,6 +384,11 @@ static void move(const mt_lowest *l, int position, int i, const motions *to)
     mt_tree_motion(t, x, r, v);
 }
 
+const mt_state *mt_lowest_settled(const mt_lowest *l)
+{
+    return l->position.sys == NULL ? NULL : &l->position;
+}
+
 mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
 {
     const int nq = l->sys->nq;
@@ -412,8 +417,7 @@ mt_status mt_lowest_sense(mt_lowest *l, int n, double *value, mt_err *err)
     double *const phi = mt_arena_f64(&l->mem, (size_t)l->sys->nq, (size_t)n);
     MT_TRY(mt_arena_check(&l->mem, err));
     MT_TRY(mt_lowest_shapes(l, n, phi, err));
-    const mt_state *const settled = l->position.sys == NULL ? NULL : &l->position;
-    MT_TRY(mt_absolute_sense(l->sys, settled, l->at, n, phi, value, &l->mem, err));
+    MT_TRY(mt_absolute_sense(l->sys, mt_lowest_settled(l), l->at, n, phi, value, &l->mem, err));
     mt_arena_rewind(&l->mem, mark);
     return MT_OK;
 }

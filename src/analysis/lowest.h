@@ -53,6 +53,8 @@ double mt_lowest_bodies(const mt_model *model, int configuration);
 mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_lowest_want want,
                         mt_lowest **out, mt_err *err);
+/* Where loads have brought it; NULL: it is told as drawn. */
+const mt_state *mt_lowest_settled(const mt_lowest *l);
 /* Where shapes were wanted, as what follows: those of the first n positions over all states (nq
  * of the system), of unit mass, sign by mt_modal_fix_sign: phi nq x n, zeroed. Fails:
  * MT_E_INTERRUPTED, MT_E_MEMORY. */

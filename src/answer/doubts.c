@@ -480,8 +480,8 @@ static void say_lowest(const mt_lowest *l, mt_doubt_list *out)
     const mt_modes *const modes = &l->found.modes;
     doubt_mass(l->mass_kg, out);
     doubt_frequency(modes, out);
-    if (l->position.sys != NULL) {
-        say_motion(&l->position, out);
+    if (mt_lowest_settled(l) != NULL) {
+        say_motion(mt_lowest_settled(l), out);
     }
     if (modes->n_rigid > 0) {
         (void)mt_doubt_add(out, MT_LEVEL_FACT, "free_motion",

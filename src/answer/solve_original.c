@@ -8,6 +8,8 @@
  */
 #include "answer/solve_priv.h"
 
+#include "describe/describe.h"
+
 /* Whether x is within the bounds of variable v and, if it has one, a value of its catalogue. */
 static bool is_allowed(const mt_variable *v, double x)
 {
@@ -18,22 +20,13 @@ static bool is_allowed(const mt_variable *v, double x)
     return listed && x >= v->lower && x <= v->upper;
 }
 
-static bool keeps_between(const mt_recommendation *r)
-{
-    for (int i = 0; i < r->n_between; i++) {
-        if (!r->between[i].holds) {
-            return false;
-        }
-    }
-    return true;
-}
-
 bool mt_answer_original_is_best(const mt_answer *a)
 {
     const mt_problem *const p = a->p;
     const mt_recommendation *const original = &a->result->baseline;
     if (!a->searched || p->n_eq > 0 || p->aims[0].type != MT_OBJECTIVE_CHANGE ||
-        !original->feasible || original->disagreement != NULL || !keeps_between(original)) {
+        !original->feasible || original->disagreement != NULL ||
+        !mt_describe_keeps_between(original)) {
         return false;
     }
     for (int i = 0; i < p->n; i++) {

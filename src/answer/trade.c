@@ -9,6 +9,7 @@
 
 #include "base/format.h"
 #include "base/workers.h"
+#include "describe/describe.h"
 #include "nlp/merit.h"
 #include "search/discrete.h"
 
@@ -190,16 +191,6 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
-/* The design keeps its limits at all samples between the positions of drives. */
-static bool keeps_between(const mt_recommendation *r)
-{
-    bool kept = true;
-    for (int i = 0; i < r->n_between; i++) {
-        kept = kept && r->between[i].holds;
-    }
-    return kept;
-}
-
 /* Whether a is the better answer of one point, by more than searches leave open. The first
  * objective's score decides among designs that meet all goals. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
@@ -209,8 +200,9 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
     if (x == NULL || y == NULL) {
         return y == NULL && x != NULL;
     }
-    if (x->feasible && y->feasible && keeps_between(x) != keeps_between(y)) {
-        return keeps_between(x);
+    if (x->feasible && y->feasible &&
+        mt_describe_keeps_between(x) != mt_describe_keeps_between(y)) {
+        return mt_describe_keeps_between(x);
     }
     const bool most =
         study->n_objectives > 0 && mt_objective_is(study->objectives[0].type, MT_MAXIMISED);

@@ -91,7 +91,7 @@ static const mt_state *position_of(const view *v)
     if (v->a != NULL) {
         return mt_linear_position(v->a->lin);
     }
-    return v->l == NULL || v->l->position.sys == NULL ? NULL : &v->l->position;
+    return v->l != NULL ? mt_lowest_settled(v->l) : NULL;
 }
 
 static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)

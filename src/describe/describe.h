@@ -159,5 +159,7 @@ mt_status mt_describe_warn(mt_result *result, mt_err *err, const char *fmt, ...)
 /* True where the design is stationary for its objective, as far as that was asked. A residual
  * above this is told. */
 bool mt_describe_is_optimum(const mt_recommendation *rec);
+/* True where the design keeps its limits at all samples between the positions of drives. */
+bool mt_describe_keeps_between(const mt_recommendation *rec);
 
 #endif

@@ -146,3 +146,12 @@ mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_r
     }
     return MT_OK;
 }
+
+bool mt_describe_keeps_between(const mt_recommendation *rec)
+{
+    bool kept = true;
+    for (int i = 0; i < rec->n_between; i++) {
+        kept = kept && rec->between[i].holds;
+    }
+    return kept;
+}

@@ -216,14 +216,10 @@ static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt
                            mt_arena *scratch, bool *closed, char *why, mt_err *err)
 {
     const mt_system *const sys = d->sys;
-    const size_t nq = (size_t)sys->nq;
     const size_t m = (size_t)sys->n_constraints;
     int n = 0;
-    mt_lagrangian l = {.g = mt_arena_f64(scratch, nq, 1)};
-    l.trim = mt_arena_f64(scratch, nq, 1);
-    l.c = mt_arena_f64(scratch, m, 1);
-    l.row = mt_arena_alloc(scratch, m, sizeof *l.row);
-    MT_TRY(mt_arena_check(scratch, err));
+    mt_lagrangian l;
+    MT_TRY(mt_lagrangian_init_rows(&l, sys, scratch, err));
     mt_lagrangian_eval(d, MT_ENERGY_PHYSICAL, g->at->pose, g->at, (int)m, NULL,
                        MT_CURVATURE_NONE, &l);
     *closed = true;

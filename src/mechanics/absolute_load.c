@@ -333,21 +333,16 @@ static mt_status balance(work *w, mt_arena *scratch, mt_err *err)
     w->left = mt_arena_f64(scratch, nq, 1);
     w->more = mt_arena_f64(scratch, nq, 1);
     w->unbalanced = mt_arena_f64(scratch, nq, 1);
-    mt_lagrangian l = {.g = mt_arena_f64(scratch, nq, 1)};
-    l.trim = mt_arena_f64(scratch, nq, 1);
-    l.c = mt_arena_f64(scratch, (size_t)sys->n_constraints, 1);
-    l.row = mt_arena_alloc(scratch, (size_t)sys->n_constraints, sizeof *l.row);
-    MT_TRY(mt_arena_check(scratch, err));
+    double *const lambda = mt_arena_f64(scratch, (size_t)sys->n_constraints, 1);
+    mt_lagrangian l;
+    MT_TRY(mt_lagrangian_init_rows(&l, sys, scratch, err));
     memcpy(w->left, stage->left.q, nq * sizeof *w->left);
     (void)mt_forces_at(&w->data, &w->at, w->left, w->more, add_gradient, w);
     mt_lagrangian_eval(&w->data, MT_ENERGY_NONE, NULL, &w->at, sys->n_constraints, NULL,
                        MT_CURVATURE_NONE, &l);
-    for (int i = 0; i < sys->n_constraints; i++) {
-        for (int k = 0; k < l.row[i].n; k++) {
-            w->unbalanced[l.row[i].dof[k]] +=
-                l.row[i].a[k] * (stage->lambda[i] + stage->left.lambda[i]);
-        }
-    }
+    memcpy(lambda, stage->lambda, (size_t)sys->n_constraints * sizeof *lambda);
+    mt_axpy(sys->n_constraints, 1.0, stage->left.lambda, lambda);
+    mt_lagrangian_pull(&l, sys->n_constraints, lambda, w->unbalanced);
     for (size_t j = 0; j < nq; j++) {
         w->unbalanced[j] = -w->unbalanced[j];
     }

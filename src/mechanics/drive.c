@@ -504,12 +504,7 @@ double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, con
     const mt_measure_def *const def = &data->sys->measures[measure];
     const mt_measure_data m = mt_data_measure(data, def);
     mt_jet jet;
-    double s = 0.0;
     mt_measure_eval(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]), false,
                     &jet);
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(data->sys, def->body, k);
-        s += dof >= 0 ? creal(jet.g[k]) * rate[dof] : 0.0;
-    }
-    return s;
+    return mt_jet_along(data->sys, def->body, &jet, rate);
 }

@@ -62,18 +62,6 @@ bool mt_forces_each(const mt_data *d, const mt_pose *pose, mt_force_visit visit,
     return more;
 }
 
-/* What a motion makes of a measure. */
-static double along(const mt_system *sys, const int body[2], const mt_jet *jet,
-                    const double *motion)
-{
-    double sum = 0.0;
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const int dof = mt_local_dof(sys, body, k);
-        sum += dof >= 0 ? creal(jet->g[k]) * motion[dof] : 0.0;
-    }
-    return sum;
-}
-
 /* V = 1/2 k d_a d_b + p d_a, of two measures that are the same or not. */
 static bool visit_spring(const mt_data *d, const mt_placement *at, const double *left,
                          const double *open, int i, mt_force_visit visit, void *context)
@@ -91,8 +79,8 @@ static bool visit_spring(const mt_data *d, const mt_placement *at, const double 
         const mt_measure_def *const def = &sys->measures[s->measure[side]];
         mt_data_eval(d, def, at, true, &jet[side]);
         stretch[side] = creal(jet[side].value) - creal(d->rest[i][side]);
-        stretch[side] += along(sys, def->body, &jet[side], left);
-        noise[side] = TWICE * fabs(along(sys, def->body, &jet[side], open));
+        stretch[side] += mt_jet_along(sys, def->body, &jet[side], left);
+        noise[side] = TWICE * fabs(mt_jet_along(sys, def->body, &jet[side], open));
     }
     for (int side = 0; side < (coupling ? 2 : 1) && more; side++) {
         const int other = coupling ? 1 - side : 0;

@@ -21,6 +21,27 @@ mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessia
     return mt_arena_check(mem, err);
 }
 
+mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
+                                  mt_err *err)
+{
+    const size_t nq = (size_t)sys->nq;
+    const size_t m = (size_t)sys->n_constraints;
+    *l = (mt_lagrangian){.g = mt_arena_f64(mem, nq, 1), .trim = mt_arena_f64(mem, nq, 1)};
+    l->c = mt_arena_f64(mem, m, 1);
+    l->row = mt_arena_alloc(mem, m, sizeof *l->row);
+    return mt_arena_check(mem, err);
+}
+
+void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, double *out)
+{
+    for (int i = 0; i < m; i++) {
+        const mt_sparse_row *const row = &l->row[i];
+        for (int k = 0; k < row->n; k++) {
+            out[row->dof[k]] += row->a[k] * lambda[i];
+        }
+    }
+}
+
 void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem)
 {
     l->layout = sys->layout;
@@ -199,18 +220,6 @@ static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way, cons
     return force;
 }
 
-/* What the step that is left makes of a measure. */
-static double left_way(const mt_lagrangian *l, const mt_system *sys, const int body[2],
-                       const mt_jet *jet)
-{
-    double way = 0.0;
-    for (int k = 0; k < MT_LOCAL && l->left != NULL; k++) {
-        const int dof = mt_local_dof(sys, body, k);
-        way += dof >= 0 ? creal(jet->g[k]) * l->left[dof] : 0.0;
-    }
-    return way;
-}
-
 static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
                         const mt_jet *jet, double force, mt_lagrangian *out)
 {
@@ -248,7 +257,9 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             mt_data_eval(d, def, at, bends, &jet[side]);
-            way[side] = left_way(out, sys, def->body, &jet[side]);
+            if (out->left != NULL) {
+                way[side] = mt_jet_along(sys, def->body, &jet[side], out->left);
+            }
             stretch[side] = jet[side].value - d->rest[i][side];
         }
         const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);

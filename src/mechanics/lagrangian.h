@@ -88,6 +88,11 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
  * MT_CURVATURE_NONE. */
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err);
+/* Without h, and with A by rows: O(constraints) of memory. */
+mt_status mt_lagrangian_init_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem,
+                                  mt_err *err);
+/* out[nq] += A^T lambda, of the first m rows. */
+void mt_lagrangian_pull(const mt_lagrangian *l, int m, const double *lambda, double *out);
 /* Rows and a sparse Hessian; a shortage is the arena's. */
 void mt_lagrangian_want_rows(mt_lagrangian *l, const mt_system *sys, mt_arena *mem);
 /* Have terms (and what comes with them) filled too, with the next evaluation. */

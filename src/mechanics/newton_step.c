@@ -373,12 +373,7 @@ static double unbalanced(mt_newton_work *w, const mt_saddle *s)
     const mt_layout *const o = w->sys->layout;
     double most = 0.0;
     memcpy(w->reduced, w->g, (size_t)w->sys->nq * sizeof *w->reduced);
-    for (int i = 0; i < w->p->m; i++) {
-        const mt_sparse_row *const row = &w->sparse.row[i];
-        for (int k = 0; k < row->n; k++) {
-            w->reduced[row->dof[k]] += row->a[k] * w->lambda[i];
-        }
-    }
+    mt_lagrangian_pull(&w->sparse, w->p->m, w->lambda, w->reduced);
     for (int j = 0; j < w->sys->nq; j++) {
         const double force = fabs(s->d[o->state[j]] * w->reduced[j]);
         most = !(force <= most) ? force : most; /* NaN is kept */

@@ -31,6 +31,17 @@ static double extent_of(const mt_pose *poses, const int body[2])
     return extent;
 }
 
+double mt_jet_along(const mt_system *sys, const int body[2], const mt_jet *jet,
+                    const double *motion)
+{
+    double sum = 0.0;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(sys, body, k);
+        sum += dof >= 0 ? creal(jet->g[k]) * motion[dof] : 0.0;
+    }
+    return sum;
+}
+
 double mt_piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_pose *poses)
 {
     double extent =

@@ -32,6 +32,9 @@ static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
     const int b = body[k / 6];
     return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
 }
+/* What a motion of the states makes of a measure with this jet. */
+double mt_jet_along(const mt_system *sys, const int body[2], const mt_jet *jet,
+                    const double *motion);
 /* True for an angle or a cosine, false for a length. */
 bool mt_piece_is_angle(const mt_measure_def *def);
 /* What rounding makes of a measure: positions are known to eps of the coordinates that they are

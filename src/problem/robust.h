@@ -136,6 +136,9 @@ bool mt_robust_at_corner(const mt_case *c, int i);
 /* The limit [Hz] that a row sets a frequency, of a band without the clearance; NaN: it is one
  * on an expression. */
 double mt_robust_limit_hz(const mt_case *c, const mt_robust_row *row);
+/* What a row limits: view (-1: of an expression) and mode. */
+int mt_robust_row_view(const mt_case *c, const mt_robust_row *row);
+int mt_robust_row_mode(const mt_case *c, const mt_robust_row *row);
 /* Room of the row where the number that it limits is `value`: relative, a logarithm of
  * frequencies; negative: it falls short. Without the clearance. */
 double mt_robust_row_room(const mt_case *c, const mt_robust_row *row, double value);

@@ -9,10 +9,14 @@
 /* Factors that differ by less are those of one corner: rounding of x (1 + tolerance) / x. */
 static const double SAME_FACTOR = 1e-12;
 
-/* View of what a row limits; -1: a limit on an expression. */
-static int view_of(const mt_case *c, const mt_robust_row *row)
+int mt_robust_row_view(const mt_case *c, const mt_robust_row *row)
 {
     return row->demand >= 0 ? c->p->demands[row->demand].view : c->clears[row->at.clear].view;
+}
+
+int mt_robust_row_mode(const mt_case *c, const mt_robust_row *row)
+{
+    return row->demand >= 0 ? c->p->demands[row->demand].mode : row->at.mode;
 }
 
 static const mt_corner_set *set_of(const mt_case *c, int view, int demand)
@@ -23,7 +27,7 @@ static const mt_corner_set *set_of(const mt_case *c, int view, int demand)
 /* Views of cuts of a motion are judged at their corners alone. */
 static bool is_judged(const mt_case *c, const mt_robust_row *row)
 {
-    const int view = view_of(c, row);
+    const int view = mt_robust_row_view(c, row);
     return view < c->p->n_views && !set_of(c, view, row->demand)->exact;
 }
 
@@ -61,7 +65,7 @@ static mt_status add_cut(const mt_workspace *w, const mt_robust_row *row, const 
 {
     const mt_case *const c = w->c;
     const int n = c->p->n;
-    const int view = view_of(c, row);
+    const int view = mt_robust_row_view(c, row);
     const mt_corner_set *const set = set_of(c, view, row->demand);
     double *const factor = mt_arena_f64(mem, (size_t)n, 1);
     MT_TRY(mt_arena_check(mem, err));
@@ -97,8 +101,8 @@ static mt_status add_cut(const mt_workspace *w, const mt_robust_row *row, const 
 static const mt_robust_range *range_of(const mt_case *c, const mt_ranges *ranges,
                                        const mt_robust_row *row)
 {
-    const int view = view_of(c, row);
-    const int mode = row->demand >= 0 ? c->p->demands[row->demand].mode : row->at.mode;
+    const int view = mt_robust_row_view(c, row);
+    const int mode = mt_robust_row_mode(c, row);
     return view >= 0 ? mt_ranges_hz(ranges, view, mode) : &ranges->number[row->demand];
 }
 
@@ -158,7 +162,7 @@ mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
  * was evaluated at with slopes; false: it has none. */
 static bool name_worst(mt_workspace *w, const mt_robust_row *row, int mode, double *x)
 {
-    mt_analysis *const a = w->views[view_of(w->c, row)].analysis;
+    mt_analysis *const a = w->views[mt_robust_row_view(w->c, row)].analysis;
     const int pos = mt_modal_flexible(&a->modes, mode);
     mt_err own = {.code = MT_OK};
     if (pos < 0 || mt_analysis_dlambda_raw(a, pos, w->robust->slope, &own) != MT_OK) {
@@ -177,8 +181,8 @@ static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *
                              mt_arena *mem, mt_robust_cuts *cuts, mt_err *err)
 {
     const mt_case *const c = w->c;
-    const int mode = row->demand >= 0 ? c->p->demands[row->demand].mode : row->at.mode;
-    const mt_view_work *const view = &w->views[view_of(c, row)];
+    const int mode = mt_robust_row_mode(c, row);
+    const mt_view_work *const view = &w->views[mt_robust_row_view(c, row)];
     const mt_analysis_options opt = mt_view_asks(w, view, false);
     mt_analysis *const a = view->corners[0];
     mt_err own = {.code = MT_OK};
@@ -213,7 +217,7 @@ static mt_status judge_by_slopes(mt_workspace *w, mt_arena *mem, mt_robust_cuts 
         const mt_robust_row *const row = &c->robust->rows[k];
         const bool again = before != NULL && is_same(before, row);
         before = row;
-        if (!again && is_judged(c, row) && view_of(c, row) >= 0) {
+        if (!again && is_judged(c, row) && mt_robust_row_view(c, row) >= 0) {
             MT_TRY(judge_first(w, row, x, mem, cuts, err));
         }
     }

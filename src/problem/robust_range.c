@@ -135,10 +135,8 @@ static void choose_descents(const mt_workspace *w, int view, int modes,
     }
     for (int k = 0; k < c->robust->n_rows; k++) {
         const mt_robust_row *const row = &c->robust->rows[k];
-        const mt_demand *const d = row->demand >= 0 ? &c->p->demands[row->demand] : NULL;
-        const int of = d != NULL ? d->view : c->clears[row->at.clear].view;
-        const int mode = d != NULL ? d->mode : row->at.mode;
-        if (of == view && mode >= 1 && mode <= modes) {
+        const int mode = mt_robust_row_mode(c, row);
+        if (mt_robust_row_view(c, row) == view && mode >= 1 && mode <= modes) {
             descents[mode - 1][row->side] = MT_DESCENT_FINE;
         }
     }
@@ -275,9 +273,7 @@ static bool is_sampled_view(const mt_case *c, int view)
 {
     bool any = false;
     for (int k = 0; k < c->robust->n_rows && !c->robust->views[view].exact; k++) {
-        const mt_robust_row *const row = &c->robust->rows[k];
-        any = any || view == (row->demand >= 0 ? c->p->demands[row->demand].view
-                                               : c->clears[row->at.clear].view);
+        any = any || view == mt_robust_row_view(c, &c->robust->rows[k]);
     }
     return any;
 }

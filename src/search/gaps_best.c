@@ -29,29 +29,25 @@ static double first_of(const mt_gap_slot *s)
     return s->aims != NULL ? s->aims[0] : s->found.solutions[0].f;
 }
 
+/* How many of those that are met have at most this much of it. */
+static int count_up_to(const mt_gap_job *j, double most)
+{
+    int n = 0;
+    for (int k = 0; k < j->searched; k++) {
+        n += mt_gap_is_met(&j->slots[k]) && first_of(&j->slots[k]) <= most ? 1 : 0;
+    }
+    return n;
+}
+
 /* The `asked` least of it; HUGE_VAL where fewer are met. */
 static double last_of(const mt_gap_job *j, int asked)
 {
-    double last = -HUGE_VAL;
-    int found = 0;
-    for (int rank = 0; rank < asked; rank++) { /* the next one in order, with its equals */
-        double next = HUGE_VAL;
-        int equal = 0;
-        for (int k = 0; k < j->searched; k++) {
-            const double f = mt_gap_is_met(&j->slots[k]) ? first_of(&j->slots[k]) : HUGE_VAL;
-            equal = f < next ? (f > last ? 1 : equal) : f == next ? equal + 1 : equal;
-            next = f > last && f < next ? f : next;
-        }
-        if (!(next < HUGE_VAL)) {
-            return HUGE_VAL;
-        }
-        found += equal;
-        last = next;
-        if (found >= asked) {
-            return last;
-        }
+    double last = HUGE_VAL;
+    for (int k = 0; k < j->searched; k++) {
+        const double f = mt_gap_is_met(&j->slots[k]) ? first_of(&j->slots[k]) : HUGE_VAL;
+        last = f < last && count_up_to(j, f) >= asked ? f : last;
     }
-    return HUGE_VAL;
+    return last;
 }
 
 static mt_status run(mt_gap_job *j, int n, int n_workers, mt_err *err)

@@ -75,17 +75,16 @@ static void add_corners(listing *l)
     const mt_workspace *const ws = l->ws;
     for (int k = 0; ws->c->robust != NULL && k < ws->c->robust->n_rows; k++) {
         const mt_robust_row *const row = &ws->c->robust->rows[k];
-        const mt_demand *const d = row->demand >= 0 ? &ws->p->demands[row->demand] : NULL;
-        const int view = d != NULL ? d->view : ws->c->clears[row->at.clear].view;
+        const int view = mt_robust_row_view(ws->c, row);
         if (view >= 0) {
             const mt_corner_set *const set = &ws->c->robust->views[view];
             const mt_repeated_side s = {.analysis = ws->views[view].corners[row->corner],
                                         .factor = set->corners[row->corner].factor,
                                         .limit_hz = mt_robust_limit_hz(ws->c, row),
                                         .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
-                                        .moves = d == NULL && ws->c->clearance,
+                                        .moves = row->demand < 0 && ws->c->clearance,
                                         .row = mt_case_rows_eq(ws->c) + row->row};
-            add(l, &s, d != NULL ? d->mode : row->at.mode);
+            add(l, &s, mt_robust_row_mode(ws->c, row));
         }
     }
 }
