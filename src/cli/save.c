@@ -213,8 +213,11 @@ static mt_status write_timing(const mt_args *args, const mt_result *result, doub
 static void write_page(const mt_result *result, const char *scene, mt_text *out)
 {
     mt_text json = {.s = NULL};
-    out->failed = mt_result_write_alone(result, &json, NULL) != MT_OK || out->failed;
-    mt_report_html(result, json.s, scene, out);
+    if (mt_result_write_alone(result, &json, NULL) == MT_OK) {
+        mt_report_html(result, json.s, scene, out);
+    } else {
+        out->failed = true;
+    }
     mt_text_free(&json);
 }
 

@@ -91,7 +91,7 @@ static size_t string_end(const char *json, size_t at)
     return at + (json[at] == '"' ? 1 : 0);
 }
 
-/* Behind a bracket; not behind the end of all, where a walk without room has gone. */
+/* Behind a bracket or colon; not behind the end of all, where a walk without room has gone. */
 static size_t behind(const packing *p, size_t at)
 {
     return at + (p->json[at] != '\0' ? 1 : 0);
@@ -108,7 +108,7 @@ static size_t read_members(packing *p, size_t at, mt_text *names, bool *words)
                       strncmp(p->json + at, "\"~\"", 3) == 0;
         mt_text_add(names, names->length > 0 ? "," : "");
         mt_text_add_n(names, p->json + at, end - at);
-        at = read_value(p, end + 1, words);
+        at = read_value(p, behind(p, end), words);
         at += p->json[at] == ',' ? 1 : 0;
     }
     return behind(p, at);
@@ -130,7 +130,7 @@ static size_t read_node(packing *p, size_t at, bool *words)
     if (object) {
         end = read_members(p, end, &names, &own);
     } else {
-        while (p->json[end] != ']' && p->json[end] != '\0') {
+        while (strchr("]}", p->json[end]) == NULL) { /* which finds the end of all, too */
             end = read_value(p, end, &own);
             end += p->json[end] == ',' ? 1 : 0;
         }
@@ -213,7 +213,7 @@ static size_t write_node(packing *p)
     }
     while (at < v->end - 1) {
         if (object) {
-            const size_t value = string_end(p->json, at) + 1;
+            const size_t value = behind(p, string_end(p->json, at));
             if (keys >= 0) {
                 mt_text_add(p->out, ",");
             } else {

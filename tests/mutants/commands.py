@@ -206,7 +206,7 @@ class Answer:
                 yield "system", done.said()
         if done.code == 2:
             yield from self._place(done)
-        yield from self._words(done.args[0], done.out + done.err)
+        yield from self._words(done.args[0], without_program(done.out) + done.err)
         yield from self._form(done)
 
     def _place(self, done):

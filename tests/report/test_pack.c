@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The form of packed JSON; that it says the same is held in cli/test_packed_pages.py. */
+#define _XOPEN_SOURCE 700 /* strdup; NOLINT(cert-dcl37-c,cert-dcl51-cpp) */
+#include <stdlib.h>
+#include <string.h>
+
 #include "mt_alloc.h"
 #include "mt_test.h"
 #include "report/pack.h"
@@ -54,5 +58,26 @@ static void pack__survives_every_failing_allocation(mt_test *t)
     CHECK(t, !mt_alloc_works() || !failed);
 }
 
+/* A text that memory cut, or that misses a byte, ends too, within itself. */
+static void pack__ends_where_its_text_is_damaged(mt_test *t)
+{
+    static const char json[] = "[{\"a\":[1.25,2.25,3.25],\"b\":\"\\\"x\"},[[\"c\"],{},[]]]";
+    char damaged[sizeof json];
+    for (size_t i = 0; i < sizeof json - 1; i++) {
+        for (int cut = 0; cut < 2; cut++) {
+            mt_text out = {.s = NULL};
+            memcpy(damaged, json, i);
+            memcpy(damaged + i, cut ? "" : json + i + 1, cut ? 1 : sizeof json - i - 1);
+            char *const own = strdup(damaged); /* so that a step beyond it shows */
+            mt_test_row(t, "%s", damaged);
+            mt_pack_json(own, &out);
+            CHECK(t, own != NULL && !out.failed && out.length < 8 * sizeof json);
+            free(own);
+            mt_text_free(&out);
+        }
+    }
+}
+
 MT_TEST_MAIN(MT_TEST(pack__says_once_what_is_said_twice),
+             MT_TEST(pack__ends_where_its_text_is_damaged),
              MT_TEST(pack__survives_every_failing_allocation))
