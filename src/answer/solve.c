@@ -155,10 +155,36 @@ static int positions_of(long most)
 
 long mt_question_left(const mt_question *q)
 {
-    const long most = q->study.search.max_evaluations;
+    const mt_search *const s = &q->study.search;
     const long spent =
         mt_spent_of(&q->spent, MT_SPENT_DESIGNS) + mt_spent_of(&q->spent, MT_SPENT_POSITIONS);
-    return most <= 0 ? LONG_MAX : spent < most ? most - spent : 0;
+    const long left = s->max_evaluations <= 0      ? LONG_MAX
+                      : spent < s->max_evaluations ? s->max_evaluations - spent
+                                                   : 0;
+    if (s->solutions_each <= 0) {
+        return left;
+    }
+    const long solved = mt_spent_of(&q->spent, MT_SPENT_MODAL);
+    const long other = solved < s->max_modal_solutions
+                           ? (s->max_modal_solutions - solved) / s->solutions_each
+                           : 0;
+    return other < left ? other : left;
+}
+
+/* A budget of modal solutions, in evaluations of the study as it is asked. */
+static void count_in_evaluations(mt_question *q)
+{
+    mt_search *const s = &q->study.search;
+    if (s->max_modal_solutions <= 0) {
+        return;
+    }
+    const long each = mt_case_solutions(&q->p->whole);
+    s->solutions_each = each > 1 ? each : 1;
+    const long n = s->max_modal_solutions / s->solutions_each;
+    s->by_solutions = s->max_evaluations <= 0 || n < s->max_evaluations;
+    s->max_evaluations = s->by_solutions ? (n > 1 ? n : 1) : s->max_evaluations;
+    s->max_positions = positions_of(s->max_evaluations);
+    q->p->whole.search = *s;
 }
 
 /* The question, asked of a model that knows the interrupt. */
@@ -202,6 +228,9 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
     mt_spent_init(&q->spent);
     MT_TRY(ask(q, study, err));
     const mt_status rc = mt_problem_new(&q->study, &q->p, &own);
+    if (rc == MT_OK) {
+        count_in_evaluations(q);
+    }
     return end_at_once(q, rc, &own, err);
 }
 

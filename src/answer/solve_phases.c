@@ -10,6 +10,7 @@
 #include "describe/certificates.h"
 #include "describe/describe_discrete.h"
 #include "describe/describe_relax.h"
+#include "problem/robust_cut.h"
 #include "search/hopeless.h"
 #include "search/motion.h"
 #include "search/search.h"
@@ -32,10 +33,20 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     return mt_describe_baseline_reasons(p, result, err);
 }
 
-/* Evaluations to describe one design: mt_describe_design, and its motions. */
+/* Where the budget is one of modal solutions, what those of the original design count as. */
+static long original(const mt_answer *a)
+{
+    const long solved = mt_spent_in(a->spent, MT_PHASE_BASELINE, MT_SPENT_MODAL);
+    return mt_case_worth(&a->asked, solved);
+}
+
+/* Evaluations to describe one design: mt_describe_design, and its motions. What its tolerances
+ * take is known from the original design. */
 static long description(const mt_answer *a)
 {
-    return 2 + mt_motion_most(&a->asked);
+    const long most = 2 + mt_motion_most(&a->asked);
+    const long worth = original(a);
+    return most > worth ? most : worth;
 }
 
 static int limited(long n, int least, int most)
@@ -61,6 +72,7 @@ static void allow_search(mt_answer *a)
     const long rest = left - (n * description(a)) - (a->study->n_published > 0 ? 2 : 0) -
                       (mt_spread_is_asked(a->p) ? part : 0);
     a->asked.search.max_evaluations = rest > 1 ? rest : 1;
+    a->asked.search.judged_as = mt_robust_is_sampled(&a->asked) ? original(a) : 0;
 }
 
 /* Solutions of the search over gap assignments in the form of any other search. */
@@ -199,11 +211,12 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     }
     a->mark = mt_result_get_mark(result);
     if (found->n_solutions > n) {
-        MT_TRY(mt_describe_warn(
-            result, err, "%d more distinct designs were found; %s", found->n_solutions - n,
-            n < asked ? "\"max_evaluations\" leaves no evaluations to check them"
-                      : "\"recommendations\" in the study says how many to "
-                        "report"));
+        MT_TRY(mt_describe_warn(result, err, "%d more distinct designs were found; \"%s\" %s",
+                                found->n_solutions - n,
+                                n < asked ? mt_search_budget(&a->study->search)
+                                          : "recommendations",
+                                n < asked ? "leaves no evaluations to check them"
+                                          : "in the study says how many to report"));
     }
     return MT_OK;
 }
@@ -262,7 +275,8 @@ mt_status mt_answer_relax(mt_answer *a, mt_err *err)
         return mt_describe_warn(
             a->result, err,
             "the single change that would make the study feasible is not known: there are too "
-            "many combinations, or \"max_evaluations\" left no evaluations for it");
+            "many combinations, or \"%s\" left no evaluations for it",
+            mt_search_budget(&a->study->search));
     }
     return mt_describe_relaxations(a->p, &moves, a->result, err);
 }

@@ -27,8 +27,9 @@ static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
     return mt_describe_warn(
         a->result, err,
         "%d of the %d designs found %s reached from one of %d starts only: %s; more "
-        "\"starts\" or \"max_evaluations\" may find them",
-        f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts, more);
+        "\"starts\" or \"%s\" may find them",
+        f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts, more,
+        mt_search_budget(&a->study->search));
 }
 
 /* What the engineer should know of the search besides its answers. */
@@ -50,12 +51,17 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
         }
     }
     if (a->found.stop == MT_STOP_MAX_EVALS) {
+        const mt_search *const s = &a->study->search;
         MT_TRY(
             mt_describe_warn(a->result, err,
-                             "the budget of evaluations ran out (%ld of %ld were made in the "
-                             "search): a larger \"max_evaluations\" may find more",
-                             mt_spent_in(&a->q->spent, MT_PHASE_SEARCH, MT_SPENT_DESIGNS),
-                             a->study->search.max_evaluations));
+                             "the budget of %s ran out (%ld of %ld were made in the search): a "
+                             "larger \"%s\" may "
+                             "find more",
+                             s->by_solutions ? "modal solutions" : "evaluations",
+                             mt_spent_in(&a->q->spent, MT_PHASE_SEARCH,
+                                         s->by_solutions ? MT_SPENT_MODAL : MT_SPENT_DESIGNS),
+                             s->by_solutions ? s->max_modal_solutions : s->max_evaluations,
+                             mt_search_budget(&a->study->search)));
     }
     MT_TRY(warn_of_missing(a, err));
     for (int i = 0; i < a->result->n_recommendations; i++) {

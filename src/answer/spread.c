@@ -167,8 +167,9 @@ mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena
     if (most < LONG_MAX && s.most < EVALUATIONS_LEAST) {
         result->n_spread = 0;
         return mt_describe_warn(result, err,
-                                "sensitivity to the weights: not computed, since "
-                                "\"max_evaluations\" leaves no evaluations for it");
+                                "sensitivity to the weights: not computed, since \"%s\" leaves "
+                                "no evaluations for it",
+                                mt_search_budget(&w->p->study->search));
     }
     mt_workspace_back(w, &s.c);
     const mt_status rc = search_all(&s, mem, err);

@@ -289,6 +289,8 @@ static mt_status store(mt_args *args, int option, const char *value, mt_err *err
         return read_count(value, o->name, MT_STARTS_MOST, &args->starts, err);
     case MT_OPT_MAX_EVALUATIONS:
         return read_count(value, o->name, INT_MAX, &args->max_evaluations, err);
+    case MT_OPT_MAX_MODAL_SOLUTIONS:
+        return read_count(value, o->name, INT_MAX, &args->max_modal_solutions, err);
     case MT_OPT_THREADS:
         MT_TRY(read_count(value, o->name, MAX_THREADS, &args->threads, err));
         args->threads = args->threads < MT_WORKERS_MOST ? args->threads : MT_WORKERS_MOST;

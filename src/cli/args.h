@@ -52,6 +52,7 @@ typedef enum mt_option_id {
     MT_OPT_SEED,
     MT_OPT_STARTS,
     MT_OPT_MAX_EVALUATIONS,
+    MT_OPT_MAX_MODAL_SOLUTIONS,
     MT_OPT_PROOF,
     MT_OPT_REPORT,
     MT_OPT_RESUME,
@@ -183,6 +184,7 @@ typedef struct mt_args {
     int mode;                      /* --mode, 0: not given */
     int starts;                    /* --starts, 0: not given */
     int max_evaluations;           /* --max-evaluations, 0: not given */
+    int max_modal_solutions;       /* --max-modal-solutions, 0: not given */
     int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
     double rel_tol;      /* --rel-tol, default 0 */
     double abs_tol;      /* --abs-tol, default 0 */

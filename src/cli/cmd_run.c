@@ -82,6 +82,7 @@ static int answer(job *j)
                             .seed = args->given[MT_OPT_SEED] ? (long)args->seed : -1,
                             .starts = args->starts,
                             .max_evaluations = args->max_evaluations,
+                            .max_modal_solutions = args->max_modal_solutions,
                             .proof_s = args->given[MT_OPT_PROOF] ? args->proof_s : nan("")};
     mt_io_options io = mt_cli_io(args);
     io.asked = &asked;

@@ -160,6 +160,8 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "number of local searches instead of the study's \"starts\""),
     OPTION(MT_OPT_MAX_EVALUATIONS, '\0', "max-evaluations", "N", ON_STUDIES,
            "limit of evaluated designs instead of the study's \"max_evaluations\""),
+    OPTION(MT_OPT_MAX_MODAL_SOLUTIONS, '\0', "max-modal-solutions", "N", ON_STUDIES,
+           "limit of modal solutions instead of the study's \"max_modal_solutions\""),
     OPTION(MT_OPT_PROOF, '\0', "proof", "SECONDS", ON_STUDIES,
            "limit of each proof in nominal seconds (1e9 multiplications on any machine) "
            "instead of the study's \"proof_s\" (default: 5); 0: no proof"),

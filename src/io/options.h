@@ -7,11 +7,12 @@
 /* What is asked for instead of what the files say. */
 typedef struct mt_asked {
     int n_sets;
-    const char *const *sets; /* NAME=VALUE (model/setting.h), of a study's own model */
-    long seed;               /* -1: as the study says */
-    long starts;             /* 0: likewise */
-    long max_evaluations;    /* 0: likewise */
-    double proof_s;          /* NaN: likewise */
+    const char *const *sets;  /* NAME=VALUE (model/setting.h), of a study's own model */
+    long seed;                /* -1: as the study says */
+    long starts;              /* 0: likewise */
+    long max_evaluations;     /* 0: likewise */
+    long max_modal_solutions; /* 0: likewise */
+    double proof_s;           /* NaN: likewise */
 } mt_asked;
 
 /* What every reader of files takes. */

@@ -41,12 +41,13 @@ enum { STUDY_KEYS(MT_STUDY_KEY_ENUM) STUDY_KEY_COUNT };
 static const mt_key KEYS[] = {STUDY_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_keys = {"", KEYS, STUDY_KEY_COUNT};
 
-#define SEARCH_KEYS(X)                                                       \
-    X(SEARCH_SEED, "seed", MT_KEY_COUNT, false, WHOLE)                       \
-    X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false, WHOLE)                   \
-    X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false, WHOLE) \
-    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false, PROOF)                  \
-    X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)                 \
+#define SEARCH_KEYS(X)                                                         \
+    X(SEARCH_SEED, "seed", MT_KEY_COUNT, false, WHOLE)                         \
+    X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false, WHOLE)                     \
+    X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false, WHOLE)   \
+    X(SEARCH_MAX_SOLUTIONS, "max_modal_solutions", MT_KEY_COUNT, false, WHOLE) \
+    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false, PROOF)                    \
+    X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)                   \
     X(SEARCH_SOURCE, "source", MT_KEY_TEXT, false)
 enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
 static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
@@ -255,6 +256,8 @@ static void ask_search(mt_study_reader *s)
         search->starts = (int)ask(s, "starts", search->starts, asked->starts, 0);
         search->max_evaluations =
             ask(s, "max_evaluations", search->max_evaluations, asked->max_evaluations, 0);
+        search->max_modal_solutions = ask(s, "max_modal_solutions", search->max_modal_solutions,
+                                          asked->max_modal_solutions, 0);
         if (MT_HAS(asked->proof_s)) {
             note_asked(s, &(mt_asked_number){.kind = "search",
                                              .name = "proof_s",
@@ -277,6 +280,8 @@ static void read_search(mt_study_reader *s, mt_addr value)
     search->starts = mt_reader_count(&s->r, o.found[SEARCH_STARTS], 1, MT_STARTS_MOST, 0);
     search->max_evaluations =
         mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
+    search->max_modal_solutions =
+        mt_reader_count(&s->r, o.found[SEARCH_MAX_SOLUTIONS], 1, INT_MAX, 0);
     search->proof_s = mt_read_study_member(s, &o, SEARCH_PROOF, &search->proof_addr);
 }
 

@@ -226,3 +226,25 @@ long mt_case_solutions(const mt_case *c)
     }
     return n;
 }
+
+long mt_case_worth(const mt_case *c, long n)
+{
+    const long each = c->search.solutions_each;
+    return each > 0 && n > 0 ? ((n - 1) / each) + 1 : 0;
+}
+
+long mt_case_counted(const mt_case *c, long evals)
+{
+    return evals + mt_case_worth(c, (mt_case_solutions(c) - c->search.solutions_each) * evals);
+}
+
+long mt_case_afford(const mt_case *c, long evals)
+{
+    const long each = c->search.solutions_each;
+    const long own = mt_case_solutions(c);
+    if (each <= 0 || own <= each) {
+        return evals;
+    }
+    const double fewer = (double)evals * (double)each / (double)own;
+    return fewer > 1.0 ? (long)fewer : 1;
+}

@@ -114,6 +114,15 @@ double mt_case_change(const mt_case *c, const double *t);
 /* Modal solutions that one evaluation takes: each configuration, and each corner of the
  * tolerances that is held there. */
 long mt_case_solutions(const mt_case *c);
+/*
+ * Where the budget is one of modal solutions it is counted in evaluations that take
+ * search.solutions_each of them. What n modal solutions are counted as; what evaluations of
+ * this case are, which may take more; and how many of this case the counted ones `evals` come
+ * to, at least 1. Where the budget is not one: 0, evals and evals.
+ */
+long mt_case_worth(const mt_case *c, long n);
+long mt_case_counted(const mt_case *c, long evals);
+long mt_case_afford(const mt_case *c, long evals);
 /* Rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held
  * objectives. */
 int mt_case_rows_in(const mt_case *c);

@@ -86,6 +86,7 @@ typedef struct mt_ranges {
     int *n;                  /* [n_views] */
     mt_robust_range **hz;    /* [n_views] of its vibration modes, [n]; of a view that matters */
     mt_robust_range *number; /* [n_limits] of limits on expressions */
+    long solutions;          /* modal, that were taken */
 } mt_ranges;
 
 /* Of a workspace. */

@@ -144,7 +144,7 @@ mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
                           mt_robust_cuts *cuts, mt_err *err)
 {
     mt_arena own;
-    mt_ranges ranges;
+    mt_ranges ranges = {.solutions = 0};
     begin_judging(cuts);
     if (!mt_robust_is_sampled(w->c)) {
         return MT_OK;
@@ -154,6 +154,7 @@ mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
     /* what is cut off has no value at some sample: nothing is known */
     rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
     rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
+    cuts->solutions += ranges.solutions;
     mt_arena_free(&own);
     return rc;
 }
@@ -190,6 +191,7 @@ static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *
         return MT_OK;
     }
     mt_problem_note_modal(w->p, 1);
+    cuts->solutions++;
     const mt_status rc = mt_analysis_solve(a, x, &opt, &own);
     const int pos = rc == MT_OK ? mt_modal_flexible(&a->modes, mode) : -1;
     MT_TRY(mt_pass_final(rc, &own, err));
@@ -229,6 +231,7 @@ mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_ro
 {
     mt_nlp_values v;
     begin_judging(cuts);
+    cuts->solutions = 0;
     if (!mt_robust_is_sampled(w->c)) {
         return MT_OK;
     }

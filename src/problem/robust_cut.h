@@ -27,6 +27,7 @@ typedef struct mt_robust_cuts {
     int added;
     mt_missed missed; /* by the worst within its tolerances, of what is held at samples alone */
     double band_room; /* least of the bands; HUGE_VAL: none is held so */
+    long solutions;   /* modal, beside its evaluation */
 } mt_robust_cuts;
 
 /* Whether anything that the case holds is judged at samples. */

@@ -94,6 +94,7 @@ typedef struct modes_of {
     mt_analysis *a;
     int m;
     int sloped; /* of which slopes are asked for */
+    long *solutions;
 } modes_of;
 
 static mt_status eval_modes(void *context, const double *x, bool with_gradient, double *value,
@@ -105,6 +106,7 @@ static mt_status eval_modes(void *context, const double *x, bool with_gradient, 
                                      .vectors = with_gradient,
                                      .accuracy = MT_MODAL_ACCURACY};
     mt_problem_note_modal(c->p, 1);
+    ++*c->solutions;
     MT_TRY(mt_analysis_solve(c->a, x, &opt, err));
     for (int k = 0; k < c->m; k++) {
         const int pos = mt_modal_flexible(&c->a->modes, k + 1);
@@ -152,7 +154,11 @@ static mt_status range_of_modes(const box *b, int view, int modes, mt_analysis *
     MT_TRY(mt_arena_check(b->mem, err));
     choose_descents(b->w, view, modes, b->of_rows ? MT_DESCENT_NONE : MT_DESCENT_COARSE,
                     descents);
-    modes_of c = {.p = b->w->p, .a = a, .m = b->out->n[view], .sloped = modes};
+    modes_of c = {.p = b->w->p,
+                  .a = a,
+                  .m = b->out->n[view],
+                  .sloped = modes,
+                  .solutions = &b->out->solutions};
     mt_robust_probe q = {.n = b->w->p->n,
                          .m = c.m,
                          .n_descend = modes,
@@ -174,6 +180,7 @@ static mt_status range_view(const box *b, int view, int modes, mt_err *err)
     mt_ranges *const r = b->out;
     mt_analysis *a = NULL;
     mt_problem_note_modal(b->w->p, 1);
+    r->solutions++;
     mt_status rc = mt_view_analyse(b->w->views[view].of, b->w->x, &a, err);
     const int all = rc == MT_OK ? mt_modal_vibrations(&a->modes) : 0;
     r->hz[view] = mt_arena_alloc(b->mem, (size_t)all, sizeof *r->hz[view]);

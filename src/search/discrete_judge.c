@@ -167,7 +167,7 @@ static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *
 {
     mt_robust_cuts cuts = {.n = 0};
     MT_TRY(mt_robust_judge(w, c->t, mem, &cuts, err));
-    c->evals++;
+    c->evals += 1 + mt_case_worth(w->c, cuts.solutions);
     if (!mt_is_met(cuts.missed.violation, 1.0)) {
         const double more = cuts.missed.violation;
         c->missed.squares += cuts.missed.squares;
@@ -184,8 +184,8 @@ static mt_status judge_tolerances(mt_workspace *w, mt_combination *c, mt_arena *
 
 long mt_discrete_judgement(const mt_discrete *d)
 {
-    const int more =
-        (mt_robust_is_sampled(d->c) ? 1 : 0) + (mt_search_has_positions(d->c) ? 1 : 0);
+    const long more = (mt_robust_is_sampled(d->c) ? 1 + d->c->search.judged_as : 0) +
+                      (mt_search_has_positions(d->c) ? 1 : 0);
     return is_followed(d) ? 1 + more + mt_motion_most(d->c) : 0;
 }
 

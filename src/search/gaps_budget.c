@@ -12,8 +12,8 @@
 long mt_gap_judgement(const mt_case *c)
 {
     return (c->n_aims > 1 ? 1 : 0) + (mt_search_has_positions(c) ? 1 : 0) +
-           (c->clearance || mt_family_any(c->p) ? 1 : 0) + (mt_robust_is_sampled(c) ? 1 : 0) +
-           mt_motion_most(c);
+           (c->clearance || mt_family_any(c->p) ? 1 : 0) +
+           (mt_robust_is_sampled(c) ? 1 + c->search.judged_as : 0) + mt_motion_most(c);
 }
 
 int mt_gap_affordable(const mt_case *c, int n, long left)

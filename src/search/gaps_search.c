@@ -141,7 +141,7 @@ static mt_status judge_best(mt_gap_slot *s, mt_workspace *w, bool last, bool *ag
     }
     if (best->feasible && mt_robust_is_sampled(w->c)) {
         MT_TRY(mt_search_judge(w, last, &s->mem, &s->corners, best, &worse, err));
-        s->evals++;
+        s->evals += 1 + mt_case_worth(w->c, s->corners.solutions);
         /* the worst within the tolerances, where they were looked at for it */
         room = fmin(room, s->corners.band_room);
     }
@@ -169,13 +169,13 @@ static mt_status search_round(const mt_gap_job *j, mt_workspace *w, mt_gap_slot 
     mt_case c;
     *again = false;
     mt_case held = *j->c;
-    if (options.max_evals > 0) {
-        const long left = options.max_evals - s->evals - mt_gap_judgement(j->c);
-        options.max_evals = left > 1 ? left : 1;
-        held.search.max_evaluations = options.max_evals;
-    }
     if (s->corners.n > 0) {
         MT_TRY(mt_robust_add_cuts(j->c, &s->corners, &s->mem, &held.robust, why));
+    }
+    if (options.max_evals > 0) {
+        const long left = options.max_evals - s->evals - mt_gap_judgement(j->c);
+        options.max_evals = left > 1 ? mt_case_afford(&held, left) : 1;
+        held.search.max_evaluations = options.max_evals;
     }
     mt_cut *cuts = NULL;
     MT_TRY(mt_posed_cuts_behind(&s->posed, s->n_cuts, s->cuts, &s->mem, &cuts, why));
@@ -206,7 +206,7 @@ static mt_status search_round(const mt_gap_job *j, mt_workspace *w, mt_gap_slot 
         rc = mt_search_nearest(w, options.max_evals, NULL, NULL, &s->mem, &s->found, why);
     }
     s->begun = s->evals;
-    s->evals += s->found.evals;
+    s->evals += mt_case_counted(&c, s->found.evals);
     s->starts += s->found.starts;
     if (rc == MT_OK && s->found.n_solutions > 0) {
         rc = mt_gap_hold(&c, s->cuts, &s->found.solutions[0], &s->mem, &s->held, why);

@@ -80,14 +80,14 @@ static mt_status judge(rounds *r, int i, bool last, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
     r->open[i] = false;
-    if (r->over_tolerances && lacks(r, 1)) {
+    if (r->over_tolerances && lacks(r, 1 + r->c->search.judged_as)) {
         s->feasible = false; /* not known */
         r->out->stop = r->out->stop == MT_STOP_DONE ? MT_STOP_MAX_EVALS : r->out->stop;
         return MT_OK;
     }
     if (r->over_tolerances) {
         MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
-        r->out->evals++;
+        r->out->evals += 1 + mt_case_worth(r->c, r->cuts.solutions);
     }
     if (r->over_positions && s->feasible && !lacks(r, r->judgement)) {
         MT_TRY(mt_search_judge_positions(r->ws, s->t, last, r->mem, &r->posed, err));
@@ -139,6 +139,13 @@ static mt_status note_prices(rounds *r, const mt_nlp_solution *s, mt_err *err)
     return MT_OK;
 }
 
+/* What the budget leaves to a search with the cuts; 0: there is none. */
+static long left_for(const rounds *r, const mt_case *held)
+{
+    const long most = r->c->search.max_evaluations;
+    return most <= 0 ? 0 : mt_case_afford(held, most - r->out->evals - r->judgement);
+}
+
 /* Solution i from where it is, in the case with the cuts, which the workspace is set to. */
 static mt_status go_on(rounds *r, int i, mt_err *err)
 {
@@ -147,7 +154,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
     int stage = 0;
     const mt_status rc = mt_search_from(r->ws, s->t, r->mem, &next, &stage, err);
     mt_steps_append(&r->out->steps, &next.steps, r->out->evals, 0, r->round);
-    r->out->evals += next.evals;
+    r->out->evals += mt_case_counted(r->ws->c, next.evals);
     r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
     if (rc != MT_OK || next.n_solutions == 0 || next.compromise) {
         return rc; /* it stands as it is, and is judged so */
@@ -191,10 +198,7 @@ static mt_status search_again(rounds *r, mt_err *err)
     mt_status rc = MT_OK;
     for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
         if (r->open[i] && !is_spent(r)) {
-            held.search.max_evaluations =
-                c->search.max_evaluations > 0
-                    ? c->search.max_evaluations - r->out->evals - r->judgement
-                    : 0;
+            held.search.max_evaluations = left_for(r, &held);
             rc = go_on(r, i, err);
         }
     }
@@ -280,9 +284,7 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
     int stage = 0;
     *found = false;
     MT_TRY(hold_cuts(r, &held, err));
-    held.search.max_evaluations = c->search.max_evaluations > 0
-                                      ? c->search.max_evaluations - r->out->evals - r->judgement
-                                      : 0;
+    held.search.max_evaluations = left_for(r, &held);
     if (any_feasible(r)) {
         held.search.starts =
             r->out->starts > 0 && r->out->starts < STARTS ? r->out->starts : STARTS;
@@ -291,7 +293,7 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
     mt_workspace_back(r->ws, c);
     MT_TRY(rc);
     mt_steps_append(&r->out->steps, &next.steps, r->out->evals, 0, r->round);
-    r->out->evals += next.evals;
+    r->out->evals += mt_case_counted(&held, next.evals);
     r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
     if (next.n_solutions == 0 || next.compromise || stage != *r->stage) {
         return MT_OK;
@@ -358,7 +360,8 @@ static mt_status search_first(const rounds *r, mt_workspace *const *workers, int
                               mt_err *why, mt_err *err)
 {
     const long most = r->c->search.max_evaluations;
-    const long part = most / PART < JUDGED ? most / PART : JUDGED;
+    const long wanted = JUDGED + r->c->search.judged_as;
+    const long part = most / PART < wanted ? most / PART : wanted;
     mt_case less = *r->c;
     less.search.max_evaluations -= r->over_tolerances ? part : 0;
     for (int i = 0; i < n_workers; i++) {
@@ -380,8 +383,8 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     r.stage = stage;
     r.over_tolerances = mt_robust_is_sampled(r.c);
     r.over_positions = mt_search_has_positions(r.c);
-    r.judgement =
-        (r.over_tolerances ? 1 : 0) + (r.over_positions ? 2 + mt_motion_most(r.c) : 0);
+    r.judgement = (r.over_tolerances ? 1 + r.c->search.judged_as : 0) +
+                  (r.over_positions ? 2 + mt_motion_most(r.c) : 0);
     MT_TRY(search_first(&r, workers, n_workers, why, err));
     if (!(r.over_tolerances || r.over_positions) || out->n_solutions == 0 || out->compromise ||
         out->stop == MT_STOP_USER) {

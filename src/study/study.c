@@ -338,3 +338,8 @@ const char *const *mt_study_statuses(int *n)
     *n = MT_RESULT_INTERRUPTED;
     return names;
 }
+
+const char *mt_search_budget(const mt_search *s)
+{
+    return s->by_solutions ? "max_modal_solutions" : "max_evaluations";
+}

@@ -241,6 +241,12 @@ typedef struct mt_search {
     unsigned long seed;
     int starts;           /* 0: chosen by the number of variables */
     long max_evaluations; /* of everything that the answer takes; 0: no limit */
+    /* likewise; what it comes to in evaluations is put into max_evaluations by who answers */
+    long max_modal_solutions;
+    /* those of one evaluation where there is such a limit; 0: there is none. By who answers */
+    long solutions_each;
+    long judged_as;    /* evaluations that judging a design over its tolerances is counted as */
+    bool by_solutions; /* it is the one that is reached first */
     /* of them, positions that a design may be followed over on its way along one drive; 0: as
      * many as it takes. By who answers */
     int max_positions;
@@ -248,6 +254,9 @@ typedef struct mt_search {
     double proof_s;
     mt_addr proof_addr;
 } mt_search;
+
+/* The member whose limit is the budget. */
+const char *mt_search_budget(const mt_search *s);
 
 /* How far the best design of a misfit moves when single weights are changed: the uncertainty
  * that a choice of weights hides. */

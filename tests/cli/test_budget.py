@@ -124,18 +124,18 @@ class Budget(CliTest):
     def test_a_value_that_is_set_is_as_if_the_model_said_so(self):
         """Four times the mass asks for four times the springs: (12, 4) and (8, 6) for (3, 1) and (2, 1.5)."""
         self.two_masses()
-        self.expect(0, "run", "studies/two.json", "-o", "set_out", "--set", "m=4*m", "--starts", "9", "--max-evaluations", "3000")
+        self.expect(0, "run", "studies/two.json", "-o", "set_out", "--set", "m=4*m", "--starts", "9", "--max-evaluations", "3000", "--max-modal-solutions", "9000")
         given = self.two("set_out")
         springs = sorted(tuple(p["recommended"] for p in r["parameters"]) for r in given["recommendations"])
         for found, expected in zip(springs, [(8, 6), (12, 4)], strict=True):
             for a, b in zip(found, expected, strict=True):
                 self.assertAlmostEqual(a, b, delta=1e-7 * b)
         self.assertEqual([(o["kind"], o["name"], o["value"], o["original"]) for o in given["run"]["overrides"]],
-                         [("parameter", "m", 4, 1), ("search", "starts", 9, None), ("search", "max_evaluations", 3000, None)])
+                         [("parameter", "m", 4, 1), ("search", "starts", 9, None), ("search", "max_evaluations", 3000, None), ("search", "max_modal_solutions", 9000, None)])
         self.assertEqual(given["run"]["starts"], 9)
         (self.folder / "edited").mkdir()
         self.write("problems/model.json", MODEL.replace('"m": 1.0', '"m": 4.0'))
-        self.write("edited/two.json", study(extra=', "search": {"seed": 3, "starts": 9, "max_evaluations": 3000}'))
+        self.write("edited/two.json", study(extra=', "search": {"seed": 3, "starts": 9, "max_evaluations": 3000, "max_modal_solutions": 9000}'))
         self.expect(0, "run", "edited/two.json", "-o", "edited_out")
         edited = self.two("edited_out")
         for r in (edited, given):
@@ -228,7 +228,7 @@ class Budget(CliTest):
 
     def test_values_that_are_none(self):
         for option, values in {"--time": ("0", "-1", "nan", "inf", "1s", "2e9", "0x5"), "--seed": ("-1", "1.5", "x", "2147483648"),
-                               "--starts": ("0", "1.5", "100001"), "--max-evaluations": ("0", "x", "2147483648"),
+                               "--starts": ("0", "1.5", "100001"), "--max-evaluations": ("0", "x", "2147483648"), "--max-modal-solutions": ("0", "x", "2147483648"),
                                "--proof": ("-1", "nan", "inf", "5s", "1.1e6", "0x5")}.items():
             for value in values:
                 done = self.expect(2, "run", "studies/short.json", f"{option}={value}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""max_evaluations is of everything: searches, positions of drives, analyses anew, other weights, relaxations, each point of a trade study. What does not fit is
+"""max_evaluations, and max_modal_solutions, is of everything: searches, positions of drives, analyses anew, other weights, relaxations, each point of a trade study. What does not fit is
 left out and said; one that suffices changes no design. MT_EVERY=1: those of the pedal, which take longest, with every budget, too, and every kind by any number of workers."""
 import json
 import math
@@ -88,23 +88,42 @@ class Binds(CliTest):
                         self.assertTrue(all(math.isfinite(f["recommended_hz"]) for f in design["frequencies"]))
                     self.assertGreaterEqual(spent["descriptions"], 2 + 2 * len(found["recommendations"]))
 
+    def test_nor_more_modal_solutions(self):
+        """The original design and one more are analysed in any case, over their tolerances, too."""
+        for kind in KINDS:
+            if FEW and kind.startswith("pedal") and kind != "pedal_catalogue":
+                continue
+            for most in (60, 300, 1000, 5000) if EVERY or not kind.startswith("pedal") else (60, 300):
+                with self.subTest(kind, most=most):
+                    found = self.answer(kind, "--max-modal-solutions", str(most), "--report", "none")
+                    points = found["trade"]["points"] if found["trade"] else []
+                    least = 500 if kind == "pedal_tolerances" else 0  # for those two
+                    self.assertLessEqual(found["run"]["modal_solutions"], max(most, least) * (1 + len(points)), found["run"]["spent"])
+                    self.assertGreaterEqual(found["run"]["modal_solutions"], found["run"]["evaluations"] - found["run"]["spent"]["positions"])
+                    self.assertTrue(all(h["evaluations"] <= most for h in found["run"]["history"]))
+
     def test_one_that_suffices_changes_no_design(self):
         for kind in KINDS if EVERY else [k for k in KINDS if not k.startswith("pedal")][1::2] if FEW else [k for k in KINDS if k == "pedal_catalogue" or not k.startswith("pedal")]:
             with self.subTest(kind):
                 free = self.answer(kind)
                 bound = self.answer(kind, "--max-evaluations", "1000000")
-                spent = [dict(r["run"]["spent"]) for r in (free, bound)]
+                solved = self.answer(kind, "--max-modal-solutions", "100000000")
+                spent = [dict(r["run"]["spent"]) for r in (free, bound, solved)]
                 if kind == "bands":  # least changes of placements are computed where no budget has to be shared out
-                    self.assertLessEqual(*(s.pop("multiplications") for s in reversed(spent)))
-                self.assertEqual(*spent)
-                for r in (free, bound):
+                    of_free, *others = [s.pop("multiplications") for s in spent]
+                    self.assertTrue(all(m <= of_free for m in others), (of_free, others))
+                for r in (bound, solved):
+                    self.assertEqual(spent[0], r["run"]["spent"] if kind != "bands" else {k: v for k, v in r["run"]["spent"].items() if k != "multiplications"})
+                for r in (free, bound, solved):
                     r.pop("run")
                 self.assertEqual(free, bound)
+                self.assertEqual(free, solved)
 
     def test_it_is_the_same_for_all_workers_and_parts(self):
-        for kind in (*(() if FEW else ("pedal", "spread")), "pedal_catalogue", "mixed", "trade"):
-            with self.subTest(kind):
-                budget = ("--max-evaluations", "300")
+        by_evaluations, by_solutions = ("--max-evaluations", "300"), ("--max-modal-solutions", "900")
+        kinds = [(k, by_evaluations) for k in (*(() if FEW else ("pedal", "spread")), "pedal_catalogue", "mixed", "trade")]
+        for kind, budget in [*kinds, ("tolerances", by_solutions), *(() if FEW else [("pedal_tolerances", by_solutions)])]:
+            with self.subTest(kind, budget=budget):
                 self.answer(kind, *budget, "--threads", "1", folder="whole")
                 self.answer(kind, *budget, "--threads", "3", folder="many")
                 whole = (self.folder / "whole" / kind / "result.json").read_bytes()
@@ -119,6 +138,9 @@ class Binds(CliTest):
     def test_what_does_not_fit_is_said(self):
         warned = " ".join(self.answer("spread", "--max-evaluations", "60")["warnings"])
         self.assertIn('sensitivity to the weights: not computed, since "max_evaluations" leaves no evaluations for it', warned)
+        self.assertIn('since "max_modal_solutions" leaves no', " ".join(self.answer("spread", "--max-modal-solutions", "120")["warnings"]))
+        few = self.answer("mixed", "--max-modal-solutions", "200")
+        self.assertRegex(" ".join(few["warnings"]), r'the budget of modal solutions ran out \(\d+ of 200 were made in the search\): a larger "max_modal_solutions"')
         few = self.answer("pedal", "--max-evaluations", "300")
         self.assertIn("the budget of evaluations ran out (", " ".join(few["warnings"]))
         self.assertIn("of 300 were made in the search)", " ".join(few["warnings"]))

@@ -12,9 +12,9 @@ PAGES = [Path(SOURCE) / page for page in ("README.md", "problems/README.md", "st
 EVERYWHERE = {"max-memory", "root", "format", "quiet", "help"}
 ALONE = {"manual", "completion", "version"}
 OPTIONS = {
-    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "resume", "shard", "profile", "progress", "report"},
-    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "proof", "redo", "profile", "progress", "report"},
-    "compare": {"threads", "set", "seed", "starts", "max-evaluations", "proof", "progress"},
+    "run": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "resume", "shard", "profile", "progress", "report"},
+    "merge": {"output", "verify", "threads", "time", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "redo", "profile", "progress", "report"},
+    "compare": {"threads", "set", "seed", "starts", "max-evaluations", "max-modal-solutions", "proof", "progress"},
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},

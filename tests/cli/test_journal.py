@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import time
@@ -259,7 +260,8 @@ class Journal(CliTest):
         first = subprocess.Popen([PROGRAM, "run", "studies/trade.json", "-o", "out", "--threads", "1"], cwd=self.folder,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         journal = self.journal("trade", "out")
-        while first.poll() is None and not (journal.exists() and journal.stat().st_size > 0):
+        known = re.compile(rb"^[^|m].*\n", re.MULTILINE)  # a task, behind what the journal is of
+        while first.poll() is None and not (journal.exists() and known.search(journal.read_bytes())):
             time.sleep(0.001)
         os.kill(first.pid, signal.SIGSTOP)
         try:

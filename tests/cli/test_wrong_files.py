@@ -127,7 +127,7 @@ WRONG = {
 }
 WRONG.update({(s, m): POSITIVE for s in ("section",) for m in ("width_m", "height_m", "diameter_m", "outer_diameter_m")})
 WRONG["section", "inner_diameter_m"] = NEGATIVE
-COUNTS = {"seed", "starts", "max_evaluations", "recommendations", "mode", "reference_mode", "goal", "count", "blades", "teeth", "sidebands", "cluster",
+COUNTS = {"seed", "starts", "max_evaluations", "max_modal_solutions", "recommendations", "mode", "reference_mode", "goal", "count", "blades", "teeth", "sidebands", "cluster",
           "dataset", ("blades", "value"), ("mode", "index"), ("link", "elements")}
 
 

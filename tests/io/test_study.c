@@ -214,6 +214,7 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.seed, 7);
     CHECK_INT(t, s->search.starts, 12);
     CHECK_INT(t, s->search.max_evaluations, 5000);
+    CHECK_INT(t, s->search.max_modal_solutions, 90000);
     CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
     CHECK_NEAR(t, s->spread.factor, 4.0, 0.0);
     if (CHECK_INT(t, s->n_goals, 8)) {
