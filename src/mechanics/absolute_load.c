@@ -263,7 +263,7 @@ static void add_constraints(work *w, const double *mu, const double *open)
             mt_jet jet;
             patch p;
             mt_measure_eval(&measure, mt_pose_of(w->at.pose, def->body[0]),
-                            mt_pose_of(w->at.pose, def->body[1]), true, &jet);
+                            mt_pose_of(w->at.pose, def->body[1]), true, NULL, &jet);
             add(w, def->body, factor * mu[j], fabs(factor) * open[j], &jet, &p);
         }
         j++;

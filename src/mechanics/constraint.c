@@ -22,7 +22,7 @@ void mt_constraint_values(const mt_data *d, const mt_placement *at, int m, doubl
         for (int t = 0; t < def->terms; t++) {
             const mt_measure_def *const measure = &sys->measures[def->measure[t]];
             c[i] += creal(mt_data_scalar(d, def->coefficient[t], 1.0)) *
-                    creal(mt_data_value(d, measure, at));
+                    creal(mt_data_value(d, measure, at, NULL));
         }
         c[i] -= mt_constraint_turns(d, i, c[i]);
     }
@@ -39,7 +39,7 @@ double mt_constraint_curve(const mt_data *d, const mt_pose *poses, int i, int t,
     double squares = 0.0;
     mt_jet jet;
     mt_measure_eval(&measure, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]),
-                    true, &jet);
+                    true, NULL, &jet);
     for (int r = 0; r < MT_LOCAL; r++) {
         const int row = mt_local_dof(sys, def->body, r);
         b[r] = 0.0;

@@ -94,19 +94,20 @@ static mt_measure_data measure_at(const mt_data *d, const mt_measure_def *def,
     return m;
 }
 
-mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placement *at)
+mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
+                    mt_beam_parts *kept)
 {
     const mt_measure_data m = measure_at(d, def, at);
     return mt_measure_value(&m, mt_pose_of(at->pose, def->body[0]),
-                            mt_pose_of(at->pose, def->body[1]));
+                            mt_pose_of(at->pose, def->body[1]), kept);
 }
 
 void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
-                  bool second, mt_jet *out)
+                  bool second, mt_beam_parts *kept, mt_jet *out)
 {
     const mt_measure_data m = measure_at(d, def, at);
     mt_measure_eval(&m, mt_pose_of(at->pose, def->body[0]), mt_pose_of(at->pose, def->body[1]),
-                    second, out);
+                    second, kept, out);
 }
 
 void mt_data_turns(const mt_data *d, mt_placement *at)
@@ -114,7 +115,7 @@ void mt_data_turns(const mt_data *d, mt_placement *at)
     for (int i = 0; i < d->sys->n_measures; i++) {
         const mt_measure_def *const def = &d->sys->measures[i];
         if (def->kind == MT_MEASURE_ANGLE) {
-            at->turn[i] = creal(mt_data_value(d, def, at));
+            at->turn[i] = creal(mt_data_value(d, def, at, NULL));
         }
     }
 }
@@ -145,7 +146,7 @@ static mt_cx drawn_value(const mt_data *d, const mt_measure_def *def)
             pose[side].x[k] = d->vec[d->sys->bodies[def->body[side]].centre][k];
         }
     }
-    return mt_measure_value(&m, &pose[0], &pose[1]);
+    return mt_measure_value(&m, &pose[0], &pose[1], NULL);
 }
 
 void mt_data_targets(mt_data *d)
@@ -163,15 +164,18 @@ void mt_data_targets(mt_data *d)
 void mt_data_rest(mt_data *d, const mt_pose *reference)
 {
     const mt_system *const sys = d->sys;
+    mt_beam_parts parts;
+    parts.dir = NULL;
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         for (int side = 0; side < 2; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             const mt_measure_data m = mt_data_measure(d, def);
-            d->rest[i][side] = s->free != MT_NO_NODE
-                                   ? mt_data_scalar(d, s->free, 0.0)
-                                   : mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
-                                                      mt_pose_of(reference, def->body[1]));
+            d->rest[i][side] =
+                s->free != MT_NO_NODE
+                    ? mt_data_scalar(d, s->free, 0.0)
+                    : mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
+                                       mt_pose_of(reference, def->body[1]), &parts);
         }
     }
     if (sys->drive_constraint >= 0) {
@@ -179,7 +183,7 @@ void mt_data_rest(mt_data *d, const mt_pose *reference)
             &sys->measures[sys->constraints[sys->drive_constraint].measure[0]];
         const mt_measure_data m = mt_data_measure(d, def);
         const mt_cx at = mt_measure_value(&m, mt_pose_of(reference, def->body[0]),
-                                          mt_pose_of(reference, def->body[1]));
+                                          mt_pose_of(reference, def->body[1]), NULL);
         d->target[sys->drive_constraint] = at + mt_data_scalar(d, sys->drive, 0.0);
     }
 }

@@ -37,10 +37,11 @@ mt_cx mt_data_scalar(const mt_data *d, mt_node node, double otherwise);
 /* The measure with its vectors filled in; of an angle the value nearest to 0 is meant. */
 mt_measure_data mt_data_measure(const mt_data *d, const mt_measure_def *def);
 /* Its value at a place, an angle with its whole turns. */
-mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placement *at);
+mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
+                    mt_beam_parts *kept);
 /* The same with derivatives, as mt_measure_eval. */
 void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
-                  bool second, mt_jet *out);
+                  bool second, mt_beam_parts *kept, mt_jet *out);
 /* Positions as drawn (with their derivative); poses[n_bodies]. */
 void mt_data_drawn(const mt_data *d, mt_pose *poses);
 

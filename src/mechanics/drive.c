@@ -505,6 +505,6 @@ double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, con
     const mt_measure_data m = mt_data_measure(data, def);
     mt_jet jet;
     mt_measure_eval(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]), false,
-                    &jet);
+                    NULL, &jet);
     return mt_jet_along(data->sys, def->body, &jet, rate);
 }

@@ -19,7 +19,7 @@ static bool visit_measure(const mt_data *d, const mt_pose *pose, const mt_measur
     const mt_measure_data measure = mt_data_measure(d, def);
     mt_jet jet;
     mt_measure_eval(&measure, mt_pose_of(pose, def->body[0]), mt_pose_of(pose, def->body[1]),
-                    true, &jet);
+                    true, NULL, &jet);
     if (spring != NULL && spring->free != MT_NO_NODE) {
         c += d->value[spring->stiffness] * (creal(jet.value) - d->value[spring->free]);
     }
@@ -77,7 +77,7 @@ static bool visit_spring(const mt_data *d, const mt_placement *at, const double 
     bool more = true;
     for (int side = 0; side < (coupling ? 2 : 1); side++) {
         const mt_measure_def *const def = &sys->measures[s->measure[side]];
-        mt_data_eval(d, def, at, true, &jet[side]);
+        mt_data_eval(d, def, at, true, NULL, &jet[side]);
         stretch[side] = creal(jet[side].value) - creal(d->rest[i][side]);
         stretch[side] += mt_jet_along(sys, def->body, &jet[side], left);
         noise[side] = TWICE * fabs(mt_jet_along(sys, def->body, &jet[side], open));
@@ -103,7 +103,7 @@ bool mt_forces_at(const mt_data *d, const mt_placement *at, const double *left,
             more = visit_point(d, at->pose, load, visit, context);
         } else {
             const mt_measure_def *const def = &sys->measures[load->measure];
-            mt_data_eval(d, def, at, true, &jet);
+            mt_data_eval(d, def, at, true, NULL, &jet);
             more = visit(context, def->body, -d->value[load->size], 0.0, &jet);
         }
     }

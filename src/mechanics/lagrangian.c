@@ -245,6 +245,8 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
     const mt_system *const sys = d->sys;
     const bool bends = curvature == MT_CURVATURE_FULL || curvature == MT_CURVATURE_GEOMETRIC;
     mt_jet jet[2];
+    mt_beam_parts parts;
+    parts.dir = NULL;
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         const mt_measure_def *const first = &sys->measures[s->measure[0]];
@@ -256,7 +258,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            mt_data_eval(d, def, at, bends, &jet[side]);
+            mt_data_eval(d, def, at, bends, &parts, &jet[side]);
             if (out->left != NULL) {
                 way[side] = mt_jet_along(sys, def->body, &jet[side], out->left);
             }
@@ -291,7 +293,7 @@ static void load_jet(const mt_data *d, const mt_load_def *load, const mt_placeme
         body[0] = def->body[0];
         body[1] = def->body[1];
         *size = mt_data_scalar(d, load->size, 0.0);
-        mt_data_eval(d, def, at, hessian, jet);
+        mt_data_eval(d, def, at, hessian, NULL, jet);
         return;
     }
     mt_cx f[3];
@@ -392,7 +394,7 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             e[k] = 1.0;
             const mt_measure_data m = {
                 .kind = MT_MEASURE_DOT, .dir = {e, e, NULL}, .plane = sys->dimension == 2};
-            mt_measure_eval(&m, anchor, &poses[i], hessian, &jet);
+            mt_measure_eval(&m, anchor, &poses[i], hessian, NULL, &jet);
             add_gradient(sys, body, jet.g, -0.5 * l2, out, out->g);
             if (hessian) {
                 add_hessian(sys, body, &jet, -0.5 * l2, 0.0, NULL, out);
@@ -451,7 +453,7 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
-            mt_data_eval(d, def, at, false, &jet);
+            mt_data_eval(d, def, at, false, NULL, &jet);
             value += cx_mul(factor, jet.value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
@@ -483,7 +485,7 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
             const mt_cx force = cx_mul(factor, lambda[i]);
-            mt_data_eval(d, def, at, true, &jet);
+            mt_data_eval(d, def, at, true, NULL, &jet);
             add_hessian(sys, def->body, &jet, force, 0.0, NULL, out);
             mt_piece *const piece = note_joint(d, def, at->pose, &jet, force, out);
             if (piece != NULL) {
@@ -538,12 +540,14 @@ double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_for
 {
     const mt_system *const sys = d->sys;
     double v = 0.0;
+    mt_beam_parts parts;
+    parts.dir = NULL;
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         double stretch[2];
         for (int side = 0; side < 2 && !s->damper; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            stretch[side] = creal(mt_data_value(d, def, at)) - creal(d->rest[i][side]);
+            stretch[side] = creal(mt_data_value(d, def, at, &parts)) - creal(d->rest[i][side]);
         }
         if (s->damper) {
             continue;

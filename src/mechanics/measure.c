@@ -330,8 +330,37 @@ void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, mt_j
     mt_jet_chain(&c, &psi, &cosine, out);
 }
 
+/* Whether the parts are those of this element, here; those of a Hessian serve without it. */
+static bool has_parts(const mt_beam_parts *p, const mt_measure_data *m, const mt_pose *a,
+                      const mt_pose *b, mt_second second)
+{
+    return p->dir == m->dir[0] && p->dir != NULL && p->pose[0] == a && p->pose[1] == b &&
+           p->length.second == second;
+}
+
+static void beam_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                     mt_second second, mt_beam_parts *parts, mt_jet *out)
+{
+    mt_cx d[3];
+    mt_cx e[3][3];
+    mt_cx f[3][3];
+    if (!has_parts(parts, m, a, b, second)) {
+        for (int i = 0; i < 3; i++) {
+            d[i] = b->x[i] - a->x[i];
+            cx_rotate3(a->r, m->dir[i], e[i]);
+            cx_rotate3(b->r, m->dir[i], f[i]);
+        }
+        mt_jet_beam_parts(m, e, f, d, second, parts);
+        parts->dir = m->dir[0];
+        parts->pose[0] = a;
+        parts->pose[1] = b;
+    }
+    mt_jet_clear(out, second);
+    mt_jet_beam(m, parts, out);
+}
+
 void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
-                     bool with_second, mt_jet *out)
+                     bool with_second, mt_beam_parts *kept, mt_jet *out)
 {
     const mt_second second = !with_second ? MT_SECOND_NONE
                              : m->plane   ? MT_SECOND_PLANE
@@ -339,6 +368,12 @@ void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *
     mt_cx p[4][3]; /* -, s, t, d */
     mt_cx e[3][3];
     mt_cx f[3][3];
+    if (m->kind == MT_MEASURE_BEAM) {
+        mt_beam_parts own;
+        own.dir = NULL;
+        beam_jet(m, a, b, second, kept != NULL ? kept : &own, out);
+        return;
+    }
     cx_rotate3(a->r, m->point[0] != NULL ? m->point[0] : ZERO3, p[1]);
     cx_rotate3(b->r, m->point[1] != NULL ? m->point[1] : ZERO3, p[2]);
     for (int i = 0; i < 3; i++) {
@@ -367,15 +402,15 @@ void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *
         mt_jet_rotation(e, f, m->component, second, out);
         break;
     case MT_MEASURE_BEAM:
-        mt_jet_beam(m, e, f, p[3], second, out);
         break;
     }
 }
 
-mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose *b)
+mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                       mt_beam_parts *kept)
 {
     mt_jet j;
-    mt_measure_eval(m, a, b, false, &j);
+    mt_measure_eval(m, a, b, false, kept, &j);
     return j.value;
 }
 

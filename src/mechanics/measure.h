@@ -88,11 +88,24 @@ typedef struct mt_jet {
     mt_second second;
 } mt_jet;
 
-/* Evaluate. No heap. A distance of zero has no direction: its gradient is then NaN. */
+/* What all strains of a beam element are made of (measure_beam.c), kept from one of them to
+ * the next. In the plane phi[2], s[1] and length alone. Zeroed: of none. */
+typedef struct mt_beam_parts {
+    const mt_cx *dir; /* of which element */
+    const mt_pose *pose[2];
+    mt_jet length;
+    mt_jet phi[3];
+    mt_jet s[2];
+} mt_beam_parts;
+
+/* Evaluate. No heap. A distance of zero has no direction: its gradient is then NaN. kept: NULL,
+ * or parts that measures share which are evaluated one after the other while neither vectors
+ * nor poses change. */
 void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, bool second,
-                     mt_jet *out);
+                     mt_beam_parts *kept, mt_jet *out);
 /* Value only. */
-mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose *b);
+mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                       mt_beam_parts *kept);
 /* Jet of the work potential f . P of a point fixed to body a (local freedoms 0..5). */
 void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
                       mt_jet *out);

@@ -142,15 +142,8 @@ static void add_end(int side, mt_cx (*e)[3], const mt_cx *d, const mt_jet *lengt
     }
 }
 
-/* Everything that the strains are made of. In the plane phi[2], s[1] and length alone. */
-typedef struct beam_parts {
-    mt_jet length;
-    mt_jet phi[3];
-    mt_jet s[2];
-} beam_parts;
-
-static void make_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                       mt_second second, beam_parts *out)
+void mt_jet_beam_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
+                       mt_second second, mt_beam_parts *out)
 {
     static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     const bool plane = m->beam.plane;
@@ -168,7 +161,7 @@ static void make_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], c
     add_end(1, f, d, &out->length, plane, out->s);
 }
 
-static void stretch_jet(const mt_beam_numbers *b, const beam_parts *p, mt_jet *out)
+static void stretch_jet(const mt_beam_numbers *b, const mt_beam_parts *p, mt_jet *out)
 {
     mt_jet bow;
     mt_jet_clear(&bow, out->second);
@@ -186,7 +179,7 @@ static void stretch_jet(const mt_beam_numbers *b, const beam_parts *p, mt_jet *o
 }
 
 /* -phi1 (mu3 phi2^2 + mu2 phi3^2)/4. */
-static void twist_bow(const mt_beam_numbers *b, const beam_parts *p, mt_jet *out)
+static void twist_bow(const mt_beam_numbers *b, const mt_beam_parts *p, mt_jet *out)
 {
     mt_jet bow;
     mt_jet_clear(&bow, out->second);
@@ -195,39 +188,34 @@ static void twist_bow(const mt_beam_numbers *b, const beam_parts *p, mt_jet *out
     add_product(out, -0.25, &p->phi[0], &bow);
 }
 
-void mt_jet_beam(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                 mt_second second, mt_jet *out)
+void mt_jet_beam(const mt_measure_data *m, const mt_beam_parts *p, mt_jet *out)
 {
     const mt_beam_numbers *const b = &m->beam;
     const int k = m->component == MT_BEAM_BEND_2 || m->component == MT_BEAM_SWAY_2 ? 0 : 1;
     const int other = 1 - k;
     const double sign = k == 1 ? 1.0 : -1.0;
-    beam_parts p;
-    if (b->plane && m->component == MT_BEAM_BEND_3) {
-        mt_jet_rotation(e, f, 2, second, out);
-        return;
-    }
-    make_parts(m, e, f, d, second, &p);
     switch ((mt_beam_strain)m->component) {
     case MT_BEAM_STRETCH:
-        stretch_jet(b, &p, out);
+        stretch_jet(b, p, out);
         break;
     case MT_BEAM_TWIST:
-        add_jet(out, 1.0, &p.phi[0]);
-        add_product(out, 0.5 * b->shape[0], &p.s[0], &p.phi[2]);
-        add_product(out, -0.5 * b->shape[1], &p.s[1], &p.phi[1]);
-        twist_bow(b, &p, out);
+        add_jet(out, 1.0, &p->phi[0]);
+        add_product(out, 0.5 * b->shape[0], &p->s[0], &p->phi[2]);
+        add_product(out, -0.5 * b->shape[1], &p->s[1], &p->phi[1]);
+        twist_bow(b, p, out);
         break;
     case MT_BEAM_BEND_2:
     case MT_BEAM_BEND_3:
-        add_jet(out, 1.0, &p.phi[1 + k]);
-        add_product(out, -0.5 * sign * b->shape[other], &p.phi[0], &p.s[other]);
+        add_jet(out, 1.0, &p->phi[1 + k]);
+        if (!b->plane) {
+            add_product(out, -0.5 * sign * b->shape[other], &p->phi[0], &p->s[other]);
+        }
         break;
     case MT_BEAM_SWAY_2:
     case MT_BEAM_SWAY_3:
-        add_jet(out, 1.0, &p.s[k]);
+        add_jet(out, 1.0, &p->s[k]);
         if (!b->plane) {
-            add_product(out, sign / 3.0, &p.phi[0], &p.phi[1 + other]);
+            add_product(out, sign / 3.0, &p->phi[0], &p->phi[1 + other]);
         }
         break;
     case MT_BEAM_STRAINS:

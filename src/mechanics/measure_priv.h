@@ -44,8 +44,10 @@ void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, mt_j
 void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, mt_jet *out);
 /* g(c) = acos(c)/sqrt(1 - c^2), g', g''. */
 void mt_angle_over_sine(mt_cx c, mt_cx g[3]);
-/* Strain m->component of the beam element with triads e (on a), f (on b) and d = x_b - x_a. */
-void mt_jet_beam(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                 mt_second second, mt_jet *out);
+/* The parts of the beam element with triads e (on a), f (on b) and d = x_b - x_a; and its
+ * strain m->component. out is cleared. */
+void mt_jet_beam_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
+                       mt_second second, mt_beam_parts *out);
+void mt_jet_beam(const mt_measure_data *m, const mt_beam_parts *p, mt_jet *out);
 
 #endif

@@ -241,7 +241,7 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const double factor = creal(mt_data_scalar(d, c->coefficient[t], 1.0));
-            mt_data_eval(d, def, &moving, false, &jet);
+            mt_data_eval(d, def, &moving, false, NULL, &jet);
             value += factor * creal(jet.value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
@@ -268,8 +268,8 @@ static void add_energy(mt_motion *o, const mt_placement *at)
     if (sys->trim_spring >= 0) {
         const mt_spring_def *const s = &sys->springs[sys->trim_spring];
         const mt_measure_def *const def = &sys->measures[s->measure[0]];
-        const double way = creal(mt_data_value(&lin->data, def, at)) -
-                           creal(mt_data_value(&lin->data, def, &lin->position.at));
+        const double way = creal(mt_data_value(&lin->data, def, at, NULL)) -
+                           creal(mt_data_value(&lin->data, def, &lin->position.at, NULL));
         const double k = lin->value[s->stiffness];
         trim = lin->position.equilibrium.trim_force + (k * way);
         stored = way * (lin->position.equilibrium.trim_force + (0.5 * k * way));
@@ -361,8 +361,8 @@ void mt_motion_gauge(mt_motion *o, const mt_placement *at, const double *v, mt_g
     const mt_measure_def *const def = &sys->measures[sys->joints[gauge.joint].coordinate];
     const mt_placement moving = {.pose = o->tangent, .turn = at->turn, .drive = at->drive};
     mt_jet jet;
-    mt_data_eval(&lin->data, def, &moving, false, &jet);
+    mt_data_eval(&lin->data, def, &moving, false, NULL, &jet);
     spread(sys, def->body, jet.g, v, out);
-    out->value =
-        creal(jet.value) - creal(mt_data_value(&lin->data, def, &lin->position.reference));
+    out->value = creal(jet.value) -
+                 creal(mt_data_value(&lin->data, def, &lin->position.reference, NULL));
 }

@@ -132,7 +132,7 @@ static void spring_rows(const mt_data *d, const mt_spring_def *s, const mt_pose 
         const mt_measure_def *const def = &d->sys->measures[s->measure[i]];
         const mt_measure_data m = mt_data_measure(d, def);
         mt_measure_eval(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]),
-                        false, &jet);
+                        false, NULL, &jet);
         memcpy(rows + ((ptrdiff_t)i * MT_LOCAL), jet.g, sizeof jet.g);
     }
 }

@@ -24,7 +24,7 @@ void mt_sweep_range(double from, double to, int steps, double *positions)
 
 static double value_at(const mt_data *data, int measure, const mt_placement *at)
 {
-    return creal(mt_data_value(data, &data->sys->measures[measure], at));
+    return creal(mt_data_value(data, &data->sys->measures[measure], at, NULL));
 }
 
 static mt_status sweep_point_init(mt_sweep_point *point, int n_joints, double drive,

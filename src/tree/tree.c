@@ -239,7 +239,7 @@ static bool is_closed(mt_tree_maker *m)
         const mt_measure_def *const def = &sys->measures[c->measure[0]];
         const mt_measure_data measure = mt_data_measure(&m->data, def);
         const double gap = creal(mt_measure_value(&measure, mt_pose_of(m->pose, def->body[0]),
-                                                  mt_pose_of(m->pose, def->body[1]))) -
+                                                  mt_pose_of(m->pose, def->body[1]), NULL)) -
                            creal(m->data.target[i]);
         if (!(fabs(gap) <= DRAWN_CLOSED * sys->length_m)) {
             (void)mt_snprintf(m->why, MT_TREE_WHY,

@@ -47,7 +47,7 @@ static bool add_row(const mt_tree_maker *m, int i, const mt_measure_def *def, do
     const mt_measure_data measure = mt_data_measure(&m->data, def);
     mt_jet jet;
     mt_measure_eval(&measure, mt_pose_of(m->pose, def->body[0]),
-                    mt_pose_of(m->pose, def->body[1]), false, &jet);
+                    mt_pose_of(m->pose, def->body[1]), false, NULL, &jet);
     const int side = def->body[1] == t->body[i] ? 1 : 0;
     double *const row = e->row + ((ptrdiff_t)t->s * e->n);
     double left[MOST] = {0.0};

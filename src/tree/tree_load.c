@@ -192,7 +192,7 @@ static mt_status hold(const loading *l, int i, mt_err *err)
         const mt_measure_data measure = mt_data_measure(&m->data, def);
         const int side = def->body[1] == t->body[i] ? 1 : 0;
         mt_measure_eval(&measure, mt_pose_of(m->pose, def->body[0]),
-                        mt_pose_of(m->pose, def->body[1]), true, &jet[c]);
+                        mt_pose_of(m->pose, def->body[1]), true, NULL, &jet[c]);
         for (int r = 0; r < t->s; r++) {
             row[r + (c * t->s)] = is_free(t, t->body[i], r) ? along(t, jet[c].g, side, r) : 0.0;
         }

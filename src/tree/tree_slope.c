@@ -114,7 +114,7 @@ void mt_tree_slope_jet(const mt_tree_slope *w, const mt_measure_def *def, bool s
 {
     const mt_measure_data measure = mt_data_measure(&w->data, def);
     mt_measure_eval(&measure, mt_pose_of(w->pose, def->body[0]),
-                    mt_pose_of(w->pose, def->body[1]), second, jet);
+                    mt_pose_of(w->pose, def->body[1]), second, NULL, jet);
 }
 
 void mt_tree_slope_row(const mt_tree_slope *w, const mt_measure_def *def, int i,
@@ -471,7 +471,7 @@ static bool stays_closed(mt_tree_slope *w)
         const mt_measure_def *const def = &sys->measures[sys->constraints[i].measure[0]];
         const mt_measure_data measure = mt_data_measure(&w->data, def);
         const mt_cx value = mt_measure_value(&measure, mt_pose_of(w->pose, def->body[0]),
-                                             mt_pose_of(w->pose, def->body[1]));
+                                             mt_pose_of(w->pose, def->body[1]), NULL);
         if (!(fabs(cx_derivative(value - w->data.target[i])) <=
               DRAWN_CLOSED * fmax(most, fabs(cx_derivative(w->data.target[i]))))) {
             mt_tree_slope_refuse(w, "a joint opens that is closed in the reference position");

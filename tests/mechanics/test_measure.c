@@ -146,7 +146,7 @@ static double value_at(const void *ctx, int n, const double *x)
     mt_pose p[2];
     (void)n;
     displaced(s, x, p);
-    return creal(mt_measure_value(&s->m, &p[0], &p[1])) + 1.0; /* rounding: of size one */
+    return creal(mt_measure_value(&s->m, &p[0], &p[1], NULL)) + 1.0; /* rounding: of size one */
 }
 
 /* Slope along direction `entry` of the value at x: by its fourth-order difference, exact to
@@ -174,7 +174,7 @@ static void check_gradient(mt_test *t, scene *s, const char *name, double angle)
     const double step = angle > 2.0 ? 0.1 * STEP : STEP;
     double x[MT_LOCAL] = {0.0};
     mt_jet jet;
-    mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], false, &jet);
+    mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], false, NULL, &jet);
     CHECK_NEAR_ABS(t, creal(jet.value) + 1.0, value_at(s, MT_LOCAL, x), 1e-15);
     for (int i = 0; i < MT_LOCAL; i++) {
         mt_test_row(t, "%s, %g rad, gradient %d", name, angle, i);
@@ -188,7 +188,7 @@ static void check_hessian(mt_test *t, scene *s, const char *name, double angle)
     static const double INNER_NOISE = 1e-12;
     double x[MT_LOCAL] = {0.0};
     mt_jet jet;
-    mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], true, &jet);
+    mt_measure_eval(&s->m, &s->pose[0], &s->pose[1], true, NULL, &jet);
     for (int i = 0; i < MT_LOCAL; i++) {
         s->entry = i;
         for (int k = 0; k < MT_LOCAL; k++) {
@@ -230,7 +230,7 @@ static void measure__diagonal_of_the_hessian_agrees_with_second_differences(mt_t
             double x[MT_LOCAL] = {0.0};
             double f[5];
             make(&r, kind, 0.9, &s);
-            mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, &jet);
+            mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, NULL, &jet);
             for (int i = 0; i < 5; i++) {
                 x[k] = (i - 2) * h;
                 f[i] = value_at(&s, MT_LOCAL, x);
@@ -252,10 +252,10 @@ static void measure__the_plane_has_the_entries_of_space(mt_test *t)
         mt_jet space;
         mt_jet plane;
         make(&r, kind, 0.9, &s);
-        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, &space);
+        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, NULL, &space);
         memset(&plane, 0xff, sizeof plane); /* NaN */
         s.m.plane = true;
-        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, &plane);
+        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], true, NULL, &plane);
         for (int k = 0; k < MT_LOCAL * MT_LOCAL; k++) {
             const int row = (k % MT_LOCAL) % 6;
             const int column = (k / MT_LOCAL) % 6;
@@ -278,7 +278,7 @@ static void measure__a_wrong_gradient_is_caught(mt_test *t)
         mt_jet jet;
         double x[MT_LOCAL] = {0.0};
         make(&r, kind, 0.8, &s);
-        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], false, &jet);
+        mt_measure_eval(&s.m, &s.pose[0], &s.pose[1], false, NULL, &jet);
         mt_test_row(t, "%s", NAMES[kind]);
         CHECK(t, !mt_slope_agrees(value_at, &s, MT_LOCAL, x, 3, creal(jet.g[3]) + 1e-6, 1e-4,
                                   NOISE));
@@ -310,7 +310,7 @@ static double along(const void *ctx, int n, const double *x)
         q[i] = x[0] * l->q[i];
     }
     displaced(&s, q, p);
-    return creal(mt_measure_value(&s.m, &p[0], &p[1]));
+    return creal(mt_measure_value(&s.m, &p[0], &p[1], NULL));
 }
 
 static void measure__complex_step_carries_derivatives(mt_test *t)
@@ -337,7 +337,7 @@ static void measure__complex_step_carries_derivatives(mt_test *t)
             mt_pose_tangent(&p[i], l.q + (ptrdiff_t)6 * i, l.q + (ptrdiff_t)6 * i + 3);
         }
         point_at_own(&c.s);
-        const mt_cx value = mt_measure_value(&c.s.m, &p[0], &p[1]);
+        const mt_cx value = mt_measure_value(&c.s.m, &p[0], &p[1], NULL);
         mt_test_row(t, "%s", NAMES[kind]);
         CHECK(t, mt_slope_agrees(along, &l, 1, x, 0, cx_derivative(value), STEP, NOISE));
     }
@@ -355,7 +355,7 @@ static void rotation_vector(double angle, const double *axis, double xi[3])
     for (int k = 0; k < 3; k++) {
         const mt_measure_data m = {
             .kind = MT_MEASURE_ROTATION, .component = k, .dir = {e[0], e[1], e[2]}};
-        xi[k] = creal(mt_measure_value(&m, &a, &b));
+        xi[k] = creal(mt_measure_value(&m, &a, &b, NULL));
     }
 }
 
@@ -393,14 +393,14 @@ static void measure__values_match_plane_geometry(mt_test *t)
     static const mt_cx p[3] = {0.5, 0.0, 0.0};
     mt_measure_data m = {.kind = MT_MEASURE_PLANE, .point = {p, p}, .dir = {ey, ex, NULL}};
     mt_pose_move(&b, x, turn);
-    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)), 2.0 + 0.5 * sin(0.3), 1e-15);
+    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b, NULL)), 2.0 + 0.5 * sin(0.3), 1e-15);
     m.kind = MT_MEASURE_DISTANCE;
-    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)),
+    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b, NULL)),
                hypot(0.5 + 0.5 * cos(0.3), 2.0 + 0.5 * sin(0.3)), 1e-15);
     m.kind = MT_MEASURE_DOT; /* ey . (R ex) */
-    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)), sin(0.3), 1e-15);
+    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b, NULL)), sin(0.3), 1e-15);
     m = (mt_measure_data){.kind = MT_MEASURE_ANGLE, .dir = {ex, ey, NULL}};
-    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b)), 0.3, 1e-15);
+    CHECK_NEAR(t, creal(mt_measure_value(&m, &a, &b, NULL)), 0.3, 1e-15);
     mt_jet jet; /* work of a force at a point of b */
     static const mt_cx f[3] = {3.0, -2.0, 0.0};
     mt_measure_point(p, f, &b, true, &jet);
