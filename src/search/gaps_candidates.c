@@ -25,6 +25,10 @@
 enum {
     SAMPLES_PER_VARIABLE = 256,
     SAMPLES_MOST = 4096,
+    /* after a part of them, when each assignment that was met has been met so often: one that
+     * was not is much rarer than the rarest that was */
+    SAMPLES_PART = 5,
+    MET_OFTEN = 8,
     CANDIDATES_MOST = 256,
     SAMPLES_FIRST = 32,
     EVALUATIONS_LEAST = 30 /* of a candidate's search, or it is not worth one */
@@ -44,6 +48,7 @@ static const double KNOWN = -HUGE_VAL;
 typedef struct sampled {
     int *below;
     double violation;
+    int met;          /* so many samples have it */
     const double *at; /* [n] a design of a slice; NULL */
 } sampled;
 
@@ -90,6 +95,7 @@ static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
     }
     if (at < *n && compare_below(list[at].below, below, p->n_bands) == 0) {
         list[at].violation = fmin(list[at].violation, violation);
+        list[at].met++;
         return;
     }
     int victim = *n; /* where the list is full, the least promising makes room */
@@ -104,7 +110,7 @@ static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
     } else {
         (*n)++;
     }
-    const sampled fresh = {list[victim].below, violation, at_t};
+    const sampled fresh = {list[victim].below, violation, 1, at_t};
     if (victim < at) {
         at--;
         memmove(&list[victim], &list[victim + 1], (size_t)(at - victim) * sizeof *list);
@@ -217,6 +223,16 @@ static mt_status keep(const mt_problem *p, const sampled *list, const bool *kept
     return MT_OK;
 }
 
+/* True where all that was met, but for what slices found, was met often. */
+static bool all_met_often(const sampled *list, int n)
+{
+    bool often = n > 0;
+    for (int i = 0; i < n; i++) {
+        often = often && (list[i].met >= MET_OFTEN || list[i].violation == KNOWN);
+    }
+    return often;
+}
+
 /* The assignments of n designs spread over the bounds, and those of slices, at most `most` of
  * them. Where the study says how often it may be evaluated, half of that is for samples, and
  * the other half for the searches of those nearest. */
@@ -256,6 +272,8 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent, const mt_s
             insert_agreeing(w, list, &out->n, below, violation, work);
             enough = most == 1 && violation <= 0.0 && mt_ties_agree(p, below);
         }
+        enough = enough || (k + 1 >= n / SAMPLES_PART && k + 1 >= SAMPLES_PER_VARIABLE &&
+                            all_met_often(list, out->n));
         out->evals++;
         mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, 1);
         mt_problem_note_modal(p, w->c->n_clears);
