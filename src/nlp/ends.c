@@ -104,6 +104,30 @@ static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_lo
            (a->polished && apart(e->n, pa->t, b->from, directions, d) <= MT_SAME_DESIGN);
 }
 
+bool mt_nlp_ends_settled(mt_nlp_engine *e, const mt_nlp_ends *all)
+{
+    static const mt_nlp_result none = {.n_undetermined = 0};
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    double *const d = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    int n = 0;
+    int w = 0;
+    if (!mt_nlp_has_room(e, &e->scratch)) {
+        return false;
+    }
+    for (int i = 0; i < all->count; i++) {
+        const bool met = mt_nlp_feasible(mt_nlp_local_stand(&all->at[i]));
+        bool known = false;
+        for (int k = 0; k < i && met && !known; k++) {
+            known = alike(e, &all->at[k], &all->at[i], &none, d) &&
+                    alike(e, &all->at[i], &all->at[k], &none, d);
+        }
+        n += met ? 1 : 0;
+        w += met && !known ? 1 : 0;
+    }
+    mt_arena_rewind(&e->scratch, mark);
+    return w > 0 && n > w + 2 && 2.0 * w * (n - 1) < ((2.0 * w) + 1.0) * (n - w - 2);
+}
+
 bool mt_nlp_came_to_rest(const mt_nlp_local *s)
 {
     return s->polished && s->p->kkt <= STATIONARY;

@@ -16,6 +16,13 @@ void mt_nlp_ends_grow(mt_nlp_engine *e, mt_nlp_ends *all, int n);
 /* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a
  * curve of solutions. */
 int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_ends *all, int *once);
+/*
+ * True where the ends so far leave little hope of another one. Of n feasible ends in w places
+ * the number of places is expected to be w (n - 1)/(n - w - 2), each a priori as likely as any
+ * number of them (Boender and Rinnooy Kan, Math. Prog. 37, 1987, eq. 9): by less than half a
+ * place more than w. One place takes eight of its ends, two take seventeen.
+ */
+bool mt_nlp_ends_settled(mt_nlp_engine *e, const mt_nlp_ends *all);
 /* Ends to polish next, chosen[all->count]: of those that are near each other one; ends that lie
  * at one that is polished are dropped. Returns how many. */
 int mt_nlp_ends_choose(mt_nlp_engine *e, mt_nlp_ends *all, const mt_nlp_result *directions,

@@ -25,6 +25,8 @@
 #include "nlp/undetermined.h"
 
 enum { HALVINGS = 6 };
+/* Starts between which it is asked whether more are of use. */
+enum { STARTS_EACH = 8 };
 /* So many times the first starts are made at most to meet every root twice. */
 enum { ROOT_ROUNDS = 12 };
 
@@ -294,7 +296,13 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_n
     e->opt.skip = e->n_free > 0 && e->opt.skip < e->opt.starts ? e->opt.skip : 0;
     const int first = e->n_free > 0 ? e->opt.starts - e->opt.skip : 1;
     all->starts = e->opt.skip;
-    bool more = add_starts(e, all, first, steps) && e->open_starts;
+    bool more = true;
+    for (int left = first; left > 0 && more;) {
+        const int now = e->opt.settles && left > STARTS_EACH ? STARTS_EACH : left;
+        more = add_starts(e, all, now, steps);
+        left = e->opt.settles && more && mt_nlp_ends_settled(e, all) ? 0 : left - now;
+    }
+    more = more && e->open_starts;
     int before = 1;
     while (more && e->stop == MT_STOP_DONE && all->starts < ROOT_ROUNDS * first) {
         const int left = ROOT_ROUNDS * first - all->starts;

@@ -76,6 +76,8 @@ typedef struct mt_nlp_options {
      * root was met twice */
     int starts;
     int skip; /* so many of them, the first ones, have been made before: fewer than starts */
+    /* they end when those so far leave little hope of another end (mt_nlp_ends_settled) */
+    bool settles;
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
     /* f is the change: it does not count when undetermined directions are sought (without

@@ -392,6 +392,7 @@ mt_status mt_gaps_solve(mt_workspace *const *workers, int n_workers, const mt_ga
     }
     j.options.seed = c->search.seed;
     j.options.starts = c->search.starts > 0 ? c->search.starts : STARTS_PER_CANDIDATE + p->n;
+    j.options.settles = c->search.starts <= 0;
     j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
     j.options.least_change = c->aims[0].type == MT_OBJECTIVE_CHANGE;
     if (c->hint != NULL) {

@@ -139,7 +139,55 @@ static void nlp_coverage__a_curve_of_roots_is_not_counted(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-MT_TEST_MAIN(MT_TEST(nlp_coverage__every_root_is_met_twice),
+/* In every variable two wells of unequal depth, or one: 2^n minima, or one. */
+static mt_status wells(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                       mt_err *err)
+{
+    const nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    out->f = 0;
+    for (int j = 0; j < c->nlp.n; j++) {
+        const double depth = c->target[0];
+        const double p = (t[j] * t[j]) - depth;
+        out->f += (p * p) + (0.01 * t[j]);
+        out->df[j] = (4 * p * t[j]) + 0.01;
+    }
+    return MT_OK;
+}
+
+/* Starts end with one place met eight times, with two met seventeen times; eight take more than
+ * were asked for. A design is not lost by it. */
+static void nlp_coverage__starts_end_where_little_is_left(mt_test *t)
+{
+    enum { ASKED = 40 };
+    static const struct {
+        int n;
+        double depth;
+        int places;
+        int starts;
+    } rows[] = {{2, -0.1, 1, 8}, {1, 0.25, 2, 24}, {3, 0.25, 8, ASKED}};
+    for (int k = 0; k < MT_COUNT(rows); k++) {
+        mt_nlp_options opt = {.seed = 1, .starts = ASKED};
+        nlp_case c = {0};
+        mt_test_row(t, "%d minima", rows[k].places);
+        case_begin(&c, rows[k].n, wells, -1, 1);
+        c.target[0] = rows[k].depth;
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        CHECK_INT(t, c.result.starts, ASKED);
+        CHECK_INT(t, c.result.n_found, rows[k].places);
+        const double best = c.result.solutions[0].f;
+        opt.settles = true;
+        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        CHECK_INT(t, c.result.starts, rows[k].starts);
+        CHECK_INT(t, c.result.n_found, rows[k].places);
+        CHECK_NEAR(t, c.result.solutions[0].f, best, 1e-12);
+        mt_arena_free(&c.mem);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(nlp_coverage__starts_end_where_little_is_left),
+             MT_TEST(nlp_coverage__every_root_is_met_twice),
              MT_TEST(nlp_coverage__what_is_missing_is_estimated),
              MT_TEST(nlp_coverage__a_spent_budget_ends_it),
              MT_TEST(nlp_coverage__any_number_of_workers_finds_the_same),
