@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/decimal.h"
 #include "base/visible.h"
 
 enum {
@@ -139,6 +140,13 @@ static void put_real(sink *s, spec *f, double x)
         put_padded(s, f, word, strlen(word));
         return;
     }
+    char decimal[MT_DECIMAL_TEXT];
+    const size_t known =
+        f->conversion == 'g' && !f->plus && !f->point ? mt_decimal(v, digits, decimal) : 0;
+    if (known > 0) {
+        put_padded(s, f, decimal, known);
+        return;
+    }
     if (f->conversion == 'f') {
         (void)snprintf(text, sizeof text, "%s%.*f", sign, digits, v);
     } else if (f->conversion == 'e') {
@@ -152,22 +160,32 @@ static void put_real(sink *s, spec *f, double x)
     put_padded(s, f, text, strlen(text));
 }
 
-static void put_signed(sink *s, const spec *f, long long x)
+/* Digits of x in that base, and before them the sign. */
+static void put_whole(sink *s, const spec *f, const char *sign, unsigned long long x,
+                      const char *letters, unsigned base)
 {
     char text[NUMBER_SIZE];
-    (void)snprintf(text, sizeof text, "%s%lld", f->plus && x >= 0 ? "+" : "", x);
-    put_padded(s, f, text, strlen(text));
+    size_t at = sizeof text;
+    do {
+        text[--at] = letters[x % base];
+        x /= base;
+    } while (x > 0);
+    if (*sign != '\0') {
+        text[--at] = *sign;
+    }
+    put_padded(s, f, text + at, sizeof text - at);
+}
+
+static void put_signed(sink *s, const spec *f, long long x)
+{
+    const unsigned long long size = x < 0 ? 0U - (unsigned long long)x : (unsigned long long)x;
+    put_whole(s, f, x < 0 ? "-" : f->plus ? "+" : "", size, "0123456789", 10);
 }
 
 static void put_unsigned(sink *s, const spec *f, unsigned long long x)
 {
-    char text[NUMBER_SIZE];
-    (void)snprintf(text, sizeof text,
-                   f->conversion == 'u'   ? "%llu"
-                   : f->conversion == 'x' ? "%llx"
-                                          : "%llX",
-                   x);
-    put_padded(s, f, text, strlen(text));
+    const char *const letters = f->conversion == 'X' ? "0123456789ABCDEF" : "0123456789abcdef";
+    put_whole(s, f, "", x, letters, f->conversion == 'u' ? 10U : 16U);
 }
 
 /* A count in the format: digits, or -1 for *. */

@@ -93,19 +93,33 @@ static size_t put_character(mt_text *out, const char *s)
     return n;
 }
 
+static bool is_plain(char c)
+{
+    return c >= ' ' && c < 0x7F && c != '"' && c != '\\';
+}
+
 static void put_text(mt_text *out, const char *s)
 {
     mt_text_add(out, "\"");
     while (*s != '\0') {
-        s += put_character(out, s);
+        size_t plain = 0;
+        while (is_plain(s[plain])) {
+            plain++;
+        }
+        mt_text_add_n(out, s, plain);
+        s += plain;
+        s += *s != '\0' ? put_character(out, s) : 0;
     }
     mt_text_add(out, "\"");
 }
 
 static void new_line(mt_json_writer *w)
 {
-    mt_text_add(w->out, "\n");
-    for (int i = 0; i < w->depth; i++) {
+    static const char indent[] = "\n                                "; /* of 16 levels */
+    const size_t most = (sizeof indent - 2) / 2;
+    const size_t depth = (size_t)w->depth;
+    mt_text_add_n(w->out, indent, 1 + 2 * (depth < most ? depth : most));
+    for (size_t i = most; i < depth; i++) {
         mt_text_add(w->out, "  ");
     }
 }

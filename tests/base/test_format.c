@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/decimal.h"
 #include "base/format.h"
 #include "base/visible.h"
 #include "support/mt_random.h"
@@ -65,6 +66,46 @@ static void format__numbers_are_the_same_in_every_locale(mt_test *t)
         CHECK_INT(t, n, (int)strlen(got));
     }
     (void)setlocale(LC_NUMERIC, "C");
+}
+
+/* Numbers of every size and of few digits, among them ties, powers of ten and their neighbours:
+ * the C library has the same text. */
+static void decimal__is_printf_wherever_it_answers(mt_test *t)
+{
+    enum { ROUNDS = 20000 };
+    mt_random random = mt_random_seed(1);
+    int answered = 0;
+    for (int i = 0; i < ROUNDS; i++) {
+        const double power = pow(10.0, floor(mt_random_in(&random, -6.0, 19.0)));
+        const double few = floor(mt_random_in(&random, 0.0, 2e4)) / 8.0;
+        const double rows[] = {few,
+                               -few * 4096.0,
+                               power,
+                               nextafter(power, 0.0),
+                               nextafter(power, HUGE_VAL),
+                               -power * mt_random_in(&random, 0.9999999, 1.0),
+                               power * mt_random_in(&random, 1.0, 10.0)};
+        const int digits = (int)mt_random_in(&random, 1.0, 18.0);
+        for (int k = 0; k < MT_COUNT(rows); k++) {
+            char got[MT_DECIMAL_TEXT];
+            char want[SIZE];
+            const size_t n = mt_decimal(rows[k], digits, got);
+            const size_t length = (size_t)snprintf(want, sizeof want, "%.*g", digits, rows[k]);
+            mt_test_row(t, "%.17g with %d digits", rows[k], digits);
+            const bool plain = strchr(want, 'e') == NULL && fabs(rows[k]) >= 1e-4;
+            CHECK(t, n == (plain || rows[k] == 0.0 ? length : 0));
+            if (n > 0) {
+                CHECK_STR(t, got, want);
+                answered++;
+            }
+        }
+    }
+    CHECK(t, answered > ROUNDS);
+    char got[MT_DECIMAL_TEXT];
+    CHECK(t, mt_decimal(1.0, 0, got) == 0 && mt_decimal(1.0, MT_DECIMAL_DIGITS + 1, got) == 0);
+    CHECK(t, mt_decimal(nan(""), 6, got) == 0 && mt_decimal(-HUGE_VAL, 6, got) == 0);
+    CHECK(t, mt_decimal(-0.0, 6, got) == 2);
+    CHECK_STR(t, got, "-0");
 }
 
 static void format__knows_every_length_and_width(mt_test *t)
@@ -195,6 +236,7 @@ static void visible__leaves_no_control_character_of_any_bytes(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(format__is_printf_where_nothing_is_hidden),
              MT_TEST(format__numbers_are_the_same_in_every_locale),
+             MT_TEST(decimal__is_printf_wherever_it_answers),
              MT_TEST(format__knows_every_length_and_width),
              MT_TEST(format__says_what_is_not_finite_in_words),
              MT_TEST(format__makes_arguments_visible_and_nothing_else),
