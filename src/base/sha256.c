@@ -6,10 +6,9 @@
  */
 #include "base/sha256.h"
 
-#include <stdint.h>
 #include <string.h>
 
-enum { BLOCK = 64, ROUNDS = 64, WORDS = 8 };
+enum { BLOCK = 64, ROUNDS = 64, WORDS = MT_SHA256_WORDS };
 
 static const uint32_t round_constant[ROUNDS] = {
     0x428a2f98U, 0x71374491U, 0xb5c0fbcfU, 0xe9b5dba5U, 0x3956c25bU, 0x59f111f1U, 0x923f82a4U,
@@ -34,6 +33,12 @@ static uint32_t rotate(uint32_t x, int n)
     return (x >> n) | (x << (32 - n));
 }
 
+/* The sum of x rotated by a, by a + b, and by a + b + c. */
+static uint32_t rotate3(uint32_t x, int a, int b, int c)
+{
+    return rotate(rotate(rotate(x, c) ^ x, b) ^ x, a);
+}
+
 /* A round. Instead of moving all eight words to the next letter, letters move: at round t
  * letter i is word (i - t) mod 8. added: the round's constant and word of the message. */
 static inline void turn(uint32_t s[WORDS], int t, uint32_t added)
@@ -45,10 +50,9 @@ static inline void turn(uint32_t s[WORDS], int t, uint32_t added)
     const uint32_t f = s[(13 - t) & 7];
     const uint32_t g = s[(14 - t) & 7];
     uint32_t *const h = &s[(15 - t) & 7];
-    const uint32_t t1 =
-        *h + (rotate(e, 6) ^ rotate(e, 11) ^ rotate(e, 25)) + (g ^ (e & (f ^ g))) + added;
+    const uint32_t t1 = *h + rotate3(e, 6, 5, 14) + (g ^ (e & (f ^ g))) + added;
     s[(11 - t) & 7] += t1;
-    *h = t1 + (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) + ((a & b) | (c & (a | b)));
+    *h = t1 + rotate3(a, 2, 11, 9) + ((a & b) | (c & (a | b)));
 }
 
 static void compress(uint32_t hash[WORDS], const unsigned char *block)
@@ -83,14 +87,37 @@ static void compress(uint32_t hash[WORDS], const unsigned char *block)
     }
 }
 
+static size_t whole_blocks(size_t length)
+{
+    return length / BLOCK * BLOCK;
+}
+
+mt_sha256_start mt_sha256_begin(const void *bytes, size_t length)
+{
+    const unsigned char *const p = bytes;
+    mt_sha256_start s = {.length = whole_blocks(length)};
+    memcpy(s.words, initial_hash, sizeof s.words);
+    for (size_t i = 0; i < s.length; i += BLOCK) {
+        compress(s.words, p + i);
+    }
+    return s;
+}
+
 void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT])
+{
+    const mt_sha256_start none = mt_sha256_begin(bytes, 0);
+    mt_sha256_end(&none, bytes, length, out);
+}
+
+void mt_sha256_end(const mt_sha256_start *start, const void *bytes, size_t length,
+                   char out[MT_SHA256_TEXT])
 {
     static const char hex[] = "0123456789abcdef";
     const unsigned char *const p = bytes;
-    const size_t whole = length / BLOCK * BLOCK;
+    const size_t whole = whole_blocks(length);
     uint32_t hash[WORDS];
-    memcpy(hash, initial_hash, sizeof hash);
-    for (size_t i = 0; i < whole; i += BLOCK) {
+    memcpy(hash, start->words, sizeof hash);
+    for (size_t i = start->length; i < whole; i += BLOCK) {
         compress(hash, p + i);
     }
     /* padding: a bit 1, zeros, the length in bits as 64 bits big-endian */

@@ -3,10 +3,24 @@
 #define BASE_SHA256_H
 
 #include <stddef.h>
+#include <stdint.h>
 
-enum { MT_SHA256_TEXT = 65 }; /* 64 hexadecimal digits and the terminator */
+enum {
+    MT_SHA256_TEXT = 65, /* 64 hexadecimal digits and the terminator */
+    MT_SHA256_WORDS = 8
+};
 
 /* SHA-256 (FIPS 180-4) of the bytes, in lower-case hexadecimal digits. */
 void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT]);
+
+/* The same in two steps, for texts that begin alike: what the whole blocks of these bytes make;
+ * and the digest of `length` bytes that begin with them. */
+typedef struct mt_sha256_start {
+    size_t length; /* of the blocks */
+    uint32_t words[MT_SHA256_WORDS];
+} mt_sha256_start;
+mt_sha256_start mt_sha256_begin(const void *bytes, size_t length);
+void mt_sha256_end(const mt_sha256_start *start, const void *bytes, size_t length,
+                   char out[MT_SHA256_TEXT]);
 
 #endif

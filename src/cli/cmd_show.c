@@ -141,7 +141,7 @@ static mt_status page(const mt_scene *scene, const char *title, mt_text *out, mt
     if (rc == MT_OK) {
         const mt_page_data data[] = {{"scene", json.s}};
         mt_page_begin(MT_PAGE_SHOW, title, out);
-        mt_page_end(MT_PAGE_SHOW, MT_COUNT(data), data, out);
+        mt_page_end(MT_COUNT(data), data, out);
     }
     mt_text_free(&json);
     return rc;

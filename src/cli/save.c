@@ -17,6 +17,7 @@
 #include "io/folder.h"
 #include "report/curves.h"
 #include "report/html.h"
+#include "report/page.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "report/trade.h"
@@ -281,7 +282,7 @@ void mt_save_print(const mt_args *args, const mt_result *result, const char *sce
 static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
 {
     const char *names[MT_RESULT_FILE_COUNT] = {NULL};
-    mt_text outputs[MT_RESULT_FILE_COUNT];
+    char sha256[MT_RESULT_FILE_COUNT][MT_SHA256_TEXT];
     int n = 0;
     for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
         const mt_result_file which = (mt_result_file)i;
@@ -289,12 +290,13 @@ static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
             write_output(result, s->scene, which, &s->texts[i]);
         }
         MT_TRY(s->texts[i].failed ? mt_fail_memory(&s->err) : MT_OK);
-        if (s->texts[i].s != NULL) {
-            names[n] = mt_result_file_name(which);
-            outputs[n++] = s->texts[i];
+        const mt_text *const made = &s->texts[i];
+        if (made->s != NULL) {
+            mt_page_sha256(made->s, made->length, sha256[n]);
+            names[n++] = mt_result_file_name(which);
         }
     }
-    MT_TRY(mt_result_note_outputs(result, n, names, outputs, &s->err));
+    MT_TRY(mt_result_note_outputs(result, n, names, sha256, &s->err));
     mt_text *const text = &s->texts[MT_RESULT_FILE_RESULT];
     MT_TRY(mt_result_write(result, text, &s->err));
     mt_sha256(text->s, text->length, s->sha256);

@@ -54,18 +54,16 @@ mt_status mt_result_path(const char *path, char **out, mt_err *err)
 }
 
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,
-                                 const mt_text *texts, mt_err *err)
+                                 char (*sha256)[MT_SHA256_TEXT], mt_err *err)
 {
     mt_result_run *const run = &result->run;
     run->n_outputs = 0;
     run->outputs = mt_arena_alloc(&result->mem, (size_t)n, sizeof *run->outputs);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < n; i++) {
-        char sha256[MT_SHA256_TEXT];
-        mt_sha256(texts[i].s, texts[i].length, sha256);
         mt_result_digest *const output = &run->outputs[i];
         output->file = mt_arena_strdup(&result->mem, names[i]);
-        output->sha256 = mt_arena_strdup(&result->mem, sha256);
+        output->sha256 = mt_arena_strdup(&result->mem, sha256[i]);
     }
     MT_TRY(mt_arena_check(&result->mem, err));
     run->n_outputs = n;

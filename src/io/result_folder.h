@@ -2,6 +2,7 @@
 #ifndef IO_RESULT_FOLDER_H
 #define IO_RESULT_FOLDER_H
 
+#include "base/sha256.h"
 #include "base/text.h"
 #include "result/result.h"
 
@@ -23,10 +24,10 @@ const char *mt_result_file_name(mt_result_file which);
 /* The result that a path leads to: of a folder its result.json, else itself (also where it
  * leads nowhere). *out: heap, the caller's. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_result_path(const char *path, char **out, mt_err *err);
-/* Note in result->run the n files that are to stand beside it, with the digests of their texts.
+/* Note in result->run the n files that are to stand beside it, with their digests.
  * Fails: MT_E_MEMORY. */
 mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *names,
-                                 const mt_text *texts, mt_err *err);
+                                 char (*sha256)[MT_SHA256_TEXT], mt_err *err);
 /* The text of timing.json beside the result at `path`, where it names the result with this
  * digest; else nothing. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
 mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *out,

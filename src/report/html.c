@@ -47,5 +47,5 @@ void mt_report_html(const mt_result *result, const char *json, const char *scene
     const mt_page_kind kind = scene == NULL ? MT_PAGE_REPORT : MT_PAGE_REPORT_SCENE;
     mt_page_begin(kind, name, out);
     mt_report_html_told(result, out);
-    mt_page_end(kind, MT_COUNT(data), data, out);
+    mt_page_end(MT_COUNT(data), data, out);
 }

@@ -64,5 +64,5 @@ void mt_report_index_html(const mt_index_study *studies, int n, mt_text *out)
         add_study(&studies[i], out);
     }
     mt_text_add(out, "</tbody>\n</table>\n");
-    mt_page_end(MT_PAGE_PLAIN, 0, NULL, out);
+    mt_page_end(0, NULL, out);
 }

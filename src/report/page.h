@@ -2,6 +2,7 @@
 #ifndef REPORT_PAGE_H
 #define REPORT_PAGE_H
 
+#include "base/sha256.h"
 #include "base/text.h"
 
 /*
@@ -14,7 +15,8 @@ typedef enum mt_page_kind {
     MT_PAGE_PLAIN, /* no script */
     MT_PAGE_REPORT,
     MT_PAGE_REPORT_SCENE, /* one that shows the mechanism, too */
-    MT_PAGE_SHOW
+    MT_PAGE_SHOW,
+    MT_PAGE_KINDS
 } mt_page_kind;
 
 /* A block of data: JSON that the script reads from the element of this id. */
@@ -23,8 +25,11 @@ typedef struct mt_page_data {
     const char *json; /* NULL: no such block */
 } mt_page_data;
 
-/* A page up to its heading; and its data, its script and its end. */
+/* A page up to its heading; and its data and its end. */
 void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out);
-void mt_page_end(mt_page_kind kind, int n, const mt_page_data *data, mt_text *out);
+void mt_page_end(int n, const mt_page_data *data, mt_text *out);
+
+/* mt_sha256 of a text, sooner where it is a page: the build has done it for the beginning. */
+void mt_page_sha256(const char *page, size_t length, char out[MT_SHA256_TEXT]);
 
 #endif

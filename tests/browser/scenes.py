@@ -127,10 +127,9 @@ def scene(designs=2):
 
 
 def files_of(name):
-    """The files of a list in page.c, in its order."""
-    text = (PAGE.parent / "page.c").read_text(encoding="utf-8")
-    inside = re.search(r"\*const " + name + r"\[\] = \{(.*?)NULL\};", text, re.S).group(1)
-    return [PAGE / file for file in re.findall(r'"([^"]+)"', inside)]
+    """The files of a list in heads.cmake, in its order."""
+    text = (PAGE / "heads.cmake").read_text(encoding="utf-8")
+    return [PAGE / file for file in re.search(r"^set\(" + name + r"\s([^)]*)\)", text, re.M).group(1).split()]
 
 
 def page(data):

@@ -45,6 +45,16 @@ static void file__sha256_matches_the_standard(mt_test *t)
     mt_test_row(t, "lengths 0 to 199");
     mt_sha256(chain, sizeof chain, hash);
     CHECK_STR(t, hash, "019f2b9f1af27a53a1f046da7e98af2c179f431e4b5bebb000e74040917a4123");
+    for (size_t n = 0; n < sizeof letters; n++) {
+        char whole[MT_SHA256_TEXT];
+        mt_test_row(t, "%zu bytes, of which 0 to all are begun with", n);
+        mt_sha256(chain, n, whole);
+        for (size_t begun = 0; begun <= n; begun++) {
+            const mt_sha256_start start = mt_sha256_begin(chain, begun);
+            mt_sha256_end(&start, chain, n, hash);
+            CHECK_STR(t, hash, whole);
+        }
+    }
 }
 
 static void file__paths_are_joined_to_the_naming_file(mt_test *t)

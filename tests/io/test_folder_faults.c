@@ -52,7 +52,7 @@ static void make(unit *u, const char *version, bool trade)
 {
     static const char *const words[] = {"designs", "trade", "curves", "report"};
     const char *names[MT_RESULT_FILE_COUNT] = {NULL};
-    mt_text outputs[MT_RESULT_FILE_COUNT];
+    char sha256[MT_RESULT_FILE_COUNT][MT_SHA256_TEXT];
     int n = 0;
     *u = (unit){.version = version, .trade = trade};
     for (int i = 0; i < MT_COUNT(words); i++) {
@@ -63,7 +63,7 @@ static void make(unit *u, const char *version, bool trade)
         }
         if (u->texts[i].s != NULL) {
             names[n] = mt_result_file_name((mt_result_file)i);
-            outputs[n++] = u->texts[i];
+            mt_sha256(u->texts[i].s, u->texts[i].length, sha256[n++]);
         }
     }
     mt_text *const result = &u->texts[MT_RESULT_FILE_RESULT];
@@ -74,15 +74,15 @@ static void make(unit *u, const char *version, bool trade)
         r->run.build = (mt_result_build){"unknown", "none"};
         r->model.file = "m.json";
         r->status_text = version;
-        u->ok = mt_result_note_outputs(r, n, names, outputs, NULL) == MT_OK &&
+        u->ok = mt_result_note_outputs(r, n, names, sha256, NULL) == MT_OK &&
                 mt_result_write(r, result, NULL) == MT_OK;
         mt_result_delete(r);
     }
     if (u->ok) {
-        char sha256[MT_SHA256_TEXT];
-        mt_sha256(result->s, result->length, sha256);
+        char digest[MT_SHA256_TEXT];
+        mt_sha256(result->s, result->length, digest);
         mt_text_addf(&u->texts[MT_RESULT_FILE_TIMING],
-                     "{ \"result_sha256\": \"%s\", \"by\": \"%s\" }", sha256, version);
+                     "{ \"result_sha256\": \"%s\", \"by\": \"%s\" }", digest, version);
     }
 }
 

@@ -46,6 +46,10 @@
     return Array.isArray(data) ? unpack(data) : data;
   }
 
+  // The script stands before what it reads.
+  mt.whenRead = (begin) => document.readyState === 'loading'
+    ? document.addEventListener('DOMContentLoaded', begin) : begin();
+
   // The result of a report; the scene of a report (null: it has none) or of a show.
   mt.data = () => block('data');
   mt.scene = () => block('scene');

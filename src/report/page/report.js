@@ -69,5 +69,5 @@
     }
   }
 
-  start();
+  mt.whenRead(start);
 })();

@@ -204,8 +204,10 @@
     }
 
     mt.show = show;
-    const given = mt.scene();
-    if (given && !document.getElementById('figures')) { // a report shows it in its place
-        mt.shown = show(document.querySelector('main'), given);
-    }
+    mt.whenRead(() => {
+        const given = mt.scene();
+        if (given && !document.getElementById('figures')) { // a report shows it in its place
+            mt.shown = show(document.querySelector('main'), given);
+        }
+    });
 })();
