@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eigenvalues. dsyevd and not dsyevr: the latter loses orthogonality on clusters in the LAPACK
- * that we build on. */
+/* Eigenvalues of small symmetric matrices by eig_small.c, others by LAPACK. dsyevd and not
+ * dsyevr: the latter loses orthogonality on clusters in the LAPACK that we build on. */
 #include "linalg/eig.h"
 
 #include "linalg/lapack_priv.h"
@@ -9,6 +9,8 @@
 #include <limits.h>
 #include <math.h>
 #include <string.h>
+
+#include "linalg/eig_small.h"
 
 static mt_status eig_sym(int n, double *a, double *w, char job, mt_arena *scratch, mt_err *err)
 {
@@ -44,20 +46,6 @@ static mt_status eig_sym(int n, double *a, double *w, char job, mt_arena *scratc
     return MT_OK;
 }
 
-mt_status mt_eig_sym(int n, double *a, double *w, bool vectors, mt_arena *scratch, mt_err *err)
-{
-    if (n == 0) {
-        return MT_OK;
-    }
-    if (!mt_lower_finite(n, a)) {
-        return mt_lapack_not_finite("dsyevd", err);
-    }
-    const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = eig_sym(n, a, w, vectors ? 'V' : 'N', scratch, err);
-    mt_arena_rewind(scratch, mark);
-    return rc;
-}
-
 /* Far from these, squares of entries leave the range of numbers. */
 static const double LEAST_SIZE = 1e-100;
 static const double MOST_SIZE = 1e100;
@@ -80,6 +68,35 @@ static double scale_lower(int n, double *a)
         }
     }
     return scale;
+}
+
+static mt_status eig_small(int n, double *a, double *w, bool vectors, mt_err *err)
+{
+    const double scale = scale_lower(n, a);
+    const bool converged = mt_eig_small(n, a, w, vectors);
+    for (int i = 0; i < n; i++) {
+        w[i] /= scale;
+    }
+    return converged && mt_all_finite(n, w)
+               ? MT_OK
+               : mt_fail(err, MT_E_NO_CONVERGENCE, "QL: the eigenvalues did not converge");
+}
+
+mt_status mt_eig_sym(int n, double *a, double *w, bool vectors, mt_arena *scratch, mt_err *err)
+{
+    if (n == 0) {
+        return MT_OK;
+    }
+    if (!mt_lower_finite(n, a)) {
+        return mt_lapack_not_finite("dsyevd", err);
+    }
+    if (n <= MT_EIG_SMALL) {
+        return eig_small(n, a, w, vectors, err);
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = eig_sym(n, a, w, vectors ? 'V' : 'N', scratch, err);
+    mt_arena_rewind(scratch, mark);
+    return rc;
 }
 
 static mt_status eig_sym_values(const mt_tridiagonal *t, double *w, mt_arena *scratch,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A = L^-1 K L^-T (or T^T K T, or the condensed matrix), A Q = Q Lambda by dsyevd, or by its
- * parts where few columns of Q are wanted; Y = L^-T Q (or T1 Q). Absolute error of each lambda:
- * about n eps s. */
+/* A = L^-1 K L^-T (or T^T K T, or the condensed matrix), A Q = Q Lambda by mt_eig_sym, or in
+ * two steps where few columns of Q are wanted; Y = L^-T Q (or T1 Q). Absolute error of each
+ * lambda: about n eps s. */
 #include "modal/modal_priv.h"
 
 #include <float.h>

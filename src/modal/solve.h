@@ -61,7 +61,8 @@ mt_modal_options mt_modal_options_default(void);
 /* Compute the modes. opt NULL: default; factor may be NULL. Results live in mem, scratch is
  * given back; repeated calls with mem rewound do not touch the heap. O(n^3), about 11 us for
  * n = 11 with vectors.
- * Method: Cholesky, dsyevd (dsterf and dstein for a few of many modes); dgejsv for the factor.
+ * Method: Cholesky, mt_eig_sym (dsterf and dstein for a few of many modes); dgejsv for the
+ * factor.
  * On failure, memory taken from mem is the caller's to rewind. Fails: MT_E_MASSLESS
  * (out->massless); MT_E_DOMAIN; MT_E_NO_CONVERGENCE; MT_E_MEMORY. */
 mt_status mt_modal_solve(const double *k, const mt_mass_factor *mass,

@@ -19,6 +19,7 @@ import numpy as np
 
 PROGRAM = os.environ["MODETUNE"]
 N_PER_MM = 1000.0
+EPS = 2.0 ** -52
 SMALL = 1e-9       # of computed numbers
 SLOPE = 1e-5       # of slopes by differences
 DIGITS = 6e-6      # of what tables say, in six digits
@@ -240,11 +241,12 @@ class Rules:
         return {"change": lambda: self.change(start), "misfit": lambda: self.misfit(truth), "k1 + 3*k2": lambda: truth.k1 + 3 * truth.k2}[text]()
 
     def slope(self, f, design, name):
-        """By central differences of fourth order."""
+        """By central differences of fourth order; 0 where they are no more than rounding of the four values."""
         x = next(p["recommended"] for p in design["parameters"] if p["name"] == name)
         h = 1e-3 * x
-        at = lambda n: f(self.at(design, **{name: x + n * h}))
-        return (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h)
+        near, far = ([f(self.at(design, **{name: x + n * h})) for n in (i, -i)] for i in (1, 2))
+        sum_ = 8 * (near[0] - near[1]) - (far[0] - far[1])
+        return 0.0 if abs(sum_) <= 18 * EPS * max(map(abs, near + far)) else sum_ / (12 * h)
 
     # of a design
     def design_change(self, d):

@@ -2,8 +2,10 @@
 /* Every routine that takes scratch, with every one of its allocations failing in turn: it must
  * say so and leave the arena as it was. */
 #include <math.h>
+#include <string.h>
 
 #include "linalg/dense.h"
+#include "linalg/eig_small.h"
 #include "support/mt_alloc.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
@@ -12,10 +14,14 @@ enum { M = 9, N = 6 };
 
 typedef mt_status routine(double *a, mt_arena *mem, mt_err *err);
 
+/* Of an order that is LAPACK's. */
 static mt_status run_eig_sym(double *a, mt_arena *mem, mt_err *err)
 {
-    double w[N];
-    return mt_eig_sym(N, a, w, true, mem, err);
+    enum { ORDER = MT_EIG_SMALL + 1 };
+    double large[ORDER * ORDER] = {0.0};
+    double w[ORDER];
+    memcpy(large, a, M * N * sizeof *a);
+    return mt_eig_sym(ORDER, large, w, true, mem, err);
 }
 
 static mt_status run_eig_general(double *a, mt_arena *mem, mt_err *err)
