@@ -171,7 +171,7 @@ mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr
 
 mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr)
 {
-    mt_node stack[MT_EXPR_MAX_CODE] = {0};
+    mt_node stack[MT_EXPR_MAX_CODE]; /* of which `top` are there */
     int top = 0;
     for (int i = 0; i < e->length; i++) {
         const mt_code c = e->code[i];
@@ -210,6 +210,16 @@ mt_node mt_program_div(mt_program *p, mt_node a, mt_node b)
     return mt_program_binary(p, MT_OP_DIV, a, b, MT_NO_ADDR);
 }
 
+/* The least span that holds both. */
+static mt_program_span join(mt_program_span a, mt_program_span b)
+{
+    if (a.first == a.end || b.first == b.end) {
+        return a.first == a.end ? b : a;
+    }
+    return (mt_program_span){a.first < b.first ? a.first : b.first,
+                             a.end > b.end ? a.end : b.end};
+}
+
 /* Set of inputs of node i: its own, or the union of those of its operands. */
 static void collect_inputs(mt_program *p, int i)
 {
@@ -217,6 +227,7 @@ static void collect_inputs(mt_program *p, int i)
     uint64_t *const set = p->inputs_of + (size_t)i * (size_t)p->words;
     if (n->op == MT_OP_PARAM) {
         set[n->input / BITS] |= UINT64_C(1) << (n->input % BITS);
+        p->span[i] = (mt_program_span){n->input, n->input + 1};
         p->active[i] = true;
         return;
     }
@@ -229,6 +240,7 @@ static void collect_inputs(mt_program *p, int i)
         for (int w = 0; w < p->words; w++) {
             set[w] |= from[w];
         }
+        p->span[i] = join(p->span[i], p->span[operands[k]]);
         p->active[i] = p->active[i] || p->active[operands[k]];
     }
 }
@@ -240,6 +252,7 @@ mt_status mt_program_finish(mt_program *p, mt_err *err)
     p->active = mt_arena_alloc(p->mem, count, sizeof *p->active);
     p->active_nodes = mt_arena_int(p->mem, count);
     p->inputs_of = mt_arena_alloc(p->mem, count, (size_t)p->words * sizeof *p->inputs_of);
+    p->span = mt_arena_alloc(p->mem, count, sizeof *p->span);
     MT_TRY(mt_arena_check(p->mem, err));
     p->n_active = 0;
     for (int i = 0; i < p->count; i++) {
@@ -329,36 +342,39 @@ mt_status mt_program_eval(const mt_program *p, const double *inputs, double *val
     return MT_OK;
 }
 
-/* grad row of an active node, whatever stood there, from the rows of its operands; false: not
- * finite. */
+/* row += d * the gradient of an operand, within its span; false: not finite. */
+static bool add_operand(const mt_program *p, mt_node operand, double d, const double *grad,
+                        double *row)
+{
+    const mt_program_span span = p->span[operand];
+    const double *const from = grad + (size_t)operand * (size_t)p->n_inputs;
+    bool finite = true;
+    for (int k = span.first; k < span.end; k++) {
+        row[k] += d * from[k];
+        finite = finite && isfinite(row[k]);
+    }
+    return finite;
+}
+
+/* grad row of an active node within its span, beyond which it is 0, from the rows of its
+ * operands; false: not finite. */
 static bool node_gradient(const mt_program *p, int i, const double *value, double *grad)
 {
     const mt_program_node *const n = &p->nodes[i];
-    const size_t inputs = (size_t)p->n_inputs;
-    double *const row = grad + (size_t)i * inputs;
-    memset(row, 0, inputs * sizeof *row);
+    double *const row = grad + (size_t)i * (size_t)p->n_inputs;
+    for (int k = p->span[i].first; k < p->span[i].end; k++) {
+        row[k] = 0.0;
+    }
     if (n->op == MT_OP_PARAM) {
         row[n->input] = 1.0;
         return true;
     }
     const double b = n->b == MT_NO_NODE ? 0.0 : value[n->b];
     const mt_partials d = mt_op_partials(n->op, value[n->a], b, value[i]);
-    bool finite = true;
-    if (p->active[n->a]) {
-        const double *const from = grad + (size_t)n->a * inputs;
-        for (size_t k = 0; k < inputs; k++) {
-            row[k] = d.a * from[k];
-            finite = finite && isfinite(row[k]);
-        }
-    }
-    if (n->b != MT_NO_NODE && p->active[n->b]) {
-        const double *const from = grad + (size_t)n->b * inputs;
-        for (size_t k = 0; k < inputs; k++) {
-            row[k] += d.b * from[k];
-            finite = finite && isfinite(row[k]);
-        }
-    }
-    return finite;
+    const bool first = !p->active[n->a] || add_operand(p, n->a, d.a, grad, row);
+    const bool second =
+        n->b == MT_NO_NODE || !p->active[n->b] || add_operand(p, n->b, d.b, grad, row);
+    return first && second;
 }
 
 static mt_status active_gradients(const mt_program *p, const double *value, double *grad,

@@ -30,6 +30,12 @@ typedef struct mt_program_node {
     mt_addr addr; /* the number in the input file that this belongs to, for messages */
 } mt_program_node;
 
+/* Inputs from `first` to before `end`. */
+typedef struct mt_program_span {
+    int first;
+    int end;
+} mt_program_span;
+
 typedef struct mt_program {
     mt_arena *mem; /* not owned; holds everything below */
     mt_program_node *nodes;
@@ -40,7 +46,8 @@ typedef struct mt_program {
     bool *active;        /* [count] depends on some input; made by finish */
     uint64_t *inputs_of; /* [count * words] the inputs that each node depends on, as bits */
     int words;
-    int *active_nodes; /* the active ones in order */
+    mt_program_span *span; /* [count] the shortest that has all inputs that a node depends on */
+    int *active_nodes;     /* the active ones in order */
     int n_active;
 } mt_program;
 
@@ -76,9 +83,9 @@ mt_status mt_program_eval(const mt_program *p, const double *inputs, double *val
 /* Values and gradient: grad[node * n_inputs + i] = d value[node] / d inputs[i], [count *
  * n_inputs]. At a kink the side of the first operand: abs'(0) = 1, min(x, x) and max(x, x) go
  * with the first. A constant exponent needs no logarithm: x^2 has a derivative for every x.
- * O(count * n_inputs). Fails MT_E_DOMAIN also where a derivative is not finite (sqrt at 0,
- * hypot and atan2 at 0, 0): then all values are valid, and the derivatives of the nodes before
- * *bad. */
+ * O(count * n_inputs), less where nodes depend on few inputs. Fails MT_E_DOMAIN also where a
+ * derivative is not finite (sqrt at 0, hypot and atan2 at 0, 0): then all values are valid, and
+ * the derivatives of the nodes before *bad. */
 mt_status mt_program_gradient(const mt_program *p, const double *inputs, double *value,
                               double *grad, mt_node *bad, mt_err *err);
 /* Either of them, to the same bits, where value is left from an evaluation of this program that

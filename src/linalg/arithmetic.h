@@ -2,11 +2,9 @@
 #ifndef LINALG_ARITHMETIC_H
 #define LINALG_ARITHMETIC_H
 
-#include "base/sha256.h"
-
 enum { MT_ARITHMETIC_TEXT = 17 };
 
-/* The bits of the C library's functions on this processor, as digits of a SHA-256: where they
+/* The bits of the C library's functions on this processor, as digits of a hash: where they
  * differ (fused multiply-add or not, another version), results may in their last digits. */
 void mt_arithmetic_digest(char out[MT_ARITHMETIC_TEXT]);
 

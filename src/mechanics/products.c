@@ -153,7 +153,8 @@ static void coefficient_slopes(const mt_linear *lin, int kind, double sign, cons
             energy += t->pair ? 0.5 * s * mt_rows_dot(rows, partner(t, r), y) : s * s;
         }
         const double *const dc = lin->grad + ((ptrdiff_t)t->coefficient * np);
-        for (int p = 0; p < np && energy != 0.0; p++) {
+        const mt_program_span span = lin->sys->program.span[t->coefficient];
+        for (int p = span.first; p < span.end && energy != 0.0; p++) {
             slope[p] += sign * energy * dc[p];
         }
     }

@@ -52,7 +52,7 @@ double mt_problem_value(const mt_problem *p, int i, double t)
 
 double mt_problem_stretch_at(const mt_problem *p, int i, double x)
 {
-    return MT_HAS(p->scale[i]) ? p->scale[i] : fmax(x, p->floor[i]);
+    return MT_HAS(p->scale[i]) ? p->scale[i] : x > p->floor[i] ? x : p->floor[i];
 }
 
 /* The measure of one variable's change. */
