@@ -191,14 +191,18 @@ char *mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 
 char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
 {
+    enum { OFTEN_ENOUGH = 200 };
+    char text[OFTEN_ENOUGH];
     va_list again;
     if (a->failed) {
         return NULL;
     }
     va_copy(again, args);
-    const int n = mt_vsnprintf(NULL, 0, fmt, args);
+    const int n = mt_vsnprintf(text, sizeof text, fmt, args);
     char *const s = n < 0 ? refuse(a) : mt_arena_alloc(a, (size_t)n + 1, 1);
-    if (s != NULL) {
+    if (s != NULL && (size_t)n < sizeof text) {
+        memcpy(s, text, (size_t)n + 1);
+    } else if (s != NULL) {
         (void)mt_vsnprintf(s, (size_t)n + 1, fmt, again);
     }
     va_end(again);

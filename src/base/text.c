@@ -73,12 +73,19 @@ void mt_text_addf(mt_text *t, const char *fmt, ...)
     va_start(args, fmt);
     va_list again;
     va_copy(again, args);
-    const int n = mt_vsnprintf(NULL, 0, fmt, args);
+    const bool ready = reserve(t, 0);
+    const size_t room = ready ? t->capacity - t->length : 0; /* often enough */
+    const int n = mt_vsnprintf(ready ? t->s + t->length : NULL, room, fmt, args);
     if (n < 0) {
         t->failed = true;
     } else if (reserve(t, (size_t)n)) {
-        (void)mt_vsnprintf(t->s + t->length, (size_t)n + 1, fmt, again);
+        if ((size_t)n >= room) {
+            (void)mt_vsnprintf(t->s + t->length, (size_t)n + 1, fmt, again);
+        }
         t->length += (size_t)n;
+    }
+    if (t->s != NULL) {
+        t->s[t->length] = '\0';
     }
     va_end(again);
     va_end(args);

@@ -66,9 +66,12 @@ size_t mt_visible_run(const char *s, size_t n, bool lines)
     size_t at = 0;
     while (at < n) {
         const char *const c = s + at;
+        if (*c >= ' ' && *c < 0x7F) {
+            at++;
+            continue;
+        }
         const size_t length = mt_utf8_length(c, n - at);
-        const bool plain = *c >= ' ' && *c < 0x7F;
-        if (!plain && !(lines && is_layout(c, n - at)) &&
+        if (!(lines && is_layout(c, n - at)) &&
             (length == 0 || is_hidden(mt_utf8_code(c, length)))) {
             break;
         }

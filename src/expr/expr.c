@@ -501,7 +501,7 @@ mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err)
 
 bool mt_expr_is_constant(const mt_expr *e, double *value)
 {
-    double stack[MT_EXPR_MAX_CODE] = {0};
+    double stack[MT_EXPR_MAX_CODE]; /* of which `top` are there */
     int top = 0;
     for (int i = 0; i < e->length; i++) {
         const mt_code c = e->code[i];

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/decimal.h"
 #include "base/format.h"
 #include "base/visible.h"
 
@@ -20,6 +21,9 @@ mt_json_writer mt_json_writer_default(mt_text *out)
 
 static const char *format_number(double value, int digits, char buffer[MT_JSON_NUMBER_SIZE])
 {
+    if (mt_decimal(value == 0.0 ? 0.0 : value, digits, buffer) > 0) { /* -0 is 0 */
+        return buffer;
+    }
     if (isfinite(value)) {
         (void)mt_snprintf(buffer, MT_JSON_NUMBER_SIZE, "%.*g", digits, value);
     } else {

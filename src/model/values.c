@@ -142,6 +142,24 @@ mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *val
     return MT_OK;
 }
 
+/* NOLINTNEXTLINE(readability-function-size) */
+mt_status mt_model_number(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_num number, mt_arena *mem,
+                          double *value, mt_err *err)
+{
+    *value = 0.0;
+    if (number == MT_ABSENT || mt_expr_is_constant(&model->nums[number].expr, value)) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    mt_numbers numbers;
+    mt_status rc = mt_numbers_new(model, configuration, n_inputs, inputs, 1,
+                                  &model->nums[number], mem, &numbers, err);
+    rc = rc == MT_OK ? mt_numbers_at(&numbers, at, value, NULL, err) : rc;
+    mt_arena_rewind(mem, mark);
+    return rc;
+}
+
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
                            const int *inputs, const double *at, mt_arena *mem, double *value,
                            mt_err *err)

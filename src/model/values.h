@@ -76,6 +76,13 @@ mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
 mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
                         mt_err *err);
 
+/* Both, for one design and one number of the model, MT_ABSENT: 0. One that depends on nothing
+ * costs nothing. NaN: it has no finite value. Scratch from mem, given back. Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL. */
+mt_status mt_model_number(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_num number, mt_arena *mem,
+                          double *value, mt_err *err);
+
 /* Both, for one design and all numbers of the model: value[n_nums]. Scratch from mem, given
  * back. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,

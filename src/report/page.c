@@ -40,28 +40,50 @@ void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
     mt_text_add(out, "</h1>\n");
 }
 
+/* A text that grows by single characters: a piece of it is added at once. */
+typedef struct pieces {
+    char piece[4096];
+    size_t n;
+    mt_text *out;
+} pieces;
+
+static void flush(pieces *p)
+{
+    mt_text_add_n(p->out, p->piece, p->n);
+    p->n = 0;
+}
+
+static inline void put(pieces *p, char c)
+{
+    if (p->n == sizeof p->piece) {
+        flush(p);
+    }
+    p->piece[p->n++] = c;
+}
+
 /* JSON in which nothing can end the element: a "<" stands only in strings, where it may be
  * written as its number. White space is left out: nobody reads it here, and it is a third of a
- * large
- * result, and what is said twice stands once (pack.h). */
+ * large result, and what is said twice stands once (pack.h). */
 static void add_json(const char *json, mt_text *out)
 {
+    pieces p;
+    p.n = 0;
+    p.out = out;
     bool in_string = false;
-    while (*json != '\0') {
-        const size_t plain = strcspn(json, in_string ? "<\\\"" : "< \n\"");
-        mt_text_add_n(out, json, plain);
-        json += plain;
+    for (; *json != '\0'; json++) {
         if (*json == '<') {
-            mt_text_add(out, "\\u003c");
-        } else if (*json == '"') {
-            mt_text_add(out, "\"");
-            in_string = !in_string;
-        } else if (*json == '\\' && json[1] != '\0') { /* and what it escapes */
-            mt_text_add_n(out, json, 2);
-            json++;
+            for (const char *escape = "\\u003c"; *escape != '\0'; escape++) {
+                put(&p, *escape);
+            }
+        } else if (in_string || (*json != ' ' && *json != '\n')) {
+            put(&p, *json);
+            in_string = in_string != (*json == '"');
+            if (*json == '\\' && json[1] != '\0') { /* and what it escapes */
+                put(&p, *++json);
+            }
         }
-        json += *json == '\0' ? 0 : 1;
     }
+    flush(&p);
 }
 
 static void add_data(const char *json, mt_text *out)

@@ -49,23 +49,6 @@ static const mt_drive *drive_of(const mt_scene_frame *f)
     return found;
 }
 
-static mt_status position_in(const mt_scene_frame *f, int c, double *out, mt_err *err)
-{
-    const mt_model *const m = f->model;
-    const mt_scene_ask *const a = f->ask;
-    const mt_num position = m->configurations[c].drive.position;
-    const mt_arena_mark mark = mt_arena_get_mark(f->work);
-    mt_numbers numbers;
-    *out = 0.0;
-    if (position != MT_ABSENT) {
-        MT_TRY(mt_numbers_new(m, c, a->n_inputs, a->inputs, 1, &m->nums[position], f->work,
-                              &numbers, err));
-        MT_TRY(mt_numbers_at(&numbers, a->at, out, NULL, err));
-    }
-    mt_arena_rewind(f->work, mark);
-    return MT_OK;
-}
-
 static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
 {
     const mt_model *const m = f->model;
@@ -77,7 +60,8 @@ static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
         if (!d->given || d->joint != r->drive->joint) {
             continue;
         }
-        MT_TRY(position_in(f, c, &at, err));
+        MT_TRY(mt_model_number(m, c, f->ask->n_inputs, f->ask->inputs, f->ask->at, d->position,
+                               f->work, &at, err));
         r->own = c == f->configuration ? at : r->own;
         if (isfinite(at)) {
             r->low = fmin(r->low, at);

@@ -313,13 +313,8 @@ static mt_status gravity_in(const mt_model *model, int configuration, const mt_s
 {
     const mt_configuration *const c = &model->configurations[configuration];
     for (int k = 0; k < 3 && c->has_gravity; k++) {
-        mt_numbers numbers;
-        if (c->gravity[k] == MT_ABSENT) {
-            continue;
-        }
-        MT_TRY(mt_numbers_new(model, configuration, ask->n_inputs, ask->inputs, 1,
-                              &model->nums[c->gravity[k]], work, &numbers, err));
-        MT_TRY(mt_numbers_at(&numbers, ask->at, &scene->gravity[k], NULL, err));
+        MT_TRY(mt_model_number(model, configuration, ask->n_inputs, ask->inputs, ask->at,
+                               c->gravity[k], work, &scene->gravity[k], err));
         scene->has_gravity = scene->has_gravity || fabs(scene->gravity[k]) > 0.0;
     }
     return MT_OK;
