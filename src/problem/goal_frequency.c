@@ -36,11 +36,12 @@ double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, doubl
 mt_status mt_problem_dln_frequency(mt_workspace *w, mt_analysis *a, int pos, double floor_hz,
                                    double *out, mt_err *err)
 {
+    const int n = w->p->n;
     int size = 1;
     int vibrating = 0;
     const mt_modes *const modes = &a->modes;
-    memset(out, 0, (size_t)w->p->n * sizeof *out);
     if (pos < 0) {
+        memset(out, 0, (size_t)n * sizeof *out);
         return MT_OK;
     }
     const int first = mt_modal_cluster(modes, pos, &size);
@@ -48,13 +49,15 @@ mt_status mt_problem_dln_frequency(mt_workspace *w, mt_analysis *a, int pos, dou
         fmax(modes->lambda[pos], mt_enclosure_lambda(fmax(floor_hz, LEAST_FLOOR_HZ)));
     for (int k = first; k < first + size; k++) {
         MT_TRY(mt_analysis_dlambda_raw(a, k, w->work, err));
-        mt_axpy(w->p->n, 1.0, w->work, out);
+        for (int i = 0; i < n; i++) {
+            out[i] = k == first ? w->work[i] : out[i] + w->work[i];
+        }
         /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and
          * add nothing to the sum */
         vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
-    for (int i = 0; i < w->p->n && vibrating > 0; i++) {
-        out[i] *= mt_workspace_stretch(w, i) / (2.0 * lambda * (double)vibrating);
+    for (int i = 0; i < n && vibrating > 0; i++) {
+        out[i] *= mt_problem_stretch_at(w->p, i, w->x[i]) / (2.0 * lambda * (double)vibrating);
     }
     return MT_OK;
 }

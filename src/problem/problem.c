@@ -50,11 +50,6 @@ double mt_problem_value(const mt_problem *p, int i, double t)
     return below < 0.0 ? floor * (1.0 + below) : exp(t);
 }
 
-double mt_problem_stretch_at(const mt_problem *p, int i, double x)
-{
-    return MT_HAS(p->scale[i]) ? p->scale[i] : x > p->floor[i] ? x : p->floor[i];
-}
-
 /* The measure of one variable's change. */
 static void init_measure(mt_problem *p, int i)
 {

@@ -169,7 +169,10 @@ double mt_problem_t(const mt_problem *p, int i, double x);
 /* The value of variable i at a coordinate, between the bounds; to rounding. */
 double mt_problem_value(const mt_problem *p, int i, double t);
 /* dx_i/dt_i at the value x of variable i. */
-double mt_problem_stretch_at(const mt_problem *p, int i, double x);
+static inline double mt_problem_stretch_at(const mt_problem *p, int i, double x)
+{
+    return MT_HAS(p->scale[i]) ? p->scale[i] : x > p->floor[i] ? x : p->floor[i];
+}
 
 /* An analysis of a configuration at x[n], counted as the study counts (study->counted). *out is
  * the caller's. Fails as mt_analysis_new. */
