@@ -8,18 +8,19 @@
 /* A = L D L^T of a complex symmetric matrix (not Hermitian), in place of its lower triangle. */
 typedef struct mt_complex_ldl {
     int n;
-    double complex *a; /* n x n, the caller's, overwritten */
-    int *pivot;
-    double norm;   /* of A, 1-norm */
-    bool singular; /* a pivot is exactly 0 */
+    double complex *a;       /* n x n, the caller's, overwritten */
+    int *pivot;              /* as LAPACK numbers them */
+    double complex *inverse; /* [n] of pivots of order one; NULL: a large matrix */
+    double norm;             /* of A, 1-norm of |re| + |im| */
+    bool singular;           /* a pivot is exactly 0 */
 } mt_complex_ldl;
 
-/* Factor the lower triangle of A. n^3/3 complex flops. zsytrf. */
+/* Factor the lower triangle of A. n^3/3 complex flops. zsytrf; small ones by hand. */
 mt_status mt_complex_factor(int n, double complex *a, mt_arena *mem, mt_complex_ldl *out,
                             mt_err *err);
-/* X in place of B, n x nrhs. Not where the factor is singular. zsytrs. */
+/* X in place of B, n x nrhs. Not where the factor is singular. As the factor. */
 mt_status mt_complex_solve(const mt_complex_ldl *f, int nrhs, double complex *b, mt_err *err);
-/* Reciprocal condition in the 1-norm, estimated; 0 where singular. zsycon. */
+/* Reciprocal condition in that norm, estimated; 0 where singular. zsycon. */
 mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scratch,
                            mt_err *err);
 #endif
