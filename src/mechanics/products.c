@@ -97,23 +97,32 @@ static void full_product(const mt_linear *lin, sum s, double scale, const double
     }
 }
 
+static bool is_moved(const mt_linear *lin, int p)
+{
+    return lin->tangent != NULL && lin->tangent[p].moves;
+}
+
 /* out += K' phi at fixed phi. */
 static void full_product_derivative(const mt_linear *lin, sum s, int p, const double *phi,
                                     double *out)
 {
     const mt_rows *const rows = &lin->full[s.kind];
-    const mt_rows *const drows = &lin->tangent[p].rows[s.kind];
+    const mt_rows *const drows = is_moved(lin, p) ? &lin->tangent[p].rows[s.kind] : NULL;
     piece k;
     for (int i = 0; next_piece(lin, s, &i, &k);) {
         const double c = weight(lin, s, k.term) * k.part;
         const double dc = weight_slope(lin, s, k.term, p) * k.part;
-        if (dc == 0.0 && mt_rows_empty(drows, k.row) && mt_rows_empty(drows, k.other)) {
+        const bool turns =
+            drows != NULL && !(mt_rows_empty(drows, k.row) && mt_rows_empty(drows, k.other));
+        if (dc == 0.0 && !turns) {
             continue;
         }
         const double way = mt_rows_dot(rows, k.other, phi);
-        const double dway = mt_rows_dot(drows, k.other, phi);
+        const double dway = turns ? mt_rows_dot(drows, k.other, phi) : 0.0;
         mt_rows_axpy(rows, k.row, (dc * way) + (c * dway), out);
-        mt_rows_axpy(drows, k.row, c * way, out);
+        if (turns) {
+            mt_rows_axpy(drows, k.row, c * way, out);
+        }
     }
 }
 
@@ -214,11 +223,6 @@ static mt_status moving_product(mt_linear *lin, sum s, int p, moving *v, double 
     }
     mt_eliminate_project(&lin->e, v->w, out);
     return MT_OK;
-}
-
-static bool is_moved(const mt_linear *lin, int p)
-{
-    return lin->tangent != NULL && lin->tangent[p].moves;
 }
 
 /* out[k] = (ds[k]/dp) y of both sums, n x cols each. */
@@ -404,6 +408,16 @@ void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double sca
     full_product(lin, sum_of(matrix), scale, phi, out);
     if (matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL) {
         mt_gemv(false, nq, nq, scale, lin->kg, nq, phi, 1.0, out);
+    }
+}
+
+void mt_linear_states_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *phi,
+                            double *out)
+{
+    const int nq = lin->sys->nq;
+    full_product_derivative(lin, sum_of(matrix), p, phi, out);
+    if (is_moved(lin, p) && matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL) {
+        mt_gemv(false, nq, nq, 1.0, lin->tangent[p].kg, nq, phi, 1.0, out);
     }
 }
 

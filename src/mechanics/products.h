@@ -30,8 +30,11 @@ typedef enum mt_matrix {
 /* out[nq] += scale times one of them over the states times phi (nq). */
 void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double scale,
                               const double *phi, double *out);
-/* a^T (its derivative with respect to input p, over the states) b, after an update with
- * gradients. */
+/* out[nq] += (its derivative with respect to input p, over the states) phi, after an update
+ * with gradients. */
+void mt_linear_states_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *phi,
+                            double *out);
+/* a^T (that derivative) b. */
 double mt_linear_between_slope(const mt_linear *lin, int p, mt_matrix matrix, const double *a,
                                const double *b);
 /* The same of a sum of such products: of sum a b^T, g (nq x nq). O(entries of the terms)

@@ -24,6 +24,7 @@
 #include "problem/demand.h"
 #include "problem/goal.h"
 #include "problem/shaken.h"
+#include "response/slopes_forms.h"
 
 static const double TWO_PI = 6.283185307179586477;
 
@@ -118,6 +119,8 @@ static mt_status add_line(const mt_problem *p, const mt_demand *d, const mt_meas
     }
     fit->w[fit->n] = TWO_PI * line->frequency_hz;
     fit->h[fit->n] = h;
+    fit->level[fit->n] = log(size);
+    fit->phase[fit->n] = carg(h);
     fit->share[fit->n] = d->goal->shake->coherence ? g2 / fmax(1.0 - g2, NOISE_FLOOR) : 1.0;
     fit->line[fit->n++] = line->line;
     return MT_OK;
@@ -131,6 +134,8 @@ static mt_status take_lines(mt_problem *p, const mt_demand *d, mt_fit *fit, mt_e
     double sum = 0.0;
     fit->w = mt_arena_f64(&p->mem, most, 1);
     fit->h = mt_arena_alloc(&p->mem, most, sizeof *fit->h);
+    fit->level = mt_arena_f64(&p->mem, most, 1);
+    fit->phase = mt_arena_f64(&p->mem, most, 1);
     fit->share = mt_arena_f64(&p->mem, most, 1);
     fit->line = mt_arena_int(&p->mem, most);
     MT_TRY(mt_arena_check(&p->mem, err));
@@ -197,38 +202,11 @@ static mt_status no_value(const mt_workspace *w, const mt_demand *d, int i, cons
                    d->fit->w[i] / TWO_PI, d->fit->line[i], m->path.s);
 }
 
-static mt_status line_slopes(mt_workspace *w, const mt_demand *d, int i, double complex h,
-                             const mt_slope_problem *slopes, mt_err *err)
-{
-    const int n = w->p->n;
-    const double weight = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
-    mt_arena *const mem = &slopes->a->mem;
-    double complex *const dh = mt_arena_alloc(mem, (size_t)n, sizeof *dh);
-    MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(mt_response_slopes(slopes, d->fit->w[i], dh, mem, err));
-    for (int k = 0; k < n; k++) {
-        const double complex de = mt_workspace_stretch(w, k) * (dh[k] / h);
-        double *const dr =
-            w->dr + d->row_res + (2 * (ptrdiff_t)i) + ((ptrdiff_t)k * w->p->n_res);
-        if (!isfinite(creal(de)) || !isfinite(cimag(de))) {
-            return no_value(w, d, i, "the response has no slope", err);
-        }
-        dr[0] = weight * creal(de);
-        dr[1] = weight * cimag(de);
-    }
-    return MT_OK;
-}
-
-static mt_status line(mt_workspace *w, const mt_demand *d, int i, const forced *f,
-                      const mt_slope_problem *slopes, mt_err *err)
+/* The two rows of line i. */
+static mt_status line(mt_workspace *w, const mt_demand *d, int i, double complex h, mt_err *err)
 {
     const double weight = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
-    const double complex measured = d->fit->h[i];
     double *const r = w->r + d->row_res + (2 * (ptrdiff_t)i);
-    double complex h = 0.0;
-    mt_arena *const mem = &w->views[d->view].analysis->mem;
-    MT_TRY(mt_interrupt_check(w->p->study->model->interrupt, err));
-    MT_TRY(mt_transfer_at(&f->basis.t, d->fit->w[i], &(mt_sample){.h = &h}, mem, err));
     const double size = hypot(creal(h), cimag(h));
     if (!isfinite(size)) {
         return no_value(w, d, i, "nothing damps the resonance", err);
@@ -236,9 +214,62 @@ static mt_status line(mt_workspace *w, const mt_demand *d, int i, const forced *
     if (!(size > 0.0)) {
         return no_value(w, d, i, "nothing moves", err);
     }
-    r[0] = weight * (log(size) - log(hypot(creal(measured), cimag(measured))));
-    r[1] = weight * remainder(carg(h) - carg(measured), TWO_PI);
-    return slopes == NULL ? MT_OK : line_slopes(w, d, i, h, slopes, err);
+    r[0] = weight * (log(size) - d->fit->level[i]);
+    r[1] = weight * remainder(carg(h) - d->fit->phase[i], TWO_PI);
+    return MT_OK;
+}
+
+/* Their slopes, of those of h: dh / h, by hand since h and dh are finite. */
+static mt_status line_slopes(mt_workspace *w, const mt_demand *d, int i, double complex h,
+                             const double complex *dh, mt_err *err)
+{
+    const double weight = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
+    const double complex inverse = 1.0 / h;
+    for (int k = 0; k < w->p->n; k++) {
+        const double stretch = weight * mt_workspace_stretch(w, k);
+        const double re = (creal(dh[k]) * creal(inverse)) - (cimag(dh[k]) * cimag(inverse));
+        const double im = (creal(dh[k]) * cimag(inverse)) + (cimag(dh[k]) * creal(inverse));
+        double *const dr =
+            w->dr + d->row_res + (2 * (ptrdiff_t)i) + ((ptrdiff_t)k * w->p->n_res);
+        if (!isfinite(re) || !isfinite(im)) {
+            return no_value(w, d, i, "the response has no slope", err);
+        }
+        dr[0] = stretch * re;
+        dr[1] = stretch * im;
+    }
+    return MT_OK;
+}
+
+static mt_status values(mt_workspace *w, const mt_demand *d, const forced *f, mt_err *err)
+{
+    mt_arena *const mem = &w->views[d->view].analysis->mem;
+    for (int i = 0; i < d->fit->n; i++) {
+        double complex h = 0.0;
+        MT_TRY(mt_interrupt_check(w->p->study->model->interrupt, err));
+        MT_TRY(mt_transfer_at(&f->basis.t, d->fit->w[i], &(mt_sample){.h = &h}, mem, err));
+        MT_TRY(line(w, d, i, h, err));
+    }
+    return MT_OK;
+}
+
+static mt_status slopes(mt_workspace *w, const mt_demand *d, const forced *f, mt_err *err)
+{
+    mt_analysis *const a = w->views[d->view].analysis;
+    const mt_fit *const fit = d->fit;
+    const size_t inputs = (size_t)a->sys->n_inputs;
+    const mt_slope_problem problem = {
+        .a = a, .basis = &f->basis, .ports = &fit->ports, .ways = &f->ways};
+    mt_slope_forms forms;
+    double complex *const h = mt_arena_alloc(&a->mem, (size_t)fit->n, sizeof *h);
+    double complex *const dh = mt_arena_alloc(&a->mem, inputs * (size_t)fit->n, sizeof *dh);
+    MT_TRY(mt_arena_check(&a->mem, err));
+    MT_TRY(mt_slope_forms_make(&problem, 0, 0, fit->n, &a->mem, &forms, err));
+    MT_TRY(mt_slope_forms_at(&forms, fit->n, fit->w, h, dh, &a->mem, err));
+    for (int i = 0; i < fit->n; i++) {
+        MT_TRY(line(w, d, i, h[i], err));
+        MT_TRY(line_slopes(w, d, i, h[i], dh + ((size_t)i * inputs), err));
+    }
+    return MT_OK;
 }
 
 static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
@@ -249,12 +280,8 @@ static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool wi
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     forced f = {.f = {.n = 0}};
     mt_status rc = prepare(a, d->fit, &f, err);
-    const mt_slope_problem slopes = {
-        .a = a, .basis = &f.basis, .ports = &d->fit->ports, .ways = &f.ways};
-    for (int i = 0; i < d->fit->n && rc == MT_OK; i++) {
-        const mt_arena_mark inner = mt_arena_get_mark(&a->mem);
-        rc = line(w, d, i, &f, with_gradient ? &slopes : NULL, err);
-        mt_arena_rewind(&a->mem, inner);
+    if (rc == MT_OK) {
+        rc = with_gradient ? slopes(w, d, &f, err) : values(w, d, &f, err);
     }
     mt_arena_rewind(&a->mem, mark);
     return rc;

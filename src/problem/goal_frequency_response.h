@@ -14,6 +14,8 @@ typedef struct mt_fit {
     int n;
     double *w;         /* [n] [rad/s] */
     double complex *h; /* [n] measured, in SI; not 0 */
+    double *level;     /* [n] ln |h| */
+    double *phase;     /* [n] arg h [rad] */
     double *share;     /* [n] of the goal's weight; sum 1 */
     int *line;         /* [n] of the file */
 } mt_fit;

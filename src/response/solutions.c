@@ -14,7 +14,10 @@ mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *me
     *s = (mt_solutions){.basis = basis, .one = *t, .in = in, .out = out};
     s->one.n_in = 1;
     s->one.n_out = 1;
-    memset(s->one.rest, 0, sizeof s->one.rest);
+    for (int p = 0; p < MT_REST_POWERS; p++) {
+        s->one.rest[p] =
+            t->rest[p] == NULL ? NULL : t->rest[p] + out + ((ptrdiff_t)in * t->n_out);
+    }
     for (int p = 0; p < MT_FORCED_POWERS; p++) {
         if (t->beta[p] != NULL) {
             s->one.beta[p] = t->beta[p] + ((ptrdiff_t)in * t->n);
@@ -87,7 +90,7 @@ mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double 
     double complex *const a = mt_arena_alloc(scratch, (size_t)(n * b->t.n_out), sizeof *a);
     double complex *const u = mt_arena_alloc(scratch, (size_t)b->n_follow, sizeof *u);
     MT_TRY(mt_arena_check(scratch, err));
-    MT_TRY(mt_transfer_solve(&b->t, w, q, a, singular, scratch, err));
+    MT_TRY(mt_transfer_solve(&b->t, w, q, a, NULL, singular, scratch, err));
     for (int i = 0; i < b->t.n_in && !*singular; i++) {
         follow(b, w, b->follow_b, i, q + (i * n), u);
         back_one(b, q + (i * n), u, x + ((ptrdiff_t)i * b->f->n));
@@ -95,6 +98,27 @@ mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double 
     for (int o = 0; o < b->t.n_out && !*singular; o++) {
         follow(b, w, b->follow_s, o, a + (o * n), u);
         back_one(b, a + (o * n), u, y + ((ptrdiff_t)o * b->f->n));
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
+mt_status mt_solutions_one(const mt_solutions *s, double w, double complex *x,
+                           double complex *y, double complex *h, bool *singular,
+                           mt_arena *scratch, mt_err *err)
+{
+    const mt_basis *const b = s->basis;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double complex *const q = mt_arena_alloc(scratch, 2 * (size_t)b->t.n, sizeof *q);
+    double complex *const u = mt_arena_alloc(scratch, (size_t)b->n_follow, sizeof *u);
+    MT_TRY(mt_arena_check(scratch, err));
+    double complex *const a = q + b->t.n;
+    MT_TRY(mt_transfer_solve(&s->one, w, q, a, h, singular, scratch, err));
+    if (!*singular) {
+        follow(b, w, b->follow_b, s->in, q, u);
+        back_one(b, q, u, x);
+        follow(b, w, b->follow_s, s->out, a, u);
+        back_one(b, a, u, y);
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;
@@ -140,7 +164,7 @@ static mt_status solve(const mt_solutions *s, int count, const double *w, const 
     const side y = new_side(s, count, mem);
     MT_TRY(mt_arena_check(mem, err));
     for (ptrdiff_t i = 0; i < count; i++) {
-        MT_TRY(mt_transfer_solve(&s->one, w[i], q, a, singular, mem, err));
+        MT_TRY(mt_transfer_solve(&s->one, w[i], q, a, NULL, singular, mem, err));
         if (*singular) {
             return MT_OK;
         }

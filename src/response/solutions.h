@@ -28,6 +28,11 @@ mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double 
 /* Results in mem; refers to the basis. Fails: MT_E_MEMORY. */
 mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *mem,
                             mt_solutions *s, mt_err *err);
+/* At w: x[n], y[n], and the value h of the response, infinite where it has none (transfer.h).
+ * *singular: there are no x and y. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_solutions_one(const mt_solutions *s, double w, double complex *x,
+                           double complex *y, double complex *h, bool *singular,
+                           mt_arena *scratch, mt_err *err);
 /* At w[count]. *singular: there are none at one of them. O(n^2) for each where damping is
  * diagonal. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_solutions_at(const mt_solutions *s, int count, const double *w,

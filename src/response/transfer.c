@@ -27,7 +27,8 @@ typedef struct work {
     double w;
     double complex power[MT_FORCED_POWERS];  /* s^p */
     double complex dpower[MT_FORCED_POWERS]; /* its derivative with respect to w */
-    double complex *d;                       /* n x n scaled factor of D, or [n] */
+    double complex *d;                       /* n x n scaled factor of D, or [n] D */
+    double complex *whole;                   /* n x n: D itself; NULL: diagonal */
     double *scale;                           /* [n] rows and columns of the factor */
     mt_complex_ldl factor;
     bool *resonant; /* [n] diagonal: D_j is 0, to rounding */
@@ -88,13 +89,18 @@ static mt_status factor(work *k, mt_arena *mem, mt_err *err)
         }
         return MT_OK;
     }
+    k->whole = mt_arena_alloc(mem, (size_t)(n * n), sizeof *k->whole);
+    MT_TRY(mt_arena_check(mem, err));
     for (ptrdiff_t j = 0; j < n; j++) {
         const double size = terms_of(k, j + (j * n));
         k->scale[j] = size > 0.0 ? 1.0 / sqrt(size) : 1.0;
     }
     for (ptrdiff_t j = 0; j < n; j++) {
         for (ptrdiff_t i = j; i < n; i++) {
-            k->d[i + (j * n)] = k->scale[i] * k->scale[j] * entry_of(k, i + (j * n));
+            const double complex own = entry_of(k, i + (j * n));
+            k->whole[i + (j * n)] = own;
+            k->whole[j + (i * n)] = own;
+            k->d[i + (j * n)] = k->scale[i] * k->scale[j] * own;
         }
     }
     return mt_complex_factor((int)n, k->d, mem, &k->factor, err);
@@ -108,9 +114,8 @@ static void residual(const work *k, int cols, const double complex *b, const dou
     memcpy(r, b, (size_t)n * (size_t)cols * sizeof *r);
     for (ptrdiff_t j = 0; j < n; j++) {
         for (ptrdiff_t i = 0; i < n; i++) {
-            const double complex d = entry_of(k, i + (j * n));
             for (ptrdiff_t c = 0; c < cols; c++) {
-                r[i + (c * n)] -= d * x[j + (c * n)];
+                r[i + (c * n)] -= mt_times(k->whole[i + (j * n)], x[j + (c * n)]);
             }
         }
     }
@@ -359,6 +364,14 @@ static void mark_resonant(const work *k, const mt_sample *out)
     }
 }
 
+/* Nothing has a value. */
+static void all_infinite(const mt_transfer *t, const mt_sample *out)
+{
+    for (ptrdiff_t at = 0; at < (ptrdiff_t)t->n_in * t->n_out; at++) {
+        set_infinite(out, at);
+    }
+}
+
 static mt_status sample(const mt_transfer *t, double w, const mt_sample *out, mt_arena *scratch,
                         mt_err *err)
 {
@@ -366,9 +379,7 @@ static mt_status sample(const mt_transfer *t, double w, const mt_sample *out, mt
     set_powers(&k);
     MT_TRY(factor(&k, scratch, err));
     if (k.factor.singular) {
-        for (ptrdiff_t at = 0; at < (ptrdiff_t)t->n_in * t->n_out; at++) {
-            set_infinite(out, at);
-        }
+        all_infinite(t, out);
         return MT_OK;
     }
     MT_TRY(solutions(&k, out->dh != NULL, out->error != NULL, scratch, err));
@@ -390,19 +401,26 @@ mt_status mt_transfer_at(const mt_transfer *t, double w, const mt_sample *out,
 }
 
 mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
-                            double complex *a, bool *singular, mt_arena *scratch, mt_err *err)
+                            double complex *a, double complex *h, bool *singular,
+                            mt_arena *scratch, mt_err *err)
 {
     work k = {.t = t, .w = w};
+    const mt_sample value = {.h = h};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     set_powers(&k);
     MT_TRY(factor(&k, scratch, err));
     *singular = k.factor.singular || k.any_resonant;
-    if (!*singular) {
-        MT_TRY(solutions(&k, false, a != NULL, scratch, err));
+    if (k.factor.singular && h != NULL) {
+        all_infinite(t, &value);
+    }
+    if (!k.factor.singular) {
+        MT_TRY(solutions(&k, false, true, scratch, err));
         memcpy(q, k.q, (size_t)t->n * (size_t)t->n_in * sizeof *q);
-        if (a != NULL) {
-            memcpy(a, k.a, (size_t)t->n * (size_t)t->n_out * sizeof *a);
-        }
+        memcpy(a, k.a, (size_t)t->n * (size_t)t->n_out * sizeof *a);
+    }
+    if (!k.factor.singular && h != NULL) {
+        MT_TRY(put_together(&k, &value, scratch, err));
+        mark_resonant(&k, &value);
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;

@@ -52,10 +52,12 @@ mt_status mt_transfer_direct(const mt_forced *f, mt_arena *mem, mt_transfer *out
  * the first call. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_transfer_at(const mt_transfer *t, double w, const mt_sample *out,
                          mt_arena *scratch, mt_err *err);
-/* The solutions themselves, at w: q (n x n_in), and the adjoint a (n x n_out, may be NULL), D a
- * = sigma^T. *singular: D is, and there are none. */
+/* The solutions themselves, at w: q (n x n_in), and the adjoint a (n x n_out), D a = sigma^T;
+ * *singular: D is, and there are none. h (NULL: not asked for): the value, as
+ * mt_transfer_at. */
 mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
-                            double complex *a, bool *singular, mt_arena *scratch, mt_err *err);
+                            double complex *a, double complex *h, bool *singular,
+                            mt_arena *scratch, mt_err *err);
 
 /* rest[power] as an array of one's own, for who fills it. */
 double complex *mt_transfer_rest(mt_transfer *t, int power, mt_arena *mem);

@@ -8,6 +8,7 @@
 #include "mechanics/mech.h"
 #include "response/forced_fixture.h"
 #include "response/response.h"
+#include "response/slopes_forms.h"
 #include "response/solutions.h"
 #include "support/mt_slope.h"
 
@@ -241,6 +242,82 @@ static inline void add_up_terms(mt_test *t, asked *q, const double *ws, int n_w,
     }
 }
 
+/* The forms of one pair: values, and every derivative at every frequency, beside those of that
+ * frequency alone; one that is 0 by itself is rounding beside the others. `want`: the latter,
+ * pairs x inputs x n_w. */
+static inline void check_forms(mt_test *t, asked *q, const mt_slope_problem *p, int pair,
+                               const double *ws, int n_w, const double complex *want)
+{
+    const int pairs = q->r.ports.n_in * q->r.ports.n_out;
+    const int inputs = q->m.n;
+    const mt_arena_mark mark = mt_arena_get_mark(&q->r.mem);
+    mt_slope_forms f;
+    mt_err err = {.text = ""};
+    const size_t size = (size_t)inputs * (size_t)n_w;
+    double complex *const dh = mt_arena_alloc(&q->r.mem, size, sizeof *dh);
+    double complex *const h = mt_arena_alloc(&q->r.mem, (size_t)n_w, sizeof *h);
+    double complex *const all = mt_arena_alloc(&q->r.mem, (size_t)pairs, sizeof *all);
+    const int n_out = q->r.ports.n_out;
+    if (!CHECK(t, mt_slope_forms_make(p, pair % n_out, pair / n_out, 1 << 20, &q->r.mem, &f,
+                                      &err) == MT_OK) ||
+        !CHECK(t, mt_slope_forms_at(&f, n_w, ws, h, dh, &q->r.mem, &err) == MT_OK)) {
+        (void)fprintf(stderr, "%s\n", err.text);
+        return;
+    }
+    for (int i = 0; i < n_w; i++) {
+        const double complex *const own = want + ((ptrdiff_t)i * pairs * inputs);
+        double most = 0.0;
+        double terms[MOST_PAIRS] = {0.0};
+        add_up_terms(t, q, &ws[i], 1, terms);
+        CHECK(t, mt_transfer_at(&p->basis->t, ws[i], &(mt_sample){.h = all}, &q->r.mem, &err) ==
+                     MT_OK);
+        mt_test_row(t, "forms, pair %d, w = %g", pair, ws[i]);
+        CHECK_NEAR_ABS(t, cabs(h[i] - all[pair]), 0.0, 1e-13 * cabs(all[pair]));
+        for (int at = 0; at < pairs * inputs; at++) {
+            most = fmax(most, cabs(own[at]));
+        }
+        for (int k = 0; k < inputs; k++) {
+            mt_test_row(t, "forms, pair %d, w = %g, parameter %d", pair, ws[i], k);
+            const double unit = fabs(q->m.at[k]) > 0.0 ? fabs(q->m.at[k]) : 1.0;
+            CHECK_NEAR_ABS(t, cabs(dh[k + ((ptrdiff_t)i * inputs)] - own[pair + (k * pairs)]),
+                           0.0,
+                           1e-11 * cabs(own[pair + (k * pairs)]) + 1e-13 * most +
+                               16.0 * DBL_EPSILON * terms[pair] / unit);
+        }
+    }
+    mt_arena_rewind(&q->r.mem, mark);
+}
+
+/* Of all pairs, at some of the frequencies. */
+static inline void forms_agree(mt_test *t, asked *q, const double *ws, int n_w)
+{
+    enum { MOST = 7 };
+    const int pairs = q->r.ports.n_in * q->r.ports.n_out;
+    const ptrdiff_t size = (ptrdiff_t)pairs * q->m.n;
+    const mt_arena_mark mark = mt_arena_get_mark(&q->r.mem);
+    double some[MOST];
+    int n = 0;
+    mt_basis basis;
+    mt_err err = {.text = ""};
+    const mt_basis_problem whole = {
+        .f = &q->r.f, .mass = &q->m.a->mass, .modes = &q->m.a->modes};
+    const mt_slope_problem p = {
+        .a = q->m.a, .basis = &basis, .ports = &q->r.ports, .ways = &q->r.ways};
+    double complex *const want = mt_arena_alloc(&q->r.mem, (size_t)size * MOST, sizeof *want);
+    if (!CHECK(t, mt_basis_make(&whole, &q->r.mem, &basis, &err) == MT_OK)) {
+        return;
+    }
+    for (int i = 0; i < n_w && n < MOST; i += 1 + (n_w / MOST)) {
+        some[n] = ws[i];
+        CHECK(t, mt_response_slopes(&p, ws[i], want + (n * size), &q->r.mem, &err) == MT_OK);
+        n++;
+    }
+    for (int pair = 0; pair < pairs; pair++) {
+        check_forms(t, q, &p, pair, some, n, want);
+    }
+    mt_arena_rewind(&q->r.mem, mark);
+}
+
 /* A derivative that is 0 by itself is rounding beside the others. */
 static inline void check_weighted(mt_test *t, asked *q, const double *ws, int n_w)
 {
@@ -255,6 +332,7 @@ static inline void check_weighted(mt_test *t, asked *q, const double *ws, int n_
     for (int i = 0; i < n_w && i < MOST_WEIGHTED; i++) {
         weight[i] = weight_of(i);
     }
+    forms_agree(t, q, ws, n_w);
     add_up_slopes(t, q, ws, n_w, want, size);
     add_up_terms(t, q, ws, n_w, terms);
     double most = 0.0;
