@@ -45,6 +45,7 @@ typedef enum mt_option_id {
     MT_OPT_CHIRP,
     MT_OPT_RANDOM,
     MT_OPT_TOLERANCE,
+    MT_OPT_INTEGRATE,
     MT_OPT_OUTPUT,
     MT_OPT_VERIFY,
     MT_OPT_THREADS,

@@ -139,6 +139,9 @@ const mt_option mt_options[MT_OPT_IDS] = {
              "with phases by --seed"),
     OPTION(MT_OPT_TOLERANCE, '\0', "tolerance", "X", BIT(MT_CMD_SIMULATE),
            "largest error of a step, relative to the motion so far (default: 1e-11)"),
+    OPTION(MT_OPT_INTEGRATE, '\0', "integrate", NULL, BIT(MT_CMD_SIMULATE),
+           "integrate the equations of motion also where they are linear at any amplitude and "
+           "are solved without"),
     OPTION(MT_OPT_OUTPUT, 'o', "output", "DIR",
            SOLVES | BIT(MT_CMD_REPORT) | BIT(MT_CMD_EXAMPLES) | BIT(MT_CMD_SHOW),
            "folder for the results (default: of run and merge `results`, of examples the "
@@ -279,20 +282,24 @@ const mt_command mt_commands[MT_CMD_IDS] = {
             "what holds the joint, and with --modes the natural frequencies by index (default: "
             "6). If a limit position ends the range, the positions before it are printed, a "
             "message names the limit, and the exit status is 3."),
-    COMMAND(MT_CMD_SIMULATE, "simulate", "MODEL", 1, 1, "motion in time, of any amplitude",
-            "Integrates the nonlinear equations of motion of one configuration, and so checks "
-            "what the other commands compute for small motions. The motion begins at rest in "
-            "equilibrium unless --start, --rate or --mode say otherwise; --input, --sine, "
-            "--sweep, --random and --vibration excite it. Prints the outputs over time and "
-            "what they show: for a free motion its turns and its tones (frequency, damping, "
-            "amplitude), under a sine the steady amplitudes and phases, the balance of energy, "
-            "and the largest drift of a joint in a step before it was corrected.\n"
-            "Springs, viscous dampers, loads and masses are those of the model; bars and beams "
-            "of consistent mass move their mass with their frame. The steps follow the fastest "
-            "vibration of the mechanism, so very stiff parts make them short.\n"
-            "After an interrupt (Ctrl-C), or at the end of --time, the motion so far is "
-            "printed, and the exit status is 130 or 1. The exit status is 3 if the motion "
-            "reaches a dead centre, or if an input acts in a direction without mass."),
+    COMMAND(
+        MT_CMD_SIMULATE, "simulate", "MODEL", 1, 1, "motion in time, of any amplitude",
+        "Integrates the nonlinear equations of motion of one configuration, and so checks "
+        "what the other commands compute for small motions. Where bodies only slide along "
+        "fixed lines and turn about fixed axes, and all forces grow in proportion, the "
+        "equations are linear: then the motion is exact, by the matrix exponential, and the "
+        "last lines say so. The motion begins at rest in "
+        "equilibrium unless --start, --rate or --mode say otherwise; --input, --sine, "
+        "--sweep, --random and --vibration excite it. Prints the outputs over time and "
+        "what they show: for a free motion its turns and its tones (frequency, damping, "
+        "amplitude), under a sine the steady amplitudes and phases, the balance of energy, "
+        "and the largest drift of a joint in a step before it was corrected.\n"
+        "Springs, viscous dampers, loads and masses are those of the model; bars and beams "
+        "of consistent mass move their mass with their frame. The steps follow the fastest "
+        "vibration of the mechanism, so very stiff parts make them short.\n"
+        "After an interrupt (Ctrl-C), or at the end of --time, the motion so far is "
+        "printed, and the exit status is 130 or 1. The exit status is 3 if the motion "
+        "reaches a dead centre, or if an input acts in a direction without mass."),
     COMMAND(MT_CMD_SENSITIVITY, "sensitivity", "MODEL", 1, 1,
             "change of each frequency per per cent of each parameter",
             "Prints exact derivatives of the first natural frequencies (default: 6): the "

@@ -124,6 +124,38 @@ static void tell_steady(const mt_sim_view *v, const mt_sim_reading *g, mt_text *
     mt_text_add(out, ".\n");
 }
 
+/* How the motion was found, and how well. */
+static void tell_method(const mt_sim_view *v, mt_text *out)
+{
+    const mt_sim_result *const r = v->r;
+    switch (r->method) {
+    case MT_SIM_INTEGRATED:
+    case MT_SIM_METHODS:
+        mt_text_addf(out,
+                     "  %ld steps (%ld more rejected), %ld evaluations, tolerance %.1e.\n\n",
+                     r->steps, r->rejected, r->evaluations, v->request->opt.tolerance);
+        return;
+    case MT_SIM_EXACT:
+        mt_text_addf(
+            out, "  Exact: the equations are linear%s; %ld steps by the matrix exponential.\n",
+            v->free ? " and nothing pushes" : ", the inputs are sines and polynomials of time",
+            r->steps);
+        break;
+    case MT_SIM_FITTED:
+        mt_text_addf(out,
+                     "  The equations are linear: %ld steps by the matrix exponential, with "
+                     "inputs as polynomials\n  in each of them, which miss at most %.1e of "
+                     "their largest value.\n",
+                     r->steps, r->fit.input_error);
+        break;
+    }
+    mt_text_addf(
+        out,
+        "  Put into the whole equations of motion at %d samples it leaves at most %.1e "
+        "of their largest force.\n\n",
+        r->fit.checks, r->fit.residual);
+}
+
 void mt_simulate_print(const mt_sim_view *v, mt_text *out)
 {
     const mt_sim_result *const r = v->r;
@@ -153,8 +185,7 @@ void mt_simulate_print(const mt_sim_view *v, mt_text *out)
         mt_text_addf(out, "  Joints: at most %.1e m of drift in a step, %.1e m left of it.\n",
                      r->gap_m, r->left_m);
     }
-    mt_text_addf(out, "  %ld steps (%ld more rejected), %ld evaluations, tolerance %.1e.\n\n",
-                 r->steps, r->rejected, r->evaluations, v->request->opt.tolerance);
+    tell_method(v, out);
 }
 
 static void json_list(mt_json_writer *w, const char *name, int n, const double *x)
@@ -243,6 +274,7 @@ void mt_simulate_json(const mt_sim_view *v, mt_json_writer *w)
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", v->configuration);
     mt_json_put_bool(w, "complete", r->stop == MT_SIM_DONE);
+    mt_json_put_string(w, "method", mt_sim_method_name(r->method));
     mt_json_put_number(w, "tolerance", v->request->opt.tolerance);
     if (v->request->shaken.v != NULL) {
         mt_sim_shaken_json(&v->request->shaken, w);
@@ -259,6 +291,10 @@ void mt_simulate_json(const mt_sim_view *v, mt_json_writer *w)
     mt_json_put_integer(w, "steps", r->steps);
     mt_json_put_integer(w, "rejected_steps", r->rejected);
     mt_json_put_integer(w, "evaluations", r->evaluations);
+    if (r->method != MT_SIM_INTEGRATED) {
+        mt_json_put_number(w, "equations_residual", r->fit.residual);
+        mt_json_put_number(w, "input_error", r->fit.input_error);
+    }
     json_readings(v, w);
     mt_json_close(w);
 }

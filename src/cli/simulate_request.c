@@ -446,6 +446,7 @@ mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
     out->opt.duration_s = args->duration_s;
     out->opt.sample_s = args->dt_out_s > 0.0 ? args->dt_out_s : 0.01 * args->duration_s;
     out->opt.tolerance = args->tolerance > 0.0 ? args->tolerance : out->opt.tolerance;
+    out->opt.integrates = args->given[MT_OPT_INTEGRATE];
     out->opt.inputs = inputs;
     for (int i = 0; i < args->n_repeats; i++) {
         const mt_repeat *const r = &args->repeats[i];

@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "simulate/propagate.h"
 
 static const double SAFETY = 0.9;
 static const double BY_ERROR = 0.7 / MT_ODE_ORDER;
@@ -49,6 +50,14 @@ static const double TOLERANCE = 1e-11;
 /* Where a velocity is 0 is known to this part of the step. */
 static const double TURN_FOUND = 1e-11;
 enum { TURN_STEPS = 6 };
+
+const char *mt_sim_method_name(mt_sim_method method)
+{
+    static const char *const names[MT_SIM_METHODS] = {[MT_SIM_INTEGRATED] = "integrated",
+                                                      [MT_SIM_EXACT] = "exact",
+                                                      [MT_SIM_FITTED] = "fitted"};
+    return names[method];
+}
 
 mt_sim_options mt_sim_options_default(void)
 {
@@ -110,9 +119,8 @@ typedef struct run {
     double last_ratio; /* of the last step that was taken */
 } run;
 
-static mt_status reserve(run *r, mt_err *err)
+static mt_status reserve(run *r, const mt_sim_options *opt, mt_arena *mem, mt_err *err)
 {
-    const mt_sim_options *const opt = r->s.opt;
     mt_sim_result *const out = r->out;
     const bool given = opt->duration_s > 0.0 && opt->sample_s > 0.0;
     const double samples = given ? floor(opt->duration_s / opt->sample_s) + 2.0 : HUGE_VAL;
@@ -126,7 +134,6 @@ static mt_status reserve(run *r, mt_err *err)
     r->room = (int)samples;
     const size_t room = (size_t)r->room;
     const size_t gauges = (size_t)opt->n_gauges;
-    mt_arena *const mem = r->s.mem;
     out->n_gauges = opt->n_gauges;
     out->t = mt_arena_f64(mem, room, 1);
     out->kinetic = mt_arena_f64(mem, room, 1);
@@ -378,9 +385,7 @@ static mt_status only_dampers(const mt_system *sys, mt_err *err)
 static mt_status begin(run *r, mt_linear *lin, const mt_sim_start *start,
                        const mt_sim_options *opt, mt_arena *mem, mt_err *err)
 {
-    MT_TRY(only_dampers(mt_linear_system(lin), err));
     MT_TRY(mt_sim_init(&r->s, lin, start, opt, mem, err));
-    MT_TRY(reserve(r, err));
     MT_TRY(measure_rest(r, err));
     MT_TRY(mt_sim_slope(&r->s, 0.0, r->s.begin, r->s.slope, err));
     r->potential0 = r->s.motion.potential;
@@ -390,23 +395,55 @@ static mt_status begin(run *r, mt_linear *lin, const mt_sim_start *start,
     return MT_OK;
 }
 
+static mt_status integrate(run *r, mt_linear *lin, const mt_sim_start *start,
+                           const mt_sim_options *opt, mt_arena *mem, mt_err *err)
+{
+    mt_sim_result *const out = r->out;
+    double t = 0.0;
+    mt_status rc = begin(r, lin, start, opt, mem, err);
+    if (rc == MT_OK) {
+        rc = go(r, &t, err);
+    }
+    if (rc == MT_OK && opt->end != NULL) {
+        mt_placement_copy(r->s.sys, &r->s.base, &opt->end->at);
+        memcpy(opt->end->v, r->s.begin + r->s.nq, (size_t)r->s.nq * sizeof *opt->end->v);
+    }
+    out->evaluations = r->s.evaluations;
+    out->gap_m = r->s.gap_m;
+    out->left_m = r->s.left_m;
+    mt_sim_free(&r->s);
+    return rc == MT_OK || mt_is_final(rc) ? rc : mt_err_in(err, rc, "after %.6g s", t);
+}
+
+/* Without integration, where equations and inputs allow that. Whatever it fails with but memory
+ * the integration meets, too, and knows when. */
+static mt_status propagate(run *r, mt_linear *lin, const mt_sim_start *start,
+                           const mt_sim_options *opt, mt_arena *mem, bool *done, mt_err *err)
+{
+    const mt_sim_result empty = *r->out;
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_status rc = mt_propagate(lin, start, opt, r->room, mem, r->out, done, NULL);
+    if (rc == MT_E_MEMORY) {
+        return mt_fail_memory(err);
+    }
+    if (!*done) {
+        *r->out = empty;
+        memset(r->out->turnings, 0, (size_t)opt->n_gauges * sizeof *r->out->turnings);
+        mt_arena_rewind(mem, mark);
+    }
+    return MT_OK;
+}
+
 mt_status mt_simulate(mt_linear *lin, const mt_sim_start *start, const mt_sim_options *opt,
                       mt_arena *mem, mt_sim_result *out, mt_err *err)
 {
     run r = {.out = out, .last_ratio = 1.0};
-    double t = 0.0;
+    bool done = false;
     *out = (mt_sim_result){.stop = MT_SIM_DONE};
-    mt_status rc = begin(&r, lin, start, opt, mem, err);
-    if (rc == MT_OK) {
-        rc = go(&r, &t, err);
+    MT_TRY(only_dampers(mt_linear_system(lin), err));
+    MT_TRY(reserve(&r, opt, mem, err));
+    if (!opt->integrates && !(opt->step_s > 0.0)) {
+        MT_TRY(propagate(&r, lin, start, opt, mem, &done, err));
     }
-    if (rc == MT_OK && opt->end != NULL) {
-        mt_placement_copy(r.s.sys, &r.s.base, &opt->end->at);
-        memcpy(opt->end->v, r.s.begin + r.s.nq, (size_t)r.s.nq * sizeof *opt->end->v);
-    }
-    out->evaluations = r.s.evaluations;
-    out->gap_m = r.s.gap_m;
-    out->left_m = r.s.left_m;
-    mt_sim_free(&r.s);
-    return rc == MT_OK || mt_is_final(rc) ? rc : mt_err_in(err, rc, "after %.6g s", t);
+    return done ? MT_OK : integrate(&r, lin, start, opt, mem, err);
 }

@@ -42,7 +42,8 @@ typedef struct mt_sim_options {
     /* largest error of a step, as a part of the motion so far: of how far bodies have come, and
      * of how fast they have been */
     double tolerance;
-    double step_s; /* above 0: steps of this length at most, whatever their error */
+    double step_s;   /* above 0: steps of this length at most, whatever their error */
+    bool integrates; /* equations that are linear, too */
     int n_inputs;
     const mt_sim_input *inputs;
     int n_gauges;
@@ -56,8 +57,26 @@ enum { MT_SIM_SAMPLES_MOST = 20000000 };
 
 typedef enum mt_sim_stop { MT_SIM_DONE, MT_SIM_INTERRUPTED } mt_sim_stop;
 
+/* How a motion was found. */
+typedef enum mt_sim_method {
+    MT_SIM_INTEGRATED,
+    MT_SIM_EXACT,  /* linear equations, inputs that are polynomials and sines, by pieces */
+    MT_SIM_FITTED, /* linear equations, inputs as polynomials in each step */
+    MT_SIM_METHODS
+} mt_sim_method;
+const char *mt_sim_method_name(mt_sim_method method); /* "integrated", "exact", "fitted" */
+
+/* Of a motion that was not integrated: how it fits the whole equations, at some samples. */
+typedef struct mt_sim_fit {
+    int checks;
+    double residual;    /* largest residual, over the largest of its terms */
+    double input_error; /* of an input that was fitted, over its largest value */
+} mt_sim_fit;
+
 typedef struct mt_sim_result {
     mt_sim_stop stop;
+    mt_sim_method method;
+    mt_sim_fit fit;
     int n; /* samples there are */
     int n_gauges;
     double *t;     /* [n] */
@@ -82,10 +101,12 @@ typedef struct mt_sim_result {
  * @param lin    after an update; its position is the rest position
  * @param start  at a position where the joints are closed, with velocities that they allow
  * @param mem    holds the result; scratch, too
- * An interrupt of the model (or the end of its time) ends it with what there is so far. Fails:
- * MT_E_USAGE (times, too many samples), MT_E_SINGULAR (a direction without mass is pushed),
- * MT_E_DEAD_CENTRE (joints begin to depend on each other), MT_E_NO_CONVERGENCE (steps become
- * too small), MT_E_DOMAIN, MT_E_MEMORY; the text says when.
+ * Where equations are linear at any amplitude (propagate.h) nothing is integrated, unless a
+ * length of steps or the option says so. An interrupt of the model (or the end of its time)
+ * ends it with what there is so far. Fails: MT_E_USAGE (times, too many samples), MT_E_SINGULAR
+ * (a direction without mass is pushed), MT_E_DEAD_CENTRE (joints begin to depend on each
+ * other), MT_E_NO_CONVERGENCE (steps become too small), MT_E_DOMAIN, MT_E_MEMORY; the text says
+ * when.
  */
 mt_status mt_simulate(mt_linear *lin, const mt_sim_start *start, const mt_sim_options *opt,
                       mt_arena *mem, mt_sim_result *out, mt_err *err);

@@ -25,7 +25,7 @@ ALLOWED = {
     "result": {"base", "study"},
     "prove": ENGINE | {"analysis"},
     "scene": ENGINE | {"tree", "analysis"},
-    "simulate": {"base", "linalg", "expr", "model", "mechanics", "study"},
+    "simulate": {"base", "linalg", "expr", "model", "mechanics", "modal", "study"},
     "problem": ENGINE | {"analysis", "response", "vibration", "nlp", "study", "result", "prove"},
     "search": ENGINE | {"analysis", "nlp", "study", "result", "prove", "problem"},
     "describe": ENGINE | {"analysis", "response", "vibration", "nlp", "study", "result", "prove", "problem", "search"},
