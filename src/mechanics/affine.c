@@ -300,7 +300,7 @@ static void slope_of(const mt_linear *lin, const mt_affine *a, const mt_measure_
                      double *slope)
 {
     mt_jet jet;
-    mt_data_eval(&lin->data, m, &lin->position.at, false, &jet);
+    mt_data_eval(&lin->data, m, &lin->position.at, false, NULL, &jet);
     for (int k = 0; k < MT_LOCAL; k++) {
         const int dof = mt_local_dof(lin->sys, m->body, k);
         for (ptrdiff_t j = 0; j < a->n && dof >= 0; j++) {
