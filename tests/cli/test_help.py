@@ -18,7 +18,7 @@ OPTIONS = {
     "modes": {"configuration", "set", "count", "shapes", "damped", "profile", "progress"},
     "mac": {"count"},
     "sweep": {"configuration", "set", "count", "drive", "hold", "modes"},
-    "simulate": {"vibration", "configuration", "set", "duration", "dt-out", "start", "rate", "mode", "input", "sine", "sweep", "random", "seed", "output", "tolerance", "time"},
+    "simulate": {"vibration", "configuration", "set", "duration", "dt-out", "start", "rate", "mode", "input", "sine", "sweep", "random", "integrate", "seed", "output", "tolerance", "time"},
     "sensitivity": {"configuration", "set", "count", "parameters"},
     "response": {"configuration", "set", "input", "output", "from", "to", "points", "log", "modes", "direct", "poles", "sensitivity", "vibration"},
     "info": {"configuration", "set"},
