@@ -54,7 +54,7 @@ static uint64_t scaled(uint64_t m, int e, int s)
 /* The p digits of n, the first of which stands for 10^k, without zeros at the end. */
 static size_t lay_out(uint64_t n, int p, int k, char *out)
 {
-    char digits[MT_DECIMAL_DIGITS];
+    char digits[MT_DECIMAL_DIGITS] = "";
     for (int i = p - 1; i >= 0; i--) {
         digits[i] = (char)('0' + (int)(n % 10U));
         n /= 10U;
@@ -102,7 +102,7 @@ size_t mt_decimal(double x, int digits, char out[MT_DECIMAL_TEXT])
         uint64_t n = scaled(m, e, digits - 1 - k);
         if (n >= power[digits]) { /* one less; or rounded up to a power of ten */
             k++;
-            n = scaled(m, e, digits - 1 - k);
+            n = k < digits ? scaled(m, e, digits - 1 - k) : 0;
         }
         if (k < -4 || k >= digits) {
             return 0;

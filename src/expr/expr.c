@@ -501,8 +501,9 @@ mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err)
 
 bool mt_expr_is_constant(const mt_expr *e, double *value)
 {
-    double stack[MT_EXPR_MAX_CODE]; /* of which `top` are there */
+    double stack[MT_EXPR_MAX_CODE];
     int top = 0;
+    memset(stack, 0, (size_t)e->length * sizeof *stack); /* which is as deep as it gets */
     for (int i = 0; i < e->length; i++) {
         const mt_code c = e->code[i];
         if (c.op == MT_OP_PARAM) {

@@ -171,8 +171,9 @@ mt_node mt_program_binary(mt_program *p, mt_op op, mt_node a, mt_node b, mt_addr
 
 mt_node mt_program_expr(mt_program *p, const mt_expr *e, const mt_node *params, mt_addr addr)
 {
-    mt_node stack[MT_EXPR_MAX_CODE]; /* of which `top` are there */
+    mt_node stack[MT_EXPR_MAX_CODE];
     int top = 0;
+    memset(stack, 0, (size_t)e->length * sizeof *stack); /* which is as deep as it gets */
     for (int i = 0; i < e->length; i++) {
         const mt_code c = e->code[i];
         const int operands = mt_op_operands(c.op);

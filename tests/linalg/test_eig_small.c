@@ -9,6 +9,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "linalg/dense.h"
@@ -93,11 +94,12 @@ static bool reference(int n, const double *lower, quad *w)
         }
     }
     for (int i = 0; i < n; i++) {
-        int at = i;
-        for (; at > 0 && w[at - 1] > a[i + i * n]; at--) {
+        w[i] = a[i + i * n];
+        for (int at = i; at > 0 && w[at - 1] > w[at]; at--) {
+            const quad swap = w[at];
             w[at] = w[at - 1];
+            w[at - 1] = swap;
         }
-        w[at] = a[i + i * n];
     }
     return !turned;
 }
@@ -129,16 +131,31 @@ typedef enum spectrum {
     SPECTRA
 } spectrum;
 
+/* The eigenvalue that stands at `part` of the way from the first to the last. */
+static double of_spectrum(mt_random *r, spectrum kind, double part)
+{
+    switch (kind) {
+    case EVEN:
+        return 1.0 - part * (1.0 - DBL_EPSILON);
+    case GEOMETRIC:
+        return pow(DBL_EPSILON, part);
+    case CLUSTERED:
+        return part > 0.0 ? DBL_EPSILON : 1.0;
+    case CLUSTERED_ONE:
+        return part < 1.0 ? 1.0 : DBL_EPSILON;
+    case RANDOM:
+    case SPECTRA:
+        break;
+    }
+    return pow(DBL_EPSILON, mt_random_in(r, 0.0, 1.0));
+}
+
 static void fill_spectrum(mt_random *r, spectrum kind, bool signs, int n, double *d)
 {
     for (int i = 0; i < n; i++) {
-        const double part = n == 1 ? 0.0 : (double)i / (n - 1);
-        d[i] = kind == EVEN            ? 1.0 - part * (1.0 - DBL_EPSILON)
-               : kind == GEOMETRIC     ? pow(DBL_EPSILON, part)
-               : kind == CLUSTERED     ? (i == 0 ? 1.0 : DBL_EPSILON)
-               : kind == CLUSTERED_ONE ? (i == n - 1 ? DBL_EPSILON : 1.0)
-                                       : pow(DBL_EPSILON, mt_random_in(r, 0.0, 1.0));
-        d[i] *= signs && mt_random_int(r, 2) == 0 ? -1.0 : 1.0;
+        const bool negative = signs && mt_random_int(r, 2) == 0;
+        d[i] = of_spectrum(r, kind, n == 1 ? 0.0 : (double)i / (n - 1));
+        d[i] = negative ? -d[i] : d[i];
     }
 }
 
@@ -253,32 +270,60 @@ static void eig__of_all_types_is_that_of_113_bits(mt_test *t)
 
 /* Zero, unit and all ones; random entries; tridiagonal ones, among them Wilkinson's with its
  * close pairs; only one entry; entries that all but overflow. */
+typedef enum special {
+    ZERO,
+    UNIT,
+    ONES,
+    ANY,
+    TRIDIAGONAL,
+    WILKINSON,
+    CORNER,
+    ARROW,
+    HUGE_ONES,
+    SPECIALS
+} special;
+
+static double entry_of(special kind, int n, int i, int j, double any)
+{
+    const bool diagonal = i == j;
+    const bool beside = i == j + 1;
+    switch (kind) {
+    case ZERO:
+    case SPECIALS:
+        break;
+    case UNIT:
+        return diagonal ? 1.0 : 0.0;
+    case ONES:
+        return 1.0;
+    case ANY:
+        return any;
+    case TRIDIAGONAL:
+        return diagonal || beside ? any : 0.0;
+    case WILKINSON:
+        return diagonal ? abs(i - n / 2) : beside ? 1.0 : 0.0;
+    case CORNER:
+        return i == n - 1 && j == 0 ? 1.0 : 0.0;
+    case ARROW:
+        return diagonal || j == 0 ? any : 0.0;
+    case HUGE_ONES:
+        return DBL_MAX / (2.0 * n);
+    }
+    return 0.0;
+}
+
 static void eig__of_special_matrices_is_that_of_113_bits(mt_test *t)
 {
     static const int orders[] = {1, 2, 3, 7, 21};
-    enum { ZERO, UNIT, ONES, ANY, TRIDIAGONAL, WILKINSON, CORNER, ARROW, HUGE_ONES, KINDS };
     static double a[MOST * MOST];
     mt_random r = mt_random_seed(5);
     for (int o = 0; o < MT_COUNT(orders); o++) {
         const int n = orders[o];
-        for (int kind = 0; kind < KINDS; kind++) {
+        for (int kind = 0; kind < SPECIALS; kind++) {
             mt_test_row(t, "n = %d, kind %d", n, kind);
             for (int j = 0; j < n; j++) {
                 for (int i = 0; i < n; i++) {
                     const double any = mt_random_in(&r, -1.0, 1.0);
-                    const bool beside = i == j + 1;
-                    const double entry = kind == UNIT          ? (i == j ? 1.0 : 0.0)
-                                         : kind == ONES        ? 1.0
-                                         : kind == ANY         ? any
-                                         : kind == TRIDIAGONAL ? (i == j || beside ? any : 0.0)
-                                         : kind == WILKINSON   ? (i == j   ? abs(i - n / 2)
-                                                                  : beside ? 1.0
-                                                                           : 0.0)
-                                         : kind == CORNER ? (i == n - 1 && j == 0 ? 1.0 : 0.0)
-                                         : kind == ARROW  ? (i == j || j == 0 ? any : 0.0)
-                                         : kind == HUGE_ONES ? DBL_MAX / (2.0 * n)
-                                                             : 0.0;
-                    a[i + j * n] = i < j ? nan("") : entry;
+                    a[i + j * n] = i < j ? nan("") : entry_of((special)kind, n, i, j, any);
                 }
             }
             check_matrix(t, n, a);

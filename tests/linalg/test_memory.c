@@ -20,7 +20,7 @@ static mt_status run_eig_sym(double *a, mt_arena *mem, mt_err *err)
     enum { ORDER = MT_EIG_SMALL + 1 };
     double large[ORDER * ORDER] = {0.0};
     double w[ORDER];
-    memcpy(large, a, M * N * sizeof *a);
+    memcpy(large, a, (size_t)M * N * sizeof *a);
     return mt_eig_sym(ORDER, large, w, true, mem, err);
 }
 
