@@ -12,10 +12,10 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
+#include "bare.h"
 #include "exact.h"
 #include "exact_beam.h"
 #include "io/io.h"
-#include "linalg/eig.h"
 #include "result/result.h"
 #include "study/study.h"
 #include "timing.h"
@@ -95,7 +95,7 @@ static void run_bare(void *context, int call)
     (void)call;
     mt_arena_clear(&b->mem);
     memcpy(b->work, b->a, sizeof b->work);
-    stop("dsyevd", mt_eig_sym(ORDER, b->work, b->lambda, true, &b->mem, &err), &err);
+    stop("dsyevd", bare_dsyevd(ORDER, b->work, b->lambda, &b->mem, &err), &err);
 }
 
 /* A study of the source tree, which SOURCE_DIR names (absent: the current folder). */
