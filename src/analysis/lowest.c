@@ -4,7 +4,7 @@
  * y,
  *     M_rr r = -M_ry y,    A = M_yy - M_yr M_rr^-1 M_ry,    A y = y / lambda.
  */
-#include "analysis/lowest.h"
+#include "analysis/lowest_priv.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,24 +33,12 @@ double mt_lowest_bodies(const mt_model *model, int configuration)
 /* What the search for modes consists of, where the progress is told. */
 static const char ITERATIONS[] = "iterations";
 
-typedef struct mt_lowest_operation {
-    const mt_tree *tree;
-    bool told;     /* where the progress is */
-    double *v;     /* motion of all bodies */
-    double *f;     /* work */
-    double *r;     /* [n_rigid] */
-    double *along; /* [n_rigid] what follows a motion x */
-    double *left;  /* [n_rigid] work */
-    double *m_yr;  /* n_x x n_rigid */
-    double *m_rr;  /* its Cholesky factor */
-    mt_arena *scratch;
-} operation;
+typedef struct mt_lowest_operation operation;
 
 /* What follows a motion is solved for, and what that leaves once more. */
 enum { SOLUTIONS = 2 };
 
-/* r[n_rigid] := M_rr^-1 r. */
-static void solve_free(const operation *o)
+void mt_lowest_solve_free(const operation *o)
 {
     mt_tri_solve(false, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
     mt_tri_solve(true, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
@@ -65,7 +53,7 @@ static mt_status apply(void *context, const double *x, double *y, mt_err *err)
     mt_tree_motion(t, x, NULL, o->v);
     mt_tree_momentum(t, o->v, o->f, y, o->r);
     if (t->n_rigid > 0) {
-        solve_free(o);
+        mt_lowest_solve_free(o);
         mt_gemv(false, t->n_x, t->n_rigid, -1.0, o->m_yr, t->n_x, o->r, 1.0, y);
     }
     return MT_OK;
@@ -82,7 +70,7 @@ static void follow(const operation *o, const double *x, double *y, double *open)
         mt_tree_motion(t, x, o->along, o->v);
         mt_tree_momentum(t, o->v, o->f, y, o->r);
         memcpy(o->left, o->r, (size_t)n * sizeof *o->left);
-        solve_free(o);
+        mt_lowest_solve_free(o);
         mt_axpy(n, step < SOLUTIONS ? -1.0 : 0.0, o->r, o->along);
     }
     *open = mt_dot(n, o->left, o->r);

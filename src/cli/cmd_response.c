@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "cli/response.h"
 #include "cli/vibrated.h"
 
@@ -13,6 +14,15 @@ static const double PER_CENT = 0.01;
 /* The range that is looked at by default, in parts of its vibration modes' frequencies. */
 static const double BELOW_FIRST = 0.25;
 static const double ABOVE_LAST = 2.0;
+/* How many modes of a large mechanism are found at first, and at most, and how far they have to
+ * go above the range. */
+enum { WHY_SIZE = MT_LOWEST_WHY + 100 };
+enum { FIRST_MODES = 24, MOST_MODES = 400 };
+static const double ABOVE_RANGE = 2.0;
+/* Where those that are left out have a damping ratio, which nothing but modes shows in full:
+ * how far above, in how many modes at most. */
+enum { MOST_WITH_RATIO = 100 };
+static const double ABOVE_WITH_RATIO = 20.0;
 
 /* One configuration at work. */
 typedef struct job {
@@ -20,7 +30,9 @@ typedef struct job {
     const mt_vibration *profile; /* --vibration; NULL */
     mt_subject *s;
     int c;
-    mt_analysis *a;
+    mt_analysis *a; /* NULL: of the lowest modes */
+    mt_lowest *l;   /* NULL: of all of them */
+    const mt_modes *modes;
     mt_response_request request;
     mt_response r;
     mt_profiled profiled;
@@ -41,8 +53,8 @@ static mt_response_request request_of(const mt_args *args)
 /* `part` of the frequency of vibration mode `index` [Hz]; NaN where there is none. */
 static double by_mode(const job *j, int index, double part)
 {
-    const int at = mt_modal_flexible(&j->a->modes, index);
-    return at < 0 ? nan("") : part * mt_modal_hz(&j->a->modes, at);
+    const int at = mt_modal_flexible(j->modes, index);
+    return at < 0 ? nan("") : part * mt_modal_hz(j->modes, at);
 }
 
 /* An end of the range: of its option, or the default [Hz]. */
@@ -67,7 +79,7 @@ static mt_status range_end(job *j, int option, double hz, double *w, mt_err *err
 
 static mt_status choose_range(job *j, mt_err *err)
 {
-    const int count = mt_modal_vibrations(&j->a->modes);
+    const int count = mt_modal_vibrations(j->modes);
     const int last = count < DEFAULT_MODES ? count : DEFAULT_MODES;
     mt_curve_options *const opt = &j->v.opt;
     *opt = (mt_curve_options){.points = j->args->points > 0 ? j->args->points : DEFAULT_POINTS,
@@ -207,23 +219,112 @@ static mt_status shake(job *j, mt_err *err)
     return MT_OK;
 }
 
-static mt_status open_response(job *j, mt_err *err)
+static mt_status request_ports(job *j, const mt_system *sys, mt_err *err)
 {
     j->request = request_of(j->args);
-    if (j->profile != NULL) {
-        MT_TRY(mt_profiled_ports(j->profile, j->a->sys, &j->s->mem, &j->request, err));
+    return j->profile == NULL
+               ? MT_OK
+               : mt_profiled_ports(j->profile, sys, &j->s->mem, &j->request, err);
+}
+
+static mt_status open_response(job *j, const char *why, mt_err *err)
+{
+    MT_TRY(mt_subject_admit_dense(j->s, j->c, why, err));
+    MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
+    j->modes = &j->a->modes;
+    MT_TRY(request_ports(j, j->a->sys, err));
+    MT_TRY(mt_response_open(j->a, &j->request, &j->r, err));
+    MT_TRY(mt_response_admit(&j->r, err));
+    MT_TRY(shake(j, err));
+    return choose_range(j, err);
+}
+
+/* Whether the lowest modes may do. */
+static bool may_be_large(const job *j, char *why)
+{
+    static const int WHOLE[] = {MT_OPT_DIRECT, MT_OPT_POLES, MT_OPT_SENSITIVITY, MT_OPT_KEEP};
+    for (int i = 0; i < MT_COUNT(WHOLE); i++) {
+        if (j->args->given[WHOLE[i]]) {
+            (void)mt_snprintf(why, WHY_SIZE, "--%s needs all modes", mt_options[WHOLE[i]].name);
+            return false;
+        }
     }
-    return mt_response_open(j->a, &j->request, &j->r, err);
+    return mt_lowest_bodies(j->s->model, j->c) >= MT_LOWEST_BODIES;
+}
+
+/* By the lowest `count` modes; *enough: they go so far above the range that what is left out is
+ * known to hardly more than rounding. */
+static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why, mt_err *err)
+{
+    const mt_lowest_want want = {.count = count, .shapes = true};
+    mt_lowest_delete(j->l);
+    j->l = NULL;
+    MT_TRY(mt_lowest_new(j->s->model, j->c, j->s->n_inputs, j->s->inputs, j->s->at, want, &j->l,
+                         err));
+    *is = j->l->way == MT_LOWEST_TREE;
+    *enough = true;
+    if (!*is) {
+        (void)mt_snprintf(why, WHY_SIZE, "a response by its lowest modes needs a tree: %s",
+                          j->l->why[0] != '\0' ? j->l->why : "it has loops");
+        return MT_OK;
+    }
+    j->modes = &j->l->found.modes;
+    MT_TRY(request_ports(j, j->l->sys, err));
+    MT_TRY(choose_range(j, err));
+    const bool ratio = j->l->sys->damping.ratio != MT_NO_NODE && 2 * count <= MOST_WITH_RATIO;
+    const double above = (ratio ? ABOVE_WITH_RATIO : ABOVE_RANGE) * j->v.opt.to;
+    *enough = j->l->found.tau >= above * above || j->l->found.below == j->modes->all;
+    if (!*enough) {
+        return MT_OK;
+    }
+    mt_response_free(&j->r);
+    char own[MT_LARGE_WHY] = "";
+    MT_TRY(mt_response_open_large(j->l, &j->request, j->v.opt.to, &j->r, is, own, err));
+    if (!*is) {
+        (void)mt_snprintf(why, WHY_SIZE, "a response by its lowest modes: %s", own);
+    }
+    return MT_OK;
+}
+
+/* *is false: all modes have to be found. */
+static mt_status open_large(job *j, bool *is, char *why, mt_err *err)
+{
+    bool enough = false;
+    *is = may_be_large(j, why);
+    for (int count = FIRST_MODES; *is && !enough; count *= 2) {
+        *is = count <= MOST_MODES;
+        if (*is) {
+            MT_TRY(try_large(j, count, is, &enough, why, err));
+        } else {
+            (void)mt_snprintf(why, WHY_SIZE,
+                              "a response so far up needs more than its %d lowest modes",
+                              count / 2);
+        }
+    }
+    if (!*is) {
+        return MT_OK;
+    }
+    MT_TRY(mt_response_admit(&j->r, err));
+    return shake(j, err);
+}
+
+static mt_status open_either(job *j, mt_err *err)
+{
+    char why[WHY_SIZE] = "a response needs all modes";
+    bool is = false;
+    MT_TRY(open_large(j, &is, why, err));
+    if (is) {
+        return MT_OK;
+    }
+    mt_response_free(&j->r);
+    mt_lowest_delete(j->l);
+    j->l = NULL;
+    return open_response(j, why, err);
 }
 
 static mt_status run(job *j, mt_err *err)
 {
-    MT_TRY(mt_subject_admit_dense(j->s, j->c, "a response needs all modes", err));
-    MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
-    mt_status rc = open_response(j, err);
-    rc = rc == MT_OK ? mt_response_admit(&j->r, err) : rc;
-    rc = rc == MT_OK ? shake(j, err) : rc;
-    rc = rc == MT_OK ? choose_range(j, err) : rc;
+    mt_status rc = open_either(j, err);
     rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;
     rc = rc == MT_OK ? poles(j, err) : rc;
     rc = rc == MT_OK ? sensitivities(j, err) : rc;
@@ -269,6 +370,7 @@ static int one(sink *to, mt_subject *s, int c)
     }
     mt_response_free(&j.r);
     mt_analysis_delete(j.a);
+    mt_lowest_delete(j.l);
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
 }
 

@@ -160,15 +160,18 @@ static void print_method(const mt_response_view *v, mt_text *out)
     const mt_basis *const b = &v->r->basis;
     if (v->direct) {
         mt_text_add(out, "  Directly: a factor of the dynamic stiffness at every frequency.");
+    } else if (v->r->a == NULL) {
+        mt_text_addf(out, "  By the %d lowest of %d modes and %d shapes of the others%s.",
+                     v->r->modes->count, v->r->modes->all, v->r->shapes,
+                     b->t.diagonal ? "" : ", coupled by their damping");
     } else {
         mt_text_addf(out, "  By %d of %d modes%s.", b->n_modes, b->n_modes + b->n_left,
                      b->t.diagonal ? "" : ", coupled by their damping");
     }
     mt_text_addf(
-        out,
-        " %d frequencies, %d of them of the grid; rounding is below %.0e of a value on "
-        "average.\n",
-        v->curve->n, v->opt.points, mean_error(v));
+        out, " %d frequencies, %d of them of the grid; %s below %.0e of a value on average.\n",
+        v->curve->n, v->opt.points,
+        v->r->a == NULL ? "rounding and what is left out are" : "rounding is", mean_error(v));
     if (!v->direct && b->n_left > 0) {
         mt_text_addf(out,
                      "  %d modes from %.5g Hz on follow statically: near and above that the "
@@ -344,8 +347,13 @@ void mt_response_json(const mt_response_view *v, mt_json_writer *w)
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", v->configuration);
     mt_json_put_string(w, "method", v->direct ? "direct" : "modes");
-    mt_json_put_integer(w, "modes", b->n_modes);
-    mt_json_put_integer(w, "modes_left_out", b->n_left);
+    const bool lowest = v->r->a == NULL;
+    mt_json_put_integer(w, "modes", lowest ? v->r->modes->count : b->n_modes);
+    mt_json_put_integer(w, "modes_left_out",
+                        lowest ? v->r->modes->all - v->r->modes->count : b->n_left);
+    if (lowest) {
+        mt_json_put_integer(w, "shapes_of_others", v->r->shapes);
+    }
     mt_json_put_bool(w, "coupled", !b->t.diagonal);
     mt_json_put_bool(w, "complete", v->curve->complete);
     if (v->profiled != NULL) {

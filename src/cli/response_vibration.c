@@ -75,7 +75,7 @@ static void print_tones(const mt_response_view *v, mt_text *out)
 /* The vibration mode whose pole this is: the one with the nearest frequency; 0: none. */
 static int mode_of(const mt_response_view *v, double complex pole)
 {
-    const mt_modes *const modes = &v->r->a->modes;
+    const mt_modes *const modes = v->r->modes;
     const double hz = cabs(pole) / TWO_PI;
     int best = 0;
     double least = HUGE_VAL;
@@ -98,7 +98,7 @@ static void print_end(const mt_response_view *v, int pair, int *said, mt_text *o
     const double complex pole = v->profiled->poles[a->pole];
     const int mode = mode_of(v, pole);
     const char *const name =
-        mode > 0 ? mt_mode_name(v->s, v->r->a->sys->configuration, mode) : NULL;
+        mode > 0 ? mt_mode_name(v->s, v->r->sys->configuration, mode) : NULL;
     *said = a->pole;
     mt_text_addf(out, "  Vibration mode %d%s%s%s, %.6g Hz, ", mode, name == NULL ? "" : " \"",
                  name == NULL ? "" : name, name == NULL ? "" : "\"", cabs(pole) / TWO_PI);

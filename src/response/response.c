@@ -2,6 +2,7 @@
 #include "response/response.h"
 
 #include "modal/growth.h"
+#include "response/large.h"
 #include "response/slopes_weighted.h"
 
 void mt_response_free(mt_response *r)
@@ -12,7 +13,7 @@ void mt_response_free(mt_response *r)
 
 static mt_status read_ports(mt_response *r, const mt_response_request *q, mt_err *err)
 {
-    const mt_system *const sys = r->a->sys;
+    const mt_system *const sys = r->sys;
     r->ports.n_in = q->n_in;
     r->ports.n_out = q->n_out > 0 ? q->n_out : sys->n_channels;
     r->ports.in = mt_arena_alloc(&r->mem, (size_t)r->ports.n_in, sizeof *r->ports.in);
@@ -45,21 +46,48 @@ static mt_status find_growing(mt_response *r, mt_err *err)
     return MT_OK;
 }
 
+/* All that follows from the matrices. */
+static mt_status finish(mt_response *out, const mt_basis_problem *problem, bool direct,
+                        mt_err *err)
+{
+    MT_TRY(mt_basis_make(problem, &out->mem, &out->basis, err));
+    MT_TRY(mt_response_pole_list(&out->basis, &out->mem, &out->n_poles, &out->poles, err));
+    MT_TRY(find_growing(out, err));
+    MT_TRY(mt_transfer_direct(&out->f, &out->mem, &out->direct, err));
+    out->chosen = direct ? &out->direct : &out->basis.t;
+    return MT_OK;
+}
+
 mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
                            mt_err *err)
 {
-    *out = (mt_response){.a = a};
+    *out = (mt_response){.a = a, .sys = a->sys, .modes = &a->modes};
     MT_TRY(mt_arena_init(&out->mem, 0, err));
     MT_TRY(read_ports(out, request, err));
     MT_TRY(mt_response_problem(a, &out->ports, &out->mem, &out->f, &out->ways, err));
     const mt_basis_problem problem = {
         .f = &out->f, .mass = &a->mass, .modes = &a->modes, .keep = request->modes};
-    MT_TRY(mt_basis_make(&problem, &out->mem, &out->basis, err));
-    MT_TRY(mt_response_pole_list(&out->basis, &out->mem, &out->n_poles, &out->poles, err));
-    MT_TRY(find_growing(out, err));
-    MT_TRY(mt_transfer_direct(&out->f, &out->mem, &out->direct, err));
-    out->chosen = request->direct ? &out->direct : &out->basis.t;
-    return MT_OK;
+    return finish(out, &problem, request->direct, err);
+}
+
+mt_status mt_response_open_large(mt_lowest *l, const mt_response_request *request, double to,
+                                 mt_response *out, bool *is, char why[MT_LARGE_WHY],
+                                 mt_err *err)
+{
+    mt_large large;
+    *out = (mt_response){.sys = l->sys, .modes = &l->found.modes};
+    MT_TRY(mt_arena_init(&out->mem, 0, err));
+    MT_TRY(read_ports(out, request, err));
+    MT_TRY(mt_large_make(l, &out->ports, to, &out->mem, &large, is, why, err));
+    if (!*is) {
+        return MT_OK;
+    }
+    out->f = large.f;
+    out->shapes = large.shapes;
+    const mt_mass_factor mass = {.n = large.f.n, .rank = large.f.n};
+    const mt_basis_problem problem = {.f = &out->f, .mass = &mass, .modes = &large.modes};
+    MT_TRY(finish(out, &problem, false, err));
+    return mt_large_left(&large, &out->basis, &out->mem, err);
 }
 
 mt_status mt_response_admit(const mt_response *r, mt_err *err)
@@ -81,7 +109,7 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
     mt_curve_options own = *opt;
     own.n_poles = r->n_poles;
     own.poles = r->poles;
-    own.interrupt = r->a->sys->model->interrupt;
+    own.interrupt = r->sys->model->interrupt;
     return mt_curve_trace(r->chosen, &own, &r->mem, out, err);
 }
 

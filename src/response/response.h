@@ -2,6 +2,7 @@
 #ifndef RESPONSE_RESPONSE_H
 #define RESPONSE_RESPONSE_H
 
+#include "analysis/lowest_forced.h"
 #include "response/curve.h"
 #include "response/poles.h"
 #include "response/problem.h"
@@ -21,7 +22,10 @@ typedef struct mt_response_request {
 } mt_response_request;
 
 typedef struct mt_response {
-    mt_analysis *a; /* not owned */
+    mt_analysis *a; /* not owned; NULL: of a large tree (large.h), without derivatives */
+    const mt_system *sys;
+    const mt_modes *modes; /* those of a large tree that are wanted, the others left out */
+    int shapes;            /* of a large tree: beside its modes */
     mt_arena mem;
     mt_port_set ports;
     mt_forced f;
@@ -38,6 +42,17 @@ typedef struct mt_response {
  * outputs), as mt_response_problem, mt_basis_make, mt_response_pole_list. */
 mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, mt_response *out,
                            mt_err *err);
+enum { MT_LARGE_WHY = 200 };
+/**
+ * The same of a large tree by its lowest modes (and so many shapes of what is left that it is
+ * as good as all of them), after mt_lowest_new with shapes, and until that is deleted; the
+ * errors hold what is left out. Up to `to` [rad/s], which the modes have to be well above of.
+ * @param[out] why  the reason where *is false
+ * Fails as mt_response_open, MT_E_INTERRUPTED, MT_E_DOMAIN.
+ */
+mt_status mt_response_open_large(mt_lowest *l, const mt_response_request *request, double to,
+                                 mt_response *out, bool *is, char why[MT_LARGE_WHY],
+                                 mt_err *err);
 /* Succeeds where there is a stationary response. Fails: MT_E_EQUILIBRIUM, with the pole that
  * grows. */
 mt_status mt_response_admit(const mt_response *r, mt_err *err);

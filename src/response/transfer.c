@@ -314,6 +314,64 @@ static double error_of(const work *k, ptrdiff_t o, ptrdiff_t i)
     return (ROUNDINGS * DBL_EPSILON * sum) + (left * right);
 }
 
+/* |A^p g| m^p, or |g| where whole, of a force and of what damps along its motion x. */
+static double left_of(const work *k, const mt_left_part *own, double power,
+                      const double complex *x, double m, bool whole)
+{
+    const mt_left_out *const l = k->t->left;
+    const ptrdiff_t n = k->t->n;
+    double sum = pow(k->w, power) * (whole ? own->size : own->open * pow(m, own->order));
+    for (ptrdiff_t d = 0; d < l->n_side; d++) {
+        double complex motion = 0.0;
+        for (ptrdiff_t j = 0; j < n; j++) {
+            motion += l->row[j + (d * n)] * x[j];
+        }
+        const double force = hypot(l->structural[d], k->w * l->damping[d]) * cabs(motion);
+        const mt_left_part *const s = &l->side[d];
+        sum += force * (whole ? s->size : s->open * pow(m, s->order));
+    }
+    return sum;
+}
+
+/* The rounding of one force, which x meets. */
+static double noise_of(const work *k, const mt_left_part *own, double power,
+                       const double complex *x)
+{
+    double sum = 0.0;
+    for (ptrdiff_t j = 0; j < k->t->n; j++) {
+        const double root = k->t->left->root[j];
+        sum += cabs(x[j]) * (root > 0.0 ? own->noise * root : own->loose);
+    }
+    return pow(k->w, power) * sum;
+}
+
+/* What is left out may be worth so much. */
+static double left_error(const work *k, ptrdiff_t o, ptrdiff_t i)
+{
+    const mt_left_out *const l = k->t->left;
+    if (l == NULL) {
+        return 0.0;
+    }
+    const double complex *const a = k->a + (o * k->t->n);
+    const double complex *const x = k->q + (i * k->t->n);
+    const double m = k->w * hypot(k->w, l->alpha);
+    const double q = 1.0 - (m / l->lambda);
+    if (!(q > 0.0)) {
+        return HUGE_VAL;
+    }
+    const double turn =
+        1.0 + (((k->w * l->beta) + l->loss + (k->w * l->alpha / l->lambda)) / q);
+    double sum =
+        noise_of(k, &l->in[i], l->in_power[i], a) + noise_of(k, &l->out[o], l->out_power[o], x);
+    for (int whole = 0; whole < (l->ratio > 0.0 ? 2 : 1); whole++) {
+        const double factor =
+            whole == 0 ? turn * turn / q : 4.0 * l->ratio * k->w / sqrt(l->lambda) / (q * q);
+        sum += factor * left_of(k, &l->in[i], l->in_power[i], x, m, whole == 1) *
+               left_of(k, &l->out[o], l->out_power[o], a, m, whole == 1);
+    }
+    return sum;
+}
+
 static void fill_errors(const work *k, const mt_sample *out)
 {
     const ptrdiff_t n_out = k->t->n_out;
@@ -326,7 +384,8 @@ static void fill_errors(const work *k, const mt_sample *out)
                             pow(k->w, (double)(p + MT_REST_LOWEST));
                 }
             }
-            out->error[o + (i * n_out)] = error_of(k, o, i) + (ROUNDINGS * DBL_EPSILON * rest);
+            out->error[o + (i * n_out)] =
+                error_of(k, o, i) + left_error(k, o, i) + (ROUNDINGS * DBL_EPSILON * rest);
         }
     }
 }

@@ -17,6 +17,40 @@
  */
 enum { MT_REST_LOWEST = -2, MT_REST_HIGHEST = 4, MT_REST_POWERS = 7 };
 
+/* A force or a motion that a reduced problem has in few coordinates: the rest of it, g, is of
+ * modes above `lambda` (mt_left_out), in which K is the identity and M is A. */
+typedef struct mt_left_part {
+    int order;    /* p: (A^j g, j < p) are among the coordinates */
+    double size;  /* |g| */
+    double open;  /* |A^p g| [s^2p] */
+    double noise; /* rounding of what the modes have of it, in coordinates where K is 1 */
+    double loose; /* of what its rigid-body modes have */
+} mt_left_part;
+
+/* What a reduced problem leaves out. Of forces f and outputs s, with m = w sqrt(w^2 + a^2) and
+ * q = 1 - m/lambda, Galerkin's error of H is at most
+ *     c |A^p f| |A^r s| m^(p + r) / q,
+ * c from how damping turns D; damping ratios of what is left out, which coordinates show as
+ * those of other modes, are worth at most 4 zeta (w / sqrt(lambda)) |f| |s| / q^2. What damps
+ * locally is a force there, too. */
+typedef struct mt_left_out {
+    double lambda; /* [rad^2/s^2] */
+    double alpha;  /* damping by mass [1/s] */
+    double beta;   /* by stiffness [s] */
+    double loss;   /* of all springs */
+    double ratio;
+    const mt_left_part *in;  /* [n_in] */
+    const mt_left_part *out; /* [n_out] */
+    int n_side;
+    const mt_left_part *side; /* [n_side] */
+    const double *row;        /* n x n_side: motion along each, by coordinate */
+    const double *damping;    /* [n_side] */
+    const double *structural; /* [n_side] */
+    const double *root;       /* [n] of K's diagonal; 0: of a rigid-body mode */
+    const double *in_power;   /* [n_in] of w */
+    const double *out_power;  /* [n_out] */
+} mt_left_out;
+
 typedef struct mt_transfer {
     int n;
     int n_in;
@@ -28,6 +62,7 @@ typedef struct mt_transfer {
     /* [n] bounds of the errors of the eigenvalues that coordinates are modes of [rad^2/s^2];
      * NULL: those of rounding entries of D */
     const double *error;
+    const mt_left_out *left;                       /* NULL: nothing */
     const double complex *beta[MT_FORCED_POWERS];  /* n x n_in; NULL: 0 */
     const double complex *sigma[MT_FORCED_POWERS]; /* n_out x n; NULL: 0 */
     bool real[MT_FORCED_POWERS];                   /* sigma[p] has no imaginary part */

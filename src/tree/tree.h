@@ -76,6 +76,12 @@ mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem,
 void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *v);
 /* x[n_x], r[n_rigid] (may be NULL) := T^T M_bodies v; f[s n] is work. */
 void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, double *r);
+/* The same of forces on the bodies: x, r := T^T f; f[s n] is overwritten. */
+void mt_tree_gather(const mt_tree *t, double *f, double *x, double *r);
+/* f[s n] := forces of the bodies, of those on states, force[nq]; v[s n] := the motion of all
+ * bodies by 1 along a global axis. */
+void mt_tree_push(const mt_tree *t, const double *force, double *f);
+void mt_tree_shift(const mt_tree *t, int axis, double *v);
 /* w[s n] := what each body does beyond moving along with the one before it: N (F y + R r). v
  * from mt_tree_motion of the same (x, r). */
 void mt_tree_within(const mt_tree *t, const double *x, const double *r, const double *v,

@@ -124,6 +124,34 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
     }
 }
 
+/* Of the force on body i and all beyond it: entries of x and r (NULL), and what it hands to the
+ * body before. */
+static inline void hand_back(const mt_tree *t, int i, double *f, double *x, double *r)
+{
+    const int s = t->s;
+    const int p = t->before[i];
+    double *const own = f + ((ptrdiff_t)s * i);
+    double *const other = p < 0 ? NULL : f + ((ptrdiff_t)s * p);
+    const double *b = mt_tree_basis(t, i);
+    for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, b += s) {
+        x[c] = 0.0;
+        for (int k = 0; k < s; k++) {
+            x[c] += b[k] * own[k];
+        }
+    }
+    for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && r != NULL; c++, b += s) {
+        r[c] = 0.0;
+        for (int k = 0; k < s; k++) {
+            r[c] += b[k] * own[k];
+        }
+    }
+    if (p >= 0 && t->carried != NULL) {
+        add_product(s, t->carried + ((ptrdiff_t)s * s * i), true, own, other);
+    } else if (p >= 0) {
+        mt_tree_carry_back(t, i, own, other);
+    }
+}
+
 void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, double *r)
 {
     const int s = t->s;
@@ -134,28 +162,39 @@ void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, d
         const int p = t->before[i];
         double *const own = f + ((ptrdiff_t)s * i);
         double *const other = p < 0 ? NULL : f + ((ptrdiff_t)s * p);
-        const double *b = mt_tree_basis(t, i);
         add_product(s, t->mass + (square * i), false, v + ((ptrdiff_t)s * i), own);
         if (t->shared != NULL && p >= 0) {
             add_product(s, t->shared + (square * i), true, v + ((ptrdiff_t)s * p), own);
             add_product(s, t->shared + (square * i), false, v + ((ptrdiff_t)s * i), other);
         }
-        for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, b += s) {
-            x[c] = 0.0;
-            for (int k = 0; k < s; k++) {
-                x[c] += b[k] * own[k];
-            }
+        hand_back(t, i, f, x, rigid ? r : NULL);
+    }
+}
+
+void mt_tree_gather(const mt_tree *t, double *f, double *x, double *r)
+{
+    for (int i = t->n - 1; i >= 0; i--) {
+        hand_back(t, i, f, x, t->n_rigid > 0 ? r : NULL);
+    }
+}
+
+void mt_tree_push(const mt_tree *t, const double *force, double *f)
+{
+    memset(f, 0, (size_t)t->n * (size_t)t->s * sizeof *f);
+    for (int i = 0; i < t->n; i++) {
+        const int *const dof = t->sys->bodies[t->body[i]].dof;
+        for (int k = 0; k < t->s; k++) {
+            const int q = dof[mt_tree_freedom(t, k)];
+            f[k + ((ptrdiff_t)t->s * i)] = q >= 0 ? force[q] : 0.0;
         }
-        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && rigid; c++, b += s) {
-            r[c] = 0.0;
-            for (int k = 0; k < s; k++) {
-                r[c] += b[k] * own[k];
-            }
-        }
-        if (p >= 0 && t->carried != NULL) {
-            add_product(s, t->carried + (square * i), true, own, other);
-        } else if (p >= 0) {
-            mt_tree_carry_back(t, i, own, other);
+    }
+}
+
+void mt_tree_shift(const mt_tree *t, int axis, double *v)
+{
+    for (int i = 0; i < t->n; i++) {
+        for (int k = 0; k < t->s; k++) {
+            v[k + ((ptrdiff_t)t->s * i)] = mt_tree_freedom(t, k) == axis ? 1.0 : 0.0;
         }
     }
 }

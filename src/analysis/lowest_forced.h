@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ANALYSIS_LOWEST_FORCED_H
+#define ANALYSIS_LOWEST_FORCED_H
+
+#include "analysis/lowest.h"
+
+/*
+ * Forces and motions of a large tree, where the way was MT_LOWEST_TREE, in the coordinates of
+ * its modes' search: x and the amplitudes a of its rigid-body modes, in which
+ *     K = diag(I, 0),    M = diag(A, I).
+ * O(bodies) each.
+ */
+int mt_lowest_coordinates(const mt_lowest *l); /* of x */
+int mt_lowest_free(const mt_lowest *l);        /* of a */
+/* x[] and a[] := what the force[nq] on all states does there. Returns the size of x before what
+ * the rigid-body modes follow is taken off it, in which its rounding is measured. */
+double mt_lowest_force(const mt_lowest *l, const double *force, double *x, double *a);
+/* The same of M times the motion of all bodies by 1 along a global axis. */
+double mt_lowest_base(const mt_lowest *l, int axis, double *x, double *a);
+/* y := A x. Fails: MT_E_INTERRUPTED. */
+mt_status mt_lowest_mass(const mt_lowest *l, const double *x, double *y, mt_err *err);
+
+#endif

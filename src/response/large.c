@@ -1,0 +1,447 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * With X the coordinates (x^T x = 1), of M_r = X^T A X = Z theta Z^T the problem has unit mass
+ * in columns u_j = X z_j lambda_j^(1/2), lambda_j = 1/theta_j, those of the exact modes being
+ * known better; of a force f it is lambda_j^(1/2) z_j^T X^T f. Nothing else of size n is
+ * formed: K is the identity, and rows of dampers are forces, too.
+ */
+#include "response/large_priv.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "linalg/dense.h"
+
+/* Shapes of one force, and below what part of it the next one is not worth having. */
+enum { MOST_SHAPES = 10 };
+static const double NEGLIGIBLE = 1e-9;
+/* What is left of a shape beside the others, below which it is one of them. */
+static const double DEPENDENT = 1e-8;
+
+/* Roundings of a force for each body that it goes through. */
+static const double RECURSION_ULPS = 2.0;
+
+typedef mt_large_force force;
+typedef mt_large_side side;
+typedef mt_large_work work;
+
+/* x -= columns of the first n of k->x. */
+static void clear_of(const work *k, int n, double *x)
+{
+    for (int i = 0; i < n; i++) {
+        const double *const own = k->x + ((ptrdiff_t)k->n_x * i);
+        mt_axpy(k->n_x, -mt_dot(k->n_x, own, x), own, x);
+    }
+}
+
+/* Takes x, which is overwritten, in: with its image. */
+static mt_status take(work *k, double *x, mt_err *err)
+{
+    const double was = mt_norm2(k->n_x, x);
+    double size = was;
+    for (int round = 0; round < 2 && size > 0.0; round++) {
+        clear_of(k, k->size, x);
+        size = mt_norm2(k->n_x, x);
+    }
+    if (!(size > DEPENDENT * was)) {
+        return MT_OK;
+    }
+    double *const to = k->x + ((ptrdiff_t)k->n_x * k->size);
+    for (int j = 0; j < k->n_x; j++) {
+        to[j] = x[j] / size;
+    }
+    MT_TRY(mt_lowest_mass(k->l, to, k->ax + ((ptrdiff_t)k->n_x * k->size), err));
+    k->size++;
+    return MT_OK;
+}
+
+/* The shapes of one force beside the modes. */
+static mt_status add_shapes(work *k, force *f, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(k->scratch);
+    double *const x = mt_arena_f64(k->scratch, (size_t)k->n_x, 3);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    double *const copy = x + k->n_x;
+    double *const next = copy + k->n_x;
+    const double m = k->to * hypot(k->to, k->alpha);
+    memcpy(x, f->x, (size_t)k->n_x * sizeof *x);
+    clear_of(k, k->kept, x);
+    clear_of(k, k->kept, x);
+    const double unit = RECURSION_ULPS * (1.0 + k->l->tree->depth) * DBL_EPSILON;
+    f->left = (mt_left_part){.size = mt_norm2(k->n_x, x),
+                             .open = mt_norm2(k->n_x, x),
+                             .noise = unit * f->size,
+                             .loose = unit * mt_norm2(k->free, f->a)};
+    while (f->left.order < MOST_SHAPES &&
+           pow(m, f->left.order) * f->left.open > NEGLIGIBLE * f->size) {
+        memcpy(copy, x, (size_t)k->n_x * sizeof *copy);
+        MT_TRY(take(k, copy, err));
+        MT_TRY(mt_lowest_mass(k->l, x, next, err));
+        memcpy(x, next, (size_t)k->n_x * sizeof *x);
+        clear_of(k, k->kept, x);
+        f->left.open = mt_norm2(k->n_x, x);
+        f->left.order++;
+    }
+    mt_arena_rewind(k->scratch, mark);
+    return MT_OK;
+}
+
+/* All modes below the first that is left out, which lies above *lambda. */
+static bool keep_modes(work *k, double *lambda)
+{
+    const mt_lowest_modes *const found = &k->l->found;
+    const mt_modes *const m = &found->modes;
+    for (int i = m->n_rigid; i < m->count; i++) {
+        if (m->kind[i] != MT_MODE_FLEXIBLE) {
+            return mt_large_refuse(k, "a motion without stiffness moves more than the tree");
+        }
+    }
+    k->kept = m->count - k->free;
+    *lambda = k->kept == k->n_x         ? HUGE_VAL
+              : found->below > m->count ? m->lambda[m->count - 1]
+                                        : found->tau;
+    return k->kept > 0 ? true : mt_large_refuse(k, "it has no vibration modes");
+}
+
+static mt_status make_basis(work *k, mt_err *err)
+{
+    const int forces = k->ports->n_in + k->ports->n_out + k->n_sides;
+    const size_t n_x = (size_t)k->n_x;
+    k->most = k->kept + (forces * MOST_SHAPES);
+    k->x = mt_arena_f64(k->scratch, n_x, (size_t)k->most);
+    k->ax = mt_arena_f64(k->scratch, n_x, (size_t)k->most);
+    double *const copy = mt_arena_f64(k->scratch, n_x, 1);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    for (int i = 0; i < k->kept; i++) {
+        memcpy(copy, k->l->found.x + (n_x * (size_t)i), n_x * sizeof *copy);
+        MT_TRY(take(k, copy, err));
+    }
+    for (int i = 0; i < k->ports->n_in; i++) {
+        MT_TRY(add_shapes(k, &k->in[i], err));
+    }
+    for (int o = 0; o < k->ports->n_out; o++) {
+        MT_TRY(add_shapes(k, &k->outs[o], err));
+    }
+    for (int s = 0; s < k->n_sides; s++) {
+        MT_TRY(add_shapes(k, &k->sides[s].f, err));
+    }
+    return MT_OK;
+}
+
+/* f->in_all, of rigid-body modes first. */
+static mt_status reduce(const work *k, force *f, mt_err *err)
+{
+    const int n = k->size;
+    f->in_all = mt_arena_f64(k->scratch, (size_t)(k->free + n), 1);
+    double *const by = mt_arena_f64(k->scratch, (size_t)n, 1);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    memcpy(f->in_all, f->a, (size_t)k->free * sizeof *f->a);
+    mt_gemv(true, k->n_x, n, 1.0, k->x, k->n_x, f->x, 0.0, by);
+    mt_gemv(true, n, n, 1.0, k->z, n, by, 0.0, f->in_all + k->free);
+    for (int j = 0; j < n; j++) {
+        f->in_all[k->free + j] /= sqrt(k->theta[j]);
+    }
+    return MT_OK;
+}
+
+/* Modes of the few coordinates: the exact ones are known better. */
+static mt_status find_modes(work *k, bool *is, mt_err *err)
+{
+    mt_modes *const m = &k->out->modes;
+    const mt_modes *const exact = &k->l->found.modes;
+    const int n = k->free + k->size;
+    const size_t all = (size_t)n;
+    k->z = mt_arena_f64(k->scratch, (size_t)k->size, (size_t)k->size);
+    k->theta = mt_arena_f64(k->scratch, (size_t)k->size, 1);
+    *m = (mt_modes){.n = n, .all = n, .count = n, .shaped = n, .n_rigid = k->free};
+    m->lambda = mt_arena_f64(k->mem, all, 1);
+    m->error = mt_arena_f64(k->mem, all, 1);
+    m->y = mt_arena_f64(k->mem, all, all);
+    m->kind = mt_arena_alloc(k->mem, all, sizeof *m->kind);
+    m->cluster = mt_arena_int(k->mem, all);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_gemm(true, false, k->size, k->size, k->n_x, 1.0, k->x, k->n_x, k->ax, k->n_x, 0.0, k->z,
+            k->size);
+    const mt_status rc = mt_eig_graded(k->size, k->z, k->theta, k->scratch, err);
+    if (rc == MT_E_NOT_SPD) {
+        *is = mt_large_refuse(k, "sixteen digits do not resolve what its modes leave out");
+        return MT_OK;
+    }
+    MT_TRY(rc);
+    for (int i = 0; i < n; i++) {
+        const int j = i - k->free;
+        m->y[(ptrdiff_t)i * (n + 1)] = 1.0;
+        m->kind[i] = i < k->free ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
+        m->cluster[i] = i;
+        if (j >= 0) {
+            m->lambda[i] = j < k->kept ? exact->lambda[i] : 1.0 / k->theta[j];
+            m->error[i] =
+                j < k->kept ? exact->error[i] : (double)n * DBL_EPSILON * m->lambda[i];
+        }
+    }
+    return MT_OK;
+}
+
+/* f.c and f.h in the few coordinates. */
+static mt_status damp(work *k, mt_err *err)
+{
+    const mt_damping_def *const d = &k->l->sys->damping;
+    const mt_modes *const m = &k->out->modes;
+    const ptrdiff_t n = m->n;
+    double *const c = mt_arena_f64(k->mem, (size_t)n, (size_t)n);
+    double *const h = mt_arena_f64(k->mem, (size_t)n, (size_t)n);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const ptrdiff_t index = i - m->n_rigid;
+        const bool vibrates = index >= 0;
+        const double ratio =
+            !vibrates ? 0.0
+                      : mt_large_value(k, index < d->n_ratios ? d->ratios[index] : d->ratio);
+        c[i * (n + 1)] = k->alpha + (k->beta * m->lambda[i]) +
+                         (d->modal ? 2.0 * ratio * sqrt(m->lambda[i]) : 0.0);
+        h[i * (n + 1)] = k->loss * m->lambda[i];
+    }
+    for (int s = 0; s < k->n_sides; s++) {
+        const side *const own = &k->sides[s];
+        const double *const left = own->f.in_all;
+        const double *const right = k->sides[own->partner].f.in_all;
+        for (ptrdiff_t at = 0; at < n * n; at++) {
+            c[at] += own->damping * left[at % n] * right[at / n];
+            h[at] += own->structural * left[at % n] * right[at / n];
+        }
+    }
+    k->out->f.c = mt_max_abs(n * n, c) > 0.0 ? c : NULL;
+    k->out->f.h = mt_max_abs(n * n, h) > 0.0 ? h : NULL;
+    return MT_OK;
+}
+
+/* The forced problem while it is filled. */
+typedef struct filling {
+    double *b[MT_FORCED_POWERS];
+    double *s[MT_FORCED_POWERS];
+    double *d[MT_FORCED_POWERS];
+    double *e[2];
+} filling;
+
+static double *ensure(const work *k, double **m, int rows, int cols)
+{
+    if (*m == NULL) {
+        *m = mt_arena_f64(k->mem, (size_t)rows, (size_t)cols);
+    }
+    return *m;
+}
+
+/* A place in space moves along with the ground. */
+static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
+{
+    const mt_port *const out = &k->ports->out[o];
+    const mt_system *const sys = k->l->sys;
+    mt_large_sensor_row(k, out->index);
+    for (int i = 0; i < k->ports->n_in && !out->relative; i++) {
+        const mt_port *const in = &k->ports->in[i];
+        if (in->kind != MT_PORT_BASE) {
+            continue;
+        }
+        const int power = out->motion - in->motion;
+        double *const to = ensure(k, power >= 0 ? &f->d[power] : &f->e[-power - 1],
+                                  k->ports->n_out, k->ports->n_in);
+        MT_TRY(mt_arena_check(k->mem, err));
+        double sum = 0.0;
+        for (int b = 0; b < sys->n_bodies; b++) {
+            const int q = sys->bodies[b].dof[in->index];
+            sum += q >= 0 ? k->states[q] : 0.0;
+        }
+        to[o + ((ptrdiff_t)i * k->ports->n_out)] = sum;
+    }
+    return MT_OK;
+}
+
+/* The power of s that an input's force has. */
+static int power_of(const mt_port *in)
+{
+    return in->kind == MT_PORT_BASE ? 2 - in->motion : 0;
+}
+
+static mt_status fill(work *k, mt_err *err)
+{
+    const int n = k->out->modes.n;
+    const size_t bytes = (size_t)n * sizeof(double);
+    const mt_port_set *const ports = k->ports;
+    filling f = {.b = {NULL}};
+    double *const stiffness = mt_arena_f64(k->mem, (size_t)n, (size_t)n);
+    MT_TRY(mt_arena_check(k->mem, err));
+    for (ptrdiff_t i = 0; i < n; i++) {
+        stiffness[i * (n + 1)] = k->out->modes.lambda[i];
+    }
+    for (int i = 0; i < ports->n_in; i++) {
+        double *const b = ensure(k, &f.b[power_of(&ports->in[i])], n, ports->n_in);
+        MT_TRY(mt_arena_check(k->mem, err));
+        memcpy(b + ((ptrdiff_t)i * n), k->in[i].in_all, bytes);
+    }
+    for (int o = 0; o < ports->n_out; o++) {
+        double *const s = ensure(k, &f.s[ports->out[o].motion], n, ports->n_out);
+        MT_TRY(mt_arena_check(k->mem, err));
+        memcpy(s + ((ptrdiff_t)o * n), k->outs[o].in_all, bytes);
+        MT_TRY(add_ground(k, o, &f, err));
+    }
+    mt_forced *const to = &k->out->f;
+    to->n = n;
+    to->k = stiffness;
+    to->m = k->out->modes.y; /* the identity */
+    to->n_in = ports->n_in;
+    to->n_out = ports->n_out;
+    for (int p = 0; p < MT_FORCED_POWERS; p++) {
+        to->b[p] = f.b[p];
+        to->s[p] = f.s[p];
+        to->d[p] = f.d[p];
+    }
+    to->e[0] = f.e[0];
+    to->e[1] = f.e[1];
+    return MT_OK;
+}
+
+/* The greatest ratio that modes left out have. */
+static double ratio_left(const work *k)
+{
+    const mt_damping_def *const d = &k->l->sys->damping;
+    double most = d->modal ? mt_large_value(k, d->ratio) : 0.0;
+    for (int i = k->kept; d->modal && i < d->n_ratios; i++) {
+        most = fmax(most, mt_large_value(k, d->ratios[i]));
+    }
+    return most;
+}
+
+static mt_status note_left(work *k, double lambda, mt_err *err)
+{
+    const mt_port_set *const ports = k->ports;
+    const size_t n = (size_t)k->out->modes.n;
+    const size_t sides = (size_t)k->n_sides;
+    mt_left_out *const left = mt_arena_alloc(k->mem, 1, sizeof *left);
+    mt_left_part *const part = mt_arena_alloc(
+        k->mem, (size_t)ports->n_in + (size_t)ports->n_out + sides, sizeof *part);
+    double *const power = mt_arena_f64(k->mem, (size_t)ports->n_in + (size_t)ports->n_out, 1);
+    double *const row = mt_arena_f64(k->mem, n, sides);
+    double *const damping = mt_arena_f64(k->mem, sides, 2);
+    double *const root = mt_arena_f64(k->mem, n, 1);
+    MT_TRY(mt_arena_check(k->mem, err));
+    mt_left_part *const out = part + ports->n_in;
+    mt_left_part *const side_of = out + ports->n_out;
+    for (int i = 0; i < ports->n_in; i++) {
+        part[i] = k->in[i].left;
+        power[i] = power_of(&ports->in[i]);
+    }
+    for (int o = 0; o < ports->n_out; o++) {
+        out[o] = k->outs[o].left;
+        power[ports->n_in + o] = ports->out[o].motion;
+    }
+    for (size_t s = 0; s < sides; s++) {
+        const side *const own = &k->sides[s];
+        side_of[s] = k->sides[own->partner].f.left;
+        damping[s] = own->damping;
+        damping[sides + s] = own->structural;
+        memcpy(row + (s * n), own->f.in_all, n * sizeof *row);
+    }
+    for (size_t j = 0; j < n; j++) {
+        root[j] = sqrt(k->out->modes.lambda[j]);
+    }
+    *left = (mt_left_out){.lambda = lambda,
+                          .root = root,
+                          .alpha = k->alpha,
+                          .beta = k->beta,
+                          .loss = fabs(k->loss),
+                          .ratio = ratio_left(k),
+                          .in = part,
+                          .out = out,
+                          .n_side = k->n_sides,
+                          .side = side_of,
+                          .row = row,
+                          .damping = damping,
+                          .structural = damping + sides,
+                          .in_power = power,
+                          .out_power = power + ports->n_in};
+    k->out->left = left;
+    k->out->shapes = k->size - k->kept;
+    return MT_OK;
+}
+
+static mt_status reduce_all(const work *k, mt_err *err)
+{
+    for (int i = 0; i < k->ports->n_in; i++) {
+        MT_TRY(reduce(k, &k->in[i], err));
+    }
+    for (int o = 0; o < k->ports->n_out; o++) {
+        MT_TRY(reduce(k, &k->outs[o], err));
+    }
+    for (int s = 0; s < k->n_sides; s++) {
+        MT_TRY(reduce(k, &k->sides[s].f, err));
+    }
+    return MT_OK;
+}
+
+static mt_status make(work *k, bool *is, mt_err *err)
+{
+    const mt_system *const sys = k->l->sys;
+    double lambda = 0.0;
+    k->states = mt_arena_f64(k->scratch, (size_t)sys->nq, 1);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    *is = keep_modes(k, &lambda);
+    if (!*is) {
+        return MT_OK;
+    }
+    MT_TRY(mt_large_forces(k, is, err));
+    if (!*is) {
+        return MT_OK;
+    }
+    MT_TRY(make_basis(k, err));
+    MT_TRY(find_modes(k, is, err));
+    if (!*is) {
+        return MT_OK;
+    }
+    MT_TRY(reduce_all(k, err));
+    MT_TRY(damp(k, err));
+    MT_TRY(fill(k, err));
+    return note_left(k, lambda, err);
+}
+
+mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_arena *mem,
+                        mt_large *out, bool *is, char why[MT_LARGE_WHY], mt_err *err)
+{
+    mt_arena scratch;
+    *out = (mt_large){.shapes = 0};
+    *is = false;
+    why[0] = '\0';
+    if (l->way != MT_LOWEST_TREE) {
+        (void)mt_snprintf(why, MT_LARGE_WHY, "it has to be a tree that is drawn at rest");
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&scratch, 0, err));
+    work k = {.l = l,
+              .ports = ports,
+              .mem = mem,
+              .scratch = &scratch,
+              .out = out,
+              .why = why,
+              .n_x = mt_lowest_coordinates(l),
+              .free = mt_lowest_free(l),
+              .to = to};
+    const mt_status rc = make(&k, is, err);
+    mt_arena_free(&scratch);
+    return rc;
+}
+
+mt_status mt_large_left(const mt_large *large, mt_basis *basis, mt_arena *mem, mt_err *err)
+{
+    const int n = large->f.n;
+    mt_left_out *const left = mt_arena_alloc(mem, 1, sizeof *left);
+    double *const row = mt_arena_f64(mem, (size_t)n, (size_t)large->left->n_side);
+    MT_TRY(mt_arena_check(mem, err));
+    *left = *large->left;
+    mt_gemm(true, false, n, left->n_side, n, 1.0, basis->x, n, large->left->row, n, 0.0, row,
+            n);
+    left->row = row;
+    basis->t.left = left;
+    return MT_OK;
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef RESPONSE_LARGE_PRIV_H
+#define RESPONSE_LARGE_PRIV_H
+
+#include "mechanics/absolute.h"
+#include "mechanics/rows.h"
+#include "response/large.h"
+
+/* What large.c and large_forces.c share. */
+
+/* A force: what it does to the bodies, by coordinates. */
+typedef struct mt_large_force {
+    double *x;      /* [n_x] */
+    double *a;      /* [rigid-body modes] */
+    double size;    /* in which its rounding is measured */
+    double *in_all; /* [n] by the coordinates of the problem */
+    mt_left_part left;
+} mt_large_force;
+
+typedef struct mt_large_side {
+    mt_large_force f;
+    double damping;
+    double structural;
+    int partner; /* the side that it is multiplied with; itself */
+} mt_large_side;
+
+typedef struct mt_large_work {
+    mt_lowest *l;
+    const mt_port_set *ports;
+    mt_arena *mem;
+    mt_arena *scratch;
+    mt_large *out;
+    char *why;
+    mt_data d;
+    mt_placement at;
+    mt_term_list list[MT_TERM_KINDS];
+    int n_x;
+    int free;
+    int kept;  /* vibration modes */
+    int size;  /* columns of x */
+    int most;  /* room for them */
+    double *x; /* n_x x most, orthonormal */
+    double *ax;
+    double to;
+    double alpha;
+    double beta;
+    double loss; /* of all springs alike */
+    mt_large_force *in;
+    mt_large_force *outs;
+    mt_large_side *sides;
+    int n_sides;
+    double *states; /* [nq] */
+    double *theta;
+    double *z;
+} mt_large_work;
+
+/* Why there is no such way; false. */
+bool mt_large_refuse(mt_large_work *k, const char *why);
+/* Value of a number that may not be there: then 0. */
+double mt_large_value(const mt_large_work *k, mt_node node);
+/* Row of a sensor's direction, in k->states. */
+void mt_large_sensor_row(mt_large_work *k, int channel);
+/* The forces of all inputs, outputs and of what damps locally. *is false: refused. Fails:
+ * MT_E_MEMORY. */
+mt_status mt_large_forces(mt_large_work *k, bool *is, mt_err *err);
+
+#endif

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Responses of large trees by their lowest modes are those of all modes (response/test_large compares random ones), and those of a beam where there are more bodies than dense
+matrices take; what they cannot have is refused with its reason."""
+import json
+import math
+import sys
+
+from common_cli import SOURCE, CliTest, main
+
+sys.path.insert(0, str(SOURCE / "tests/support"))
+import large  # noqa: E402
+
+
+class ResponseLarge(CliTest):
+    def response(self, model, *options):
+        return json.loads(self.expect(0, "response", model, "--format", "json", *options).stdout)[0]
+
+    def both(self, model, *options):
+        """By the lowest modes, and by all of them."""
+        some = self.response(model, *options)
+        whole = self.response(model, *options, "--modes", "1000000")
+        self.assertIn("shapes_of_others", some)
+        self.assertNotIn("shapes_of_others", whole)
+        self.assertEqual(some["modes"] + some["modes_left_out"], whole["modes"])
+        return some, whole
+
+    def chain(self, damping):
+        chain = large.chain(120)
+        chain["sensors"] = [{"name": "tip", "on": "b119", "at": [1, 0], "directions": ["x", "y"]}, {"name": "middle", "on": "b60", "at": [0.5, 0], "directions": ["y"]}]
+        chain["damping"] = damping
+        return self.write("chain.json", json.dumps(chain))
+
+    def test_a_chain(self):
+        options = ("--input", "tip.y", "--output", "tip.y", "--output", "middle.y:velocity", "--from", "0.1", "--to", "60", "--points", "100")
+        some, whole = self.both(self.chain({"mass_per_s": 2}), *options)
+        for one, other in zip(some["responses"], whole["responses"]):
+            self.assertEqual([e["kind"] for e in one["extremes"]], [e["kind"] for e in other["extremes"]])
+            for a, b in zip(one["extremes"], other["extremes"]):
+                self.assertAlmostEqual(a["frequency_hz"] / b["frequency_hz"], 1.0, delta=1e-9)
+                self.assertAlmostEqual(a["magnitude"] / b["magnitude"], 1.0, delta=1e-7)
+
+    def test_under_vibration(self):
+        model = self.chain({"ratios": [0.02] * 8})
+        profile = self.write("profile.json", json.dumps({"format": "modetune-profile/1", "axis": "y", "random": {"psd_g2_per_hz": [[0.5, 0.01], [20, 0.01]]}}))
+        some, whole = self.both(model, "--vibration", profile, "--output", "tip.y:relative_displacement", "--output", "middle.y:acceleration")
+        for one, other in zip(some["responses"], whole["responses"]):
+            self.assertAlmostEqual(one["vibration"]["rms"] / other["vibration"]["rms"], 1.0, delta=1e-7)
+
+    def test_more_bodies_than_dense_matrices_take(self):
+        link = large.link(5000)
+        link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
+        link["damping"] = {"mass_per_s": 1}
+        model = self.write("link.json", json.dumps(link))
+        done = self.expect(0, "response", model, "--input", "tip.y", "--output", "tip.y")
+        self.assertRegex(done.stdout, r"By the \d+ lowest of 5000 modes and \d+ shapes of the others\. .* rounding and what is left out are below 1e-\d\d of a value")
+        whole = self.response(model, "--input", "tip.y", "--output", "tip.y")
+        # of a clamped beam of unit length, mass and stiffness: w = 1.875104^2, phi(1)^2 = 4, quality w
+        peak = whole["responses"][0]["extremes"][0]
+        self.assertAlmostEqual(peak["frequency_hz"], 1.8751040687 ** 2 / (2 * math.pi), delta=0.03)
+        self.assertAlmostEqual(peak["magnitude"], 4 / 3.516015, delta=0.02)
+
+    def test_what_needs_all_modes_says_so(self):
+        link = large.link(5000)
+        link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
+        model = self.write("link.json", json.dumps(link))
+        for options, why in ((("--poles",), "--poles needs all modes"), (("--direct",), "--direct needs all modes"), (("--modes", "5"), "--modes needs all modes"),
+                             (("--output", "spring.root"), "forces in springs, dampers and joints need all modes"),
+                             (("--to", "1e6"), "a response so far up needs more than its 384 lowest modes")):
+            done = self.expect(2, "response", model, "--input", "tip.y", *options)
+            self.assertIn("5001 bodies are too many for dense matrices", done.stderr)
+            self.assertIn(why, done.stderr)
+
+
+if __name__ == "__main__":
+    main()

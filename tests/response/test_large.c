@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Responses of random trees by a few of their modes, and shapes of the others, against those of
+ * all modes: within what both say of their errors, which is little. In the plane and in space,
+ * held and free, hanging in gravity, by forces and by the ground; each kind of damping.
+ * MT_STRESS_ROUNDS=N: N times as many.
+ */
+#include <float.h>
+#include <stdlib.h>
+
+#include "mechanics/mech.h"
+#include "response/response.h"
+#include "support/mt_random.h"
+
+enum { TEXT = 100000, ROUNDS = 64, BODIES = 50, FEW = 7, FREQUENCIES = 8, PAIRS = 2 * 4 };
+
+/* What the medians over a kind are, of the largest value of each response: far below the first
+ * of the modes that are left out. */
+static const double USUALLY_OFF = 1e-11;
+static const double USUALLY_TOLD = 1e-8;
+/* Of damping ratios of modes that are left out. */
+static const double RATIO_OFF = 1e-4;
+static const double RATIO_TOLD = 0.1;
+
+/* Motion that each output is, and what the dense way's freedoms turn from one direction into
+ * another, in roundings of the largest: that is not in its errors, which are D's alone. */
+static const int MOTION[] = {0, 2, 1, 1};
+static const double DENSE_ULPS = 2e5;
+
+typedef enum kind {
+    UNDAMPED,
+    PROPORTIONAL,
+    RATIOS,
+    RATIO,
+    DAMPERS,
+    LOSS,
+    LOSSES,
+    DAMPERS_AND_LOSSES,
+    KINDS
+} kind;
+
+typedef struct writer {
+    char *text;
+    size_t used;
+} writer;
+
+#define ADD(w, ...) \
+    ((w)->used += (size_t)snprintf((w)->text + (w)->used, TEXT - (w)->used, __VA_ARGS__))
+
+typedef struct tree {
+    mt_random g;
+    int axes;
+    bool free;
+    bool hung;
+    kind kind;
+    double at[BODIES][3];
+    int before[BODIES];
+} tree;
+
+static void add_point(writer *w, const tree *r, const double *x)
+{
+    ADD(w, "[%.17g, %.17g", x[0], x[1]);
+    if (r->axes == 3) {
+        ADD(w, ", %.17g", x[2]);
+    }
+    ADD(w, "]");
+}
+
+static void add_bodies(writer *w, tree *r)
+{
+    ADD(w, "\"bodies\": [");
+    for (int i = 0; i < BODIES; i++) {
+        r->before[i] = i == 0    ? -1
+                       : r->hung ? i - 1
+                                 : i - 1 - mt_random_int(&r->g, i < 4 ? i : 4);
+        for (int k = 0; k < 3; k++) {
+            const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
+            const double step =
+                r->hung ? (k == 1 ? -0.3 : 0.0) : mt_random_in(&r->g, -0.3, 0.3);
+            r->at[i][k] = k < r->axes ? from + step : 0.0;
+        }
+        ADD(w, "%s{ \"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i > 0 ? ", " : "", i,
+            mt_random_in(&r->g, 0.5, 2.0));
+        add_point(w, r, r->at[i]);
+        if (r->axes == 2) {
+            ADD(w, ", \"inertia_kg_m2\": %.17g }", mt_random_in(&r->g, 0.01, 0.02));
+        } else {
+            ADD(w, ", \"inertia_kg_m2\": [%.17g, 0.014, 0.013, 0, 0, 0] }",
+                mt_random_in(&r->g, 0.01, 0.016));
+        }
+    }
+    ADD(w, "], ");
+}
+
+static void add_joints(writer *w, tree *r)
+{
+    bool first = true;
+    ADD(w, "\"joints\": [");
+    for (int i = r->free ? 1 : 0; i < BODIES; i++) {
+        double middle[3] = {0.0};
+        for (int k = 0; k < 3; k++) {
+            const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
+            middle[k] = 0.5 * (from + r->at[i][k]);
+        }
+        ADD(w, "%s{ \"name\": \"j%d\", \"type\": \"revolute\", \"bodies\": [",
+            first ? "" : ", ", i);
+        if (r->before[i] < 0) {
+            ADD(w, "\"ground\"");
+        } else {
+            ADD(w, "\"b%d\"", r->before[i]);
+        }
+        ADD(w, ", \"b%d\"], \"at\": ", i);
+        add_point(w, r, middle);
+        if (r->axes == 3) {
+            ADD(w, ", \"axis\": [%.17g, %.17g, 1]", mt_random_in(&r->g, -1.0, 1.0),
+                mt_random_in(&r->g, -1.0, 1.0));
+        }
+        ADD(w, " }");
+        first = false;
+    }
+    ADD(w, "], ");
+}
+
+static void add_springs(writer *w, tree *r)
+{
+    const bool some = r->kind == LOSSES || r->kind == DAMPERS_AND_LOSSES;
+    const bool dampers = r->kind == DAMPERS || r->kind == DAMPERS_AND_LOSSES;
+    bool first = true;
+    ADD(w, "\"springs\": [");
+    for (int i = r->free ? 1 : 0; i < BODIES; i++) {
+        ADD(w,
+            "%s{ \"name\": \"s%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
+            "\"stiffness_n_m_per_rad\": %.17g",
+            first ? "" : ", ", i, i, mt_random_in(&r->g, 500.0, 5000.0));
+        if (r->kind == LOSS || (some && i % 9 == 2)) {
+            ADD(w, ", \"loss_factor\": %.17g", r->kind == LOSS ? 0.04 : 0.1);
+        }
+        ADD(w, " }");
+        first = false;
+    }
+    ADD(w, "], ");
+    first = true;
+    for (int i = 1; i < BODIES && dampers; i += 8) {
+        ADD(w,
+            "%s{ \"name\": \"d%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
+            "\"damping_n_m_s_per_rad\": %.17g }",
+            first ? "\"dampers\": [" : ", ", i, i, mt_random_in(&r->g, 1.0, 20.0));
+        first = false;
+    }
+    ADD(w, "%s", dampers ? "], " : "");
+}
+
+static void write_tree(tree *r, char *text)
+{
+    static const char *const DAMPING[KINDS] = {[PROPORTIONAL] =
+                                                   "\"mass_per_s\": 0.3, \"stiffness_s\": 1e-4",
+                                               [RATIOS] = "\"ratios\": [0.01, 0.03, 0.02]",
+                                               [RATIO] = "\"ratio\": 0.02"};
+    writer w = {.text = text};
+    ADD(&w, "{ \"format\": \"modetune-model/1\", \"name\": \"t\", \"dimension\": %d, ",
+        r->axes);
+    add_bodies(&w, r);
+    add_joints(&w, r);
+    add_springs(&w, r);
+    if (r->hung) {
+        ADD(&w, "\"gravity_m_per_s2\": [0, -9.81%s], ", r->axes == 3 ? ", 0" : "");
+    }
+    if (DAMPING[r->kind] != NULL) {
+        ADD(&w, "\"damping\": { %s }, ", DAMPING[r->kind]);
+    }
+    ADD(&w, "\"sensors\": [");
+    for (int k = 0; k < 2; k++) {
+        const int on = k == 0 ? BODIES - 1 : BODIES / 2;
+        ADD(&w, "%s{ \"name\": \"p%d\", \"on\": \"b%d\", \"at\": ", k > 0 ? ", " : "", k, on);
+        add_point(&w, r, r->at[on]);
+        ADD(&w, ", \"directions\": [\"x\", \"y\"] }");
+    }
+    ADD(&w, "], \"configurations\": { \"c\": {} } }");
+}
+
+/* Errors of a kind, of all its trees. */
+typedef struct seen {
+    int n;
+    double off[ROUNDS * FREQUENCIES * PAIRS];
+    double told[ROUNDS * FREQUENCIES * PAIRS];
+} seen;
+
+static seen plain;
+static seen by_ratio;
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median(int n, double *x)
+{
+    qsort(x, (size_t)n, sizeof *x, ascending);
+    return n == 0 ? nan("") : x[n / 2];
+}
+
+/* The largest displacement by one input, the ground's own included. */
+static double unit_of(const double complex *h, double w, int in)
+{
+    double most = in == 1 ? 1.0 / (w * w) : 0.0;
+    for (int o = 0; o < 4; o++) {
+        most = fmax(most, cabs(h[(4 * in) + o]) / pow(w, MOTION[o]));
+    }
+    return most;
+}
+
+/* n_in: what is free is not moved by the ground, and all ways have rounding then. */
+static void compare(mt_test *t, mt_response *few, mt_response *all, double to, int n_in,
+                    mt_random *g, seen *s)
+{
+    double complex h[2][FREQUENCIES][PAIRS];
+    double error[2][FREQUENCIES][PAIRS];
+    double largest[PAIRS] = {0.0};
+    double ws[FREQUENCIES];
+    mt_err err = {.text = ""};
+    for (int i = 0; i < FREQUENCIES; i++) {
+        const double w = to * mt_random_in(g, 0.02, 1.0);
+        ws[i] = w;
+        const mt_sample a = {.h = h[0][i], .error = error[0][i]};
+        const mt_sample b = {.h = h[1][i], .error = error[1][i]};
+        CHECK_INT(t, mt_transfer_at(few->chosen, w, &a, &few->mem, &err), MT_OK);
+        CHECK_INT(t, mt_transfer_at(all->chosen, w, &b, &all->mem, &err), MT_OK);
+        for (int p = 0; p < PAIRS; p++) {
+            largest[p] = fmax(largest[p], cabs(h[1][i][p]));
+        }
+    }
+    for (int at = 0; at < FREQUENCIES * 4 * n_in; at++) {
+        const int i = at / (4 * n_in);
+        const int p = at % (4 * n_in);
+        const double off = cabs(h[0][i][p] - h[1][i][p]);
+        const double size = unit_of(h[1][i], ws[i], p / 4) * pow(ws[i], MOTION[p % 4]);
+        CHECK(t, isfinite(error[0][i][p]) && off <= error[0][i][p] + error[1][i][p] +
+                                                        (DENSE_ULPS * DBL_EPSILON * size));
+        s->off[s->n] = off / largest[p];
+        s->told[s->n++] = error[0][i][p] / largest[p];
+    }
+}
+
+static void try_tree(mt_test *t, tree *r, char *text)
+{
+    static const char *const IN[] = {"p0.x", "base.y"};
+    static const char *const OUT[] = {"p0.x", "p1.y:acceleration", "p1.y:relative_velocity",
+                                      "p0.y:velocity"};
+    const mt_response_request request = {.n_in = 2, .inputs = IN, .n_out = 4, .outputs = OUT};
+    const mt_lowest_want want = {.count = FEW, .shapes = true};
+    const mt_analysis_options opt = mt_analysis_options_default();
+    char why[MT_LARGE_WHY] = "";
+    bool is = false;
+    mech m;
+    mt_lowest *l = NULL;
+    mt_response few = {.a = NULL};
+    mt_response all = {.a = NULL};
+    write_tree(r, text);
+    bool ok = mech_must(t, mech_parse(t, text), "c", "", &m) &&
+              CHECK_INT(t, mt_analysis_solve(m.a, m.at, &opt, &m.err), MT_OK) &&
+              CHECK_INT(t, mt_response_open(m.a, &request, &all, &m.err), MT_OK) &&
+              CHECK_INT(t, mt_lowest_new(m.model, 0, 0, NULL, NULL, want, &l, &m.err), MT_OK) &&
+              CHECK_INT(t, l->way, MT_LOWEST_TREE);
+    const double to = ok ? 0.5 * sqrt(l->found.tau) : nan("");
+    ok = ok &&
+         CHECK_INT(t, mt_response_open_large(l, &request, to, &few, &is, why, &m.err), MT_OK) &&
+         CHECK(t, is);
+    if (ok) {
+        compare(t, &few, &all, to, r->free ? 1 : 2, &r->g,
+                r->kind == RATIO ? &by_ratio : &plain);
+    }
+    mt_response_free(&few);
+    mt_response_free(&all);
+    mt_lowest_delete(l);
+    mech_free(&m);
+}
+
+static void large__responses_are_those_of_all_modes(mt_test *t)
+{
+    const char *const more = getenv("MT_STRESS_ROUNDS");
+    const int times = more == NULL ? 1 : atoi(more);
+    char *const text = malloc(TEXT);
+    for (int round = 0; round < times * ROUNDS && text != NULL; round++) {
+        tree r = {.g = mt_random_seed((uint64_t)round + 1), .kind = (kind)(round % KINDS)};
+        r.axes = 2 + mt_random_int(&r.g, 2);
+        r.hung = round / KINDS % 4 == 3 && r.kind != LOSS;
+        r.axes = r.hung ? 2 : r.axes;
+        r.free = !r.hung && round / KINDS % 4 == 2;
+        mt_test_row(t, "tree %d", round);
+        plain.n = round % ROUNDS == 0 ? 0 : plain.n;
+        by_ratio.n = round % ROUNDS == 0 ? 0 : by_ratio.n;
+        try_tree(t, &r, text);
+    }
+    free(text);
+    mt_test_row(t, "medians");
+    const double figures[] = {median(plain.n, plain.off), median(plain.n, plain.told),
+                              median(by_ratio.n, by_ratio.off),
+                              median(by_ratio.n, by_ratio.told)};
+    CHECK(t, figures[0] <= USUALLY_OFF);
+    CHECK(t, figures[1] <= USUALLY_TOLD);
+    CHECK(t, figures[2] <= RATIO_OFF);
+    CHECK(t, figures[3] <= RATIO_TOLD);
+}
+
+MT_TEST_MAIN(MT_TEST(large__responses_are_those_of_all_modes))
