@@ -320,7 +320,7 @@ mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
     rc = rc == MT_OK ? mt_tree_new(l->sys, at, &l->mem, &l->tree, l->why, err) : rc;
     mt_progress_end(model->progress, told);
     rc = rc == MT_OK && l->tree != NULL ? solve(l, want, err) : rc;
-    rc = rc == MT_OK && l->tree == NULL ? solve_sparse(l, want, err) : rc;
+    rc = rc == MT_OK && l->tree == NULL && !want.tree ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {
         mt_lowest_delete(l);
         return mt_err_in(err, rc, "configuration \"%s\"",

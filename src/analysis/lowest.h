@@ -13,6 +13,7 @@ enum { MT_LOWEST_WHY = MT_TREE_WHY + MT_ABSOLUTE_WHY + 100 };
 typedef struct mt_lowest_want {
     int count;   /* vibration modes, at least 1 */
     bool shapes; /* or slopes of them */
+    bool tree;   /* only as a tree */
     bool drawn;  /* only where it rests as drawn: slopes and scenes have no others */
 } mt_lowest_want;
 

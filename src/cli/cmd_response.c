@@ -256,13 +256,21 @@ static bool may_be_large(const job *j, char *why)
  * known to hardly more than rounding. */
 static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why, mt_err *err)
 {
-    const mt_lowest_want want = {.count = count, .shapes = true};
+    const mt_lowest_want want = {.count = count, .shapes = true, .tree = true};
+    mt_err own = {.code = MT_OK};
     mt_lowest_delete(j->l);
     j->l = NULL;
-    MT_TRY(mt_lowest_new(j->s->model, j->c, j->s->n_inputs, j->s->inputs, j->s->at, want, &j->l,
-                         err));
-    *is = j->l->way == MT_LOWEST_TREE;
+    const mt_status rc = mt_lowest_new(j->s->model, j->c, j->s->n_inputs, j->s->inputs,
+                                       j->s->at, want, &j->l, &own);
+    if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    *is = rc == MT_OK && j->l->way == MT_LOWEST_TREE;
     *enough = true;
+    if (rc != MT_OK) {
+        (void)mt_snprintf(why, WHY_SIZE, "its lowest modes alone: %s", own.text);
+        return MT_OK;
+    }
     if (!*is) {
         (void)mt_snprintf(why, WHY_SIZE, "a response by its lowest modes needs a tree: %s",
                           j->l->why[0] != '\0' ? j->l->why : "it has loops");
@@ -278,10 +286,10 @@ static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why,
         return MT_OK;
     }
     mt_response_free(&j->r);
-    char own[MT_LARGE_WHY] = "";
-    MT_TRY(mt_response_open_large(j->l, &j->request, j->v.opt.to, &j->r, is, own, err));
+    char what[MT_LARGE_WHY] = "";
+    MT_TRY(mt_response_open_large(j->l, &j->request, j->v.opt.to, &j->r, is, what, err));
     if (!*is) {
-        (void)mt_snprintf(why, WHY_SIZE, "a response by its lowest modes: %s", own);
+        (void)mt_snprintf(why, WHY_SIZE, "a response by its lowest modes: %s", what);
     }
     return MT_OK;
 }

@@ -223,6 +223,7 @@ typedef struct filling {
     double *b[MT_FORCED_POWERS];
     double *s[MT_FORCED_POWERS];
     double *d[MT_FORCED_POWERS];
+    double *s_im;
     double *e[2];
 } filling;
 
@@ -282,10 +283,17 @@ static mt_status fill(work *k, mt_err *err)
         memcpy(b + ((ptrdiff_t)i * n), k->in[i].in_all, bytes);
     }
     for (int o = 0; o < ports->n_out; o++) {
-        double *const s = ensure(k, &f.s[ports->out[o].motion], n, ports->n_out);
+        double *const s = ensure(k, &f.s[mt_large_power(&ports->out[o])], n, ports->n_out);
         MT_TRY(mt_arena_check(k->mem, err));
         memcpy(s + ((ptrdiff_t)o * n), k->outs[o].in_all, bytes);
-        MT_TRY(add_ground(k, o, &f, err));
+        if (k->outs[o].loss != 0.0) {
+            double *const im = ensure(k, &f.s_im, n, ports->n_out);
+            MT_TRY(mt_arena_check(k->mem, err));
+            mt_axpy(n, k->outs[o].loss, k->outs[o].in_all, im + ((ptrdiff_t)o * n));
+        }
+        if (ports->out[o].kind == MT_PORT_SENSOR) {
+            MT_TRY(add_ground(k, o, &f, err));
+        }
     }
     mt_forced *const to = &k->out->f;
     to->n = n;
@@ -298,6 +306,7 @@ static mt_status fill(work *k, mt_err *err)
         to->s[p] = f.s[p];
         to->d[p] = f.d[p];
     }
+    to->s_im = f.s_im;
     to->e[0] = f.e[0];
     to->e[1] = f.e[1];
     return MT_OK;
@@ -334,8 +343,13 @@ static mt_status note_left(work *k, double lambda, mt_err *err)
         power[i] = power_of(&ports->in[i]);
     }
     for (int o = 0; o < ports->n_out; o++) {
+        const double by = hypot(1.0, k->outs[o].loss);
         out[o] = k->outs[o].left;
-        power[ports->n_in + o] = ports->out[o].motion;
+        out[o].size *= by;
+        out[o].open *= by;
+        out[o].noise *= by;
+        out[o].loose *= by;
+        power[ports->n_in + o] = mt_large_power(&ports->out[o]);
     }
     for (size_t s = 0; s < sides; s++) {
         const side *const own = &k->sides[s];

@@ -9,6 +9,8 @@
 
 /* What damps locally is a force of its own: with more of them a dense way costs less. */
 enum { MOST_SIDES = 24 };
+/* Rows of a term. */
+enum { MOST_ROWS = 16 };
 
 typedef mt_large_force force;
 typedef mt_large_side side;
@@ -82,18 +84,56 @@ static mt_status open_inputs(work *k, mt_err *err)
     return MT_OK;
 }
 
+int mt_large_power(const mt_port *out)
+{
+    return out->kind == MT_PORT_SENSOR ? out->motion : out->kind == MT_PORT_DAMPER ? 1 : 0;
+}
+
+/* The force in a spring or damper, in k->states; *one: all of it has one loss factor, *loss. */
+static void force_row(work *k, const mt_port *port, bool *one, double *loss)
+{
+    const mt_term_kind kind =
+        port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    mt_force_part part[MT_FORCE_PARTS];
+    const int n = mt_response_force_among(k->l->sys, &k->list[kind], port, part);
+    *one = true;
+    clear(k);
+    for (int i = 0; i < n; i++) {
+        const mt_term *const t = part[i].term;
+        const double lost = kind == MT_TERM_DAMPING ? 0.0 : mt_large_value(k, t->loss);
+        *one = *one && t->count <= MOST_ROWS && (i == 0 || lost == *loss);
+        if (*one) {
+            *loss = lost;
+            mt_term_rows(&k->d, kind, t, k->at.pose, rows);
+            add_row(k, t, rows + ((ptrdiff_t)(part[i].row - t->first) * MT_LOCAL),
+                    part[i].share * mt_large_value(k, t->coefficient));
+        }
+    }
+}
+
 static mt_status open_outputs(work *k, bool *is, mt_err *err)
 {
     k->outs = mt_arena_alloc(k->scratch, (size_t)k->ports->n_out, sizeof *k->outs);
     MT_TRY(mt_arena_check(k->scratch, err));
     for (int o = 0; o < k->ports->n_out; o++) {
         const mt_port *const port = &k->ports->out[o];
-        if (port->kind != MT_PORT_SENSOR) {
-            *is = mt_large_refuse(k, "forces in springs, dampers and joints need all modes");
+        bool one = true;
+        MT_TRY(new_force(k, &k->outs[o], err));
+        if (port->kind == MT_PORT_JOINT) {
+            *is = mt_large_refuse(k, "forces in joints need all modes");
             return MT_OK;
         }
-        MT_TRY(new_force(k, &k->outs[o], err));
-        mt_large_sensor_row(k, port->index);
+        if (port->kind == MT_PORT_SENSOR) {
+            mt_large_sensor_row(k, port->index);
+        } else {
+            force_row(k, port, &one, &k->outs[o].loss);
+        }
+        if (!one) {
+            *is = mt_large_refuse(k, "the force of a spring with several loss factors needs "
+                                     "all modes");
+            return MT_OK;
+        }
         k->outs[o].size = mt_lowest_force(k->l, k->states, k->outs[o].x, k->outs[o].a);
     }
     return MT_OK;
@@ -116,7 +156,7 @@ static mt_status add_side(work *k, const mt_term *t, const mt_cx *row, double da
 /* Rows of all terms of a kind that damp more than all springs alike. */
 static mt_status add_terms(work *k, mt_term_kind kind, bool *is, mt_err *err)
 {
-    mt_cx rows[16 * MT_LOCAL];
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
     for (int i = 0; i < k->list[kind].n_terms && *is; i++) {
         const mt_term *const t = &k->list[kind].terms[i];
         const double c = mt_large_value(k, t->coefficient);
@@ -125,7 +165,7 @@ static mt_status add_terms(work *k, mt_term_kind kind, bool *is, mt_err *err)
         if (by == 0.0) {
             continue;
         }
-        if (k->n_sides + t->count > MOST_SIDES || t->count > 16) {
+        if (k->n_sides + t->count > MOST_SIDES || t->count > MOST_ROWS) {
             *is = mt_large_refuse(
                 k, "so many springs and dampers that damp each in its own way need "
                    "all modes");

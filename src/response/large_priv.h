@@ -13,6 +13,7 @@ typedef struct mt_large_force {
     double *x;      /* [n_x] */
     double *a;      /* [rigid-body modes] */
     double size;    /* in which its rounding is measured */
+    double loss;    /* of a spring's force: 1 + i loss times this */
     double *in_all; /* [n] by the coordinates of the problem */
     mt_left_part left;
 } mt_large_force;
@@ -58,6 +59,8 @@ typedef struct mt_large_work {
 bool mt_large_refuse(mt_large_work *k, const char *why);
 /* Value of a number that may not be there: then 0. */
 double mt_large_value(const mt_large_work *k, mt_node node);
+/* The power of s of an output. */
+int mt_large_power(const mt_port *out);
 /* Row of a sensor's direction, in k->states. */
 void mt_large_sensor_row(mt_large_work *k, int channel);
 /* The forces of all inputs, outputs and of what damps locally. *is false: refused. Fails:

@@ -70,10 +70,17 @@ static int component_of(const mt_measure_def *m)
 
 int mt_response_force(const mt_analysis *a, const mt_port *port, mt_force_part *part)
 {
-    const mt_system *const sys = a->sys;
+    return mt_response_force_among(a->sys,
+                                   mt_linear_terms(a->lin, port->kind == MT_PORT_DAMPER
+                                                               ? MT_TERM_DAMPING
+                                                               : MT_TERM_STIFFNESS),
+                                   port, part);
+}
+
+int mt_response_force_among(const mt_system *sys, const mt_term_list *list, const mt_port *port,
+                            mt_force_part *part)
+{
     const mt_spring_def *const own = &sys->springs[port->index];
-    const mt_term_list *const list = mt_linear_terms(
-        a->lin, port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS);
     int n = 0;
     for (int i = 0; i < list->n_terms; i++) {
         const mt_term *const t = &list->terms[i];

@@ -36,5 +36,8 @@ typedef struct mt_force_part {
 } mt_force_part;
 /* How many there are; part[MT_FORCE_PARTS]. */
 int mt_response_force(const mt_analysis *a, const mt_port *port, mt_force_part *part);
+/* The same of a list of terms, of the port's kind, that is not the analysis' own. */
+int mt_response_force_among(const mt_system *sys, const mt_term_list *list, const mt_port *port,
+                            mt_force_part *part);
 
 #endif

@@ -64,7 +64,7 @@ class ResponseLarge(CliTest):
         link["sensors"] = [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]
         model = self.write("link.json", json.dumps(link))
         for options, why in ((("--poles",), "--poles needs all modes"), (("--direct",), "--direct needs all modes"), (("--modes", "5"), "--modes needs all modes"),
-                             (("--output", "spring.root"), "forces in springs, dampers and joints need all modes"),
+                             (("--output", "joint.root.y"), "forces in joints need all modes"),
                              (("--to", "1e6"), "a response so far up needs more than its 384 lowest modes")):
             done = self.expect(2, "response", model, "--input", "tip.y", *options)
             self.assertIn("5001 bodies are too many for dense matrices", done.stderr)
