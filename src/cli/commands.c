@@ -296,8 +296,8 @@ const mt_command mt_commands[MT_CMD_IDS] = {
         "amplitude), under a sine the steady amplitudes and phases, the balance of energy, "
         "and the largest drift of a joint in a step before it was corrected.\n"
         "Springs, viscous dampers, loads and masses are those of the model; bars and beams "
-        "of consistent mass move their mass with their frame. The steps follow the fastest "
-        "vibration of the mechanism, so very stiff parts make them short.\n"
+        "of consistent mass move their mass with their frame. Where springs are so stiff that "
+        "their vibrations are far faster than the motion, steps solve these beforehand.\n"
         "After an interrupt (Ctrl-C), or at the end of --time, the motion so far is "
         "printed, and the exit status is 130 or 1. The exit status is 3 if the motion "
         "reaches a dead centre, or if an input acts in a direction without mass."),

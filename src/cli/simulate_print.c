@@ -131,6 +131,12 @@ static void tell_method(const mt_sim_view *v, mt_text *out)
     switch (r->method) {
     case MT_SIM_INTEGRATED:
     case MT_SIM_METHODS:
+        if (r->stiff_steps > 0) {
+            mt_text_addf(
+                out,
+                "  Stiff springs: in %ld steps their fast vibrations are solved beforehand.\n",
+                r->stiff_steps);
+        }
         mt_text_addf(out,
                      "  %ld steps (%ld more rejected), %ld evaluations, tolerance %.1e.\n\n",
                      r->steps, r->rejected, r->evaluations, v->request->opt.tolerance);
@@ -289,6 +295,7 @@ void mt_simulate_json(const mt_sim_view *v, mt_json_writer *w)
     mt_json_put_number(w, "joint_drift_m", r->gap_m);
     mt_json_put_number(w, "joint_gap_m", r->left_m);
     mt_json_put_integer(w, "steps", r->steps);
+    mt_json_put_integer(w, "stiff_steps", r->stiff_steps);
     mt_json_put_integer(w, "rejected_steps", r->rejected);
     mt_json_put_integer(w, "evaluations", r->evaluations);
     if (r->method != MT_SIM_INTEGRATED) {

@@ -119,8 +119,9 @@ static void add_slope_times(double weight, const mt_cx *f, const mt_cx *g,
     }
 }
 
-static void add_mass(const mt_system *sys, const mt_term *t, double weight, const mt_cx *f,
-                     const mt_cx *g, double *mass)
+/* matrix += weight (f g^T + g f^T)/2. */
+static void add_product(const mt_system *sys, const mt_term *t, double weight, const mt_cx *f,
+                        const mt_cx *g, double *matrix)
 {
     for (int j = 0; j < MT_LOCAL; j++) {
         const bool none = creal(f[j]) == 0.0 && creal(g[j]) == 0.0;
@@ -128,7 +129,7 @@ static void add_mass(const mt_system *sys, const mt_term *t, double weight, cons
         for (int i = 0; i < MT_LOCAL && column >= 0; i++) {
             const int row = mt_local_dof(sys, t->body, i);
             if (row >= 0) {
-                mass[row + ((ptrdiff_t)column * sys->nq)] +=
+                matrix[row + ((ptrdiff_t)column * sys->nq)] +=
                     0.5 * weight * ((creal(f[i]) * creal(g[j])) + (creal(g[i]) * creal(f[j])));
             }
         }
@@ -188,7 +189,7 @@ static void add_inertia(mt_motion *o, const mt_placement *at, const mt_term *t,
     for (int r = 0; r < products_of(t); r++) {
         const mt_cx *const f = o->rows[0] + ((ptrdiff_t)r * MT_LOCAL);
         const mt_cx *const g = t->pair ? f + MT_LOCAL : f;
-        add_mass(sys, t, weight, f, g, o->mass);
+        add_product(sys, t, weight, f, g, o->mass);
         add_times(weight, f, g, v, p);
         if (moves) {
             add_slope_times(weight, f, g, v, change);
@@ -299,6 +300,21 @@ void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v)
     mt_gemv(false, o->nq, o->nq, 1.0, o->mass, o->nq, v, 0.0, o->own);
     o->kinetic = 0.5 * mt_dot(o->nq, v, o->own);
     add_joints(o, at, v);
+}
+
+void mt_motion_stiffness(mt_motion *o, const mt_placement *at, double *k)
+{
+    const mt_term_list *const list = &o->lin->list[MT_TERM_STIFFNESS];
+    memset(k, 0, (size_t)o->nq * (size_t)o->nq * sizeof *k);
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        const double weight = o->lin->value[t->coefficient];
+        mt_term_rows(&o->lin->data, MT_TERM_STIFFNESS, t, at->pose, o->rows[0]);
+        for (int r = 0; r < products_of(t); r++) {
+            const mt_cx *const f = o->rows[0] + ((ptrdiff_t)r * MT_LOCAL);
+            add_product(o->lin->sys, t, weight, f, t->pair ? f + MT_LOCAL : f, k);
+        }
+    }
 }
 
 void mt_motion_turns(const mt_motion *o, mt_placement *at)

@@ -41,6 +41,10 @@ mt_status mt_motion_init(mt_motion *o, mt_linear *lin, mt_arena *mem, mt_err *er
  * with consistent mass costs twelve evaluations of its rows.
  */
 void mt_motion_eval(mt_motion *o, const mt_placement *at, const double *v);
+/* k, nq x nq: sum of k f f^T over the springs, f their directions at `at`, where it was
+ * evaluated: what makes a motion stiff. What turns with positions (loads, preload) is not in
+ * it. */
+void mt_motion_stiffness(mt_motion *o, const mt_placement *at, double *k);
 /* Note in at->turn where the angles stand, which are less than half a turn from where they
  * were. */
 void mt_motion_turns(const mt_motion *o, mt_placement *at);

@@ -18,9 +18,12 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "simulate/collocate.h"
 #include "simulate/propagate.h"
 
 static const double SAFETY = 0.9;
+/* The ratio of a step in which the collocation does not converge. */
+static const double STALLED = 1e3;
 static const double BY_ERROR = 0.7 / MT_ODE_ORDER;
 static const double BY_LAST_ERROR = 0.4 / MT_ODE_ORDER;
 /* A ratio below this is as good as this: the step grows as much as it may. */
@@ -36,6 +39,8 @@ enum { FAILURES_MOST = 1000 };
 /* No body turns further in one step [rad]: increments stay well within half a turn, and whole
  * turns are counted. */
 static const double MOST_TURN = 1.0;
+/* in a collocation, where the series of increments ends before a^10/47900160. */
+static const double MOST_TURN_STIFF = 0.3;
 /* Rounding errors that a step may leave. */
 static const double ROUNDING = 16.0 * DBL_EPSILON;
 /* A step below this part of the duration leads nowhere. */
@@ -64,23 +69,28 @@ mt_sim_options mt_sim_options_default(void)
     return (mt_sim_options){.tolerance = TOLERANCE};
 }
 
-/* Error of the step over what is allowed, the largest of all coordinates. */
-static double error_ratio(const mt_sim *s, double h)
+void mt_sim_allowed(const mt_sim *s, double h, double out[2])
 {
-    const double length = s->sys->length_m;
-    const double rounding = ROUNDING * length;
+    const double rounding = ROUNDING * s->sys->length_m;
     const double *const rate = s->slope + s->nq;
     double fast = s->fast;
     for (int i = 0; i < s->nq; i++) {
         fast = fmax(fast, s->weight[i] * h * fabs(rate[i]));
     }
     const double far = fmax(s->far, h * fast);
-    const double position = (s->opt->tolerance * far) + rounding;
-    const double velocity = (s->opt->tolerance * fast) + (rounding / h);
-    double most = 0.0;
+    out[0] = (s->opt->tolerance * far) + rounding;
+    out[1] = (s->opt->tolerance * fast) + (rounding / h);
+}
+
+/* Error of the step over what is allowed, the largest of all coordinates. */
+static double error_ratio(const mt_sim *s, double h)
+{
+    double may[2];
+    double most = s->stalls ? STALLED : 0.0;
+    mt_sim_allowed(s, h, may);
     for (int i = 0; i < s->nq; i++) {
-        most = fmax(most, s->weight[i] * fabs(s->error[i]) / position);
-        most = fmax(most, s->weight[i] * fabs(s->error[s->nq + i]) / velocity);
+        most = fmax(most, s->weight[i] * fabs(s->error[i]) / may[0]);
+        most = fmax(most, s->weight[i] * fabs(s->error[s->nq + i]) / may[1]);
     }
     return most;
 }
@@ -104,7 +114,8 @@ static double longest_step(const mt_sim *s)
         rate = fmax(rate, s->weight[i] * fabs(v[i]) / s->sys->length_m);
     }
     const double limit = rate > 0.0 ? s->free_way / rate : HUGE_VAL;
-    return fmin(limit, fastest > 0.0 ? MOST_TURN / fastest : HUGE_VAL);
+    const double turn = s->collocation == NULL ? MOST_TURN : MOST_TURN_STIFF;
+    return fmin(limit, fastest > 0.0 ? turn / fastest : HUGE_VAL);
 }
 
 /* A run: what is kept of it. */
@@ -392,7 +403,7 @@ static mt_status begin(run *r, mt_linear *lin, const mt_sim_start *start,
     r->energy0 = r->s.motion.kinetic + r->s.motion.potential;
     note_speeds(&r->s);
     note_energy(r);
-    return MT_OK;
+    return opt->step_s > 0.0 || opt->explicit_steps ? MT_OK : mt_collocation_new(&r->s, err);
 }
 
 static mt_status integrate(run *r, mt_linear *lin, const mt_sim_start *start,
@@ -409,6 +420,7 @@ static mt_status integrate(run *r, mt_linear *lin, const mt_sim_start *start,
         memcpy(opt->end->v, r->s.begin + r->s.nq, (size_t)r->s.nq * sizeof *opt->end->v);
     }
     out->evaluations = r->s.evaluations;
+    out->stiff_steps = r->s.stiff_steps;
     out->gap_m = r->s.gap_m;
     out->left_m = r->s.left_m;
     mt_sim_free(&r->s);

@@ -42,8 +42,9 @@ typedef struct mt_sim_options {
     /* largest error of a step, as a part of the motion so far: of how far bodies have come, and
      * of how fast they have been */
     double tolerance;
-    double step_s;   /* above 0: steps of this length at most, whatever their error */
-    bool integrates; /* equations that are linear, too */
+    double step_s;       /* above 0: steps of this length at most, whatever their error */
+    bool integrates;     /* equations that are linear, too */
+    bool explicit_steps; /* also where the springs make the motion stiff */
     int n_inputs;
     const mt_sim_input *inputs;
     int n_gauges;
@@ -89,6 +90,7 @@ typedef struct mt_sim_result {
     double *work;          /* [n] done by inputs, less what dampers took */
     mt_turnings *turnings; /* [n_gauges], where asked for */
     long steps;
+    long stiff_steps; /* of them: with the springs' fast vibrations solved exactly */
     long rejected;
     long evaluations;
     double gap_m;          /* largest drift off a joint in one step, before it was taken back */

@@ -13,6 +13,8 @@
  *     w  [1]   work of inputs and dampers
  *     z  [n_gauges]  integrals of the gauges' velocities
  */
+typedef struct mt_collocation mt_collocation;
+
 typedef struct mt_sim {
     mt_linear *lin;
     const mt_system *sys;
@@ -23,6 +25,9 @@ typedef struct mt_sim {
     mt_placement base;
     mt_placement at;
     mt_ode *ode;
+    mt_collocation *collocation; /* NULL: steps are those of the pair */
+    long stiff_steps;            /* of the collocation */
+    bool stalls;                 /* the last step is too long for the collocation */
     int nq;
     int m;
     int n;          /* of y */
@@ -55,6 +60,13 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
 void mt_sim_free(mt_sim *s);
 /* An mt_ode_slope of an mt_sim. */
 mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err *err);
+/* Accelerations, power and velocities of gauges where the base is moved by u, at velocities v,
+ * into out[nq + 1 + gauges]. rows not NULL, nq x (1 + gauges): forces of the inputs and rows of
+ * the gauges, whose products with v out lacks then. */
+mt_status mt_sim_rates(mt_sim *s, double t, const double *u, const double *v, double *out,
+                       double *rows, mt_err *err);
+/* Errors that a step h may have: of positions [m] and of velocities [m/s]. */
+void mt_sim_allowed(const mt_sim *s, double h, double out[2]);
 /* s->y := what s->begin becomes in a step h from t. */
 mt_status mt_sim_advance(mt_sim *s, double t, double h, mt_err *err);
 /* s->y at t becomes the begin of the next step: onto the joints, base moved, turns counted,

@@ -5,11 +5,11 @@
  * Work: inputs push with Q, dampers with -C v, and what holds the driven joint, lambda, along
  * its coordinate's velocity s': w' = Q . v - v . C v + lambda s'.
  */
-#include "simulate/simulate_priv.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "simulate/collocate.h"
 
 /* Gaps below so many rounding errors of the model's length are none. */
 static const double CLOSED = 16.0 * DBL_EPSILON;
@@ -149,25 +149,40 @@ static mt_status accelerate(mt_sim *s, double t, const double *v, const double d
     return MT_OK;
 }
 
+mt_status mt_sim_rates(mt_sim *s, double t, const double *u, const double *v, double *out,
+                       double *rows, mt_err *err)
+{
+    double drive[3];
+    MT_TRY(place(s, t, u, drive, err));
+    MT_TRY(accelerate(s, t, v, drive, out, out + s->nq, err));
+    if (rows != NULL) {
+        memcpy(rows, s->push, (size_t)s->nq * sizeof *rows);
+        out[s->nq] -= mt_dot(s->nq, s->push, v);
+    }
+    for (int i = 0; i < s->opt->n_gauges; i++) {
+        mt_motion_gauge(&s->motion, &s->at, v, s->opt->gauges[i], &s->gauge);
+        out[s->nq + 1 + i] = rows == NULL ? mt_dot(s->nq, s->gauge.row, v) : 0.0;
+        if (rows != NULL) {
+            memcpy(rows + ((ptrdiff_t)(1 + i) * s->nq), s->gauge.row,
+                   (size_t)s->nq * sizeof *rows);
+        }
+    }
+    return MT_OK;
+}
+
 mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err *err)
 {
     mt_sim *const s = sim;
-    const double *const u = y;
-    const double *const v = y + s->nq;
-    double drive[3];
-    MT_TRY(place(s, t, u, drive, err));
-    increments(s->sys, u, v, out);
-    MT_TRY(accelerate(s, t, v, drive, out + s->nq, out + ((ptrdiff_t)2 * s->nq), err));
-    for (int i = 0; i < s->opt->n_gauges; i++) {
-        mt_motion_gauge(&s->motion, &s->at, v, s->opt->gauges[i], &s->gauge);
-        out[((ptrdiff_t)2 * s->nq) + 1 + i] = mt_dot(s->nq, s->gauge.row, v);
-    }
-    return MT_OK;
+    increments(s->sys, y, y + s->nq, out);
+    return mt_sim_rates(s, t, y, y + s->nq, out + s->nq, NULL, err);
 }
 
 mt_status mt_sim_advance(mt_sim *s, double t, double h, mt_err *err)
 {
     memcpy(s->y, s->begin, (size_t)s->n * sizeof *s->y);
+    if (s->collocation != NULL) {
+        return mt_collocate(s, t, h, err);
+    }
     return mt_ode_step(s->ode, t, h, s->y, s->slope, s->error, err);
 }
 
@@ -285,6 +300,7 @@ mt_status mt_sim_accept(mt_sim *s, double t, mt_err *err)
     straighten(s->sys, s->at.pose);
     mt_motion_turns(&s->motion, &s->at);
     mt_placement_copy(s->sys, &s->at, &s->base);
+    mt_collocation_accept(s, t);
     memset(s->begin, 0, (size_t)s->nq * sizeof *s->begin);
     return begin_step(s, t, err);
 }
