@@ -114,7 +114,7 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
     mt_err own = {.code = MT_OK};
     mt_status rc = mt_workspace_solve(n->ws, &nlp, &opt, n->mem, &next, &own);
     if (rc == MT_OK && most > 1) {
-        rc = mt_search_repeated(n->ws, n->most > 0 ? budget : 0, n->mem, &next, &own);
+        rc = mt_search_repeated(n->ws, budget, n->mem, &next, &own);
     }
     n->out->evals += next.evals;
     if (next.stop == MT_STOP_MAX_EVALS && (most == 1 || n->most <= 0)) {
