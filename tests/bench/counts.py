@@ -23,6 +23,7 @@ SOURCE = Path(os.environ["SOURCE_DIR"])
 PROGRAM = os.environ["MODETUNE"]
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import large  # noqa: E402
+import pedal  # noqa: E402
 
 TABLE = SOURCE / "tests/bench/counts.csv"
 MOST = 1e9  # of one run: what is longer belongs to bench.py
@@ -30,7 +31,8 @@ GROWTH = 1.1
 PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX512VL,-ERMS,-FSRM",
          "LC_ALL": "C"}
 STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
-# name: command. {sag} is a link of 300 elements that its weight bends, {out} a folder for results.
+# name: command. {sag} is a link of 300 elements that its weight bends, {link} one of 2,000 with a sensor, {pedal} a study of bands in three driven
+# positions, {out} a folder for results.
 RUNS = {
     "start": ("--version",),
     "check": ("check", "studies/inceptor_rotor.json"),
@@ -40,6 +42,10 @@ RUNS = {
     "modes_settled": ("modes", "{sag}", "--count", "4"),
     "sensitivity": ("sensitivity", "problems/inceptor.json"),
     "response": ("response", "problems/den_hartog.json", "--input", "machine.x", "--from", "1", "--to", "20", "--points", "200"),
+    "response_large": ("response", "{link}", "--input", "base.y", "--from", "0.1", "--to", "50", "--points", "300"),
+    "motion_linear": ("simulate", "problems/six_masses.json", "--start", "guide_1=0.001", "--duration", "1", "--dt-out", "0.001"),
+    "placements_driven": (*STUDY, "{pedal}"),
+    "placements_tolerances": (*STUDY, "--max-modal-solutions", "1000", "{tolerances}"),
     "inceptor_catalogue": (*STUDY, "studies/inceptor_catalogue.json"),
     "inceptor_catalogue_page": (*STUDY[:4], "--output", "{out}", "studies/inceptor_catalogue.json"),
     "inceptor_tuning_1": (*STUDY, "studies/inceptor_tuning_1.json"),
@@ -48,7 +54,7 @@ RUNS = {
 
 
 def count(name, folder):
-    places = {"out": str(folder / name), "sag": str(folder / "sag.json")}
+    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "link", "pedal", "tolerances")}}
     command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
                           env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
@@ -62,6 +68,13 @@ def measure():
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top)
         (folder / "sag.json").write_text(json.dumps({**large.link(300), "gravity_m_per_s2": [0, -9.81]}), encoding="utf-8")
+        tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]}
+        (folder / "link.json").write_text(json.dumps({**large.link(2000), **tip}), encoding="utf-8")
+        (folder / "model.json").write_text(json.dumps(pedal.PEDAL), encoding="utf-8")
+        free = [{"parameter": "arm", "lower": 0.05, "upper": 0.2}, {"parameter": "m", "lower": 0.4, "upper": 1.6}]
+        for file, variables in (("pedal", free), ("tolerances", [{**free[0], "tolerance_percent": 2}, free[1]])):
+            question = {**pedal.study(variables), "model": "model.json", "search": {"starts": 1}}
+            (folder / f"{file}.json").write_text(json.dumps(question), encoding="utf-8")
         with ThreadPoolExecutor(os.cpu_count()) as workers:
             return dict(zip(RUNS, workers.map(lambda name: count(name, folder), RUNS)))
 
