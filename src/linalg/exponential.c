@@ -126,9 +126,13 @@ static mt_status count_halvings(int n, const double *a, double h, int least, int
                : mt_fail(err, MT_E_DOMAIN, "a matrix is too large to be exponentiated");
 }
 
-mt_status mt_exponential_make(int n, const double *a, const double *p, double h, int least,
-                              bool all, mt_arena *mem, mt_exponential *out, mt_err *err)
+mt_status mt_exponential_make(const mt_exponential_of *of, int least, bool all, mt_arena *mem,
+                              mt_exponential *out, mt_err *err)
 {
+    const int n = of->n;
+    const double *const a = of->a;
+    const double *const p = of->p;
+    const double h = of->h;
     const size_t order = (size_t)n;
     const size_t n2 = order * order;
     int s = 0;

@@ -17,13 +17,21 @@ typedef struct mt_exponential {
     double **q; /* [kept + 1] n x n, symmetric; NULL without P */
 } mt_exponential;
 
-/* A n x n, P n x n symmetric (both triangles) or NULL; results in mem. least: halvings that
+/* A n x n, P n x n symmetric (both triangles) or NULL. */
+typedef struct mt_exponential_of {
+    int n;
+    const double *a;
+    const double *p;
+    double h;
+} mt_exponential_of;
+
+/* Results in mem. least: halvings that
  * are kept at least; all: those to the finest, |A h 2^-kept| below 1/2, are kept.
  * Taylor's series for the finest step, then doubling, F := 2 F + F^2, so that what is small
  * beside 1 keeps its digits; Q := Q + (1 + F)^T Q (1 + F). Fails: MT_E_DOMAIN (not finite, or
  * more than 100 halvings), MT_E_MEMORY. */
-mt_status mt_exponential_make(int n, const double *a, const double *p, double h, int least,
-                              bool all, mt_arena *mem, mt_exponential *out, mt_err *err);
+mt_status mt_exponential_make(const mt_exponential_of *of, int least, bool all, mt_arena *mem,
+                              mt_exponential *out, mt_err *err);
 /* z := z + F_j z. work[n]. */
 void mt_exponential_step(const mt_exponential *e, int j, double *z, double *work);
 /* z^T Q_j z. work[n]. */

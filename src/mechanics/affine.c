@@ -123,7 +123,7 @@ typedef struct apart {
 
 static apart points_of(const mt_linear *lin, const mt_measure_def *m)
 {
-    apart o;
+    apart o = {.d = {0.0}};
     vector_at(lin, m->body[0], m->point[0], o.p);
     vector_at(lin, m->body[1], m->point[1], o.q);
     for (int k = 0; k < 3; k++) {
@@ -272,10 +272,10 @@ static bool has_linear_forces(const mt_linear *lin, const mt_affine *a, const bo
     }
     for (int i = 0; i < sys->n_loads; i++) {
         const mt_load_def *const l = &sys->loads[i];
-        double s[3];
         if (l->measure >= 0) {
             linear = linear && affine[l->measure];
         } else {
+            double s[3];
             vector_at(lin, l->body, l->point, s);
             linear = linear && is_steady(a, l->body, s);
         }

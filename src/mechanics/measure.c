@@ -341,10 +341,10 @@ static bool has_parts(const mt_beam_parts *p, const mt_measure_data *m, const mt
 static void beam_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
                      mt_second second, mt_beam_parts *parts, mt_jet *out)
 {
-    mt_cx d[3];
-    mt_cx e[3][3];
-    mt_cx f[3][3];
     if (!has_parts(parts, m, a, b, second)) {
+        mt_cx d[3];
+        mt_cx e[3][3];
+        mt_cx f[3][3];
         for (int i = 0; i < 3; i++) {
             d[i] = b->x[i] - a->x[i];
             cx_rotate3(a->r, m->dir[i], e[i]);

@@ -134,7 +134,7 @@ static mt_status make_basis(work *k, mt_err *err)
 static mt_status reduce(const work *k, force *f, mt_err *err)
 {
     const int n = k->size;
-    f->in_all = mt_arena_f64(k->scratch, (size_t)(k->free + n), 1);
+    f->in_all = mt_arena_f64(k->scratch, (size_t)k->free + (size_t)n, 1);
     double *const by = mt_arena_f64(k->scratch, (size_t)n, 1);
     MT_TRY(mt_arena_check(k->scratch, err));
     memcpy(f->in_all, f->a, (size_t)k->free * sizeof *f->a);

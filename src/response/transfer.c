@@ -464,8 +464,9 @@ mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
                             mt_arena *scratch, mt_err *err)
 {
     work k = {.t = t, .w = w};
-    const mt_sample value = {.h = h};
+    mt_sample value = {.h = NULL};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    value.h = h;
     set_powers(&k);
     MT_TRY(factor(&k, scratch, err));
     *singular = k.factor.singular || k.any_resonant;

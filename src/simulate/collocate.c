@@ -364,12 +364,15 @@ static mt_status evaluate(mt_sim *s, mt_collocation *q, int i, double t, mt_err 
     return MT_OK;
 }
 
-/* xi[nq], v[nq] at point i: what N1, N2 (nq x POINTS; their modal parts M1, M2) make of V_0. */
-static void state_at(const mt_collocation *q, double h, int i, const double *v0,
-                     const double *n1, const double *n2, const double *m1, const double *m2,
-                     const double *e0, double *xi, double *v)
+/* xi[nq], v[nq] at point i: what N1, N2 (with their modal parts M1, M2) make of V_0 and its
+ * modal part E_0, or of none. */
+static void state_at(const mt_collocation *q, double h, int i, bool moves, double *xi,
+                     double *v)
 {
     const ptrdiff_t nq = q->nq;
+    const double *const v0 = moves ? q->v : NULL;
+    const double *const n1 = q->n1;
+    const double *const n2 = q->n2;
     const mt_filon_weights *const z = &q->zero;
     for (ptrdiff_t k = 0; k < nq; k++) {
         xi[k] = v0 == NULL ? 0.0 : h * q->rule.point[i] * v0[k];
@@ -385,14 +388,14 @@ static void state_at(const mt_collocation *q, double h, int i, const double *v0,
     for (int k = 0; k < q->n; k++) {
         const mt_filon_weights *const w = &q->of[k];
         const double rate = q->w[k];
-        const double start = v0 == NULL ? 0.0 : e0[k];
+        const double start = moves ? q->e0[k] : 0.0;
         const double c = q->rule.point[i];
         double e = start * h * (mt_filon_sine_over(w->x, c) - c);
         double de = start * (w->c[i] - 1.0);
         for (int j = 0; j < POINTS; j++) {
             const int at = i + (j * POINTS);
-            const double a = m1[k + ((ptrdiff_t)j * q->n)];
-            const double b = m2[k + ((ptrdiff_t)j * q->n)];
+            const double a = q->m1[k + ((ptrdiff_t)j * q->n)];
+            const double b = q->m2[k + ((ptrdiff_t)j * q->n)];
             e += h * (((w->nc[at] - z->nc[at]) * a) + (h * (w->nd[at] - z->nd[at]) * b));
             de += h * (((w->nc[at] - z->nc[at]) * b) - (rate * w->ns[at] * a));
         }
@@ -413,7 +416,7 @@ static double settle(mt_sim *s, mt_collocation *q, double h)
     for (int i = 1; i < POINTS; i++) {
         double *const xi = q->next;
         double *const v = q->next + nq;
-        state_at(q, h, i, q->v, q->n1, q->n2, q->m1, q->m2, q->e0, xi, v);
+        state_at(q, h, i, true, xi, v);
         for (ptrdiff_t k = 0; k < nq; k++) {
             const double dx = fabs(xi[k] - q->xi[k + (i * nq)]) * s->weight[k];
             const double dv = fabs(v[k] - q->v[k + (i * nq)]) * s->weight[k];
@@ -453,7 +456,7 @@ static void finish(mt_sim *s, mt_collocation *q, double h)
             }
         }
     }
-    state_at(q, h, DEGREE, NULL, q->n1, q->n2, q->m1, q->m2, NULL, s->error, s->error + nq);
+    state_at(q, h, DEGREE, false, s->error, s->error + nq);
 }
 
 void mt_collocation_accept(mt_sim *s, double t)

@@ -105,8 +105,9 @@ static void weigh_fast(const mt_filon *q, int i, mt_filon_weights *w)
         double im = 0.0;
         double power = 1.0 / w->x;
         for (int k = 0; k < POINTS; k++) {
-            const double from = q->derivative[k][j * POINTS];
-            const double a = (c * from) - q->derivative[k][i + (j * POINTS)];
+            const double *const d = q->derivative[k] + ((ptrdiff_t)j * POINTS);
+            const double from = d[0];
+            const double a = (c * from) - d[i];
             const double b = s * from;
             /* times i^-(k+1) */
             const double turned[4][2] = {{b, -a}, {-a, -b}, {-b, a}, {a, b}};

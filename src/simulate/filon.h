@@ -31,7 +31,7 @@ typedef struct mt_filon_weights {
     double nd[MT_FILON_POINTS * MT_FILON_POINTS]; /* of sin/x */
 } mt_filon_weights;
 
-void mt_filon_make(mt_filon *out);
+void mt_filon_make(mt_filon *q);
 /* Nothing to do where w->x is x already (NaN: never). Errors: some 1e-14. */
 void mt_filon_weigh(const mt_filon *q, double x, mt_filon_weights *w);
 /* sin(x c)/x, x >= 0. */

@@ -226,18 +226,19 @@ static mt_status go_on(mt_propagation *r, double until, mt_err *err)
     const double end = fmin(until, r->until);
     const double length = end - r->t;
     const double h = r->opt->sample_s;
+    mt_exponential_of of = {r->nz, r->a, r->p, h};
     if (end == until && fabs(length - h) <= ROUNDED * until) {
         if (!r->has_whole) {
-            MT_TRY(mt_exponential_make(r->nz, r->a, r->p, h, r->halvings, r->opt->turning,
-                                       &r->own, &r->whole, err));
+            MT_TRY(mt_exponential_make(&of, r->halvings, r->opt->turning, &r->own, &r->whole,
+                                       err));
             r->has_whole = true;
         }
         MT_TRY(go_by(r, &r->whole, h, err));
     } else {
         const mt_arena_mark mark = mt_arena_get_mark(&r->own);
         mt_exponential part;
-        MT_TRY(mt_exponential_make(r->nz, r->a, r->p, length, r->halvings, r->opt->turning,
-                                   &r->own, &part, err));
+        of.h = length;
+        MT_TRY(mt_exponential_make(&of, r->halvings, r->opt->turning, &r->own, &part, err));
         MT_TRY(go_by(r, &part, length, err));
         mt_arena_rewind(&r->own, mark);
     }
@@ -255,6 +256,21 @@ static mt_status turn_page(mt_propagation *r, mt_err *err)
     return changed && r->known ? make_matrices(r, r->opt->sample_s, err) : MT_OK;
 }
 
+/* To the sample at `until`, while the inputs are known and no step is too coarse. */
+static mt_status go_until(mt_propagation *r, double until, mt_err *err)
+{
+    while (r->t < until) {
+        if (r->t >= r->until) {
+            MT_TRY(turn_page(r, err));
+        }
+        if (!r->known || r->coarse) {
+            return MT_OK;
+        }
+        MT_TRY(go_on(r, until, err));
+    }
+    return MT_OK;
+}
+
 static mt_status go(mt_propagation *r, mt_err *err)
 {
     const mt_sim_options *const opt = r->opt;
@@ -267,14 +283,9 @@ static mt_status go(mt_propagation *r, mt_err *err)
             r->out->stop = MT_SIM_INTERRUPTED;
             return MT_OK;
         }
-        while (r->t < until) {
-            if (r->t >= r->until) {
-                MT_TRY(turn_page(r, err));
-            }
-            if (!r->known || r->coarse) {
-                return MT_OK;
-            }
-            MT_TRY(go_on(r, until, err));
+        MT_TRY(go_until(r, until, err));
+        if (r->t < until) {
+            return MT_OK;
         }
         MT_TRY(mt_propagation_set(r, r->t, r->t < opt->duration_s ? step : -step, err));
         r->known = keeps_lengths(r, opt->sample_s);

@@ -77,7 +77,8 @@ static void complex_ldl__solves_to_rounding(mt_test *t)
         CHECK_INT(t, mt_complex_solve(&f, COLUMNS, x, NULL), MT_OK);
         for (int c = 0; c < COLUMNS; c++) {
             double size = 0.0;
-            const double off = residual(n, a, x + (c * n), b + (c * n), &size);
+            const double off =
+                residual(n, a, x + ((ptrdiff_t)c * n), b + ((ptrdiff_t)c * n), &size);
             CHECK(t, off <= GROWTH * n * DBL_EPSILON * size);
         }
     }
@@ -92,7 +93,7 @@ static void complex_ldl__estimates_the_condition(mt_test *t)
         mt_complex_ldl f;
         mt_arena_clear(&mem);
         for (int i = 0; i < n; i++) {
-            a[i * (n + 1)] = i == 0 ? 8.0 : i == 1 ? mt_complex(0.0, 0.5) : 2.0;
+            a[(ptrdiff_t)i * (n + 1)] = i == 0 ? 8.0 : i == 1 ? mt_complex(0.0, 0.5) : 2.0;
         }
         mt_test_row(t, "order %d", n);
         CHECK_INT(t, mt_complex_factor(n, a, &mem, &f, NULL), MT_OK);
@@ -109,7 +110,7 @@ static void complex_ldl__says_what_is_singular(mt_test *t)
         mt_complex_ldl f;
         mt_arena_clear(&mem);
         for (int i = 0; i < n; i++) {
-            a[i * (n + 1)] = i == 1 ? 0.0 : 1.0;
+            a[(ptrdiff_t)i * (n + 1)] = i == 1 ? 0.0 : 1.0;
         }
         mt_test_row(t, "order %d", n);
         CHECK_INT(t, mt_complex_factor(n, a, &mem, &f, NULL), MT_OK);

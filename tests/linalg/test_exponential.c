@@ -36,7 +36,8 @@ static void exponential__a_damped_oscillator_follows_its_formula(mt_test *t)
                                 e * (cos(v * h) - (d / v * sin(v * h)))};
         mt_exponential x;
         mt_test_row(t, "w %g, d %g, h %g", w, d, h);
-        REQUIRE(t, mt_exponential_make(2, a, NULL, h, 3, false, &mem, &x, NULL) == MT_OK);
+        REQUIRE(t, mt_exponential_make(&(mt_exponential_of){2, a, NULL, h}, 3, false, &mem, &x,
+                                       NULL) == MT_OK);
         CHECK_INT(t, x.kept, 3);
         /* the phase is known to its rounding, and so is the way through doublings */
         const double tol = 32.0 * DBL_EPSILON * (1.0 + (w * h));
@@ -69,7 +70,8 @@ static void exponential__a_chain_of_integrals_is_a_polynomial(mt_test *t)
     for (int k = 0; k + 1 < N; k++) {
         a[k + ((k + 1) * N)] = 1.0;
     }
-    REQUIRE(t, mt_exponential_make(N, a, NULL, h, 0, true, &mem, &x, NULL) == MT_OK);
+    REQUIRE(t, mt_exponential_make(&(mt_exponential_of){N, a, NULL, h}, 0, true, &mem, &x,
+                                   NULL) == MT_OK);
     CHECK(t, x.kept >= 1);
     double term = 1.0;
     for (int k = 1; k < N; k++) {
@@ -101,7 +103,8 @@ static void exponential__quadratic_forms_balance(mt_test *t)
         mt_gemm(true, false, n, n, n, 1.0, a, n, s, n, 0.0, p, n);
         mt_gemm(false, false, n, n, n, 1.0, s, n, a, n, 1.0, p, n);
         const double h = pow(10.0, mt_random_in(&g, -4.0, 0.5));
-        REQUIRE(t, mt_exponential_make(n, a, p, h, 0, false, &mem, &x, NULL) == MT_OK);
+        REQUIRE(t, mt_exponential_make(&(mt_exponential_of){n, a, p, h}, 0, false, &mem, &x,
+                                       NULL) == MT_OK);
         mt_gemv(false, n, n, 1.0, s, n, z, 0.0, work);
         const double before = mt_dot(n, z, work);
         const double integral = mt_exponential_integral(&x, 0, z, work);
@@ -118,11 +121,16 @@ static void exponential__what_is_not_finite_is_refused(mt_test *t)
 {
     mt_exponential x;
     CHECK_INT(t,
-              mt_exponential_make(1, (double[]){nan("")}, NULL, 1.0, 0, false, &mem, &x, NULL),
+              mt_exponential_make(&(mt_exponential_of){1, (double[]){nan("")}, NULL, 1.0}, 0,
+                                  false, &mem, &x, NULL),
               MT_E_DOMAIN);
-    CHECK_INT(t, mt_exponential_make(1, (double[]){1e40}, NULL, 1.0, 0, false, &mem, &x, NULL),
+    CHECK_INT(t,
+              mt_exponential_make(&(mt_exponential_of){1, (double[]){1e40}, NULL, 1.0}, 0,
+                                  false, &mem, &x, NULL),
               MT_E_DOMAIN);
-    CHECK_INT(t, mt_exponential_make(1, (double[]){1e4}, NULL, 1.0, 0, false, &mem, &x, NULL),
+    CHECK_INT(t,
+              mt_exponential_make(&(mt_exponential_of){1, (double[]){1e4}, NULL, 1.0}, 0, false,
+                                  &mem, &x, NULL),
               MT_E_DOMAIN);
     mt_arena_free(&mem);
 }

@@ -75,19 +75,23 @@ static void add_point(writer *w, const tree *r, const double *x)
     ADD(w, "]");
 }
 
+/* Body i and what it hangs on. */
+static void place_body(tree *r, int i)
+{
+    const int back = i > 0 && !r->hung ? mt_random_int(&r->g, i < 4 ? i : 4) : 0;
+    r->before[i] = i - 1 - back;
+    for (int k = 0; k < 3; k++) {
+        const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
+        const double step = r->hung ? (k == 1 ? -0.3 : 0.0) : mt_random_in(&r->g, -0.3, 0.3);
+        r->at[i][k] = k < r->axes ? from + step : 0.0;
+    }
+}
+
 static void add_bodies(writer *w, tree *r)
 {
     ADD(w, "\"bodies\": [");
     for (int i = 0; i < BODIES; i++) {
-        r->before[i] = i == 0    ? -1
-                       : r->hung ? i - 1
-                                 : i - 1 - mt_random_int(&r->g, i < 4 ? i : 4);
-        for (int k = 0; k < 3; k++) {
-            const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
-            const double step =
-                r->hung ? (k == 1 ? -0.3 : 0.0) : mt_random_in(&r->g, -0.3, 0.3);
-            r->at[i][k] = k < r->axes ? from + step : 0.0;
-        }
+        place_body(r, i);
         ADD(w, "%s{ \"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i > 0 ? ", " : "", i,
             mt_random_in(&r->g, 0.5, 2.0));
         add_point(w, r, r->at[i]);
@@ -170,7 +174,8 @@ static void write_tree(tree *r, char *text)
                                                    "\"mass_per_s\": 0.3, \"stiffness_s\": 1e-4",
                                                [RATIOS] = "\"ratios\": [0.01, 0.03, 0.02]",
                                                [RATIO] = "\"ratio\": 0.02"};
-    writer w = {.text = text};
+    writer w = {.used = 0};
+    w.text = text;
     ADD(&w, "{ \"format\": \"modetune-model/1\", \"name\": \"t\", \"dimension\": %d, ",
         r->axes);
     add_bodies(&w, r);
@@ -299,7 +304,7 @@ static void try_tree(mt_test *t, tree *r, char *text)
 static void large__responses_are_those_of_all_modes(mt_test *t)
 {
     const char *const more = getenv("MT_STRESS_ROUNDS");
-    const int times = more == NULL ? 1 : atoi(more);
+    const int times = more == NULL ? 1 : (int)strtol(more, NULL, 10);
     char *const text = malloc(TEXT);
     for (int round = 0; round < times * ROUNDS && text != NULL; round++) {
         tree r = {.g = mt_random_seed((uint64_t)round + 1), .kind = (kind)(round % KINDS)};

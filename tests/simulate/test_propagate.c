@@ -231,10 +231,45 @@ static void propagate__other_smooth_forces_are_fitted(mt_test *t)
     check_row(t, &HARD, "3*t*sin(5*t)", under_growing, MT_SIM_FITTED, 1e-11);
 }
 
+static const char *const comma[] = {"", ", "};
+
+static void add_row_bodies(text *x, mt_random *g, int n, bool space, const char *zero)
+{
+    for (int i = 0; i < n; i++) {
+        const double j = mt_random_in(g, 0.5, 2.0);
+        add(x, "%s{\"name\": \"m%d\", \"mass_kg\": %.17g, \"centre\": [%d, 0%s], ",
+            comma[i > 0], i, mt_random_in(g, 0.5, 3.0), i + 1, zero);
+        if (space) {
+            add(x, "\"inertia_kg_m2\": [%.17g, %.17g, %.17g]}", j, j, j);
+        } else {
+            add(x, "\"inertia_kg_m2\": %.17g}", j);
+        }
+    }
+}
+
+static void add_row_springs(text *x, mt_random *g, int n, bool discs, const char *zero)
+{
+    for (int i = 0; i < n; i++) {
+        const double k = pow(10.0, mt_random_in(g, 2.0, 4.0));
+        if (discs) {
+            add(x,
+                "%s{\"name\": \"k%d\", \"type\": \"torsion\", \"joint\": \"g%d\", "
+                "\"stiffness_n_m_per_rad\": %.17g}",
+                comma[i > 0], i, i, k);
+        } else {
+            char from[16];
+            (void)snprintf(from, sizeof from, i == 0 ? "ground" : "m%d", i - 1);
+            add(x,
+                "%s{\"name\": \"k%d\", \"type\": \"axial\", \"bodies\": [\"%s\", \"m%d\"], "
+                "\"at\": [[%d, 0%s], [%d, 0%s]], \"stiffness_n_per_m\": %.17g}",
+                comma[i > 0], i, from, i, i, zero, i + 1, zero, k);
+        }
+    }
+}
+
 /* A row of masses on springs between each and the next, or of discs on a shaft. */
 static mt_model *random_row(mt_test *t, mt_random *g, int n, bool discs)
 {
-    static const char *const comma[] = {"", ", "};
     text x = {.n = 0};
     const bool space = mt_random_int(g, 2) == 1;
     const char *const zero = space ? ", 0" : "";
@@ -242,16 +277,7 @@ static mt_model *random_row(mt_test *t, mt_random *g, int n, bool discs)
         "{\"format\": \"modetune-model/1\", \"name\": \"row\", \"dimension\": %d, "
         "\"bodies\": [",
         space ? 3 : 2);
-    for (int i = 0; i < n; i++) {
-        const double j = mt_random_in(g, 0.5, 2.0);
-        add(&x, "%s{\"name\": \"m%d\", \"mass_kg\": %.17g, \"centre\": [%d, 0%s], ",
-            comma[i > 0], i, mt_random_in(g, 0.5, 3.0), i + 1, zero);
-        if (space) {
-            add(&x, "\"inertia_kg_m2\": [%.17g, %.17g, %.17g]}", j, j, j);
-        } else {
-            add(&x, "\"inertia_kg_m2\": %.17g}", j);
-        }
-    }
+    add_row_bodies(&x, g, n, space, zero);
     add(&x, "], \"joints\": [");
     for (int i = 0; i < n; i++) {
         const char *const axis = discs
@@ -270,22 +296,7 @@ static mt_model *random_row(mt_test *t, mt_random *g, int n, bool discs)
             mt_random_in(g, -3.0, -0.5));
     }
     add(&x, "], \"springs\": [");
-    for (int i = 0; i < n; i++) {
-        const double k = pow(10.0, mt_random_in(g, 2.0, 4.0));
-        if (discs) {
-            add(&x,
-                "%s{\"name\": \"k%d\", \"type\": \"torsion\", \"joint\": \"g%d\", "
-                "\"stiffness_n_m_per_rad\": %.17g}",
-                comma[i > 0], i, i, k);
-        } else {
-            char from[16];
-            (void)snprintf(from, sizeof from, i == 0 ? "ground" : "m%d", i - 1);
-            add(&x,
-                "%s{\"name\": \"k%d\", \"type\": \"axial\", \"bodies\": [\"%s\", \"m%d\"], "
-                "\"at\": [[%d, 0%s], [%d, 0%s]], \"stiffness_n_per_m\": %.17g}",
-                comma[i > 0], i, from, i, i, zero, i + 1, zero, k);
-        }
-    }
+    add_row_springs(&x, g, n, discs, zero);
     add(&x, "], \"dampers\": [");
     for (int i = 0; i < n; i++) {
         const double c = pow(10.0, mt_random_in(g, -2.0, 1.5));
