@@ -171,18 +171,17 @@ long mt_question_left(const mt_question *q)
     return other < left ? other : left;
 }
 
-/* A budget of modal solutions, in evaluations of the study as it is asked. */
-static void count_in_evaluations(mt_question *q)
+/* The budget of the study as it is asked; one of modal solutions in evaluations. */
+static void set_budget(mt_question *q)
 {
     mt_search *const s = &q->study.search;
-    if (s->max_modal_solutions <= 0) {
-        return;
+    if (s->max_modal_solutions > 0) {
+        const long each = mt_case_solutions(&q->p->whole);
+        s->solutions_each = each > 1 ? each : 1;
+        const long n = s->max_modal_solutions / s->solutions_each;
+        s->by_solutions = s->max_evaluations <= 0 || n < s->max_evaluations;
+        s->max_evaluations = s->by_solutions ? (n > 1 ? n : 1) : s->max_evaluations;
     }
-    const long each = mt_case_solutions(&q->p->whole);
-    s->solutions_each = each > 1 ? each : 1;
-    const long n = s->max_modal_solutions / s->solutions_each;
-    s->by_solutions = s->max_evaluations <= 0 || n < s->max_evaluations;
-    s->max_evaluations = s->by_solutions ? (n > 1 ? n : 1) : s->max_evaluations;
     s->max_positions = positions_of(s->max_evaluations);
     q->p->whole.search = *s;
 }
@@ -196,7 +195,6 @@ static mt_status ask(mt_question *q, const mt_study *study, mt_err *err)
     q->model.spent = &q->spent;
     q->study = *study;
     q->study.model = &q->model;
-    q->study.search.max_positions = positions_of(study->search.max_evaluations);
     q->study.references = mt_arena_alloc(&q->mem, n, sizeof *study->references);
     MT_TRY(mt_arena_check(&q->mem, err));
     for (size_t i = 0; i < n; i++) {
@@ -229,7 +227,7 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
     MT_TRY(ask(q, study, err));
     const mt_status rc = mt_problem_new(&q->study, &q->p, &own);
     if (rc == MT_OK) {
-        count_in_evaluations(q);
+        set_budget(q);
     }
     return end_at_once(q, rc, &own, err);
 }

@@ -55,13 +55,12 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
         MT_TRY(
             mt_describe_warn(a->result, err,
                              "the budget of %s ran out (%ld of %ld were made in the search): a "
-                             "larger \"%s\" may "
-                             "find more",
+                             "larger \"%s\" may find more",
                              s->by_solutions ? "modal solutions" : "evaluations",
                              mt_spent_in(&a->q->spent, MT_PHASE_SEARCH,
                                          s->by_solutions ? MT_SPENT_MODAL : MT_SPENT_DESIGNS),
                              s->by_solutions ? s->max_modal_solutions : s->max_evaluations,
-                             mt_search_budget(&a->study->search)));
+                             mt_search_budget(s)));
     }
     MT_TRY(warn_of_missing(a, err));
     for (int i = 0; i < a->result->n_recommendations; i++) {

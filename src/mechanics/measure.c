@@ -330,7 +330,7 @@ void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, mt_j
     mt_jet_chain(&c, &psi, &cosine, out);
 }
 
-/* Whether the parts are those of this element, here; those of a Hessian serve without it. */
+/* Whether the parts are those of this element, here, with as much of the Hessian. */
 static bool has_parts(const mt_beam_parts *p, const mt_measure_data *m, const mt_pose *a,
                       const mt_pose *b, mt_second second)
 {

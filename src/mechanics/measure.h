@@ -89,9 +89,10 @@ typedef struct mt_jet {
 } mt_jet;
 
 /* What all strains of a beam element are made of (measure_beam.c), kept from one of them to
- * the next. In the plane phi[2], s[1] and length alone. Zeroed: of none. */
+ * the next. In the plane phi[2], s[1] and length alone. Some 15 kB, of which `dir` alone has to
+ * be set before. */
 typedef struct mt_beam_parts {
-    const mt_cx *dir; /* of which element */
+    const mt_cx *dir; /* of which element; NULL: of none */
     const mt_pose *pose[2];
     mt_jet length;
     mt_jet phi[3];

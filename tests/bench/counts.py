@@ -71,8 +71,7 @@ def measure():
         tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]}
         (folder / "link.json").write_text(json.dumps({**large.link(2000), **tip}), encoding="utf-8")
         (folder / "model.json").write_text(json.dumps(pedal.PEDAL), encoding="utf-8")
-        free = [{"parameter": "arm", "lower": 0.05, "upper": 0.2}, {"parameter": "m", "lower": 0.4, "upper": 1.6}]
-        for file, variables in (("pedal", free), ("tolerances", [{**free[0], "tolerance_percent": 2}, free[1]])):
+        for file, variables in (("pedal", pedal.FREE), ("tolerances", [{**pedal.FREE[0], "tolerance_percent": 2}, pedal.FREE[1]])):
             question = {**pedal.study(variables), "model": "model.json", "search": {"starts": 1}}
             (folder / f"{file}.json").write_text(json.dumps(question), encoding="utf-8")
         with ThreadPoolExecutor(os.cpu_count()) as workers:

@@ -9,7 +9,7 @@ import sys
 from common_cli import MODEL, SOURCE, CliTest, main, study
 
 sys.path.insert(0, str(SOURCE / "tests/support"))
-from pedal import PEDAL, study as pedal  # noqa: E402
+from pedal import FREE, PEDAL, study as pedal  # noqa: E402
 
 
 def masses(**more):
@@ -19,7 +19,6 @@ def masses(**more):
 EVERY = os.environ.get("MT_EVERY", "0") != "0"
 FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 BUDGETS = (60, 300) if "MT_INSTRUMENTED" in os.environ else (20, 100, 1000) if FEW else (20, 60, 100, 300, 1000)
-FREE = [{"parameter": "arm", "lower": 0.05, "upper": 0.2}, {"parameter": "m", "lower": 0.4, "upper": 1.6}]
 CHOICES = [1, 1.5, 2, 3, 4, 6, 8, 12]
 CATALOGUES = [{"parameter": p, "catalogue": CHOICES} for p in ("k1", "k2")]
 HIGH = [{"type": "frequency", "configuration": "held", "mode": 1, "at_least_hz": 0.15}]

@@ -15,6 +15,7 @@ PEDAL = {
     "configurations": {name: {"drive": {"joint": "pedal", "position_rad": angle, "hold": "lock"}}
                        for name, angle in (("left", -0.3), ("mid", 0), ("right", 0.3))},
 }
+FREE = [{"parameter": "arm", "lower": 0.05, "upper": 0.2}, {"parameter": "m", "lower": 0.4, "upper": 1.6}]
 
 
 def study(variables, **more):
