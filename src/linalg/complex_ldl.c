@@ -211,8 +211,7 @@ static void solve_small(const mt_complex_ldl *f, double complex *b)
     }
 }
 
-/* The largest sum of a row of sizes. */
-static double norm_of(ptrdiff_t n, double complex *a)
+double mt_complex_norm(int n, double complex *a)
 {
     double most = 0.0;
     for (ptrdiff_t i = 0; i < n; i++) {
@@ -236,7 +235,6 @@ mt_status mt_complex_factor(int n, double complex *a, mt_arena *mem, mt_complex_
     if (!all_finite((ptrdiff_t)n * n, a)) {
         return mt_lapack_not_finite("zsytrf", err);
     }
-    out->norm = norm_of(n, a);
     if (n <= SMALL) {
         out->inverse = mt_arena_alloc(mem, (size_t)n, sizeof *out->inverse);
         MT_TRY(mt_arena_check(mem, err));
@@ -277,8 +275,8 @@ mt_status mt_complex_solve(const mt_complex_ldl *f, int nrhs, double complex *b,
     return info < 0 ? mt_lapack_bug("zsytrs", info, err) : MT_OK;
 }
 
-mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scratch,
-                           mt_err *err)
+mt_status mt_complex_rcond(const mt_complex_ldl *f, double norm, double *rcond,
+                           mt_arena *scratch, mt_err *err)
 {
     *rcond = f->n == 0 ? 1.0 : 0.0;
     if (f->n == 0 || f->singular) {
@@ -288,7 +286,7 @@ mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scr
     double complex *const work = mt_arena_alloc(scratch, 2 * (size_t)f->n, sizeof *work);
     MT_TRY(mt_arena_check(scratch, err));
     const lapack_int info = LAPACKE_zsycon_work(LAPACK_COL_MAJOR, 'L', f->n, f->a, f->n,
-                                                f->pivot, f->norm, rcond, work);
+                                                f->pivot, norm, rcond, work);
     mt_arena_rewind(scratch, mark);
     return info < 0 ? mt_lapack_bug("zsycon", info, err) : MT_OK;
 }

@@ -11,7 +11,6 @@ typedef struct mt_complex_ldl {
     double complex *a;       /* n x n, the caller's, overwritten */
     int *pivot;              /* as LAPACK numbers them */
     double complex *inverse; /* [n] of pivots of order one; NULL: a large matrix */
-    double norm;             /* of A, 1-norm of |re| + |im| */
     bool singular;           /* a pivot is exactly 0 */
 } mt_complex_ldl;
 
@@ -20,7 +19,9 @@ mt_status mt_complex_factor(int n, double complex *a, mt_arena *mem, mt_complex_
                             mt_err *err);
 /* X in place of B, n x nrhs. Not where the factor is singular. As the factor. */
 mt_status mt_complex_solve(const mt_complex_ldl *f, int nrhs, double complex *b, mt_err *err);
-/* Reciprocal condition in that norm, estimated; 0 where singular. zsycon. */
-mt_status mt_complex_rcond(const mt_complex_ldl *f, double *rcond, mt_arena *scratch,
-                           mt_err *err);
+/* Of A before it is factored, by its lower triangle: 1-norm of |re| + |im|. */
+double mt_complex_norm(int n, double complex *a);
+/* Reciprocal condition in that norm of A, estimated; 0 where singular. zsycon. */
+mt_status mt_complex_rcond(const mt_complex_ldl *f, double norm, double *rcond,
+                           mt_arena *scratch, mt_err *err);
 #endif

@@ -165,9 +165,10 @@ static mt_status eliminate(parts *s, const mt_modes *m, mt_err *err)
     for (ptrdiff_t at = 0; at < u * u; at++) {
         s->guu[at] = mt_complex(re[at], im[at]);
     }
+    const double norm = mt_complex_norm(s->u, s->guu);
     MT_TRY(mt_complex_factor(s->u, s->guu, s->mem, &s->factor, err));
     double rcond = 0.0;
-    MT_TRY(mt_complex_rcond(&s->factor, &rcond, s->scratch, err));
+    MT_TRY(mt_complex_rcond(&s->factor, norm, &rcond, s->scratch, err));
     if (!(rcond > DBL_EPSILON)) {
         return mt_fail(err, MT_E_SINGULAR,
                        "a direction without mass or damping is held by no stiffness");

@@ -260,12 +260,6 @@ static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
     return MT_OK;
 }
 
-/* The power of s that an input's force has. */
-static int power_of(const mt_port *in)
-{
-    return in->kind == MT_PORT_BASE ? 2 - in->motion : 0;
-}
-
 static mt_status fill(work *k, mt_err *err)
 {
     const int n = k->out->modes.n;
@@ -278,7 +272,7 @@ static mt_status fill(work *k, mt_err *err)
         stiffness[i * (n + 1)] = k->out->modes.lambda[i];
     }
     for (int i = 0; i < ports->n_in; i++) {
-        double *const b = ensure(k, &f.b[power_of(&ports->in[i])], n, ports->n_in);
+        double *const b = ensure(k, &f.b[mt_response_power(&ports->in[i])], n, ports->n_in);
         MT_TRY(mt_arena_check(k->mem, err));
         memcpy(b + ((ptrdiff_t)i * n), k->in[i].in_all, bytes);
     }
@@ -340,7 +334,7 @@ static mt_status note_left(work *k, double lambda, mt_err *err)
     mt_left_part *const side_of = out + ports->n_out;
     for (int i = 0; i < ports->n_in; i++) {
         part[i] = k->in[i].left;
-        power[i] = power_of(&ports->in[i]);
+        power[i] = mt_response_power(&ports->in[i]);
     }
     for (int o = 0; o < ports->n_out; o++) {
         const double by = hypot(1.0, k->outs[o].loss);

@@ -24,7 +24,7 @@ bool mt_large_refuse(mt_large_work *k, const char *why)
 
 double mt_large_value(const mt_large_work *k, mt_node node)
 {
-    return node == MT_NO_NODE ? 0.0 : k->d.value[node];
+    return creal(mt_data_scalar(&k->d, node, 0.0));
 }
 
 static mt_status new_force(const work *k, force *f, mt_err *err)
@@ -52,13 +52,11 @@ static void clear(work *k)
 
 void mt_large_sensor_row(mt_large_work *k, int channel)
 {
-    const int *const body = k->l->sys->channels[channel].body;
-    const mt_term t = {
-        .coefficient = MT_NO_NODE, .count = 1, .body = {body[0], body[1]}, .source = channel};
+    const mt_term *const t = &k->list[MT_TERM_CHANNEL].terms[channel];
     mt_cx row[MT_LOCAL];
-    mt_term_rows(&k->d, MT_TERM_CHANNEL, &t, k->at.pose, row);
+    mt_term_rows(&k->d, MT_TERM_CHANNEL, t, k->at.pose, row);
     clear(k);
-    add_row(k, &t, row, 1.0);
+    add_row(k, t, row, 1.0);
 }
 
 static mt_status open_inputs(work *k, mt_err *err)

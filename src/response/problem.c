@@ -98,11 +98,16 @@ int mt_response_force_among(const mt_system *sys, const mt_term_list *list, cons
     return n;
 }
 
+int mt_response_power(const mt_port *in)
+{
+    return in->kind == MT_PORT_BASE ? 2 - in->motion : 0;
+}
+
 static mt_status add_input(build *k, int i, mt_err *err)
 {
     const mt_port *const port = &k->in[i];
     double *const full = k->b_full + ((ptrdiff_t)i * k->nq);
-    const int power = port->kind == MT_PORT_BASE ? 2 - port->motion : 0;
+    const int power = mt_response_power(port);
     k->power[i] = power;
     double *const b = ensure(k, &k->b[power], k->n, k->n_in);
     MT_TRY(mt_arena_check(k->mem, err));

@@ -24,6 +24,8 @@ typedef struct mt_response_ways {
  */
 mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena *mem,
                               mt_forced *f, mt_response_ways *ways, mt_err *err);
+/* The power of s that an input's force has. */
+int mt_response_power(const mt_port *in);
 /* Value of a number that may not be there: then 0. */
 double mt_response_node(const mt_analysis *a, mt_node node);
 /* A part of the force in a spring or damper: share times its coefficient times the motion along

@@ -147,9 +147,30 @@ int mt_slope_channel(const mt_linear *lin, const mt_port *port)
     return mt_linear_terms(lin, MT_TERM_CHANNEL)->terms[port->index].first;
 }
 
-int mt_slope_power(const mt_port *port)
+void mt_slope_push(const mt_linear *lin, const mt_port *in, double *shift, double *f)
 {
-    return port->kind == MT_PORT_BASE ? 2 - port->motion : 0;
+    if (in->kind == MT_PORT_BASE) {
+        mt_linear_shift(lin, in->index, shift);
+        mt_linear_states_product(lin, MT_MATRIX_MASS, -1.0, shift, f);
+    } else {
+        mt_linear_row_add(lin, MT_TERM_CHANNEL, mt_slope_channel(lin, in), 1.0, f);
+    }
+}
+
+mt_status mt_slope_motions(const mt_linear *lin, int nq, int n, const double *v, double *e,
+                           mt_arena *mem, mt_err *err)
+{
+    const size_t order = (size_t)n;
+    double *const unit = mt_arena_f64(mem, order, order);
+    MT_TRY(mt_arena_check(mem, err));
+    for (size_t j = 0; j < order; j++) {
+        unit[j * (order + 1)] = 1.0;
+    }
+    mt_linear_expand(lin, n, unit, e);
+    if (v != NULL) {
+        mt_axpy(nq, -1.0, v, e + ((ptrdiff_t)n * nq));
+    }
+    return MT_OK;
 }
 
 /* psi, P M q and b of one side. */
@@ -207,13 +228,8 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(expand(k, x, &s->states, err));
-    if (port->kind == MT_PORT_BASE) {
-        mt_linear_shift(k->lin, port->index, k->shift);
-        mt_linear_states_product(k->lin, MT_MATRIX_MASS, -1.0, k->shift, f);
-    } else {
-        mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, port), 1.0, f);
-    }
-    add_real(k->nq, k->power[mt_slope_power(port)], f, &w);
+    mt_slope_push(k->lin, port, k->shift, f);
+    add_real(k->nq, k->power[mt_response_power(port)], f, &w);
     return close_side(k, s, &w, err);
 }
 
@@ -402,7 +418,7 @@ static double complex force_slope(work *k, int p, int i, const pair *e)
     mt_linear_shift(k->lin, port->index, k->shift);
     const double re = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[0], k->shift);
     const double im = mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e->part[1], k->shift);
-    return -k->power[mt_slope_power(port)] * mt_complex(re, im);
+    return -k->power[mt_response_power(port)] * mt_complex(re, im);
 }
 
 /* d(sigma) . q - d(t) . l. */

@@ -77,20 +77,9 @@ static mt_status multipliers(const work *k, int cols, const double *w, double *t
 
 static mt_status make_e(work *k, mt_err *err)
 {
-    const size_t n = (size_t)k->n;
-    double *const unit = mt_arena_f64(k->mem, n, n);
-    MT_TRY(mt_arena_check(k->mem, err));
-    for (size_t j = 0; j < n; j++) {
-        unit[j * (n + 1)] = 1.0;
-    }
-    mt_linear_expand(k->lin, k->n, unit, k->e);
-    if (k->out->kind == MT_PORT_JOINT) {
-        mt_axpy(k->nq, -1.0, k->p->ways->joint[k->column].v, k->e + ((ptrdiff_t)k->n * k->nq));
-    }
-    if (k->in->kind == MT_PORT_BASE) {
-        mt_linear_shift(k->lin, k->in->index, k->shift);
-    }
-    return MT_OK;
+    const double *const v =
+        k->out->kind == MT_PORT_JOINT ? k->p->ways->joint[k->column].v : NULL;
+    return mt_slope_motions(k->lin, k->nq, k->n, v, k->e, k->mem, err);
 }
 
 /* F and G of what pushes: f, and sigma or what stands in a joint. */
@@ -100,12 +89,8 @@ static mt_status push(work *k, mt_err *err)
     double *const balanced = mt_arena_f64(k->mem, (size_t)k->m, 1);
     const ptrdiff_t last = (ptrdiff_t)k->n * k->m;
     MT_TRY(mt_arena_check(k->mem, err));
-    if (k->in->kind == MT_PORT_BASE) {
-        mt_linear_states_product(k->lin, MT_MATRIX_MASS, -1.0, k->shift, f);
-    } else {
-        mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, k->in), 1.0, f);
-    }
-    MT_TRY(multipliers(k, 1, f, k->f[part_at(mt_slope_power(k->in))] + last, err));
+    mt_slope_push(k->lin, k->in, k->shift, f);
+    MT_TRY(multipliers(k, 1, f, k->f[part_at(mt_response_power(k->in))] + last, err));
     if (k->out->kind == MT_PORT_JOINT) {
         const double *const standing = k->p->ways->joint[k->column].geometric;
         if (standing != NULL) {
@@ -218,16 +203,6 @@ static void add_to(const work *k, int rows, int cols, double scale, const double
     }
 }
 
-/* True where any of n numbers is not 0. */
-static bool any(ptrdiff_t n, const double *x)
-{
-    bool found = false;
-    for (ptrdiff_t i = 0; i < n; i++) {
-        found = found || x[i] != 0.0;
-    }
-    return found;
-}
-
 /* k->half := dA_j times columns of x. */
 static bool matrix_slope(work *k, int p, mt_matrix j, const double *x)
 {
@@ -236,7 +211,7 @@ static bool matrix_slope(work *k, int p, mt_matrix j, const double *x)
     for (ptrdiff_t c = 0; c < k->ny; c++) {
         mt_linear_states_slope(k->lin, p, j, x + (c * k->nq), k->half + (c * k->nq));
     }
-    return any(size, k->half);
+    return mt_max_abs(size, k->half) != 0.0;
 }
 
 /* -e . dD q, without modal ratios. */
@@ -341,7 +316,7 @@ static mt_status forms_by(work *k, int p, double *const t[PARTS], mt_err *err)
     for (ptrdiff_t c = 0; c < k->ny && k->m > 0; c++) {
         mt_linear_jacobian_slope(k->lin, p, k->e + (c * k->nq), k->moved + (c * k->m));
     }
-    const bool moves = any((ptrdiff_t)k->m * k->ny, k->moved);
+    const bool moves = mt_max_abs((ptrdiff_t)k->m * k->ny, k->moved) != 0.0;
     for (int c = 0; c < PARTS && moves; c++) {
         add_to(k, k->m, k->ny, -1.0, k->moved, k->f[c], t[c]);
         add_to(k, k->m, k->n, -1.0, k->g[c], k->moved, t[c]);
@@ -350,7 +325,7 @@ static mt_status forms_by(work *k, int p, double *const t[PARTS], mt_err *err)
     if (k->ratio.r > 0) {
         MT_TRY(ratios(k, p, t[OF_S], err));
     }
-    input_column(k, p, t[part_at(mt_slope_power(k->in))]);
+    input_column(k, p, t[part_at(mt_response_power(k->in))]);
     return output_row(k, p, t, err);
 }
 

@@ -17,8 +17,12 @@ typedef struct mt_slope_factor {
 enum { MT_SLOPE_MATRICES = 4 };
 void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d);
 
-/* The power of s that an input's force has. */
-int mt_slope_power(const mt_port *port);
+/* f[nq] += what an input pushes with; shift[nq]: along the axis of a base, to which it goes. */
+void mt_slope_push(const mt_linear *lin, const mt_port *in, double *shift, double *f);
+/* e, nq x (n + 1): the motions of the n freedoms, and minus v[nq] (NULL: 0). Fails:
+ * MT_E_MEMORY. */
+mt_status mt_slope_motions(const mt_linear *lin, int nq, int n, const double *v, double *e,
+                           mt_arena *mem, mt_err *err);
 /* Row of a sensor's direction, of the terms of channels. */
 int mt_slope_channel(const mt_linear *lin, const mt_port *port);
 /* An output that is no joint's force, as a sum of rows: factor times the motion along row. */

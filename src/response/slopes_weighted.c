@@ -167,22 +167,12 @@ static void weigh(const work *k, mt_slope_factor f, double *to)
 
 static mt_status make_e(work *k, mt_err *err)
 {
-    const size_t n = (size_t)k->n;
-    double *const unit = mt_arena_f64(k->mem, n, n);
-    k->e = mt_arena_f64(k->mem, (size_t)k->nq, n + 1);
+    const double *const v =
+        k->out->kind == MT_PORT_JOINT ? k->p->ways->joint[k->of->out].v : NULL;
+    k->e = mt_arena_f64(k->mem, (size_t)k->nq, (size_t)k->n + 1);
     k->shift = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
-    for (size_t j = 0; j < n; j++) {
-        unit[j * (n + 1)] = 1.0;
-    }
-    mt_linear_expand(k->lin, k->n, unit, k->e);
-    if (k->out->kind == MT_PORT_JOINT) {
-        mt_axpy(k->nq, -1.0, k->p->ways->joint[k->of->out].v, k->e + ((ptrdiff_t)k->n * k->nq));
-    }
-    if (k->in->kind == MT_PORT_BASE) {
-        mt_linear_shift(k->lin, k->in->index, k->shift);
-    }
-    return MT_OK;
+    return mt_slope_motions(k->lin, k->nq, k->n, v, k->e, k->mem, err);
 }
 
 /* What the joints carry: forces that they balance, of inputs (nq x ny) and outputs (nq x n). */
@@ -208,13 +198,9 @@ static mt_status push(work *k, const balance *b, mt_err *err)
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 2);
     double *const sigma = f + k->nq;
     MT_TRY(mt_arena_check(k->mem, err));
-    if (k->in->kind == MT_PORT_BASE) {
-        mt_linear_states_product(k->lin, MT_MATRIX_MASS, -1.0, k->shift, f);
-    } else {
-        mt_linear_row_add(k->lin, MT_TERM_CHANNEL, mt_slope_channel(k->lin, k->in), 1.0, f);
-    }
+    mt_slope_push(k->lin, k->in, k->shift, f);
     for (ptrdiff_t j = 0; j < k->ny; j++) {
-        mt_axpy(k->nq, creal(k->y[mt_slope_power(k->in)][j]), f, b->in + (j * k->nq));
+        mt_axpy(k->nq, creal(k->y[mt_response_power(k->in)][j]), f, b->in + (j * k->nq));
     }
     if (k->out->kind == MT_PORT_JOINT) {
         const double *const standing = k->p->ways->joint[k->of->out].geometric;
@@ -399,7 +385,7 @@ static mt_status between(work *k, int p, double *out, mt_err *err)
 static double force_slope(const work *k, int p, double *part, double *e)
 {
     for (int j = 0; j < k->ny; j++) {
-        part[j] = creal(k->y[mt_slope_power(k->in)][j]);
+        part[j] = creal(k->y[mt_response_power(k->in)][j]);
     }
     mt_gemv(false, k->nq, k->ny, 1.0, k->e, k->nq, part, 0.0, e);
     return k->in->kind == MT_PORT_SENSOR
