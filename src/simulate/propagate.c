@@ -183,7 +183,7 @@ static void sample(mt_propagation *r)
         const int channel = r->opt->gauges[g].channel;
         double read[3];
         mt_propagation_see(r, g, read);
-        if (channel >= 0 && r->o.sys->channels[channel].kind == MT_CHANNEL_POINT) {
+        if (channel >= 0 && !mt_channel_turns(r->o.sys->channels[channel].kind)) {
             read[2] += ground(r, r->o.sys->channels[channel].axis);
         }
         out->value[at] = read[0];

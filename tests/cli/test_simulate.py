@@ -74,6 +74,26 @@ class Simulate(CliTest):
         for a, b in zip(seen[0], sine["outputs"][0]["values"]):
             self.assertAlmostEqual(a, b, places=13)
 
+    def test_what_stands_on_the_ground_is_accelerated_with_it(self):
+        """A beam that is held at both ends has the ground's acceleration where it is read; both ways of a motion agree."""
+        bar = {"kind": "beam", "elements": 1, "youngs_modulus_pa": 7e10, "density_kg_per_m3": 2700, "section": {"shape": "rectangle", "width_m": 0.01, "height_m": 0.01}}
+        model = self.write("held.json", json.dumps({
+            "format": "modetune-model/1", "name": "A held beam and a mass", "dimension": 2, "bodies": [{"name": "m", "mass_kg": 2, "centre": [1, 0]}],
+            "links": [{"name": "b", "from": [0, 1], "to": [1, 1], **bar}],
+            "joints": [{"name": "g", "type": "pin-in-slot", "bodies": ["ground", "m"], "at": [1, 0], "axis": [1, 0]},
+                       {"name": "r", "type": "fixed", "bodies": ["ground", "b.start"], "at": [0, 1]},
+                       {"name": "e", "type": "fixed", "bodies": ["ground", "b.end"], "at": [1, 1]}],
+            "springs": [{"name": "k", "type": "axial", "bodies": ["ground", "m"], "at": [[0, 0], [1, 0]], "stiffness_n_per_m": 800}],
+            "sensors": [{"name": "q", "on": "b", "fraction": 0.5, "directions": ["x"]}, {"name": "s", "on": "m", "directions": ["x"]}]}))
+        both = [self.json_of("simulate", model, "--duration", "0.1", "--input", "base.x=3", "--output", "q.x:acceleration", "--output", "s.x:acceleration", *how)
+                for how in ((), ("--integrate",))]
+        self.assertEqual([answer["method"] for answer in both], ["exact", "integrated"])
+        for answer in both:
+            held, moves = (o["values"] for o in answer["outputs"])
+            for t, a, b in zip(answer["time_s"], held, moves, strict=True):
+                self.assertAlmostEqual(a, 3, delta=1e-12)
+                self.assertAlmostEqual(b, 3 * (1 - math.cos(20 * t)), delta=1e-9)
+
     def test_steady_amplitudes_are_read_under_one_sine_alone(self):
         model = str(SOURCE / "tests/models/space_body.json")
         one = self.json_of("simulate", model, "-c", "damped", "--sine", "base.x=1@3", "--duration", "20", "--output", "s.x")
