@@ -31,8 +31,8 @@ static double norm3(const double *v)
 
 static bool is_parallel(const double *a, const double *b)
 {
-    const double c[3] = {(a[1] * b[2]) - (a[2] * b[1]), (a[2] * b[0]) - (a[0] * b[2]),
-                         (a[0] * b[1]) - (a[1] * b[0])};
+    double c[3];
+    mt_cross3(a, b, c);
     return norm3(c) <= NOISE * norm3(a) * norm3(b);
 }
 
@@ -164,8 +164,8 @@ static bool is_affine_angle(const mt_linear *lin, const mt_affine *a, const mt_m
     double c[3];
     vector_at(lin, m->body[0], m->dir[0], b);
     vector_at(lin, m->body[0], m->dir[1], c);
-    const double n[3] = {(b[1] * c[2]) - (b[2] * c[1]), (b[2] * c[0]) - (b[0] * c[2]),
-                         (b[0] * c[1]) - (b[1] * c[0])};
+    double n[3];
+    mt_cross3(b, c, n);
     return is_steady(a, m->body[0], n) && is_steady(a, m->body[1], n);
 }
 

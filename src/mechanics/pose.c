@@ -19,7 +19,14 @@ const mt_pose *mt_pose_of(const mt_pose *poses, int body)
     return body == MT_GROUND ? &GROUND : &poses[body];
 }
 
-void mt_pose_move(mt_pose *pose, const double *dx, const double *theta)
+void mt_cross3(const double a[3], const double b[3], double out[3])
+{
+    out[0] = (a[1] * b[2]) - (a[2] * b[1]);
+    out[1] = (a[2] * b[0]) - (a[0] * b[2]);
+    out[2] = (a[0] * b[1]) - (a[1] * b[0]);
+}
+
+void mt_turn3(const double theta[3], int count, const double *v, double *out)
 {
     const double angle =
         sqrt((theta[0] * theta[0]) + (theta[1] * theta[1]) + (theta[2] * theta[2]));
@@ -28,18 +35,27 @@ void mt_pose_move(mt_pose *pose, const double *dx, const double *theta)
     const double s1 = angle > 0.0 ? sin(angle) / angle : 1.0;
     const double sh = half > 0.0 ? sin(half) / half : 1.0;
     const double s2 = 0.5 * sh * sh;
-    for (int c = 0; c < 3; c++) {
-        const mt_cx *const col = pose->r + ((ptrdiff_t)3 * c);
-        const double v[3] = {creal(col[0]), creal(col[1]), creal(col[2])};
-        const double w[3] = {(theta[1] * v[2]) - (theta[2] * v[1]),
-                             (theta[2] * v[0]) - (theta[0] * v[2]),
-                             (theta[0] * v[1]) - (theta[1] * v[0])};
-        const double z[3] = {(theta[1] * w[2]) - (theta[2] * w[1]),
-                             (theta[2] * w[0]) - (theta[0] * w[2]),
-                             (theta[0] * w[1]) - (theta[1] * w[0])};
+    for (int c = 0; c < count; c++, v += 3, out += 3) {
+        double w[3];
+        double z[3];
+        mt_cross3(theta, v, w);
+        mt_cross3(theta, w, z);
         for (int i = 0; i < 3; i++) {
-            pose->r[i + (3 * c)] = v[i] + (s1 * w[i]) + (s2 * z[i]);
+            out[i] = v[i] + (s1 * w[i]) + (s2 * z[i]);
         }
+    }
+}
+
+void mt_pose_move(mt_pose *pose, const double *dx, const double *theta)
+{
+    double r[9];
+    double turned[9];
+    for (int i = 0; i < 9; i++) {
+        r[i] = creal(pose->r[i]);
+    }
+    mt_turn3(theta, 3, r, turned);
+    for (int i = 0; i < 9; i++) {
+        pose->r[i] = turned[i];
     }
     for (int i = 0; i < 3; i++) {
         pose->x[i] = creal(pose->x[i]) + dx[i];
@@ -60,23 +76,20 @@ void mt_pose_tangent(mt_pose *pose, const double *dx, const double *theta)
     }
 }
 
-static void body_motion(const mt_system *sys, int body, const double *dq, double dx[3],
-                        double theta[3])
+void mt_pose_motion(const mt_system *sys, int body, const double *dq, double out[6])
 {
-    for (int k = 0; k < 3; k++) {
-        const int *const dof = sys->bodies[body].dof;
-        dx[k] = dof[k] >= 0 ? dq[dof[k]] : 0.0;
-        theta[k] = dof[3 + k] >= 0 ? dq[dof[3 + k]] : 0.0;
+    for (int k = 0; k < 6; k++) {
+        const int dof = sys->bodies[body].dof[k];
+        out[k] = dof >= 0 ? dq[dof] : 0.0;
     }
 }
 
 void mt_poses_move(const mt_system *sys, mt_pose *poses, const double *dq)
 {
     for (int i = 0; i < sys->n_bodies; i++) {
-        double dx[3];
-        double theta[3];
-        body_motion(sys, i, dq, dx, theta);
-        mt_pose_move(&poses[i], dx, theta);
+        double own[6];
+        mt_pose_motion(sys, i, dq, own);
+        mt_pose_move(&poses[i], own, own + 3);
     }
 }
 
@@ -84,11 +97,10 @@ void mt_poses_tangent(const mt_system *sys, const mt_pose *poses, const double *
                       mt_pose *out)
 {
     for (int i = 0; i < sys->n_bodies; i++) {
-        double dx[3];
-        double theta[3];
+        double own[6];
         out[i] = poses[i];
-        body_motion(sys, i, dq, dx, theta);
-        mt_pose_tangent(&out[i], dx, theta);
+        mt_pose_motion(sys, i, dq, own);
+        mt_pose_tangent(&out[i], own, own + 3);
     }
 }
 

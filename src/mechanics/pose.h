@@ -4,6 +4,10 @@
 
 #include "mechanics/system.h"
 
+void mt_cross3(const double a[3], const double b[3], double out[3]);
+/* out := v[3 x count] turned by theta (Rodrigues); not in place. */
+void mt_turn3(const double theta[3], int count, const double *v, double *out);
+
 /* Where bodies stand: one by one, all bodies of a system, and with what a position says
  * besides. */
 
@@ -15,6 +19,8 @@ void mt_pose_move(mt_pose *pose, const double *dx, const double *theta);
 /* Put the derivative (dx, theta) on a real pose: x + i h dx, R + i h theta^ R. */
 void mt_pose_tangent(mt_pose *pose, const double *dx, const double *theta);
 
+/* The six components of dq that are a body's; 0 where it has none. */
+void mt_pose_motion(const mt_system *sys, int body, const double *dq, double out[6]);
 /* All bodies along dq[nq]: moved (real), or with dq as their derivative; out may be poses. */
 void mt_poses_move(const mt_system *sys, mt_pose *poses, const double *dq);
 void mt_poses_tangent(const mt_system *sys, const mt_pose *poses, const double *dq,

@@ -72,21 +72,12 @@ struct mt_collocation {
     double *next;          /* [2 nq] */
 };
 
-static void cross(const double *a, const double *b, double out[3])
-{
-    out[0] = (a[1] * b[2]) - (a[2] * b[1]);
-    out[1] = (a[2] * b[0]) - (a[0] * b[2]);
-    out[2] = (a[0] * b[1]) - (a[1] * b[0]);
-}
-
 /* Modes of the springs at s->base. */
 static mt_status begin(mt_sim *s, mt_collocation *q, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     const int nq = q->nq;
     mt_elimination e;
-    mt_motion_eval(&s->motion, &s->base, s->begin + nq);
-    s->evaluations++;
     MT_TRY(mt_eliminate(s->sys, s->m, s->motion.a, s->mem, &e, err));
     mt_motion_stiffness(&s->motion, &s->base, q->k);
     const int n = e.n;
@@ -102,10 +93,7 @@ static mt_status begin(mt_sim *s, mt_collocation *q, mt_err *err)
     mt_status rc = mt_cholesky(n, mass, NULL, NULL);
     if (rc == MT_OK) {
         /* L^-1 K L^-T, then phi = Z L^-T Y */
-        mt_tri_solve(false, n, n, mass, stiff, n);
-        mt_transpose(n, n, stiff, mz);
-        mt_tri_solve(false, n, n, mass, mz, n);
-        memcpy(stiff, mz, (size_t)n * (size_t)n * sizeof *stiff);
+        mt_congruence_inverse(n, mass, stiff);
         MT_TRY(mt_eig_sym(n, stiff, q->w, true, s->mem, err));
         mt_tri_solve(true, n, n, mass, stiff, n);
         mt_gemm(false, false, nq, n, n, 1.0, e.z, nq, stiff, n, 0.0, q->phi, nq);
@@ -158,7 +146,7 @@ mt_status mt_collocation_new(mt_sim *s, mt_err *err)
     q->w = mt_arena_f64(s->mem, nq, 1);
     q->e0 = mt_arena_f64(s->mem, nq, 1);
     q->work = mt_arena_f64(s->mem, nq, 2);
-    q->next = mt_arena_f64(s->mem, nq, 4);
+    q->next = mt_arena_f64(s->mem, nq, 2);
     q->a = mt_arena_f64(s->mem, nq + (size_t)q->rates, 1);
     q->rate = mt_arena_f64(s->mem, (size_t)q->rates, POINTS);
     q->rows = mt_arena_f64(s->mem, nq, (size_t)q->rates * POINTS);
@@ -175,15 +163,6 @@ mt_status mt_collocation_new(mt_sim *s, mt_err *err)
     return MT_OK;
 }
 
-/* theta, and rho, of a body; 0 where it has none. */
-static void twist_of(const mt_system *sys, int body, const double *x, double out[6])
-{
-    for (int k = 0; k < 6; k++) {
-        const int dof = sys->bodies[body].dof[k];
-        out[k] = dof >= 0 ? x[dof] : 0.0;
-    }
-}
-
 static void put_twist(const mt_system *sys, int body, const double in[6], double *x)
 {
     for (int k = 0; k < 6; k++) {
@@ -191,21 +170,6 @@ static void put_twist(const mt_system *sys, int body, const double in[6], double
         if (dof >= 0) {
             x[dof] = in[k];
         }
-    }
-}
-
-/* out := v turned by theta. */
-static void turn(const double *theta, const double *v, double out[3])
-{
-    const double a = mt_norm2(3, theta);
-    const double half = a > 0.0 ? sin(0.5 * a) / (0.5 * a) : 1.0;
-    const double s1 = a > 0.0 ? sin(a) / a : 1.0;
-    double once[3];
-    double twice[3];
-    cross(theta, v, once);
-    cross(theta, once, twice);
-    for (int k = 0; k < 3; k++) {
-        out[k] = v[k] + (s1 * once[k]) + (0.5 * half * half * twice[k]);
     }
 }
 
@@ -224,8 +188,8 @@ static void way_of(const double xi[6], double out[3])
                   : (a - sin(a)) / (a2 * a);
     double once[3];
     double twice[3];
-    cross(theta, rho, once);
-    cross(theta, once, twice);
+    mt_cross3(theta, rho, once);
+    mt_cross3(theta, once, twice);
     for (int k = 0; k < 3; k++) {
         out[k] = rho[k] + (0.5 * half * half * once[k]) + (cubic * twice[k]);
     }
@@ -235,9 +199,9 @@ static void bracket(const double a[6], const double b[6], double out[6])
 {
     double first[3];
     double second[3];
-    cross(a + 3, b, first);
-    cross(a, b + 3, second);
-    cross(a + 3, b + 3, out + 3);
+    mt_cross3(a + 3, b, first);
+    mt_cross3(a, b + 3, second);
+    mt_cross3(a + 3, b + 3, out + 3);
     for (int k = 0; k < 3; k++) {
         out[k] = first[k] + second[k];
     }
@@ -252,12 +216,11 @@ static void to_global(const mt_system *sys, const double *xi, const double *v, d
         double vel[6];
         double way[6];
         double moved[6];
-        twist_of(sys, b, xi, x);
-        twist_of(sys, b, v, vel);
+        mt_pose_motion(sys, b, xi, x);
+        mt_pose_motion(sys, b, v, vel);
         way_of(x, way);
         memcpy(way + 3, x + 3, 3 * sizeof *way);
-        turn(x + 3, vel, moved);
-        turn(x + 3, vel + 3, moved + 3);
+        mt_turn3(x + 3, 2, vel, moved);
         put_twist(sys, b, way, u);
         put_twist(sys, b, moved, out);
     }
@@ -277,9 +240,9 @@ static void to_local(const mt_system *sys, const double *xi, const double *v, co
         double term[6];
         double next[6];
         double turned[6];
-        twist_of(sys, b, xi, x);
-        twist_of(sys, b, v, vel);
-        twist_of(sys, b, a, acc);
+        mt_pose_motion(sys, b, xi, x);
+        mt_pose_motion(sys, b, v, vel);
+        mt_pose_motion(sys, b, a, acc);
         memcpy(term, vel, sizeof term);
         for (int k = 0; k < MT_COUNT(series); k++) {
             bracket(x, term, next);
@@ -290,9 +253,8 @@ static void to_local(const mt_system *sys, const double *xi, const double *v, co
         }
         const double back[3] = {-x[3], -x[4], -x[5]};
         double spin[3];
-        turn(back, acc, turned);
-        turn(back, acc + 3, turned + 3);
-        cross(vel + 3, vel, spin);
+        mt_turn3(back, 2, acc, turned);
+        mt_cross3(vel + 3, vel, spin);
         for (int k = 0; k < 3; k++) {
             turned[k] -= spin[k];
         }
@@ -308,11 +270,10 @@ static void turn_back(const mt_system *sys, const double *xi, double *x)
         double at[6];
         double own[6];
         double turned[6];
-        twist_of(sys, b, xi, at);
-        twist_of(sys, b, x, own);
+        mt_pose_motion(sys, b, xi, at);
+        mt_pose_motion(sys, b, x, own);
         const double back[3] = {-at[3], -at[4], -at[5]};
-        turn(back, own, turned);
-        turn(back, own + 3, turned + 3);
+        mt_turn3(back, 2, own, turned);
         put_twist(sys, b, turned, x);
     }
 }

@@ -49,17 +49,13 @@ static double lagrange(const mt_filon *q, int j, double x)
 
 static void make_derivatives(mt_filon *q)
 {
-    double weight[POINTS];
-    for (int j = 0; j < POINTS; j++) {
-        weight[j] = (j % 2 == 0 ? 1.0 : -1.0) * (j == 0 || j == DEGREE ? 0.5 : 1.0);
-    }
     double *const d = q->derivative[1];
     for (int i = 0; i < POINTS; i++) {
         q->derivative[0][i + (i * POINTS)] = 1.0;
         double sum = 0.0;
         for (int j = 0; j < POINTS; j++) {
             if (j != i) {
-                d[i + (j * POINTS)] = weight[j] / weight[i] / (q->point[i] - q->point[j]);
+                d[i + (j * POINTS)] = q->last[j] / q->last[i] / (q->point[i] - q->point[j]);
                 sum += d[i + (j * POINTS)];
             }
         }
@@ -98,8 +94,8 @@ double mt_filon_sine_over(double x, double c)
  * l_j^(k)(c)). */
 static void weigh_fast(const mt_filon *q, int i, mt_filon_weights *w)
 {
-    const double c = cos(w->x * q->point[i]);
-    const double s = sin(w->x * q->point[i]);
+    const double c = w->c[i];
+    const double s = w->s[i];
     for (int j = 0; j < POINTS; j++) {
         double re = 0.0;
         double im = 0.0;

@@ -64,12 +64,7 @@ static mt_status find_modes(mt_oscillators *o, mt_arena *mem, bool *good, mt_err
         return mt_fail_memory(err);
     }
     if (*good) {
-        double *const lambda = mt_arena_f64(mem, (size_t)r.n, 1);
-        MT_TRY(mt_arena_check(mem, err));
-        for (int i = 0; i < r.n; i++) {
-            lambda[i] = modes.kind[i] == MT_MODE_RIGID_BODY ? 0.0 : modes.lambda[i];
-        }
-        o->lambda = lambda;
+        o->lambda = modes.lambda;
         o->y = modes.y;
     }
     return MT_OK;

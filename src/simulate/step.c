@@ -32,13 +32,6 @@ static double turn_factor(double a)
     return (1.0 - (0.5 * a / tan(0.5 * a))) / (a * a);
 }
 
-static void cross(const double *a, const double *b, double out[3])
-{
-    out[0] = (a[1] * b[2]) - (a[2] * b[1]);
-    out[1] = (a[2] * b[0]) - (a[0] * b[2]);
-    out[2] = (a[0] * b[1]) - (a[1] * b[0]);
-}
-
 /* out[nq] = u'. */
 static void increments(const mt_system *sys, const double *u, const double *v, double *out)
 {
@@ -52,8 +45,8 @@ static void increments(const mt_system *sys, const double *u, const double *v, d
         const double omega[3] = {v[dof[0]], v[dof[1]], v[dof[2]]};
         double once[3];
         double twice[3];
-        cross(turn, omega, once);
-        cross(turn, once, twice);
+        mt_cross3(turn, omega, once);
+        mt_cross3(turn, once, twice);
         const double c = turn_factor(mt_norm2(3, turn));
         for (int k = 0; k < 3; k++) {
             out[dof[k]] += (c * twice[k]) - (0.5 * once[k]);
@@ -338,8 +331,7 @@ mt_status mt_sim_gauge(mt_sim *s, double t, int gauge, double out[3], mt_err *er
     read_gauge(s, gauge, s->begin, s->slope + s->nq, out);
     if (channel >= 0) {
         const mt_channel_def *const c = &s->sys->channels[channel];
-        const bool point = c->kind == MT_CHANNEL_POINT || c->kind == MT_CHANNEL_BEAM_POINT;
-        out[2] += point ? base_acceleration(s, c->axis, t, err, &rc) : 0.0;
+        out[2] += mt_channel_turns(c->kind) ? 0.0 : base_acceleration(s, c->axis, t, err, &rc);
     }
     return rc;
 }
