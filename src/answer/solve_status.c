@@ -250,11 +250,15 @@ static const char *exact_text(const mt_answer *a, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
     int exact = 0;
+    int continua = 0;
     while (exact < n && !(shown_misfit(a->found.solutions[exact].f) > 0.0)) {
-        exact++;
+        continua += a->found.solutions[exact++].continuum ? 1 : 0;
     }
+    const char *const more = continua == 0       ? ""
+                             : continua == exact ? ", each in a continuum of others"
+                                                 : ", some in a continuum of others";
     const char *const all =
-        exact < 2 ? "" : mt_arena_printf(mem, "; %d designs have it", exact);
+        exact < 2 ? "" : mt_arena_printf(mem, "; %d designs have it%s", exact, more);
     const char *const rest =
         exact == n ? ""
         : exact + 1 == n
@@ -303,6 +307,8 @@ static const char *fit_text(const mt_answer *a, const mt_recommendation *best, m
         return NULL;
     }
     const bool fitted = is_fitted(a, best);
+    const bool several =
+        a->found.n_solutions > 1 && !(shown_misfit(a->found.solutions[1].f) > 0.0);
     const char *const end = fitted ? ""
                             : mt_describe_is_optimum(best)
                                 ? ", when the evaluations ran out"
@@ -311,8 +317,8 @@ static const char *fit_text(const mt_answer *a, const mt_recommendation *best, m
         mem, "%s: the least misfit found from %d start%s is %.4g%s%s%s%s.",
         fitted ? "Fitted" : "Not converged", a->found.starts, a->found.starts == 1 ? "" : "s",
         mt_without_noise(best->misfit, MT_RATIO_NOISE), end,
-        a->found.solutions[0].continuum ? "; a continuum of designs has it" : "", bounds,
-        others);
+        a->found.solutions[0].continuum && !several ? "; a continuum of designs has it" : "",
+        bounds, others);
 }
 
 static const char *nothing_text(const mt_answer *a)

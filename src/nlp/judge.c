@@ -34,6 +34,11 @@ static const double SETTLED_GAIN = 1e-6;
 /* A variable nearer to a mark than this, in widths of its bounds, stands there but for rounding
  * of the search. */
 static const double ON_MARK = 1e-12;
+/* A compromise knows a variable that no demand feels to the root of rounding only, as its
+ * change counts by its square: nearer to the original than this it is tried there, and stays
+ * where the squares are the same to IDLE of their size. */
+static const double NEARLY_ON_MARK = 1e-3;
+static const double IDLE = 1e-12;
 /* Ends of a search that was ended. */
 enum { ENDED_MOST = 1000 };
 /* Violation, in tolerances, that counts as none, and as no more than it was. */
@@ -261,6 +266,31 @@ static void put_on_marks(mt_nlp_engine *e, mt_nlp_point *p)
     mt_arena_rewind(&e->scratch, mark);
 }
 
+/* Variables of a compromise that no demand feels have their original value exactly. */
+static void put_idle_back(mt_nlp_engine *e, mt_nlp_point *p)
+{
+    const mt_nlp *const q = e->nlp;
+    const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
+    mt_nlp_point *const to = mt_nlp_point_new(e, &e->scratch);
+    double *const t = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
+    for (int j = 0; j < e->n && mt_nlp_has_room(e, &e->scratch) && !e->ended; j++) {
+        const double off = fabs(p->t[j] - e->origin[j]);
+        if (off == 0.0 || off > NEARLY_ON_MARK * (q->upper[j] - q->lower[j])) {
+            continue;
+        }
+        memcpy(t, p->t, (size_t)e->n * sizeof *t);
+        t[j] = e->origin[j];
+        if (mt_nlp_evaluate(e, t, true, to) && !mt_nlp_feasible(to) && to->f <= p->f &&
+            to->squares <= p->squares * (1 + IDLE) &&
+            to->violation <= p->violation * (1 + IDLE)) {
+            to->kkt = p->kkt;
+            to->n_loose = p->n_loose;
+            mt_nlp_point_copy(e, p, to);
+        }
+    }
+    mt_arena_rewind(&e->scratch, mark);
+}
+
 /* A double root; of two roots that were merged the Jacobian changes its sign in between. */
 static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
 {
@@ -319,6 +349,9 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     }
     for (int i = 0; i < all->count && !e->ended; i++) {
         put_on_marks(e, all->at[i].p);
+        if (out->compromise && !unused) {
+            put_idle_back(e, all->at[i].p);
+        }
     }
     count_roots(e, all, out);
     const int count = all->count < e->opt.max_solutions ? all->count : e->opt.max_solutions;
@@ -329,6 +362,7 @@ void mt_nlp_judge(mt_nlp_engine *e, mt_nlp_ends *all, mt_arena *mem, mt_nlp_resu
     for (int i = 0; i < count && mt_nlp_report(e, all->at[i].p, out, mem, &out->solutions[i]);
          i++) {
         out->solutions[i].singular = is_singular(e, all->at[i].p, all->at[i].merged);
+        out->solutions[i].n_loose = all->at[i].p->n_loose;
         out->solutions[i].flat = all->at[i].p->n_loose > single_directions(e, out);
         out->solutions[i].start = all->at[i].start;
         out->solutions[i].hits = all->at[i].hits;

@@ -107,6 +107,7 @@ typedef struct mt_nlp_solution {
      * the undetermined ones of one variable: others next to it may be as good (without
      * residuals) */
     bool flat;
+    int n_loose; /* those directions, the undetermined ones among them; 0: not known */
     /* ||grad of the Lagrangian projected on the free variables|| relative; NaN for isolated
      * roots (no freedom left) */
     double kkt;

@@ -64,6 +64,7 @@ typedef struct mt_case {
     /* local solves of a search where the study does not say; 0: by the number of variables */
     int starts;
     bool best_alone; /* nobody asks for other designs than the best one that is found */
+    bool as_found;   /* of equal designs any one does: the nearest of them is not sought */
     int n_t;         /* n, or n + 1 */
     int n_aims;
     int stage; /* of aims */

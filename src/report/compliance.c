@@ -111,11 +111,12 @@ static nearest nearest_to(const mt_recommendation *r, const mt_result_gap *band)
     for (int pass = 0; pass < 2 && !beside; pass++) {
         for (int i = 0; i < r->n_clearances; i++) {
             const mt_result_clearance *const c = &r->clearances[i];
-            const double room = room_of(band, isnan(c->worst_hz) ? c->hz : c->worst_hz);
+            const double hz = isnan(c->worst_hz) ? c->hz : c->worst_hz;
+            const double room = mt_without_noise(room_of(band, hz), MT_RATIO_NOISE);
             const bool own = pass == 0 ? c->band_id == band->id
                                        : strcmp(c->configuration, band->configuration) == 0;
             beside = beside || own;
-            if (own && !(room >= n.room)) {
+            if (own && (isnan(n.room) || isnan(room) || mt_exceeds(n.room, room))) {
                 n = (nearest){room, c->hz, c->worst_hz, c->mode};
             }
         }
@@ -220,7 +221,7 @@ static const mt_result_gap *tightest_of(const mt_recommendation *r, const char *
             continue;
         }
         const double own = nearest_to(r, &r->gaps[i]).room;
-        if (tightest == NULL || own < *room) {
+        if (tightest == NULL || mt_exceeds(*room, own)) {
             tightest = &r->gaps[i];
             *room = isnan(own) ? HUGE_VAL : own;
         }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/tie.h"
 
 enum { INDENT = 2, LEAST = 30, USUAL = 64, MOST = 96, ROOM = MOST + 16, NUMBER = 24 };
 static const double ABOVE = 1.12; /* what is shown above the last thing asked for */
@@ -72,9 +73,10 @@ static double highest(const mt_recommendation *r)
     return top;
 }
 
+/* What lies in the middle of two places but for rounding has the right one. */
 static int place(const ruler *u, double hz)
 {
-    return (int)lround(hz / u->top * (u->length - 1));
+    return (int)floor((hz / u->top * (u->length - 1)) + 0.5 + MT_TIE);
 }
 
 /* A mark on the line, if it lies there and nothing of more weight does. */

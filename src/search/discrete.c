@@ -291,6 +291,7 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
         r.n = 0;
         MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
     }
+    MT_TRY(mt_discrete_settle(&d, r.n < asked ? r.n : asked, r.best, err));
     for (int i = 0; i < n_all; i++) {
         report->judged += all[i]->judged ? 1 : 0;
         report->feasible += all[i]->feasible ? 1 : 0;

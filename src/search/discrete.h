@@ -66,6 +66,7 @@ typedef struct mt_combination {
     bool judged;
     bool feasible;
     bool singular;
+    bool flat; /* one of equal designs, as the search found it */
     /* from position to position of its drives and over its tolerances, and judged by that */
     bool followed;
     bool broken; /* it misses a limit between the positions alone: feasible, where all do */
@@ -106,6 +107,10 @@ mt_status mt_discrete_solve(mt_workspace *const *workers, int n_workers, mt_aren
  * mixed (0: no limit). Adds to the search's counters. */
 mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long budget,
                             mt_err *err);
+/* discrete_judge.c: of best[n] those with equal designs beside them are searched once more, and
+ * become the nearest to the original of these. Of each combination any one served until here:
+ * to seek the nearest takes longer than to find one. Where it is mixed. */
+mt_status mt_discrete_settle(mt_discrete *d, int n, mt_combination *const *best, mt_err *err);
 /* discrete_undetermined.c: directions that the goals do not settle at the best combination,
  * into out: single catalogues any of whose values does, and those of the continuous variables
  * with the catalogues as they are. Searches that combination once more where it is mixed. */

@@ -32,6 +32,7 @@ typedef struct judging {
     int n;
     mt_combination *list;
     long budget;
+    bool settles; /* of equal designs of a combination it ends with the nearest */
 } judging;
 
 mt_status mt_discrete_alloc(const mt_discrete *d, int n, mt_combination **out, mt_err *err)
@@ -271,6 +272,7 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
     out->proof_work = fmin(out->proof_work, MT_CERTIFY_WORK);       /* there are many */
     out->hint = c->from;
     out->best_alone = true;
+    out->as_found = true;
     return MT_OK;
 }
 
@@ -312,6 +314,7 @@ static mt_status search_closed(mt_workspace *w, mt_arena *mem, mt_combination *c
     c->kkt = best->kkt;
     c->singular = best->singular;
     c->feasible = best->feasible;
+    c->flat = best->flat;
     const mt_status rc = evaluate_aims(w, best, bands, mem, c, &why);
     if (rc != MT_OK) {
         c->feasible = false;
@@ -332,6 +335,7 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     const long most = d->c->search.max_evaluations;
     mt_status rc = close_on(d, c, most > 0 ? most - d->evals : 0, w, mem, &closed, err);
     closed.hint = NULL;
+    closed.as_found = false;
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {
         rc = bands ? mt_gaps_solve(&w, 1, NULL, mem, &gaps, err)
@@ -358,6 +362,7 @@ static mt_status judge_mixed(void *context, int worker, int task, mt_scope *own,
     MT_TRY(mt_arena_init(&mem, 0, err));
     w->scope = own;
     mt_status rc = close_on(j->d, c, j->budget, w, &mem, &closed, err);
+    closed.as_found = !j->settles;
     rc = rc == MT_OK ? search_closed(w, &mem, c, err) : rc;
     w->scope = before;
     mt_workspace_back(w, j->d->c);
@@ -425,5 +430,53 @@ mt_status mt_discrete_judge(mt_discrete *d, int n, mt_combination *list, long bu
         d->stop = list[i].stop > d->stop ? list[i].stop : d->stop;
     }
     mt_workspace_note_designs(d->workers[0], n_designs);
+    return MT_OK;
+}
+
+/* The search of a combination once more took another way, as a budget may make it do. */
+static bool is_worse(const mt_discrete *d, const mt_combination *again,
+                     const mt_combination *before)
+{
+    const mt_merit x = {before->feasible, before->missed.squares, d->p->n_aims, before->f};
+    const mt_merit y = {again->feasible, again->missed.squares, d->p->n_aims, again->f};
+    return !again->judged || !again->feasible || mt_merit_before(&x, &y, MT_EQUAL_FOUND);
+}
+
+mt_status mt_discrete_settle(mt_discrete *d, int n, mt_combination *const *best, mt_err *err)
+{
+    const long most = d->c->search.max_evaluations;
+    judging j = {.d = d, .settles = true};
+    int *const of = mt_arena_int(d->mem, (size_t)n);
+    long evals = 0;
+    MT_TRY(mt_arena_check(d->mem, err));
+    for (int i = 0; i < n; i++) {
+        if (best[i]->flat && best[i]->feasible && best[i]->judged) {
+            of[j.n++] = i;
+            evals = best[i]->evals > evals ? best[i]->evals : evals;
+        }
+    }
+    if (j.n == 0 || d->stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    j.budget = most > 0 ? (most - d->evals) / j.n : 0;
+    if (most > 0 && j.budget <= evals) {
+        return MT_OK; /* not even what was searched could be searched again */
+    }
+    MT_TRY(mt_discrete_alloc(d, j.n, &j.list, err));
+    for (int i = 0; i < j.n; i++) {
+        memcpy(j.list[i].pick, best[of[i]]->pick, (size_t)d->n_discrete * sizeof(int));
+        j.list[i].from = best[of[i]]->from;
+        mt_discrete_set(d, &j.list[i]);
+    }
+    const mt_tasks searches = {j.n, judge_mixed, NULL, &j, "nearest of equal designs"};
+    MT_TRY(mt_workers_run(d->n_workers, d->workers[0]->scope, &searches, err));
+    for (int i = 0; i < j.n; i++) {
+        d->evals += j.list[i].evals;
+        d->starts += j.list[i].starts;
+        d->stop = j.list[i].stop == MT_STOP_USER ? MT_STOP_USER : d->stop;
+        if (!is_worse(d, &j.list[i], best[of[i]])) {
+            *best[of[i]] = j.list[i];
+        }
+    }
     return MT_OK;
 }

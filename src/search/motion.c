@@ -33,8 +33,6 @@ static const double SHORTEST = 1e-7; /* of the motion: intervals that are not ha
 static const double AWAY = 0.05;
 static const double STEP = 0.05;  /* longest interval at first [rad, model lengths] */
 static const double SAME = 1e-12; /* positions nearer than this [rad, model lengths] are one */
-/* A clearance of less, in percent, is none: rounding. */
-static const double ON_EDGE_PERCENT = 1e-9;
 enum { INTERVALS_AT_FIRST = 8, INTERVALS_MOST_AT_FIRST = 64, POSITIONS_MOST = 2000 };
 /* Of a way whatever the budget: its ends and one between. */
 enum { POSITIONS_LEAST = 3 };
@@ -159,7 +157,7 @@ static void keep_least(walk *w, const edge *e, double at, double room)
     out->band = *band;
     out->hz = exp(e->log_hz + (e->sign * room));
     out->percent = mt_edge_clearance_percent(edge_hz, e->sign < 0.0, out->hz);
-    out->percent = fabs(out->percent) <= ON_EDGE_PERCENT ? 0.0 : out->percent;
+    out->percent = mt_without_noise(out->percent, MT_PERCENT_NOISE);
     out->margin_percent = mt_edge_clearance_percent(edge_hz, e->sign < 0.0, exp(e->log_hz));
 }
 

@@ -7,11 +7,18 @@
  *
  * meet all goals with the objectives that a and b have, within their tolerance. Isolated
  * solutions do not: between them the objective rises or a goal is missed. Of a continuum one is
- * kept, the nearest to the original design. Curved ones, whose chord leaves them, are not told.
+ * kept, the nearest to the original design.
+ *
+ * Exact fits of fewer residuals than variables lie on a curved continuum, which the chord
+ * leaves. Its points are brought back by the shortest steps to r = 0 (Gauss and Newton),
+ *     t := t - J^T (J J^T)^-1 r   on the variables that have not come to a bound;
+ * a and b belong together where all of them come back, not farther than a quarter of the chord.
+ * Other curved ones are not told.
  */
 #include <math.h>
 #include <string.h>
 
+#include "linalg/dense.h"
 #include "nlp/merit.h"
 #include "problem/objective.h"
 #include "search/search.h"
@@ -20,6 +27,12 @@ enum { BETWEEN = 3 };
 /* Objectives that differ by less are equal: relative to their size; those without unit (roots
  * of half squares, clearances) to this at least, as residuals are. */
 static const double EQUAL = 1e-6;
+/* Back to r = 0: residuals below this are none, in so many steps. */
+static const double RESIDUAL = 1e-9;
+enum { STEPS = 12 };
+static const double RANK_TOL = 1e-10;
+/* No farther from the chord than this part of it. */
+static const double ASIDE = 0.25;
 /* KKT residuals below this are local solutions, as in the search. */
 static const double STATIONARY = 1e-6;
 
@@ -30,6 +43,8 @@ typedef struct continua {
     double *aims; /* n_aims of each solution */
     double *at;   /* [n_aims] between two of them */
     double *t;    /* [n_t] */
+    bool fits;    /* residuals alone, fewer than variables */
+    mt_arena *mem;
     mt_status rc; /* what ends the comparison */
     mt_err err;
 } continua;
@@ -71,6 +86,86 @@ static bool equal(const mt_workspace *ws, const double *a, const double *b)
     return true;
 }
 
+/* The Jacobian of the residuals at c->t on the variables free[n_free]: the step to r = 0, into
+ * step[n_free]. */
+static mt_status shortest_step(continua *c, int n_free, const int *free, double *step,
+                               mt_err *err)
+{
+    const int m = c->ws->p->n_res;
+    mt_qr qr;
+    double *const jt = mt_arena_f64(c->mem, (size_t)n_free, (size_t)m);
+    double *const r = mt_arena_f64(c->mem, (size_t)m, 1);
+    MT_TRY(mt_arena_check(c->mem, err));
+    for (int i = 0; i < m; i++) {
+        r[i] = -c->v.r[i];
+        for (int k = 0; k < n_free; k++) {
+            jt[k + ((ptrdiff_t)i * n_free)] = c->v.dr[i + ((ptrdiff_t)free[k] * m)];
+        }
+    }
+    MT_TRY(mt_qr_factor(n_free, m, jt, n_free, RANK_TOL, c->mem, &qr, err));
+    return mt_qr_solve_transposed(&qr, 1, r, step, c->mem, err);
+}
+
+/* Bring c->t back to an exact fit, which bounds that it meets hold it at; false where that does
+ * not come about. */
+static bool restore(continua *c)
+{
+    const mt_case *const k = c->ws->c;
+    const long most = k->search.max_evaluations;
+    const int n = k->n_t;
+    int *const free = mt_arena_int(c->mem, (size_t)n);
+    double *const step = mt_arena_f64(c->mem, (size_t)n, 1);
+    int n_free = 0;
+    c->rc = c->rc == MT_OK ? mt_arena_check(c->mem, &c->err) : c->rc;
+    for (int j = 0; j < n && c->rc == MT_OK; j++) {
+        free[n_free] = j;
+        n_free += k->lower_t[j] < k->upper_t[j] ? 1 : 0;
+    }
+    for (int i = 0; i < STEPS && c->rc == MT_OK; i++) {
+        if ((most > 0 && c->out->evals >= most) || n_free < c->ws->p->n_res) {
+            return false;
+        }
+        c->out->evals++;
+        mt_status rc = mt_workspace_eval(c->ws, c->t, true, &c->v, &c->err);
+        if (rc == MT_OK && mt_max_abs(c->ws->p->n_res, c->v.r) <= RESIDUAL) {
+            return true;
+        }
+        rc = rc == MT_OK ? shortest_step(c, n_free, free, step, &c->err) : rc;
+        c->rc = mt_is_final(rc) ? rc : MT_OK;
+        if (rc != MT_OK) {
+            return false;
+        }
+        int left = 0;
+        for (int f = 0; f < n_free; f++) {
+            const int j = free[f];
+            const double to = c->t[j] + step[f];
+            c->t[j] = fmin(fmax(to, k->lower_t[j]), k->upper_t[j]);
+            free[left] = j;
+            left += c->t[j] == to ? 1 : 0;
+        }
+        n_free = left;
+    }
+    return false;
+}
+
+/* The same of a point of the chord, which it may leave by `aside`. */
+static bool restore_near(continua *c, double aside)
+{
+    const int n = c->ws->c->n_t;
+    const mt_arena_mark mark = mt_arena_get_mark(c->mem);
+    double *const from = mt_arena_f64(c->mem, (size_t)n, 1);
+    c->rc = c->rc == MT_OK ? mt_arena_check(c->mem, &c->err) : c->rc;
+    bool near = c->rc == MT_OK;
+    if (near) {
+        memcpy(from, c->t, (size_t)n * sizeof *from);
+        near = restore(c);
+        mt_axpy(n, -1.0, c->t, from);
+        near = near && mt_norm2(n, from) <= aside;
+    }
+    mt_arena_rewind(c->mem, mark);
+    return near;
+}
+
 /* True where all that is between solutions i and k is as good as they are. */
 static bool connected(continua *c, int i, int k)
 {
@@ -78,11 +173,17 @@ static bool connected(continua *c, int i, int k)
     const double *const b = c->out->solutions[k].t;
     const double *const aims = c->aims + ((ptrdiff_t)i * c->ws->c->n_aims);
     bool one = equal(c->ws, aims, c->aims + ((ptrdiff_t)k * c->ws->c->n_aims));
+    const bool curved = c->fits && aims[0] <= EQUAL;
+    double chord = 0.0;
+    for (int j = 0; j < c->ws->c->n_t; j++) {
+        chord = hypot(chord, b[j] - a[j]);
+    }
     for (int m = 1; m <= BETWEEN && one; m++) {
         for (int j = 0; j < c->ws->c->n_t; j++) {
             c->t[j] = a[j] + ((b[j] - a[j]) * m / (BETWEEN + 1));
         }
-        one = measure(c, c->t, c->at) && equal(c->ws, aims, c->at);
+        one = (!curved || restore_near(c, ASIDE * chord)) && measure(c, c->t, c->at) &&
+              equal(c->ws, aims, c->at);
     }
     return one;
 }
@@ -161,7 +262,9 @@ static void count(mt_nlp_result *out, int before)
 mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result *out,
                                   mt_err *err)
 {
-    continua c = {.ws = ws, .out = out};
+    continua c = {.ws = ws, .out = out, .mem = mem};
+    c.fits = ws->c->n_aims == 1 && mt_objective_is(ws->c->aims[0].type, MT_RESIDUALS) &&
+             ws->p->n_eq == 0 && ws->p->n_res < ws->c->n_t;
     const int n = out->n_solutions;
     if (out->compromise || n < 2 || out->stop == MT_STOP_USER) {
         return MT_OK;

@@ -10,6 +10,10 @@
  * where rows and bounds that hold the optimum hold the answer, too. There the multipliers and
  * the KKT residual are those of the objective. Where it is curved across the continuum it has a
  * residual even so near; then the objective from there comes back to the optimum.
+ *
+ * Often the continuum is one of single variables: neither the objectives nor the rows that hold
+ * the optimum change with them (the stiffness of a joint that the lowest modes do not move).
+ * Then all others stay where they are, and the question has no more variables than these.
  */
 #include <math.h>
 #include <string.h>
@@ -22,6 +26,10 @@
 static const double SHOWN = 1e-6;
 /* Evaluations of one search where the study sets no budget. */
 enum { EVALUATIONS = 2000 };
+/* What repeated modes take to be judged as a cluster, without a search from there. */
+enum { JUDGEMENT = 4 };
+/* A slope is none below this part of the largest of its row. */
+static const double NO_SLOPE = 1e-9;
 /* Then the last objective is held within this part of its value (of 1 where that is less), the
  * first that does: so near to the optimum bounds and rows that hold it hold the design, too. */
 static const double CLOSE[] = {1e-11, 1e-8};
@@ -34,8 +42,9 @@ typedef struct nearest {
     mt_arena *mem;
     mt_nlp_result *out;
     long most;
-    double *at;   /* [n_aims] what the objectives are held at */
-    double close; /* the last of them within this; 0: as any other one */
+    double *at;    /* [n_aims] what the objectives are held at */
+    double close;  /* the last of them within this; 0: as any other one */
+    bool clusters; /* a design is judged by repeated modes, too, where it only stands */
 } nearest;
 
 /* True where there is a change to be made least that is no objective already, with objectives
@@ -113,8 +122,9 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
     nlp.hint = NULL;
     mt_err own = {.code = MT_OK};
     mt_status rc = mt_workspace_solve(n->ws, &nlp, &opt, n->mem, &next, &own);
-    if (rc == MT_OK && most > 1) {
-        rc = mt_search_repeated(n->ws, budget, n->mem, &next, &own);
+    if (rc == MT_OK && (most > 1 || n->clusters)) {
+        const long judged = most > 1 ? budget : next.evals + JUDGEMENT;
+        rc = mt_search_repeated(n->ws, judged, n->mem, &next, &own);
     }
     n->out->evals += next.evals;
     if (next.stop == MT_STOP_MAX_EVALS && (most == 1 || n->most <= 0)) {
@@ -157,6 +167,106 @@ static mt_status settle(nearest *n, const double *from, const mt_nlp_solution *s
     return MT_OK;
 }
 
+/* Rows of slopes: m x n column-major, or a gradient (m = 1). idle[j] stays where the row has no
+ * slope along t_j. */
+static void keep_idle(int m, int n, int row, const double *slopes, bool *idle)
+{
+    double most = 0.0;
+    for (int j = 0; j < n; j++) {
+        most = fmax(most, fabs(slopes[row + ((ptrdiff_t)j * m)]));
+    }
+    for (int j = 0; j < n; j++) {
+        idle[j] = idle[j] && fabs(slopes[row + ((ptrdiff_t)j * m)]) <= NO_SLOPE * most;
+    }
+}
+
+/* idle[n_t]: the variables that neither the objectives at s feel nor the rows that hold it, as
+ * far as they are free; *n_idle of them. */
+static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int *n_idle,
+                           mt_err *err)
+{
+    mt_workspace *const w = n->ws;
+    const mt_case *const c = n->first;
+    mt_nlp_values v;
+    *n_idle = 0;
+    mt_workspace_back(w, c);
+    double *const slope = mt_arena_f64(n->mem, (size_t)c->n_t, 1);
+    MT_TRY(mt_arena_check(n->mem, err));
+    MT_TRY(mt_case_values_init(c, n->mem, &v, err));
+    n->out->evals++;
+    MT_TRY(mt_workspace_eval(w, s->t, true, &v, err));
+    for (int j = 0; j < c->n_t; j++) {
+        idle[j] = c->n_t == c->p->n && c->lower_t[j] < c->upper_t[j];
+    }
+    for (int k = 0; k < c->n_aims; k++) {
+        (void)mt_aim_value(w, k, slope);
+        keep_idle(1, c->n_t, 0, slope, idle);
+    }
+    const int n_eq = mt_case_rows_eq(c);
+    const int n_in = mt_case_rows_in(c);
+    for (int i = 0; i < n_eq; i++) {
+        keep_idle(n_eq, c->n_t, i, v.deq, idle);
+    }
+    for (int i = 0; i < n_in; i++) {
+        if (s->mult_in[i] != 0.0) { /* NaN: one of several that may hold it */
+            keep_idle(n_in, c->n_t, i, v.din, idle);
+        }
+    }
+    for (int j = 0; j < c->n_t; j++) {
+        *n_idle += idle[j] ? 1 : 0;
+    }
+    return MT_OK;
+}
+
+/* The bounds of the question closed on s, but for what is idle. */
+static mt_status close_rest(nearest *n, const mt_nlp_solution *s, const bool *idle, mt_err *err)
+{
+    mt_case *const c = &n->held;
+    const size_t n_t = (size_t)c->n_t;
+    double *const bounds = mt_arena_f64(n->mem, 5, n_t);
+    MT_TRY(mt_arena_check(n->mem, err));
+    double *const x = bounds + (4 * n_t);
+    mt_case_x(c, s->t, x);
+    for (size_t j = 0; j < n_t; j++) {
+        bounds[j] = idle[j] ? c->lower[j] : x[j];
+        bounds[n_t + j] = idle[j] ? c->upper[j] : x[j];
+        bounds[(2 * n_t) + j] = idle[j] ? c->lower_t[j] : s->t[j];
+        bounds[(3 * n_t) + j] = idle[j] ? c->upper_t[j] : s->t[j];
+    }
+    c->lower = bounds;
+    c->upper = bounds + n_t;
+    c->lower_t = bounds + (2 * n_t);
+    c->upper_t = bounds + (3 * n_t);
+    return MT_OK;
+}
+
+/* Where all that is loose at s are single variables: along these alone. */
+static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solution **end,
+                            mt_err *err)
+{
+    const int n_aims = n->first->n_aims;
+    const mt_case whole = n->held;
+    mt_nlp_solution *at = NULL;
+    int n_idle = 0;
+    bool *const idle = mt_arena_alloc(n->mem, (size_t)n->first->n_t, sizeof *idle);
+    MT_TRY(mt_arena_check(n->mem, err));
+    MT_TRY(find_idle(n, s, idle, &n_idle, err));
+    if (n_idle == 0 || n_idle < s->n_loose || n->first->n_t != n->first->p->n) {
+        return MT_OK;
+    }
+    MT_TRY(close_rest(n, s, idle, err));
+    mt_status rc = minimise(n, n_aims, EVALUATIONS, s->t, &at, err);
+    n->held = whole;
+    if (rc == MT_OK && at != NULL) {
+        n->close = CLOSE[0];
+        n->clusters = true; /* where one more mode has come to the limit */
+        rc = minimise(n, n_aims - 1, 1, at->t, end, err);
+        n->clusters = false;
+        *end = *end != NULL && is_better(n, *end, s) ? *end : NULL;
+    }
+    return rc;
+}
+
 /* Solution s; f: its objectives. */
 static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solution *s,
                       mt_err *err)
@@ -168,7 +278,11 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
         n->at[k] = k + 1 < n_aims && limit != NULL ? limit[k] : f[k];
     }
     n->close = 0.0;
-    MT_TRY(minimise(n, n_aims, EVALUATIONS, s->t, &near, err));
+    MT_TRY(along_idle(n, s, &end, err));
+    n->close = 0.0;
+    if (end == NULL) {
+        MT_TRY(minimise(n, n_aims, EVALUATIONS, s->t, &near, err));
+    }
     for (int k = 0; k < MT_COUNT(CLOSE) && near != NULL && end == NULL; k++) {
         n->close = CLOSE[k];
         MT_TRY(settle(n, near->t, s, &end, err));
@@ -244,7 +358,8 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
     for (int i = 0; i < out->n_solutions; i++) {
         any = any || (out->solutions[i].flat && out->solutions[i].kkt <= SHOWN);
     }
-    if (!any || !applies(n.first) || out->compromise || out->stop != MT_STOP_DONE) {
+    if (!any || n.first->as_found || !applies(n.first) || out->compromise ||
+        out->stop != MT_STOP_DONE) {
         return MT_OK;
     }
     MT_TRY(add_change(&n, err));

@@ -96,5 +96,85 @@ static void determined_optimum__costs_nothing(mt_test *t)
     CHECK(t, evaluations[0] < evaluations[1]);
 }
 
+/* a >= 2 makes a = 2 the least; c is felt by limits alone, which hold it where they begin. */
+static const struct {
+    const char *name;
+    const char *limit;
+    double c;
+} idle[] = {
+    {"its own limit", "{'type': 'limit', 'expression': 'c', 'at_least': 1.5}", 1.5},
+    {"a limit of both", "{'type': 'limit', 'expression': 'a*c', 'at_least': 2.4}", 1.2},
+    {"from above", "{'type': 'limit', 'expression': 'a*c', 'at_most': 1}", 0.5},
+    {"no limit in the way", "{'type': 'limit', 'expression': 'a*c', 'at_least': 1}", 1.0},
+};
+
+static void idle_variable__is_at_the_nearest_that_limits_let(mt_test *t)
+{
+    for (int i = 0; i < MT_COUNT(idle); i++) {
+        study_case c;
+        char members[600];
+        (void)snprintf(members, sizeof members,
+                       "'variables': [{'parameter': 'a', 'lower': 0.2, 'upper': 5},"
+                       " {'parameter': 'c', 'lower': 0.1, 'upper': 6}],"
+                       "'objective': {'minimise': 'a'}, 'goals': ["
+                       "{'type': 'limit', 'expression': 'a', 'at_least': 2}, %s]",
+                       idle[i].limit);
+        mt_test_row(t, "%s", idle[i].name);
+        if (study_solve(t, STUDY_TWO_MASSES("'a': 1, 'c': 1, 'k1': 1, 'k2': 'a', 'm': 1", ""),
+                        members, &c)) {
+            CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
+            CHECK_NEAR(t, study_value(&c, 1, "a") / 2.0, 1.0, MET);
+            CHECK_NEAR(t, study_value(&c, 1, "c") / idle[i].c, 1.0, MET);
+            CHECK(t, c.result->recommendations[0].kkt_residual <= 1e-6);
+        }
+        study_free(&c);
+    }
+}
+
+/* Every combination that is listed is the nearest of its equal designs. */
+static void combinations__are_listed_at_their_nearest(mt_test *t)
+{
+    for (int threads = 1; threads <= 4; threads *= 2) {
+        study_case c;
+        mt_test_row(t, "%d threads", threads);
+        if (study_load(
+                t, STUDY_TWO_MASSES("'a': 1, 'b': 1, 'd': 1, 'k1': 1, 'k2': 'a*b', 'm': 1", ""),
+                "'variables': [{'parameter': 'a', 'lower': 0.2, 'upper': 5, 'weight': 3},"
+                " {'parameter': 'b', 'lower': 0.1, 'upper': 6},"
+                " {'parameter': 'd', 'catalogue': [1, 1.5, 2]}],"
+                "'objective': {'minimise': 'a*b + d'}, 'goals': [" LIMIT "],"
+                "'recommendations': 2",
+                &c) &&
+            study_solve_threads(t, "listed", threads, &c)) {
+            CHECK_INT(t, c.result->n_recommendations, 2);
+            for (int rank = 1; rank <= c.result->n_recommendations; rank++) {
+                CHECK_NEAR(t, study_value(&c, rank, "a") / A, 1.0, MET);
+                CHECK_NEAR(t, study_value(&c, rank, "b") / B, 1.0, MET);
+                CHECK_NEAR(t, study_value(&c, rank, "d"), rank == 1 ? 1.0 : 1.5, 1e-15);
+            }
+        }
+        study_free(&c);
+    }
+}
+
+/* One frequency and two springs: the exact fits lie on a curve, of which the nearest stands. */
+static void curve_of_fits__is_one_design(mt_test *t)
+{
+    study_case c;
+    if (study_solve(t, STUDY_TWO_MASSES("'k1': 1, 'k2': 1, 'm': 1", ""),
+                    "'variables': [{'parameter': 'k1', 'lower': 0.05, 'upper': 20},"
+                    " {'parameter': 'k2', 'lower': 0.05, 'upper': 20}],"
+                    "'objective': {'minimise': 'misfit'}, 'recommendations': 30, 'goals': ["
+                    "{'type': 'frequency', 'mode': 1, 'target_hz': 0.13, 'weight': 1}]",
+                    &c)) {
+        CHECK_INT(t, c.result->n_recommendations, 1);
+        CHECK(t, strstr(c.result->status_text, "a continuum of designs has it") != NULL);
+    }
+    study_free(&c);
+}
+
 MT_TEST_MAIN(MT_TEST(flat_optimum__is_the_one_of_least_change), MT_TEST(budget__is_kept),
-             MT_TEST(determined_optimum__costs_nothing))
+             MT_TEST(determined_optimum__costs_nothing),
+             MT_TEST(idle_variable__is_at_the_nearest_that_limits_let),
+             MT_TEST(combinations__are_listed_at_their_nearest),
+             MT_TEST(curve_of_fits__is_one_design))
