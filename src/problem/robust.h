@@ -156,8 +156,10 @@ double mt_robust_room(const mt_workspace *w, const mt_clear *c);
  */
 mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err);
 /* The same, where only what the rows of w's case limit is searched by descent: what it may be
- * beside that is as corners and points within have it. */
-mt_status mt_robust_ranges_of_rows(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err);
+ * beside that is as corners and points within have it. leave: [n_views of the problem] views of
+ * which nothing is wanted; NULL: none. */
+mt_status mt_robust_ranges_of_rows(mt_workspace *w, const bool *leave, mt_arena *mem,
+                                   mt_ranges *out, mt_err *err);
 /* Of vibration mode `mode` of a view; NULL: not computed. r may be NULL, as below. */
 const mt_robust_range *mt_ranges_hz(const mt_ranges *r, int view, int mode);
 /* Of the design that is described with w. */

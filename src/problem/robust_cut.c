@@ -8,6 +8,10 @@
 
 /* Factors that differ by less are those of one corner: rounding of x (1 + tolerance) / x. */
 static const double SAME_FACTOR = 1e-12;
+/* A row keeps this many times the way to the corner that its slopes name, and as many times the
+ * largest tolerance (where slopes vanish the way is short): worse points, three times as far,
+ * are not looked for before the design is described. */
+static const double FAR = 2.0;
 
 int mt_robust_row_view(const mt_case *c, const mt_robust_row *row)
 {
@@ -140,8 +144,9 @@ static void begin_judging(mt_robust_cuts *cuts)
     cuts->band_room = HUGE_VAL;
 }
 
-mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
-                          mt_robust_cuts *cuts, mt_err *err)
+/* leave: [n_views of the problem] views whose rows keep far from their limits; NULL: none. */
+static mt_status lower(mt_workspace *w, mt_nlp_values *v, const bool *leave, mt_arena *mem,
+                       mt_robust_cuts *cuts, mt_err *err)
 {
     mt_arena own;
     mt_ranges ranges = {.solutions = 0};
@@ -150,13 +155,19 @@ mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&own, 0, err));
-    mt_status rc = mt_robust_ranges_of_rows(w, &own, &ranges, err);
+    mt_status rc = mt_robust_ranges_of_rows(w, leave, &own, &ranges, err);
     /* what is cut off has no value at some sample: nothing is known */
     rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
     rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
     cuts->solutions += ranges.solutions;
     mt_arena_free(&own);
     return rc;
+}
+
+mt_status mt_robust_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
+                          mt_robust_cuts *cuts, mt_err *err)
+{
+    return lower(w, v, NULL, mem, cuts, err);
 }
 
 /* x[n] := the corner that is worst to first order for the mode of a row at the design that w
@@ -177,9 +188,19 @@ static bool name_worst(mt_workspace *w, const mt_robust_row *row, int mode, doub
     return true;
 }
 
-/* A row of a mode at the corner that its slopes name, solved with an analysis of a corner. */
+static double largest_tolerance(const mt_problem *p)
+{
+    double most = 0.0;
+    for (int i = 0; i < p->n; i++) {
+        most = fmax(most, mt_robust_tolerance(p, i));
+    }
+    return most;
+}
+
+/* A row of a mode at the corner that its slopes name, solved with an analysis of a corner.
+ * *far: it keeps its limit by much there. */
 static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *x,
-                             mt_arena *mem, mt_robust_cuts *cuts, mt_err *err)
+                             mt_arena *mem, mt_robust_cuts *cuts, bool *far, mt_err *err)
 {
     const mt_case *const c = w->c;
     const int mode = mt_robust_row_mode(c, row);
@@ -187,6 +208,7 @@ static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *
     const mt_analysis_options opt = mt_view_asks(w, view, false);
     mt_analysis *const a = view->corners[0];
     mt_err own = {.code = MT_OK};
+    *far = false;
     if (!name_worst(w, row, mode, x)) {
         return MT_OK;
     }
@@ -200,6 +222,12 @@ static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *
     }
     const double room = mt_robust_row_room(c, row, mt_modal_hz(&a->modes, pos));
     const double wanted = row->demand < 0 && c->clearance ? w->t[c->p->n] : 0.0;
+    const mt_modes *const modes = &view->analysis->modes;
+    const double here =
+        mt_robust_row_room(c, row, mt_modal_hz(modes, mt_modal_flexible(modes, mode)));
+    /* of bands the least room is asked for, wherever it is */
+    const double way = fmax(fabs(here - room), largest_tolerance(w->p));
+    *far = (row->demand >= 0 || c->clearance) && room - wanted > FAR * way;
     if (room - wanted < -row->tolerance) {
         mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
         MT_TRY(add_cut(w, row, x, mem, cuts, err));
@@ -207,20 +235,27 @@ static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *
     return MT_OK;
 }
 
-/* All rows of modes that are held at samples. */
+/* All rows of modes that are held at samples. far: [n_views of the problem] of a view, all of
+ * them keep their limits by much. */
 static mt_status judge_by_slopes(mt_workspace *w, mt_arena *mem, mt_robust_cuts *cuts,
-                                 mt_err *err)
+                                 bool *far, mt_err *err)
 {
     const mt_case *const c = w->c;
     const mt_robust_row *before = NULL;
     double *const x = mt_arena_f64(mem, (size_t)c->p->n, 1);
     MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->p->n_views; i++) {
+        far[i] = true;
+    }
     for (int k = 0; k < c->robust->n_rows; k++) {
         const mt_robust_row *const row = &c->robust->rows[k];
+        const int view = mt_robust_row_view(c, row);
         const bool again = before != NULL && is_same(before, row);
+        bool own = false;
         before = row;
-        if (!again && is_judged(c, row) && mt_robust_row_view(c, row) >= 0) {
-            MT_TRY(judge_first(w, row, x, mem, cuts, err));
+        if (!again && is_judged(c, row) && view >= 0) {
+            MT_TRY(judge_first(w, row, x, mem, cuts, &own, err));
+            far[view] = far[view] && own;
         }
     }
     return MT_OK;
@@ -235,10 +270,12 @@ mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_ro
     if (!mt_robust_is_sampled(w->c)) {
         return MT_OK;
     }
+    bool *const far = mt_arena_alloc(mem, (size_t)w->p->n_views, sizeof *far);
+    MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_case_values_init(w->c, mem, &v, err));
     MT_TRY(mt_workspace_eval(w, t, true, &v, err));
-    MT_TRY(judge_by_slopes(w, mem, cuts, err));
-    return cuts->added > 0 ? MT_OK : mt_robust_lower(w, &v, mem, cuts, err);
+    MT_TRY(judge_by_slopes(w, mem, cuts, far, err));
+    return cuts->added > 0 ? MT_OK : lower(w, &v, far, mem, cuts, err);
 }
 
 /* The corners of one set, and those of its cuts. */

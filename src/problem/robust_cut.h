@@ -36,8 +36,9 @@ bool mt_robust_is_sampled(const mt_case *c);
  * Judge the design at t[c->n_t], and add what is worse there than the corners of the case and
  * the cuts so far: cuts->added of them; lists in mem. w: set to the case. Where the corner that
  * its slopes name misses a row, that is enough to go on with; what meets a goal there is judged
- * over all of its tolerances. Cost: an analysis for each mode that is limited, then as
- * mt_robust_ranges. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED, as an evaluation.
+ * over all of its tolerances, but for views whose limits are far from there. Cost: an analysis
+ * for each mode that is limited, then as mt_robust_ranges. Fails: MT_E_MEMORY, MT_E_INTERNAL,
+ * MT_E_INTERRUPTED, as an evaluation.
  */
 mt_status mt_robust_judge(mt_workspace *w, const double *t, mt_arena *mem, mt_robust_cuts *cuts,
                           mt_err *err);

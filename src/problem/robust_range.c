@@ -285,8 +285,8 @@ static bool is_sampled_view(const mt_case *c, int view)
     return any;
 }
 
-static mt_status find_ranges(mt_workspace *w, bool of_rows, mt_arena *mem, mt_ranges *out,
-                             mt_err *err)
+static mt_status find_ranges(mt_workspace *w, bool of_rows, const bool *leave, mt_arena *mem,
+                             mt_ranges *out, mt_err *err)
 {
     const mt_problem *const p = w->p;
     const size_t n_views = (size_t)p->n_views;
@@ -303,7 +303,8 @@ static mt_status find_ranges(mt_workspace *w, bool of_rows, mt_arena *mem, mt_ra
     b.of_rows = of_rows;
     count_modes(w, modes);
     for (int i = 0; i < p->n_views; i++) {
-        if (modes[i] > 0 && (!of_rows || is_sampled_view(w->c, i))) {
+        const bool left = leave != NULL && leave[i];
+        if (modes[i] > 0 && !left && (!of_rows || is_sampled_view(w->c, i))) {
             MT_TRY(range_view(&b, i, modes[i], err));
         }
     }
@@ -312,12 +313,13 @@ static mt_status find_ranges(mt_workspace *w, bool of_rows, mt_arena *mem, mt_ra
 
 mt_status mt_robust_ranges(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err)
 {
-    return find_ranges(w, false, mem, out, err);
+    return find_ranges(w, false, NULL, mem, out, err);
 }
 
-mt_status mt_robust_ranges_of_rows(mt_workspace *w, mt_arena *mem, mt_ranges *out, mt_err *err)
+mt_status mt_robust_ranges_of_rows(mt_workspace *w, const bool *leave, mt_arena *mem,
+                                   mt_ranges *out, mt_err *err)
 {
-    return find_ranges(w, true, mem, out, err);
+    return find_ranges(w, true, leave, mem, out, err);
 }
 
 bool mt_ranges_proven(const mt_ranges *r)

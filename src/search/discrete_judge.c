@@ -23,6 +23,8 @@
 enum { PER_TASK = 64 };
 /* Starts of the continuous search of one combination: 4 + 2 n, where the study does not say. */
 enum { STARTS_BASE = 4, STARTS_PER_VARIABLE = 2 };
+/* Of one whose design is known: the original and that. */
+enum { KNOWN_STARTS = 2 };
 /* So many that miss a limit between the positions are enough to let the others stand as what
  * they are at these: each takes some ten to some hundred analyses. */
 enum { BROKEN_MOST = 200 };
@@ -334,7 +336,8 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     *out = (mt_nlp_result){.n_undetermined = 0};
     const long most = d->c->search.max_evaluations;
     mt_status rc = close_on(d, c, most > 0 ? most - d->evals : 0, w, mem, &closed, err);
-    closed.hint = NULL;
+    closed.hint = c->t;
+    closed.search.starts = KNOWN_STARTS;
     closed.as_found = false;
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {
@@ -362,7 +365,10 @@ static mt_status judge_mixed(void *context, int worker, int task, mt_scope *own,
     MT_TRY(mt_arena_init(&mem, 0, err));
     w->scope = own;
     mt_status rc = close_on(j->d, c, j->budget, w, &mem, &closed, err);
-    closed.as_found = !j->settles;
+    if (j->settles) { /* from the design that is known */
+        closed.as_found = false;
+        closed.search.starts = KNOWN_STARTS;
+    }
     rc = rc == MT_OK ? search_closed(w, &mem, c, err) : rc;
     w->scope = before;
     mt_workspace_back(w, j->d->c);
@@ -465,7 +471,7 @@ mt_status mt_discrete_settle(mt_discrete *d, int n, mt_combination *const *best,
     MT_TRY(mt_discrete_alloc(d, j.n, &j.list, err));
     for (int i = 0; i < j.n; i++) {
         memcpy(j.list[i].pick, best[of[i]]->pick, (size_t)d->n_discrete * sizeof(int));
-        j.list[i].from = best[of[i]]->from;
+        j.list[i].from = best[of[i]]->t;
         mt_discrete_set(d, &j.list[i]);
     }
     const mt_tasks searches = {j.n, judge_mixed, NULL, &j, "nearest of equal designs"};

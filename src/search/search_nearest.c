@@ -26,10 +26,19 @@
 static const double SHOWN = 1e-6;
 /* Evaluations of one search where the study sets no budget. */
 enum { EVALUATIONS = 2000 };
+/* From a nearly exact fit to one. */
+enum { REFIT = 50 };
 /* What repeated modes take to be judged as a cluster, without a search from there. */
 enum { JUDGEMENT = 4 };
 /* A slope is none below this part of the largest of its row. */
 static const double NO_SLOPE = 1e-9;
+/* Misfits below this are none. */
+static const double EXACT = 1e-9;
+/* Modes that meet are this far apart again, as a part of a variable's bounds. */
+static const double APART = 0.02;
+/* Along one variable: so much of a tolerance is kept, so near the last place that does. */
+static const double KEPT = 1e-3;
+static const double HALVED = 1e-10;
 /* Then the last objective is held within this part of its value (of 1 where that is less), the
  * first that does: so near to the optimum bounds and rows that hold it hold the design, too. */
 static const double CLOSE[] = {1e-11, 1e-8};
@@ -49,7 +58,8 @@ typedef struct nearest {
 
 /* True where there is a change to be made least that is no objective already, with objectives
  * that can be held. A coordinate of the search has its objective, which elsewhere is looked up
- * afterwards; what a misfit leaves open is told as undetermined. */
+ * afterwards; of a misfit only exact fits are moved, what else it leaves open is told as
+ * undetermined. */
 static bool applies(const mt_case *c)
 {
     for (int k = 0; k < c->n_aims; k++) {
@@ -207,8 +217,13 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
     for (int i = 0; i < n_eq; i++) {
         keep_idle(n_eq, c->n_t, i, v.deq, idle);
     }
+    double most = 0.0;
     for (int i = 0; i < n_in; i++) {
-        if (s->mult_in[i] != 0.0) { /* NaN: one of several that may hold it */
+        most = fmax(most, fabs(s->mult_in[i]));
+    }
+    for (int i = 0; i < n_in; i++) {
+        if (!(fabs(s->mult_in[i]) <=
+              NO_SLOPE * most)) { /* NaN: one of several that may hold it */
             keep_idle(n_in, c->n_t, i, v.din, idle);
         }
     }
@@ -218,20 +233,20 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
     return MT_OK;
 }
 
-/* The bounds of the question closed on s, but for what is idle. */
-static mt_status close_rest(nearest *n, const mt_nlp_solution *s, const bool *idle, mt_err *err)
+/* The bounds of the question closed on t, but for what is open. */
+static mt_status close_rest(nearest *n, const double *t, const bool *open, mt_err *err)
 {
     mt_case *const c = &n->held;
     const size_t n_t = (size_t)c->n_t;
     double *const bounds = mt_arena_f64(n->mem, 5, n_t);
     MT_TRY(mt_arena_check(n->mem, err));
     double *const x = bounds + (4 * n_t);
-    mt_case_x(c, s->t, x);
+    mt_case_x(c, t, x);
     for (size_t j = 0; j < n_t; j++) {
-        bounds[j] = idle[j] ? c->lower[j] : x[j];
-        bounds[n_t + j] = idle[j] ? c->upper[j] : x[j];
-        bounds[(2 * n_t) + j] = idle[j] ? c->lower_t[j] : s->t[j];
-        bounds[(3 * n_t) + j] = idle[j] ? c->upper_t[j] : s->t[j];
+        bounds[j] = open[j] ? c->lower[j] : x[j];
+        bounds[n_t + j] = open[j] ? c->upper[j] : x[j];
+        bounds[(2 * n_t) + j] = open[j] ? c->lower_t[j] : t[j];
+        bounds[(3 * n_t) + j] = open[j] ? c->upper_t[j] : t[j];
     }
     c->lower = bounds;
     c->upper = bounds + n_t;
@@ -240,30 +255,118 @@ static mt_status close_rest(nearest *n, const mt_nlp_solution *s, const bool *id
     return MT_OK;
 }
 
+/* True where nothing is loose at s but what is idle: the objective's own search with that
+ * closed, which begins at s, ends there and knows its curvature. What is idle is moved away
+ * from the original, as modes may meet where it stands, and there rows have none. */
+static mt_status is_rest_held(nearest *n, const mt_nlp_solution *s, const bool *idle,
+                              bool *held, mt_err *err)
+{
+    const size_t n_t = (size_t)n->first->n_t;
+    const mt_case whole = n->held;
+    mt_nlp_solution *end = NULL;
+    bool *const rest = mt_arena_alloc(n->mem, n_t, sizeof *rest);
+    double *const t = mt_arena_f64(n->mem, n_t, 1);
+    MT_TRY(mt_arena_check(n->mem, err));
+    for (size_t j = 0; j < n_t; j++) {
+        const double lower = whole.lower_t[j];
+        const double upper = whole.upper_t[j];
+        const double way = (s->t[j] < whole.origin_t[j] ? -APART : APART) * (upper - lower);
+        rest[j] = !idle[j];
+        t[j] = idle[j] ? fmin(fmax(s->t[j] + way, lower), upper) : s->t[j];
+    }
+    MT_TRY(close_rest(n, t, rest, err));
+    const mt_status rc = minimise(n, n->first->n_aims - 1, EVALUATIONS, t, &end, err);
+    n->held = whole;
+    *held = rc == MT_OK && end != NULL && end->feasible && end->kkt <= SHOWN &&
+            end->n_loose == 0 && mt_search_same((int)n_t, end->t, t);
+    return rc;
+}
+
+/* Whether a design keeps what s keeps, but for a part of the tolerances that is no violation
+ * where designs are compared; its last objective is that of s. */
+static mt_status keeps(nearest *n, const double *t, double f, mt_nlp_values *v, bool *kept,
+                       mt_err *err)
+{
+    const mt_case *const c = n->first;
+    mt_err own = {.code = MT_OK};
+    n->out->evals++;
+    const mt_status rc = mt_workspace_eval(n->ws, t, false, v, &own);
+    *kept = false;
+    if (rc == MT_OK) {
+        const mt_missed m = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol,
+                                         mt_case_rows_in(c), v->in, c->in_tol);
+        *kept = m.violation <= KEPT && mt_compare(v->f, f, MT_EQUAL_FOUND) <= 0;
+    }
+    return mt_pass_final(rc, &own, err);
+}
+
+/* t, which is s, comes along t_j to the original value, or as near to it as the rows let it: by
+ * halving, as where modes meet these have no slopes. */
+static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
+{
+    const mt_case *const c = n->first;
+    mt_nlp_values v;
+    const double origin = fmin(fmax(c->origin_t[j], c->lower_t[j]), c->upper_t[j]);
+    double good = t[j];
+    double bad = origin;
+    bool kept = false;
+    mt_workspace_back(n->ws, c);
+    MT_TRY(mt_case_values_init(c, n->mem, &v, err));
+    t[j] = origin;
+    MT_TRY(keeps(n, t, f, &v, &kept, err));
+    good = kept ? origin : good;
+    while (fabs(good - bad) > HALVED && (n->most <= 0 || n->out->evals < n->most)) {
+        t[j] = 0.5 * (good + bad);
+        MT_TRY(keeps(n, t, f, &v, &kept, err));
+        good = kept ? t[j] : good;
+        bad = kept ? bad : t[j];
+    }
+    t[j] = good;
+    return MT_OK;
+}
+
 /* Where all that is loose at s are single variables: along these alone. */
 static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solution **end,
                             mt_err *err)
 {
     const int n_aims = n->first->n_aims;
+    const int n_t = n->first->n_t;
     const mt_case whole = n->held;
     mt_nlp_solution *at = NULL;
     int n_idle = 0;
-    bool *const idle = mt_arena_alloc(n->mem, (size_t)n->first->n_t, sizeof *idle);
+    bool *const idle = mt_arena_alloc(n->mem, (size_t)n_t, sizeof *idle);
+    double *const t = mt_arena_f64(n->mem, (size_t)n_t, 1);
     MT_TRY(mt_arena_check(n->mem, err));
     MT_TRY(find_idle(n, s, idle, &n_idle, err));
-    if (n_idle == 0 || n_idle < s->n_loose || n->first->n_t != n->first->p->n) {
+    bool all = n_idle > 0 && n_idle >= s->n_loose;
+    if (n_idle > 0 && !all) {
+        MT_TRY(is_rest_held(n, s, idle, &all, err));
+    }
+    if (!all) {
         return MT_OK;
     }
-    MT_TRY(close_rest(n, s, idle, err));
-    mt_status rc = minimise(n, n_aims, EVALUATIONS, s->t, &at, err);
-    n->held = whole;
-    if (rc == MT_OK && at != NULL) {
-        n->close = CLOSE[0];
-        n->clusters = true; /* where one more mode has come to the limit */
-        rc = minimise(n, n_aims - 1, 1, at->t, end, err);
-        n->clusters = false;
-        *end = *end != NULL && is_better(n, *end, s) ? *end : NULL;
+    memcpy(t, s->t, (size_t)n_t * sizeof *t);
+    if (n_idle == 1) {
+        int j = 0;
+        while (!idle[j]) {
+            j++;
+        }
+        MT_TRY(approach(n, j, s->f, t, err));
+    } else {
+        MT_TRY(close_rest(n, s->t, idle, err));
+        const mt_status rc = minimise(n, n_aims, EVALUATIONS, s->t, &at, err);
+        n->held = whole;
+        MT_TRY(rc);
+        if (at == NULL) {
+            return MT_OK;
+        }
+        memcpy(t, at->t, (size_t)n_t * sizeof *t);
     }
+    n->close = CLOSE[0];
+    n->clusters = true; /* where one more mode has come to the limit */
+    const mt_status rc = minimise(n, n_aims - 1, 1, t, end, err);
+    n->clusters = false;
+    *end = *end != NULL && is_better(n, *end, s) ? *end : NULL;
     return rc;
 }
 
@@ -299,6 +402,50 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
     s->start = old.start;
     s->hits = old.hits;
     f[n_aims - 1] = s->f;
+    return MT_OK;
+}
+
+/* The residuals are met exactly by more than one design: fewer than variables. */
+static bool is_open_fit(const mt_case *c)
+{
+    return c->n_aims == 1 && mt_objective_is(c->aims[0].type, MT_RESIDUALS) &&
+           c->p->n_eq == 0 && c->p->n_res < c->n_t;
+}
+
+static bool is_exact(const mt_nlp_solution *s)
+{
+    return s->feasible && s->f <= 0.5 * EXACT * EXACT;
+}
+
+/* Exact fit s: the one of least change beside it that is exact, too. */
+static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
+{
+    mt_nlp_solution *near = NULL;
+    mt_nlp_solution *end = NULL;
+    mt_nlp_values v;
+    n->close = 0.0;
+    n->at[0] = s->f;
+    mt_workspace_back(n->ws, n->first);
+    MT_TRY(mt_case_values_init(n->first, n->mem, &v, err));
+    n->out->evals++;
+    MT_TRY(mt_workspace_eval(n->ws, s->t, false, &v, err)); /* the residuals it is held at */
+    MT_TRY(minimise(n, 1, EVALUATIONS, s->t, &near, err));
+    if (near != NULL) {
+        MT_TRY(minimise(n, 0, REFIT, near->t, &end, err)); /* from within what it was held in */
+    }
+    if (end == NULL || !is_exact(end) ||
+        mt_compare(mt_case_change(n->first, end->t), mt_case_change(n->first, s->t),
+                   MT_EQUAL_FOUND) > 0) {
+        return MT_OK; /* it stands as it is */
+    }
+    const mt_nlp_solution old = *s;
+    *s = *end;
+    s->singular = s->singular || old.singular;
+    s->continuum = old.continuum;
+    s->start = old.start;
+    s->hits = old.hits;
+    /* no misfit is less: what is left of slopes is rounding, to the scale of its search */
+    s->kkt = old.kkt;
     return MT_OK;
 }
 
@@ -354,11 +501,13 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
 {
     nearest n = {.ws = ws, .first = ws->c, .mem = mem, .out = out, .most = most};
     const int n_aims = n.first->n_aims;
+    const bool fits = is_open_fit(n.first);
     bool any = false;
     for (int i = 0; i < out->n_solutions; i++) {
-        any = any || (out->solutions[i].flat && out->solutions[i].kkt <= SHOWN);
+        const mt_nlp_solution *const s = &out->solutions[i];
+        any = any || (fits ? is_exact(s) : s->flat && s->kkt <= SHOWN);
     }
-    if (!any || n.first->as_found || !applies(n.first) || out->compromise ||
+    if (!any || n.first->as_found || !(fits || applies(n.first)) || out->compromise ||
         out->stop != MT_STOP_DONE) {
         return MT_OK;
     }
@@ -368,7 +517,9 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
         mt_nlp_solution *const s = &out->solutions[i];
         const ptrdiff_t row = (ptrdiff_t)i * n_aims;
         double own = s->f;
-        if (s->flat && s->feasible && s->kkt <= SHOWN) {
+        if (fits && is_exact(s)) {
+            rc = move_fit(&n, s, err);
+        } else if (!fits && s->flat && s->feasible && s->kkt <= SHOWN) {
             rc = move(&n, f != NULL ? f + row : &own, limit != NULL ? limit + row : NULL, s,
                       err);
         }

@@ -16,7 +16,7 @@
 #include "search/motion.h"
 #include "search/search.h"
 
-enum { ROUNDS = 12, STARTS = 6 };
+enum { ROUNDS = 12, STARTS = 6, STARTS_ALONE = 3 };
 /* Of a budget, for judging what a search ends with: so many evaluations, or one in so many. */
 enum { JUDGED = 16, PART = 4 };
 
@@ -107,7 +107,11 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
             MT_TRY(judge(r, i, last, err));
             *any = *any || r->open[i];
         }
-        const bool holds = r->out->solutions[i].feasible && !r->open[i];
+        const mt_nlp_solution *const s = &r->out->solutions[i];
+        const bool holds = s->feasible && !r->open[i];
+        /* of equal designs the nearest has not been sought */
+        const bool nearer = s->flat && r->over_tolerances && !r->c->as_found;
+        r->open[i] = r->open[i] || (holds && nearer && r->round == 1 && !last);
         if (r->c->best_alone && r->round == 1 && holds) {
             r->out->n_solutions = i + 1; /* what the search ranked behind it is worse */
         }
@@ -286,8 +290,8 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
     MT_TRY(hold_cuts(r, &held, err));
     held.search.max_evaluations = left_for(r, &held);
     if (any_feasible(r)) {
-        held.search.starts =
-            r->out->starts > 0 && r->out->starts < STARTS ? r->out->starts : STARTS;
+        const int few = r->c->best_alone ? STARTS_ALONE : STARTS;
+        held.search.starts = r->out->starts > 0 && r->out->starts < few ? r->out->starts : few;
     }
     const mt_status rc = mt_search_designs(&r->ws, 1, r->mem, &next, &stage, &why, err);
     mt_workspace_back(r->ws, c);
@@ -364,6 +368,8 @@ static mt_status search_first(const rounds *r, mt_workspace *const *workers, int
     const long part = most / PART < wanted ? most / PART : wanted;
     mt_case less = *r->c;
     less.search.max_evaluations -= r->over_tolerances ? part : 0;
+    /* of equal designs the nearest is sought with the cuts */
+    less.as_found = r->c->as_found || r->over_tolerances;
     for (int i = 0; i < n_workers; i++) {
         mt_workspace_back(workers[i], &less);
     }
