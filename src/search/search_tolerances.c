@@ -105,13 +105,13 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
     for (int i = 0; i < r->out->n_solutions; i++) {
         if (r->open[i]) {
             MT_TRY(judge(r, i, last, err));
-            *any = *any || r->open[i];
         }
         const mt_nlp_solution *const s = &r->out->solutions[i];
         const bool holds = s->feasible && !r->open[i];
         /* of equal designs the nearest has not been sought */
         const bool nearer = s->flat && r->over_tolerances && !r->c->as_found;
         r->open[i] = r->open[i] || (holds && nearer && r->round == 1 && !last);
+        *any = *any || r->open[i];
         if (r->c->best_alone && r->round == 1 && holds) {
             r->out->n_solutions = i + 1; /* what the search ranked behind it is worse */
         }
