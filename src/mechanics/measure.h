@@ -88,15 +88,30 @@ typedef struct mt_jet {
     mt_second second;
 } mt_jet;
 
+/*
+ * The same of what depends on d = x_b - x_a and on the turns of both bodies alone, as every
+ * measure does: in the nine freedoms (dd, theta_a, theta_b), the Hessian by the rows of its
+ * lower triangle. dx_a counts as -dd there, dx_b as dd.
+ */
+enum { MT_RELATIVE = 9, MT_RELATIVE_PAIRS = MT_RELATIVE * (MT_RELATIVE + 1) / 2 };
+typedef struct mt_relative_jet {
+    mt_cx value;
+    mt_cx g[MT_RELATIVE];
+    mt_cx h[MT_RELATIVE_PAIRS];
+    mt_second second;
+    unsigned span; /* what of the nine it depends on (measure_priv.h); all else is 0 */
+    bool real;     /* nothing carries a derivative: imaginary parts are 0 */
+} mt_relative_jet;
+
 /* What all strains of a beam element are made of (measure_beam.c), kept from one of them to
- * the next. In the plane phi[2], s[1] and length alone. Some 15 kB, of which `dir` alone has to
+ * the next. In the plane phi[2], s[1] and length alone. Some 6 kB, of which `dir` alone has to
  * be set before. */
 typedef struct mt_beam_parts {
     const mt_cx *dir; /* of which element; NULL: of none */
     const mt_pose *pose[2];
-    mt_jet length;
-    mt_jet phi[3];
-    mt_jet s[2];
+    mt_relative_jet length;
+    mt_relative_jet phi[3];
+    mt_relative_jet s[2];
 } mt_beam_parts;
 
 /* Evaluate. No heap. A distance of zero has no direction: its gradient is then NaN. kept: NULL,

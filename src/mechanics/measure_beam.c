@@ -40,67 +40,27 @@
  */
 #include "mechanics/measure_priv.h"
 
-#include <string.h>
-
 /* out = u . d, u fixed to body a (side 0) or b (side 1), d = x_b - x_a. */
-static void reach_jet(int side, const mt_cx *u, const mt_cx *d, mt_second second, mt_jet *out)
+static void reach_jet(int side, const mt_cx *u, const mt_cx *d, const mt_relative_jet *length,
+                      mt_relative_jet *out)
 {
-    const int turn = (6 * side) + 3;
+    const int turn = side == 0 ? MT_AT_TURN_A : MT_AT_TURN_B;
+    const unsigned span = MT_SPAN_CHORD | (side == 0 ? MT_SPAN_TURN_A : MT_SPAN_TURN_B);
     mt_cx n[3];
-    mt_jet_clear(out, second);
+    mt_relative_clear(out, length->second, span, length->real);
     out->value = cx_dot3(u, d);
-    mt_jet_add_vec(out->g, -1.0, u);
-    mt_jet_add_vec(out->g + 6, 1.0, u);
+    mt_relative_add_vec(out->g + MT_AT_CHORD, 1.0, u);
     cx_cross3(u, d, n);
-    mt_jet_add_vec(out->g + turn, 1.0, n);
-    if (second) {
-        mt_jet_add_rotation_block(out, turn, 1.0, u, d);
-        mt_jet_add_cross_block(out, turn, 0, -1.0, u);
-        mt_jet_add_cross_block(out, turn, 6, 1.0, u);
-    }
-}
-
-/* out += scale p. */
-static void add_jet(mt_jet *out, mt_cx scale, const mt_jet *p)
-{
-    out->value += cx_mul(scale, p->value);
-    for (int i = 0; i < MT_LOCAL; i++) {
-        out->g[i] += cx_mul(scale, p->g[i]);
-    }
-    const mt_jet_list *const l = mt_jet_filled(out->second);
-    for (int k = 0; k < l->n; k++) {
-        for (int i = 0; i < l->n; i++) {
-            const int at = l->at[i] + (MT_LOCAL * l->at[k]);
-            out->h[at] += cx_mul(scale, p->h[at]);
-        }
-    }
-}
-
-/* out += scale p q. */
-static void add_product(mt_jet *out, mt_cx scale, const mt_jet *p, const mt_jet *q)
-{
-    const mt_cx sp = cx_mul(scale, p->value);
-    const mt_cx sq = cx_mul(scale, q->value);
-    out->value += cx_mul(sp, q->value);
-    for (int i = 0; i < MT_LOCAL; i++) {
-        out->g[i] += cx_mul(sq, p->g[i]) + cx_mul(sp, q->g[i]);
-    }
-    const mt_jet_list *const l = mt_jet_filled(out->second);
-    for (int kk = 0; kk < l->n; kk++) {
-        const int k = l->at[kk];
-        const mt_cx pk = cx_mul(scale, p->g[k]);
-        const mt_cx qk = cx_mul(scale, q->g[k]);
-        for (int ii = 0; ii < l->n; ii++) {
-            const int i = l->at[ii];
-            const int at = i + (MT_LOCAL * k);
-            out->h[at] += cx_mul(sq, p->h[at]) + cx_mul(sp, q->h[at]) + cx_mul(pk, q->g[i]) +
-                          cx_mul(qk, p->g[i]);
-        }
+    mt_relative_add_vec(out->g + turn, 1.0, n);
+    if (length->second) {
+        mt_relative_add_rotation(out, turn, 1.0, u, d);
+        mt_relative_add_cross(out, turn, 1.0, u);
     }
 }
 
 /* out = p/q. */
-static void quotient_jet(const mt_jet *p, const mt_jet *q, mt_jet *out)
+static void quotient_jet(const mt_relative_jet *p, const mt_relative_jet *q,
+                         mt_relative_jet *out)
 {
     const mt_cx f = cx_div(p->value, q->value);
     const mt_cx per = cx_div(1.0, q->value);
@@ -111,25 +71,24 @@ static void quotient_jet(const mt_jet *p, const mt_jet *q, mt_jet *out)
                          .fpp = 0.0,
                          .fpq = -per2,
                          .fqq = 2.0 * cx_mul(f, per2)};
-    mt_jet_chain(&c, p, q, out);
+    mt_relative_chain(&c, p, q, out);
 }
 
 /* s[k] += rotation of one end against the chord, about e2 (k = 0) and e3 (k = 1); in the plane
  * about e3 alone. */
-static void add_end(int side, mt_cx (*e)[3], const mt_cx *d, const mt_jet *length, bool plane,
-                    mt_jet s[2])
+static void add_end(int side, mt_cx (*e)[3], const mt_cx *d, const mt_relative_jet *length,
+                    bool plane, mt_relative_jet s[2])
 {
-    const mt_second second = length->second;
-    mt_jet reach;
-    mt_jet cosine;
-    mt_jet sine;
-    mt_jet angle;
+    mt_relative_jet reach;
+    mt_relative_jet cosine;
+    mt_relative_jet sine;
+    mt_relative_jet angle;
     mt_cx g[3];
-    reach_jet(side, e[0], d, second, &reach);
+    reach_jet(side, e[0], d, length, &reach);
     quotient_jet(&reach, length, &cosine);
     mt_angle_over_sine(cosine.value, g);
     for (int k = plane ? 1 : 0; k < 2; k++) {
-        reach_jet(side, e[k == 0 ? 2 : 1], d, second, &reach);
+        reach_jet(side, e[k == 0 ? 2 : 1], d, length, &reach);
         quotient_jet(&reach, length, &sine);
         const mt_chain2 c = {.f = cx_mul(g[0], sine.value),
                              .fp = g[0],
@@ -137,85 +96,89 @@ static void add_end(int side, mt_cx (*e)[3], const mt_cx *d, const mt_jet *lengt
                              .fpp = 0.0,
                              .fpq = g[1],
                              .fqq = cx_mul(g[2], sine.value)};
-        mt_jet_chain(&c, &sine, &cosine, &angle);
-        add_jet(&s[k], k == 0 ? 1.0 : -1.0, &angle);
+        mt_relative_chain(&c, &sine, &cosine, &angle);
+        mt_relative_add(&s[k], k == 0 ? 1.0 : -1.0, &angle);
     }
 }
 
-void mt_jet_beam_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                       mt_second second, mt_beam_parts *out)
+void mt_beam_parts_fill(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
+                        mt_second second, bool real, mt_beam_parts *out)
 {
-    static const mt_cx zero[3] = {0.0, 0.0, 0.0};
     const bool plane = m->beam.plane;
+    mt_relative_jet cosine;
+    mt_cx g[3];
+    mt_relative_cosine(e, f, second, real, g, &cosine);
     for (int k = plane ? 2 : 1; k < 3; k++) {
-        mt_jet_rotation(e, f, k, second, &out->phi[k]);
+        mt_relative_rotation(e, f, k, &cosine, g, &out->phi[k]);
     }
     if (!plane) {
-        mt_jet_twist(e, f, second, &out->phi[0]);
+        mt_relative_twist(e, f, second, real, &out->phi[0]);
     }
     for (int k = 0; k < 2; k++) {
-        mt_jet_clear(&out->s[k], second);
+        mt_relative_clear(&out->s[k], second, 0, real);
     }
-    mt_jet_distance(zero, zero, d, second, &out->length);
+    mt_relative_distance(NULL, NULL, d, second, real, &out->length);
     add_end(0, e, d, &out->length, plane, out->s);
     add_end(1, f, d, &out->length, plane, out->s);
 }
 
-static void stretch_jet(const mt_beam_numbers *b, const mt_beam_parts *p, mt_jet *out)
+static void stretch_jet(const mt_beam_numbers *b, const mt_beam_parts *p, mt_relative_jet *out)
 {
-    mt_jet bow;
-    mt_jet_clear(&bow, out->second);
+    mt_relative_jet bow;
+    mt_relative_clear(&bow, out->second, 0, out->real);
     for (int k = b->plane ? 1 : 0; k < 2; k++) {
         const mt_cx mu2 = cx_mul(b->shape[k], b->shape[k]);
-        add_product(&bow, 1.0 / 24.0, &p->phi[1 + k], &p->phi[1 + k]);
-        add_product(&bow, mu2 / 40.0, &p->s[k], &p->s[k]);
+        mt_relative_add_product(&bow, 1.0 / 24.0, &p->phi[1 + k], &p->phi[1 + k]);
+        mt_relative_add_product(&bow, mu2 / 40.0, &p->s[k], &p->s[k]);
     }
-    add_jet(out, 1.0, &p->length);
-    add_product(out, 1.0, &p->length, &bow);
+    mt_relative_add(out, 1.0, &p->length);
+    mt_relative_add_product(out, 1.0, &p->length, &bow);
     out->value -= b->length;
     if (!b->plane) {
-        add_product(out, 0.5 * cx_div(b->polar, b->length), &p->phi[0], &p->phi[0]);
+        mt_relative_add_product(out, 0.5 * cx_div(b->polar, b->length), &p->phi[0], &p->phi[0]);
     }
 }
 
 /* -phi1 (mu3 phi2^2 + mu2 phi3^2)/4. */
-static void twist_bow(const mt_beam_numbers *b, const mt_beam_parts *p, mt_jet *out)
+static void twist_bow(const mt_beam_numbers *b, const mt_beam_parts *p, mt_relative_jet *out)
 {
-    mt_jet bow;
-    mt_jet_clear(&bow, out->second);
-    add_product(&bow, b->shape[1], &p->phi[1], &p->phi[1]);
-    add_product(&bow, b->shape[0], &p->phi[2], &p->phi[2]);
-    add_product(out, -0.25, &p->phi[0], &bow);
+    mt_relative_jet bow;
+    mt_relative_clear(&bow, out->second, 0, out->real);
+    mt_relative_add_product(&bow, b->shape[1], &p->phi[1], &p->phi[1]);
+    mt_relative_add_product(&bow, b->shape[0], &p->phi[2], &p->phi[2]);
+    mt_relative_add_product(out, -0.25, &p->phi[0], &bow);
 }
 
-void mt_jet_beam(const mt_measure_data *m, const mt_beam_parts *p, mt_jet *out)
+void mt_beam_strain_fill(const mt_measure_data *m, const mt_beam_parts *p, mt_relative_jet *out)
 {
     const mt_beam_numbers *const b = &m->beam;
     const int k = m->component == MT_BEAM_BEND_2 || m->component == MT_BEAM_SWAY_2 ? 0 : 1;
     const int other = 1 - k;
     const double sign = k == 1 ? 1.0 : -1.0;
+    mt_relative_clear(out, p->length.second, 0, p->length.real);
     switch ((mt_beam_strain)m->component) {
     case MT_BEAM_STRETCH:
         stretch_jet(b, p, out);
         break;
     case MT_BEAM_TWIST:
-        add_jet(out, 1.0, &p->phi[0]);
-        add_product(out, 0.5 * b->shape[0], &p->s[0], &p->phi[2]);
-        add_product(out, -0.5 * b->shape[1], &p->s[1], &p->phi[1]);
+        mt_relative_add(out, 1.0, &p->phi[0]);
+        mt_relative_add_product(out, 0.5 * b->shape[0], &p->s[0], &p->phi[2]);
+        mt_relative_add_product(out, -0.5 * b->shape[1], &p->s[1], &p->phi[1]);
         twist_bow(b, p, out);
         break;
     case MT_BEAM_BEND_2:
     case MT_BEAM_BEND_3:
-        add_jet(out, 1.0, &p->phi[1 + k]);
+        mt_relative_add(out, 1.0, &p->phi[1 + k]);
         if (!b->plane) {
-            add_product(out, -0.5 * sign * b->shape[other], &p->phi[0], &p->s[other]);
+            mt_relative_add_product(out, -0.5 * sign * b->shape[other], &p->phi[0],
+                                    &p->s[other]);
         }
         break;
     case MT_BEAM_SWAY_2:
     case MT_BEAM_SWAY_3:
-        add_jet(out, 1.0, &p->s[k]);
+        mt_relative_add(out, 1.0, &p->s[k]);
         if (!b->plane) {
-            add_product(out, sign / 3.0, &p->phi[0], &p->phi[1 + other]);
+            mt_relative_add_product(out, sign / 3.0, &p->phi[0], &p->phi[1 + other]);
         }
         break;
     case MT_BEAM_STRAINS:

@@ -16,38 +16,71 @@ typedef struct mt_chain2 {
     mt_cx fqq;
 } mt_chain2;
 
-/* The local freedoms of which a Hessian is filled. */
-typedef struct mt_jet_list {
-    int n;
-    int at[MT_LOCAL];
-} mt_jet_list;
-const mt_jet_list *mt_jet_filled(mt_second second);
+/* Where the three freedoms of each begin among the nine, and their bits in a span. */
+enum { MT_AT_CHORD = 0, MT_AT_TURN_A = 3, MT_AT_TURN_B = 6 };
+enum {
+    MT_SPAN_CHORD = 1,
+    MT_SPAN_TURN_A = 2,
+    MT_SPAN_TURN_B = 4,
+    MT_SPAN_TURNS = MT_SPAN_TURN_A | MT_SPAN_TURN_B,
+    MT_SPAN_ALL = MT_SPAN_CHORD | MT_SPAN_TURNS
+};
 
-void mt_jet_clear(mt_jet *j, mt_second second);
+/* The freedoms of a span of which a Hessian is filled, ascending. */
+typedef struct mt_relative_list {
+    int n;
+    int at[MT_RELATIVE];
+} mt_relative_list;
+const mt_relative_list *mt_relative_filled(mt_second second, unsigned span);
+
+/* Where row r of the lower triangle begins. */
+static inline int mt_relative_row(int r)
+{
+    return r * (r + 1) / 2;
+}
+
+/* real: all that is added has no derivative. */
+void mt_relative_clear(mt_relative_jet *j, mt_second second, unsigned span, bool real);
 /* g[0..2] += scale v. */
-void mt_jet_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v);
+void mt_relative_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v);
 /* Diagonal block, theta at `at`, of scale n . w (w turns): scale [1/2 (n w^T + w n^T) - (n . w)
  * I]. */
-void mt_jet_add_rotation_block(mt_jet *j, int at, mt_cx scale, const mt_cx *n, const mt_cx *w);
-/* Block (theta at p, dx at q) of scale (theta x u) . dx = scale theta . (u x dx): scale [u]x,
- * and its transpose. */
-void mt_jet_add_cross_block(mt_jet *j, int p, int q, mt_cx scale, const mt_cx *u);
+void mt_relative_add_rotation(mt_relative_jet *j, int at, mt_cx scale, const mt_cx *n,
+                              const mt_cx *w);
+/* Block (theta at `at`, dd) of scale (theta x u) . dd = scale theta . (u x dd): scale [u]x. */
+void mt_relative_add_cross(mt_relative_jet *j, int at, mt_cx scale, const mt_cx *u);
+/* out += scale p. */
+void mt_relative_add(mt_relative_jet *out, mt_cx scale, const mt_relative_jet *p);
+/* out += scale p q. */
+void mt_relative_add_product(mt_relative_jet *out, mt_cx scale, const mt_relative_jet *p,
+                             const mt_relative_jet *q);
 /* out = f(p, q); out is neither. */
-void mt_jet_chain(const mt_chain2 *c, const mt_jet *p, const mt_jet *q, mt_jet *out);
-/* |d + t - s|. */
-void mt_jet_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,
-                     mt_jet *out);
-/* Component k of the rotation vector from triad e (on a) to triad f (on b). */
-void mt_jet_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, mt_jet *out);
+void mt_relative_chain(const mt_chain2 *c, const mt_relative_jet *p, const mt_relative_jet *q,
+                       mt_relative_jet *out);
+/* The twelve local freedoms. */
+void mt_relative_expand(const mt_relative_jet *j, mt_jet *out);
+
+/* |d + t - s|; s and t NULL: |d|. */
+void mt_relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,
+                          bool real, mt_relative_jet *out);
+/* Half the trace of the turn from triad e (on a) to triad f (on b), less a half: the cosine of
+ * its angle; and g of it. */
+void mt_relative_cosine(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, bool real, mt_cx g[3],
+                        mt_relative_jet *out);
+/* Component k of the rotation vector of that turn. */
+void mt_relative_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, const mt_relative_jet *cosine,
+                          const mt_cx g[3], mt_relative_jet *out);
 /* Twist from triad e (on a) to triad f (on b): the turn about e1 that is left when the shortest
  * turn from e1 to f1 has been taken off. */
-void mt_jet_twist(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, mt_jet *out);
+void mt_relative_twist(mt_cx (*e)[3], mt_cx (*f)[3], mt_second second, bool real,
+                       mt_relative_jet *out);
 /* g(c) = acos(c)/sqrt(1 - c^2), g', g''. */
 void mt_angle_over_sine(mt_cx c, mt_cx g[3]);
 /* The parts of the beam element with triads e (on a), f (on b) and d = x_b - x_a; and its
- * strain m->component. out is cleared. */
-void mt_jet_beam_parts(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
-                       mt_second second, mt_beam_parts *out);
-void mt_jet_beam(const mt_measure_data *m, const mt_beam_parts *p, mt_jet *out);
+ * strain m->component. */
+void mt_beam_parts_fill(const mt_measure_data *m, mt_cx (*e)[3], mt_cx (*f)[3], const mt_cx *d,
+                        mt_second second, bool real, mt_beam_parts *out);
+void mt_beam_strain_fill(const mt_measure_data *m, const mt_beam_parts *p,
+                         mt_relative_jet *out);
 
 #endif
