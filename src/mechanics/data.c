@@ -110,6 +110,14 @@ void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placemen
                     second, kept, out);
 }
 
+void mt_data_relative(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
+                      bool second, mt_beam_parts *kept, mt_relative_jet *out)
+{
+    const mt_measure_data m = measure_at(d, def, at);
+    mt_measure_relative(&m, mt_pose_of(at->pose, def->body[0]),
+                        mt_pose_of(at->pose, def->body[1]), second, kept, out);
+}
+
 void mt_data_turns(const mt_data *d, mt_placement *at)
 {
     for (int i = 0; i < d->sys->n_measures; i++) {

@@ -42,6 +42,8 @@ mt_cx mt_data_value(const mt_data *d, const mt_measure_def *def, const mt_placem
 /* The same with derivatives, as mt_measure_eval. */
 void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
                   bool second, mt_beam_parts *kept, mt_jet *out);
+void mt_data_relative(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
+                      bool second, mt_beam_parts *kept, mt_relative_jet *out);
 /* Positions as drawn (with their derivative); poses[n_bodies]. */
 void mt_data_drawn(const mt_data *d, mt_pose *poses);
 

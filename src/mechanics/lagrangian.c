@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mechanics/constraint.h"
+#include "mechanics/curvature.h"
 
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err)
@@ -59,13 +60,6 @@ mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_ar
     return mt_arena_check(mem, err);
 }
 
-static void local_dofs(const mt_system *sys, const int body[2], int dof[MT_LOCAL])
-{
-    for (int k = 0; k < MT_LOCAL; k++) {
-        dof[k] = mt_local_dof(sys, body, k);
-    }
-}
-
 /* What is asked for of a number: its value or its derivative. */
 static double part_of(const mt_lagrangian *l, mt_cx z)
 {
@@ -73,79 +67,43 @@ static double part_of(const mt_lagrangian *l, mt_cx z)
 }
 
 /* to[nq] += scale times the gradient. */
-static void add_gradient(const mt_system *sys, const int body[2], const mt_cx *g, mt_cx scale,
-                         const mt_lagrangian *l, double *to)
+static void add_gradient(const mt_system *sys, const int body[2], const mt_relative_jet *jet,
+                         mt_cx scale, const mt_lagrangian *l, double *to)
 {
-    int dof[MT_LOCAL];
-    local_dofs(sys, body, dof);
+    double part[MT_RELATIVE];
+    for (int k = 0; k < MT_RELATIVE; k++) {
+        part[k] = part_of(l, cx_mul(scale, jet->g[k]));
+    }
     for (int k = 0; k < MT_LOCAL; k++) {
-        if (dof[k] >= 0) {
-            to[dof[k]] += part_of(l, cx_mul(scale, g[k]));
-        }
-    }
-}
-
-static void add_entry(mt_lagrangian *out, int nq, int r, int c, double value)
-{
-    if (out->layout == NULL) {
-        out->h[r + ((ptrdiff_t)c * nq)] += value;
-        return;
-    }
-    const int i = out->layout->state[r];
-    const int j = out->layout->state[c];
-    if (i >= j) {
-        out->h[out->layout->envelope.row[i] + j] += value;
-    }
-}
-
-/* h += scale * jet.h + outer * (ga gb^T + gb ga^T)/2. The jet needs its h where scale is not
- * 0. */
-static void add_hessian(const mt_system *sys, const int body[2], const mt_jet *jet, mt_cx scale,
-                        mt_cx outer, const mt_jet *other, mt_lagrangian *out)
-{
-    int dof[MT_LOCAL];
-    int moves[MT_LOCAL];
-    int n = 0;
-    const bool curved = creal(scale) != 0.0 || cimag(scale) != 0.0;
-    local_dofs(sys, body, dof);
-    for (int k = 0; k < MT_LOCAL; k++) {
-        moves[n] = k;
-        n += dof[k] >= 0 ? 1 : 0;
-    }
-    for (int i = 0; i < n; i++) {
-        const int c = moves[i];
-        for (int k = 0; k < n; k++) {
-            const int r = moves[k];
-            mt_cx v = curved ? cx_mul(scale, jet->h[r + (MT_LOCAL * c)]) : 0.0;
-            if (other != NULL) {
-                const mt_cx product =
-                    cx_mul(jet->g[r], other->g[c]) + cx_mul(other->g[r], jet->g[c]);
-                v += 0.5 * cx_mul(outer, product);
-            }
-            add_entry(out, sys->nq, dof[r], dof[c], part_of(out, v));
+        const int dof = mt_local_dof(sys, body, k);
+        if (dof >= 0) {
+            to[dof] += mt_relative_sign(k) * part[mt_relative_of(k)];
         }
     }
 }
 
 /* Returns the piece, or NULL where nobody asks. */
 static mt_piece *note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                            const mt_jet *jet, double size, double force, mt_lagrangian *out)
+                            const mt_relative_jet *jet, double size, double force,
+                            mt_lagrangian *out)
 {
     const double size_force[2] = {size, force};
     if (out->terms == NULL) {
         return NULL;
     }
     mt_piece *const piece = &out->pieces[out->n_pieces++];
-    mt_piece_fill(d, def, poses, jet, size_force, out->terms, piece);
+    mt_jet local;
+    mt_relative_expand(jet, &local);
+    mt_piece_fill(d, def, poses, &local, size_force, out->terms, piece);
     return piece;
 }
 
 /* Torques count as forces at the model length. */
-static double largest_push(const mt_system *sys, const mt_jet *jet)
+static double largest_push(const mt_system *sys, const mt_relative_jet *jet)
 {
     double push = 0.0;
-    for (int k = 0; k < MT_LOCAL; k++) {
-        const double arm = k % 6 < 3 ? 1.0 : sys->length_m;
+    for (int k = 0; k < MT_RELATIVE; k++) {
+        const double arm = k < 3 ? 1.0 : sys->length_m;
         push = fmax(push, fabs(creal(jet->g[k])) / arm);
     }
     return push;
@@ -161,7 +119,7 @@ static void note_push(const int body[2], double size, mt_lagrangian *out)
 }
 
 static void note_force(const mt_system *sys, mt_lagrangian *out, const int body[2],
-                       const mt_jet *jet, mt_cx force)
+                       const mt_relative_jet *jet, mt_cx force)
 {
     const double size = fabs(creal(force)) * largest_push(sys, jet);
     out->force_scale = fmax(out->force_scale, size);
@@ -169,7 +127,7 @@ static void note_force(const mt_system *sys, mt_lagrangian *out, const int body[
 }
 
 static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                       const mt_jet *jet, double stiffness, mt_lagrangian *out)
+                       const mt_relative_jet *jet, double stiffness, mt_lagrangian *out)
 {
     const double noise =
         mt_piece_roundness(d, def, poses) * fabs(stiffness) * largest_push(d->sys, jet);
@@ -178,25 +136,26 @@ static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pos
 
 /* V = 1/2 k d_a d_b. */
 static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
-                         const mt_cx stretch[2], const mt_jet jet[2], mt_curvature curvature,
-                         mt_lagrangian *out)
+                         const mt_cx stretch[2], const mt_relative_jet jet[2],
+                         mt_curvature curvature, mt_curvature_sum *sum, mt_lagrangian *out)
 {
     for (int side = 0; side < 2; side++) {
         const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
-        add_gradient(sys, body, jet[side].g, force, out, out->g);
+        add_gradient(sys, body, &jet[side], force, out, out->g);
         note_force(sys, out, body, &jet[side], force);
         if (curvature != MT_CURVATURE_NONE) {
-            add_hessian(sys, body, &jet[side], curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
-                        curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k, &jet[1 - side],
-                        out);
+            mt_curvature_add(sum, body, &jet[side], &jet[1 - side],
+                             curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
+                             curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k);
         }
     }
 }
 
 /* Returns the spring's force. What the step that is left adds to it (way) would drown in the
  * stretch of one whose preload all but takes that back. */
-static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way, const mt_jet *jet,
-                        mt_curvature curvature, mt_lagrangian *out)
+static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way,
+                        const mt_relative_jet *jet, mt_curvature curvature,
+                        mt_curvature_sum *sum, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
@@ -206,22 +165,22 @@ static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way, cons
     mt_cx force = cx_mul(k, stretch) + mt_data_scalar(d, s->preload, 0.0) + (way * k);
     if (trimmed) {
         force = cx_make(out->trim_force, out->trim_force_derivative);
-        add_gradient(sys, body, jet->g, 1.0, out, out->trim);
+        add_gradient(sys, body, jet, 1.0, out, out->trim);
     }
-    add_gradient(sys, body, jet->g, force, out, out->g);
+    add_gradient(sys, body, jet, force, out, out->g);
     note_force(sys, out, body, jet, force);
     if (curvature != MT_CURVATURE_NONE) {
         /* while the force of the trimmed spring is an unknown its stiffness does not act; in
          * the linearised system it does, there as a row (rows.h) */
         const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
-        add_hessian(sys, body, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
-                    geometric ? 0.0 : k, jet, out);
+        mt_curvature_add(sum, body, jet, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
+                         geometric ? 0.0 : k);
     }
     return force;
 }
 
 static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
-                        const mt_jet *jet, double force, mt_lagrangian *out)
+                        const mt_relative_jet *jet, double force, mt_lagrangian *out)
 {
     const mt_spring_def *const s = &d->sys->springs[i];
     const mt_measure_def *const def = &d->sys->measures[s->measure[side]];
@@ -239,28 +198,54 @@ static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
     }
 }
 
+/* True of a spring without stiffness and preload, now and as its input changes: a direction in
+ * which a bushing is free. */
+static bool is_forceless(const mt_data *d, int i)
+{
+    const mt_spring_def *const s = &d->sys->springs[i];
+    const mt_cx k = mt_data_scalar(d, s->stiffness, 0.0);
+    const mt_cx force = mt_data_scalar(d, s->preload, 0.0);
+    return i != d->sys->trim_spring && creal(k) == 0.0 && cimag(k) == 0.0 &&
+           creal(force) == 0.0 && cimag(force) == 0.0;
+}
+
+/* What the step that is left makes of a measure. */
+static double along_left(const mt_system *sys, const int body[2], const mt_relative_jet *jet,
+                         const double *left)
+{
+    double sum = 0.0;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(sys, body, k);
+        const double g = mt_relative_sign(k) * creal(jet->g[mt_relative_of(k)]);
+        sum += dof >= 0 ? g * left[dof] : 0.0;
+    }
+    return sum;
+}
+
 static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature curvature,
                         mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const bool bends = curvature == MT_CURVATURE_FULL || curvature == MT_CURVATURE_GEOMETRIC;
-    mt_jet jet[2];
+    mt_relative_jet jet[2];
     mt_beam_parts parts;
+    mt_curvature_sum sum;
     parts.dir = NULL;
+    mt_curvature_begin(&sum, sys, out);
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         const mt_measure_def *const first = &sys->measures[s->measure[0]];
         const bool coupling = s->measure[0] != s->measure[1];
         mt_cx stretch[2] = {0.0, 0.0};
         double way[2] = {0.0, 0.0};
-        if (s->damper) {
+        if (s->damper || is_forceless(d, i)) {
             continue;
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
-            mt_data_eval(d, def, at, bends, &parts, &jet[side]);
+            mt_data_relative(d, def, at, bends, &parts, &jet[side]);
             if (out->left != NULL) {
-                way[side] = mt_jet_along(sys, def->body, &jet[side], out->left);
+                way[side] = along_left(sys, def->body, &jet[side], out->left);
             }
             stretch[side] = jet[side].value - d->rest[i][side];
         }
@@ -272,20 +257,21 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
             stretch[1] += way[1];
             force[0] = 0.5 * cx_mul(k, stretch[1]);
             force[1] = 0.5 * cx_mul(k, stretch[0]);
-            add_coupling(sys, first->body, k, stretch, jet, curvature, out);
+            add_coupling(sys, first->body, k, stretch, jet, curvature, &sum, out);
         } else {
-            force[0] = add_spring(d, i, stretch[0], way[0], jet, curvature, out);
+            force[0] = add_spring(d, i, stretch[0], way[0], jet, curvature, &sum, out);
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             note_spring(d, i, side, at->pose, &jet[side], creal(force[side]), out);
         }
     }
+    mt_curvature_flush(&sum);
 }
 
 /* Jet of what a load does work along: F . x, or its measure; *size: what that is multiplied
  * with. */
 static void load_jet(const mt_data *d, const mt_load_def *load, const mt_placement *at,
-                     bool hessian, int body[2], mt_cx *size, mt_jet *jet)
+                     bool hessian, int body[2], mt_cx *size, mt_relative_jet *jet)
 {
     const mt_system *const sys = d->sys;
     if (load->measure >= 0) {
@@ -293,7 +279,7 @@ static void load_jet(const mt_data *d, const mt_load_def *load, const mt_placeme
         body[0] = def->body[0];
         body[1] = def->body[1];
         *size = mt_data_scalar(d, load->size, 0.0);
-        mt_data_eval(d, def, at, hessian, NULL, jet);
+        mt_data_relative(d, def, at, hessian, NULL, jet);
         return;
     }
     mt_cx f[3];
@@ -303,13 +289,13 @@ static void load_jet(const mt_data *d, const mt_load_def *load, const mt_placeme
     body[0] = load->body;
     body[1] = MT_GROUND;
     *size = 1.0;
-    mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f, &at->pose[load->body],
-                     hessian, jet);
+    mt_measure_relative_point(load->point < 0 ? NULL : d->vec[load->point], f,
+                              &at->pose[load->body], hessian, jet);
 }
 
 /* A force at the centre of a body has no arm, and its energy no curvature. */
 static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *poses,
-                      const mt_jet *jet, mt_cx size, mt_lagrangian *out)
+                      const mt_relative_jet *jet, mt_cx size, mt_lagrangian *out)
 {
     const mt_measure_def point = {.kind = MT_MEASURE_PLANE, .body = {load->body, MT_GROUND}};
     mt_piece *piece = NULL;
@@ -328,18 +314,21 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
                       mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    mt_jet jet;
+    mt_relative_jet jet;
+    mt_curvature_sum sum;
+    mt_curvature_begin(&sum, sys, out);
     for (int i = 0; i < sys->n_loads; i++) {
         int body[2];
         mt_cx size = 0.0;
         load_jet(d, &sys->loads[i], at, hessian, body, &size, &jet);
-        add_gradient(sys, body, jet.g, -size, out, out->g);
+        add_gradient(sys, body, &jet, -size, out, out->g);
         note_force(sys, out, body, &jet, size);
         if (hessian) {
-            add_hessian(sys, body, &jet, -size, 0.0, NULL, out);
+            mt_curvature_add(&sum, body, &jet, NULL, -size, 0.0);
             note_load(d, &sys->loads[i], at->pose, &jet, size, out);
         }
     }
+    mt_curvature_flush(&sum);
 }
 
 /*
@@ -377,7 +366,9 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
 {
     const mt_system *const sys = d->sys;
     const mt_cx l2 = anchor_square(d);
-    mt_jet jet;
+    mt_relative_jet jet;
+    mt_curvature_sum sum;
+    mt_curvature_begin(&sum, sys, out);
     for (int i = 0; i < sys->n_bodies; i++) {
         const int body[2] = {MT_GROUND, i};
         const mt_pose *const anchor = &drawn[i];
@@ -386,7 +377,7 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             if (dof[k] >= 0) {
                 out->g[dof[k]] += part_of(out, poses[i].x[k] - drawn[i].x[k]);
                 if (hessian) {
-                    add_entry(out, sys->nq, dof[k], dof[k], part_of(out, 1.0));
+                    mt_curvature_add_entry(out, sys->nq, dof[k], dof[k], part_of(out, 1.0));
                 }
             }
             /* -l^2/2 tr(R0^T R) */
@@ -394,13 +385,14 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             e[k] = 1.0;
             const mt_measure_data m = {
                 .kind = MT_MEASURE_DOT, .dir = {e, e, NULL}, .plane = sys->dimension == 2};
-            mt_measure_eval(&m, anchor, &poses[i], hessian, NULL, &jet);
-            add_gradient(sys, body, jet.g, -0.5 * l2, out, out->g);
+            mt_measure_relative(&m, anchor, &poses[i], hessian, NULL, &jet);
+            add_gradient(sys, body, &jet, -0.5 * l2, out, out->g);
             if (hessian) {
-                add_hessian(sys, body, &jet, -0.5 * l2, 0.0, NULL, out);
+                mt_curvature_add(&sum, body, &jet, NULL, -0.5 * l2, 0.0);
             }
         }
     }
+    mt_curvature_flush(&sum);
 }
 
 /* All multipliers, before the first of them is used. */
@@ -420,7 +412,7 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
 /* Forces that meet in a body are known to eps of the largest of them: so is a joint's force,
  * however small it is itself. */
 static mt_piece *note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                            const mt_jet *jet, mt_cx force, mt_lagrangian *out)
+                            const mt_relative_jet *jet, mt_cx force, mt_lagrangian *out)
 {
     const double arm = mt_piece_is_angle(def) ? d->sys->length_m : 1.0;
     double push = 0.0;
@@ -446,21 +438,22 @@ static void add_to_row(mt_sparse_row *row, int dof, double a)
 static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    mt_jet jet;
+    mt_relative_jet jet;
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
         mt_cx value = -mt_data_target(d, i, at);
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
-            mt_data_eval(d, def, at, false, NULL, &jet);
+            mt_data_relative(d, def, at, false, NULL, &jet);
             value += cx_mul(factor, jet.value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
                 if (dof < 0) {
                     continue;
                 }
-                const double a = part_of(out, cx_mul(factor, jet.g[k]));
+                const double a = mt_relative_sign(k) *
+                                 part_of(out, cx_mul(factor, jet.g[mt_relative_of(k)]));
                 if (out->a != NULL) {
                     out->a[i + ((ptrdiff_t)dof * m)] += a;
                 }
@@ -477,7 +470,9 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
                          mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
-    mt_jet jet;
+    mt_relative_jet jet;
+    mt_curvature_sum sum;
+    mt_curvature_begin(&sum, sys, out);
     push_joints(d, m, lambda, out);
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
@@ -485,8 +480,8 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
             const mt_cx force = cx_mul(factor, lambda[i]);
-            mt_data_eval(d, def, at, true, NULL, &jet);
-            add_hessian(sys, def->body, &jet, force, 0.0, NULL, out);
+            mt_data_relative(d, def, at, true, NULL, &jet);
+            mt_curvature_add(&sum, def->body, &jet, NULL, force, 0.0);
             mt_piece *const piece = note_joint(d, def, at->pose, &jet, force, out);
             if (piece != NULL) {
                 piece->force = creal(force);
@@ -498,6 +493,7 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
             }
         }
     }
+    mt_curvature_flush(&sum);
 }
 
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,
@@ -544,13 +540,13 @@ double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_for
     parts.dir = NULL;
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
-        double stretch[2];
-        for (int side = 0; side < 2 && !s->damper; side++) {
+        double stretch[2] = {0.0, 0.0};
+        if (s->damper || is_forceless(d, i)) {
+            continue;
+        }
+        for (int side = 0; side < 2; side++) {
             const mt_measure_def *const def = &sys->measures[s->measure[side]];
             stretch[side] = creal(mt_data_value(d, def, at, &parts)) - creal(d->rest[i][side]);
-        }
-        if (s->damper) {
-            continue;
         }
         if (i == sys->trim_spring) {
             v += trim_force * stretch[0];
@@ -560,7 +556,7 @@ double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_for
         v += creal(mt_data_scalar(d, s->preload, 0.0)) * stretch[0];
     }
     for (int i = 0; i < sys->n_loads; i++) {
-        mt_jet jet;
+        mt_relative_jet jet;
         int body[2];
         mt_cx size = 0.0;
         load_jet(d, &sys->loads[i], at, false, body, &size, &jet);

@@ -20,14 +20,14 @@ static const double TURN = 6.283185307179586477; /* 2 pi */
 static const mt_cx ZERO3[3] = {0.0, 0.0, 0.0};
 
 /* Block (theta_a, theta_b) of alpha I + beta s t^T. */
-static void add_mixed(mt_relative_jet *j, mt_cx alpha, mt_cx beta, const mt_cx *s,
+static void add_mixed(mt_relative_jet *j, mt_cx alpha, double beta, const mt_cx *s,
                       const mt_cx *t)
 {
     const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
     for (int c = first; c < 3; c++) {
         mt_cx *const row = j->h + mt_relative_row(MT_AT_TURN_B + c) + MT_AT_TURN_A;
         for (int r = first; r < 3; r++) {
-            mt_cx v = cx_mul(beta, cx_mul(s[r], t[c]));
+            mt_cx v = beta * cx_mul(s[r], t[c]);
             if (r == c) {
                 v += alpha;
             }
@@ -36,42 +36,78 @@ static void add_mixed(mt_relative_jet *j, mt_cx alpha, mt_cx beta, const mt_cx *
     }
 }
 
+/* The same as add_dot, of numbers without derivatives. */
+static void add_real_dot(mt_relative_jet *j, double scale, const mt_cx *cu, const mt_cx *cv)
+{
+    const double u[3] = {creal(cu[0]), creal(cu[1]), creal(cu[2])};
+    const double v[3] = {creal(cv[0]), creal(cv[1]), creal(cv[2])};
+    const double n[3] = {(u[1] * v[2]) - (u[2] * v[1]), (u[2] * v[0]) - (u[0] * v[2]),
+                         (u[0] * v[1]) - (u[1] * v[0])};
+    const double dot = scale * ((u[0] * v[0]) + (u[1] * v[1]) + (u[2] * v[2]));
+    j->value += dot;
+    for (int k = 0; k < 3; k++) {
+        j->g[MT_AT_TURN_A + k] += scale * n[k];
+        j->g[MT_AT_TURN_B + k] -= scale * n[k];
+    }
+    const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
+    for (int r = j->second ? first : 3; r < 3; r++) {
+        mt_cx *const a = j->h + mt_relative_row(MT_AT_TURN_A + r) + MT_AT_TURN_A;
+        mt_cx *const b = j->h + mt_relative_row(MT_AT_TURN_B + r) + MT_AT_TURN_B;
+        mt_cx *const mixed = b - (MT_AT_TURN_B - MT_AT_TURN_A);
+        for (int c = first; c <= r; c++) {
+            const double half = 0.5 * scale;
+            const double one = (half * (u[r] * v[c])) - (r == c ? dot : 0.0);
+            const double other = half * (v[r] * u[c]);
+            a[c] = a[c] + one + other;
+            b[c] = b[c] + one + other;
+        }
+        for (int c = first; c < 3; c++) {
+            mixed[c] += (r == c ? dot : 0.0) - (scale * (v[c] * u[r]));
+        }
+    }
+}
+
 /* j += scale (u . v), u on a, v on b, both already rotated. */
-static void add_dot(mt_relative_jet *j, mt_cx scale, const mt_cx *u, const mt_cx *v)
+static void add_dot(mt_relative_jet *j, double scale, const mt_cx *u, const mt_cx *v)
 {
     mt_cx n[3];
-    j->value += cx_mul(scale, cx_dot3(u, v));
+    if (j->real) {
+        add_real_dot(j, scale, u, v);
+        return;
+    }
+    const mt_cx dot = scale * cx_dot3(u, v);
+    j->value += dot;
     cx_cross3(u, v, n);
     mt_relative_add_vec(j->g + MT_AT_TURN_A, scale, n);
     mt_relative_add_vec(j->g + MT_AT_TURN_B, -scale, n);
     if (j->second) {
         mt_relative_add_rotation(j, MT_AT_TURN_A, scale, u, v);
         mt_relative_add_rotation(j, MT_AT_TURN_B, scale, u, v);
-        add_mixed(j, cx_mul(scale, cx_dot3(u, v)), -scale, v, u);
+        add_mixed(j, dot, -scale, v, u);
     }
 }
 
-/* j += scale u . (Q - P); s, t: P - x_a and Q - x_b rotated; d = x_b - x_a. P moves with a as u
+/* j += u . (Q - P); s, t: P - x_a and Q - x_b rotated; d = x_b - x_a. P moves with a as u
  * does, so u . s is constant. */
-static void add_plane(mt_relative_jet *j, mt_cx scale, const mt_cx *u, const mt_cx *s,
-                      const mt_cx *t, const mt_cx *d)
+static void add_plane(mt_relative_jet *j, const mt_cx *u, const mt_cx *s, const mt_cx *t,
+                      const mt_cx *d)
 {
     mt_cx w[3];
     mt_cx n[3];
     for (int i = 0; i < 3; i++) {
         w[i] = d[i] + t[i];
     }
-    j->value += cx_mul(scale, cx_dot3(u, w) - cx_dot3(u, s));
-    mt_relative_add_vec(j->g + MT_AT_CHORD, scale, u);
+    j->value += cx_dot3(u, w) - cx_dot3(u, s);
+    mt_relative_add_vec(j->g + MT_AT_CHORD, 1.0, u);
     cx_cross3(u, w, n);
-    mt_relative_add_vec(j->g + MT_AT_TURN_A, scale, n);
+    mt_relative_add_vec(j->g + MT_AT_TURN_A, 1.0, n);
     cx_cross3(t, u, n);
-    mt_relative_add_vec(j->g + MT_AT_TURN_B, scale, n);
+    mt_relative_add_vec(j->g + MT_AT_TURN_B, 1.0, n);
     if (j->second) {
-        mt_relative_add_rotation(j, MT_AT_TURN_A, scale, u, w);
-        mt_relative_add_cross(j, MT_AT_TURN_A, scale, u);
-        add_mixed(j, cx_mul(scale, cx_dot3(u, t)), -scale, t, u);
-        mt_relative_add_rotation(j, MT_AT_TURN_B, scale, u, t);
+        mt_relative_add_rotation(j, MT_AT_TURN_A, 1.0, u, w);
+        mt_relative_add_cross(j, MT_AT_TURN_A, u);
+        add_mixed(j, cx_dot3(u, t), -1.0, t, u);
+        mt_relative_add_rotation(j, MT_AT_TURN_B, 1.0, u, t);
     }
 }
 
@@ -339,7 +375,7 @@ static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose 
     switch (m->kind) {
     case MT_MEASURE_PLANE:
         mt_relative_clear(out, second, MT_SPAN_ALL, real);
-        add_plane(out, 1.0, e[0], s, t, d);
+        add_plane(out, e[0], s, t, d);
         break;
     case MT_MEASURE_DOT:
         mt_relative_clear(out, second, MT_SPAN_TURNS, real);
@@ -360,7 +396,7 @@ static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose 
     }
 }
 
-static void relative_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+void mt_measure_relative(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
                          bool with_second, mt_beam_parts *kept, mt_relative_jet *out)
 {
     const mt_second second = !with_second ? MT_SECOND_NONE
@@ -379,7 +415,7 @@ void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *
                      mt_beam_parts *kept, mt_jet *out)
 {
     mt_relative_jet j;
-    relative_jet(m, a, b, second, kept, &j);
+    mt_measure_relative(m, a, b, second, kept, &j);
     mt_relative_expand(&j, out);
 }
 
@@ -387,27 +423,34 @@ mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose
                        mt_beam_parts *kept)
 {
     mt_relative_jet j;
-    relative_jet(m, a, b, false, kept, &j);
+    mt_measure_relative(m, a, b, false, kept, &j);
     return j.value;
 }
 
-void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool with_second,
+void mt_measure_relative_point(const mt_cx *s, const mt_cx *f, const mt_pose *a,
+                               bool with_second, mt_relative_jet *out)
+{
+    const mt_second second = with_second ? MT_SECOND_ALL : MT_SECOND_NONE;
+    mt_cx w[3];
+    mt_cx n[3];
+    mt_relative_clear(out, second, MT_SPAN_CHORD | MT_SPAN_TURN_A, false);
+    cx_rotate3(a->r, s != NULL ? s : ZERO3, w);
+    out->value = cx_dot3(f, a->x) + cx_dot3(f, w);
+    mt_relative_add_vec(out->g + MT_AT_CHORD, -1.0, f);
+    cx_cross3(w, f, n);
+    mt_relative_add_vec(out->g + MT_AT_TURN_A, 1.0, n);
+    if (with_second) {
+        mt_relative_add_rotation(out, MT_AT_TURN_A, 1.0, f, w);
+    }
+}
+
+void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
                       mt_jet *out)
 {
     mt_relative_jet j;
-    mt_cx w[3];
-    mt_cx n[3];
-    mt_relative_clear(&j, with_second ? MT_SECOND_ALL : MT_SECOND_NONE, MT_SPAN_TURN_A, false);
-    cx_rotate3(a->r, s != NULL ? s : ZERO3, w);
-    j.value = cx_dot3(f, a->x) + cx_dot3(f, w);
-    cx_cross3(w, f, n);
-    mt_relative_add_vec(j.g + MT_AT_TURN_A, 1.0, n);
-    if (with_second) {
-        mt_relative_add_rotation(&j, MT_AT_TURN_A, 1.0, f, w);
-    }
+    mt_measure_relative_point(s, f, a, second, &j);
     mt_relative_expand(&j, out);
-    for (int k = 0; k < 3; k++) {
-        out->g[k] = f[k];
-        out->g[6 + k] = 0.0;
+    for (int k = 6; k < 9; k++) {
+        out->g[k] = 0.0; /* of the ground */
     }
 }

@@ -99,9 +99,43 @@ typedef struct mt_relative_jet {
     mt_cx g[MT_RELATIVE];
     mt_cx h[MT_RELATIVE_PAIRS];
     mt_second second;
-    unsigned span; /* what of the nine it depends on (measure_priv.h); all else is 0 */
+    unsigned span; /* what of the nine it depends on, as bits; all else is 0 */
     bool real;     /* nothing carries a derivative: imaginary parts are 0 */
 } mt_relative_jet;
+
+/* The relative freedom of a local one, and the sign with which that counts. */
+static inline int mt_relative_of(int local)
+{
+    return local < 6 ? local : (local < 9 ? local - 6 : local - 3);
+}
+
+static inline double mt_relative_sign(int local)
+{
+    return local < 3 ? -1.0 : 1.0;
+}
+
+/* Where row r of the lower triangle begins. */
+static inline int mt_relative_row(int r)
+{
+    return r * (r + 1) / 2;
+}
+
+/* The entry of two local freedoms in it. */
+static inline int mt_relative_pair(int r, int c)
+{
+    const int i = mt_relative_of(r);
+    const int k = mt_relative_of(c);
+    return i > k ? mt_relative_row(i) + k : mt_relative_row(k) + i;
+}
+
+/* The freedoms of a span of which a Hessian is filled, ascending. */
+typedef struct mt_relative_list {
+    int n;
+    int at[MT_RELATIVE];
+} mt_relative_list;
+const mt_relative_list *mt_relative_filled(mt_second second, unsigned span);
+/* The twelve local freedoms. */
+void mt_relative_expand(const mt_relative_jet *j, mt_jet *out);
 
 /* What all strains of a beam element are made of (measure_beam.c), kept from one of them to
  * the next. In the plane phi[2], s[1] and length alone. Some 6 kB, of which `dir` alone has to
@@ -119,11 +153,17 @@ typedef struct mt_beam_parts {
  * nor poses change. */
 void mt_measure_eval(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, bool second,
                      mt_beam_parts *kept, mt_jet *out);
+/* The same by relative position. */
+void mt_measure_relative(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                         bool second, mt_beam_parts *kept, mt_relative_jet *out);
 /* Value only. */
 mt_cx mt_measure_value(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
                        mt_beam_parts *kept);
 /* Jet of the work potential f . P of a point fixed to body a (local freedoms 0..5). */
 void mt_measure_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
                       mt_jet *out);
+/* The same, of b as the ground: dd is -dx_a. */
+void mt_measure_relative_point(const mt_cx *s, const mt_cx *f, const mt_pose *a, bool second,
+                               mt_relative_jet *out);
 
 #endif

@@ -54,7 +54,7 @@ static void reach_jet(int side, const mt_cx *u, const mt_cx *d, const mt_relativ
     mt_relative_add_vec(out->g + turn, 1.0, n);
     if (length->second) {
         mt_relative_add_rotation(out, turn, 1.0, u, d);
-        mt_relative_add_cross(out, turn, 1.0, u);
+        mt_relative_add_cross(out, turn, u);
     }
 }
 

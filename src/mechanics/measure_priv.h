@@ -26,39 +26,24 @@ enum {
     MT_SPAN_ALL = MT_SPAN_CHORD | MT_SPAN_TURNS
 };
 
-/* The freedoms of a span of which a Hessian is filled, ascending. */
-typedef struct mt_relative_list {
-    int n;
-    int at[MT_RELATIVE];
-} mt_relative_list;
-const mt_relative_list *mt_relative_filled(mt_second second, unsigned span);
-
-/* Where row r of the lower triangle begins. */
-static inline int mt_relative_row(int r)
-{
-    return r * (r + 1) / 2;
-}
-
 /* real: all that is added has no derivative. */
 void mt_relative_clear(mt_relative_jet *j, mt_second second, unsigned span, bool real);
 /* g[0..2] += scale v. */
-void mt_relative_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v);
+void mt_relative_add_vec(mt_cx *g, double scale, const mt_cx *v);
 /* Diagonal block, theta at `at`, of scale n . w (w turns): scale [1/2 (n w^T + w n^T) - (n . w)
  * I]. */
-void mt_relative_add_rotation(mt_relative_jet *j, int at, mt_cx scale, const mt_cx *n,
+void mt_relative_add_rotation(mt_relative_jet *j, int at, double scale, const mt_cx *n,
                               const mt_cx *w);
-/* Block (theta at `at`, dd) of scale (theta x u) . dd = scale theta . (u x dd): scale [u]x. */
-void mt_relative_add_cross(mt_relative_jet *j, int at, mt_cx scale, const mt_cx *u);
+/* Block (theta at `at`, dd) of (theta x u) . dd = theta . (u x dd): [u]x. */
+void mt_relative_add_cross(mt_relative_jet *j, int at, const mt_cx *u);
 /* out += scale p. */
-void mt_relative_add(mt_relative_jet *out, mt_cx scale, const mt_relative_jet *p);
+void mt_relative_add(mt_relative_jet *out, double scale, const mt_relative_jet *p);
 /* out += scale p q. */
 void mt_relative_add_product(mt_relative_jet *out, mt_cx scale, const mt_relative_jet *p,
                              const mt_relative_jet *q);
 /* out = f(p, q); out is neither. */
 void mt_relative_chain(const mt_chain2 *c, const mt_relative_jet *p, const mt_relative_jet *q,
                        mt_relative_jet *out);
-/* The twelve local freedoms. */
-void mt_relative_expand(const mt_relative_jet *j, mt_jet *out);
 
 /* |d + t - s|; s and t NULL: |d|. */
 void mt_relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_second second,

@@ -44,52 +44,59 @@ void mt_relative_clear(mt_relative_jet *j, mt_second second, unsigned span, bool
     j->real = real;
 }
 
-void mt_relative_add_vec(mt_cx *g, mt_cx scale, const mt_cx *v)
+void mt_relative_add_vec(mt_cx *g, double scale, const mt_cx *v)
 {
     for (int i = 0; i < 3; i++) {
-        g[i] += cx_mul(scale, v[i]);
+        g[i] += scale * v[i];
     }
 }
 
-void mt_relative_add_rotation(mt_relative_jet *j, int at, mt_cx scale, const mt_cx *n,
+void mt_relative_add_rotation(mt_relative_jet *j, int at, double scale, const mt_cx *n,
                               const mt_cx *w)
 {
-    const mt_cx alpha = cx_mul(-scale, cx_dot3(n, w));
-    const mt_cx half = 0.5 * scale;
-    for (int r = j->second == MT_SECOND_PLANE ? 2 : 0; r < 3; r++) { /* about z alone */
+    const mt_cx dot = scale * cx_dot3(n, w);
+    const double half = 0.5 * scale;
+    const int first = j->second == MT_SECOND_PLANE ? 2 : 0; /* about z alone */
+    for (int r = first; r < 3; r++) {
         mt_cx *const row = j->h + mt_relative_row(at + r) + at;
-        for (int c = j->second == MT_SECOND_PLANE ? 2 : 0; c <= r; c++) {
-            row[c] += cx_mul(half, cx_mul(n[r], w[c])) + (r == c ? alpha : 0.0);
-            row[c] += cx_mul(half, cx_mul(w[r], n[c]));
+        for (int c = first; c <= r; c++) {
+            if (j->real) {
+                const double one = half * (creal(n[r]) * creal(w[c]));
+                const double other = half * (creal(w[r]) * creal(n[c]));
+                row[c] = row[c] + (one - (r == c ? creal(dot) : 0.0)) + other;
+            } else {
+                row[c] += (half * cx_mul(n[r], w[c])) - (r == c ? dot : 0.0);
+                row[c] += half * cx_mul(w[r], n[c]);
+            }
         }
     }
 }
 
-void mt_relative_add_cross(mt_relative_jet *j, int at, mt_cx scale, const mt_cx *u)
+void mt_relative_add_cross(mt_relative_jet *j, int at, const mt_cx *u)
 {
     const mt_cx m[9] = {0.0, u[2], -u[1], -u[2], 0.0, u[0], u[1], -u[0], 0.0};
     const bool plane = j->second == MT_SECOND_PLANE; /* theta about z, dd in x and y */
     for (int r = plane ? 2 : 0; r < 3; r++) {
         mt_cx *const row = j->h + mt_relative_row(at + r) + MT_AT_CHORD;
         for (int c = 0; c < (plane ? 2 : 3); c++) {
-            row[c] += cx_mul(scale, m[r + (3 * c)]);
+            row[c] += m[r + (3 * c)];
         }
     }
 }
 
-void mt_relative_add(mt_relative_jet *out, mt_cx scale, const mt_relative_jet *p)
+void mt_relative_add(mt_relative_jet *out, double scale, const mt_relative_jet *p)
 {
     out->span |= p->span;
-    out->real = out->real && p->real && cimag(scale) == 0.0;
-    out->value += cx_mul(scale, p->value);
+    out->real = out->real && p->real;
+    out->value += scale * p->value;
     for (int i = 0; i < MT_RELATIVE; i++) {
-        out->g[i] += cx_mul(scale, p->g[i]);
+        out->g[i] += scale * p->g[i];
     }
     const mt_relative_list *const l = mt_relative_filled(out->second, p->span);
     for (int ii = 0; ii < l->n; ii++) {
         const int row = mt_relative_row(l->at[ii]);
         for (int kk = 0; kk <= ii; kk++) {
-            out->h[row + l->at[kk]] += cx_mul(scale, p->h[row + l->at[kk]]);
+            out->h[row + l->at[kk]] += scale * p->h[row + l->at[kk]];
         }
     }
 }
@@ -180,19 +187,15 @@ void mt_relative_chain(const mt_chain2 *c, const mt_relative_jet *p, const mt_re
 
 void mt_relative_expand(const mt_relative_jet *j, mt_jet *out)
 {
-    static const int of[MT_LOCAL] = {0, 1, 2, 3, 4, 5, 0, 1, 2, 6, 7, 8};
-    static const double sign[MT_LOCAL] = {-1.0, -1.0, -1.0, 1.0, 1.0, 1.0,
-                                          1.0,  1.0,  1.0,  1.0, 1.0, 1.0};
     out->value = j->value;
     out->second = j->second;
     for (int k = 0; k < MT_LOCAL; k++) {
-        out->g[k] = sign[k] * j->g[of[k]];
+        out->g[k] = mt_relative_sign(k) * j->g[mt_relative_of(k)];
     }
     for (int c = 0; c < MT_LOCAL && j->second; c++) {
         for (int r = c; r < MT_LOCAL; r++) {
-            const int low = of[r] < of[c] ? of[r] : of[c];
-            const int high = of[r] < of[c] ? of[c] : of[r];
-            const mt_cx v = sign[r] * sign[c] * j->h[mt_relative_row(high) + low];
+            const double sign = mt_relative_sign(r) * mt_relative_sign(c);
+            const mt_cx v = sign * j->h[mt_relative_pair(r, c)];
             out->h[r + (MT_LOCAL * c)] = v;
             out->h[c + (MT_LOCAL * r)] = v;
         }

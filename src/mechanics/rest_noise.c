@@ -21,7 +21,8 @@ struct mt_rest_noise {
     double *mu;        /* [m] */
     double *x;         /* [nq] */
     double *y;         /* [m] */
-    double *energy;    /* [n_pieces] e */
+    double *energy;    /* [n_pieces] e = phi^T H phi */
+    double *bent;      /* [n_pieces][MT_LOCAL] H phi */
     double *roundness; /* [m] n of the joints */
 };
 
@@ -44,6 +45,7 @@ mt_status mt_rest_noise_new(mt_linear *lin, mt_rest_noise **out, mt_err *err)
     r->x = mt_arena_f64(mem, nq, 1);
     r->y = mt_arena_f64(mem, m, 1);
     r->energy = mt_arena_f64(mem, (size_t)lin->n_pieces, 1);
+    r->bent = mt_arena_f64(mem, (size_t)lin->n_pieces, MT_LOCAL);
     r->roundness = mt_arena_f64(mem, m, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < lin->n_pieces; i++) {
@@ -101,19 +103,19 @@ static void add(const mt_piece *p, double c, const double *local, double *to)
     }
 }
 
-/* A^T mu = (K - lambda M) phi; the sparse equations of the equilibrium, where they are
- * factored, have it with x = 0. */
+/* bent, energies and mu, A^T mu = (K - lambda M) phi; the sparse equations of the equilibrium,
+ * where they are factored, have it with x = 0. */
 static mt_status joint_forces(mt_rest_noise *r, double lambda, const double *phi, mt_err *err)
 {
     mt_linear *const lin = r->lin;
     const mt_newton_solver *const solver = &lin->position.equilibrium.solver;
-    double bent[MT_LOCAL];
     memset(r->pull, 0, (size_t)lin->sys->nq * sizeof *r->pull);
     mt_linear_rows_product(lin, lambda, phi, r->pull);
-    for (int i = 0; i < lin->n_pieces && lin->kg != NULL; i++) {
+    for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
-        (void)bend(p, phi, bent);
-        add(p, p->force, bent, r->pull);
+        double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
+        r->energy[i] = bend(p, phi, bent);
+        add(p, lin->kg != NULL ? p->force : 0.0, bent, r->pull);
     }
     return solver->sparse
                ? mt_saddle_solve(&solver->saddle, r->pull, NULL, NULL, r->mu, &lin->scratch,
@@ -121,7 +123,7 @@ static mt_status joint_forces(mt_rest_noise *r, double lambda, const double *phi
                : mt_eliminate_multipliers(&lin->e, r->pull, r->mu, &lin->scratch, err);
 }
 
-/* pull, across and energies; returns what a unit of the trimmed spring's force makes. */
+/* pull and across; returns what a unit of the trimmed spring's force makes. */
 static double load(mt_rest_noise *r, const double *phi)
 {
     const mt_linear *const lin = r->lin;
@@ -131,8 +133,7 @@ static double load(mt_rest_noise *r, const double *phi)
     for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
         const mt_piece *const other = p + p->partner;
-        double bent[MT_LOCAL];
-        r->energy[i] = bend(p, phi, bent);
+        const double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
         if (p->equation >= 0) {
             r->across[p->equation] += p->factor * r->energy[i];
             add(p, p->equation < lin->m ? -2.0 * p->factor * r->mu[p->equation] : 0.0, bent,
