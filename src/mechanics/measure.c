@@ -342,13 +342,42 @@ static void beam_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *
     mt_beam_strain_fill(m, parts, out);
 }
 
-static void rotation_jet(mt_cx (*e)[3], mt_cx (*f)[3], int k, mt_second second, bool real,
-                         mt_relative_jet *out)
+/* w := the vector v of a body as it stands, of none 0; returns whether it has no derivative. */
+static bool turn(const mt_pose *pose, const mt_cx *v, mt_cx w[3])
+{
+    if (v == NULL) {
+        memset(w, 0, 3 * sizeof *w);
+        return true;
+    }
+    cx_rotate3(pose->r, v, w);
+    return all_real(3, w);
+}
+
+/* d = x_b - x_a, s and t; returns whether they have no derivative. */
+static bool reach(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, mt_cx d[3],
+                  mt_cx s[3], mt_cx t[3])
+{
+    for (int i = 0; i < 3; i++) {
+        d[i] = b->x[i] - a->x[i];
+    }
+    const bool real[] = {all_real(3, d), turn(a, m->point[0], s), turn(b, m->point[1], t)};
+    return real[0] && real[1] && real[2];
+}
+
+static void rotation_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                         mt_second second, mt_relative_jet *out)
 {
     mt_relative_jet cosine;
+    mt_cx e[3][3];
+    mt_cx f[3][3];
     mt_cx g[3];
+    bool real = true;
+    for (int i = 0; i < 3; i++) {
+        real = turn(a, m->dir[i], e[i]) && real;
+        real = turn(b, m->dir[i], f[i]) && real;
+    }
     mt_relative_cosine(e, f, second, real, g, &cosine);
-    mt_relative_rotation(e, f, k, &cosine, g, out);
+    mt_relative_rotation(e, f, m->component, &cosine, g, out);
 }
 
 /* Of all kinds but a beam's strains. */
@@ -358,38 +387,35 @@ static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose 
     mt_cx s[3];
     mt_cx t[3];
     mt_cx d[3];
-    mt_cx e[3][3];
-    mt_cx f[3][3];
-    cx_rotate3(a->r, m->point[0] != NULL ? m->point[0] : ZERO3, s);
-    cx_rotate3(b->r, m->point[1] != NULL ? m->point[1] : ZERO3, t);
-    bool real = all_real(3, s) && all_real(3, t);
-    for (int i = 0; i < 3; i++) {
-        d[i] = b->x[i] - a->x[i];
-        real = real && cimag(d[i]) == 0.0;
-        if (m->dir[i] != NULL) {
-            cx_rotate3(a->r, m->dir[i], e[i]);
-            cx_rotate3(b->r, m->dir[i], f[i]);
-            real = real && all_real(3, e[i]) && all_real(3, f[i]);
-        }
-    }
+    mt_cx e[3];
+    mt_cx f[3];
+    bool real = true;
     switch (m->kind) {
     case MT_MEASURE_PLANE:
+        real = turn(a, m->dir[0], e);
+        real = reach(m, a, b, d, s, t) && real;
         mt_relative_clear(out, second, MT_SPAN_ALL, real);
-        add_plane(out, e[0], s, t, d);
+        add_plane(out, e, s, t, d);
         break;
     case MT_MEASURE_DOT:
+        real = turn(a, m->dir[0], e);
+        real = turn(b, m->dir[1], f) && real;
         mt_relative_clear(out, second, MT_SPAN_TURNS, real);
-        add_dot(out, 1.0, e[0], f[1]);
+        add_dot(out, 1.0, e, f);
         break;
     case MT_MEASURE_DISTANCE:
+        real = reach(m, a, b, d, s, t);
         mt_relative_distance(s, t, d, second, real, out);
         break;
     case MT_MEASURE_ANGLE:
-        angle_jet(e[0], e[1], f[0], second, real, out);
+        real = turn(a, m->dir[0], e);
+        real = turn(a, m->dir[1], s) && real;
+        real = turn(b, m->dir[0], f) && real;
+        angle_jet(e, s, f, second, real, out);
         out->value += TURN * rint((m->near - creal(out->value)) / TURN);
         break;
     case MT_MEASURE_ROTATION:
-        rotation_jet(e, f, m->component, second, real, out);
+        rotation_jet(m, a, b, second, out);
         break;
     case MT_MEASURE_BEAM:
         break;

@@ -155,34 +155,52 @@ static void add_second(const second_form *f, mt_relative_jet *out)
     }
 }
 
+/* x g, to the same bits without derivatives. */
+static mt_cx times(bool real, mt_cx x, mt_cx g)
+{
+    return real ? cx_pair(creal(x) * creal(g), 0.0) : cx_mul(x, g);
+}
+
 void mt_relative_add_product(mt_relative_jet *out, mt_cx scale, const mt_relative_jet *p,
                              const mt_relative_jet *q)
 {
-    second_form f = {
-        .p = q, .q = p, .fp = cx_mul(scale, p->value), .fq = cx_mul(scale, q->value)};
+    second_form f = {.p = q, .q = p};
     out->span |= p->span | q->span;
     out->real = out->real && p->real && q->real && cimag(scale) == 0.0;
+    f.fp = cx_mul(scale, p->value);
+    f.fq = cx_mul(scale, q->value);
     out->value += cx_mul(f.fp, q->value);
     for (int i = 0; i < MT_RELATIVE; i++) {
-        out->g[i] += cx_mul(f.fq, p->g[i]) + cx_mul(f.fp, q->g[i]);
-        f.x[i] = cx_mul(scale, p->g[i]);
-        f.z[i] = cx_mul(scale, q->g[i]);
+        out->g[i] += times(out->real, f.fq, p->g[i]) + times(out->real, f.fp, q->g[i]);
     }
-    add_second(&f, out);
+    if (out->second) {
+        for (int i = 0; i < MT_RELATIVE; i++) {
+            f.x[i] = times(out->real, scale, p->g[i]);
+            f.z[i] = times(out->real, scale, q->g[i]);
+        }
+        add_second(&f, out);
+    }
 }
 
 void mt_relative_chain(const mt_chain2 *c, const mt_relative_jet *p, const mt_relative_jet *q,
                        mt_relative_jet *out)
 {
-    second_form f = {.p = p, .q = q, .fp = c->fp, .fq = c->fq};
-    mt_relative_clear(out, p->second, p->span | q->span, p->real && q->real);
+    const bool real = p->real && q->real;
+    second_form f = {.p = p, .q = q};
+    mt_relative_clear(out, p->second, p->span | q->span, real);
     out->value = c->f;
+    f.fp = c->fp;
+    f.fq = c->fq;
     for (int i = 0; i < MT_RELATIVE; i++) {
-        out->g[i] = cx_mul(c->fp, p->g[i]) + cx_mul(c->fq, q->g[i]);
-        f.x[i] = cx_mul(c->fpp, p->g[i]) + cx_mul(c->fpq, q->g[i]);
-        f.z[i] = cx_mul(c->fpq, p->g[i]) + cx_mul(c->fqq, q->g[i]);
+        out->g[i] = times(real, c->fp, p->g[i]) + times(real, c->fq, q->g[i]);
     }
-    add_second(&f, out);
+    if (out->second) {
+        for (int i = 0; i < MT_RELATIVE; i++) {
+            f.x[i] = times(real, c->fpp, p->g[i]) + times(real, c->fpq, q->g[i]);
+            f.z[i] = times(real, c->fpq, p->g[i]) + times(real, c->fqq, q->g[i]);
+        }
+        add_second(&f, out);
+    }
 }
 
 void mt_relative_expand(const mt_relative_jet *j, mt_jet *out)

@@ -123,15 +123,21 @@ static void add_slope_times(double weight, const mt_cx *f, const mt_cx *g,
 static void add_product(const mt_system *sys, const mt_term *t, double weight, const mt_cx *f,
                         const mt_cx *g, double *matrix)
 {
-    for (int j = 0; j < MT_LOCAL; j++) {
-        const bool none = creal(f[j]) == 0.0 && creal(g[j]) == 0.0;
-        const int column = none ? -1 : mt_local_dof(sys, t->body, j);
-        for (int i = 0; i < MT_LOCAL && column >= 0; i++) {
-            const int row = mt_local_dof(sys, t->body, i);
-            if (row >= 0) {
-                matrix[row + ((ptrdiff_t)column * sys->nq)] +=
-                    0.5 * weight * ((creal(f[i]) * creal(g[j])) + (creal(g[i]) * creal(f[j])));
-            }
+    int own[MT_LOCAL] = {0}; /* where one of them is not 0 */
+    int dof[MT_LOCAL] = {0};
+    int n = 0;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const bool none = creal(f[k]) == 0.0 && creal(g[k]) == 0.0;
+        dof[n] = none ? -1 : mt_local_dof(sys, t->body, k);
+        own[n] = k;
+        n += dof[n] >= 0 ? 1 : 0;
+    }
+    for (int c = 0; c < n; c++) {
+        const int j = own[c];
+        for (int r = 0; r < n; r++) {
+            const int i = own[r];
+            matrix[dof[r] + ((ptrdiff_t)dof[c] * sys->nq)] +=
+                0.5 * weight * ((creal(f[i]) * creal(g[j])) + (creal(g[i]) * creal(f[j])));
         }
     }
 }
@@ -232,7 +238,7 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
     const mt_data *const d = &o->lin->data;
     const mt_system *const sys = d->sys;
     const mt_placement moving = {.pose = o->tangent, .turn = at->turn, .drive = at->drive};
-    mt_jet jet;
+    mt_relative_jet jet;
     memset(o->a, 0, (size_t)o->m * (size_t)o->nq * sizeof *o->a);
     for (int i = 0; i < o->m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
@@ -242,15 +248,16 @@ static void add_joints(mt_motion *o, const mt_placement *at, const double *v)
         for (int t = 0; t < c->terms; t++) {
             const mt_measure_def *const def = &sys->measures[c->measure[t]];
             const double factor = creal(mt_data_scalar(d, c->coefficient[t], 1.0));
-            mt_data_eval(d, def, &moving, false, NULL, &jet);
+            mt_data_relative(d, def, &moving, false, NULL, &jet);
             value += factor * creal(jet.value);
             for (int k = 0; k < MT_LOCAL; k++) {
                 const int dof = mt_local_dof(sys, def->body, k);
                 if (dof >= 0) {
-                    const double a = factor * creal(jet.g[k]);
+                    const mt_cx g = mt_relative_sign(k) * jet.g[mt_relative_of(k)];
+                    const double a = factor * creal(g);
                     o->a[i + ((ptrdiff_t)dof * o->m)] += a;
                     o->rate[i] += a * v[dof];
-                    o->b[i] -= factor * cx_derivative(jet.g[k]) * v[dof];
+                    o->b[i] -= factor * cx_derivative(g) * v[dof];
                 }
             }
         }
