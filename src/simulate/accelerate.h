@@ -34,4 +34,32 @@ typedef struct mt_gauss {
 mt_status mt_gauss_solve(const mt_system *sys, const mt_gauss *g, double *x, double *lambda,
                          int *rank, mt_arena *mem, mt_err *err);
 
+/*
+ * Solutions one after the other of a motion, whose masses and equations change little from one
+ * to the next: with the inverse of
+ *     S [M -A^T; A 0] S,   S a scale of each unknown,
+ * at an earlier position, what a solution leaves of the present equations is taken off again
+ * until it is rounding, a fourth of the work of an elimination. Where that does not converge,
+ * or the equations are not regular, mt_gauss_solve has the answer, and its position the next
+ * inverse.
+ */
+typedef struct mt_gauss_near {
+    int n; /* unknowns; 0: too many, every solution is by elimination */
+    bool known;
+    double *inverse; /* n x n */
+    double *scale;   /* [n] */
+    double *x;       /* [n] */
+    double *rest;    /* [n] */
+    double *step;    /* [n] */
+    long served;     /* by this inverse */
+    long wait;       /* eliminations until another one is made */
+    long patience;   /* such a wait at least, where the last one did not serve */
+} mt_gauss_near;
+
+mt_status mt_gauss_near_init(mt_gauss_near *o, const mt_system *sys, int m, mt_arena *mem,
+                             mt_err *err);
+/* As mt_gauss_solve. O(nq^2) where the inverse serves. */
+mt_status mt_gauss_solve_near(mt_gauss_near *o, const mt_system *sys, const mt_gauss *g,
+                              double *x, double *lambda, mt_arena *mem, mt_err *err);
+
 #endif

@@ -24,6 +24,7 @@ typedef struct mt_sim {
     mt_placement start; /* where all began */
     mt_placement base;
     mt_placement at;
+    mt_gauss_near gauss;
     mt_ode *ode;
     mt_collocation *collocation; /* NULL: steps are those of the pair */
     long stiff_steps;            /* of the collocation */

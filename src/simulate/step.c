@@ -136,7 +136,8 @@ static mt_status accelerate(mt_sim *s, double t, const double *v, const double d
         s->b[d] += drive[2];
     }
     const mt_gauss g = {.m = s->m, .mass = o->mass, .force = s->force, .a = o->a, .b = s->b};
-    MT_TRY(mt_gauss_solve(s->sys, &g, out, d >= 0 ? s->lambda : NULL, NULL, s->mem, err));
+    MT_TRY(mt_gauss_solve_near(&s->gauss, s->sys, &g, out, d >= 0 ? s->lambda : NULL, s->mem,
+                               err));
     *power = mt_dot(s->nq, s->push, v) - mt_dot(s->nq, o->damping, v);
     *power += d >= 0 ? s->lambda[d] * drive[1] : 0.0;
     return MT_OK;
@@ -352,6 +353,7 @@ static mt_status allocate(mt_sim *s, mt_err *err)
     const size_t m = (size_t)s->m;
     const size_t n = (size_t)s->n;
     MT_TRY(mt_motion_init(&s->motion, s->lin, s->mem, err));
+    MT_TRY(mt_gauss_near_init(&s->gauss, s->sys, s->motion.m, s->mem, err));
     MT_TRY(mt_placement_init(&s->start, s->sys, s->mem, err));
     MT_TRY(mt_placement_init(&s->base, s->sys, s->mem, err));
     MT_TRY(mt_placement_init(&s->at, s->sys, s->mem, err));

@@ -77,6 +77,68 @@ static void simulate__accelerations_are_those_of_the_fundamental_equation(mt_tes
     }
 }
 
+/* One solution by the inverse of an earlier position beside one by elimination. */
+static void compare_solutions(mt_test *t, motion *m, mt_gauss_near *near, mt_motion *o,
+                              double tolerance)
+{
+    const int n = m->sys->nq;
+    double *const want = mt_arena_f64(&m->mem, (size_t)n, 1);
+    double *const got = mt_arena_f64(&m->mem, (size_t)n, 1);
+    double *const lambda = mt_arena_f64(&m->mem, (size_t)o->m, 1);
+    double *const left = mt_arena_f64(&m->mem, (size_t)n, 1);
+    mt_motion_eval(o, &m->start.at, m->start.v);
+    const mt_gauss g = {.m = o->m, .mass = o->mass, .force = o->force, .a = o->a, .b = o->b};
+    CHECK(t, mt_gauss_solve(m->sys, &g, want, NULL, NULL, &m->mem, &m->err) == MT_OK);
+    CHECK(t, mt_gauss_solve_near(near, m->sys, &g, got, lambda, &m->mem, &m->err) == MT_OK);
+    const double size = mt_max_abs(n, want);
+    for (int i = 0; i < n; i++) {
+        CHECK_NEAR_ABS(t, got[i], want[i], tolerance * size);
+    }
+    /* M x = f + A^T lambda */
+    memcpy(left, o->force, (size_t)n * sizeof *left);
+    mt_gemv(false, n, n, 1.0, o->mass, n, got, -1.0, left);
+    mt_gemv(true, o->m, n, -1.0, o->a, o->m, lambda, 1.0, left);
+    CHECK_NEAR_ABS(t, mt_max_abs(n, left), 0.0, tolerance * mt_max_abs(n * n, o->mass) * size);
+}
+
+/* Along a motion, and after leaps that no inverse survives. */
+static void simulate__accelerations_by_an_earlier_inverse_are_those_of_an_elimination(
+    mt_test *t)
+{
+    static const struct {
+        const char *file;
+        const char *configuration;
+        bool regular; /* else there is no inverse: masses of 0, equations that repeat */
+    } rows[] = {
+        {"four_bar", "loaded", true},      {"space_four_bar", "loaded", false},
+        {"double_pendulum", "rods", true}, {"space_couplings", "loaded", true},
+        {"couplings", "planet", true},     {"driven_rod", "sprung", true},
+    };
+    enum { STEPS = 60, LEAP = 20 };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        motion m;
+        mt_motion o;
+        mt_gauss_near near = {.n = 0};
+        long served = 0;
+        mt_test_row(t, "%s, %s", rows[i].file, rows[i].configuration);
+        if (motion_open(t, mech_load(t, rows[i].file), rows[i].configuration, &m) &&
+            shove(t, &m, 1.0)) {
+            double *const way = mt_arena_f64(&m.mem, (size_t)m.sys->nq, 1);
+            CHECK(t, mt_motion_init(&o, m.lin, &m.mem, &m.err) == MT_OK);
+            CHECK(t, mt_gauss_near_init(&near, m.sys, o.m, &m.mem, &m.err) == MT_OK);
+            for (int step = 0; step < STEPS; step++) {
+                mt_axpy(m.sys->nq, step % LEAP == LEAP - 1 ? 0.5 : 1e-4, m.start.v, way);
+                mt_poses_move(m.sys, m.start.at.pose, way);
+                memset(way, 0, (size_t)m.sys->nq * sizeof *way);
+                compare_solutions(t, &m, &near, &o, 1e-10);
+                served += near.known && near.served > 0 ? 1 : 0;
+            }
+            CHECK(t, rows[i].regular == (served > STEPS / 2));
+        }
+        motion_free(&m);
+    }
+}
+
 /* Wild motions of every kind of mass keep their energy, a quarter of the time or, with
  * MT_EVERY=1, all of it. */
 static void simulate__every_kind_of_mass_keeps_its_energy(mt_test *t)
@@ -165,6 +227,7 @@ static void simulate__errors_fall_with_the_order_of_the_method(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(simulate__accelerations_are_those_of_the_fundamental_equation),
+             MT_TEST(simulate__accelerations_by_an_earlier_inverse_are_those_of_an_elimination),
              MT_TEST(simulate__every_kind_of_mass_keeps_its_energy),
              MT_TEST(simulate__hundred_periods_drift_below_1e_8),
              MT_TEST(simulate__errors_fall_with_the_order_of_the_method))
