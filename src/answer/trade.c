@@ -19,16 +19,18 @@ typedef struct point {
     mt_question
         *q; /* owned; answered once, or from better starts, too; NULL: not begun, or done
                      * with */
-    mt_result *first; /* of the first pass; owned */
-    mt_result *again; /* of the second, where a neighbour knew better; owned, or NULL */
+    mt_result *first;   /* of the first pass; owned, until it is told */
+    mt_result *again;   /* of the second, where a neighbour knew better; likewise, or NULL */
+    const double *near; /* [n_variables] the design that meets all goals which the first pass
+                         * found: what neighbours start from; NULL: none */
     long evaluations;
     long multiplications;
     long solutions; /* modal ones */
 } point;
 
-/* Points that are compiled at a time: each has about a quarter of a megabyte, or what its model
- * needs. */
-enum { BLOCK = 256 };
+/* Points that are compiled at a time, beside a row of the grid: each has about a quarter of a
+ * megabyte, or what its model needs. */
+enum { BLOCK = 64 };
 /* Evaluations beside one local search that asks whether a neighbour knows better; and without
  * which a point is not searched again. */
 enum { LOOKS = 3, WARM_LEAST = 30 };
@@ -38,6 +40,11 @@ typedef struct trade {
     int n;
     int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
     int from;              /* point of the first task */
+    int told;              /* points whose answers the result has; of others it is not known */
+    mt_trade_result *out;
+    const mt_recommendation **best; /* [n] of those that are told; NULL: there is none */
+    mt_arena *mem;                  /* while it is answered */
+    mt_arena *kept;                 /* of the result */
     bool warm; /* a combination of catalogue values is reached from any start: no second pass */
     point *points;
 } trade;
@@ -224,15 +231,12 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
     MT_TRY(values_of(best != NULL && best->feasible ? best : NULL, mem, &best_x, err));
     for (int way = 0; way < 4; way++) {
         const int other = neighbour(t, k, way);
-        const mt_recommendation *const near =
-            other < 0 ? NULL : best_of(t->points[other].first);
-        const double *x = NULL;
+        const double *const x = other < 0 ? NULL : t->points[other].near;
         bool gain = false;
         const long left = mt_question_left(p->q) - LOOKS;
-        if (near == NULL || !near->feasible || stopped(t) || left < WARM_LEAST) {
+        if (x == NULL || stopped(t) || left < WARM_LEAST) {
             continue;
         }
-        MT_TRY(values_of(near, mem, &x, err));
         mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
         p->q->spent.phase = MT_PHASE_SEARCH;
         MT_TRY(mt_trade_improves(w, x, best_x, &gain, left, err));
@@ -347,26 +351,6 @@ static void tape_warm(void *context, int task, mt_tape *tape)
     tape_point(context, task, true, tape);
 }
 
-static mt_status begin(trade *t, mt_arena *mem, mt_err *err)
-{
-    const mt_trade *const asked = &t->study->trade;
-    t->n = 1;
-    for (int i = 0; i < MT_MAX_VARY; i++) {
-        t->size[i] = i < asked->n_vary ? asked->vary[i].n_values : 1;
-        t->n *= t->size[i];
-    }
-    t->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *t->points);
-    MT_TRY(mt_arena_check(mem, err));
-    for (int k = 0; k < t->n; k++) {
-        const int at[MT_MAX_VARY] = {k / t->size[1], k % t->size[1]};
-        t->points[k] = (point){.first = NULL};
-        for (int i = 0; i < asked->n_vary && i < MT_MAX_VARY; i++) {
-            t->points[k].values[i] = asked->vary[i].values[at[i]];
-        }
-    }
-    return MT_OK;
-}
-
 /* The unit of what varies; NULL: it has none. */
 static const char *unit_of(const mt_study *study, const mt_vary *v)
 {
@@ -404,43 +388,100 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     return MT_OK;
 }
 
-static mt_status describe(const trade *t, mt_result *result, mt_err *err)
+static mt_status begin(trade *t, mt_err *err)
 {
-    mt_arena *const mem = &result->mem;
-    mt_trade_result *const out = mt_arena_alloc(mem, 1, sizeof *out);
-    MT_TRY(mt_arena_check(mem, err));
-    *out = (mt_trade_result){.n_points = t->n};
-    MT_TRY(describe_what(t, mem, out, err));
+    const mt_trade *const asked = &t->study->trade;
+    t->n = 1;
+    for (int i = 0; i < MT_MAX_VARY; i++) {
+        t->size[i] = i < asked->n_vary ? asked->vary[i].n_values : 1;
+        t->n *= t->size[i];
+    }
+    t->points = mt_arena_alloc(t->mem, (size_t)t->n, sizeof *t->points);
+    t->best = mt_arena_alloc(t->mem, (size_t)t->n, sizeof(const mt_recommendation *));
+    t->out = mt_arena_alloc(t->kept, 1, sizeof *t->out);
+    MT_TRY(mt_arena_check(t->mem, err));
+    MT_TRY(mt_arena_check(t->kept, err));
+    *t->out = (mt_trade_result){.n_points = t->n};
+    t->out->points = mt_arena_alloc(t->kept, (size_t)t->n, sizeof *t->out->points);
+    MT_TRY(mt_arena_check(t->kept, err));
+    for (int k = 0; k < t->n; k++) {
+        const int at[MT_MAX_VARY] = {k / t->size[1], k % t->size[1]};
+        t->points[k] = (point){.first = NULL};
+        for (int i = 0; i < asked->n_vary && i < MT_MAX_VARY; i++) {
+            t->points[k].values[i] = asked->vary[i].values[at[i]];
+        }
+    }
+    return describe_what(t, t->kept, t->out, err);
+}
+
+/* What the neighbours of points [from, to) may start from. */
+static mt_status note_near(trade *t, int from, int to, mt_err *err)
+{
+    for (int k = from; k < to; k++) {
+        const mt_recommendation *const r = best_of(t->points[k].first);
+        if (r != NULL && r->feasible) {
+            MT_TRY(values_of(r, t->mem, &t->points[k].near, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* The answer of the next point, which is not changed any more: the result takes over what it
+ * needs of it, with what the point before says as well. */
+static mt_status tell_point(trade *t, const char *unanswered, mt_err *err)
+{
+    const int k = t->told;
+    point *const p = &t->points[k];
+    const mt_result *const r = answer_of(p);
+    const mt_trade_point *const before = k > 0 ? &t->out->points[k - 1] : NULL;
+    mt_trade_point *const told = &t->out->points[k];
+    const char *const status =
+        r != NULL && r->status_text != NULL ? r->status_text : unanswered;
+    const bool same = before != NULL && strcmp(before->status_text, status) == 0;
+    *told = (mt_trade_point){.n_values = t->study->trade.n_vary,
+                             .values = mt_arena_f64(t->kept, MT_MAX_VARY, 1),
+                             .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
+                             .status_text =
+                                 same ? before->status_text : mt_arena_strdup(t->kept, status),
+                             .best = mt_recommendation_default()};
+    MT_TRY(mt_arena_check(t->kept, err));
+    memcpy(told->values, p->values, sizeof p->values);
+    if (best_of(r) != NULL) {
+        t->best[k] = &told->best;
+        MT_TRY(mt_recommendation_copy(best_of(r), before != NULL ? &before->best : NULL,
+                                      t->kept, &told->best, err));
+    }
+    mt_result_delete(p->first);
+    mt_result_delete(p->again);
+    p->first = NULL;
+    p->again = NULL;
+    t->told++;
+    return MT_OK;
+}
+
+static mt_status tell_points(trade *t, int to, mt_err *err)
+{
     const char *const unanswered =
         mt_interrupt_cause(t->study->model->interrupt) == MT_CAUSE_TIME_LIMIT
             ? "Not answered: the time limit came first."
             : "Interrupted before it was answered.";
-    const mt_recommendation **const best =
-        mt_arena_alloc(mem, (size_t)t->n, sizeof(const mt_recommendation *));
-    out->points = mt_arena_alloc(mem, (size_t)t->n, sizeof *out->points);
-    MT_TRY(mt_arena_check(mem, err));
+    while (t->told < to) {
+        MT_TRY(tell_point(t, unanswered, err));
+    }
+    return MT_OK;
+}
+
+static mt_status describe(trade *t, mt_result *result, mt_err *err)
+{
+    MT_TRY(tell_points(t, t->n, err));
     for (int k = 0; k < t->n; k++) {
         const point *const p = &t->points[k];
-        const mt_result *const r = answer_of(p);
-        mt_trade_point *const told = &out->points[k];
-        *told = (mt_trade_point){.n_values = t->study->trade.n_vary,
-                                 .values = mt_arena_f64(mem, MT_MAX_VARY, 1),
-                                 .status = r != NULL ? r->status : MT_RESULT_INTERRUPTED,
-                                 .best = mt_recommendation_default()};
-        told->status_text = mt_arena_strdup(
-            mem, r != NULL && r->status_text != NULL ? r->status_text : unanswered);
-        MT_TRY(mt_arena_check(mem, err));
-        memcpy(told->values, p->values, sizeof p->values);
-        best[k] = best_of(r);
-        if (best[k] != NULL) {
-            MT_TRY(mt_recommendation_copy(best[k], mem, &told->best, err));
-        }
         result->run.spent.trade += p->evaluations;
         result->run.spent.multiplications += p->multiplications;
         result->run.modal_solutions += p->solutions;
     }
-    result->trade = out;
-    return mt_trade_front(t->study, best, &result->baseline, mem, out, err);
+    result->trade = t->out;
+    return mt_trade_front(t->study, t->best, &result->baseline, t->kept, t->out, err);
 }
 
 /* All points, and once more each whose neighbours are known: what is left to other parts of the
@@ -458,6 +499,7 @@ static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err 
         const mt_status rc = mt_workers_run(threads, &first, &cold, err);
         MT_TRY(rc == MT_E_INTERRUPTED ? MT_OK : rc);
         part = rc == MT_OK ? part : rc;
+        MT_TRY(note_near(t, known, to, err));
         known = to;
         t->from = ready;
         ready = known == t->n ? known : known - t->size[1];
@@ -466,6 +508,9 @@ static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err 
             MT_TRY(mt_workers_run(threads, &again, &warm, err));
         }
         ready = ready > t->from ? ready : t->from;
+        if (part == MT_OK) {
+            MT_TRY(tell_points(t, ready, err));
+        }
     }
     return part;
 }
@@ -479,7 +524,9 @@ mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *sco
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = begin(&t, &mem, err);
+    t.mem = &mem;
+    t.kept = &result->mem;
+    mt_status rc = begin(&t, err);
     rc = rc == MT_OK ? solve_all(&t, threads, scope, err) : rc;
     rc = rc == MT_OK ? describe(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {

@@ -45,64 +45,151 @@ static void *own_items(void *at, int n, size_t size, mt_arena *mem)
     return own;
 }
 
-static void own_text(const char **text, mt_arena *mem)
+/* The text of `like` where it says the same; returns whether it does. */
+static bool own_text(const char **text, const char *like, mt_arena *mem)
 {
-    *text = *text == NULL ? NULL : mt_arena_strdup(mem, *text);
-}
-
-static void own_list(const mt_record *record, void *at, int n, int n_variables, mt_arena *mem)
-{
-    char *const items = own_items(at, n, record->size, mem);
-    for (int i = 0; i < n && items != NULL; i++) {
-        mt_record_own(record, items + ((size_t)i * record->size), n_variables, mem);
+    const bool same = *text == NULL ? like == NULL : like != NULL && strcmp(*text, like) == 0;
+    if (same) {
+        *text = like;
+    } else if (*text != NULL) {
+        *text = mt_arena_strdup(mem, *text);
     }
+    return same;
 }
 
-void mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem)
+/* A list of the record that is copied, and that which may have it already. */
+typedef struct twins {
+    void *at; /* where its pointer lies */
+    int n;
+    const void *like; /* its items; NULL: none */
+    int n_like;
+    size_t size; /* of an item */
+} twins;
+
+/* A copy of plain numbers, or those of `like`. */
+static bool own_numbers(const twins *t, mt_arena *mem)
 {
+    const void *const from = mt_record_get_pointer(t->at);
+    const bool there = from != NULL && t->like != NULL && t->n == t->n_like;
+    if (from == NULL) {
+        return t->like == NULL;
+    }
+    if (there && memcmp(from, t->like, (size_t)t->n * t->size) == 0) {
+        mt_record_set_pointer(t->at, t->like);
+        return true;
+    }
+    (void)own_items(t->at, t->n, t->size, mem);
+    return false;
+}
+
+static bool own_texts(const twins *t, mt_arena *mem)
+{
+    const char *const *const like = t->like;
+    const char **const texts = own_items(t->at, t->n, t->size, mem);
+    bool same = texts == NULL ? like == NULL : t->n == t->n_like;
+    for (int i = 0; i < t->n && texts != NULL; i++) {
+        const bool own =
+            own_text(&texts[i], like != NULL && i < t->n_like ? like[i] : NULL, mem);
+        same = same && own;
+    }
+    return same;
+}
+
+static bool own(const mt_record *record, void *item, const void *like, int n_variables,
+                mt_arena *mem);
+
+/* A list that is the same in every item is that of `like`. */
+static bool own_list(const mt_record *record, const twins *t, int n_variables, mt_arena *mem)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    char *const items = own_items(t->at, t->n, t->size, mem);
+    bool same = items == NULL ? t->like == NULL : t->like != NULL && t->n == t->n_like;
+    for (int i = 0; i < t->n && items != NULL; i++) {
+        const size_t k = (size_t)i * t->size;
+        const char *const other =
+            t->like != NULL && i < t->n_like ? (const char *)t->like + k : NULL;
+        const bool twin = own(record, items + k, other, n_variables, mem);
+        same = same && twin;
+    }
+    if (same && items != NULL) {
+        mt_arena_rewind(mem, mark);
+        mt_record_set_pointer(t->at, t->like);
+    }
+    return same;
+}
+
+/* One member of an item; like: the same member of another; NULL: none. */
+static bool own_field(const mt_field *f, void *item, const void *like, int n_variables,
+                      mt_arena *mem)
+{
+    char *const at = (char *)item + f->offset;
+    char *const other = (char *)item + f->other;
+    const char *const at_like = like == NULL ? NULL : (const char *)like + f->offset;
+    const char *const other_like = like == NULL ? NULL : (const char *)like + f->other;
+    twins t = {.at = at,
+               .n = 1,
+               .like = like == NULL ? NULL : mt_record_get_pointer(at_like),
+               .n_like = 1,
+               .size = sizeof(double)};
+    switch (f->type) {
+    case MT_FIELD_TEXT:
+    case MT_FIELD_CHOICE:
+        return own_text((const char **)(void *)at, t.like, mem);
+    case MT_FIELD_VALUE:
+        t.like = like == NULL ? NULL : mt_record_get_pointer(other_like);
+        return own_text((const char **)(void *)other, t.like, mem) && like != NULL &&
+               memcmp(at, at_like, sizeof(double)) == 0;
+    case MT_FIELD_RECORD:
+        return own(f->record, at, at_like, n_variables, mem);
+    case MT_FIELD_OPTION:
+        t.size = f->record->size;
+        return own_list(f->record, &t, n_variables, mem);
+    case MT_FIELD_LIST:
+    case MT_FIELD_TEXTS:
+    case MT_FIELD_NUMBERS:
+        memcpy(&t.n, other, sizeof t.n);
+        memcpy(&t.n_like, like == NULL ? other : other_like, sizeof t.n_like);
+        t.size = f->type == MT_FIELD_LIST    ? f->record->size
+                 : f->type == MT_FIELD_TEXTS ? sizeof(char *)
+                                             : sizeof(double);
+        return f->type == MT_FIELD_LIST    ? own_list(f->record, &t, n_variables, mem)
+               : f->type == MT_FIELD_TEXTS ? own_texts(&t, mem)
+                                           : own_numbers(&t, mem);
+    case MT_FIELD_BY_VARIABLE:
+        t.n = n_variables;
+        t.n_like = n_variables;
+        return own_numbers(&t, mem);
+    case MT_FIELD_NUMBER:
+        return like != NULL && memcmp(at, at_like, sizeof(double)) == 0;
+    case MT_FIELD_LONG:
+        return like != NULL && memcmp(at, at_like, sizeof(long)) == 0;
+    case MT_FIELD_ENUM:
+    case MT_FIELD_COUNT:
+        return like != NULL && memcmp(at, at_like, sizeof(int)) == 0;
+    case MT_FIELD_FLAG:
+        return like != NULL && memcmp(at, at_like, sizeof(bool)) == 0;
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+    return false;
+}
+
+/* All of an item; returns whether `like` (NULL: nothing) is the same in every member. */
+static bool own(const mt_record *record, void *item, const void *like, int n_variables,
+                mt_arena *mem)
+{
+    bool same = like != NULL;
     for (int i = 0; i < record->n; i++) {
-        const mt_field *const f = &record->fields[i];
-        void *const at = (char *)item + f->offset;
-        void *const other = (char *)item + f->other;
-        const char **texts = NULL;
-        switch (f->type) {
-        case MT_FIELD_TEXT:
-        case MT_FIELD_CHOICE:
-            own_text(at, mem);
-            break;
-        case MT_FIELD_VALUE:
-            own_text(other, mem);
-            break;
-        case MT_FIELD_RECORD:
-            mt_record_own(f->record, at, n_variables, mem);
-            break;
-        case MT_FIELD_OPTION:
-            own_list(f->record, at, 1, n_variables, mem);
-            break;
-        case MT_FIELD_LIST:
-            own_list(f->record, at, *(int *)other, n_variables, mem);
-            break;
-        case MT_FIELD_TEXTS:
-            texts = own_items(at, *(int *)other, sizeof *texts, mem);
-            for (int k = 0; k < *(int *)other && texts != NULL; k++) {
-                own_text(&texts[k], mem);
-            }
-            break;
-        case MT_FIELD_NUMBERS:
-            (void)own_items(at, *(int *)other, sizeof(double), mem);
-            break;
-        case MT_FIELD_BY_VARIABLE:
-            (void)own_items(at, n_variables, sizeof(double), mem);
-            break;
-        case MT_FIELD_ENUM:
-        case MT_FIELD_NUMBER:
-        case MT_FIELD_COUNT:
-        case MT_FIELD_LONG:
-        case MT_FIELD_FLAG:
-        case MT_FIELD_TYPE_COUNT:
-            break;
-        }
+        const bool twin = own_field(&record->fields[i], item, like, n_variables, mem);
+        same = same && twin;
     }
+    return same;
+}
+
+void mt_record_own(const mt_record *record, void *item, const void *like, int n_variables,
+                   mt_arena *mem)
+{
+    (void)own(record, item, like, n_variables, mem);
 }
 
 /* Numbers, texts or structs that a member points to, `size` bytes each; NULL is kept as NULL,

@@ -177,8 +177,11 @@ struct mt_record {
  * zero. */
 void mt_record_clear(const mt_record *record, void *item);
 /* Every text and list of a struct replaced by a copy in mem, which is asked about shortages at
- * the end; n_variables: of the study. */
-void mt_record_own(const mt_record *record, void *item, int n_variables, mt_arena *mem);
+ * the end; n_variables: of the study. What `like` (of the same record, as lasting as mem; NULL:
+ * nothing) has in the same place, and says the same, is taken from there: neither may be
+ * changed afterwards. */
+void mt_record_own(const mt_record *record, void *item, const void *like, int n_variables,
+                   mt_arena *mem);
 /* All of a struct on tape; what is read lies in mem, and the struct is of no use where the tape
  * failed. */
 void mt_record_tape(const mt_record *record, void *item, int n_variables, mt_tape *tape,

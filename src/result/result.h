@@ -487,10 +487,10 @@ mt_result_mark mt_result_get_mark(const mt_result *result);
 void mt_result_take_back(mt_result *result, const mt_result_mark *mark);
 /* Doubts and facts of a list, copied. Fails: MT_E_MEMORY. */
 mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err);
-/* A copy of all that a recommendation of one result holds, which may outlive it. Fails:
- * MT_E_MEMORY. */
-mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
-                                 mt_recommendation *out, mt_err *err);
+/* A copy of all that a recommendation of one result holds, which may outlive it; what `like`
+ * (NULL: nothing) says already is taken from there, and lives as long. Fails: MT_E_MEMORY. */
+mt_status mt_recommendation_copy(const mt_recommendation *from, const mt_recommendation *like,
+                                 mt_arena *mem, mt_recommendation *out, mt_err *err);
 /* All that it has borrowed becomes its own. Fails: MT_E_MEMORY. */
 mt_status mt_result_own(mt_result *result, mt_err *err);
 

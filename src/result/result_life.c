@@ -81,16 +81,16 @@ mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt
     return MT_OK;
 }
 
-mt_status mt_recommendation_copy(const mt_recommendation *from, mt_arena *mem,
-                                 mt_recommendation *out, mt_err *err)
+mt_status mt_recommendation_copy(const mt_recommendation *from, const mt_recommendation *like,
+                                 mt_arena *mem, mt_recommendation *out, mt_err *err)
 {
     *out = *from;
-    mt_record_own(&mt_design_record, out, from->n_parameters, mem);
+    mt_record_own(&mt_design_record, out, like, from->n_parameters, mem);
     return mt_arena_check(mem, err);
 }
 
 mt_status mt_result_own(mt_result *result, mt_err *err)
 {
-    mt_record_own(&mt_result_record, result, result->n_variables, &result->mem);
+    mt_record_own(&mt_result_record, result, NULL, result->n_variables, &result->mem);
     return mt_arena_check(&result->mem, err);
 }
