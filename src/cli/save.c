@@ -214,7 +214,7 @@ static mt_status write_timing(const mt_args *args, const mt_result *result, doub
 static void write_page(const mt_result *result, const char *scene, mt_text *out)
 {
     mt_text json = {.s = NULL};
-    if (mt_result_write_alone(result, &json, NULL) == MT_OK) {
+    if (mt_result_write_page(result, &json, NULL) == MT_OK) {
         mt_report_html(result, json.s, scene, out);
     } else {
         out->failed = true;

@@ -15,6 +15,8 @@ typedef struct names {
 
 static void put_record(mt_json_writer *w, const char *name, const mt_record *record,
                        const void *item, const names *variables);
+static void put_members(mt_json_writer *w, const char *name, const mt_record *record,
+                        const void *item, const names *variables);
 
 static void put_list(mt_json_writer *w, const mt_field *f, const void *items, int n,
                      const names *variables)
@@ -104,6 +106,12 @@ static void put_field(mt_json_writer *w, const mt_field *f, const void *item,
         mt_json_put_bool(w, f->name, *(const bool *)at);
         break;
     case MT_FIELD_RECORD:
+        if (f->flat) {
+            mt_json_open_flat(w, f->name, '{');
+            put_members(w, NULL, f->record, at, variables);
+            mt_json_close(w);
+            break;
+        }
         put_record(w, f->name, f->record, at, variables);
         break;
     case MT_FIELD_OPTION:
@@ -192,11 +200,4 @@ mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err)
     }
     return writer.misused ? mt_fail(err, MT_E_INTERNAL, "the result cannot be written as JSON")
                           : mt_fail_memory(err);
-}
-
-mt_status mt_result_write_alone(const mt_result *result, mt_text *out, mt_err *err)
-{
-    mt_result alone = *result;
-    alone.run.n_outputs = 0;
-    return mt_result_write(&alone, out, err);
 }

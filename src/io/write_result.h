@@ -10,8 +10,13 @@
 /* Append a result as JSON (format "modetune-result/1"): the same result gives the same bytes.
  * Fails: MT_E_MEMORY. */
 mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
-/* The same but for the files beside it, as one of them holds it. */
-mt_status mt_result_write_alone(const mt_result *result, mt_text *out, mt_err *err);
+/* The same but for the files beside it, as a page holds it. Of a grid with more than
+ * MT_TRADE_WHOLE points trade.points are those that are selected, and `grid` has the numbers of
+ * all points in columns: at, the places of those that are whole; values, of what varies, and
+ * the names of all statuses; has_design, feasible, pareto as 0 or 1; score, change, misfit,
+ * clearance_percent, objectives, parameters of their best designs, none where no point has one.
+ */
+mt_status mt_result_write_page(const mt_result *result, mt_text *out, mt_err *err);
 /* The same as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
 /* The items of one level as a list of objects. */

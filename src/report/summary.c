@@ -379,7 +379,14 @@ static void tell_trade(const mt_teller *to, const mt_result *result)
             (void)is_known(to, title, result->trade);
         }
     }
-    add_table(to, mt_report_trade(result), title);
+    if (result->trade != NULL) {
+        mt_text line = {.s = NULL};
+        add_table(to, mt_report_trade_selected(result), title);
+        mt_report_trade_left(result, &line);
+        if (line.length > 0 || line.failed) {
+            add_paragraph(to, "  ", &line);
+        }
+    }
 }
 
 void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)

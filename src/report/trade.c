@@ -100,12 +100,8 @@ static const mt_recommendation *any_design(const mt_trade_result *trade)
     return NULL;
 }
 
-mt_table mt_report_trade(const mt_result *result)
+static void columns(mt_table *t, const mt_result *result)
 {
-    mt_table t = mt_table_default();
-    if (result->trade == NULL) {
-        return t;
-    }
     for (int i = 0; i < result->trade->n_vary; i++) {
         const mt_trade_vary *const v = &result->trade->vary[i];
         const char *const unit = v->display_unit != NULL ? v->display_unit : v->unit;
@@ -113,19 +109,59 @@ mt_table mt_report_trade(const mt_result *result)
         char heading[HEADING_TEXT];
         (void)mt_snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text, bare ? "" : " [",
                           bare ? "" : unit, bare ? "" : "]");
-        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+        mt_table_column(t, heading, heading, MT_ALIGN_POINT);
     }
-    mt_table_column(&t, "status", "status", MT_ALIGN_LEFT);
-    mt_report_objective_columns(&t, result);
-    front_columns(&t, result);
-    mt_report_clearance_column(&t, result);
-    mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
+    mt_table_column(t, "status", "status", MT_ALIGN_LEFT);
+    mt_report_objective_columns(t, result);
+    front_columns(t, result);
+    mt_report_clearance_column(t, result);
+    mt_table_column(t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
     if (result->trade->n_objectives == 2) {
-        mt_table_column(&t, "front", "pareto", MT_ALIGN_LEFT);
+        mt_table_column(t, "front", "pareto", MT_ALIGN_LEFT);
     }
-    mt_report_variable_columns(&t, result, any_design(result->trade));
-    for (int i = 0; i < result->trade->n_points; i++) {
-        point_row(&t, result, &result->trade->points[i]);
+    mt_report_variable_columns(t, result, any_design(result->trade));
+}
+
+mt_table mt_report_trade(const mt_result *result)
+{
+    mt_table t = mt_table_default();
+    if (result->trade != NULL) {
+        columns(&t, result);
+        for (int i = 0; i < result->trade->n_points; i++) {
+            point_row(&t, result, &result->trade->points[i]);
+        }
     }
     return t;
+}
+
+mt_table mt_report_trade_selected(const mt_result *result)
+{
+    mt_table t = mt_table_default();
+    if (result->trade != NULL) {
+        mt_trade_selection s = mt_trade_select(result->trade);
+        columns(&t, result);
+        for (int i = 0; i < result->trade->n_points; i++) {
+            if (mt_trade_is_selected(&s, i)) {
+                point_row(&t, result, &result->trade->points[i]);
+            }
+        }
+    }
+    return t;
+}
+
+void mt_report_trade_left(const mt_result *result, mt_text *line)
+{
+    const mt_trade_result *const trade = result->trade;
+    int n = 0;
+    mt_trade_selection s = mt_trade_select(trade);
+    for (int k = 0; k < trade->n_points; k++) {
+        n += mt_trade_is_selected(&s, k) ? 1 : 0;
+    }
+    if (n < trade->n_points) {
+        mt_text_addf(line, "%d of %d points, %s%s; all are in trade.csv and result.json.", n,
+                     trade->n_points, s.each > 1 ? "spread evenly over " : "",
+                     s.front   ? (s.each > 1 ? "the front" : "all on the front")
+                     : s.found ? (s.each > 1 ? "those with a design" : "all with a design")
+                               : "the grid");
+    }
 }

@@ -44,6 +44,7 @@ typedef struct mt_field {
     int least;
     int n_choices;
     int digits;            /* of a list of numbers: significant ones written; 0: all */
+    bool flat;             /* of a record: in one line */
     bool nullable;         /* of a list: NULL is null, else NULL is empty */
     bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
 } mt_field;
@@ -117,6 +118,10 @@ struct mt_record {
 #define MT_F_RECORD(json, m, of, what)                                     \
     {                                                                      \
         MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what) \
+    }
+#define MT_F_RECORD_FLAT(json, m, of, what)                                              \
+    {                                                                                    \
+        MT_F_FIELD(json, MT_FIELD_RECORD, false, of, m), .record = &(what), .flat = true \
     }
 #define MT_F_OPTION(json, m, of, what)                                      \
     {                                                                       \

@@ -326,7 +326,7 @@ static const mt_field POINT_FIELDS[] = {
     MT_F_ENUM("status", status, mt_result_status, STATUSES),
     MT_F_TEXT_OR_NULL("status_text", status_text),
     MT_F_FLAG("pareto", pareto),
-    MT_F_RECORD("best", best, mt_recommendation, mt_design_record),
+    MT_F_RECORD_FLAT("best", best, mt_recommendation, mt_design_record),
 };
 static const mt_record POINT = MT_F_RECORD_OF(POINT_FIELDS);
 #undef THIS

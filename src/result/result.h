@@ -494,6 +494,21 @@ mt_status mt_recommendation_copy(const mt_recommendation *from, const mt_recomme
 /* All that it has borrowed becomes its own. Fails: MT_E_MEMORY. */
 mt_status mt_result_own(mt_result *result, mt_err *err);
 
+/* Points of a trade study that people are shown with all that is known of them: all of a small
+ * grid; of one that has more than MT_TRADE_WHOLE so many, evenly spread over the front, where
+ * there is none over the points with a design, where there are none over all. */
+enum { MT_TRADE_WHOLE = 400 };
+typedef struct mt_trade_selection {
+    const mt_trade_result *trade;
+    bool front; /* only what is on it counts */
+    bool found; /* only what has a design */
+    int each;   /* of so many that count the first */
+    int met;    /* that count, so far */
+} mt_trade_selection;
+mt_trade_selection mt_trade_select(const mt_trade_result *trade);
+/* Of point k; to be asked of one point after the other, from 0 on. */
+bool mt_trade_is_selected(mt_trade_selection *s, int k);
+
 /* A value in the unit that people are shown (display_factor): of at most 15 digits where such a
  * number is the same within rounding, 29.1 mm of 0.0291 m. */
 double mt_result_shown(double value, double factor);

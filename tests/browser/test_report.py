@@ -264,6 +264,35 @@ class Report(Answers):
         kinds = {name: {re.sub(r"-\d+$", "", figure) for figure in had} for name, had in figures.items()}
         self.assertEqual(set().union(*kinds.values()) - set().union(*(kinds[name] for name in SAMPLE if name in kinds)), set())
 
+    def test_of_a_large_grid_some_points_can_be_chosen(self):
+        """A cell for each of 420 points; those that the page has whole show their design, the others are words and numbers."""
+        study = json.loads((SOURCE / "studies/inceptor_trade.json").read_text(encoding="utf-8"))
+        study.pop("published")
+        study["model"] = str(SOURCE / "problems/inceptor.json")
+        first, second = study["trade"]["vary"]
+        first["values"], second["values"] = [0.6 + 0.12 * i for i in range(21)], [2 + 1.4 * i for i in range(20)]
+        (self.folder / "grid.json").write_text(json.dumps(study), encoding="utf-8")
+        subprocess.run([PROGRAM, "run", self.folder / "grid.json", "--quiet", "-o", self.folder], capture_output=True, timeout=300, check=False)
+        report = self.folder / "grid"
+        points = json.loads((report / "result.json").read_text(encoding="utf-8"))["trade"]["points"]
+        self.browser.open(report / "report.html")
+        front = [k for k, p in enumerate(points) if p["pareto"]]
+        told = self.browser.run("return [...document.querySelectorAll('#figure-trade svg rect > title')].map((t) => t.textContent)")
+        self.assertEqual([" on the front" in words for words in told], [p["pareto"] for p in points])
+        for words, point in zip(told, points):
+            self.assertIn(f": {point['status']}", words)
+            if point["best"]["feasible"]:
+                self.near(re.search(r"total change ([^ ,]+)", words)[1], point["best"]["change"], words)
+        cells = self.browser.all("#figure-trade [data-at]")
+        self.assertEqual(len(cells), len(front))
+        self.assertIn(f" {len(front)} of them can be chosen, on the front;", self.browser.one("#figure-trade .lead").text)
+        for place in (0, len(front) - 1):
+            self.browser.all("#figure-trade [data-at]")[place].send_keys("\ue007")
+            self.browser.settle()
+            self.check_frequencies(points[front[place]]["best"])
+            self.check_parameters(points[front[place]]["best"])
+        self.assertEqual(self.browser.problems(), [])
+
     def test_parameters_are_shown_in_their_units(self):
         """The answer in inches is drawn in inches; the data in the page stay in SI."""
         model = json.loads((SOURCE / "problems/inceptor.json").read_text(encoding="utf-8"))

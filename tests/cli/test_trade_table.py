@@ -12,6 +12,7 @@ import unittest
 from pathlib import Path
 
 from common_cli import main
+from common_pack import data
 from test_motion import TWO_PI, run
 
 M, K, C, HZ, LIMIT = 2.0, 8000.0, 10.0, 9.0, 5e-4
@@ -45,6 +46,10 @@ class TradeTable(unittest.TestCase):
             out = Path(folder) / "out/study"
             with open(out / "trade.csv", encoding="utf-8", newline="") as lines:
                 self.rows = list(csv.DictReader(lines))
+            self.page = (out / "report.html").read_text(encoding="utf-8")
+            done = run("report", "out/study/result.json", "-o", "again", "--quiet", cwd=folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual((Path(folder) / "again/study/report.html").read_text(encoding="utf-8"), self.page)
             return json.loads((out / "result.json").read_text())
 
     def test_an_objective_of_the_front_alone_is_shown(self):
@@ -94,6 +99,50 @@ class TradeTable(unittest.TestCase):
             self.assertAlmostEqual(length, 0.05, delta=1e-12)
             self.assertAlmostEqual(float(row["L [mm]"]), 50, delta=1e-9)
         self.assertAlmostEqual(result["trade"]["points"][1]["values"][0], 0.0755, delta=1e-15)
+
+    def check_page_of_a_grid(self, result, pareto):
+        """Whole points are a selection, all numbers stand in columns, and the tables show what is whole."""
+        points = result["trade"]["points"]
+        page = data(self.page, "data")
+        grid, whole = page["grid"], page["trade"]["points"]
+        self.assertEqual(whole, [points[k] for k in grid["at"]])
+        self.assertEqual({k: v for k, v in page.items() if k not in ("grid", "trade", "run")},
+                         {k: v for k, v in result.items() if k not in ("trade", "run")})
+        chosen = [k for k, p in enumerate(points) if (p["pareto"] if pareto else p["best"]["parameters"])]
+        self.assertGreater(len(chosen), 1)
+        each = -(-len(chosen) // 400)
+        self.assertEqual(grid["at"], chosen[::each])
+        self.assertEqual(list(zip(*grid["values"])), [tuple(p["values"]) for p in points])
+        self.assertEqual([grid["statuses"][i] for i in grid["status"]], [p["status"] for p in points])
+        self.assertEqual(grid["feasible"], [int(p["best"]["feasible"]) for p in points])
+        self.assertEqual(grid["pareto"], [int(p["pareto"]) for p in points])
+        self.assertEqual(grid["has_design"], [int(bool(p["best"]["parameters"])) for p in points])
+        columns = {name: [p["best"][name] for p in points] for name in ("score", "change", "misfit", "clearance_percent")}
+        for i, column in enumerate(grid["parameters"]):
+            columns[f"parameter {i}"] = [p["best"]["parameters"][i]["recommended"] if p["best"]["parameters"] else None for p in points]
+        for i, column in enumerate(grid["objectives"]):
+            columns[f"objective {i}"] = [p["best"]["objectives"][i]["recommended"] if p["best"]["objectives"] else None for p in points]
+        for name, want in columns.items():
+            kind, _, place = name.partition(" ")
+            got = grid[f"{kind}s"][int(place)] if place else grid[name]
+            want = [] if all(v is None for v in want) else [v if v is None else float(f"{v:.7g}") for v in want]
+            self.assertEqual(got, want, name)
+        left = f"{len(grid['at'])} of {len(points)} points, "
+        self.assertIn(left, self.page)
+        self.assertIn(left, self.text)
+        self.assertEqual(len(self.rows), len(points))
+        self.assertLess(len(self.page), 1_300_000)
+
+    def test_the_page_of_a_large_grid_has_a_table_of_numbers(self):
+        """21 x 20 points with a front; without a front, whole points are spread over those with a design."""
+        vary = [{"goal": 0, "member": "at_most", "values": [10 ** (-4 - i / 15) for i in range(21)]},
+                {"variable": "L", "bound": "upper", "values": [60 + i for i in range(20)]}]
+        study = STUDY | {"variables": VARIABLES + [{"parameter": "L", "lower": 10, "upper": 90}], "units": {"length": "mm"},
+                         "search": {"starts": 1}}
+        result = self.answer(study | {"trade": {"vary": vary, "objectives": ["change", "vibration"]}})
+        self.assertIn("compromise", {p["status"] for p in result["trade"]["points"]})
+        self.check_page_of_a_grid(result, True)
+        self.check_page_of_a_grid(self.answer(study | {"trade": {"vary": vary}}), False)
 
     def test_points_that_tie_are_both_on_the_front(self):
         """Limits above what the original has change nothing, and all of these points are one design."""

@@ -11,6 +11,8 @@
 
   const DARK = '#000000'; // on cells, whose colours do not follow the page's
   const LIGHT = '#fefefe';
+  const TALL = 720; // px: rows are as high as they may be within
+  const SEAM = 6; // px: narrower cells have none between them
 
   const trade = () => mt.result().trade;
 
@@ -99,23 +101,36 @@
     return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b > 140 ? DARK : LIGHT;
   }
 
+  // Area of a sign that stays within its cell.
+  const signSize = (size, most) => Math.min(most, (size.w * size.h) / 6);
+
+  // Of values along an edge, `room` px each, those that have place for their words.
+  function spaced(values, room, need) {
+    const every = Math.max(1, Math.ceil(need / room));
+    return values.map((v, i) => ({ v, i })).filter((q) => q.i % every === 0);
+  }
+
   function drawCell(g, p, x, y, size, colours) {
     const v = value(p);
     const fill = T.isNumber(v) ? colours(v) : C.panel;
-    const box = F.rect(g, x + 1, y + 1, size.w - 2, size.h - 2, fill);
+    const gap = Math.min(size.w, size.h) < SEAM ? 0 : 1;
+    const box = F.rect(g, x + gap, y + gap, size.w - 2 * gap, size.h - 2 * gap, fill);
     choosable(box, p).append('title').text(words(p));
     const middle = x + size.w / 2;
     if (T.isNumber(v)) {
       const label = T.short(v, 3);
-      const fits = T.width(label, 11) < size.w - 4;
-      F.text(g, middle, y + size.h - 9, fits ? label : '', { anchor: 'middle', size: 11,
-        colour: inkOn(fill) }).attr('pointer-events', 'none');
+      if (T.width(label, 11) < size.w - 4 && size.h > 16) {
+        F.text(g, middle, y + size.h - 9, label, { anchor: 'middle', size: 11,
+          colour: inkOn(fill) }).attr('pointer-events', 'none');
+      }
       if (p.pareto) {
-        F.mark(g, 'diamond', x + size.w - 8, y + 9, { colour: inkOn(fill), size: 28 })
+        const corner = size.w > 16 && size.h > 16;
+        F.mark(g, 'diamond', corner ? x + size.w - 8 : middle, corner ? y + 9
+          : y + size.h / 2, { colour: inkOn(fill), size: signSize(size, 28) })
           .attr('pointer-events', 'none');
       }
     } else {
-      F.mark(g, 'cross', middle, y + size.h / 2, { colour: C.bad })
+      F.mark(g, 'cross', middle, y + size.h / 2, { colour: C.bad, size: signSize(size, 80) })
         .attr('pointer-events', 'none');
     }
     if (isChosen(p)) {
@@ -129,7 +144,8 @@
     const xs = [...new Set(t.points.map((p) => p.values[1]))];
     const ys = [...new Set(t.points.map((p) => p.values[0]))].reverse();
     const left = 34 + Math.max(...ys.map((v) => T.width(T.short(v), 11)));
-    const size = { w: Math.min(110, (w - left - 8) / xs.length), h: 36 };
+    const size = { w: Math.min(110, (w - left - 8) / xs.length),
+      h: Math.max(4, Math.min(36, TALL / ys.length)) };
     const solved = t.points.map(value).filter(T.isNumber);
     const [low, high] = solved.length > 0 ? d3.extent(solved) : [0, 1];
     const colours = (v) => d3.interpolateCividis(1 - (high > low ? (v - low) / (high - low)
@@ -139,9 +155,11 @@
         size, colours);
     }
     const bottom = ys.length * size.h;
-    ys.forEach((v, i) => F.text(g, left - 6, i * size.h + size.h / 2 + 4, T.short(v),
-      { anchor: 'end', size: 11, colour: C.soft }));
-    xs.forEach((v, i) => F.text(g, left + (i + 0.5) * size.w, bottom + 15, T.short(v),
+    spaced(ys, size.h, 16).forEach(({ v, i }) => F.text(g, left - 6,
+      i * size.h + size.h / 2 + 4, T.short(v), { anchor: 'end', size: 11, colour: C.soft }));
+    const widest = Math.max(...xs.map((v) => T.width(T.short(v), 11)));
+    spaced(xs, size.w, widest + 4).forEach(({ v, i }) => F.text(g,
+      left + (i + 0.5) * size.w, bottom + 15, T.short(v),
       { anchor: 'middle', size: 11, colour: C.soft }));
     const middle = left + xs.length * size.w / 2;
     const below = axisTitle(t.vary[1]);
@@ -186,7 +204,10 @@
   function lead() {
     const n = trade().points.length;
     const solved = trade().points.filter((p) => T.isNumber(value(p))).length;
-    return solved + ' of ' + n + ' points have a design that meets all goals.';
+    const whole = trade().whole;
+    return solved + ' of ' + n + ' points have a design that meets all goals.' +
+      (whole === undefined ? '' : ' ' + whole + ' of them can be chosen' + (trade().points
+        .some((p) => p.pareto) ? ', on the front' : '') + '; result.json has all designs.');
   }
 
   mt.tradeMarks = { choosable, isChosen, words, padded };

@@ -25,7 +25,7 @@
       short: 'No. ' + design.rank, label: 'Recommendation ' + design.rank,
     }));
     clean(result.trade && result.trade.points).forEach((point, i) => {
-      if (point.best) {
+      if (point.best && !point.numbers) {
         made.push({
           design: point.best, kind: 'trade', point, index: i, short: 'T' + (i + 1),
           label: 'Trade point: ' + pointLabel(result.trade, point),

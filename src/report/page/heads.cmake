@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.25)
 set(report_scripts
     d3-array.js d3-color.js d3-format.js d3-interpolate.js d3-path.js d3-time.js d3-time-format.js d3-scale.js
     d3-scale-chromatic.js d3-shape.js d3-dsv.js d3-dispatch.js d3-timer.js d3-ease.js d3-selection.js d3-transition.js
-    d3-drag.js d3-brush.js base.js text.js figure.js units.js designs.js alternatives.js chart_frequencies.js
+    d3-drag.js d3-brush.js base.js text.js figure.js units.js grid.js designs.js alternatives.js chart_frequencies.js
     chart_parameters.js chart_rotor.js responses.js chart_bode.js chart_nyquist.js chart_psd.js chart_drive.js
     chart_trade.js chart_front.js chart_parallel.js chart_tolerance.js chart_maps.js chart_mac.js chart_published.js
     chart_search.js chart_history.js origin.js space.js camera.js pose.js symbols.js paint.js dom.js drawing.js

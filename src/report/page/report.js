@@ -20,7 +20,7 @@
     if (!data || !data.baseline || !document.getElementById('figures')) {
       return;
     }
-    mt.openResult(mt.displayed(data));
+    mt.openResult(mt.displayed(mt.gridded(data)));
     mt.alternatives.bar(place('choice'));
     mt.alternatives.table(place('alternatives'));
     for (const name of ORDER) {
