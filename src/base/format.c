@@ -128,6 +128,24 @@ static void make_point_plain(char *text)
     *out = '\0';
 }
 
+/* With a point, and the zeros at the end that make it so many digits. */
+static size_t fill_up(char *text, size_t n, int digits)
+{
+    int known = 0;
+    bool pointed = false;
+    for (size_t i = 0; i < n; i++) {
+        pointed = pointed || text[i] == '.';
+        known += text[i] != '-' && text[i] != '.' && (known > 0 || text[i] != '0') ? 1 : 0;
+    }
+    if (!pointed) {
+        text[n++] = '.';
+    }
+    for (; known < digits; known++) {
+        text[n++] = '0';
+    }
+    return n;
+}
+
 static void put_real(sink *s, spec *f, double x)
 {
     char text[NUMBER_SIZE];
@@ -140,11 +158,13 @@ static void put_real(sink *s, spec *f, double x)
         put_padded(s, f, word, strlen(word));
         return;
     }
-    char decimal[MT_DECIMAL_TEXT];
-    const size_t known =
-        f->conversion == 'g' && !f->plus && !f->point ? mt_decimal(v, digits, decimal) : 0;
+    char decimal[1 + (2 * MT_DECIMAL_TEXT)] = "+";
+    const size_t before = strlen(sign);
+    const bool plain = f->conversion == 'g' && (!f->point || v != 0.0);
+    size_t known = plain ? mt_decimal(v, digits, decimal + before) : 0;
     if (known > 0) {
-        put_padded(s, f, decimal, known);
+        known = f->point ? fill_up(decimal + before, known, digits) : known;
+        put_padded(s, f, decimal, before + known);
         return;
     }
     if (f->conversion == 'f') {

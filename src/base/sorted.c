@@ -84,18 +84,22 @@ static bool make_room(mt_sorted *t, mt_arena *mem)
     return true;
 }
 
-bool mt_sorted_add(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const void *context,
-                   const void *key)
+int mt_sorted_put(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const void *context,
+                  const void *key)
 {
-    int *path[DEEPEST] = {&t->root}; /* the links from the root to the new leaf */
+    int *path[DEEPEST]; /* the links from the root to the new leaf */
     int depth = 0;
     if (!make_room(t, mem)) {
-        return false;
+        return MT_SORTED_FULL;
     }
+    path[0] = &t->root;
     while (*path[depth] != 0) {
         const int at = *path[depth];
-        const int side = compare(context, key, at - 1) < 0 ? BEFORE : BEHIND;
-        path[++depth] = link_of(t, at, side);
+        const int order = compare(context, key, at - 1);
+        if (order == 0) {
+            return at - 1;
+        }
+        path[++depth] = link_of(t, at, order < 0 ? BEFORE : BEHIND);
     }
     t->n++;
     t->level[t->n - 1] = 1;
@@ -105,5 +109,11 @@ bool mt_sorted_add(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const
     while (depth-- > 0) {
         *path[depth] = split(t, skew(t, *path[depth]));
     }
-    return true;
+    return MT_SORTED_NEW;
+}
+
+bool mt_sorted_add(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const void *context,
+                   const void *key)
+{
+    return mt_sorted_put(t, mem, compare, context, key) == MT_SORTED_NEW;
 }

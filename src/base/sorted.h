@@ -23,6 +23,10 @@ typedef int (*mt_sorted_compare)(const void *context, const void *key, int i);
 /* The item with the key; -1: none. */
 int mt_sorted_find(const mt_sorted *t, mt_sorted_compare compare, const void *context,
                    const void *key);
+/* The item with the key; or one more, t->n, which has it. */
+enum { MT_SORTED_NEW = -1, MT_SORTED_FULL = -2 }; /* it is new; there is no memory for it */
+int mt_sorted_put(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const void *context,
+                  const void *key);
 /* Item t->n, whose key is not there yet. False where the arena is out of memory: the items stay
  * as they were. */
 bool mt_sorted_add(mt_sorted *t, mt_arena *mem, mt_sorted_compare compare, const void *context,

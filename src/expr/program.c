@@ -61,18 +61,15 @@ static mt_node intern(mt_program *p, const mt_program_node *n)
     if (mt_arena_failed(p->mem)) {
         return MT_NO_NODE; /* the order may be without the last node */
     }
-    const int known = mt_sorted_find(&p->order, compare_nodes, p, n);
-    if (known >= 0) {
-        return known;
-    }
     mt_program_node *const nodes =
         mt_arena_grow(p->mem, p->nodes, p->count, &p->capacity, sizeof *nodes);
     if (nodes == NULL) {
         return MT_NO_NODE;
     }
     p->nodes = nodes;
-    if (!mt_sorted_add(&p->order, p->mem, compare_nodes, p, n)) {
-        return MT_NO_NODE;
+    const int known = mt_sorted_put(&p->order, p->mem, compare_nodes, p, n);
+    if (known != MT_SORTED_NEW) {
+        return known >= 0 ? known : MT_NO_NODE;
     }
     p->nodes[p->count] = *n;
     return p->count++;

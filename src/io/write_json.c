@@ -21,7 +21,10 @@ mt_json_writer mt_json_writer_default(mt_text *out)
 
 static const char *format_number(double value, int digits, char buffer[MT_JSON_NUMBER_SIZE])
 {
-    if (mt_decimal(value == 0.0 ? 0.0 : value, digits, buffer) > 0) { /* -0 is 0 */
+    if (value == 0.0) { /* -0, too */
+        return "0";
+    }
+    if (mt_decimal(value, digits, buffer) > 0) {
         return buffer;
     }
     if (isfinite(value)) {
@@ -104,6 +107,19 @@ static bool is_plain(char c)
 
 static void put_text(mt_text *out, const char *s)
 {
+    enum { SHORT = 48 };
+    char whole[SHORT + 2];
+    size_t n = 0;
+    while (n < SHORT && is_plain(s[n])) {
+        whole[n + 1] = s[n];
+        n++;
+    }
+    if (s[n] == '\0') { /* as names are */
+        whole[0] = '"';
+        whole[n + 1] = '"';
+        mt_text_add_n(out, whole, n + 2);
+        return;
+    }
     mt_text_add(out, "\"");
     while (*s != '\0') {
         size_t plain = 0;
@@ -142,16 +158,16 @@ static bool begin_value(mt_json_writer *w, const char *name)
         w->any[0] = true;
         return true;
     }
-    mt_text_add(w->out, w->any[level] ? "," : "");
+    if (w->any[level]) {
+        mt_text_add_n(w->out, ", ", w->flat[level] ? 2 : 1);
+    }
     if (!w->flat[level]) {
         new_line(w);
-    } else if (w->any[level]) {
-        mt_text_add(w->out, " ");
     }
     w->any[level] = true;
     if (name != NULL) {
         put_text(w->out, name);
-        mt_text_add(w->out, ": ");
+        mt_text_add_n(w->out, ": ", 2);
     }
     return true;
 }

@@ -63,13 +63,38 @@ typedef struct source {
     const mt_result *result;
     int n_configurations;
     const int *configurations; /* that are shown */
+    mt_numbers *numbers;       /* [n_configurations] of the model, for these inputs */
+    int n_inputs;              /* -1: they are not compiled */
+    const int *inputs;
     mt_arena *mem;
 } source;
 
+/* The numbers of all configurations that are shown are those of a mechanism. */
+static mt_status admit(source *s, const mt_scene_ask *ask, mt_err *err)
+{
+    const mt_model *const m = s->model;
+    bool known = s->n_inputs == ask->n_inputs;
+    for (int i = 0; i < ask->n_inputs && known; i++) {
+        known = s->inputs[i] == ask->inputs[i];
+    }
+    s->n_inputs = -1;
+    for (int i = 0; i < s->n_configurations; i++) {
+        const int c = s->configurations[i];
+        if (!known) {
+            MT_TRY(mt_numbers_new(m, c, ask->n_inputs, ask->inputs, m->n_nums, m->nums, s->mem,
+                                  &s->numbers[i], err));
+        }
+        MT_TRY(mt_model_admit_numbers(m, c, &s->numbers[i], ask->at, s->mem, err));
+    }
+    s->n_inputs = ask->n_inputs;
+    s->inputs = ask->inputs;
+    return MT_OK;
+}
+
 /* What was set when the study was asked, then the variables at this design; `original`: as they
  * were before. */
-static mt_status fill(const source *s, const mt_recommendation *r, bool original,
-                      mt_scene_ask *ask, mt_err *err)
+static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_scene_ask *ask,
+                      mt_err *err)
 {
     const mt_model *const model = s->model;
     const mt_result_run *const run = &s->result->run;
@@ -97,10 +122,7 @@ static mt_status fill(const source *s, const mt_recommendation *r, bool original
             MT_TRY(take(model, v->name, v->value, inputs, at, &ask->n_inputs, err));
         }
     }
-    for (int i = 0; i < s->n_configurations; i++) {
-        MT_TRY(
-            mt_model_admit(model, s->configurations[i], ask->n_inputs, inputs, at, mem, err));
-    }
+    MT_TRY(admit(s, ask, err));
     if (original) {
         return set ? MT_OK : mt_scene_name_modes(model, mem, ask, err);
     }
@@ -112,8 +134,9 @@ mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n
                            int *n, mt_err *err)
 {
     static const mt_recommendation none = {.rank = 0};
-    const source s = {model, result, n_configurations, configurations, mem};
+    source s = {model, result, n_configurations, configurations, .n_inputs = -1, .mem = mem};
     const int count = result->n_recommendations;
+    s.numbers = mt_arena_alloc(mem, (size_t)n_configurations, sizeof *s.numbers);
     *n = 0;
     *asks = mt_arena_alloc(mem, (size_t)count + 1, sizeof **asks);
     MT_TRY(mt_arena_check(mem, err));

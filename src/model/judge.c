@@ -288,10 +288,20 @@ void mt_model_judge(const mt_model *model, int configuration, const double *valu
 mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
                          const int *inputs, const double *at, mt_arena *mem, mt_err *err)
 {
+    mt_numbers numbers;
+    MT_TRY(mt_numbers_new(model, configuration, n_inputs, inputs, model->n_nums, model->nums,
+                          mem, &numbers, err));
+    return mt_model_admit_numbers(model, configuration, &numbers, at, mem, err);
+}
+
+mt_status mt_model_admit_numbers(const mt_model *model, int configuration,
+                                 const mt_numbers *numbers, const double *at, mt_arena *mem,
+                                 mt_err *err)
+{
     double *const value = mt_arena_f64(mem, (size_t)model->n_nums, 1);
     mt_doubt_list list = mt_doubt_list_default(mem);
     MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(mt_model_numbers(model, configuration, n_inputs, inputs, at, mem, value, err));
+    MT_TRY(mt_numbers_at(numbers, at, value, NULL, err));
     mt_model_judge(model, configuration, value, &list);
     for (int i = 0; i < list.n; i++) {
         if (list.items[i].level == MT_LEVEL_FAULT) {

@@ -4,6 +4,7 @@
 
 #include "base/doubt.h"
 #include "model/model.h"
+#include "model/values.h"
 
 /**
  * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections
@@ -25,5 +26,9 @@ const char *mt_model_link_limit(const mt_model *model, int configuration, int li
  * mt_model_numbers. */
 mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
                          const int *inputs, const double *at, mt_arena *mem, mt_err *err);
+/* The same by all numbers of the model, compiled for that configuration. */
+mt_status mt_model_admit_numbers(const mt_model *model, int configuration,
+                                 const mt_numbers *numbers, const double *at, mt_arena *mem,
+                                 mt_err *err);
 
 #endif

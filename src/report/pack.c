@@ -67,17 +67,14 @@ static int compare_texts(const void *context, const void *key, int i)
 static int class_of(packing *p, classes *c, const char *text, size_t length, int first)
 {
     const entry new = {text, length, 0, -1, first};
-    const int known = mt_sorted_find(&c->order, compare_texts, c, &new);
-    if (known >= 0) {
-        return known;
-    }
     entry *const at = mt_arena_grow(&p->mem, c->at, c->n, &c->capacity, sizeof *at);
     if (at == NULL) {
         return -1;
     }
     c->at = at;
-    if (!mt_sorted_add(&c->order, &p->mem, compare_texts, c, &new)) {
-        return -1;
+    const int known = mt_sorted_put(&c->order, &p->mem, compare_texts, c, &new);
+    if (known != MT_SORTED_NEW) {
+        return known >= 0 ? known : -1;
     }
     at[c->n] = new;
     return c->n++;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/base.h"
@@ -40,61 +41,68 @@ void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
     mt_text_add(out, "</h1>\n");
 }
 
-/* A text that grows by single characters: a piece of it is added at once. */
-typedef struct pieces {
-    char piece[4096];
-    size_t n;
-    mt_text *out;
-} pieces;
+/* "<" in JSON, where it stands in strings only. */
+static const char LESS[] = "\\u003c";
 
-static void flush(pieces *p)
+/* Room for it with every "<" as its number. */
+static size_t room_of(const char *json)
 {
-    mt_text_add_n(p->out, p->piece, p->n);
-    p->n = 0;
-}
-
-static inline void put(pieces *p, char c)
-{
-    if (p->n == sizeof p->piece) {
-        flush(p);
+    size_t n = 1;
+    for (const char *at = json; (at = strchr(at, '<')) != NULL; at++) {
+        n += sizeof LESS - 2;
     }
-    p->piece[p->n++] = c;
+    return n + strlen(json);
 }
 
-/* JSON in which nothing can end the element: a "<" stands only in strings, where it may be
- * written as its number. White space is left out: nobody reads it here, and it is a third of a
- * large result, and what is said twice stands once (pack.h). */
-static void add_json(const char *json, mt_text *out)
+/* A string to behind its end, or that of all. */
+static const char *copy_string(const char *json, char **to)
 {
-    pieces p;
-    p.n = 0;
-    p.out = out;
-    bool in_string = false;
-    for (; *json != '\0'; json++) {
+    char *out = *to;
+    *out++ = *json++;
+    while (*json != '"' && *json != '\0') {
         if (*json == '<') {
-            for (const char *escape = "\\u003c"; *escape != '\0'; escape++) {
-                put(&p, *escape);
-            }
-        } else if (in_string || (*json != ' ' && *json != '\n')) {
-            put(&p, *json);
-            in_string = in_string != (*json == '"');
-            if (*json == '\\' && json[1] != '\0') { /* and what it escapes */
-                put(&p, *++json);
-            }
+            memcpy(out, LESS, sizeof LESS - 1);
+            out += sizeof LESS - 1;
+            json++;
+            continue;
+        }
+        if (*json == '\\' && json[1] != '\0') { /* and what it escapes */
+            *out++ = *json++;
+        }
+        *out++ = *json++;
+    }
+    if (*json == '"') {
+        *out++ = *json++;
+    }
+    *to = out;
+    return json;
+}
+
+/* JSON in which nothing can end the element, into `out`. White space is left out: nobody reads
+ * it here, and it is a third of a large result, and what is said twice stands once (pack.h). */
+static void copy_json(const char *json, char *out)
+{
+    while (*json != '\0') {
+        while (*json != '"' && *json != '\0') { /* between strings */
+            *out = *json++;
+            out += *out != ' ' && *out != '\n' ? 1 : 0;
+        }
+        if (*json == '"') {
+            json = copy_string(json, &out);
         }
     }
-    flush(&p);
+    *out = '\0';
 }
 
 static void add_data(const char *json, mt_text *out)
 {
-    mt_text plain = {.s = NULL};
-    add_json(json, &plain);
-    out->failed = out->failed || plain.failed;
-    if (plain.s != NULL && !plain.failed) {
-        mt_pack_json(plain.s, out);
+    char *const plain = malloc(room_of(json));
+    out->failed = out->failed || plain == NULL;
+    if (plain != NULL) {
+        copy_json(json, plain);
+        mt_pack_json(plain, out);
     }
-    mt_text_free(&plain);
+    free(plain);
 }
 
 void mt_page_end(int n, const mt_page_data *data, mt_text *out)

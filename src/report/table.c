@@ -296,13 +296,18 @@ static void html_cell(const char *tag, mt_align align, const char *mark, const c
                       mt_text *out)
 {
     const char *const class = mark != NULL ? mark : align != MT_ALIGN_LEFT ? "n" : NULL;
-    mt_text_addf(out, "<%s", tag);
+    mt_text_add(out, "<");
+    mt_text_add(out, tag);
     if (class != NULL) {
-        mt_text_addf(out, " class=\"%s\"", class);
+        mt_text_add(out, " class=\"");
+        mt_text_add(out, class);
+        mt_text_add(out, "\"");
     }
     mt_text_add(out, ">");
     mt_html_escape(text, out);
-    mt_text_addf(out, "</%s>", tag);
+    mt_text_add(out, "</");
+    mt_text_add(out, tag);
+    mt_text_add(out, ">");
 }
 
 void mt_table_html(const mt_table *t, mt_text *out)

@@ -36,6 +36,30 @@ static void number_bodies(mt_scene_frame *f)
     }
 }
 
+bool mt_scene_same_inputs(const mt_scene_ask *a, const mt_scene_ask *b)
+{
+    bool same = a != NULL && a->n_inputs == b->n_inputs;
+    for (int i = 0; i < b->n_inputs && same; i++) {
+        same = a->inputs[i] == b->inputs[i];
+    }
+    return same;
+}
+
+/* number[numbers of the model] of the design. */
+static mt_status find_numbers(const mt_scene_frame *f, double *number, mt_err *err)
+{
+    const mt_model *const m = f->model;
+    const mt_scene_ask *const a = f->ask;
+    mt_scene_known *const k = f->known;
+    if (!mt_scene_same_inputs(k->numbered, a)) {
+        k->numbered = NULL;
+        MT_TRY(mt_numbers_new(m, f->configuration, a->n_inputs, a->inputs, m->n_nums, m->nums,
+                              f->kept, &k->numbers, err));
+        k->numbered = a;
+    }
+    return mt_numbers_at(&k->numbers, a->at, number, NULL, err);
+}
+
 mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err)
 {
     const mt_model *const m = f->model;
@@ -47,8 +71,7 @@ mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err)
     f->link_first = mt_arena_int(f->work, (size_t)m->n_links);
     f->link_of = mt_arena_int(f->work, (size_t)f->sys->n_bodies);
     MT_TRY(mt_arena_check(f->work, err));
-    MT_TRY(mt_model_numbers(m, f->configuration, a->n_inputs, a->inputs, a->at, f->work, number,
-                            err));
+    MT_TRY(find_numbers(f, number, err));
     MT_TRY(mt_program_eval(&f->sys->program, a->at, value, NULL, err));
     for (int b = 0; b < f->sys->n_bodies; b++) {
         const mt_vec_def *const centre = &f->sys->vecs[f->sys->bodies[b].centre];

@@ -88,6 +88,30 @@ static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
     return rc;
 }
 
+/* The analysis of the configuration at this design: that of the design before it, which knows
+ * all that designs do not change, and looks for its position as if it were new. It stays where
+ * it is kept. */
+static mt_status analyse(const mt_scene_frame *f, mt_err *err)
+{
+    const mt_scene_ask *const a = f->ask;
+    mt_scene_known *const known = f->known;
+    if (known->by != NULL && mt_scene_same_inputs(known->ask, a)) {
+        mt_analysis_options opt = mt_analysis_options_default();
+        mt_err why = {.code = MT_OK};
+        opt.modes.first = MT_SCENE_MODES;
+        known->by->n_rigid = -1; /* each design is counted by itself */
+        const mt_status rc = mt_analysis_solve(known->by, a->at, &opt, &why);
+        if (rc == MT_OK || mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
+            return rc == MT_OK ? rc : mt_fail(err, rc, "%s", why.text);
+        }
+    }
+    mt_analysis_delete(known->by);
+    known->by = NULL;
+    known->ask = a;
+    return mt_analysis_new_lowest(f->model, f->configuration, a->n_inputs, a->inputs, a->at,
+                                  MT_SCENE_MODES, &known->by, err);
+}
+
 static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     const mt_scene_ask *const a = f->ask;
@@ -95,7 +119,6 @@ static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     const double work = mt_scene_work(bodies * (f->model->dimension == 2 ? 3.0 : 6.0));
     const mt_lowest_want want = {.count = MT_SCENE_MODES, .shapes = true, .drawn = true};
     mt_lowest *l = NULL;
-    mt_analysis *by = NULL;
     mt_status rc = MT_OK;
     if (bodies >= MT_LOWEST_BODIES) {
         rc = mt_lowest_new(f->model, f->configuration, a->n_inputs, a->inputs, a->at, want, &l,
@@ -108,12 +131,10 @@ static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
                      l == NULL ? "" : ": ", l == NULL ? "" : l->why);
     } else if (rc == MT_OK) {
         left->work -= work;
-        rc = mt_analysis_new_lowest(f->model, f->configuration, a->n_inputs, a->inputs, a->at,
-                                    MT_SCENE_MODES, &by, err);
-        rc = rc == MT_OK ? by_analysis(f, by, err) : rc;
+        rc = analyse(f, err);
+        rc = rc == MT_OK ? by_analysis(f, f->known->by, err) : rc;
     }
     rc = rc == MT_OK ? mt_scene_follow(f, left, err) : rc;
-    mt_analysis_delete(by);
     mt_lowest_delete(l);
     return rc;
 }
@@ -200,6 +221,8 @@ typedef struct question {
     mt_scene_room left;
     mt_arena work;
     mt_scene_followed followed;
+    mt_scene_known *known; /* [configurations of the extent] */
+    mt_arena kept;
 } question;
 
 static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
@@ -216,7 +239,9 @@ static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
                             .extent = q->extent,
                             .mem = mem,
                             .work = &q->work,
+                            .kept = &q->kept,
                             .view = &out->views[i],
+                            .known = &q->known[i],
                             .followed = &q->followed};
         mt_arena_clear(&q->work);
         MT_TRY(view_new(&f, &q->left, err));
@@ -340,9 +365,12 @@ static mt_status fill(mt_scene *scene, question *q, int n_designs, const mt_scen
 {
     MT_TRY(mt_arena_init(&scene->mem, 0, err));
     MT_TRY(mt_arena_init(&q->work, 0, err));
+    MT_TRY(mt_arena_init(&q->kept, 0, err));
     scene->dimension = q->model->dimension;
     scene->name = q->model->name == NULL ? "" : mt_arena_strdup(&scene->mem, q->model->name);
     scene->designs = mt_arena_alloc(&scene->mem, (size_t)n_designs, sizeof *scene->designs);
+    q->known =
+        mt_arena_alloc(&scene->mem, (size_t)q->extent->n_configurations, sizeof *q->known);
     MT_TRY(mt_arena_check(&scene->mem, err));
     for (int i = 0; i < n_designs; i++) {
         MT_TRY(design_new(q, &designs[i], &scene->mem, &scene->designs[i], err));
@@ -369,7 +397,11 @@ mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask 
     }
     const mt_status rc = fill(scene, &q, n_designs, designs, err);
     mt_system_delete(q.followed.sys);
+    for (int i = 0; i < extent->n_configurations && q.known != NULL; i++) {
+        mt_analysis_delete(q.known[i].by);
+    }
     mt_arena_free(&q.work);
+    mt_arena_free(&q.kept);
     if (rc != MT_OK) {
         mt_scene_delete(scene);
         return rc;

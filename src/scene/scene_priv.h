@@ -4,6 +4,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/lowest.h"
+#include "model/values.h"
 #include "scene/scene.h"
 
 /* The range that was followed last at a design: another configuration may have the same. */
@@ -11,6 +12,14 @@ typedef struct mt_scene_followed {
     mt_system *sys; /* owned, driven from outside; NULL: none */
     const mt_scene_view *view;
 } mt_scene_followed;
+
+/* A configuration at the design before this one. */
+typedef struct mt_scene_known {
+    mt_analysis *by;              /* owned; NULL: none */
+    const mt_scene_ask *ask;      /* that it was made for */
+    mt_numbers numbers;           /* all of the model */
+    const mt_scene_ask *numbered; /* what they were compiled for; NULL: they are not */
+} mt_scene_known;
 
 /* What the files of this room share while one configuration of one design is looked at. */
 typedef struct mt_scene_frame {
@@ -30,7 +39,9 @@ typedef struct mt_scene_frame {
     int *spring_of;  /* [springs of the system] spring of the view; -1 (springs.c) */
     mt_arena *mem;   /* of the scene */
     mt_arena *work;
+    mt_arena *kept; /* from design to design */
     mt_scene_view *view;
+    mt_scene_known *known;
     mt_scene_followed *followed;
 } mt_scene_frame;
 
@@ -45,7 +56,9 @@ typedef struct mt_scene_room {
  * operations. */
 double mt_scene_work(double coordinates);
 
-/* frame.c: values of the design and who is who; sys, ask, model, configuration, mem, work and
+/* frame.c: whether both asks have the same inputs (false without a first). */
+bool mt_scene_same_inputs(const mt_scene_ask *a, const mt_scene_ask *b);
+/* Values of the design and who is who; sys, ask, model, configuration, mem, work and
  * view are given. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err);
 /* A position of the model as drawn. */

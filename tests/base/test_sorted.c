@@ -72,9 +72,10 @@ static void sorted__finds_each_in_few_comparisons(mt_test *t)
             for (int i = 0; i < s.n; i++) {
                 compared = 0;
                 right = right && mt_sorted_find(&s, compare, &k, &k.key[i]) == i &&
-                        (double)compared <= deepest;
+                        (double)compared <= deepest &&
+                        mt_sorted_put(&s, &mem, compare, &k, &k.key[i]) == i;
             }
-            CHECK(t, right);
+            CHECK(t, right && s.n == added);
             mt_arena_free(&mem);
         }
     }
@@ -94,6 +95,7 @@ static void sorted__without_memory_stays_as_it_was(mt_test *t)
     mt_arena_fail(&mem);
     const int next = 32;
     CHECK(t, !mt_sorted_add(&s, &mem, compare, &k, &next));
+    CHECK_INT(t, mt_sorted_put(&s, &mem, compare, &k, &next), MT_SORTED_FULL);
     CHECK_INT(t, s.n, 32);
     for (int i = 0; i < 32; i++) {
         CHECK_INT(t, mt_sorted_find(&s, compare, &k, &i), i);
