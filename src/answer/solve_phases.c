@@ -225,7 +225,7 @@ mt_status mt_answer_spread(mt_answer *a, mt_err *err)
 {
     return a->result->n_recommendations == 0
                ? MT_OK
-               : mt_spread_solve(a->workers[0], &a->found.solutions[0], &a->mem,
+               : mt_spread_solve(a->workers, a->n_workers, &a->found.solutions[0], &a->mem,
                                  mt_question_left(a->q), &a->found.evals, a->result, err);
 }
 

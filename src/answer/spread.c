@@ -14,47 +14,57 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/workers.h"
 #include "search/discrete.h"
 
 /* Of a search without which none is begun. */
 enum { EVALUATIONS_LEAST = 20 };
 
+/* One weight, multiplied: a task. */
+typedef struct search {
+    int goal;
+    double factor;
+    bool found;
+    double *x; /* [n] the design */
+    long evaluations;
+} search;
+
 typedef struct spread {
-    mt_workspace *w; /* set to c */
-    mt_case c;
-    double *weight; /* [n_demands] of c */
+    mt_workspace *const *workers; /* set to asked */
+    const mt_case *asked;
+    const mt_problem *p;
+    search *searches; /* [n] */
+    int n;
     mt_result *result;
     const mt_nlp_solution *best;
-    double *x; /* [n] */
-    long evaluations;
-    long most; /* of each search; 0: no limit */
+    long most; /* evaluations of each search; 0: no limit */
 } spread;
 
-static mt_status start(spread *s, mt_err *err)
+static mt_status start(const spread *s, mt_err *err)
 {
     mt_result *const r = s->result;
-    const size_t n = (size_t)s->w->p->n;
-    s->x = mt_arena_f64(&r->mem, n, 1);
+    const mt_problem *const p = s->p;
+    const size_t n = (size_t)p->n;
+    double *const x = mt_arena_f64(&r->mem, n, 1);
     r->spread = mt_arena_alloc(&r->mem, n, sizeof *r->spread);
     MT_TRY(mt_arena_check(&r->mem, err));
-    mt_case_x(s->w->c, s->best->t, s->x);
-    for (int i = 0; i < s->w->p->n; i++) {
-        const mt_parameter *const parameter =
-            &s->w->p->study->model->parameters[s->w->p->inputs[i]];
+    mt_case_x(s->asked, s->best->t, x);
+    for (int i = 0; i < p->n; i++) {
+        const mt_parameter *const parameter = &p->study->model->parameters[p->inputs[i]];
         r->spread[i] = (mt_result_spread){
             .parameter = mt_arena_strdup(&r->mem, parameter->name.s),
             .unit = parameter->unit == NULL ? NULL : mt_arena_strdup(&r->mem, parameter->unit),
-            .display_unit = mt_unit_name(s->w->p->study->variables[i].shown, NULL),
-            .display_factor = mt_unit_display(s->w->p->study->variables[i].shown),
-            .value = s->x[i],
-            .low = s->x[i],
-            .high = s->x[i],
+            .display_unit = mt_unit_name(p->study->variables[i].shown, NULL),
+            .display_factor = mt_unit_display(p->study->variables[i].shown),
+            .value = x[i],
+            .low = x[i],
+            .high = x[i],
             .low_factor = nan(""),
             .high_factor = nan(""),
         };
     }
     MT_TRY(mt_arena_check(&r->mem, err));
-    r->n_spread = s->w->p->n;
+    r->n_spread = p->n;
     return MT_OK;
 }
 
@@ -69,58 +79,83 @@ static void scale_weight(const mt_problem *p, double *weight, int goal, double f
 
 /* Solve again with one weight changed, from the best design, which is also what undetermined
  * directions are kept at. */
-static mt_status search_again(spread *s, int goal, double factor, mt_arena *mem, mt_err *err)
+static mt_status solve(const spread *s, mt_workspace *w, search *a, mt_arena *mem, mt_err *err)
 {
-    mt_nlp nlp = mt_workspace_nlp(s->w);
+    const size_t n = (size_t)s->p->n_demands;
+    double *const weight = mt_arena_f64(mem, n, 1);
+    mt_case c = *s->asked;
     mt_nlp_options options = mt_nlp_options_default();
     mt_nlp_result found = {0};
+    MT_TRY(mt_arena_check(mem, err));
+    memcpy(weight, s->asked->weight, n * sizeof *weight);
+    scale_weight(s->p, weight, a->goal, a->factor);
+    c.weight = weight;
+    mt_workspace_back(w, &c);
+    mt_nlp nlp = mt_workspace_nlp(w);
     nlp.origin = s->best->t;
     options.starts = 1;
     options.max_evals = s->most;
-    scale_weight(s->w->p, s->weight, goal, factor);
-    const mt_status rc = mt_workspace_solve(s->w, &nlp, &options, mem, &found, err);
-    scale_weight(s->w->p, s->weight, goal, 1.0);
-    s->evaluations += found.evals;
-    if (rc != MT_OK) {
-        return rc;
+    const mt_status rc = mt_workspace_solve(w, &nlp, &options, mem, &found, err);
+    a->evaluations = found.evals;
+    a->found =
+        rc == MT_OK && found.n_solutions > 0 && !found.compromise && found.stop == MT_STOP_DONE;
+    if (a->found) {
+        mt_case_x(&c, found.solutions[0].t, a->x);
     }
-    if (found.n_solutions == 0 || found.compromise || found.stop != MT_STOP_DONE) {
+    mt_workspace_back(w, s->asked);
+    return rc;
+}
+
+static mt_status run_search(void *context, int worker, int task, mt_scope *own, mt_err *err)
+{
+    const spread *const s = context;
+    mt_workspace *const w = s->workers[worker];
+    mt_scope *const before = w->scope;
+    mt_arena mem;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    w->scope = own;
+    const mt_status rc = solve(s, w, &s->searches[task], &mem, err);
+    w->scope = before;
+    mt_arena_free(&mem);
+    return rc;
+}
+
+/* What a search says of the spread. */
+static mt_status take(const spread *s, const search *a, mt_err *err)
+{
+    if (!a->found) {
         return mt_describe_warn(s->result, err,
                                 "sensitivity to the weights: no design was found with the "
                                 "weight of /goals/%d times %g; that part is missing",
-                                goal, factor);
+                                a->goal, a->factor);
     }
-    const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", goal);
+    const char *const pointer = mt_arena_printf(&s->result->mem, "/goals/%d", a->goal);
     MT_TRY(mt_arena_check(&s->result->mem, err));
-    mt_case_x(s->w->c, found.solutions[0].t, s->x);
-    for (int i = 0; i < s->w->p->n; i++) {
+    for (int i = 0; i < s->p->n; i++) {
         mt_result_spread *const r = &s->result->spread[i];
-        if (s->x[i] < r->low) {
-            r->low = s->x[i];
+        if (a->x[i] < r->low) {
+            r->low = a->x[i];
             r->low_goal = pointer;
-            r->low_factor = factor;
-        } else if (s->x[i] > r->high) {
-            r->high = s->x[i];
+            r->low_factor = a->factor;
+        } else if (a->x[i] > r->high) {
+            r->high = a->x[i];
             r->high_goal = pointer;
-            r->high_factor = factor;
+            r->high_factor = a->factor;
         }
     }
     return MT_OK;
 }
 
-static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
+static mt_status search_all(spread *s, int n_workers, long *evaluations, mt_err *err)
 {
-    const mt_study *const study = s->w->p->study;
-    for (int g = 0; g < study->n_goals; g++) {
-        const double factor = study->spread.factor;
-        if (!MT_HAS(study->goals[g].weight)) {
-            continue;
-        }
-        for (int side = 0; side < 2; side++) {
-            const mt_arena_mark mark = mt_arena_get_mark(mem);
-            MT_TRY(search_again(s, g, side == 0 ? factor : 1.0 / factor, mem, err));
-            mt_arena_rewind(mem, mark);
-        }
+    const mt_tasks tasks = {s->n, run_search, NULL, s, "weights"};
+    const mt_status rc = mt_workers_run(n_workers, s->workers[0]->scope, &tasks, err);
+    for (int i = 0; i < s->n; i++) {
+        *evaluations += s->searches[i].evaluations;
+    }
+    MT_TRY(rc);
+    for (int i = 0; i < s->n; i++) {
+        MT_TRY(take(s, &s->searches[i], err));
     }
     for (int i = 0; i < s->result->n_spread; i++) {
         mt_result_spread *const r = &s->result->spread[i];
@@ -131,14 +166,21 @@ static mt_status search_all(spread *s, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* Searches that there are; one at least. */
-static long count(const mt_study *study)
+/* The searches that there are: each weighted goal on either side. */
+static mt_status list_searches(spread *s, mt_arena *mem, mt_err *err)
 {
-    long n = 0;
+    const mt_study *const study = s->p->study;
+    const double factor = study->spread.factor;
+    s->searches = mt_arena_alloc(mem, 2 * (size_t)study->n_goals, sizeof *s->searches);
+    MT_TRY(mt_arena_check(mem, err));
     for (int g = 0; g < study->n_goals; g++) {
-        n += MT_HAS(study->goals[g].weight) ? 2 : 0;
+        for (int side = 0; side < 2 && MT_HAS(study->goals[g].weight); side++) {
+            s->searches[s->n++] = (search){.goal = g,
+                                           .factor = side == 0 ? factor : 1.0 / factor,
+                                           .x = mt_arena_f64(mem, (size_t)s->p->n, 1)};
+        }
     }
-    return n > 0 ? n : 1;
+    return mt_arena_check(mem, err);
 }
 
 bool mt_spread_is_asked(const mt_problem *p)
@@ -147,33 +189,27 @@ bool mt_spread_is_asked(const mt_problem *p)
            !mt_study_is_discrete(p->study);
 }
 
-mt_status mt_spread_solve(mt_workspace *w, const mt_nlp_solution *best, mt_arena *mem,
-                          long most, long *evaluations, mt_result *result, mt_err *err)
+mt_status mt_spread_solve(mt_workspace *const *workers, int n_workers,
+                          const mt_nlp_solution *best, mt_arena *mem, long most,
+                          long *evaluations, mt_result *result, mt_err *err)
 {
-    const mt_case *const asked = w->c;
-    const size_t n = (size_t)w->p->n_demands;
-    if (!mt_spread_is_asked(w->p)) {
+    const mt_problem *const p = workers[0]->p;
+    if (!mt_spread_is_asked(p)) {
         return MT_OK;
     }
     spread s = {
-        .w = w, .c = *asked, .weight = mt_arena_f64(mem, n, 1), .result = result, .best = best};
-    MT_TRY(mt_arena_check(mem, err));
-    memcpy(s.weight, asked->weight, n * sizeof *s.weight);
-    s.c.weight = s.weight;
+        .workers = workers, .asked = workers[0]->c, .p = p, .result = result, .best = best};
+    MT_TRY(list_searches(&s, mem, err));
     MT_TRY(start(&s, err));
     if (most < LONG_MAX) {
-        s.most = most / count(w->p->study);
+        s.most = most / (s.n > 0 ? s.n : 1);
     }
     if (most < LONG_MAX && s.most < EVALUATIONS_LEAST) {
         result->n_spread = 0;
         return mt_describe_warn(result, err,
                                 "sensitivity to the weights: not computed, since \"%s\" leaves "
                                 "no evaluations for it",
-                                mt_search_budget(&w->p->study->search));
+                                mt_search_budget(&p->study->search));
     }
-    mt_workspace_back(w, &s.c);
-    const mt_status rc = search_all(&s, mem, err);
-    mt_workspace_back(w, asked);
-    *evaluations += s.evaluations;
-    return rc;
+    return search_all(&s, n_workers, evaluations, err);
 }
