@@ -21,7 +21,7 @@ static mt_status find_scene(const mt_args *args, const mt_result *result, mt_tex
     mt_err why = {.code = MT_OK};
     mt_status rc = mt_find_model(args, result, &file, &path, &why);
     rc = rc == MT_OK ? mt_model_load(path, &opt, &model, &messages, &why) : rc;
-    rc = rc == MT_OK ? mt_scene_of_result(model, result, scene, &why) : rc;
+    rc = rc == MT_OK ? mt_scene_of_result(model, result, 1, scene, &why) : rc;
     mt_diagnostics_free(&messages);
     mt_model_delete(model);
     mt_file_free(&file);

@@ -188,7 +188,7 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
     }
     mt_status rc = mt_arena_check(&j->result->mem, &j->err);
     if (rc == MT_OK && !j->args->no_report) {
-        rc = mt_scene_of_result(j->study->model, j->result, &scene, &j->err);
+        rc = mt_scene_of_result(j->study->model, j->result, j->args->threads, &scene, &j->err);
     }
     if (rc != MT_OK) { /* no other answer than with memory */
         mt_text_free(&scene);

@@ -156,7 +156,7 @@ mt_status mt_result_page(const mt_result *result, const mt_model *model, char **
     mt_text json = {0};
     mt_text scene = {0};
     mt_status rc = mt_result_write_page(result, &json, err);
-    rc = rc == MT_OK ? mt_scene_of_result(model, result, &scene, err) : rc;
+    rc = rc == MT_OK ? mt_scene_of_result(model, result, 1, &scene, err) : rc;
     if (rc == MT_OK) {
         mt_report_html(result, json.s, scene.s, &out);
         rc = out.failed ? mt_fail_memory(err) : MT_OK;

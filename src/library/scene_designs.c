@@ -204,8 +204,8 @@ static void find_travel(const mt_model *model, const mt_result *result, int n,
     }
 }
 
-static mt_status look(const mt_model *model, const mt_result *result, mt_arena *mem,
-                      mt_scene **out, mt_err *err)
+static mt_status look(const mt_model *model, const mt_result *result, int threads,
+                      mt_arena *mem, mt_scene **out, mt_err *err)
 {
     const int all = model->n_configurations;
     int *const configurations = mt_arena_int(mem, (size_t)all);
@@ -218,6 +218,7 @@ static mt_status look(const mt_model *model, const mt_result *result, mt_arena *
     const mt_scene_extent extent = {.n_configurations = asked > 0 ? asked : all,
                                     .configurations = configurations,
                                     .work = MT_SCENE_WORK_ALONG,
+                                    .threads = threads,
                                     .travel = travel};
     MT_TRY(mt_scene_designs(model, result, extent.n_configurations, configurations, mem, &asks,
                             &n, err));
@@ -225,8 +226,8 @@ static mt_status look(const mt_model *model, const mt_result *result, mt_arena *
     return mt_scene_new(model, n, asks, &extent, out, err);
 }
 
-mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, mt_text *json,
-                             mt_err *err)
+mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, int threads,
+                             mt_text *json, mt_err *err)
 {
     mt_scene *scene = NULL;
     mt_arena mem;
@@ -235,7 +236,7 @@ mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, mt_
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = look(model, result, &mem, &scene, &why);
+    mt_status rc = look(model, result, threads, &mem, &scene, &why);
     if (rc == MT_OK && scene->size > 0.0) {
         rc = mt_scene_write(scene, json, &why);
     }

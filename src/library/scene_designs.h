@@ -24,8 +24,8 @@ int mt_scene_order(const mt_model *model, const mt_result *result, int *configur
  * @param[in] model  the one that was solved; NULL: nobody has it
  * Fails: MT_E_MEMORY.
  */
-mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, mt_text *json,
-                             mt_err *err);
+mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, int threads,
+                             mt_text *json, mt_err *err);
 /* Names that the model gives to modes, of the design in its file. */
 mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_ask *ask, mt_err *err);
 

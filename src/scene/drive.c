@@ -80,6 +80,7 @@ static mt_status find_range(const mt_scene_frame *f, range *r, mt_err *err)
 /* At work on one range. */
 typedef struct walk {
     mt_scene_frame *f;
+    double length;
     mt_analysis *a; /* where modes are asked for; else a system and its positions */
     mt_system *sys; /* driven from outside */
     mt_linear *lin;
@@ -106,7 +107,7 @@ static void fill_pose(const walk *w, double *pose)
             }
             mt_scene_clean(1.0, out + 3 + ((ptrdiff_t)3 * i));
         }
-        mt_scene_clean(f->sys->length_m, out);
+        mt_scene_clean(w->length, out);
     }
 }
 
@@ -288,7 +289,7 @@ static void keep(walk *w)
     w->sys = NULL;
 }
 
-mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
+mt_status mt_scene_plan(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     range r;
     mt_scene_view *const v = f->view;
@@ -312,10 +313,27 @@ mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     left->poses -= poses;
     left->work -= work;
     out->positions = mt_arena_alloc(f->mem, (size_t)n, sizeof *out->positions);
+    mt_pose *const rest = mt_arena_alloc(f->kept, (size_t)f->sys->n_bodies, sizeof *rest);
     MT_TRY(mt_arena_check(f->mem, err));
+    MT_TRY(mt_arena_check(f->kept, err));
     out->n_positions = n;
-    walk w = {.f = f, .out = out};
+    memcpy(rest, f->pose, (size_t)f->sys->n_bodies * sizeof *rest);
+    mt_scene_way *const way = f->way;
+    *way = (mt_scene_way){
+        .f = *f, .drive = r.drive, .low = r.low, .high = r.high, .length = f->sys->length_m};
+    way->f.pose = rest;
+    way->f.sys = NULL;
+    return MT_OK;
+}
+
+mt_status mt_scene_follow(mt_scene_way *way, mt_err *err)
+{
+    mt_scene_frame *const f = &way->f;
+    mt_scene_drive *const out = f->view->drive;
+    const range r = {.drive = way->drive, .low = way->low, .high = way->high};
+    walk w = {.f = f, .length = way->length, .out = out};
     mt_err why = {.code = MT_OK};
+    mt_arena_clear(f->work);
     const mt_status rc = sweep(&w, &r, &why);
     mt_analysis_delete(w.a);
     mt_linear_delete(w.lin);

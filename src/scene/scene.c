@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/workers.h"
 #include "model/values.h"
 #include "scene/distance.h"
 
@@ -134,7 +135,7 @@ static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
         rc = analyse(f, err);
         rc = rc == MT_OK ? by_analysis(f, f->known->by, err) : rc;
     }
-    rc = rc == MT_OK ? mt_scene_follow(f, left, err) : rc;
+    rc = rc == MT_OK ? mt_scene_plan(f, left, err) : rc;
     mt_lowest_delete(l);
     return rc;
 }
@@ -165,6 +166,7 @@ static mt_status view_new(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     }
     *f->view =
         (mt_scene_view){.name = f->view->name, .error = mt_arena_strdup(f->mem, why.text)};
+    f->way->drive = NULL;
     mt_arena_clear(f->work);
     mt_err other = {.code = MT_OK};
     rc = as_drawn(f, &other);
@@ -220,13 +222,14 @@ typedef struct question {
     const mt_scene_extent *extent;
     mt_scene_room left;
     mt_arena work;
-    mt_scene_followed followed;
     mt_scene_known *known; /* [configurations of the extent] */
+    mt_scene_way *ways;    /* [designs][configurations of the extent] */
+    mt_arena *ways_mem;    /* [designs] of the scene: what following them finds */
     mt_arena kept;
 } question;
 
 static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
-                            mt_scene_design *out, mt_err *err)
+                            mt_scene_design *out, mt_scene_way *ways, mt_err *err)
 {
     *out = (mt_scene_design){.label = mt_arena_strdup(mem, ask->label), .rank = ask->rank};
     MT_TRY(list_parameters(q->model, ask, mem, out, err));
@@ -242,14 +245,40 @@ static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
                             .kept = &q->kept,
                             .view = &out->views[i],
                             .known = &q->known[i],
-                            .followed = &q->followed};
+                            .way = &ways[i]};
         mt_arena_clear(&q->work);
         MT_TRY(view_new(&f, &q->left, err));
         out->n_views++;
     }
-    mt_system_delete(q->followed.sys);
-    q->followed.sys = NULL;
     return MT_OK;
+}
+
+/* All ranges of one design, in the order of its configurations: one may share what another
+ * has found. A task. */
+static mt_status follow_design(void *context, int worker, int task, mt_scope *own, mt_err *err)
+{
+    const question *const q = context;
+    const int n = q->extent->n_configurations;
+    mt_scene_way *const ways = q->ways + ((ptrdiff_t)task * n);
+    mt_scene_followed followed = {.sys = NULL};
+    mt_arena work = {.first = NULL};
+    mt_status rc = MT_OK;
+    (void)worker;
+    (void)own;
+    for (int i = 0; i < n && rc == MT_OK; i++) {
+        mt_scene_way *const way = &ways[i];
+        if (way->drive == NULL) {
+            continue;
+        }
+        rc = work.first == NULL ? mt_arena_init(&work, 0, err) : rc;
+        way->f.mem = &q->ways_mem[task];
+        way->f.work = &work;
+        way->f.followed = &followed;
+        rc = rc == MT_OK ? mt_scene_follow(way, err) : rc;
+    }
+    mt_system_delete(followed.sys);
+    mt_arena_free(&work);
+    return rc == MT_OK ? mt_arena_check(&q->ways_mem[task], err) : rc;
 }
 
 static void include(double low[3], double high[3], const double x[3])
@@ -369,13 +398,20 @@ static mt_status fill(mt_scene *scene, question *q, int n_designs, const mt_scen
     scene->dimension = q->model->dimension;
     scene->name = q->model->name == NULL ? "" : mt_arena_strdup(&scene->mem, q->model->name);
     scene->designs = mt_arena_alloc(&scene->mem, (size_t)n_designs, sizeof *scene->designs);
-    q->known =
-        mt_arena_alloc(&scene->mem, (size_t)q->extent->n_configurations, sizeof *q->known);
+    const size_t n = (size_t)q->extent->n_configurations;
+    q->known = mt_arena_alloc(&q->kept, n, sizeof *q->known);
+    q->ways = mt_arena_alloc(&q->kept, n * (size_t)n_designs, sizeof *q->ways);
+    scene->found = mt_arena_alloc(&scene->mem, (size_t)n_designs, sizeof *scene->found);
+    MT_TRY(mt_arena_check(&q->kept, err));
     MT_TRY(mt_arena_check(&scene->mem, err));
+    q->ways_mem = scene->found;
     for (int i = 0; i < n_designs; i++) {
-        MT_TRY(design_new(q, &designs[i], &scene->mem, &scene->designs[i], err));
+        MT_TRY(design_new(q, &designs[i], &scene->mem, &scene->designs[i],
+                          q->ways + ((size_t)i * n), err));
         scene->n_designs++;
     }
+    const mt_tasks tasks = {n_designs, follow_design, NULL, q, "designs"};
+    MT_TRY(mt_workers_run(q->extent->threads > 1 ? q->extent->threads : 1, NULL, &tasks, err));
     scene->size = size_of(scene);
     mt_arena_clear(&q->work);
     if (n_designs > 0) {
@@ -396,7 +432,6 @@ mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask 
         return mt_fail_memory(err);
     }
     const mt_status rc = fill(scene, &q, n_designs, designs, err);
-    mt_system_delete(q.followed.sys);
     for (int i = 0; i < extent->n_configurations && q.known != NULL; i++) {
         mt_analysis_delete(q.known[i].by);
     }
@@ -413,6 +448,9 @@ mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask 
 void mt_scene_delete(mt_scene *scene)
 {
     if (scene != NULL) {
+        for (int i = 0; i < scene->n_designs && scene->found != NULL; i++) {
+            mt_arena_free(&scene->found[i]);
+        }
         mt_arena_free(&scene->mem);
         free(scene);
     }

@@ -182,6 +182,7 @@ typedef struct mt_scene_off {
 
 typedef struct mt_scene {
     mt_arena mem;
+    mt_arena *found; /* [n_designs] what was found along ranges of drives */
     const char *name;
     int dimension;
     double size;      /* diagonal of the box around all that is drawn [m] */
@@ -218,6 +219,8 @@ typedef struct mt_scene_extent {
     int n_configurations;
     const int *configurations; /* [n_configurations] */
     double work;               /* what it may cost */
+    int threads; /* that share it out, which makes no difference to what there is to see; 0: 1
+                  */
     /* [joints of the model]: of the range of each, in all configurations that have it; NULL:
      * of all of them, with modes */
     const mt_scene_travel *travel;

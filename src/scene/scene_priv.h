@@ -21,6 +21,8 @@ typedef struct mt_scene_known {
     const mt_scene_ask *numbered; /* what they were compiled for; NULL: they are not */
 } mt_scene_known;
 
+typedef struct mt_scene_way mt_scene_way;
+
 /* What the files of this room share while one configuration of one design is looked at. */
 typedef struct mt_scene_frame {
     const mt_model *model;
@@ -43,7 +45,18 @@ typedef struct mt_scene_frame {
     mt_scene_view *view;
     mt_scene_known *known;
     mt_scene_followed *followed;
+    mt_scene_way *way; /* of this configuration of this design */
 } mt_scene_frame;
+
+/* The range of a driven joint that is to be followed when everything stands: nothing of the
+ * design's analysis is needed for it any more. */
+struct mt_scene_way {
+    mt_scene_frame f;      /* sys, number, value and drawn are void */
+    const mt_drive *drive; /* NULL: there is nothing to follow */
+    double low;
+    double high;
+    double length; /* of the mechanism, against which coordinates are rounding [m] */
+};
 
 /* What is left of what a page can show. */
 typedef struct mt_scene_room {
@@ -94,7 +107,11 @@ mt_status mt_scene_energy_new(const mt_scene_frame *f, mt_scene_energy **out, mt
 void mt_scene_energy_of(const mt_scene_energy *e, double lambda, const double *phi,
                         double *spring, double *body);
 
-/* drive.c: the range of the driven joint, where there is one and room for it. */
-mt_status mt_scene_follow(mt_scene_frame *f, mt_scene_room *left, mt_err *err);
+/* drive.c: the range of the driven joint, where there is one and room for it, and what it takes
+ * to follow it, into f->way. */
+mt_status mt_scene_plan(mt_scene_frame *f, mt_scene_room *left, mt_err *err);
+/* Follow it: way->f has a mem, a work and a followed of the caller's own. Fails: MT_E_MEMORY,
+ * MT_E_INTERRUPTED, MT_E_INTERNAL. */
+mt_status mt_scene_follow(mt_scene_way *way, mt_err *err);
 
 #endif

@@ -359,6 +359,81 @@ static void check_same_poses(mt_test *t, const mt_scene_drive *poses,
     }
 }
 
+static void check_same_view(mt_test *t, const mt_scene_view *a, const mt_scene_view *b)
+{
+    CHECK_INT(t, a->n_modes, b->n_modes);
+    for (int i = 0; i < a->n_modes && i < b->n_modes; i++) {
+        CHECK_NEAR(t, a->modes[i].hz, b->modes[i].hz, 1e-10);
+    }
+    for (int i = 0; i < a->n_bodies && CHECK_INT(t, a->n_bodies, b->n_bodies); i++) {
+        CHECK_NEAR(t, a->bodies[i].mass, b->bodies[i].mass, 1e-14);
+        for (int k = 0; k < 3; k++) {
+            CHECK_NEAR_ABS(t, a->bodies[i].at[k], b->bodies[i].at[k], TOL);
+        }
+    }
+    if (!CHECK(t, (a->drive == NULL) == (b->drive == NULL)) || a->drive == NULL) {
+        return;
+    }
+    CHECK_INT(t, a->drive->n_positions, b->drive->n_positions);
+    for (int i = 0; i < a->drive->n_positions; i++) {
+        const mt_scene_position *const p = &a->drive->positions[i];
+        const mt_scene_position *const q = &b->drive->positions[i];
+        CHECK_INT(t, p->n_hz, q->n_hz);
+        for (int k = 0; k < p->n_hz && k < q->n_hz; k++) {
+            CHECK_NEAR(t, p->hz[k], q->hz[k], 1e-9);
+        }
+        for (int k = 0; k < 12 * a->n_bodies && p->pose != NULL && q->pose != NULL; k++) {
+            CHECK_NEAR_ABS(t, p->pose[k], q->pose[k], 1e-9);
+        }
+    }
+}
+
+/* Designs that share what was compiled and analysed, on three workers, are each what it is
+ * alone. */
+static void scene__designs_together_are_those_alone(mt_test *t)
+{
+    static const char *const names[] = {"M_SAU", "K_T1"};
+    enum { MOST = 20 };
+    static const double values[][2] = {{2.2635, 9795.7}, {1.2, 9795.7}, {2.9, 20000.0}};
+    enum { DESIGNS = MT_COUNT(values) };
+    mt_model *const model = mech_load(t, "../../problems/inceptor");
+    int configurations[MOST];
+    int inputs[2];
+    mt_scene *all = NULL;
+    mt_err err = {.text = ""};
+    if (model == NULL || !CHECK(t, model->n_configurations <= MOST)) {
+        return;
+    }
+    for (int i = 0; i < model->n_configurations; i++) {
+        configurations[i] = i;
+    }
+    for (int i = 0; i < MT_COUNT(names); i++) {
+        inputs[i] = mt_model_find_parameter(model, names[i]);
+    }
+    mt_scene_extent extent = {.n_configurations = model->n_configurations,
+                              .configurations = configurations,
+                              .work = MT_SCENE_WORK,
+                              .threads = 3};
+    mt_scene_ask asks[DESIGNS];
+    for (int d = 0; d < DESIGNS; d++) {
+        asks[d] = (mt_scene_ask){
+            .label = "design", .rank = d, .n_inputs = 2, .inputs = inputs, .at = values[d]};
+    }
+    CHECK(t, mt_scene_new(model, DESIGNS, asks, &extent, &all, &err) == MT_OK);
+    extent.threads = 1;
+    for (int d = 0; d < DESIGNS && all != NULL; d++) {
+        mt_scene *alone = NULL;
+        CHECK(t, mt_scene_new(model, 1, &asks[d], &extent, &alone, &err) == MT_OK);
+        for (int i = 0; i < model->n_configurations && alone != NULL; i++) {
+            mt_test_row(t, "design %d, configuration %d", d, i);
+            check_same_view(t, &all->designs[d].views[i], view_of(alone, i));
+        }
+        mt_scene_delete(alone);
+    }
+    mt_scene_delete(all);
+    mt_model_delete(model);
+}
+
 /* Of the same ranges the poses alone, and nothing. */
 static void scene__poses_are_those_of_the_modes(mt_test *t)
 {
@@ -444,5 +519,6 @@ MT_TEST_MAIN(MT_TEST(scene__pendulum_rests_below_its_pivot),
              MT_TEST(scene__places_are_those_of_the_file),
              MT_TEST(scene__a_driven_joint_has_its_range),
              MT_TEST(scene__poses_are_those_of_the_modes),
+             MT_TEST(scene__designs_together_are_those_alone),
              MT_TEST(scene__what_cannot_be_analysed_is_drawn_and_says_why),
              MT_TEST(distance__to_solids_is_that_of_closed_forms))
