@@ -159,10 +159,10 @@ static bool is_cut(const mt_answer *a, mt_phase which)
     return mt_interrupt_is_cut(a->interrupt, (int)which);
 }
 
-/* Solution i, described. */
-static mt_status recommend(mt_answer *a, int i, mt_err *err)
+/* Solution i, described: rec, whose texts and lists lie in `into`, as its warnings do. */
+static mt_status describe(const mt_answer *a, int i, mt_result *into, mt_recommendation *rec,
+                          mt_err *err)
 {
-    mt_result *const result = a->result;
     const bool discrete = mt_study_is_discrete(a->study) && !a->unsearched;
     const bool kinds = a->gaps.n_solutions > 0;
     const mt_design design = {.t = a->found.solutions[i].t,
@@ -177,12 +177,90 @@ static mt_status recommend(mt_answer *a, int i, mt_err *err)
                               .posed = a->posed,
                               .held = kinds ? a->gaps.solutions[i].held : NULL,
                               .n_held = kinds ? a->gaps.solutions[i].n_held : 0};
-    mt_recommendation *const rec = &result->recommendations[i];
+    MT_TRY(mt_describe_design(a->p, &design, &a->result->baseline, into, rec, err));
+    return mt_describe_reasons(a->p, &design, &a->found, into, rec, err);
+}
+
+/* The best one. */
+static mt_status recommend_first(mt_answer *a, mt_err *err)
+{
+    mt_result *const result = a->result;
     a->mark = mt_result_get_mark(result);
-    MT_TRY(mt_describe_design(a->p, &design, &result->baseline, result, rec, err));
-    MT_TRY(mt_describe_reasons(a->p, &design, &a->found, result, rec, err));
+    MT_TRY(describe(a, 0, result, &result->recommendations[0], err));
     result->n_recommendations += is_cut(a, MT_PHASE_RECOMMENDATIONS) ? 0 : 1;
     return MT_OK;
+}
+
+/* A design that is described beside others. */
+typedef struct part {
+    mt_result *into; /* owned */
+    mt_recommendation rec;
+    bool whole; /* nothing of it was cut */
+} part;
+
+typedef struct others {
+    const mt_answer *a;
+    part *parts; /* of the second best and all behind it */
+    mt_progress *progress;
+    bool told;
+} others;
+
+static mt_status describe_other(void *context, int worker, int task, mt_scope *own, mt_err *err)
+{
+    const others *const o = context;
+    const mt_result *const result = o->a->result;
+    part *const p = &o->parts[task];
+    (void)worker;
+    (void)own;
+    if (is_cut(o->a, MT_PHASE_RECOMMENDATIONS)) {
+        return MT_OK;
+    }
+    MT_TRY(mt_result_new(&p->into, err));
+    p->into->objectives = result->objectives; /* what is known of all designs */
+    p->into->n_objectives = result->n_objectives;
+    p->into->curves = result->curves;
+    p->into->n_curves = result->n_curves;
+    p->into->undetermined = result->undetermined;
+    p->into->n_undetermined = result->n_undetermined;
+    MT_TRY(describe(o->a, 1 + task, p->into, &p->rec, err));
+    p->whole = !is_cut(o->a, MT_PHASE_RECOMMENDATIONS);
+    mt_progress_done(o->progress, o->told);
+    return MT_OK;
+}
+
+/* The result has it as if it had been described there. */
+static mt_status take_other(mt_answer *a, const part *p, mt_err *err)
+{
+    mt_result *const result = a->result;
+    for (int i = 0; i < p->into->n_warnings; i++) {
+        MT_TRY(mt_describe_warn(result, err, "%s", p->into->warnings[i]));
+    }
+    MT_TRY(mt_recommendation_copy(&p->rec, NULL, &result->mem,
+                                  &result->recommendations[result->n_recommendations], err));
+    result->n_recommendations++;
+    return MT_OK;
+}
+
+/* n others, as many as were described before a cut. */
+static mt_status recommend_others(mt_answer *a, int n, bool told, mt_err *err)
+{
+    others o = {.a = a,
+                .parts = mt_arena_alloc(&a->mem, (size_t)n, sizeof *o.parts),
+                .progress = a->study->model->progress,
+                .told = told};
+    MT_TRY(mt_arena_check(&a->mem, err));
+    const mt_tasks tasks = {n, describe_other, NULL, &o, "designs"};
+    a->mark = mt_result_get_mark(a->result);
+    const mt_status rc = mt_workers_run(a->n_workers, NULL, &tasks, err);
+    mt_status taken = MT_OK; /* of a cut is an error, too: what came before it counts */
+    for (int i = 0; i < n && !mt_is_final(rc) && taken == MT_OK && o.parts[i].whole; i++) {
+        taken = take_other(a, &o.parts[i], err);
+        a->mark = mt_result_get_mark(a->result);
+    }
+    for (int i = 0; i < n; i++) {
+        mt_result_delete(o.parts[i].into);
+    }
+    return taken != MT_OK ? taken : rc;
 }
 
 mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
@@ -199,11 +277,14 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     MT_TRY(mt_describe_undetermined(a->p, found, result, err));
     const bool told = mt_progress_begin(progress, "designs", n);
     mt_status rc = MT_OK;
-    for (int i = 0; i < n && rc == MT_OK && !is_cut(a, MT_PHASE_RECOMMENDATIONS); i++) {
-        a->interrupt->needed = i == 0; /* without the best one there is no answer */
-        rc = recommend(a, i, err);
+    if (n > 0 && !is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
+        a->interrupt->needed = true; /* without the best one there is no answer */
+        rc = recommend_first(a, err);
         a->interrupt->needed = false;
         mt_progress_done(progress, told);
+    }
+    if (n > 1 && rc == MT_OK && !is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
+        rc = recommend_others(a, n - 1, told, err);
     }
     mt_progress_end(progress, told);
     if (rc != MT_OK || is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
