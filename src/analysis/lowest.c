@@ -76,16 +76,20 @@ static void follow(const operation *o, const double *x, double *y, double *open)
     *open = mt_dot(n, o->left, o->r);
 }
 
-static mt_status refine(void *context, const double *x, double *y, mt_lowest_quotient *own,
-                        mt_err *err)
+static mt_status refine(void *context, int count, const double *x, double *y,
+                        mt_lowest_quotient *own, mt_err *err)
 {
     const operation *const o = context;
-    mt_tree_quotient q;
-    double open = 0.0;
-    MT_TRY(mt_interrupt_check(o->tree->sys->model->interrupt, err));
-    follow(o, x, y, &open);
-    mt_tree_rate(o->tree, x, o->along, o->v, o->f, &q);
-    *own = (mt_lowest_quotient){.lambda = q.lambda, .noise = q.noise + fabs(open / q.mass)};
+    for (int i = 0; i < count; i++) {
+        const ptrdiff_t at = (ptrdiff_t)o->tree->n_x * i;
+        mt_tree_quotient q;
+        double open = 0.0;
+        MT_TRY(mt_interrupt_check(o->tree->sys->model->interrupt, err));
+        follow(o, x + at, y + at, &open);
+        mt_tree_rate(o->tree, x + at, o->along, o->v, o->f, &q);
+        own[i] =
+            (mt_lowest_quotient){.lambda = q.lambda, .noise = q.noise + fabs(open / q.mass)};
+    }
     return MT_OK;
 }
 

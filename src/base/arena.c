@@ -24,7 +24,9 @@
 #    define UNPOISON(p, n) ((void)(p), (void)(n))
 #endif
 
-enum { DEFAULT_BLOCK_SIZE = 64 * 1024, LARGEST_ZONE = 4096 };
+/* For blocks from LARGE on calloc takes pages that the system has zeroed already: what nobody
+ * uses of them is never there. */
+enum { DEFAULT_BLOCK_SIZE = 64 * 1024, LARGE = 1024 * 1024, LARGEST_ZONE = 4096 };
 
 /* data points behind the header, at the first multiple of MT_ALIGN that leaves room for a
  * zone. */
@@ -32,7 +34,8 @@ struct mt_arena_block {
     mt_arena_block *next;
     unsigned char *data;
     size_t size;
-    size_t used; /* a multiple of MT_ALIGN */
+    size_t used;  /* a multiple of MT_ALIGN */
+    size_t dirty; /* bytes that may be other than 0: none behind them was handed out */
 };
 
 /* Bytes between the end of what is handed out and what comes next, which nobody may touch:
@@ -54,7 +57,8 @@ static mt_arena_block *block_new(size_t size)
     if (size > SIZE_MAX - sizeof(mt_arena_block) - before) {
         return NULL;
     }
-    mt_arena_block *const b = malloc(sizeof *b + before + size);
+    const size_t all = sizeof(mt_arena_block) + before + size;
+    mt_arena_block *const b = size < LARGE ? malloc(all) : calloc(1, all);
     if (b == NULL) {
         return NULL;
     }
@@ -64,6 +68,7 @@ static mt_arena_block *block_new(size_t size)
     b->data = after + (skew == 0 ? 0 : MT_ALIGN - skew);
     b->size = size;
     b->used = 0;
+    b->dirty = size < LARGE ? size : 0;
     POISON(b + 1, before + size);
     return b;
 }
@@ -156,12 +161,15 @@ void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
         !make_room(a, bytes + zone(size))) {
         return refuse(a);
     }
-    unsigned char *const p = a->current->data + a->current->used;
-    a->current->used += bytes + zone(size);
+    mt_arena_block *const b = a->current;
+    unsigned char *const p = b->data + b->used;
+    const size_t dirty = b->dirty > b->used ? b->dirty - b->used : 0;
+    b->used += bytes + zone(size);
+    b->dirty = b->dirty > b->used ? b->dirty : b->used;
     a->used += bytes;
     a->peak = a->used > a->peak ? a->used : a->peak;
     UNPOISON(p, count * size);
-    memset(p, 0, count * size);
+    memset(p, 0, count * size < dirty ? count * size : dirty);
     return p;
 }
 

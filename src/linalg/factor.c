@@ -17,8 +17,9 @@
 #include "linalg/cholmod.h"
 #include "linalg/kernels.h"
 
-/* Columns of a block that are eliminated one by one before the rest is brought up to date. */
-enum { PANEL = 32 };
+/* Columns of a block that are made together: products of a few dozen columns run as fast as
+ * larger ones, and what of them is above the diagonal is little. */
+enum { PANEL = 48 };
 
 struct mt_factor_pattern {
     int n;
@@ -108,12 +109,12 @@ mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern 
     return rc;
 }
 
-void mt_factor_init(const mt_factor_pattern *p, mt_arena *mem, mt_factor *f)
+void mt_factor_init(const mt_factor_pattern *p, int columns, mt_arena *mem, mt_factor *f)
 {
-    *f = (mt_factor){.pattern = p};
+    *f = (mt_factor){.pattern = p, .columns = columns};
     f->l = mt_arena_f64(mem, (size_t)p->at[p->n_super], 1);
     f->d = mt_arena_f64(mem, (size_t)p->n, 1);
-    f->work = mt_arena_f64(mem, p->most_rows + (size_t)p->n, 1);
+    f->work = mt_arena_f64(mem, p->most_rows + (size_t)p->n, (size_t)columns);
 }
 
 /* What a factorisation works with. */
@@ -124,8 +125,9 @@ typedef struct making {
     int *waiting;  /* [n_super] first supernode that waits for it; -1 */
     int *next;     /* [n_super] that waits for the same */
     int *used;     /* [n_super] rows of it that are behind */
-    double *right; /* most_columns x most_columns: D_K L(J, K)^T */
-    double *sum;   /* most_rows x most_columns */
+    int *target;   /* [most_rows] place of each row that is subtracted */
+    double *right; /* most_columns x PANEL: D_K L(J, K)^T */
+    double *sum;   /* most_rows x PANEL */
     double *size;  /* [n] of what each pivot is the rest of */
 } making;
 
@@ -140,8 +142,9 @@ static void wait_for(const making *m, int k)
     }
 }
 
-/* Entries of H into the blocks; an entry (i, j) stands in the column that comes first. */
-static void scatter(const mt_factor_pattern *p, const mt_lower *h, double *l)
+/* c times the entries of h into the blocks; an entry (i, j) stands in the column that comes
+ * first. */
+static void scatter(const mt_factor_pattern *p, double c, const mt_lower *h, double *l)
 {
     for (int j = 0; j < h->n; j++) {
         for (int k = h->start[j]; k < h->start[j + 1]; k++) {
@@ -162,12 +165,23 @@ static void scatter(const mt_factor_pattern *p, const mt_lower *h, double *l)
                 }
             }
             const ptrdiff_t ld = p->row_at[s + 1] - p->row_at[s];
-            l[p->at[s] + low + ((column - p->first[s]) * ld)] += h->value[k];
+            l[p->at[s] + low + ((column - p->first[s]) * ld)] += c * h->value[k];
         }
     }
 }
 
-/* Block s less what supernode k adds to it. */
+/* to[columns x inner, transposed] := D L^T of rows of a block. */
+static void weigh_rows(int columns, int inner, const double *d, const double *l, ptrdiff_t ld,
+                       double *to)
+{
+    for (int c = 0; c < inner; c++) {
+        for (int j = 0; j < columns; j++) {
+            to[c + ((ptrdiff_t)j * inner)] = d[c] * l[j + (c * ld)];
+        }
+    }
+}
+
+/* Block s less what supernode k adds to it: the lower triangle, panel by panel of columns. */
 static void subtract(const making *m, int s, int k)
 {
     const mt_factor_pattern *const p = m->p;
@@ -182,37 +196,35 @@ static void subtract(const making *m, int s, int k)
     while (columns < n_rows && rows[columns] < p->first[s + 1]) {
         columns++;
     }
-    for (int c = 0; c < inner; c++) {
-        const double d = m->f->d[p->first[k] + c];
-        for (int j = 0; j < columns; j++) {
-            m->right[c + ((ptrdiff_t)j * inner)] = d * l[j + ((ptrdiff_t)c * ld)];
-        }
+    for (int i = 0; i < n_rows; i++) {
+        m->target[i] = m->place[rows[i]];
     }
-    mt_gemm(false, false, n_rows, columns, inner, 1.0, l, ld, m->right, inner, 0.0, m->sum,
-            n_rows);
-    for (int j = 0; j < columns; j++) {
-        double *const to = out + ((rows[j] - p->first[s]) * ld_out);
-        const double *const from = m->sum + ((ptrdiff_t)j * n_rows);
-        for (int i = j; i < n_rows; i++) {
-            to[m->place[rows[i]]] -= from[i];
+    for (int first = 0; first < columns; first += PANEL) {
+        const int here = first + PANEL < columns ? PANEL : columns - first;
+        const int below = n_rows - first;
+        weigh_rows(here, inner, m->f->d + p->first[k], l + first, ld, m->right);
+        mt_gemm(false, false, below, here, inner, 1.0, l + first, ld, m->right, inner, 0.0,
+                m->sum, below);
+        for (int j = 0; j < here; j++) {
+            double *const to = out + (m->target[first + j] * ld_out);
+            const double *const from = m->sum + ((ptrdiff_t)j * below);
+            for (int i = j; i < below; i++) {
+                to[m->target[first + i]] -= from[i];
+            }
         }
     }
     m->used[k] += columns;
 }
 
-/* Columns first .. end - 1 of the block, one by one, all rows below. */
-static bool eliminate_panel(const making *m, int s, int first, int end)
+/* L D L^T of the n rows and columns of a panel's own; false: a pivot is 0 or not finite. */
+static bool eliminate_square(int n, double *l, ptrdiff_t ld, double *d)
 {
-    const mt_factor_pattern *const p = m->p;
-    const ptrdiff_t ld = p->row_at[s + 1] - p->row_at[s];
-    double *const l = m->f->l + p->at[s];
-    double *const d = m->f->d + p->first[s];
-    for (int j = first; j < end; j++) {
+    for (int j = 0; j < n; j++) {
         double *const column = l + (j * ld);
-        for (int k = first; k < j; k++) {
+        for (int k = 0; k < j; k++) {
             const double *const before = l + (k * ld);
             const double c = before[j] * d[k];
-            for (ptrdiff_t i = j; i < ld && c != 0.0; i++) {
+            for (int i = j; i < n && c != 0.0; i++) {
                 column[i] -= c * before[i];
             }
         }
@@ -221,38 +233,41 @@ static bool eliminate_panel(const making *m, int s, int first, int end)
             return false;
         }
         column[j] = 1.0;
-        for (ptrdiff_t i = j + 1; i < ld; i++) {
+        for (int i = j + 1; i < n; i++) {
             column[i] /= d[j];
         }
     }
     return true;
 }
 
+/* Panel by panel: less what the block's columns before it add, then its own square, then the
+ * rows below, B := B L^-T D^-1. */
 static bool eliminate(const making *m, int s)
 {
     const mt_factor_pattern *const p = m->p;
     const int ld = p->row_at[s + 1] - p->row_at[s];
     const int n = p->first[s + 1] - p->first[s];
     double *const l = m->f->l + p->at[s];
-    const double *const d = m->f->d + p->first[s];
+    double *const d = m->f->d + p->first[s];
     for (int first = 0; first < n; first += PANEL) {
-        const int end = first + PANEL < n ? first + PANEL : n;
-        if (!eliminate_panel(m, s, first, end)) {
+        const int here = first + PANEL < n ? PANEL : n - first;
+        const int below = ld - first - here;
+        double *const own = l + first + ((ptrdiff_t)first * ld);
+        double *const rest = own + here;
+        weigh_rows(here, first, d, l + first, ld, m->right);
+        mt_gemm(false, false, ld - first, here, first, -1.0, l + first, ld, m->right, first,
+                1.0, own, ld);
+        if (!eliminate_square(here, own, ld, d + first)) {
             return false;
         }
-        const int inner = end - first;
-        /* the other columns, a panel at a time: its rows from its own first one on */
-        for (int next = end; next < n; next += PANEL) {
-            const int columns = next + PANEL < n ? PANEL : n - next;
-            for (int j = 0; j < columns; j++) {
-                for (int c = 0; c < inner; c++) {
-                    m->right[c + ((ptrdiff_t)j * inner)] =
-                        d[first + c] * l[next + j + ((ptrdiff_t)(first + c) * ld)];
-                }
+        if (below > 0) {
+            cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasUnit, below,
+                        here, 1.0, own, ld, rest, ld);
+        }
+        for (int j = 0; j < here; j++) {
+            for (int i = 0; i < below; i++) {
+                rest[i + ((ptrdiff_t)j * ld)] /= d[first + j];
             }
-            mt_gemm(false, false, ld - next, columns, inner, -1.0,
-                    l + next + ((ptrdiff_t)first * ld), ld, m->right, inner, 1.0,
-                    l + next + ((ptrdiff_t)next * ld), ld);
         }
     }
     return true;
@@ -282,7 +297,8 @@ static void judge(const making *m)
     }
 }
 
-mt_status mt_factor_make(mt_factor *f, const mt_lower *h, mt_arena *mem, mt_err *err)
+mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_lower *shift,
+                         mt_arena *mem, mt_err *err)
 {
     const mt_factor_pattern *const p = f->pattern;
     const size_t n = (size_t)p->n;
@@ -293,13 +309,17 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, mt_arena *mem, mt_err 
     m.waiting = mt_arena_int(mem, ns);
     m.next = mt_arena_int(mem, ns);
     m.used = mt_arena_int(mem, ns);
-    m.right = mt_arena_f64(mem, p->most_columns + PANEL, p->most_columns + PANEL);
-    m.sum = mt_arena_f64(mem, p->most_rows, p->most_columns);
+    m.target = mt_arena_int(mem, p->most_rows);
+    m.right = mt_arena_f64(mem, p->most_columns, PANEL);
+    m.sum = mt_arena_f64(mem, p->most_rows, PANEL);
     m.size = mt_arena_f64(mem, n, 1);
     MT_TRY(mt_arena_check(mem, err));
     memset(f->l, 0, (size_t)p->at[ns] * sizeof *f->l);
     memset(m.waiting, 0xFF, ns * sizeof *m.waiting); /* -1 */
-    scatter(p, h, f->l);
+    scatter(p, 1.0, h, f->l);
+    if (shift != NULL) {
+        scatter(p, c, shift, f->l);
+    }
     bool regular = true;
     for (int s = 0; s < p->n_super && regular; s++) {
         for (int i = p->row_at[s]; i < p->row_at[s + 1]; i++) {
@@ -322,41 +342,94 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, mt_arena *mem, mt_err 
     return regular ? MT_OK : mt_fail(err, MT_E_DOMAIN, "a pivot is 0 or not finite");
 }
 
-void mt_factor_solve(const mt_factor *f, double *x)
+/* X := L_JJ^-1 X or L_JJ^-T X of a supernode's own columns, count of them n apart. */
+static void turn_own(bool trans, int columns, const double *l, int ld, int count, double *x,
+                     int n)
+{
+    const enum CBLAS_TRANSPOSE op = trans ? CblasTrans : CblasNoTrans;
+    if (count == 1) {
+        cblas_dtrsv(CblasColMajor, CblasLower, op, CblasUnit, columns, l, ld, x, 1);
+    } else {
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, op, CblasUnit, columns, count, 1.0, l,
+                    ld, x, n);
+    }
+}
+
+/* C := A op B + beta C with A rows x columns, count columns of the others; by itself one is
+ * read faster as a vector. */
+static void multiply(bool trans, int rows, int columns, double alpha, const double *a, int ld,
+                     int count, const double *b, int ldb, double beta, double *c, int ldc)
+{
+    if (count == 1) {
+        mt_gemv(trans, rows, columns, alpha, a, ld, b, beta, c);
+    } else {
+        mt_gemm(trans, false, trans ? columns : rows, count, trans ? rows : columns, alpha, a,
+                ld, b, ldb, beta, c, ldc);
+    }
+}
+
+/* Y := L^-T D^-1 L^-1 Y in the order of P. */
+static void solve_ordered(const mt_factor *f, int count, double *y)
 {
     const mt_factor_pattern *const p = f->pattern;
-    double *const y = f->work + p->most_rows;
-    for (int i = 0; i < p->n; i++) {
-        y[p->to[i]] = x[i];
-    }
     for (int s = 0; s < p->n_super; s++) {
         const int columns = p->first[s + 1] - p->first[s];
         const int ld = p->row_at[s + 1] - p->row_at[s];
+        const int below = ld - columns;
         const int *const rows = p->row + p->row_at[s] + columns;
         const double *const l = f->l + p->at[s];
         double *const own = y + p->first[s];
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, columns, l, ld, own, 1);
-        mt_gemv(false, ld - columns, columns, 1.0, l + columns, ld, own, 0.0, f->work);
-        for (int i = 0; i < ld - columns; i++) {
-            y[rows[i]] -= f->work[i];
+        turn_own(false, columns, l, ld, count, own, p->n);
+        multiply(false, below, columns, 1.0, l + columns, ld, count, own, p->n, 0.0, f->work,
+                 below);
+        for (int c = 0; c < count; c++) {
+            for (int i = 0; i < below; i++) {
+                y[rows[i] + ((ptrdiff_t)c * p->n)] -= f->work[i + ((ptrdiff_t)c * below)];
+            }
         }
     }
-    for (int i = 0; i < p->n; i++) {
-        y[i] /= f->d[i];
+    for (int c = 0; c < count; c++) {
+        for (int i = 0; i < p->n; i++) {
+            y[i + ((ptrdiff_t)c * p->n)] /= f->d[i];
+        }
     }
     for (int s = p->n_super - 1; s >= 0; s--) {
         const int columns = p->first[s + 1] - p->first[s];
         const int ld = p->row_at[s + 1] - p->row_at[s];
+        const int below = ld - columns;
         const int *const rows = p->row + p->row_at[s] + columns;
         const double *const l = f->l + p->at[s];
         double *const own = y + p->first[s];
-        for (int i = 0; i < ld - columns; i++) {
-            f->work[i] = y[rows[i]];
+        for (int c = 0; c < count; c++) {
+            for (int i = 0; i < below; i++) {
+                f->work[i + ((ptrdiff_t)c * below)] = y[rows[i] + ((ptrdiff_t)c * p->n)];
+            }
         }
-        mt_gemv(true, ld - columns, columns, -1.0, l + columns, ld, f->work, 1.0, own);
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasUnit, columns, l, ld, own, 1);
+        multiply(true, below, columns, -1.0, l + columns, ld, count, f->work, below, 1.0, own,
+                 p->n);
+        turn_own(true, columns, l, ld, count, own, p->n);
     }
-    for (int i = 0; i < p->n; i++) {
-        x[i] = y[p->to[i]];
+}
+
+void mt_factor_solve(const mt_factor *f, int count, double *x)
+{
+    const mt_factor_pattern *const p = f->pattern;
+    double *const y = f->work + (p->most_rows * (size_t)f->columns);
+    for (int first = 0; first < count; first += f->columns) {
+        const int some = first + f->columns < count ? f->columns : count - first;
+        double *const part = x + ((ptrdiff_t)first * p->n);
+        for (int c = 0; c < some; c++) {
+            const ptrdiff_t at = (ptrdiff_t)c * p->n;
+            for (int i = 0; i < p->n; i++) {
+                y[at + p->to[i]] = part[at + i];
+            }
+        }
+        solve_ordered(f, some, y);
+        for (int c = 0; c < some; c++) {
+            const ptrdiff_t at = (ptrdiff_t)c * p->n;
+            for (int i = 0; i < p->n; i++) {
+                part[at + i] = y[at + p->to[i]];
+            }
+        }
     }
 }

@@ -27,6 +27,7 @@ typedef struct mt_factor {
     double *l; /* blocks */
     double *d; /* [n], in the order of P */
     double *work;
+    int columns;  /* that it solves for at a time */
     int negative; /* entries of D below 0 */
     /* Least |d| over the sum of the magnitudes that it is the rest of: what is left of it after
      * cancellation. Below some roundings its sign is by chance. */
@@ -39,12 +40,16 @@ typedef struct mt_factor {
  */
 mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern **out,
                             mt_err *err);
-/* Room for a factor of such matrices, in mem; a shortage is the arena's. */
-void mt_factor_init(const mt_factor_pattern *p, mt_arena *mem, mt_factor *f);
-/* Factors h, whose entries stand in the places of the one that was analysed. Scratch from mem
- * is given back. Fails: MT_E_DOMAIN (not finite, or a pivot is 0 exactly), MT_E_MEMORY. */
-mt_status mt_factor_make(mt_factor *f, const mt_lower *h, mt_arena *mem, mt_err *err);
-/* x := H^-1 x. */
-void mt_factor_solve(const mt_factor *f, double *x);
+/* Room for a factor of such matrices that solves for so many columns at a time, in mem; a
+ * shortage is the arena's. */
+void mt_factor_init(const mt_factor_pattern *p, int columns, mt_arena *mem, mt_factor *f);
+/* Factors H = h + c m (m NULL: h), whose entries stand in the places of the matrix that was
+ * analysed. Scratch from mem is given back. Fails: MT_E_DOMAIN (not finite, or a pivot is 0
+ * exactly), MT_E_MEMORY. */
+mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_lower *m,
+                         mt_arena *mem, mt_err *err);
+/* X := H^-1 X, n x count. L is read twice for f->columns of them, where it is large the whole
+ * cost of one. */
+void mt_factor_solve(const mt_factor *f, int count, double *x);
 
 #endif

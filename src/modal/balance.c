@@ -47,17 +47,17 @@ static mt_status balance(const mt_sparse_problem *of, const double *f, double *m
     /* where the constraints leave no motion x is rounding, and this no matter */
     bool sound = false;
     MT_TRY(mt_sparse_factor(&s, 0.0, &sound, err));
-    *found = s.held.negative == 0 && s.held.least > 0.0;
+    *found = s.factor.negative == 0 && s.least > 0.0;
     if (!*found) {
         return MT_OK;
     }
     memcpy(left, f, (size_t)of->n * sizeof *left);
-    MT_TRY(mt_sparse_solve(&s, left, MT_SPARSE_SOLVED, s.x, err));
+    MT_TRY(mt_sparse_solve(&s, 1, left, MT_SPARSE_SOLVED, s.x, err));
     memcpy(mu, s.mu, (size_t)rows * sizeof *mu);
     for (int r = 0; r < rows; r++) {
         mt_rows_axpy(&of->a, r, -mu[r], left);
     }
-    MT_TRY(mt_sparse_solve(&s, left, MT_SPARSE_SOLVED, s.x, err));
+    MT_TRY(mt_sparse_solve(&s, 1, left, MT_SPARSE_SOLVED, s.x, err));
     for (int r = 0; r < rows; r++) {
         mu[r] += s.mu[r];
         open[r] = fabs(s.mu[r]);

@@ -108,14 +108,12 @@ static mt_status grow(finding *f, int n, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* Quotient, residual and own quotient of vector i. */
-static mt_status look_at(finding *f, int i, mt_err *err)
+/* Quotient and residual of vector i. */
+static void measure(finding *f, int i)
 {
     const mt_lowest_problem *const p = f->p;
-    double *const x = column(f, f->x, i);
-    double *const ax = column(f, f->ax, i);
-    mt_lowest_quotient own = {.noise = 0.0};
-    MT_TRY(p->refine(p->context, x, ax, &own, err));
+    const double *const x = column(f, f->x, i);
+    const double *const ax = column(f, f->ax, i);
     const double square = inner(f, x, x);
     f->theta[i] = inner(f, x, ax) / square;
     double rest = 0.0;
@@ -131,8 +129,18 @@ static mt_status look_at(finding *f, int i, mt_err *err)
         rest = fmax(inner(f, f->difference, f->difference), 0.0);
     }
     f->rho[i] = sqrt(rest / square);
-    f->own[i] = own;
-    f->n_free += own.rigid ? 1 : 0;
+    f->n_free += f->own[i].rigid ? 1 : 0;
+}
+
+/* Of `count` vectors from the first on, with their own quotients. */
+static mt_status look_at(finding *f, int first, int count, mt_err *err)
+{
+    const mt_lowest_problem *const p = f->p;
+    MT_TRY(p->refine(p->context, count, column(f, f->x, first), column(f, f->ax, first),
+                     f->own + first, err));
+    for (int i = first; i < first + count; i++) {
+        measure(f, i);
+    }
     return MT_OK;
 }
 
@@ -153,8 +161,8 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
     int got = 0;
     MT_TRY(mt_lanczos_largest(&lanczos, mem, column(f, f->x, f->n), &got, err));
     f->exhausted = got < wanted || f->n + got == p->most;
+    MT_TRY(look_at(f, f->n, got, err));
     for (int i = f->n; i < f->n + got; i++) {
-        MT_TRY(look_at(f, i, err));
         for (int at = i; at > 0 && f->theta[at] > f->theta[at - 1]; at--) {
             swap(f, at, at - 1);
         }
@@ -370,10 +378,7 @@ static mt_status settle(finding *f, int n, mt_arena *scratch, mt_err *err)
     mt_turn_columns(f->p->n, f->n, f->n, h, found, f->x, theta);
     mt_turn_columns(f->p->n, f->n, f->n, h, found, f->ax, theta);
     f->n_free = 0;
-    for (int i = 0; i < n; i++) {
-        MT_TRY(look_at(f, i, err));
-    }
-    return MT_OK;
+    return look_at(f, 0, n, err);
 }
 
 static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena *mem,

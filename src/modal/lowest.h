@@ -29,9 +29,9 @@ typedef struct mt_lowest_problem {
     double shift;
     /* y := M x; NULL: the identity */
     void (*metric)(void *context, const double *x, double *y);
-    /* y := A x as exactly as can be, and what x and y say of their mode */
-    mt_status (*refine)(void *context, const double *x, double *y, mt_lowest_quotient *quotient,
-                        mt_err *err);
+    /* Y := A X as exactly as can be, n x count, and what each x and y say of their mode */
+    mt_status (*refine)(void *context, int count, const double *x, double *y,
+                        mt_lowest_quotient *quotient, mt_err *err);
     /* modes below lambda = tau > 0, rigid-body ones included; *certain: not by rounding */
     mt_status (*below)(void *context, double tau, int *below, bool *certain, mt_err *err);
     void *context;

@@ -48,11 +48,12 @@ static mt_status apply(void *context, const double *x, double *y, mt_err *err)
     mt_sparse *const s = context;
     mt_sparse_metric(s, x, s->f);
     if (s->refined) {
-        return mt_sparse_solve(s, s->f, MT_SPARSE_SOLVED, y, err);
+        return mt_sparse_solve(s, 1, s->f, MT_SPARSE_SOLVED, y, err);
     }
     MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
+    MT_TRY(mt_sparse_hold(s, err));
     memcpy(y, s->f, (size_t)s->p->n * sizeof *y);
-    mt_factor_solve(&s->held, y);
+    mt_factor_solve(&s->factor, 1, y);
     return MT_OK;
 }
 
@@ -71,15 +72,12 @@ static double energy(const mt_squares *of, const double *x, double *noise)
     return sum;
 }
 
-static mt_status refine(void *context, const double *x, double *y, mt_lowest_quotient *q,
-                        mt_err *err)
+/* The quotient of y, whose constraints' forces are mu. */
+static void weigh(const mt_sparse *s, const double *y, const double *mu, mt_lowest_quotient *q)
 {
-    mt_sparse *const s = context;
     const mt_sparse_problem *const p = s->p;
     double k_noise = 0.0;
     double m_noise = 0.0;
-    mt_sparse_metric(s, x, s->f);
-    MT_TRY(mt_sparse_solve(s, s->f, MT_SPARSE_SOLVED, y, err));
     double k = energy(&p->k, y, &k_noise);
     const double m = energy(&p->m, y, &m_noise);
     double other = 0.0;
@@ -96,8 +94,8 @@ static mt_status refine(void *context, const double *x, double *y, mt_lowest_quo
     for (int r = 0; r < p->a.n_rows; r++) {
         double size = 0.0;
         const double gap = mt_rows_dot_size(&p->a, r, y, &size);
-        k += 2.0 * s->mu[r] * gap;
-        other += 2.0 * fabs(s->mu[r]) * STRAIN_ULPS * DBL_EPSILON * size;
+        k += 2.0 * mu[r] * gap;
+        other += 2.0 * fabs(mu[r]) * STRAIN_ULPS * DBL_EPSILON * size;
     }
     q->lambda = k / m;
     q->rigid = fabs(k) <= RIGID * ((RIGID * k_noise) + other) ||
@@ -105,6 +103,31 @@ static mt_status refine(void *context, const double *x, double *y, mt_lowest_quo
     const double size = fmax(fabs(k), DBL_MIN);
     q->noise = (2.0 * sqrt(k_noise / size)) + ((k_noise + other) / size) +
                (2.0 * sqrt(m_noise / m)) + (OTHER_ULPS * DBL_EPSILON);
+}
+
+/* Columns from first on that are solved for together. */
+static int some(int first, int count)
+{
+    return count - first < MT_SPARSE_COLUMNS ? count - first : MT_SPARSE_COLUMNS;
+}
+
+static mt_status refine(void *context, int count, const double *x, double *y,
+                        mt_lowest_quotient *q, mt_err *err)
+{
+    mt_sparse *const s = context;
+    const ptrdiff_t n = s->p->n;
+    const ptrdiff_t rows = s->p->a.n_rows;
+    for (int first = 0; first < count; first += MT_SPARSE_COLUMNS) {
+        const int here = some(first, count);
+        double *const to = y + (n * first);
+        for (int c = 0; c < here; c++) {
+            mt_sparse_metric(s, x + (n * (first + c)), s->f + (n * c));
+        }
+        MT_TRY(mt_sparse_solve(s, here, s->f, MT_SPARSE_SOLVED, to, err));
+        for (int c = 0; c < here; c++) {
+            weigh(s, to + (n * c), s->mu + (rows * c), q + first + c);
+        }
+    }
     return MT_OK;
 }
 
@@ -112,11 +135,10 @@ static mt_status below(void *context, double tau, int *n, bool *certain, mt_err 
 {
     mt_sparse *const s = context;
     MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
-    mt_sparse_combine(s, -tau);
-    const mt_status rc = mt_factor_make(&s->count, &s->h, s->mem, NULL);
-    *n = s->count.negative;
-    *certain = rc == MT_OK && s->count.least > CERTAIN;
-    return rc == MT_OK || rc == MT_E_DOMAIN ? MT_OK : mt_fail(err, rc, "count");
+    double least = 0.0;
+    MT_TRY(mt_sparse_inertia(s, -tau, n, &least, err));
+    *certain = least > CERTAIN;
+    return MT_OK;
 }
 
 /* The largest K_ii/M_ii. */
@@ -124,7 +146,7 @@ static double highest(const mt_sparse *s)
 {
     double most = 0.0;
     for (int j = 0; j < s->p->n; j++) {
-        const double m = s->m[s->h.start[j]];
+        const double m = s->m.value[s->m.start[j]];
         most = m > 0.0 ? fmax(most, s->x[j] / m) : most;
     }
     return most;
@@ -139,6 +161,7 @@ static mt_status hold(mt_sparse *s, bool *held, char *why, mt_err *err)
         (void)mt_snprintf(why, MT_SPARSE_WHY, "nothing in it has a stiffness");
         return MT_OK;
     }
+    MT_TRY(mt_sparse_freedoms(s, err));
     MT_TRY(mt_sparse_factor(s, 0.0, held, err));
     for (int i = 0; i < SHIFTS && !*held && shift > 0.0; i++) {
         MT_TRY(mt_sparse_factor(s, shift, held, err));
@@ -179,7 +202,7 @@ static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *s
                                            .refine = refine,
                                            .below = below,
                                            .context = s};
-        s->refined = p->a.n_rows > 0 || s->held.least < WELL;
+        s->refined = p->a.n_rows > 0 || s->least < WELL;
         MT_TRY(mt_modal_lowest(&problem, mem, out, err));
         const double first = lowest_lambda(&out->modes);
         *stable = first >= 0.0;
@@ -232,12 +255,17 @@ static mt_status shape(mt_sparse *s, mt_arena *mem, const mt_lowest_modes *out, 
     double *const force = *mu + ((ptrdiff_t)rows * first);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_arena_check(s->mem, err));
+    for (int i = 0; i < count; i += MT_SPARSE_COLUMNS) {
+        const int here = some(i, count);
+        for (int c = 0; c < here; c++) {
+            mt_sparse_metric(s, x + ((ptrdiff_t)n * (i + c)), s->f + ((ptrdiff_t)n * c));
+        }
+        MT_TRY(mt_sparse_solve(s, here, s->f, MT_SPARSE_SOLVED, y + ((ptrdiff_t)n * i), err));
+        memcpy(force + ((ptrdiff_t)rows * i), s->mu,
+               (size_t)rows * (size_t)here * sizeof *force);
+    }
     for (int i = 0; i < count; i++) {
-        double *const to = y + ((ptrdiff_t)n * i);
-        mt_sparse_metric(s, x + ((ptrdiff_t)n * i), s->f);
-        MT_TRY(mt_sparse_solve(s, s->f, MT_SPARSE_SOLVED, to, err));
-        memcpy(force + ((ptrdiff_t)rows * i), s->mu, (size_t)rows * sizeof *force);
-        mt_sparse_metric(s, to, s->f);
+        mt_sparse_metric(s, y + ((ptrdiff_t)n * i), s->f);
         for (int k = 0; k <= i; k++) { /* the smaller image: its rounding is the smaller one */
             h[i + ((ptrdiff_t)count * k)] = mt_dot(n, x + ((ptrdiff_t)n * k), s->f);
         }
@@ -282,7 +310,6 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
         rc = rc == MT_OK ? hold(&s, answered, why, err) : rc;
         more = !*answered && p->a.n_rows > 0 && s.stiffest > 0.0;
     }
-    rc = rc == MT_OK && *answered ? mt_sparse_freedoms(&s, err) : rc;
     if (rc == MT_OK && *answered) {
         rc = find(&s, mem, out, answered, err);
         if (!*answered) {

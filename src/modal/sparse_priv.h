@@ -4,26 +4,31 @@
 
 #include "modal/sparse.h"
 
+/* Right-hand sides that are solved for at a time. */
+enum { MT_SPARSE_COLUMNS = 16 };
+
 /* H = K + s M + A^T Gamma A of a sparse problem, factored, and what is solved with it. */
 typedef struct mt_sparse {
     const mt_sparse_problem *p;
     double shift;
-    double *gamma;      /* [rows of A] */
-    double stiffer;     /* one of STIFFER */
-    bool outweigh;      /* that of G in each state that they hold, not of all in units */
-    double stiffest;    /* that times the largest stiffness */
-    mt_rows columns[3]; /* of K's, M's and A's rows: by state, (row, value) */
-    mt_lower h;         /* pattern of all, values of what is factored */
-    double *k;          /* values in that pattern: K + A^T Gamma A */
-    double *m;
-    mt_factor held;            /* H */
-    mt_factor count;           /* of counts */
-    int freedoms;              /* states less independent rows of A */
-    bool refined;              /* products are refined */
-    bool sound;                /* the last step of a solution was a small part of it */
-    double *x, *f, *r, *s, *w; /* [n] */
-    double *mu;                /* [rows of A] */
-    double *gap;               /* A x + A dx */
+    double *gamma;    /* [rows of A] */
+    double stiffer;   /* one of STIFFER */
+    bool outweigh;    /* that of G in each state that they hold, not of all in units */
+    double stiffest;  /* that times the largest stiffness */
+    mt_rows by_state; /* of A: by state, (row, value) */
+    mt_lower k;       /* K + A^T Gamma A, with places for M */
+    mt_lower m;
+    mt_factor factor; /* of H, or of what was counted last: one has room */
+    bool holds;       /* of H */
+    double least;     /* of the factor of H */
+    int freedoms;     /* states less independent rows of A */
+    bool refined;     /* products are refined */
+    bool sound;       /* the last steps of a solution were small parts of it */
+    double *x, *w;    /* [n] */
+    double *f, *r;    /* n x MT_SPARSE_COLUMNS: right-hand sides, what is left of them */
+    double *s;        /* as r: the step */
+    double *mu;       /* rows of A x MT_SPARSE_COLUMNS */
+    double *gap;      /* the same: A x + A dx */
     mt_arena *mem;
 } mt_sparse;
 
@@ -32,14 +37,18 @@ typedef struct mt_sparse {
 mt_status mt_sparse_prepare(mt_sparse *s, mt_err *err);
 /* H with this shift; *sound: positive, and it solves. */
 mt_status mt_sparse_factor(mt_sparse *s, double shift, bool *sound, mt_err *err);
-/* x, s->mu with (K + s M) x + A^T mu = f, A x = 0, to a part `close` of its energy, or as close
- * as rounding lets it come. */
-mt_status mt_sparse_solve(mt_sparse *s, const double *f, double close, double *x, mt_err *err);
+/* That of the shift again where something else was factored since. */
+mt_status mt_sparse_hold(mt_sparse *s, mt_err *err);
+/* X, s->mu with (K + s M) X + A^T mu = F, A X = 0, n x count, at most MT_SPARSE_COLUMNS, each
+ * column to a part `close` of its energy, or as close as rounding lets it come. F is not s->r.
+ */
+mt_status mt_sparse_solve(mt_sparse *s, int count, const double *f, double close, double *x,
+                          mt_err *err);
+/* The factor of K + A^T Gamma A + c M, which then is not H. */
+mt_status mt_sparse_inertia(mt_sparse *s, double c, int *negative, double *least, mt_err *err);
 /* y := M x. */
 void mt_sparse_metric(void *context, const double *x, double *y);
-/* Values of K + A^T Gamma A + c M into the pattern. */
-void mt_sparse_combine(const mt_sparse *s, double c);
-/* s->freedoms: states less independent rows of A. */
+/* s->freedoms: states less independent rows of A. The factor then is not H. */
 mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err);
 
 /* Of mt_sparse_solve: as close as rounding lets it come. */

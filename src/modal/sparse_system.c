@@ -20,53 +20,79 @@ static const double GOLDEN = 0.61803398874989485;
 /* Squares of singular values of A, in scaled rows, below this are 0. */
 static const double DEPENDENT = 1e-9;
 
-/* One column of the lower triangles that is being summed. */
+/* One column of a lower triangle that is being summed. */
 typedef struct column {
     int n;
     int *list; /* [n] rows that were met */
     int *mark; /* of each row: last column that met it, and 1 */
-    double *k;
-    double *m;
+    double *sum;
 } column;
 
-static void meet(column *c, int i, int j)
+static mt_status column_init(column *c, int n, mt_arena *mem, mt_err *err)
+{
+    *c = (column){.list = mt_arena_int(mem, (size_t)n), .mark = mt_arena_int(mem, (size_t)n)};
+    c->sum = mt_arena_f64(mem, (size_t)n, 1);
+    return mt_arena_check(mem, err);
+}
+
+static void begin(column *c)
+{
+    c->n = 0;
+}
+
+static void add(column *c, int i, int j, double value)
 {
     if (c->mark[i] != j + 1) {
         c->mark[i] = j + 1;
         c->list[c->n++] = i;
-        c->k[i] = 0.0;
-        c->m[i] = 0.0;
+        c->sum[i] = 0.0;
     }
+    c->sum[i] += value;
 }
 
 static void add_squares(column *c, const mt_rows *rows, const double *weight,
-                        const mt_rows *columns, int j, double *sum)
+                        const mt_rows *columns, int j, double scale)
 {
     for (int t = columns->start[j]; t < columns->start[j + 1]; t++) {
         const int r = columns->index[t];
-        const double part = weight[r] * columns->value[t];
+        const double part = scale * weight[r] * columns->value[t];
         for (int q = rows->start[r]; q < rows->start[r + 1]; q++) {
             const int i = rows->index[q];
             if (i >= j) {
-                meet(c, i, j);
-                sum[i] += part * rows->value[q];
+                add(c, i, j, part * rows->value[q]);
             }
         }
     }
 }
 
-static void sum_column(const mt_sparse *s, int j, column *c)
+/* What is summed, by states. */
+typedef struct sums {
+    const mt_sparse *s;
+    mt_rows k;
+    mt_rows m;
+} sums;
+
+static void sum_mass(const sums *from, int j, column *c)
 {
+    begin(c);
+    add(c, j, j, 0.0);
+    add_squares(c, &from->s->p->m.row, from->s->p->m.c, &from->m, j, 1.0);
+}
+
+/* Places of M are there, too. */
+static void sum_stiffness(const sums *from, int j, column *c)
+{
+    const mt_sparse *const s = from->s;
     const mt_sparse_problem *const p = s->p;
-    c->n = 0;
-    meet(c, j, j);
-    add_squares(c, &p->k.row, p->k.c, &s->columns[0], j, c->k);
-    add_squares(c, &p->m.row, p->m.c, &s->columns[1], j, c->m);
-    add_squares(c, &p->a, s->gamma, &s->columns[2], j, c->k);
-    for (int q = p->g != NULL ? p->g->start[j] : 0; p->g != NULL && q < p->g->start[j + 1];
-         q++) {
-        meet(c, p->g->row[q], j);
-        c->k[p->g->row[q]] += p->g->value[q];
+    const mt_lower *const g = p->g;
+    begin(c);
+    for (int q = s->m.start[j]; q < s->m.start[j + 1]; q++) {
+        add(c, s->m.row[q], j, 0.0);
+    }
+    add_squares(c, &p->k.row, p->k.c, &from->k, j, 1.0);
+    add_squares(c, &p->a, s->gamma, &s->by_state, j, 1.0);
+    for (int q = g != NULL ? g->start[j] : 0; g != NULL && q < g->start[j + 1]; q++) {
+        add(c, g->row[q], j, g->value[q]);
     }
 }
 
@@ -77,56 +103,64 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The pattern of all, and in it K + A^T Gamma A and M. */
-static mt_status assemble(mt_sparse *s, mt_err *err)
+/* Column by column, once for the pattern. */
+static mt_status assemble(const sums *from, void (*sum)(const sums *, int, column *), column *c,
+                          mt_lower *out, mt_err *err)
 {
-    const mt_sparse_problem *const p = s->p;
-    const size_t n = (size_t)p->n;
-    column c = {.list = mt_arena_int(s->mem, n), .mark = mt_arena_int(s->mem, n)};
-    c.k = mt_arena_f64(s->mem, n, 1);
-    c.m = mt_arena_f64(s->mem, n, 1);
-    s->h = (mt_lower){.n = p->n, .start = mt_arena_int(s->mem, n + 1)};
-    MT_TRY(mt_arena_check(s->mem, err));
+    const int n = from->s->p->n;
+    mt_arena *const mem = from->s->mem;
     double size = 0.0;
-    for (int j = 0; j < p->n; j++) {
-        sum_column(s, j, &c);
-        size += c.n;
+    *out = (mt_lower){.n = n, .start = mt_arena_int(mem, (size_t)n + 1)};
+    MT_TRY(mt_arena_check(mem, err));
+    memset(c->mark, 0, (size_t)n * sizeof *c->mark);
+    for (int j = 0; j < n; j++) {
+        sum(from, j, c);
+        size += c->n;
         if (size > INT_MAX) {
             return mt_fail_memory(err);
         }
-        s->h.start[j + 1] = s->h.start[j] + c.n;
+        out->start[j + 1] = out->start[j] + c->n;
     }
-    const size_t all = (size_t)s->h.start[p->n];
-    s->h.row = mt_arena_int(s->mem, all);
-    s->h.value = mt_arena_f64(s->mem, all, 1);
-    s->k = mt_arena_f64(s->mem, all, 1);
-    s->m = mt_arena_f64(s->mem, all, 1);
-    MT_TRY(mt_arena_check(s->mem, err));
-    memset(c.mark, 0, n * sizeof *c.mark);
-    for (int j = 0; j < p->n; j++) {
-        const int first = s->h.start[j];
-        sum_column(s, j, &c);
-        qsort(c.list, (size_t)c.n, sizeof *c.list, ascending);
-        for (int q = 0; q < c.n; q++) {
-            s->h.row[first + q] = c.list[q];
-            s->k[first + q] = c.k[c.list[q]];
-            s->m[first + q] = c.m[c.list[q]];
+    out->row = mt_arena_int(mem, (size_t)out->start[n]);
+    out->value = mt_arena_f64(mem, (size_t)out->start[n], 1);
+    MT_TRY(mt_arena_check(mem, err));
+    memset(c->mark, 0, (size_t)n * sizeof *c->mark);
+    for (int j = 0; j < n; j++) {
+        const int first = out->start[j];
+        sum(from, j, c);
+        qsort(c->list, (size_t)c->n, sizeof *c->list, ascending);
+        for (int q = 0; q < c->n; q++) {
+            out->row[first + q] = c->list[q];
+            out->value[first + q] = c->sum[c->list[q]];
         }
     }
     return MT_OK;
 }
 
+/* M, and K + A^T Gamma A. */
+static mt_status assemble_both(mt_sparse *s, mt_arena *scratch, mt_err *err)
+{
+    const mt_sparse_problem *const p = s->p;
+    sums from = {.s = s};
+    column c;
+    mt_rows_transpose(&p->k.row, p->n, scratch, &from.k);
+    mt_rows_transpose(&p->m.row, p->n, scratch, &from.m);
+    MT_TRY(column_init(&c, p->n, scratch, err));
+    MT_TRY(assemble(&from, sum_mass, &c, &s->m, err));
+    return assemble(&from, sum_stiffness, &c, &s->k, err);
+}
+
 /* y := M x. */
 void mt_sparse_metric(void *context, const double *x, double *y)
 {
-    const mt_sparse *const s = context;
-    memset(y, 0, (size_t)s->p->n * sizeof *y);
-    for (int j = 0; j < s->p->n; j++) {
-        const int first = s->h.start[j];
-        double sum = s->m[first] * x[j]; /* the diagonal comes first */
-        for (int q = first + 1; q < s->h.start[j + 1]; q++) {
-            y[s->h.row[q]] += s->m[q] * x[j];
-            sum += s->m[q] * x[s->h.row[q]];
+    const mt_lower *const m = &((const mt_sparse *)context)->m;
+    memset(y, 0, (size_t)m->n * sizeof *y);
+    for (int j = 0; j < m->n; j++) {
+        const int first = m->start[j];
+        double sum = m->value[first] * x[j]; /* the diagonal comes first */
+        for (int q = first + 1; q < m->start[j + 1]; q++) {
+            y[m->row[q]] += m->value[q] * x[j];
+            sum += m->value[q] * x[m->row[q]];
         }
         y[j] += sum;
     }
@@ -148,71 +182,141 @@ static void subtract_force(const mt_sparse *s, const double *x, double *y)
     }
 }
 
-/* x, s->mu with (K + s M) x + A^T mu = f, A x = 0, to a part `close` of its energy, or as close
- * as rounding lets it come. */
-mt_status mt_sparse_solve(mt_sparse *s, const double *f, double close, double *x, mt_err *err)
+/* r := f - (K + s M) x - A^T (mu + Gamma A x), gap := A x; of x = 0 at the first step. */
+static void leave(mt_sparse *s, bool first, const double *f, const double *x, const double *mu,
+                  double *r, double *gap)
 {
     const mt_sparse_problem *const p = s->p;
-    const size_t size = (size_t)p->n * sizeof *x;
-    double before = HUGE_VAL;
-    memset(x, 0, size);
-    memset(s->mu, 0, (size_t)p->a.n_rows * sizeof *s->mu);
-    for (int step = 0; step < MOST_STEPS; step++) {
+    memcpy(r, f, (size_t)p->n * sizeof *r);
+    if (!first) {
+        mt_sparse_metric(s, x, s->w);
+        mt_axpy(p->n, -s->shift, s->w, r);
+        subtract_force(s, x, r);
+    }
+    for (int i = 0; i < p->a.n_rows; i++) {
+        gap[i] = first ? 0.0 : mt_rows_dot(&p->a, i, x);
+        mt_rows_axpy(&p->a, i, -mu[i] - (s->gamma[i] * gap[i]), r);
+    }
+}
+
+/* x += dx, mu += Gamma A (x + dx). */
+static void advance(const mt_sparse *s, const double *dx, const double *gap, double *x,
+                    double *mu)
+{
+    const mt_rows *const a = &s->p->a;
+    mt_axpy(s->p->n, 1.0, dx, x);
+    for (int i = 0; i < a->n_rows; i++) {
+        mu[i] += s->gamma[i] * (gap[i] + mt_rows_dot(a, i, dx));
+    }
+}
+
+/* What of the columns is not done yet. */
+typedef struct pending {
+    int n;
+    int column[MT_SPARSE_COLUMNS];
+    double before[MT_SPARSE_COLUMNS]; /* last step, in the energy's norm */
+    bool sound[MT_SPARSE_COLUMNS];
+} pending;
+
+/* The step s->s of what is open; those columns that go on stay so. */
+static void step_all(mt_sparse *s, int step, const double *f, double close, double *x,
+                     pending *o)
+{
+    const ptrdiff_t n = s->p->n;
+    const ptrdiff_t rows = s->p->a.n_rows;
+    int left = 0;
+    for (int i = 0; i < o->n; i++) {
+        const int c = o->column[i];
+        const double *const dx = s->s + (n * i);
+        double *const to = x + (n * c);
+        const double change = sqrt(fmax(mt_dot((int)n, dx, s->r + (n * i)), 0.0));
+        const double whole = sqrt(fmax(mt_dot((int)n, to, f + (n * c)), 0.0));
+        o->sound[c] = step > 0 && change <= SOUND * whole;
+        if (step > 1 && !(change < 0.5 * o->before[c])) {
+            continue; /* what is left is rounding */
+        }
+        o->before[c] = change;
+        advance(s, dx, s->gap + (rows * i), to, s->mu + (rows * c));
+        if (!((step > 0 && change <= close * whole) || !isfinite(change))) {
+            o->column[left++] = c;
+        }
+    }
+    o->n = left;
+}
+
+mt_status mt_sparse_solve(mt_sparse *s, int count, const double *f, double close, double *x,
+                          mt_err *err)
+{
+    const mt_sparse_problem *const p = s->p;
+    const ptrdiff_t n = p->n;
+    const ptrdiff_t rows = p->a.n_rows;
+    pending o = {.n = count};
+    MT_TRY(mt_sparse_hold(s, err));
+    memset(x, 0, (size_t)(n * count) * sizeof *x);
+    memset(s->mu, 0, (size_t)(rows * count) * sizeof *s->mu);
+    for (int c = 0; c < count; c++) {
+        o.column[c] = c;
+        o.before[c] = HUGE_VAL;
+    }
+    for (int step = 0; step < MOST_STEPS && o.n > 0; step++) {
         MT_TRY(p->check != NULL ? p->check(p->context, err) : MT_OK);
-        memcpy(s->r, f, size);
-        if (step > 0) {
-            mt_sparse_metric(s, x, s->w);
-            mt_axpy(p->n, -s->shift, s->w, s->r);
-            subtract_force(s, x, s->r);
+        for (int i = 0; i < o.n; i++) {
+            const int c = o.column[i];
+            leave(s, step == 0, f + (n * c), x + (n * c), s->mu + (rows * c), s->r + (n * i),
+                  s->gap + (rows * i));
         }
-        for (int r = 0; r < p->a.n_rows; r++) {
-            s->gap[r] = step > 0 ? mt_rows_dot(&p->a, r, x) : 0.0;
-            mt_rows_axpy(&p->a, r, -s->mu[r] - (s->gamma[r] * s->gap[r]), s->r);
-        }
-        memcpy(s->s, s->r, size);
-        mt_factor_solve(&s->held, s->s);
-        const double change = sqrt(fmax(mt_dot(p->n, s->s, s->r), 0.0));
-        const double whole = sqrt(fmax(mt_dot(p->n, x, f), 0.0));
-        s->sound = step > 0 && change <= SOUND * whole;
-        if (step > 1 && !(change < 0.5 * before)) {
-            return MT_OK; /* what is left is rounding */
-        }
-        before = change;
-        mt_axpy(p->n, 1.0, s->s, x);
-        for (int r = 0; r < p->a.n_rows; r++) {
-            s->mu[r] += s->gamma[r] * (s->gap[r] + mt_rows_dot(&p->a, r, s->s));
-        }
-        if ((step > 0 && change <= close * whole) || !isfinite(change)) {
-            return MT_OK;
-        }
+        memcpy(s->s, s->r, (size_t)(n * o.n) * sizeof *s->s);
+        mt_factor_solve(&s->factor, o.n, s->s);
+        step_all(s, step, f, close, x, &o);
+    }
+    s->sound = true;
+    for (int c = 0; c < count; c++) {
+        s->sound = s->sound && o.sound[c];
     }
     return MT_OK;
 }
 
-/* values of K + A^T Gamma A + c M into the pattern. */
-void mt_sparse_combine(const mt_sparse *s, double c)
+/* *regular: no pivot is 0. */
+static mt_status make(mt_sparse *s, const mt_lower *h, double c, const mt_lower *m,
+                      bool *regular, mt_err *err)
 {
-    for (int q = 0; q < s->h.start[s->h.n]; q++) {
-        s->h.value[q] = s->k[q] + (c * s->m[q]);
-    }
+    const mt_status rc = mt_factor_make(&s->factor, h, c, m, s->mem, NULL);
+    s->holds = false;
+    *regular = rc == MT_OK;
+    return rc == MT_OK || rc == MT_E_DOMAIN ? MT_OK : mt_fail(err, rc, "factor");
 }
 
-/* H with this shift; *sound: positive, and it solves. */
+mt_status mt_sparse_hold(mt_sparse *s, mt_err *err)
+{
+    if (!s->holds) {
+        MT_TRY(make(s, &s->k, s->shift, &s->m, &s->holds, err));
+    }
+    return MT_OK;
+}
+
+mt_status mt_sparse_inertia(mt_sparse *s, double c, int *negative, double *least, mt_err *err)
+{
+    bool regular = false;
+    MT_TRY(make(s, &s->k, c, &s->m, &regular, err));
+    *negative = s->factor.negative;
+    *least = regular ? s->factor.least : 0.0;
+    return MT_OK;
+}
+
 mt_status mt_sparse_factor(mt_sparse *s, double shift, bool *sound, mt_err *err)
 {
+    bool regular = false;
     s->shift = shift;
-    mt_sparse_combine(s, shift);
-    const mt_status rc = mt_factor_make(&s->held, &s->h, s->mem, NULL);
-    *sound = rc == MT_OK && s->held.negative == 0 && s->held.least > REGULAR;
-    if (rc != MT_OK && rc != MT_E_DOMAIN) {
-        return mt_fail(err, rc, "factor");
-    }
+    MT_TRY(make(s, &s->k, shift, &s->m, &regular, err));
+    s->holds = true;
+    s->least = s->factor.least;
+    *sound = regular && s->factor.negative == 0 && s->least > REGULAR;
     if (*sound) { /* some motion of everything */
         for (int j = 0; j < s->p->n; j++) {
             s->x[j] = (1.0 + fmod(GOLDEN * (j + 1), 1.0)) * s->p->unit[j];
         }
         mt_sparse_metric(s, s->x, s->f);
-        MT_TRY(mt_sparse_solve(s, s->f, MT_SPARSE_SOLVED, s->x, err));
+        MT_TRY(mt_sparse_solve(s, 1, s->f, MT_SPARSE_SOLVED, s->x, err));
         *sound = s->sound;
     }
     return MT_OK;
@@ -257,55 +361,65 @@ static void scale_constraints(mt_sparse *s)
     }
 }
 
-/* Freedoms: states less independent rows of A. */
+/* D A^T A D - c I, in the places of H, has one positive eigenvalue for each independent row. */
+static mt_status rank(mt_sparse *s, mt_arena *scratch, mt_err *err)
+{
+    const mt_sparse_problem *const p = s->p;
+    mt_lower h = s->k;
+    column c;
+    bool regular = false;
+    h.value = mt_arena_f64(scratch, (size_t)h.start[h.n], 1);
+    MT_TRY(column_init(&c, p->n, scratch, err));
+    for (int j = 0; j < p->n; j++) {
+        begin(&c);
+        add_squares(&c, &p->a, s->gamma, &s->by_state, j, 1.0);
+        for (int q = h.start[j]; q < h.start[j + 1]; q++) {
+            const int i = h.row[q];
+            const double sum = c.mark[i] == j + 1 ? c.sum[i] : 0.0;
+            h.value[q] = sum * p->unit[i] * p->unit[j] / s->stiffest;
+            h.value[q] -= i == j ? DEPENDENT : 0.0;
+        }
+    }
+    MT_TRY(make(s, &h, 0.0, NULL, &regular, err));
+    s->freedoms = s->factor.negative;
+    return MT_OK;
+}
+
 mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err)
 {
+    mt_arena scratch = {.first = NULL};
     s->freedoms = s->p->n;
     if (s->p->a.n_rows == 0) {
         return MT_OK;
     }
-    /* D A^T A D - c I has one positive eigenvalue for each */
-    column c = {.list = mt_arena_int(s->mem, (size_t)s->p->n),
-                .mark = mt_arena_int(s->mem, (size_t)s->p->n)};
-    c.k = mt_arena_f64(s->mem, (size_t)s->p->n, 1);
-    c.m = mt_arena_f64(s->mem, (size_t)s->p->n, 1);
-    MT_TRY(mt_arena_check(s->mem, err));
-    for (int j = 0; j < s->p->n; j++) {
-        c.n = 0;
-        add_squares(&c, &s->p->a, s->gamma, &s->columns[2], j, c.k);
-        for (int q = s->h.start[j]; q < s->h.start[j + 1]; q++) {
-            const int i = s->h.row[q];
-            const double sum = c.mark[i] == j + 1 ? c.k[i] : 0.0;
-            s->h.value[q] = sum * s->p->unit[i] * s->p->unit[j] / s->stiffest;
-            s->h.value[q] -= i == j ? DEPENDENT : 0.0;
-        }
-    }
-    const mt_status rc = mt_factor_make(&s->count, &s->h, s->mem, NULL);
-    s->freedoms = s->count.negative;
-    return rc == MT_OK || rc == MT_E_DOMAIN ? MT_OK : mt_fail(err, rc, "rank");
+    mt_status rc = mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK ? rank(s, &scratch, err) : rc;
+    mt_arena_free(&scratch);
+    return rc;
 }
 
 mt_status mt_sparse_prepare(mt_sparse *s, mt_err *err)
 {
-    const mt_sparse_problem *const p = s->p;
-    const size_t n = (size_t)p->n;
-    const size_t m = (size_t)p->a.n_rows;
-    double **const vectors[] = {&s->x, &s->f, &s->r, &s->s, &s->w};
-    for (int i = 0; i < MT_COUNT(vectors); i++) {
-        *vectors[i] = mt_arena_f64(s->mem, n, 1);
-    }
+    const size_t n = (size_t)s->p->n;
+    const size_t m = (size_t)s->p->a.n_rows;
+    mt_arena scratch = {.first = NULL};
+    s->x = mt_arena_f64(s->mem, n, 1);
+    s->w = mt_arena_f64(s->mem, n, 1);
+    s->f = mt_arena_f64(s->mem, n, MT_SPARSE_COLUMNS);
+    s->r = mt_arena_f64(s->mem, n, MT_SPARSE_COLUMNS);
+    s->s = mt_arena_f64(s->mem, n, MT_SPARSE_COLUMNS);
     s->gamma = mt_arena_f64(s->mem, m, 1);
-    s->mu = mt_arena_f64(s->mem, m, 1);
-    s->gap = mt_arena_f64(s->mem, m, 1);
-    mt_rows_transpose(&p->k.row, p->n, s->mem, &s->columns[0]);
-    mt_rows_transpose(&p->m.row, p->n, s->mem, &s->columns[1]);
-    mt_rows_transpose(&p->a, p->n, s->mem, &s->columns[2]);
+    s->mu = mt_arena_f64(s->mem, m, MT_SPARSE_COLUMNS);
+    s->gap = mt_arena_f64(s->mem, m, MT_SPARSE_COLUMNS);
+    mt_rows_transpose(&s->p->a, s->p->n, s->mem, &s->by_state);
     MT_TRY(mt_arena_check(s->mem, err));
     scale_constraints(s);
-    MT_TRY(assemble(s, err));
+    mt_status rc = mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK ? assemble_both(s, &scratch, err) : rc;
+    mt_arena_free(&scratch);
     mt_factor_pattern *pattern = NULL;
-    MT_TRY(mt_factor_analyse(&s->h, s->mem, &pattern, err));
-    mt_factor_init(pattern, s->mem, &s->held);
-    mt_factor_init(pattern, s->mem, &s->count);
+    MT_TRY(rc);
+    MT_TRY(mt_factor_analyse(&s->k, s->mem, &pattern, err));
+    mt_factor_init(pattern, MT_SPARSE_COLUMNS, s->mem, &s->factor);
     return mt_arena_check(s->mem, err);
 }
