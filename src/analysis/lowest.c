@@ -44,9 +44,8 @@ void mt_lowest_solve_free(const operation *o)
     mt_tri_solve(true, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
 }
 
-static mt_status apply(void *context, const double *x, double *y, mt_err *err)
+static mt_status multiply(const operation *o, const double *x, double *y, mt_err *err)
 {
-    const operation *const o = context;
     const mt_tree *const t = o->tree;
     MT_TRY(mt_interrupt_check(t->sys->model->interrupt, err));
     mt_progress_done(t->sys->model->progress, o->told);
@@ -55,6 +54,16 @@ static mt_status apply(void *context, const double *x, double *y, mt_err *err)
     if (t->n_rigid > 0) {
         mt_lowest_solve_free(o);
         mt_gemv(false, t->n_x, t->n_rigid, -1.0, o->m_yr, t->n_x, o->r, 1.0, y);
+    }
+    return MT_OK;
+}
+
+static mt_status apply(void *context, int count, const double *x, double *y, mt_err *err)
+{
+    const operation *const o = context;
+    for (int c = 0; c < count; c++) {
+        const ptrdiff_t at = (ptrdiff_t)o->tree->n_x * c;
+        MT_TRY(multiply(o, x + at, y + at, err));
     }
     return MT_OK;
 }

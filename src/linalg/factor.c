@@ -20,6 +20,8 @@
 /* Columns of a block that are made together: products of a few dozen columns run as fast as
  * larger ones, and what of them is above the diagonal is little. */
 enum { PANEL = 48 };
+/* The same where several columns are solved for. */
+enum { TRIANGLE = 32 };
 
 struct mt_factor_pattern {
     int n;
@@ -342,19 +344,6 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_low
     return regular ? MT_OK : mt_fail(err, MT_E_DOMAIN, "a pivot is 0 or not finite");
 }
 
-/* X := L_JJ^-1 X or L_JJ^-T X of a supernode's own columns, count of them n apart. */
-static void turn_own(bool trans, int columns, const double *l, int ld, int count, double *x,
-                     int n)
-{
-    const enum CBLAS_TRANSPOSE op = trans ? CblasTrans : CblasNoTrans;
-    if (count == 1) {
-        cblas_dtrsv(CblasColMajor, CblasLower, op, CblasUnit, columns, l, ld, x, 1);
-    } else {
-        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, op, CblasUnit, columns, count, 1.0, l,
-                    ld, x, n);
-    }
-}
-
 /* C := A op B + beta C with A rows x columns, count columns of the others; by itself one is
  * read faster as a vector. */
 static void multiply(bool trans, int rows, int columns, double alpha, const double *a, int ld,
@@ -365,6 +354,56 @@ static void multiply(bool trans, int rows, int columns, double alpha, const doub
     } else {
         mt_gemm(trans, false, trans ? columns : rows, count, trans ? rows : columns, alpha, a,
                 ld, b, ldb, beta, c, ldc);
+    }
+}
+
+/* x := T^-1 x or T^-T x of the n rows and columns of a small unit lower triangle. */
+static void turn_triangle(bool trans, int n, const double *l, ptrdiff_t ld, double *x)
+{
+    for (int k = 0; k < n; k++) {
+        const int j = trans ? n - 1 - k : k;
+        const double *const column = l + (j * ld);
+        double sum = x[j];
+        if (trans) {
+            for (int i = j + 1; i < n; i++) {
+                sum -= column[i] * x[i];
+            }
+            x[j] = sum;
+        } else {
+            for (int i = j + 1; i < n; i++) {
+                x[i] -= column[i] * sum;
+            }
+        }
+    }
+}
+
+/* X := L_JJ^-1 X or L_JJ^-T X of a supernode's own columns, count of them n apart: panel by
+ * panel, a product with what a panel adds to the others. */
+static void turn_own(bool trans, int columns, const double *l, int ld, int count, double *x,
+                     int n)
+{
+    if (count == 1) {
+        cblas_dtrsv(CblasColMajor, CblasLower, trans ? CblasTrans : CblasNoTrans, CblasUnit,
+                    columns, l, ld, x, 1);
+        return;
+    }
+    const int panels = (columns + TRIANGLE - 1) / TRIANGLE;
+    for (int k = 0; k < panels; k++) {
+        const int first = TRIANGLE * (trans ? panels - 1 - k : k);
+        const int here = first + TRIANGLE < columns ? TRIANGLE : columns - first;
+        const int others = columns - first - here;
+        const double *const own = l + first + ((ptrdiff_t)first * ld);
+        double *const at = x + first;
+        if (trans) {
+            multiply(true, others, here, -1.0, own + here, ld, count, at + here, n, 1.0, at, n);
+        }
+        for (int c = 0; c < count; c++) {
+            turn_triangle(trans, here, own, ld, at + ((ptrdiff_t)c * n));
+        }
+        if (!trans) {
+            multiply(false, others, here, -1.0, own + here, ld, count, at, n, 1.0, at + here,
+                     n);
+        }
     }
 }
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * V orthonormal, H = V^T A V (j x j), A V = V H + v_(j+1) b^T. A new vector w = A v_j is made
- * orthogonal to all of V (twice: once leaves what cancellation hides), its coefficients are the
- * column of H. When V is full, the leading Ritz vectors and v_(j+1) stay, H becomes diagonal
- * with one row b, and the iteration goes on.
+ * V orthonormal, H = V^T A V (j x j), A V = V H + V_next B^T, V_next the columns that come
+ * next. The products W = A V_next are made orthogonal to all of V (twice: once leaves what
+ * cancellation hides) and to each other; their coefficients are columns of H and the next B.
+ * What then is rounding is left out, and V_next has a column less. When V is full, the leading
+ * Ritz vectors and V_next stay, H becomes diagonal with the rows B, and the iteration goes on.
  */
 #include "linalg/lanczos.h"
 
@@ -14,6 +15,8 @@
 
 #include "linalg/dense.h"
 
+/* ROOM: for so many blocks beside twice what is wanted; what is not used of it is not there
+ * (base/arena.h). */
 enum { MOST_RESTARTS = 60, STEP = 4, ROOM = 22 };
 
 /* A residual below this part of the eigenvalue leaves its square in the Rayleigh quotient. */
@@ -25,17 +28,19 @@ static const double ROUNDING = 64.0;
 
 typedef struct iteration {
     const mt_lanczos *p;
-    int most;            /* columns of V beside the one that comes next */
+    int block;           /* columns of V_next at most */
+    int most;            /* columns of V beside V_next */
     int j;               /* columns that are there */
-    double *v;           /* n x (most + 1) */
-    double *h;           /* most x most, full */
-    double *b;           /* [most] only the last entry before the first restart */
+    int width;           /* of V_next */
+    double *v;           /* n x (most + block): V, V_next, and W beyond */
+    double *h;           /* most x most, lower triangle */
+    double *b;           /* most x block */
     double *q;           /* j x j: eigenvectors of H */
     double *theta;       /* [j] ascending */
-    double *coefficient; /* [most + 1 + locked] */
+    double *coefficient; /* [most + block + locked], most x block */
     double *row;         /* [most] of V */
     double *mw;          /* [n] M w; NULL: M is the identity */
-    double *start;       /* [n] then */
+    double *start;       /* n x block then */
     mt_arena *mem;
 } iteration;
 
@@ -60,7 +65,8 @@ static double norm(const iteration *it, const double *w)
                           : sqrt(fmax(mt_dot(it->p->n, w, weigh(it, w)), 0.0));
 }
 
-/* w := w - V V^T M w, locked vectors included; the coefficients of V are added to h[j]. */
+/* w := w - V V^T M w of the first j columns, locked vectors included; the coefficients of V are
+ * added to h[j]. */
 static void orthogonalise(const iteration *it, int j, double *w, double *h)
 {
     const int n = it->p->n;
@@ -79,33 +85,62 @@ static void orthogonalise(const iteration *it, int j, double *w, double *h)
     }
 }
 
-/* A unit vector of its own direction, orthogonal to the first j; *is false where there is none.
- * No direction is of another iteration, of another seed: of a repeated eigenvalue each gives
- * but one vector, which then is locked. Where M may be blind, the vector is one that A made:
- * what M does not see of it would stay in all that follow (Nour-Omid, Parlett, Ericsson and
- * Jensen, Math. Comp. 48, 1987). */
-static mt_status fresh(iteration *it, int j, bool *is, mt_err *err)
+static mt_status check_finite(double size, mt_err *err)
 {
-    double *const w = column(it, j);
-    double *const random = it->mw == NULL ? w : it->start;
-    const uint32_t seed = ((uint32_t)it->p->seed << 20U) + (uint32_t)j;
-    uint32_t state = (2654435769U * (seed + 1U)) | 1U;
-    for (int i = 0; i < it->p->n; i++) {
-        state = (state * 1664525U) + 1013904223U;
-        random[i] = ((double)(state >> 8U) / 8388608.0) - 1.0;
+    return isfinite(size)
+               ? MT_OK
+               : mt_fail(err, MT_E_DOMAIN, "a vector of Lanczos' method is not finite");
+}
+
+/* w as column j of V, of size one; false: of its size `whole` as much as `none` is left. */
+static bool append(iteration *it, int j, const double *w, double whole, double none,
+                   double *size)
+{
+    double *const to = column(it, j);
+    *size = norm(it, w);
+    const bool is = *size > none * whole && *size > 0.0;
+    for (int i = 0; i < it->p->n && is; i++) {
+        to[i] = w[i] / *size;
     }
-    if (it->mw != NULL) { /* a small eigenvalue would drown in the largest */
-        orthogonalise(it, j, random, NULL);
-        MT_TRY(it->p->apply(it->p->context, random, w, err));
+    return is;
+}
+
+/* Unit vectors of their own directions, orthogonal to the first j, as the next `count` of V;
+ * width: how many there are. No direction is of another iteration, of another seed: of a
+ * repeated eigenvalue each gives but one vector for each column, which then is locked. Where M
+ * may be blind, the vectors are ones that A made: what M does not see of it would stay in all
+ * that follow (Nour-Omid, Parlett, Ericsson and Jensen, Math. Comp. 48, 1987). */
+static mt_status fresh(iteration *it, int j, int count, mt_err *err)
+{
+    const ptrdiff_t n = it->p->n;
+    double *const v = column(it, j);
+    double *const random = it->mw == NULL ? v : it->start;
+    for (int c = 0; c < count; c++) {
+        double *const w = random + (n * c);
+        const uint32_t seed = ((uint32_t)it->p->seed << 20U) + (uint32_t)(j + c);
+        uint32_t state = (2654435769U * (seed + 1U)) | 1U;
+        for (int i = 0; i < it->p->n; i++) {
+            state = (state * 1664525U) + 1013904223U;
+            w[i] = ((double)(state >> 8U) / 8388608.0) - 1.0;
+        }
+        if (it->mw != NULL) { /* a small eigenvalue would drown in the largest */
+            orthogonalise(it, j, w, NULL);
+        }
     }
-    const double whole = norm(it, w);
-    orthogonalise(it, j, w, NULL);
-    orthogonalise(it, j, w, NULL);
-    const double left = norm(it, w);
-    for (int i = 0; i < it->p->n && left > 0.0; i++) {
-        w[i] /= left;
+    if (it->mw != NULL) {
+        MT_TRY(it->p->apply(it->p->context, count, random, v, err));
     }
-    *is = left > sqrt(DBL_EPSILON) * whole;
+    it->width = 0;
+    for (int c = 0; c < count; c++) {
+        double *const w = v + (n * c);
+        const int at = j + it->width;
+        double size = 0.0;
+        const double whole = norm(it, w);
+        MT_TRY(check_finite(whole, err));
+        orthogonalise(it, at, w, NULL);
+        orthogonalise(it, at, w, NULL);
+        it->width += append(it, at, w, whole, sqrt(DBL_EPSILON), &size) ? 1 : 0;
+    }
     return MT_OK;
 }
 
@@ -120,10 +155,21 @@ static mt_status ritz(iteration *it, mt_err *err)
     return mt_eig_sym(it->j, it->q, it->theta, true, it->mem, err);
 }
 
-/* Residual of the k-th largest: b^T q. */
+/* A coefficient of V_next in A times the Ritz vector of the k-th largest. */
+static double next_part(const iteration *it, int c, int k)
+{
+    return mt_dot(it->j, it->b + ((ptrdiff_t)c * it->most),
+                  it->q + ((ptrdiff_t)(it->j - 1 - k) * it->j));
+}
+
+/* Residual of the k-th largest: |B^T q|. */
 static double residual(const iteration *it, int k)
 {
-    return fabs(mt_dot(it->j, it->b, it->q + ((ptrdiff_t)(it->j - 1 - k) * it->j)));
+    double size = 0.0;
+    for (int c = 0; c < it->width; c++) {
+        size = hypot(size, next_part(it, c, k));
+    }
+    return size;
 }
 
 static int count_found(const iteration *it)
@@ -145,100 +191,127 @@ static void rotate(iteration *it, int keep)
     mt_turn_columns(it->p->n, it->j, keep, it->q + ((j - 1) * j), -j, it->v, it->row);
 }
 
-/* Keep the largest; v_(j+1) comes behind them. */
+/* Keep the largest; V_next comes behind them. */
 static void restart(iteration *it, int keep)
 {
-    for (int k = 0; k < keep; k++) { /* b before q is of no more use */
-        it->coefficient[k] = mt_dot(it->j, it->b, it->q + ((ptrdiff_t)(it->j - 1 - k) * it->j));
+    const size_t most = (size_t)it->most;
+    double *const rows = it->coefficient;
+    for (int c = 0; c < it->width; c++) { /* b before q is of no more use */
+        for (int k = 0; k < keep; k++) {
+            rows[k + ((ptrdiff_t)c * it->most)] = next_part(it, c, k);
+        }
     }
     rotate(it, keep);
-    memcpy(column(it, keep), column(it, it->j), (size_t)it->p->n * sizeof *it->v);
-    memset(it->h, 0, (size_t)it->most * (size_t)it->most * sizeof *it->h);
-    memset(it->b, 0, (size_t)it->most * sizeof *it->b);
+    memmove(column(it, keep), column(it, it->j),
+            (size_t)it->p->n * (size_t)it->width * sizeof *it->v);
+    memset(it->h, 0, most * most * sizeof *it->h);
+    memset(it->b, 0, most * (size_t)it->block * sizeof *it->b);
     for (int k = 0; k < keep; k++) {
         it->h[k + ((ptrdiff_t)k * it->most)] = it->theta[it->j - 1 - k];
-        it->b[k] = it->coefficient[k];
+        for (int c = 0; c < it->width; c++) {
+            const ptrdiff_t at = k + ((ptrdiff_t)c * it->most);
+            it->b[at] = rows[at];
+        }
     }
     it->j = keep;
 }
 
-/* One more column of V and H; false: A has no more directions. */
-static mt_status extend(iteration *it, bool *more, mt_err *err)
+/* V_next becomes part of V and its products, as far as there are directions, V_next. */
+static mt_status extend(iteration *it, mt_err *err)
 {
+    const int n = it->p->n;
     const int j = it->j;
-    double *const w = column(it, j + 1);
-    double *const h = it->h + ((ptrdiff_t)j * it->most);
-    MT_TRY(it->p->apply(it->p->context, column(it, j), w, err));
-    memset(h, 0, (size_t)it->most * sizeof *h);
-    const double whole = norm(it, w);
-    orthogonalise(it, j + 1, w, h);
-    orthogonalise(it, j + 1, w, h);
-    for (int i = 0; i < j; i++) {
-        it->h[j + ((ptrdiff_t)i * it->most)] = h[i];
-    }
-    const double beta = norm(it, w);
-    memset(it->b, 0, (size_t)it->most * sizeof *it->b);
-    it->j = j + 1;
-    *more = true;
-    if (!isfinite(whole)) {
-        return mt_fail(err, MT_E_DOMAIN, "a vector of Lanczos' method is not finite");
-    }
-    if (beta > ROUNDING * DBL_EPSILON * whole && beta > 0.0) {
-        it->b[j] = beta;
-        for (int i = 0; i < it->p->n; i++) {
-            w[i] /= beta;
+    const int all = j + it->width;
+    const int room = n - it->p->n_locked;
+    int kept = 0;
+    MT_TRY(it->p->apply(it->p->context, it->width, column(it, j), column(it, all), err));
+    memset(it->b, 0, (size_t)it->most * (size_t)it->block * sizeof *it->b);
+    for (int c = 0; c < it->width; c++) {
+        double *const w = column(it, all + c);
+        double *const h = it->row; /* all of V and what is new of V_next */
+        double size = 0.0;
+        const double whole = norm(it, w);
+        MT_TRY(check_finite(whole, err));
+        memset(h, 0, (size_t)(all + kept) * sizeof *h);
+        orthogonalise(it, all + kept, w, h);
+        orthogonalise(it, all + kept, w, h);
+        for (int i = 0; i < j; i++) {
+            it->h[j + c + ((ptrdiff_t)i * it->most)] = h[i];
         }
-        return MT_OK;
+        memcpy(it->h + j + c + ((ptrdiff_t)(j + c) * it->most), h + j + c,
+               (size_t)(it->width - c) * sizeof *h);
+        for (int k = 0; k < kept; k++) {
+            it->b[j + c + ((ptrdiff_t)k * it->most)] = h[all + k];
+        }
+        if (all + kept < room &&
+            append(it, all + kept, w, whole, ROUNDING * DBL_EPSILON, &size)) {
+            it->b[j + c + ((ptrdiff_t)kept * it->most)] = size;
+            kept++;
+        }
     }
-    *more = false;
-    return it->j + it->p->n_locked < it->p->n ? fresh(it, it->j, more, err) : MT_OK;
+    it->j = all;
+    it->width = kept;
+    return kept == 0 && all < room ? fresh(it, all, 1, err) : MT_OK;
 }
 
 static mt_status init(iteration *it, mt_err *err)
 {
     const mt_lanczos *const p = it->p;
     const int room = p->n - p->n_locked;
-    it->most = (2 * p->wanted) + ROOM < room ? (2 * p->wanted) + ROOM : room;
+    it->block = p->block < room ? p->block : room;
+    it->block = it->block > 1 ? it->block : 1;
+    it->most = (2 * p->wanted) + (ROOM * it->block);
+    it->most = it->most < room ? it->most : room;
     const size_t most = (size_t)it->most;
-    it->v = mt_arena_f64(it->mem, (size_t)p->n, most + 1);
+    const size_t block = (size_t)it->block;
+    const size_t all = most + block + (size_t)p->n_locked;
+    it->v = mt_arena_f64(it->mem, (size_t)p->n, most + block);
     it->h = mt_arena_f64(it->mem, most, most);
-    it->b = mt_arena_f64(it->mem, most, 1);
+    it->b = mt_arena_f64(it->mem, most, block);
     it->q = mt_arena_f64(it->mem, most, most);
     it->theta = mt_arena_f64(it->mem, most, 1);
-    it->coefficient = mt_arena_f64(it->mem, most + 1 + (size_t)p->n_locked, 1);
-    it->row = mt_arena_f64(it->mem, most, 1);
+    it->coefficient = mt_arena_f64(it->mem, all > most * block ? all : most * block, 1);
+    it->row = mt_arena_f64(it->mem, most + block, 1);
     if (p->metric != NULL) {
         it->mw = mt_arena_f64(it->mem, (size_t)p->n, 1);
-        it->start = mt_arena_f64(it->mem, (size_t)p->n, 1);
+        it->start = mt_arena_f64(it->mem, (size_t)p->n, block);
     }
     return mt_arena_check(it->mem, err);
+}
+
+/* Whether to look at the Ritz pairs: every few columns. */
+static bool is_time(const iteration *it, int before)
+{
+    const int over = it->j - it->p->wanted;
+    return over >= 0 &&
+           (before < it->p->wanted || over / STEP > (before - it->p->wanted) / STEP);
 }
 
 static mt_status iterate(iteration *it, int *found, mt_err *err)
 {
     const mt_lanczos *const p = it->p;
     int restarts = 0;
-    bool more = false;
     if (it->most > 0) {
-        MT_TRY(fresh(it, 0, &more, err));
+        MT_TRY(fresh(it, 0, it->block, err));
     }
-    if (!more) {
+    if (it->width == 0) {
         return MT_OK;
     }
-    while (more && *found < p->wanted && restarts <= MOST_RESTARTS) {
-        MT_TRY(extend(it, &more, err));
-        const bool full = it->j == it->most;
-        if (more && !full && (it->j < p->wanted || (it->j - p->wanted) % STEP != 0)) {
+    while (it->width > 0 && *found < p->wanted && restarts <= MOST_RESTARTS) {
+        const int before = it->j;
+        MT_TRY(extend(it, err));
+        const bool full = it->j + it->width > it->most;
+        if (it->width > 0 && !full && !is_time(it, before)) {
             continue;
         }
         MT_TRY(ritz(it, err));
         *found = count_found(it);
-        if (more && full && *found < p->wanted) {
+        if (it->width > 0 && full && *found < p->wanted) {
             restart(it, p->wanted + ((it->most - p->wanted) / 2));
             restarts++;
         }
     }
-    if (more && *found < p->wanted) {
+    if (it->width > 0 && *found < p->wanted) {
         return mt_fail(err, MT_E_NO_CONVERGENCE, "Lanczos' method found %d of %d eigenvalues",
                        *found, p->wanted);
     }

@@ -9,15 +9,17 @@
  * positive semidefinite, A x = 0 where M x = 0) and positive semidefinite there, of which only
  * the product with a vector is known: Lanczos' method with full reorthogonalisation and thick
  * restarts (Wu and Simon, SIAM J. Matrix Anal. Appl. 22, 2000), in the complement of vectors
- * that are known already. A repeated eigenvalue may be found once only: who counts the
- * eigenvalues by other means asks again with what was found locked.
+ * that are known already. Blocks take fewer products of more columns, which pays where several
+ * cost little more than one. A repeated eigenvalue may be found as often only as a block has
+ * columns: who counts the eigenvalues by other means asks again with what was found locked.
  */
 typedef struct mt_lanczos {
     int n;
     int wanted;
-    int seed; /* of the start: the same seed gives the same bytes */
-    /* y := A x; a failure ends the iteration */
-    mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
+    int block; /* columns that A is multiplied with at a time, at most; 0: one */
+    int seed;  /* of the start: the same seed gives the same bytes */
+    /* Y := A X, n x count, at most `block`; a failure ends the iteration */
+    mt_status (*apply)(void *context, int count, const double *x, double *y, mt_err *err);
     /* y := M x; NULL: M is the identity */
     void (*metric)(void *context, const double *x, double *y);
     void *context;
@@ -31,7 +33,7 @@ typedef struct mt_lanczos {
  * An eigenvalue is found when the residual ||A x - theta x||, as M measures it, is below 1e-9
  * theta, and below 64 eps times the largest one (or below 4 eps times that): the error of its
  * Rayleigh quotient is then the square of that, over the gap.
- * Scratch n (2 wanted + 24) from mem. Fails: MT_E_NO_CONVERGENCE, as apply, MT_E_MEMORY.
+ * Scratch n (2 wanted + 25 block) from mem. Fails: MT_E_NO_CONVERGENCE, as apply, MT_E_MEMORY.
  */
 mt_status mt_lanczos_largest(const mt_lanczos *problem, mt_arena *mem, double *x, int *found,
                              mt_err *err);

@@ -152,6 +152,7 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
     const int wanted = more < room ? more : room;
     const mt_lanczos lanczos = {.n = p->n,
                                 .wanted = wanted,
+                                .block = p->block,
                                 .seed = round,
                                 .apply = p->apply,
                                 .metric = p->metric,

@@ -24,8 +24,9 @@ typedef struct mt_lowest_problem {
     int n_rigid; /* rigid-body modes beside them */
     int count;   /* vibration modes wanted */
     bool shapes; /* they are wanted for themselves, too */
-    /* y := A x */
-    mt_status (*apply)(void *context, const double *x, double *y, mt_err *err);
+    int block;   /* columns that A is best multiplied with at a time; 0: one */
+    /* Y := A X, n x count */
+    mt_status (*apply)(void *context, int count, const double *x, double *y, mt_err *err);
     double shift;
     /* y := M x; NULL: the identity */
     void (*metric)(void *context, const double *x, double *y);

@@ -37,23 +37,28 @@ static const double MOST_SHIFT = 100.0;
 static const double LEAST_SHIFT = 0.25;
 /* Tries of a first shift, and of a better one. */
 enum { SHIFTS = 2, ROUNDS = 4 };
+/* Columns of Lanczos' method at a time. */
+enum { BLOCK = 4 };
 /* Roundings of a strain, and strains so many times their rounding that are none. */
 static const double STRAIN_ULPS = 4.0;
 static const double RIGID = 1e3;
 /* Of everything else in a quotient. */
 static const double OTHER_ULPS = 64.0;
 
-static mt_status apply(void *context, const double *x, double *y, mt_err *err)
+static mt_status apply(void *context, int count, const double *x, double *y, mt_err *err)
 {
     mt_sparse *const s = context;
-    mt_sparse_metric(s, x, s->f);
+    const ptrdiff_t n = s->p->n;
+    double *const to = s->refined ? s->f : y;
+    for (int c = 0; c < count; c++) {
+        mt_sparse_metric(s, x + (n * c), to + (n * c));
+    }
     if (s->refined) {
-        return mt_sparse_solve(s, 1, s->f, MT_SPARSE_SOLVED, y, err);
+        return mt_sparse_solve(s, count, s->f, MT_SPARSE_SOLVED, y, err);
     }
     MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
     MT_TRY(mt_sparse_hold(s, err));
-    memcpy(y, s->f, (size_t)s->p->n * sizeof *y);
-    mt_factor_solve(&s->factor, 1, y);
+    mt_factor_solve(&s->factor, count, y);
     return MT_OK;
 }
 
@@ -195,6 +200,7 @@ static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *s
         const mt_lowest_problem problem = {.n = p->n,
                                            .most = s->freedoms,
                                            .count = p->count,
+                                           .block = BLOCK,
                                            .shift = s->shift,
                                            .shapes = p->shapes,
                                            .apply = apply,

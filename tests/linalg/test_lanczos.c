@@ -2,8 +2,9 @@
 /*
  * Largest eigenvalues by Lanczos' method. The operator is H D H, H a reflection, so that all
  * eigenvectors are known: the columns of H. Spectra: falling fast (one sweep), dense
- * (restarts), repeated (found once, and again among what is left), of low rank, and of no size
- * at all.
+ * (restarts), repeated (found once, and again among what is left; in blocks at once), of low
+ * rank, and of no size at all. Blocks that are as wide as what is wanted, or as the whole
+ * space.
  */
 #include <float.h>
 #include <math.h>
@@ -33,17 +34,20 @@ static void reflect(const operator_ *o, const double *x, double *y)
     }
 }
 
-static mt_status apply(void *context, const double *x, double *y, mt_err *err)
+static mt_status apply(void *context, int count, const double *x, double *y, mt_err *err)
 {
     operator_ *const o = context;
     if (++o->calls == o->fail_at) {
         return mt_fail(err, MT_E_INTERRUPTED, "enough");
     }
-    reflect(o, x, o->work);
-    for (int i = 0; i < o->n; i++) {
-        o->work[i] *= o->d[i];
+    for (int c = 0; c < count; c++) {
+        const ptrdiff_t at = (ptrdiff_t)c * o->n;
+        reflect(o, x + at, o->work);
+        for (int i = 0; i < o->n; i++) {
+            o->work[i] *= o->d[i];
+        }
+        reflect(o, o->work, y + at);
     }
-    reflect(o, o->work, y);
     return MT_OK;
 }
 
@@ -101,7 +105,7 @@ static void check_columns(mt_test *t, operator_ *o, int found, const double *x, 
     for (int j = 0; j < found; j++) {
         const double *const xj = x + ((ptrdiff_t)j * o->n);
         const double theta = of(step * j, o->n);
-        (void)apply(o, xj, y, NULL);
+        (void)apply(o, 1, xj, y, NULL);
         mt_axpy(o->n, -theta, xj, y);
         CHECK_NEAR(t, mt_norm2(o->n, xj), 1.0, 1e-13);
         CHECK(t, mt_norm2(o->n, y) <= 2e-9 * theta + 1e-13);
@@ -129,15 +133,23 @@ static void lanczos__finds_the_largest(mt_test *t)
         {"nothing at all", none, 50, 0},
         {"order 0", none, 0, 0},
     };
+    static const int blocks[] = {0, 2, 4, 5, WANTED, 30};
     static operator_ o;
     static double x[MOST * WANTED];
     static double again[MOST * WANTED];
-    for (int i = 0; i < MT_COUNT(rows); i++) {
+    for (int k = 0; k < MT_COUNT(rows) * MT_COUNT(blocks); k++) {
+        const int i = k / MT_COUNT(blocks);
+        const int block = blocks[k % MT_COUNT(blocks)];
         mt_arena mem = {.first = NULL};
         int found = -1;
-        mt_test_row(t, "%s", rows[i].name);
+        mt_test_row(t, "%s, block %d", rows[i].name, block);
         fill(&o, rows[i].n, rows[i].of);
-        mt_lanczos p = {.n = o.n, .wanted = WANTED, .seed = 1, .apply = apply, .context = &o};
+        mt_lanczos p = {.n = o.n,
+                        .wanted = WANTED,
+                        .block = block,
+                        .seed = 1,
+                        .apply = apply,
+                        .context = &o};
         CHECK_INT(t, mt_lanczos_largest(&p, &mem, x, &found, NULL), MT_OK);
         CHECK_INT(t, found, rows[i].found);
         check_columns(t, &o, found, x, rows[i].of, 1);
@@ -168,7 +180,7 @@ static void lanczos__finds_repeated_ones_among_what_is_left(mt_test *t)
     static double y[MOST];
     for (int j = 0; j < first + second; j++) {
         const double *const xj = x + ((ptrdiff_t)j * o.n);
-        (void)apply(&o, xj, y, NULL);
+        (void)apply(&o, 1, xj, y, NULL);
         theta[j] = mt_dot(o.n, xj, y);
         for (int k = 0; k < j; k++) {
             CHECK(t, fabs(mt_dot(o.n, xj, x + ((ptrdiff_t)k * o.n))) <= 1e-12);
@@ -180,6 +192,38 @@ static void lanczos__finds_repeated_ones_among_what_is_left(mt_test *t)
     }
     CHECK_NEAR(t, sum, 2.0 * (1.0 + 0.5 + (1.0 / 3.0) + 0.25), 1e-12);
     mt_arena_free(&mem);
+}
+
+/* As many directions of each as a block has columns; products are counted by the block. */
+static void lanczos__finds_repeated_ones_in_blocks(mt_test *t)
+{
+    static operator_ o;
+    static double x[MOST * WANTED];
+    static const double theta[] = {1.0, 1.0, 0.5, 0.5, 1.0 / 3.0, 1.0 / 3.0};
+    long calls = 0;
+    for (int block = 2; block <= 4; block++) {
+        mt_arena mem = {.first = NULL};
+        int found = 0;
+        mt_test_row(t, "block %d", block);
+        fill(&o, 200, twice);
+        mt_lanczos p = {.n = o.n,
+                        .wanted = MT_COUNT(theta),
+                        .block = block,
+                        .seed = 1,
+                        .apply = apply,
+                        .context = &o};
+        CHECK_INT(t, mt_lanczos_largest(&p, &mem, x, &found, NULL), MT_OK);
+        CHECK_INT(t, found, MT_COUNT(theta));
+        CHECK(t, block == 2 || o.calls < calls);
+        calls = o.calls;
+        for (int j = 0; j < found; j++) {
+            const double *const xj = x + ((ptrdiff_t)j * o.n);
+            static double y[MOST];
+            (void)apply(&o, 1, xj, y, NULL);
+            CHECK_NEAR(t, mt_dot(o.n, xj, y), theta[j], 1e-13);
+        }
+        mt_arena_free(&mem);
+    }
 }
 
 static void lanczos__hands_failures_on(mt_test *t)
@@ -202,4 +246,5 @@ static void lanczos__hands_failures_on(mt_test *t)
 
 MT_TEST_MAIN(MT_TEST(lanczos__finds_the_largest),
              MT_TEST(lanczos__finds_repeated_ones_among_what_is_left),
+             MT_TEST(lanczos__finds_repeated_ones_in_blocks),
              MT_TEST(lanczos__hands_failures_on))
