@@ -238,6 +238,7 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
                            .k = o->k,
                            .m = o->m,
                            .a = o->a,
+                           .part = o->part,
                            .unit = o->unit,
                            .count = want.count,
                            .shapes = want.shapes,

@@ -37,6 +37,7 @@ mt_status mt_cholmod_load(mt_cholmod *cholmod, mt_err *err)
     void *const library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (library == NULL || !find(library, "cholmod_start", &cholmod->start) ||
         !find(library, "cholmod_analyze", &cholmod->analyze) ||
+        !find(library, "cholmod_analyze_p", &cholmod->analyze_p) ||
         !find(library, "cholmod_free_factor", &cholmod->free_factor) ||
         !find(library, "cholmod_finish", &cholmod->finish)) {
         return failed(err);

@@ -10,6 +10,8 @@
 typedef struct mt_cholmod {
     int (*start)(cholmod_common *c);
     cholmod_factor *(*analyze)(cholmod_sparse *a, cholmod_common *c);
+    cholmod_factor *(*analyze_p)(cholmod_sparse *a, int *perm, int *set, size_t size,
+                                 cholmod_common *c);
     int (*free_factor)(cholmod_factor **l, cholmod_common *c);
     int (*finish)(cholmod_common *c);
 } mt_cholmod;

@@ -6,7 +6,7 @@
  * L_JJ D_J L_JJ^T, and the rows below it divided by it. A supernode that has been used waits in
  * the list of the next one that its rows reach.
  */
-#include "linalg/factor.h"
+#include "linalg/factor_priv.h"
 
 #include <cblas.h>
 
@@ -14,7 +14,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/cholmod.h"
 #include "linalg/kernels.h"
 
 /* Columns of a block that are made together: products of a few dozen columns run as fast as
@@ -22,94 +21,6 @@
 enum { PANEL = 48 };
 /* The same where several columns are solved for. */
 enum { TRIANGLE = 32 };
-
-struct mt_factor_pattern {
-    int n;
-    int n_super;
-    int *to;          /* [n] place of a row in the order of P */
-    int *first;       /* [n_super + 1] column where a supernode begins */
-    int *row_at;      /* [n_super + 1] of its rows in `row`, its own columns first */
-    int *row;         /* ascending, in the order of P */
-    ptrdiff_t *at;    /* [n_super + 1] of its block in l: rows x columns */
-    int *super_of;    /* [n] supernode of a column */
-    size_t most_rows; /* of a supernode */
-    size_t most_columns;
-};
-
-static mt_status copy_pattern(const cholmod_factor *l, mt_arena *mem, mt_factor_pattern *p,
-                              mt_err *err)
-{
-    const size_t n = l->n;
-    const size_t ns = l->nsuper;
-    const int *const perm = l->Perm;
-    p->n = (int)n;
-    p->n_super = (int)ns;
-    p->to = mt_arena_int(mem, n);
-    p->first = mt_arena_int(mem, ns + 1);
-    p->row_at = mt_arena_int(mem, ns + 1);
-    p->row = mt_arena_int(mem, l->ssize);
-    p->at = mt_arena_alloc(mem, ns + 1, sizeof *p->at);
-    p->super_of = mt_arena_int(mem, n);
-    MT_TRY(mt_arena_check(mem, err));
-    memcpy(p->first, l->super, (ns + 1) * sizeof *p->first);
-    memcpy(p->row_at, l->pi, (ns + 1) * sizeof *p->row_at);
-    memcpy(p->row, l->s, l->ssize * sizeof *p->row);
-    for (size_t i = 0; i < n; i++) {
-        p->to[perm[i]] = (int)i;
-    }
-    for (size_t s = 0; s < ns; s++) {
-        const int columns = p->first[s + 1] - p->first[s];
-        const int rows = p->row_at[s + 1] - p->row_at[s];
-        p->at[s + 1] = p->at[s] + ((ptrdiff_t)rows * columns);
-        p->most_rows = p->most_rows > (size_t)rows ? p->most_rows : (size_t)rows;
-        p->most_columns = p->most_columns > (size_t)columns ? p->most_columns : (size_t)columns;
-        for (int j = p->first[s]; j < p->first[s + 1]; j++) {
-            p->super_of[j] = (int)s;
-        }
-    }
-    return MT_OK;
-}
-
-mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern **out,
-                            mt_err *err)
-{
-    mt_factor_pattern *const p = mt_arena_alloc(mem, 1, sizeof *p);
-    mt_cholmod cholmod;
-    cholmod_common c;
-    *out = NULL;
-    MT_TRY(mt_arena_check(mem, err));
-    *p = (mt_factor_pattern){.n = h->n};
-    MT_TRY(mt_cholmod_load(&cholmod, err));
-    if (!cholmod.start(&c)) {
-        return mt_fail_memory(err);
-    }
-    c.print = 0;
-    c.supernodal = CHOLMOD_SUPERNODAL;
-    cholmod_sparse a = {.nrow = (size_t)h->n,
-                        .ncol = (size_t)h->n,
-                        .nzmax = (size_t)h->start[h->n],
-                        .p = h->start,
-                        .i = h->row,
-                        .stype = -1,
-                        .itype = CHOLMOD_INT,
-                        .xtype = CHOLMOD_PATTERN,
-                        .dtype = CHOLMOD_DOUBLE,
-                        .sorted = 1,
-                        .packed = 1};
-    cholmod_factor *l = cholmod.analyze(&a, &c);
-    mt_status rc = MT_OK;
-    if (l == NULL || c.status != CHOLMOD_OK || !l->is_super) {
-        rc = c.status == CHOLMOD_OUT_OF_MEMORY || c.status == CHOLMOD_TOO_LARGE
-                 ? mt_fail_memory(err)
-                 : mt_fail(err, MT_E_INTERNAL, "cholmod_analyze: status %d", c.status);
-    } else {
-        rc = copy_pattern(l, mem, p, err);
-    }
-    cholmod.free_factor(&l, &c);
-    cholmod.finish(&c);
-    *out = rc == MT_OK ? p : NULL;
-    return rc;
-}
 
 void mt_factor_init(const mt_factor_pattern *p, int columns, mt_arena *mem, mt_factor *f)
 {

@@ -36,10 +36,13 @@ typedef struct mt_factor {
 
 /**
  * Order and pattern of L, in mem; of every H with entries in these places. Deterministic; one
- * caller at a time. Fails: MT_E_MEMORY, also where the pattern has 2^31 entries.
+ * caller at a time.
+ * @param[in] part  [n] numbers 0, 1, ... that ascend: rows of one part, as the states of a
+ *                  body, couple to the same others and are ordered as one; NULL: each by itself
+ * Fails: MT_E_MEMORY, also where the pattern has 2^31 entries.
  */
-mt_status mt_factor_analyse(const mt_lower *h, mt_arena *mem, mt_factor_pattern **out,
-                            mt_err *err);
+mt_status mt_factor_analyse(const mt_lower *h, const int *part, mt_arena *mem,
+                            mt_factor_pattern **out, mt_err *err);
 /* Room for a factor of such matrices that solves for so many columns at a time, in mem; a
  * shortage is the arena's. */
 void mt_factor_init(const mt_factor_pattern *p, int columns, mt_arena *mem, mt_factor *f);

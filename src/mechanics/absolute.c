@@ -24,7 +24,9 @@ typedef struct groups {
     int *body;   /* [nq] of a state */
     int *which;  /* [nq] 0 .. 5 */
     int *place;  /* [nq] */
+    int *part;   /* [nq] of a coordinate */
     int n;
+    int n_parts;
 } groups;
 
 static int first_of(const groups *g, int b)
@@ -49,6 +51,7 @@ static mt_status group(groups *g, mt_arena *mem, mt_arena *scratch, mt_err *err)
     const size_t nq = (size_t)sys->nq;
     g->with = mt_arena_int(mem, (size_t)sys->n_bodies);
     g->place = mt_arena_int(mem, nq);
+    g->part = mt_arena_int(mem, nq);
     g->body = mt_arena_int(scratch, nq);
     g->which = mt_arena_int(scratch, nq);
     MT_TRY(mt_arena_check(mem, err));
@@ -76,9 +79,14 @@ static mt_status group(groups *g, mt_arena *mem, mt_arena *scratch, mt_err *err)
             if (dof >= 0) {
                 g->body[dof] = b;
                 g->which[dof] = k;
-                g->place[dof] = first == b ? g->n++ : -1;
+                g->place[dof] = -1;
+            }
+            if (dof >= 0 && first == b) {
+                g->part[g->n] = g->n_parts;
+                g->place[dof] = g->n++;
             }
         }
+        g->n_parts += first == b ? 1 : 0;
         g->with[b] = first;
     }
     return MT_OK;
@@ -311,6 +319,7 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
     o->n = g.n;
     o->with = g.with;
     o->place = g.place;
+    o->part = g.part;
     o->arm = g.arm;
     MT_TRY(constrain(&data, o, &g, mem, scratch, is, why, err));
     MT_TRY(mt_interrupt_check(sys->model->interrupt, err));

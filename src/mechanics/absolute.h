@@ -19,6 +19,7 @@ typedef struct mt_absolute {
     mt_squares k;
     mt_squares m;
     mt_rows a;
+    int *part;    /* [n] which of the bodies that are left, counted from 0 */
     double *unit; /* [n] 1, or 1/length_m of a turn [1, 1/m] */
     int *with;    /* [bodies] body that it moves with, itself, or MT_GROUND */
     int *place;   /* [nq] coordinate of a state; -1: it moves with another body's */

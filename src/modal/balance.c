@@ -37,8 +37,12 @@ static mt_status balance(const mt_sparse_problem *of, const double *f, double *m
                          bool *found, mt_arena *mem, mt_err *err)
 {
     const int rows = of->a.n_rows;
-    mt_sparse_problem p = {
-        .n = of->n, .a = of->a, .unit = of->unit, .check = of->check, .context = of->context};
+    mt_sparse_problem p = {.n = of->n,
+                           .a = of->a,
+                           .part = of->part,
+                           .unit = of->unit,
+                           .check = of->check,
+                           .context = of->context};
     double *const left = mt_arena_f64(mem, (size_t)of->n, 1);
     MT_TRY(springs(of, mem, &p.k, err));
     p.m = p.k;

@@ -18,6 +18,7 @@ typedef struct mt_sparse_problem {
     const double *g_noise; /* bounds of the errors of its entries */
     mt_squares m;
     mt_rows a;          /* may depend on each other */
+    const int *part;    /* [n] as mt_factor_analyse has them: states of one body */
     const double *unit; /* [n] a state times this is a displacement: 1, or 1/length of a turn */
     int count;          /* vibration modes wanted, at least 1 */
     bool shapes;        /* x as exactly as can be, and the constraints' forces */

@@ -419,7 +419,7 @@ mt_status mt_sparse_prepare(mt_sparse *s, mt_err *err)
     mt_arena_free(&scratch);
     mt_factor_pattern *pattern = NULL;
     MT_TRY(rc);
-    MT_TRY(mt_factor_analyse(&s->k, s->mem, &pattern, err));
+    MT_TRY(mt_factor_analyse(&s->k, s->p->part, s->mem, &pattern, err));
     mt_factor_init(pattern, MT_SPARSE_COLUMNS, s->mem, &s->factor);
     return mt_arena_check(s->mem, err);
 }
