@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Giving back pages of what is still claimed is not in POSIX. */
+#define _DEFAULT_SOURCE /* NOLINT(cert-dcl37-c,cert-dcl51-cpp): for the system, not ours */
+
 #include "base/arena.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "base/format.h"
 
@@ -27,6 +32,8 @@
 /* For blocks from LARGE on calloc takes pages that the system has zeroed already: what nobody
  * uses of them is never there. */
 enum { DEFAULT_BLOCK_SIZE = 64 * 1024, LARGE = 1024 * 1024, LARGEST_ZONE = 4096 };
+/* Texts up to this many bytes share room of so many. */
+enum { SHORT_TEXT = 96, TEXTS = 512 };
 
 /* data points behind the header, at the first multiple of MT_ALIGN that leaves room for a
  * zone. */
@@ -183,6 +190,30 @@ int *mt_arena_int(mt_arena *a, size_t n)
     return mt_arena_alloc(a, n, sizeof(int));
 }
 
+/* Room for a text: a name would fill a fifth of what an allocation takes. */
+static char *text_room(mt_arena *a, size_t bytes)
+{
+#ifdef ARENA_ASAN
+    return mt_arena_alloc(a, bytes, 1);
+#else
+    if (a->failed || bytes > SHORT_TEXT) {
+        return mt_arena_alloc(a, bytes, 1);
+    }
+    if (bytes > a->text_left) {
+        char *const room = mt_arena_alloc(a, TEXTS, 1);
+        a->text = room == NULL ? a->text : room;
+        a->text_left = room == NULL ? a->text_left : TEXTS;
+    }
+    if (bytes > a->text_left) {
+        return NULL;
+    }
+    char *const text = a->text;
+    a->text += bytes;
+    a->text_left -= bytes;
+    return text;
+#endif
+}
+
 char *mt_arena_strdup(mt_arena *a, const char *s)
 {
     return a->failed ? NULL : mt_arena_strndup(a, s, strlen(s));
@@ -190,9 +221,10 @@ char *mt_arena_strdup(mt_arena *a, const char *s)
 
 char *mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 {
-    char *const copy = length == SIZE_MAX ? refuse(a) : mt_arena_alloc(a, length + 1, 1);
+    char *const copy = length == SIZE_MAX ? refuse(a) : text_room(a, length + 1);
     if (copy != NULL) {
         memcpy(copy, s, length);
+        copy[length] = '\0';
     }
     return copy;
 }
@@ -207,7 +239,7 @@ char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
     }
     va_copy(again, args);
     const int n = mt_vsnprintf(text, sizeof text, fmt, args);
-    char *const s = n < 0 ? refuse(a) : mt_arena_alloc(a, (size_t)n + 1, 1);
+    char *const s = n < 0 ? refuse(a) : text_room(a, (size_t)n + 1);
     if (s != NULL && (size_t)n < sizeof text) {
         memcpy(s, text, (size_t)n + 1);
     } else if (s != NULL) {
@@ -224,6 +256,21 @@ char *mt_arena_printf(mt_arena *a, const char *fmt, ...)
     char *const s = mt_arena_vprintf(a, fmt, args);
     va_end(args);
     return s;
+}
+
+/* Of what nobody looks at any more, the whole pages: they stay claimed, and are zero. */
+static void abandon(void *items, size_t bytes)
+{
+#ifdef MADV_DONTNEED
+    const long page = bytes < LARGE ? 0 : sysconf(_SC_PAGESIZE);
+    if (page > 0) {
+        const size_t unit = (size_t)page;
+        const size_t before = (unit - ((size_t)(uintptr_t)items % unit)) % unit;
+        unsigned char *const first = (unsigned char *)items + before;
+        (void)madvise(first, (bytes - before) / unit * unit, MADV_DONTNEED);
+    }
+#endif
+    POISON(items, bytes); /* who still looks there is seen */
 }
 
 void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size)
@@ -245,7 +292,7 @@ void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t s
     }
     if (count > 0) {
         memcpy(grown, items, (size_t)count * size);
-        POISON(items, (size_t)count * size); /* who still looks there is seen */
+        abandon(items, (size_t)count * size);
     }
     *capacity = room;
     return grown;
@@ -257,6 +304,8 @@ mt_arena_mark mt_arena_get_mark(const mt_arena *a)
         .block = a->current,
         .block_used = a->current == NULL ? 0 : a->current->used,
         .used = a->used,
+        .text = a->text,
+        .text_left = a->text_left,
         .failed = a->failed,
     };
 }
@@ -266,6 +315,8 @@ void mt_arena_rewind(mt_arena *a, mt_arena_mark mark)
     mt_arena_block *b = mark.block == NULL ? a->first : mark.block;
     a->current = mark.block;
     a->used = mark.used;
+    a->text = mark.text;
+    a->text_left = mark.text_left;
     if (a->told && !mark.failed) {
         a->failed = false;
         a->told = false;

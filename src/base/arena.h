@@ -12,10 +12,11 @@
 /*
  * Growing arena: memory that lives and dies together. Blocks are chained (a pointer handed out
  * never moves), every allocation is 64-byte aligned and zeroed, products are checked for
- * overflow. `mark`/`rewind` give scratch back without freeing blocks, so a loop that has run
- * once allocates nothing more. Under AddressSanitizer all but the bytes that were asked for is
- * poisoned: what is free, at least 64 bytes and one item behind every allocation, and what
- * mt_arena_grow leaves behind. Not thread safe: one arena, one worker.
+ * overflow; short texts stand one behind the other. `mark`/`rewind` give scratch back without
+ * freeing blocks, so a loop that has run once allocates nothing more. Under AddressSanitizer
+ * all but the bytes that were asked for is poisoned: what is free, at least 64 bytes and one
+ * item behind every allocation, and what mt_arena_grow leaves behind. Not thread safe: one
+ * arena, one worker.
  *
  * A request that cannot be met (memory is out, or a product overflows) gives NULL, and the
  * arena remembers: every later request gives NULL as well, without a look at its arguments. So
@@ -40,6 +41,8 @@ typedef struct mt_arena {
     size_t used;             /* bytes handed out */
     size_t peak;             /* largest `used` ever */
     size_t block_size;       /* least size of a new block */
+    char *text;              /* where the next short text goes */
+    size_t text_left;        /* bytes there */
     bool failed;             /* a request could not be met */
     bool told;               /* and mt_arena_check has said so */
 } mt_arena;
@@ -48,6 +51,8 @@ typedef struct mt_arena_mark {
     mt_arena_block *block;
     size_t block_used;
     size_t used;
+    char *text;
+    size_t text_left;
     bool failed;
 } mt_arena_mark;
 

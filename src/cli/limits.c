@@ -11,6 +11,7 @@
 #include "cli/limits.h"
 
 #include <inttypes.h>
+#include <malloc.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,7 @@
 #endif
 
 static const uint64_t KIB = 1024;
+enum { LARGE_BLOCK = 1 << 20 };
 
 mt_status mt_limits_read_size(const char *text, uint64_t *bytes, mt_err *err)
 {
@@ -128,8 +130,18 @@ static int processors(void)
     return n < 1 ? 1 : n < MT_WORKERS_MOST ? (int)n : MT_WORKERS_MOST;
 }
 
+/* A block from a megabyte on is the system's: its pages are zero without being written, and go
+ * when it is freed. By itself the C library raises that to 32 megabytes. */
+static void map_large_blocks(void)
+{
+#ifdef M_MMAP_THRESHOLD
+    (void)mallopt(M_MMAP_THRESHOLD, LARGE_BLOCK);
+#endif
+}
+
 mt_status mt_limits_set(mt_args *args, mt_err *err)
 {
+    map_large_blocks();
     const bool free =
         !args->given[MT_OPT_THREADS] && mt_option_is_of(MT_OPT_THREADS, args->command);
     args->threads = free ? processors() : args->threads;

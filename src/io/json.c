@@ -13,11 +13,15 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#    include <malloc.h>
+#endif
 
 #include "io/json_print.h"
 #include "io/locale.h"
 
-enum { CJSON_NUMBER_MOST = 63, CJSON_TYPE = 0xFF };
+/* LARGE: a text whose items are worth giving back to the system. */
+enum { CJSON_NUMBER_MOST = 63, CJSON_TYPE = 0xFF, LARGE = 1 << 20 };
 
 /* NULL for what is no address of a value. */
 static cJSON *item_of(const mt_json *doc, mt_addr value)
@@ -215,10 +219,18 @@ void mt_json_delete(mt_json *doc)
     if (doc == NULL) {
         return;
     }
+    const bool large = doc->length >= LARGE;
     cJSON_Delete(doc->tree);
     cJSON_Delete(doc->duplicates);
     mt_arena_free(&doc->mem);
     free(doc);
+#ifdef __GLIBC__
+    if (large) { /* seven times the text lies in pieces below what was made of it */
+        (void)malloc_trim(0);
+    }
+#else
+    (void)large;
+#endif
 }
 
 mt_diags *mt_json_diags(mt_json *doc)
