@@ -465,7 +465,7 @@ static mt_status tell_points(trade *t, int to, mt_err *err)
         mt_interrupt_cause(t->study->model->interrupt) == MT_CAUSE_TIME_LIMIT
             ? "Not answered: the time limit came first."
             : "Interrupted before it was answered.";
-    while (t->told < to) {
+    while (t->told < to && t->out->points != NULL) {
         MT_TRY(tell_point(t, unanswered, err));
     }
     return MT_OK;

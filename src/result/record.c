@@ -118,6 +118,13 @@ static bool own_list(const mt_record *record, const twins *t, int n_variables, m
     return same;
 }
 
+/* How many items lists have whose counts lie there; like NULL: there is no other. */
+static void read_counts(twins *t, const char *at, const char *like)
+{
+    memcpy(&t->n, at, sizeof t->n);
+    memcpy(&t->n_like, like == NULL ? at : like, sizeof t->n_like);
+}
+
 /* One member of an item; like: the same member of another; NULL: none. */
 static bool own_field(const mt_field *f, void *item, const void *like, int n_variables,
                       mt_arena *mem)
@@ -145,16 +152,16 @@ static bool own_field(const mt_field *f, void *item, const void *like, int n_var
         t.size = f->record->size;
         return own_list(f->record, &t, n_variables, mem);
     case MT_FIELD_LIST:
+        t.size = f->record->size;
+        read_counts(&t, other, other_like);
+        return own_list(f->record, &t, n_variables, mem);
     case MT_FIELD_TEXTS:
+        t.size = sizeof(char *);
+        read_counts(&t, other, other_like);
+        return own_texts(&t, mem);
     case MT_FIELD_NUMBERS:
-        memcpy(&t.n, other, sizeof t.n);
-        memcpy(&t.n_like, like == NULL ? other : other_like, sizeof t.n_like);
-        t.size = f->type == MT_FIELD_LIST    ? f->record->size
-                 : f->type == MT_FIELD_TEXTS ? sizeof(char *)
-                                             : sizeof(double);
-        return f->type == MT_FIELD_LIST    ? own_list(f->record, &t, n_variables, mem)
-               : f->type == MT_FIELD_TEXTS ? own_texts(&t, mem)
-                                           : own_numbers(&t, mem);
+        read_counts(&t, other, other_like);
+        return own_numbers(&t, mem);
     case MT_FIELD_BY_VARIABLE:
         t.n = n_variables;
         t.n_like = n_variables;

@@ -8,11 +8,12 @@ static bool counts(const mt_trade_selection *s, int k)
     return (!s->front || p->pareto) && (!s->found || p->best.n_parameters > 0);
 }
 
-static int count(const mt_trade_selection *s)
+static int count(const mt_trade_result *trade, bool front, bool found)
 {
+    const mt_trade_selection s = {.trade = trade, .front = front, .found = found};
     int n = 0;
-    for (int k = 0; k < s->trade->n_points; k++) {
-        n += counts(s, k) ? 1 : 0;
+    for (int k = 0; k < trade->n_points; k++) {
+        n += counts(&s, k) ? 1 : 0;
     }
     return n;
 }
@@ -23,11 +24,9 @@ mt_trade_selection mt_trade_select(const mt_trade_result *trade)
     if (trade->n_points <= MT_TRADE_WHOLE) {
         return s;
     }
-    s.found = true;
-    s.found = count(&s) > 0;
-    s.front = true;
-    s.front = count(&s) > 0;
-    s.each = (count(&s) + MT_TRADE_WHOLE - 1) / MT_TRADE_WHOLE;
+    s.found = count(trade, false, true) > 0;
+    s.front = count(trade, true, s.found) > 0;
+    s.each = (count(trade, s.front, s.found) + MT_TRADE_WHOLE - 1) / MT_TRADE_WHOLE;
     return s;
 }
 
