@@ -32,7 +32,7 @@ PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TU
          "LC_ALL": "C"}
 STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
 # name: command. {sag} is a link of 300 elements that its weight bends, {link} one of 2,000 with a sensor, {pedal} a study of bands in three driven
-# positions, {out} a folder for results.
+# positions, {grid} a trade study of 16 points, {out} a folder for results.
 RUNS = {
     "start": ("--version",),
     "check": ("check", "studies/inceptor_rotor.json"),
@@ -50,11 +50,12 @@ RUNS = {
     "inceptor_catalogue_page": (*STUDY[:4], "--output", "{out}", "studies/inceptor_catalogue.json"),
     "inceptor_tuning_1": (*STUDY, "studies/inceptor_tuning_1.json"),
     "six_masses_bands": (*STUDY, "studies/six_masses_bands.json"),
+    "trade_grid": (*STUDY, "{grid}"),
 }
 
 
 def count(name, folder):
-    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "link", "pedal", "tolerances")}}
+    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "link", "pedal", "tolerances", "grid")}}
     command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
                           env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
@@ -74,6 +75,11 @@ def measure():
         for file, variables in (("pedal", pedal.FREE), ("tolerances", [{**pedal.FREE[0], "tolerance_percent": 2}, pedal.FREE[1]])):
             question = {**pedal.study(variables), "model": "model.json", "search": {"starts": 1}}
             (folder / f"{file}.json").write_text(json.dumps(question), encoding="utf-8")
+        grid = json.loads((SOURCE / "studies/inceptor_trade.json").read_text(encoding="utf-8"))
+        for vary, values in zip(grid["trade"]["vary"], ([0.6, 1.4, 2.2, 3], [2, 10, 18, 26])):
+            vary["values"] = values
+        grid.update(model=str(SOURCE / "problems/inceptor.json"), published=[])
+        (folder / "grid.json").write_text(json.dumps(grid), encoding="utf-8")
         with ThreadPoolExecutor(os.cpu_count()) as workers:
             return dict(zip(RUNS, workers.map(lambda name: count(name, folder), RUNS)))
 
