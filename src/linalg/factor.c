@@ -210,7 +210,7 @@ static void judge(const making *m)
     }
 }
 
-mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_lower *shift,
+mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_lower *other,
                          mt_arena *mem, mt_err *err)
 {
     const mt_factor_pattern *const p = f->pattern;
@@ -230,8 +230,8 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_low
     memset(f->l, 0, (size_t)p->at[ns] * sizeof *f->l);
     memset(m.waiting, 0xFF, ns * sizeof *m.waiting); /* -1 */
     scatter(p, 1.0, h, f->l);
-    if (shift != NULL) {
-        scatter(p, c, shift, f->l);
+    if (other != NULL) {
+        scatter(p, c, other, f->l);
     }
     bool regular = true;
     for (int s = 0; s < p->n_super && regular; s++) {
@@ -257,6 +257,7 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_low
 
 /* C := A op B + beta C with A rows x columns, count columns of the others; by itself one is
  * read faster as a vector. */
+/* NOLINTNEXTLINE(readability-function-size): the argument list is BLAS's */
 static void multiply(bool trans, int rows, int columns, double alpha, const double *a, int ld,
                      int count, const double *b, int ldb, double beta, double *c, int ldc)
 {

@@ -67,37 +67,41 @@ static mt_status refused(const cholmod_common *c, mt_err *err)
                : mt_fail(err, MT_E_INTERNAL, "cholmod_analyze: status %d", c->status);
 }
 
+/* Rows of the parts that columns first .. end - 1 of h meet into row[], which met[] marks; how
+ * many. row NULL: only counted. */
+static int meet(const mt_lower *h, const int *part, int first, int end, int *met, int *row)
+{
+    int count = 0;
+    for (int k = h->start[first]; k < h->start[end]; k++) {
+        const int other = part[h->row[k]];
+        if (met[other] == end) {
+            continue;
+        }
+        met[other] = end;
+        if (row != NULL) {
+            row[count] = other;
+        }
+        count++;
+    }
+    return count;
+}
+
 /* Which parts have an entry in common: the pattern of h where all rows of a part are one. Rows
- * of a column as they are met, not in order. */
-static mt_status join(const mt_lower *h, const int *part, int n_parts, mt_arena *mem,
-                      mt_lower *out, mt_err *err)
+ * of a column as they are met, not in order. first[n_parts + 1]: rows of the parts. */
+static mt_status join(const mt_lower *h, const int *part, int n_parts, const int *first,
+                      mt_arena *mem, mt_lower *out, mt_err *err)
 {
     int *const met = mt_arena_int(mem, (size_t)n_parts);
     *out = (mt_lower){.n = n_parts, .start = mt_arena_int(mem, (size_t)n_parts + 1)};
     MT_TRY(mt_arena_check(mem, err));
-    for (int fill = 0; fill <= 1; fill++) {
-        int count = 0;
-        int j = 0;
-        memset(met, 0, (size_t)n_parts * sizeof *met);
-        for (int column = 0; column < n_parts; column++) {
-            for (; j < h->n && part[j] == column; j++) {
-                for (int k = h->start[j]; k < h->start[j + 1]; k++) {
-                    const int row = part[h->row[k]];
-                    if (met[row] != column + 1) {
-                        met[row] = column + 1;
-                        if (fill == 1) {
-                            out->row[count] = row;
-                        }
-                        count++;
-                    }
-                }
-            }
-            out->start[column + 1] = count;
-        }
-        if (fill == 0) {
-            out->row = mt_arena_int(mem, (size_t)count);
-            MT_TRY(mt_arena_check(mem, err));
-        }
+    for (int p = 0; p < n_parts; p++) {
+        out->start[p + 1] = out->start[p] + meet(h, part, first[p], first[p + 1], met, NULL);
+    }
+    out->row = mt_arena_int(mem, (size_t)out->start[n_parts]);
+    MT_TRY(mt_arena_check(mem, err));
+    memset(met, 0, (size_t)n_parts * sizeof *met);
+    for (int p = 0; p < n_parts; p++) {
+        (void)meet(h, part, first[p], first[p + 1], met, out->row + out->start[p]);
     }
     return MT_OK;
 }
@@ -108,7 +112,6 @@ static mt_status order_parts(const mt_lower *h, const int *part, const mt_cholmo
 {
     const int n_parts = h->n == 0 ? 0 : part[h->n - 1] + 1;
     mt_lower joined;
-    MT_TRY(join(h, part, n_parts, mem, &joined, err));
     int *const first = mt_arena_int(mem, (size_t)n_parts + 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < h->n; i++) {
@@ -117,6 +120,7 @@ static mt_status order_parts(const mt_lower *h, const int *part, const mt_cholmo
     for (int i = 0; i < n_parts; i++) {
         first[i + 1] += first[i];
     }
+    MT_TRY(join(h, part, n_parts, first, mem, &joined, err));
     cholmod_sparse a = places(n_parts, joined.start, joined.row);
     a.sorted = 0;
     c->supernodal = CHOLMOD_SIMPLICIAL;
