@@ -4,8 +4,8 @@
 
 #include "modal/sparse.h"
 
-/* Right-hand sides that are solved for at a time. */
-enum { MT_SPARSE_COLUMNS = 16 };
+/* Right-hand sides that are solved for at a time: ten modes and two to tell where they end. */
+enum { MT_SPARSE_COLUMNS = 12 };
 
 /* H = K + s M + A^T Gamma A of a sparse problem, factored, and what is solved with it. */
 typedef struct mt_sparse {

@@ -8,7 +8,10 @@ import sys
 import time
 from pathlib import Path
 
-from _tables import PROGRAM, run
+from _tables import PROGRAM, SOURCE, run
+
+sys.path.insert(0, str(SOURCE / "tests/support"))
+import large  # noqa: E402
 
 LENGTH, WIDTH, YOUNG, DENSITY, MASS = 2 * math.sqrt(2), 0.05, 70e9, 2710.0, 1.0
 HEIGHT = MASS / (DENSITY * WIDTH * LENGTH)
@@ -154,6 +157,24 @@ def ours(elements, folder):
         put(path, cantilever(elements))
     cpu, text, peak = run([PROGRAM, "modes", path, "--count", "4", "--format", "json"])
     return cpu, [m["frequency_hz"] for m in json.loads(text)[0]["modes"][:4]] if text else None, peak
+
+
+class Frame:
+    """A tower of so many floors of 10 x 10 nodes, tubes between neighbours (tests/support/large.py), as a file and as bench_frame makes it."""
+    COUNT = 10
+
+    def __init__(self, floors, folder):
+        self.floors, self.path, model = floors, Path(folder) / "tower.json", large.tower(floors)
+        self.elements, self.freedoms = len(model["links"]), 6 * 100 * (floors - 1)
+        put(self.path, model)
+
+    def ours(self):
+        cpu, text, peak = run([PROGRAM, "modes", self.path, "--count", self.COUNT, "--format", "json"])
+        return cpu, [m["frequency_hz"] for m in json.loads(text)[0]["modes"][:self.COUNT]] if text else None, peak
+
+    def peer(self, program):
+        cpu, text, peak = run([program, self.floors, self.COUNT])
+        return cpu, [float(x) for x in text.splitlines()[1].split(",")[3:]] if text else None, peak
 
 
 def scipy(elements, folder):

@@ -24,6 +24,7 @@ COLUMNS = {
     "elements": ("way", "elements", "modes", "identify_cpu_s", "cpu_s", "spread_s", "error", "error_pinned"),
     "eigensolver": ("way", "elements", "freedoms", "cpu_s", "spread_s", "ratio", "error"),
     "peers": ("way", "elements", "runs", "cpu_s", "spread_s", "peak_mib", "ratio", "error"),
+    "frame": ("way", "elements", "freedoms", "cpu_s", "spread_s", "peak_mib", "ratio", "error"),
     "evaluation": ("study", "variables", "configurations", "freedoms", "way", "cpu_s", "spread_s", "per_second", "ratio", "error"),
     "search": ("study", "method", "distance", "runs", "reached", "evaluations", "cpu_s", "spread_s"),
     "studies": ("study", "runs", "cpu_s", "spread_s", "peak_mib", "evaluations", "error", "status"),

@@ -10,6 +10,8 @@ elements    a beam's first four frequencies by the number of its elements: rigid
 eigensolver ways to the lowest four modes of a chain of rigid elements (bench_eigen); errors against extended precision
 peers       a cantilever of n beam elements from its file to its first four frequencies, beside SciPy (banded matrices, shift and
             invert) and CalculiX (B31, *FREQUENCY), each in a process of its own
+frame       the ten lowest modes of a space frame, from its file, with the count that none is missing, beside a plain program with
+            CHOLMOD and Lanczos' method that makes the frame itself and does not count (bench_frame)
 evaluation  designs per second and core: one evaluation of studies beside a bare dsyevd (bench_evaluation)
 search      distance from the best known answer by evaluations and CPU time (bench_search)
 studies     whole studies, from their files to their answers
@@ -149,6 +151,18 @@ class Bench:
         self.tell("peers", "cantilever of n beam elements, from its file to four frequencies; ratio: to modetune; errors against the "
                   "closed form", rows)
         self.draw("peers", rows)
+
+    def frame(self):
+        rows = []
+        for floors in (4,) if self.quick else (10, 30, 108):
+            with tempfile.TemporaryDirectory() as folder:
+                task = cases.Frame(floors, folder)
+                done = side_by_side({"modetune": task.ours, "CHOLMOD and Lanczos": partial(task.peer, PROGRAMS / "bench_frame")},
+                                    1 if self.quick else 5)
+            exact = done["CHOLMOD and Lanczos"][1]
+            rows += [{"way": way, "elements": task.elements, "freedoms": task.freedoms, **took, "error": cases.error(hz, exact),
+                      "ratio": took["cpu_s"] / done["CHOLMOD and Lanczos"][0]["cpu_s"]} for way, (took, hz) in done.items()]
+        self.tell("frame", "space frame, ten lowest modes; ratio: to the plain program; error: to its frequencies, which hold no bound", rows)
 
     def evaluation(self):
         shipped = ["truss_10bar_E69_8"] if self.quick else [

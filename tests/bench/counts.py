@@ -31,8 +31,8 @@ GROWTH = 1.1
 PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX512VL,-ERMS,-FSRM",
          "LC_ALL": "C"}
 STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
-# name: command. {sag} is a link of 300 elements that its weight bends, {link} one of 2,000 with a sensor, {pedal} a study of bands in three driven
-# positions, {grid} a trade study of 16 points, {out} a folder for results.
+# name: command. {sag} is a link of 300 elements that its weight bends, {frame} one in space of 540 beams, {link} one of 2,000 with a sensor,
+# {pedal} a study of bands in three driven positions, {grid} a trade study of 16 points, {out} a folder for results.
 RUNS = {
     "start": ("--version",),
     "check": ("check", "studies/inceptor_rotor.json"),
@@ -40,6 +40,7 @@ RUNS = {
     "modes": ("modes", "problems/inceptor.json"),
     "modes_driven": ("modes", "problems/stick.json"),
     "modes_settled": ("modes", "{sag}", "--count", "4"),
+    "modes_frame": ("modes", "{frame}", "--count", "6"),
     "sensitivity": ("sensitivity", "problems/inceptor.json"),
     "response": ("response", "problems/den_hartog.json", "--input", "machine.x", "--from", "1", "--to", "20", "--points", "200"),
     "response_large": ("response", "{link}", "--input", "base.y", "--from", "0.1", "--to", "50", "--points", "300"),
@@ -55,7 +56,7 @@ RUNS = {
 
 
 def count(name, folder):
-    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "link", "pedal", "tolerances", "grid")}}
+    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "frame", "link", "pedal", "tolerances", "grid")}}
     command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
                           env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
@@ -69,6 +70,7 @@ def measure():
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top)
         (folder / "sag.json").write_text(json.dumps({**large.link(300), "gravity_m_per_s2": [0, -9.81]}), encoding="utf-8")
+        (folder / "frame.json").write_text(json.dumps(large.frame(6, 6, 6, 1)), encoding="utf-8")
         tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]}
         (folder / "link.json").write_text(json.dumps({**large.link(2000), **tip}), encoding="utf-8")
         (folder / "model.json").write_text(json.dumps(pedal.PEDAL), encoding="utf-8")
