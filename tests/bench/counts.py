@@ -28,11 +28,13 @@ import pedal  # noqa: E402
 TABLE = SOURCE / "tests/bench/counts.csv"
 MOST = 1e9  # of one run: what is longer belongs to bench.py
 GROWTH = 1.1
+WEIGHT = {"gravity_m_per_s2": [0, 0, -9.81]}
 PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX512VL,-ERMS,-FSRM",
          "LC_ALL": "C"}
 STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
 # name: command. {sag} is a link of 300 elements that its weight bends, {frame} one in space of 540 beams, {link} one of 2,000 with a sensor,
-# {pedal} a study of bands in three driven positions, {grid} a trade study of 16 points, {out} a folder for results.
+# {mounts} the study of the pump on its mounts under its weight, {stick} a stick of beam elements in space under its own, {pedal} a study of bands in three
+# driven positions, {grid} a trade study of 16 points, {out} a folder for results.
 RUNS = {
     "start": ("--version",),
     "check": ("check", "studies/inceptor_rotor.json"),
@@ -45,6 +47,8 @@ RUNS = {
     "response": ("response", "problems/den_hartog.json", "--input", "machine.x", "--from", "1", "--to", "20", "--points", "200"),
     "response_large": ("response", "{link}", "--input", "base.y", "--from", "0.1", "--to", "50", "--points", "300"),
     "motion_linear": ("simulate", "problems/six_masses.json", "--start", "guide_1=0.001", "--duration", "1", "--dt-out", "0.001"),
+    "mounts_gravity": (*STUDY, "--max-evaluations", "100", "{mounts}"),
+    "stick_gravity": ("sensitivity", "{stick}"),
     "placements_driven": (*STUDY, "{pedal}"),
     "placements_tolerances": (*STUDY, "--max-modal-solutions", "1000", "{tolerances}"),
     "inceptor_catalogue": (*STUDY, "studies/inceptor_catalogue.json"),
@@ -56,7 +60,7 @@ RUNS = {
 
 
 def count(name, folder):
-    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "frame", "link", "pedal", "tolerances", "grid")}}
+    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "frame", "link", "mounts", "stick", "pedal", "tolerances", "grid")}}
     command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
                           env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
@@ -73,6 +77,13 @@ def measure():
         (folder / "frame.json").write_text(json.dumps(large.frame(6, 6, 6, 1)), encoding="utf-8")
         tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]}
         (folder / "link.json").write_text(json.dumps({**large.link(2000), **tip}), encoding="utf-8")
+        pump = json.loads((SOURCE / "problems/pump_on_mounts.json").read_text(encoding="utf-8"))
+        (folder / "pump.json").write_text(json.dumps({**pump, **WEIGHT}), encoding="utf-8")
+        mounts = json.loads((SOURCE / "studies/pump_on_mounts.json").read_text(encoding="utf-8"))
+        (folder / "mounts.json").write_text(json.dumps({**mounts, "model": "pump.json"}), encoding="utf-8")
+        subprocess.run([PROGRAM, "init", str(folder / "new"), "--kind", "stick"], capture_output=True, check=True)
+        stick = json.loads((folder / "new/model.json").read_text(encoding="utf-8"))
+        (folder / "stick.json").write_text(json.dumps({**stick, **WEIGHT}), encoding="utf-8")
         (folder / "model.json").write_text(json.dumps(pedal.PEDAL), encoding="utf-8")
         for file, variables in (("pedal", pedal.FREE), ("tolerances", [{**pedal.FREE[0], "tolerance_percent": 2}, pedal.FREE[1]])):
             question = {**pedal.study(variables), "model": "model.json", "search": {"starts": 1}}
