@@ -146,7 +146,6 @@ void mt_relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_sec
     const mt_cx *const q = t == NULL ? ZERO3 : t;
     mt_cx r[3];
     mt_cx u[3];
-    mt_cx n[3];
     mt_cx jac[MT_RELATIVE][3];
     mt_relative_clear(out, second, chord ? MT_SPAN_CHORD : MT_SPAN_ALL, real);
     for (int i = 0; i < 3; i++) {
@@ -164,6 +163,7 @@ void mt_relative_distance(const mt_cx *s, const mt_cx *t, const mt_cx *d, mt_sec
     out->value = length;
     mt_relative_add_vec(out->g + MT_AT_CHORD, 1.0, u);
     if (!chord) {
+        mt_cx n[3];
         cx_cross3(p, u, n);
         mt_relative_add_vec(out->g + MT_AT_TURN_A, -1.0, n);
         cx_cross3(q, u, n);

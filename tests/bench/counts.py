@@ -13,6 +13,7 @@ import csv
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -91,7 +92,9 @@ def measure():
         grid = json.loads((SOURCE / "studies/inceptor_trade.json").read_text(encoding="utf-8"))
         for vary, values in zip(grid["trade"]["vary"], ([0.6, 1.4, 2.2, 3], [2, 10, 18, 26])):
             vary["values"] = values
-        grid.update(model=str(SOURCE / "problems/inceptor.json"), published=[])
+        for name in ("inceptor.json", "aircraft.json"):
+            shutil.copy(SOURCE / "problems" / name, folder)
+        grid.update(model="inceptor.json", published=[])
         (folder / "grid.json").write_text(json.dumps(grid), encoding="utf-8")
         with ThreadPoolExecutor(os.cpu_count()) as workers:
             return dict(zip(RUNS, workers.map(lambda name: count(name, folder), RUNS)))

@@ -3,6 +3,7 @@
 studies, in all windows, of all designs and on paper."""
 import json
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -268,7 +269,9 @@ class Report(Answers):
         """A cell for each of 420 points; those that the page has whole show their design, the others are words and numbers."""
         study = json.loads((SOURCE / "studies/inceptor_trade.json").read_text(encoding="utf-8"))
         study.pop("published")
-        study["model"] = str(SOURCE / "problems/inceptor.json")
+        for name in ("inceptor.json", "aircraft.json"):
+            shutil.copy(SOURCE / "problems" / name, self.folder)
+        study["model"] = "inceptor.json"
         first, second = study["trade"]["vary"]
         first["values"], second["values"] = [0.6 + 0.12 * i for i in range(21)], [2 + 1.4 * i for i in range(20)]
         (self.folder / "grid.json").write_text(json.dumps(study), encoding="utf-8")
