@@ -393,24 +393,28 @@ static void check_same_view(mt_test *t, const mt_scene_view *a, const mt_scene_v
 static void scene__designs_together_are_those_alone(mt_test *t)
 {
     static const char *const names[] = {"M_SAU", "K_T1"};
-    enum { MOST = 20 };
+    enum { MOST = 3 };
     static const double values[][2] = {{2.2635, 9795.7}, {1.2, 9795.7}, {2.9, 20000.0}};
     enum { DESIGNS = MT_COUNT(values) };
     mt_model *const model = mech_load(t, "../../problems/inceptor");
     int configurations[MOST];
     int inputs[2];
+    int n = 0;
     mt_scene *all = NULL;
     mt_err err = {.text = ""};
-    if (model == NULL || !CHECK(t, model->n_configurations <= MOST)) {
+    if (model == NULL) {
         return;
     }
-    for (int i = 0; i < model->n_configurations; i++) {
-        configurations[i] = i;
+    for (int i = 0; i < model->n_configurations && n < MOST; i++) { /* the first, and driven */
+        if (i == 0 || model->configurations[i].drive.given) {
+            configurations[n++] = i;
+        }
     }
+    CHECK_INT(t, n, MOST);
     for (int i = 0; i < MT_COUNT(names); i++) {
         inputs[i] = mt_model_find_parameter(model, names[i]);
     }
-    mt_scene_extent extent = {.n_configurations = model->n_configurations,
+    mt_scene_extent extent = {.n_configurations = n,
                               .configurations = configurations,
                               .work = MT_SCENE_WORK,
                               .threads = 3};
@@ -424,7 +428,7 @@ static void scene__designs_together_are_those_alone(mt_test *t)
     for (int d = 0; d < DESIGNS && all != NULL; d++) {
         mt_scene *alone = NULL;
         CHECK(t, mt_scene_new(model, 1, &asks[d], &extent, &alone, &err) == MT_OK);
-        for (int i = 0; i < model->n_configurations && alone != NULL; i++) {
+        for (int i = 0; i < n && alone != NULL; i++) {
             mt_test_row(t, "design %d, configuration %d", d, i);
             check_same_view(t, &all->designs[d].views[i], view_of(alone, i));
         }
