@@ -34,6 +34,7 @@ enum { BLOCK = 64 };
 /* Evaluations beside one local search that asks whether a neighbour knows better; and without
  * which a point is not searched again. */
 enum { LOOKS = 3, WARM_LEAST = 30 };
+enum { WAYS = 4 }; /* neighbours of a point */
 
 typedef struct trade {
     const mt_study *study;
@@ -220,6 +221,20 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
                            MT_EQUAL_FOUND);
 }
 
+/* The same within rounding as a design that was tried before it. */
+static bool is_tried(const point *p, int n, const double *const tried[WAYS], const double *x)
+{
+    static const double ROUNDING = 1e-10;
+    bool found = false;
+    for (int k = 0; k < n && !found; k++) {
+        found = tried[k] != NULL;
+        for (int i = 0; i < p->q->p->n && found; i++) {
+            found = fabs(tried[k][i] - x[i]) <= ROUNDING * fabs(x[i]);
+        }
+    }
+    return found;
+}
+
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives
  * the same. */
 static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt_scope *own,
@@ -228,15 +243,17 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
     point *const p = &t->points[k];
     const mt_recommendation *const best = best_of(p->first);
     const double *best_x = NULL;
+    const double *tried[WAYS] = {NULL};
     MT_TRY(values_of(best != NULL && best->feasible ? best : NULL, mem, &best_x, err));
-    for (int way = 0; way < 4; way++) {
+    for (int way = 0; way < WAYS; way++) {
         const int other = neighbour(t, k, way);
         const double *const x = other < 0 ? NULL : t->points[other].near;
         bool gain = false;
         const long left = mt_question_left(p->q) - LOOKS;
-        if (x == NULL || stopped(t) || left < WARM_LEAST) {
+        if (x == NULL || stopped(t) || left < WARM_LEAST || is_tried(p, way, tried, x)) {
             continue;
         }
+        tried[way] = x;
         mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
         p->q->spent.phase = MT_PHASE_SEARCH;
         MT_TRY(mt_trade_improves(w, x, best_x, &gain, left, err));
