@@ -46,8 +46,8 @@ mt_status mt_factor_analyse(const mt_lower *h, const int *part, mt_arena *mem,
 /* Room for a factor of such matrices that solves for so many columns at a time, in mem; a
  * shortage is the arena's. */
 void mt_factor_init(const mt_factor_pattern *p, int columns, mt_arena *mem, mt_factor *f);
-/* Factors H = h + c other (other NULL: h), whose entries stand in the places of the matrix that was
- * analysed. Scratch from mem is given back. Fails: MT_E_DOMAIN (not finite, or a pivot is 0
+/* Factors H = h + c other (other NULL: h), whose entries stand in the places of the matrix that
+ * was analysed. Scratch from mem is given back. Fails: MT_E_DOMAIN (not finite, or a pivot is 0
  * exactly), MT_E_MEMORY. */
 mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_lower *other,
                          mt_arena *mem, mt_err *err);
