@@ -50,6 +50,7 @@ FEW_ENVIRONMENTS = ("Prescott", "without FMA")
 
 # Masked, with the reason.
 COUNTS = re.compile(r"^\S+: [0-9.e+-]+ s, .*(; written to \S+)$")  # times are of the day; how many steps a search takes, of the rounding
+STARTS = re.compile(r"\b[0-9]+ starts?\b")  # a search ends when its ends repeat: after how many starts, is of the rounding, too
 # Columns of tables that are rounding or a bound of it by nature: they say how well a number was computed, not what it is.
 ROUNDING_COLUMNS = {
     "residual": "of an eigenpair, in units of rounding",
@@ -115,7 +116,7 @@ def without(table):
 
 def printed(text):
     """What is compared of a text."""
-    return [COUNTS.sub(r"counts\1", line) for line in without(text.splitlines())]
+    return [STARTS.sub("starts", COUNTS.sub(r"counts\1", line)) for line in without(text.splitlines())]
 
 
 def differences(a, b, units):
