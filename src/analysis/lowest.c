@@ -102,8 +102,10 @@ static mt_status refine(void *context, int count, const double *x, double *y,
     return MT_OK;
 }
 
-static mt_status below(void *context, double tau, int *count, bool *certain, mt_err *err)
+static mt_status below(void *context, double tau, int known, int *count, bool *certain,
+                       mt_err *err)
 {
+    (void)known;
     const operation *const o = context;
     MT_TRY(mt_interrupt_check(o->tree->sys->model->interrupt, err));
     return mt_tree_count(o->tree, tau, o->scratch, count, certain, err);

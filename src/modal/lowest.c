@@ -200,7 +200,7 @@ static mt_status count_behind(const finding *f, int j, double *tau, int *below, 
     for (int k = 0; k < MT_COUNT(places) && !*certain; k++) {
         const double end = j < f->n ? f->theta[j] : 0.25 * f->theta[j - 1];
         *tau = (pow(f->theta[j - 1] / end, places[k]) / f->theta[j - 1]) - f->p->shift;
-        MT_TRY(f->p->below(f->p->context, *tau, below, certain, err));
+        MT_TRY(f->p->below(f->p->context, *tau, f->p->n_rigid + j, below, certain, err));
     }
     return MT_OK;
 }

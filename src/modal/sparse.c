@@ -25,6 +25,8 @@
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
  * iterations (of loops of thousands with the second), and eps gamma cond K is well below 1. */
 static const double STIFFER[] = {1e6, 1e8};
+/* The same of a count that says more than was found, in that. */
+static const double COUNTED[] = {1e3, 1e6};
 /* Below this part of what it is the rest of, the sign of a pivot is by chance. */
 static const double CERTAIN = 64.0 * DBL_EPSILON;
 /* Below this the factor's rounding is refined away in each product. */
@@ -136,13 +138,25 @@ static mt_status refine(void *context, int count, const double *x, double *y,
     return MT_OK;
 }
 
-static mt_status below(void *context, double tau, int *n, bool *certain, mt_err *err)
+/* Every count is a bound from above: a chain of many bodies has modes of its constraints' own
+ * flexibility, which are gone where these are stiffer. */
+static mt_status below(void *context, double tau, int known, int *n, bool *certain, mt_err *err)
 {
     mt_sparse *const s = context;
-    MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
     double least = 0.0;
-    MT_TRY(mt_sparse_inertia(s, -tau, n, &least, err));
-    *certain = least > CERTAIN;
+    *certain = false;
+    for (int i = 0; i <= MT_COUNT(COUNTED) && !(*certain && *n <= known); i++) {
+        int here = 0;
+        if (i > 0 && s->p->a.n_rows == 0) {
+            break;
+        }
+        MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
+        MT_TRY(mt_sparse_inertia(s, i == 0 ? 1.0 : COUNTED[i - 1], -tau, &here, &least, err));
+        if (least > CERTAIN && (!*certain || here < *n)) {
+            *n = here;
+            *certain = true;
+        }
+    }
     return MT_OK;
 }
 

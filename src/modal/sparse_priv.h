@@ -44,8 +44,9 @@ mt_status mt_sparse_hold(mt_sparse *s, mt_err *err);
  */
 mt_status mt_sparse_solve(mt_sparse *s, int count, const double *f, double close, double *x,
                           mt_err *err);
-/* The factor of K + A^T Gamma A + c M, which then is not H. */
-mt_status mt_sparse_inertia(mt_sparse *s, double c, int *negative, double *least, mt_err *err);
+/* The factor of K + part A^T Gamma A + c M, which then is not H. */
+mt_status mt_sparse_inertia(mt_sparse *s, double part, double c, int *negative, double *least,
+                            mt_err *err);
 /* y := M x. */
 void mt_sparse_metric(void *context, const double *x, double *y);
 /* s->freedoms: states less independent rows of A. The factor then is not H. */

@@ -70,6 +70,7 @@ typedef struct sums {
     const mt_sparse *s;
     mt_rows k;
     mt_rows m;
+    double part; /* of Gamma */
 } sums;
 
 static void sum_mass(const sums *from, int j, column *c)
@@ -90,7 +91,7 @@ static void sum_stiffness(const sums *from, int j, column *c)
         add(c, s->m.row[q], j, 0.0);
     }
     add_squares(c, &p->k.row, p->k.c, &from->k, j, 1.0);
-    add_squares(c, &p->a, s->gamma, &s->by_state, j, 1.0);
+    add_squares(c, &p->a, s->gamma, &s->by_state, j, from->part);
     for (int q = g != NULL ? g->start[j] : 0; g != NULL && q < g->start[j + 1]; q++) {
         add(c, g->row[q], j, g->value[q]);
     }
@@ -141,7 +142,7 @@ static mt_status assemble(const sums *from, void (*sum)(const sums *, int, colum
 static mt_status assemble_both(mt_sparse *s, mt_arena *scratch, mt_err *err)
 {
     const mt_sparse_problem *const p = s->p;
-    sums from = {.s = s};
+    sums from = {.s = s, .part = 1.0};
     column c;
     mt_rows_transpose(&p->k.row, p->n, scratch, &from.k);
     mt_rows_transpose(&p->m.row, p->n, scratch, &from.m);
@@ -294,10 +295,37 @@ mt_status mt_sparse_hold(mt_sparse *s, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_sparse_inertia(mt_sparse *s, double c, int *negative, double *least, mt_err *err)
+/* The values of K + part A^T Gamma A, in the places of H. */
+static mt_status stiffen(const mt_sparse *s, double part, mt_arena *scratch, mt_lower *h,
+                         mt_err *err)
 {
+    sums from = {.s = s, .part = part};
+    column c;
+    *h = s->k;
+    h->value = mt_arena_f64(scratch, (size_t)h->start[h->n], 1);
+    MT_TRY(column_init(&c, h->n, scratch, err));
+    mt_rows_transpose(&s->p->k.row, h->n, scratch, &from.k);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (int j = 0; j < h->n; j++) {
+        sum_stiffness(&from, j, &c);
+        for (int q = h->start[j]; q < h->start[j + 1]; q++) {
+            h->value[q] = c.sum[h->row[q]];
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_sparse_inertia(mt_sparse *s, double part, double c, int *negative, double *least,
+                            mt_err *err)
+{
+    mt_arena scratch = {.first = NULL};
+    mt_lower h = s->k;
     bool regular = false;
-    MT_TRY(make(s, &s->k, c, &s->m, &regular, err));
+    mt_status rc = part == 1.0 ? MT_OK : mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK && part != 1.0 ? stiffen(s, part, &scratch, &h, err) : rc;
+    rc = rc == MT_OK ? make(s, &h, c, &s->m, &regular, err) : rc;
+    mt_arena_free(&scratch);
+    MT_TRY(rc);
     *negative = s->factor.negative;
     *least = regular ? s->factor.least : 0.0;
     return MT_OK;

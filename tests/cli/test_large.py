@@ -95,16 +95,18 @@ class Large(CliTest):
         self.assertRegex(done.stderr, r'because "beam\.\d+" is not drawn at rest under its load; nor the sparse one, as without dense matrices no place is found where it settles')
 
     def test_what_settles_far_from_the_drawing_has_its_lowest_modes_without_the_others(self):
-        """A cantilever that its weight bends by sixty degrees: in n elements off by about 1/n^2, and no more than its bound from all modes."""
+        """A cantilever that its weight bends by sixty degrees: in n elements off by about 1/n^2, and no more than its bound from all modes. Its stiff pins in a
+        row are softer than its twentieth mode: the count must not take them for modes."""
         def loaded(n):
             return self.write(f"bent{n}.json", json.dumps({**large.link(n), "gravity_m_per_s2": [0, -9.81]}))
-        whole, few, many = (self.modes(loaded(n), *options) for n, options in ((120, ()), (120, ("--count", "4")), (1500, ("--count", "4"))))
+        whole, few, many = (self.modes(loaded(n), *options) for n, options in ((120, ("--count", "all")), (120, ()), (1500, ())))
         self.assertEqual([m["method"] for m in (whole, few, many)], ["dense", "sparse", "sparse"])
-        for one, other, fine in zip(few["modes"], whole["modes"], many["modes"]):
+        self.assertEqual([len(m["modes"]) for m in (few, many)], [20, 20])
+        for k, (one, other, fine) in enumerate(zip(few["modes"], whole["modes"], many["modes"])):
             bound = one["omega_squared_error"] + other["omega_squared_error"]
             self.assertLess(abs(one["omega_squared"] - other["omega_squared"]), bound)
             self.assertLess(one["omega_squared_error"], 1e-9 * one["omega_squared"])
-            self.assertAlmostEqual(fine["frequency_hz"] / one["frequency_hz"], 1, delta=1e-3)
+            self.assertAlmostEqual(fine["frequency_hz"] / one["frequency_hz"], 1, delta=1e-3 if k < 4 else 0.1)
         for name in ("largest_motion_m", "largest_turn_rad"):
             self.assertAlmostEqual(few["equilibrium"][name] / whole["equilibrium"][name], 1, delta=1e-9)
         self.assertGreater(many["equilibrium"]["largest_turn_rad"], 1)
