@@ -21,8 +21,9 @@ static const double MASSLESS = 1e3 * DBL_EPSILON;
 /* Such a direction is not pushed where the force along it is below this times the magnitudes
  * that cancel in it, or in another one. */
 static const double UNPUSHED = 1e-9;
-/* Unknowns up to here have an inverse: 8 MB. */
-enum { INVERSE_MOST = 1000 };
+/* So many unknowns have an inverse: for fewer an elimination takes no longer, and what it rounds
+ * is less where forces are large against accelerations; more would take more than 8 MB. */
+enum { INVERSE_LEAST = 16, INVERSE_MOST = 1000 };
 /* An inverse serves while each correction is at most this part of the one before, and few are
  * enough. */
 static const double CONTRACTION = 0.1;
@@ -142,7 +143,7 @@ mt_status mt_gauss_near_init(mt_gauss_near *o, const mt_system *sys, int m, mt_a
                              mt_err *err)
 {
     const int n = sys->nq + m;
-    *o = (mt_gauss_near){.n = n <= INVERSE_MOST ? n : 0};
+    *o = (mt_gauss_near){.n = n >= INVERSE_LEAST && n <= INVERSE_MOST ? n : 0};
     o->inverse = mt_arena_f64(mem, (size_t)o->n, (size_t)o->n);
     o->scale = mt_arena_f64(mem, (size_t)o->n, 1);
     o->x = mt_arena_f64(mem, (size_t)o->n, 1);
