@@ -32,6 +32,8 @@ COLUMNS = {
                 "best_evaluations", "evaluations", "multiplications", "status", "proven", "error"),
     "response": ("problem", "freedoms", "outputs", "way", "frequencies", "cpu_s", "spread_s", "error"),
     "motion": ("way", "masses", "samples", "cpu_s", "spread_s", "ratio", "error"),
+    "growth": ("what", "of", "size", "runs", "cpu_s", "spread_s", "peak_mib", "exponent"),
+    "threads": ("study", "runs", "wall_1_s", "wall_2_s", "times"),
     "asked": ("what", "asked", "measured", "unit", "reached", "error"),
 }
 

@@ -20,6 +20,8 @@ designs     studies of tests/bench/studies and shipped ones: CPU time to the fir
 response    a thousand frequencies of forced vibration: by modes, directly, and by NumPy (bench_response)
 motion      a chain of masses from rest under a sine, in time: modetune simulate beside lsim of SciPy and of Octave's control
             package, each in a process of its own; errors against the exponential of its matrix
+growth      the same question of larger models: CPU time and memory by size, and the exponent from the size before
+threads     shipped studies on one thread and on two: wall time, the least of the runs, with what else the machine does
 asked       what was to be reached beside what the other tables measured
 Times are CPU seconds of one thread, what is compared runs in turn, and each gets the median of its runs with the spread
 (largest less smallest) beside it. What is not installed is left out and named. SOURCE_DIR, BUILD_DIR and MODETUNE as in the tests.
@@ -38,6 +40,7 @@ from functools import partial
 from pathlib import Path
 
 import _cases as cases
+import _growth as growth
 import _pictures as pictures
 from _tables import ALONE, BUILD, COLUMNS, PROGRAM, SOURCE, machine, middle, rows_of, run, show, side_by_side, write
 
@@ -257,6 +260,34 @@ class Bench:
                      "ratio": took["cpu_s"] / own, "error": task.error(x)} for way, (took, x) in solved.items())
         self.tell("motion", "a chain under a sine in time, from file to last sample; ratio: to ours; errors in parts of the largest "
                   "displacement", self.rows["motion"])
+
+    def growth(self):
+        rows = []
+        for family in growth.FAMILIES:
+            what, of, sizes, _ = family
+            before = None
+            for size in sizes[:2] if self.quick else sizes:
+                runs = 1 if self.quick or (before is not None and before["cpu_s"] > 0.5) else 3
+                with tempfile.TemporaryDirectory() as folder:
+                    times, answered = side_by_side({"modetune": partial(growth.measure, family, size, folder)}, runs)["modetune"]
+                if not answered:
+                    sys.exit(f"{what}: no answer for {size} {of}")
+                row = {"what": what, "of": of, "size": size, "runs": runs, **times}
+                if before is not None:
+                    row["exponent"] = math.log(row["cpu_s"] / before["cpu_s"]) / math.log(size / before["size"])
+                rows.append(row)
+                before = row
+        self.tell("growth", "CPU time by size, from file to answer; exponent: between this size and the one before", rows)
+
+    def threads(self):
+        rows = []
+        for name in ("inceptor_catalogue",) if self.quick else ("inceptor_rotor", "inceptor_identification", "inceptor_trade", "truss_72bar"):
+            runs = 1 if self.quick else 5
+            with tempfile.TemporaryDirectory() as folder:
+                walls = [[growth.waited(name, count, folder) for count in (1, 2)] for _ in range(runs)]
+            one, two = (min(w[k] for w in walls) for k in (0, 1))
+            rows.append({"study": name, "runs": runs, "wall_1_s": one, "wall_2_s": two, "times": one / two})
+        self.tell("threads", "wall time of studies with their reports, on one thread and on two", rows)
 
     def asked(self):
         def of(table, column, **want):
