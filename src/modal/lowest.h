@@ -33,8 +33,8 @@ typedef struct mt_lowest_problem {
     /* Y := A X as exactly as can be, n x count, and what each x and y say of their mode */
     mt_status (*refine)(void *context, int count, const double *x, double *y,
                         mt_lowest_quotient *quotient, mt_err *err);
-    /* modes below lambda = tau > 0, rigid-body ones included, of which `known` were found; *below
-     * may be too large; *certain: no pivot's sign is by rounding */
+    /* modes below lambda = tau > 0, rigid-body ones included, of which `known` were found;
+     * *below may be too large; *certain: no pivot's sign is by rounding */
     mt_status (*below)(void *context, double tau, int known, int *below, bool *certain,
                        mt_err *err);
     void *context;

@@ -21,8 +21,8 @@ static const double MASSLESS = 1e3 * DBL_EPSILON;
 /* Such a direction is not pushed where the force along it is below this times the magnitudes
  * that cancel in it, or in another one. */
 static const double UNPUSHED = 1e-9;
-/* So many unknowns have an inverse: for fewer an elimination takes no longer, and what it rounds
- * is less where forces are large against accelerations; more would take more than 8 MB. */
+/* So many unknowns have an inverse: for fewer an elimination takes no longer, and what it
+ * rounds is less where forces are large against accelerations; more would take 8 MB. */
 enum { INVERSE_LEAST = 16, INVERSE_MOST = 1000 };
 /* An inverse serves while each correction is at most this part of the one before, and few are
  * enough. */
