@@ -98,7 +98,8 @@ static void compare_solutions(mt_test *t, motion *m, mt_gauss_near *near, mt_mot
     memcpy(left, o->force, (size_t)n * sizeof *left);
     mt_gemv(false, n, n, 1.0, o->mass, n, got, -1.0, left);
     mt_gemv(true, o->m, n, -1.0, o->a, o->m, lambda, 1.0, left);
-    CHECK_NEAR_ABS(t, mt_max_abs(n, left), 0.0, tolerance * mt_max_abs(n * n, o->mass) * size);
+    CHECK_NEAR_ABS(t, mt_max_abs(n, left), 0.0,
+                   tolerance * mt_max_abs((ptrdiff_t)n * n, o->mass) * size);
 }
 
 /* Along a motion, and after leaps that no inverse survives. */
