@@ -28,6 +28,8 @@ static const double SHOWN = 1e-6;
 enum { EVALUATIONS = 2000 };
 /* From a nearly exact fit to one. */
 enum { REFIT = 50 };
+/* Of a budget, without which no single variable is looked for. */
+enum { LEAST_LEFT = 3 };
 /* What repeated modes take to be judged as a cluster, without a search from there. */
 enum { JUDGEMENT = 4 };
 /* A slope is none below this part of the largest of its row. */
@@ -90,6 +92,12 @@ static mt_status add_change(nearest *n, mt_err *err)
     with.aims = aims;
     with.n_aims++;
     return mt_case_for_stages(&with, n->mem, &n->held, err);
+}
+
+/* True where the budget has less than `evals` left. */
+static bool lacks(const nearest *n, long evals)
+{
+    return n->most > 0 && n->most - n->out->evals < evals;
 }
 
 /* The objectives before `stage` are held, and the workspace is set to that. */
@@ -315,7 +323,7 @@ static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
     t[j] = origin;
     MT_TRY(keeps(n, t, f, &v, &kept, err));
     good = kept ? origin : good;
-    while (fabs(good - bad) > HALVED && (n->most <= 0 || n->out->evals < n->most)) {
+    while (fabs(good - bad) > HALVED && !lacks(n, 2)) {
         t[j] = 0.5 * (good + bad);
         MT_TRY(keeps(n, t, f, &v, &kept, err));
         good = kept ? t[j] : good;
@@ -337,6 +345,9 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
     bool *const idle = mt_arena_alloc(n->mem, (size_t)n_t, sizeof *idle);
     double *const t = mt_arena_f64(n->mem, (size_t)n_t, 1);
     MT_TRY(mt_arena_check(n->mem, err));
+    if (lacks(n, LEAST_LEFT)) {
+        return MT_OK;
+    }
     MT_TRY(find_idle(n, s, idle, &n_idle, err));
     bool all = n_idle > 0 && n_idle >= s->n_loose;
     if (n_idle > 0 && !all) {
@@ -423,6 +434,10 @@ static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
     mt_nlp_solution *near = NULL;
     mt_nlp_solution *end = NULL;
     mt_nlp_values v;
+    if (lacks(n, 2)) {
+        n->out->stop = MT_STOP_MAX_EVALS;
+        return MT_OK;
+    }
     n->close = 0.0;
     n->at[0] = s->f;
     mt_workspace_back(n->ws, n->first);

@@ -61,16 +61,27 @@ static void flat_optimum__is_the_one_of_least_change(mt_test *t)
 /* A budget is not exceeded, wherever it ends; what it has is told. */
 static void budget__is_kept(mt_test *t)
 {
-    for (long most = 1; most <= 4096; most *= 2) {
-        study_case c;
-        char members[600];
-        (void)snprintf(members, sizeof members, "%s, 'search': {'max_evaluations': %ld}",
-                       rows[0].members, most);
-        mt_test_row(t, "%ld evaluations", most);
-        if (study_solve(t, MODEL, members, &c)) {
-            CHECK(t, c.result->run.spent.search <= most);
+    static const char *const kinds[] = {
+        VARIABLES "'objective': " PRODUCT ", 'goals': [" LIMIT "]",
+        VARIABLES "'objective': {'minimise': 'a'}, 'goals': ["
+                  "{'type': 'limit', 'expression': 'a', 'at_least': 2},"
+                  "{'type': 'limit', 'expression': 'b', 'at_least': 1.5}]",
+        VARIABLES "'objective': {'minimise': 'misfit'}, 'goals': ["
+                  "{'type': 'frequency', 'mode': 1, 'target_hz': 0.13, 'weight': 1}]",
+    };
+    for (int i = 0; i < MT_COUNT(kinds); i++) {
+        for (long most = 1; most <= 4096;
+             most = most < 300 ? most + (most / 8) + 1 : 2 * most) {
+            study_case c;
+            char members[600];
+            (void)snprintf(members, sizeof members, "%s, 'search': {'max_evaluations': %ld}",
+                           kinds[i], most);
+            mt_test_row(t, "%d: %ld evaluations", i, most);
+            if (study_solve(t, MODEL, members, &c)) {
+                CHECK(t, c.result->run.spent.search <= most);
+            }
+            study_free(&c);
         }
-        study_free(&c);
     }
 }
 
