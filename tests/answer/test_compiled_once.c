@@ -19,6 +19,7 @@ static atomic_int systems;
 static atomic_int moving;   /* of them with a position as input: one drive's range of motion */
 static atomic_int cuts;     /* of them at a position that is no configuration's */
 static atomic_int verified; /* of them in descriptions, which build anew what they verify */
+static _Thread_local int own_systems; /* of a thread: designs are described side by side */
 
 /* names are the linker's, parameters the functions' */
 /* NOLINTBEGIN(bugprone-reserved-identifier,cert-*,readability-function-size) */
@@ -48,6 +49,7 @@ mt_status __wrap_mt_system_new_driven(const mt_model *model, int configuration,
                                       const int *inputs, const double *at, mt_system **out,
                                       mt_err *err)
 {
+    own_systems++;
     (void)atomic_fetch_add(&systems, 1);
     (void)atomic_fetch_add(&moving, drive != NULL && !drive->fixed ? 1 : 0);
     (void)atomic_fetch_add(&cuts, drive != NULL && drive->fixed ? 1 : 0);
@@ -65,10 +67,10 @@ mt_status __wrap_mt_describe_design(const mt_problem *p, const mt_design *design
                                     const mt_recommendation *baseline, mt_result *result,
                                     mt_recommendation *rec, mt_err *err)
 {
-    const int before = atomic_load(&systems);
+    const int before = own_systems;
     const mt_status rc = __real_mt_describe_design(p, design, baseline, result, rec, err);
     (void)atomic_fetch_add(&descriptions, 1);
-    (void)atomic_fetch_add(&verified, atomic_load(&systems) - before);
+    (void)atomic_fetch_add(&verified, own_systems - before);
     return rc;
 }
 /* NOLINTEND(bugprone-reserved-identifier,cert-*,readability-function-size) */
