@@ -23,8 +23,10 @@ enum { MOST = MT_EIG_SMALL, SWEEPS = 60 };
 
 /* As in test_eig.c: units of n eps. */
 static const double RATIO = 10.0;
-/* Of an eigenvalue: what is found is 0.3 at the most. */
-static const double RATIO_VALUE = 1.0;
+/* Of an eigenvalue. Most are found to 0.3; a fourfold one, in a matrix that another kernel of
+ * the BLAS has made, to 1.4: where eigenvalues are equal what is neglected counts to first
+ * order. LAPACK's own tests allow 30. */
+static const double RATIO_VALUE = 3.0;
 
 static mt_arena mem;
 

@@ -28,7 +28,7 @@ BLOCK = re.compile(r"(?:^<!-- (?P<mark>file|anew|edit|add|ask|of|only|exit): (?P
 # How long it took is of another day, how many evaluations of another processor.
 TIMES = re.compile(r"^(\S+): [0-9.e+-]+ s, .*; (written to \S+)$")
 # Of a mode, how well it was computed is rounding.
-ROUNDING = re.compile(r"^( +(?:\d+|-)  (?:flexible|rigid body) +\S+) +\S+ +\S+$")
+ROUNDING = re.compile(r"^( +(?:\d+|-)  (?:flexible|rigid body) +\S+(?:  +\S.*?)?) +\S+ +\S+$")
 PROGRESS = re.compile(r"^(?:\S+: )?[a-z ]+: \d+ of \d+ .*, \d+ designs evaluated$")
 
 
