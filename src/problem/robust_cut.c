@@ -225,8 +225,8 @@ static mt_status judge_first(mt_workspace *w, const mt_robust_row *row, double *
     const mt_modes *const modes = &view->analysis->modes;
     const double here =
         mt_robust_row_room(c, row, mt_modal_hz(modes, mt_modal_flexible(modes, mode)));
-    /* of bands the least room is asked for, wherever it is */
     const double way = fmax(fabs(here - room), largest_tolerance(w->p));
+    /* of bands the least room is asked for, wherever it is */
     *far = (row->demand >= 0 || c->clearance) && room - wanted > FAR * way;
     if (room - wanted < -row->tolerance) {
         mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);

@@ -278,6 +278,14 @@ static mt_status close_on(const mt_discrete *d, const mt_combination *c, long bu
     return MT_OK;
 }
 
+/* The case of a combination whose design is known: from there, to the nearest of equal ones. */
+static void search_again(mt_case *closed, const double *known)
+{
+    closed->hint = known;
+    closed->search.starts = KNOWN_STARTS;
+    closed->as_found = false;
+}
+
 /* All objectives at the design found, by one more evaluation. */
 static mt_status evaluate_aims(mt_workspace *w, const mt_nlp_solution *s, bool gaps,
                                mt_arena *mem, mt_combination *c, mt_err *err)
@@ -336,9 +344,7 @@ mt_status mt_discrete_directions(mt_discrete *d, const mt_combination *c, mt_are
     *out = (mt_nlp_result){.n_undetermined = 0};
     const long most = d->c->search.max_evaluations;
     mt_status rc = close_on(d, c, most > 0 ? most - d->evals : 0, w, mem, &closed, err);
-    closed.hint = c->t;
-    closed.search.starts = KNOWN_STARTS;
-    closed.as_found = false;
+    search_again(&closed, c->t);
     const bool bands = d->p->n_clears > 0;
     if (rc == MT_OK) {
         rc = bands ? mt_gaps_solve(&w, 1, NULL, mem, &gaps, err)
@@ -365,9 +371,8 @@ static mt_status judge_mixed(void *context, int worker, int task, mt_scope *own,
     MT_TRY(mt_arena_init(&mem, 0, err));
     w->scope = own;
     mt_status rc = close_on(j->d, c, j->budget, w, &mem, &closed, err);
-    if (j->settles) { /* from the design that is known */
-        closed.as_found = false;
-        closed.search.starts = KNOWN_STARTS;
+    if (j->settles) {
+        search_again(&closed, c->from);
     }
     rc = rc == MT_OK ? search_closed(w, &mem, c, err) : rc;
     w->scope = before;

@@ -381,6 +381,17 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
     return rc;
 }
 
+/* The design `end` instead of s, which is known as what s was found as. */
+static void put_nearer(mt_nlp_solution *s, const mt_nlp_solution *end)
+{
+    const mt_nlp_solution old = *s;
+    *s = *end;
+    s->singular = s->singular || old.singular;
+    s->continuum = old.continuum;
+    s->start = old.start;
+    s->hits = old.hits;
+}
+
 /* Solution s; f: its objectives. */
 static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solution *s,
                       mt_err *err)
@@ -404,14 +415,10 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
     if (end == NULL) {
         return MT_OK; /* it stands as it is */
     }
-    const mt_nlp_solution old = *s;
-    *s = *end;
-    s->singular = s->singular || old.singular;
-    s->continuum = old.continuum ||
-                   (n->first->below == NULL && !mt_search_same(n->first->p->n, s->t, old.t));
+    const bool moved = !mt_search_same(n->first->p->n, end->t, s->t);
+    put_nearer(s, end);
+    s->continuum = s->continuum || (n->first->below == NULL && moved);
     s->flat = true;
-    s->start = old.start;
-    s->hits = old.hits;
     f[n_aims - 1] = s->f;
     return MT_OK;
 }
@@ -453,14 +460,9 @@ static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
                    MT_EQUAL_FOUND) > 0) {
         return MT_OK; /* it stands as it is */
     }
-    const mt_nlp_solution old = *s;
-    *s = *end;
-    s->singular = s->singular || old.singular;
-    s->continuum = old.continuum;
-    s->start = old.start;
-    s->hits = old.hits;
     /* no misfit is less: what is left of slopes is rounding, to the scale of its search */
-    s->kkt = old.kkt;
+    end->kkt = s->kkt;
+    put_nearer(s, end);
     return MT_OK;
 }
 
