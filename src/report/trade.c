@@ -122,31 +122,29 @@ static void columns(mt_table *t, const mt_result *result)
     mt_report_variable_columns(t, result, any_design(result->trade));
 }
 
-mt_table mt_report_trade(const mt_result *result)
-{
-    mt_table t = mt_table_default();
-    if (result->trade != NULL) {
-        columns(&t, result);
-        for (int i = 0; i < result->trade->n_points; i++) {
-            point_row(&t, result, &result->trade->points[i]);
-        }
-    }
-    return t;
-}
-
-mt_table mt_report_trade_selected(const mt_result *result)
+static mt_table points(const mt_result *result, bool all)
 {
     mt_table t = mt_table_default();
     if (result->trade != NULL) {
         mt_trade_selection s = mt_trade_select(result->trade);
         columns(&t, result);
         for (int i = 0; i < result->trade->n_points; i++) {
-            if (mt_trade_is_selected(&s, i)) {
+            if (mt_trade_is_selected(&s, i) || all) {
                 point_row(&t, result, &result->trade->points[i]);
             }
         }
     }
     return t;
+}
+
+mt_table mt_report_trade(const mt_result *result)
+{
+    return points(result, true);
+}
+
+mt_table mt_report_trade_selected(const mt_result *result)
+{
+    return points(result, false);
 }
 
 void mt_report_trade_left(const mt_result *result, mt_text *line)
