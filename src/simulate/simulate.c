@@ -234,7 +234,7 @@ static mt_status find_turning(run *r, double t, double h, int g, const double en
         MT_TRY(mt_sim_advance(s, t, x, err));
         MT_TRY(mt_sim_ahead(s, t + x, err));
         mt_sim_gauge_ahead(s, g, read);
-        next = fmin(fmax(x - (read[1] / read[2]), 0.0), h);
+        next = fmin(fmax(x - (read[1] / read[2]), TURN_FOUND * h), h);
     }
     mt_turnings *const list = &r->out->turnings[g];
     list->at = mt_arena_grow(s->mem, list->at, list->n, &list->room, sizeof *list->at);

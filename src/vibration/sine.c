@@ -90,8 +90,9 @@ static double parabola(double f1, double f2, double h)
                                               : h * (slope + (h * f2));
 }
 
-/* No frequency of the interval has more than that. */
-static double bound(const mt_frf *h, const mt_panel *p, mt_near centre)
+/* No frequency of the interval has more than that. *floor: the part of it that rounding takes
+ * of F at the centre, which no halving makes smaller. */
+static double bound(const mt_frf *h, const mt_panel *p, mt_near centre, double *floor)
 {
     const double half = 0.5 * (p->b - p->a);
     double f[ORDER] = {0.0};
@@ -112,8 +113,10 @@ static double bound(const mt_frf *h, const mt_panel *p, mt_near centre)
         rest += k < 3 ? 0.0 : power * (k < ORDER ? fabs(f[k]) : most);
         power *= half;
     }
-    return f[0] + parabola(f[1], f[2], half) + rest +
-           (DBL_EPSILON * (ULPS + (double)h->n) * rounding);
+    const double unit = DBL_EPSILON * (ULPS + (double)h->n);
+    const double off = unit * s.rounding[0];
+    *floor = off * ((2.0 * cabs(s.a[0])) + off);
+    return f[0] + parabola(f[1], f[2], half) + rest + (unit * rounding);
 }
 
 static void consider(search *s, const mt_panel *in, mt_near w)
@@ -199,13 +202,16 @@ static void exhaust(search *s, const mt_panel *panel)
     while (depth > 0) {
         const mt_panel p = stack[--depth];
         const mt_near centre = centre_of(&p);
-        const double most = bound(s->h, &p, centre);
+        double floor = 0.0;
+        const double most = bound(s->h, &p, centre, &floor);
         const double before = s->f;
         consider(s, &p, centre);
         if (s->f > before * (1.0 + EXCESS)) {
             climb(s);
         }
-        if (most <= s->f * (1.0 + EXCESS) || depth + 2 > MT_PANEL_DEPTH || s->left <= 0 ||
+        /* what rounding takes is not proven away by halving: the rest need not be smaller */
+        const double may = (s->f * (1.0 + EXCESS)) + (2.0 * floor);
+        if (most <= may || depth + 2 > MT_PANEL_DEPTH || s->left <= 0 ||
             !(p.a < centre.t && centre.t < p.b)) {
             s->proven = fmax(s->proven, most);
             continue;

@@ -23,7 +23,7 @@ static double exact_square(const rig *g, const mt_panel *p, double part)
 static void check(mt_test *t, mt_random *random, const rig *g, const mt_frf *h,
                   const mt_panel *p, double *above)
 {
-    const double most = bound(h, p, centre_of(p));
+    const double most = bound(h, p, centre_of(p), &(double){0.0});
     double seen = 0.0;
     for (int k = 0; k <= PLACES; k++) {
         const double part = k < 2 ? k : mt_random_in(random, 0.0, 1.0);
@@ -72,4 +72,36 @@ static void bound__is_above_every_frequency_of_an_interval(mt_test *t)
     CHECK(t, 10 * close > 9 * panels);
 }
 
-MT_TEST_MAIN(MT_TEST(bound__is_above_every_frequency_of_an_interval))
+/* Where the summands cancel to rounding, no halving proves more: the search ends, long before
+ * it has looked at all intervals that it may, and what it says to have proven is true. */
+static void search__ends_where_only_rounding_is_left(mt_test *t)
+{
+    static const double parts[] = {1.0, 0.3, -1.3};
+    mt_arena mem = {0};
+    REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
+    for (int damped = 0; damped < 2; damped++) {
+        double complex pole[6];
+        double complex residue[6];
+        for (int i = 0; i < 3; i++) {
+            const ptrdiff_t at = 2 * (ptrdiff_t)i;
+            pole[at] = mt_frf_complex(-0.1 * damped, 9.0);
+            pole[at + 1] = conj(pole[at]);
+            residue[at] = mt_frf_complex(0.0, parts[i]);
+            residue[at + 1] = conj(residue[at]);
+        }
+        const mt_pole_sum sum = {.n = 6, .s = pole, .residue = residue};
+        mt_frf h;
+        mt_test_row(t, "damped %d", damped);
+        REQUIRE(t, mt_frf_init(&h, &sum, &mem, NULL) == MT_OK);
+        search s = {.h = &h, .lower = 1.0, .upper = 8.0, .f = -1.0, .left = MOST_INTERVALS};
+        look(&s);
+        climb(&s);
+        prove(&s);
+        CHECK(t, s.left > MOST_INTERVALS / 20 * 19);
+        CHECK(t, s.f >= 0.0 && s.f < 1e-29 && s.proven >= s.f && s.proven < 1e-26);
+    }
+    mt_arena_free(&mem);
+}
+
+MT_TEST_MAIN(MT_TEST(bound__is_above_every_frequency_of_an_interval),
+             MT_TEST(search__ends_where_only_rounding_is_left))
