@@ -46,15 +46,18 @@ typedef enum mt_status { MT_STATUS_LIST(MT_STATUS_ENUM) MT_STATUS_COUNT } mt_sta
 #undef MT_STATUS_ENUM
 
 /* What a caller wants of long work that is under way (mt_solve_options). */
-typedef enum mt_wish {
-    MT_WISH_NONE,   /* go on */
-    MT_WISH_FINISH, /* end the search, make what was found ready */
-    MT_WISH_END     /* at once, also where what was found is being made ready */
-} mt_wish;
+typedef enum mt_stop_request {
+    MT_STOP_REQUEST_NONE,   /* go on */
+    MT_STOP_REQUEST_FINISH, /* end the search, make what was found ready */
+    MT_STOP_REQUEST_END     /* at once, also where what was found is being made ready */
+} mt_stop_request;
 
 /* Why he wants it to end, which the answer says. At a time limit the best design that was found
  * is analysed anew, however late. */
-typedef enum mt_cause { MT_CAUSE_INTERRUPT, MT_CAUSE_TIME_LIMIT } mt_cause;
+typedef enum mt_stop_reason {
+    MT_STOP_REASON_INTERRUPT,
+    MT_STOP_REASON_TIME_LIMIT
+} mt_stop_reason;
 
 enum { MT_ERR_TEXT_SIZE = 1024 };
 

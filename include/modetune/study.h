@@ -51,15 +51,15 @@ typedef struct mt_solve_options {
     /* [variables of the study] one more design to start from, finite; what lies outside of its
      * bounds is moved to them. NULL: none */
     const double *hint;
-    /* NULL, or asked for an mt_wish before every small piece of work, by all workers at once;
-     * what it said once it need not say again */
+    /* NULL, or asked for an mt_stop_request before every small piece of work, by all workers at
+     * once; what it said once it need not say again */
     int (*stop)(void *context);
     void *stop_context;
     /* NULL, or called from the caller's thread with one line of text, when a search begins and
      * now and then */
     void (*progress)(void *context, const char *text);
     void *progress_context;
-    /* NULL, or asked, with stop_context, of an answer that was cut: an mt_cause */
+    /* NULL, or asked, with stop_context, of an answer that was cut: an mt_stop_reason */
     int (*cause)(void *context);
 } mt_solve_options;
 
@@ -92,10 +92,10 @@ MT_API double mt_study_variable_original(const mt_study *study, int variable);
 MT_API double mt_study_variable_lower(const mt_study *study, int variable);
 MT_API double mt_study_variable_upper(const mt_study *study, int variable);
 
-/* A `stop` whose stop_context is an int, an mt_wish that any thread, or a handler of a signal,
- * may set there meanwhile. For who has no C function to give, or a slow one: it is asked
- * often. NULL: MT_WISH_NONE. */
-MT_API int mt_wish_at(void *wish);
+/* A `stop` whose stop_context is an int, an mt_stop_request that any thread, or a handler of a
+ * signal, may set there meanwhile. For who has no C function to give, or a slow one: it is
+ * asked often. NULL: MT_STOP_REQUEST_NONE. */
+MT_API int mt_stop_request_at(void *request);
 
 /**
  * Answer a study: the original design described, searched for better ones, each recommendation

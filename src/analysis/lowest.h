@@ -7,7 +7,11 @@
 #include "tree/tree.h"
 
 /* Which way they were found; NONE: there is no way. */
-typedef enum mt_lowest_way { MT_LOWEST_NONE, MT_LOWEST_TREE, MT_LOWEST_SPARSE } mt_lowest_way;
+typedef enum mt_lowest_method {
+    MT_LOWEST_NONE,
+    MT_LOWEST_TREE,
+    MT_LOWEST_SPARSE
+} mt_lowest_method;
 enum { MT_LOWEST_WHY = MT_TREE_WHY + MT_ABSOLUTE_WHY + 100 };
 
 typedef struct mt_lowest_want {
@@ -25,7 +29,7 @@ typedef struct mt_lowest_want {
 typedef struct mt_lowest {
     mt_arena mem;
     mt_system *sys; /* owned */
-    mt_lowest_way way;
+    mt_lowest_method way;
     mt_tree *tree;           /* NULL: the configuration is no such tree */
     mt_absolute bodies;      /* of the sparse way */
     mt_state position;       /* where loads bring it; sys NULL: as drawn */

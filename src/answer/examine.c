@@ -13,12 +13,12 @@
 #include <string.h>
 
 #include "analysis/count.h"
-#include "answer/doubts.h"
+#include "answer/warnings.h"
 #include "base/format.h"
 #include "base/text.h"
-#include "model/judge.h"
+#include "model/lint.h"
 #include "model/values.h"
-#include "problem/beside.h"
+#include "problem/mode_band_pairs.h"
 
 enum { TIMES_SIZE = 32 };
 
@@ -30,8 +30,9 @@ static const double FAR_BAND = 10.0;
 
 typedef struct reach {
     const mt_goal *goal;
-    int *above;  /* [2 bands] modes above each, at the first design looked at (-1: none yet) */
-    double room; /* least of a mode beside a band (beside.h); 0 or less: one is inside */
+    int *above; /* [2 bands] modes above each, at the first design looked at (-1: none yet) */
+    /* least of a mode beside a band (mode_band_pairs.h); 0 or less: one is inside */
+    double room;
 } reach;
 
 static void look(reach *r, const mt_modes *modes)
@@ -42,7 +43,7 @@ static void look(reach *r, const mt_modes *modes)
     for (int i = 0; i < modes->count; i++) {
         vibrations += modes->kind[i] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
-    r->room = fmin(r->room, mt_bands_look(bands, modes, below));
+    r->room = fmin(r->room, mt_bands_find(bands, modes, below));
     for (int b = 0; b < bands->n; b++) {
         const int above = vibrations - below[b];
         if (r->above[b] >= 0 && above != r->above[b]) {
@@ -104,7 +105,7 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     return rc;
 }
 
-static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_err *err)
+static mt_status examine_bands(const mt_study *s, int g, mt_warning_list *out, mt_err *err)
 {
     const mt_goal *const goal = &s->goals[g];
     reach r = {.goal = goal, .room = HUGE_VAL};
@@ -120,16 +121,16 @@ static mt_status examine_bands(const mt_study *s, int g, mt_doubt_list *out, mt_
         const char *const which =
             mt_arena_printf(out->mem, "its bands, %.4g to %.4g Hz, have no effect",
                             bands->items[0].lower_hz, bands->items[bands->n - 1].upper_hz);
-        mt_doubt *const d =
+        mt_warning *const d =
             isfinite(r.room)
-                ? mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
-                               "%s: within the bounds no mode comes nearer than a factor of "
-                               "%.3g (sampled); are they in Hz?",
-                               which == NULL ? "" : which, exp(r.room))
-                : mt_doubt_add(out, MT_LEVEL_DOUBT, "no_effect",
-                               "%s: within the bounds there is no vibration mode at all "
-                               "(sampled)",
-                               which == NULL ? "" : which);
+                ? mt_warning_add(out, MT_LEVEL_WARNING, "no_effect",
+                                 "%s: within the bounds no mode comes nearer than a factor of "
+                                 "%.3g (sampled); are they in Hz?",
+                                 which == NULL ? "" : which, exp(r.room))
+                : mt_warning_add(out, MT_LEVEL_WARNING, "no_effect",
+                                 "%s: within the bounds there is no vibration mode at all "
+                                 "(sampled)",
+                                 which == NULL ? "" : which);
         if (d != NULL) {
             d->addr = goal->addr;
         }
@@ -152,7 +153,7 @@ static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analy
     return pos < 0 ? nan("") : mt_modal_hz(&a->modes, pos);
 }
 
-static void doubt_target(mt_doubt_list *out, const mt_goal *goal, mt_goal_slot slot, double hz)
+static void warn_target(mt_warning_list *out, const mt_goal *goal, mt_goal_slot slot, double hz)
 {
     const double asked = goal->number[slot];
     const bool above = slot != MT_SLOT_AT_MOST;
@@ -166,22 +167,22 @@ static void doubt_target(mt_doubt_list *out, const mt_goal *goal, mt_goal_slot s
     if (isfinite(factor)) {
         (void)mt_snprintf(times, sizeof times, "%.3g times", factor);
     }
-    mt_doubt *const d =
-        mt_doubt_add(out, MT_LEVEL_DOUBT, "target",
-                     "%s %.6g Hz is %s %s the original frequency, %.6g Hz: is the unit Hz?",
-                     mt_goal_member_name(mt_goal_kind_of(goal->type), slot), asked, times,
-                     ratio >= 1.0 ? "above" : "below", hz);
+    mt_warning *const d =
+        mt_warning_add(out, MT_LEVEL_WARNING, "target",
+                       "%s %.6g Hz is %s %s the original frequency, %.6g Hz: is the unit Hz?",
+                       mt_goal_member_name(mt_goal_kind_of(goal->type), slot), asked, times,
+                       ratio >= 1.0 ? "above" : "below", hz);
     if (d != NULL) {
         d->addr = goal->number_addr[slot];
     }
 }
 
 /* Goals ask for modes of a position that does not hold: said with them. */
-static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int first)
+static void add_goals(const mt_study *s, int c, mt_warning_list *of_model, int first)
 {
     const char *const name = s->model->configurations[c].name.s;
     for (int i = first; i < of_model->n; i++) {
-        mt_doubt *const d = &of_model->items[i];
+        mt_warning *const d = &of_model->items[i];
         if (strcmp(d->kind, "unstable") == 0 && d->configuration != NULL &&
             strcmp(d->configuration, name) == 0) {
             d->text = mt_arena_printf(of_model->mem,
@@ -194,25 +195,25 @@ static void add_goals(const mt_study *s, int c, mt_doubt_list *of_model, int fir
 
 /* The numbers of a reference's model, where it is another one: what it gives as a target is as
  * doubtful as they are. */
-static mt_status examine_reference(const mt_study *s, const mt_reference *r, mt_doubt_list *out,
-                                   mt_err *err)
+static mt_status examine_reference(const mt_study *s, const mt_reference *r,
+                                   mt_warning_list *out, mt_err *err)
 {
     if (r->model == NULL || r->model == s->model || r->configuration < 0) {
         return MT_OK;
     }
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_doubt_list list = mt_doubt_list_default(&mem);
+    mt_warning_list list = mt_warning_list_default(&mem);
     double *const value = mt_arena_f64(&mem, (size_t)r->model->n_nums, 1);
     mt_status rc =
         mt_model_numbers(r->model, r->configuration, 0, NULL, NULL, &mem, value, err);
     if (rc == MT_OK) {
-        mt_model_judge(r->model, r->configuration, value, &list);
+        mt_model_lint(r->model, r->configuration, value, &list);
     }
     for (int i = 0; rc == MT_OK && i < list.n; i++) {
-        if (list.items[i].level == MT_LEVEL_DOUBT) {
+        if (list.items[i].level == MT_LEVEL_WARNING) {
             list.items[i].file = r->model_path.s;
-            mt_doubt_copy(out, &list.items[i]);
+            mt_warning_copy(out, &list.items[i]);
         }
     }
     rc = rc == MT_OK ? mt_arena_check(&mem, err) : rc;
@@ -232,8 +233,8 @@ static double measured_hz(const mt_study *s, const mt_goal *goal)
 
 /* Frequencies of a reference in parts of the model's: 2 pi says rad/s, 60 turns per minute.
  * Models are not wrong by as much in all modes alike. */
-static void doubt_reference(const mt_study *s, int reference, const double *ratio,
-                            mt_doubt_list *out)
+static void warn_reference(const mt_study *s, int reference, const double *ratio,
+                           mt_warning_list *out)
 {
     static const struct {
         double factor;
@@ -256,8 +257,8 @@ static void doubt_reference(const mt_study *s, int reference, const double *rati
         if (n < LEAST_MODES || (above < n && below < n)) {
             continue;
         }
-        mt_doubt *const d = mt_doubt_add(
-            out, MT_LEVEL_DOUBT, "reference",
+        mt_warning *const d = mt_warning_add(
+            out, MT_LEVEL_WARNING, "reference",
             "the %d frequencies of reference \"%s\" that goals ask for are all about %.3g "
             "times "
             "%s the model's: %s",
@@ -276,13 +277,13 @@ static void doubt_reference(const mt_study *s, int reference, const double *rati
 
 /* ratio[n_goals]: of what references ask for to what the model has, as far as they are seen. */
 static mt_status examine_configuration(const mt_study *s, int c, double *ratio,
-                                       mt_doubt_list *of_study, mt_doubt_list *of_model,
+                                       mt_warning_list *of_study, mt_warning_list *of_model,
                                        mt_err *err)
 {
     mt_analysis *a = NULL;
     const int first = of_model->n;
     mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
-    rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
+    rc = rc == MT_OK ? mt_warnings_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
     /* modes are counted as the study does */
     rc = rc == MT_OK ? mt_analysis_count(a, &s->counted, NULL, 0.0, err) : rc;
     if (rc == MT_OK && a->n_rigid != a->n_null) {
@@ -302,7 +303,7 @@ static mt_status examine_configuration(const mt_study *s, int c, double *ratio,
             const double hz = original_hz(s, goal, a);
             ratio[g] = hz > 0.0 ? measured_hz(s, goal) / hz : nan("");
             for (int slot = MT_SLOT_EQUALS; slot <= MT_SLOT_AT_MOST; slot++) {
-                doubt_target(of_study, goal, (mt_goal_slot)slot, hz);
+                warn_target(of_study, goal, (mt_goal_slot)slot, hz);
             }
         }
     }
@@ -324,7 +325,7 @@ static int count_asked(const mt_study *study, double *work)
     around *= (2.0 * study->n_variables) + 3.0;
     for (int c = 0; c < study->model->n_configurations; c++) {
         if (mt_study_asks(study, c)) {
-            const double takes = mt_doubts_work(study->model, c);
+            const double takes = mt_warnings_work(study->model, c);
             *work += takes;
             most = fmax(most, takes);
             asked++;
@@ -341,17 +342,17 @@ bool mt_study_takes_more(const mt_study *study, double most_work)
     return work > most_work;
 }
 
-mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_list *out,
+mt_status mt_study_examine(const mt_study *study, double most_work, mt_warning_list *out,
                            mt_err *err)
 {
     const int first = out->n;
     double work = 0.0;
     const int asked = count_asked(study, &work);
     const bool look = work <= most_work;
-    for (int i = 0; i < study->doubts.n; i++) {
-        mt_doubt_copy(out, &study->doubts.items[i]);
+    for (int i = 0; i < study->warning_list.n; i++) {
+        mt_warning_copy(out, &study->warning_list.items[i]);
     }
-    mt_doubt_list of_model = mt_doubt_list_default(out->mem);
+    mt_warning_list of_model = mt_warning_list_default(out->mem);
     double *const ratio = mt_arena_f64(out->mem, (size_t)study->n_goals, 1);
     MT_TRY(mt_arena_check(out->mem, err));
     for (int c = 0; c < study->model->n_configurations && look; c++) {
@@ -365,23 +366,23 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_doubt_lis
         }
     }
     for (int i = 0; i < study->n_references; i++) {
-        doubt_reference(study, i, ratio, out);
+        warn_reference(study, i, ratio, out);
     }
     for (int i = first; i < out->n; i++) {
-        mt_doubt *const d = &out->items[i];
+        mt_warning *const d = &out->items[i];
         d->file = mt_text_base_name(study->path);
-        mt_study_place_doubt(study, d);
+        mt_study_place_warning(study, d);
     }
     for (int i = 0; i < of_model.n; i++) {
         of_model.items[i].file = study->model_path.s;
-        mt_doubt_copy(out, &of_model.items[i]);
+        mt_warning_copy(out, &of_model.items[i]);
     }
     if (!look) {
-        mt_doubts_left_out(asked, out);
+        mt_warnings_left_out(asked, out);
     }
     for (int i = 0; i < study->n_references; i++) {
         MT_TRY(examine_reference(study, &study->references[i], out, err));
     }
-    mt_doubt_accept(out, first, &study->accepted);
+    mt_warning_accept(out, first, &study->accepted);
     return mt_arena_check(out->mem, err);
 }

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-#include "answer/spread.h"
+#include "answer/weight_sensitivity.h"
 #include "base/options.h"
 #include "base/workers.h"
 #include "describe/describe.h"
@@ -20,8 +20,8 @@
 static bool is_asked(const mt_answer *a, mt_phase which)
 {
     switch (which) {
-    case MT_PHASE_SPREAD:
-        return a->searched && mt_spread_is_asked(a->p);
+    case MT_PHASE_WEIGHT_SENSITIVITY:
+        return a->searched && mt_weight_sensitivity_is_asked(a->p);
     case MT_PHASE_PUBLISHED:
         return a->study->n_published > 0;
     case MT_PHASE_TRADE:
@@ -69,7 +69,7 @@ static const char *values_text(const mt_problem *p, const double *x, mt_arena *m
 
 /* The values of designs that there was no time to analyse anew: hours of search may be in
  * them. */
-static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
+static mt_status report_undescribed(const mt_answer *a, mt_err *err)
 {
     mt_result *const r = a->result;
     const mt_problem *const p = a->p;
@@ -83,7 +83,7 @@ static mt_status tell_undescribed(const mt_answer *a, mt_err *err)
         mt_unchecked *const u = &r->unchecked[i];
         u->values = mt_arena_f64(&r->mem, (size_t)p->n, 1);
         MT_TRY(mt_arena_check(&r->mem, err));
-        mt_case_x(&a->asked, a->found.solutions[first + i].t, u->values);
+        mt_subproblem_x(&a->asked, a->found.solutions[first + i].t, u->values);
         u->text = values_text(p, u->values, &r->mem);
         r->n_unchecked++;
     }
@@ -97,16 +97,16 @@ static mt_status leave(mt_answer *a, mt_phase which, mt_err *err)
     if (which == MT_PHASE_SEARCH) {
         /* nothing counts but the designs that it met: they are judged anew */
         a->found.stop = MT_STOP_USER;
-        a->found.n_undetermined = 0;
+        a->found.n_unidentifiable = 0;
         a->found.n_once = 0;
         a->found.missing = nan("");
         a->why = (mt_err){.code = MT_OK};
         a->result->run.distinct_designs = -1;
-        a->result->run.found_once = -1;
-        a->result->run.estimated_missing = nan("");
+        a->result->run.singletons = -1;
+        a->result->run.estimated_unseen = nan("");
         a->result->run.n_history = 0;
     } else if (which == MT_PHASE_RECOMMENDATIONS) {
-        return tell_undescribed(a, err);
+        return report_undescribed(a, err);
     } else if (which == MT_PHASE_CERTIFICATES) {
         a->infeasible = false;
         a->impossible = false;
@@ -132,7 +132,7 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
         return MT_OK;
     }
     a->mark = mt_result_get_mark(a->result);
-    a->scope = mt_scope_in(a->whole, phases[which].name);
+    a->task_path = mt_task_path_enter(a->whole, phases[which].name);
     mt_interrupt_enter(a->interrupt, (int)which, phases[which].makes_ready);
     a->spent->phase = (int)which;
     mt_progress_phase(a->study->model->progress, phases[which].name, which == MT_PHASE_SEARCH);
@@ -156,15 +156,15 @@ static int positions_of(long most)
 long mt_question_left(const mt_question *q)
 {
     const mt_search *const s = &q->study.search;
-    const long spent =
-        mt_spent_of(&q->spent, MT_SPENT_DESIGNS) + mt_spent_of(&q->spent, MT_SPENT_POSITIONS);
+    const long spent = mt_work_counters_of(&q->spent, MT_WORK_DESIGNS) +
+                       mt_work_counters_of(&q->spent, MT_WORK_POSITIONS);
     const long left = s->max_evaluations <= 0      ? LONG_MAX
                       : spent < s->max_evaluations ? s->max_evaluations - spent
                                                    : 0;
     if (s->solutions_each <= 0) {
         return left;
     }
-    const long solved = mt_spent_of(&q->spent, MT_SPENT_MODAL);
+    const long solved = mt_work_counters_of(&q->spent, MT_WORK_MODAL);
     const long other = solved < s->max_modal_solutions
                            ? (s->max_modal_solutions - solved) / s->solutions_each
                            : 0;
@@ -176,7 +176,7 @@ static void set_budget(mt_question *q)
 {
     mt_search *const s = &q->study.search;
     if (s->max_modal_solutions > 0) {
-        const long each = mt_case_solutions(&q->p->whole);
+        const long each = mt_subproblem_solutions(&q->p->whole);
         s->solutions_each = each > 1 ? each : 1;
         const long n = s->max_modal_solutions / s->solutions_each;
         s->by_solutions = s->max_evaluations <= 0 || n < s->max_evaluations;
@@ -223,7 +223,7 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
     mt_interrupt_init(&q->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
     q->interrupt.cause = opt->cause;
     mt_interrupt_enter(&q->interrupt, MT_PHASE_BASELINE, true);
-    mt_spent_init(&q->spent);
+    mt_work_counters_init(&q->spent);
     MT_TRY(ask(q, study, err));
     const mt_status rc = mt_problem_new(&q->study, &q->p, &own);
     if (rc == MT_OK) {
@@ -250,11 +250,11 @@ static const double OF_TOLERANCE = 1e-3;
 static double search_accuracy(const mt_problem *p)
 {
     double least = SEARCH_ACCURACY;
-    for (int i = 0; i < p->n_demands; i++) {
-        least = fmin(least, OF_TOLERANCE * p->demands[i].tolerance);
+    for (int i = 0; i < p->n_requirements; i++) {
+        least = fmin(least, OF_TOLERANCE * p->requirements[i].tolerance);
     }
-    for (int i = 0; i < p->n_clears; i++) {
-        least = fmin(least, OF_TOLERANCE * p->clears[i].tolerance);
+    for (int i = 0; i < p->n_avoidances; i++) {
+        least = fmin(least, OF_TOLERANCE * p->avoidances[i].tolerance);
     }
     return fmax(least, MT_MODAL_ACCURACY);
 }
@@ -270,7 +270,8 @@ static mt_status open_workers(mt_answer *a, int threads, mt_err *err)
     for (int i = 0; i < n; i++) {
         MT_TRY(mt_workspace_new(a->p, &a->workers[i], err));
         a->workers[i]->accuracy = search_accuracy(a->p);
-        a->workers[i]->scope = i == 0 ? &a->scope : NULL; /* tasks have places of their own */
+        /* tasks have places of their own */
+        a->workers[i]->task_path = i == 0 ? &a->task_path : NULL;
         mt_workspace_back(a->workers[i], &a->asked);
         a->n_workers = i + 1;
     }
@@ -301,7 +302,7 @@ static mt_status begin(mt_answer *a, const mt_solve_options *opt, mt_err *err)
     MT_TRY(end_at_once(a->q, rc, &own, err));
     a->workers[0]->progress = opt->progress; /* the first worker's: one line at a time */
     a->workers[0]->progress_context = opt->progress_context;
-    a->searched = a->p->n > 0 && (a->p->n_demands > 0 || a->p->n_clears > 0);
+    a->searched = a->p->n > 0 && (a->p->n_requirements > 0 || a->p->n_avoidances > 0);
     if (a->searched && opt->progress != NULL) { /* however few designs its worker evaluates */
         opt->progress(opt->progress_context, "searching: the first designs are evaluated");
     }
@@ -318,11 +319,12 @@ static void *kept(const mt_answer *a, mt_phase which, void *list, int n)
     return n == 0 && cut ? NULL : list;
 }
 
-static mt_status tell_cut_lists(mt_answer *a, mt_err *err)
+static mt_status report_cut_lists(mt_answer *a, mt_err *err)
 {
     mt_result *const r = a->result;
-    r->undetermined = kept(a, MT_PHASE_SEARCH, r->undetermined, r->n_undetermined);
-    r->spread = kept(a, MT_PHASE_SPREAD, r->spread, r->n_spread);
+    r->unidentifiable = kept(a, MT_PHASE_SEARCH, r->unidentifiable, r->n_unidentifiable);
+    r->weight_sensitivity =
+        kept(a, MT_PHASE_WEIGHT_SENSITIVITY, r->weight_sensitivity, r->n_weight_sensitivity);
     r->certificates = kept(a, MT_PHASE_CERTIFICATES, r->certificates, r->n_certificates);
     r->relaxations = kept(a, MT_PHASE_RELAXATIONS, r->relaxations, r->n_relaxations);
     r->published = kept(a, MT_PHASE_PUBLISHED, r->published, r->n_published);
@@ -348,7 +350,7 @@ static mt_status conduct_part(mt_answer *a, mt_err *err)
 static mt_status conclude(mt_answer *a, mt_err *err)
 {
     MT_TRY(phase(a, MT_PHASE_RECOMMENDATIONS, err));
-    MT_TRY(phase(a, MT_PHASE_SPREAD, err));
+    MT_TRY(phase(a, MT_PHASE_WEIGHT_SENSITIVITY, err));
     MT_TRY(phase(a, MT_PHASE_CERTIFICATES, err));
     if (mt_describe_is_doubted(a->result)) {
         MT_TRY(mt_describe_withdraw(a->result, err));
@@ -358,18 +360,18 @@ static mt_status conclude(mt_answer *a, mt_err *err)
     a->result->run.starts = a->found.starts;
     MT_TRY(mt_answer_set_status(a, err));
     MT_TRY(phase(a, MT_PHASE_PUBLISHED, err));
-    MT_TRY(tell_cut_lists(a, err));
+    MT_TRY(report_cut_lists(a, err));
     MT_TRY(mt_describe_own(a->study, a->result, err));
     MT_TRY(phase(a, MT_PHASE_TRADE, err));
-    mt_answer_note_spent(a);
+    mt_answer_note_work_counters(a);
     return mt_answer_note_cuts(a, err);
 }
 
-static mt_status early_result(mt_answer *now, mt_err *err)
+static mt_status incumbent_result(mt_answer *now, mt_err *err)
 {
     now->spent->phase = MT_PHASE_BASELINE;
     MT_TRY(mt_answer_baseline(now, err));
-    MT_TRY(mt_answer_take_gaps(now, err));
+    MT_TRY(mt_answer_take_placements(now, err));
     now->found.n_solutions = 1;
     now->mark = mt_result_get_mark(now->result);
     mt_interrupt_cut(now->interrupt, MT_PHASE_SEARCH);
@@ -377,26 +379,26 @@ static mt_status early_result(mt_answer *now, mt_err *err)
     return conclude(now, err);
 }
 
-mt_status mt_answer_early(void *answer, const mt_gap_result *found, mt_err *err)
+mt_status mt_answer_incumbent(void *answer, const mt_mode_placement_result *found, mt_err *err)
 {
     const mt_answer *const a = answer;
-    mt_interrupt own; /* the whole is not cut by what this leaves out */
-    mt_spent spent;   /* nor does it pay for what is told early */
+    mt_interrupt own;       /* the whole is not cut by what this leaves out */
+    mt_work_counters spent; /* nor does it pay for what is told early */
     mt_answer now = *a;
-    mt_interrupt_init(&own, a->interrupt->wish, a->interrupt->context, NULL);
+    mt_interrupt_init(&own, a->interrupt->request, a->interrupt->context, NULL);
     now.interrupt = &own;
-    mt_spent_copy(a->spent, &spent);
+    mt_work_counters_copy(a->spent, &spent);
     now.spent = &spent;
     a->q->model.spent = &spent;
     now.mem = (mt_arena){.first = NULL};
-    now.gaps = *found;
+    now.placements = *found;
     now.result = NULL;
     mt_status rc = mt_arena_init(&now.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&now.result, err) : rc;
-    rc = rc == MT_OK ? early_result(&now, err) : rc;
+    rc = rc == MT_OK ? incumbent_result(&now, err) : rc;
     a->q->model.spent = a->spent;
     if (!mt_interrupted(a->interrupt)) { /* else that brings it about */
-        rc = rc == MT_OK ? a->early->tell(a->early->context, now.result, err) : rc;
+        rc = rc == MT_OK ? a->incumbent->tell(a->incumbent->context, now.result, err) : rc;
     } else if (!mt_is_final(rc)) {
         rc = MT_OK;
     }
@@ -407,7 +409,7 @@ mt_status mt_answer_early(void *answer, const mt_gap_result *found, mt_err *err)
 
 static mt_status conduct(mt_answer *a, mt_err *err)
 {
-    if (a->whole != NULL && a->whole->ledger != NULL && a->whole->ledger->parts > 0 &&
+    if (a->whole != NULL && a->whole->store != NULL && a->whole->store->parts > 0 &&
         !a->whole->inner) {
         return conduct_part(a, err);
     }
@@ -415,14 +417,16 @@ static mt_status conduct(mt_answer *a, mt_err *err)
     return conclude(a, err);
 }
 
-mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt, const mt_scope *scope,
-                             const mt_early *early, mt_result **out, mt_err *err)
+mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt,
+                             const mt_task_path *task_path,
+                             const mt_incumbent_callback *incumbent, mt_result **out,
+                             mt_err *err)
 {
     mt_answer a = {.q = q, .study = &q->study, .p = q->p, .interrupt = &q->interrupt};
     a.spent = &q->spent;
     a.threads = opt->threads;
-    a.whole = scope;
-    a.early = early;
+    a.whole = task_path;
+    a.incumbent = incumbent;
     *out = NULL;
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
@@ -447,7 +451,8 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
 }
 
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
-                              mt_ledger *ledger, const mt_early *early, mt_result **out,
+                              mt_checkpoint_store *store,
+                              const mt_incumbent_callback *incumbent, mt_result **out,
                               mt_err *err)
 {
     mt_solve_options use;
@@ -463,9 +468,9 @@ mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt
         }
     }
     mt_status rc = mt_question_init(&q, study, &use, err);
-    const mt_scope whole = {
-        .ledger = ledger, .interrupt = &q.interrupt, .progress = study->model->progress};
-    rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, early, out, err) : rc;
+    const mt_task_path whole = {
+        .store = store, .interrupt = &q.interrupt, .progress = study->model->progress};
+    rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, incumbent, out, err) : rc;
     mt_question_free(&q);
     return rc;
 }

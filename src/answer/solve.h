@@ -7,10 +7,10 @@
 
 /* Is called before a proof that may take long, with the answer so far (status "interrupted"):
  * it may be kept in case that the whole one never comes. */
-typedef struct mt_early {
+typedef struct mt_incumbent_callback {
     mt_status (*tell)(void *context, mt_result *so_far, mt_err *err);
     void *context;
-} mt_early;
+} mt_incumbent_callback;
 
 /* mt_study_solve with what earlier runs of the same question have left of their tasks, and a
  * place for this one's; NULL: neither. Whatever a ledger knows, the result is the same. Where
@@ -18,7 +18,8 @@ typedef struct mt_early {
  * question what it says at once, and what matters is in the ledger. early may be NULL. Fails
  * also: as early->tell. */
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
-                              mt_ledger *ledger, const mt_early *early, mt_result **out,
+                              mt_checkpoint_store *store,
+                              const mt_incumbent_callback *incumbent, mt_result **out,
                               mt_err *err);
 
 #endif

@@ -5,14 +5,14 @@
 #include <math.h>
 
 #include "answer/examine.h"
-#include "answer/spread.h"
 #include "answer/trade.h"
+#include "answer/weight_sensitivity.h"
 #include "describe/certificates.h"
-#include "describe/describe_discrete.h"
-#include "describe/describe_relax.h"
-#include "problem/robust_cut.h"
-#include "search/hopeless.h"
-#include "search/motion.h"
+#include "describe/describe_catalogue_search.h"
+#include "describe/describe_relaxation.h"
+#include "problem/tolerance_cut.h"
+#include "search/drive_path.h"
+#include "search/infeasible_presolve.h"
 #include "search/search.h"
 
 /* The original design, without which there is nothing to tell. */
@@ -25,9 +25,9 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     MT_TRY(mt_describe_excitations(a->study, result, err));
     MT_TRY(mt_describe_asked_curves(p, result, err));
     if (!a->study->examined) {
-        mt_doubt_list list = mt_doubt_list_default(&result->mem);
+        mt_warning_list list = mt_warning_list_default(&result->mem);
         MT_TRY(mt_study_examine(a->study, HUGE_VAL, &list, err));
-        MT_TRY(mt_result_take_doubts(result, &list, err));
+        MT_TRY(mt_result_take_warnings(result, &list, err));
     }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
     return mt_describe_baseline_reasons(p, result, err);
@@ -36,15 +36,15 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
 /* Where the budget is one of modal solutions, what those of the original design count as. */
 static long original(const mt_answer *a)
 {
-    const long solved = mt_spent_in(a->spent, MT_PHASE_BASELINE, MT_SPENT_MODAL);
-    return mt_case_worth(&a->asked, solved);
+    const long solved = mt_work_counters_in(a->spent, MT_PHASE_BASELINE, MT_WORK_MODAL);
+    return mt_subproblem_worth(&a->asked, solved);
 }
 
 /* Evaluations to describe one design: mt_describe_design, and its motions. What its tolerances
  * take is known from the original design. */
 static long description(const mt_answer *a)
 {
-    const long most = 2 + mt_motion_most(&a->asked);
+    const long most = 2 + mt_drive_path_most(&a->asked);
     const long worth = original(a);
     return most > worth ? most : worth;
 }
@@ -70,15 +70,15 @@ static void allow_search(mt_answer *a)
     const long part = left / PART_AFTER;
     const long n = limited(part / description(a), 1, a->study->recommendations);
     const long rest = left - (n * description(a)) - (a->study->n_published > 0 ? 2 : 0) -
-                      (mt_spread_is_asked(a->p) ? part : 0);
+                      (mt_weight_sensitivity_is_asked(a->p) ? part : 0);
     a->asked.search.max_evaluations = rest > 1 ? rest : 1;
-    a->asked.search.judged_as = mt_robust_is_sampled(&a->asked) ? original(a) : 0;
+    a->asked.search.judged_as = mt_tolerance_is_sampled(&a->asked) ? original(a) : 0;
 }
 
 /* Solutions of the search over gap assignments in the form of any other search. */
-mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err)
+mt_status mt_answer_take_placements(mt_answer *a, mt_err *err)
 {
-    const mt_gap_result *const g = &a->gaps;
+    const mt_mode_placement_result *const g = &a->placements;
     a->found.solutions =
         mt_arena_alloc(&a->mem, (size_t)g->n_solutions, sizeof *a->found.solutions);
     MT_TRY(mt_arena_check(&a->mem, err));
@@ -87,9 +87,9 @@ mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err)
     }
     a->found.n_solutions = g->n_solutions;
     a->found.compromise = g->compromise;
-    a->found.n_undetermined = g->n_undetermined;
-    a->found.undetermined = g->undetermined;
-    a->found.undetermined_effect = g->undetermined_effect;
+    a->found.n_unidentifiable = g->n_unidentifiable;
+    a->found.unidentifiable = g->unidentifiable;
+    a->found.unidentifiable_effect = g->unidentifiable_effect;
     a->stage = g->stage;
     a->found.evals = g->evals;
     a->found.steps = g->steps;
@@ -98,27 +98,28 @@ mt_status mt_answer_take_gaps(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-static mt_status search_gaps(mt_answer *a, mt_err *err)
+static mt_status search_placements(mt_answer *a, mt_err *err)
 {
-    const mt_gap_early early = {mt_answer_early, a};
-    MT_TRY(mt_gaps_solve(a->workers, a->n_workers, a->early != NULL ? &early : NULL, &a->mem,
-                         &a->gaps, err));
-    return mt_answer_take_gaps(a, err);
+    const mt_mode_placement_incumbent incumbent = {mt_answer_incumbent, a};
+    MT_TRY(mt_mode_placements_solve(a->workers, a->n_workers,
+                                    a->incumbent != NULL ? &incumbent : NULL, &a->mem,
+                                    &a->placements, err));
+    return mt_answer_take_placements(a, err);
 }
 
 /* What little work shows to be impossible is told before the search, to who watches: so that
  * nothing of the answer, nor of its price, depends on that. */
-static mt_status tell_hopeless(mt_answer *a, mt_err *err)
+static mt_status report_infeasible(mt_answer *a, mt_err *err)
 {
     mt_progress *const progress = a->study->model->progress;
-    const mt_hopeless_question q = {.c = &a->asked, .but = -1, .bands = true};
+    const mt_infeasible_presolve_question q = {.c = &a->asked, .but = -1, .bands = true};
     mt_err own = {.code = MT_OK};
-    bool hopeless = false;
+    bool presolve = false;
     if (progress == NULL || mt_describe_is_doubted(a->result)) {
         return MT_OK;
     }
-    const mt_status rc = mt_hopeless(&q, &a->mem, &hopeless, &own);
-    if (rc == MT_OK && hopeless) {
+    const mt_status rc = mt_infeasible_presolve(&q, &a->mem, &presolve, &own);
+    if (rc == MT_OK && presolve) {
         mt_progress_impossible(progress);
     }
     return mt_pass_final(rc, &own, err);
@@ -126,18 +127,18 @@ static mt_status tell_hopeless(mt_answer *a, mt_err *err)
 
 static mt_status search(mt_answer *a, mt_err *err)
 {
-    if (mt_study_is_discrete(a->study)) {
-        return mt_discrete_solve(a->workers, a->n_workers, &a->mem, &a->found, &a->discrete,
-                                 err);
+    if (mt_study_has_catalogues(a->study)) {
+        return mt_catalogue_search_solve(a->workers, a->n_workers, &a->mem, &a->found,
+                                         &a->discrete, err);
     }
-    if (a->p->n_clears > 0) {
-        return search_gaps(a, err);
+    if (a->p->n_avoidances > 0) {
+        return search_placements(a, err);
     }
     MT_TRY(mt_search_over_tolerances(a->workers, a->n_workers, &a->mem, &a->found, &a->stage,
-                                     &a->posed, &a->why, err));
+                                     &a->at_position, &a->why, err));
     a->result->run.distinct_designs = a->found.compromise ? 0 : a->found.n_found;
-    a->result->run.found_once = a->found.compromise ? 0 : a->found.n_once;
-    a->result->run.estimated_missing = a->found.missing;
+    a->result->run.singletons = a->found.compromise ? 0 : a->found.n_once;
+    a->result->run.estimated_unseen = a->found.missing;
     return MT_OK;
 }
 
@@ -149,7 +150,7 @@ mt_status mt_answer_search(mt_answer *a, mt_err *err)
         MT_TRY(mt_answer_take_original(a, err));
         return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
     }
-    MT_TRY(tell_hopeless(a, err));
+    MT_TRY(report_infeasible(a, err));
     MT_TRY(search(a, err));
     return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
 }
@@ -163,8 +164,8 @@ static bool is_cut(const mt_answer *a, mt_phase which)
 static mt_status describe(const mt_answer *a, int i, mt_result *into, mt_recommendation *rec,
                           mt_err *err)
 {
-    const bool discrete = mt_study_is_discrete(a->study) && !a->unsearched;
-    const bool kinds = a->gaps.n_solutions > 0;
+    const bool discrete = mt_study_has_catalogues(a->study) && !a->unsearched;
+    const bool kinds = a->placements.n_solutions > 0;
     const mt_design design = {.t = a->found.solutions[i].t,
                               .found = &a->found.solutions[i],
                               .stage = a->stage,
@@ -172,11 +173,11 @@ static mt_status describe(const mt_answer *a, int i, mt_result *into, mt_recomme
                               .cut = is_cut(a, MT_PHASE_SEARCH),
                               .unsearched = a->unsearched,
                               .discrete = discrete ? &a->discrete : NULL,
-                              .gaps = kinds ? &a->gaps : NULL,
-                              .below = kinds ? a->gaps.solutions[i].below : NULL,
-                              .posed = a->posed,
-                              .held = kinds ? a->gaps.solutions[i].held : NULL,
-                              .n_held = kinds ? a->gaps.solutions[i].n_held : 0};
+                              .placements = kinds ? &a->placements : NULL,
+                              .below = kinds ? a->placements.solutions[i].below : NULL,
+                              .at_position = a->at_position,
+                              .held = kinds ? a->placements.solutions[i].held : NULL,
+                              .n_held = kinds ? a->placements.solutions[i].n_held : 0};
     MT_TRY(mt_describe_design(a->p, &design, &a->result->baseline, into, rec, err));
     return mt_describe_reasons(a->p, &design, &a->found, into, rec, err);
 }
@@ -205,7 +206,8 @@ typedef struct others {
     bool told;
 } others;
 
-static mt_status describe_other(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status describe_other(void *context, int worker, int task, mt_task_path *own,
+                                mt_err *err)
 {
     const others *const o = context;
     const mt_result *const result = o->a->result;
@@ -220,8 +222,8 @@ static mt_status describe_other(void *context, int worker, int task, mt_scope *o
     p->into->n_objectives = result->n_objectives;
     p->into->curves = result->curves;
     p->into->n_curves = result->n_curves;
-    p->into->undetermined = result->undetermined;
-    p->into->n_undetermined = result->n_undetermined;
+    p->into->unidentifiable = result->unidentifiable;
+    p->into->n_unidentifiable = result->n_unidentifiable;
     MT_TRY(describe(o->a, 1 + task, p->into, &p->rec, err));
     p->whole = !is_cut(o->a, MT_PHASE_RECOMMENDATIONS);
     mt_progress_done(o->progress, o->told);
@@ -274,7 +276,7 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     result->recommendations =
         mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
     MT_TRY(mt_arena_check(&result->mem, err));
-    MT_TRY(mt_describe_undetermined(a->p, found, result, err));
+    MT_TRY(mt_describe_unidentifiable(a->p, found, result, err));
     const bool told = mt_progress_begin(progress, "designs", n);
     mt_status rc = MT_OK;
     if (n > 0 && !is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
@@ -302,12 +304,13 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_answer_spread(mt_answer *a, mt_err *err)
+mt_status mt_answer_weight_sensitivity(mt_answer *a, mt_err *err)
 {
     return a->result->n_recommendations == 0
                ? MT_OK
-               : mt_spread_solve(a->workers, a->n_workers, &a->found.solutions[0], &a->mem,
-                                 mt_question_left(a->q), &a->found.evals, a->result, err);
+               : mt_weight_sensitivity_solve(a->workers, a->n_workers, &a->found.solutions[0],
+                                             &a->mem, mt_question_left(a->q), &a->found.evals,
+                                             a->result, err);
 }
 
 mt_status mt_answer_certify(mt_answer *a, mt_err *err)
@@ -317,12 +320,13 @@ mt_status mt_answer_certify(mt_answer *a, mt_err *err)
             a->result, "least_change", true,
             "The original design meets all goals, and every other design changes more.", err);
     }
-    if (mt_study_is_discrete(a->study)) {
-        return mt_describe_discrete_certificate(&a->discrete, &a->found, a->result,
-                                                &a->infeasible, err);
+    if (mt_study_has_catalogues(a->study)) {
+        return mt_describe_catalogue_certificate(&a->discrete, &a->found, a->result,
+                                                 &a->infeasible, err);
     }
-    if (a->p->n_clears > 0) {
-        return mt_describe_gap_certificate(&a->gaps, a->result, &a->infeasible, err);
+    if (a->p->n_avoidances > 0) {
+        return mt_describe_placement_certificate(&a->placements, a->result, &a->infeasible,
+                                                 err);
     }
     if (!a->found.compromise) {
         return MT_OK;
@@ -336,7 +340,7 @@ mt_status mt_answer_certify(mt_answer *a, mt_err *err)
 }
 
 /* What would let a design exist, where none was found. */
-mt_status mt_answer_relax(mt_answer *a, mt_err *err)
+mt_status mt_answer_relaxation(mt_answer *a, mt_err *err)
 {
     mt_moves moves = {0};
     if (!a->infeasible && !a->impossible && !a->found.compromise) {
@@ -346,10 +350,12 @@ mt_status mt_answer_relax(mt_answer *a, mt_err *err)
     if (left < LONG_MAX) { /* beside what is counted as the search's */
         a->asked.search.max_evaluations = a->found.evals + left;
     }
-    MT_TRY(mt_study_is_discrete(a->study)
-               ? mt_relax_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
-               : mt_relax(a->workers, a->n_workers, &a->found,
-                          a->p->n_clears > 0 ? &a->gaps : NULL, &a->mem, &moves, err));
+    MT_TRY(
+        mt_study_has_catalogues(a->study)
+            ? mt_relaxation_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
+            : mt_relaxation_solve(a->workers, a->n_workers, &a->found,
+                                  a->p->n_avoidances > 0 ? &a->placements : NULL, &a->mem,
+                                  &moves, err));
     a->found.evals += moves.evals;
     a->found.starts += moves.starts;
     if (moves.short_of_budget && a->found.stop != MT_STOP_MAX_EVALS) {
@@ -368,7 +374,7 @@ mt_status mt_answer_publish(mt_answer *a, mt_err *err)
     const bool recommended = a->result->n_recommendations > 0;
     MT_TRY(mt_arena_check(&a->mem, err));
     if (recommended) {
-        mt_case_x(&a->asked, a->found.solutions[0].t, x);
+        mt_subproblem_x(&a->asked, a->found.solutions[0].t, x);
     }
     return mt_describe_published(a->workers[0], a->p->original, recommended ? x : NULL,
                                  a->result, err);
@@ -376,5 +382,5 @@ mt_status mt_answer_publish(mt_answer *a, mt_err *err)
 
 mt_status mt_answer_trade(mt_answer *a, mt_err *err)
 {
-    return mt_trade_solve(a->study, a->threads, &a->scope, a->result, err);
+    return mt_trade_solve(a->study, a->threads, &a->task_path, a->result, err);
 }

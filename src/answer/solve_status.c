@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "answer/doubts.h"
+#include "answer/warnings.h"
 #include "base/format.h"
 #include "base/tie.h"
 #include "describe/certificates.h"
@@ -15,7 +15,7 @@
 static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
 {
     const mt_nlp_result *const f = &a->found;
-    if (!MT_HAS(a->result->run.estimated_missing) || f->n_once == 0) {
+    if (!MT_HAS(a->result->run.estimated_unseen) || f->n_once == 0) {
         return MT_OK;
     }
     const bool some = f->missing >= 1.0;
@@ -52,15 +52,15 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
     }
     if (a->found.stop == MT_STOP_MAX_EVALS) {
         const mt_search *const s = &a->study->search;
-        MT_TRY(
-            mt_describe_warn(a->result, err,
-                             "the budget of %s ran out (%ld of %ld were made in the search): a "
-                             "larger \"%s\" may find more",
-                             s->by_solutions ? "modal solutions" : "evaluations",
-                             mt_spent_in(&a->q->spent, MT_PHASE_SEARCH,
-                                         s->by_solutions ? MT_SPENT_MODAL : MT_SPENT_DESIGNS),
-                             s->by_solutions ? s->max_modal_solutions : s->max_evaluations,
-                             mt_search_budget(s)));
+        MT_TRY(mt_describe_warn(
+            a->result, err,
+            "the budget of %s ran out (%ld of %ld were made in the search): a "
+            "larger \"%s\" may find more",
+            s->by_solutions ? "modal solutions" : "evaluations",
+            mt_work_counters_in(&a->q->spent, MT_PHASE_SEARCH,
+                                s->by_solutions ? MT_WORK_MODAL : MT_WORK_DESIGNS),
+            s->by_solutions ? s->max_modal_solutions : s->max_evaluations,
+            mt_search_budget(s)));
     }
     MT_TRY(warn_of_missing(a, err));
     for (int i = 0; i < a->result->n_recommendations; i++) {
@@ -93,7 +93,7 @@ static bool is_doubtful(const mt_recommendation *best)
 }
 
 /* Answers that do not depend on a search's success; NULL: it does. */
-static const char *early_text(const mt_answer *a, const mt_recommendation *best)
+static const char *incumbent_text(const mt_answer *a, const mt_recommendation *best)
 {
     const bool cut = mt_interrupt_is_cut(a->interrupt, MT_PHASE_RECOMMENDATIONS);
     if (cut && a->result->n_recommendations == 0 && a->found.n_solutions > 0) {
@@ -170,7 +170,7 @@ static const char *scale_text(const mt_answer *a, mt_arena *mem)
 
 /* Of a study that makes vibration least. */
 static const char *least_text(const mt_answer *a, const mt_recommendation *best,
-                              const char *doubt, mt_arena *mem)
+                              const char *warning, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
     const char *const scale = scale_text(a, mem);
@@ -180,15 +180,15 @@ static const char *least_text(const mt_answer *a, const mt_recommendation *best,
                                            !has_goals(best) ? ""
                                            : n == 1         ? " meets all goals"
                                                             : " meet all goals",
-                                           scale, doubt);
+                                           scale, warning);
 }
 
 /* Of a study with bands. */
-static const char *placed_text(const mt_answer *a, const char *doubt, mt_arena *mem)
+static const char *placed_text(const mt_answer *a, const char *warning, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
-    const bool some = mt_describe_gaps_unsearched(&a->gaps);
-    const char *const left = mt_describe_gaps_left(&a->gaps, mem);
+    const bool some = mt_describe_placements_unsearched(&a->placements);
+    const char *const left = mt_describe_placements_left(&a->placements, mem);
     const char *const keep = some     ? n == 1 ? "was found to keep" : "were found to keep"
                              : n == 1 ? "keeps"
                                       : "keep";
@@ -197,15 +197,16 @@ static const char *placed_text(const mt_answer *a, const char *doubt, mt_arena *
                : mt_arena_printf(mem,
                                  "Solved: %d of %.0f mode placement%s %s clear of the bands "
                                  "and meet%s all goals (%s).%s",
-                                 n, a->gaps.n_possible, a->gaps.n_possible > 1.0 ? "s" : "",
-                                 keep, n == 1 && !some ? "s" : "", left, doubt);
+                                 n, a->placements.n_possible,
+                                 a->placements.n_possible > 1.0 ? "s" : "", keep,
+                                 n == 1 && !some ? "s" : "", left, warning);
 }
 
-static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *mem)
+static const char *solved_text(const mt_answer *a, const char *warning, mt_arena *mem)
 {
     const int n = a->found.n_solutions;
-    if (a->gaps.n_solutions > 0) {
-        return placed_text(a, doubt, mem);
+    if (a->placements.n_solutions > 0) {
+        return placed_text(a, warning, mem);
     }
     bool continuum = false;
     for (int i = 0; i < n; i++) {
@@ -215,27 +216,27 @@ static const char *solved_text(const mt_answer *a, const char *doubt, mt_arena *
         return n == 1 ? mt_arena_printf(mem,
                                         "Solved: a continuum of equally good designs meets all "
                                         "goals; one of it is recommended.%s",
-                                        doubt)
+                                        warning)
                       : mt_arena_printf(mem,
                                         "Solved: %d distinct designs, or continua of equally "
                                         "good designs, meet all goals.%s",
-                                        n, doubt);
+                                        n, warning);
     }
     const char *const many = n == 1 ? " meets" : "s meet";
     if (!mt_objective_is(a->p->aims[0].type, MT_RESIDUALS)) {
         return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n, many,
-                               doubt);
+                               warning);
     }
     const double least = shown_misfit(a->found.solutions[0].f);
     return n == 1
                ? mt_arena_printf(mem,
                                  "Solved: 1 distinct design meets all goals without a weight; "
                                  "those with a weight have a misfit of %.4g.%s",
-                                 least, doubt)
+                                 least, warning)
                : mt_arena_printf(mem,
                                  "Solved: %d distinct designs meet all goals without a weight; "
                                  "those with a weight have misfits from %.4g to %.4g.%s",
-                                 n, least, shown_misfit(a->found.solutions[n - 1].f), doubt);
+                                 n, least, shown_misfit(a->found.solutions[n - 1].f), warning);
 }
 
 /* The search of a fit ended at a least misfit. */
@@ -350,9 +351,9 @@ static const char *compromise_text(const mt_answer *a, const mt_recommendation *
 static const char *status_text(const mt_answer *a, const mt_recommendation *best)
 {
     mt_arena *const mem = &a->result->mem;
-    const char *const early = early_text(a, best);
-    if (early != NULL) {
-        return early;
+    const char *const incumbent = incumbent_text(a, best);
+    if (incumbent != NULL) {
+        return incumbent;
     }
     if (a->infeasible) {
         return mt_arena_printf(mem,
@@ -371,7 +372,7 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
     if (a->unsearched) {
         return "Solved: the original design meets all goals; nothing has to change.";
     }
-    const char *const doubt =
+    const char *const warning =
         mt_answer_original_is_best(a)
             ? " The original design meets all goals; nothing has to change."
         : mt_describe_is_optimum(best)
@@ -379,15 +380,15 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
             : mt_arena_printf(
                   mem, " The best is not shown to be a local optimum (KKT residual %.2g).",
                   best->kkt_residual);
-    if (doubt == NULL) {
+    if (warning == NULL) {
         return NULL;
     }
-    if (best->feasible && a->gaps.n_solutions == 0 &&
+    if (best->feasible && a->placements.n_solutions == 0 &&
         mt_objective_is(a->p->aims[0].type, MT_SHAKES)) {
-        return least_text(a, best, doubt, mem);
+        return least_text(a, best, warning, mem);
     }
     if (best->feasible) {
-        return solved_text(a, doubt, mem);
+        return solved_text(a, warning, mem);
     }
     if (is_doubtful(best)) {
         return "Compromise: the numbers of all goals can be met, but there the named modes "
@@ -413,11 +414,11 @@ static mt_result_status status_of(const mt_answer *a, const mt_recommendation *b
 }
 
 /* A posture that settles far from the drawing is said first. */
-static void tell_posture(mt_result *result)
+static void report_posture(mt_result *result)
 {
     for (int i = 0; i < result->n_facts && result->status_text != NULL; i++) {
-        const mt_doubt *const d = &result->facts[i];
-        if (mt_doubts_settles_far(d)) {
+        const mt_warning *const d = &result->facts[i];
+        if (mt_warnings_settles_far(d)) {
             result->status_text = mt_arena_printf(
                 &result->mem, "%s%s%s. %s", d->configuration == NULL ? "" : d->configuration,
                 d->configuration == NULL ? "" : ": ", d->text, result->status_text);
@@ -433,30 +434,31 @@ mt_status mt_answer_set_status(const mt_answer *a, mt_err *err)
         result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
     result->status = status_of(a, best);
     result->status_text = status_text(a, best);
-    tell_posture(result);
+    report_posture(result);
     return mt_arena_check(&result->mem, err);
 }
 
-void mt_answer_note_spent(const mt_answer *a)
+void mt_answer_note_work_counters(const mt_answer *a)
 {
-    const mt_spent *const s = a->spent;
+    const mt_work_counters *const s = a->spent;
     mt_result_run *const run = &a->result->run;
-    mt_result_spent *const to = &run->spent;
+    mt_result_work_counters *const to = &run->spent;
     long *const designs[MT_PHASE_COUNT] = {[MT_PHASE_BASELINE] = &to->descriptions,
                                            [MT_PHASE_SEARCH] = &to->search,
                                            [MT_PHASE_RECOMMENDATIONS] = &to->descriptions,
-                                           [MT_PHASE_SPREAD] = &to->spread,
+                                           [MT_PHASE_WEIGHT_SENSITIVITY] =
+                                               &to->weight_sensitivity,
                                            [MT_PHASE_CERTIFICATES] = &to->search,
                                            [MT_PHASE_RELAXATIONS] = &to->relaxations,
                                            [MT_PHASE_PUBLISHED] = &to->descriptions,
                                            [MT_PHASE_TRADE] = &to->trade};
     for (int k = 0; k < MT_PHASE_COUNT; k++) {
-        *designs[k] += mt_spent_in(s, k, MT_SPENT_DESIGNS);
+        *designs[k] += mt_work_counters_in(s, k, MT_WORK_DESIGNS);
     }
-    to->positions += mt_spent_of(s, MT_SPENT_POSITIONS);
-    to->multiplications += mt_spent_of(s, MT_SPENT_MULTIPLICATIONS);
-    run->modal_solutions += mt_spent_of(s, MT_SPENT_MODAL);
-    run->evaluations = to->search + to->positions + to->descriptions + to->spread +
+    to->positions += mt_work_counters_of(s, MT_WORK_POSITIONS);
+    to->multiplications += mt_work_counters_of(s, MT_WORK_MULTIPLICATIONS);
+    run->modal_solutions += mt_work_counters_of(s, MT_WORK_MODAL);
+    run->evaluations = to->search + to->positions + to->descriptions + to->weight_sensitivity +
                        to->relaxations + to->trade;
 }
 
@@ -482,7 +484,7 @@ mt_status mt_answer_note_cuts(const mt_answer *a, mt_err *err)
         const char *const link = i + 1 < run->n_incomplete ? ", " : " and ";
         list = mt_arena_printf(&result->mem, "%s%s%s", list, link, run->incomplete[i]);
     }
-    const bool late = mt_interrupt_cause(a->interrupt) == MT_CAUSE_TIME_LIMIT;
+    const bool late = mt_interrupt_reason(a->interrupt) == MT_STOP_REASON_TIME_LIMIT;
     result->status = late ? MT_RESULT_TIME_LIMIT : MT_RESULT_INTERRUPTED;
     run->cut_by = late ? "time limit" : "interrupt";
     result->status_text = mt_arena_printf(&result->mem, "%s (not complete: %s). %s",

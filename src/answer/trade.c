@@ -11,7 +11,7 @@
 #include "base/workers.h"
 #include "describe/describe.h"
 #include "nlp/merit.h"
-#include "search/discrete.h"
+#include "search/catalogue_search.h"
 
 typedef struct point {
     double values[MT_MAX_VARY];
@@ -76,7 +76,7 @@ static const mt_unit *shown_in(const mt_study *study, const mt_vary *v)
     }
     return v->slot == MT_SLOT_MARGIN
                ? NULL
-               : mt_study_demand_unit(study, &study->goals[v->goal].expression);
+               : mt_study_requirement_unit(study, &study->goals[v->goal].expression);
 }
 
 /* "upper bound of L = 170 mm" */
@@ -135,7 +135,7 @@ static void forget(point *p)
 }
 
 /* Answer it, from hint[n_variables] too where that is not NULL. */
-static mt_status answer(point *p, const double *hint, const mt_scope *own, mt_result **out,
+static mt_status answer(point *p, const double *hint, const mt_task_path *own, mt_result **out,
                         mt_err *err)
 {
     const mt_solve_options opt = {.size = sizeof opt, .threads = 1, .hint = hint};
@@ -143,18 +143,18 @@ static mt_status answer(point *p, const double *hint, const mt_scope *own, mt_re
 }
 
 /* What its question has cost so far, added or (sign -1) taken off. */
-static void note_spent(point *p, int sign)
+static void note_work_counters(point *p, int sign)
 {
     if (p->q != NULL) {
-        const mt_spent *const s = &p->q->spent;
-        p->evaluations +=
-            sign * (mt_spent_of(s, MT_SPENT_DESIGNS) + mt_spent_of(s, MT_SPENT_POSITIONS));
-        p->multiplications += sign * mt_spent_of(s, MT_SPENT_MULTIPLICATIONS);
-        p->solutions += sign * mt_spent_of(s, MT_SPENT_MODAL);
+        const mt_work_counters *const s = &p->q->spent;
+        p->evaluations += sign * (mt_work_counters_of(s, MT_WORK_DESIGNS) +
+                                  mt_work_counters_of(s, MT_WORK_POSITIONS));
+        p->multiplications += sign * mt_work_counters_of(s, MT_WORK_MULTIPLICATIONS);
+        p->solutions += sign * mt_work_counters_of(s, MT_WORK_MODAL);
     }
 }
 
-static mt_status solve_cold(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status solve_cold(void *context, int worker, int task, mt_task_path *own, mt_err *err)
 {
     const trade *const t = context;
     const int k = t->from + task;
@@ -165,7 +165,7 @@ static mt_status solve_cold(void *context, int worker, int task, mt_scope *own, 
     }
     mt_status rc = ask(t, p, err);
     rc = rc == MT_OK ? answer(p, NULL, own, &p->first, err) : rc;
-    note_spent(p, 1);
+    note_work_counters(p, 1);
     if (rc != MT_OK || !t->warm) {
         forget(p);
     }
@@ -237,7 +237,7 @@ static bool is_tried(const point *p, int n, const double *const tried[WAYS], con
 
 /* From the neighbours' designs of the first pass, which are no longer changed: any order gives
  * the same. */
-static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt_scope *own,
+static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt_task_path *own,
                                 mt_arena *mem, mt_err *err)
 {
     point *const p = &t->points[k];
@@ -273,7 +273,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
     return MT_OK;
 }
 
-static mt_status solve_warm(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status solve_warm(void *context, int worker, int task, mt_task_path *own, mt_err *err)
 {
     const trade *const t = context;
     const int k = t->from + task;
@@ -288,84 +288,84 @@ static mt_status solve_warm(void *context, int worker, int task, mt_scope *own, 
     const bool known = p->q == NULL; /* its record was read */
     mt_status rc = known ? ask(t, p, err) : MT_OK;
     if (known && rc == MT_OK) { /* a budget is of both passes */
-        mt_spent_note(&p->q->spent, MT_SPENT_DESIGNS, p->evaluations);
-        mt_spent_note(&p->q->spent, MT_SPENT_MULTIPLICATIONS, p->multiplications);
-        mt_spent_note(&p->q->spent, MT_SPENT_MODAL, p->solutions);
+        mt_work_counters_note(&p->q->spent, MT_WORK_DESIGNS, p->evaluations);
+        mt_work_counters_note(&p->q->spent, MT_WORK_MULTIPLICATIONS, p->multiplications);
+        mt_work_counters_note(&p->q->spent, MT_WORK_MODAL, p->solutions);
     }
-    note_spent(p, -1); /* of the first pass: it is noted already */
+    note_work_counters(p, -1); /* of the first pass: it is noted already */
     rc = rc == MT_OK ? mt_workspace_new(p->q->p, &w, err) : rc;
     rc = rc == MT_OK ? try_neighbours(t, k, w, own, &mem, err) : rc;
     mt_workspace_delete(w);
     mt_arena_free(&mem);
-    note_spent(p, 1);
+    note_work_counters(p, 1);
     forget(p);
     return told(t, k, rc, err);
 }
 
 /* What the front, the neighbours and the result want of an answer. */
-static void tape_answer(const trade *t, mt_result *r, mt_tape *tape)
+static void serialize_answer(const trade *t, mt_result *r, mt_serializer *serializer)
 {
     const int n = t->study->n_variables;
     int status = (int)r->status;
-    mt_tape_int(tape, &status, 0, MT_RESULT_STATUS_COUNT - 1);
-    mt_tape_text(tape, &r->status_text, &r->mem);
+    mt_serializer_int(serializer, &status, 0, MT_RESULT_STATUS_COUNT - 1);
+    mt_serializer_text(serializer, &r->status_text, &r->mem);
     r->status = (mt_result_status)status;
     int best = r->n_recommendations > 0 ? 1 : 0;
-    mt_tape_int(tape, &best, 0, 1);
-    if (tape->reads && best > 0 && !tape->failed) {
+    mt_serializer_int(serializer, &best, 0, 1);
+    if (serializer->reads && best > 0 && !serializer->failed) {
         r->recommendations = mt_arena_alloc(&r->mem, 1, sizeof *r->recommendations);
-        tape->failed = r->recommendations == NULL;
+        serializer->failed = r->recommendations == NULL;
     }
-    if (best > 0 && !tape->failed) {
-        mt_record_tape(&mt_design_record, &r->recommendations[0], n, tape, &r->mem);
-        tape->failed = tape->failed || r->recommendations[0].n_parameters != n;
-        r->n_recommendations = tape->reads ? 1 : r->n_recommendations;
+    if (best > 0 && !serializer->failed) {
+        mt_record_serialize(&mt_design_record, &r->recommendations[0], n, serializer, &r->mem);
+        serializer->failed = serializer->failed || r->recommendations[0].n_parameters != n;
+        r->n_recommendations = serializer->reads ? 1 : r->n_recommendations;
     }
 }
 
 /* An answer that there need not be. */
-static void tape_result(const trade *t, mt_result **r, mt_tape *tape)
+static void serialize_result(const trade *t, mt_result **r, mt_serializer *serializer)
 {
     bool there = *r != NULL;
-    mt_tape_flag(tape, &there);
-    if (there && tape->reads) {
-        tape->failed = tape->failed || mt_result_new(r, NULL) != MT_OK;
+    mt_serializer_flag(serializer, &there);
+    if (there && serializer->reads) {
+        serializer->failed = serializer->failed || mt_result_new(r, NULL) != MT_OK;
     }
-    if (*r != NULL && !tape->failed) {
-        tape_answer(t, *r, tape);
+    if (*r != NULL && !serializer->failed) {
+        serialize_answer(t, *r, serializer);
     }
 }
 
 /* Either pass: its answer, and what the point has cost so far. */
-static void tape_point(const trade *t, int task, bool warm, mt_tape *tape)
+static void serialize_point(const trade *t, int task, bool warm, mt_serializer *serializer)
 {
     point *const p = &t->points[t->from + task];
     mt_result **const r = warm ? &p->again : &p->first;
     const long before[] = {p->evaluations, p->multiplications, p->solutions};
-    mt_tape_long(tape, &p->evaluations, 0, LONG_MAX);
-    mt_tape_long(tape, &p->multiplications, 0, LONG_MAX);
-    mt_tape_long(tape, &p->solutions, 0, LONG_MAX);
-    tape_result(t, r, tape);
-    tape->failed = tape->failed || (!warm && *r == NULL);
-    if (tape->reads && !mt_tape_is_read(tape)) {
+    mt_serializer_long(serializer, &p->evaluations, 0, LONG_MAX);
+    mt_serializer_long(serializer, &p->multiplications, 0, LONG_MAX);
+    mt_serializer_long(serializer, &p->solutions, 0, LONG_MAX);
+    serialize_result(t, r, serializer);
+    serializer->failed = serializer->failed || (!warm && *r == NULL);
+    if (serializer->reads && !mt_serializer_is_read(serializer)) {
         mt_result_delete(*r);
         *r = NULL;
         p->evaluations = before[0];
         p->multiplications = before[1];
         p->solutions = before[2];
-    } else if (tape->reads && warm) {
+    } else if (serializer->reads && warm) {
         forget(p);
     }
 }
 
-static void tape_cold(void *context, int task, mt_tape *tape)
+static void serialize_cold(void *context, int task, mt_serializer *serializer)
 {
-    tape_point(context, task, false, tape);
+    serialize_point(context, task, false, serializer);
 }
 
-static void tape_warm(void *context, int task, mt_tape *tape)
+static void serialize_warm(void *context, int task, mt_serializer *serializer)
 {
-    tape_point(context, task, true, tape);
+    serialize_point(context, task, true, serializer);
 }
 
 /* The unit of what varies; NULL: it has none. */
@@ -445,7 +445,7 @@ static mt_status note_near(trade *t, int from, int to, mt_err *err)
 
 /* The answer of the next point, which is not changed any more: the result takes over what it
  * needs of it, with what the point before says as well. */
-static mt_status tell_point(trade *t, const char *unanswered, mt_err *err)
+static mt_status report_point(trade *t, const char *unanswered, mt_err *err)
 {
     const int k = t->told;
     point *const p = &t->points[k];
@@ -476,21 +476,21 @@ static mt_status tell_point(trade *t, const char *unanswered, mt_err *err)
     return MT_OK;
 }
 
-static mt_status tell_points(trade *t, int to, mt_err *err)
+static mt_status report_points(trade *t, int to, mt_err *err)
 {
     const char *const unanswered =
-        mt_interrupt_cause(t->study->model->interrupt) == MT_CAUSE_TIME_LIMIT
+        mt_interrupt_reason(t->study->model->interrupt) == MT_STOP_REASON_TIME_LIMIT
             ? "Not answered: the time limit came first."
             : "Interrupted before it was answered.";
     while (t->told < to && t->out->points != NULL) {
-        MT_TRY(tell_point(t, unanswered, err));
+        MT_TRY(report_point(t, unanswered, err));
     }
     return MT_OK;
 }
 
 static mt_status describe(trade *t, mt_result *result, mt_err *err)
 {
-    MT_TRY(tell_points(t, t->n, err));
+    MT_TRY(report_points(t, t->n, err));
     for (int k = 0; k < t->n; k++) {
         const point *const p = &t->points[k];
         result->run.spent.trade += p->evaluations;
@@ -503,16 +503,16 @@ static mt_status describe(trade *t, mt_result *result, mt_err *err)
 
 /* All points, and once more each whose neighbours are known: what is left to other parts of the
  * work is not. */
-static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err *err)
+static mt_status solve_all(trade *t, int threads, const mt_task_path *task_path, mt_err *err)
 {
-    mt_scope first = mt_scope_in(scope, "first");
-    mt_scope again = mt_scope_in(scope, "again");
+    mt_task_path first = mt_task_path_enter(task_path, "first");
+    mt_task_path again = mt_task_path_enter(task_path, "again");
     mt_status part = MT_OK;
     int ready = 0;
     for (int known = 0; known < t->n;) {
         const int to = t->n - known > BLOCK ? known + BLOCK : t->n;
         t->from = known;
-        const mt_tasks cold = {to - known, solve_cold, tape_cold, t, "points"};
+        const mt_tasks cold = {to - known, solve_cold, serialize_cold, t, "points"};
         const mt_status rc = mt_workers_run(threads, &first, &cold, err);
         MT_TRY(rc == MT_E_INTERRUPTED ? MT_OK : rc);
         part = rc == MT_OK ? part : rc;
@@ -521,21 +521,23 @@ static mt_status solve_all(trade *t, int threads, const mt_scope *scope, mt_err 
         t->from = ready;
         ready = known == t->n ? known : known - t->size[1];
         if (t->warm && part == MT_OK && ready > t->from) {
-            const mt_tasks warm = {ready - t->from, solve_warm, tape_warm, t, "points again"};
+            const mt_tasks warm = {ready - t->from, solve_warm, serialize_warm, t,
+                                   "points again"};
             MT_TRY(mt_workers_run(threads, &again, &warm, err));
         }
         ready = ready > t->from ? ready : t->from;
         if (part == MT_OK) {
-            MT_TRY(tell_points(t, ready, err));
+            MT_TRY(report_points(t, ready, err));
         }
     }
     return part;
 }
 
-mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *scope,
+mt_status mt_trade_solve(const mt_study *study, int threads, const mt_task_path *task_path,
                          mt_result *result, mt_err *err)
 {
-    trade t = {.study = study, .warm = study->n_objectives > 0 && !mt_study_is_discrete(study)};
+    trade t = {.study = study,
+               .warm = study->n_objectives > 0 && !mt_study_has_catalogues(study)};
     mt_arena mem;
     if (study->trade.n_vary == 0) {
         return MT_OK;
@@ -544,7 +546,7 @@ mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *sco
     t.mem = &mem;
     t.kept = &result->mem;
     mt_status rc = begin(&t, err);
-    rc = rc == MT_OK ? solve_all(&t, threads, scope, err) : rc;
+    rc = rc == MT_OK ? solve_all(&t, threads, task_path, err) : rc;
     rc = rc == MT_OK ? describe(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {
         forget(&t.points[k]);

@@ -17,7 +17,7 @@
  * leaves points without an answer, which say so. scope: the place of its points; a part of the
  * work does its points and is interrupted. Fails: as mt_study_solve; the text names the point.
  */
-mt_status mt_trade_solve(const mt_study *study, int threads, const mt_scope *scope,
+mt_status mt_trade_solve(const mt_study *study, int threads, const mt_task_path *task_path,
                          mt_result *result, mt_err *err);
 
 /* trade_study.c: the study of one point, values[n_vary] put in. It borrows all that is not

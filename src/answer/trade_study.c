@@ -68,7 +68,7 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
     out->n_published = 0;
     out->n_warnings = 0;
     out->examined = true;
-    out->spread.factor = nan("");
+    out->weight_sensitivity.factor = nan("");
     out->recommendations = 1;
     out->variables =
         copied(mem, study->variables, study->n_variables, sizeof *study->variables);

@@ -5,14 +5,14 @@
 
 #include "answer/trade.h"
 #include "nlp/merit.h"
-#include "problem/family.h"
+#include "problem/drive_positions.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
-#include "search/discrete.h"
+#include "search/catalogue_search.h"
 
 enum { LOCAL_EVALUATIONS = 500 };
 
-static void to_t(const mt_case *c, const double *x, double *t)
+static void to_t(const mt_subproblem *c, const double *x, double *t)
 {
     for (int i = 0; i < c->p->n; i++) {
         t[i] = fmin(fmax(mt_problem_t(c->p, i, x[i]), c->lower_t[i]), c->upper_t[i]);
@@ -24,19 +24,19 @@ static void to_t(const mt_case *c, const double *x, double *t)
 static mt_status objective_at(mt_workspace *w, const double *t, mt_arena *mem, double *f,
                               mt_err *err)
 {
-    const mt_case *const c = w->c;
+    const mt_subproblem *const c = w->c;
     mt_nlp_values v;
-    MT_TRY(mt_case_values_init(c, mem, &v, err));
+    MT_TRY(mt_subproblem_values_init(c, mem, &v, err));
     MT_TRY(mt_workspace_eval(w, t, false, &v, err));
-    *f = mt_aim_value(w, 0, NULL);
+    *f = mt_objective_stage_value(w, 0, NULL);
     if (mt_objective_is(c->aims[0].type, MT_BANDS)) {
-        *f = -mt_clears_room(w);
+        *f = -mt_avoidances_margin(w);
     }
     return MT_OK;
 }
 
 /* The kind of design that t is. */
-static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_case *out,
+static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_subproblem *out,
                           mt_err *err)
 {
     const mt_problem *const p = w->p;
@@ -44,14 +44,14 @@ static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_ca
     double f = 0.0;
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(objective_at(w, t, mem, &f, err));
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
-        (void)mt_clear_look(c, &w->views[c->view].analysis->modes, below + c->first);
+    for (int i = 0; i < p->n_avoidances; i++) {
+        const mt_avoidance *const c = &p->avoidances[i];
+        (void)mt_avoidance_find_modes(c, &w->views[c->view].analysis->modes, below + c->first);
     }
     if (!mt_ties_agree(p, below)) {
         return mt_fail(err, MT_E_DOMAIN, "a mode crosses a band between two positions");
     }
-    return mt_case_in_gap(&p->whole, below, 0, NULL, w, mem, out, err);
+    return mt_subproblem_in_placement(&p->whole, below, 0, NULL, w, mem, out, err);
 }
 
 static mt_status compare(mt_workspace *w, const double *x, const double *best_x, mt_arena *mem,
@@ -63,14 +63,14 @@ static mt_status compare(mt_workspace *w, const double *x, const double *best_x,
     double best_f = HUGE_VAL;
     mt_nlp_options opt = mt_nlp_options_default();
     mt_nlp_result found = {0};
-    mt_case in_gap;
+    mt_subproblem in_gap;
     MT_TRY(mt_arena_check(mem, err));
     to_t(&p->whole, x, t);
     if (best_x != NULL) {
         to_t(&p->whole, best_x, best_t);
         MT_TRY(objective_at(w, best_t, mem, &best_f, err));
     }
-    mt_status rc = p->n_clears > 0 ? open_gap(w, t, mem, &in_gap, err) : MT_OK;
+    mt_status rc = p->n_avoidances > 0 ? open_gap(w, t, mem, &in_gap, err) : MT_OK;
     if (rc == MT_OK) {
         mt_nlp nlp = mt_workspace_nlp(w);
         t[p->n] = w->c->origin_t[p->n]; /* of a clearance 0: on the edges */

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/interrupt.h"
 
-void mt_interrupt_init(mt_interrupt *i, int (*wish)(void *context), void *context,
+void mt_interrupt_init(mt_interrupt *i, int (*request)(void *context), void *context,
                        mt_interrupt *whole)
 {
-    i->wish = wish;
+    i->request = request;
     i->cause = NULL;
     i->context = context;
     i->whole = whole;
     i->phase = 0;
     i->makes_ready = false;
     i->needed = false;
-    atomic_init(&i->level, MT_WISH_NONE);
+    atomic_init(&i->level, MT_STOP_REQUEST_NONE);
     atomic_init(&i->cut, 0U);
 }
 
@@ -23,14 +23,14 @@ void mt_interrupt_enter(mt_interrupt *i, int phase, bool makes_ready)
 
 /* The strongest wish so far, asked anew until there can be no stronger one. Parts have none of
  * their own: that of the outermost work counts for all. */
-static int wish_for(mt_interrupt *i)
+static int request_of(mt_interrupt *i)
 {
     while (i->whole != NULL) {
         i = i->whole;
     }
     int had = atomic_load(&i->level);
-    if (i->wish != NULL && had < MT_WISH_END) {
-        const int now = i->wish(i->context);
+    if (i->request != NULL && had < MT_STOP_REQUEST_END) {
+        const int now = i->request(i->context);
         while (had < now && !atomic_compare_exchange_weak(&i->level, &had, now)) {
         }
     }
@@ -39,8 +39,9 @@ static int wish_for(mt_interrupt *i)
 
 bool mt_interrupted(mt_interrupt *i)
 {
-    if (i == NULL || wish_for(i) < (i->makes_ready ? MT_WISH_END : MT_WISH_FINISH) ||
-        (i->needed && mt_interrupt_cause(i) == MT_CAUSE_TIME_LIMIT)) {
+    if (i == NULL ||
+        request_of(i) < (i->makes_ready ? MT_STOP_REQUEST_END : MT_STOP_REQUEST_FINISH) ||
+        (i->needed && mt_interrupt_reason(i) == MT_STOP_REASON_TIME_LIMIT)) {
         return false;
     }
     mt_interrupt_cut(i, i->phase);
@@ -65,12 +66,12 @@ bool mt_interrupt_is_cut(const mt_interrupt *i, int phase)
     return (atomic_load(&i->cut) & (1U << (unsigned)phase)) != 0U;
 }
 
-int mt_interrupt_cause(const mt_interrupt *i)
+int mt_interrupt_reason(const mt_interrupt *i)
 {
     while (i != NULL && i->whole != NULL) {
         i = i->whole;
     }
-    return i != NULL && i->cause != NULL ? i->cause(i->context) : MT_CAUSE_INTERRUPT;
+    return i != NULL && i->cause != NULL ? i->cause(i->context) : MT_STOP_REASON_INTERRUPT;
 }
 
 bool mt_interrupt_any(const mt_interrupt *i)

@@ -22,8 +22,9 @@ enum { MT_INTERRUPT_PHASES = 16 };
 enum { MT_INTERRUPT_ORDER = 128 };
 
 typedef struct mt_interrupt {
-    int (*wish)(void *context); /* an mt_wish; called by all workers; NULL: none ever */
-    /* an mt_cause, asked after a wish; NULL: MT_CAUSE_INTERRUPT */
+    /* an mt_stop_request; called by all workers; NULL: none ever */
+    int (*request)(void *context);
+    /* an mt_stop_reason, asked after a wish; NULL: MT_STOP_REASON_INTERRUPT */
     int (*cause)(void *context);
     void *context; /* of both */
     /* NULL, or of the work that this is a part of: its wish is this one's, and where this is
@@ -31,7 +32,7 @@ typedef struct mt_interrupt {
     struct mt_interrupt *whole;
     /* that is being worked on, below MT_INTERRUPT_PHASES; changed while no worker runs */
     int phase;
-    bool makes_ready; /* this phase goes on until MT_WISH_END */
+    bool makes_ready; /* this phase goes on until MT_STOP_REQUEST_END */
     /* and now something that is worth more than a time limit, so until an interrupt's; changed
      * while no worker runs */
     bool needed;
@@ -40,7 +41,7 @@ typedef struct mt_interrupt {
 } mt_interrupt;
 
 /* Zeroed but for the wish, or for the whole (either may be NULL). */
-void mt_interrupt_init(mt_interrupt *i, int (*wish)(void *context), void *context,
+void mt_interrupt_init(mt_interrupt *i, int (*request)(void *context), void *context,
                        mt_interrupt *whole);
 /* The phase that begins. */
 void mt_interrupt_enter(mt_interrupt *i, int phase, bool makes_ready);
@@ -52,9 +53,9 @@ mt_status mt_interrupt_check(mt_interrupt *i, mt_err *err);
 /* Note that a phase is not complete (one that was not even begun). */
 void mt_interrupt_cut(mt_interrupt *i, int phase);
 bool mt_interrupt_is_cut(const mt_interrupt *i, int phase);
-/* Why anything is cut, an mt_cause: of the outermost work. NULL:
- * MT_CAUSE_INTERRUPT. */
-int mt_interrupt_cause(const mt_interrupt *i);
+/* Why anything is cut, an mt_stop_reason: of the outermost work. NULL:
+ * MT_STOP_REASON_INTERRUPT. */
+int mt_interrupt_reason(const mt_interrupt *i);
 /* Whether any phase is cut. */
 bool mt_interrupt_any(const mt_interrupt *i);
 

@@ -181,7 +181,7 @@ static double share_of(const mt_progress_view *v, int ppm)
     return ppm >= 0 ? (double)ppm / MILLION : nan("");
 }
 
-mt_progress_view mt_progress_look(mt_progress *p)
+mt_progress_view mt_progress_read(mt_progress *p)
 {
     (void)pthread_mutex_lock(&p->lock);
     mt_progress_view v = p->now;

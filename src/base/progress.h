@@ -10,7 +10,7 @@
 
 /*
  * How far a long piece of work is. Those who do it leave word here, from any thread; somebody
- * outside looks now and then (mt_progress_look), so that nobody who works waits for a terminal.
+ * outside looks now and then (mt_progress_read), so that nobody who works waits for a terminal.
  *
  * The work has phases, a phase steps one after the other: "12 of 28 starts". A step that begins
  * while another one is open is a part of that one's work and is not told: it is enough to begin
@@ -33,7 +33,7 @@ typedef struct mt_progress_view {
     double share;     /* of the step, 0 to 1; NaN: not known */
     bool ended;       /* the step has */
     long evaluations; /* of designs */
-    long solutions;   /* modal ones that these and others took (base/spent.h) */
+    long solutions;   /* modal ones that these and others took (base/work_counters.h) */
     long boxes;       /* of proofs */
     const char *what; /* the objective that `best` is the value of; NULL: none yet */
     double best;
@@ -89,6 +89,6 @@ void mt_progress_proved(mt_progress *p);
 void mt_progress_impossible(mt_progress *p);
 
 /* What is known now. */
-mt_progress_view mt_progress_look(mt_progress *p);
+mt_progress_view mt_progress_read(mt_progress *p);
 
 #endif

@@ -9,7 +9,7 @@ typedef struct pool {
     pthread_mutex_t lock;
     int next; /* first task not taken yet */
     const mt_tasks *tasks;
-    const mt_scope *scope; /* of the list; NULL: nowhere */
+    const mt_task_path *task_path; /* of the list; NULL: nowhere */
     mt_progress *progress;
     bool told;  /* the list is a step of it */
     bool *left; /* [n] not to be done, or NULL: none */
@@ -32,56 +32,56 @@ static mt_status make_lock(pthread_mutex_t *lock, mt_err *err)
                : mt_fail(err, MT_E_SYSTEM, "a lock cannot be made");
 }
 
-mt_status mt_ledger_init(mt_ledger *ledger, mt_err *err)
+mt_status mt_checkpoint_store_init(mt_checkpoint_store *store, mt_err *err)
 {
-    *ledger = (mt_ledger){.part = 0};
-    return make_lock(&ledger->lock, err);
+    *store = (mt_checkpoint_store){.part = 0};
+    return make_lock(&store->lock, err);
 }
 
-void mt_ledger_free(mt_ledger *ledger)
+void mt_checkpoint_store_free(mt_checkpoint_store *store)
 {
-    (void)pthread_mutex_destroy(&ledger->lock);
+    (void)pthread_mutex_destroy(&store->lock);
 }
 
-static const uint64_t *find(mt_ledger *ledger, const char *key, size_t *n)
+static const uint64_t *find(mt_checkpoint_store *store, const char *key, size_t *n)
 {
-    (void)pthread_mutex_lock(&ledger->lock);
-    const uint64_t *const words = ledger->find(ledger->context, key, n);
-    (void)pthread_mutex_unlock(&ledger->lock);
+    (void)pthread_mutex_lock(&store->lock);
+    const uint64_t *const words = store->find(store->context, key, n);
+    (void)pthread_mutex_unlock(&store->lock);
     return words;
 }
 
-static void put(mt_ledger *ledger, const char *key, const mt_tape *tape)
+static void put(mt_checkpoint_store *store, const char *key, const mt_serializer *serializer)
 {
-    (void)pthread_mutex_lock(&ledger->lock);
-    ledger->put(ledger->context, key, tape->words, tape->n);
-    (void)pthread_mutex_unlock(&ledger->lock);
+    (void)pthread_mutex_lock(&store->lock);
+    store->put(store->context, key, serializer->words, serializer->n);
+    (void)pthread_mutex_unlock(&store->lock);
 }
 
-mt_scope mt_scope_in(const mt_scope *whole, const char *name)
+mt_task_path mt_task_path_enter(const mt_task_path *whole, const char *name)
 {
-    mt_scope s = {.ledger = NULL};
+    mt_task_path s = {.store = NULL};
     if (whole == NULL) {
         return s;
     }
     s.progress = whole->progress;
-    if (whole->ledger == NULL) {
+    if (whole->store == NULL) {
         return s;
     }
     const char *const slash = whole->path[0] == '\0' ? "" : "/";
-    s.ledger = whole->ledger;
+    s.store = whole->store;
     s.interrupt = whole->interrupt;
     s.inner = whole->inner;
     const int n = mt_snprintf(s.path, sizeof s.path, "%s%s%s", whole->path, slash, name);
-    s.ledger = n >= 0 && n < MT_KEY_SIZE ? s.ledger : NULL;
+    s.store = n >= 0 && n < MT_KEY_SIZE ? s.store : NULL;
     return s;
 }
 
-static mt_scope task_scope(const mt_scope *list, int task)
+static mt_task_path path_of_task(const mt_task_path *list, int task)
 {
     char name[16]; /* the digits of an int */
     (void)mt_snprintf(name, sizeof name, "%d", task);
-    mt_scope s = mt_scope_in(list, name);
+    mt_task_path s = mt_task_path_enter(list, name);
     s.inner = true;
     return s;
 }
@@ -111,18 +111,18 @@ static void note_failure(pool *p, int task, mt_status rc, const mt_err *err)
 
 /* What the task at s has left. One that has no room to be kept is not left out: a part of a run
  * would be told to be done without it. */
-static mt_status keep(const mt_tasks *tasks, int task, const mt_scope *s, mt_err *err)
+static mt_status keep(const mt_tasks *tasks, int task, const mt_task_path *s, mt_err *err)
 {
-    mt_tape tape = {.words = NULL};
+    mt_serializer serializer = {.words = NULL};
     bool no_memory = false;
     if (s->interrupt == NULL || !mt_interrupt_any(s->interrupt)) {
-        tasks->tape(tasks->context, task, &tape);
-        if (!tape.failed) {
-            put(s->ledger, s->path, &tape);
+        tasks->serializer(tasks->context, task, &serializer);
+        if (!serializer.failed) {
+            put(s->store, s->path, &serializer);
         }
-        no_memory = tape.no_memory;
+        no_memory = serializer.no_memory;
     }
-    mt_tape_free(&tape);
+    mt_serializer_free(&serializer);
     return no_memory ? mt_fail_memory(err) : MT_OK;
 }
 
@@ -132,10 +132,10 @@ static void *work(void *argument)
     const mt_tasks *const tasks = w->pool->tasks;
     for (int task = take(w->pool); task >= 0; task = take(w->pool)) {
         mt_err err = {0};
-        const mt_scope own = task_scope(w->pool->scope, task);
-        const bool kept = tasks->tape != NULL && own.ledger != NULL;
-        mt_scope inner = own;
-        inner.ledger = kept ? NULL : own.ledger;
+        const mt_task_path own = path_of_task(w->pool->task_path, task);
+        const bool kept = tasks->serializer != NULL && own.store != NULL;
+        mt_task_path inner = own;
+        inner.store = kept ? NULL : own.store;
         mt_status rc = tasks->run(tasks->context, w->number, task, &inner, &err);
         rc = rc == MT_OK && kept ? keep(tasks, task, &own, &err) : rc;
         if (rc != MT_OK) {
@@ -150,23 +150,23 @@ static void *work(void *argument)
 static mt_status look_up(pool *p, bool *missing, mt_err *err)
 {
     const mt_tasks *const tasks = p->tasks;
-    mt_ledger *const ledger = p->scope->ledger;
+    mt_checkpoint_store *const store = p->task_path->store;
     p->left = calloc((size_t)tasks->n + 1, sizeof *p->left);
     if (p->left == NULL) {
         return mt_fail_memory(err);
     }
     for (int k = 0; k < tasks->n; k++) {
-        const mt_scope own = task_scope(p->scope, k);
+        const mt_task_path own = path_of_task(p->task_path, k);
         size_t n = 0;
         const uint64_t *const words =
-            tasks->tape == NULL || own.ledger == NULL ? NULL : find(ledger, own.path, &n);
+            tasks->serializer == NULL || own.store == NULL ? NULL : find(store, own.path, &n);
         if (words != NULL) {
-            mt_tape tape = mt_tape_of(words, n);
-            tasks->tape(tasks->context, k, &tape);
-            p->left[k] = mt_tape_is_read(&tape);
+            mt_serializer serializer = mt_serializer_of(words, n);
+            tasks->serializer(tasks->context, k, &serializer);
+            p->left[k] = mt_serializer_is_read(&serializer);
         }
-        if (!p->left[k] && !p->scope->inner && ledger->parts > 0) {
-            p->left[k] = k % ledger->parts != ledger->part - 1;
+        if (!p->left[k] && !p->task_path->inner && store->parts > 0) {
+            p->left[k] = k % store->parts != store->part - 1;
             *missing = *missing || p->left[k];
         }
     }
@@ -190,23 +190,24 @@ static void run_all(int workers, pool *p)
     }
 }
 
-mt_status mt_workers_run(int workers, mt_scope *scope, const mt_tasks *tasks, mt_err *err)
+mt_status mt_workers_run(int workers, mt_task_path *task_path, const mt_tasks *tasks,
+                         mt_err *err)
 {
     pool p = {.tasks = tasks, .failed = tasks->n, .rc = MT_OK};
-    mt_scope list = {.ledger = NULL};
+    mt_task_path list = {.store = NULL};
     bool missing = false;
-    if (scope != NULL && scope->ledger != NULL) {
+    if (task_path != NULL && task_path->store != NULL) {
         char name[16]; /* the digits of an int */
-        (void)mt_snprintf(name, sizeof name, "%d", scope->lists++);
-        list = mt_scope_in(scope, name);
+        (void)mt_snprintf(name, sizeof name, "%d", task_path->lists++);
+        list = mt_task_path_enter(task_path, name);
     }
-    if (list.ledger != NULL) {
-        p.scope = &list;
+    if (list.store != NULL) {
+        p.task_path = &list;
         MT_TRY(look_up(&p, &missing, err));
     }
     mt_status rc = make_lock(&p.lock, err);
     if (rc == MT_OK) {
-        p.progress = scope == NULL ? NULL : scope->progress;
+        p.progress = task_path == NULL ? NULL : task_path->progress;
         p.told = mt_progress_begin(p.progress, tasks->unit, tasks->n);
         run_all(workers, &p);
         mt_progress_end(p.progress, p.told);

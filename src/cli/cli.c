@@ -33,7 +33,7 @@ void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err 
                   mt_diagnostics *messages)
 {
     const mt_study_place *const found =
-        rc == MT_E_INPUT ? mt_study_find_place(study, err->text) : NULL;
+        rc == MT_E_INPUT ? mt_study_locate(study, err->text) : NULL;
     if (found == NULL) {
         (void)mt_err_in(err, rc, "%s", path);
         return;
@@ -69,11 +69,11 @@ void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_e
     mt_json_close(w);
 }
 
-void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out)
+void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out)
 {
     for (int i = 0; i < list->n; i++) {
-        const mt_doubt *const d = &list->items[i];
-        mt_text_addf(out, "  %s: %s\n", d->level == MT_LEVEL_DOUBT ? "doubtful" : "note",
+        const mt_warning *const d = &list->items[i];
+        mt_text_addf(out, "  %s: %s\n", d->level == MT_LEVEL_WARNING ? "doubtful" : "note",
                      d->text);
     }
 }

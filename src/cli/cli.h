@@ -4,7 +4,7 @@
 
 #include "analysis/analysis.h"
 #include "cli/args.h"
-#include "cli/subject.h"
+#include "cli/loaded_model.h"
 #include "cli/terminal.h"
 #include "io/io.h"
 #include "io/write_json.h"
@@ -58,7 +58,7 @@ void mt_cli_json_failed(mt_json_writer *w, const char *configuration, const mt_e
 /* Close a JSON output: MT_EXIT_DONE, or a complaint and its exit status. */
 int mt_cli_json_done(mt_json_writer *w);
 /* Doubts and facts of a configuration, one line each, before its table. */
-void mt_cli_print_doubts(const mt_doubt_list *list, mt_text *out);
+void mt_cli_print_warnings(const mt_warning_list *list, mt_text *out);
 /* Their names as a list; member "redundant_constraints": a list of such lists. */
 void mt_cli_json_joints(mt_json_writer *w, const char *member, const mt_joint_names *joints);
 mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem, mt_err *err);

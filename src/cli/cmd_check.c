@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "answer/doubts.h"
 #include "answer/examine.h"
+#include "answer/warnings.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/sarif.h"
@@ -90,45 +90,46 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
 }
 
 /* Every configuration as it stands, as long as that does not take too long. */
-static mt_status examine_model(const mt_model *model, mt_doubt_list *found, mt_err *err)
+static mt_status examine_model(const mt_model *model, mt_warning_list *found, mt_err *err)
 {
     double work = 0.0;
     int left = 0;
     for (int c = 0; c < model->n_configurations; c++) {
         mt_analysis *a = NULL;
-        const double takes = mt_doubts_work(model, c);
-        if (work + takes > MT_DOUBTS_WORK) {
+        const double takes = mt_warnings_work(model, c);
+        if (work + takes > MT_WARNINGS_WORK) {
             left++;
             continue;
         }
         work += takes;
         mt_status rc = mt_analysis_new_lowest(model, c, 0, NULL, NULL, 1, &a, err);
-        rc = rc == MT_OK ? mt_doubts_of_analysis(a, 0, NULL, NULL, found, err) : rc;
+        rc = rc == MT_OK ? mt_warnings_of_analysis(a, 0, NULL, NULL, found, err) : rc;
         mt_analysis_delete(a);
         MT_TRY(rc);
     }
     if (left > 0) {
-        mt_doubts_left_out(left, found);
+        mt_warnings_left_out(left, found);
     }
     return MT_OK;
 }
 
 /* What the analysis says besides the diagnostics of loading, which hold the doubts about single
  * numbers already. */
-static void add_messages(const mt_doubt_list *found, const char *path, mt_diagnostics *messages)
+static void add_messages(const mt_warning_list *found, const char *path,
+                         mt_diagnostics *messages)
 {
     mt_text text = {.s = NULL};
     for (int i = 0; i < found->n; i++) {
-        const mt_doubt *const d = &found->items[i];
+        const mt_warning *const d = &found->items[i];
         text.length = 0;
-        mt_report_doubt(d, false, &text);
+        mt_report_warning(d, false, &text);
         if (text.s != NULL && strstr(mt_diagnostics_text(messages), d->text) == NULL) {
             const mt_diagnostic_place place = {.file = d->file == NULL ? path : d->file,
                                                .line = d->line,
                                                .column = d->column,
                                                .pointer = d->pointer};
             mt_diagnostics_add(
-                messages, d->level == MT_LEVEL_DOUBT ? MT_SEVERITY_WARNING : MT_SEVERITY_NOTE,
+                messages, d->level == MT_LEVEL_WARNING ? MT_SEVERITY_WARNING : MT_SEVERITY_NOTE,
                 &place, text.s);
         }
     }
@@ -150,7 +151,7 @@ enum { MOST_TRIED = 200 };
 
 /* What reads well is held against mechanics: each configuration, and each goal of a study. */
 static mt_status examine(const subject *s, const char *path, mt_diagnostics *messages,
-                         mt_doubt_list *found, mt_err *err)
+                         mt_warning_list *found, mt_err *err)
 {
     mt_status rc = MT_OK;
     if (s->model != NULL) {
@@ -158,10 +159,10 @@ static mt_status examine(const subject *s, const char *path, mt_diagnostics *mes
         return mt_err_in(err, rc, "%s", path);
     }
     if (s->study != NULL) {
-        rc = mt_study_examine(s->study, MT_DOUBTS_WORK, found, err);
+        rc = mt_study_examine(s->study, MT_WARNINGS_WORK, found, err);
         if (rc == MT_OK && s->study->n_goals <= MOST_TRIED &&
             s->study->n_variables <= MOST_TRIED &&
-            !mt_study_takes_more(s->study, MT_DOUBTS_WORK)) {
+            !mt_study_takes_more(s->study, MT_WARNINGS_WORK)) {
             rc = mt_problem_try(s->study, err);
         }
         mt_cli_place(s->study, path, rc, err, messages);
@@ -266,7 +267,7 @@ static void put_problems(output *to, const char *path, const mt_diagnostics *mes
 
 /* What is said of one file. */
 static void put_file(output *to, const char *path, const char *kind,
-                     const mt_diagnostics *messages, const mt_doubt_list *found,
+                     const mt_diagnostics *messages, const mt_warning_list *found,
                      const char *failure)
 {
     switch (to->format) {
@@ -279,8 +280,8 @@ static void put_file(output *to, const char *path, const char *kind,
         put_problems(to, path, messages, failure);
         mt_json_close(&to->w);
         mt_json_put_integer(&to->w, "left_out", mt_diagnostics_left_out(messages));
-        mt_json_put_doubts(&to->w, "doubts", found, MT_LEVEL_DOUBT);
-        mt_json_put_doubts(&to->w, "facts", found, MT_LEVEL_FACT);
+        mt_json_put_warnings(&to->w, "doubts", found, MT_LEVEL_WARNING);
+        mt_json_put_warnings(&to->w, "facts", found, MT_LEVEL_NOTE);
         mt_json_close(&to->w);
         break;
     case MT_FORMAT_SARIF:
@@ -367,7 +368,7 @@ static int check(const mt_args *args, const char *path, output *to)
     mt_err err = {.code = MT_OK};
     int kind = KIND_COUNT;
     mt_arena mem = {.first = NULL};
-    mt_doubt_list found = mt_doubt_list_default(&mem);
+    mt_warning_list found = mt_warning_list_default(&mem);
     subject read = {.model = NULL};
     mt_json *doc = NULL;
     mt_status rc = find_kind(path, &opt, &kind, &doc, &messages, &err);

@@ -12,7 +12,7 @@ enum { DIGITS = 6, CHANGE_DIGITS = 3, SIDES = 2 };
 /* In per cent of the first; NaN where that says nothing. */
 static double change_of(const mt_difference *d)
 {
-    const mt_told *const t = d->told;
+    const mt_reported *const t = d->told;
     const bool numbers = t[0].type == MT_JSON_NUMBER && t[1].type == MT_JSON_NUMBER;
     const bool percent = d->unit != NULL && strcmp(d->unit, "%") == 0;
     return numbers && !percent && !d->provenance && t[0].number != 0.0
@@ -31,7 +31,7 @@ static void add_number(mt_table *t, double x, const char *unit)
     }
 }
 
-static void add_value(mt_table *t, const mt_told *told, const char *unit)
+static void add_value(mt_table *t, const mt_reported *told, const char *unit)
 {
     switch (told->type) {
     case MT_JSON_NUMBER:
@@ -138,7 +138,7 @@ static void print_text(const mt_args *args, const mt_result_diff *diff, mt_text 
     mt_text_add(out, ".\n");
 }
 
-static void put_value(mt_json_writer *w, const char *name, const mt_told *t)
+static void put_value(mt_json_writer *w, const char *name, const mt_reported *t)
 {
     if (t->type == MT_JSON_NUMBER) {
         mt_json_put_number(w, name, t->number);

@@ -321,7 +321,7 @@ static int unknown(const char *topic)
     }
     mt_terminal_error("no topic is called \"%s\"%s%s", topic, near.s == NULL ? "" : near.s,
                       near.s == NULL ? "" : "?");
-    mt_terminal_say(topics.s, topics.length);
+    mt_terminal_write(topics.s, topics.length);
     mt_text_free(&near);
     mt_text_free(&topics);
     return MT_EXIT_INPUT;

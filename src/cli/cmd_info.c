@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "answer/doubts.h"
+#include "answer/warnings.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/conventions.h"
@@ -18,17 +18,17 @@ enum { DIGITS = 6, SPATIAL = 6, MOST_RATIOS = 6 };
 static const char *const inertia_member[SPATIAL] = {"xx", "yy", "zz", "xy", "xz", "yz"};
 
 typedef struct view {
-    const mt_subject *s;
+    const mt_loaded_model *s;
     int c;
     mt_analysis *a;
     mt_info info;
     mt_nearness nearness;
     mt_arena mem;
-    mt_doubt_list doubts;
+    mt_warning_list warning_list;
     mt_convention_list conventions;
 } view;
 
-static void json_units(mt_json_writer *w, const mt_subject *s)
+static void json_units(mt_json_writer *w, const mt_loaded_model *s)
 {
     const mt_model *const m = s->model;
     mt_json_open_flat(w, "units", '{');
@@ -103,7 +103,8 @@ static void text_ratios(mt_text *out, int *n, const view *v)
     const mt_damping_def *const d = &v->a->sys->damping;
     const bool listed = d->n_ratios + d->n_named > 0;
     for (int k = 0; k < d->n_named && k < MOST_RATIOS; k++) {
-        const char *const of = mt_arena_printf(v->doubts.mem, " of \"%s\"", named_mode(v, k));
+        const char *const of =
+            mt_arena_printf(v->warning_list.mem, " of \"%s\"", named_mode(v, k));
         put_part(out, n, "ratio ", number_of(v, d->named_ratios[k]), of == NULL ? "" : of);
     }
     for (int k = 0; k < d->n_ratios && k < MOST_RATIOS; k++) {
@@ -145,10 +146,10 @@ static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
     const mt_info *const i = &v->info;
     const bool planar = v->s->model->dimension == 2;
     mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
     json_units(w, v->s);
-    mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
-    mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
+    mt_json_put_warnings(w, "doubts", &v->warning_list, MT_LEVEL_WARNING);
+    mt_json_put_warnings(w, "facts", &v->warning_list, MT_LEVEL_NOTE);
     mt_json_put_number(w, "mass_kg", i->mass_kg);
     mt_json_open_flat(w, "centre_m", '[');
     for (int k = 0; k < v->s->model->dimension; k++) {
@@ -163,7 +164,7 @@ static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
     mt_json_put_integer(w, "states", i->states);
     mt_json_put_integer(w, "equations", i->equations);
     mt_json_put_integer(w, "freedoms", i->freedoms);
-    mt_json_put_integer(w, "idle_spins", i->idle);
+    mt_json_put_integer(w, "idle_spins", i->free_spins);
     mt_json_put_integer(w, "redundant_equations", i->redundant);
     MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->mem, err));
     mt_json_put_number(w, "equilibrium_residual", i->residual);
@@ -203,8 +204,8 @@ static void write_text(mt_text *out, const view *v, mt_text *last)
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
     char a[3 * MT_NUMBER_TEXT + 8];
-    mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
-    mt_cli_print_doubts(&v->doubts, out);
+    mt_text_addf(out, "%s\n", mt_loaded_model_configuration(v->s, v->c));
+    mt_cli_print_warnings(&v->warning_list, out);
     mt_text_addf(out, "  mass        %s kg\n", mt_report_number(i->mass_kg, DIGITS, a));
     mt_text_addf(out, "  centre      (%s) m\n", point_text(i->centre_m, n, a, sizeof a));
     if (n == 2) {
@@ -220,8 +221,8 @@ static void write_text(mt_text *out, const view *v, mt_text *last)
     mt_text_addf(out, "  mobility    %d freedom%s = %d states - %d independent of %d equations",
                  i->freedoms, i->freedoms == 1 ? "" : "s", i->states,
                  i->equations - i->redundant, i->equations);
-    if (i->idle > 0) {
-        mt_text_addf(out, " - %d idle spin%s", i->idle, i->idle == 1 ? "" : "s");
+    if (i->free_spins > 0) {
+        mt_text_addf(out, " - %d idle spin%s", i->free_spins, i->free_spins == 1 ? "" : "s");
     }
     mt_text_add(out, "\n");
     text_damping(out, v);
@@ -234,7 +235,7 @@ static void write_text(mt_text *out, const view *v, mt_text *last)
 }
 
 /* "170 mm = 0.17 m": of every parameter that the file gives in a unit other than SI. */
-static void write_units(mt_text *out, const mt_subject *s)
+static void write_units(mt_text *out, const mt_loaded_model *s)
 {
     const mt_model *const m = s->model;
     int told = 0;
@@ -280,7 +281,7 @@ static mt_table table_new(void)
 static void fill_table(mt_table *t, const view *v)
 {
     const mt_info *const i = &v->info;
-    mt_table_text(t, mt_subject_configuration(v->s, v->c));
+    mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
     mt_table_number(t, i->mass_kg, DIGITS);
     for (int k = 0; k < 3; k++) {
         mt_table_number(t, i->centre_m[k], DIGITS);
@@ -316,13 +317,13 @@ static mt_status find_conventions(view *v, mt_err *err)
 
 static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
 {
-    MT_TRY(mt_subject_analyse(v->s, v->c, 1, &v->a, err));
+    MT_TRY(mt_loaded_model_analyse(v->s, v->c, 1, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
     MT_TRY(mt_arena_init(&v->mem, 0, err));
     MT_TRY(mt_linear_nearness(v->a->lin, &v->mem, &v->nearness, err));
-    v->doubts = mt_doubt_list_default(&v->mem);
-    MT_TRY(
-        mt_doubts_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at, &v->doubts, err));
+    v->warning_list = mt_warning_list_default(&v->mem);
+    MT_TRY(mt_warnings_of_analysis(v->a, v->s->n_inputs, v->s->inputs, v->s->at,
+                                   &v->warning_list, err));
     MT_TRY(find_conventions(v, err));
     switch (args->format) {
     case MT_FORMAT_JSON:
@@ -341,14 +342,15 @@ static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
 
 int mt_cmd_info(const mt_args *args, mt_text *out)
 {
-    mt_subject s = {.model = NULL};
+    mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
     mt_table t = table_new();
     mt_text last = {.s = NULL};
     const sinks to = {.w = &w, .t = &t, .out = out, .last = &last};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
-    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    int code =
+        mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -361,14 +363,14 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
     for (int i = 0; i < s.n_configurations; i++) {
         view v = {.s = &s, .c = s.configurations[i]};
         mt_err err = {.code = MT_OK};
-        mt_subject_warn_overridden(&s, v.c);
+        mt_loaded_model_warn_overridden(&s, v.c);
         const mt_status rc = one(args, &v, &to, &err);
         if (rc != MT_OK) {
             code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         }
         if (rc != MT_OK && json) {
             mt_json_open(&w, NULL, '{');
-            mt_json_put_string(&w, "configuration", mt_subject_configuration(&s, v.c));
+            mt_json_put_string(&w, "configuration", mt_loaded_model_configuration(&s, v.c));
             mt_json_put_string(&w, "error", err.text);
             mt_json_close(&w);
         }
@@ -387,6 +389,6 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
 done:
     mt_table_free(&t);
     mt_text_free(&last);
-    mt_subject_free(&s);
+    mt_loaded_model_free(&s);
     return code;
 }

@@ -19,7 +19,7 @@ enum { DIGITS = 6, MAC_DIGITS = 5, PAIR_TEXT = 32, NOTE_TEXT = 160 };
 /* One of the two sides. */
 typedef struct side {
     const char *letter;
-    mt_subject s;
+    mt_loaded_model s;
     mt_analysis *a;
     int *channels; /* [ns] the common ones, in this system */
     int n;         /* vibration modes compared */
@@ -39,7 +39,7 @@ typedef struct comparison {
 
 static const char *name_of(const side *x)
 {
-    return mt_subject_configuration(&x->s, x->s.configurations[0]);
+    return mt_loaded_model_configuration(&x->s, x->s.configurations[0]);
 }
 
 /* "MODEL:CONFIGURATION", split at the last colon that is not part of a folder's name. */
@@ -57,7 +57,7 @@ static int load(const mt_args *args, const char *text, comparison *c, side *x)
         mt_terminal_error("out of memory");
         return MT_EXIT_SYSTEM;
     }
-    const int code = mt_subject_load(args, path, configuration, &x->s);
+    const int code = mt_loaded_model_load(args, path, configuration, &x->s);
     if (code == MT_EXIT_DONE && x->s.n_configurations != 1) {
         mt_terminal_error("\"%s\" has %d configurations: name one, as %s:%s", path,
                           x->s.n_configurations, path, name_of(x));
@@ -85,8 +85,8 @@ static mt_status choose_modes(comparison *c, side *x, int wanted, mt_err *err)
 
 static mt_status correlate(comparison *c, int count, mt_err *err)
 {
-    MT_TRY(mt_subject_analyse(&c->a.s, c->a.s.configurations[0], count, &c->a.a, err));
-    MT_TRY(mt_subject_analyse(&c->b.s, c->b.s.configurations[0], count, &c->b.a, err));
+    MT_TRY(mt_loaded_model_analyse(&c->a.s, c->a.s.configurations[0], count, &c->a.a, err));
+    MT_TRY(mt_loaded_model_analyse(&c->b.s, c->b.s.configurations[0], count, &c->b.a, err));
     mt_common_channels common;
     MT_TRY(mt_analysis_common_channels(c->a.a, c->b.a, &c->mem, &common, err));
     if (common.n == 0) {
@@ -394,8 +394,8 @@ int mt_cmd_mac(const mt_args *args, mt_text *out)
     code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
     mt_analysis_delete(c.a.a);
     mt_analysis_delete(c.b.a);
-    mt_subject_free(&c.a.s);
-    mt_subject_free(&c.b.s);
+    mt_loaded_model_free(&c.a.s);
+    mt_loaded_model_free(&c.b.s);
     mt_arena_free(&c.mem);
     return code;
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "answer/doubts.h"
+#include "answer/warnings.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/damped.h"
@@ -25,7 +25,7 @@ static const double MOST_LEFT = 1e-9;
 
 /* One configuration, ready to be written. */
 typedef struct view {
-    const mt_subject *s;
+    const mt_loaded_model *s;
     int c;
     mt_analysis *a;    /* by dense matrices; NULL: */
     mt_lowest *l;      /* of the lowest ones */
@@ -36,7 +36,7 @@ typedef struct view {
     bool asked;        /* by --count */
     bool with_damping;
     const mt_damped_modes *damped;
-    mt_doubt_list doubts;
+    mt_warning_list warning_list;
 } view;
 
 static void json_mode(mt_json_writer *w, const view *v, int i)
@@ -101,9 +101,9 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     const mt_modes *const m = v->m;
     const mt_state *const at = position_of(v) == NULL ? &drawn : position_of(v);
     mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
-    mt_json_put_doubts(w, "doubts", &v->doubts, MT_LEVEL_DOUBT);
-    mt_json_put_doubts(w, "facts", &v->doubts, MT_LEVEL_FACT);
+    mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
+    mt_json_put_warnings(w, "doubts", &v->warning_list, MT_LEVEL_WARNING);
+    mt_json_put_warnings(w, "facts", &v->warning_list, MT_LEVEL_NOTE);
     mt_json_put_string(w, "method", mt_cli_method(v->l == NULL ? MT_LOWEST_NONE : v->l->way));
     if (v->l == NULL) {
         mt_json_put_null(w, "complete_below_hz"); /* no mode is missing */
@@ -203,7 +203,7 @@ static void fill_table(mt_table *t, const view *v, bool csv)
         char text[24];
         (void)mt_snprintf(text, sizeof text, "%d", index);
         if (csv) {
-            mt_table_text(t, mt_subject_configuration(v->s, v->c));
+            mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
         }
         mt_table_text(t, index > 0 ? text : NULL);
         mt_table_text(t,
@@ -254,7 +254,7 @@ static void print_shapes(const view *v, mt_text *out)
 }
 
 /* Says so where modes are left out that nobody has declined. */
-static void tell_others(const view *v, mt_text *out)
+static void write_others(const view *v, mt_text *out)
 {
     const int all = mt_modal_vibrations(v->m);
     if (!v->asked && all > v->count) {
@@ -311,8 +311,8 @@ static void text_view(const view *v, mt_text *out)
 {
     mt_table t = table_new(false, any_rough(v), 0, NULL);
     fill_table(&t, v, false);
-    mt_text_addf(out, "%s\n", mt_subject_configuration(v->s, v->c));
-    mt_cli_print_doubts(&v->doubts, out);
+    mt_text_addf(out, "%s\n", mt_loaded_model_configuration(v->s, v->c));
+    mt_cli_print_warnings(&v->warning_list, out);
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     tell(v, out);
@@ -322,7 +322,7 @@ static void text_view(const view *v, mt_text *out)
     if (v->with_damping) {
         mt_damped_print(v->damped, v->count, out);
     }
-    tell_others(v, out);
+    write_others(v, out);
     mt_text_add(out, "\n");
 }
 
@@ -340,7 +340,8 @@ static mt_status csv_view(sink *to, const view *v)
             to->table = mt_table_default();
             mt_damped_columns(&to->table, true);
         }
-        mt_damped_rows(&to->table, v->damped, v->count, mt_subject_configuration(v->s, v->c));
+        mt_damped_rows(&to->table, v->damped, v->count,
+                       mt_loaded_model_configuration(v->s, v->c));
         return MT_OK;
     }
     if (to->table.n_columns == 0 && !to->table.failed) {
@@ -359,27 +360,28 @@ static mt_status csv_view(sink *to, const view *v)
 /* The lowest modes alone where they are what is asked for, and where there is a short way. */
 static mt_status look(const mt_args *args, view *v, mt_err *err)
 {
-    const mt_subject *const s = v->s;
+    const mt_loaded_model *const s = v->s;
     const mt_lowest_want want = {.count = args->given[MT_OPT_DAMPED] ? 0 : v->count,
                                  .shapes = args->given[MT_OPT_SHAPES]};
-    MT_TRY(mt_subject_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
+    MT_TRY(mt_loaded_model_lowest(s, v->c, s->n_inputs, s->inputs, s->at, want, &v->l, err));
     if (v->l != NULL) {
         v->m = &v->l->found.modes;
-        return mt_doubts_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->doubts, err);
+        return mt_warnings_of_lowest(v->l, s->n_inputs, s->inputs, s->at, &v->warning_list,
+                                     err);
     }
     /* damped modes are sought among all others */
-    MT_TRY(mt_subject_analyse(s, v->c, want.count, &v->a, err));
+    MT_TRY(mt_loaded_model_analyse(s, v->c, want.count, &v->a, err));
     v->m = &v->a->modes;
-    return mt_doubts_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->doubts, err);
+    return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list, err);
 }
 
-static mt_status one(sink *to, const mt_subject *s, int c, mt_err *err)
+static mt_status one(sink *to, const mt_loaded_model *s, int c, mt_err *err)
 {
     const bool asked = to->args->given[MT_OPT_COUNT];
     view v = {.s = s, .c = c, .count = asked ? to->args->count : DEFAULT_MODES, .asked = asked};
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
-    v.doubts = mt_doubt_list_default(&mem);
+    v.warning_list = mt_warning_list_default(&mem);
     s->model->progress = mt_watch_begin(to->args, 0, "modes");
     rc = rc == MT_OK ? look(to->args, &v, err) : rc;
     s->model->progress = NULL;
@@ -425,13 +427,13 @@ done:
 }
 
 /* A configuration that cannot be analysed does not hide the others. */
-static int each(sink *to, const mt_subject *s)
+static int each(sink *to, const mt_loaded_model *s)
 {
     int code = MT_EXIT_DONE;
     for (int i = 0; i < s->n_configurations; i++) {
         const int c = s->configurations[i];
         mt_err err = {.code = MT_OK};
-        mt_subject_warn_overridden(s, c);
+        mt_loaded_model_warn_overridden(s, c);
         const mt_status rc = one(to, s, c, &err);
         if (rc == MT_OK) {
             continue;
@@ -439,7 +441,7 @@ static int each(sink *to, const mt_subject *s)
         code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         if (to->w != NULL) {
             mt_json_open(to->w, NULL, '{');
-            mt_json_put_string(to->w, "configuration", mt_subject_configuration(s, c));
+            mt_json_put_string(to->w, "configuration", mt_loaded_model_configuration(s, c));
             mt_json_put_string(to->w, "error", err.text);
             mt_json_close(to->w);
         }
@@ -449,12 +451,13 @@ static int each(sink *to, const mt_subject *s)
 
 int mt_cmd_modes(const mt_args *args, mt_text *out)
 {
-    mt_subject s = {.model = NULL};
+    mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
     sink to = {.args = args, .out = out, .w = args->format == MT_FORMAT_JSON ? &w : NULL};
     mt_profile counts;
     mt_profile *const profile = mt_cli_profile(args, &counts);
-    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    int code =
+        mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -476,6 +479,6 @@ int mt_cmd_modes(const mt_args *args, mt_text *out)
     code = mt_exit_worse(code, mt_cli_profile_print(profile));
 done:
     mt_table_free(&to.table);
-    mt_subject_free(&s);
+    mt_loaded_model_free(&s);
     return code;
 }

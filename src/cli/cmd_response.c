@@ -28,7 +28,7 @@ static const double ABOVE_WITH_RATIO = 20.0;
 typedef struct job {
     const mt_args *args;
     const mt_vibration *profile; /* --vibration; NULL */
-    mt_subject *s;
+    mt_loaded_model *s;
     int c;
     mt_analysis *a; /* NULL: of the lowest modes */
     mt_lowest *l;   /* NULL: of all of them */
@@ -63,7 +63,7 @@ static mt_status range_end(job *j, int option, double hz, double *w, mt_err *err
     const char *const name = mt_options[option].name;
     const char *const text = j->args->value[option];
     if (text != NULL) {
-        MT_TRY(mt_subject_number(j->s, name, NULL, text, strlen(text), &hz, err));
+        MT_TRY(mt_loaded_model_number(j->s, name, NULL, text, strlen(text), &hz, err));
     }
     if (!(hz > 0.0 && isfinite(TWO_PI * hz))) {
         return text == NULL ? mt_fail(err, MT_E_USAGE,
@@ -174,8 +174,8 @@ static mt_status sensitivities(job *j, mt_err *err)
     if (list == NULL) {
         return MT_OK;
     }
-    MT_TRY(
-        mt_subject_parameters(j->s, "sensitivity", list, &j->r.mem, &j->v.n, &parameter, err));
+    MT_TRY(mt_loaded_model_parameters(j->s, "sensitivity", list, &j->r.mem, &j->v.n, &parameter,
+                                      err));
     const size_t n = (size_t)j->v.n;
     double *const value = mt_arena_f64(&j->r.mem, n, 1);
     double *const percent = mt_arena_f64(&j->r.mem, (size_t)j->curve.n_extremes, n);
@@ -229,8 +229,8 @@ static mt_status request_ports(job *j, const mt_system *sys, mt_err *err)
 
 static mt_status open_response(job *j, const char *why, mt_err *err)
 {
-    MT_TRY(mt_subject_admit_dense(j->s, j->c, why, err));
-    MT_TRY(mt_subject_analyse(j->s, j->c, 0, &j->a, err));
+    MT_TRY(mt_loaded_model_admit_dense(j->s, j->c, why, err));
+    MT_TRY(mt_loaded_model_analyse(j->s, j->c, 0, &j->a, err));
     j->modes = &j->a->modes;
     MT_TRY(request_ports(j, j->a->sys, err));
     MT_TRY(mt_response_open(j->a, &j->request, &j->r, err));
@@ -347,16 +347,16 @@ typedef struct sink {
     mt_table table; /* CSV */
 } sink;
 
-static int one(sink *to, mt_subject *s, int c)
+static int one(sink *to, mt_loaded_model *s, int c)
 {
     job j = {.args = to->args, .profile = to->profile, .s = s, .c = c};
     mt_err err = {.code = MT_OK};
-    j.v = (mt_response_view){.configuration = mt_subject_configuration(s, c),
+    j.v = (mt_response_view){.configuration = mt_loaded_model_configuration(s, c),
                              .s = s,
                              .r = &j.r,
                              .curve = &j.curve,
                              .direct = to->args->given[MT_OPT_DIRECT]};
-    mt_subject_warn_overridden(s, c);
+    mt_loaded_model_warn_overridden(s, c);
     const mt_status rc = run(&j, &err);
     if (rc == MT_OK) {
         switch (to->args->format) {
@@ -370,7 +370,7 @@ static int one(sink *to, mt_subject *s, int c)
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             mt_response_print(&j.v, to->out);
-            mt_subject_note_links(s, c, to->out);
+            mt_loaded_model_note_links(s, c, to->out);
             break;
         }
     } else if (to->args->format == MT_FORMAT_JSON) {
@@ -402,14 +402,15 @@ static int load(sink *to)
 
 int mt_cmd_response(const mt_args *args, mt_text *out)
 {
-    mt_subject s = {.model = NULL};
+    mt_loaded_model s = {.model = NULL};
     sink to = {.args = args,
                .out = out,
                .w = mt_json_writer_default(out),
                .table = mt_response_csv_table(args->given[MT_OPT_VIBRATION])};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
-    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    int code =
+        mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     code = code == MT_EXIT_DONE ? load(&to) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
@@ -432,6 +433,6 @@ int mt_cmd_response(const mt_args *args, mt_text *out)
 done:
     mt_vibration_delete(to.profile);
     mt_table_free(&to.table);
-    mt_subject_free(&s);
+    mt_loaded_model_free(&s);
     return code;
 }

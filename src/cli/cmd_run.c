@@ -77,13 +77,13 @@ static bool is_late(const job *j)
 static int answer(job *j)
 {
     const mt_args *const args = j->args;
-    const mt_asked asked = {.n_sets = args->all[MT_OPT_SET].n,
-                            .sets = args->all[MT_OPT_SET].value,
-                            .seed = args->given[MT_OPT_SEED] ? (long)args->seed : -1,
-                            .starts = args->starts,
-                            .max_evaluations = args->max_evaluations,
-                            .max_modal_solutions = args->max_modal_solutions,
-                            .proof_s = args->given[MT_OPT_PROOF] ? args->proof_s : nan("")};
+    const mt_overrides asked = {.n_sets = args->all[MT_OPT_SET].n,
+                                .sets = args->all[MT_OPT_SET].value,
+                                .seed = args->given[MT_OPT_SEED] ? (long)args->seed : -1,
+                                .starts = args->starts,
+                                .max_evaluations = args->max_evaluations,
+                                .max_modal_solutions = args->max_modal_solutions,
+                                .proof_s = args->given[MT_OPT_PROOF] ? args->proof_s : nan("")};
     mt_io_options io = mt_cli_io(args);
     io.asked = &asked;
     mt_diagnostics messages = {.count = 0};
@@ -96,21 +96,21 @@ static int answer(job *j)
     }
     mt_solve_options opt = {.size = sizeof opt};
     opt.threads = j->args->threads;
-    opt.stop = j->stops ? mt_terminal_wish : NULL;
-    opt.cause = j->stops ? mt_terminal_cause : NULL;
+    opt.stop = j->stops ? mt_terminal_stop_request : NULL;
+    opt.cause = j->stops ? mt_terminal_stop_reason : NULL;
     opt.progress = j->stops && j->args->given[MT_OPT_TIME] ? leave_time : NULL;
     opt.progress_context = j;
     j->profile = mt_cli_profile(j->args, &j->counts);
     j->study->model->profile = j->profile;
-    mt_ledger *ledger = NULL;
+    mt_checkpoint_store *store = NULL;
     if (j->args->command != MT_CMD_COMPARE) {
         const int begun = mt_work_begin(j->args, j->path, j->study, &j->journal);
         if (begun != MT_EXIT_DONE) {
             return begun;
         }
-        ledger = mt_journal_ledger(j->journal, j->args->part, j->args->parts);
+        store = mt_journal_checkpoint_store(j->journal, j->args->part, j->args->parts);
     }
-    const mt_early early = {keep, j};
+    const mt_incumbent_callback early = {keep, j};
     const bool kept = j->args->command != MT_CMD_COMPARE && j->args->part == 0;
     j->start = mt_terminal_seconds();
     if (j->stops) {
@@ -118,9 +118,9 @@ static int answer(job *j)
         mt_terminal_limit(j->args->time_s);
     }
     j->study->model->progress = mt_watch_begin(j->args, j->operand, "baseline");
-    rc = mt_study_solve_with(j->study, &opt, ledger, kept ? &early : NULL, &j->result, &j->err);
+    rc = mt_study_solve_with(j->study, &opt, store, kept ? &early : NULL, &j->result, &j->err);
     j->seconds = mt_terminal_seconds() - j->start;
-    j->stopped = mt_terminal_wish(NULL) != MT_WISH_NONE;
+    j->stopped = mt_terminal_stop_request(NULL) != MT_STOP_REQUEST_NONE;
     mt_terminal_limit(0.0);
     j->study->model->progress = NULL;
     mt_watch_end(rc == MT_OK && !is_cut(j->result));
@@ -330,7 +330,7 @@ static int compare_one(job *j, mt_json_writer *w, mt_text *out)
     const mt_result *const r = j->result;
     const mt_recommendation *const best =
         r->n_recommendations > 0 ? &r->recommendations[0] : &r->baseline;
-    const mt_teller to = {.out = out, .width = mt_terminal_width()};
+    const mt_summary_writer to = {.out = out, .width = mt_terminal_width()};
     mt_table t = mt_report_published(r);
     int judged = 0;
     const bool holds = mt_report_verified(r, &judged);
@@ -355,14 +355,14 @@ static int compare_one(job *j, mt_json_writer *w, mt_text *out)
     case MT_FORMAT_TEXT:
         mt_text_addf(out, "%s: %s\n", r->study.name == NULL ? j->path : r->study.name,
                      mt_result_status_name(r->status));
-        mt_tell_overrides(&to, &r->run);
+        mt_write_overrides(&to, &r->run);
         if (r->n_doubts > 0) {
-            mt_tell_doubts(&to, r);
+            mt_tell_warnings(&to, r);
             mt_text_add(out, "\n");
         }
         mt_table_print(&t, 2, mt_terminal_width(), out);
-        mt_tell_objectives(&to, best);
-        mt_tell_uncertainty(&to, r);
+        mt_write_objectives(&to, best);
+        mt_write_uncertainty(&to, r);
         mt_text_add(out, "\n");
         break;
     }

@@ -2,33 +2,33 @@
 /* modetune sensitivity: how far one per cent more of a parameter moves each frequency. */
 
 #include "base/format.h"
-#include "cli/survey.h"
+#include "cli/sensitivity_table.h"
 #include "report/table.h"
 
 enum { DEFAULT_MODES = 6, DIGITS = 4, HZ_DIGITS = 6, HEADING_TEXT = 40, NAME_TEXT = 128 };
 
-static const char *unit_of(const mt_survey *v, int k)
+static const char *unit_of(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].unit;
 }
 
 /* What people see its value in; NULL: SI. */
-static const mt_unit *shown_in(const mt_survey *v, int k)
+static const mt_unit *shown_in(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].written;
 }
 
-static const char *name_of(const mt_survey *v, int k)
+static const char *name_of(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
 
-static bool has_none(const mt_survey *v, int k)
+static bool has_none(const mt_sensitivity_table *v, int k)
 {
     return v->independence[k].opens || v->independence[k].blocks;
 }
 
-static void json_no_derivatives(mt_json_writer *w, const mt_survey *v)
+static void json_no_derivatives(mt_json_writer *w, const mt_sensitivity_table *v)
 {
     mt_json_open(w, "no_derivatives", '[');
     for (int k = 0; k < v->n; k++) {
@@ -44,10 +44,10 @@ static void json_no_derivatives(mt_json_writer *w, const mt_survey *v)
     mt_json_close(w);
 }
 
-static void write_json(mt_json_writer *w, const mt_survey *v)
+static void write_json(mt_json_writer *w, const mt_sensitivity_table *v)
 {
     mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "configuration", mt_subject_configuration(v->s, v->c));
+    mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
     mt_json_put_string(w, "method", mt_cli_method(v->way));
     mt_json_open(w, "modes", '[');
     for (int i = 0; i < v->modes; i++) {
@@ -61,7 +61,7 @@ static void write_json(mt_json_writer *w, const mt_survey *v)
             mt_json_put_string(w, "parameter", name_of(v, k));
             mt_json_put_string(w, "unit", unit_of(v, k));
             mt_json_put_number(w, "value", v->value[k]);
-            mt_json_put_number(w, "hz_per_percent", mt_survey_per_percent(v, i, k));
+            mt_json_put_number(w, "hz_per_percent", mt_sensitivity_table_per_percent(v, i, k));
             mt_json_put_number(w, "hz_per_unit", v->per_unit[i + ((ptrdiff_t)k * v->room)]);
             mt_json_close(w);
         }
@@ -88,25 +88,25 @@ static mt_table csv_table(void)
     return t;
 }
 
-static void fill_csv(mt_table *t, const mt_survey *v)
+static void fill_csv(mt_table *t, const mt_sensitivity_table *v)
 {
     for (int i = 0; i < v->modes; i++) {
         for (int k = 0; k < v->n; k++) {
-            mt_table_text(t, mt_subject_configuration(v->s, v->c));
+            mt_table_text(t, mt_loaded_model_configuration(v->s, v->c));
             mt_table_integer(t, i + 1);
             mt_table_number(t, v->hz[i], HZ_DIGITS);
             mt_table_text(t, v->repeated[i] ? "true" : "false");
             mt_table_text(t, name_of(v, k));
             mt_table_number(t, v->value[k], HZ_DIGITS);
-            mt_table_number(t, mt_survey_per_percent(v, i, k), DIGITS);
+            mt_table_number(t, mt_sensitivity_table_per_percent(v, i, k), DIGITS);
             mt_table_number(t, v->per_unit[i + ((ptrdiff_t)k * v->room)], DIGITS);
             mt_table_text(t, unit_of(v, k));
         }
     }
 }
 
-static void write_notes(mt_text *out, const mt_survey *v, bool repeated, bool coordinates,
-                        bool overridden)
+static void write_notes(mt_text *out, const mt_sensitivity_table *v, bool repeated,
+                        bool coordinates, bool overridden)
 {
     if (coordinates) {
         mt_text_add(out,
@@ -145,7 +145,7 @@ static void write_notes(mt_text *out, const mt_survey *v, bool repeated, bool co
     mt_text_add(out, "\n");
 }
 
-static void write_text(mt_text *out, const mt_survey *v)
+static void write_text(mt_text *out, const mt_sensitivity_table *v)
 {
     mt_table t = mt_table_default();
     bool repeated = false;
@@ -162,7 +162,7 @@ static void write_text(mt_text *out, const mt_survey *v)
         repeated = repeated || v->repeated[i];
     }
     for (int k = 0; k < v->n; k++) {
-        const bool percent = mt_survey_has_percent(v, k);
+        const bool percent = mt_sensitivity_table_has_percent(v, k);
         char name[NAME_TEXT];
         (void)mt_snprintf(name, sizeof name, "%s (1 mm)", name_of(v, k));
         mt_table_text(&t, percent ? name_of(v, k) : name);
@@ -170,24 +170,25 @@ static void write_text(mt_text *out, const mt_survey *v)
         mt_table_number(&t, mt_unit_from_si(shown_in(v, k), v->value[k]), HZ_DIGITS);
         mt_table_text(&t, mt_unit_name(shown_in(v, k), unit_of(v, k)));
         for (int i = 0; i < v->modes; i++) {
-            mt_table_change(&t, mt_survey_shown(v, i, k), DIGITS);
+            mt_table_change(&t, mt_sensitivity_table_shown(v, i, k), DIGITS);
         }
         overridden = overridden || v->overridden[k];
     }
     mt_text_addf(out, "%s: Hz for one per cent more of each parameter, by mode\n",
-                 mt_subject_configuration(v->s, v->c));
+                 mt_loaded_model_configuration(v->s, v->c));
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
     write_notes(out, v, repeated, coordinates, overridden);
 }
 
 /* *wrong: parameters were asked for that there are not. */
-static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_writer *w,
+static mt_status one(const mt_args *args, const mt_loaded_model *s, int c, mt_json_writer *w,
                      mt_table *t, mt_text *out, bool *wrong, mt_err *err)
 {
-    mt_survey v = {.s = NULL};
+    mt_sensitivity_table v = {.s = NULL};
     const int modes = args->count > 0 ? args->count : DEFAULT_MODES;
-    const mt_status rc = mt_survey_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
+    const mt_status rc =
+        mt_sensitivity_table_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
     if (rc == MT_OK) {
         switch (args->format) {
         case MT_FORMAT_JSON:
@@ -200,23 +201,24 @@ static mt_status one(const mt_args *args, const mt_subject *s, int c, mt_json_wr
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             write_text(out, &v);
-            mt_subject_note_links(s, c, out);
+            mt_loaded_model_note_links(s, c, out);
             break;
         }
     }
     *wrong = rc == MT_E_USAGE && v.value == NULL;
-    mt_survey_free(&v);
+    mt_sensitivity_table_free(&v);
     return rc;
 }
 
 int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
 {
-    mt_subject s = {.model = NULL};
+    mt_loaded_model s = {.model = NULL};
     mt_json_writer w = mt_json_writer_default(out);
     mt_table t = csv_table();
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
-    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    int code =
+        mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -225,7 +227,7 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
     }
     for (int i = 0; i < s.n_configurations; i++) {
         mt_err err = {.code = MT_OK};
-        mt_subject_warn_overridden(&s, s.configurations[i]);
+        mt_loaded_model_warn_overridden(&s, s.configurations[i]);
         bool wrong = false;
         const mt_status rc = one(args, &s, s.configurations[i], &w, &t, out, &wrong, &err);
         if (rc != MT_OK) {
@@ -235,7 +237,8 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
             break; /* the same for every configuration */
         }
         if (rc != MT_OK && json) {
-            mt_cli_json_failed(&w, mt_subject_configuration(&s, s.configurations[i]), &err);
+            mt_cli_json_failed(&w, mt_loaded_model_configuration(&s, s.configurations[i]),
+                               &err);
         }
     }
     if (list) {
@@ -249,6 +252,6 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
     }
 done:
     mt_table_free(&t);
-    mt_subject_free(&s);
+    mt_loaded_model_free(&s);
     return code;
 }

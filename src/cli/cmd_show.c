@@ -5,7 +5,7 @@
 
 #include "cli/cli.h"
 #include "cli/find_model.h"
-#include "cli/picture.h"
+#include "cli/svg.h"
 #include "io/file.h"
 #include "io/folder.h"
 #include "io/write_scene.h"
@@ -15,11 +15,11 @@
 
 /* What is looked at: a model, at the design of its file and --set, or at those of a result. */
 typedef struct subject {
-    mt_subject s;      /* its designs are those below where there is a result */
+    mt_loaded_model s; /* its designs are those below where there is a result */
     mt_result *result; /* NULL: a model was given */
     char *path;        /* heap: of the model of the result */
     int n;
-    mt_scene_ask *asks;
+    mt_scene_query *asks;
 } subject;
 
 /* *is: whether the file says that it is a result. What is wrong with its text is told by who
@@ -46,11 +46,11 @@ static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
 {
     o->asks = mt_arena_alloc(&o->s.mem, 1, sizeof *o->asks);
     MT_TRY(mt_arena_check(&o->s.mem, err));
-    o->asks[0] = (mt_scene_ask){.label = args->all[MT_OPT_SET].n == 0 ? "original" : "as set",
-                                .n_inputs = o->s.n_inputs,
-                                .inputs = o->s.inputs,
-                                .at = o->s.at,
-                                .n_shown = -1};
+    o->asks[0] = (mt_scene_query){.label = args->all[MT_OPT_SET].n == 0 ? "original" : "as set",
+                                  .n_inputs = o->s.n_inputs,
+                                  .inputs = o->s.inputs,
+                                  .at = o->s.at,
+                                  .n_shown = -1};
     o->n = 1;
     return args->all[MT_OPT_SET].n == 0
                ? mt_scene_name_modes(o->s.model, &o->s.mem, &o->asks[0], err)
@@ -82,7 +82,7 @@ static int load(const mt_args *args, subject *o)
             &err);
     }
     if (!result) {
-        const int code = mt_subject_load(args, operand, configuration, &o->s);
+        const int code = mt_loaded_model_load(args, operand, configuration, &o->s);
         rc = code == MT_EXIT_DONE ? of_model(args, o, &err) : MT_OK;
         return code != MT_EXIT_DONE ? code
                : rc == MT_OK        ? MT_EXIT_DONE
@@ -98,7 +98,7 @@ static int load(const mt_args *args, subject *o)
     if (rc != MT_OK) {
         return mt_cli_failed(rc, &err);
     }
-    code = mt_subject_load(args, o->path, configuration, &o->s);
+    code = mt_loaded_model_load(args, o->path, configuration, &o->s);
     if (code == MT_EXIT_DONE && configuration == NULL) {
         (void)mt_scene_order(o->s.model, o->result, o->s.configurations); /* all of them */
     }
@@ -162,7 +162,7 @@ static mt_status still(const mt_args *args, const mt_scene *scene, mt_text *out,
                        "--mode: configuration \"%s\" shows no vibration mode %d", v->name,
                        args->mode);
     }
-    mt_picture(scene, v, mode, out);
+    mt_svg(scene, v, mode, out);
     return MT_OK;
 }
 
@@ -242,7 +242,7 @@ int mt_cmd_show(const mt_args *args, mt_text *out)
 done:
     mt_scene_delete(scene);
     mt_result_delete(o.result);
-    mt_subject_free(&o.s);
+    mt_loaded_model_free(&o.s);
     free(o.path);
     return code;
 }

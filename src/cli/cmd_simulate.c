@@ -14,7 +14,7 @@ enum { STEADY_PERIODS = 10 };
 typedef struct job {
     const mt_args *args;
     mt_vibration *profile; /* --vibration, owned; NULL */
-    mt_subject *s;
+    mt_loaded_model *s;
     int c;
     mt_arena mem;
     mt_analysis *a; /* with --mode */
@@ -27,7 +27,7 @@ typedef struct job {
 } job;
 
 /* The one configuration that is meant. */
-static mt_status choose(const mt_subject *s, int *c, mt_err *err)
+static mt_status choose(const mt_loaded_model *s, int *c, mt_err *err)
 {
     if (s->n_configurations > 1) {
         return mt_fail(err, MT_E_USAGE,
@@ -41,7 +41,7 @@ static mt_status choose(const mt_subject *s, int *c, mt_err *err)
 /* The system, driven where an input moves a joint, at its rest position. */
 static mt_status make(job *j, mt_err *err)
 {
-    mt_subject *const s = j->s;
+    mt_loaded_model *const s = j->s;
     mt_system_drive drive = {.fixed = true};
     bool given = false;
     MT_TRY(mt_sim_moved_joint(j->args, s->model, &s->mem, &drive.joint, err));
@@ -59,7 +59,7 @@ static mt_status make(job *j, mt_err *err)
         j->lin = j->a->lin;
         return MT_OK;
     }
-    mt_subject_warn_dropped(s, j->c, "--input", drive.joint);
+    mt_loaded_model_warn_dropped(s, j->c, "--input", drive.joint);
     MT_TRY(mt_system_new_driven(s->model, j->c, drive.joint == NULL ? NULL : &drive,
                                 s->n_inputs, s->inputs, s->at, &j->sys, err));
     MT_TRY(mt_linear_new(j->sys, &j->lin, err));
@@ -69,7 +69,7 @@ static mt_status make(job *j, mt_err *err)
 /* Held at one place until the rest is in equilibrium. */
 static mt_status start_held(job *j, const mt_sim_joint *at, mt_err *err)
 {
-    const mt_subject *const s = j->s;
+    const mt_loaded_model *const s = j->s;
     const mt_system_drive drive = {
         .joint = j->sys->joints[at->joint].name, .fixed = true, .position = at->value};
     mt_system *sys = NULL;
@@ -188,7 +188,7 @@ static mt_status read_one(job *j, int g, mt_sim_reading *out, mt_err *err)
 static mt_status read_all(job *j, mt_err *err)
 {
     const int n = j->request.opt.n_gauges;
-    j->view = (mt_sim_view){.configuration = mt_subject_configuration(j->s, j->c),
+    j->view = (mt_sim_view){.configuration = mt_loaded_model_configuration(j->s, j->c),
                             .sys = j->sys,
                             .request = &j->request,
                             .r = &j->result,
@@ -205,7 +205,7 @@ static mt_status read_all(job *j, mt_err *err)
 static mt_status move(job *j, mt_err *err)
 {
     mt_interrupt interrupt;
-    mt_interrupt_init(&interrupt, mt_terminal_wish, NULL, NULL);
+    mt_interrupt_init(&interrupt, mt_terminal_stop_request, NULL, NULL);
     mt_terminal_hold_signals();
     mt_terminal_limit(j->args->time_s);
     j->s->model->interrupt = &interrupt;
@@ -220,8 +220,8 @@ static mt_status run(job *j, mt_err *err)
 {
     MT_TRY(mt_arena_init(&j->mem, 0, err));
     MT_TRY(choose(j->s, &j->c, err));
-    mt_subject_warn_overridden(j->s, j->c);
-    MT_TRY(mt_subject_admit_dense(j->s, j->c, "a motion needs them", err));
+    mt_loaded_model_warn_overridden(j->s, j->c);
+    MT_TRY(mt_loaded_model_admit_dense(j->s, j->c, "a motion needs them", err));
     MT_TRY(make(j, err));
     MT_TRY(mt_sim_read(j->args, j->s, j->sys, j->profile, &j->request, err));
     MT_TRY(begin(j, err));
@@ -243,7 +243,7 @@ static int put(const job *j, mt_text *out)
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
         mt_simulate_print(&j->view, out);
-        mt_subject_note_links(j->s, j->c, out);
+        mt_loaded_model_note_links(j->s, j->c, out);
         return MT_EXIT_DONE;
     }
     return MT_EXIT_DONE;
@@ -276,10 +276,11 @@ static int load(job *j)
 
 int mt_cmd_simulate(const mt_args *args, mt_text *out)
 {
-    mt_subject s = {.model = NULL};
+    mt_loaded_model s = {.model = NULL};
     job j = {.args = args, .s = &s};
     mt_err err = {.code = MT_OK};
-    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    int code =
+        mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     code = code == MT_EXIT_DONE ? load(&j) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
@@ -302,6 +303,6 @@ done:
     mt_analysis_delete(j.a);
     mt_vibration_delete(j.profile);
     mt_arena_free(&j.mem);
-    mt_subject_free(&s);
+    mt_loaded_model_free(&s);
     return code;
 }

@@ -33,7 +33,7 @@ static mt_status read_points(const char *text, const double range[2], int *out, 
 
 /* "JOINT=FROM:TO:N" with expressions of the subject's values, into mem. Fails: MT_E_USAGE,
  * MT_E_MEMORY. */
-static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_request *out,
+static mt_status read_request(const mt_args *args, mt_loaded_model *s, mt_sweep_request *out,
                               mt_err *err)
 {
     const char *const text = args->value[MT_OPT_DRIVE];
@@ -50,11 +50,11 @@ static mt_status read_request(const mt_args *args, mt_subject *s, mt_sweep_reque
     out->drive.joint = mt_arena_strndup(&s->mem, text, (size_t)(equals - text));
     out->drive.spring = args->value[MT_OPT_HOLD];
     MT_TRY(mt_arena_check(&s->mem, err));
-    const mt_unit *const unit = mt_subject_joint_unit(s->model, out->drive.joint);
-    MT_TRY(mt_subject_number(s, "drive", unit, equals + 1, (size_t)(first - equals - 1),
-                             &range[0], err));
-    MT_TRY(mt_subject_number(s, "drive", unit, first + 1, (size_t)(second - first - 1),
-                             &range[1], err));
+    const mt_unit *const unit = mt_loaded_model_joint_unit(s->model, out->drive.joint);
+    MT_TRY(mt_loaded_model_number(s, "drive", unit, equals + 1, (size_t)(first - equals - 1),
+                                  &range[0], err));
+    MT_TRY(mt_loaded_model_number(s, "drive", unit, first + 1, (size_t)(second - first - 1),
+                                  &range[1], err));
     MT_TRY(read_points(second + 1, range, &out->n, err));
     out->positions = mt_arena_f64(&s->mem, (size_t)out->n, 1);
     MT_TRY(mt_arena_check(&s->mem, err));
@@ -127,7 +127,7 @@ static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt
     return MT_OK;
 }
 
-static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt_err *err)
+static mt_status run(const mt_args *args, const mt_loaded_model *s, int c, job *j, mt_err *err)
 {
     const mt_sweep_request *const r = j->v.request;
     const mt_sweep_visitor visitor = {.visit = visit, .context = j};
@@ -165,7 +165,7 @@ static mt_status run(const mt_args *args, const mt_subject *s, int c, job *j, mt
 }
 
 /* Each reason why points are missing, once. */
-static int tell_missing(const mt_subject *s, const mt_sweep_view *v)
+static int write_missing(const mt_loaded_model *s, const mt_sweep_view *v)
 {
     const char *last = NULL;
     int code = MT_EXIT_DONE;
@@ -242,22 +242,22 @@ static void warn_range(const job *j)
     }
 }
 
-static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *request)
+static int one(sink *to, const mt_loaded_model *s, int c, const mt_sweep_request *request)
 {
     job j = {.a = NULL};
     mt_err err = {.code = MT_OK};
     int code = MT_EXIT_DONE;
-    j.v.configuration = mt_subject_configuration(s, c);
-    mt_subject_warn_dropped(s, c, "--drive", request->drive.joint);
+    j.v.configuration = mt_loaded_model_configuration(s, c);
+    mt_loaded_model_warn_dropped(s, c, "--drive", request->drive.joint);
     j.v.request = request;
-    mt_subject_warn_overridden(s, c);
+    mt_loaded_model_warn_overridden(s, c);
     mt_status rc = run(to->args, s, c, &j, &err);
     if (rc != MT_E_USAGE) {
         (void)mt_err_in(&err, rc, "%s", s->path);
     }
     if (rc == MT_OK) {
         warn_range(&j);
-        code = tell_missing(s, &j.v);
+        code = write_missing(s, &j.v);
         switch (to->args->format) {
         case MT_FORMAT_JSON:
             mt_sweep_json(&j.v, &to->w);
@@ -269,7 +269,7 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
             mt_sweep_print(&j.v, to->out);
-            mt_subject_note_links(s, c, to->out);
+            mt_loaded_model_note_links(s, c, to->out);
             break;
         }
     } else if (to->args->format == MT_FORMAT_JSON) {
@@ -286,13 +286,14 @@ static int one(sink *to, const mt_subject *s, int c, const mt_sweep_request *req
 
 int mt_cmd_sweep(const mt_args *args, mt_text *out)
 {
-    mt_subject s = {.model = NULL};
+    mt_loaded_model s = {.model = NULL};
     sink to = {.args = args, .out = out, .w = mt_json_writer_default(out)};
     mt_sweep_request request = {.n = 0};
     mt_err err = {.code = MT_OK};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
-    int code = mt_subject_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    int code =
+        mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -318,6 +319,6 @@ int mt_cmd_sweep(const mt_args *args, mt_text *out)
     }
 done:
     mt_table_free(&to.table);
-    mt_subject_free(&s);
+    mt_loaded_model_free(&s);
     return code;
 }

@@ -10,7 +10,7 @@
 /* The response of one configuration, ready to be written. */
 typedef struct mt_response_view {
     const char *configuration;
-    const mt_subject *s;
+    const mt_loaded_model *s;
     const mt_response *r;
     const mt_curve *curve;
     mt_curve_options opt; /* as it was traced */

@@ -337,7 +337,7 @@ int mt_save(const mt_args *args, const char *study_path, mt_result *result, cons
     mt_status rc = begin(args, result, &s);
     rc = rc == MT_OK ? write_timing(args, result, seconds, &s) : rc;
     mt_text_addf(&told, "%s: %.3g s, ", study_path, seconds);
-    mt_report_spent(&result->run, &told);
+    mt_report_work_counters(&result->run, &told);
     rc = rc == MT_OK && told.failed ? mt_fail_memory(&s.err) : rc;
     const int code = end(args, rc, told.s, &s);
     memcpy(sha256, code == MT_EXIT_DONE ? s.sha256 : "",

@@ -19,12 +19,12 @@ typedef struct mt_sim_output {
 } mt_sim_output;
 
 /* A realisation of --vibration. */
-typedef struct mt_sim_shaken {
+typedef struct mt_sim_forced_response {
     const mt_vibration *v; /* NULL: none */
     int axis;              /* of the ground */
     unsigned long seed;
     double rms; /* of the random parts over the duration [m/s^2] */
-} mt_sim_shaken;
+} mt_sim_forced_response;
 enum { MT_SIM_SEED = 1 };
 
 /* The options of the command, in the words of a system. */
@@ -38,7 +38,7 @@ typedef struct mt_sim_request {
     mt_sim_joint *rates;
     int mode; /* 0: not given */
     double amplitude;
-    mt_sim_shaken shaken;
+    mt_sim_forced_response forced_response;
     double steady_hz; /* of the one frequency that --sine has; 0: none, or more */
 } mt_sim_request;
 
@@ -47,22 +47,22 @@ typedef struct mt_sim_request {
 mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_arena *mem,
                              const char **name, mt_err *err);
 /* Value of --start for the joint of this name; *given: whether there is one. */
-mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint, bool *given,
-                          double *value, mt_err *err);
+mt_status mt_sim_start_of(const mt_args *args, mt_loaded_model *s, const char *joint,
+                          bool *given, double *value, mt_err *err);
 /* Everything else, for a system; profile: of --vibration, or NULL. Fails: MT_E_USAGE,
  * MT_E_MEMORY. */
-mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
+mt_status mt_sim_read(const mt_args *args, mt_loaded_model *s, const mt_system *sys,
                       const mt_vibration *profile, mt_sim_request *out, mt_err *err);
 
 /* Of --vibration [PORT=]FILE: the file, and the port, or NULL (simulate_vibration.c). */
 const char *mt_sim_profile_of(const char *text, const char **port);
 /* The profile's parts as inputs behind those that there are. */
-mt_status mt_sim_shake(const mt_args *args, mt_subject *s, const mt_system *sys,
-                       const mt_vibration *v, mt_sim_request *out, mt_sim_input *inputs,
-                       mt_err *err);
-void mt_sim_shaken_print(const mt_sim_shaken *s, mt_text *out);
+mt_status mt_sim_vibrate(const mt_args *args, mt_loaded_model *s, const mt_system *sys,
+                         const mt_vibration *v, mt_sim_request *out, mt_sim_input *inputs,
+                         mt_err *err);
+void mt_sim_forced_response_print(const mt_sim_forced_response *s, mt_text *out);
 /* Member "vibration" of an open object. */
-void mt_sim_shaken_json(const mt_sim_shaken *s, mt_json_writer *w);
+void mt_sim_forced_response_json(const mt_sim_forced_response *s, mt_json_writer *w);
 
 /* What was read from the motion of one gauge. */
 typedef struct mt_sim_reading {

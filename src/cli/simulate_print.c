@@ -82,7 +82,7 @@ void mt_simulate_csv(const mt_sim_view *v, mt_text *out)
     mt_table_free(&t);
 }
 
-static void tell_ring(const mt_sim_reading *g, mt_text *out)
+static void write_ring(const mt_sim_reading *g, mt_text *out)
 {
     const char *const unit = g->angle ? "rad" : "m";
     if (g->ring.periods > 0 && g->ring.spread < REGULAR) {
@@ -107,7 +107,7 @@ static void tell_ring(const mt_sim_reading *g, mt_text *out)
     }
 }
 
-static void tell_steady(const mt_sim_view *v, const mt_sim_reading *g, mt_text *out)
+static void write_steady(const mt_sim_view *v, const mt_sim_reading *g, mt_text *out)
 {
     if (g->steady.periods == 0 || !(g->steady.residual < STEADY)) {
         return;
@@ -125,7 +125,7 @@ static void tell_steady(const mt_sim_view *v, const mt_sim_reading *g, mt_text *
 }
 
 /* How the motion was found, and how well. */
-static void tell_method(const mt_sim_view *v, mt_text *out)
+static void write_method(const mt_sim_view *v, mt_text *out)
 {
     const mt_sim_result *const r = v->r;
     switch (r->method) {
@@ -178,12 +178,12 @@ void mt_simulate_print(const mt_sim_view *v, mt_text *out)
     mt_table_free(&t);
     for (int g = 0; g < r->n_gauges; g++) {
         if (v->free) {
-            tell_ring(&v->readings[g], out);
+            write_ring(&v->readings[g], out);
         }
-        tell_steady(v, &v->readings[g], out);
+        write_steady(v, &v->readings[g], out);
     }
-    if (v->request->shaken.v != NULL) {
-        mt_sim_shaken_print(&v->request->shaken, out);
+    if (v->request->forced_response.v != NULL) {
+        mt_sim_forced_response_print(&v->request->forced_response, out);
     }
     mt_text_addf(out, "  Energy: up to %.4g J, balanced to %.1e J.\n", r->energy_scale_j,
                  r->energy_error_j);
@@ -191,7 +191,7 @@ void mt_simulate_print(const mt_sim_view *v, mt_text *out)
         mt_text_addf(out, "  Joints: at most %.1e m of drift in a step, %.1e m left of it.\n",
                      r->gap_m, r->left_m);
     }
-    tell_method(v, out);
+    write_method(v, out);
 }
 
 static void json_list(mt_json_writer *w, const char *name, int n, const double *x)
@@ -282,8 +282,8 @@ void mt_simulate_json(const mt_sim_view *v, mt_json_writer *w)
     mt_json_put_bool(w, "complete", r->stop == MT_SIM_DONE);
     mt_json_put_string(w, "method", mt_sim_method_name(r->method));
     mt_json_put_number(w, "tolerance", v->request->opt.tolerance);
-    if (v->request->shaken.v != NULL) {
-        mt_sim_shaken_json(&v->request->shaken, w);
+    if (v->request->forced_response.v != NULL) {
+        mt_sim_forced_response_json(&v->request->forced_response, w);
     }
     json_list(w, "time_s", r->n, r->t);
     json_outputs(v, w);

@@ -84,8 +84,8 @@ mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_aren
     return MT_OK;
 }
 
-mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint, bool *given,
-                          double *value, mt_err *err)
+mt_status mt_sim_start_of(const mt_args *args, mt_loaded_model *s, const char *joint,
+                          bool *given, double *value, mt_err *err)
 {
     *given = false;
     *value = 0.0;
@@ -97,9 +97,9 @@ mt_status mt_sim_start_of(const mt_args *args, mt_subject *s, const char *joint,
         }
         MT_TRY(split(&args->repeats[i], &s->mem, &name, &rest, err));
         if (strcmp(name, joint) == 0) {
-            MT_TRY(mt_subject_number(s, name_of(MT_OPT_START),
-                                     mt_subject_joint_unit(s->model, name), rest, strlen(rest),
-                                     value, err));
+            MT_TRY(mt_loaded_model_number(s, name_of(MT_OPT_START),
+                                          mt_loaded_model_joint_unit(s->model, name), rest,
+                                          strlen(rest), value, err));
             *given = true;
         }
     }
@@ -175,7 +175,8 @@ static int lookup(const void *context, const char *name, size_t length)
                                          : mt_model_lookup(model, name, length);
 }
 
-static mt_status read_expression(mt_subject *s, const char *text, mt_signal *out, mt_err *err)
+static mt_status read_expression(mt_loaded_model *s, const char *text, mt_signal *out,
+                                 mt_err *err)
 {
     const mt_model *const model = s->model;
     mt_program *const p = mt_arena_alloc(&s->mem, 1, sizeof *p);
@@ -198,7 +199,7 @@ static mt_status read_expression(mt_subject *s, const char *text, mt_signal *out
 }
 
 /* What the model gives the amplitudes of a port in; NULL: SI. */
-static const mt_unit *unit_of(const mt_subject *s, const mt_system *sys, const port *p)
+static const mt_unit *unit_of(const mt_loaded_model *s, const mt_system *sys, const port *p)
 {
     switch (p->push) {
     case MT_SIM_FORCE:
@@ -206,13 +207,13 @@ static const mt_unit *unit_of(const mt_subject *s, const mt_system *sys, const p
     case MT_SIM_BASE:
         return p->slope > 0 ? s->model->units[MT_LENGTH] : NULL;
     case MT_SIM_MOVE:
-        return mt_subject_joint_unit(s->model, sys->joints[p->joint].name);
+        return mt_loaded_model_joint_unit(s->model, sys->joints[p->joint].name);
     }
     return NULL;
 }
 
 /* Numbers between the separators, the first in a unit: text "A@B" or "A@B:C". */
-static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const mt_unit *unit,
+static mt_status read_numbers(mt_loaded_model *s, const mt_repeat *r, const mt_unit *unit,
                               const char *text, const char *separators, double *out,
                               mt_err *err)
 {
@@ -223,8 +224,8 @@ static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const mt_unit *
                            r->value, mt_options[r->option].value);
         }
         const size_t length = end == NULL ? strlen(text) : (size_t)(end - text);
-        MT_TRY(mt_subject_number(s, name_of(r->option), k == 0 ? unit : NULL, text, length,
-                                 &out[k], err));
+        MT_TRY(mt_loaded_model_number(s, name_of(r->option), k == 0 ? unit : NULL, text, length,
+                                      &out[k], err));
         if (end == NULL) {
             return MT_OK;
         }
@@ -232,7 +233,7 @@ static mt_status read_numbers(mt_subject *s, const mt_repeat *r, const mt_unit *
     }
 }
 
-static mt_status read_sine(mt_subject *s, const mt_repeat *r, const mt_unit *unit,
+static mt_status read_sine(mt_loaded_model *s, const mt_repeat *r, const mt_unit *unit,
                            const char *text, mt_signal *out, mt_err *err)
 {
     double number[2] = {0.0, 0.0};
@@ -247,7 +248,7 @@ static mt_status read_sine(mt_subject *s, const mt_repeat *r, const mt_unit *uni
     return MT_OK;
 }
 
-static mt_status read_sweep(mt_subject *s, const mt_repeat *r, const mt_unit *unit,
+static mt_status read_sweep(mt_loaded_model *s, const mt_repeat *r, const mt_unit *unit,
                             const char *text, double duration_s, mt_signal *out, mt_err *err)
 {
     static const char suffix[] = ":linear";
@@ -272,7 +273,7 @@ static mt_status read_sweep(mt_subject *s, const mt_repeat *r, const mt_unit *un
 }
 
 /* "HZ:PSD,HZ:PSD,...": of so many lines that it does not repeat. */
-static mt_status read_random(mt_subject *s, const mt_args *args, const mt_repeat *r,
+static mt_status read_random(mt_loaded_model *s, const mt_args *args, const mt_repeat *r,
                              const char *text, mt_signal *out, mt_err *err)
 {
     size_t n = 1;
@@ -298,7 +299,7 @@ static mt_status read_random(mt_subject *s, const mt_args *args, const mt_repeat
                      "--random: %s", r->value);
 }
 
-static mt_status read_input(mt_subject *s, const mt_args *args, const mt_system *sys,
+static mt_status read_input(mt_loaded_model *s, const mt_args *args, const mt_system *sys,
                             const mt_repeat *r, mt_sim_request *out, mt_sim_input *inputs,
                             mt_err *err)
 {
@@ -396,19 +397,20 @@ static mt_status read_outputs(const mt_args *args, const mt_system *sys, mt_aren
     return MT_OK;
 }
 
-static mt_status read_joint(mt_subject *s, const mt_system *sys, const mt_repeat *r,
+static mt_status read_joint(mt_loaded_model *s, const mt_system *sys, const mt_repeat *r,
                             mt_sim_joint *out, mt_err *err)
 {
     const char *name = "";
     const char *rest = "";
     MT_TRY(split(r, &s->mem, &name, &rest, err));
     MT_TRY(find_joint(sys, r->option, name, &s->mem, &out->joint, err));
-    return mt_subject_number(s, name_of(r->option), mt_subject_joint_unit(s->model, name), rest,
-                             strlen(rest), &out->value, err);
+    return mt_loaded_model_number(s, name_of(r->option),
+                                  mt_loaded_model_joint_unit(s->model, name), rest,
+                                  strlen(rest), &out->value, err);
 }
 
 /* The unit of a displacement along a mode: an angle where sensors show nothing else. */
-static const mt_unit *shape_unit(const mt_subject *s, const mt_system *sys)
+static const mt_unit *shape_unit(const mt_loaded_model *s, const mt_system *sys)
 {
     bool turns = sys->n_channels > 0;
     for (int i = 0; i < sys->n_channels; i++) {
@@ -417,7 +419,7 @@ static const mt_unit *shape_unit(const mt_subject *s, const mt_system *sys)
     return s->model->units[turns ? MT_ANGLE : MT_LENGTH];
 }
 
-static mt_status read_mode(mt_subject *s, const mt_system *sys, const char *text,
+static mt_status read_mode(mt_loaded_model *s, const mt_system *sys, const char *text,
                            mt_sim_request *out, mt_err *err)
 {
     char *end = NULL;
@@ -426,11 +428,11 @@ static mt_status read_mode(mt_subject *s, const mt_system *sys, const char *text
         return mt_fail(err, MT_E_USAGE, "--mode: \"%s\" is not N:AMPLITUDE", text);
     }
     out->mode = (int)n;
-    return mt_subject_number(s, "mode", shape_unit(s, sys), end + 1, strlen(end + 1),
-                             &out->amplitude, err);
+    return mt_loaded_model_number(s, "mode", shape_unit(s, sys), end + 1, strlen(end + 1),
+                                  &out->amplitude, err);
 }
 
-mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
+mt_status mt_sim_read(const mt_args *args, mt_loaded_model *s, const mt_system *sys,
                       const mt_vibration *profile, mt_sim_request *out, mt_err *err)
 {
     const int shakes = profile == NULL ? 0 : profile->n_random + profile->n_tones;
@@ -459,7 +461,7 @@ mt_status mt_sim_read(const mt_args *args, mt_subject *s, const mt_system *sys,
         }
     }
     if (profile != NULL) {
-        MT_TRY(mt_sim_shake(args, s, sys, profile, out, inputs, err));
+        MT_TRY(mt_sim_vibrate(args, s, sys, profile, out, inputs, err));
     }
     if (args->value[MT_OPT_ALONG] != NULL) {
         MT_TRY(read_mode(s, sys, args->value[MT_OPT_ALONG], out, err));

@@ -37,15 +37,15 @@ static mt_status find_axis(const mt_args *args, const mt_vibration *v, const mt_
     return MT_OK;
 }
 
-mt_status mt_sim_shake(const mt_args *args, mt_subject *s, const mt_system *sys,
-                       const mt_vibration *v, mt_sim_request *out, mt_sim_input *inputs,
-                       mt_err *err)
+mt_status mt_sim_vibrate(const mt_args *args, mt_loaded_model *s, const mt_system *sys,
+                         const mt_vibration *v, mt_sim_request *out, mt_sim_input *inputs,
+                         mt_err *err)
 {
-    mt_sim_shaken *const to = &out->shaken;
+    mt_sim_forced_response *const to = &out->forced_response;
     mt_realised shake;
     int axis = 0;
     MT_TRY(find_axis(args, v, sys, &s->mem, &axis, err));
-    *to = (mt_sim_shaken){
+    *to = (mt_sim_forced_response){
         .v = v, .axis = axis, .seed = args->given[MT_OPT_SEED] ? args->seed : MT_SIM_SEED};
     const mt_status rc = mt_realise(v, args->duration_s, to->seed, &s->mem, &shake, err);
     MT_TRY(
@@ -57,13 +57,13 @@ mt_status mt_sim_shake(const mt_args *args, mt_subject *s, const mt_system *sys,
     return MT_OK;
 }
 
-static const char *axis_of(const mt_sim_shaken *s)
+static const char *axis_of(const mt_sim_forced_response *s)
 {
     static const char *const names[] = {"base.x", "base.y", "base.z"};
     return names[s->axis];
 }
 
-void mt_sim_shaken_print(const mt_sim_shaken *s, mt_text *out)
+void mt_sim_forced_response_print(const mt_sim_forced_response *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
     mt_text_addf(out, "  %s is shaken by %s", axis_of(s), mt_vibrated_name(v));
@@ -78,7 +78,7 @@ void mt_sim_shaken_print(const mt_sim_shaken *s, mt_text *out)
     mt_vibrated_marks(v, out);
 }
 
-void mt_sim_shaken_json(const mt_sim_shaken *s, mt_json_writer *w)
+void mt_sim_forced_response_json(const mt_sim_forced_response *s, mt_json_writer *w)
 {
     mt_json_open(w, "vibration", '{');
     mt_json_put_string(w, "file", s->v->path);

@@ -113,7 +113,7 @@ static void text_row(const mt_sweep_view *v, int point, mt_table *t)
     }
 }
 
-static void tell_undecided(const mt_sweep_view *v, mt_text *out)
+static void write_undecided(const mt_sweep_view *v, mt_text *out)
 {
     int n = 0;
     for (int i = 0; i < v->sweep.n_points && v->rigid != NULL; i++) {
@@ -128,7 +128,7 @@ static void tell_undecided(const mt_sweep_view *v, mt_text *out)
     }
 }
 
-static void tell_modes(const mt_sweep_view *v, mt_text *out)
+static void write_modes(const mt_sweep_view *v, mt_text *out)
 {
     int unstable = 0;
     int rigid = 0;
@@ -150,11 +150,11 @@ static void tell_modes(const mt_sweep_view *v, mt_text *out)
         mt_text_addf(out, "  UNSTABLE at %d position%s: %s not hold.\n", unstable,
                      unstable == 1 ? "" : "s", unstable == 1 ? "it does" : "they do");
     }
-    tell_undecided(v, out);
+    write_undecided(v, out);
 }
 
 /* Where the range comes nearest to a dead centre. */
-static void tell_dead_centre(const mt_sweep_view *v, mt_text *out)
+static void write_dead_centre(const mt_sweep_view *v, mt_text *out)
 {
     const mt_sweep_point *nearest = NULL;
     for (int i = 0; i < v->sweep.n_points; i++) {
@@ -189,13 +189,13 @@ void mt_sweep_print(const mt_sweep_view *v, mt_text *out)
     if (v->sweep.n_reached > 0) {
         mt_table_print(&t, 2, mt_terminal_width(), out);
         mt_text_addf(out, "  Largest gap of a joint %.1e m.\n", gap);
-        tell_dead_centre(v, out);
+        write_dead_centre(v, out);
     }
     if (v->sweep.n_reached < v->sweep.n_points) {
         mt_text_addf(out, "  %d of %d positions reached.\n", v->sweep.n_reached,
                      v->sweep.n_points);
     }
-    tell_modes(v, out);
+    write_modes(v, out);
     mt_text_add(out, "\n");
     mt_table_free(&t);
 }

@@ -275,7 +275,7 @@ bool mt_terminal_is_watched(void)
     return isatty(STDERR_FILENO) == 1;
 }
 
-void mt_terminal_say(const char *text, size_t length)
+void mt_terminal_write(const char *text, size_t length)
 {
     (void)show(stderr, text, length, true);
 }
@@ -401,13 +401,13 @@ void mt_terminal_reserve(double seconds)
     }
 }
 
-int mt_terminal_wish(void *unused)
+int mt_terminal_stop_request(void *unused)
 {
     const long long stopped = atomic_load(&stop_ns);
     long long since = stopped;
     (void)unused;
     if (since == 0 && limit_ns == 0) {
-        return MT_WISH_NONE;
+        return MT_STOP_REQUEST_NONE;
     }
     const long long now = now_ns();
     long long last = since + MAKE_READY_NS;
@@ -418,15 +418,15 @@ int mt_terminal_wish(void *unused)
         last = stopped != 0 && stopped + MAKE_READY_NS < last ? stopped + MAKE_READY_NS : last;
     }
     if (now < since) {
-        return MT_WISH_NONE;
+        return MT_STOP_REQUEST_NONE;
     }
-    return now < last ? MT_WISH_FINISH : MT_WISH_END;
+    return now < last ? MT_STOP_REQUEST_FINISH : MT_STOP_REQUEST_END;
 }
 
-int mt_terminal_cause(void *unused)
+int mt_terminal_stop_reason(void *unused)
 {
     (void)unused;
-    return mt_terminal_is_stopped() ? MT_CAUSE_INTERRUPT : MT_CAUSE_TIME_LIMIT;
+    return mt_terminal_is_stopped() ? MT_STOP_REASON_INTERRUPT : MT_STOP_REASON_TIME_LIMIT;
 }
 
 void mt_terminal_last_words(const char *text)

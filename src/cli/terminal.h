@@ -52,7 +52,7 @@ int mt_terminal_width(void);
 /* Whether standard error is a terminal. */
 bool mt_terminal_is_watched(void);
 /* Lines to standard error as they are. */
-void mt_terminal_say(const char *text, size_t length);
+void mt_terminal_write(const char *text, size_t length);
 /* One line of a terminal that is written over again and again. Text NULL: wipe it. A signal
  * that ends the program wipes it, too. */
 void mt_terminal_line(const char *text);
@@ -62,25 +62,25 @@ void mt_terminal_line(const char *text);
 void mt_terminal_ignore_signals(void);
 /*
  * From here to the release the first SIGINT or SIGTERM is only noted, for work that ends well
- * by itself (mt_terminal_wish) or that must not be left half done; the second ends the program.
- * Where the program was started with one of them ignored, it stays so.
+ * by itself (mt_terminal_stop_request) or that must not be left half done; the second ends the
+ * program. Where the program was started with one of them ignored, it stays so.
  */
 void mt_terminal_hold_signals(void);
 void mt_terminal_release_signals(void);
 /* Whether one has been noted since the program began. */
 bool mt_terminal_is_stopped(void);
-/* After so many seconds from now (0: never, at most MT_SECONDS_MOST) mt_terminal_wish wishes as
- * after a signal. While no worker runs. */
+/* After so many seconds from now (0: never, at most MT_SECONDS_MOST) mt_terminal_stop_request
+ * wishes as after a signal. While no worker runs. */
 #define MT_SECONDS_MOST 1e9
 void mt_terminal_limit(double seconds);
 /* So many seconds before that limit, or half of the time that is left, to finish is wished for
  * already, and to end at the limit. Any thread. */
 void mt_terminal_reserve(double seconds);
-/* An mt_wish, the stop of a solve: to finish, and, a moment after the signal or the end of the
- * time, to end. Any thread. */
-int mt_terminal_wish(void *unused);
-/* An mt_cause, why it wishes so: a signal, or the end of the time. */
-int mt_terminal_cause(void *unused);
+/* An mt_stop_request, the stop of a solve: to finish, and, a moment after the signal or the end
+ * of the time, to end. Any thread. */
+int mt_terminal_stop_request(void *unused);
+/* An mt_stop_reason, why it wishes so: a signal, or the end of the time. */
+int mt_terminal_stop_reason(void *unused);
 /* One line (cut where it is too long) that is written to standard error when a signal ends the
  * program from now on; NULL: none any more. Not while signals are held. */
 void mt_terminal_last_words(const char *text);

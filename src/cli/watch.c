@@ -200,7 +200,7 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
     mt_json_put_number(&w, "left_s", isfinite(step) ? fmin(step, limit) : limit);
     mt_json_close(&w);
     if (mt_json_done(&w)) {
-        mt_terminal_say(t.s, t.length);
+        mt_terminal_write(t.s, t.length);
     }
     mt_text_free(&t);
 }
@@ -208,7 +208,7 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
 /* One look; whoever reads is told if it is time. */
 static void look(void)
 {
-    const mt_progress_view v = mt_progress_look(&it.progress);
+    const mt_progress_view v = mt_progress_read(&it.progress);
     const double now = mt_terminal_seconds();
     const bool changed = v.step != it.last.step;
     const bool news = v.impossible && !it.told_impossible && now - it.begun_s >= TIME_LEAST;
@@ -320,7 +320,7 @@ void mt_watch_end(bool complete)
 {
     mt_watch_hold();
     if (it.has_progress && it.reader == READER_PROGRAM) {
-        mt_progress_view v = mt_progress_look(&it.progress);
+        mt_progress_view v = mt_progress_read(&it.progress);
         v.share = complete ? 1.0 : v.share;
         put_json(&v, complete ? "done" : "ended", mt_terminal_seconds());
     }

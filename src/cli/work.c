@@ -53,8 +53,8 @@ static char *journal_of(const mt_args *args, const char *study_path)
 
 /* What stood where this run's journal goes. Fails: MT_E_SYSTEM, of a part that leaves nothing
  * but its journal. */
-static mt_status tell_place(const mt_args *args, const char *study_path, const char *path,
-                            mt_journal *j, mt_journal_place place, mt_err *err)
+static mt_status write_place(const mt_args *args, const char *study_path, const char *path,
+                             mt_journal *j, mt_journal_place place, mt_err *err)
 {
     const bool quiet = args->given[MT_OPT_QUIET];
     const bool part = args->part > 0;
@@ -114,7 +114,7 @@ static mt_status open_files(const mt_args *args, const char *study_path, mt_jour
     rc = rc == MT_OK && adds ? mt_journal_read(j, path, NULL, err) : rc;
     if (args->command == MT_CMD_RUN && rc == MT_OK) {
         rc = mt_journal_write_to(j, path, adds, &place, err);
-        rc = rc == MT_OK ? tell_place(args, study_path, path, j, place, err) : rc;
+        rc = rc == MT_OK ? write_place(args, study_path, path, j, place, err) : rc;
     }
     free(path);
     return rc;

@@ -39,9 +39,10 @@ mt_status mt_describe_certificate(mt_result *result, const char *kind, bool prov
     return MT_OK;
 }
 
-bool mt_describe_gaps_unsearched(const mt_gap_result *gaps)
+bool mt_describe_placements_unsearched(const mt_mode_placement_result *placements)
 {
-    return gaps->ended && (!gaps->proven || gaps->n_searched < gaps->n_candidates);
+    return placements->ended &&
+           (!placements->proven || placements->n_searched < placements->n_candidates);
 }
 
 /* A least change to four digits, never above what is proven. */
@@ -54,96 +55,104 @@ static double shown_least(double rest)
 }
 
 /* The search ended when no other placement could be among the designs that are asked for. */
-static mt_status describe_best_first(const mt_gap_result *gaps, mt_result *result, mt_err *err)
+static mt_status describe_best_first(const mt_mode_placement_result *placements,
+                                     mt_result *result, mt_err *err)
 {
 #define WHICH "which of the others can be met is not known"
-    const int open = gaps->n_searched - gaps->n_feasible;
-    const bool unknown = isfinite(gaps->rest);
-    if (gaps->proven) {
+    const int open = placements->n_searched - placements->n_feasible;
+    const bool unknown = isfinite(placements->rest);
+    if (placements->proven) {
         MT_TRY(state(result, "gap_assignments", true, err,
                      "Of %.0f mode placements %d can be met within the bounds; all others are "
                      "proven infeasible (branch and bound, %ld boxes).",
-                     gaps->n_possible, gaps->n_candidates, gaps->boxes));
+                     placements->n_possible, placements->n_candidates, placements->boxes));
     }
     if (unknown) {
-        MT_TRY(state(result, "least_change", true, err,
-                     "%d of %.0f mode placements were searched, in the order of the least "
-                     "change that each can do with by bounds of its stiffnesses and masses. "
-                     "Every design in one of the others changes by %.4g or more%s.",
-                     gaps->n_searched, gaps->n_possible, shown_least(gaps->rest),
-                     gaps->bounded ? ""
-                                   : ", which leaves open whether one is better than those "
-                                     "recommended"));
-    } else if ((double)gaps->n_searched < gaps->n_possible && !gaps->proven) {
+        MT_TRY(
+            state(result, "least_change", true, err,
+                  "%d of %.0f mode placements were searched, in the order of the least "
+                  "change that each can do with by bounds of its stiffnesses and masses. "
+                  "Every design in one of the others changes by %.4g or more%s.",
+                  placements->n_searched, placements->n_possible, shown_least(placements->rest),
+                  placements->bounded ? ""
+                                      : ", which leaves open whether one is better than those "
+                                        "recommended"));
+    } else if ((double)placements->n_searched < placements->n_possible && !placements->proven) {
         MT_TRY(state(result, "gap_assignments", true, err,
                      "%d of %.0f mode placements were searched; by bounds of the stiffnesses "
                      "and masses the others have no design within the bounds.",
-                     gaps->n_searched, gaps->n_possible));
+                     placements->n_searched, placements->n_possible));
     }
-    if (!gaps->proven && open > 0) {
+    if (!placements->proven && open > 0) {
         MT_TRY(state(result, "gap_assignments", false, err,
                      "In %d of the %d mode placements that were searched no design was found "
                      "that meets all goals%s (no proof: %s).",
-                     open, gaps->n_searched, unknown ? ", and " WHICH : "", gaps->reason));
-    } else if (!gaps->proven && unknown) {
+                     open, placements->n_searched, unknown ? ", and " WHICH : "",
+                     placements->reason));
+    } else if (!placements->proven && unknown) {
         MT_TRY(state(result, "gap_assignments", false, err,
                      "All that were searched have a design, and " WHICH " (no proof: %s).",
-                     gaps->reason));
+                     placements->reason));
     }
     return state(result, "optimality", false, err,
                  "Each design is the best of its mode placement: %d starts found none better.",
-                 gaps->starts);
+                 placements->starts);
 #undef WHICH
 }
 
-static mt_status describe_gaps(const mt_gap_result *gaps, mt_result *result, bool infeasible,
-                               mt_err *err)
+static mt_status describe_placements(const mt_mode_placement_result *placements,
+                                     mt_result *result, bool infeasible, mt_err *err)
 {
     if (infeasible) {
         return state(
             result, "infeasible", true, err,
             "No design within the bounds keeps clear of the bands and meets the other limits: "
             "all %.0f mode placements are proven infeasible (branch and bound, %ld boxes).",
-            gaps->n_possible, gaps->boxes);
+            placements->n_possible, placements->boxes);
     }
-    if (mt_describe_gaps_unsearched(gaps)) {
-        return describe_best_first(gaps, result, err);
+    if (mt_describe_placements_unsearched(placements)) {
+        return describe_best_first(placements, result, err);
     }
-    if (gaps->proven) {
-        const int open = gaps->n_candidates - gaps->n_feasible;
+    if (placements->proven) {
+        const int open = placements->n_candidates - placements->n_feasible;
         MT_TRY(open == 0
                    ? state(result, "gap_assignments", true, err,
                            "Of %.0f mode placements %d can be met within the bounds; all "
                            "others are proven infeasible (branch and bound, %ld boxes).",
-                           gaps->n_possible, gaps->n_candidates, gaps->boxes)
+                           placements->n_possible, placements->n_candidates, placements->boxes)
                    : state(result, "gap_assignments", true, err,
                            "Of %.0f mode placements all but %d are proven infeasible (branch "
                            "and bound, %ld boxes%s); in %d of these no design was found that "
                            "meets all goals, which is sampled.",
-                           gaps->n_possible, gaps->n_candidates, gaps->boxes,
-                           gaps->tolerances ? ", the tolerances of the variables left out" : "",
+                           placements->n_possible, placements->n_candidates, placements->boxes,
+                           placements->tolerances ? ", the tolerances of the variables left out"
+                                                  : "",
                            open));
         return state(
             result, "optimality", false, err,
             "Each design is the best of its mode placement: %d starts found none better.",
-            gaps->starts);
+            placements->starts);
     }
     return state(result, "gap_assignments", false, err,
                  "%d of %.0f mode placements were searched; the others were ruled out by "
                  "samples, not by proof (no proof: %s).",
-                 gaps->n_candidates, gaps->n_possible,
-                 gaps->reason != NULL && gaps->reason[0] != '\0' ? gaps->reason
-                                                                 : "not asked for");
+                 placements->n_candidates, placements->n_possible,
+                 placements->reason != NULL && placements->reason[0] != '\0'
+                     ? placements->reason
+                     : "not asked for");
 }
 
-const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem)
+const char *mt_describe_placements_left(const mt_mode_placement_result *placements,
+                                        mt_arena *mem)
 {
-    const int open = (gaps->ended ? gaps->n_searched : gaps->n_candidates) - gaps->n_feasible;
-    const bool excluded = gaps->proven || (gaps->ended && !isfinite(gaps->rest));
-    if (gaps->ended && gaps->bounded && isfinite(gaps->rest)) {
+    const int open = (placements->ended ? placements->n_searched : placements->n_candidates) -
+                     placements->n_feasible;
+    const bool excluded =
+        placements->proven || (placements->ended && !isfinite(placements->rest));
+    if (placements->ended && placements->bounded && isfinite(placements->rest)) {
         return "those that were not searched change more, which is proven";
     }
-    if (!excluded || (gaps->ended && !gaps->bounded)) {
+    if (!excluded || (placements->ended && !placements->bounded)) {
         return "sampled, not proven";
     }
     return open == 0
@@ -154,15 +163,15 @@ const char *mt_describe_gaps_left(const mt_gap_result *gaps, mt_arena *mem)
                                  open);
 }
 
-mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *result,
-                                      bool *infeasible, mt_err *err)
+mt_status mt_describe_placement_certificate(const mt_mode_placement_result *placements,
+                                            mt_result *result, bool *infeasible, mt_err *err)
 {
-    *infeasible = gaps->proven && gaps->n_candidates == 0;
-    MT_TRY(describe_gaps(gaps, result, *infeasible, err));
-    if (!gaps->driven) {
+    *infeasible = placements->proven && placements->n_candidates == 0;
+    MT_TRY(describe_placements(placements, result, *infeasible, err));
+    if (!placements->driven) {
         return MT_OK;
     }
-    return gaps->motion
+    return placements->motion
                ? state(result, "positions", false, err,
                        "All positions of a drive have the same number of modes below each "
                        "band: if two differed, a mode would cross the band between them. "
@@ -173,8 +182,8 @@ mt_status mt_describe_gap_certificate(const mt_gap_result *gaps, mt_result *resu
 }
 
 /* In words: what one limit's mode can reach. */
-static mt_status say_reach(const mt_demand *d, const char *configuration,
-                           const mt_certify_reach *r, mt_result *result, mt_err *err)
+static mt_status write_reach(const mt_requirement *d, const char *configuration,
+                             const mt_certify_reach *r, mt_result *result, mt_err *err)
 {
     const bool impossible = r->verdict == MT_VERDICT_IMPOSSIBLE;
     if (isnan(r->low_hz)) {
@@ -199,10 +208,10 @@ static mt_status reach(const mt_problem *p, const mt_proof *proof, int limit, mt
                        mt_result *result, bool *infeasible, mt_err *err)
 {
     mt_certify_reach r = {0};
-    const mt_demand *const d = &p->demands[proof->limit_demand[limit]];
+    const mt_requirement *const d = &p->requirements[proof->limit_requirement[limit]];
     MT_TRY(mt_certify_reach_of(&proof->question, limit, mem, &r, err));
     *infeasible = *infeasible || r.verdict == MT_VERDICT_IMPOSSIBLE;
-    MT_TRY(say_reach(d, mt_view_name(p, &p->views[d->view]), &r, result, err));
+    MT_TRY(write_reach(d, mt_configuration_name(p, &p->views[d->view]), &r, result, err));
     mt_certificate *const c = &result->certificates[result->n_certificates - 1];
     c->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     c->reachable_lower_hz = r.low_hz;

@@ -5,11 +5,11 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "base/spent.h"
 #include "base/tie.h"
+#include "base/work_counters.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
-#include "problem/robust.h"
+#include "problem/tolerance.h"
 
 /* The objective as the search had it and as it is recomputed may differ by this much,
  * relatively: both are good to about n eps. Roots of squares, so that an exact identification
@@ -78,19 +78,19 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
 
 /* The objective at this design. The fresh problem has no coordinate for the least clearance: it
  * is looked up among the modes. */
-static double aim_value(const mt_workspace *fresh, int k, double motion_room)
+static double stage_value(const mt_workspace *fresh, int k, double motion_margin)
 {
     if (mt_objective_is(fresh->c->aims[k].type, MT_SHAKES)) {
         return fresh->worst;
     }
     if (!mt_objective_is(fresh->c->aims[k].type, MT_BANDS)) {
-        return mt_aim_value(fresh, k, NULL);
+        return mt_objective_stage_value(fresh, k, NULL);
     }
-    const double room = mt_clears_room(fresh);
-    return -(motion_room < room ? motion_room : room); /* NaN: unstable */
+    const double room = mt_avoidances_margin(fresh);
+    return -(motion_margin < room ? motion_margin : room); /* NaN: unstable */
 }
 
-static mt_status describe_objectives(const mt_workspace *fresh, double motion_room,
+static mt_status describe_objectives(const mt_workspace *fresh, double motion_margin,
                                      const mt_recommendation *baseline, mt_result *result,
                                      mt_recommendation *rec, mt_err *err)
 {
@@ -98,7 +98,8 @@ static mt_status describe_objectives(const mt_workspace *fresh, double motion_ro
     rec->objectives = mt_arena_alloc(&result->mem, (size_t)n, sizeof *rec->objectives);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < n; k++) {
-        const double shown = mt_aim_shown(&fresh->c->aims[k], aim_value(fresh, k, motion_room));
+        const double shown =
+            mt_objective_stage_shown(&fresh->c->aims[k], stage_value(fresh, k, motion_margin));
         const double value = isfinite(shown) ? shown : nan("");
         rec->objectives[rec->n_objectives++] = (mt_design_objective){
             .text = result->objectives[k].text,
@@ -114,15 +115,16 @@ static mt_status describe_objectives(const mt_workspace *fresh, double motion_ro
 }
 
 /* Warn where the fresh objective does not agree with the one that the search ended with. */
-static mt_status compare(const mt_workspace *fresh, const mt_design *design, double motion_room,
-                         mt_result *result, mt_err *err)
+static mt_status compare(const mt_workspace *fresh, const mt_design *design,
+                         double motion_margin, mt_result *result, mt_err *err)
 {
     const int k = design->stage;
     const bool bands = mt_objective_is(fresh->c->aims[k].type, MT_BANDS);
-    const double f = mt_aim_root(&fresh->c->aims[k], aim_value(fresh, k, motion_room));
-    const double had = mt_aim_root(&fresh->c->aims[k], design->found->f);
-    const bool searched_within =
-        bands && fresh->c->robust != NULL && !mt_ranges_proven(mt_robust_known(fresh));
+    const double f =
+        mt_objective_stage_root(&fresh->c->aims[k], stage_value(fresh, k, motion_margin));
+    const double had = mt_objective_stage_root(&fresh->c->aims[k], design->found->f);
+    const bool searched_within = bands && fresh->c->tolerance_box != NULL &&
+                                 !mt_ranges_proven(mt_tolerance_known(fresh));
     /* a clearance that is missed is that of the kind searched */
     const bool other_kind = bands && !design->found->feasible;
     if (other_kind || fabs(f - had) <= SAME_OBJECTIVE * fmax(fabs(f), 1.0) || searched_within) {
@@ -137,8 +139,8 @@ static mt_status compare(const mt_workspace *fresh, const mt_design *design, dou
 }
 
 /* A design at which a fresh analysis disagrees meets nothing: see describe_verify.c. */
-static mt_status doubt(const mt_design *design, mt_result *result, mt_recommendation *rec,
-                       mt_err *err)
+static mt_status warning(const mt_design *design, mt_result *result, mt_recommendation *rec,
+                         mt_err *err)
 {
     if (rec->disagreement == NULL) {
         return MT_OK;
@@ -165,19 +167,19 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
                           const mt_recommendation *baseline, mt_result *result,
                           mt_recommendation *rec, mt_err *err)
 {
-    double motion_room = HUGE_VAL;
+    double motion_margin = HUGE_VAL;
     *rec = mt_recommendation_default();
     rec->rank = design->rank;
-    MT_TRY(mt_describe_goals(fresh, design, result, rec, &motion_room, err));
+    MT_TRY(mt_describe_goals(fresh, design, result, rec, &motion_margin, err));
     MT_TRY(mt_describe_responses(fresh, result, rec, err));
     MT_TRY(mt_describe_between(fresh, design, result, rec, err));
     MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
-    MT_TRY(doubt(design, result, rec, err));
+    MT_TRY(warning(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
-    MT_TRY(describe_objectives(fresh, motion_room, baseline, result, rec, err));
-    if (fresh->c->robust != NULL) {
-        rec->worst_case = mt_ranges_proven(mt_robust_known(fresh)) ? "proven" : "sampled";
+    MT_TRY(describe_objectives(fresh, motion_margin, baseline, result, rec, err));
+    if (fresh->c->tolerance_box != NULL) {
+        rec->worst_case = mt_ranges_proven(mt_tolerance_known(fresh)) ? "proven" : "sampled";
     }
     MT_TRY(mt_describe_curves(fresh, result, rec, err));
     rec->grade = rec->disagreement != NULL ? "not verified"
@@ -195,7 +197,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     if (design->cut) {
         return MT_OK;
     }
-    return compare(fresh, design, motion_room, result, err);
+    return compare(fresh, design, motion_margin, result, err);
 }
 
 mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
@@ -204,8 +206,8 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
 {
     mt_workspace *fresh = NULL;
     MT_TRY(mt_workspace_new(p, &fresh, err));
-    mt_spent_note(p->study->model->spent, MT_SPENT_DESIGNS, ANALYSES);
-    mt_problem_note_modal(p, ANALYSES * mt_case_solutions(&p->whole));
+    mt_work_counters_note(p->study->model->spent, MT_WORK_DESIGNS, ANALYSES);
+    mt_problem_note_modal(p, ANALYSES * mt_subproblem_solutions(&p->whole));
     mt_status rc = describe(fresh, design, baseline, result, rec, err);
     rc = rc == MT_OK ? mt_describe_slopes(fresh, design, result, rec, err) : rc;
     mt_workspace_delete(fresh);

@@ -23,12 +23,14 @@ typedef struct mt_design {
      * be near */
     bool cut;
     bool unsearched; /* the original design, which meets all goals: the least change there is */
-    const struct mt_discrete_report *discrete; /* NULL: no catalogue was searched */
-    const struct mt_gap_result *gaps;          /* NULL: no gap assignments were searched */
+    const struct mt_catalogue_search_report *discrete; /* NULL: no catalogue was searched */
+    /* NULL: no gap assignments were searched */
+    const struct mt_mode_placement_result *placements;
     const int *below;                          /* its assignment; NULL likewise */
-    const struct mt_gap_held *held;            /* [n_held] between positions of a drive */
+    const struct mt_mode_placement_held *held; /* [n_held] between positions of a drive */
     int n_held;
-    const struct mt_posed_price *posed; /* likewise limits, of all designs (search.h) */
+    /* likewise limits, of all designs (search.h) */
+    const struct mt_at_position_price *at_position;
 } mt_design;
 
 /* Fill rec (lists and texts in result->mem; names are the study's until mt_describe_own).
@@ -39,13 +41,13 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
                              const mt_recommendation *baseline, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
 /* Parts of it. describe_goals.c: place and solve everything of fresh at t and judge every
- * goal. *motion_room: as mt_describe_motions. */
+ * goal. *motion_margin: as mt_describe_motions. */
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
-                            mt_recommendation *rec, double *motion_room, mt_err *err);
+                            mt_recommendation *rec, double *motion_margin, mt_err *err);
 /* describe_bands.c: how many goals the avoid goals are, one per configuration; judge them into
  * rec->goals[rec->n_goals...] once the views of fresh are solved. A goal's value is the
  * clearance that comes nearest to its margin (or falls short of it most), in percent of the
- * band's edge, its demand that margin. */
+ * band's edge, its requirement that margin. */
 int mt_describe_avoid_count(const mt_problem *p);
 mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
@@ -54,7 +56,7 @@ mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
  * fresh have been solved. *room: the least between their positions; HUGE_VAL: none. */
 int mt_describe_motion_count(const mt_problem *p);
 /* "-3.2 deg", a position of a family as people see it. NULL where memory is out. */
-const char *mt_describe_position(const mt_study *study, const mt_family *f, double at,
+const char *mt_describe_position(const mt_study *study, const mt_drive_positions *f, double at,
                                  mt_arena *mem);
 mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                               double *room, mt_err *err);
@@ -62,12 +64,12 @@ mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recomme
  * clearance. Nothing of an unstable configuration. */
 mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);
-/* describe_robust.c, nothing without tolerances: what modes and expressions do over the
+/* describe_tolerance_box.c, nothing without tolerances: what modes and expressions do over the
  * tolerances of fresh's design, once its views are solved. */
 mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err);
-/* Judge a demand by its worst value, which goes into g; *violation (relative) and *percent (of
- * what is asked), of the design itself before, become those of the worst. */
-mt_status mt_describe_worst(mt_workspace *fresh, const mt_demand *d, mt_result *result,
+/* Judge a requirement by its worst value, which goes into g; *violation (relative) and *percent
+ * (of what is asked), of the design itself before, become those of the worst. */
+mt_status mt_describe_worst(mt_workspace *fresh, const mt_requirement *d, mt_result *result,
                             mt_result_goal *g, double *violation, double *percent, mt_err *err);
 /* How near a mode that is at hz comes to a band, or how deep inside it; *at: [n] where. NaN and
  * NULL without tolerances. */
@@ -75,21 +77,21 @@ double mt_describe_worst_hz(const mt_workspace *fresh, int view, int mode, const
                             double hz, const double **at);
 /* "ambiguous between modes 2 and 3", "lost: ..."; "" where the named mode is told. NULL:
  * memory. */
-const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *mem);
-/* True where it is certain enough which mode the demand means. A frequency that all candidates
- * have is. */
-bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d);
+const char *mt_describe_identity(const mt_configuration_work *view, int named, mt_arena *mem);
+/* True where it is certain enough which mode the requirement means. A frequency that all
+ * candidates have is. */
+bool mt_describe_is_told(const mt_configuration_work *view, const mt_requirement *d);
 /* describe_responses.c: likewise. */
 mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
 /* Words of them: "the acceleration of grip.x for base.z"; ", 45 % below its limit"; " rms".
  * NULL: memory. */
-const char *mt_describe_shaken(const mt_shake *s, mt_arena *mem);
-const char *mt_describe_shaken_beside(const mt_goal *g, double value, mt_arena *mem);
-const char *mt_describe_shaken_kind(const mt_shake *s);
-/* What the number q of a demand misses its goal by, as a part of what is asked for; violation:
- * as its kind measures it. */
-double mt_describe_off_by(const mt_demand *d, double q, double violation);
+const char *mt_describe_response_limit(const mt_response_limit *s, mt_arena *mem);
+const char *mt_describe_response_value(const mt_goal *g, double value, mt_arena *mem);
+const char *mt_describe_response_kind(const mt_response_limit *s);
+/* What the number q of a requirement misses its goal by, as a part of what is asked for;
+ * violation: as its kind measures it. */
+double mt_describe_off_by(const mt_requirement *d, double q, double violation);
 /* describe_between.c: goals that limit a number, between the positions of drives. */
 mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
@@ -117,9 +119,9 @@ mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
  * box, where the modes can be enclosed. After the clearances. */
 mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
-/* describe_undetermined.c: directions that the goals do not settle. */
-mt_status mt_describe_undetermined(const mt_problem *p, const mt_nlp_result *found,
-                                   mt_result *result, mt_err *err);
+/* describe_unidentifiable.c: directions that the goals do not settle. */
+mt_status mt_describe_unidentifiable(const mt_problem *p, const mt_nlp_result *found,
+                                     mt_result *result, mt_err *err);
 /* describe_curves_asked.c: which responses the result shows, before any design; and
  * describe_curves.c: each of them at fresh->x. None at points of a trade study. What has no
  * response says why. Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
@@ -136,7 +138,7 @@ mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_re
                              mt_recommendation *rec, mt_err *err);
 /* What is wrong with the original design, in sentences. */
 mt_status mt_describe_baseline_reasons(const mt_problem *p, mt_result *result, mt_err *err);
-/* Sentences why a recommendation is what it is; after mt_describe_undetermined
+/* Sentences why a recommendation is what it is; after mt_describe_unidentifiable
  * (describe_reasons.c). */
 mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
                               const mt_nlp_result *search, mt_result *result,

@@ -6,9 +6,9 @@
 
 #include "base/tie.h"
 #include "describe/describe.h"
-#include "problem/beside.h"
 #include "problem/goal_avoid.h"
-#include "problem/robust.h"
+#include "problem/mode_band_pairs.h"
+#include "problem/tolerance.h"
 
 static const double PERCENT = 100.0;
 
@@ -129,9 +129,9 @@ static tightest find_tightest(const mt_workspace *fresh, int view, const mt_band
 {
     const mt_modes *const modes = &fresh->views[view].analysis->modes;
     tightest t = {.has = nan(""), .asked = nan("")};
-    mt_beside p = mt_beside_all(modes, bands);
+    mt_mode_band_pair p = mt_mode_band_pairs_all(modes, bands);
     double least = HUGE_VAL;
-    while (mt_beside_next(&p)) {
+    while (mt_mode_band_pairs_next(&p)) {
         const double *at = NULL;
         double asked = 0.0;
         const double hz = over_tolerances
@@ -154,16 +154,18 @@ static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_resu
                        mt_result_goal *out, mt_err *err)
 {
     const mt_goal *const g = &fresh->p->study->goals[goal];
-    const int at = mt_problem_view(fresh->p, configuration);
-    const mt_view_work *const view = &fresh->views[at];
-    const mt_clear own = {.view = at, .bands = g->avoid->bands};
+    const int at = mt_problem_configuration(fresh->p, configuration);
+    const mt_configuration_work *const view = &fresh->views[at];
+    const mt_avoidance own = {.view = at, .bands = g->avoid->bands};
     mt_arena *const mem = &result->mem;
     tightest nominal = {.has = nan(""), .asked = nan(""), .missing = nan("")};
     tightest worst = {.has = nan("")};
-    const double violation = mt_short_of(view->solved ? mt_clear_room(fresh, &own) : nan(""));
+    const double violation =
+        mt_short_of(view->solved ? mt_avoidance_margin(fresh, &own) : nan(""));
     if (MT_HAS(violation)) {
         nominal = find_tightest(fresh, at, &own.bands, false);
-        worst = fresh->robust != NULL ? find_tightest(fresh, at, &own.bands, true) : worst;
+        worst =
+            fresh->tolerance_box != NULL ? find_tightest(fresh, at, &own.bands, true) : worst;
     }
     *out = mt_result_goal_default();
     out->type = mt_goal_kind_of(g->type)->name;
@@ -253,11 +255,11 @@ static mt_status list_mode(const listing *l, int mode, double hz, mt_err *err)
     return next < l->bands->n ? add_clearance(l, next, mode, hz, err) : MT_OK;
 }
 
-static mt_status list_gaps(const listing *l, const int *below, mt_err *err)
+static mt_status list_placements(const listing *l, const int *below, mt_err *err)
 {
     for (int b = 0; b < l->bands->n; b++) {
         const mt_band *const band = &l->bands->items[b];
-        l->rec->gaps[l->rec->n_gaps] = (mt_result_gap){
+        l->rec->placements[l->rec->n_placements] = (mt_result_mode_placement){
             .id = l->first + b + 1,
             .configuration = l->configuration,
             .band = mt_arena_strdup(&l->result->mem, band->label),
@@ -267,17 +269,17 @@ static mt_status list_gaps(const listing *l, const int *below, mt_err *err)
             .margin_upper_hz = band->upper_hz,
             .modes_below = below[b],
         };
-        l->rec->n_gaps++;
+        l->rec->n_placements++;
     }
     return mt_arena_check(&l->result->mem, err);
 }
 
-static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
+static mt_status list_clear(mt_workspace *fresh, const mt_avoidance *c, int *below,
                             mt_result *result, mt_recommendation *rec, mt_err *err)
 {
-    const mt_view_work *const view = &fresh->views[c->view];
+    const mt_configuration_work *const view = &fresh->views[c->view];
     const mt_modes *const modes = &view->analysis->modes;
-    const int count = mt_clears_reach(fresh, c->view);
+    const int count = mt_avoidances_reach(fresh, c->view);
     const listing l = {.fresh = fresh,
                        .view = c->view,
                        .result = result,
@@ -285,10 +287,10 @@ static mt_status list_clear(mt_workspace *fresh, const mt_clear *c, int *below,
                        .configuration = mt_analysis_configuration(view->analysis),
                        .bands = &c->bands,
                        .first = c->first};
-    if (!view->solved || !MT_HAS(mt_clear_look(c, modes, below))) {
+    if (!view->solved || !MT_HAS(mt_avoidance_find_modes(c, modes, below))) {
         return MT_OK; /* unstable: no mode has an index here */
     }
-    MT_TRY(list_gaps(&l, below, err));
+    MT_TRY(list_placements(&l, below, err));
     for (int k = 1; k <= count; k++) {
         const int pos = mt_modal_flexible(modes, k);
         MT_TRY(list_mode(&l, k, mt_modal_hz(modes, pos), err));
@@ -301,19 +303,19 @@ mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_reco
 {
     size_t most = 0;
     size_t bands = 0;
-    for (int i = 0; i < fresh->c->n_clears; i++) {
-        most += 2 * (size_t)mt_clears_reach(fresh, fresh->c->clears[i].view);
-        bands += (size_t)fresh->c->clears[i].bands.n;
+    for (int i = 0; i < fresh->c->n_avoidances; i++) {
+        most += 2 * (size_t)mt_avoidances_reach(fresh, fresh->c->avoidances[i].view);
+        bands += (size_t)fresh->c->avoidances[i].bands.n;
     }
     int *const below = mt_arena_int(&fresh->mem, bands);
     rec->clearances = mt_arena_alloc(&result->mem, most, sizeof *rec->clearances);
-    rec->gaps = mt_arena_alloc(&result->mem, bands, sizeof *rec->gaps);
+    rec->placements = mt_arena_alloc(&result->mem, bands, sizeof *rec->placements);
     MT_TRY(mt_arena_check(&fresh->mem, err));
     MT_TRY(mt_arena_check(&result->mem, err));
-    for (int i = 0; i < fresh->c->n_clears; i++) {
-        MT_TRY(list_clear(fresh, &fresh->c->clears[i], below, result, rec, err));
+    for (int i = 0; i < fresh->c->n_avoidances; i++) {
+        MT_TRY(list_clear(fresh, &fresh->c->avoidances[i], below, result, rec, err));
     }
-    rec->gaps = rec->n_gaps > 0 ? rec->gaps : NULL;
+    rec->placements = rec->n_placements > 0 ? rec->placements : NULL;
     for (int i = 0; i < rec->n_motions; i++) {
         rec->clearance_percent =
             fmin(rec->clearance_percent, rec->motions[i].least_clearance_percent);

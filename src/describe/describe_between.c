@@ -4,24 +4,25 @@
 #include <math.h>
 
 #include "describe/describe.h"
+#include "problem/forced_response.h"
 #include "problem/goal.h"
-#include "problem/shaken.h"
-#include "search/motion_limit.h"
+#include "search/drive_path_limit.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 static const double PERCENT = 100.0;
 
 /* "the acceleration of grip.x for base.z", "the frequency of mode 1". */
-static const char *about_text(const mt_demand *d, mt_arena *mem)
+static const char *about_text(const mt_requirement *d, mt_arena *mem)
 {
-    return d->goal->shake != NULL
-               ? mt_describe_shaken(d->goal->shake, mem)
+    return d->goal->response_limit != NULL
+               ? mt_describe_response_limit(d->goal->response_limit, mem)
                : mt_arena_printf(mem, "the %s of mode %d", d->ops->number, d->mode);
 }
 
 /* What is known of the worst, and where it is. */
-static const char *worst_text(const mt_study *study, const mt_family *f, const mt_demand *d,
-                              const mt_result_between *r, mt_arena *mem)
+static const char *worst_text(const mt_study *study, const mt_drive_positions *f,
+                              const mt_requirement *d, const mt_result_between *r,
+                              mt_arena *mem)
 {
     const mt_goal *const g = d->goal;
     const char *const about = about_text(d, mem);
@@ -37,7 +38,7 @@ static const char *worst_text(const mt_study *study, const mt_family *f, const m
     if (subject == NULL || !MT_HAS(r->at)) {
         return subject == NULL ? NULL : mt_arena_printf(mem, "%s has no value", subject);
     }
-    if (!MT_HAS(r->value) && g->shake == NULL) {
+    if (!MT_HAS(r->value) && g->response_limit == NULL) {
         return mt_arena_printf(mem, "%s is not finite at %s", subject, at);
     }
     if (!MT_HAS(r->value)) {
@@ -46,19 +47,20 @@ static const char *worst_text(const mt_study *study, const mt_family *f, const m
             "%s is unbounded at %s: an undamped motion is excited at its natural frequency",
             subject, at);
     }
-    const char *const beside = mt_describe_shaken_beside(g, r->value, mem);
-    return beside == NULL
-               ? NULL
-               : mt_arena_printf(mem, "%s is worst at %s%s: %.4g%s%s%s%s", subject, at,
-                                 r->named ? ", a named position" : "", r->value,
-                                 r->value_unit[0] != '\0' ? " " : "", r->value_unit,
-                                 g->shake != NULL ? mt_describe_shaken_kind(g->shake) : "",
-                                 beside);
+    const char *const beside = mt_describe_response_value(g, r->value, mem);
+    return beside == NULL ? NULL
+                          : mt_arena_printf(mem, "%s is worst at %s%s: %.4g%s%s%s%s", subject,
+                                            at, r->named ? ", a named position" : "", r->value,
+                                            r->value_unit[0] != '\0' ? " " : "", r->value_unit,
+                                            g->response_limit != NULL
+                                                ? mt_describe_response_kind(g->response_limit)
+                                                : "",
+                                            beside);
 }
 
 /* What samples say: a limit that one of them misses is missed, one that all of them keep may
  * still be missed elsewhere. */
-static const char *verdict_text(const mt_limit_motion *m, const mt_result_between *r)
+static const char *verdict_text(const mt_limit_drive_path *m, const mt_result_between *r)
 {
     const bool capped = m->end == MT_MOTION_CAPPED;
     if (!r->holds) {
@@ -69,8 +71,9 @@ static const char *verdict_text(const mt_limit_motion *m, const mt_result_betwee
                   : "all of them keep the limit (sampled, not proven)";
 }
 
-static const char *text_of(const mt_study *study, const mt_family *f, const mt_demand *d,
-                           const mt_limit_motion *m, const mt_result_between *r, mt_arena *mem)
+static const char *text_of(const mt_study *study, const mt_drive_positions *f,
+                           const mt_requirement *d, const mt_limit_drive_path *m,
+                           const mt_result_between *r, mt_arena *mem)
 {
     const char *const worst = worst_text(study, f, d, r, mem);
     if (worst == NULL) {
@@ -85,11 +88,13 @@ static const char *text_of(const mt_study *study, const mt_family *f, const mt_d
     return mt_arena_printf(mem, "%s; %s", worst, verdict_text(m, r));
 }
 
-static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_limit_motion *m,
-                     mt_arena *mem, mt_result_between *out, mt_err *err)
+static mt_status put(const mt_workspace *fresh, const mt_requirement *d,
+                     const mt_limit_drive_path *m, mt_arena *mem, mt_result_between *out,
+                     mt_err *err)
 {
     const mt_goal *const g = d->goal;
-    const mt_family *const f = &fresh->p->families[mt_family_of(fresh->p, d->view)];
+    const mt_drive_positions *const f =
+        &fresh->p->families[mt_drive_positions_of(fresh->p, d->view)];
     const bool finite = m->worst.finite;
     *out = (mt_result_between){
         .pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index),
@@ -109,7 +114,7 @@ static mt_status put(const mt_workspace *fresh, const mt_demand *d, const mt_lim
             finite ? PERCENT * mt_describe_off_by(d, m->worst.value, fmax(m->off, 0.0))
                    : nan(""),
         .holds = mt_is_met(m->off, d->tolerance) && m->why == NULL,
-        .grade = mt_motion_grade(m->end)};
+        .grade = mt_drive_path_grade(m->end)};
     out->text = text_of(fresh->p->study, f, d, m, out, mem);
     return mt_arena_check(mem, err);
 }
@@ -131,13 +136,15 @@ mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_r
                               mt_recommendation *rec, mt_err *err)
 {
     const mt_problem *const p = fresh->p;
-    rec->between = mt_arena_alloc(&result->mem, (size_t)p->n_demands, sizeof *rec->between);
+    rec->between =
+        mt_arena_alloc(&result->mem, (size_t)p->n_requirements, sizeof *rec->between);
     MT_TRY(mt_arena_check(&result->mem, err));
-    for (int i = 0; i < p->n_demands; i++) {
-        const mt_demand *const d = &p->demands[i];
-        mt_limit_motion m = {.end = MT_MOTION_NONE};
-        MT_TRY(mt_family_limits_first(p, d) ? mt_motion_limit(fresh, d, &fresh->mem, &m, err)
-                                            : MT_OK);
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
+        mt_limit_drive_path m = {.end = MT_MOTION_NONE};
+        MT_TRY(mt_drive_positions_limits_first(p, d)
+                   ? mt_drive_path_limit(fresh, d, &fresh->mem, &m, err)
+                   : MT_OK);
         if (m.end != MT_MOTION_NONE) {
             mt_result_between *const row = &rec->between[rec->n_between++];
             MT_TRY(put(fresh, d, &m, &result->mem, row, err));

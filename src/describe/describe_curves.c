@@ -76,30 +76,32 @@ static mt_status put_curve(const mt_response *r, const mt_curve *c, mt_arena *me
 }
 
 /* All of the profile, proven where the response is a sum over poles. */
-static mt_status shake(mt_response *r, const mt_vibration *v, mt_arena *mem,
-                       mt_design_curve *out, mt_err *err)
+static mt_status response_limit(mt_response *r, const mt_vibration *v, mt_arena *mem,
+                                mt_design_curve *out, mt_err *err)
 {
     mt_profiled all;
     MT_TRY(mt_profiled_find(r, v, &all, err));
     const mt_vibration_response found = all.answers[0];
-    mt_result_shaken *const to = mt_arena_alloc(mem, 1, sizeof *to);
-    mt_result_shaken_tone *const tones = mt_arena_alloc(mem, (size_t)v->n_tones, sizeof *tones);
+    mt_result_forced_response *const to = mt_arena_alloc(mem, 1, sizeof *to);
+    mt_result_forced_response_tone *const tones =
+        mt_arena_alloc(mem, (size_t)v->n_tones, sizeof *tones);
     MT_TRY(mt_arena_check(mem, err));
-    *to = (mt_result_shaken){.end = mt_forced_end_name(found.end),
-                             .proven = all.no_sums == NULL,
-                             .rms = found.rms,
-                             .rms_error_at_most = found.rms_bound,
-                             .sine = found.sine,
-                             .peak = found.peak,
-                             .n_tones = v->n_tones,
-                             .tones = tones};
+    *to = (mt_result_forced_response){.end = mt_forced_end_name(found.end),
+                                      .proven = all.no_sums == NULL,
+                                      .rms = found.rms,
+                                      .rms_error_at_most = found.rms_bound,
+                                      .sine = found.sine,
+                                      .peak = found.peak,
+                                      .n_tones = v->n_tones,
+                                      .tones = tones};
     for (int i = 0; i < v->n_tones; i++) {
         const mt_sine_peak *const t = &found.tones[i];
-        tones[i] = (mt_result_shaken_tone){.label = v->tones[i].label,
-                                           .hz = t->omega / TWO_PI,
-                                           .peak = mt_vibration_respond_tone(v, &found, i),
-                                           .excess_at_most = t->excess,
-                                           .at_edge = t->at_edge};
+        tones[i] =
+            (mt_result_forced_response_tone){.label = v->tones[i].label,
+                                             .hz = t->omega / TWO_PI,
+                                             .peak = mt_vibration_respond_tone(v, &found, i),
+                                             .excess_at_most = t->excess,
+                                             .at_edge = t->at_edge};
     }
     out->vibration = to;
     return MT_OK;
@@ -146,7 +148,7 @@ static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vi
         rc = mt_response_curve(&r, &opt, &curve, err);
         rc = rc == MT_OK ? put_curve(&r, &curve, mem, out, err) : rc;
         rc = rc == MT_OK && v != NULL ? put_psd(v, mem, &out->drawn, err) : rc;
-        rc = rc == MT_OK && v != NULL ? shake(&r, v, mem, out, err) : rc;
+        rc = rc == MT_OK && v != NULL ? response_limit(&r, v, mem, out, err) : rc;
     }
     mt_response_free(&r);
     return rc;

@@ -16,7 +16,8 @@ static const double TWO_PI = 6.283185307179586477;
 enum { MOST_MEASURED = 400 };
 
 /* The same ports of the same configuration, shaken likewise. */
-static bool is_same(const mt_result_curve *a, const mt_result_curve *b, const mt_shake *s)
+static bool is_same(const mt_result_curve *a, const mt_result_curve *b,
+                    const mt_response_limit *s)
 {
     const char *const of = a->profile == NULL ? NULL : a->profile->file;
     const char *const by = s->profile_name.s;
@@ -26,7 +27,7 @@ static bool is_same(const mt_result_curve *a, const mt_result_curve *b, const mt
 }
 
 static mt_result_curve *find(const mt_result *result, const mt_result_curve *like,
-                             const mt_shake *s)
+                             const mt_response_limit *s)
 {
     for (int i = 0; i < result->n_curves; i++) {
         if (is_same(&result->curves[i], like, s)) {
@@ -36,7 +37,7 @@ static mt_result_curve *find(const mt_result *result, const mt_result_curve *lik
     return NULL;
 }
 
-static mt_status put_profile(const mt_shake *s, mt_arena *mem, mt_result_curve *out,
+static mt_status put_profile(const mt_response_limit *s, mt_arena *mem, mt_result_curve *out,
                              mt_err *err)
 {
     const mt_vibration *const v = s->profile;
@@ -68,7 +69,7 @@ static mt_status put_profile(const mt_shake *s, mt_arena *mem, mt_result_curve *
 }
 
 /* Ports in full, and what the numbers are in. */
-static mt_status put_ports(const mt_problem *p, int configuration, const mt_shake *s,
+static mt_status put_ports(const mt_problem *p, int configuration, const mt_response_limit *s,
                            mt_arena *mem, mt_result_curve *out, mt_err *err)
 {
     mt_system *sys = NULL;
@@ -90,7 +91,7 @@ static mt_status put_ports(const mt_problem *p, int configuration, const mt_shak
 }
 
 /* From where to where a goal's own curve is shown. */
-static void choose_band(const mt_shake *s, mt_result_curve *out)
+static void choose_band(const mt_response_limit *s, mt_result_curve *out)
 {
     const mt_vibration *const v = s->profile;
     double hz[2] = {s->lower_hz / BESIDE_BAND, s->upper_hz * BESIDE_BAND};
@@ -108,8 +109,8 @@ static void choose_band(const mt_shake *s, mt_result_curve *out)
 /* What the goal compares the response with; NULL: nothing. */
 static const mt_fit *fit_of(const mt_problem *p, int goal, int configuration)
 {
-    for (int i = 0; i < p->n_demands; i++) {
-        const mt_demand *const d = &p->demands[i];
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
         if (d->goal_index == goal && d->view >= 0 &&
             p->views[d->view].configuration == configuration) {
             return d->fit;
@@ -141,7 +142,7 @@ static mt_status put_measured(const mt_fit *fit, mt_arena *mem, mt_result_curve 
 static mt_status add_limit(const mt_goal *g, const char *pointer, mt_arena *mem,
                            mt_result_curve *to, mt_err *err)
 {
-    const mt_shake *const s = g->shake;
+    const mt_response_limit *const s = g->response_limit;
     int room = to->n_limits;
     if (s->profile_name.s != NULL || s->measurement_name.s != NULL) {
         return MT_OK; /* of a number, not of a curve */
@@ -168,17 +169,17 @@ static mt_status add_goal(const mt_problem *p, int goal, int configuration, mt_r
     mt_result_curve own = {.pointer = mt_arena_printf(mem, "/goals/%d", goal),
                            .configuration = study->model->configurations[configuration].name.s,
                            .description = g->description};
-    MT_TRY(put_ports(p, configuration, g->shake, mem, &own, err));
-    mt_result_curve *to = find(result, &own, g->shake);
+    MT_TRY(put_ports(p, configuration, g->response_limit, mem, &own, err));
+    mt_result_curve *to = find(result, &own, g->response_limit);
     const mt_fit *const fit = fit_of(p, goal, configuration);
     if (to == NULL) {
-        choose_band(g->shake, &own);
+        choose_band(g->response_limit, &own);
         if (fit != NULL) {
             own.lower_hz = fit->w[0] / TWO_PI;
             own.upper_hz = fit->w[fit->n - 1] / TWO_PI;
             own.upper_hz *= own.upper_hz > own.lower_hz ? 1.0 : BESIDE_ONE;
         }
-        MT_TRY(put_profile(g->shake, mem, &own, err));
+        MT_TRY(put_profile(g->response_limit, mem, &own, err));
         to = &result->curves[result->n_curves++];
         *to = own;
     }
@@ -195,12 +196,12 @@ static mt_status add_listed(const mt_problem *p, int index, mt_result *result, m
     *out = (mt_result_curve){.pointer = mt_arena_printf(&result->mem, "/responses/%d", index),
                              .configuration =
                                  p->study->model->configurations[r->configuration].name.s,
-                             .lower_hz = r->shake.lower_hz,
-                             .upper_hz = r->shake.upper_hz,
+                             .lower_hz = r->response_limit.lower_hz,
+                             .upper_hz = r->response_limit.upper_hz,
                              .description = r->description,
                              .source = r->source};
-    MT_TRY(put_ports(p, r->configuration, &r->shake, &result->mem, out, err));
-    MT_TRY(put_profile(&r->shake, &result->mem, out, err));
+    MT_TRY(put_ports(p, r->configuration, &r->response_limit, &result->mem, out, err));
+    MT_TRY(put_profile(&r->response_limit, &result->mem, out, err));
     result->n_curves++;
     return MT_OK;
 }
@@ -213,7 +214,9 @@ mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_er
         return MT_OK; /* a point of a trade study */
     }
     for (int g = 0; g < study->n_goals; g++) {
-        most += study->goals[g].shake == NULL ? 0 : (size_t)study->goals[g].n_configurations;
+        most += study->goals[g].response_limit == NULL
+                    ? 0
+                    : (size_t)study->goals[g].n_configurations;
     }
     result->curves = mt_arena_alloc(&result->mem, most, sizeof *result->curves);
     MT_TRY(mt_arena_check(&result->mem, err));
@@ -222,7 +225,7 @@ mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_er
     }
     for (int g = 0; g < study->n_goals; g++) {
         const mt_goal *const goal = &study->goals[g];
-        for (int k = 0; k < goal->n_configurations && goal->shake != NULL; k++) {
+        for (int k = 0; k < goal->n_configurations && goal->response_limit != NULL; k++) {
             MT_TRY(add_goal(p, g, goal->configurations[k], result, err));
         }
     }

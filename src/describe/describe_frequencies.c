@@ -6,8 +6,8 @@
 
 #include "analysis/count.h"
 #include "describe/describe.h"
-#include "problem/demand.h"
-#include "problem/robust.h"
+#include "problem/requirement.h"
+#include "problem/tolerance.h"
 
 /* Modes listed of a configuration beyond those that goals name. */
 enum { LISTED_MODES = 4, SLACK_TEXT = 200 };
@@ -19,21 +19,21 @@ typedef struct listing {
     mt_result *result;
     mt_recommendation *rec;
     /* its analysis was opened at the original design and solved here, as in the search */
-    mt_view_work *view;
+    mt_configuration_work *view;
     mt_analysis *scratch; /* opened here */
     int first;            /* its first row of rec->frequencies */
 } listing;
 
-/* Vibration index of a demand's mode at this design; 0: it has none. */
-static mt_status index_of_demand(mt_workspace *fresh, mt_view_work *view, const mt_demand *d,
-                                 int *index, mt_err *err)
+/* Vibration index of a requirement's mode at this design; 0: it has none. */
+static mt_status index_of_requirement(mt_workspace *fresh, mt_configuration_work *view,
+                                      const mt_requirement *d, int *index, mt_err *err)
 {
     int pos = -1;
     *index = 0;
-    if (!mt_demand_is_modal(d)) {
+    if (!mt_requirement_is_modal(d)) {
         return MT_OK;
     }
-    MT_TRY(mt_view_position(fresh, view, d->mode, d->named, &pos, err));
+    MT_TRY(mt_configuration_position(fresh, view, d->mode, d->named, &pos, err));
     *index = mt_modal_index(&view->analysis->modes, pos);
     return MT_OK;
 }
@@ -45,7 +45,7 @@ static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
     const mt_modes *const modes = &l->view->analysis->modes;
     for (int i = 0; i < l->view->of->n_named; i++) {
         int pos = -1;
-        MT_TRY(mt_view_position(l->fresh, l->view, 0, i, &pos, err));
+        MT_TRY(mt_configuration_position(l->fresh, l->view, 0, i, &pos, err));
         if (pos >= 0 && mt_modal_index(modes, pos) == f->mode) {
             const mt_track *const k = &l->view->track[i];
             f->name = l->fresh->p->study->model->modes[l->view->of->named[i]].name.s;
@@ -75,8 +75,8 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
         return MT_OK;
     }
     f->recommended_hz = mt_modal_hz(&a->modes, pos);
-    const mt_robust_range *const range =
-        mt_ranges_hz(mt_robust_known(l->fresh), (int)(l->view - l->fresh->views), index);
+    const mt_tolerance_range *const range =
+        mt_ranges_hz(mt_tolerance_known(l->fresh), (int)(l->view - l->fresh->views), index);
     f->lowest_hz = range != NULL ? range->value[MT_LOWEST] : nan("");
     f->highest_hz = range != NULL ? range->value[MT_HIGHEST] : nan("");
     f->residual = a->modes.residual[pos];
@@ -92,7 +92,7 @@ static mt_status describe_mode(const listing *l, int index, mt_result_frequency 
     return put_name(l, f, err);
 }
 
-static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
+static void attach_frequency(const mt_requirement *d, mt_result_frequency *f)
 {
     const mt_goal *const g = d->goal;
     f->target_hz = MT_HAS(d->equals) ? d->equals : f->target_hz;
@@ -108,11 +108,11 @@ static void attach_frequency(const mt_demand *d, mt_result_frequency *f)
     f->error_percent = 100.0 * over;
 }
 
-/* What the demand wants of its mode, into the row of that mode. */
-static mt_status attach(const listing *l, const mt_demand *d, mt_err *err)
+/* What the requirement wants of its mode, into the row of that mode. */
+static mt_status attach(const listing *l, const mt_requirement *d, mt_err *err)
 {
     int index = 0;
-    MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
+    MT_TRY(index_of_requirement(l->fresh, l->view, d, &index, err));
     index = index == 0 ? d->mode : index; /* unstable: the rows stand without frequency */
     for (int k = l->first; k < l->rec->n_frequencies; k++) {
         mt_result_frequency *const f = &l->rec->frequencies[k];
@@ -131,13 +131,13 @@ static mt_status attach(const listing *l, const mt_demand *d, mt_err *err)
 }
 
 /* Named modes that goals speak of and that can no longer be told for sure. */
-static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
+static mt_status warn_lost(const listing *l, const mt_requirement *d, mt_err *err)
 {
     int index = 0;
     if (d->named < 0 || l->design->found == NULL || !l->view->solved) {
         return MT_OK;
     }
-    MT_TRY(index_of_demand(l->fresh, l->view, d, &index, err));
+    MT_TRY(index_of_requirement(l->fresh, l->view, d, &index, err));
     const char *const why = mt_describe_identity(l->view, d->named, &l->result->mem);
     MT_TRY(mt_arena_check(&l->result->mem, err));
     if (index == 0 || why[0] == '\0') {
@@ -150,7 +150,7 @@ static mt_status warn_lost(const listing *l, const mt_demand *d, mt_err *err)
 
 static mt_status count_modes(mt_workspace *fresh, int v, int *count, mt_err *err)
 {
-    mt_view_work *const view = &fresh->views[v];
+    mt_configuration_work *const view = &fresh->views[v];
     const mt_modes *const modes = &view->analysis->modes;
     int wanted = LISTED_MODES;
     *count = 0;
@@ -158,15 +158,15 @@ static mt_status count_modes(mt_workspace *fresh, int v, int *count, mt_err *err
         return MT_OK;
     }
     const int flexible = mt_modal_vibrations(modes);
-    for (int i = 0; i < fresh->p->n_demands; i++) {
+    for (int i = 0; i < fresh->p->n_requirements; i++) {
         int index = 0;
-        if (fresh->p->demands[i].view == v) {
-            MT_TRY(index_of_demand(fresh, view, &fresh->p->demands[i], &index, err));
-            index = index == 0 ? fresh->p->demands[i].mode : index;
+        if (fresh->p->requirements[i].view == v) {
+            MT_TRY(index_of_requirement(fresh, view, &fresh->p->requirements[i], &index, err));
+            index = index == 0 ? fresh->p->requirements[i].mode : index;
         }
         wanted = index > wanted ? index : wanted;
     }
-    const int in_reach = mt_clears_reach(fresh, v);
+    const int in_reach = mt_avoidances_reach(fresh, v);
     wanted = in_reach > wanted ? in_reach : wanted;
     *count = wanted < flexible ? wanted : flexible;
     return MT_OK;
@@ -227,10 +227,10 @@ static mt_status list_view(listing *l, int v, int count, mt_err *err)
         MT_TRY(describe_mode(l, k, &l->rec->frequencies[l->rec->n_frequencies], err));
         l->rec->n_frequencies++;
     }
-    for (int i = 0; i < fresh->p->n_demands; i++) {
-        if (fresh->p->demands[i].view == v) {
-            MT_TRY(attach(l, &fresh->p->demands[i], err));
-            MT_TRY(warn_lost(l, &fresh->p->demands[i], err));
+    for (int i = 0; i < fresh->p->n_requirements; i++) {
+        if (fresh->p->requirements[i].view == v) {
+            MT_TRY(attach(l, &fresh->p->requirements[i], err));
+            MT_TRY(warn_lost(l, &fresh->p->requirements[i], err));
         }
     }
     return mt_describe_mac(fresh->p, v, l->scratch, count, l->result, l->rec, err);

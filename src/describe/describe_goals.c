@@ -3,9 +3,9 @@
 #include <math.h>
 
 #include "describe/describe.h"
-#include "problem/demand.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency_response.h"
+#include "problem/requirement.h"
 
 static const double PERCENT = 100.0;
 static const double HALF_TURN = 3.14159265358979323846;
@@ -14,13 +14,13 @@ static const double HALF_TURN_DEG = 180.0;
 static const double CONJUGATED = 0.5;
 
 /* "installed mode 1", "installed \"heave\"", or the expression. */
-static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
+static const char *quantity_text(const mt_problem *p, const mt_requirement *d, mt_arena *mem)
 {
     if (d->view < 0) {
         return d->goal->expression_text;
     }
-    const char *const configuration = mt_view_name(p, &p->views[d->view]);
-    if (!mt_demand_is_modal(d)) {
+    const char *const configuration = mt_configuration_name(p, &p->views[d->view]);
+    if (!mt_requirement_is_modal(d)) {
         return configuration;
     }
     return d->mode > 0
@@ -30,10 +30,10 @@ static const char *quantity_text(const mt_problem *p, const mt_demand *d, mt_are
 
 /* " from a to b Hz", " at least a Hz", " at most b Hz", " at a Hz as mode 2 of \"fe\"", or
  * nothing. */
-static const char *interval_text(const mt_problem *p, const mt_demand *d, mt_arena *mem)
+static const char *interval_text(const mt_problem *p, const mt_requirement *d, mt_arena *mem)
 {
     const mt_goal *const g = d->goal;
-    const mt_unit *const shown = mt_study_demand_unit(p->study, &g->expression);
+    const mt_unit *const shown = mt_study_requirement_unit(p->study, &g->expression);
     const char *const name = mt_unit_name(shown, mt_study_goal_unit(p->study, g));
     const char *const unit = mt_arena_printf(mem, "%s%s", name[0] != '\0' ? " " : "", name);
     const bool least = MT_HAS(g->at_least);
@@ -60,8 +60,9 @@ static const char *interval_text(const mt_problem *p, const mt_demand *d, mt_are
     return mt_arena_printf(mem, " at %s %.10g%s", least ? "least" : "most", number, unit);
 }
 
-/* What a demand limits, and that with what it asks for, as texts. */
-static void name_goal(const mt_problem *p, const mt_demand *d, mt_arena *mem, mt_result_goal *g)
+/* What a requirement limits, and that with what it asks for, as texts. */
+static void name_goal(const mt_problem *p, const mt_requirement *d, mt_arena *mem,
+                      mt_result_goal *g)
 {
     const char *const quantity = quantity_text(p, d, mem);
     const char *const interval = interval_text(p, d, mem);
@@ -79,10 +80,10 @@ static double greater(double a, double b)
     return b <= a ? a : b;
 }
 
-/* Relative violation of a demand that has been evaluated, that of a frequency a logarithm; of a
- * shape its distance. */
-static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
-                               const mt_nlp_values *v, double own_worst)
+/* Relative violation of a requirement that has been evaluated, that of a frequency a logarithm;
+ * of a shape its distance. */
+static double requirement_violation(const mt_workspace *fresh, const mt_requirement *d,
+                                    const mt_nlp_values *v, double own_worst)
 {
     double worst = 0.0;
     if (d->row_res >= 0) {
@@ -92,7 +93,7 @@ static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
         return fabs(v->eq[d->row_eq]);
     }
     if (d->row_soft >= 0) {
-        return fmax(own_worst, 0.0); /* of this demand alone */
+        return fmax(own_worst, 0.0); /* of this requirement alone */
     }
     for (int k = 0; k < d->n_in; k++) {
         worst = greater(worst, -v->in[d->row_in + k]);
@@ -100,7 +101,7 @@ static double demand_violation(const mt_workspace *fresh, const mt_demand *d,
     return worst;
 }
 
-double mt_describe_off_by(const mt_demand *d, double q, double violation)
+double mt_describe_off_by(const mt_requirement *d, double q, double violation)
 {
     const mt_goal *const g = d->goal;
     double worst = 0.0;
@@ -118,11 +119,11 @@ double mt_describe_off_by(const mt_demand *d, double q, double violation)
 static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
 {
     for (int i = 0; i < fresh->c->n_views; i++) {
-        mt_view_work *const view = &fresh->views[i];
+        mt_configuration_work *const view = &fresh->views[i];
         mt_err own = {0};
-        mt_view_ask_all(view);
+        mt_configuration_query_all(view);
         view->ask.vectors = view->ask.vectors || view->of->n_named > 0;
-        const mt_status rc = mt_view_solve(fresh, view, false, &own);
+        const mt_status rc = mt_configuration_solve(fresh, view, false, &own);
         if (mt_is_final(rc)) {
             return mt_fail(err, rc, "%s", own.text);
         }
@@ -137,8 +138,8 @@ static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
 }
 
 /* Nobody can tell which mode is meant: the goal is not met, whatever its number. */
-static mt_status doubt(const mt_workspace *fresh, const mt_demand *d, mt_result *result,
-                       mt_result_goal *g, mt_err *err)
+static mt_status warning(const mt_workspace *fresh, const mt_requirement *d, mt_result *result,
+                         mt_result_goal *g, mt_err *err)
 {
     const char *const why =
         mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
@@ -149,23 +150,23 @@ static mt_status doubt(const mt_workspace *fresh, const mt_demand *d, mt_result 
 }
 
 /* What is asked for, of what, in figures. */
-static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
+static void write_what(const mt_problem *p, const mt_requirement *d, mt_result_goal *g)
 {
     const mt_goal *const asked = d->goal;
     const mt_goal_kind *const kind = mt_goal_kind_of(asked->type);
     g->type = kind->name;
     const char *const unit = mt_study_goal_unit(p->study, asked);
-    const mt_unit *const shown = mt_study_demand_unit(p->study, &asked->expression);
+    const mt_unit *const shown = mt_study_requirement_unit(p->study, &asked->expression);
     g->unit = d->view < 0 && unit[0] == '\0' ? NULL : unit;
     g->display_unit = mt_unit_name(shown, NULL);
     g->display_factor = mt_unit_display(shown);
     g->expression = d->view < 0 ? asked->expression_text : NULL;
-    g->reference =
-        asked->shake != NULL ? asked->shake->measurement_name.s : asked->reference_name.s;
+    g->reference = asked->response_limit != NULL ? asked->response_limit->measurement_name.s
+                                                 : asked->reference_name.s;
     if (d->view >= 0) {
-        g->configuration = mt_view_name(p, &p->views[d->view]);
+        g->configuration = mt_configuration_name(p, &p->views[d->view]);
     }
-    if (mt_demand_is_modal(d)) {
+    if (mt_requirement_is_modal(d)) {
         g->mode = d->mode;
         g->name = d->mode > 0 ? NULL : asked->mode.mode_name.s;
     }
@@ -176,7 +177,7 @@ static void say_what(const mt_problem *p, const mt_demand *d, mt_result_goal *g)
 }
 
 /* The measured line where a response is off most. */
-static void say_line(const mt_workspace *fresh, const mt_demand *d, mt_result_goal *g)
+static void write_line(const mt_workspace *fresh, const mt_requirement *d, mt_result_goal *g)
 {
     double complex off = 0.0;
     if (mt_fit_worst(fresh, d, &g->off_most_hz, &off)) {
@@ -185,17 +186,17 @@ static void say_line(const mt_workspace *fresh, const mt_demand *d, mt_result_go
     }
 }
 
-static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v,
+static mt_status judge(mt_workspace *fresh, const mt_requirement *d, mt_nlp_values *v,
                        mt_result *result, mt_result_goal *g, mt_err *why, mt_err *err)
 {
     mt_err own = {0};
     double violation = nan("");
     double percent = nan("");
     *g = mt_result_goal_default();
-    say_what(fresh->p, d, g);
+    write_what(fresh->p, d, g);
     const double others = fresh->worst;
     fresh->worst = -HUGE_VAL;
-    const mt_status rc = mt_demand_eval(fresh, d, false, v, &g->value, &own);
+    const mt_status rc = mt_requirement_eval(fresh, d, false, v, &g->value, &own);
     if (mt_is_final(rc)) {
         return mt_fail(err, rc, "%s", own.text);
     }
@@ -203,10 +204,10 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
         const double own_worst = fresh->worst;
         const bool none = d->row_soft >= 0 && !isfinite(g->value); /* a resonance undamped */
         fresh->worst = none || isnan(others) ? nan("") : fmax(others, own_worst);
-        violation = demand_violation(fresh, d, v, own_worst);
+        violation = requirement_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
         percent = PERCENT * mt_describe_off_by(d, g->value, violation);
-        say_line(fresh, d, g);
+        write_line(fresh, d, g);
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");
@@ -222,15 +223,15 @@ static mt_status judge(mt_workspace *fresh, const mt_demand *d, mt_nlp_values *v
     g->violation_percent = percent;
     g->met = mt_is_met(violation, d->tolerance);
     MT_TRY(mt_arena_check(&result->mem, err));
-    return !mt_demand_is_modal(d) || mt_describe_is_told(&fresh->views[d->view], d)
+    return !mt_requirement_is_modal(d) || mt_describe_is_told(&fresh->views[d->view], d)
                ? MT_OK
-               : doubt(fresh, d, result, g, err);
+               : warning(fresh, d, result, g, err);
 }
 
 /* Sensors of a MAC or a shape that mix displacements and angles, where the length at which an
  * angle is an arc is not the question's own. */
-static mt_status tell_length(const mt_demand *d, const mt_design *design, mt_result *result,
-                             mt_err *err)
+static mt_status write_length(const mt_requirement *d, const mt_design *design,
+                              mt_result *result, mt_err *err)
 {
     return design->found != NULL || d->shape.scale == NULL || MT_HAS(d->goal->length)
                ? MT_OK
@@ -243,8 +244,8 @@ static mt_status tell_length(const mt_demand *d, const mt_design *design, mt_res
 
 /* What measured data look like that fit no mechanism: told where the original design shows it,
  * or the best one. */
-static mt_status doubt_data(const mt_workspace *fresh, const mt_demand *d,
-                            const mt_design *design, mt_result *result, mt_err *err)
+static mt_status warn_data(const mt_workspace *fresh, const mt_requirement *d,
+                           const mt_design *design, mt_result *result, mt_err *err)
 {
     double hz = 0.0;
     const double rise = design->found == NULL ? mt_fit_rise(d, &hz) : 0.0;
@@ -266,28 +267,28 @@ static mt_status doubt_data(const mt_workspace *fresh, const mt_demand *d,
 }
 
 mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_result *result,
-                            mt_recommendation *rec, double *motion_room, mt_err *err)
+                            mt_recommendation *rec, double *motion_margin, mt_err *err)
 {
     mt_nlp_values v;
     mt_err why = {.code = MT_OK};
-    const size_t most = (size_t)fresh->p->n_demands +
+    const size_t most = (size_t)fresh->p->n_requirements +
                         (size_t)mt_describe_avoid_count(fresh->p) +
                         (size_t)mt_describe_motion_count(fresh->p);
     rec->goals = mt_arena_alloc(&result->mem, most, sizeof *rec->goals);
     rec->feasible = true;
     rec->violation_percent = 0.0;
     MT_TRY(mt_arena_check(&result->mem, err));
-    MT_TRY(mt_case_values_init(fresh->c, &fresh->mem, &v, err));
+    MT_TRY(mt_subproblem_values_init(fresh->c, &fresh->mem, &v, err));
     MT_TRY(mt_workspace_place(fresh, design->t, false, err));
     MT_TRY(solve_views(fresh, &why, err));
-    for (int i = 0; i < fresh->p->n_demands; i++) {
-        MT_TRY(judge(fresh, &fresh->p->demands[i], &v, result, &rec->goals[i], &why, err));
-        MT_TRY(tell_length(&fresh->p->demands[i], design, result, err));
-        MT_TRY(doubt_data(fresh, &fresh->p->demands[i], design, result, err));
+    for (int i = 0; i < fresh->p->n_requirements; i++) {
+        MT_TRY(judge(fresh, &fresh->p->requirements[i], &v, result, &rec->goals[i], &why, err));
+        MT_TRY(write_length(&fresh->p->requirements[i], design, result, err));
+        MT_TRY(warn_data(fresh, &fresh->p->requirements[i], design, result, err));
         rec->n_goals++;
     }
     MT_TRY(mt_describe_avoid_goals(fresh, result, rec, err));
-    MT_TRY(mt_describe_motions(fresh, result, rec, motion_room, err));
+    MT_TRY(mt_describe_motions(fresh, result, rec, motion_margin, err));
     for (int i = 0; i < rec->n_goals; i++) {
         const mt_result_goal *const g = &rec->goals[i];
         if (!g->weighted) {

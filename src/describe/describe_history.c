@@ -30,7 +30,8 @@ mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, i
             .objective = s->stage + 1,
             .round = s->round + 1,
             .evaluations = s->evals,
-            .value = none ? nan("") : finite_or_none(mt_aim_shown(&p->aims[s->stage], s->f)),
+            .value = none ? nan("")
+                          : finite_or_none(mt_objective_stage_shown(&p->aims[s->stage], s->f)),
             .violation = finite_or_none(s->violation),
             .feasible = mt_is_held(s->violation),
         };

@@ -15,9 +15,9 @@ enum { REFERENCE_MODES = 24 };
  * reference. */
 static bool is_first(const mt_problem *p, int i)
 {
-    const mt_demand *const d = &p->demands[i];
+    const mt_requirement *const d = &p->requirements[i];
     for (int k = 0; k < i; k++) {
-        const mt_demand *const e = &p->demands[k];
+        const mt_requirement *const e = &p->requirements[k];
         if (e->shape.ns > 0 && e->view == d->view && e->goal->reference == d->goal->reference) {
             return false;
         }
@@ -27,7 +27,7 @@ static bool is_first(const mt_problem *p, int i)
 
 /* The modes of the reference that move at common sensors, as many as the configuration has
  * listed, or was measured; shapes in mem. */
-static mt_status compared_with(const mt_problem *p, const mt_demand *d, int listed,
+static mt_status compared_with(const mt_problem *p, const mt_requirement *d, int listed,
                                mt_arena *mem, mt_reference_shape *shapes, int *n, mt_err *err)
 {
     const mt_reference *const r = &p->study->references[d->goal->reference];
@@ -67,7 +67,7 @@ static mt_status describe_rows(mt_analysis *a, int listed, const mt_reference_sh
     return MT_OK;
 }
 
-static mt_status describe_one(const mt_problem *p, const mt_demand *d, mt_analysis *a,
+static mt_status describe_one(const mt_problem *p, const mt_requirement *d, mt_analysis *a,
                               int listed, mt_arena *scratch, mt_result *result,
                               mt_result_mac *m, mt_err *err)
 {
@@ -90,16 +90,16 @@ mt_status mt_describe_mac(const mt_problem *p, int view, mt_analysis *a, int lis
 {
     mt_arena scratch;
     if (rec->macs == NULL) {
-        rec->macs = mt_arena_alloc(&result->mem, (size_t)p->n_demands, sizeof *rec->macs);
+        rec->macs = mt_arena_alloc(&result->mem, (size_t)p->n_requirements, sizeof *rec->macs);
     }
     MT_TRY(mt_arena_check(&result->mem, err));
     MT_TRY(mt_arena_init(&scratch, 0, err));
     mt_status rc = MT_OK;
-    for (int i = 0; i < p->n_demands && rc == MT_OK; i++) {
-        if (p->demands[i].view == view && is_first(p, i)) {
+    for (int i = 0; i < p->n_requirements && rc == MT_OK; i++) {
+        if (p->requirements[i].view == view && is_first(p, i)) {
             mt_result_mac *const m = &rec->macs[rec->n_macs++];
             *m = (mt_result_mac){.configuration = NULL};
-            rc = describe_one(p, &p->demands[i], a, listed, &scratch, result, m, err);
+            rc = describe_one(p, &p->requirements[i], a, listed, &scratch, result, m, err);
         }
     }
     mt_arena_free(&scratch);

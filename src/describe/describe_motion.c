@@ -5,7 +5,7 @@
 
 #include "describe/describe.h"
 #include "problem/goal_avoid.h"
-#include "search/motion.h"
+#include "search/drive_path.h"
 
 /* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are
  * solved for, to about 1e-12. */
@@ -27,17 +27,17 @@ typedef struct crossing {
 typedef struct described {
     mt_workspace *fresh; /* views solved */
     mt_result *result;
-    const mt_family *family;
+    const mt_drive_positions *drive_positions;
     double tolerance;
     int goal_index;
     crossing cross;
-    mt_motion motion;
+    mt_drive_path motion;
     bool followed;
     double violation; /* ln; NaN: no value */
     double room;      /* the least of its motion; HUGE_VAL: none */
 } described;
 
-static mt_dimension dimension_of(const mt_family *f)
+static mt_dimension dimension_of(const mt_drive_positions *f)
 {
     return f->angle ? MT_ANGLE : MT_LENGTH;
 }
@@ -45,15 +45,15 @@ static mt_dimension dimension_of(const mt_family *f)
 /* What its positions are shown in; NULL: SI. */
 static const mt_unit *shown_in(const described *d)
 {
-    return mt_study_shown(d->fresh->p->study, dimension_of(d->family));
+    return mt_study_shown(d->fresh->p->study, dimension_of(d->drive_positions));
 }
 
 static const char *si_of(const described *d)
 {
-    return mt_dimension_si(dimension_of(d->family));
+    return mt_dimension_si(dimension_of(d->drive_positions));
 }
 
-const char *mt_describe_position(const mt_study *study, const mt_family *f, double at,
+const char *mt_describe_position(const mt_study *study, const mt_drive_positions *f, double at,
                                  mt_arena *mem)
 {
     const mt_unit *const shown = mt_study_shown(study, dimension_of(f));
@@ -61,14 +61,15 @@ const char *mt_describe_position(const mt_study *study, const mt_family *f, doub
                            mt_unit_name(shown, mt_dimension_si(dimension_of(f))));
 }
 
-static const char *configuration_of(const described *d, const mt_clear *c)
+static const char *configuration_of(const described *d, const mt_avoidance *c)
 {
-    return mt_view_name(d->fresh->p, &d->fresh->p->views[c->view]);
+    return mt_configuration_name(d->fresh->p, &d->fresh->p->views[c->view]);
 }
 
 /* Tied bands of two clears that have different numbers of modes below their middles.
  * below[n_bands] by the modes. */
-static void find_between(described *d, const mt_clear *a, const mt_clear *b, const int *below)
+static void find_between(described *d, const mt_avoidance *a, const mt_avoidance *b,
+                         const int *below)
 {
     for (int x = 0; x < a->bands.n; x++) {
         for (int y = 0; y < b->bands.n && d->cross.mode == 0; y++) {
@@ -91,11 +92,12 @@ static void find_between(described *d, const mt_clear *a, const mt_clear *b, con
 static void find_crossing(described *d, const int *below)
 {
     const mt_workspace *const fresh = d->fresh;
-    const int family = (int)(d->family - fresh->p->families);
-    for (int i = 0; i < fresh->c->n_clears; i++) {
-        for (int k = 0; k < i && mt_family_of(fresh->p, fresh->c->clears[i].view) == family;
+    const int drive_positions = (int)(d->drive_positions - fresh->p->families);
+    for (int i = 0; i < fresh->c->n_avoidances; i++) {
+        for (int k = 0; k < i && mt_drive_positions_of(
+                                     fresh->p, fresh->c->avoidances[i].view) == drive_positions;
              k++) {
-            find_between(d, &fresh->c->clears[k], &fresh->c->clears[i], below);
+            find_between(d, &fresh->c->avoidances[k], &fresh->c->avoidances[i], below);
         }
     }
 }
@@ -105,18 +107,19 @@ static void find_crossing(described *d, const int *below)
 static mt_status examine(described *d, mt_err *err)
 {
     mt_workspace *const fresh = d->fresh;
-    const int family = (int)(d->family - fresh->p->families);
+    const int drive_positions = (int)(d->drive_positions - fresh->p->families);
     int *const below = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
     int *const best = mt_arena_int(&fresh->mem, (size_t)fresh->c->n_bands);
     double room = HUGE_VAL;
     MT_TRY(mt_arena_check(&fresh->mem, err));
     d->tolerance = HUGE_VAL;
-    for (int i = fresh->c->n_clears - 1; i >= 0; i--) {
-        const mt_clear *const c = &fresh->c->clears[i];
-        const mt_view_work *const view = &fresh->views[c->view];
+    for (int i = fresh->c->n_avoidances - 1; i >= 0; i--) {
+        const mt_avoidance *const c = &fresh->c->avoidances[i];
+        const mt_configuration_work *const view = &fresh->views[c->view];
         const bool known =
-            view->solved && MT_HAS(mt_clear_look(c, &view->analysis->modes, below + c->first));
-        if (mt_family_of(fresh->p, c->view) != family) {
+            view->solved &&
+            MT_HAS(mt_avoidance_find_modes(c, &view->analysis->modes, below + c->first));
+        if (mt_drive_positions_of(fresh->p, c->view) != drive_positions) {
             continue;
         }
         d->tolerance = fmin(d->tolerance, c->tolerance);
@@ -128,12 +131,12 @@ static mt_status examine(described *d, mt_err *err)
         return MT_OK; /* a position has no modes, or is unstable: its own goals say so */
     }
     find_crossing(d, below);
-    for (int i = 0; i < fresh->c->n_clears; i++) {
-        const mt_clear *const c = &fresh->c->clears[i];
-        const bool own = mt_family_of(fresh->p, c->view) == family;
+    for (int i = 0; i < fresh->c->n_avoidances; i++) {
+        const mt_avoidance *const c = &fresh->c->avoidances[i];
+        const bool own = mt_drive_positions_of(fresh->p, c->view) == drive_positions;
         for (int b = c->first; own && b < c->first + c->bands.n; b++) {
             if (fresh->c->tie[b] == b) {
-                room = fmin(room, mt_tie_room(fresh, b, &best[b]));
+                room = fmin(room, mt_tie_margin(fresh, b, &best[b]));
             }
             best[b] = best[fresh->c->tie[b]];
         }
@@ -141,7 +144,8 @@ static mt_status examine(described *d, mt_err *err)
     d->violation = room >= -ON_EDGE ? 0.0 : -room;
     if (mt_is_met(d->violation, d->tolerance)) {
         d->followed = true;
-        MT_TRY(mt_motion_follow(fresh, family, best, &fresh->mem, &d->motion, err));
+        MT_TRY(
+            mt_drive_path_follow(fresh, drive_positions, best, &fresh->mem, &d->motion, err));
         d->violation = d->motion.end == MT_MOTION_UNSTABLE ? nan("")
                        : d->motion.room >= -ON_EDGE        ? d->violation
                                                     : fmax(d->violation, -d->motion.room);
@@ -153,7 +157,7 @@ static mt_status examine(described *d, mt_err *err)
 /* What the samples say of the mode that comes nearest. */
 static const char *nearest_text(const described *d, const char *range)
 {
-    const mt_motion *const m = &d->motion;
+    const mt_drive_path *const m = &d->motion;
     mt_arena *const mem = &d->result->mem;
     const mt_unit *const shown = shown_in(d);
     const double at = mt_unit_from_si(shown, m->at);
@@ -179,10 +183,10 @@ static const char *nearest_text(const described *d, const char *range)
 
 static const char *end_text(const described *d)
 {
-    const mt_motion *const m = &d->motion;
+    const mt_drive_path *const m = &d->motion;
     mt_arena *const mem = &d->result->mem;
     const char *const where =
-        mt_describe_position(d->fresh->p->study, d->family, m->broken_at, mem);
+        mt_describe_position(d->fresh->p->study, d->drive_positions, m->broken_at, mem);
     if (where == NULL) {
         return NULL;
     }
@@ -197,8 +201,9 @@ static const char *end_text(const described *d)
     case MT_MOTION_NONE:
         break;
     }
-    return d->fresh->c->robust != NULL ? "; tolerances are judged only at the named positions"
-                                       : "";
+    return d->fresh->c->tolerance_box != NULL
+               ? "; tolerances are judged only at the named positions"
+               : "";
 }
 
 static const char *sentence(const described *d, const char *range)
@@ -253,19 +258,19 @@ static mt_status put_row(const described *d, const char *range, double from, dou
                          mt_recommendation *rec, mt_err *err)
 {
     mt_arena *const mem = &d->result->mem;
-    const mt_motion *const m = &d->motion;
+    const mt_drive_path *const m = &d->motion;
     const crossing *const c = &d->cross;
     mt_result_motion *const row = &rec->motions[rec->n_motions++];
     const char *const band = d->followed ? m->band.label : c->band;
     *row = mt_result_motion_default();
     row->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
-    row->drive = mt_arena_strdup(mem, d->family->joint);
+    row->drive = mt_arena_strdup(mem, d->drive_positions->joint);
     row->unit = si_of(d);
     row->display_unit = mt_unit_name(shown_in(d), NULL);
     row->display_factor = mt_unit_display(shown_in(d));
     row->from = from;
     row->to = to;
-    row->grade = d->followed ? mt_motion_grade(d->motion.end) : "not followed";
+    row->grade = d->followed ? mt_drive_path_grade(d->motion.end) : "not followed";
     row->mode = d->followed ? m->mode : c->mode;
     row->band = band == NULL ? NULL : mt_arena_strdup(mem, band);
     row->band_id = band == NULL ? 0 : d->followed ? m->tie + 1 : c->band_id;
@@ -282,18 +287,19 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     return mt_arena_check(mem, err);
 }
 
-static mt_status describe_family(mt_workspace *fresh, const mt_family *f, mt_result *result,
-                                 mt_recommendation *rec, double *room, mt_err *err)
+static mt_status describe_drive_positions(mt_workspace *fresh, const mt_drive_positions *f,
+                                          mt_result *result, mt_recommendation *rec,
+                                          double *room, mt_err *err)
 {
-    described d = {.fresh = fresh, .result = result, .family = f, .room = HUGE_VAL};
+    described d = {.fresh = fresh, .result = result, .drive_positions = f, .room = HUGE_VAL};
     double from = HUGE_VAL;
     double to = -HUGE_VAL;
     d.motion.percent = nan("");
     MT_TRY(examine(&d, err));
     *room = fmin(*room, d.room);
     for (int k = 0; k < f->n; k++) {
-        from = fmin(from, mt_family_position(fresh->views[f->view[k]].analysis));
-        to = fmax(to, mt_family_position(fresh->views[f->view[k]].analysis));
+        from = fmin(from, mt_drive_positions_position(fresh->views[f->view[k]].analysis));
+        to = fmax(to, mt_drive_positions_position(fresh->views[f->view[k]].analysis));
     }
     if (d.followed && d.motion.end == MT_MOTION_NONE) {
         return MT_OK; /* no band is asked for on both sides of a motion */
@@ -325,7 +331,8 @@ mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recomme
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < fresh->p->n_families; i++) {
         if (fresh->p->families[i].banded) {
-            MT_TRY(describe_family(fresh, &fresh->p->families[i], result, rec, room, err));
+            MT_TRY(describe_drive_positions(fresh, &fresh->p->families[i], result, rec, room,
+                                            err));
         }
     }
     return MT_OK;

@@ -36,7 +36,7 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
                            bool *found, mt_err *err)
 {
     mt_workspace *const w = j->w;
-    const int v = mt_problem_view(w->p, pub->configuration);
+    const int v = mt_problem_configuration(w->p, pub->configuration);
     double *const t = mt_arena_f64(&j->mem, (size_t)w->p->n + 1, 1);
     *found = false;
     MT_TRY(mt_arena_check(&j->mem, err));
@@ -44,15 +44,15 @@ static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis 
         t[i] = mt_problem_t(w->p, i, j->x[RECOMMENDED][i]);
     }
     for (int i = 0; v >= 0 && i < w->p->views[v].n_named; i++) {
-        mt_view_work *const view = &w->views[v];
+        mt_configuration_work *const view = &w->views[v];
         if (view->of->named[i] != pub->mode.named) {
             continue;
         }
-        mt_view_ask_all(view);
+        mt_configuration_query_all(view);
         view->ask.vectors = true;
         MT_TRY(mt_workspace_place(w, t, false, err));
-        MT_TRY(mt_view_solve(w, view, false, err));
-        MT_TRY(mt_view_position(w, view, 0, i, pos, err));
+        MT_TRY(mt_configuration_solve(w, view, false, err));
+        MT_TRY(mt_configuration_position(w, view, 0, i, pos, err));
         *pos = mt_modal_flexible(&a->modes, mt_modal_index(&view->analysis->modes, *pos));
         *found = true;
     }
@@ -128,9 +128,10 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
 /* What the numbers of a parameter or a quantity are shown in; NULL: as they are. */
 static const mt_unit *shown_in(const mt_problem *p, const mt_published *pub)
 {
-    return pub->kind == MT_PUBLISHED_PARAMETER  ? mt_study_unit(p->study, pub->parameter)
-           : pub->kind == MT_PUBLISHED_QUANTITY ? mt_study_demand_unit(p->study, &pub->quantity)
-                                                : NULL;
+    return pub->kind == MT_PUBLISHED_PARAMETER ? mt_study_unit(p->study, pub->parameter)
+           : pub->kind == MT_PUBLISHED_QUANTITY
+               ? mt_study_requirement_unit(p->study, &pub->quantity)
+               : NULL;
 }
 
 static const char *label_of(const mt_problem *p, const mt_published *pub, mt_arena *mem)
@@ -145,7 +146,7 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
                                         : mt_arena_printf(mem, "%s [%s]", pub->parameter_name.s,
                                                           mt_unit_name(shown_in(p, pub), ""));
     case MT_PUBLISHED_QUANTITY: {
-        const mt_unit *const other = mt_study_demand_unit(p->study, &pub->quantity);
+        const mt_unit *const other = mt_study_requirement_unit(p->study, &pub->quantity);
         return other == NULL ? pub->quantity_text
                              : mt_arena_printf(mem, "%s [%s]", pub->quantity_text, other->name);
     }
@@ -168,7 +169,7 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
 }
 
 /* A limit beside a published value is told; alone it stands in the value's place. */
-static const char *demand_of(const mt_published *pub, const mt_unit *unit, mt_arena *mem)
+static const char *requirement_of(const mt_published *pub, const mt_unit *unit, mt_arena *mem)
 {
     const bool shown = MT_HAS(pub->value);
     const double at_least = mt_unit_from_si(unit, pub->at_least);
@@ -222,12 +223,12 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
     out->source = pub->source;
     out->display_unit = mt_unit_name(shown_in(j->p, pub), NULL);
     out->display_factor = mt_unit_display(shown_in(j->p, pub));
-    out->demand = demand_of(pub, shown_in(j->p, pub), mem);
+    out->requirement = requirement_of(pub, shown_in(j->p, pub), mem);
     MT_TRY(mt_arena_check(mem, err));
     if (pub->kind == MT_PUBLISHED_STATUS) {
         out->published_text = pub->status;
         out->computed_text = mt_result_status_name(j->result->status);
-        out->demand = "equal";
+        out->requirement = "equal";
         out->holds = strcmp(pub->status, out->computed_text) == 0;
         return MT_OK;
     }

@@ -12,12 +12,13 @@
 #include "base/tie.h"
 #include "problem/goal_avoid.h"
 #include "problem/objective.h"
-#include "search/gaps.h"
+#include "search/mode_placements.h"
 #include "search/search.h"
 
 static const double PERCENT = 100.0;
 
-/* Parts of a demand [-] that a price is told for: the largest one whose worth a slope tells. */
+/* Parts of a requirement [-] that a price is told for: the largest one whose worth a slope
+ * tells. */
 static const double parts[] = {1e-2, 1e-3, 1e-4, 1e-5};
 enum { N_PARTS = sizeof parts / sizeof *parts };
 
@@ -47,7 +48,8 @@ static const char *worth(mt_sentences *s, double df)
     return noise || !has_prices(s) ? NULL : ops->price(&q, &s->result->mem);
 }
 
-/* What a part of a demand is worth, and which; slope: df by the logarithm of the demand. */
+/* What a part of a requirement is worth, and which; slope: df by the logarithm of the
+ * requirement. */
 static const char *price(mt_sentences *s, double slope, const char **part)
 {
     const char *text = NULL;
@@ -66,10 +68,10 @@ static const char *win(const mt_sentences *s)
     return mt_objective_is(type, MT_MAXIMISED) ? "raise" : "reduce";
 }
 
-/* A demand that the variables hardly move: at an optimum its slope by them, the other rows
+/* A requirement that the variables hardly move: at an optimum its slope by them, the other rows
  * held, is at most that of the objective over the multiplier. */
-static void say_hardly(mt_sentences *s, const mt_demand *d, const mt_result_goal *g,
-                       double slope)
+static void write_hardly(mt_sentences *s, const mt_requirement *d, const mt_result_goal *g,
+                         double slope)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
     const mt_price q = price_of(s, fabs(slope) / PERCENT);
@@ -77,93 +79,99 @@ static void say_hardly(mt_sentences *s, const mt_demand *d, const mt_result_goal
         has_prices(s) && ops->hardly != NULL ? ops->hardly(&q, &s->result->mem) : NULL;
     const char *const left = why != NULL ? worth(s, fabs(slope) * d->tolerance) : NULL;
     if (left != NULL) {
-        mt_say(s,
-               "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of "
-               "%.3g %% leaves open may change %s.",
-               g->pointer, g->text, why, PERCENT * d->tolerance, left);
+        mt_add_sentence(
+            s,
+            "Goal %s (%s) hardly depends on the variables here: %s; what its tolerance of "
+            "%.3g %% leaves open may change %s.",
+            g->pointer, g->text, why, PERCENT * d->tolerance, left);
     } else if (why != NULL) {
-        mt_say(s, "Goal %s (%s) hardly depends on the variables here: %s.", g->pointer, g->text,
-               why);
+        mt_add_sentence(s, "Goal %s (%s) hardly depends on the variables here: %s.", g->pointer,
+                        g->text, why);
     }
 }
 
-/* What a little less of each demand would save. */
-static void say_demands(mt_sentences *s)
+/* What a little less of each requirement would save. */
+static void say_requirements(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
-    for (int i = 0; i < s->p->n_demands; i++) {
-        const mt_demand *const d = &s->p->demands[i];
+    for (int i = 0; i < s->p->n_requirements; i++) {
+        const mt_requirement *const d = &s->p->requirements[i];
         const mt_result_goal *const g = &s->rec->goals[i];
         const char *part = NULL;
-        mt_say_of(s, "cost", g->pointer);
+        mt_sentence_of(s, "cost", g->pointer);
         for (int k = 0; k < d->n_in && found->mult_in != NULL; k++) {
             const double mult = found->mult_in[d->row_in + k];
             const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
             if (saved != NULL) {
-                mt_say(s, "Relaxing goal %s (%s) by %s would %s %s.", g->pointer, g->text, part,
-                       win(s), saved);
+                mt_add_sentence(s, "Relaxing goal %s (%s) by %s would %s %s.", g->pointer,
+                                g->text, part, win(s), saved);
             }
         }
         const double slope =
             d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
         const char *const cost = price(s, fabs(slope), &part);
         if (cost != NULL) {
-            mt_say(s, "A target %s %s in goal %s (%s) would %s %s.", part,
-                   slope > 0.0 ? "lower" : "higher", g->pointer, g->text, win(s), cost);
+            mt_add_sentence(s, "A target %s %s in goal %s (%s) would %s %s.", part,
+                            slope > 0.0 ? "lower" : "higher", g->pointer, g->text, win(s),
+                            cost);
         }
-        say_hardly(s, d, g, slope);
+        write_hardly(s, d, g, slope);
     }
 }
 
 /* Edges of bands that hold modes. */
-static void say_edges(mt_sentences *s)
+static void write_edges(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
-    mt_clear_row row;
-    mt_say_of(s, "cost", NULL);
+    mt_avoidance_row row;
+    mt_sentence_of(s, "cost", NULL);
     for (int i = 0; s->design->below != NULL && found->mult_in != NULL &&
-                    mt_clear_row_at(&s->p->whole, s->design->below, i, &row);
+                    mt_avoidance_row_at(&s->p->whole, s->design->below, i, &row);
          i++) {
-        const mt_clear *const c = &s->p->clears[row.clear];
+        const mt_avoidance *const c = &s->p->avoidances[row.avoidance];
         const double mult = found->mult_in[s->p->whole.first_band_row + i];
         const char *part = NULL;
         const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
         if (saved != NULL) {
-            mt_say(s, "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.",
-                   row.above ? "upper" : "lower", c->bands.items[row.band].label,
-                   mt_view_name(s->p, &s->p->views[c->view]), row.mode, part, win(s), saved);
+            mt_add_sentence(
+                s, "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.",
+                row.above ? "upper" : "lower", c->bands.items[row.band].label,
+                mt_configuration_name(s->p, &s->p->views[c->view]), row.mode, part, win(s),
+                saved);
         }
     }
 }
 
 /* Margins that hold modes at positions between the named ones: rows of the search, too. */
-static void say_between(mt_sentences *s)
+static void write_between(mt_sentences *s)
 {
-    mt_say_of(s, "cost", NULL);
+    mt_sentence_of(s, "cost", NULL);
     for (int i = 0; i < s->design->n_held; i++) {
-        const mt_gap_held *const h = &s->design->held[i];
-        const mt_family *const f = &s->p->families[h->family];
+        const mt_mode_placement_held *const h = &s->design->held[i];
+        const mt_drive_positions *const f = &s->p->families[h->drive_positions];
         const char *part = NULL;
         const char *const saved = price(s, h->multiplier, &part);
         const char *const where =
             saved == NULL ? NULL
                           : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
         if (where != NULL) {
-            mt_say(s,
-                   "Relaxing the %s edge of %s, which holds mode %d where %s is at %s, between "
-                   "the positions, by %s would %s %s.",
-                   h->above ? "upper" : "lower", h->band, h->mode, f->joint, where, part,
-                   win(s), saved);
+            mt_add_sentence(
+                s,
+                "Relaxing the %s edge of %s, which holds mode %d where %s is at %s, between "
+                "the positions, by %s would %s %s.",
+                h->above ? "upper" : "lower", h->band, h->mode, f->joint, where, part, win(s),
+                saved);
         }
     }
 }
 
 /* Limits likewise. */
-static void say_limits_between(mt_sentences *s)
+static void write_limits_between(mt_sentences *s)
 {
-    for (const mt_posed_price *h = s->design->posed; h != NULL; h = h->next) {
-        const mt_demand *const d = &s->p->demands[h->demand];
-        const mt_family *const f = &s->p->families[mt_family_of(s->p, d->view)];
+    for (const mt_at_position_price *h = s->design->at_position; h != NULL; h = h->next) {
+        const mt_requirement *const d = &s->p->requirements[h->requirement];
+        const mt_drive_positions *const f =
+            &s->p->families[mt_drive_positions_of(s->p, d->view)];
         const char *part = NULL;
         const char *const saved =
             h->t == s->design->found->t ? price(s, h->multiplier, &part) : NULL;
@@ -171,18 +179,18 @@ static void say_limits_between(mt_sentences *s)
             saved == NULL ? NULL
                           : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
         if (where != NULL) {
-            mt_say_of(s, "cost", s->rec->goals[h->demand].pointer);
-            mt_say(
+            mt_sentence_of(s, "cost", s->rec->goals[h->requirement].pointer);
+            mt_add_sentence(
                 s,
                 "Relaxing the limit of goal %s where %s is at %s, between the positions, by %s "
                 "would %s %s.",
-                s->rec->goals[h->demand].pointer, f->joint, where, part, win(s), saved);
+                s->rec->goals[h->requirement].pointer, f->joint, where, part, win(s), saved);
         }
     }
 }
 
 /* "An upper bound of M_SAU that is 0.1 kg higher" */
-static const char *room_text(mt_sentences *s, const mt_result_parameter *p, double amount)
+static const char *margin_text(mt_sentences *s, const mt_result_parameter *p, double amount)
 {
     const char *const unit = p->display_unit != NULL ? p->display_unit : p->unit;
     const bool upper = strcmp(p->at_bound, "upper") == 0;
@@ -194,7 +202,7 @@ static const char *room_text(mt_sentences *s, const mt_result_parameter *p, doub
 
 /* Where the objective tells: the multiplier, chained to the parameter, for the largest amount
  * that a slope tells. */
-static void say_bound_price(mt_sentences *s, int i, double amount)
+static void write_bound_price(mt_sentences *s, int i, double amount)
 {
     const mt_nlp_solution *const found = s->design->found;
     const mt_result_parameter *const p = &s->rec->parameters[i];
@@ -204,17 +212,17 @@ static void say_bound_price(mt_sentences *s, int i, double amount)
     const char *saved = NULL;
     for (int k = 0; k < N_PARTS && saved == NULL; k++) {
         const double less = amount * parts[k] / parts[0];
-        const double dt = less / mt_problem_stretch_at(s->p, i, p->recommended);
+        const double dt = less / mt_problem_dx_dt_at(s->p, i, p->recommended);
         saved = worth(s, fabs(found->mult_bound[i]) * dt);
         if (saved != NULL) {
-            mt_say(s, "%s would %s %s.", room_text(s, p, less), win(s), saved);
+            mt_add_sentence(s, "%s would %s %s.", margin_text(s, p, less), win(s), saved);
         }
     }
 }
 
 /* Where a frequency is missed: what the bound keeps it from. */
-static void say_bound_frequency(mt_sentences *s, int i, double amount,
-                                const mt_result_frequency *f)
+static void write_bound_frequency(mt_sentences *s, int i, double amount,
+                                  const mt_result_frequency *f)
 {
     const mt_result_parameter *const p = &s->rec->parameters[i];
     if (f->sensitivity == NULL || f->repeated) {
@@ -226,12 +234,12 @@ static void say_bound_frequency(mt_sentences *s, int i, double amount,
     const bool raise = f->recommended_hz < f->target_hz || f->recommended_hz < f->at_least_hz;
     const bool lower = f->recommended_hz > f->target_hz || f->recommended_hz > f->at_most_hz;
     if ((raise && hz > 0.0) || (lower && hz < 0.0)) {
-        mt_say(s, "%s would bring %s mode %d nearer to its goal by %.3g Hz.",
-               room_text(s, p, amount), f->configuration, f->mode, fabs(hz));
+        mt_add_sentence(s, "%s would bring %s mode %d nearer to its goal by %.3g Hz.",
+                        margin_text(s, p, amount), f->configuration, f->mode, fabs(hz));
     }
 }
 
-static void say_bounds(mt_sentences *s)
+static void write_bounds(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_parameters; i++) {
         const mt_result_parameter *const p = &s->rec->parameters[i];
@@ -240,19 +248,19 @@ static void say_bounds(mt_sentences *s)
         if (p->at_bound == NULL || !(amount > 0.0) || !isfinite(amount)) {
             continue;
         }
-        mt_say_of(s, "cost", p->name);
-        say_bound_price(s, i, amount);
+        mt_sentence_of(s, "cost", p->name);
+        write_bound_price(s, i, amount);
         for (int k = 0; k < s->rec->n_frequencies && !s->rec->feasible; k++) {
-            say_bound_frequency(s, i, amount, &s->rec->frequencies[k]);
+            write_bound_frequency(s, i, amount, &s->rec->frequencies[k]);
         }
     }
 }
 
-void mt_say_prices(mt_sentences *s)
+void mt_add_prices_sentences(mt_sentences *s)
 {
-    say_demands(s);
-    say_edges(s);
-    say_between(s);
-    say_limits_between(s);
-    say_bounds(s);
+    say_requirements(s);
+    write_edges(s);
+    write_between(s);
+    write_limits_between(s);
+    write_bounds(s);
 }

@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-#include "problem/robust.h"
+#include "problem/tolerance.h"
 
-void mt_say_worst(mt_sentences *s)
+void mt_add_worst_sentences(mt_sentences *s)
 {
     static const double PERCENT = 100.0;
     const char *text = ""; /* "k1 2 %, k2 5 %" */
@@ -15,23 +15,25 @@ void mt_say_worst(mt_sentences *s)
         return;
     }
     for (int i = 0; i < s->p->n; i++) {
-        const double percent = PERCENT * mt_robust_tolerance(s->p, i);
+        const double percent = PERCENT * mt_tolerance_of_variable(s->p, i);
         if (percent > 0.0) {
             text =
                 mt_arena_printf(&s->result->mem, "%s%s%s %.6g %%", text, n++ == 0 ? "" : ", ",
                                 s->p->study->variables[i].parameter_name.s, percent);
         }
     }
-    mt_say_of(s, "hold", NULL);
+    mt_sentence_of(s, "hold", NULL);
     if (strcmp(s->rec->worst_case, "proven") == 0) {
-        mt_say(s,
-               "Goals are judged at the worst corner of the tolerances (%s), which is proven "
-               "to be the worst case.",
-               text);
+        mt_add_sentence(
+            s,
+            "Goals are judged at the worst corner of the tolerances (%s), which is proven "
+            "to be the worst case.",
+            text);
     } else {
-        mt_say(s,
-               "Goals are judged by the worst of the corners of the tolerances (%s) and of "
-               "samples within them: sampled, not proven.",
-               text);
+        mt_add_sentence(
+            s,
+            "Goals are judged by the worst of the corners of the tolerances (%s) and of "
+            "samples within them: sampled, not proven.",
+            text);
     }
 }

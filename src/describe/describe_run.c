@@ -96,7 +96,7 @@ mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err)
     }
     run->n_overrides = study->n_asked;
     for (int i = 0; i < study->n_asked; i++) {
-        const mt_asked_number *const a = &study->asked[i];
+        const mt_requested_number *const a = &study->asked[i];
         run->overrides[i] = (mt_result_override){
             .kind = a->kind,
             .name = a->name,

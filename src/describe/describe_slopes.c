@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "describe/describe.h"
-#include "problem/demand.h"
 #include "problem/goal.h"
+#include "problem/requirement.h"
 
 static bool same(const char *a, const char *b)
 {
@@ -26,19 +26,20 @@ static double *of_frequency(const mt_recommendation *rec, const mt_result_goal *
 }
 
 /* Of what else is a number, from its own slope over t. */
-static mt_status of_value(mt_workspace *fresh, const mt_demand *d, mt_result *result,
+static mt_status of_value(mt_workspace *fresh, const mt_requirement *d, mt_result *result,
                           mt_result_goal *g, mt_err *err)
 {
     const int n = fresh->p->n;
     int pos = -1;
     double q = nan("");
-    const bool modal = mt_demand_is_modal(d);
+    const bool modal = mt_requirement_is_modal(d);
     if (d->view >= 0) {
-        mt_view_work *const view = &fresh->views[d->view];
-        mt_view_ask_all(view);
+        mt_configuration_work *const view = &fresh->views[d->view];
+        mt_configuration_query_all(view);
         view->ask.vectors = true;
-        MT_TRY(mt_view_solve(fresh, view, true, err));
-        MT_TRY(modal ? mt_view_position(fresh, view, d->mode, d->named, &pos, err) : MT_OK);
+        MT_TRY(mt_configuration_solve(fresh, view, true, err));
+        MT_TRY(modal ? mt_configuration_position(fresh, view, d->mode, d->named, &pos, err)
+                     : MT_OK);
         if (modal && pos < 0) {
             return MT_OK;
         }
@@ -49,7 +50,7 @@ static mt_status of_value(mt_workspace *fresh, const mt_demand *d, mt_result *re
     for (int i = 0; i < n; i++) {
         /* slopes of logarithms are those of ln q */
         slopes[i] = (d->measure == MT_MEASURE_RATIO ? q : 1.0) * fresh->slope[i] /
-                    mt_workspace_stretch(fresh, i);
+                    mt_workspace_dx_dt(fresh, i);
     }
     g->sensitivity = slopes;
     return MT_OK;
@@ -59,8 +60,8 @@ mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_re
                              mt_recommendation *rec, mt_err *err)
 {
     bool placed = false;
-    for (int i = 0; i < fresh->p->n_demands; i++) {
-        const mt_demand *const d = &fresh->p->demands[i];
+    for (int i = 0; i < fresh->p->n_requirements; i++) {
+        const mt_requirement *const d = &fresh->p->requirements[i];
         mt_result_goal *const g = &rec->goals[i];
         mt_err own = {.code = MT_OK};
         mt_status rc = MT_OK;

@@ -8,8 +8,8 @@
 #include <math.h>
 
 #include "describe/describe.h"
-#include "problem/demand.h"
-#include "problem/robust.h"
+#include "problem/requirement.h"
+#include "problem/tolerance.h"
 #include "prove/band_count.h"
 #include "prove/tolerance.h"
 #include "search/proof.h"
@@ -21,7 +21,7 @@ static const double MOST_PERCENT = 100.0;
 enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
 
 /* Every band of a clear, by inertia, at the design that its analysis has been solved at. */
-static mt_status confirm_here(mt_workspace *fresh, const mt_clear *c, mt_result *result,
+static mt_status confirm_here(mt_workspace *fresh, const mt_avoidance *c, mt_result *result,
                               bool *confirmed, mt_err *err)
 {
     const mt_analysis *const a = fresh->views[c->view].analysis;
@@ -44,14 +44,14 @@ static mt_status confirm_here(mt_workspace *fresh, const mt_clear *c, mt_result 
 
 /* At the two corners of the tolerances between which all modes stay: the same counts there are
  * those of every design between. */
-static mt_status confirm_corners(mt_workspace *fresh, const mt_clear *c, mt_result *result,
+static mt_status confirm_corners(mt_workspace *fresh, const mt_avoidance *c, mt_result *result,
                                  bool *confirmed, mt_err *err)
 {
     mt_analysis *const a = fresh->views[c->view].analysis;
     const mt_analysis_options opt = mt_analysis_options_default();
-    const mt_robust_range *const range = mt_ranges_hz(mt_robust_known(fresh), c->view, 1);
-    *confirmed = *confirmed && range != NULL && mt_ranges_proven(mt_robust_known(fresh));
-    for (int side = 0; side < MT_ROBUST_SIDES && *confirmed; side++) {
+    const mt_tolerance_range *const range = mt_ranges_hz(mt_tolerance_known(fresh), c->view, 1);
+    *confirmed = *confirmed && range != NULL && mt_ranges_proven(mt_tolerance_known(fresh));
+    for (int side = 0; side < MT_TOLERANCE_SIDES && *confirmed; side++) {
         MT_TRY(mt_analysis_solve(a, range->at[side], &opt, err));
         MT_TRY(confirm_here(fresh, c, result, confirmed, err));
     }
@@ -62,10 +62,10 @@ static mt_status confirm_corners(mt_workspace *fresh, const mt_clear *c, mt_resu
 static mt_status confirm(mt_workspace *fresh, mt_result *result, bool *confirmed, mt_err *err)
 {
     *confirmed = fresh->c->n_bands > 0;
-    for (int i = 0; i < fresh->c->n_clears; i++) {
-        const mt_clear *const c = &fresh->c->clears[i];
+    for (int i = 0; i < fresh->c->n_avoidances; i++) {
+        const mt_avoidance *const c = &fresh->c->avoidances[i];
         MT_TRY(confirm_here(fresh, c, result, confirmed, err));
-        if (fresh->c->robust != NULL) {
+        if (fresh->c->tolerance_box != NULL) {
             MT_TRY(confirm_corners(fresh, c, result, confirmed, err));
         }
     }
@@ -82,11 +82,11 @@ static mt_status edge_text(const mt_problem *p, const mt_recommendation *rec,
         return MT_OK;
     }
     const mt_certify_edge *const e = &t->edge;
-    const char *const configuration = mt_view_name(p, &p->views[e->view]);
+    const char *const configuration = mt_configuration_name(p, &p->views[e->view]);
     *text = e->band >= 0
                 ? mt_arena_printf(mem, "mode %d of \"%s\" at the %s edge of %s, %.6g Hz",
                                   e->mode, configuration, e->above ? "upper" : "lower",
-                                  rec->gaps[e->band].band, e->hz)
+                                  rec->placements[e->band].band, e->hz)
                 : mt_arena_printf(mem, "mode %d of \"%s\" at its limit of %.6g Hz", e->mode,
                                   configuration, e->hz);
     return mt_arena_check(mem, err);
@@ -103,7 +103,7 @@ static mt_status fill_box(mt_workspace *fresh, mt_proof *proof, const mt_recomme
     MT_TRY(mt_arena_check(&fresh->mem, err));
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < fresh->c->n_bands; i++) {
-        assignment[i] = rec->gaps[i].modes_below;
+        assignment[i] = rec->placements[i].modes_below;
     }
     q.bands = proof->bases;
     const mt_tolerance_question question = {.x = fresh->x,
@@ -130,9 +130,9 @@ static mt_status fill_box(mt_workspace *fresh, mt_proof *proof, const mt_recomme
 static bool worth_a_box(const mt_problem *p)
 {
     bool limits = false;
-    for (int i = 0; i < p->n_demands; i++) {
-        const mt_demand *const d = &p->demands[i];
-        limits = limits || (mt_demand_is_frequency(d) && d->n_in > 0);
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
+        limits = limits || (mt_requirement_is_frequency(d) && d->n_in > 0);
     }
     return p->n > 0 && p->n_eq == 0 && (p->n_bands > 0 || limits);
 }
@@ -149,7 +149,7 @@ mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recom
     /* between the positions of a drive there are samples and no proof */
     const bool sampled = rec->n_motions + rec->n_between > 0;
     rec->grade = confirmed && !sampled ? "feasible and proven" : rec->grade;
-    if (!worth_a_box(fresh->p) || rec->n_gaps != fresh->c->n_bands) {
+    if (!worth_a_box(fresh->p) || rec->n_placements != fresh->c->n_bands) {
         return MT_OK;
     }
     mt_status rc = mt_proof_init(&proof, fresh->c, &fresh->mem, err);

@@ -4,7 +4,7 @@
 
 static const double PERCENT = 100.0;
 
-const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *mem)
+const char *mt_describe_identity(const mt_configuration_work *view, int named, mt_arena *mem)
 {
     const mt_track *const k = &view->track[named];
     const mt_modes *const modes = &view->analysis->modes;
@@ -28,7 +28,7 @@ const char *mt_describe_identity(const mt_view_work *view, int named, mt_arena *
     return mt_arena_printf(mem, "ambiguous between modes %d and %d", low, high);
 }
 
-bool mt_describe_is_told(const mt_view_work *view, const mt_demand *d)
+bool mt_describe_is_told(const mt_configuration_work *view, const mt_requirement *d)
 {
     int size = 1;
     if (d->named < 0 || !view->solved || !view->tracked) {

@@ -36,7 +36,7 @@ typedef struct source {
 struct mt_journal {
     char *identity;
     char sha256[MT_SHA256_TEXT]; /* of it */
-    mt_ledger ledger;
+    mt_checkpoint_store store;
     int n_sources;
     source *sources;
     int n;
@@ -190,8 +190,8 @@ mt_status mt_journal_new(const char *identity, mt_journal **out, mt_err *err)
     }
     mt_text copy = {.s = NULL};
     mt_text_add(&copy, identity);
-    mt_status rc =
-        copy.failed || copy.s == NULL ? mt_fail_memory(err) : mt_ledger_init(&j->ledger, err);
+    mt_status rc = copy.failed || copy.s == NULL ? mt_fail_memory(err)
+                                                 : mt_checkpoint_store_init(&j->store, err);
     if (rc != MT_OK) {
         mt_text_free(&copy);
         free(j);
@@ -216,7 +216,7 @@ void mt_journal_delete(mt_journal *j)
     if (j->fd >= 0) {
         (void)close(j->fd);
     }
-    mt_ledger_free(&j->ledger);
+    mt_checkpoint_store_free(&j->store);
     mt_text_free(&j->line);
     free(j->sources);
     free(j->records);
@@ -538,17 +538,17 @@ static void put(void *context, const char *key, const uint64_t *words, size_t n)
     mt_text_free(&scratch);
 }
 
-mt_ledger *mt_journal_ledger(mt_journal *j, int part, int parts)
+mt_checkpoint_store *mt_journal_checkpoint_store(mt_journal *j, int part, int parts)
 {
     if (!j->sorted) {
         sort(j);
     }
-    j->ledger.find = find;
-    j->ledger.put = put;
-    j->ledger.context = j;
-    j->ledger.part = part;
-    j->ledger.parts = parts;
-    return &j->ledger;
+    j->store.find = find;
+    j->store.put = put;
+    j->store.context = j;
+    j->store.part = part;
+    j->store.parts = parts;
+    return &j->store;
 }
 
 mt_journal_counts mt_journal_count(const mt_journal *j)

@@ -56,7 +56,7 @@ mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds,
                               mt_journal_place *place, mt_err *err);
 /* All of it, or (of parts) one part. Lives as long as the journal; not before everything has
  * been read. */
-mt_ledger *mt_journal_ledger(mt_journal *j, int part, int parts);
+mt_checkpoint_store *mt_journal_checkpoint_store(mt_journal *j, int part, int parts);
 mt_journal_counts mt_journal_count(const mt_journal *j);
 /* Where records go there is a file from here on, also where there are none: of a part that is
  * done. What fails is told at the end. */

@@ -117,7 +117,7 @@ static void note_duplicate(mt_json *doc, const cJSON *first, const cJSON *again)
     if (mt_diag_may_suggest(&doc->diags)) { /* finding a line takes a walk through the text */
         int line = 0;
         int column = 0;
-        mt_json_place(doc, mt_json_name_addr(doc, first->valueint), &line, &column);
+        mt_json_locate(doc, mt_json_name_addr(doc, first->valueint), &line, &column);
         mt_diag_error(&doc->diags, at, "member \"%s\" is given twice, first in line %d",
                       again->string, line);
     } else {

@@ -44,7 +44,7 @@ static size_t offset_of(const mt_json *doc, mt_addr addr)
     return spot == NULL ? 0 : name ? spot->name : spot->start;
 }
 
-void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column)
+void mt_json_locate(const mt_json *doc, mt_addr addr, int *line, int *column)
 {
     cursor at = {0, 1, 1};
     advance(doc, &at, offset_of(doc, addr));
@@ -52,7 +52,7 @@ void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column)
     *column = at.column;
 }
 
-void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns)
+void mt_json_locates(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns)
 {
     cursor at = {0, 1, 1};
     for (int i = 0; i < n; i++) {

@@ -8,9 +8,9 @@
 /* Addresses to places and JSON pointers, and diagnostics with these. */
 
 /* Where an address stands. */
-void mt_json_place(const mt_json *doc, mt_addr addr, int *line, int *column);
+void mt_json_locate(const mt_json *doc, mt_addr addr, int *line, int *column);
 /* The same for n addresses of values in ascending order, in one walk through the text. */
-void mt_json_places(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns);
+void mt_json_locates(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns);
 /* Append the JSON pointer of an address (RFC 6901: ~ is ~0, / is ~1; the root's is empty). */
 void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out);
 /* Add all diagnostics with their places, sorted by these (those of one place as found), and how

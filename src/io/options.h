@@ -5,7 +5,7 @@
 #include "io/files.h"
 
 /* What is asked for instead of what the files say. */
-typedef struct mt_asked {
+typedef struct mt_overrides {
     int n_sets;
     const char *const *sets;  /* NAME=VALUE (model/setting.h), of a study's own model */
     long seed;                /* -1: as the study says */
@@ -13,7 +13,7 @@ typedef struct mt_asked {
     long max_evaluations;     /* 0: likewise */
     long max_modal_solutions; /* 0: likewise */
     double proof_s;           /* NaN: likewise */
-} mt_asked;
+} mt_overrides;
 
 /* What every reader of files takes. */
 typedef struct mt_io_options {
@@ -22,7 +22,7 @@ typedef struct mt_io_options {
     const char *root;
     mt_files files;   /* where models, studies and catalogues come from; zeroed: the disk */
     size_t max_bytes; /* of one file; 0: MT_JSON_MAX_BYTES */
-    const mt_asked *asked; /* NULL: nothing else than the files say */
+    const mt_overrides *asked; /* NULL: nothing else than the files say */
     /* [out] number of errors that a JSON Schema of the file sees as well; NULL: not wanted */
     int *structural;
 } mt_io_options;

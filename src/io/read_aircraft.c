@@ -79,8 +79,8 @@ static void read_speed(mt_reader *r, mt_addr value, bool rpm, mt_aircraft_value 
         return;
     }
     const double speed = mt_json_number(r->doc, found[VALUE_VALUE]);
-    mt_reader_judge_as(r, rpm ? "speed_rpm" : "speed_hz", found[VALUE_VALUE], speed,
-                       rpm ? MT_POSSIBLE_RPM : MT_POSSIBLE_SPEED);
+    mt_reader_check_range_of(r, rpm ? "speed_rpm" : "speed_hz", found[VALUE_VALUE], speed,
+                             rpm ? MT_POSSIBLE_RPM : MT_POSSIBLE_SPEED);
     out->value = rpm ? speed / 60.0 : speed;
     out->text = mt_arena_printf(r->mem, "%.10g %s", speed, rpm ? "rpm" : "Hz");
 }

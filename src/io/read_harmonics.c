@@ -79,13 +79,13 @@ void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor)
     }
 }
 
-void mt_read_doubt_range(mt_reader *r, double lower, double upper, double least,
-                         const char *whose, mt_addr addr)
+void mt_read_warning_range(mt_reader *r, double lower, double upper, double least,
+                           const char *whose, mt_addr addr)
 {
-    const char *const doubt = lower > 0.0 && lower <= upper
-                                  ? mt_rotor_doubt_range(lower, upper, least, whose, r->mem)
-                                  : NULL;
-    if (doubt != NULL) {
-        mt_reader_doubt(r, addr, "speed_range", "%s", doubt);
+    const char *const warning = lower > 0.0 && lower <= upper
+                                    ? mt_rotor_warning_range(lower, upper, least, whose, r->mem)
+                                    : NULL;
+    if (warning != NULL) {
+        mt_reader_warning(r, addr, "speed_range", "%s", warning);
     }
 }

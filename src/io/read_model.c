@@ -13,8 +13,8 @@
 #include "io/file.h"
 #include "io/json_print.h"
 #include "io/read_units.h"
-#include "model/finish.h"
 #include "model/names.h"
+#include "model/resolve.h"
 #include "model/setting.h"
 #include "model/values.h"
 
@@ -238,7 +238,7 @@ static void read_root(mt_model_reader *mr, const mt_addr *at)
     m->damping = mt_read_damping(mr, at[MODEL_DAMPING]);
     mt_read_settle_units(mr);
     mt_read_configurations(mr, at[MODEL_CONFIGURATIONS]);
-    mt_read_doubt_units(mr);
+    mt_read_warning_units(mr);
 }
 
 static int compare_addrs(const void *a, const void *b)
@@ -310,7 +310,7 @@ static void note_places(mt_model_reader *mr)
     }
     add_places(m, &list);
     qsort(list.addrs, (size_t)list.n, sizeof *list.addrs, compare_addrs);
-    mt_json_places(mr->r.doc, list.n, list.addrs, lines, columns);
+    mt_json_locates(mr->r.doc, list.n, list.addrs, lines, columns);
     for (int i = 0; i < list.n; i++) {
         m->places[i] =
             (mt_place){.addr = list.addrs[i], .line = lines[i], .column = columns[i]};
@@ -332,7 +332,7 @@ static void set(mt_model_reader *mr, int n, const mt_setting *settings)
 }
 
 /* Where such a value has no effect; and what it was where the model is wrong with it. */
-static void tell_settings(mt_model_reader *mr)
+static void write_settings(mt_model_reader *mr)
 {
     const mt_model *const m = mr->m;
     const bool wrong = mr->r.diags->errors > 0;
@@ -373,8 +373,8 @@ static mt_status from_json(mt_json *doc, const char *file, int n, const mt_setti
         mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
         read_root(&mr, at);
         set(&mr, n, settings);
-        (void)mt_model_finish(m, mr.r.diags, NULL); /* the arenas remember a shortage */
-        tell_settings(&mr);
+        (void)mt_model_resolve(m, mr.r.diags, NULL); /* the arenas remember a shortage */
+        write_settings(&mr);
         note_places(&mr);
         m->path = mt_arena_strdup(&m->mem, file);
     }
@@ -400,7 +400,7 @@ static int by_parameter(const void *a, const void *b)
 }
 
 /* What is asked for instead of values of this model, by their parameters. */
-static mt_status read_settings(mt_model *m, const mt_asked *asked, mt_setting **out,
+static mt_status read_settings(mt_model *m, const mt_overrides *asked, mt_setting **out,
                                mt_err *err)
 {
     double *const original = mt_arena_f64(&m->mem, (size_t)m->n_parameters, 1);
@@ -416,7 +416,7 @@ static mt_status read_settings(mt_model *m, const mt_asked *asked, mt_setting **
 
 /* The file once more, as if it gave the values that are asked for; *doc is another then. */
 static mt_status read_with_settings(const mt_file *file, const char *path,
-                                    const mt_asked *asked, mt_json **doc, mt_model **model,
+                                    const mt_overrides *asked, mt_json **doc, mt_model **model,
                                     mt_err *err)
 {
     mt_model *const plain = *model;
@@ -448,7 +448,7 @@ mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **o
     } else if (rc == MT_E_INPUT) {
         rc = mt_json_status(doc, path, err);
     }
-    const mt_asked *const asked = opt == NULL ? NULL : opt->asked;
+    const mt_overrides *const asked = opt == NULL ? NULL : opt->asked;
     if (rc == MT_OK && *out != NULL && asked != NULL && asked->n_sets > 0) {
         rc = read_with_settings(&file, path, asked, &doc, out, err);
     }

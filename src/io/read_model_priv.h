@@ -62,8 +62,8 @@ void mt_read_parameter_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p)
 /* When all but the configurations is read: what "g" means of each parameter, by its uses; and
  * units of parameters that do not measure what the members do that they are the values of. */
 void mt_read_settle_units(mt_model_reader *mr);
-/* When all is read: numbers whose units are not those of their members (unit_doubt). */
-void mt_read_doubt_units(mt_model_reader *mr);
+/* When all is read: numbers whose units are not those of their members (unit_warning). */
+void mt_read_warning_units(mt_model_reader *mr);
 
 void mt_read_links(mt_model_reader *mr, mt_addr list);
 void mt_read_joints(mt_model_reader *mr, mt_addr list);

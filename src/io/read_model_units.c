@@ -369,7 +369,7 @@ static bool *find_numbered_masses(mt_model *m)
 }
 
 /* numbered: a number in it, or none, may be a mass. */
-static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner, bool numbered)
+static void warn_unit(mt_model_reader *mr, mt_number *number, int owner, bool numbered)
 {
     const mt_model *const m = mr->m;
     const int alone = parameter_alone(&number->expr);
@@ -396,14 +396,14 @@ static void doubt_unit(mt_model_reader *mr, mt_number *number, int owner, bool n
     }
     const char *const member =
         owner == MT_ABSENT ? member_of(mr, number->addr) : m->parameters[owner].name.s;
-    number->unit_doubt = mt_arena_printf(
+    number->unit_warning = mt_arena_printf(
         &mr->m->mem, "%s%s%s is in %s, and \"%s\" in %s", alone == MT_ABSENT ? "" : "\"",
         alone == MT_ABSENT ? "this expression" : m->parameters[alone].name.s,
         alone == MT_ABSENT ? "" : "\"", has, member == NULL ? "" : member,
         owner == MT_ABSENT ? name_of_powers(&wanted, wanted_text) : unit);
 }
 
-void mt_read_doubt_units(mt_model_reader *mr)
+void mt_read_warning_units(mt_model_reader *mr)
 {
     mt_model *const m = mr->m;
     int *const owner = find_owners(m);
@@ -423,7 +423,7 @@ void mt_read_doubt_units(mt_model_reader *mr)
     }
     for (int k = 0; k < m->n_nums; k++) {
         if (has_unit(&m->nums[k].expr)) {
-            doubt_unit(mr, &m->nums[k], owner[k], numbered[k]);
+            warn_unit(mr, &m->nums[k], owner[k], numbered[k]);
         }
     }
 }

@@ -77,7 +77,7 @@ static double read_bare(mt_reader *r, mt_addr value)
 double mt_read_profile_number(mt_reader *r, mt_addr value)
 {
     const double number = read_bare(r, value);
-    mt_reader_judge(r, value, value, number);
+    mt_reader_check_range(r, value, value, number);
     return number;
 }
 
@@ -93,8 +93,8 @@ bool mt_read_profile_pair(mt_reader *r, mt_addr value, double *lower, double *up
     }
     *lower = read_bare(r, ends[0]);
     *upper = read_bare(r, ends[1]);
-    mt_reader_judge(r, value, ends[0], *lower);
-    mt_reader_judge(r, value, ends[1], *upper);
+    mt_reader_check_range(r, value, ends[0], *lower);
+    mt_reader_check_range(r, value, ends[1], *upper);
     return true;
 }
 
@@ -154,8 +154,8 @@ static void read_point(mt_reader *r, mt_addr list, mt_addr value, mt_vibration_r
     } else {
         p.hz = read_bare(r, p.hz_addr);
         p.level = read_bare(r, p.level_addr);
-        mt_reader_judge_as(r, "frequency", p.hz_addr, p.hz, MT_POSSIBLE_HZ);
-        mt_reader_judge(r, list, p.level_addr, p.level);
+        mt_reader_check_range_of(r, "frequency", p.hz_addr, p.hz, MT_POSSIBLE_HZ);
+        mt_reader_check_range(r, list, p.level_addr, p.level);
     }
     out->points[out->n_points++] = p;
 }

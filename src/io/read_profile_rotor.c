@@ -104,8 +104,8 @@ void mt_read_profile_rotor(mt_reader *r, mt_addr value, mt_rotor *rotor)
     mt_read_harmonics(r, found[ROTOR_HARMONICS], rotor);
     if (mt_read_profile_pair(r, found[ROTOR_RANGE], &rotor->range_lower, &rotor->range_upper)) {
         rotor->range_addr = found[ROTOR_RANGE];
-        mt_read_doubt_range(r, rotor->range_lower, rotor->range_upper, MT_ROTOR_LEAST_SPEED,
-                            "rotor's", rotor->range_addr);
+        mt_read_warning_range(r, rotor->range_lower, rotor->range_upper, MT_ROTOR_LEAST_SPEED,
+                              "rotor's", rotor->range_addr);
     }
 }
 

@@ -416,7 +416,7 @@ static void read_root(result_reader *s)
     }
     check_outputs(s, member(s, member(s, MT_JSON_ROOT, "run"), "outputs"));
     for (int i = 0; i < s->result->n_doubts; i++) {
-        s->result->doubts[i].level = MT_LEVEL_DOUBT;
+        s->result->doubts[i].level = MT_LEVEL_WARNING;
     }
 }
 

@@ -32,7 +32,7 @@
     X(STUDY_MEASUREMENTS, "measurements", MT_KEY_OBJECT, false)             \
     X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false, WHOLE) \
     X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                         \
-    X(STUDY_SPREAD, "spread", MT_KEY_OBJECT, false)                         \
+    X(STUDY_WEIGHT_SENSITIVITY, "spread", MT_KEY_OBJECT, false)             \
     X(STUDY_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)                       \
     X(STUDY_TRADE, "trade", MT_KEY_OBJECT, false)                           \
     X(STUDY_RESPONSES, "responses", MT_KEY_LIST, false)                     \
@@ -53,13 +53,14 @@ enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
 static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_search_keys = {"search", SEARCH, SEARCH_KEY_COUNT};
 
-#define SPREAD_KEYS(X)                                       \
-    X(SPREAD_FACTOR, "factor", MT_KEY_NUMBER, true, SPREAD)  \
-    X(SPREAD_DESCRIPTION, "description", MT_KEY_TEXT, false) \
-    X(SPREAD_SOURCE, "source", MT_KEY_TEXT, false)
-enum { SPREAD_KEYS(MT_STUDY_KEY_ENUM) SPREAD_KEY_COUNT };
-static const mt_key SPREAD[] = {SPREAD_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_spread_keys = {"spread", SPREAD, SPREAD_KEY_COUNT};
+#define WEIGHT_SENSITIVITY_KEYS(X)                                                  \
+    X(WEIGHT_SENSITIVITY_FACTOR, "factor", MT_KEY_NUMBER, true, WEIGHT_SENSITIVITY) \
+    X(WEIGHT_SENSITIVITY_DESCRIPTION, "description", MT_KEY_TEXT, false)            \
+    X(WEIGHT_SENSITIVITY_SOURCE, "source", MT_KEY_TEXT, false)
+enum { WEIGHT_SENSITIVITY_KEYS(MT_STUDY_KEY_ENUM) WEIGHT_SENSITIVITY_KEY_COUNT };
+static const mt_key WEIGHT_SENSITIVITY[] = {WEIGHT_SENSITIVITY_KEYS(MT_STUDY_KEY)};
+const mt_key_table mt_study_weight_sensitivity_keys = {"spread", WEIGHT_SENSITIVITY,
+                                                       WEIGHT_SENSITIVITY_KEY_COUNT};
 
 enum { MAX_RECOMMENDATIONS = 1000 };
 
@@ -69,7 +70,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
     static const mt_key_table *const tables[] = {&mt_study_keys,
                                                  &mt_units_keys,
                                                  &mt_study_search_keys,
-                                                 &mt_study_spread_keys,
+                                                 &mt_study_weight_sensitivity_keys,
                                                  &mt_study_variable_keys,
                                                  &mt_study_reference_keys,
                                                  &mt_study_measured_keys,
@@ -207,11 +208,11 @@ static void read_model(mt_study_reader *s, mt_addr value)
     study->original = rc == MT_OK ? values : NULL; /* mt_study_finish says what is wrong */
 }
 
-static void note_asked(mt_study_reader *s, const mt_asked_number *number)
+static void note_asked(mt_study_reader *s, const mt_requested_number *number)
 {
     mt_study *const study = s->study;
-    mt_asked_number *const all = mt_arena_grow(&study->mem, study->asked, study->n_asked,
-                                               &study->cap_asked, sizeof *all);
+    mt_requested_number *const all = mt_arena_grow(&study->mem, study->asked, study->n_asked,
+                                                   &study->cap_asked, sizeof *all);
     if (all != NULL) {
         all[study->n_asked++] = *number;
         study->asked = all;
@@ -224,12 +225,12 @@ static void note_settings(mt_study_reader *s)
     for (int i = 0; m != NULL && i < m->n_settings; i++) {
         const mt_setting *const set = &m->settings[i];
         const mt_parameter *const p = &m->parameters[set->parameter];
-        note_asked(s, &(mt_asked_number){.kind = "parameter",
-                                         .name = p->name.s,
-                                         .unit = p->unit,
-                                         .shown = mt_study_unit(s->study, set->parameter),
-                                         .value = set->value,
-                                         .original = set->original});
+        note_asked(s, &(mt_requested_number){.kind = "parameter",
+                                             .name = p->name.s,
+                                             .unit = p->unit,
+                                             .shown = mt_study_unit(s->study, set->parameter),
+                                             .value = set->value,
+                                             .original = set->original});
     }
 }
 
@@ -240,16 +241,16 @@ static long ask(mt_study_reader *s, const char *name, long said, long asked, lon
     if (asked == none) {
         return said;
     }
-    note_asked(s, &(mt_asked_number){.kind = "search",
-                                     .name = name,
-                                     .value = (double)asked,
-                                     .original = said == none ? nan("") : (double)said});
+    note_asked(s, &(mt_requested_number){.kind = "search",
+                                         .name = name,
+                                         .value = (double)asked,
+                                         .original = said == none ? nan("") : (double)said});
     return asked;
 }
 
 static void ask_search(mt_study_reader *s)
 {
-    const mt_asked *const asked = s->files.asked;
+    const mt_overrides *const asked = s->files.asked;
     mt_search *const search = &s->study->search;
     if (asked != NULL) {
         search->seed = (unsigned long)ask(s, "seed", (long)search->seed, asked->seed, -1);
@@ -259,10 +260,10 @@ static void ask_search(mt_study_reader *s)
         search->max_modal_solutions = ask(s, "max_modal_solutions", search->max_modal_solutions,
                                           asked->max_modal_solutions, 0);
         if (MT_HAS(asked->proof_s)) {
-            note_asked(s, &(mt_asked_number){.kind = "search",
-                                             .name = "proof_s",
-                                             .value = asked->proof_s,
-                                             .original = search->proof_s});
+            note_asked(s, &(mt_requested_number){.kind = "search",
+                                                 .name = "proof_s",
+                                                 .value = asked->proof_s,
+                                                 .original = search->proof_s});
             search->proof_s = asked->proof_s;
         }
     }
@@ -285,12 +286,14 @@ static void read_search(mt_study_reader *s, mt_addr value)
     search->proof_s = mt_read_study_member(s, &o, SEARCH_PROOF, &search->proof_addr);
 }
 
-static void read_spread(mt_study_reader *s, mt_addr value)
+static void read_weight_sensitivity(mt_study_reader *s, mt_addr value)
 {
     mt_study_object o;
-    if (value != MT_NO_ADDR && mt_read_study_object(s, value, &mt_study_spread_keys, &o)) {
-        mt_spread *const spread = &s->study->spread;
-        spread->factor = mt_read_study_member(s, &o, SPREAD_FACTOR, &spread->factor_addr);
+    if (value != MT_NO_ADDR &&
+        mt_read_study_object(s, value, &mt_study_weight_sensitivity_keys, &o)) {
+        mt_weight_sensitivity *const weight_sensitivity = &s->study->weight_sensitivity;
+        weight_sensitivity->factor = mt_read_study_member(s, &o, WEIGHT_SENSITIVITY_FACTOR,
+                                                          &weight_sensitivity->factor_addr);
     }
 }
 
@@ -309,7 +312,7 @@ static void note_place(mt_study_reader *s, mt_addr addr)
     mt_json_pointer(s->r.doc, addr, &pointer);
     mt_study_place *const p = &places[study->n_places++];
     *p = (mt_study_place){.addr = addr};
-    mt_json_place(s->r.doc, addr, &p->line, &p->column);
+    mt_json_locate(s->r.doc, addr, &p->line, &p->column);
     p->pointer = mt_arena_strdup(&study->mem, pointer.s == NULL ? "" : pointer.s);
     if (pointer.failed) {
         mt_arena_fail(&study->mem);
@@ -328,18 +331,18 @@ static void note_places(mt_study_reader *s)
         note_place(s, g->equals_addr);
         note_place(s, g->at_least_addr);
         note_place(s, g->at_most_addr);
-        if (g->shake != NULL) {
-            note_place(s, g->shake->input.addr);
-            note_place(s, g->shake->output.addr);
+        if (g->response_limit != NULL) {
+            note_place(s, g->response_limit->input.addr);
+            note_place(s, g->response_limit->output.addr);
         }
     }
-    for (int i = 0; i < study->doubts.n && i < MOST_PLACED; i++) {
-        note_place(s, study->doubts.items[i].addr);
+    for (int i = 0; i < study->warning_list.n && i < MOST_PLACED; i++) {
+        note_place(s, study->warning_list.items[i].addr);
     }
     for (int i = 0; i < study->n_responses && i < MOST_PLACED; i++) {
         note_place(s, study->responses[i].addr);
-        note_place(s, study->responses[i].shake.input.addr);
-        note_place(s, study->responses[i].shake.output.addr);
+        note_place(s, study->responses[i].response_limit.input.addr);
+        note_place(s, study->responses[i].response_limit.output.addr);
     }
     for (int i = 0; i < study->n_variables && i < MOST_PLACED; i++) {
         note_place(s, study->variables[i].addr);
@@ -380,7 +383,7 @@ static void read_root(mt_study_reader *s)
     mt_read_study_goals(s, o.found[STUDY_GOALS]);
     mt_read_study_aircraft(s, o.found[STUDY_AIRCRAFT]);
     mt_read_study_objectives(s, o.found[STUDY_OBJECTIVE]);
-    read_spread(s, o.found[STUDY_SPREAD]);
+    read_weight_sensitivity(s, o.found[STUDY_WEIGHT_SENSITIVITY]);
     mt_read_study_trade(s, o.found[STUDY_TRADE], o.found[STUDY_GOALS]);
     mt_read_study_responses(s, o.found[STUDY_RESPONSES]);
     mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
@@ -461,7 +464,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
     const mt_io_options none = {0};
     s.files = opt == NULL ? none : *opt;
     s.r.mem = &s.study->mem;
-    s.r.doubts = &s.study->doubts;
+    s.r.warning_list = &s.study->warning_list;
     s.study->path = mt_arena_strdup(&s.study->mem, path);
     root = s.files.root == NULL ? mt_file_default_root(path) : NULL;
     if (root == NULL && s.files.root == NULL) {

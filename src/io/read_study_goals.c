@@ -186,11 +186,11 @@ static const mt_key_table *table_of(mt_study_reader *s, mt_addr value)
 }
 
 /* Numbers that an expression is held against. */
-static void check_demands(const reading *g)
+static void check_requirements(const reading *g)
 {
     static const mt_goal_slot slots[] = {MT_SLOT_EQUALS, MT_SLOT_AT_LEAST, MT_SLOT_AT_MOST};
     for (int i = 0; i < MT_COUNT(slots); i++) {
-        mt_read_study_check_demand(g->s, &g->goal->expression, found(g, slots[i]));
+        mt_read_study_check_requirement(g->s, &g->goal->expression, found(g, slots[i]));
     }
 }
 
@@ -221,10 +221,10 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
         } else if (slot == MT_SLOT_BANDS) {
             read_avoid(&g);
         } else if (slot == MT_SLOT_OUTPUT) {
-            mt_read_study_shake(s, &g.o, goal);
+            mt_read_study_response_limit(s, &g.o, goal);
         }
     }
-    check_demands(&g);
+    check_requirements(&g);
     return true;
 }
 

@@ -114,8 +114,8 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
         mt_read_study_pair(s, o->found[MACHINE_RANGE], o->found[MACHINE_RANGE], range)) {
         machine->range_lower = range[0];
         machine->range_upper = range[1];
-        mt_read_doubt_range(&s->r, range[0], range[1], MT_MACHINE_LEAST_SPEED, "machine's",
-                            machine->range_addr);
+        mt_read_warning_range(&s->r, range[0], range[1], MT_MACHINE_LEAST_SPEED, "machine's",
+                              machine->range_addr);
     }
 }
 

@@ -92,14 +92,14 @@ void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goa
     const int band = mt_goal_member_at(kind, MT_SLOT_BAND);
     const int named = mt_goal_member_at(kind, MT_SLOT_MEASUREMENT);
     const int coherence = mt_goal_member_at(kind, MT_SLOT_COHERENCE);
-    mt_shake *const shake = goal->shake;
+    mt_response_limit *const response_limit = goal->response_limit;
     double edges[2];
-    shake->measurement_name = mt_reader_ref(&s->r, o->found[named]);
-    shake->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
-    shake->band_addr = mt_read_study_place(s, o, band);
+    response_limit->measurement_name = mt_reader_ref(&s->r, o->found[named]);
+    response_limit->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
+    response_limit->band_addr = mt_read_study_place(s, o, band);
     if (o->found[band] != MT_NO_ADDR &&
         mt_read_study_pair(s, o->found[band], o->found[band], edges)) {
-        shake->lower_hz = edges[0];
-        shake->upper_hz = edges[1];
+        response_limit->lower_hz = edges[0];
+        response_limit->upper_hz = edges[1];
     }
 }

@@ -96,7 +96,7 @@ static double number_of(mt_study_reader *s, mt_addr value)
 double mt_read_study_number(mt_study_reader *s, mt_addr value)
 {
     const double number = number_of(s, value);
-    mt_reader_judge(&s->r, value, value, number);
+    mt_reader_check_range(&s->r, value, value, number);
     return number;
 }
 
@@ -121,7 +121,7 @@ bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, doubl
     }
     for (int i = 0; i < 2; i++) {
         out[i] = number_of(s, ends[i]);
-        mt_reader_judge(&s->r, member, ends[i], out[i]);
+        mt_reader_check_range(&s->r, member, ends[i], out[i]);
     }
     return true;
 }

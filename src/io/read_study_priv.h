@@ -63,7 +63,7 @@ double mt_read_study_value_member(mt_study_reader *s, const mt_study_object *o, 
 const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *parameter);
 /* A number that an expression is held against is in SI: noted where it is bare and looks like
  * one of another unit. */
-void mt_read_study_check_demand(mt_study_reader *s, const mt_expr *of, mt_addr value);
+void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value);
 /* An expression that follows the design, and its text. */
 void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
 /* "mode": a name or an index from 1. */
@@ -93,7 +93,7 @@ void mt_read_study_goals(mt_study_reader *s, mt_addr list);
  * could not be read (noted). */
 const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name);
 /* What a goal that is about ports has besides. */
-void mt_read_study_shake(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
+void mt_read_study_response_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
 void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
 void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
 /* The catalogue of aircraft: the one named, else, where a goal needs one, the one beside the
@@ -107,7 +107,7 @@ void mt_read_study_published(mt_study_reader *s, mt_addr list);
 
 extern const mt_key_table mt_study_keys;
 extern const mt_key_table mt_study_search_keys;
-extern const mt_key_table mt_study_spread_keys;
+extern const mt_key_table mt_study_weight_sensitivity_keys;
 extern const mt_key_table mt_study_variable_keys;
 extern const mt_key_table mt_study_catalogue_keys;
 extern const mt_key_table mt_study_trade_keys;

@@ -83,7 +83,7 @@ static void read_judgement(mt_study_reader *s, const mt_study_object *o, mt_publ
     p->tolerance =
         mt_read_study_value_member(s, o, PUBLISHED_TOLERANCE, name, &p->tolerance_addr);
     for (int key = PUBLISHED_VALUE; key <= PUBLISHED_TOLERANCE; key++) {
-        mt_read_study_check_demand(s, &p->quantity, o->found[key]);
+        mt_read_study_check_requirement(s, &p->quantity, o->found[key]);
     }
     p->tolerance_percent =
         mt_read_study_member(s, o, PUBLISHED_TOLERANCE_PERCENT, &p->tolerance_percent_addr);

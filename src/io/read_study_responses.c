@@ -22,16 +22,16 @@ static bool read_response(mt_study_reader *s, mt_addr value, mt_study_response *
         return false;
     }
     r->configuration_name = mt_reader_ref(&s->r, o.found[RESPONSE_CONFIGURATION]);
-    r->shake.input = mt_reader_ref(&s->r, o.found[RESPONSE_INPUT]);
-    r->shake.output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
-    r->shake.band_addr = mt_read_study_place(s, &o, RESPONSE_BAND);
+    r->response_limit.input = mt_reader_ref(&s->r, o.found[RESPONSE_INPUT]);
+    r->response_limit.output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
+    r->response_limit.band_addr = mt_read_study_place(s, &o, RESPONSE_BAND);
     if (o.found[RESPONSE_BAND] != MT_NO_ADDR &&
         mt_read_study_pair(s, o.found[RESPONSE_BAND], o.found[RESPONSE_BAND], band)) {
-        r->shake.lower_hz = band[0];
-        r->shake.upper_hz = band[1];
+        r->response_limit.lower_hz = band[0];
+        r->response_limit.upper_hz = band[1];
     }
-    r->shake.profile_name = mt_reader_ref(&s->r, o.found[RESPONSE_PROFILE]);
-    r->shake.profile = mt_read_study_profile(s, r->shake.profile_name);
+    r->response_limit.profile_name = mt_reader_ref(&s->r, o.found[RESPONSE_PROFILE]);
+    r->response_limit.profile = mt_read_study_profile(s, r->response_limit.profile_name);
     r->description = mt_reader_text(&s->r, o.found[RESPONSE_DESCRIPTION]);
     r->source = mt_reader_text(&s->r, o.found[RESPONSE_SOURCE]);
     return true;

@@ -133,8 +133,8 @@ void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
         mt_read_study_pair(s, o.found[ROTOR_RANGE], o.found[ROTOR_RANGE], range)) {
         rotor->range_lower = range[0];
         rotor->range_upper = range[1];
-        mt_read_doubt_range(&s->r, range[0], range[1], MT_ROTOR_LEAST_SPEED, "rotor's",
-                            rotor->range_addr);
+        mt_read_warning_range(&s->r, range[0], range[1], MT_ROTOR_LEAST_SPEED, "rotor's",
+                              rotor->range_addr);
     }
     rotor->margin_percent = mt_read_study_member(s, &o, ROTOR_MARGIN, &rotor->margin_addr);
 }

@@ -39,7 +39,7 @@ const mt_key_table mt_study_span_keys = {"span", SPAN, SPAN_KEY_COUNT};
 static double read_value(mt_study_reader *s, mt_addr value, const mt_vary *v)
 {
     if (v->kind == MT_VARY_GOAL && v->goal != MT_ABSENT) {
-        mt_read_study_check_demand(s, &s->study->goals[v->goal].expression, value);
+        mt_read_study_check_requirement(s, &s->study->goals[v->goal].expression, value);
     }
     return v->kind == MT_VARY_GOAL ? mt_read_study_number(s, value)
                                    : mt_read_study_value(s, value, v->name.s);

@@ -74,10 +74,10 @@ double mt_read_study_value_member(mt_study_reader *s, const mt_study_object *o, 
     return mt_read_study_value(s, o->found[key], parameter);
 }
 
-void mt_read_study_check_demand(mt_study_reader *s, const mt_expr *of, mt_addr value)
+void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value)
 {
     const mt_unit *const unit =
-        s->study->model == NULL ? NULL : mt_study_demand_unit(s->study, of);
+        s->study->model == NULL ? NULL : mt_study_requirement_unit(s->study, of);
     if (unit == NULL || value == MT_NO_ADDR) {
         return;
     }

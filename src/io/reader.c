@@ -228,7 +228,7 @@ static bool is_accepted(const mt_reader *r, const char *name)
     return accepted;
 }
 
-void mt_reader_doubt(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
+void mt_reader_warning(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
 {
     va_list args;
     va_start(args, fmt);
@@ -237,18 +237,19 @@ void mt_reader_doubt(mt_reader *r, mt_addr value, const char *name, const char *
     if (text == NULL) {
         return; /* as the arena knows */
     }
-    if (r->doubts == NULL && !is_accepted(r, name)) {
+    if (r->warning_list == NULL && !is_accepted(r, name)) {
         mt_diag_warning(r->diags, value, "%s", text);
-    } else if (r->doubts != NULL) {
-        mt_doubt *const d = mt_doubt_add(r->doubts, MT_LEVEL_DOUBT, name, "%s", text);
+    } else if (r->warning_list != NULL) {
+        mt_warning *const d =
+            mt_warning_add(r->warning_list, MT_LEVEL_WARNING, name, "%s", text);
         if (d != NULL) {
             d->addr = value;
         }
     }
 }
 
-void mt_reader_judge_as(mt_reader *r, const char *name, mt_addr value, double number,
-                        mt_possible_id row)
+void mt_reader_check_range_of(mt_reader *r, const char *name, mt_addr value, double number,
+                              mt_possible_id row)
 {
     const mt_possible *const p = &mt_possible_of[row];
     const char *const doubted = mt_possible_doubted(p, number);
@@ -259,15 +260,15 @@ void mt_reader_judge_as(mt_reader *r, const char *name, mt_addr value, double nu
     if (!possible) {
         mt_diag_error(r->diags, value, "%s (%g) %s", name, number, p->impossible);
     } else {
-        mt_reader_doubt(r, value, p->warning, "%s (%g) is %s", name, number, doubted);
+        mt_reader_warning(r, value, p->warning, "%s (%g) is %s", name, number, doubted);
     }
 }
 
-void mt_reader_judge(mt_reader *r, mt_addr member, mt_addr value, double number)
+void mt_reader_check_range(mt_reader *r, mt_addr member, mt_addr value, double number)
 {
     const mt_key *const key = key_of(r, member);
     if (key != NULL) {
-        mt_reader_judge_as(r, key->name, value, number, key->possible);
+        mt_reader_check_range_of(r, key->name, value, number, key->possible);
     }
 }
 
@@ -468,10 +469,10 @@ mt_accepted mt_reader_accepted(mt_reader *r, mt_addr value)
     mt_items items = mt_reader_items(r, value);
     mt_accepted out = {.names = mt_reader_room(r, &items, sizeof *out.names)};
     while (mt_items_next(&items)) {
-        const int k =
-            mt_reader_choice(r, items.at, "warning", mt_doubt_names, MT_COUNT(mt_doubt_names));
+        const int k = mt_reader_choice(r, items.at, "warning", mt_warning_names,
+                                       MT_COUNT(mt_warning_names));
         if (k != MT_ABSENT) {
-            out.names[out.n++] = mt_doubt_names[k];
+            out.names[out.n++] = mt_warning_names[k];
         }
     }
     return out;

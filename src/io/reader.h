@@ -2,7 +2,7 @@
 #ifndef IO_READER_H
 #define IO_READER_H
 
-#include "base/doubt.h"
+#include "base/warning.h"
 #include "expr/expr.h"
 #include "io/json.h"
 #include "model/model.h"
@@ -35,9 +35,9 @@ typedef struct mt_reader {
     int n_names;
     mt_kind_lookup kinds; /* of the parameters, with the context of lookup */
     mt_matched matched[MT_MATCHED];
-    unsigned n_matched;    /* so far; the last ones are kept */
-    mt_doubt_list *doubts; /* of mt_reader_judge; NULL: warned of at once */
-    mt_accepted accepted;  /* names of warnings that are not told at once */
+    unsigned n_matched;            /* so far; the last ones are kept */
+    mt_warning_list *warning_list; /* of mt_reader_check_range; NULL: warned of at once */
+    mt_accepted accepted;          /* names of warnings that are not told at once */
 } mt_reader;
 
 /* id, JSON types, what a message calls it */
@@ -101,13 +101,13 @@ mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
 /* Hold a number (NaN: not known), the value of a member that was matched lately or an item of
  * it, against the member's row: what is impossible is noted at it ("weight (0) must be above
  * 0"), what is implausible becomes a doubt. */
-void mt_reader_judge(mt_reader *r, mt_addr member, mt_addr value, double number);
+void mt_reader_check_range(mt_reader *r, mt_addr member, mt_addr value, double number);
 /* The same of what is called `name`, by this row: of numbers in one member that differ in
  * kind. */
-void mt_reader_judge_as(mt_reader *r, const char *name, mt_addr value, double number,
-                        mt_possible_id row);
+void mt_reader_check_range_of(mt_reader *r, const char *name, mt_addr value, double number,
+                              mt_possible_id row);
 /* A doubt of this name: kept for the file's list, or warned of unless the file accepts it. */
-void mt_reader_doubt(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
+void mt_reader_warning(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
     MT_PRINTF(4, 5);
 /* True where the document's "format" is this one. Another text is noted, with what the file
  * then is not ("this is no study file"), before its members are held against the wrong table;

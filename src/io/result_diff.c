@@ -143,9 +143,9 @@ static mt_json_type type_of(const search *s, int side, mt_addr value)
     return value == MT_NO_ADDR ? (mt_json_type)0 : mt_json_type_of(s->r[side].doc, value);
 }
 
-static mt_told told(const search *s, int side, mt_addr value)
+static mt_reported told(const search *s, int side, mt_addr value)
 {
-    mt_told t = {.type = type_of(s, side, value), .number = nan("")};
+    mt_reported t = {.type = type_of(s, side, value), .number = nan("")};
     if (t.type == MT_JSON_NUMBER) {
         t.number = mt_json_number(s->r[side].doc, value);
     } else if (t.type == MT_JSON_BOOL) {
@@ -211,8 +211,8 @@ static bool same_number(const search *s, const step *at, const scales *all, doub
 
 static bool same(const search *s, const step *at, const scales *all, const mt_addr v[SIDES])
 {
-    const mt_told a = told(s, A, v[A]);
-    const mt_told b = told(s, B, v[B]);
+    const mt_reported a = told(s, A, v[A]);
+    const mt_reported b = told(s, B, v[B]);
     if (a.type != b.type) {
         return false;
     }
@@ -384,7 +384,7 @@ static void add_keys(const search *s, int side, mt_addr item, const list_rule *r
         const char *key = rule->keys[k];
         const char *const name =
             strcmp(key, "mode") == 0 ? text_member(s, side, item, "name") : NULL;
-        const mt_told part = told(s, side, member(s, side, item, key));
+        const mt_reported part = told(s, side, member(s, side, item, key));
         const char *const text = name != NULL ? name : part.text;
         if (text != NULL || part.type == MT_JSON_NUMBER) {
             mt_text_add(t, t->length > 0 ? " " : "");

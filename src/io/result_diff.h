@@ -14,18 +14,18 @@
  * that is told. Not compared are sentences (they say what the members say), measures of
  * rounding (residuals) and the digests of the files beside a result.
  */
-typedef struct mt_told {
+typedef struct mt_reported {
     mt_json_type type; /* 0: not there */
     double number;     /* of a number; of true 1 */
     const char *text;  /* of a string */
-} mt_told;
+} mt_reported;
 
 typedef struct mt_difference {
     const char *part;   /* "recommendation 1", "answer", "made by" */
     const char *what;   /* the item: "frequency upright mode 1"; "" of the part itself */
     const char *member; /* as in the result: "recommended_hz"; "" of an item that is missing */
     const char *unit;   /* NULL: none */
-    mt_told told[2];
+    mt_reported told[2];
     const char *pointer[2]; /* NULL: not there */
     bool provenance;        /* of study, model or run: how the answer was made, no part of it */
     bool derived; /* follows from others in the same part (an error, a change, a slope) */

@@ -453,7 +453,7 @@ static void scan_text(scan *sc)
 }
 
 /* The other files of a test are given by mistake. */
-static void tell_universal(scan *sc)
+static void write_universal(scan *sc)
 {
     mt_text holds = {.s = NULL};
     mt_universal_contents(sc->s, sc->n, &holds);
@@ -465,7 +465,7 @@ void mt_json_scan(const char *text, size_t length, mt_json_spots *out, mt_diags 
 {
     scan sc = {.s = text, .n = length, .parent = MT_NO_ADDR, .out = out, .diags = diags};
     if (length <= MT_JSON_MAX_BYTES && mt_universal_begins(text, length)) {
-        tell_universal(&sc);
+        write_universal(&sc);
     } else if (length > MT_JSON_MAX_BYTES) {
         (void)wrong(&sc, 0, "longer than %d bytes", MT_JSON_MAX_BYTES);
     } else {

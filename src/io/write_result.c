@@ -158,13 +158,13 @@ static void put_record(mt_json_writer *w, const char *name, const mt_record *rec
     mt_json_close(w);
 }
 
-void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
-                        mt_doubt_level level)
+void mt_json_put_warnings(mt_json_writer *w, const char *name, const mt_warning_list *list,
+                          mt_warning_level level)
 {
     mt_json_open(w, name, '[');
     for (int i = 0; i < list->n; i++) {
         if (list->items[i].level == level) {
-            put_record(w, NULL, &mt_doubt_record, &list->items[i], NULL);
+            put_record(w, NULL, &mt_warning_record, &list->items[i], NULL);
         }
     }
     mt_json_close(w);

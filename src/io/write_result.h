@@ -2,8 +2,8 @@
 #ifndef IO_WRITE_RESULT_H
 #define IO_WRITE_RESULT_H
 
-#include "base/doubt.h"
 #include "base/text.h"
+#include "base/warning.h"
 #include "io/write_json.h"
 #include "result/result.h"
 
@@ -20,8 +20,8 @@ mt_status mt_result_write_page(const mt_result *result, mt_text *out, mt_err *er
 /* The same as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
 /* The items of one level as a list of objects. */
-void mt_json_put_doubts(mt_json_writer *w, const char *name, const mt_doubt_list *list,
-                        mt_doubt_level level);
+void mt_json_put_warnings(mt_json_writer *w, const char *name, const mt_warning_list *list,
+                          mt_warning_level level);
 /* One of its members, into an object that is open; name NULL: all of them. One of a design of
  * it likewise. */
 void mt_result_put_member(mt_json_writer *w, const char *name, const mt_result *result);

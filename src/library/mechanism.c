@@ -8,7 +8,7 @@
 #include "analysis/channels.h"
 #include "analysis/sensitivity.h"
 #include "base/text.h"
-#include "model/judge.h"
+#include "model/lint.h"
 #include "model/values.h"
 #include "response/response.h"
 #include "vibration/profiled.h"

@@ -20,7 +20,7 @@ static const char STUDY_PATH[] = "study.json";
 typedef struct request {
     mt_read_options own;
     mt_io_options io;
-    mt_asked asked;
+    mt_overrides asked;
 } request;
 
 static mt_status check_files(const mt_read_options *opt, mt_err *err)
@@ -61,10 +61,10 @@ static mt_status take(const char *function, const mt_read_options *opt, request 
     if (own->diagnostics != NULL) {
         mt_diagnostics_free(own->diagnostics);
     }
-    out->asked = (mt_asked){.n_sets = own->n_sets,
-                            .sets = own->sets,
-                            .seed = own->seed == NULL ? -1 : *own->seed,
-                            .proof_s = nan("")};
+    out->asked = (mt_overrides){.n_sets = own->n_sets,
+                                .sets = own->sets,
+                                .seed = own->seed == NULL ? -1 : *own->seed,
+                                .proof_s = nan("")};
     out->io = (mt_io_options){
         .root = own->root,
         .files = {.given = own->files, .n = own->n_files, .only = own->files_only != 0},

@@ -5,9 +5,10 @@
 #include <string.h>
 
 #include "io/write_scene.h"
-#include "model/judge.h"
+#include "model/lint.h"
 
-mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_ask *ask, mt_err *err)
+mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_query *ask,
+                              mt_err *err)
 {
     mt_scene_name *const names = mt_arena_alloc(mem, (size_t)m->n_modes, sizeof *names);
     MT_TRY(mt_arena_check(mem, err));
@@ -43,7 +44,7 @@ static mt_status take(const mt_model *model, const char *name, double value, int
 
 /* Modes that the result names at a recommended design. */
 static mt_status name_tracked(const mt_model *model, const mt_recommendation *r, mt_arena *mem,
-                              mt_scene_ask *ask, mt_err *err)
+                              mt_scene_query *ask, mt_err *err)
 {
     mt_scene_name *const names = mt_arena_alloc(mem, (size_t)r->n_frequencies, sizeof *names);
     MT_TRY(mt_arena_check(mem, err));
@@ -70,7 +71,7 @@ typedef struct source {
 } source;
 
 /* The numbers of all configurations that are shown are those of a mechanism. */
-static mt_status admit(source *s, const mt_scene_ask *ask, mt_err *err)
+static mt_status admit(source *s, const mt_scene_query *ask, mt_err *err)
 {
     const mt_model *const m = s->model;
     bool known = s->n_inputs == ask->n_inputs;
@@ -93,7 +94,7 @@ static mt_status admit(source *s, const mt_scene_ask *ask, mt_err *err)
 
 /* What was set when the study was asked, then the variables at this design; `original`: as they
  * were before. */
-static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_scene_ask *ask,
+static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_scene_query *ask,
                       mt_err *err)
 {
     const mt_model *const model = s->model;
@@ -103,11 +104,11 @@ static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_s
     int *const inputs = mt_arena_int(mem, most);
     double *const at = mt_arena_f64(mem, most, 1);
     MT_TRY(mt_arena_check(mem, err));
-    *ask = (mt_scene_ask){.label = original ? "original" : "recommended",
-                          .rank = original ? 0 : r->rank,
-                          .inputs = inputs,
-                          .at = at,
-                          .shown = inputs};
+    *ask = (mt_scene_query){.label = original ? "original" : "recommended",
+                            .rank = original ? 0 : r->rank,
+                            .inputs = inputs,
+                            .at = at,
+                            .shown = inputs};
     for (int i = 0; i < r->n_parameters; i++) {
         const mt_result_parameter *const p = &r->parameters[i];
         MT_TRY(take(model, p->name, original ? p->original : p->recommended, inputs, at,
@@ -130,7 +131,7 @@ static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_s
 }
 
 mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n_configurations,
-                           const int *configurations, mt_arena *mem, mt_scene_ask **asks,
+                           const int *configurations, mt_arena *mem, mt_scene_query **asks,
                            int *n, mt_err *err)
 {
     static const mt_recommendation none = {.rank = 0};
@@ -143,7 +144,7 @@ mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n
     const mt_recommendation *const first = count > 0 ? &result->recommendations[0] : &none;
     MT_TRY(fill(&s, first, true, *asks, err));
     for (*n = 1; *n <= count; (*n)++) {
-        mt_scene_ask *const ask = *asks + *n;
+        mt_scene_query *const ask = *asks + *n;
         MT_TRY(fill(&s, &result->recommendations[*n - 1], false, ask, err));
         ask->label = count == 1 ? "recommended"
                                 : mt_arena_printf(mem, "recommended, rank %d", ask->rank);
@@ -211,7 +212,7 @@ static mt_status look(const mt_model *model, const mt_result *result, int thread
     int *const configurations = mt_arena_int(mem, (size_t)all);
     mt_scene_travel *const travel =
         mt_arena_alloc(mem, (size_t)model->n_joints, sizeof *travel);
-    mt_scene_ask *asks = NULL;
+    mt_scene_query *asks = NULL;
     int n = 0;
     MT_TRY(mt_arena_check(mem, err)); /* zero: MT_TRAVEL_NONE */
     const int asked = mt_scene_order(model, result, configurations);

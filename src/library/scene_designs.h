@@ -12,7 +12,7 @@
  * parameter that the model has not, or has no value), MT_E_USAGE (the model is no mechanism in
  * one of these), MT_E_MEMORY. */
 mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n_configurations,
-                           const int *configurations, mt_arena *mem, mt_scene_ask **asks,
+                           const int *configurations, mt_arena *mem, mt_scene_query **asks,
                            int *n, mt_err *err);
 /* All configurations of the model, configurations[n_configurations]: first those of which
  * the result has frequencies, in its order; returns how many these are. */
@@ -27,6 +27,7 @@ int mt_scene_order(const mt_model *model, const mt_result *result, int *configur
 mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, int threads,
                              mt_text *json, mt_err *err);
 /* Names that the model gives to modes, of the design in its file. */
-mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_ask *ask, mt_err *err);
+mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_query *ask,
+                              mt_err *err);
 
 #endif

@@ -17,8 +17,8 @@
 #include "base/interrupt.h"
 #include "linalg/dense.h"
 #include "mechanics/absolute.h"
+#include "mechanics/element_forces.h"
 #include "mechanics/forces.h"
-#include "mechanics/pieces.h"
 
 enum { L = MT_LOCAL };
 

@@ -342,7 +342,7 @@ mt_status mt_affine_make(mt_linear *lin, mt_arena *mem, mt_affine *out, mt_err *
     bool *const affine = mt_arena_alloc(mem, (size_t)sys->n_measures, sizeof *affine);
     double *const rate = mt_arena_f64(mem, n, (size_t)sys->n_bodies);
     MT_TRY(mt_arena_check(mem, err));
-    bool fixed = lin->n_idle == 0;
+    bool fixed = lin->n_free_spins == 0;
     for (int b = 0; b < sys->n_bodies; b++) {
         out->body[b].rate = rate + ((ptrdiff_t)b * lin->n);
         find_axis(lin, out, b, &fixed);
@@ -377,8 +377,8 @@ bool mt_affine_gauge(const mt_linear *lin, const mt_affine *a, mt_gauge gauge)
     return false;
 }
 
-void mt_affine_place(const mt_linear *lin, const mt_affine *a, const double *y, double *work,
-                     mt_placement *at)
+void mt_affine_position(const mt_linear *lin, const mt_affine *a, const double *y, double *work,
+                        mt_placement *at)
 {
     const mt_system *const sys = lin->sys;
     const mt_placement *const rest = &lin->position.at;

@@ -45,7 +45,7 @@ mt_status mt_affine_make(mt_linear *lin, mt_arena *mem, mt_affine *out, mt_err *
 /* Whether a gauge's value is an affine function of y, and whether a force at it is constant. */
 bool mt_affine_gauge(const mt_linear *lin, const mt_affine *a, mt_gauge gauge);
 /* at := the position at y[n]; nothing of q is rounded away by steps on the way. work[nq]. */
-void mt_affine_place(const mt_linear *lin, const mt_affine *a, const double *y, double *work,
-                     mt_placement *at);
+void mt_affine_position(const mt_linear *lin, const mt_affine *a, const double *y, double *work,
+                        mt_placement *at);
 
 #endif

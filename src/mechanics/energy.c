@@ -6,7 +6,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "mechanics/rest_noise.h"
+#include "mechanics/equilibrium_rounding.h"
 
 /* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a
  * shape, in eps of what is typical. */
@@ -29,7 +29,7 @@ typedef struct worker {
     entry *load;     /* lower triangle of Kg where it is not empty */
     int n_load;
     double shape; /* p eps of the header */
-    mt_rest_noise *rest;
+    mt_equilibrium_rounding *rest;
 } worker;
 
 static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
@@ -196,7 +196,7 @@ static mt_status one(const worker *k, int col, const double *y, const mt_energie
     const double lambda = mass.energy > 0.0 ? stiffness.energy / mass.energy : 0.0;
     double rest = 0.0;
     if (k->rest != NULL) {
-        MT_TRY(mt_rest_noise_of(k->rest, lambda, phi, &rest, err));
+        MT_TRY(mt_equilibrium_rounding_of(k->rest, lambda, phi, &rest, err));
     }
     const double loads = (k->shape * load) + rest;
     out->stiffness[col] = stiffness.energy;
@@ -220,7 +220,7 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     k.dz = mt_arena_f64(&lin->scratch, nq, 1);
     mt_status rc = mt_arena_check(&lin->scratch, err);
     rc = rc == MT_OK ? list_entries(&k, &lin->scratch, err) : rc;
-    rc = rc == MT_OK ? mt_rest_noise_new(lin, &k.rest, err) : rc;
+    rc = rc == MT_OK ? mt_equilibrium_rounding_new(lin, &k.rest, err) : rc;
     mt_rows_of_columns((int)nq, lin->n, lin->z_error, &lin->scratch, &k.z_error);
     rc = rc == MT_OK ? mt_arena_check(&lin->scratch, err) : rc;
     if (rc == MT_OK) {

@@ -27,7 +27,7 @@
  *     At an equilibrium Newton's last step q is too small to be taken, as positions are
  * rounded, but not too small for a stiff spring: forces are those at its end, by k g . q
  * (springs) and lambda' = -(A^T)^+ (r + H q) (joints, r what is unbalanced) others than at the
- * position. What rounding leaves open of place and forces is in rest_noise.h.
+ * position. What rounding leaves open of place and forces is in equilibrium_rounding.h.
  *     A spring is strained where its energy is more than 16 nq eps c (|f| . w)^2, the
  * rounding of its own terms.
  */

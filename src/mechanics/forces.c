@@ -4,7 +4,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "mechanics/pieces.h"
+#include "mechanics/element_forces.h"
 
 /* Of a correction that is known by its size alone. */
 static const double TWICE = 2.0;

@@ -105,7 +105,7 @@ mt_status mt_info_fill(const mt_linear *lin, mt_info *out, mt_err *err)
     *out = (mt_info){.states = lin->sys->nq,
                      .equations = lin->m,
                      .freedoms = lin->n,
-                     .idle = lin->n_idle,
+                     .free_spins = lin->n_free_spins,
                      .redundant = mt_linear_redundant(lin),
                      .residual = lin->position.equilibrium.residual,
                      .gap_m = lin->position.gap_m};

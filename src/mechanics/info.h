@@ -9,7 +9,7 @@ typedef struct mt_info {
     int states;         /* coordinates of all bodies */
     int equations;      /* of joints, links' hinges and the locked drive */
     int freedoms;       /* states less independent equations (mobility), less idle spins */
-    int idle;           /* spins that nothing resists and no inertia feels (idle.h) */
+    int free_spins;     /* spins that nothing resists and no inertia feels (free_spin.h) */
     int redundant;      /* equations less independent ones; names: mt_linear_redundant_set */
     double mass_kg;     /* everything with mass, fixed or moving */
     double centre_m[3]; /* of mass, global; NaN where there is no mass */

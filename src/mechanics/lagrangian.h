@@ -3,8 +3,8 @@
 #define MECHANICS_LAGRANGIAN_H
 
 #include "mechanics/data.h"
+#include "mechanics/element_forces.h"
 #include "mechanics/layout.h"
-#include "mechanics/pieces.h"
 
 /*
  * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian,
@@ -29,11 +29,11 @@ typedef enum mt_curvature {
 /* The last step of Newton's method, too small to be taken: from the position, which is rounded,
  * to where the forces balance. There a spring of stiffness k and gradient g has k g . q more
  * force, and that is what it counts with. */
-typedef struct mt_step_left {
+typedef struct mt_newton_residual {
     double *q;      /* [nq] */
     double *lambda; /* [m] */
     double trim;    /* of the trimmed spring's force */
-} mt_step_left;
+} mt_newton_residual;
 
 /* A row of the constraints' Jacobian: its entries that may be other than 0. */
 typedef struct mt_sparse_row {

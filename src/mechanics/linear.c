@@ -8,7 +8,7 @@
 
 #include "base/interrupt.h"
 #include "mechanics/couplings.h"
-#include "mechanics/idle.h"
+#include "mechanics/free_spin.h"
 #include "mechanics/reduce.h"
 #include "mechanics/singular.h"
 #include "mechanics/tangent.h"
@@ -104,7 +104,7 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     mt_lagrangian l;
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     const bool loaded = lin->position.equilibrium.active;
-    const mt_step_left *const left = &lin->position.equilibrium.left;
+    const mt_newton_residual *const left = &lin->position.equilibrium.left;
     const int all = sys->n_constraints;
     lin->m = sys->trim ? all - 1 : all;
     MT_TRY(mt_lagrangian_init(&l, sys, loaded, &lin->scratch, err));
@@ -325,7 +325,7 @@ static mt_status reduce(mt_linear *lin, mt_err *err)
     mt_arena_clear(&lin->reduced_mem);
     mt_arena_clear(&lin->scratch);
     MT_TRY(mt_reduce_basis(lin, err));
-    MT_TRY(mt_idle_remove(lin, err));
+    MT_TRY(mt_free_spin_remove(lin, err));
     MT_TRY(mt_reduce_rows(lin, err));
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(fixed_parts(lin, err));
@@ -404,7 +404,8 @@ static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
 static const uint64_t *reduces_with(const mt_linear *lin)
 {
     const bool once = mt_stages_empty(&lin->stages, moves_with(lin));
-    return lin->idle_varies ? lin->stages.all : (once ? lin->stages.none : lin->stages.mass);
+    return lin->free_spin_varies ? lin->stages.all
+                                 : (once ? lin->stages.none : lin->stages.mass);
 }
 
 static mt_status run_tangent(mt_linear *lin, const double *inputs, mt_err *err)
@@ -457,7 +458,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
     return with_gradient ? run_tangent(lin, inputs, err) : MT_OK;
 }
 
-mt_status mt_linear_place(mt_linear *lin, const double *inputs, mt_err *err)
+mt_status mt_linear_set_inputs(mt_linear *lin, const double *inputs, mt_err *err)
 {
     MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
     MT_TRY(run_program(lin, inputs, false, err));
@@ -549,12 +550,12 @@ double mt_linear_slope(const mt_linear *lin, mt_node node, int input)
     return lin->grad[((ptrdiff_t)node * lin->sys->n_inputs) + input];
 }
 
-int mt_linear_idle(const mt_linear *lin, const bool **idle)
+int mt_linear_free_spins(const mt_linear *lin, const bool **free_spins)
 {
-    if (idle != NULL) {
-        *idle = lin->idle;
+    if (free_spins != NULL) {
+        *free_spins = lin->free_spins;
     }
-    return lin->n_idle;
+    return lin->n_free_spins;
 }
 
 void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi)

@@ -28,7 +28,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
                            mt_err *err);
 /* Of an update the position alone, for who only draws it: mt_linear_position has it, all else
  * is void until the next update. */
-mt_status mt_linear_place(mt_linear *lin, const double *inputs, mt_err *err);
+mt_status mt_linear_set_inputs(mt_linear *lin, const double *inputs, mt_err *err);
 /* From now on a driven joint begins where the last update left it, instead of at the reference
  * position: for sweeps. The first update after this call begins at the reference position; so
  * do all of them after `on` false. */
@@ -80,8 +80,8 @@ const double *mt_linear_fixed(const mt_linear *lin, mt_term_kind kind);
 double mt_linear_value(const mt_linear *lin, mt_node node);
 double mt_linear_slope(const mt_linear *lin, mt_node node, int input);
 /* idle[bodies] (may be NULL): which spin without mass, stiffness or joint, and are left out of
- * the freedoms (idle.h). Returns how many such spins there are. */
-int mt_linear_idle(const mt_linear *lin, const bool **idle);
+ * the freedoms (free_spin.h). Returns how many such spins there are. */
+int mt_linear_free_spins(const mt_linear *lin, const bool **free_spins);
 
 /* phi = Z y: y n x cols, phi nq x cols. */
 void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *phi);

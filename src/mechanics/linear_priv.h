@@ -31,8 +31,8 @@ struct mt_linear {
     int m;             /* constraints in force */
     double *a;         /* m x nq */
     int n;             /* freedoms */
-    int n_idle; /* spins without mass, stiffness or joint, left out of the freedoms (idle.h) */
-    bool *idle; /* [bodies] takes part in one */
+    int n_free_spins; /* spins without mass, stiffness or joint, left out of the freedoms (free_spin.h) */
+    bool *free_spins;                  /* [bodies] takes part in one */
     int n_pieces;                      /* of pieces */
     double *rows[MT_TERM_KINDS];       /* 12 x n_rows, local freedoms */
     mt_rows full[MT_TERM_KINDS];       /* the same over the states, by local freedom */
@@ -65,7 +65,7 @@ struct mt_linear {
      * position: for sweeps */
     bool follow;
     bool has_last;              /* `last` is some place */
-    bool idle_varies;           /* whether there are idle spins depends on inputs */
+    bool free_spin_varies;      /* whether there are idle spins depends on inputs */
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
 };
 

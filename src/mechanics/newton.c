@@ -35,7 +35,7 @@ static const double IN_THE_SET = 1e-6;
 /* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim +
  * H step unbalanced, A^T lambda' = -r. */
 static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solver, double trim,
-                           mt_arena *mem, mt_step_left *left, mt_err *err)
+                           mt_arena *mem, mt_newton_residual *left, mt_err *err)
 {
     const int nq = w->sys->nq;
     const int m = w->p->m;
@@ -305,7 +305,7 @@ static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_pl
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));
         e = &held;
     }
-    mt_poses_way(w->sys, start->pose, at->pose, way);
+    mt_poses_increment(w->sys, start->pose, at->pose, way);
     return mt_newton_falls(w, e, way, &end->saddle, mem, err);
 }
 

@@ -40,14 +40,14 @@ typedef struct mt_stage {
     int factors;             /* of matrices, in them */
     mt_newton_solver solver; /* at the solution */
     int m;
-    double *lambda;    /* [m] multipliers: constraint force A^T lambda */
-    double *h;         /* nq x nq Hessian of the Lagrangian; NULL: the solver is sparse */
-    double *a;         /* m x nq; likewise */
-    double *trim;      /* [nq] gradient of the trimmed spring's measure */
-    double trim_force; /* its force; physical energy [N, N m] */
-    double residual;   /* largest unbalanced force / largest force */
-    mt_step_left left; /* with the physical energy */
-    int null_freedoms; /* freedoms without stiffness at the solution */
+    double *lambda;          /* [m] multipliers: constraint force A^T lambda */
+    double *h;               /* nq x nq Hessian of the Lagrangian; NULL: the solver is sparse */
+    double *a;               /* m x nq; likewise */
+    double *trim;            /* [nq] gradient of the trimmed spring's measure */
+    double trim_force;       /* its force; physical energy [N, N m] */
+    double residual;         /* largest unbalanced force / largest force */
+    mt_newton_residual left; /* with the physical energy */
+    int null_freedoms;       /* freedoms without stiffness at the solution */
     /* derivatives with respect to one input, of the physical energy (newton_tangent.h) */
     double *d_lambda; /* [m] */
     double d_trim_force;

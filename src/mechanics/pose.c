@@ -117,7 +117,8 @@ double mt_poses_distance(const mt_system *sys, const mt_pose *a, const mt_pose *
     return most;
 }
 
-void mt_poses_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way)
+void mt_poses_increment(const mt_system *sys, const mt_pose *from, const mt_pose *to,
+                        double *way)
 {
     for (int b = 0; b < sys->n_bodies; b++) {
         double r[3][3]; /* R1 R0^T */

@@ -28,7 +28,8 @@ void mt_poses_tangent(const mt_system *sys, const mt_pose *poses, const double *
 /* Largest difference: model lengths, and entries of the rotations. NaN where there is one. */
 double mt_poses_distance(const mt_system *sys, const mt_pose *a, const mt_pose *b);
 /* way[nq]: the motion that takes `from` to `to`. */
-void mt_poses_way(const mt_system *sys, const mt_pose *from, const mt_pose *to, double *way);
+void mt_poses_increment(const mt_system *sys, const mt_pose *from, const mt_pose *to,
+                        double *way);
 
 /* A position of a system, with what the poses alone do not tell. */
 typedef struct mt_placement {

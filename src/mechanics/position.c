@@ -172,7 +172,7 @@ static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt
     int column = 0;
     const bool known = c->drive.trim && strcmp(c->drive.trim_name.s, spring) == 0 &&
                        m->path != NULL &&
-                       mt_model_place(m, c->drive.trim_name.addr, &line, &column);
+                       mt_model_locate(m, c->drive.trim_name.addr, &line, &column);
     char place[PLACE_SIZE] = "";
     if (known) {
         (void)mt_snprintf(place, sizeof place, " (%s:%d:%d)", mt_text_base_name(m->path), line,
@@ -281,7 +281,7 @@ static mt_status state_init(mt_state *p, const mt_system *sys, mt_arena *mem, mt
 }
 
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
-                            mt_position_way way, mt_arena *mem, mt_state *out, mt_err *err)
+                            mt_position_method way, mt_arena *mem, mt_state *out, mt_err *err)
 {
     MT_TRY(state_init(out, sys, mem, err));
     out->sparse = way == MT_POSITION_SPARSE;

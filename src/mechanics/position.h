@@ -47,11 +47,11 @@ typedef struct mt_state {
 /* QUICK: closures by the smallest steps where they converge as they should. EXACT: none, which
  * is the slow way that the quick one is judged by. SPARSE: not driven, in O(bodies) of a chain,
  * or as the fill of a factor costs; fails with MT_E_EQUILIBRIUM where that does not do. */
-typedef enum mt_position_way {
+typedef enum mt_position_method {
     MT_POSITION_QUICK,
     MT_POSITION_EXACT,
     MT_POSITION_SPARSE
-} mt_position_way;
+} mt_position_method;
 
 /* data holds values (input -1) with vectors loaded; targets and rest values are filled here.
  * Results and work in mem. start: NULL, or where a driven joint begins instead of at the
@@ -59,7 +59,7 @@ typedef enum mt_position_way {
  * joint; contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under
  * load), MT_E_DEAD_CENTRE (singular.h: where it begins). */
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
-                            mt_position_way way, mt_arena *mem, mt_state *out, mt_err *err);
+                            mt_position_method way, mt_arena *mem, mt_state *out, mt_err *err);
 /* Derivative with respect to data->input (vectors, targets loaded with derivatives here). Fills
  * d_*, and data's rest values with their derivative. */
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err);

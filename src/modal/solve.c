@@ -120,7 +120,7 @@ static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
 }
 
 /* How many of the lowest modes hold all of a part; doubts: and all that may be 0. */
-static int end_of(const mt_modes *out, const mt_modal_part *part, bool doubts)
+static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_list)
 {
     const bool all = part->first <= 0 && !(part->up_to > 0.0);
     int seen = 0;
@@ -131,8 +131,8 @@ static int end_of(const mt_modes *out, const mt_modal_part *part, bool doubts)
         const bool asked =
             seen <= part->first || (part->up_to > 0.0 && out->lambda[i] <= part->up_to);
         const bool repeated = i > 0 && end == i && out->cluster[i] == out->cluster[i - 1];
-        const bool doubt = doubts && out->lambda[i] <= out->error[i];
-        end = all || !flexible || asked || repeated || doubt ? i + 1 : end;
+        const bool warning = warning_list && out->lambda[i] <= out->error[i];
+        end = all || !flexible || asked || repeated || warning ? i + 1 : end;
     }
     return end;
 }

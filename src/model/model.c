@@ -115,7 +115,7 @@ int mt_model_find_sensor(const mt_model *model, const char *name)
     return find(&model->tables->sensors, name);
 }
 
-bool mt_model_place(const mt_model *model, mt_addr addr, int *line, int *column)
+bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column)
 {
     int first = 0;
     int last = model->n_places - 1;

@@ -6,7 +6,7 @@
 
 #include "base/arena.h"
 #include "base/diag.h"
-#include "base/doubt.h"
+#include "base/warning.h"
 #include "expr/expr.h"
 #include "expr/kind.h"
 #include "expr/units.h"
@@ -14,7 +14,7 @@
 
 /*
  * The description of one mechanism and its configurations. A reader fills the lists (names,
- * numbers, addresses of both), then mt_model_finish resolves names, checks what needs no
+ * numbers, addresses of both), then mt_model_resolve resolves names, checks what needs no
  * numbers, and from then on the model is immutable and may be shared by threads. Numbers stay
  * expressions of parameters: values belong to a configuration (mechanics instantiates it).
  * Geometry: the reference position, global coordinates [m]; angles [rad].
@@ -35,8 +35,8 @@ typedef int mt_num;
 typedef struct mt_number {
     mt_expr expr;
     mt_addr addr;
-    mt_possible_id possible; /* the row of its member, by the reader */
-    const char *unit_doubt;  /* why it is no number of its member, by units; NULL: it may be */
+    mt_possible_id possible;  /* the row of its member, by the reader */
+    const char *unit_warning; /* why it is no number of its member, by units; NULL: it may be */
 } mt_number;
 
 /* A name in the file: what it says and where. s == NULL: absent. */
@@ -443,15 +443,16 @@ typedef struct mt_model {
      * asks it of a copy of this record that has the interrupt (and borrows everything else):
      * then no work on the model can be begun without passing by it. */
     struct mt_interrupt *interrupt;
-    struct mt_profile *profile;   /* NULL: nobody asks what evaluations do (base/profile.h) */
-    struct mt_spent *spent;       /* NULL: nobody asks what the work costs (base/spent.h) */
+    struct mt_profile *profile; /* NULL: nobody asks what evaluations do (base/profile.h) */
+    /* NULL: nobody asks what the work costs (base/work_counters.h) */
+    struct mt_work_counters *spent;
     struct mt_progress *progress; /* NULL: nobody asks how far it is (base/progress.h) */
 } mt_model;
 
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */
 mt_status mt_model_new(mt_model **out, mt_err *err);
 void mt_model_delete(mt_model *model);
-/* Add a number; returns its index, MT_ABSENT when out of memory (noted; mt_model_finish fails
+/* Add a number; returns its index, MT_ABSENT when out of memory (noted; mt_model_resolve fails
  * then). */
 mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr);
 /* Lookup function for mt_expr_parse over model->parameters (context: the model). */
@@ -467,7 +468,7 @@ int mt_model_find_link(const mt_model *model, const char *name);
 int mt_model_find_sensor(const mt_model *model, const char *name);
 /* Line and column in model->path of what stands at an address (of a number, a position, a name,
  * a drive); false where it is not known. */
-bool mt_model_place(const mt_model *model, mt_addr addr, int *line, int *column);
+bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column);
 /* Whether the item is present in configuration c. */
 bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);

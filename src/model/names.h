@@ -37,7 +37,7 @@ void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool 
 int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found);
 
 /* Make the table of parameters before the others exist, so that mt_model_lookup is fast while
- * expressions are read. Duplicates are left to mt_model_finish. */
+ * expressions are read. Duplicates are left to mt_model_resolve. */
 void mt_model_index_parameters(mt_model *model);
 /* The same for points, while positions are read. */
 void mt_model_index_points(mt_model *model);

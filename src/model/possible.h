@@ -31,32 +31,32 @@ typedef enum mt_possible_id {
     MT_POSSIBLE_POINT,   /* coordinates of what a joint or spring holds */
     MT_POSSIBLE_AXIS,
     MT_POSSIBLE_GRAVITY,
-    MT_POSSIBLE_WHOLE,     /* a whole number: its limits are those of mt_reader_count */
-    MT_POSSIBLE_SHARE,     /* a MAC or a damping ratio that is asked for: above 0, at most 1 */
-    MT_POSSIBLE_PROOF,     /* seconds of a proof */
-    MT_POSSIBLE_SPREAD,    /* what weights are multiplied with and divided by */
-    MT_POSSIBLE_MET,       /* percent within which a goal is met */
-    MT_POSSIBLE_TOLERANCE, /* percent of manufacturing */
-    MT_POSSIBLE_MARGIN,    /* percent around a band */
-    MT_POSSIBLE_ASKED,     /* a frequency that a goal asks for [Hz] */
-    MT_POSSIBLE_MEASURED,  /* a measured frequency [Hz] */
-    MT_POSSIBLE_BAND,      /* ends of bands to avoid, or of a measurement [Hz] */
-    MT_POSSIBLE_RANGE,     /* ends of a range of a response [Hz] */
-    MT_POSSIBLE_LIMIT,     /* of an expression, in its unit */
-    MT_POSSIBLE_BOUND,     /* of a variable, in its unit */
-    MT_POSSIBLE_VALUES,    /* of a catalogue, in the unit of its variable */
-    MT_POSSIBLE_RULE,      /* bounds of a catalogue's rule */
-    MT_POSSIBLE_VARIED,    /* values of a trade study */
-    MT_POSSIBLE_SPEED,     /* of a rotor [1/s] */
-    MT_POSSIBLE_RPM,       /* of a rotor [1/min] */
-    MT_POSSIBLE_MACHINE,   /* speeds of a machine [1/s] */
-    MT_POSSIBLE_FACTORS,   /* of a nominal speed */
-    MT_POSSIBLE_HZ,        /* a frequency of a profile of vibration */
-    MT_POSSIBLE_PSD_G,     /* [g^2/Hz] */
-    MT_POSSIBLE_PSD,       /* [m^2/s^3] */
-    MT_POSSIBLE_LEVEL_G,   /* [g] */
-    MT_POSSIBLE_LEVEL,     /* [m/s^2] */
-    MT_POSSIBLE_SLOPE,     /* [dB/octave] */
+    MT_POSSIBLE_WHOLE, /* a whole number: its limits are those of mt_reader_count */
+    MT_POSSIBLE_SHARE, /* a MAC or a damping ratio that is asked for: above 0, at most 1 */
+    MT_POSSIBLE_PROOF, /* seconds of a proof */
+    MT_POSSIBLE_WEIGHT_SENSITIVITY, /* what weights are multiplied with and divided by */
+    MT_POSSIBLE_MET,                /* percent within which a goal is met */
+    MT_POSSIBLE_TOLERANCE,          /* percent of manufacturing */
+    MT_POSSIBLE_MARGIN,             /* percent around a band */
+    MT_POSSIBLE_ASKED,              /* a frequency that a goal asks for [Hz] */
+    MT_POSSIBLE_MEASURED,           /* a measured frequency [Hz] */
+    MT_POSSIBLE_BAND,               /* ends of bands to avoid, or of a measurement [Hz] */
+    MT_POSSIBLE_RANGE,              /* ends of a range of a response [Hz] */
+    MT_POSSIBLE_LIMIT,              /* of an expression, in its unit */
+    MT_POSSIBLE_BOUND,              /* of a variable, in its unit */
+    MT_POSSIBLE_VALUES,             /* of a catalogue, in the unit of its variable */
+    MT_POSSIBLE_RULE,               /* bounds of a catalogue's rule */
+    MT_POSSIBLE_VARIED,             /* values of a trade study */
+    MT_POSSIBLE_SPEED,              /* of a rotor [1/s] */
+    MT_POSSIBLE_RPM,                /* of a rotor [1/min] */
+    MT_POSSIBLE_MACHINE,            /* speeds of a machine [1/s] */
+    MT_POSSIBLE_FACTORS,            /* of a nominal speed */
+    MT_POSSIBLE_HZ,                 /* a frequency of a profile of vibration */
+    MT_POSSIBLE_PSD_G,              /* [g^2/Hz] */
+    MT_POSSIBLE_PSD,                /* [m^2/s^3] */
+    MT_POSSIBLE_LEVEL_G,            /* [g] */
+    MT_POSSIBLE_LEVEL,              /* [m/s^2] */
+    MT_POSSIBLE_SLOPE,              /* [dB/octave] */
     MT_POSSIBLE_SIGMA,
     MT_POSSIBLE_COUNT
 } mt_possible_id;

@@ -321,10 +321,11 @@ double mt_nlp_distance(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_n
     return d;
 }
 
-void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, double *g)
+void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
+                     double *g)
 {
     const mt_nlp *const q = e->nlp;
-    if (aim != MT_NLP_SQUARES) {
+    if (stage != MT_NLP_SQUARES) {
         memcpy(g, p->df, (size_t)e->n * sizeof *g);
         return;
     }

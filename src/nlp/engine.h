@@ -59,7 +59,7 @@ typedef struct mt_nlp_engine {
 
 /* What a local method minimises: the objective under the constraints, the residuals r, or the
  * squares of the violations (both of the latter under the bounds only). */
-typedef enum mt_nlp_aim { MT_NLP_OBJECTIVE, MT_NLP_RESIDUALS, MT_NLP_SQUARES } mt_nlp_aim;
+typedef enum mt_nlp_stage { MT_NLP_OBJECTIVE, MT_NLP_RESIDUALS, MT_NLP_SQUARES } mt_nlp_stage;
 
 mt_status mt_nlp_engine_init(mt_nlp_engine *e, const mt_nlp *nlp, const mt_nlp_options *opt,
                              mt_err *err);
@@ -84,6 +84,7 @@ bool mt_nlp_feasible(const mt_nlp_point *p);
 /* Largest |a_j - b_j|. */
 double mt_nlp_distance(const mt_nlp_engine *e, const mt_nlp_point *a, const mt_nlp_point *b);
 /* Gradient of what `aim` minimises (squares and residuals with the factor 1/2), g[n]. */
-void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, double *g);
+void mt_nlp_gradient(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
+                     double *g);
 
 #endif

@@ -78,7 +78,7 @@ static bool is_twin(const mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_
     return false;
 }
 
-static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim,
+static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
                        mt_nlp_active *a)
 {
     const mt_nlp *const q = e->nlp;
@@ -90,10 +90,10 @@ static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
                                                          : 0;
         }
     }
-    for (int i = 0; i < q->n_eq && aim == MT_NLP_OBJECTIVE; i++) {
+    for (int i = 0; i < q->n_eq && stage == MT_NLP_OBJECTIVE; i++) {
         a->row[a->k++] = i;
     }
-    for (int i = q->n_eq; i < q->n_eq + q->n_in + q->n_next && aim == MT_NLP_OBJECTIVE; i++) {
+    for (int i = q->n_eq; i < q->n_eq + q->n_in + q->n_next && stage == MT_NLP_OBJECTIVE; i++) {
         const double near = fmax(IN_NEAR, IN_NEAR_TOLS * mt_nlp_row_tol(e, i));
         if (mt_nlp_row_value(e, p, i) <= near &&
             (i < q->n_eq + q->n_in || !is_twin(e, p, a, i))) {
@@ -103,7 +103,7 @@ static void candidates(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
 }
 
 /* Free variables, scaled rows, their factors and the multipliers for the present candidates. */
-static mt_status multipliers(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim,
+static mt_status multipliers(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
                              mt_arena *mem, mt_nlp_active *a)
 {
     a->n_free = 0;
@@ -128,7 +128,7 @@ static mt_status multipliers(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim
         }
         a->c[i] = mt_nlp_row_value(e, p, a->row[i]);
     }
-    mt_nlp_gradient(e, p, aim, a->z);
+    mt_nlp_gradient(e, p, stage, a->z);
     for (int j = 0; j < nf; j++) {
         gf[j] = a->z[a->free[j]];
     }
@@ -174,7 +174,7 @@ static bool drop_worst(const mt_nlp_engine *e, mt_nlp_active *a, double g_norm)
     return true;
 }
 
-static double relative_kkt(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim,
+static double relative_kkt(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
                            const mt_nlp_active *a, double g_norm)
 {
     double z = 0;
@@ -185,7 +185,8 @@ static double relative_kkt(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp
     for (int i = 0; i < a->k; i++) {
         scale = fmax(scale, fabs(a->lambda[i]) * a->scale[i]);
     }
-    if (aim == MT_NLP_SQUARES) { /* its gradient is J^T c: small against |J| |c|, not itself */
+    if (stage ==
+        MT_NLP_SQUARES) { /* its gradient is J^T c: small against |J| |c|, not itself */
         const ptrdiff_t n = e->n;
         scale =
             fmax(mt_max_abs(e->nlp->n_eq * n, p->deq), mt_max_abs(e->nlp->n_in * n, p->din)) *
@@ -195,19 +196,19 @@ static double relative_kkt(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp
 }
 
 /* |gradient of the aim| over the variables that are not held; g[n] is scratch. */
-static double gradient_norm(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim,
+static double gradient_norm(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
                             double *g)
 {
     double sum = 0;
-    mt_nlp_gradient(e, p, aim, g);
+    mt_nlp_gradient(e, p, stage, g);
     for (int j = 0; j < e->n; j++) {
         sum += e->held[j] ? 0 : g[j] * g[j];
     }
     return sqrt(sum);
 }
 
-bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, mt_arena *mem,
-                       mt_nlp_active *a)
+bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
+                       mt_arena *mem, mt_nlp_active *a)
 {
     const size_t n = (size_t)e->n;
     const size_t k = (size_t)e->nlp->n_eq + (size_t)e->nlp->n_in + (size_t)e->nlp->n_next;
@@ -221,11 +222,11 @@ bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, 
     if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
-    candidates(e, p, aim, a);
-    const double g_norm = gradient_norm(e, p, aim, a->z);
+    candidates(e, p, stage, a);
+    const double g_norm = gradient_norm(e, p, stage, a->z);
     for (;;) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
-        if (!mt_nlp_ok(e, multipliers(e, p, aim, mem, a))) {
+        if (!mt_nlp_ok(e, multipliers(e, p, stage, mem, a))) {
             return false;
         }
         if (!drop_worst(e, a, g_norm)) {
@@ -233,6 +234,6 @@ bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, 
         }
         mt_arena_rewind(mem, mark);
     }
-    a->kkt = relative_kkt(e, p, aim, a, g_norm);
+    a->kkt = relative_kkt(e, p, stage, a, g_norm);
     return true;
 }

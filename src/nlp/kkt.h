@@ -21,8 +21,8 @@ typedef struct mt_nlp_active {
     double kkt;     /* |z on the free variables|, relative */
 } mt_nlp_active;
 
-bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_aim aim, mt_arena *mem,
-                       mt_nlp_active *a);
+bool mt_nlp_active_set(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
+                       mt_arena *mem, mt_nlp_active *a);
 /* Derivative of constraint row i (as in mt_nlp_active.row) with respect to variable j. */
 double mt_nlp_row_slope(const mt_nlp_engine *e, const mt_nlp_point *p, int i, int j);
 /* Its value, and its tolerance. */

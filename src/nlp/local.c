@@ -18,9 +18,9 @@
 
 #include "nlp/kkt.h"
 #include "nlp/lsq.h"
+#include "nlp/near_null_directions.h"
 #include "nlp/polish.h"
 #include "nlp/slsqp.h"
-#include "nlp/weakness.h"
 
 enum { ROUNDS = 3 };
 /* KKT residuals below this are local solutions. */
@@ -55,7 +55,7 @@ mt_nlp_local mt_nlp_local_new(const mt_nlp_engine *e, mt_arena *mem)
 
 const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s)
 {
-    return s->aim == MT_NLP_OBJECTIVE && !s->polished && mt_nlp_nearly_feasible(s->last)
+    return s->stage == MT_NLP_OBJECTIVE && !s->polished && mt_nlp_nearly_feasible(s->last)
                ? s->last
                : s->p;
 }
@@ -168,7 +168,7 @@ static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
 
 void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s)
 {
-    s->aim = MT_NLP_OBJECTIVE;
+    s->stage = MT_NLP_OBJECTIVE;
     descend(e, false, s);
     finish_minimum(e, s);
 }
@@ -176,14 +176,15 @@ void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s)
 /* Equalities settle everything: roots. Where they turn out dependent, the objective decides. */
 static void find_root(mt_nlp_engine *e, mt_nlp_local *s)
 {
-    mt_nlp_weakness w;
+    mt_nlp_near_null_directions w;
     mt_nlp_least_squares(e, MT_NLP_SQUARES, s->p);
-    if (!mt_nlp_feasible(s->p) || e->ended || !mt_nlp_weakness_at(e, s->p, &e->scratch, &w)) {
+    if (!mt_nlp_feasible(s->p) || e->ended ||
+        !mt_nlp_near_null_directions_at(e, s->p, &e->scratch, &w)) {
         return;
     }
     s->curve = w.curve;
     if (w.curve && w.n_rows < e->n_free) {
-        s->aim = MT_NLP_OBJECTIVE;
+        s->stage = MT_NLP_OBJECTIVE;
         s->n_rows = w.n_rows;
         memcpy(s->rows, w.rows, (size_t)w.n_rows * sizeof *s->rows);
         descend(e, false, s);
@@ -197,13 +198,13 @@ static void approach(mt_nlp_engine *e, mt_nlp_local *s)
         s->rows[s->n_rows] = s->n_rows;
     }
     if (q->n_eq >= e->n_free) {
-        s->aim = MT_NLP_SQUARES;
+        s->stage = MT_NLP_SQUARES;
         find_root(e, s);
     } else if (q->n_res > 0 && q->n_eq == 0 && q->n_in == 0) {
-        s->aim = MT_NLP_RESIDUALS;
+        s->stage = MT_NLP_RESIDUALS;
         mt_nlp_least_squares(e, MT_NLP_RESIDUALS, s->p);
     } else {
-        s->aim = MT_NLP_OBJECTIVE;
+        s->stage = MT_NLP_OBJECTIVE;
         descend(e, false, s);
     }
 }
@@ -211,14 +212,14 @@ static void approach(mt_nlp_engine *e, mt_nlp_local *s)
 void mt_nlp_local_approach(mt_nlp_engine *e, mt_nlp_local *s)
 {
     approach(e, s);
-    s->polished = s->aim == MT_NLP_SQUARES && mt_nlp_feasible(s->p);
+    s->polished = s->stage == MT_NLP_SQUARES && mt_nlp_feasible(s->p);
     const mt_nlp_point *const at = mt_nlp_local_stand(s);
     /* or it minimises squares by now */
     const bool below = mt_nlp_feasible(at) || at == s->last;
     mt_nlp_active a;
     memcpy(s->from, at->t, (size_t)e->n * sizeof *s->from);
     if (!e->ended && !s->polished &&
-        mt_nlp_active_set(e, at, below ? s->aim : MT_NLP_SQUARES, &e->scratch, &a)) {
+        mt_nlp_active_set(e, at, below ? s->stage : MT_NLP_SQUARES, &e->scratch, &a)) {
         s->kkt = a.kkt;
     }
 }
@@ -235,9 +236,9 @@ void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s)
         if (s->abandoned) {
             break;
         }
-        if (s->aim == MT_NLP_OBJECTIVE) {
+        if (s->stage == MT_NLP_OBJECTIVE) {
             finish_minimum(e, s);
-        } else if (s->aim == MT_NLP_RESIDUALS) {
+        } else if (s->stage == MT_NLP_RESIDUALS) {
             mt_nlp_polish(e, MT_NLP_RESIDUALS, s->p, NULL);
         }
         if (!mt_nlp_feasible(s->p)) {

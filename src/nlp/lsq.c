@@ -43,7 +43,7 @@ static const double VIOLATION_EXACT = 1e-3;
 
 typedef struct lsq {
     mt_nlp_engine *e;
-    mt_nlp_aim aim;
+    mt_nlp_stage stage;
     int m;
     double *R;  /* [m] */
     double *J;  /* m x n */
@@ -60,7 +60,7 @@ static void linearise(lsq *w, const mt_nlp_point *p)
 {
     const mt_nlp *const q = w->e->nlp;
     const ptrdiff_t m = w->m;
-    if (w->aim == MT_NLP_RESIDUALS) {
+    if (w->stage == MT_NLP_RESIDUALS) {
         memcpy(w->R, p->r, (size_t)m * sizeof *w->R);
         memcpy(w->J, p->dr, (size_t)m * (size_t)w->e->n * sizeof *w->J);
         return;
@@ -80,7 +80,7 @@ static void linearise(lsq *w, const mt_nlp_point *p)
 
 static double half_squares(const lsq *w, const mt_nlp_point *p)
 {
-    return w->aim == MT_NLP_RESIDUALS ? p->f : 0.5 * p->squares;
+    return w->stage == MT_NLP_RESIDUALS ? p->f : 0.5 * p->squares;
 }
 
 /* Free variables: not held, not on a bound that the gradient pushes through. Returns the
@@ -209,7 +209,7 @@ static void iterate(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
             rejected = 0;
             continue;
         }
-        const bool exact = w->aim == MT_NLP_SQUARES && cur->violation <= VIOLATION_EXACT;
+        const bool exact = w->stage == MT_NLP_SQUARES && cur->violation <= VIOLATION_EXACT;
         if (w->e->ended || ++rejected > (exact ? REJECTIONS_EXACT : REJECTIONS)) {
             break;
         }
@@ -219,16 +219,16 @@ static void iterate(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
     mt_nlp_point_copy(w->e, p, cur);
 }
 
-void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p)
+void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;
     mt_arena *const mem = &e->scratch;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    const int rows = aim == MT_NLP_RESIDUALS ? q->n_res : q->n_eq + q->n_in;
+    const int rows = stage == MT_NLP_RESIDUALS ? q->n_res : q->n_eq + q->n_in;
     const size_t n = (size_t)e->n;
     const size_t m = (size_t)rows;
     lsq w = {.e = e,
-             .aim = aim,
+             .stage = stage,
              .m = rows,
              .R = mt_arena_f64(mem, m, 1),
              .J = mt_arena_f64(mem, m, n),

@@ -6,6 +6,6 @@
 
 /* Bounded Levenberg-Marquardt from *p on residuals or violations; *p is where it
  * ends. */
-void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p);
+void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p);
 
 #endif

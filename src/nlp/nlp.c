@@ -3,7 +3,7 @@
  * The search: local solves from many starts, then judgement.
  *
  *     every start:  the approach of a local search (local.c)
- *     ends:         one of each neighbourhood is polished to full accuracy (ends.c)
+ *     ends:         one of each neighbourhood is polished to full accuracy (solution_pool.c)
  *     judgement:    feasible ones only, if any; undetermined directions at the best, all ends
  *                   pulled back along them; equal ones merged; ranked; multipliers, KKT,
  *                   singularity
@@ -17,12 +17,12 @@
 #include <string.h>
 
 #include "base/workers.h"
-#include "nlp/ends.h"
 #include "nlp/engine.h"
-#include "nlp/judge.h"
 #include "nlp/local.h"
+#include "nlp/solution_pool.h"
 #include "nlp/starts.h"
-#include "nlp/undetermined.h"
+#include "nlp/unidentifiable_directions.h"
+#include "nlp/verify_kkt.h"
 
 enum { HALVINGS = 6 };
 /* Starts between which it is asked whether more are of use. */
@@ -72,7 +72,7 @@ typedef struct start_job {
     bool told;             /* there */
 } start_job;
 
-static mt_status run_task(void *context, int worker, int k, mt_scope *own, mt_err *err)
+static mt_status run_task(void *context, int worker, int k, mt_task_path *own, mt_err *err)
 {
     (void)own;
     start_job *const job = context;
@@ -154,7 +154,7 @@ static void note_steps(const start_job *job, long before)
 }
 
 /* What a task leaves: what it used, and where its local search stands. */
-static void tape_task(void *context, int k, mt_tape *tape)
+static void serialize_task(void *context, int k, mt_serializer *serializer)
 {
     start_job *const job = context;
     job_slot *const slot = &job->slots[k];
@@ -163,15 +163,15 @@ static void tape_task(void *context, int k, mt_tape *tape)
     int refused = (int)slot->refused;
     const char *text = slot->refused_err.text;
     mt_arena *const mem = &job->e->scratch; /* while it is written: of nobody's use */
-    tape->failed = !tape->reads && atomic_load(&job->abort) != 0;
-    mt_tape_long(tape, &got.evals, 0, LONG_MAX);
-    mt_tape_int(tape, &stop, MT_STOP_DONE, MT_STOP_MAX_EVALS);
-    mt_tape_int(tape, &refused, MT_OK, MT_STATUS_COUNT - 1);
-    mt_tape_text(tape, &text, mem);
-    got.steps = tape->reads ? mt_steps_new(MT_STEPS_OF_TASK, mem) : slot->steps;
-    tape->failed = tape->failed || got.steps.at == NULL;
-    mt_steps_tape(&got.steps, tape);
-    if (!mt_nlp_local_tape(job->e, job->at[k], tape) || !tape->reads) {
+    serializer->failed = !serializer->reads && atomic_load(&job->abort) != 0;
+    mt_serializer_long(serializer, &got.evals, 0, LONG_MAX);
+    mt_serializer_int(serializer, &stop, MT_STOP_DONE, MT_STOP_MAX_EVALS);
+    mt_serializer_int(serializer, &refused, MT_OK, MT_STATUS_COUNT - 1);
+    mt_serializer_text(serializer, &text, mem);
+    got.steps = serializer->reads ? mt_steps_new(MT_STEPS_OF_TASK, mem) : slot->steps;
+    serializer->failed = serializer->failed || got.steps.at == NULL;
+    mt_steps_serialize(&got.steps, serializer);
+    if (!mt_nlp_local_serialize(job->e, job->at[k], serializer) || !serializer->reads) {
         return;
     }
     got.stop = (mt_stop)stop;
@@ -185,9 +185,9 @@ static void tape_task(void *context, int k, mt_tape *tape)
 /* The first values are nothing to be kept; searches are. */
 static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before)
 {
-    mt_scope *const place = e->nlp->scope;
+    mt_task_path *const place = e->nlp->task_path;
     const bool first = task == BEGIN;
-    const mt_tasks tasks = {job->n, run_task, tape_task, job,
+    const mt_tasks tasks = {job->n, run_task, serialize_task, job,
                             task == FINISH ? "ends of searches" : "starts"};
     job->task = task;
     job->progress = place != NULL && first ? place->progress : NULL;
@@ -203,7 +203,7 @@ static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before
 
 /* The approach from starts all->starts .. all->starts + n - 1; their ends are added to the
  * list. The scale of the objective is that of the first ones. */
-static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n, mt_steps *steps)
+static bool add_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int n, mt_steps *steps)
 {
     mt_arena *const mem = &e->scratch;
     const long before = e->evals;
@@ -211,7 +211,7 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n, mt_steps *step
     double *const t = mt_nlp_starts(e->nlp, e->opt.seed, all->starts + n, mem);
     job.slots = new_slots(n, mem);
     job.at = mt_arena_alloc(mem, (size_t)n, sizeof(mt_nlp_local *));
-    mt_nlp_ends_grow(e, all, n);
+    mt_nlp_solution_pool_grow(e, all, n);
     if (!mt_nlp_has_room(e, mem)) {
         return false;
     }
@@ -247,8 +247,8 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_ends *all, int n, mt_steps *step
  * them only are one. Then from one end of each neighbourhood, until all that are left came to
  * rest or had their turn.
  */
-static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_arena *mem,
-                        mt_nlp_result *out)
+static void finish_pool(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *steps,
+                        mt_arena *mem, mt_nlp_result *out)
 {
     mt_nlp_local **const chosen =
         mt_arena_alloc(&e->scratch, (size_t)all->count, sizeof(mt_nlp_local *));
@@ -277,11 +277,11 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_
         }
         if (all->directed == NULL && mt_nlp_came_to_rest(chosen[0])) {
             all->directed = chosen[0]->p;
-            if (!mt_nlp_undetermined(e, all->directed, mem, out)) {
+            if (!mt_nlp_unidentifiable(e, all->directed, mem, out)) {
                 return;
             }
         }
-        n = mt_nlp_ends_choose(e, all, out, chosen);
+        n = mt_nlp_solution_pool_choose(e, all, out, chosen);
     }
 }
 
@@ -291,7 +291,8 @@ static void finish_ends(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_
  * stands for as much that was not met at all: Good and Turing) and the last starts brought no
  * new one.
  */
-static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_nlp_result *out)
+static void all_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *steps,
+                       mt_nlp_result *out)
 {
     e->opt.skip = e->n_free > 0 && e->opt.skip < e->opt.starts ? e->opt.skip : 0;
     const int first = e->n_free > 0 ? e->opt.starts - e->opt.skip : 1;
@@ -300,7 +301,7 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_ends *all, mt_steps *steps, mt_n
     for (int left = first; left > 0 && more;) {
         const int now = e->opt.settles && left > STARTS_EACH ? STARTS_EACH : left;
         more = add_starts(e, all, now, steps);
-        left = e->opt.settles && more && mt_nlp_ends_settled(e, all) ? 0 : left - now;
+        left = e->opt.settles && more && mt_nlp_solution_pool_settled(e, all) ? 0 : left - now;
     }
     more = more && e->open_starts;
     int before = 1;
@@ -328,12 +329,12 @@ mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *m
     mt_nlp_engine e;
     *out = (mt_nlp_result){.stop = MT_STOP_DONE};
     MT_TRY(mt_nlp_engine_init(&e, nlp, opt, err));
-    mt_nlp_ends all = {0};
+    mt_nlp_solution_pool all = {0};
     out->steps = mt_steps_new(MT_STEPS_MOST, mem);
     (void)mt_nlp_has_room(&e, mem);
     all_starts(&e, &all, &out->steps, out);
-    finish_ends(&e, &all, &out->steps, mem, out);
-    mt_nlp_judge(&e, &all, mem, out);
+    finish_pool(&e, &all, &out->steps, mem, out);
+    mt_nlp_verify_kkt(&e, &all, mem, out);
     (void)mt_nlp_has_room(&e, &e.scratch);
     out->evals = e.evals;
     out->stop = e.stop;

@@ -24,7 +24,8 @@ typedef struct mt_nlp_values {
     /* [n_res] dimensionless: a change below 1e-6 counts as none where directions are judged */
     double *r;
     double *dr; /* n_res x n column-major */
-    /* [n_eq] relative to the demand (ln of a ratio), so that a compromise weighs them fairly */
+    /* [n_eq] relative to the requirement (ln of a ratio), so that a compromise weighs them
+     * fairly */
     double *eq;
     double *deq;   /* n_eq x n column-major */
     double *in;    /* [n_in] >= 0 feasible */
@@ -66,7 +67,8 @@ typedef struct mt_nlp {
     int n_workers; /* starts run on so many threads; 0 or 1: the caller's own */
     /* [n_workers] a context for each, contexts[0] == context; NULL with one worker */
     void *const *contexts;
-    struct mt_scope *scope; /* the place of its local searches (base/workers.h), or NULL */
+    /* the place of its local searches (base/workers.h), or NULL */
+    struct mt_task_path *task_path;
 } mt_nlp;
 
 typedef struct mt_nlp_options {
@@ -76,7 +78,8 @@ typedef struct mt_nlp_options {
      * root was met twice */
     int starts;
     int skip; /* so many of them, the first ones, have been made before: fewer than starts */
-    /* they end when those so far leave little hope of another end (mt_nlp_ends_settled) */
+    /* they end when those so far leave little hope of another end
+     * (mt_nlp_solution_pool_settled) */
     bool settles;
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
@@ -126,7 +129,7 @@ typedef struct mt_nlp_result {
     int n_solutions;
     mt_nlp_solution *solutions;
     /* none is feasible: these minimise the sum of squares of the violations relative to the
-     * demands */
+     * requirements */
     bool compromise;
     long evals;
     int starts;
@@ -139,11 +142,11 @@ typedef struct mt_nlp_result {
     mt_steps steps; /* on the way here */
     /* at the best solution: orthonormal directions of t-space along which crossing the whole
      * bounds changes every residual and constraint by less than its tolerance; of a space of
-     * them a basis that follows from the space alone (undetermined.c) */
-    int n_undetermined;
-    double *undetermined; /* n x n_undetermined */
-    /* [n_undetermined] greatest change / tolerance found when crossing */
-    double *undetermined_effect;
+     * them a basis that follows from the space alone (unidentifiable_directions.c) */
+    int n_unidentifiable;
+    double *unidentifiable; /* n x n_unidentifiable */
+    /* [n_unidentifiable] greatest change / tolerance found when crossing */
+    double *unidentifiable_effect;
 } mt_nlp_result;
 
 /*

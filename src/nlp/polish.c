@@ -59,7 +59,7 @@ static const double F_ROUNDING = 1e-9;
 
 typedef struct polish {
     mt_nlp_engine *e;
-    mt_nlp_aim aim;
+    mt_nlp_stage stage;
     mt_nlp_active a;
     int nz;
     double *Z;    /* n_free x nz */
@@ -98,7 +98,7 @@ static bool active_changed(polish *w)
 /* Gradient of the Lagrangian with the present multipliers at a point. */
 static void lagrangian(const polish *w, const mt_nlp_point *p, double *gl)
 {
-    mt_nlp_gradient(w->e, p, w->aim, gl);
+    mt_nlp_gradient(w->e, p, w->stage, gl);
     for (int i = 0; i < w->a.k; i++) {
         for (int j = 0; j < w->e->n; j++) {
             gl[j] -= w->a.lambda[i] * mt_nlp_row_slope(w->e, p, w->a.row[i], j);
@@ -159,7 +159,7 @@ static bool gauss_newton(polish *w)
 {
     const mt_nlp *const q = w->e->nlp;
     const int nf = w->a.n_free;
-    if (q->n_res == 0 || w->aim == MT_NLP_SQUARES) {
+    if (q->n_res == 0 || w->stage == MT_NLP_SQUARES) {
         return false;
     }
     double *const jz = mt_arena_f64(&w->e->scratch, (size_t)q->n_res, (size_t)w->nz);
@@ -260,9 +260,9 @@ static void keep(polish *w)
 {
     mt_nlp_point *const p = w->cur;
     const mt_nlp_point *const b = w->best;
-    const bool constrained = w->aim == MT_NLP_OBJECTIVE;
+    const bool constrained = w->stage == MT_NLP_OBJECTIVE;
     p->kkt = w->a.kkt;
-    const double value = w->aim == MT_NLP_SQUARES ? p->squares : p->f;
+    const double value = w->stage == MT_NLP_SQUARES ? p->squares : p->f;
     if ((constrained && mt_nlp_feasible(b) && !mt_nlp_feasible(p)) ||
         (value > w->limit && (!constrained || mt_nlp_feasible(b)))) {
         return;
@@ -270,7 +270,7 @@ static void keep(polish *w)
     const double mine = constrained ? fmax(p->kkt, p->violation * STATIONARY) : p->kkt;
     const double theirs = constrained ? fmax(b->kkt, b->violation * STATIONARY) : b->kkt;
     const bool first = constrained && mt_nlp_feasible(p) && !mt_nlp_feasible(b);
-    if (first) { /* from outside, the demands cost what they cost: the limit counts from here */
+    if (first) { /* from outside, the requirements cost what they cost: the limit counts from here */
         w->limit = fmax(w->limit, p->f + rise_allowed(w, p));
     }
     if (mine < theirs || first) {
@@ -339,10 +339,10 @@ static int loose_directions(const polish *w)
     const mt_nlp_active *const a = &w->a;
     double scale = GRADIENT_FLOOR * w->e->df_scale;
     int n = 0;
-    if (w->n_v < 0 || w->e->nlp->n_res > 0 || w->aim != MT_NLP_OBJECTIVE) {
+    if (w->n_v < 0 || w->e->nlp->n_res > 0 || w->stage != MT_NLP_OBJECTIVE) {
         return -1;
     }
-    mt_nlp_gradient(w->e, w->cur, w->aim, w->gl);
+    mt_nlp_gradient(w->e, w->cur, w->stage, w->gl);
     for (int j = 0; j < w->e->n; j++) {
         scale = w->e->held[j] ? scale : fmax(scale, fabs(w->gl[j]));
     }
@@ -375,11 +375,11 @@ static double longest(const polish *w)
 static bool newton_step(polish *w, double *size, double *saddle)
 {
     mt_nlp_engine *const e = w->e;
-    if (!mt_nlp_active_set(e, w->cur, w->aim, &e->scratch, &w->a)) {
+    if (!mt_nlp_active_set(e, w->cur, w->stage, &e->scratch, &w->a)) {
         return false;
     }
     keep(w);
-    const double c = w->aim == MT_NLP_OBJECTIVE ? w->cur->violation : 0;
+    const double c = w->stage == MT_NLP_OBJECTIVE ? w->cur->violation : 0;
     const bool done = w->a.kkt <= KKT_DONE && c <= VIOLATION_DONE;
     if (e->ended || (done && saddle == NULL) || !normal_step(w)) {
         return false;
@@ -426,10 +426,10 @@ static void iterate(polish *w, double *saddle)
     }
 }
 
-void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *saddle)
+void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p, double *saddle)
 {
     const mt_nlp *const q = e->nlp;
-    polish w = {.e = e, .aim = aim, .n_v = -1, .n_loose = -1};
+    polish w = {.e = e, .stage = stage, .n_v = -1, .n_loose = -1};
     mt_arena *const mem = &e->scratch;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     w.gl = mt_arena_f64(mem, (size_t)e->n, 1);
@@ -445,9 +445,9 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *sa
     if (saddle != NULL) {
         memset(saddle, 0, (size_t)e->n * sizeof *saddle);
     }
-    if (mt_nlp_has_room(e, mem) && mt_nlp_active_set(e, p, aim, mem, &w.a)) {
-        w.limit =
-            aim == MT_NLP_SQUARES ? p->squares * (1 + F_ROUNDING) : p->f + rise_allowed(&w, p);
+    if (mt_nlp_has_room(e, mem) && mt_nlp_active_set(e, p, stage, mem, &w.a)) {
+        w.limit = stage == MT_NLP_SQUARES ? p->squares * (1 + F_ROUNDING)
+                                          : p->f + rise_allowed(&w, p);
         p->kkt = w.a.kkt;
         mt_nlp_point_copy(e, w.cur, p);
         mt_nlp_point_copy(e, w.best, p);

@@ -6,6 +6,6 @@
 
 /* Newton on the KKT conditions from p. p is replaced where the result is better.
  * saddle (may be NULL): [n] a direction of negative curvature, all zero where there is none. */
-void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_aim aim, mt_nlp_point *p, double *saddle);
+void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p, double *saddle);
 
 #endif

@@ -76,8 +76,8 @@ static double determined_part(const mt_nlp_engine *e, const mt_nlp_result *all,
     for (int i = 0; i < a->n_free; i++) {
         whole += a->z[a->free[i]] * a->z[a->free[i]];
     }
-    for (int k = 0; k < all->n_undetermined; k++) {
-        const double *const u = all->undetermined + ((ptrdiff_t)k * e->n);
+    for (int k = 0; k < all->n_unidentifiable; k++) {
+        const double *const u = all->unidentifiable + ((ptrdiff_t)k * e->n);
         double along = 0;
         for (int i = 0; i < a->n_free; i++) {
             along += u[a->free[i]] * a->z[a->free[i]];
@@ -115,8 +115,8 @@ bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_result 
     }
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     mt_nlp_active a;
-    const mt_nlp_aim aim = out->feasible ? MT_NLP_OBJECTIVE : MT_NLP_SQUARES;
-    bool ok = mt_nlp_active_set(e, p, aim, &e->scratch, &a);
+    const mt_nlp_stage stage = out->feasible ? MT_NLP_OBJECTIVE : MT_NLP_SQUARES;
+    bool ok = mt_nlp_active_set(e, p, stage, &e->scratch, &a);
     if (ok && out->feasible) {
         ok = mt_nlp_ok(e, mark_dependent(e, p, &a, &e->scratch));
         put_multipliers(e, &a, out);

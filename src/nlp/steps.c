@@ -103,19 +103,19 @@ void mt_steps_settle(mt_steps *steps, const mt_step *end)
     put(steps, &one);
 }
 
-void mt_steps_tape(mt_steps *steps, mt_tape *tape)
+void mt_steps_serialize(mt_steps *steps, mt_serializer *serializer)
 {
     int n = steps->n;
-    mt_tape_int(tape, &n, 0, steps->most);
-    for (int i = 0; i < n && !tape->failed; i++) {
+    mt_serializer_int(serializer, &n, 0, steps->most);
+    for (int i = 0; i < n && !serializer->failed; i++) {
         mt_step *const s = &steps->at[i];
-        if (tape->reads) {
+        if (serializer->reads) {
             *s = (mt_step){.evals = 0};
         }
-        mt_tape_long(tape, &s->evals, 0, LONG_MAX);
-        mt_tape_numbers(tape, 1, &s->f);
-        mt_tape_numbers(tape, 1, &s->violation);
-        mt_tape_numbers(tape, 1, &s->squares);
+        mt_serializer_long(serializer, &s->evals, 0, LONG_MAX);
+        mt_serializer_numbers(serializer, 1, &s->f);
+        mt_serializer_numbers(serializer, 1, &s->violation);
+        mt_serializer_numbers(serializer, 1, &s->squares);
     }
-    steps->n = tape->failed ? 0 : n;
+    steps->n = serializer->failed ? 0 : n;
 }

@@ -3,7 +3,7 @@
 #define NLP_STEPS_H
 
 #include "base/arena.h"
-#include "base/tape.h"
+#include "base/serializer.h"
 
 /*
  * How a search came to its answer: the designs that were better than all before them, in the
@@ -38,7 +38,7 @@ void mt_steps_append(mt_steps *steps, const mt_steps *more, long evals, int stag
 /* What the search ended with, however it compares: better than the last of its stage, it is one
  * more step; worse, it begins a round of its own. */
 void mt_steps_settle(mt_steps *steps, const mt_step *end);
-/* base/tape.h; stages and rounds are 0. */
-void mt_steps_tape(mt_steps *steps, mt_tape *tape);
+/* base/serializer.h; stages and rounds are 0. */
+void mt_steps_serialize(mt_steps *steps, mt_serializer *serializer);
 
 #endif

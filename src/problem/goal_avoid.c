@@ -16,11 +16,11 @@
 
 #include "analysis/count.h"
 #include "base/tie.h"
-#include "problem/beside.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
-#include "problem/next.h"
-#include "problem/robust.h"
+#include "problem/mode_band_pairs.h"
+#include "problem/mode_order.h"
+#include "problem/tolerance.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
 static const double CLEARANCE_LOWER = -3.0;
@@ -30,12 +30,12 @@ static const double TWO_PI = 6.283185307179586476925;
 
 /* Rows of one band: modes k, k-1, ... below and k+1, k+2, ... above, as many as there are and
  * at most the cluster. */
-static int rows_below(const mt_clear *c, int below)
+static int rows_below(const mt_avoidance *c, int below)
 {
     return below < c->cluster ? below : c->cluster;
 }
 
-static int rows_above(const mt_clear *c, int below, int flexible)
+static int rows_above(const mt_avoidance *c, int below, int flexible)
 {
     const int left = flexible - below;
     return left < c->cluster ? left : c->cluster;
@@ -44,7 +44,7 @@ static int rows_above(const mt_clear *c, int below, int flexible)
 /* Bands are no number: their rows are those of the clears. */
 const mt_goal_ops mt_goal_avoid = {.quantity = MT_QUANTITY_OTHER};
 
-static mt_status unite(mt_problem *p, mt_clear *c, mt_err *err)
+static mt_status unite(mt_problem *p, mt_avoidance *c, mt_err *err)
 {
     const mt_study *const s = p->study;
     const mt_bands **const lists =
@@ -65,36 +65,36 @@ static mt_status unite(mt_problem *p, mt_clear *c, mt_err *err)
 static mt_status add_clear(mt_problem *p, int goal_index, int view, mt_err *err)
 {
     const mt_goal *const g = &p->study->goals[goal_index];
-    for (int i = 0; i < p->n_clears; i++) {
-        if (p->clears[i].view == view) {
-            mt_clear *const c = &p->clears[i];
+    for (int i = 0; i < p->n_avoidances; i++) {
+        if (p->avoidances[i].view == view) {
+            mt_avoidance *const c = &p->avoidances[i];
             c->cluster = g->avoid->cluster > c->cluster ? g->avoid->cluster : c->cluster;
             c->tolerance = fmin(c->tolerance, mt_goal_tolerance(g));
             return MT_OK;
         }
     }
-    mt_clear *const c = &p->clears[p->n_clears];
-    *c = (mt_clear){.view = view,
-                    .goal_index = goal_index,
-                    .cluster = g->avoid->cluster,
-                    .first = p->n_bands,
-                    .tolerance = mt_goal_tolerance(g)};
+    mt_avoidance *const c = &p->avoidances[p->n_avoidances];
+    *c = (mt_avoidance){.view = view,
+                        .goal_index = goal_index,
+                        .cluster = g->avoid->cluster,
+                        .first = p->n_bands,
+                        .tolerance = mt_goal_tolerance(g)};
     MT_TRY(unite(p, c, err));
     p->n_bands += c->bands.n;
-    p->n_clears++;
+    p->n_avoidances++;
     return MT_OK;
 }
 
-mt_status mt_clears_compile(mt_problem *p, mt_err *err)
+mt_status mt_avoidances_compile(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
-    p->clears =
-        mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + 1, sizeof *p->clears);
+    p->avoidances =
+        mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations + 1, sizeof *p->avoidances);
     MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const g = &s->goals[i];
         for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
-            MT_TRY(add_clear(p, i, mt_problem_view(p, g->configurations[k]), err));
+            MT_TRY(add_clear(p, i, mt_problem_configuration(p, g->configurations[k]), err));
         }
     }
     return mt_families_init(p, err);
@@ -102,82 +102,84 @@ mt_status mt_clears_compile(mt_problem *p, mt_err *err)
 
 /* The lists of a case with cuts, while they grow. */
 typedef struct lists {
-    mt_view *views;
-    mt_clear *clears;
+    mt_configuration_problem *views;
+    mt_avoidance *avoidances;
     int *tie;
     int *below;
 } lists;
 
 /* One more view with its bands, behind all others. */
-static mt_status add_cut(mt_case *c, const mt_cut *cut, lists *l, mt_arena *mem, mt_err *err)
+static mt_status add_cut(mt_subproblem *c, const mt_cut *cut, lists *l, mt_arena *mem,
+                         mt_err *err)
 {
     const mt_problem *const p = c->p;
-    const mt_family *const f = &p->families[cut->family];
-    mt_clear *const clear = &l->clears[c->n_clears];
-    mt_way_bands way = {0};
+    const mt_drive_positions *const f = &p->families[cut->drive_positions];
+    mt_avoidance *const avoidance = &l->avoidances[c->n_avoidances];
+    mt_band_along_paths way = {0};
     double *const at = mt_arena_f64(mem, (size_t)f->n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < f->n; k++) {
-        at[k] = mt_family_position(p->views[f->view[k]].original);
+        at[k] = mt_drive_positions_position(p->views[f->view[k]].original);
     }
-    MT_TRY(mt_family_bands(p, f, at, cut->position, cut->position, mem, &way, err));
+    MT_TRY(mt_drive_positions_bands(p, f, at, cut->position, cut->position, mem, &way, err));
     const int n = way.n;
     int *const tie = mt_arena_int(mem, (size_t)c->n_bands + (size_t)n);
     int *const below = mt_arena_int(mem, (size_t)c->n_bands + (size_t)n);
-    *clear =
-        (mt_clear){.view = c->n_views,
-                   .cluster = 1,
-                   .first = c->n_bands,
-                   .tolerance = HUGE_VAL,
-                   .bands = {.n = n, .items = mt_arena_alloc(mem, (size_t)n, sizeof(mt_band))}};
+    *avoidance = (mt_avoidance){
+        .view = c->n_views,
+        .cluster = 1,
+        .first = c->n_bands,
+        .tolerance = HUGE_VAL,
+        .bands = {.n = n, .items = mt_arena_alloc(mem, (size_t)n, sizeof(mt_band))}};
     MT_TRY(mt_arena_check(mem, err));
-    for (int i = p->n_clears - 1; i >= 0; i--) {
-        const mt_clear *const own = &p->clears[i];
-        if (mt_family_of(p, own->view) == cut->family) {
-            clear->goal_index = own->goal_index;
-            clear->cluster = own->cluster > clear->cluster ? own->cluster : clear->cluster;
+    for (int i = p->n_avoidances - 1; i >= 0; i--) {
+        const mt_avoidance *const own = &p->avoidances[i];
+        if (mt_drive_positions_of(p, own->view) == cut->drive_positions) {
+            avoidance->goal_index = own->goal_index;
+            avoidance->cluster =
+                own->cluster > avoidance->cluster ? own->cluster : avoidance->cluster;
         }
     }
     memcpy(tie, l->tie, (size_t)c->n_bands * sizeof *tie);
     memcpy(below, l->below, (size_t)c->n_bands * sizeof *below);
     for (int i = 0; i < n; i++) {
-        clear->bands.items[i] = way.items[i].band;
-        clear->tolerance = fmin(clear->tolerance, way.items[i].tolerance);
+        avoidance->bands.items[i] = way.items[i].band;
+        avoidance->tolerance = fmin(avoidance->tolerance, way.items[i].tolerance);
         tie[c->n_bands + i] = way.items[i].tie;
         below[c->n_bands + i] = l->below[way.items[i].tie];
     }
-    l->views[c->n_views++] = (mt_view){.configuration = f->configuration,
-                                       .original = cut->original,
-                                       .n_rigid = cut->original->n_rigid,
-                                       .n_most = cut->original->n_most};
+    l->views[c->n_views++] = (mt_configuration_problem){.configuration = f->configuration,
+                                                        .original = cut->original,
+                                                        .n_rigid = cut->original->n_rigid,
+                                                        .n_most = cut->original->n_most};
     l->tie = tie;
     l->below = below;
     c->n_bands += n;
-    c->n_clears++;
+    c->n_avoidances++;
     return MT_OK;
 }
 
-static mt_status add_cuts(mt_case *c, int n_cuts, const mt_cut *cuts, lists *l, mt_arena *mem,
-                          mt_err *err)
+static mt_status add_cuts(mt_subproblem *c, int n_cuts, const mt_cut *cuts, lists *l,
+                          mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
     const size_t n_views = (size_t)p->n_views + (size_t)n_cuts;
-    const size_t n_clears = (size_t)p->n_clears + (size_t)n_cuts;
+    const size_t n_avoidances = (size_t)p->n_avoidances + (size_t)n_cuts;
     l->views = mt_arena_alloc(mem, n_views, sizeof *l->views);
-    l->clears = mt_arena_alloc(mem, n_clears, sizeof *l->clears);
+    l->avoidances = mt_arena_alloc(mem, n_avoidances, sizeof *l->avoidances);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(l->views, p->views, (size_t)p->n_views * sizeof *l->views);
-    memcpy(l->clears, p->clears, (size_t)p->n_clears * sizeof *l->clears);
+    memcpy(l->avoidances, p->avoidances, (size_t)p->n_avoidances * sizeof *l->avoidances);
     for (int i = 0; i < n_cuts; i++) {
-        MT_TRY(cuts[i].demand < 0 ? add_cut(c, &cuts[i], l, mem, err) : MT_OK);
+        MT_TRY(cuts[i].requirement < 0 ? add_cut(c, &cuts[i], l, mem, err) : MT_OK);
     }
     c->views = l->views;
-    c->clears = l->clears;
+    c->avoidances = l->avoidances;
     return MT_OK;
 }
 
-mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cut *cuts,
-                           mt_arena *mem, mt_err *err)
+mt_status mt_avoidance_lay_out(mt_subproblem *c, const int *below, int n_cuts,
+                               const mt_cut *cuts, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
     const bool any = below != NULL && p->n_bands > 0;
@@ -186,8 +188,8 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
     c->n_t = p->n + (c->clearance ? 1 : 0);
     c->n_views = p->n_views;
     c->views = p->views;
-    c->n_clears = p->n_clears;
-    c->clears = p->clears;
+    c->n_avoidances = p->n_avoidances;
+    c->avoidances = p->avoidances;
     c->n_bands = p->n_bands;
     c->tie = p->tie;
     c->below = NULL;
@@ -202,7 +204,7 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
     MT_TRY(n_cuts > 0 ? add_cuts(c, n_cuts, cuts, &l, mem, err) : MT_OK);
     c->tie = l.tie;
     c->below = l.below;
-    c->n_in += mt_clear_row_count(c, c->below);
+    c->n_in += mt_avoidance_row_count(c, c->below);
     if (c->clearance) {
         c->lower_t[p->n] = CLEARANCE_LOWER;
         c->upper_t[p->n] = CLEARANCE_UPPER;
@@ -213,18 +215,18 @@ mt_status mt_clear_lay_out(mt_case *c, const int *below, int n_cuts, const mt_cu
 
 /* Rows of one band from *row on: below then above, nearest mode first. One row:
  * in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
-static mt_status put_band(mt_workspace *w, const mt_clear *c, int b, int *row,
+static mt_status put_band(mt_workspace *w, const mt_avoidance *c, int b, int *row,
                           bool with_gradient, mt_nlp_values *out, mt_err *err)
 {
-    const mt_view_work *const view = &w->views[c->view];
+    const mt_configuration_work *const view = &w->views[c->view];
     mt_analysis *const a = view->analysis;
     const mt_band *const band = &c->bands.items[b];
     const int n = w->p->n;
     const double z = w->c->clearance ? w->t[n] : 0.0;
-    const ptrdiff_t rows = mt_case_rows_in(w->c);
+    const ptrdiff_t rows = mt_subproblem_rows_in(w->c);
     const int below = w->c->below[c->first + b];
     const int under = rows_below(c, below);
-    const int count = under + rows_above(c, below, mt_view_vibrations(view->of));
+    const int count = under + rows_above(c, below, mt_configuration_vibrations(view->of));
     for (int k = 0; k < count; k++, (*row)++) {
         const bool above = k >= under;
         const int index = above ? below + 1 + k - under : below - k; /* vibration mode */
@@ -252,48 +254,51 @@ static mt_status put_band(mt_workspace *w, const mt_clear *c, int b, int *row,
     return MT_OK;
 }
 
-mt_status mt_clear_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err)
+mt_status mt_avoidance_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
+                            mt_err *err)
 {
-    const mt_case *const c = w->c;
+    const mt_subproblem *const c = w->c;
     int row = c->first_band_row;
-    for (int i = 0; i < c->n_clears && c->below != NULL; i++) {
-        for (int b = 0; b < c->clears[i].bands.n; b++) {
-            MT_TRY(put_band(w, &c->clears[i], b, &row, with_gradient, out, err));
+    for (int i = 0; i < c->n_avoidances && c->below != NULL; i++) {
+        for (int b = 0; b < c->avoidances[i].bands.n; b++) {
+            MT_TRY(put_band(w, &c->avoidances[i], b, &row, with_gradient, out, err));
         }
     }
     return MT_OK;
 }
 
-double mt_clear_look(const mt_clear *c, const mt_modes *modes, int *below)
+double mt_avoidance_find_modes(const mt_avoidance *c, const mt_modes *modes, int *below)
 {
-    const double room = mt_bands_look(&c->bands, modes, below);
+    const double room = mt_bands_find(&c->bands, modes, below);
     return mt_modal_indexed(modes) ? room : nan("");
 }
 
-int mt_clear_row_count(const mt_case *c, const int *below)
+int mt_avoidance_row_count(const mt_subproblem *c, const int *below)
 {
-    mt_clear_row ignored;
+    mt_avoidance_row ignored;
     int n = 0;
-    while (mt_clear_row_at(c, below, n, &ignored)) {
+    while (mt_avoidance_row_at(c, below, n, &ignored)) {
         n++;
     }
     return n;
 }
 
-bool mt_clear_row_at(const mt_case *c, const int *below, int row, mt_clear_row *out)
+bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row,
+                         mt_avoidance_row *out)
 {
     int left = row;
-    for (int i = 0; i < c->n_clears; i++) {
-        const mt_clear *const clear = &c->clears[i];
-        const int flexible = mt_view_vibrations(&c->views[clear->view]);
-        for (int b = 0; b < clear->bands.n; b++) {
-            const int k = below[clear->first + b];
-            const int under = rows_below(clear, k);
-            const int rows = under + rows_above(clear, k, flexible);
+    for (int i = 0; i < c->n_avoidances; i++) {
+        const mt_avoidance *const avoidance = &c->avoidances[i];
+        const int flexible = mt_configuration_vibrations(&c->views[avoidance->view]);
+        for (int b = 0; b < avoidance->bands.n; b++) {
+            const int k = below[avoidance->first + b];
+            const int under = rows_below(avoidance, k);
+            const int rows = under + rows_above(avoidance, k, flexible);
             if (left < rows) {
                 const bool above = left >= under;
                 const int mode = above ? k + 1 + left - under : k - left;
-                *out = (mt_clear_row){.clear = i, .band = b, .mode = mode, .above = above};
+                *out =
+                    (mt_avoidance_row){.avoidance = i, .band = b, .mode = mode, .above = above};
                 return true;
             }
             left -= rows;
@@ -302,46 +307,48 @@ bool mt_clear_row_at(const mt_case *c, const int *below, int row, mt_clear_row *
     return false;
 }
 
-double mt_clear_room(const mt_workspace *w, const mt_clear *c)
+double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c)
 {
-    return w->c->robust != NULL ? mt_robust_room(w, c)
-                                : mt_clear_look(c, &w->views[c->view].analysis->modes, NULL);
+    return w->c->tolerance_box != NULL
+               ? mt_tolerance_margin(w, c)
+               : mt_avoidance_find_modes(c, &w->views[c->view].analysis->modes, NULL);
 }
 
-double mt_clears_room(const mt_workspace *w)
+double mt_avoidances_margin(const mt_workspace *w)
 {
     double room = HUGE_VAL;
-    for (int i = 0; i < w->c->n_clears; i++) {
-        const mt_clear *const c = &w->c->clears[i];
-        const double here = w->views[c->view].solved ? mt_clear_room(w, c) : nan("");
+    for (int i = 0; i < w->c->n_avoidances; i++) {
+        const mt_avoidance *const c = &w->c->avoidances[i];
+        const double here = w->views[c->view].solved ? mt_avoidance_margin(w, c) : nan("");
         room = here < room || !MT_HAS(here) ? here : room;
     }
     return room;
 }
 
-void mt_clears_ask(const mt_case *c, int view, mt_modal_part *shapes)
+void mt_avoidances_query(const mt_subproblem *c, int view, mt_modal_part *shapes)
 {
-    const int flexible = mt_view_vibrations(&c->views[view]);
-    for (int i = 0; i < c->n_clears; i++) {
-        const mt_clear *const clear = &c->clears[i];
-        for (int b = 0; b < clear->bands.n && clear->view == view; b++) {
-            const int below = c->below != NULL ? c->below[clear->first + b] : 0;
-            const int rows = c->below != NULL ? below + rows_above(clear, below, flexible) : 0;
-            const double omega = TWO_PI * clear->bands.items[b].upper_hz;
-            const int most = rows > 0 ? rows + MT_NEXT_MOST : 0;
+    const int flexible = mt_configuration_vibrations(&c->views[view]);
+    for (int i = 0; i < c->n_avoidances; i++) {
+        const mt_avoidance *const avoidance = &c->avoidances[i];
+        for (int b = 0; b < avoidance->bands.n && avoidance->view == view; b++) {
+            const int below = c->below != NULL ? c->below[avoidance->first + b] : 0;
+            const int rows =
+                c->below != NULL ? below + rows_above(avoidance, below, flexible) : 0;
+            const double omega = TWO_PI * avoidance->bands.items[b].upper_hz;
+            const int most = rows > 0 ? rows + MT_MODE_ORDER_MOST : 0;
             shapes->first = most > shapes->first ? most : shapes->first;
             shapes->up_to = fmax(shapes->up_to, omega * omega);
         }
     }
 }
 
-int mt_clears_reach(const mt_workspace *w, int view)
+int mt_avoidances_reach(const mt_workspace *w, int view)
 {
     const mt_modes *const modes = &w->views[view].analysis->modes;
     int n = 0;
-    for (int c = 0; c < w->c->n_clears; c++) {
-        const mt_bands *const bands = &w->c->clears[c].bands;
-        if (w->c->clears[c].view != view || bands->n == 0) {
+    for (int c = 0; c < w->c->n_avoidances; c++) {
+        const mt_bands *const bands = &w->c->avoidances[c].bands;
+        if (w->c->avoidances[c].view != view || bands->n == 0) {
             continue;
         }
         const double top = bands->items[bands->n - 1].upper_hz;

@@ -10,7 +10,7 @@
 #include "analysis/damping.h"
 #include "problem/goal.h"
 
-static mt_status find(mt_workspace *w, const mt_demand *d, int pos, int *at, mt_err *err)
+static mt_status find(mt_workspace *w, const mt_requirement *d, int pos, int *at, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_damped_modes *damped = NULL;
@@ -26,8 +26,8 @@ static mt_status find(mt_workspace *w, const mt_demand *d, int pos, int *at, mt_
                               mt_analysis_configuration(a));
 }
 
-static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
-                       mt_err *err)
+static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                       double *slope, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_damped_modes *damped = NULL;
@@ -50,12 +50,12 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
     const double size = hypot(re, im);
     for (int k = 0; k < w->p->n; k++) {
         const double turn = ((re / size) * w->work[k]) - ((im / size) * slope[k]);
-        slope[k] = mt_workspace_stretch(w, k) * (im / size) * turn / size;
+        slope[k] = mt_workspace_dx_dt(w, k) * (im / size) * turn / size;
     }
     return MT_OK;
 }
 
-static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     (void)d;
     return mt_arena_printf(mem, "%s: damping ratio", what);

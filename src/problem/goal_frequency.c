@@ -57,16 +57,16 @@ mt_status mt_problem_dln_frequency(mt_workspace *w, mt_analysis *a, int pos, dou
         vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
     }
     for (int i = 0; i < n && vibrating > 0; i++) {
-        out[i] *= mt_problem_stretch_at(w->p, i, w->x[i]) / (2.0 * lambda * (double)vibrating);
+        out[i] *= mt_problem_dx_dt_at(w->p, i, w->x[i]) / (2.0 * lambda * (double)vibrating);
     }
     return MT_OK;
 }
 
 /* The same of a named mode: in a cluster by the vector of its own. */
-static mt_status dln_named(mt_workspace *w, const mt_demand *d, int pos, double *out,
+static mt_status dln_named(mt_workspace *w, const mt_requirement *d, int pos, double *out,
                            mt_err *err)
 {
-    const mt_view_work *const view = &w->views[d->view];
+    const mt_configuration_work *const view = &w->views[d->view];
     mt_analysis *const a = view->analysis;
     int size = 1;
     const double lambda = pos < 0 ? 0.0 : a->modes.lambda[pos];
@@ -79,13 +79,13 @@ static mt_status dln_named(mt_workspace *w, const mt_demand *d, int pos, double 
         MT_TRY(mt_track_dlambda(a, view->of->shape[d->named], pos, out, &own, err));
     }
     for (int i = 0; i < w->p->n && own; i++) {
-        out[i] *= mt_workspace_stretch(w, i) / (2.0 * lambda);
+        out[i] *= mt_workspace_dx_dt(w, i) / (2.0 * lambda);
     }
     return own ? MT_OK : mt_problem_dln_frequency(w, a, pos, d->floor_hz, out, err);
 }
 
 /* The reference's frequency is the target. */
-static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
+static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     const mt_goal *const g = d->goal;
     if (g->reference_name.s != NULL) {
@@ -97,8 +97,8 @@ static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
     return MT_OK;
 }
 
-static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
-                       mt_err *err)
+static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                       double *slope, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     *q = pos < 0 ? HUGE_VAL : mt_modal_hz(&a->modes, pos);

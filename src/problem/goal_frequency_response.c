@@ -21,9 +21,9 @@
 #include <string.h>
 
 #include "base/interrupt.h"
-#include "problem/demand.h"
+#include "problem/forced_response.h"
 #include "problem/goal.h"
-#include "problem/shaken.h"
+#include "problem/requirement.h"
 #include "response/slopes_forms.h"
 
 static const double TWO_PI = 6.283185307179586477;
@@ -53,27 +53,29 @@ static bool is_port(const mt_system *sys, const char *name, const mt_port *port,
     return is;
 }
 
-static mt_status none_found(const mt_problem *p, const mt_demand *d, int found, mt_arena *mem,
-                            mt_err *err)
+static mt_status none_found(const mt_problem *p, const mt_requirement *d, int found,
+                            mt_arena *mem, mt_err *err)
 {
-    const mt_measurement *const m = &p->study->measurements[d->goal->shake->measurement];
+    const mt_measurement *const m =
+        &p->study->measurements[d->goal->response_limit->measurement];
     const mt_fit *const fit = d->fit;
     return mt_fail(
         err, MT_E_INPUT,
         "%s responses of \"%s\" are of %s by %s in configuration \"%s\" (it has: %s)",
         found == 0 ? "no" : "several", m->path.s, fit->ports.out->name, fit->ports.in->name,
-        mt_view_name(p, &p->views[d->view]), mt_measured_list_text(m, mem));
+        mt_configuration_name(p, &p->views[d->view]), mt_measured_list_text(m, mem));
 }
 
 /* The one response of the file that is of these ports. */
-static mt_status find_measured(mt_problem *p, const mt_demand *d, mt_fit *fit, mt_err *err)
+static mt_status find_measured(mt_problem *p, const mt_requirement *d, mt_fit *fit, mt_err *err)
 {
-    const mt_measurement *const m = &p->study->measurements[d->goal->shake->measurement];
+    const mt_measurement *const m =
+        &p->study->measurements[d->goal->response_limit->measurement];
     const mt_system *const sys = p->views[d->view].original->sys;
     int found = 0;
     for (int i = 0; i < m->n_responses; i++) {
         const mt_measured_response *const r = &m->responses[i];
-        if (same(r->configuration, mt_view_name(p, &p->views[d->view])) &&
+        if (same(r->configuration, mt_configuration_name(p, &p->views[d->view])) &&
             is_port(sys, r->input, fit->ports.in, true) &&
             is_port(sys, r->output, fit->ports.out, false)) {
             fit->measured = found++ == 0 ? r : fit->measured;
@@ -83,9 +85,11 @@ static mt_status find_measured(mt_problem *p, const mt_demand *d, mt_fit *fit, m
 }
 
 /* Units are held against each other where the file says them. */
-static mt_status check_unit(mt_problem *p, const mt_demand *d, const mt_fit *fit, mt_err *err)
+static mt_status check_unit(mt_problem *p, const mt_requirement *d, const mt_fit *fit,
+                            mt_err *err)
 {
-    const mt_measurement *const m = &p->study->measurements[d->goal->shake->measurement];
+    const mt_measurement *const m =
+        &p->study->measurements[d->goal->response_limit->measurement];
     const char *const unit =
         mt_arena_printf(&p->mem, "%s per %s", fit->ports.out->unit, fit->ports.in->unit);
     if (unit == NULL || fit->measured->unit == NULL || strcmp(unit, fit->measured->unit) == 0) {
@@ -95,15 +99,16 @@ static mt_status check_unit(mt_problem *p, const mt_demand *d, const mt_fit *fit
                    fit->measured->unit, fit->ports.out->name, fit->ports.in->name, unit);
 }
 
-static bool within(const mt_shake *s, const mt_measured_line *line)
+static bool within(const mt_response_limit *s, const mt_measured_line *line)
 {
     return !(line->frequency_hz < s->lower_hz) && !(line->frequency_hz > s->upper_hz);
 }
 
-static mt_status add_line(const mt_problem *p, const mt_demand *d, const mt_measured_line *line,
-                          mt_fit *fit, mt_err *err)
+static mt_status add_line(const mt_problem *p, const mt_requirement *d,
+                          const mt_measured_line *line, mt_fit *fit, mt_err *err)
 {
-    const mt_measurement *const m = &p->study->measurements[d->goal->shake->measurement];
+    const mt_measurement *const m =
+        &p->study->measurements[d->goal->response_limit->measurement];
     const double g2 = line->coherence;
     const double complex h = fit->measured->scale * mt_complex(line->re, line->im);
     const double size = hypot(creal(h), cimag(h));
@@ -114,22 +119,24 @@ static mt_status add_line(const mt_problem *p, const mt_demand *d, const mt_meas
                        line->line, m->path.s, line->frequency_hz,
                        size > 0.0 ? "infinite" : "0");
     }
-    if (d->goal->shake->coherence && !(g2 >= 0.0)) {
+    if (d->goal->response_limit->coherence && !(g2 >= 0.0)) {
         return mt_fail(err, MT_E_INPUT, "\"%s\" has no coherence", m->path.s);
     }
     fit->w[fit->n] = TWO_PI * line->frequency_hz;
     fit->h[fit->n] = h;
     fit->level[fit->n] = log(size);
     fit->phase[fit->n] = carg(h);
-    fit->share[fit->n] = d->goal->shake->coherence ? g2 / fmax(1.0 - g2, NOISE_FLOOR) : 1.0;
+    fit->share[fit->n] =
+        d->goal->response_limit->coherence ? g2 / fmax(1.0 - g2, NOISE_FLOOR) : 1.0;
     fit->line[fit->n++] = line->line;
     return MT_OK;
 }
 
-static mt_status take_lines(mt_problem *p, const mt_demand *d, mt_fit *fit, mt_err *err)
+static mt_status take_lines(mt_problem *p, const mt_requirement *d, mt_fit *fit, mt_err *err)
 {
     const mt_measured_response *const r = fit->measured;
-    const mt_measurement *const m = &p->study->measurements[d->goal->shake->measurement];
+    const mt_measurement *const m =
+        &p->study->measurements[d->goal->response_limit->measurement];
     const size_t most = (size_t)r->n_lines;
     double sum = 0.0;
     fit->w = mt_arena_f64(&p->mem, most, 1);
@@ -140,7 +147,7 @@ static mt_status take_lines(mt_problem *p, const mt_demand *d, mt_fit *fit, mt_e
     fit->line = mt_arena_int(&p->mem, most);
     MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < r->n_lines; i++) {
-        if (within(d->goal->shake, &r->lines[i])) {
+        if (within(d->goal->response_limit, &r->lines[i])) {
             MT_TRY(add_line(p, d, &r->lines[i], fit, err));
             sum += fit->share[fit->n - 1];
         }
@@ -163,14 +170,14 @@ static mt_status take_lines(mt_problem *p, const mt_demand *d, mt_fit *fit, mt_e
     return MT_OK;
 }
 
-static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
+static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     mt_fit *const fit = mt_arena_alloc(&p->mem, 1, sizeof *fit);
     mt_port *const ports = mt_arena_alloc(&p->mem, 2, sizeof *ports);
     MT_TRY(mt_arena_check(&p->mem, err));
     d->fit = fit;
     fit->ports = (mt_port_set){.n_in = 1, .n_out = 1, .in = &ports[0], .out = &ports[1]};
-    MT_TRY(mt_shaken_ports(p, d, &ports[0], &ports[1], err));
+    MT_TRY(mt_forced_response_ports(p, d, &ports[0], &ports[1], err));
     MT_TRY(find_measured(p, d, fit, err));
     MT_TRY(check_unit(p, d, fit, err));
     MT_TRY(take_lines(p, d, fit, err));
@@ -193,19 +200,21 @@ static mt_status prepare(mt_analysis *a, const mt_fit *fit, forced *out, mt_err 
 }
 
 /* The measured file's name is said with its line, which is where the trouble is seen. */
-static mt_status no_value(const mt_workspace *w, const mt_demand *d, int i, const char *what,
-                          mt_err *err)
+static mt_status no_value(const mt_workspace *w, const mt_requirement *d, int i,
+                          const char *what, mt_err *err)
 {
-    const mt_measurement *const m = &w->p->study->measurements[d->goal->shake->measurement];
+    const mt_measurement *const m =
+        &w->p->study->measurements[d->goal->response_limit->measurement];
     return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\": %s at %.10g Hz, line %d of \"%s\"",
                    mt_analysis_configuration(w->views[d->view].analysis), what,
                    d->fit->w[i] / TWO_PI, d->fit->line[i], m->path.s);
 }
 
 /* The two rows of line i. */
-static mt_status line(mt_workspace *w, const mt_demand *d, int i, double complex h, mt_err *err)
+static mt_status line(mt_workspace *w, const mt_requirement *d, int i, double complex h,
+                      mt_err *err)
 {
-    const double weight = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
+    const double weight = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
     double *const r = w->r + d->row_res + (2 * (ptrdiff_t)i);
     const double size = hypot(creal(h), cimag(h));
     if (!isfinite(size)) {
@@ -220,13 +229,13 @@ static mt_status line(mt_workspace *w, const mt_demand *d, int i, double complex
 }
 
 /* Their slopes, of those of h: dh / h, by hand since h and dh are finite. */
-static mt_status line_slopes(mt_workspace *w, const mt_demand *d, int i, double complex h,
+static mt_status line_slopes(mt_workspace *w, const mt_requirement *d, int i, double complex h,
                              const double complex *dh, mt_err *err)
 {
-    const double weight = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
+    const double weight = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
     const double complex inverse = 1.0 / h;
     for (int k = 0; k < w->p->n; k++) {
-        const double stretch = weight * mt_workspace_stretch(w, k);
+        const double dx_dt = weight * mt_workspace_dx_dt(w, k);
         const double re = (creal(dh[k]) * creal(inverse)) - (cimag(dh[k]) * cimag(inverse));
         const double im = (creal(dh[k]) * cimag(inverse)) + (cimag(dh[k]) * creal(inverse));
         double *const dr =
@@ -234,13 +243,13 @@ static mt_status line_slopes(mt_workspace *w, const mt_demand *d, int i, double 
         if (!isfinite(re) || !isfinite(im)) {
             return no_value(w, d, i, "the response has no slope", err);
         }
-        dr[0] = stretch * re;
-        dr[1] = stretch * im;
+        dr[0] = dx_dt * re;
+        dr[1] = dx_dt * im;
     }
     return MT_OK;
 }
 
-static mt_status values(mt_workspace *w, const mt_demand *d, const forced *f, mt_err *err)
+static mt_status values(mt_workspace *w, const mt_requirement *d, const forced *f, mt_err *err)
 {
     mt_arena *const mem = &w->views[d->view].analysis->mem;
     for (int i = 0; i < d->fit->n; i++) {
@@ -252,7 +261,7 @@ static mt_status values(mt_workspace *w, const mt_demand *d, const forced *f, mt
     return MT_OK;
 }
 
-static mt_status slopes(mt_workspace *w, const mt_demand *d, const forced *f, mt_err *err)
+static mt_status slopes(mt_workspace *w, const mt_requirement *d, const forced *f, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_fit *const fit = d->fit;
@@ -272,8 +281,8 @@ static mt_status slopes(mt_workspace *w, const mt_demand *d, const forced *f, mt
     return MT_OK;
 }
 
-static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
-                           mt_err *err)
+static mt_status residuals(mt_workspace *w, const mt_requirement *d, int pos,
+                           bool with_gradient, mt_err *err)
 {
     (void)pos;
     mt_analysis *const a = w->views[d->view].analysis;
@@ -287,7 +296,8 @@ static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool wi
     return rc;
 }
 
-bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double complex *off)
+bool mt_fit_worst(const mt_workspace *w, const mt_requirement *d, double *hz,
+                  double complex *off)
 {
     *hz = nan("");
     *off = nan("");
@@ -296,7 +306,7 @@ bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double 
     }
     double worst = -1.0;
     for (int i = 0; i < d->fit->n; i++) {
-        const double scale = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
+        const double scale = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
         const double *const r = w->r + d->row_res + (2 * (ptrdiff_t)i);
         const double size = scale > 0.0 ? hypot(r[0], r[1]) / scale : 0.0;
         if (size > worst) {
@@ -308,7 +318,7 @@ bool mt_fit_worst(const mt_workspace *w, const mt_demand *d, double *hz, double 
     return true;
 }
 
-double mt_fit_rise(const mt_demand *d, double *hz)
+double mt_fit_rise(const mt_requirement *d, double *hz)
 {
     const mt_fit *const fit = d->fit;
     int peak = 0;
@@ -337,12 +347,12 @@ double mt_fit_rise(const mt_demand *d, double *hz)
     return first < peak && peak < last && last - first >= 4 ? fmax(rise, 0.0) : 0.0;
 }
 
-bool mt_fit_is_reversed(const mt_workspace *w, const mt_demand *d)
+bool mt_fit_is_reversed(const mt_workspace *w, const mt_requirement *d)
 {
     double as_is = 0.0;
     double reversed = 0.0;
     for (int i = 0; d->fit != NULL && i < d->fit->n; i++) {
-        const double scale = sqrt(mt_demand_weight(w, d) * d->fit->share[i]);
+        const double scale = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
         const double off = w->r[d->row_res + (2 * (ptrdiff_t)i) + 1];
         const double other =
             scale > 0.0 ? scale * remainder((off / scale) + (0.5 * TWO_PI), TWO_PI) : 0.0;
@@ -352,12 +362,12 @@ bool mt_fit_is_reversed(const mt_workspace *w, const mt_demand *d)
     return 2.0 * reversed < as_is;
 }
 
-static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s %s by %s as measured in \"%s\" (%d lines, %.6g to %.6g Hz)",
                            what, d->fit->ports.out->name, d->fit->ports.in->name,
-                           d->goal->shake->measurement_name.s, d->fit->n, d->fit->w[0] / TWO_PI,
-                           d->fit->w[d->fit->n - 1] / TWO_PI);
+                           d->goal->response_limit->measurement_name.s, d->fit->n,
+                           d->fit->w[0] / TWO_PI, d->fit->w[d->fit->n - 1] / TWO_PI);
 }
 
 const mt_goal_ops mt_goal_frequency_response = {.quantity = MT_QUANTITY_OTHER,

@@ -2,14 +2,14 @@
 /* "limit": an expression of parameters; q = its value. */
 #include "problem/goal.h"
 
-static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
-                       mt_err *err)
+static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                       double *slope, mt_err *err)
 {
     (void)pos;
     (void)err;
     *q = w->value[d->node];
     for (int k = 0; k < w->p->n && slope != NULL; k++) {
-        slope[k] = mt_workspace_stretch(w, k) * w->grad[((ptrdiff_t)d->node * w->p->n) + k];
+        slope[k] = mt_workspace_dx_dt(w, k) * w->grad[((ptrdiff_t)d->node * w->p->n) + k];
     }
     return MT_OK;
 }

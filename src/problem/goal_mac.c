@@ -2,8 +2,8 @@
 /* "mac": q = MAC of the mode's shape at the sensors with that of a reference. */
 #include "problem/goal.h"
 
-static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
-                       mt_err *err)
+static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                       double *slope, mt_err *err)
 {
     const int ns = d->shape.ns;
     double norm = 0.0;
@@ -12,12 +12,12 @@ static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, 
     for (int k = 0; k < w->p->n && slope != NULL; k++) {
         const double *const ds = w->dshape + ((ptrdiff_t)k * ns);
         slope[k] =
-            mt_workspace_stretch(w, k) * mt_mac_derivative(ns, w->shape, ds, d->shape.shape);
+            mt_workspace_dx_dt(w, k) * mt_mac_derivative(ns, w->shape, ds, d->shape.shape);
     }
     return MT_OK;
 }
 
-static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s: MAC with mode %d of \"%s\"", what, d->shape.mode,
                            d->shape.reference);

@@ -12,9 +12,9 @@
 #include <math.h>
 
 #include "analysis/count.h"
+#include "problem/forced_response.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
-#include "problem/shaken.h"
 
 /* Modes that parts are made of: those of the original design within the band, and so many
  * beside it that may come in; what lies beyond shares the outermost parts. */
@@ -22,14 +22,14 @@ enum { BESIDE = 3, MOST_PARTS = 24 };
 
 static const double TWO_PI = 6.283185307179586476925;
 
-static double lower_of(const mt_demand *d)
+static double lower_of(const mt_requirement *d)
 {
-    return TWO_PI * d->goal->shake->lower_hz;
+    return TWO_PI * d->goal->response_limit->lower_hz;
 }
 
-static double upper_of(const mt_demand *d)
+static double upper_of(const mt_requirement *d)
 {
-    return TWO_PI * d->goal->shake->upper_hz;
+    return TWO_PI * d->goal->response_limit->upper_hz;
 }
 
 /* Vibration modes below a frequency at the original design. */
@@ -42,17 +42,17 @@ static int below(const mt_modes *modes, double hz)
     return n;
 }
 
-static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
+static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
 {
-    MT_TRY(mt_shaken_compile(p, d, err));
-    if (d->goal->shake->lower_hz == d->goal->shake->upper_hz) {
+    MT_TRY(mt_forced_response_compile(p, d, err));
+    if (d->goal->response_limit->lower_hz == d->goal->response_limit->upper_hz) {
         return MT_OK;
     }
-    const mt_view *const view = &p->views[d->view];
+    const mt_configuration_problem *const view = &p->views[d->view];
     const mt_modes *const modes = &view->original->modes;
-    const int most = mt_view_vibrations(view);
-    const int first = below(modes, d->goal->shake->lower_hz) - BESIDE;
-    const int last = below(modes, d->goal->shake->upper_hz) + BESIDE + 1;
+    const int most = mt_configuration_vibrations(view);
+    const int first = below(modes, d->goal->response_limit->lower_hz) - BESIDE;
+    const int last = below(modes, d->goal->response_limit->upper_hz) + BESIDE + 1;
     d->first_mode = first > 1 ? first : 1;
     const int end = last < most ? last : most;
     const int parts = end - d->first_mode + 1;
@@ -92,8 +92,9 @@ static mt_status add_end(mt_workspace *w, mt_analysis *a, int i, double by, doub
 
 /* The number that the peak is, and its slope; end: the mode below the end that it lies on; 0:
  * it lies on none. */
-static mt_status take(mt_workspace *w, const mt_demand *d, const mt_shaken_peak *peak, int end,
-                      double *q, double *slope, mt_err *err)
+static mt_status take(mt_workspace *w, const mt_requirement *d,
+                      const mt_forced_response_peak *peak, int end, double *q, double *slope,
+                      mt_err *err)
 {
     double omega = peak->at.omega;
     double complex weight = peak->at.direction;
@@ -102,20 +103,20 @@ static mt_status take(mt_workspace *w, const mt_demand *d, const mt_shaken_peak 
     if (slope == NULL) {
         return MT_OK;
     }
-    MT_TRY(mt_shaken_slope(w, d, &one, 1.0, slope, err));
+    MT_TRY(mt_forced_response_slope(w, d, &one, 1.0, slope, err));
     if (end > 0) {
         MT_TRY(add_end(w, w->views[d->view].analysis, end, peak->by_omega, slope, err));
     }
-    mt_shaken_to_ln(w, d, *q, slope);
+    mt_forced_response_to_ln(w, d, *q, slope);
     return MT_OK;
 }
 
-static double within(const mt_demand *d, double omega)
+static double within(const mt_requirement *d, double omega)
 {
     return fmin(fmax(omega, lower_of(d)), upper_of(d));
 }
 
-static mt_status part(mt_workspace *w, const mt_demand *d, int k, double *q, double *slope,
+static mt_status part(mt_workspace *w, const mt_requirement *d, int k, double *q, double *slope,
                       mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
@@ -123,15 +124,15 @@ static mt_status part(mt_workspace *w, const mt_demand *d, int k, double *q, dou
     const int over = k + 1 < d->n_parts ? d->first_mode + k : 0;
     const double from = under > 0 ? within(d, between(a, under)) : lower_of(d);
     const double to = over > 0 ? within(d, between(a, over)) : upper_of(d);
-    mt_shaken_peak peak;
+    mt_forced_response_peak peak;
     if (!mt_modal_indexed(&a->modes)) {
         return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" is unstable",
                        mt_analysis_configuration(a));
     }
-    MT_TRY(mt_shaken_find(w, d, from, to, &peak, err));
+    MT_TRY(mt_forced_response_find(w, d, from, to, &peak, err));
     if (peak.at.end != MT_FORCED_FINITE) {
         *q = HUGE_VAL;
-        return mt_shaken_lead(w, d, from, to, slope, err);
+        return mt_forced_response_lead(w, d, from, to, slope, err);
     }
     const bool inside = peak.at.omega > lower_of(d) && peak.at.omega < upper_of(d);
     const int end = !inside                 ? 0
@@ -141,27 +142,28 @@ static mt_status part(mt_workspace *w, const mt_demand *d, int k, double *q, dou
     return take(w, d, &peak, end, q, slope, err);
 }
 
-static mt_status value(mt_workspace *w, const mt_demand *d, int pos, double *q, double *slope,
-                       mt_err *err)
+static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                       double *slope, mt_err *err)
 {
-    mt_shaken_peak peak;
+    mt_forced_response_peak peak;
     (void)pos;
-    MT_TRY(mt_shaken_find(w, d, lower_of(d), upper_of(d), &peak, err));
+    MT_TRY(mt_forced_response_find(w, d, lower_of(d), upper_of(d), &peak, err));
     if (peak.at.end != MT_FORCED_FINITE) {
         *q = HUGE_VAL;
-        return mt_shaken_lead(w, d, lower_of(d), upper_of(d), slope, err);
+        return mt_forced_response_lead(w, d, lower_of(d), upper_of(d), slope, err);
     }
     return take(w, d, &peak, 0, q, slope, err);
 }
 
-static mt_status look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out, mt_err *err)
+static mt_status look(mt_workspace *w, const mt_requirement *d, mt_forced_response_value *out,
+                      mt_err *err)
 {
-    mt_shaken_peak peak;
-    MT_TRY(mt_shaken_find(w, d, lower_of(d), upper_of(d), &peak, err));
+    mt_forced_response_peak peak;
+    MT_TRY(mt_forced_response_find(w, d, lower_of(d), upper_of(d), &peak, err));
     out->end = peak.at.end;
     out->proven = peak.proven;
-    out->lower_hz = d->goal->shake->lower_hz;
-    out->upper_hz = d->goal->shake->upper_hz;
+    out->lower_hz = d->goal->response_limit->lower_hz;
+    out->upper_hz = d->goal->response_limit->upper_hz;
     if (out->end == MT_FORCED_FINITE) {
         out->value = peak.at.value;
         out->error = peak.at.value * peak.at.excess;
@@ -171,9 +173,9 @@ static mt_status look(mt_workspace *w, const mt_demand *d, mt_shaken_value *out,
     return MT_OK;
 }
 
-static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
-    const mt_shake *const s = d->goal->shake;
+    const mt_response_limit *const s = d->goal->response_limit;
     return s->lower_hz == s->upper_hz
                ? mt_arena_printf(mem, "%s: response of %s to %s at %.10g Hz", what, s->output.s,
                                  s->input.s, s->lower_hz)

@@ -6,24 +6,24 @@
  */
 #include <math.h>
 
-#include "problem/demand.h"
 #include "problem/goal.h"
+#include "problem/requirement.h"
 
-int mt_goal_reference_mode(const mt_problem *p, const mt_demand *d)
+int mt_goal_reference_mode(const mt_problem *p, const mt_requirement *d)
 {
     const mt_goal *const g = d->goal;
     const int own = d->mode > 0 ? d->mode : p->study->model->modes[g->mode.named].index;
     return g->reference_mode > 0 ? g->reference_mode : own;
 }
 
-static mt_status compile(mt_problem *p, mt_demand *d, mt_err *err)
+static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     MT_TRY(mt_goal_compile_shape(p, d, err));
     d->n_res = d->shape.ns;
     return MT_OK;
 }
 
-mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err)
+mt_status mt_goal_compile_shape(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     const mt_system *const sys = p->views[d->view].original->sys;
     return d->goal->reference_name.s == NULL
@@ -33,7 +33,7 @@ mt_status mt_goal_compile_shape(mt_problem *p, mt_demand *d, mt_err *err)
                                          &p->mem, &d->shape, err);
 }
 
-mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
+mt_status mt_goal_sense(mt_workspace *w, const mt_requirement *d, int pos, bool with_gradient,
                         double *norm, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
@@ -51,11 +51,11 @@ mt_status mt_goal_sense(mt_workspace *w, const mt_demand *d, int pos, bool with_
     return MT_OK;
 }
 
-static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool with_gradient,
-                           mt_err *err)
+static mt_status residuals(mt_workspace *w, const mt_requirement *d, int pos,
+                           bool with_gradient, mt_err *err)
 {
     const int ns = d->shape.ns;
-    const double weight = sqrt(mt_demand_weight(w, d));
+    const double weight = sqrt(mt_requirement_weight(w, d));
     double *const u = w->shape;
     double norm = 0.0;
     MT_TRY(mt_goal_sense(w, d, pos, with_gradient, &norm, err));
@@ -67,7 +67,7 @@ static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool wi
     for (int k = 0; k < w->p->n && with_gradient; k++) {
         const double *const ds = w->dshape + ((ptrdiff_t)k * ns);
         const double along = mt_dot(ns, u, ds);
-        const double factor = weight * sign * mt_workspace_stretch(w, k) / norm;
+        const double factor = weight * sign * mt_workspace_dx_dt(w, k) / norm;
         for (int i = 0; i < ns; i++) {
             w->dr[d->row_res + i + ((ptrdiff_t)k * w->p->n_res)] =
                 factor * (ds[i] - (along * u[i]));
@@ -76,7 +76,7 @@ static mt_status residuals(mt_workspace *w, const mt_demand *d, int pos, bool wi
     return MT_OK;
 }
 
-static const char *subject(const mt_demand *d, const char *what, mt_arena *mem)
+static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s shaped as mode %d of \"%s\"", what, d->shape.mode,
                            d->shape.reference);

@@ -24,9 +24,9 @@ const mt_objective_ops *mt_objective_ops_of(mt_objective_type type)
 
 const mt_objective_ops mt_objective_none = {.value = NULL};
 
-double mt_aim_value(const mt_workspace *w, int k, double *gradient)
+double mt_objective_stage_value(const mt_workspace *w, int k, double *gradient)
 {
-    const mt_aim *const a = &w->c->aims[k];
+    const mt_objective_stage *const a = &w->c->aims[k];
     for (int i = 0; i < w->c->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
@@ -37,18 +37,18 @@ double mt_aim_value(const mt_workspace *w, int k, double *gradient)
     return f / a->size;
 }
 
-double mt_aim_root(const mt_aim *a, double f)
+double mt_objective_stage_root(const mt_objective_stage *a, double f)
 {
     return mt_objective_is(a->type, MT_HALF_SQUARE) ? sqrt(2.0 * (f < 0.0 ? 0.0 : f)) : f;
 }
 
-double mt_aim_shown(const mt_aim *a, double f)
+double mt_objective_stage_shown(const mt_objective_stage *a, double f)
 {
-    return a->ops->shown != NULL ? a->ops->shown(f) : mt_aim_root(a, f * a->size);
+    return a->ops->shown != NULL ? a->ops->shown(f) : mt_objective_stage_root(a, f * a->size);
 }
 
 /* Row of `in` that holds objective k: a misfit among those before it has none. */
-static int held_row(const mt_case *c, int k)
+static int held_row(const mt_subproblem *c, int k)
 {
     int row = c->n_in;
     for (int i = 0; i < k; i++) {
@@ -57,7 +57,7 @@ static int held_row(const mt_case *c, int k)
     return row;
 }
 
-void mt_aim_hold(mt_case *c, const mt_workspace *w, int k, double f)
+void mt_objective_stage_hold(mt_subproblem *c, const mt_workspace *w, int k, double f)
 {
     mt_held *const held = &c->held[k];
     const double root = sqrt(2.0 * fmax(f, 0.0));
@@ -83,7 +83,7 @@ void mt_aim_hold(mt_case *c, const mt_workspace *w, int k, double f)
 static void hold_misfit(const mt_workspace *w, bool with_gradient, mt_nlp_values *out)
 {
     const mt_problem *const p = w->p;
-    const ptrdiff_t rows = mt_case_rows_eq(w->c);
+    const ptrdiff_t rows = mt_subproblem_rows_eq(w->c);
     for (int i = 0; i < p->n_res; i++) {
         const ptrdiff_t row = p->n_eq + i;
         out->eq[row] = w->r[i] - w->c->r_held[i];
@@ -93,10 +93,10 @@ static void hold_misfit(const mt_workspace *w, bool with_gradient, mt_nlp_values
     }
 }
 
-void mt_aim_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out)
+void mt_objective_stage_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out)
 {
-    const mt_case *const c = w->c;
-    const ptrdiff_t rows = mt_case_rows_in(c);
+    const mt_subproblem *const c = w->c;
+    const ptrdiff_t rows = mt_subproblem_rows_in(c);
     for (int k = 0; k < c->stage; k++) {
         const mt_held *const held = &c->held[k];
         if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
@@ -105,7 +105,8 @@ void mt_aim_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out)
         }
         const ptrdiff_t row = held_row(c, k);
         out->in[row] =
-            (held->limit - mt_aim_value(w, k, with_gradient ? w->work : NULL)) / held->unit;
+            (held->limit - mt_objective_stage_value(w, k, with_gradient ? w->work : NULL)) /
+            held->unit;
         for (int j = 0; j < c->n_t && with_gradient; j++) {
             out->din[row + (j * rows)] = -w->work[j] / held->unit;
         }

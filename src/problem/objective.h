@@ -20,20 +20,21 @@ typedef struct mt_price {
 typedef struct mt_objective_ops {
     /* Nodes and items that f is made of; nodes[parameters of the model] of p->program. NULL:
      * there are none. */
-    mt_status (*compile)(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err);
+    mt_status (*compile)(mt_problem *p, mt_objective_stage *a, const mt_node *nodes,
+                         mt_err *err);
     /* f at the last evaluation, and its gradient[n_t], zero before, unless NULL. NULL: 0. */
-    double (*value)(const mt_workspace *w, const mt_aim *a, double *gradient);
+    double (*value)(const mt_workspace *w, const mt_objective_stage *a, double *gradient);
     /* At most any f over a box of inputs; low, high: room for
      * the nodes of any program of p. NULL: not known. */
-    double (*least)(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
-                    double *low, double *high);
+    double (*least)(const mt_problem *p, const mt_objective_stage *a, const double *lo,
+                    const double *hi, double *low, double *high);
     /* What results show of f. NULL: f, or the root of twice f where f is half a square. */
     double (*shown)(double f);
     /* "0.12 kg". NULL: further than the slope at the design tells, or out of memory. The
      * member NULL: slopes tell nothing of f. */
     const char *(*price)(const mt_price *q, mt_arena *mem);
-    /* df is that of 1 % of a demand: "moving it by 1 % takes ..." where the variables hardly
-     * move it. NULL: they do, or out of memory. The member NULL: slopes do not tell. */
+    /* df is that of 1 % of a requirement: "moving it by 1 % takes ..." where the variables
+     * hardly move it. NULL: they do, or out of memory. The member NULL: slopes do not tell. */
     const char *(*hardly)(const mt_price *q, mt_arena *mem);
 } mt_objective_ops;
 
@@ -44,16 +45,16 @@ const mt_objective_ops *mt_objective_ops_of(mt_objective_type type);
 
 /* f of objective k at the last evaluation over its size, gradient[n_t] (may be NULL)
  * likewise: all that searches and ranks see. */
-double mt_aim_value(const mt_workspace *w, int k, double *gradient);
+double mt_objective_stage_value(const mt_workspace *w, int k, double *gradient);
 /* A value f of an objective, a half square as its root: differences of these are told. */
-double mt_aim_root(const mt_aim *a, double f);
+double mt_objective_stage_root(const mt_objective_stage *a, double f);
 /* What results show of it. */
-double mt_aim_shown(const mt_aim *a, double f);
-/* Hold objective k of c (mt_case_for_stages) at f, as well as it can be told from f, from the
- * next stage on; a misfit at the residuals of w's last evaluation. */
-void mt_aim_hold(mt_case *c, const mt_workspace *w, int k, double f);
+double mt_objective_stage_shown(const mt_objective_stage *a, double f);
+/* Hold objective k of c (mt_subproblem_for_stages) at f, as well as it can be told from f, from
+ * the next stage on; a misfit at the residuals of w's last evaluation. */
+void mt_objective_stage_hold(mt_subproblem *c, const mt_workspace *w, int k, double f);
 /* The rows of the objectives that are held. */
-void mt_aim_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out);
+void mt_objective_stage_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out);
 
 /* Sums of n terms and the logarithms in them are rounded by less than this many times n eps. */
 #define MT_OBJECTIVE_ULPS 16.0

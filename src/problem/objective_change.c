@@ -6,7 +6,7 @@
 
 #include "problem/objective.h"
 
-static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
 {
     double f = 0.0;
     (void)a;
@@ -34,7 +34,7 @@ static double apart(const mt_problem *p, int i, double lo, double hi)
 }
 
 static double least(
-    const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
+    const mt_problem *p, const mt_objective_stage *a, const double *lo, const double *hi,
     double *low,  /* NOLINT(readability-non-const-parameter): others write there */
     double *high) /* NOLINT(readability-non-const-parameter) */
 {
@@ -59,7 +59,7 @@ static const char *price(const mt_price *q, mt_arena *mem)
 }
 
 /* At the optimum c u = mult g + ..., u of unit length: with the other rows held, the slope of
- * the demand by the variables is at most c / mult. */
+ * the requirement by the variables is at most c / mult. */
 static const char *hardly(const mt_price *q, mt_arena *mem)
 {
     return !(q->change > 0.0) || !(q->df > q->change)

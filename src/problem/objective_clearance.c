@@ -2,7 +2,7 @@
 /*
  * "clearance": f = -ln(1 + least clearance of any mode from any band). In the search of one gap
  * assignment that is the last coordinate, which every row of a band has to exceed
- * (goal_avoid.c); elsewhere mt_clears_room looks it up among the modes.
+ * (goal_avoid.c); elsewhere mt_avoidances_margin looks it up among the modes.
  */
 #include <math.h>
 
@@ -10,7 +10,7 @@
 
 static const double PERCENT = 100.0;
 
-static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
 {
     (void)a;
     if (w->c->clearance && gradient != NULL) {

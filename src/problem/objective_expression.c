@@ -2,7 +2,8 @@
 /* An expression of parameters: f = its value. */
 #include "problem/objective.h"
 
-static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err)
+static mt_status compile(mt_problem *p, mt_objective_stage *a, const mt_node *nodes,
+                         mt_err *err)
 {
     (void)err;
     a->node =
@@ -10,16 +11,16 @@ static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err 
     return MT_OK; /* the program tells when it is finished */
 }
 
-static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
 {
     for (int i = 0; i < w->p->n && gradient != NULL; i++) {
-        gradient[i] = mt_workspace_stretch(w, i) * w->grad[((ptrdiff_t)a->node * w->p->n) + i];
+        gradient[i] = mt_workspace_dx_dt(w, i) * w->grad[((ptrdiff_t)a->node * w->p->n) + i];
     }
     return w->value[a->node];
 }
 
-static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
-                    double *low, double *high)
+static double least(const mt_problem *p, const mt_objective_stage *a, const double *lo,
+                    const double *hi, double *low, double *high)
 {
     mt_program_interval(&p->program, lo, hi, low, high);
     return low[a->node];

@@ -17,12 +17,13 @@ static bool counted(const mt_objective *o, const char *name)
     return o->of.count == 0;
 }
 
-static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err *err)
+static mt_status compile(mt_problem *p, mt_objective_stage *a, const mt_node *nodes,
+                         mt_err *err)
 {
     int view = 0;
     (void)nodes;
     if (p->n_views == 0) {
-        MT_TRY(mt_problem_add_view(p, 0, &view, err));
+        MT_TRY(mt_problem_add_configuration(p, 0, &view, err));
     }
     const mt_system *const sys = p->views[view].original->sys;
     a->mass = mt_arena_alloc(&p->mem, (size_t)sys->n_items, sizeof *a->mass);
@@ -41,21 +42,21 @@ static mt_status compile(mt_problem *p, mt_aim *a, const mt_node *nodes, mt_err 
     return MT_OK;
 }
 
-static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
 {
     const mt_linear *const lin = w->views[0].analysis->lin;
     double f = 0.0;
     for (int k = 0; k < a->n_mass; k++) {
         f += mt_linear_value(lin, a->mass[k]);
         for (int i = 0; i < w->p->n && gradient != NULL; i++) {
-            gradient[i] += mt_workspace_stretch(w, i) * mt_linear_slope(lin, a->mass[k], i);
+            gradient[i] += mt_workspace_dx_dt(w, i) * mt_linear_slope(lin, a->mass[k], i);
         }
     }
     return f;
 }
 
-static double least(const mt_problem *p, const mt_aim *a, const double *lo, const double *hi,
-                    double *low, double *high)
+static double least(const mt_problem *p, const mt_objective_stage *a, const double *lo,
+                    const double *hi, double *low, double *high)
 {
     double f = 0.0;
     mt_program_interval(&p->views[0].original->sys->program, lo, hi, low, high);

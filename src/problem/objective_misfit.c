@@ -2,7 +2,7 @@
 /* "misfit": f = 1/2 |r|^2 of the weighted goals' residuals, df/dt = dr^T r. */
 #include "problem/objective.h"
 
-static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
 {
     (void)a;
     for (int i = 0; i < w->p->n && gradient != NULL; i++) {

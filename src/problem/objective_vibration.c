@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * "vibration": f = the largest of ln(value / limit) over all goals of forced vibration that are
- * limited from above. In a search that is the last coordinate less MT_SHAKEN_SHIFT, which every
- * row of these goals has to stay below (demand.c): a minimax is smooth so. Elsewhere it is
- * looked up.
+ * limited from above. In a search that is the last coordinate less MT_FORCED_RESPONSE_SHIFT,
+ * which every row of these goals has to stay below (requirement.c): a minimax is smooth so.
+ * Elsewhere it is looked up.
  */
 #include <math.h>
 
-#include "problem/demand.h"
 #include "problem/objective.h"
+#include "problem/requirement.h"
 
 static const double PERCENT = 100.0;
 
-static double value(const mt_workspace *w, const mt_aim *a, double *gradient)
+static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
 {
     (void)a;
-    if (gradient != NULL && w->c->shaken) {
+    if (gradient != NULL && w->c->forced_response) {
         gradient[w->p->n] = 1.0;
     }
-    return mt_shaken_given(w) ? w->t[w->p->n] - MT_SHAKEN_SHIFT : w->worst;
+    return mt_forced_response_given(w) ? w->t[w->p->n] - MT_FORCED_RESPONSE_SHIFT : w->worst;
 }
 
 static double shown(double f)

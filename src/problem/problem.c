@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "base/progress.h"
-#include "base/spent.h"
-#include "problem/family.h"
+#include "base/work_counters.h"
+#include "problem/drive_positions.h"
 #include "problem/goal_avoid.h"
 #include "prove/certify.h"
 
@@ -95,32 +95,32 @@ static double proof_work(const mt_search *s)
 static mt_status init_whole(mt_problem *p, mt_err *err)
 {
     const size_t n = (size_t)p->n + 1;
-    mt_case *const c = &p->whole;
-    double *const weight = mt_arena_f64(&p->mem, (size_t)p->n_demands, 1);
+    mt_subproblem *const c = &p->whole;
+    double *const weight = mt_arena_f64(&p->mem, (size_t)p->n_requirements, 1);
     double *const change_weight = mt_arena_f64(&p->mem, n, 1);
-    *c = (mt_case){.p = p,
-                   .lower = mt_arena_f64(&p->mem, n, 1),
-                   .upper = mt_arena_f64(&p->mem, n, 1),
-                   .lower_t = mt_arena_f64(&p->mem, n, 1),
-                   .upper_t = mt_arena_f64(&p->mem, n, 1),
-                   .origin_t = mt_arena_f64(&p->mem, n, 1),
-                   .change_weight = change_weight,
-                   .n_aims = p->n_aims,
-                   .aims = p->aims,
-                   .weight = weight,
-                   .search = p->study->search,
-                   .proof_work = proof_work(&p->study->search)};
+    *c = (mt_subproblem){.p = p,
+                         .lower = mt_arena_f64(&p->mem, n, 1),
+                         .upper = mt_arena_f64(&p->mem, n, 1),
+                         .lower_t = mt_arena_f64(&p->mem, n, 1),
+                         .upper_t = mt_arena_f64(&p->mem, n, 1),
+                         .origin_t = mt_arena_f64(&p->mem, n, 1),
+                         .change_weight = change_weight,
+                         .n_aims = p->n_aims,
+                         .aims = p->aims,
+                         .weight = weight,
+                         .search = p->study->search,
+                         .proof_work = proof_work(&p->study->search)};
     MT_TRY(mt_arena_check(&p->mem, err));
     for (int i = 0; i < p->n; i++) {
         const mt_variable *const v = &p->study->variables[i];
-        mt_case_bound(c, i, v->lower, v->upper);
+        mt_subproblem_bound(c, i, v->lower, v->upper);
         c->origin_t[i] = mt_problem_t(p, i, v->original);
         change_weight[i] = v->weight;
     }
-    for (int i = 0; i < p->n_demands; i++) {
-        weight[i] = p->demands[i].goal->weight;
+    for (int i = 0; i < p->n_requirements; i++) {
+        weight[i] = p->requirements[i].goal->weight;
     }
-    return mt_case_lay_out(c, NULL, 0, NULL, NULL, &p->mem, err);
+    return mt_subproblem_lay_out(c, NULL, 0, NULL, NULL, &p->mem, err);
 }
 
 mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
@@ -136,10 +136,10 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
     rc = rc == MT_OK ? init_references(p, err) : rc;
     rc = rc == MT_OK ? init_variables(p, err) : rc;
     rc = rc == MT_OK ? mt_problem_check_responses(p, err) : rc;
-    rc = rc == MT_OK ? mt_problem_init_demands(p, err) : rc;
-    rc = rc == MT_OK ? mt_clears_compile(p, err) : rc;
+    rc = rc == MT_OK ? mt_problem_init_requirements(p, err) : rc;
+    rc = rc == MT_OK ? mt_avoidances_compile(p, err) : rc;
     if (rc == MT_OK) {
-        mt_problem_ask(p);
+        mt_problem_query(p);
     }
     rc = rc == MT_OK ? mt_problem_init_program(p, err) : rc;
     rc = rc == MT_OK ? init_whole(p, err) : rc;
@@ -161,6 +161,6 @@ mt_status mt_problem_try(const mt_study *study, mt_err *err)
 
 void mt_problem_note_modal(const mt_problem *p, long n)
 {
-    mt_spent_note(p->study->model->spent, MT_SPENT_MODAL, n);
+    mt_work_counters_note(p->study->model->spent, MT_WORK_MODAL, n);
     mt_progress_solved(p->study->model->progress, n);
 }

@@ -3,16 +3,16 @@
 #define PROBLEM_PROBLEM_H
 
 #include "analysis/tracking.h"
-#include "problem/case.h"
 #include "problem/reference.h"
+#include "problem/subproblem.h"
 #include "study/bands.h"
 #include "study/study.h"
 
 /*
  * A study compiled for evaluation: variables as scaled coordinates t, configurations that goals
- * name, goals as a flat list of demands (one per goal and configuration), the objectives.
+ * name, goals as a flat list of requirements (one per goal and configuration), the objectives.
  * Compiled once and never changed: all workers share it. What of it is asked is a case
- * (case.h), what a worker needs to evaluate it a workspace (workspace.h).
+ * (subproblem.h), what a worker needs to evaluate it a workspace (workspace.h).
  *
  * Coordinates: t = ln x where the lower bound and the original value are positive. A lower
  * bound of 0 keeps the logarithm down to a floor, a thousandth of the original,
@@ -23,16 +23,16 @@
  * = x / scale. The change of a redesign is then
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Files: problem.c (life, coordinates), problem_demands.c (goals to demands), problem_program.c
- * (expressions and objectives); goal_*.c and objective_*.c are the kinds, family.c ties the
- * positions of one drive.
+ * Files: problem.c (life, coordinates), problem_requirements.c (goals to requirements),
+ * problem_program.c (expressions and objectives); goal_*.c and objective_*.c are the kinds,
+ * drive_positions.c ties the positions of one drive.
  */
 
 /* A configuration that goals speak of; or, of a case, one more position of a drive. */
-typedef struct mt_view {
+typedef struct mt_configuration_problem {
     int configuration;
-    /* owned by the problem (of a cut: by who made it, family.h); solved at the original design
-     * and never again: it is shared */
+    /* owned by the problem (of a cut: by who made it, drive_positions.h); solved at the
+     * original design and never again: it is shared */
     mt_analysis *original;
     int n_rigid; /* modes are counted so at all designs (mt_analysis) */
     int n_most;
@@ -41,14 +41,15 @@ typedef struct mt_view {
     const double **shape;    /* [n_named] weighed there (tracking.h) */
     mt_analysis_options ask; /* what its goals need of its modes: which, and their shapes */
     /* pairs of an input and an output that goals name there, each once: a forced problem each
-     * (shaken.h) */
+     * (forced_response.h) */
     int n_pairs;
-    struct mt_shaken_pair *pairs;
-} mt_view;
+    struct mt_forced_response_pair *pairs;
+} mt_configuration_problem;
 
-typedef struct mt_family mt_family; /* positions of one drive (family.h) */
+/* positions of one drive (drive_positions.h) */
+typedef struct mt_drive_positions mt_drive_positions;
 
-/* What a demand limits: what is known of it over boxes of designs, and of modes in their
+/* What a requirement limits: what is known of it over boxes of designs, and of modes in their
  * order. */
 typedef enum mt_quantity {
     MT_QUANTITY_FREQUENCY, /* of a mode */
@@ -56,7 +57,7 @@ typedef enum mt_quantity {
     MT_QUANTITY_OTHER
 } mt_quantity;
 
-typedef struct mt_demand {
+typedef struct mt_requirement {
     const struct mt_goal_ops *ops; /* of its kind (goal.h), likewise the next two */
     mt_quantity quantity;
     mt_goal_measure measure;
@@ -72,20 +73,21 @@ typedef struct mt_demand {
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
     struct mt_fit *fit;       /* frequency_response (goal_frequency_response.h); else NULL */
     double equals; /* what is asked for, by the goal or its reference; NaN: limits only */
-    bool ranged;  /* a target that is a range over the tolerances of the variables (robust.h) */
-    int row_eq;   /* its row in eq, -1 none */
-    int row_in;   /* first row in in, -1 none */
-    int n_in;     /* 2 where at_least and at_most are both given; or n_parts */
-    int row_soft; /* first row of the objective "vibration" that it is part of, -1 none, */
-    int n_soft;   /* so many: then it limits nothing else */
-    int row_res;  /* first residual, -1 none */
-    int n_res;    /* residuals */
+    /* a target that is a range over the tolerances of the variables (tolerance.h) */
+    bool ranged;
+    int row_eq;       /* its row in eq, -1 none */
+    int row_in;       /* first row in in, -1 none */
+    int n_in;         /* 2 where at_least and at_most are both given; or n_parts */
+    int row_soft;     /* first row of the objective "vibration" that it is part of, -1 none, */
+    int n_soft;       /* so many: then it limits nothing else */
+    int row_res;      /* first residual, -1 none */
+    int n_res;        /* residuals */
     double floor_hz;  /* in the unit of its number: below, its logarithm goes on as a tangent */
     double tolerance; /* relative */
-    /* what a difference from a limit of 0 is divided by (mt_demand_unit): of an expression what
-     * it changes by with the variables at the original design, of anything else 1 */
+    /* what a difference from a limit of 0 is divided by (mt_requirement_unit): of an expression
+     * what it changes by with the variables at the original design, of anything else 1 */
     double size;
-} mt_demand;
+} mt_requirement;
 
 /*
  * The bands that one configuration keeps clear of: all avoid goals that name it, united. A gap
@@ -93,17 +95,17 @@ typedef struct mt_demand {
  * on each side of each band is constrained (in = ln(lower / f), ln(f / upper)), which is smooth
  * where "no mode inside" is not. Without one, no rows.
  */
-typedef struct mt_clear {
+typedef struct mt_avoidance {
     int view;
     int goal_index; /* of the first goal */
     mt_bands bands;
     int cluster;
     int first; /* bands first .. first + bands.n - 1 of an assignment */
     double tolerance;
-} mt_clear;
+} mt_avoidance;
 
 /* An objective. */
-typedef struct mt_aim {
+typedef struct mt_objective_stage {
     mt_objective_type type;
     const struct mt_objective_ops *ops; /* of its kind (objective.h) */
     const mt_objective *objective;      /* NULL: none */
@@ -114,7 +116,7 @@ typedef struct mt_aim {
     double size;
     int n_mass;    /* items counted by a mass */
     mt_node *mass; /* [n_mass] nodes in the first view's program */
-} mt_aim;
+} mt_objective_stage;
 
 typedef struct mt_problem {
     const mt_study *study; /* must outlive the problem */
@@ -126,29 +128,29 @@ typedef struct mt_problem {
     double *scale;    /* [n] NaN: logarithmic; else x = t * scale */
     double *floor;    /* [n] where the logarithm ends; 0: nowhere */
     int n_views;
-    mt_view *views;
-    int n_demands;
-    mt_demand *demands;
-    int n_clears;
-    mt_clear *clears;
+    mt_configuration_problem *views;
+    int n_requirements;
+    mt_requirement *requirements;
+    int n_avoidances;
+    mt_avoidance *avoidances;
     int n_bands; /* of all clears: length of a gap assignment */
     int n_families;
-    mt_family *families;
+    mt_drive_positions *families;
     /* [n_bands] the first of the bands that have the same number of modes below them
-     * (family.h) */
+     * (drive_positions.h) */
     int *tie;
     int n_eq;
-    int n_in; /* of the demands; those of a case are more */
+    int n_in; /* of the requirements; those of a case are more */
     int n_soft;
     int n_res;
-    double weights;     /* sum of the weights of the demands that are residuals */
+    double weights;     /* sum of the weights of the requirements that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */
     /* nodes of it that the search needs: those of published quantities follow */
     int n_searched;
     mt_node *published; /* [study->n_published] */
     int n_aims;         /* at least one */
-    mt_aim *aims;
-    mt_case whole; /* the study as it is asked: all bounds, no gap assignment */
+    mt_objective_stage *aims;
+    mt_subproblem whole; /* the study as it is asked: all bounds, no gap assignment */
 } mt_problem;
 
 /*
@@ -169,7 +171,7 @@ double mt_problem_t(const mt_problem *p, int i, double x);
 /* The value of variable i at a coordinate, between the bounds; to rounding. */
 double mt_problem_value(const mt_problem *p, int i, double t);
 /* dx_i/dt_i at the value x of variable i. */
-static inline double mt_problem_stretch_at(const mt_problem *p, int i, double x)
+static inline double mt_problem_dx_dt_at(const mt_problem *p, int i, double x)
 {
     return MT_HAS(p->scale[i]) ? p->scale[i] : x > p->floor[i] ? x : p->floor[i];
 }
@@ -179,27 +181,29 @@ static inline double mt_problem_stretch_at(const mt_problem *p, int i, double x)
 mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
                              mt_analysis **out, mt_err *err);
 /* The same for a view, with its count and its system (mt_analysis_new_like): cheaper. */
-mt_status mt_view_analyse(const mt_view *view, const double *x, mt_analysis **out, mt_err *err);
+mt_status mt_configuration_analyse(const mt_configuration_problem *view, const double *x,
+                                   mt_analysis **out, mt_err *err);
 /* An analysis of the view's mechanism with a drive, counted as the view is, at the inputs of
  * mt_analysis_new_driven. */
-mt_status mt_view_drive(const mt_problem *p, const mt_view *view, const mt_system_drive *drive,
-                        const double *at, mt_analysis **out, mt_err *err);
+mt_status mt_configuration_drive(const mt_problem *p, const mt_configuration_problem *view,
+                                 const mt_system_drive *drive, const double *at,
+                                 mt_analysis **out, mt_err *err);
 /* View of a configuration, -1. */
-int mt_problem_view(const mt_problem *p, int configuration);
+int mt_problem_configuration(const mt_problem *p, int configuration);
 /* The same, made where it is not there yet. While the problem is compiled. */
-mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err);
+mt_status mt_problem_add_configuration(mt_problem *p, int configuration, int *out, mt_err *err);
 /* Vibration modes of a view: as many as any design of the study has. */
-int mt_view_vibrations(const mt_view *view);
+int mt_configuration_vibrations(const mt_configuration_problem *view);
 /* The configuration's name. */
-const char *mt_view_name(const mt_problem *p, const mt_view *view);
+const char *mt_configuration_name(const mt_problem *p, const mt_configuration_problem *view);
 
-/* problem_demands.c: views, demands and their rows. */
-mt_status mt_problem_init_demands(mt_problem *p, mt_err *err);
+/* problem_requirements.c: views, requirements and their rows. */
+mt_status mt_problem_init_requirements(mt_problem *p, mt_err *err);
 /* problem_responses.c. Fails: MT_E_INPUT, with the port that there is not. */
 mt_status mt_problem_check_responses(const mt_problem *p, mt_err *err);
-/* What each view is asked for; after demands and bands. */
-void mt_problem_ask(mt_problem *p);
-/* problem_program.c: the program of expressions, and the objectives. After the demands. */
+/* What each view is asked for; after requirements and bands. */
+void mt_problem_query(mt_problem *p);
+/* problem_program.c: the program of expressions, and the objectives. After the requirements. */
 mt_status mt_problem_init_program(mt_problem *p, mt_err *err);
 
 #endif

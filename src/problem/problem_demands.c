@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From goals to demands: one per goal and configuration, each with a view, a mode, a reference
- * and its rows. */
+/* From goals to requirements: one per goal and configuration, each with a view, a mode, a
+ * reference and its rows. */
 #include <math.h>
 
 #include "analysis/count.h"
 #include "base/progress.h"
-#include "problem/demand.h"
-#include "problem/family.h"
+#include "problem/drive_positions.h"
 #include "problem/goal.h"
-#include "problem/next.h"
-#include "problem/robust.h"
+#include "problem/mode_order.h"
+#include "problem/requirement.h"
+#include "problem/tolerance.h"
 
-int mt_problem_view(const mt_problem *p, int configuration)
+int mt_problem_configuration(const mt_problem *p, int configuration)
 {
     for (int i = 0; i < p->n_views; i++) {
         if (p->views[i].configuration == configuration) {
@@ -48,7 +48,7 @@ mt_status mt_problem_analyse(const mt_problem *p, int configuration, const doubl
 }
 
 /* With the view's count; *out is a, which goes where that fails. */
-static mt_status count_as(const mt_view *view, mt_analysis *a, const double *x,
+static mt_status count_as(const mt_configuration_problem *view, mt_analysis *a, const double *x,
                           mt_analysis **out, mt_err *err)
 {
     a->n_rigid = view->n_rigid;
@@ -62,7 +62,8 @@ static mt_status count_as(const mt_view *view, mt_analysis *a, const double *x,
     return MT_OK;
 }
 
-mt_status mt_view_analyse(const mt_view *view, const double *x, mt_analysis **out, mt_err *err)
+mt_status mt_configuration_analyse(const mt_configuration_problem *view, const double *x,
+                                   mt_analysis **out, mt_err *err)
 {
     mt_analysis *a = NULL;
     *out = NULL;
@@ -70,8 +71,9 @@ mt_status mt_view_analyse(const mt_view *view, const double *x, mt_analysis **ou
     return count_as(view, a, x, out, err);
 }
 
-mt_status mt_view_drive(const mt_problem *p, const mt_view *view, const mt_system_drive *drive,
-                        const double *at, mt_analysis **out, mt_err *err)
+mt_status mt_configuration_drive(const mt_problem *p, const mt_configuration_problem *view,
+                                 const mt_system_drive *drive, const double *at,
+                                 mt_analysis **out, mt_err *err)
 {
     mt_analysis *a = NULL;
     *out = NULL;
@@ -83,7 +85,7 @@ mt_status mt_view_drive(const mt_problem *p, const mt_view *view, const mt_syste
 /* Shape of each named mode of the configuration at the original design; of those that are
  * there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
  * the study counts, have none there. */
-static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
+static mt_status name_modes(mt_problem *p, mt_configuration_problem *view, mt_err *err)
 {
     const mt_model *const model = p->study->model;
     mt_analysis *const a = view->original;
@@ -105,14 +107,14 @@ static mt_status name_modes(mt_problem *p, mt_view *view, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err *err)
+mt_status mt_problem_add_configuration(mt_problem *p, int configuration, int *out, mt_err *err)
 {
-    *out = mt_problem_view(p, configuration);
+    *out = mt_problem_configuration(p, configuration);
     if (*out >= 0) {
         return MT_OK;
     }
-    mt_view *const view = &p->views[p->n_views];
-    *view = (mt_view){.configuration = configuration};
+    mt_configuration_problem *const view = &p->views[p->n_views];
+    *view = (mt_configuration_problem){.configuration = configuration};
     MT_TRY(mt_problem_analyse(p, configuration, p->original, &view->original, err));
     view->n_rigid = view->original->n_rigid;
     view->n_most = view->original->n_most;
@@ -120,17 +122,17 @@ mt_status mt_problem_add_view(mt_problem *p, int configuration, int *out, mt_err
     return name_modes(p, view, err);
 }
 
-int mt_view_vibrations(const mt_view *view)
+int mt_configuration_vibrations(const mt_configuration_problem *view)
 {
     return view->n_most - view->n_rigid;
 }
 
-const char *mt_view_name(const mt_problem *p, const mt_view *view)
+const char *mt_configuration_name(const mt_problem *p, const mt_configuration_problem *view)
 {
     return p->study->model->configurations[view->configuration].name.s;
 }
 
-static const char *instability(const mt_view *view)
+static const char *instability(const mt_configuration_problem *view)
 {
     const mt_modes *const modes = &view->original->modes;
     return modes->n_unstable > 0    ? " (it is unstable there)"
@@ -139,8 +141,8 @@ static const char *instability(const mt_view *view)
 }
 
 /* Resolve a mode given by name: its place in the view's list. */
-static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_demand *d,
-                              mt_err *err)
+static mt_status resolve_name(const mt_problem *p, const mt_configuration_problem *view,
+                              mt_requirement *d, mt_err *err)
 {
     const mt_model *const model = p->study->model;
     const mt_named_mode *const wanted = &model->modes[d->goal->mode.named];
@@ -166,9 +168,10 @@ static mt_status resolve_name(const mt_problem *p, const mt_view *view, mt_deman
 
 /* An index must be there at some design; where the original one is unstable nothing has an
  * index, and it is enough that there are as many freedoms. */
-static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *err)
+static mt_status resolve_index(const mt_configuration_problem *view, const mt_requirement *d,
+                               mt_err *err)
 {
-    const int most = mt_view_vibrations(view);
+    const int most = mt_configuration_vibrations(view);
     if (d->mode <= most) {
         return MT_OK;
     }
@@ -177,7 +180,7 @@ static mt_status resolve_index(const mt_view *view, const mt_demand *d, mt_err *
                    d->goal_index, mt_analysis_configuration(view->original), d->mode, most);
 }
 
-static void number_rows(mt_problem *p, mt_demand *d)
+static void number_rows(mt_problem *p, mt_requirement *d)
 {
     const mt_goal *const g = d->goal;
     d->tolerance = mt_goal_tolerance(g);
@@ -190,7 +193,7 @@ static void number_rows(mt_problem *p, mt_demand *d)
         d->row_soft = p->n_soft;
         d->n_soft = d->n_parts > 0 ? d->n_parts : 1;
         p->n_soft += d->n_soft;
-    } else if (mt_robust_is_range(p, d)) {
+    } else if (mt_tolerance_is_range(p, d)) {
         d->ranged = true; /* its rows are those of the corners */
     } else if (MT_HAS(d->equals)) {
         d->row_eq = p->n_eq++;
@@ -202,30 +205,30 @@ static void number_rows(mt_problem *p, mt_demand *d)
     }
 }
 
-static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt_err *err)
+static mt_status add_requirement(mt_problem *p, int goal_index, int configuration, mt_err *err)
 {
     const mt_goal *const g = &p->study->goals[goal_index];
-    mt_demand *const d = &p->demands[p->n_demands];
-    *d = (mt_demand){.ops = mt_goal_ops_of(g->type),
-                     .quantity = mt_goal_ops_of(g->type)->quantity,
-                     .measure = mt_goal_kind_of(g->type)->measure,
-                     .goal = g,
-                     .goal_index = goal_index,
-                     .view = -1,
-                     .mode = g->mode.index,
-                     .named = -1,
-                     .node = MT_NO_NODE,
-                     .row_eq = -1,
-                     .row_in = -1,
-                     .row_soft = -1,
-                     .row_res = -1,
-                     .equals = g->equals,
-                     .size = 1.0};
+    mt_requirement *const d = &p->requirements[p->n_requirements];
+    *d = (mt_requirement){.ops = mt_goal_ops_of(g->type),
+                          .quantity = mt_goal_ops_of(g->type)->quantity,
+                          .measure = mt_goal_kind_of(g->type)->measure,
+                          .goal = g,
+                          .goal_index = goal_index,
+                          .view = -1,
+                          .mode = g->mode.index,
+                          .named = -1,
+                          .node = MT_NO_NODE,
+                          .row_eq = -1,
+                          .row_in = -1,
+                          .row_soft = -1,
+                          .row_res = -1,
+                          .equals = g->equals,
+                          .size = 1.0};
     if (configuration != MT_ABSENT) {
-        MT_TRY(mt_err_in(err, mt_problem_add_view(p, configuration, &d->view, err), "/goals/%d",
-                         goal_index));
-        const mt_view *const view = &p->views[d->view];
-        if (mt_demand_is_modal(d)) {
+        MT_TRY(mt_err_in(err, mt_problem_add_configuration(p, configuration, &d->view, err),
+                         "/goals/%d", goal_index));
+        const mt_configuration_problem *const view = &p->views[d->view];
+        if (mt_requirement_is_modal(d)) {
             MT_TRY(d->mode > 0 ? resolve_index(view, d, err) : resolve_name(p, view, d, err));
         }
     }
@@ -235,35 +238,36 @@ static mt_status add_demand(mt_problem *p, int goal_index, int configuration, mt
         MT_TRY(placed ? rc : mt_err_in(err, rc, "/goals/%d", goal_index));
     }
     number_rows(p, d);
-    p->n_demands++;
+    p->n_requirements++;
     return MT_OK;
 }
 
 /* All modes where bands are kept clear, since whatever lies in one counts, but the shapes of
- * those alone that rows look at (mt_view_solve adds those of the bands); and all shapes where
- * shapes are compared or followed: shares of a shape and its derivatives are sums over all. */
+ * those alone that rows look at (mt_configuration_solve adds those of the bands); and all
+ * shapes where shapes are compared or followed: shares of a shape and its derivatives are sums
+ * over all. */
 static void ask_view(const mt_problem *p, int index)
 {
-    mt_view *const view = &p->views[index];
+    mt_configuration_problem *const view = &p->views[index];
     bool all = false;
     int first = 0;
-    for (int i = 0; i < p->n_demands; i++) {
-        const mt_demand *const d = &p->demands[i];
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
         if (d->view == index) {
             const bool shapes = d->ops->needs_vectors || d->named >= 0;
             view->ask.vectors = view->ask.vectors || shapes;
             first = d->mode > first ? d->mode : first;
         }
     }
-    for (int i = 0; i < p->n_clears; i++) {
-        all = all || p->clears[i].view == index;
+    for (int i = 0; i < p->n_avoidances; i++) {
+        all = all || p->avoidances[i].view == index;
     }
-    const int part = first > 0 && !view->ask.vectors ? first + MT_NEXT_MOST : 0;
+    const int part = first > 0 && !view->ask.vectors ? first + MT_MODE_ORDER_MOST : 0;
     view->ask.shapes = (mt_modal_part){.first = part};
     view->ask.modes = (mt_modal_part){.first = all ? 0 : part};
 }
 
-void mt_problem_ask(mt_problem *p)
+void mt_problem_query(mt_problem *p)
 {
     for (int i = 0; i < p->n_views; i++) {
         ask_view(p, i);
@@ -275,24 +279,25 @@ static mt_status add_goal(mt_problem *p, int i, mt_err *err)
 {
     const mt_goal *const g = &p->study->goals[i];
     if (g->n_configurations == 0) {
-        MT_TRY(add_demand(p, i, MT_ABSENT, err));
+        MT_TRY(add_requirement(p, i, MT_ABSENT, err));
     }
     for (int k = 0; k < g->n_configurations; k++) {
         int view = -1;
-        MT_TRY(g->avoid != NULL ? mt_problem_add_view(p, g->configurations[k], &view, err)
-                                : add_demand(p, i, g->configurations[k], err));
+        MT_TRY(g->avoid != NULL
+                   ? mt_problem_add_configuration(p, g->configurations[k], &view, err)
+                   : add_requirement(p, i, g->configurations[k], err));
     }
     return MT_OK;
 }
 
-mt_status mt_problem_init_demands(mt_problem *p, mt_err *err)
+mt_status mt_problem_init_requirements(mt_problem *p, mt_err *err)
 {
     const mt_study *const s = p->study;
     size_t most = 0;
     for (int i = 0; i < s->n_goals; i++) {
         most += (size_t)s->goals[i].n_configurations + 1;
     }
-    p->demands = mt_arena_alloc(&p->mem, most, sizeof *p->demands);
+    p->requirements = mt_arena_alloc(&p->mem, most, sizeof *p->requirements);
     p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
     MT_TRY(mt_arena_check(&p->mem, err));
     mt_progress *const progress = s->model->progress;

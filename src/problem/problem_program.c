@@ -13,7 +13,7 @@ static double size_of(const mt_problem *p, mt_node node, const double *value,
     double square = 0.0;
     for (int i = 0; i < p->n; i++) {
         const double slope =
-            grad[((ptrdiff_t)node * p->n) + i] * mt_problem_stretch_at(p, i, p->original[i]);
+            grad[((ptrdiff_t)node * p->n) + i] * mt_problem_dx_dt_at(p, i, p->original[i]);
         square += slope * slope;
     }
     const double moved = sqrt(square);
@@ -21,7 +21,7 @@ static double size_of(const mt_problem *p, mt_node node, const double *value,
     return moved > 0.0 && isfinite(moved) ? moved : own > 0.0 && isfinite(own) ? own : 1.0;
 }
 
-static double size_of_mass(const mt_problem *p, const mt_aim *a)
+static double size_of_mass(const mt_problem *p, const mt_objective_stage *a)
 {
     double sum = 0.0;
     for (int k = 0; k < a->n_mass; k++) {
@@ -48,12 +48,12 @@ static mt_status set_sizes(mt_problem *p, mt_err *err)
     MT_TRY(mt_arena_check(&p->mem, err));
     const bool known =
         mt_program_gradient(&p->program, p->original, value, grad, NULL, &own) == MT_OK;
-    for (int i = 0; i < p->n_demands && known; i++) {
-        mt_demand *const d = &p->demands[i];
+    for (int i = 0; i < p->n_requirements && known; i++) {
+        mt_requirement *const d = &p->requirements[i];
         d->size = d->node != MT_NO_NODE ? size_of(p, d->node, value, grad) : d->size;
     }
     for (int i = 0; i < p->n_aims; i++) {
-        mt_aim *const a = &p->aims[i];
+        mt_objective_stage *const a = &p->aims[i];
         const double size = a->n_mass > 0                    ? size_of_mass(p, a)
                             : known && a->node != MT_NO_NODE ? size_of(p, a->node, value, grad)
                                                              : 1.0;
@@ -76,7 +76,7 @@ mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
     for (int i = 0; i < p->n_aims; i++) {
         const mt_objective *const o = s->n_objectives > 0 ? &s->objectives[i] : NULL;
         const mt_objective_type type = o != NULL ? o->type : MT_OBJECTIVE_NONE;
-        p->aims[i] = (mt_aim){
+        p->aims[i] = (mt_objective_stage){
             .type = type, .ops = mt_objective_ops_of(type), .objective = o, .node = MT_NO_NODE};
     }
     for (size_t i = 0; i < n_parameters; i++) {
@@ -87,14 +87,14 @@ mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
     }
     MT_TRY(mt_program_init(&p->program, p->n, &p->mem, err));
     MT_TRY(mt_emit_parameters(s->model, MT_ABSENT, is_input, &p->program, nodes, &p->mem, err));
-    for (int i = 0; i < p->n_demands; i++) {
-        mt_demand *const d = &p->demands[i];
+    for (int i = 0; i < p->n_requirements; i++) {
+        mt_requirement *const d = &p->requirements[i];
         if (d->quantity == MT_QUANTITY_EXPRESSION) {
             d->node = mt_program_expr(&p->program, &d->goal->expression, nodes, d->goal->addr);
         }
     }
     for (int i = 0; i < p->n_aims; i++) {
-        mt_aim *const a = &p->aims[i];
+        mt_objective_stage *const a = &p->aims[i];
         if (a->ops->compile != NULL) {
             MT_TRY(a->ops->compile(p, a, nodes, err));
         }

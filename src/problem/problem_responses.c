@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Checks that there are the ports of the responses that results show. */
+#include "problem/forced_response.h"
 #include "problem/problem.h"
-#include "problem/shaken.h"
 
 /* A profile says how the ground accelerates. */
-static mt_status check_shaken(const mt_study_response *r, const mt_port *in, int index,
-                              mt_err *err)
+static mt_status check_forced_response(const mt_study_response *r, const mt_port *in, int index,
+                                       mt_err *err)
 {
     const bool accelerates = in->kind == MT_PORT_BASE && in->motion == 2;
-    return accelerates || r->shake.profile_name.s == NULL
+    return accelerates || r->response_limit.profile_name.s == NULL
                ? MT_OK
                : mt_fail(err, MT_E_INPUT,
                          "/responses/%d/input: \"%s\" is not an acceleration of the ground, as "
                          "a profile is: write \"base.x\", \"base.y\" or \"base.z\"",
-                         index, r->shake.input.s);
+                         index, r->response_limit.input.s);
 }
 
 static mt_status check(const mt_problem *p, int index, mt_arena *mem, mt_err *err)
@@ -26,8 +26,10 @@ static mt_status check(const mt_problem *p, int index, mt_arena *mem, mt_err *er
     MT_TRY(mt_arena_check(mem, err));
     mt_status rc = mt_system_new(p->study->model, r->configuration, p->n, p->inputs,
                                  p->original, &sys, err);
-    rc = rc == MT_OK ? mt_shaken_ports_at(sys, &r->shake, at, mem, &in, &out, err) : rc;
-    rc = rc == MT_OK ? check_shaken(r, &in, index, err) : rc;
+    rc = rc == MT_OK
+             ? mt_forced_response_ports_at(sys, &r->response_limit, at, mem, &in, &out, err)
+             : rc;
+    rc = rc == MT_OK ? check_forced_response(r, &in, index, err) : rc;
     mt_system_delete(sys);
     return rc;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One evaluation: parameters, expressions, the modes of every view, every demand, the objective
- * and those that are held. */
+/* One evaluation: parameters, expressions, the modes of every view, every requirement, the
+ * objective and those that are held. */
 #include "problem/workspace.h"
 
 #include <math.h>
@@ -10,31 +10,31 @@
 #include "base/format.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
-#include "base/spent.h"
+#include "base/work_counters.h"
 #include "nlp/merit.h"
-#include "problem/demand.h"
-#include "problem/family.h"
+#include "problem/at_position.h"
+#include "problem/drive_positions.h"
+#include "problem/forced_response.h"
 #include "problem/goal_avoid.h"
-#include "problem/next.h"
+#include "problem/mode_order.h"
 #include "problem/objective.h"
-#include "problem/posed.h"
-#include "problem/robust.h"
-#include "problem/robust_cut.h"
-#include "problem/shaken.h"
+#include "problem/requirement.h"
+#include "problem/tolerance.h"
+#include "problem/tolerance_cut.h"
 
 /* Evaluations between two lines of progress: a tenth of a second or so for a small
  * mechanism. */
 enum { PROGRESS_EVERY = 500, PROGRESS_TEXT = 80 };
 
-static void close_view(mt_view_work *view)
+static void close_view(mt_configuration_work *view)
 {
     for (int i = 0; i < view->n_corners; i++) {
         mt_analysis_delete(view->corners[i]);
     }
-    mt_shaken_close(view);
+    mt_forced_response_close(view);
     mt_analysis_delete(view->scout);
     mt_analysis_delete(view->analysis);
-    *view = (mt_view_work){.of = NULL};
+    *view = (mt_configuration_work){.of = NULL};
 }
 
 void mt_workspace_delete(mt_workspace *w)
@@ -58,8 +58,8 @@ static mt_status claim(mt_workspace *w, mt_err *err)
     const size_t count = (size_t)p->program.count;
     const size_t n_res = (size_t)p->n_res;
     size_t ns = 1; /* rows of slopes: of a shape, or of anything else */
-    for (int i = 0; i < p->n_demands; i++) {
-        const size_t own = (size_t)p->demands[i].shape.ns;
+    for (int i = 0; i < p->n_requirements; i++) {
+        const size_t own = (size_t)p->requirements[i].shape.ns;
         ns = own > ns ? own : ns;
     }
     w->driven = mt_arena_alloc(&w->mem, (size_t)p->n_families, sizeof(mt_analysis *));
@@ -76,7 +76,7 @@ static mt_status claim(mt_workspace *w, mt_err *err)
     const bool bad = w->driven == NULL || w->value == NULL || w->grad == NULL || w->x == NULL ||
                      w->t == NULL || w->r == NULL || w->dr == NULL || w->work == NULL ||
                      w->slope == NULL || w->shape == NULL || w->dshape == NULL;
-    return bad ? mt_fail_memory(err) : mt_robust_work_init(w, err);
+    return bad ? mt_fail_memory(err) : mt_tolerance_work_init(w, err);
 }
 
 mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
@@ -105,7 +105,7 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
     if (n <= w->n_views) {
         return MT_OK;
     }
-    mt_view_work *const views = mt_arena_alloc(&w->mem, (size_t)n, sizeof *views);
+    mt_configuration_work *const views = mt_arena_alloc(&w->mem, (size_t)n, sizeof *views);
     MT_TRY(mt_arena_check(&w->mem, err));
     if (w->n_views > 0) {
         memcpy(views, w->views, (size_t)w->n_views * sizeof *views);
@@ -116,7 +116,7 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
 }
 
 /* Views of one geometry make it once. */
-static mt_status share_view(mt_workspace *w, const mt_view_work *view, mt_err *err)
+static mt_status share_view(mt_workspace *w, const mt_configuration_work *view, mt_err *err)
 {
     bool shared = false;
     for (int i = 0; i < w->n_views && !shared; i++) {
@@ -129,7 +129,8 @@ static mt_status share_view(mt_workspace *w, const mt_view_work *view, mt_err *e
 }
 
 /* An analysis of the view, unless it is there already. */
-static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *of, mt_err *err)
+static mt_status open_view(mt_workspace *w, mt_configuration_work *view,
+                           const mt_configuration_problem *of, mt_err *err)
 {
     view->of = of;
     if (view->analysis != NULL) {
@@ -137,13 +138,13 @@ static mt_status open_view(mt_workspace *w, mt_view_work *view, const mt_view *o
     }
     view->track = mt_arena_alloc(&w->mem, (size_t)of->n_named, sizeof *view->track);
     MT_TRY(mt_arena_check(&w->mem, err));
-    MT_TRY(mt_view_analyse(of, w->p->original, &view->analysis, err));
+    MT_TRY(mt_configuration_analyse(of, w->p->original, &view->analysis, err));
     view->ask = of->ask;
     view->solved = true;
     return share_view(w, view, err);
 }
 
-static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err *err)
+static mt_status open_corners(mt_workspace *w, mt_configuration_work *view, int n, mt_err *err)
 {
     if (n <= view->n_corners) {
         return MT_OK;
@@ -155,24 +156,25 @@ static mt_status open_corners(mt_workspace *w, mt_view_work *view, int n, mt_err
     }
     view->corners = corners;
     for (; view->n_corners < n; view->n_corners++) {
-        MT_TRY(mt_view_analyse(view->of, w->p->original, &corners[view->n_corners], err));
+        MT_TRY(
+            mt_configuration_analyse(view->of, w->p->original, &corners[view->n_corners], err));
     }
     return MT_OK;
 }
 
-mt_status mt_workspace_use(mt_workspace *w, const mt_case *c, mt_err *err)
+mt_status mt_workspace_use(mt_workspace *w, const mt_subproblem *c, mt_err *err)
 {
     MT_TRY(make_room(w, c->n_views, err));
     for (int i = 0; i < c->n_views; i++) {
         MT_TRY(open_view(w, &w->views[i], &c->views[i], err));
-        MT_TRY(
-            open_corners(w, &w->views[i], c->robust != NULL ? c->robust->views[i].n : 0, err));
+        MT_TRY(open_corners(w, &w->views[i],
+                            c->tolerance_box != NULL ? c->tolerance_box->views[i].n : 0, err));
     }
     w->c = c;
     return MT_OK;
 }
 
-void mt_workspace_back(mt_workspace *w, const mt_case *c)
+void mt_workspace_back(mt_workspace *w, const mt_subproblem *c)
 {
     for (int i = 0; i < c->n_views; i++) {
         w->views[i].of = &c->views[i];
@@ -183,30 +185,30 @@ void mt_workspace_back(mt_workspace *w, const mt_case *c)
     w->c = c;
 }
 
-double mt_workspace_stretch(const mt_workspace *w, int i)
+double mt_workspace_dx_dt(const mt_workspace *w, int i)
 {
-    return mt_problem_stretch_at(w->p, i, w->x[i]);
+    return mt_problem_dx_dt_at(w->p, i, w->x[i]);
 }
 
 mt_nlp mt_workspace_nlp(mt_workspace *w)
 {
-    const mt_case *const c = w->c;
+    const mt_subproblem *const c = w->c;
     const mt_nlp nlp = {.n = c->n_t,
                         .lower = c->lower_t,
                         .upper = c->upper_t,
                         .hint = c->hint,
                         .origin = c->origin_t,
                         .change_weight = c->change_weight,
-                        .n_res = mt_case_rows_res(c),
-                        .n_eq = mt_case_rows_eq(c),
-                        .n_in = mt_case_rows_in(c),
+                        .n_res = mt_subproblem_rows_res(c),
+                        .n_eq = mt_subproblem_rows_eq(c),
+                        .n_in = mt_subproblem_rows_in(c),
                         .eq_tol = c->eq_tol,
                         .in_tol = c->in_tol,
                         .n_next = c->n_next,
                         .next_of = c->next_of,
                         .eval = mt_workspace_eval_uncounted,
                         .context = w,
-                        .scope = w->scope};
+                        .task_path = w->task_path};
     return nlp;
 }
 
@@ -215,7 +217,7 @@ mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradien
     const mt_problem *const p = w->p;
     memmove(w->t, t, (size_t)w->c->n_t * sizeof *t);
     w->worst = -HUGE_VAL;
-    mt_case_x(w->c, t, w->x);
+    mt_subproblem_x(w->c, t, w->x);
     if (!with_gradient) {
         return mt_program_eval(&p->program, w->x, w->value, NULL, err);
     }
@@ -229,39 +231,41 @@ mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradien
                : mt_fail(err, rc, "%s", own.text);
 }
 
-mt_analysis_options mt_view_asks(const mt_workspace *w, const mt_view_work *view,
-                                 bool with_gradient)
+mt_analysis_options mt_configuration_queries(const mt_workspace *w,
+                                             const mt_configuration_work *view,
+                                             bool with_gradient)
 {
     mt_analysis_options opt = view->ask;
     opt.gradient = with_gradient;
     opt.accuracy = w->accuracy;
     if (!view->all && !opt.vectors) {
-        mt_clears_ask(w->c, (int)(view - w->views), &opt.shapes);
+        mt_avoidances_query(w->c, (int)(view - w->views), &opt.shapes);
     }
     return opt;
 }
 
-void mt_view_ask_all(mt_view_work *view)
+void mt_configuration_query_all(mt_configuration_work *view)
 {
     view->all = true;
     view->ask.modes = (mt_modal_part){.first = 0};
     view->ask.shapes = view->ask.modes;
 }
 
-mt_status mt_view_solve(mt_workspace *w, mt_view_work *view, bool with_gradient, mt_err *err)
+mt_status mt_configuration_solve(mt_workspace *w, mt_configuration_work *view,
+                                 bool with_gradient, mt_err *err)
 {
-    const mt_analysis_options opt = mt_view_asks(w, view, with_gradient);
+    const mt_analysis_options opt = mt_configuration_queries(w, view, with_gradient);
     view->tracked = false;
     view->solved = false;
-    mt_shaken_close(view);
+    mt_forced_response_close(view);
     MT_TRY(mt_err_in(err, mt_analysis_solve(view->analysis, w->x, &opt, err),
                      "configuration \"%s\"", mt_analysis_configuration(view->analysis)));
     view->solved = true;
     return MT_OK;
 }
 
-mt_status mt_view_position(mt_workspace *w, mt_view_work *view, int mode, int named, int *pos,
-                           mt_err *err)
+mt_status mt_configuration_position(mt_workspace *w, mt_configuration_work *view, int mode,
+                                    int named, int *pos, mt_err *err)
 {
     *pos = -1;
     if (!view->solved || (mode == 0 && named < 0)) { /* or a goal that is of no mode */
@@ -271,7 +275,7 @@ mt_status mt_view_position(mt_workspace *w, mt_view_work *view, int mode, int na
         *pos = mt_modal_flexible(&view->analysis->modes, mode);
         return MT_OK;
     }
-    MT_TRY(mt_view_track(w, view, err));
+    MT_TRY(mt_configuration_track(w, view, err));
     *pos = view->track[named].pos;
     return MT_OK;
 }
@@ -290,52 +294,53 @@ static void say_progress(const mt_workspace *w)
  * hold. */
 static bool judged_later(const mt_workspace *w)
 {
-    return mt_family_any(w->p) || mt_robust_is_sampled(w->c);
+    return mt_drive_positions_any(w->p) || mt_tolerance_is_sampled(w->c);
 }
 
 /* True where somebody wants to know of a design that meets all goals, and can be told its
  * value. */
 static bool is_wanted(const mt_workspace *w)
 {
-    const mt_case *const c = w->c;
+    const mt_subproblem *const c = w->c;
     return mt_progress_seeks(w->p->study->model->progress) && c->n_aims > 0 &&
            c->aims[0].ops->value != NULL;
 }
 
-static void tell_found(const mt_workspace *w, double f)
+static void report_found(const mt_workspace *w, double f)
 {
-    const mt_aim *const aim = &w->c->aims[0];
-    mt_progress_found(w->p->study->model->progress, mt_objective_kind_of(aim->type)->name, f,
-                      mt_aim_shown(aim, f));
+    const mt_objective_stage *const objective_stage = &w->c->aims[0];
+    mt_progress_found(w->p->study->model->progress,
+                      mt_objective_kind_of(objective_stage->type)->name, f,
+                      mt_objective_stage_shown(objective_stage, f));
 }
 
 void mt_workspace_judged(const mt_workspace *w, double f)
 {
     if (is_wanted(w) && judged_later(w)) {
-        tell_found(w, f);
+        report_found(w, f);
     }
 }
 
 static void say_found(const mt_workspace *w, const mt_nlp_values *v)
 {
-    const mt_case *const c = w->c;
+    const mt_subproblem *const c = w->c;
     mt_progress_evaluated(w->p->study->model->progress);
-    mt_progress_solved(w->p->study->model->progress, mt_case_solutions(c));
+    mt_progress_solved(w->p->study->model->progress, mt_subproblem_solutions(c));
     if (!is_wanted(w) || judged_later(w)) {
         return;
     }
-    const mt_missed missed = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol,
-                                          mt_case_rows_in(c), v->in, c->in_tol);
+    const mt_missed missed = mt_missed_of(mt_subproblem_rows_eq(c), v->eq, c->eq_tol,
+                                          mt_subproblem_rows_in(c), v->in, c->in_tol);
     if (mt_is_met(missed.violation, 1.0)) {
-        tell_found(w, mt_aim_value(w, 0, NULL));
+        report_found(w, mt_objective_stage_value(w, 0, NULL));
     }
 }
 
 void mt_workspace_note_designs(const mt_workspace *w, long n)
 {
-    mt_spent *const spent = w->p->study->model->spent;
-    mt_spent_note(spent, MT_SPENT_DESIGNS, n);
-    mt_spent_note(spent, MT_SPENT_MODAL, n * mt_case_solutions(w->c));
+    mt_work_counters *const spent = w->p->study->model->spent;
+    mt_work_counters_note(spent, MT_WORK_DESIGNS, n);
+    mt_work_counters_note(spent, MT_WORK_MODAL, n * mt_subproblem_solutions(w->c));
 }
 
 mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
@@ -365,25 +370,26 @@ mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_
     say_progress(w);
     MT_TRY(mt_workspace_place(w, t, with_gradient, err));
     for (int i = 0; i < w->c->n_views; i++) {
-        MT_TRY(mt_view_solve(w, &w->views[i], with_gradient, err));
+        MT_TRY(mt_configuration_solve(w, &w->views[i], with_gradient, err));
     }
-    MT_TRY(mt_robust_solve(w, with_gradient, err));
-    for (int i = 0; i < p->n_demands; i++) {
-        MT_TRY(mt_err_in(err, mt_demand_eval(w, &p->demands[i], with_gradient, out, NULL, err),
-                         "/goals/%d", p->demands[i].goal_index));
+    MT_TRY(mt_tolerance_solve(w, with_gradient, err));
+    for (int i = 0; i < p->n_requirements; i++) {
+        MT_TRY(mt_err_in(
+            err, mt_requirement_eval(w, &p->requirements[i], with_gradient, out, NULL, err),
+            "/goals/%d", p->requirements[i].goal_index));
     }
-    MT_TRY(mt_posed_eval(w, with_gradient, out, err));
-    MT_TRY(mt_clear_eval(w, with_gradient, out, err));
-    MT_TRY(mt_robust_rows(w, with_gradient, out, err));
-    MT_TRY(mt_next_eval(w, with_gradient, out, err));
-    if (mt_case_rows_res(w->c) > 0) {
+    MT_TRY(mt_at_position_eval(w, with_gradient, out, err));
+    MT_TRY(mt_avoidance_eval(w, with_gradient, out, err));
+    MT_TRY(mt_tolerance_rows(w, with_gradient, out, err));
+    MT_TRY(mt_mode_order_eval(w, with_gradient, out, err));
+    if (mt_subproblem_rows_res(w->c) > 0) {
         memcpy(out->r, w->r, (size_t)p->n_res * sizeof *w->r);
         if (with_gradient) {
             memcpy(out->dr, w->dr, (size_t)p->n_res * (size_t)p->n * sizeof *w->dr);
         }
     }
-    out->f = mt_aim_value(w, w->c->stage, with_gradient ? out->df : NULL);
-    mt_aim_hold_rows(w, with_gradient, out);
+    out->f = mt_objective_stage_value(w, w->c->stage, with_gradient ? out->df : NULL);
+    mt_objective_stage_hold_rows(w, with_gradient, out);
     say_found(w, out);
     return MT_OK;
 }

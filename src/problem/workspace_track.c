@@ -10,7 +10,7 @@ static const double MOST_STEPS = 128.0;
 
 typedef struct way {
     const mt_workspace *w;
-    mt_view_work *view;
+    mt_configuration_work *view;
     double *t;  /* [n_t] work */
     double *x;  /* [n] */
     double *to; /* [n] the present design */
@@ -25,15 +25,16 @@ static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *er
     for (int i = 0; i < p->n; i++) {
         w->t[i] = origin_t[i] + (s * (w->to[i] - origin_t[i]));
     }
-    mt_case_x(w->w->c, w->t, w->x);
+    mt_subproblem_x(w->w->c, w->t, w->x);
     if (w->view->scout == NULL) {
-        MT_TRY(mt_view_analyse(w->view->of, p->original, &w->view->scout, err));
+        MT_TRY(mt_configuration_analyse(w->view->of, p->original, &w->view->scout, err));
     }
     *out = w->view->scout;
     return mt_analysis_solve(w->view->scout, w->x, &opt, err);
 }
 
-static mt_status follow(const mt_workspace *ws, mt_view_work *view, mt_arena *mem, mt_err *err)
+static mt_status follow(const mt_workspace *ws, mt_configuration_work *view, mt_arena *mem,
+                        mt_err *err)
 {
     const mt_problem *const p = ws->p;
     way w = {.w = ws,
@@ -55,7 +56,7 @@ static mt_status follow(const mt_workspace *ws, mt_view_work *view, mt_arena *me
                            view->track, err);
 }
 
-mt_status mt_view_track(mt_workspace *w, mt_view_work *view, mt_err *err)
+mt_status mt_configuration_track(mt_workspace *w, mt_configuration_work *view, mt_err *err)
 {
     if (view->tracked) {
         return MT_OK;

@@ -101,7 +101,7 @@ static void copy(const search *s, int *to, const int *from)
     memcpy(to, from, (size_t)s->c->n_bands * sizeof *to);
 }
 
-int mt_certify_place(const int *rows, int n, const int *row, int n_bands)
+int mt_certify_index_of(const int *rows, int n, const int *row, int n_bands)
 {
     int k = 0;
     while (k < n &&
@@ -424,8 +424,8 @@ static mt_status note_open(search *s)
     mt_certify_search *const out = s->out;
     out->proven = false;
     for (bool more = fill(s, 0); more && !out->more; more = next(s)) {
-        if (is_known(s, s->tuple) ||
-            mt_certify_place(out->open, out->n_open, s->tuple, s->c->n_bands) < out->n_open) {
+        if (is_known(s, s->tuple) || mt_certify_index_of(out->open, out->n_open, s->tuple,
+                                                         s->c->n_bands) < out->n_open) {
             continue;
         }
         out->more = out->n_open == MT_CERTIFY_OPEN_MOST; /* there is one more */

@@ -116,7 +116,7 @@ mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *kn
                                  mt_arena *mem, mt_certify_search *out, mt_err *err);
 
 /* Which of rows[n x n_bands] is the assignment row[n_bands]; n: none. */
-int mt_certify_place(const int *rows, int n, const int *row, int n_bands);
+int mt_certify_index_of(const int *rows, int n, const int *row, int n_bands);
 
 typedef enum mt_verdict {
     MT_VERDICT_IMPOSSIBLE, /* proven */

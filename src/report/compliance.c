@@ -96,7 +96,7 @@ typedef struct nearest {
 } nearest;
 
 /* How far f is outside an interval, as a part of its nearer end; negative inside. */
-static double room_of(const mt_result_gap *band, double hz)
+static double room_of(const mt_result_mode_placement *band, double hz)
 {
     const double below = hz > 0.0 ? band->margin_lower_hz / hz - 1.0 : HUGE_VAL;
     const double above = hz / band->margin_upper_hz - 1.0;
@@ -104,7 +104,7 @@ static double room_of(const mt_result_gap *band, double hz)
 }
 
 /* Modes stand with their neighbouring bands; one with none beside it has further ones. */
-static nearest nearest_to(const mt_recommendation *r, const mt_result_gap *band)
+static nearest nearest_to(const mt_recommendation *r, const mt_result_mode_placement *band)
 {
     nearest n = {.room = nan(""), .hz = nan(""), .worst_hz = nan("")};
     bool beside = false;
@@ -132,7 +132,7 @@ static const char *mode_text(sheet *s, double hz, int mode)
                                        mt_report_number(hz, HZ_DIGITS, number), mode);
 }
 
-static const char *outside_text(sheet *s, const mt_result_gap *band, bool named)
+static const char *outside_text(sheet *s, const mt_result_mode_placement *band, bool named)
 {
     char low[MT_NUMBER_TEXT];
     char high[MT_NUMBER_TEXT];
@@ -146,7 +146,7 @@ static const char *outside_text(sheet *s, const mt_result_gap *band, bool named)
 }
 
 /* " with 10 % margin"; nothing without one */
-static const char *with_margin(sheet *s, const mt_result_gap *band)
+static const char *with_margin(sheet *s, const mt_result_mode_placement *band)
 {
     const double percent = PERCENT * (band->margin_upper_hz / band->upper_hz - 1.0);
     return percent > MT_PERCENT_NOISE
@@ -154,11 +154,11 @@ static const char *with_margin(sheet *s, const mt_result_gap *band)
                : "";
 }
 
-static const mt_result_gap *band_of(const mt_recommendation *r, int id)
+static const mt_result_mode_placement *band_of(const mt_recommendation *r, int id)
 {
-    for (int i = 0; i < r->n_gaps; i++) {
-        if (r->gaps[i].id == id) {
-            return &r->gaps[i];
+    for (int i = 0; i < r->n_placements; i++) {
+        if (r->placements[i].id == id) {
+            return &r->placements[i];
         }
     }
     return NULL;
@@ -170,7 +170,7 @@ static bool avoids_bands(const mt_result_goal *g)
 }
 
 /* The goal keeps this configuration clear of bands; those of all such goals are united. */
-static bool clears(const mt_result_goal *g, const char *configuration)
+static bool avoidances(const mt_result_goal *g, const char *configuration)
 {
     return avoids_bands(g) && g->configuration != NULL &&
            strcmp(g->configuration, configuration) == 0;
@@ -180,7 +180,7 @@ static bool clears(const mt_result_goal *g, const char *configuration)
 static bool is_clear(const mt_recommendation *r, const char *configuration)
 {
     for (int i = 0; i < r->n_goals; i++) {
-        if (clears(&r->goals[i], configuration) && !r->goals[i].met) {
+        if (avoidances(&r->goals[i], configuration) && !r->goals[i].met) {
             return false;
         }
     }
@@ -193,8 +193,8 @@ static bool is_kept(double room, bool clear)
     return clear || !(PERCENT * room < -MT_PERCENT_NOISE);
 }
 
-static void put_band(sheet *s, const mt_result_gap *band, bool clear, const char *requirement,
-                     bool named)
+static void put_band(sheet *s, const mt_result_mode_placement *band, bool clear,
+                     const char *requirement, bool named)
 {
     const nearest was = s->before != NULL ? nearest_to(s->before, band) : (nearest){.mode = 0};
     const nearest is = nearest_to(s->after, band);
@@ -211,18 +211,18 @@ static void put_band(sheet *s, const mt_result_gap *band, bool clear, const char
 }
 
 /* The band of a configuration that leaves the least room, which is told; NULL: it has none. */
-static const mt_result_gap *tightest_of(const mt_recommendation *r, const char *configuration,
-                                        double *room)
+static const mt_result_mode_placement *tightest_of(const mt_recommendation *r,
+                                                   const char *configuration, double *room)
 {
-    const mt_result_gap *tightest = NULL;
+    const mt_result_mode_placement *tightest = NULL;
     *room = HUGE_VAL;
-    for (int i = 0; i < r->n_gaps; i++) {
-        if (strcmp(r->gaps[i].configuration, configuration) != 0) {
+    for (int i = 0; i < r->n_placements; i++) {
+        if (strcmp(r->placements[i].configuration, configuration) != 0) {
             continue;
         }
-        const double own = nearest_to(r, &r->gaps[i]).room;
+        const double own = nearest_to(r, &r->placements[i]).room;
         if (tightest == NULL || mt_exceeds(*room, own)) {
-            tightest = &r->gaps[i];
+            tightest = &r->placements[i];
             *room = isnan(own) ? HUGE_VAL : own;
         }
     }
@@ -240,17 +240,17 @@ static bool put_bands(sheet *s, int i)
     }
     const bool clear = is_clear(d, g->configuration);
     double least = 0.0;
-    const mt_result_gap *const tightest = tightest_of(d, g->configuration, &least);
+    const mt_result_mode_placement *const tightest = tightest_of(d, g->configuration, &least);
     if (tightest == NULL || is_kept(least, clear) != clear) {
         return false;
     }
     for (int k = 0; k < i; k++) {
-        if (clears(&d->goals[k], g->configuration)) {
+        if (avoidances(&d->goals[k], g->configuration)) {
             return true;
         }
     }
-    for (int k = 0; k < d->n_gaps && d->n_gaps <= BANDS_TOLD; k++) {
-        const mt_result_gap *const b = &d->gaps[k];
+    for (int k = 0; k < d->n_placements && d->n_placements <= BANDS_TOLD; k++) {
+        const mt_result_mode_placement *const b = &d->placements[k];
         if (strcmp(b->configuration, g->configuration) == 0) {
             put_band(s, b, clear,
                      mt_arena_printf(&s->t.mem, "%s: no mode in %s%s", g->configuration,
@@ -258,7 +258,7 @@ static bool put_bands(sheet *s, int i)
                      false);
         }
     }
-    if (d->n_gaps > BANDS_TOLD) {
+    if (d->n_placements > BANDS_TOLD) {
         put_band(s, tightest, clear, g->text, true);
     }
     return true;
@@ -269,7 +269,8 @@ static bool put_motion(sheet *s, const mt_result_goal *g, int which)
 {
     const mt_result_motion *const m =
         which < s->after->n_motions ? &s->after->motions[which] : NULL;
-    const mt_result_gap *const band = m == NULL ? NULL : band_of(s->after, m->band_id);
+    const mt_result_mode_placement *const band =
+        m == NULL ? NULL : band_of(s->after, m->band_id);
     char at[MT_NUMBER_TEXT];
     if (m == NULL || band == NULL || isnan(m->hz)) {
         return false;

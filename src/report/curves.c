@@ -124,7 +124,7 @@ static bool is_peak(const mt_result_extreme *x)
 }
 
 /* "25.1 at 18.00 Hz" */
-static void tell_peak(const mt_result_extreme *x, mt_text *out)
+static void write_peak(const mt_result_extreme *x, mt_text *out)
 {
     char hz[MT_NUMBER_TEXT];
     char size[MT_NUMBER_TEXT];
@@ -135,7 +135,7 @@ static void tell_peak(const mt_result_extreme *x, mt_text *out)
 }
 
 /* The highest peaks, in the order of their frequencies. */
-static void tell_peaks(const mt_design_curve *r, mt_text *out)
+static void write_peaks(const mt_design_curve *r, mt_text *out)
 {
     int told = 0;
     for (int i = 0; r != NULL && i < r->n_extremes; i++) {
@@ -146,7 +146,7 @@ static void tell_peaks(const mt_design_curve *r, mt_text *out)
         }
         if (is_peak(&r->extremes[i]) && higher < HIGHEST) {
             mt_text_add(out, told++ == 0 ? " " : ", ");
-            tell_peak(&r->extremes[i], out);
+            write_peak(&r->extremes[i], out);
         }
     }
     if (r != NULL && r->trouble != NULL) {
@@ -157,9 +157,10 @@ static void tell_peaks(const mt_design_curve *r, mt_text *out)
 }
 
 /* "3.21 m/s^2 RMS, 12.1 m/s^2 at peak" */
-static void tell_shaken(const mt_result_curve *of, const mt_design_curve *r, mt_text *out)
+static void tell_forced_response(const mt_result_curve *of, const mt_design_curve *r,
+                                 mt_text *out)
 {
-    const mt_result_shaken *const s = r == NULL ? NULL : r->vibration;
+    const mt_result_forced_response *const s = r == NULL ? NULL : r->vibration;
     char rms[MT_NUMBER_TEXT];
     char peak[MT_NUMBER_TEXT];
     if (s == NULL) {
@@ -180,19 +181,19 @@ void mt_report_curve(const mt_result *result, int k, const mt_recommendation *r,
     mt_text_addf(out, "%s: %s by %s from %.6g to %.6g Hz [%s], highest peaks%s",
                  of->configuration, of->output, of->input, of->lower_hz, of->upper_hz, of->unit,
                  found ? " before" : "");
-    tell_peaks(at(&result->baseline, k), out);
+    write_peaks(at(&result->baseline, k), out);
     if (found) {
         mt_text_add(out, "; after");
-        tell_peaks(at(r, k), out);
+        write_peaks(at(r, k), out);
     }
     if (of->profile != NULL) {
         mt_text_addf(out, ". Under %s:%s",
                      of->profile->name != NULL ? of->profile->name : of->profile->file,
                      found ? " before" : "");
-        tell_shaken(of, at(&result->baseline, k), out);
+        tell_forced_response(of, at(&result->baseline, k), out);
         if (found) {
             mt_text_add(out, "; after");
-            tell_shaken(of, at(r, k), out);
+            tell_forced_response(of, at(r, k), out);
         }
     }
 }

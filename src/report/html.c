@@ -4,7 +4,7 @@
 #include "report/html.h"
 
 #include "base/base.h"
-#include "report/gist.h"
+#include "report/abstract.h"
 #include "report/page.h"
 #include "report/summary.h"
 #include "report/table.h"
@@ -17,7 +17,7 @@ static void add_footer(const mt_result_run *run, mt_text *out)
     mt_text_add(out, " (");
     mt_html_escape(run->build.commit == NULL ? "" : run->build.commit, out);
     mt_text_addf(out, "), seed %ld, %d starts, ", run->seed, run->starts);
-    mt_report_spent(run, out);
+    mt_report_work_counters(run, out);
     mt_text_add(out, ".");
     for (int i = 0; i < run->n_inputs; i++) {
         mt_text_add(out, "<br>");
@@ -31,10 +31,10 @@ static void add_footer(const mt_result_run *run, mt_text *out)
 void mt_report_html_told(const mt_result *result, mt_text *out)
 {
     mt_report_title(result, out);
-    mt_report_gist(result, out);
+    mt_report_abstract(result, out);
     mt_text_add(out, "<noscript><p>Figures are drawn by the page's own script, which is "
                      "switched off here.</p></noscript>\n");
-    mt_tell_page(out, result);
+    mt_write_page(out, result);
     add_footer(&result->run, out);
 }
 

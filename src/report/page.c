@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "report/pack.h"
+#include "report/dedupe_json.h"
 #include "report/page_heads.h"
 #include "report/table.h"
 
@@ -79,7 +79,8 @@ static const char *copy_string(const char *json, char **to)
 }
 
 /* JSON in which nothing can end the element, into `out`. White space is left out: nobody reads
- * it here, and it is a third of a large result, and what is said twice stands once (pack.h). */
+ * it here, and it is a third of a large result, and what is said twice stands once
+ * (dedupe_json.h). */
 static void copy_json(const char *json, char *out)
 {
     while (*json != '\0') {
@@ -100,7 +101,7 @@ static void add_data(const char *json, mt_text *out)
     out->failed = out->failed || plain == NULL;
     if (plain != NULL) {
         copy_json(json, plain);
-        mt_pack_json(plain, out);
+        mt_dedupe_json(plain, out);
     }
     free(plain);
 }

@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-enum { NAMED = 4 }; /* of variables, demands and configurations: more are counted */
+enum { NAMED = 4 }; /* of variables, requirements and configurations: more are counted */
 
 /* Before item i of n: nothing, ", " or " and ". */
 static const char *joint(int i, int n)
@@ -25,7 +25,7 @@ static void add_variables(const mt_result *result, mt_text *out)
 }
 
 /* What is asked of it: "at 18 Hz", "clear of 2 bands". */
-static const char *demand_of(const mt_result_goal *g)
+static const char *requirement_of(const mt_result_goal *g)
 {
     const size_t n = strlen(g->quantity);
     return strncmp(g->text, g->quantity, n) == 0 ? g->text + n : "";
@@ -37,7 +37,7 @@ static bool asks_the_same(const mt_result_goal *a, const mt_result_goal *b)
 {
     const bool motion = strcmp(b->type, "avoid") == 0 && b->configuration == NULL;
     return strcmp(a->pointer, b->pointer) == 0 &&
-           (motion || strcmp(demand_of(a), demand_of(b)) == 0);
+           (motion || strcmp(requirement_of(a), requirement_of(b)) == 0);
 }
 
 static bool is_first(const mt_recommendation *r, int i)
@@ -51,7 +51,7 @@ static bool is_first(const mt_recommendation *r, int i)
 }
 
 /* "fwd mode 1 and aft mode 1 at least 20 Hz" */
-static void add_demand(const mt_recommendation *r, int first, mt_text *out)
+static void add_requirement(const mt_recommendation *r, int first, mt_text *out)
 {
     int n = 0;
     int told = 0;
@@ -68,10 +68,10 @@ static void add_demand(const mt_recommendation *r, int first, mt_text *out)
     if (n > told) {
         mt_text_addf(out, " and %d others", n - told);
     }
-    mt_text_add(out, demand_of(&r->goals[first]));
+    mt_text_add(out, requirement_of(&r->goals[first]));
 }
 
-static void add_demands(const mt_recommendation *r, mt_text *out)
+static void add_requirements(const mt_recommendation *r, mt_text *out)
 {
     int n = 0;
     int told = 0;
@@ -84,7 +84,7 @@ static void add_demands(const mt_recommendation *r, mt_text *out)
     for (int i = 0; i < r->n_goals && n <= NAMED; i++) {
         if (is_first(r, i)) {
             mt_text_add(out, told == 0 ? "" : told + 1 < n ? "; " : "; and ");
-            add_demand(r, i, out);
+            add_requirement(r, i, out);
             told++;
         }
     }
@@ -141,7 +141,7 @@ void mt_report_question(const mt_result *result, mt_text *out)
         mt_text_addf(out, " %s", r->n_goals == 0 ? "are best" : verb_of(r));
         mt_text_add(out, r->n_goals == 0 ? "" : " ");
     }
-    add_demands(r, out);
+    add_requirements(r, out);
     if (result->n_variables > 0) {
         add_objectives(result, out);
     }

@@ -15,12 +15,12 @@ enum {
     VALUE_DIGITS = 6,
     PERCENT_DIGITS = 3,
     MAC_DIGITS = 5,
-    DEMAND_TEXT = 120,
+    REQUIREMENT_TEXT = 120,
     WEIGHT_TEXT = 240
 };
 
 /* "18.0000", "at least 7.00000", "7.00000 to 9.00000", NULL where nothing is asked */
-static const char *demand_of(const mt_result_frequency *f, char *s, size_t size)
+static const char *requirement_of(const mt_result_frequency *f, char *s, size_t size)
 {
     char a[MT_NUMBER_TEXT];
     char b[MT_NUMBER_TEXT];
@@ -44,7 +44,7 @@ static const char *demand_of(const mt_result_frequency *f, char *s, size_t size)
 /* "stick bending", "stick bending (ambiguous)" */
 static void name_cell(mt_table *t, const mt_result_frequency *f)
 {
-    char text[DEMAND_TEXT];
+    char text[REQUIREMENT_TEXT];
     if (f->name == NULL || f->identity == NULL || strcmp(f->identity, "tracked") == 0) {
         mt_table_text(t, f->name);
         return;
@@ -71,7 +71,7 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
     mt_table_column(&t, "MAC", "mac", MT_ALIGN_POINT);
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
-        char demand[DEMAND_TEXT];
+        char requirement[REQUIREMENT_TEXT];
         mt_table_text(&t, f->configuration);
         mt_table_integer(&t, f->mode);
         name_cell(&t, f);
@@ -81,7 +81,7 @@ mt_table mt_report_frequencies(const mt_recommendation *r)
             mt_table_number(&t, f->lowest_hz, HZ_DIGITS);
             mt_table_number(&t, f->highest_hz, HZ_DIGITS);
         }
-        mt_table_text(&t, demand_of(f, demand, sizeof demand));
+        mt_table_text(&t, requirement_of(f, requirement, sizeof requirement));
         mt_table_percent(&t, f->error_percent, PERCENT_DIGITS);
         mt_table_number(&t, f->mac, MAC_DIGITS);
     }
@@ -252,7 +252,7 @@ mt_table mt_report_clearances(const mt_recommendation *r)
         mt_table_integer(&t, c->mode);
         mt_table_number(&t, c->hz, HZ_DIGITS);
         if (inside) {
-            char text[DEMAND_TEXT];
+            char text[REQUIREMENT_TEXT];
             (void)mt_snprintf(text, sizeof text, "inside %.100s", c->band);
             mt_table_text(&t, text);
         } else {
@@ -265,7 +265,7 @@ mt_table mt_report_clearances(const mt_recommendation *r)
     return t;
 }
 
-mt_table mt_report_gaps(const mt_recommendation *r)
+mt_table mt_report_placements(const mt_recommendation *r)
 {
     mt_table t = mt_table_default();
     mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
@@ -275,8 +275,8 @@ mt_table mt_report_gaps(const mt_recommendation *r)
     mt_table_column(&t, "with margin from", "margin_lower_hz", MT_ALIGN_POINT);
     mt_table_column(&t, "to", "margin_upper_hz", MT_ALIGN_POINT);
     mt_table_column(&t, "modes below", "modes_below", MT_ALIGN_RIGHT);
-    for (int i = 0; i < r->n_gaps; i++) {
-        const mt_result_gap *const g = &r->gaps[i];
+    for (int i = 0; i < r->n_placements; i++) {
+        const mt_result_mode_placement *const g = &r->placements[i];
         mt_table_text(&t, g->configuration);
         mt_table_text(&t, g->band);
         mt_table_number(&t, g->lower_hz, HZ_DIGITS);
@@ -292,16 +292,16 @@ mt_table mt_report_gaps(const mt_recommendation *r)
 static const char *assignment(const mt_recommendation *r, char *s, size_t size)
 {
     size_t used = 0;
-    for (int i = 0; i < r->n_gaps; i++) {
+    for (int i = 0; i < r->n_placements; i++) {
         const int n = mt_snprintf(s + used, size - used, "%s%d", i == 0 ? "" : " ",
-                                  r->gaps[i].modes_below);
+                                  r->placements[i].modes_below);
         if (n < 0 || (size_t)n >= size - used) {
             s[used] = '\0';
             break; /* more bands than a cell holds: the first of them */
         }
         used += (size_t)n;
     }
-    return r->n_gaps > 0 ? s : NULL;
+    return r->n_placements > 0 ? s : NULL;
 }
 
 static void alternative_cells(mt_table *t, const mt_result *result, const mt_recommendation *r)
@@ -314,8 +314,8 @@ static void alternative_cells(mt_table *t, const mt_result *result, const mt_rec
     mt_table_text(t, r->rank > 0 ? r->grade : NULL);
     mt_report_objective_cells(t, result, r);
     mt_table_off_by(t, r->violation_percent, r->feasible, PERCENT_DIGITS);
-    if (result->baseline.n_gaps > 0) {
-        char text[DEMAND_TEXT];
+    if (result->baseline.n_placements > 0) {
+        char text[REQUIREMENT_TEXT];
         mt_table_number(t, r->clearance_percent, PERCENT_DIGITS);
         mt_table_text(t, assignment(r, text, sizeof text));
     }
@@ -329,7 +329,7 @@ mt_table mt_report_alternatives(const mt_result *result)
     mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
     mt_report_objective_columns(&t, result);
     mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
-    if (result->baseline.n_gaps > 0) {
+    if (result->baseline.n_placements > 0) {
         mt_report_clearance_column(&t, result);
         mt_table_column(&t, "modes below bands", "gap_assignment", MT_ALIGN_LEFT);
     }
@@ -386,7 +386,7 @@ mt_table mt_report_published(const mt_result *result)
         }
         mt_table_difference(&t, p->difference, p->difference_percent, p->display_factor,
                             PERCENT_DIGITS);
-        mt_table_text(&t, p->demand);
+        mt_table_text(&t, p->requirement);
         mt_table_text(&t, p->role);
         mt_table_text(&t, p->role != NULL && strcmp(p->role, "not_comparable") == 0
                               ? "not comparable"
@@ -424,8 +424,8 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
     mt_report_objective_cells(t, result, r);
     mt_table_number(t, r->misfit, VALUE_DIGITS);
     mt_table_number(t, r->violation_percent, VALUE_DIGITS);
-    if (baseline->n_gaps > 0) {
-        char text[DEMAND_TEXT];
+    if (baseline->n_placements > 0) {
+        char text[REQUIREMENT_TEXT];
         mt_table_number(t, r->clearance_percent, VALUE_DIGITS);
         mt_table_text(t, assignment(r, text, sizeof text));
     }
@@ -478,7 +478,7 @@ mt_table mt_report_designs(const mt_result *result)
     for (int i = 0; i < MT_COUNT(sizes); i++) {
         mt_table_column(&t, sizes[i], sizes[i], MT_ALIGN_RIGHT);
     }
-    if (result->baseline.n_gaps > 0) {
+    if (result->baseline.n_placements > 0) {
         mt_table_column(&t, "clearance_percent", "clearance_percent", MT_ALIGN_RIGHT);
         mt_table_column(&t, "gap_assignment", "gap_assignment", MT_ALIGN_RIGHT);
     }
@@ -488,7 +488,7 @@ mt_table mt_report_designs(const mt_result *result)
     const int ranged = result->baseline.worst_case == NULL ? 1 : MT_COUNT(ends);
     for (int k = 0; k < ranged * result->baseline.n_frequencies; k++) {
         const mt_result_frequency *const f = &result->baseline.frequencies[k / ranged];
-        char name[DEMAND_TEXT];
+        char name[REQUIREMENT_TEXT];
         (void)mt_snprintf(name, sizeof name, "%.80s.mode_%d_%s",
                           f->configuration == NULL ? "" : f->configuration, f->mode,
                           ends[k % ranged]);

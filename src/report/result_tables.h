@@ -47,12 +47,12 @@ mt_table mt_report_clearances(const mt_recommendation *r);
  * a band. */
 mt_table mt_report_motions(const mt_recommendation *r);
 /* Bands and how many modes lie below each. */
-mt_table mt_report_gaps(const mt_recommendation *r);
+mt_table mt_report_placements(const mt_recommendation *r);
 /* One line per recommendation, below that of the original design. */
 mt_table mt_report_alternatives(const mt_result *result);
 /* Under other weights: parameter, unit, value, low, high, change of both, and what takes them
  * there. */
-mt_table mt_report_spread(const mt_result *result);
+mt_table mt_report_weight_sensitivity(const mt_result *result);
 /* label, published, computed, difference, role, source, verdict. */
 mt_table mt_report_published(const mt_result *result);
 /* The whole of all designs, one row each (rank 0: the baseline), for a spreadsheet:

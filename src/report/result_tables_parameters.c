@@ -83,8 +83,8 @@ void mt_report_variable_cells(mt_table *t, const mt_result *result, const mt_rec
     }
 }
 
-/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first demand's where it
- * has several. */
+/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first requirement's where
+ * it has several. */
 static void weight_cell(mt_table *t, const mt_result *result, const char *goal, double factor)
 {
     char text[WEIGHT_TEXT];
@@ -99,7 +99,7 @@ static void weight_cell(mt_table *t, const mt_result *result, const char *goal, 
     mt_table_text(t, words == NULL ? NULL : text);
 }
 
-mt_table mt_report_spread(const mt_result *result)
+mt_table mt_report_weight_sensitivity(const mt_result *result)
 {
     mt_table t = mt_table_default();
     mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
@@ -111,8 +111,8 @@ mt_table mt_report_spread(const mt_result *result)
     mt_table_column(&t, "high", "high", MT_ALIGN_POINT);
     mt_table_column(&t, "[%]", "high_percent", MT_ALIGN_POINT);
     mt_table_column(&t, "by weight", "high_goal", MT_ALIGN_LEFT);
-    for (int i = 0; i < result->n_spread; i++) {
-        const mt_result_spread *const s = &result->spread[i];
+    for (int i = 0; i < result->n_weight_sensitivity; i++) {
+        const mt_result_weight_sensitivity *const s = &result->weight_sensitivity[i];
         mt_table_text(&t, s->parameter);
         mt_table_unit(&t, s->unit, s->display_unit);
         mt_table_shown(&t, s->value, s->display_factor, VALUE_DIGITS);

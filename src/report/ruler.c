@@ -29,8 +29,8 @@ static double highest_mode(const mt_recommendation *r)
 {
     double bands = 0.0;
     double top = 0.0;
-    for (int i = 0; i < r->n_gaps; i++) {
-        widen(&bands, r->gaps[i].margin_upper_hz);
+    for (int i = 0; i < r->n_placements; i++) {
+        widen(&bands, r->placements[i].margin_upper_hz);
     }
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
@@ -65,9 +65,9 @@ static double highest(const mt_recommendation *r)
     }
     widen_asked(&top, r);
     const double near = top > 0.0 ? NEAR * top : HUGE_VAL;
-    for (int i = 0; i < r->n_gaps; i++) {
-        if (r->gaps[i].margin_lower_hz <= near) {
-            widen(&top, fmin(r->gaps[i].margin_upper_hz, near));
+    for (int i = 0; i < r->n_placements; i++) {
+        if (r->placements[i].margin_lower_hz <= near) {
+            widen(&top, fmin(r->placements[i].margin_upper_hz, near));
         }
     }
     return top;
@@ -111,14 +111,15 @@ static bool same(const char *a, const char *b)
 
 static void draw_bands(ruler *u, const mt_recommendation *r, const char *of, char *line)
 {
-    for (int i = 0; i < r->n_gaps; i++) {
-        if (same(r->gaps[i].configuration, of)) {
-            shade(u, line, r->gaps[i].margin_lower_hz, r->gaps[i].margin_upper_hz, '-');
+    for (int i = 0; i < r->n_placements; i++) {
+        if (same(r->placements[i].configuration, of)) {
+            shade(u, line, r->placements[i].margin_lower_hz, r->placements[i].margin_upper_hz,
+                  '-');
         }
     }
-    for (int i = 0; i < r->n_gaps; i++) {
-        if (same(r->gaps[i].configuration, of)) {
-            shade(u, line, r->gaps[i].lower_hz, r->gaps[i].upper_hz, '#');
+    for (int i = 0; i < r->n_placements; i++) {
+        if (same(r->placements[i].configuration, of)) {
+            shade(u, line, r->placements[i].lower_hz, r->placements[i].upper_hz, '#');
         }
     }
 }

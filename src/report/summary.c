@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "base/tie.h"
+#include "report/abstract.h"
 #include "report/compliance.h"
 #include "report/curves.h"
-#include "report/gist.h"
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/ruler.h"
@@ -19,7 +19,7 @@ enum {
     SHOWN = 20 /* of more designs a page draws figures only */
 };
 
-static void add_heading(const mt_teller *to, const char *title)
+static void add_heading(const mt_summary_writer *to, const char *title)
 {
     if (to->html) {
         mt_text_add(to->out, "<h2>");
@@ -30,7 +30,7 @@ static void add_heading(const mt_teller *to, const char *title)
     }
 }
 
-static void add_table(const mt_teller *to, mt_table t, const char *title)
+static void add_table(const mt_summary_writer *to, mt_table t, const char *title)
 {
     if (mt_table_rows(&t) > 0 || t.failed) {
         add_heading(to, title);
@@ -44,7 +44,7 @@ static void add_table(const mt_teller *to, mt_table t, const char *title)
 }
 
 /* A paragraph, of which `line` is the text; freed. */
-static void add_paragraph(const mt_teller *to, const char *indent, mt_text *line)
+static void add_paragraph(const mt_summary_writer *to, const char *indent, mt_text *line)
 {
     const char *const text = line->s == NULL ? "" : line->s;
     if (to->html) {
@@ -58,13 +58,13 @@ static void add_paragraph(const mt_teller *to, const char *indent, mt_text *line
     mt_text_free(line);
 }
 
-static void add_line(const mt_teller *to, mt_text *line)
+static void add_line(const mt_summary_writer *to, mt_text *line)
 {
     add_paragraph(to, "  ", line);
 }
 
 /* Whether it was computed. A section that a stopped run left out says so. */
-static bool is_known(const mt_teller *to, const char *title, const void *items)
+static bool is_known(const mt_summary_writer *to, const char *title, const void *items)
 {
     if (items == NULL) {
         mt_text line = {0};
@@ -76,7 +76,7 @@ static bool is_known(const mt_teller *to, const char *title, const void *items)
 }
 
 /* The head of a list of n items; false where there are none. */
-static bool open_list(const mt_teller *to, const char *title, int n)
+static bool open_list(const mt_summary_writer *to, const char *title, int n)
 {
     if (n > 0) {
         add_heading(to, title);
@@ -85,13 +85,13 @@ static bool open_list(const mt_teller *to, const char *title, int n)
     return n > 0;
 }
 
-static void close_list(const mt_teller *to)
+static void close_list(const mt_summary_writer *to)
 {
     mt_text_add(to->out, to->html ? "</ul>\n" : "");
 }
 
 /* word: before the text, in bold; "": none */
-static void add_item(const mt_teller *to, const char *word, const char *text)
+static void add_item(const mt_summary_writer *to, const char *word, const char *text)
 {
     const char *const colon = word[0] == '\0' ? "" : ": ";
     if (to->html) {
@@ -103,7 +103,7 @@ static void add_item(const mt_teller *to, const char *word, const char *text)
     }
 }
 
-static void tell_ruler(const mt_teller *to, const mt_recommendation *r)
+static void write_ruler(const mt_summary_writer *to, const mt_recommendation *r)
 {
     mt_text ruler = {.s = NULL};
     mt_report_ruler(r, to->width, &ruler);
@@ -116,7 +116,7 @@ static void tell_ruler(const mt_teller *to, const mt_recommendation *r)
 }
 
 /* Why a design is what it is. */
-static void tell_reasons(const mt_teller *to, const mt_recommendation *r)
+static void write_reasons(const mt_summary_writer *to, const mt_recommendation *r)
 {
     static const struct {
         const char *kind;
@@ -144,14 +144,14 @@ static void tell_reasons(const mt_teller *to, const mt_recommendation *r)
 }
 
 /* One whose text was made for it; freed. */
-static void add_made(const mt_teller *to, mt_text *text)
+static void add_made(const mt_summary_writer *to, mt_text *text)
 {
     add_item(to, "", text->s == NULL ? "" : text->s);
     to->out->failed = to->out->failed || text->failed;
     mt_text_free(text);
 }
 
-static void add_sentences(const mt_teller *to, const char *title, int n,
+static void add_sentences(const mt_summary_writer *to, const char *title, int n,
                           const char *const *items)
 {
     if (open_list(to, title, n)) {
@@ -162,7 +162,7 @@ static void add_sentences(const mt_teller *to, const char *title, int n,
     }
 }
 
-void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
+void mt_report_warning(const mt_warning *d, bool with_place, mt_text *out)
 {
     if (with_place && d->file != NULL) { /* "stick.json:12:9: " as far as it is known */
         mt_text_addf(out, "%s", d->file);
@@ -180,12 +180,13 @@ void mt_report_doubt(const mt_doubt *d, bool with_place, mt_text *out)
     mt_text_addf(out, "%s", d->text);
 }
 
-static void add_doubts(const mt_teller *to, const char *title, int n, const mt_doubt *items)
+static void add_warnings(const mt_summary_writer *to, const char *title, int n,
+                         const mt_warning *items)
 {
     if (open_list(to, title, n)) {
         for (int i = 0; i < n; i++) {
             mt_text text = {.s = NULL};
-            mt_report_doubt(&items[i], true, &text);
+            mt_report_warning(&items[i], true, &text);
             add_made(to, &text);
         }
         close_list(to);
@@ -193,14 +194,14 @@ static void add_doubts(const mt_teller *to, const char *title, int n, const mt_d
 }
 
 /* True where both say the same, of whatever configuration. */
-static bool is_same_fact(const mt_doubt *a, const mt_doubt *b)
+static bool is_same_fact(const mt_warning *a, const mt_warning *b)
 {
     return a->configuration != NULL && b->configuration != NULL &&
            strcmp(a->text, b->text) == 0;
 }
 
 /* Fact i, with all configurations that it holds in; empty where an earlier one has told it. */
-static void write_fact(int i, int n, const mt_doubt *items, mt_text *text)
+static void write_fact(int i, int n, const mt_warning *items, mt_text *text)
 {
     for (int k = 0; k < i; k++) {
         if (is_same_fact(&items[k], &items[i])) {
@@ -215,7 +216,7 @@ static void write_fact(int i, int n, const mt_doubt *items, mt_text *text)
     mt_text_addf(text, "%s%s", items[i].configuration == NULL ? "" : ": ", items[i].text);
 }
 
-static void tell_facts(const mt_teller *to, int n, const mt_doubt *items)
+static void write_facts(const mt_summary_writer *to, int n, const mt_warning *items)
 {
     if (open_list(to, "Notes on the model", n)) {
         for (int i = 0; i < n; i++) {
@@ -229,26 +230,26 @@ static void tell_facts(const mt_teller *to, int n, const mt_doubt *items)
     }
 }
 
-void mt_tell_doubts(const mt_teller *to, const mt_result *result)
+void mt_tell_warnings(const mt_summary_writer *to, const mt_result *result)
 {
     if (result->n_doubts > 0 && to->html) {
         mt_text_add(to->out, "<div class=\"doubts\">\n");
     }
-    add_doubts(to, "Warnings of the model and the study", result->n_doubts, result->doubts);
+    add_warnings(to, "Warnings of the model and the study", result->n_doubts, result->doubts);
     if (result->n_doubts > 0 && to->html) {
         mt_text_add(to->out, "</div>\n");
     }
     if (!to->html) { /* a page tells them with its warnings */
-        tell_facts(to, result->n_facts, result->facts);
+        write_facts(to, result->n_facts, result->facts);
     }
 }
 
-void mt_tell_objectives(const mt_teller *to, const mt_recommendation *r)
+void mt_write_objectives(const mt_summary_writer *to, const mt_recommendation *r)
 {
     add_table(to, mt_report_objectives(r), "Objectives");
 }
 
-static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
+static void write_parameters(const mt_summary_writer *to, const mt_recommendation *r)
 {
     add_table(to, mt_report_parameters(r), "Parameters");
     for (int i = 0; i < r->n_parameters; i++) {
@@ -260,7 +261,7 @@ static void tell_parameters(const mt_teller *to, const mt_recommendation *r)
 }
 
 /* "Recommendation 1 (feasible): mass 16.94 kg (was 11.92), total change 0.0828" */
-static void tell_rank(const mt_teller *to, const mt_recommendation *r)
+static void write_rank(const mt_summary_writer *to, const mt_recommendation *r)
 {
     char change[MT_NUMBER_TEXT];
     mt_text title = {0};
@@ -278,33 +279,33 @@ static void tell_rank(const mt_teller *to, const mt_recommendation *r)
 }
 
 /* Its numbers; the original design has no parameters to tell. */
-static void tell_numbers(const mt_teller *to, const mt_result *result,
-                         const mt_recommendation *r)
+static void write_numbers(const mt_summary_writer *to, const mt_result *result,
+                          const mt_recommendation *r)
 {
     (void)result;
     const bool found = r->rank > 0;
     if (!(found && r->n_parameters > 0 && r->n_objectives == 1 &&
           r->objectives[0].recommended == r->change)) { /* else its heading has it */
-        mt_tell_objectives(to, r);
+        mt_write_objectives(to, r);
     }
     if (found) {
-        tell_parameters(to, r);
+        write_parameters(to, r);
     }
     add_table(to, mt_report_frequencies(r),
               found ? "Frequencies" : "Frequencies of the original design");
     if (!to->html) {
-        tell_ruler(to, r);
+        write_ruler(to, r);
     }
     if (to->html) {
-        add_table(to, mt_report_gaps(r), "Bands");
+        add_table(to, mt_report_placements(r), "Bands");
     }
     add_table(to, mt_report_clearances(r), "Clearances from bands");
     add_table(to, mt_report_motions(r), "Over the range of motion");
 }
 
 /* What was asked against what this design does. */
-static void tell_compliance(const mt_teller *to, const mt_result *result,
-                            const mt_recommendation *r)
+static void write_compliance(const mt_summary_writer *to, const mt_result *result,
+                             const mt_recommendation *r)
 {
     static const char title[] = "Requirements";
     if (!to->html) {
@@ -320,27 +321,27 @@ static void tell_compliance(const mt_teller *to, const mt_result *result,
     mt_text_add(to->out, "</div>\n");
 }
 
-static void tell_design(const mt_teller *to, const mt_result *result,
-                        const mt_recommendation *r)
+static void write_design(const mt_summary_writer *to, const mt_result *result,
+                         const mt_recommendation *r)
 {
     if (r->rank > 0 && r->n_parameters > 0) {
-        tell_rank(to, r);
+        write_rank(to, r);
     }
-    tell_compliance(to, result, r);
-    tell_numbers(to, result, r);
-    tell_reasons(to, r);
+    write_compliance(to, result, r);
+    write_numbers(to, result, r);
+    write_reasons(to, r);
 }
 
-void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
+void mt_write_uncertainty(const mt_summary_writer *to, const mt_result *result)
 {
-    static const char undetermined[] =
+    static const char unidentifiable[] =
         "Not identifiable: directions along which the goals hardly change";
-    static const char spread[] =
+    static const char weight_sensitivity[] =
         "Sensitivity to the weights (the scatter of repeated tests may be many times larger)";
-    if (is_known(to, undetermined, result->undetermined) &&
-        open_list(to, undetermined, result->n_undetermined)) {
-        for (int i = 0; i < result->n_undetermined; i++) {
-            const mt_undetermined *const u = &result->undetermined[i];
+    if (is_known(to, unidentifiable, result->unidentifiable) &&
+        open_list(to, unidentifiable, result->n_unidentifiable)) {
+        for (int i = 0; i < result->n_unidentifiable; i++) {
+            const mt_unidentifiable_direction *const u = &result->unidentifiable[i];
             mt_text text = {0};
             mt_text_addf(&text, "%s", u->text);
             if (!isnan(u->effect_percent)) {
@@ -353,12 +354,12 @@ void mt_tell_uncertainty(const mt_teller *to, const mt_result *result)
         }
         close_list(to);
     }
-    if (is_known(to, spread, result->spread)) {
-        add_table(to, mt_report_spread(result), spread);
+    if (is_known(to, weight_sensitivity, result->weight_sensitivity)) {
+        add_table(to, mt_report_weight_sensitivity(result), weight_sensitivity);
     }
 }
 
-static void tell_certificates(const mt_teller *to, const mt_result *result)
+static void write_certificates(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "What is proven";
     if (is_known(to, title, result->certificates) &&
@@ -371,7 +372,7 @@ static void tell_certificates(const mt_teller *to, const mt_result *result)
     }
 }
 
-static void tell_trade(const mt_teller *to, const mt_result *result)
+static void write_trade(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "Trade study: the best design of each point";
     for (int i = 0; i < result->run.n_incomplete && result->trade == NULL; i++) {
@@ -389,7 +390,7 @@ static void tell_trade(const mt_teller *to, const mt_result *result)
     }
 }
 
-void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)
+void mt_write_overrides(const mt_summary_writer *to, const mt_result_run *run)
 {
     mt_text line = {.s = NULL};
     for (int i = 0; i < run->n_overrides; i++) {
@@ -412,16 +413,16 @@ void mt_tell_overrides(const mt_teller *to, const mt_result_run *run)
     }
 }
 
-void mt_report_spent(const mt_result_run *run, mt_text *out)
+void mt_report_work_counters(const mt_result_run *run, mt_text *out)
 {
-    const mt_result_spent *const s = &run->spent;
+    const mt_result_work_counters *const s = &run->spent;
     const struct {
         const char *name;
         long n;
     } parts[] = {{"search", s->search},
                  {"positions", s->positions},
                  {"descriptions", s->descriptions},
-                 {"spread", s->spread},
+                 {"spread", s->weight_sensitivity},
                  {"relaxations", s->relaxations},
                  {"trade", s->trade}};
     int told = 0;
@@ -440,7 +441,7 @@ void mt_report_spent(const mt_result_run *run, mt_text *out)
     }
 }
 
-static void tell_relaxations(const mt_teller *to, const mt_result *result)
+static void write_relaxations(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "What would make it feasible, one change at a time";
     if (is_known(to, title, result->relaxations) &&
@@ -452,7 +453,7 @@ static void tell_relaxations(const mt_teller *to, const mt_result *result)
     }
 }
 
-static void tell_published(const mt_teller *to, const mt_result *result)
+static void write_published(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "Published against computed";
     if (is_known(to, title, result->published)) {
@@ -460,8 +461,8 @@ static void tell_published(const mt_teller *to, const mt_result *result)
     }
 }
 
-static void tell_responses(const mt_teller *to, const mt_result *result,
-                           const mt_recommendation *r)
+static void write_responses(const mt_summary_writer *to, const mt_result *result,
+                            const mt_recommendation *r)
 {
     if (open_list(to, "Responses", result->n_curves)) {
         for (int k = 0; k < result->n_curves; k++) {
@@ -474,7 +475,7 @@ static void tell_responses(const mt_teller *to, const mt_result *result,
 }
 
 /* Values alone: nothing else is known of them. */
-static void tell_unchecked(const mt_teller *to, const mt_result *result)
+static void write_unchecked(const mt_summary_writer *to, const mt_result *result)
 {
     if (open_list(to, "Not re-checked before the end: values of the variables, unverified",
                   result->n_unchecked)) {
@@ -490,40 +491,42 @@ static void tell_unchecked(const mt_teller *to, const mt_result *result)
 /* The best design (goals, frequencies, parameters, reasons), or the original one where there
  * is none; alternatives, what stays undetermined, certificates, relaxations, designs that
  * were not analysed anew, warnings. */
-static void tell_answer(const mt_teller *to, const mt_result *result, bool with_published)
+static void write_answer(const mt_summary_writer *to, const mt_result *result,
+                         bool with_published)
 {
-    mt_tell_overrides(to, &result->run);
-    mt_tell_doubts(to, result);
+    mt_write_overrides(to, &result->run);
+    mt_tell_warnings(to, result);
     const mt_recommendation *const best =
         result->n_recommendations > 0 ? &result->recommendations[0] : &result->baseline;
-    tell_design(to, result, best);
-    tell_responses(to, result, best);
+    write_design(to, result, best);
+    write_responses(to, result, best);
     if (result->n_recommendations > 1) {
         add_table(to, mt_report_alternatives(result), "Designs side by side");
     }
-    mt_tell_uncertainty(to, result);
-    tell_trade(to, result);
-    tell_certificates(to, result);
-    tell_relaxations(to, result);
+    mt_write_uncertainty(to, result);
+    write_trade(to, result);
+    write_certificates(to, result);
+    write_relaxations(to, result);
     if (with_published) {
-        tell_published(to, result);
+        write_published(to, result);
     }
-    tell_unchecked(to, result);
+    write_unchecked(to, result);
     add_sentences(to, "Warnings", result->n_warnings, result->warnings);
 }
 
 /* A place that the page's script draws into. */
-static void keep_place(const mt_teller *to, const char *id)
+static void keep_place(const mt_summary_writer *to, const char *id)
 {
     mt_text_addf(to->out, "<div id=\"%s\"></div>\n", id);
 }
 
-typedef void mt_tell_one(const mt_teller *to, const mt_result *result,
-                         const mt_recommendation *r);
+typedef void mt_write_statement(const mt_summary_writer *to, const mt_result *result,
+                                const mt_recommendation *r);
 
 /* A part of the page for each design, the first of which is shown until another is chosen; of
  * the original one where there is none. */
-static void tell_each(const mt_teller *to, const mt_result *result, mt_tell_one *tell)
+static void write_each(const mt_summary_writer *to, const mt_result *result,
+                       mt_write_statement *tell)
 {
     const int found = result->n_recommendations;
     const mt_recommendation *const first =
@@ -536,45 +539,46 @@ static void tell_each(const mt_teller *to, const mt_result *result, mt_tell_one 
     }
 }
 
-static void tell_why(const mt_teller *to, const mt_result *result, const mt_recommendation *r)
+static void write_why(const mt_summary_writer *to, const mt_result *result,
+                      const mt_recommendation *r)
 {
     (void)result;
     if (r->rank > 0 && r->n_parameters > 0) {
-        tell_rank(to, r);
+        write_rank(to, r);
     }
-    tell_reasons(to, r);
+    write_reasons(to, r);
 }
 
-void mt_tell_page(mt_text *out, const mt_result *result)
+void mt_write_page(mt_text *out, const mt_result *result)
 {
     static const char *const first[] = {"place-choice", "place-alternatives",
                                         "place-frequencies", "place-parameters"};
-    const mt_teller to = {.out = out, .html = true};
-    mt_tell_overrides(&to, &result->run);
-    mt_tell_doubts(&to, result);
-    tell_each(&to, result, tell_compliance);
+    const mt_summary_writer to = {.out = out, .html = true};
+    mt_write_overrides(&to, &result->run);
+    mt_tell_warnings(&to, result);
+    write_each(&to, result, write_compliance);
     for (int i = 0; i < MT_COUNT(first); i++) {
         keep_place(&to, first[i]);
     }
-    tell_each(&to, result, tell_why);
-    tell_relaxations(&to, result);
-    mt_tell_uncertainty(&to, result);
-    tell_certificates(&to, result);
-    tell_unchecked(&to, result);
+    write_each(&to, result, write_why);
+    write_relaxations(&to, result);
+    mt_write_uncertainty(&to, result);
+    write_certificates(&to, result);
+    write_unchecked(&to, result);
     add_sentences(&to, "Warnings", result->n_warnings, result->warnings);
-    tell_facts(&to, result->n_facts, result->facts);
+    write_facts(&to, result->n_facts, result->facts);
     keep_place(&to, "place-mechanism");
     keep_place(&to, "figures");
     mt_text_add(out, "<details id=\"told\">\n<summary>All numbers as tables</summary>\n");
-    tell_each(&to, result, tell_numbers);
+    write_each(&to, result, write_numbers);
     if (result->n_recommendations > 1) {
         mt_text_add(out, "<div class=\"drawn\">\n");
         add_table(&to, mt_report_alternatives(result), "Designs side by side");
         mt_text_add(out, "</div>\n");
     }
     add_table(&to, mt_report_extremes(result, SHOWN), "Peaks and antiresonances");
-    tell_trade(&to, result);
-    tell_published(&to, result);
+    write_trade(&to, result);
+    write_published(&to, result);
     mt_text_add(out, "</details>\n");
     keep_place(&to, "place-origin");
 }
@@ -586,5 +590,5 @@ void mt_report_summary(const mt_result *result, bool with_published, int width, 
     mt_text_addf(out, "%s\n%s\n", name == NULL ? "study" : name,
                  result->status_text == NULL ? mt_result_status_name(result->status)
                                              : result->status_text);
-    tell_answer(&(mt_teller){.out = out, .width = width}, result, with_published);
+    write_answer(&(mt_summary_writer){.out = out, .width = width}, result, with_published);
 }

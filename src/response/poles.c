@@ -320,7 +320,7 @@ static mt_status find(mt_poles *k, mt_pole_sum *out, mt_err *err)
     k->d = mt_arena_alloc(k->mem, 3 * pairs, sizeof *k->d);
     MT_TRY(mt_arena_check(k->mem, err));
     for (ptrdiff_t j = k->n - 1; j >= k->n_coupled; j--) {
-        MT_TRY(mt_poles_alone(k, k->coupled[j], err));
+        MT_TRY(mt_poles_without_partner(k, k->coupled[j], err));
     }
     const int first = k->count;
     if (k->n_coupled > 0) {

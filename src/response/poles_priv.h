@@ -29,7 +29,7 @@ double mt_poles_damping(const mt_poles *k, ptrdiff_t i, ptrdiff_t j);
  * root of the discriminant follows from the imaginary one. */
 void mt_poles_roots(double c, double complex g, double complex s[2]);
 /* Add the poles of coordinate j, which is tied to no other. */
-mt_status mt_poles_alone(mt_poles *k, ptrdiff_t j, mt_err *err);
+mt_status mt_poles_without_partner(mt_poles *k, ptrdiff_t j, mt_err *err);
 /* Add to d what the sum over the poles of the coupled coordinates leaves out. */
 mt_status mt_poles_add_polynomials(mt_poles *k, mt_err *err);
 

@@ -88,16 +88,16 @@ static const mt_field EXTREME_FIELDS[] = {
 static const mt_record EXTREME = MT_F_RECORD_OF(EXTREME_FIELDS);
 #undef THIS
 
-#define THIS mt_result_shaken_tone
-static const mt_field SHAKEN_TONE_FIELDS[] = {
+#define THIS mt_result_forced_response_tone
+static const mt_field FORCED_RESPONSE_TONE_FIELDS[] = {
     MT_F_TEXT("tone", label),          MT_F_NUMBER_OR_NULL("frequency_hz", hz),
     MT_F_NUMBER_OR_NULL("peak", peak), MT_F_NUMBER_OR_NULL("excess_at_most", excess_at_most),
     MT_F_FLAG("at_edge", at_edge),
 };
-static const mt_record SHAKEN_TONE = MT_F_RECORD_OF(SHAKEN_TONE_FIELDS);
+static const mt_record FORCED_RESPONSE_TONE = MT_F_RECORD_OF(FORCED_RESPONSE_TONE_FIELDS);
 #undef THIS
 
-#define THIS mt_result_shaken
+#define THIS mt_result_forced_response
 static const char *const VIBRATION_ENDS[] = {"finite", "infinite", "unstable"};
 static const mt_field VIBRATION_FIELDS[] = {
     MT_F_CHOICE("end", end, VIBRATION_ENDS),
@@ -106,7 +106,7 @@ static const mt_field VIBRATION_FIELDS[] = {
     MT_F_NUMBER_OR_NULL("rms_error_at_most", rms_error_at_most),
     MT_F_NUMBER_OR_NULL("sine", sine),
     MT_F_NUMBER_OR_NULL("peak", peak),
-    MT_F_LIST("tones", tones, n_tones, mt_result_shaken_tone, SHAKEN_TONE),
+    MT_F_LIST("tones", tones, n_tones, mt_result_forced_response_tone, FORCED_RESPONSE_TONE),
 };
 static const mt_record VIBRATION = MT_F_RECORD_OF(VIBRATION_FIELDS);
 #undef THIS
@@ -117,7 +117,7 @@ static const mt_field DESIGN_CURVE_FIELDS[] = {
     MT_F_TEXT("configuration", configuration),
     MT_F_TEXT_OR_NULL("trouble", trouble),
     MT_F_LIST("extremes", extremes, n_extremes, mt_result_extreme, EXTREME),
-    MT_F_OPTION("vibration", vibration, mt_result_shaken, VIBRATION),
+    MT_F_OPTION("vibration", vibration, mt_result_forced_response, VIBRATION),
     MT_F_RECORD("drawn", drawn, mt_curve_points, DRAWN),
 };
 const mt_record mt_design_curve_record = MT_F_RECORD_OF(DESIGN_CURVE_FIELDS);

@@ -91,16 +91,16 @@ typedef struct mt_result_extreme {
 } mt_result_extreme;
 
 /* The response to a tone of a profile. */
-typedef struct mt_result_shaken_tone {
+typedef struct mt_result_forced_response_tone {
     const char *label;
     double hz;   /* of its range, where the response is the largest; NaN: it has no number */
     double peak; /* amplitude [output_unit] */
     double excess_at_most; /* part of the peak, proven; NaN: not proven */
     bool at_edge;          /* of the range */
-} mt_result_shaken_tone;
+} mt_result_forced_response_tone;
 
 /* What a curve's profile does at one design, all of the profile, whatever is shown. */
-typedef struct mt_result_shaken {
+typedef struct mt_result_forced_response {
     const char *end; /* "finite" | "infinite" | "unstable": numbers are NaN where not finite */
     bool proven;     /* false: by quadrature, errors are estimates */
     double rms;      /* of the random parts [output_unit] */
@@ -108,8 +108,8 @@ typedef struct mt_result_shaken {
     double sine; /* of the tones by the profile's rule */
     double peak; /* sigma rms + sine */
     int n_tones;
-    mt_result_shaken_tone *tones;
-} mt_result_shaken;
+    mt_result_forced_response_tone *tones;
+} mt_result_forced_response;
 
 /* A response of result.curves at one design. */
 typedef struct mt_design_curve {
@@ -118,8 +118,8 @@ typedef struct mt_design_curve {
     const char *trouble; /* why there is no curve; NULL: there is */
     mt_curve_points drawn;
     int n_extremes;
-    mt_result_extreme *extremes; /* by ascending frequency, all of the band */
-    mt_result_shaken *vibration; /* NULL: no profile, or no curve (trouble says) */
+    mt_result_extreme *extremes;          /* by ascending frequency, all of the band */
+    mt_result_forced_response *vibration; /* NULL: no profile, or no curve (trouble says) */
 } mt_design_curve;
 
 extern const mt_record mt_curve_record;        /* mt_result_curve */

@@ -60,15 +60,15 @@ typedef struct mt_result_override {
 
 /* What an answer cost: evaluations of a design in all configurations, or of one more position
  * of a drive, by what they were for; run.evaluations is their sum. */
-typedef struct mt_result_spent {
+typedef struct mt_result_work_counters {
     long search;
     long positions;    /* of drives, wherever a design was followed */
     long descriptions; /* analyses anew of the original design and of those recommended */
-    long spread;
+    long weight_sensitivity;
     long relaxations;
     long trade;           /* all points, with all of this */
     long multiplications; /* of proofs, about */
-} mt_result_spent;
+} mt_result_work_counters;
 
 /* A design that a search met that was better than all before it. */
 typedef struct mt_result_step {
@@ -91,13 +91,13 @@ typedef struct mt_result_run {
     /* of one configuration at a design, a position or a corner of tolerances each: what the
      * evaluations and the judgement over tolerances took */
     long modal_solutions;
-    mt_result_spent spent;
+    mt_result_work_counters spent;
     int starts;
     /* of a search from starts; -1, NaN: not applicable */
     int distinct_designs;
-    int found_once;           /* of them, by one start only */
-    double estimated_missing; /* isolated designs that no start met, at least */
-    int n_history;            /* 0: nothing was searched, or an interrupt cut it */
+    int singletons;          /* of them, by one start only */
+    double estimated_unseen; /* isolated designs that no start met, at least */
+    int n_history;           /* 0: nothing was searched, or an interrupt cut it */
     mt_result_step *history;
     int n_overrides;
     mt_result_override *overrides;

@@ -201,105 +201,109 @@ void mt_record_own(const mt_record *record, void *item, const void *like, int n_
 
 /* Numbers, texts or structs that a member points to, `size` bytes each; NULL is kept as NULL,
  * and there are none of it. */
-static void *tape_items(void *at, int *n, size_t size, mt_tape *tape, mt_arena *mem)
+static void *serialize_items(void *at, int *n, size_t size, mt_serializer *serializer,
+                             mt_arena *mem)
 {
     bool there = mt_record_get_pointer(at) != NULL;
-    mt_tape_flag(tape, &there);
+    mt_serializer_flag(serializer, &there);
     if (!there) {
         mt_record_set_pointer(at, NULL);
         *n = 0;
         return NULL;
     }
-    void *const items = mt_tape_items(tape, n, size, mt_record_get_pointer(at), mem);
+    void *const items =
+        mt_serializer_items(serializer, n, size, mt_record_get_pointer(at), mem);
     mt_record_set_pointer(at, items);
     return items;
 }
 
-static void tape_list(const mt_record *record, void *at, int *n, int n_variables, mt_tape *tape,
-                      mt_arena *mem)
+static void serialize_list(const mt_record *record, void *at, int *n, int n_variables,
+                           mt_serializer *serializer, mt_arena *mem)
 {
-    char *const items = tape_items(at, n, record->size, tape, mem);
-    for (int i = 0; i < *n && items != NULL && !tape->failed; i++) {
-        mt_record_tape(record, items + ((size_t)i * record->size), n_variables, tape, mem);
+    char *const items = serialize_items(at, n, record->size, serializer, mem);
+    for (int i = 0; i < *n && items != NULL && !serializer->failed; i++) {
+        mt_record_serialize(record, items + ((size_t)i * record->size), n_variables, serializer,
+                            mem);
     }
 }
 
-static void tape_numbers(void *at, int *n, mt_tape *tape, mt_arena *mem)
+static void serialize_numbers(void *at, int *n, mt_serializer *serializer, mt_arena *mem)
 {
-    double *const numbers = tape_items(at, n, sizeof *numbers, tape, mem);
+    double *const numbers = serialize_items(at, n, sizeof *numbers, serializer, mem);
     if (numbers != NULL) {
-        mt_tape_numbers(tape, (size_t)*n, numbers);
+        mt_serializer_numbers(serializer, (size_t)*n, numbers);
     }
 }
 
-static void tape_texts(void *at, int *n, mt_tape *tape, mt_arena *mem)
+static void serialize_texts(void *at, int *n, mt_serializer *serializer, mt_arena *mem)
 {
-    const char **const texts = tape_items(at, n, sizeof *texts, tape, mem);
-    for (int i = 0; i < *n && texts != NULL && !tape->failed; i++) {
-        mt_tape_text(tape, &texts[i], mem);
+    const char **const texts = serialize_items(at, n, sizeof *texts, serializer, mem);
+    for (int i = 0; i < *n && texts != NULL && !serializer->failed; i++) {
+        mt_serializer_text(serializer, &texts[i], mem);
     }
 }
 
-static void tape_field(const mt_field *f, void *at, void *other, int n_variables, mt_tape *tape,
-                       mt_arena *mem)
+static void serialize_field(const mt_field *f, void *at, void *other, int n_variables,
+                            mt_serializer *serializer, mt_arena *mem)
 {
     int one = 1;
     int size = n_variables;
     switch (f->type) {
     case MT_FIELD_TEXT:
     case MT_FIELD_CHOICE:
-        mt_tape_text(tape, at, mem);
+        mt_serializer_text(serializer, at, mem);
         break;
     case MT_FIELD_VALUE:
-        mt_tape_numbers(tape, 1, at);
-        mt_tape_text(tape, other, mem);
+        mt_serializer_numbers(serializer, 1, at);
+        mt_serializer_text(serializer, other, mem);
         break;
     case MT_FIELD_NUMBER:
-        mt_tape_numbers(tape, 1, at);
+        mt_serializer_numbers(serializer, 1, at);
         break;
     case MT_FIELD_ENUM:
-        mt_tape_int(tape, at, 0, f->n_choices - 1);
+        mt_serializer_int(serializer, at, 0, f->n_choices - 1);
         break;
     case MT_FIELD_COUNT:
-        mt_tape_int(tape, at, INT_MIN, INT_MAX);
+        mt_serializer_int(serializer, at, INT_MIN, INT_MAX);
         break;
     case MT_FIELD_LONG:
-        mt_tape_long(tape, at, LONG_MIN, LONG_MAX);
+        mt_serializer_long(serializer, at, LONG_MIN, LONG_MAX);
         break;
     case MT_FIELD_FLAG:
-        mt_tape_flag(tape, at);
+        mt_serializer_flag(serializer, at);
         break;
     case MT_FIELD_RECORD:
-        mt_record_tape(f->record, at, n_variables, tape, mem);
+        mt_record_serialize(f->record, at, n_variables, serializer, mem);
         break;
     case MT_FIELD_OPTION:
-        tape_list(f->record, at, &one, n_variables, tape, mem);
-        tape->failed = tape->failed || one != (mt_record_get_pointer(at) != NULL ? 1 : 0);
+        serialize_list(f->record, at, &one, n_variables, serializer, mem);
+        serializer->failed =
+            serializer->failed || one != (mt_record_get_pointer(at) != NULL ? 1 : 0);
         break;
     case MT_FIELD_LIST:
-        tape_list(f->record, at, other, n_variables, tape, mem);
+        serialize_list(f->record, at, other, n_variables, serializer, mem);
         break;
     case MT_FIELD_TEXTS:
-        tape_texts(at, other, tape, mem);
+        serialize_texts(at, other, serializer, mem);
         break;
     case MT_FIELD_NUMBERS:
-        tape_numbers(at, other, tape, mem);
+        serialize_numbers(at, other, serializer, mem);
         break;
     case MT_FIELD_BY_VARIABLE:
-        tape_numbers(at, &size, tape, mem);
-        tape->failed = tape->failed || (size != 0 && size != n_variables);
+        serialize_numbers(at, &size, serializer, mem);
+        serializer->failed = serializer->failed || (size != 0 && size != n_variables);
         break;
     case MT_FIELD_TYPE_COUNT:
         break;
     }
 }
 
-void mt_record_tape(const mt_record *record, void *item, int n_variables, mt_tape *tape,
-                    mt_arena *mem)
+void mt_record_serialize(const mt_record *record, void *item, int n_variables,
+                         mt_serializer *serializer, mt_arena *mem)
 {
-    for (int i = 0; i < record->n && !tape->failed; i++) {
+    for (int i = 0; i < record->n && !serializer->failed; i++) {
         const mt_field *const f = &record->fields[i];
-        tape_field(f, (char *)item + f->offset, (char *)item + f->other, n_variables, tape,
-                   mem);
+        serialize_field(f, (char *)item + f->offset, (char *)item + f->other, n_variables,
+                        serializer, mem);
     }
 }

@@ -7,7 +7,7 @@
 
 #include "base/arena.h"
 #include "base/base.h"
-#include "base/tape.h"
+#include "base/serializer.h"
 
 /*
  * What a struct holds, as a table: whoever writes, reads, copies or checks results walks these
@@ -189,8 +189,8 @@ void mt_record_own(const mt_record *record, void *item, const void *like, int n_
                    mt_arena *mem);
 /* All of a struct on tape; what is read lies in mem, and the struct is of no use where the tape
  * failed. */
-void mt_record_tape(const mt_record *record, void *item, int n_variables, mt_tape *tape,
-                    mt_arena *mem);
+void mt_record_serialize(const mt_record *record, void *item, int n_variables,
+                         mt_serializer *serializer, mt_arena *mem);
 /* The pointer that lies at a member, whatever it points to. */
 void *mt_record_get_pointer(const void *at);
 void mt_record_set_pointer(void *at, const void *pointer);

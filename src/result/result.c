@@ -77,7 +77,7 @@ static const mt_field CLEARANCE_FIELDS[] = {
 static const mt_record CLEARANCE = MT_F_RECORD_OF(CLEARANCE_FIELDS);
 #undef THIS
 
-#define THIS mt_result_gap
+#define THIS mt_result_mode_placement
 static const mt_field GAP_FIELDS[] = {
     MT_F_COUNT("id", id, 1),
     MT_F_TEXT("configuration", configuration),
@@ -230,7 +230,8 @@ static const mt_field DESIGN_FIELDS[] = {
     MT_F_LIST("frequencies", frequencies, n_frequencies, mt_result_frequency, FREQUENCY),
     MT_F_LIST("mac_matrices", macs, n_macs, mt_result_mac, MAC),
     MT_F_LIST("clearances", clearances, n_clearances, mt_result_clearance, CLEARANCE),
-    MT_F_LIST_OR_NULL("gap_assignment", gaps, n_gaps, mt_result_gap, GAP),
+    MT_F_LIST_OR_NULL("gap_assignment", placements, n_placements, mt_result_mode_placement,
+                      GAP),
     MT_F_LIST("motion", motions, n_motions, mt_result_motion, MOTION),
     MT_F_OPTION("tolerance_box", tolerance_box, mt_tolerance_box, TOLERANCE_BOX),
     MT_F_LIST("goals", goals, n_goals, mt_result_goal, GOAL),
@@ -251,17 +252,17 @@ static const mt_field UNCHECKED_FIELDS[] = {
 static const mt_record UNCHECKED = MT_F_RECORD_OF(UNCHECKED_FIELDS);
 #undef THIS
 
-#define THIS mt_undetermined
-static const mt_field UNDETERMINED_FIELDS[] = {
+#define THIS mt_unidentifiable_direction
+static const mt_field UNIDENTIFIABLE_FIELDS[] = {
     MT_F_TEXT("direction", text),
     MT_F_NUMBER_OR_NULL("effect_percent", effect_percent),
     MT_F_BY_VARIABLE("components", direction),
 };
-static const mt_record UNDETERMINED = MT_F_RECORD_OF(UNDETERMINED_FIELDS);
+static const mt_record UNIDENTIFIABLE = MT_F_RECORD_OF(UNIDENTIFIABLE_FIELDS);
 #undef THIS
 
-#define THIS mt_result_spread
-static const mt_field SPREAD_FIELDS[] = {
+#define THIS mt_result_weight_sensitivity
+static const mt_field WEIGHT_SENSITIVITY_FIELDS[] = {
     MT_F_TEXT("parameter", parameter),
     MT_F_TEXT_OR_NULL("unit", unit),
     MT_F_TEXT_OR_NULL("display_unit", display_unit),
@@ -276,7 +277,7 @@ static const mt_field SPREAD_FIELDS[] = {
     MT_F_TEXT_OR_NULL("high_goal", high_goal),
     MT_F_NUMBER_OR_NULL("high_weight_factor", high_factor),
 };
-static const mt_record SPREAD = MT_F_RECORD_OF(SPREAD_FIELDS);
+static const mt_record WEIGHT_SENSITIVITY = MT_F_RECORD_OF(WEIGHT_SENSITIVITY_FIELDS);
 #undef THIS
 
 #define THIS mt_certificate
@@ -375,7 +376,7 @@ static const mt_field PUBLISHED_FIELDS[] = {
     MT_F_VALUE_OR_NULL("computed", computed, computed_text),
     MT_F_NUMBER_OR_NULL("difference", difference),
     MT_F_NUMBER_OR_NULL("difference_percent", difference_percent),
-    MT_F_TEXT_OR_NULL("demand", demand),
+    MT_F_TEXT_OR_NULL("demand", requirement),
     MT_F_TEXT_OR_NULL("display_unit", display_unit),
     MT_F_NUMBER_OR_NULL("display_factor", display_factor),
     MT_F_FLAG("holds", holds),
@@ -384,8 +385,8 @@ static const mt_field PUBLISHED_FIELDS[] = {
 static const mt_record PUBLISHED = MT_F_RECORD_OF(PUBLISHED_FIELDS);
 #undef THIS
 
-#define THIS mt_doubt
-static const mt_field DOUBT_FIELDS[] = {
+#define THIS mt_warning
+static const mt_field WARNING_FIELDS[] = {
     MT_F_TEXT("kind", kind),
     MT_F_TEXT("text", text),
     MT_F_TEXT_OR_NULL("configuration", configuration),
@@ -394,7 +395,7 @@ static const mt_field DOUBT_FIELDS[] = {
     MT_F_COUNT_OR_NULL("column", column, 1),
     MT_F_TEXT_OR_NULL("pointer", pointer),
 };
-const mt_record mt_doubt_record = MT_F_RECORD_OF(DOUBT_FIELDS);
+const mt_record mt_warning_record = MT_F_RECORD_OF(WARNING_FIELDS);
 #undef THIS
 
 #define THIS mt_result_digest
@@ -413,17 +414,17 @@ static const mt_field BUILD_FIELDS[] = {
 static const mt_record BUILD = MT_F_RECORD_OF(BUILD_FIELDS);
 #undef THIS
 
-#define THIS mt_result_spent
-static const mt_field SPENT_FIELDS[] = {
+#define THIS mt_result_work_counters
+static const mt_field WORK_COUNTERS_FIELDS[] = {
     MT_F_LONG("search", search),
     MT_F_LONG("positions", positions),
     MT_F_LONG("descriptions", descriptions),
-    MT_F_LONG("spread", spread),
+    MT_F_LONG("spread", weight_sensitivity),
     MT_F_LONG("relaxations", relaxations),
     MT_F_LONG("trade", trade),
     MT_F_LONG("multiplications", multiplications),
 };
-static const mt_record SPENT = MT_F_RECORD_OF(SPENT_FIELDS);
+static const mt_record WORK_COUNTERS = MT_F_RECORD_OF(WORK_COUNTERS_FIELDS);
 #undef THIS
 
 #define THIS mt_result_override
@@ -462,12 +463,12 @@ static const mt_field RUN_FIELDS[] = {
     MT_F_LONG("seed", seed),
     MT_F_COUNT("starts", starts, 0),
     MT_F_COUNT_OR_NULL("distinct_designs", distinct_designs, 0),
-    MT_F_COUNT_OR_NULL("found_once", found_once, 0),
-    MT_F_NUMBER_OR_NULL("estimated_missing", estimated_missing),
+    MT_F_COUNT_OR_NULL("found_once", singletons, 0),
+    MT_F_NUMBER_OR_NULL("estimated_missing", estimated_unseen),
     MT_F_LIST("history", history, n_history, mt_result_step, STEP),
     MT_F_LONG("evaluations", evaluations),
     MT_F_LONG("modal_solutions", modal_solutions),
-    MT_F_RECORD("spent", spent, mt_result_spent, SPENT),
+    MT_F_RECORD("spent", spent, mt_result_work_counters, WORK_COUNTERS),
     MT_F_CHOICES("incomplete", incomplete, n_incomplete, PHASES),
     MT_F_CHOICE_OR_NULL("cut_by", cut_by, CAUSES),
     MT_F_LIST("overrides", overrides, n_overrides, mt_result_override, OVERRIDE),
@@ -525,8 +526,8 @@ static const mt_field RESULT_FIELDS[] = {
     MT_F_RECORD("model", model, mt_result_source, SOURCE),
     MT_F_ENUM("status", status, mt_result_status, STATUSES),
     MT_F_TEXT_OR_NULL("status_text", status_text),
-    MT_F_LIST("doubts", doubts, n_doubts, mt_doubt, mt_doubt_record),
-    MT_F_LIST("facts", facts, n_facts, mt_doubt, mt_doubt_record),
+    MT_F_LIST("doubts", doubts, n_doubts, mt_warning, mt_warning_record),
+    MT_F_LIST("facts", facts, n_facts, mt_warning, mt_warning_record),
     MT_F_LIST("assumptions", assumptions, n_assumptions, mt_result_assumption, ASSUMPTION),
     MT_F_TEXTS("variables", variables, n_variables),
     MT_F_LIST("objectives", objectives, n_objectives, mt_result_objective, OBJECTIVE),
@@ -534,9 +535,10 @@ static const mt_field RESULT_FIELDS[] = {
     MT_F_LIST("recommendations", recommendations, n_recommendations, mt_recommendation,
               mt_design_record),
     MT_F_LIST("unchecked", unchecked, n_unchecked, mt_unchecked, UNCHECKED),
-    MT_F_LIST_OR_NULL("undetermined", undetermined, n_undetermined, mt_undetermined,
-                      UNDETERMINED),
-    MT_F_LIST_OR_NULL("spread", spread, n_spread, mt_result_spread, SPREAD),
+    MT_F_LIST_OR_NULL("undetermined", unidentifiable, n_unidentifiable,
+                      mt_unidentifiable_direction, UNIDENTIFIABLE),
+    MT_F_LIST_OR_NULL("spread", weight_sensitivity, n_weight_sensitivity,
+                      mt_result_weight_sensitivity, WEIGHT_SENSITIVITY),
     MT_F_LIST_OR_NULL("certificates", certificates, n_certificates, mt_certificate,
                       CERTIFICATE),
     MT_F_LIST_OR_NULL("relaxations", relaxations, n_relaxations, mt_relaxation, RELAXATION),

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
-#include "base/doubt.h"
+#include "base/warning.h"
 #include "result/curves.h"
 #include "result/made_from.h"
 #include "result/record.h"
@@ -109,7 +109,7 @@ typedef struct mt_result_goal {
 typedef struct mt_result_clearance {
     const char *configuration;
     const char *band; /* its label: "4P of UH-60" */
-    int band_id;      /* as in mt_result_gap */
+    int band_id;      /* as in mt_result_mode_placement */
     int mode;         /* vibration index at this design */
     double hz;
     double percent; /* clearance from the band's nearest edge (bands.h); negative inside */
@@ -171,7 +171,7 @@ typedef struct mt_design_objective {
 } mt_design_objective;
 
 /* How many modes lie below a band: the kind of a design. */
-typedef struct mt_result_gap {
+typedef struct mt_result_mode_placement {
     /* of this band of this configuration, from 1: the same at all designs of a result */
     int id;
     const char *configuration;
@@ -181,7 +181,7 @@ typedef struct mt_result_gap {
     double margin_lower_hz; /* with it */
     double margin_upper_hz;
     int modes_below;
-} mt_result_gap;
+} mt_result_mode_placement;
 
 /* A design between the named positions of one drive. */
 typedef struct mt_result_motion {
@@ -200,7 +200,7 @@ typedef struct mt_result_motion {
     double hz;
     int mode;         /* whose it is, or which crosses; 0: none */
     const char *band; /* NULL: none */
-    int band_id;      /* as in mt_result_gap, of the first position that has it; 0: none */
+    int band_id; /* as in mt_result_mode_placement, of the first position that has it; 0: none */
     /* a mode is nearer to a band than its margin, or inside, between the positions */
     bool crosses;
     /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */
@@ -277,8 +277,8 @@ typedef struct mt_recommendation {
     int n_macs;
     int n_clearances;
     mt_result_clearance *clearances;
-    int n_gaps; /* 0: no bands */
-    mt_result_gap *gaps;
+    int n_placements; /* 0: no bands */
+    mt_result_mode_placement *placements;
     int n_motions; /* one for each drive with several positions that keep clear of bands */
     mt_result_motion *motions;
     mt_tolerance_box *tolerance_box; /* NULL: not computed */
@@ -301,17 +301,17 @@ typedef struct mt_unchecked {
 } mt_unchecked;
 
 /* A direction in the space of the variables along which the goals do not change. */
-typedef struct mt_undetermined {
+typedef struct mt_unidentifiable_direction {
     /* [n_variables] unit vector in ln(parameter) (positive ones) or parameter/scale */
     double *direction;
     const char *text; /* "K_T2" or "0.71 ln a - 0.71 ln b" */
     /* greatest change of any goal when the bounds are crossed along it */
     double effect_percent;
-} mt_undetermined;
+} mt_unidentifiable_direction;
 
 /* Where a variable of the best design moves when the weight of one goal at a time is
  * changed. */
-typedef struct mt_result_spread {
+typedef struct mt_result_weight_sensitivity {
     const char *parameter;
     const char *unit;         /* may be NULL */
     const char *display_unit; /* as in mt_result_parameter */
@@ -325,7 +325,7 @@ typedef struct mt_result_spread {
     const char *high_goal;
     double low_factor; /* what its weight was multiplied with; NaN without a goal */
     double high_factor;
-} mt_result_spread;
+} mt_result_weight_sensitivity;
 
 typedef struct mt_result_published {
     const char *label;
@@ -339,7 +339,7 @@ typedef struct mt_result_published {
     double difference_percent;
     const char *published_text; /* status */
     const char *computed_text;
-    const char *demand;       /* "within 0.1 %", "at least" */
+    const char *requirement;  /* "within 0.1 %", "at least" */
     const char *display_unit; /* of a parameter, as in mt_result_parameter */
     double display_factor;
     bool holds;
@@ -441,8 +441,8 @@ typedef struct mt_result {
     mt_result_objective *objectives; /* none: nothing is asked for */
     int n_objectives;
     int n_doubts; /* about the question, said before anything else */
-    mt_doubt *doubts;
-    mt_doubt *facts; /* of the model, said next */
+    mt_warning *doubts;
+    mt_warning *facts; /* of the model, said next */
     int n_facts;
     int n_assumptions;
     mt_result_assumption *assumptions;
@@ -456,10 +456,10 @@ typedef struct mt_result {
     mt_result_curve *curves;
     int n_curves;
     /* from here on lists that are NULL were not computed: an interrupt cut them */
-    int n_undetermined;
-    mt_undetermined *undetermined;
-    mt_result_spread *spread; /* none, or one per variable */
-    int n_spread;
+    int n_unidentifiable;
+    mt_unidentifiable_direction *unidentifiable;
+    mt_result_weight_sensitivity *weight_sensitivity; /* none, or one per variable */
+    int n_weight_sensitivity;
     int n_certificates;
     mt_certificate *certificates;
     mt_relaxation *relaxations; /* least first; only where no design meets all goals */
@@ -476,8 +476,8 @@ typedef struct mt_result {
 mt_status mt_result_new(mt_result **out, mt_err *err);
 /* How far the lists are filled that phases add to; and back to there. */
 typedef struct mt_result_mark {
-    int n_undetermined;
-    int n_spread;
+    int n_unidentifiable;
+    int n_weight_sensitivity;
     int n_certificates;
     int n_relaxations;
     int n_published;
@@ -486,7 +486,7 @@ typedef struct mt_result_mark {
 mt_result_mark mt_result_get_mark(const mt_result *result);
 void mt_result_take_back(mt_result *result, const mt_result_mark *mark);
 /* Doubts and facts of a list, copied. Fails: MT_E_MEMORY. */
-mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err);
+mt_status mt_result_take_warnings(mt_result *result, const mt_warning_list *list, mt_err *err);
 /* A copy of all that a recommendation of one result holds, which may outlive it; what `like`
  * (NULL: nothing) says already is taken from there, and lives as long. Fails: MT_E_MEMORY. */
 mt_status mt_recommendation_copy(const mt_recommendation *from, const mt_recommendation *like,
@@ -518,7 +518,7 @@ extern const mt_record mt_result_record;
 extern const mt_record mt_design_record;   /* mt_recommendation */
 extern const mt_record mt_response_record; /* mt_result_response, part of that */
 extern const mt_record mt_between_record;  /* mt_result_between, likewise */
-extern const mt_record mt_doubt_record;
+extern const mt_record mt_warning_record;
 
 /* mt_recommendation_default() and the like: all numbers are "not applicable". X(struct, its
  * table in result.c) */

@@ -48,8 +48,8 @@ double mt_result_shown(double value, double factor)
 
 mt_result_mark mt_result_get_mark(const mt_result *result)
 {
-    return (mt_result_mark){.n_undetermined = result->n_undetermined,
-                            .n_spread = result->n_spread,
+    return (mt_result_mark){.n_unidentifiable = result->n_unidentifiable,
+                            .n_weight_sensitivity = result->n_weight_sensitivity,
                             .n_certificates = result->n_certificates,
                             .n_relaxations = result->n_relaxations,
                             .n_published = result->n_published,
@@ -58,23 +58,23 @@ mt_result_mark mt_result_get_mark(const mt_result *result)
 
 void mt_result_take_back(mt_result *result, const mt_result_mark *mark)
 {
-    result->n_undetermined = mark->n_undetermined;
-    result->n_spread = mark->n_spread;
+    result->n_unidentifiable = mark->n_unidentifiable;
+    result->n_weight_sensitivity = mark->n_weight_sensitivity;
     result->n_certificates = mark->n_certificates;
     result->n_relaxations = mark->n_relaxations;
     result->n_published = mark->n_published;
     result->n_warnings = mark->n_warnings;
 }
 
-mt_status mt_result_take_doubts(mt_result *result, const mt_doubt_list *list, mt_err *err)
+mt_status mt_result_take_warnings(mt_result *result, const mt_warning_list *list, mt_err *err)
 {
     result->doubts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->doubts);
     result->facts = mt_arena_alloc(&result->mem, (size_t)list->n, sizeof *result->facts);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < list->n; i++) {
-        if (list->items[i].level == MT_LEVEL_DOUBT) {
+        if (list->items[i].level == MT_LEVEL_WARNING) {
             result->doubts[result->n_doubts++] = list->items[i];
-        } else if (list->items[i].level == MT_LEVEL_FACT) {
+        } else if (list->items[i].level == MT_LEVEL_NOTE) {
             result->facts[result->n_facts++] = list->items[i];
         }
     }

@@ -3,8 +3,8 @@
 #include "result/result.h"
 
 #define THIS mt_result_response
-static const char *const SHAKEN[] = {"response", "rms", "sine", "peak"};
-static const char *const SHAKEN_ENDS[] = {"finite", "infinite", "unstable", "none"};
+static const char *const FORCED_RESPONSE[] = {"response", "rms", "sine", "peak"};
+static const char *const FORCED_RESPONSE_ENDS[] = {"finite", "infinite", "unstable", "none"};
 static const char *const SURETIES[] = {"proven", "sampled"};
 static const mt_field RESPONSE_FIELDS[] = {
     MT_F_TEXT("goal", pointer),
@@ -12,7 +12,7 @@ static const mt_field RESPONSE_FIELDS[] = {
     MT_F_TEXT("input", input),
     MT_F_TEXT("output", output),
     MT_F_TEXT_OR_NULL("profile", profile),
-    MT_F_CHOICE("quantity", quantity, SHAKEN),
+    MT_F_CHOICE("quantity", quantity, FORCED_RESPONSE),
     MT_F_TEXT("unit", unit),
     MT_F_NUMBER_OR_NULL("value", value),
     MT_F_NUMBER_OR_NULL("error_at_most", error),
@@ -20,7 +20,7 @@ static const mt_field RESPONSE_FIELDS[] = {
     MT_F_FLAG("at_edge", at_edge),
     MT_F_NUMBER_OR_NULL("lower_hz", lower_hz),
     MT_F_NUMBER_OR_NULL("upper_hz", upper_hz),
-    MT_F_CHOICE("end", end, SHAKEN_ENDS),
+    MT_F_CHOICE("end", end, FORCED_RESPONSE_ENDS),
     MT_F_CHOICE("grade", grade, SURETIES),
     MT_F_TEXT("text", text),
 };
@@ -43,7 +43,7 @@ static const mt_field BETWEEN_FIELDS[] = {
     MT_F_TEXT("value_unit", value_unit),
     MT_F_NUMBER_OR_NULL("error_at_most", error),
     MT_F_NUMBER_OR_NULL("frequency_hz", frequency_hz),
-    MT_F_CHOICE("end", end, SHAKEN_ENDS),
+    MT_F_CHOICE("end", end, FORCED_RESPONSE_ENDS),
     MT_F_NUMBER_OR_NULL("violation_percent", violation_percent),
     MT_F_FLAG("holds", holds),
     MT_F_CHOICE("grade", grade, GRADES),

@@ -123,7 +123,7 @@ static mt_status put_pose(const walk *w, int point, mt_err *err)
 static mt_status visit_place(void *context, int point, const double *inputs, mt_err *err)
 {
     const walk *const w = context;
-    MT_TRY(mt_linear_place(w->lin, inputs, err));
+    MT_TRY(mt_linear_set_inputs(w->lin, inputs, err));
     return put_pose(w, point, err);
 }
 
@@ -164,7 +164,7 @@ static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive,
                          double *positions, double *at, mt_err *err)
 {
     const mt_scene_frame *const f = w->f;
-    const mt_scene_ask *const ask = f->ask;
+    const mt_scene_query *const ask = f->ask;
     const int n = w->out->n_positions;
     mt_sweep_range(r->low, r->high, n, positions);
     for (int i = 0; i < ask->n_inputs; i++) {
@@ -242,7 +242,7 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
 {
     mt_scene_frame *const f = w->f;
     const mt_model *const m = f->model;
-    const mt_scene_ask *const ask = f->ask;
+    const mt_scene_query *const ask = f->ask;
     const int n = w->out->n_positions;
     const mt_system_drive drive = {
         .joint = m->joints[r->drive->joint].name.s,

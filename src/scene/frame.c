@@ -36,7 +36,7 @@ static void number_bodies(mt_scene_frame *f)
     }
 }
 
-bool mt_scene_same_inputs(const mt_scene_ask *a, const mt_scene_ask *b)
+bool mt_scene_same_inputs(const mt_scene_query *a, const mt_scene_query *b)
 {
     bool same = a != NULL && a->n_inputs == b->n_inputs;
     for (int i = 0; i < b->n_inputs && same; i++) {
@@ -49,7 +49,7 @@ bool mt_scene_same_inputs(const mt_scene_ask *a, const mt_scene_ask *b)
 static mt_status find_numbers(const mt_scene_frame *f, double *number, mt_err *err)
 {
     const mt_model *const m = f->model;
-    const mt_scene_ask *const a = f->ask;
+    const mt_scene_query *const a = f->ask;
     mt_scene_known *const k = f->known;
     if (!mt_scene_same_inputs(k->numbered, a)) {
         k->numbered = NULL;
@@ -63,7 +63,7 @@ static mt_status find_numbers(const mt_scene_frame *f, double *number, mt_err *e
 mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err)
 {
     const mt_model *const m = f->model;
-    const mt_scene_ask *const a = f->ask;
+    const mt_scene_query *const a = f->ask;
     double *const number = mt_arena_f64(f->work, (size_t)m->n_nums, 1);
     double *const value = mt_arena_f64(f->work, (size_t)f->sys->program.count, 1);
     mt_pose *const drawn = mt_arena_alloc(f->work, (size_t)f->sys->n_bodies, sizeof *drawn);

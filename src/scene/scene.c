@@ -78,7 +78,7 @@ static mt_status by_lowest(mt_scene_frame *f, mt_lowest *l, mt_err *err)
 /* The drawing alone, of what cannot be analysed. Failing that, nothing. */
 static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
 {
-    const mt_scene_ask *const a = f->ask;
+    const mt_scene_query *const a = f->ask;
     mt_system *sys = NULL;
     mt_status rc =
         mt_system_new(f->model, f->configuration, a->n_inputs, a->inputs, a->at, &sys, err);
@@ -94,7 +94,7 @@ static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
  * it is kept. */
 static mt_status analyse(const mt_scene_frame *f, mt_err *err)
 {
-    const mt_scene_ask *const a = f->ask;
+    const mt_scene_query *const a = f->ask;
     mt_scene_known *const known = f->known;
     if (known->by != NULL && mt_scene_same_inputs(known->ask, a)) {
         mt_analysis_options opt = mt_analysis_options_default();
@@ -115,7 +115,7 @@ static mt_status analyse(const mt_scene_frame *f, mt_err *err)
 
 static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
-    const mt_scene_ask *const a = f->ask;
+    const mt_scene_query *const a = f->ask;
     const double bodies = mt_lowest_bodies(f->model, f->configuration);
     const double work = mt_scene_work(bodies * (f->model->dimension == 2 ? 3.0 : 6.0));
     const mt_lowest_want want = {.count = MT_SCENE_MODES, .shapes = true, .drawn = true};
@@ -184,8 +184,8 @@ static bool is_plain(const mt_model *model, int parameter)
     return mt_expr_is_constant(&model->nums[model->parameters[parameter].value].expr, &value);
 }
 
-static mt_status list_parameters(const mt_model *model, const mt_scene_ask *ask, mt_arena *mem,
-                                 mt_scene_design *out, mt_err *err)
+static mt_status list_parameters(const mt_model *model, const mt_scene_query *ask,
+                                 mt_arena *mem, mt_scene_design *out, mt_err *err)
 {
     const size_t most = (size_t)(ask->n_shown < 0 ? model->n_parameters : ask->n_shown);
     const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -228,7 +228,7 @@ typedef struct question {
     mt_arena kept;
 } question;
 
-static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
+static mt_status design_new(question *q, const mt_scene_query *ask, mt_arena *mem,
                             mt_scene_design *out, mt_scene_way *ways, mt_err *err)
 {
     *out = (mt_scene_design){.label = mt_arena_strdup(mem, ask->label), .rank = ask->rank};
@@ -255,7 +255,8 @@ static mt_status design_new(question *q, const mt_scene_ask *ask, mt_arena *mem,
 
 /* All ranges of one design, in the order of its configurations: one may share what another
  * has found. A task. */
-static mt_status follow_design(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status follow_design(void *context, int worker, int task, mt_task_path *own,
+                               mt_err *err)
 {
     const question *const q = context;
     const int n = q->extent->n_configurations;
@@ -362,7 +363,7 @@ static mt_status list_joints(mt_scene *scene, mt_err *err)
 }
 
 /* That of one configuration at a design. */
-static mt_status gravity_in(const mt_model *model, int configuration, const mt_scene_ask *ask,
+static mt_status gravity_in(const mt_model *model, int configuration, const mt_scene_query *ask,
                             mt_scene *scene, mt_arena *work, mt_err *err)
 {
     const mt_configuration *const c = &model->configurations[configuration];
@@ -376,7 +377,7 @@ static mt_status gravity_in(const mt_model *model, int configuration, const mt_s
 
 /* That of the first configuration which has any but 0, at the first design; of those that are
  * shown, else of all: which way is up should not depend on what is shown. */
-static mt_status find_gravity(const question *q, const mt_scene_ask *ask, mt_scene *scene,
+static mt_status find_gravity(const question *q, const mt_scene_query *ask, mt_scene *scene,
                               mt_arena *work, mt_err *err)
 {
     const int all = q->model->n_configurations;
@@ -389,8 +390,8 @@ static mt_status find_gravity(const question *q, const mt_scene_ask *ask, mt_sce
     return MT_OK;
 }
 
-static mt_status fill(mt_scene *scene, question *q, int n_designs, const mt_scene_ask *designs,
-                      mt_err *err)
+static mt_status fill(mt_scene *scene, question *q, int n_designs,
+                      const mt_scene_query *designs, mt_err *err)
 {
     MT_TRY(mt_arena_init(&scene->mem, 0, err));
     MT_TRY(mt_arena_init(&q->work, 0, err));
@@ -420,7 +421,7 @@ static mt_status fill(mt_scene *scene, question *q, int n_designs, const mt_scen
     return list_joints(scene, err);
 }
 
-mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask *designs,
+mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_query *designs,
                        const mt_scene_extent *extent, mt_scene **out, mt_err *err)
 {
     question q = {.model = model,

@@ -202,7 +202,7 @@ typedef struct mt_scene_name {
 } mt_scene_name;
 
 /* A design to look at: parameters with other values than in the file. */
-typedef struct mt_scene_ask {
+typedef struct mt_scene_query {
     const char *label;
     int rank;
     int n_inputs;
@@ -212,7 +212,7 @@ typedef struct mt_scene_ask {
     const mt_scene_name *names;
     int n_shown; /* parameters to list; -1: all that are plain numbers */
     const int *shown;
-} mt_scene_ask;
+} mt_scene_query;
 
 /* What to show of all designs. */
 typedef struct mt_scene_extent {
@@ -231,7 +231,7 @@ typedef struct mt_scene_extent {
  * What fails in one configuration is said there. Fails: MT_E_MEMORY, MT_E_INTERRUPTED,
  * MT_E_INTERNAL.
  */
-mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_ask *designs,
+mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_query *designs,
                        const mt_scene_extent *extent, mt_scene **out, mt_err *err);
 /* Accepts NULL. */
 void mt_scene_delete(mt_scene *scene);

@@ -15,10 +15,10 @@ typedef struct mt_scene_followed {
 
 /* A configuration at the design before this one. */
 typedef struct mt_scene_known {
-    mt_analysis *by;              /* owned; NULL: none */
-    const mt_scene_ask *ask;      /* that it was made for */
-    mt_numbers numbers;           /* all of the model */
-    const mt_scene_ask *numbered; /* what they were compiled for; NULL: they are not */
+    mt_analysis *by;                /* owned; NULL: none */
+    const mt_scene_query *ask;      /* that it was made for */
+    mt_numbers numbers;             /* all of the model */
+    const mt_scene_query *numbered; /* what they were compiled for; NULL: they are not */
 } mt_scene_known;
 
 typedef struct mt_scene_way mt_scene_way;
@@ -27,7 +27,7 @@ typedef struct mt_scene_way mt_scene_way;
 typedef struct mt_scene_frame {
     const mt_model *model;
     int configuration;
-    const mt_scene_ask *ask;
+    const mt_scene_query *ask;
     const mt_scene_extent *extent;
     const mt_system *sys;
     const double *number; /* [numbers of the model] */
@@ -70,7 +70,7 @@ typedef struct mt_scene_room {
 double mt_scene_work(double coordinates);
 
 /* frame.c: whether both asks have the same inputs (false without a first). */
-bool mt_scene_same_inputs(const mt_scene_ask *a, const mt_scene_ask *b);
+bool mt_scene_same_inputs(const mt_scene_query *a, const mt_scene_query *b);
 /* Values of the design and who is who; sys, ask, model, configuration, mem, work and
  * view are given. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_scene_frame_new(mt_scene_frame *f, mt_err *err);

@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "base/format.h"
-#include "base/spent.h"
-#include "problem/demand.h"
+#include "base/work_counters.h"
+#include "problem/requirement.h"
 #include "prove/shaping.h"
 
 /* Spent with the first box. 0 would be the default of certify.h. */
@@ -19,10 +19,10 @@ void mt_proof_free(mt_proof *proof)
         mt_enclosure_delete(proof->views[i]);
         proof->views[i] = NULL;
     }
-    mt_spent_note(proof->spent, MT_SPENT_MULTIPLICATIONS, (long)work);
+    mt_work_counters_note(proof->spent, MT_WORK_MULTIPLICATIONS, (long)work);
 }
 
-mt_status mt_proof_shaping(const mt_case *c, mt_arena *mem, bool **shapes, int *count,
+mt_status mt_proof_shaping(const mt_subproblem *c, mt_arena *mem, bool **shapes, int *count,
                            mt_err *err)
 {
     const mt_problem *const p = c->p;
@@ -65,7 +65,7 @@ static mt_status shape(const mt_proof *proof, const mt_problem *p, int view, mt_
     if (!moved) {
         return MT_OK;
     }
-    const mt_status rc = mt_view_analyse(&p->views[view], x, out, &own);
+    const mt_status rc = mt_configuration_analyse(&p->views[view], x, out, &own);
     *ok = rc == MT_OK;
     (void)mt_snprintf(why, MT_REASON_SIZE, "%s", own.text);
     return mt_pass_final(rc, &own, err);
@@ -101,8 +101,8 @@ static mt_status enclose(mt_proof *proof, const mt_problem *p, mt_arena *mem, mt
     return MT_OK;
 }
 
-mt_status mt_proof_ask(mt_proof *proof, double most, mt_arena *mem, mt_certify_search *out,
-                       mt_err *err)
+mt_status mt_proof_query(mt_proof *proof, double most, mt_arena *mem, mt_certify_search *out,
+                         mt_err *err)
 {
     proof->question.max_work = fmax(fmin(most, proof->left), LEAST_WORK);
     MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, out, err));
@@ -116,8 +116,8 @@ mt_status mt_proof_ask(mt_proof *proof, double most, mt_arena *mem, mt_certify_s
 static void list_bands(mt_proof *proof, const mt_problem *p)
 {
     int at = 0;
-    for (int i = 0; i < p->n_clears; i++) {
-        const mt_clear *const c = &p->clears[i];
+    for (int i = 0; i < p->n_avoidances; i++) {
+        const mt_avoidance *const c = &p->avoidances[i];
         for (int b = 0; b < c->bands.n; b++) {
             const mt_band *const band = &c->bands.items[b];
             proof->bands[at] =
@@ -135,22 +135,22 @@ static void list_bands(mt_proof *proof, const mt_problem *p)
 static void list_limits(mt_proof *proof, const mt_problem *p)
 {
     mt_certify *const q = &proof->question;
-    for (int i = 0; i < p->n_demands; i++) {
-        const mt_demand *const d = &p->demands[i];
-        /* the interval that the demand keeps its number in */
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
+        /* the interval that the requirement keeps its number in */
         const double least = MT_HAS(d->equals) ? d->equals : d->goal->at_least;
         const double most = MT_HAS(d->equals) ? d->equals : d->goal->at_most;
         if (d->row_res >= 0) {
             continue;
         }
-        if (mt_demand_is_frequency(d)) {
-            proof->limit_demand[q->n_limits] = i;
+        if (mt_requirement_is_frequency(d)) {
+            proof->limit_requirement[q->n_limits] = i;
             proof->limits[q->n_limits++] =
                 (mt_certify_limit){d->view, d->mode, least, most, d->tolerance};
         } else if (d->quantity == MT_QUANTITY_EXPRESSION) {
-            proof->bounds[q->n_bounds++] =
-                (mt_certify_bound){d->node, least - (d->tolerance * mt_demand_unit(d, least)),
-                                   most + (d->tolerance * mt_demand_unit(d, most))};
+            proof->bounds[q->n_bounds++] = (mt_certify_bound){
+                d->node, least - (d->tolerance * mt_requirement_unit(d, least)),
+                most + (d->tolerance * mt_requirement_unit(d, most))};
         } else {
             proof->covers = false;
         }
@@ -160,19 +160,19 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
     q->program = q->n_bounds > 0 ? &p->program : NULL;
 }
 
-mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err *err)
+mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
     const size_t n = (size_t)p->n;
-    const size_t n_demands = (size_t)p->n_demands;
+    const size_t n_requirements = (size_t)p->n_requirements;
     const size_t n_bands = (size_t)p->n_bands;
     *proof = (mt_proof){.left = c->proof_work, .spent = p->study->model->spent};
     proof->views = mt_arena_alloc(mem, (size_t)p->n_views, sizeof(mt_enclosure *));
     proof->bands = mt_arena_alloc(mem, n_bands, sizeof *proof->bands);
     proof->bases = mt_arena_alloc(mem, n_bands, sizeof *proof->bases);
-    proof->limits = mt_arena_alloc(mem, n_demands, sizeof *proof->limits);
-    proof->bounds = mt_arena_alloc(mem, n_demands, sizeof *proof->bounds);
-    proof->limit_demand = mt_arena_int(mem, n_demands);
+    proof->limits = mt_arena_alloc(mem, n_requirements, sizeof *proof->limits);
+    proof->bounds = mt_arena_alloc(mem, n_requirements, sizeof *proof->bounds);
+    proof->limit_requirement = mt_arena_int(mem, n_requirements);
     proof->lower = mt_arena_f64(mem, n, 1);
     proof->upper = mt_arena_f64(mem, n, 1);
     MT_TRY(mt_arena_check(mem, err));
@@ -195,7 +195,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err
         (void)mt_snprintf(proof->reason, sizeof proof->reason, "\"proof_s\" is 0");
     }
     /* what is possible for a design may not be over its tolerances */
-    proof->covers = c->robust == NULL;
+    proof->covers = c->tolerance_box == NULL;
     list_bands(proof, p);
     list_limits(proof, p);
     return MT_OK;

@@ -17,7 +17,7 @@ typedef struct mt_proof {
     mt_certify_band *bands; /* with margin; those of problem->clears in their order */
     mt_certify_band *bases; /* without */
     mt_certify_limit *limits;
-    int *limit_demand; /* [n_limits] which demand */
+    int *limit_requirement; /* [n_limits] which requirement */
     mt_certify_bound *bounds;
     double *lower; /* [n] parameter values */
     double *upper;
@@ -25,21 +25,21 @@ typedef struct mt_proof {
     bool covers;
     char reason[MT_REASON_SIZE]; /* why there is no certificate; empty: there can be */
     bool possible;
-    double left;            /* of its budget, in multiplications */
-    struct mt_spent *spent; /* where its work is noted; NULL */
+    double left;                    /* of its budget, in multiplications */
+    struct mt_work_counters *spent; /* where its work is noted; NULL */
 } mt_proof;
 
 /* shapes[n] in mem: which variables shape the geometry of any view, and are not held by the
  * case; how many. Fails: MT_E_MEMORY. */
-mt_status mt_proof_shaping(const mt_case *c, mt_arena *mem, bool **shapes, int *count,
+mt_status mt_proof_shaping(const mt_subproblem *c, mt_arena *mem, bool **shapes, int *count,
                            mt_err *err);
 /* Results in mem but the enclosures, which mt_proof_free gives back. `possible` false, with the
  * reason, is a success. */
-mt_status mt_proof_init(mt_proof *proof, const mt_case *c, mt_arena *mem, mt_err *err);
+mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, mt_err *err);
 /* mt_certify_assignments of the question with `most` of what is left of the budget at most: all
  * that is asked of one proof has it together. Where nothing is left one box is looked at. */
-mt_status mt_proof_ask(mt_proof *proof, double most, mt_arena *mem, mt_certify_search *out,
-                       mt_err *err);
+mt_status mt_proof_query(mt_proof *proof, double most, mt_arena *mem, mt_certify_search *out,
+                         mt_err *err);
 /* Accepts a zeroed proof. */
 void mt_proof_free(mt_proof *proof);
 /* Variables with a catalogue take values of it only, instead of all between its ends. Arrays in

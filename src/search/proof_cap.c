@@ -8,7 +8,7 @@
 static double least(void *context, const double *lo, const double *hi)
 {
     const mt_proof_cap *const c = context;
-    const mt_aim *const a = &c->p->aims[0];
+    const mt_objective_stage *const a = &c->p->aims[0];
     return c->known ? a->ops->least(c->p, a, lo, hi, c->low, c->high) / a->size : -HUGE_VAL;
 }
 

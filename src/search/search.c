@@ -14,7 +14,7 @@ static const double NOT_SHOWN = 1e-4;
 enum { STAGE_EVALUATIONS = 2000 };
 
 /* Options that all stages share. */
-static mt_nlp_options options_of(const mt_case *c)
+static mt_nlp_options options_of(const mt_subproblem *c)
 {
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = c->search.seed;
@@ -48,8 +48,8 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, const 
 /* The stages of one search after the first. */
 typedef struct stages {
     mt_workspace *ws;
-    const mt_case *first;
-    mt_case later; /* with the objectives before its stage held */
+    const mt_subproblem *first;
+    mt_subproblem later; /* with the objectives before its stage held */
     mt_arena *mem;
     mt_nlp_result *out;
     double *f;     /* n_aims values of each solution, at its present design */
@@ -62,11 +62,11 @@ static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *er
     mt_nlp_values v;
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     mt_workspace_back(s->ws, s->first);
-    mt_status rc = mt_case_values_init(s->first, s->mem, &v, err);
+    mt_status rc = mt_subproblem_values_init(s->first, s->mem, &v, err);
     s->out->evals++;
     rc = rc == MT_OK ? mt_workspace_eval(s->ws, t, false, &v, err) : rc;
     for (int k = 0; k < s->first->n_aims && rc == MT_OK; k++) {
-        f[k] = mt_aim_value(s->ws, k, NULL);
+        f[k] = mt_objective_stage_value(s->ws, k, NULL);
     }
     mt_arena_rewind(s->mem, mark);
     return rc;
@@ -75,7 +75,7 @@ static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *er
 /* Improve solution i in the present stage. */
 static mt_status refine(stages *s, int i, mt_err *err)
 {
-    mt_case *const c = &s->later;
+    mt_subproblem *const c = &s->later;
     mt_nlp_solution *const old = &s->out->solutions[i];
     double *const f = s->f + ((ptrdiff_t)i * c->n_aims);
     double *const limit = s->limit + ((ptrdiff_t)i * c->n_aims);
@@ -90,7 +90,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     MT_TRY(aims_at(s, old->t, f, err)); /* the residuals that a misfit is held at */
     limit[c->stage - 1] = f[c->stage - 1];
     for (int k = 0; k < c->stage; k++) {
-        mt_aim_hold(c, s->ws, k, limit[k]);
+        mt_objective_stage_hold(c, s->ws, k, limit[k]);
     }
     mt_workspace_back(s->ws, c);
     mt_nlp_options opt = options_of(c);
@@ -100,7 +100,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
     nlp.origin = old->t;
     MT_TRY(mt_workspace_solve(s->ws, &nlp, &opt, s->mem, &next, err));
     mt_steps_append(&s->out->steps, &next.steps, s->out->evals, c->stage, 0);
-    MT_TRY(mt_search_repeated(s->ws, most > 0 ? budget : 0, s->mem, &next, err));
+    MT_TRY(mt_search_repeated_eigenvalues(s->ws, most > 0 ? budget : 0, s->mem, &next, err));
     s->out->evals += next.evals;
     s->out->stop = next.stop;
     if (next.n_solutions == 0 || next.compromise) {
@@ -112,9 +112,9 @@ static mt_status refine(stages *s, int i, mt_err *err)
     old->singular = old->singular || singular;
     old->start = start;
     if (i == 0) {
-        s->out->n_undetermined = next.n_undetermined;
-        s->out->undetermined = next.undetermined;
-        s->out->undetermined_effect = next.undetermined_effect;
+        s->out->n_unidentifiable = next.n_unidentifiable;
+        s->out->unidentifiable = next.unidentifiable;
+        s->out->unidentifiable_effect = next.unidentifiable_effect;
     }
     return aims_at(s, old->t, f, err);
 }
@@ -207,7 +207,7 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
 {
     mt_nlp_result *const out = s->out;
     const int n_aims = s->first->n_aims;
-    MT_TRY(mt_case_for_stages(s->first, s->mem, &s->later, err));
+    MT_TRY(mt_subproblem_for_stages(s->first, s->mem, &s->later, err));
     s->f = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
     s->limit = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
     MT_TRY(mt_arena_check(s->mem, err));
@@ -253,7 +253,7 @@ static mt_status search(mt_workspace *const *workers, int n_workers, const doubl
                         mt_arena *mem, mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
 {
     mt_workspace *const ws = workers[0];
-    const mt_case *const c = ws->c;
+    const mt_subproblem *const c = ws->c;
     mt_err own = {.code = MT_OK};
     *stage = 0;
     const mt_status rc = first_stage(workers, n_workers, from, mem, out, &own);
@@ -265,7 +265,7 @@ static mt_status search(mt_workspace *const *workers, int n_workers, const doubl
         *why = own;
         return MT_OK;
     }
-    MT_TRY(mt_search_repeated(ws, c->search.max_evaluations, mem, out, err));
+    MT_TRY(mt_search_repeated_eigenvalues(ws, c->search.max_evaluations, mem, out, err));
     const long most = c->search.max_evaluations;
     if (c->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {

@@ -62,13 +62,14 @@ static bool measure(continua *c, const double *t, double *aims)
     bool good = rc == MT_OK;
     c->rc = mt_is_final(rc) ? rc : MT_OK;
     if (good) {
-        const mt_case *const k = ws->c;
+        const mt_subproblem *const k = ws->c;
         const mt_missed m =
             mt_missed_of(ws->p->n_eq, c->v.eq, k->eq_tol, k->n_in, c->v.in, k->in_tol);
         good = mt_is_met(m.violation, 1.0);
     }
     for (int k = 0; k < ws->c->n_aims && good; k++) {
-        aims[k] = mt_aim_root(&ws->c->aims[k], mt_aim_value(ws, k, NULL));
+        aims[k] =
+            mt_objective_stage_root(&ws->c->aims[k], mt_objective_stage_value(ws, k, NULL));
         good = isfinite(aims[k]);
     }
     return good;
@@ -110,7 +111,7 @@ static mt_status shortest_step(continua *c, int n_free, const int *free, double 
  * not come about. */
 static bool restore(continua *c)
 {
-    const mt_case *const k = c->ws->c;
+    const mt_subproblem *const k = c->ws->c;
     const long most = k->search.max_evaluations;
     const int n = k->n_t;
     int *const free = mt_arena_int(c->mem, (size_t)n);
@@ -188,7 +189,7 @@ static bool connected(continua *c, int i, int k)
     return one;
 }
 
-bool mt_search_nearer(const mt_case *c, const double *s, const double *t)
+bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t)
 {
     return mt_is_nearer(c->p->n, c->origin_t, c->change_weight, s, t);
 }
@@ -201,7 +202,7 @@ static void join(const continua *c, int into, const mt_nlp_solution *other)
     mt_nlp_solution *const s = &out->solutions[into];
     const int hits = s->hits + other->hits;
     const int start = s->start < other->start ? s->start : other->start;
-    const bool told = into == 0 && out->n_undetermined > 0;
+    const bool told = into == 0 && out->n_unidentifiable > 0;
     if (!told && other->kkt <= STATIONARY && mt_search_nearer(c->ws->c, other->t, s->t)) {
         *s = *other;
     }
@@ -274,7 +275,7 @@ mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result
     c.t = mt_arena_f64(mem, (size_t)ws->c->n_t, 1);
     int *const group = mt_arena_int(mem, (size_t)n);
     MT_TRY(mt_arena_check(mem, err));
-    mt_status rc = mt_case_values_init(ws->c, mem, &c.v, err);
+    mt_status rc = mt_subproblem_values_init(ws->c, mem, &c.v, err);
     for (int i = 0; i < n && rc == MT_OK; i++) {
         double *const aims = c.aims + ((ptrdiff_t)i * ws->c->n_aims);
         if (!measure(&c, out->solutions[i].t, aims)) {

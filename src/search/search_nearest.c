@@ -48,8 +48,8 @@ static const double CLOSE_TOLERANCE = 0.1;
 
 typedef struct nearest {
     mt_workspace *ws;
-    const mt_case *first;
-    mt_case held;
+    const mt_subproblem *first;
+    mt_subproblem held;
     mt_arena *mem;
     mt_nlp_result *out;
     long most;
@@ -62,14 +62,14 @@ typedef struct nearest {
  * that can be held. A coordinate of the search has its objective, which elsewhere is looked up
  * afterwards; of a misfit only exact fits are moved, what else it leaves open is told as
  * undetermined. */
-static bool applies(const mt_case *c)
+static bool applies(const mt_subproblem *c)
 {
     for (int k = 0; k < c->n_aims; k++) {
-        const mt_aim *const a = &c->aims[k];
+        const mt_objective_stage *const a = &c->aims[k];
         if (a->type == MT_OBJECTIVE_CHANGE || a->ops->value == NULL ||
             mt_objective_is(a->type, MT_RESIDUALS) ||
             (mt_objective_is(a->type, MT_BANDS) && !c->clearance) ||
-            (mt_objective_is(a->type, MT_SHAKES) && !c->shaken)) {
+            (mt_objective_is(a->type, MT_SHAKES) && !c->forced_response)) {
             return false;
         }
     }
@@ -80,18 +80,18 @@ static bool applies(const mt_case *c)
 static mt_status add_change(nearest *n, mt_err *err)
 {
     const size_t n_aims = (size_t)n->first->n_aims;
-    mt_case with = *n->first;
-    mt_aim *const aims = mt_arena_alloc(n->mem, n_aims + 1, sizeof *aims);
+    mt_subproblem with = *n->first;
+    mt_objective_stage *const aims = mt_arena_alloc(n->mem, n_aims + 1, sizeof *aims);
     n->at = mt_arena_f64(n->mem, n_aims, 1);
     MT_TRY(mt_arena_check(n->mem, err));
     memcpy(aims, n->first->aims, n_aims * sizeof *aims);
-    aims[n_aims] = (mt_aim){.type = MT_OBJECTIVE_CHANGE,
-                            .ops = &mt_objective_change,
-                            .size = 1.0,
-                            .node = MT_NO_NODE};
+    aims[n_aims] = (mt_objective_stage){.type = MT_OBJECTIVE_CHANGE,
+                                        .ops = &mt_objective_change,
+                                        .size = 1.0,
+                                        .node = MT_NO_NODE};
     with.aims = aims;
     with.n_aims++;
-    return mt_case_for_stages(&with, n->mem, &n->held, err);
+    return mt_subproblem_for_stages(&with, n->mem, &n->held, err);
 }
 
 /* True where the budget has less than `evals` left. */
@@ -103,10 +103,10 @@ static bool lacks(const nearest *n, long evals)
 /* The objectives before `stage` are held, and the workspace is set to that. */
 static void hold(nearest *n, int stage)
 {
-    mt_case *const c = &n->held;
+    mt_subproblem *const c = &n->held;
     c->stage = stage;
     for (int k = 0; k < stage; k++) {
-        mt_aim_hold(c, n->ws, k, n->at[k]);
+        mt_objective_stage_hold(c, n->ws, k, n->at[k]);
         if (n->close > 0.0 && k + 1 == n->first->n_aims) {
             c->held[k].limit = n->at[k] + (n->close * c->held[k].unit);
             c->in_tol[c->n_in + k] = CLOSE_TOLERANCE * n->close;
@@ -120,7 +120,7 @@ static void hold(nearest *n, int stage)
 static mt_status minimise(nearest *n, int stage, long most, const double *from,
                           mt_nlp_solution **end, mt_err *err)
 {
-    const mt_case *const c = &n->held;
+    const mt_subproblem *const c = &n->held;
     mt_nlp_result next = {0};
     const long left = n->most > 0 ? n->most - n->out->evals : most;
     const long budget = left < most ? left : most;
@@ -142,7 +142,7 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
     mt_status rc = mt_workspace_solve(n->ws, &nlp, &opt, n->mem, &next, &own);
     if (rc == MT_OK && (most > 1 || n->clusters)) {
         const long judged = most > 1 ? budget : next.evals + JUDGEMENT;
-        rc = mt_search_repeated(n->ws, judged, n->mem, &next, &own);
+        rc = mt_search_repeated_eigenvalues(n->ws, judged, n->mem, &next, &own);
     }
     n->out->evals += next.evals;
     if (next.stop == MT_STOP_MAX_EVALS && (most == 1 || n->most <= 0)) {
@@ -161,10 +161,10 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
 /* An optimum is as good as s, and nearer. */
 static bool is_better(const nearest *n, const mt_nlp_solution *end, const mt_nlp_solution *s)
 {
-    const double most = mt_case_change(n->first, s->t);
+    const double most = mt_subproblem_change(n->first, s->t);
     return end->feasible && end->kkt <= SHOWN &&
            mt_compare(end->f, s->f, MT_EQUAL_FOUND) <= 0 &&
-           mt_compare(mt_case_change(n->first, end->t), most, MT_EQUAL_FOUND) <= 0;
+           mt_compare(mt_subproblem_change(n->first, end->t), most, MT_EQUAL_FOUND) <= 0;
 }
 
 /* The design of least change next to the optimum of s, from `from`: *end, where it is one. */
@@ -204,24 +204,24 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
                            mt_err *err)
 {
     mt_workspace *const w = n->ws;
-    const mt_case *const c = n->first;
+    const mt_subproblem *const c = n->first;
     mt_nlp_values v;
     *n_idle = 0;
     mt_workspace_back(w, c);
     double *const slope = mt_arena_f64(n->mem, (size_t)c->n_t, 1);
     MT_TRY(mt_arena_check(n->mem, err));
-    MT_TRY(mt_case_values_init(c, n->mem, &v, err));
+    MT_TRY(mt_subproblem_values_init(c, n->mem, &v, err));
     n->out->evals++;
     MT_TRY(mt_workspace_eval(w, s->t, true, &v, err));
     for (int j = 0; j < c->n_t; j++) {
         idle[j] = c->n_t == c->p->n && c->lower_t[j] < c->upper_t[j];
     }
     for (int k = 0; k < c->n_aims; k++) {
-        (void)mt_aim_value(w, k, slope);
+        (void)mt_objective_stage_value(w, k, slope);
         keep_idle(1, c->n_t, 0, slope, idle);
     }
-    const int n_eq = mt_case_rows_eq(c);
-    const int n_in = mt_case_rows_in(c);
+    const int n_eq = mt_subproblem_rows_eq(c);
+    const int n_in = mt_subproblem_rows_in(c);
     for (int i = 0; i < n_eq; i++) {
         keep_idle(n_eq, c->n_t, i, v.deq, idle);
     }
@@ -244,12 +244,12 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
 /* The bounds of the question closed on t, but for what is open. */
 static mt_status close_rest(nearest *n, const double *t, const bool *open, mt_err *err)
 {
-    mt_case *const c = &n->held;
+    mt_subproblem *const c = &n->held;
     const size_t n_t = (size_t)c->n_t;
     double *const bounds = mt_arena_f64(n->mem, 5, n_t);
     MT_TRY(mt_arena_check(n->mem, err));
     double *const x = bounds + (4 * n_t);
-    mt_case_x(c, t, x);
+    mt_subproblem_x(c, t, x);
     for (size_t j = 0; j < n_t; j++) {
         bounds[j] = open[j] ? c->lower[j] : x[j];
         bounds[n_t + j] = open[j] ? c->upper[j] : x[j];
@@ -270,7 +270,7 @@ static mt_status is_rest_held(nearest *n, const mt_nlp_solution *s, const bool *
                               bool *held, mt_err *err)
 {
     const size_t n_t = (size_t)n->first->n_t;
-    const mt_case whole = n->held;
+    const mt_subproblem whole = n->held;
     mt_nlp_solution *end = NULL;
     bool *const rest = mt_arena_alloc(n->mem, n_t, sizeof *rest);
     double *const t = mt_arena_f64(n->mem, n_t, 1);
@@ -295,14 +295,14 @@ static mt_status is_rest_held(nearest *n, const mt_nlp_solution *s, const bool *
 static mt_status keeps(nearest *n, const double *t, double f, mt_nlp_values *v, bool *kept,
                        mt_err *err)
 {
-    const mt_case *const c = n->first;
+    const mt_subproblem *const c = n->first;
     mt_err own = {.code = MT_OK};
     n->out->evals++;
     const mt_status rc = mt_workspace_eval(n->ws, t, false, v, &own);
     *kept = false;
     if (rc == MT_OK) {
-        const mt_missed m = mt_missed_of(mt_case_rows_eq(c), v->eq, c->eq_tol,
-                                         mt_case_rows_in(c), v->in, c->in_tol);
+        const mt_missed m = mt_missed_of(mt_subproblem_rows_eq(c), v->eq, c->eq_tol,
+                                         mt_subproblem_rows_in(c), v->in, c->in_tol);
         *kept = m.violation <= KEPT && mt_compare(v->f, f, MT_EQUAL_FOUND) <= 0;
     }
     return mt_pass_final(rc, &own, err);
@@ -312,14 +312,14 @@ static mt_status keeps(nearest *n, const double *t, double f, mt_nlp_values *v, 
  * halving, as where modes meet these have no slopes. */
 static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
 {
-    const mt_case *const c = n->first;
+    const mt_subproblem *const c = n->first;
     mt_nlp_values v;
     const double origin = fmin(fmax(c->origin_t[j], c->lower_t[j]), c->upper_t[j]);
     double good = t[j];
     double bad = origin;
     bool kept = false;
     mt_workspace_back(n->ws, c);
-    MT_TRY(mt_case_values_init(c, n->mem, &v, err));
+    MT_TRY(mt_subproblem_values_init(c, n->mem, &v, err));
     t[j] = origin;
     MT_TRY(keeps(n, t, f, &v, &kept, err));
     good = kept ? origin : good;
@@ -339,7 +339,7 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
 {
     const int n_aims = n->first->n_aims;
     const int n_t = n->first->n_t;
-    const mt_case whole = n->held;
+    const mt_subproblem whole = n->held;
     mt_nlp_solution *at = NULL;
     int n_idle = 0;
     bool *const idle = mt_arena_alloc(n->mem, (size_t)n_t, sizeof *idle);
@@ -424,7 +424,7 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
 }
 
 /* The residuals are met exactly by more than one design: fewer than variables. */
-static bool is_open_fit(const mt_case *c)
+static bool is_open_fit(const mt_subproblem *c)
 {
     return c->n_aims == 1 && mt_objective_is(c->aims[0].type, MT_RESIDUALS) &&
            c->p->n_eq == 0 && c->p->n_res < c->n_t;
@@ -448,7 +448,7 @@ static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
     n->close = 0.0;
     n->at[0] = s->f;
     mt_workspace_back(n->ws, n->first);
-    MT_TRY(mt_case_values_init(n->first, n->mem, &v, err));
+    MT_TRY(mt_subproblem_values_init(n->first, n->mem, &v, err));
     n->out->evals++;
     MT_TRY(mt_workspace_eval(n->ws, s->t, false, &v, err)); /* the residuals it is held at */
     MT_TRY(minimise(n, 1, EVALUATIONS, s->t, &near, err));
@@ -456,7 +456,7 @@ static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
         MT_TRY(minimise(n, 0, REFIT, near->t, &end, err)); /* from within what it was held in */
     }
     if (end == NULL || !is_exact(end) ||
-        mt_compare(mt_case_change(n->first, end->t), mt_case_change(n->first, s->t),
+        mt_compare(mt_subproblem_change(n->first, end->t), mt_subproblem_change(n->first, s->t),
                    MT_EQUAL_FOUND) > 0) {
         return MT_OK; /* it stands as it is */
     }
@@ -467,7 +467,7 @@ static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
 }
 
 /* By the objective, of equal ones the nearest first. */
-static void sort(const mt_case *c, mt_nlp_result *out)
+static void sort(const mt_subproblem *c, mt_nlp_result *out)
 {
     for (int i = 1; i < out->n_solutions; i++) {
         const mt_nlp_solution s = out->solutions[i];
@@ -485,7 +485,7 @@ static void sort(const mt_case *c, mt_nlp_result *out)
 }
 
 /* Those that have become one count once. */
-static void merge(const mt_case *c, mt_nlp_result *out)
+static void merge(const mt_subproblem *c, mt_nlp_result *out)
 {
     int kept = 0;
     for (int i = 0; i < out->n_solutions; i++) {

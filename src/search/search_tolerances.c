@@ -11,20 +11,20 @@
  */
 #include <math.h>
 
-#include "problem/family.h"
-#include "problem/robust_cut.h"
-#include "search/motion.h"
+#include "problem/drive_positions.h"
+#include "problem/tolerance_cut.h"
+#include "search/drive_path.h"
 #include "search/search.h"
 
 enum { ROUNDS = 12, STARTS = 6, STARTS_ALONE = 3 };
 /* Of a budget, for judging what a search ends with: so many evaluations, or one in so many. */
 enum { JUDGED = 16, PART = 4 };
 
-mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem, mt_robust_cuts *cuts,
-                          mt_nlp_solution *s, bool *again, mt_err *err)
+mt_status mt_search_verify(mt_workspace *w, bool last, mt_arena *mem, mt_tolerance_cuts *cuts,
+                           mt_nlp_solution *s, bool *again, mt_err *err)
 {
     *again = false;
-    MT_TRY(mt_robust_judge(w, s->t, mem, cuts, err));
+    MT_TRY(mt_tolerance_verify(w, s->t, mem, cuts, err));
     const mt_missed *const m = &cuts->missed;
     *again = !last && cuts->added > 0;
     if (!*again && !mt_is_met(m->violation, 1.0)) {
@@ -39,33 +39,33 @@ mt_status mt_search_judge(mt_workspace *w, bool last, mt_arena *mem, mt_robust_c
 typedef struct directions {
     const double *t;
     int n;
-    double *undetermined;
+    double *unidentifiable;
     double *effect;
 } directions;
 
 typedef struct rounds {
     mt_workspace *ws;
-    const mt_case *c; /* the caller's */
+    const mt_subproblem *c; /* the caller's */
     mt_arena *mem;
     mt_nlp_result *out;
     int *stage;
     int round;
     bool *open; /* [n_solutions] not judged, or missed at a point that is a cut since */
-    mt_robust_cuts cuts;
+    mt_tolerance_cuts cuts;
     bool over_tolerances;
     bool over_positions;
     long judgement; /* most evaluations that a design takes over the positions */
-    mt_posed_cuts posed;
+    mt_at_position_cuts at_position;
     bool *kept;       /* [n_solutions] the limits over the positions, when last judged */
     directions first; /* of the best design of the search, */
     directions again; /* and of that with the cuts */
-    const mt_posed_price *prices;
+    const mt_at_position_price *prices;
 } rounds;
 
 static directions directions_of(const mt_nlp_result *found)
 {
-    return (directions){found->solutions[0].t, found->n_undetermined, found->undetermined,
-                        found->undetermined_effect};
+    return (directions){found->solutions[0].t, found->n_unidentifiable, found->unidentifiable,
+                        found->unidentifiable_effect};
 }
 
 /* True where the budget has less than `evals` left. */
@@ -86,20 +86,20 @@ static mt_status judge(rounds *r, int i, bool last, mt_err *err)
         return MT_OK;
     }
     if (r->over_tolerances) {
-        MT_TRY(mt_search_judge(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
-        r->out->evals += 1 + mt_case_worth(r->c, r->cuts.solutions);
+        MT_TRY(mt_search_verify(r->ws, last, r->mem, &r->cuts, s, &r->open[i], err));
+        r->out->evals += 1 + mt_subproblem_worth(r->c, r->cuts.solutions);
     }
     if (r->over_positions && s->feasible && !lacks(r, r->judgement)) {
-        MT_TRY(mt_search_judge_positions(r->ws, s->t, last, r->mem, &r->posed, err));
-        r->kept[i] = r->posed.holds;
-        r->out->evals += r->posed.evals;
-        r->open[i] = r->open[i] || r->posed.added > 0;
+        MT_TRY(mt_search_verify_positions(r->ws, s->t, last, r->mem, &r->at_position, err));
+        r->kept[i] = r->at_position.holds;
+        r->out->evals += r->at_position.evals;
+        r->open[i] = r->open[i] || r->at_position.added > 0;
     }
     return MT_OK;
 }
 
 /* Judge what is open; *any: whether any of it is open still. */
-static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
+static mt_status verify_open(rounds *r, bool last, bool *any, mt_err *err)
 {
     *any = false;
     for (int i = 0; i < r->out->n_solutions; i++) {
@@ -122,32 +122,32 @@ static mt_status judge_open(rounds *r, bool last, bool *any, mt_err *err)
 /* What the limits between positions cost the solution, which was searched with them. */
 static mt_status note_prices(rounds *r, const mt_nlp_solution *s, mt_err *err)
 {
-    const mt_case *const c = r->ws->c;
-    for (int i = 0; i < c->n_posed && s->mult_in != NULL; i++) {
+    const mt_subproblem *const c = r->ws->c;
+    for (int i = 0; i < c->n_at_position && s->mult_in != NULL; i++) {
         double multiplier = 0.0;
-        for (int k = 0; k < c->posed[i].n_in; k++) {
-            multiplier += fmax(s->mult_in[c->posed[i].row_in + k], 0.0);
+        for (int k = 0; k < c->at_position[i].n_in; k++) {
+            multiplier += fmax(s->mult_in[c->at_position[i].row_in + k], 0.0);
         }
         if (!(multiplier > 0.0)) {
             continue;
         }
-        mt_posed_price *const price = mt_arena_alloc(r->mem, 1, sizeof *price);
+        mt_at_position_price *const price = mt_arena_alloc(r->mem, 1, sizeof *price);
         MT_TRY(mt_arena_check(r->mem, err));
-        *price = (mt_posed_price){.next = r->prices,
-                                  .t = s->t,
-                                  .demand = r->posed.items[i].demand,
-                                  .position = r->posed.items[i].position,
-                                  .multiplier = multiplier};
+        *price = (mt_at_position_price){.next = r->prices,
+                                        .t = s->t,
+                                        .requirement = r->at_position.items[i].requirement,
+                                        .position = r->at_position.items[i].position,
+                                        .multiplier = multiplier};
         r->prices = price;
     }
     return MT_OK;
 }
 
 /* What the budget leaves to a search with the cuts; 0: there is none. */
-static long left_for(const rounds *r, const mt_case *held)
+static long left_for(const rounds *r, const mt_subproblem *held)
 {
     const long most = r->c->search.max_evaluations;
-    return most <= 0 ? 0 : mt_case_afford(held, most - r->out->evals - r->judgement);
+    return most <= 0 ? 0 : mt_subproblem_afford(held, most - r->out->evals - r->judgement);
 }
 
 /* Solution i from where it is, in the case with the cuts, which the workspace is set to. */
@@ -158,7 +158,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
     int stage = 0;
     const mt_status rc = mt_search_from(r->ws, s->t, r->mem, &next, &stage, err);
     mt_steps_append(&r->out->steps, &next.steps, r->out->evals, 0, r->round);
-    r->out->evals += mt_case_counted(r->ws->c, next.evals);
+    r->out->evals += mt_subproblem_counted(r->ws->c, next.evals);
     r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
     if (rc != MT_OK || next.n_solutions == 0 || next.compromise) {
         return rc; /* it stands as it is, and is judged so */
@@ -176,7 +176,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
 }
 
 /* Nothing goes on when the budget is spent, or who asked wants no more. */
-static bool is_spent(rounds *r)
+static bool is_used_up(rounds *r)
 {
     const bool spent = lacks(r, 1 + r->judgement);
     r->out->stop = spent && r->out->stop == MT_STOP_DONE ? MT_STOP_MAX_EVALS : r->out->stop;
@@ -184,24 +184,25 @@ static bool is_spent(rounds *r)
 }
 
 /* The case with the cuts so far, which the workspace is set to. */
-static mt_status hold_cuts(rounds *r, mt_case *held, mt_err *err)
+static mt_status hold_cuts(rounds *r, mt_subproblem *held, mt_err *err)
 {
-    MT_TRY(mt_case_copy(r->c, r->mem, held, err));
+    MT_TRY(mt_subproblem_copy(r->c, r->mem, held, err));
     if (r->over_tolerances) {
-        MT_TRY(mt_robust_add_cuts(r->c, &r->cuts, r->mem, &held->robust, err));
+        MT_TRY(mt_tolerance_add_cuts(r->c, &r->cuts, r->mem, &held->tolerance_box, err));
     }
-    return mt_case_lay_out(held, NULL, r->posed.n, r->posed.items, r->ws, r->mem, err);
+    return mt_subproblem_lay_out(held, NULL, r->at_position.n, r->at_position.items, r->ws,
+                                 r->mem, err);
 }
 
 /* All that is open once more, with the cuts so far. */
 static mt_status search_again(rounds *r, mt_err *err)
 {
-    const mt_case *const c = r->c;
-    mt_case held;
+    const mt_subproblem *const c = r->c;
+    mt_subproblem held;
     MT_TRY(hold_cuts(r, &held, err));
     mt_status rc = MT_OK;
     for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
-        if (r->open[i] && !is_spent(r)) {
+        if (r->open[i] && !is_used_up(r)) {
             held.search.max_evaluations = left_for(r, &held);
             rc = go_on(r, i, err);
         }
@@ -231,8 +232,8 @@ static mt_status go_round(rounds *r, bool *cut, mt_err *err)
     for (int round = 0; round < ROUNDS && any; round++) {
         /* with more cuts less is feasible: what was better counts no more */
         r->round++;
-        MT_TRY(judge_open(r, round + 1 == ROUNDS || is_spent(r), &any, err));
-        *cut = *cut || r->cuts.n > 0 || r->posed.n > 0;
+        MT_TRY(verify_open(r, round + 1 == ROUNDS || is_used_up(r), &any, err));
+        *cut = *cut || r->cuts.n > 0 || r->at_position.n > 0;
         MT_TRY(any ? search_again(r, err) : MT_OK);
     }
     return MT_OK;
@@ -281,10 +282,10 @@ static mt_status join(rounds *r, const mt_nlp_result *more, mt_err *err)
  * there are designs to be judged. */
 static mt_status start_again(rounds *r, bool *found, mt_err *err)
 {
-    const mt_case *const c = r->c;
+    const mt_subproblem *const c = r->c;
     mt_nlp_result next = {0};
     mt_err why = {.code = MT_OK};
-    mt_case held;
+    mt_subproblem held;
     int stage = 0;
     *found = false;
     MT_TRY(hold_cuts(r, &held, err));
@@ -297,7 +298,7 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
     mt_workspace_back(r->ws, c);
     MT_TRY(rc);
     mt_steps_append(&r->out->steps, &next.steps, r->out->evals, 0, r->round);
-    r->out->evals += mt_case_counted(&held, next.evals);
+    r->out->evals += mt_subproblem_counted(&held, next.evals);
     r->out->stop = next.stop > r->out->stop ? next.stop : r->out->stop;
     if (next.n_solutions == 0 || next.compromise || stage != *r->stage) {
         return MT_OK;
@@ -344,9 +345,9 @@ static mt_status sort_out(rounds *r, mt_err *err)
     const directions known = best == r->first.t   ? r->first
                              : best == r->again.t ? r->again
                                                   : (directions){.n = 0};
-    out->n_undetermined = known.n;
-    out->undetermined = known.undetermined;
-    out->undetermined_effect = known.effect;
+    out->n_unidentifiable = known.n;
+    out->unidentifiable = known.unidentifiable;
+    out->unidentifiable_effect = known.effect;
     if (out->n_solutions == before) {
         return MT_OK;
     }
@@ -366,7 +367,7 @@ static mt_status search_first(const rounds *r, mt_workspace *const *workers, int
     const long most = r->c->search.max_evaluations;
     const long wanted = JUDGED + r->c->search.judged_as;
     const long part = most / PART < wanted ? most / PART : wanted;
-    mt_case less = *r->c;
+    mt_subproblem less = *r->c;
     less.search.max_evaluations -= r->over_tolerances ? part : 0;
     /* of equal designs the nearest is sought with the cuts */
     less.as_found = r->c->as_found || r->over_tolerances;
@@ -383,14 +384,15 @@ static mt_status search_first(const rounds *r, mt_workspace *const *workers, int
 
 mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                                     mt_nlp_result *out, int *stage,
-                                    const mt_posed_price **prices, mt_err *why, mt_err *err)
+                                    const mt_at_position_price **prices, mt_err *why,
+                                    mt_err *err)
 {
     rounds r = {.ws = workers[0], .c = workers[0]->c, .mem = mem, .out = out};
     r.stage = stage;
-    r.over_tolerances = mt_robust_is_sampled(r.c);
+    r.over_tolerances = mt_tolerance_is_sampled(r.c);
     r.over_positions = mt_search_has_positions(r.c);
     r.judgement = (r.over_tolerances ? 1 + r.c->search.judged_as : 0) +
-                  (r.over_positions ? 2 + mt_motion_most(r.c) : 0);
+                  (r.over_positions ? 2 + mt_drive_path_most(r.c) : 0);
     MT_TRY(search_first(&r, workers, n_workers, why, err));
     if (!(r.over_tolerances || r.over_positions) || out->n_solutions == 0 || out->compromise ||
         out->stop == MT_STOP_USER) {
@@ -400,11 +402,11 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
     bool again = false;
     MT_TRY(open_all(&r, err));
     mt_status rc = go_round(&r, &cut, err);
-    if (rc == MT_OK && r.cuts.n > 0 && !is_spent(&r)) {
+    if (rc == MT_OK && r.cuts.n > 0 && !is_used_up(&r)) {
         rc = start_again(&r, &again, err);
         rc = rc == MT_OK && again ? go_round(&r, &cut, err) : rc;
     }
-    mt_posed_cuts_free(&r.posed); /* no case with them is left */
+    mt_at_position_cuts_free(&r.at_position); /* no case with them is left */
     if (prices != NULL) {
         *prices = r.prices;
     }

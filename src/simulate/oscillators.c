@@ -204,11 +204,11 @@ mt_status mt_oscillators_start(mt_oscillators *o, const mt_sim_start *start, dou
     mt_placement_copy(o->sys, rest, &o->at);
     memset(way, 0, (size_t)o->nq * sizeof *way);
     mt_motion_eval(&o->motion, &o->at, way);
-    mt_poses_way(o->sys, rest->pose, start->at.pose, way);
+    mt_poses_increment(o->sys, rest->pose, start->at.pose, way);
     *linear = project(o, way, o->sys->length_m, e);
     *linear = project(o, start->v, 0.0, rate) && *linear;
     /* whole turns are no part of the way */
-    mt_oscillators_place(o, e, rate, &o->at, way);
+    mt_oscillators_position(o, e, rate, &o->at, way);
     for (int i = 0; i < o->sys->n_measures; i++) {
         const double off = o->at.turn[i] - start->at.turn[i];
         *linear = *linear && (o->sys->measures[i].kind != MT_MEASURE_ANGLE || fabs(off) < 1.0);
@@ -216,12 +216,12 @@ mt_status mt_oscillators_start(mt_oscillators *o, const mt_sim_start *start, dou
     return MT_OK;
 }
 
-void mt_oscillators_place(mt_oscillators *o, const double *e, const double *rate,
-                          mt_placement *at, double *v)
+void mt_oscillators_position(mt_oscillators *o, const double *e, const double *rate,
+                             mt_placement *at, double *v)
 {
     double *const y = o->work[1];
     mt_gemv(false, o->n, o->n, 1.0, o->y, o->n, e, 0.0, y);
-    mt_affine_place(o->lin, &o->affine, y, o->work[2], at);
+    mt_affine_position(o->lin, &o->affine, y, o->work[2], at);
     mt_gemv(false, o->nq, o->n, 1.0, o->phi, o->nq, rate, 0.0, v);
 }
 
@@ -237,7 +237,7 @@ mt_status mt_oscillators_check(mt_oscillators *o, const double *e, const double 
     double *const damped = mt_arena_f64(scratch, (size_t)n, 1);
     mt_elimination joints;
     MT_TRY(mt_arena_check(scratch, err));
-    mt_oscillators_place(o, e, rate, &o->at, o->row);
+    mt_oscillators_position(o, e, rate, &o->at, o->row);
     mt_motion_eval(&o->motion, &o->at, o->row);
     MT_TRY(mt_eliminate_factor(o->sys, o->motion.m, o->motion.a, scratch, &joints, err));
     for (int i = 0; i < o->motion.m; i++) {

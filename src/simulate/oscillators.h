@@ -40,8 +40,8 @@ mt_status mt_oscillators_make(mt_linear *lin, const mt_sim_options *opt, mt_aren
 mt_status mt_oscillators_start(mt_oscillators *o, const mt_sim_start *start, double *e,
                                double *rate, bool *linear);
 /* The position at e, velocities into v[nq]. */
-void mt_oscillators_place(mt_oscillators *o, const double *e, const double *rate,
-                          mt_placement *at, double *v);
+void mt_oscillators_position(mt_oscillators *o, const double *e, const double *rate,
+                             mt_placement *at, double *v);
 
 /* How states of the linear motion fit the equations of mechanics/motion.h, the worst so far. */
 typedef struct mt_oscillators_fit {

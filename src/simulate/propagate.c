@@ -419,7 +419,7 @@ static mt_status propagate(mt_propagation *r, const mt_sim_start *start, mt_err 
         for (int j = 0; j < r->n; j++) {
             r->begin[j] = r->z[j] / r->w[j];
         }
-        mt_oscillators_place(&r->o, r->begin, r->z + r->n, &r->opt->end->at, r->opt->end->v);
+        mt_oscillators_position(&r->o, r->begin, r->z + r->n, &r->opt->end->at, r->opt->end->v);
     }
     return MT_OK;
 }

@@ -167,7 +167,7 @@ static mt_status measure_rest(run *r, mt_err *err)
     double *const still = mt_arena_f64(s->mem, (size_t)s->nq, 1);
     double *const way = mt_arena_f64(s->mem, (size_t)s->nq, 1);
     MT_TRY(mt_arena_check(s->mem, err));
-    mt_poses_way(s->sys, rest->pose, s->start.pose, way);
+    mt_poses_increment(s->sys, rest->pose, s->start.pose, way);
     mt_motion_eval(&s->motion, rest, still);
     r->rest_energy = s->motion.potential;
     for (int g = 0; g < s->opt->n_gauges; g++) {

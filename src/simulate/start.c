@@ -247,7 +247,7 @@ static mt_status leads(augmented *g, int n, const mt_sim_joint *joints, mt_place
         left = mt_poses_distance(g->sys, from->pose, to->pose);
         good = left > ARRIVED && left < (1.0 - GAIN) * before;
         if (good) {
-            mt_poses_way(g->sys, from->pose, to->pose, way);
+            mt_poses_increment(g->sys, from->pose, to->pose, way);
             for (int j = 0; j < g->sys->nq; j++) {
                 way[j] *= fmin(1.0, STRIDE / left);
             }

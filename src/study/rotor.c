@@ -23,17 +23,17 @@ void mt_rotor_take(mt_rotor *rotor, const mt_aircraft *aircraft)
     }
 }
 
-static int add_doubt(mt_rotor_doubt *out, int n, bool used, const char *what,
-                     const mt_aircraft_value *value)
+static int add_warning(mt_rotor_warning *out, int n, bool used, const char *what,
+                       const mt_aircraft_value *value)
 {
     if (used && !value->confirmed) {
-        out[n++] = (mt_rotor_doubt){what, value};
+        out[n++] = (mt_rotor_warning){what, value};
     }
     return n;
 }
 
-int mt_rotor_doubts(const mt_rotor *rotor, const mt_aircraft *aircraft,
-                    mt_rotor_doubt out[MT_ROTOR_DOUBTS])
+int mt_rotor_warnings(const mt_rotor *rotor, const mt_aircraft *aircraft,
+                      mt_rotor_warning out[MT_ROTOR_WARNINGS])
 {
     bool speed[2] = {false, false}; /* of the main rotor, of the tail rotor */
     bool blades[2] = {false, false};
@@ -43,12 +43,12 @@ int mt_rotor_doubts(const mt_rotor *rotor, const mt_aircraft *aircraft,
         speed[h->tail] = true;
         blades[h->tail] = blades[h->tail] || h->blade_count;
     }
-    n = add_doubt(out, n, speed[0], "rotor speed", &aircraft->main_rotor.speed);
-    n = add_doubt(out, n, blades[0], "number of blades", &aircraft->main_rotor.blades);
+    n = add_warning(out, n, speed[0], "rotor speed", &aircraft->main_rotor.speed);
+    n = add_warning(out, n, blades[0], "number of blades", &aircraft->main_rotor.blades);
     if (aircraft->has_tail) {
-        n = add_doubt(out, n, speed[1], "tail rotor's speed", &aircraft->tail_rotor.speed);
-        n = add_doubt(out, n, blades[1], "tail rotor's number of blades",
-                      &aircraft->tail_rotor.blades);
+        n = add_warning(out, n, speed[1], "tail rotor's speed", &aircraft->tail_rotor.speed);
+        n = add_warning(out, n, blades[1], "tail rotor's number of blades",
+                        &aircraft->tail_rotor.blades);
     }
     return n;
 }
@@ -78,8 +78,8 @@ void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft
     }
 }
 
-const char *mt_rotor_doubt_range(double lower, double upper, double least, const char *whose,
-                                 mt_arena *mem)
+const char *mt_rotor_warning_range(double lower, double upper, double least, const char *whose,
+                                   mt_arena *mem)
 {
     static const double MOST_SPEED = 2.0;
     static const double PERCENT = 100.0;

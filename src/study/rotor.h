@@ -9,17 +9,17 @@
  * catalogue. */
 
 /* A value that nobody has read in a document. */
-typedef struct mt_rotor_doubt {
+typedef struct mt_rotor_warning {
     const char *what; /* "rotor speed", "tail rotor's number of blades" */
     const mt_aircraft_value *value;
-} mt_rotor_doubt;
-enum { MT_ROTOR_DOUBTS = 4 };
+} mt_rotor_warning;
+enum { MT_ROTOR_WARNINGS = 4 };
 
 /* Speeds and blades of the aircraft. */
 void mt_rotor_take(mt_rotor *rotor, const mt_aircraft *aircraft);
 /* Those of them that the harmonics use and that are not confirmed, in out; returns how many. */
-int mt_rotor_doubts(const mt_rotor *rotor, const mt_aircraft *aircraft,
-                    mt_rotor_doubt out[MT_ROTOR_DOUBTS]);
+int mt_rotor_warnings(const mt_rotor *rotor, const mt_aircraft *aircraft,
+                      mt_rotor_warning out[MT_ROTOR_WARNINGS]);
 /* Harmonics given twice, or of what is not known; aircraft NULL: the rotor is as given. */
 void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft,
                               mt_diags *diags);
@@ -30,8 +30,8 @@ void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft
 #define MT_MACHINE_LEAST_SPEED 0.05
 /* What is hardly meant of factors of the speed of a rotor or a machine ("rotor's"), which is
  * plausible from `least` on; in mem. NULL: nothing. */
-const char *mt_rotor_doubt_range(double lower, double upper, double least, const char *whose,
-                                 mt_arena *mem);
+const char *mt_rotor_warning_range(double lower, double upper, double least, const char *whose,
+                                   mt_arena *mem);
 /* The range of speeds is ascending. */
 void mt_rotor_check_range(const mt_rotor *rotor, mt_diags *diags);
 

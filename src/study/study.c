@@ -19,11 +19,12 @@ mt_status mt_study_new(mt_study **out, mt_err *err)
         free(study);
         return rc;
     }
-    study->doubts = mt_doubt_list_default(&study->mem);
+    study->warning_list = mt_warning_list_default(&study->mem);
     study->recommendations = DEFAULT_RECOMMENDATIONS;
     study->search =
         (mt_search){.seed = DEFAULT_SEED, .proof_s = nan(""), .proof_addr = MT_NO_ADDR};
-    study->spread = (mt_spread){.factor = nan(""), .factor_addr = MT_NO_ADDR};
+    study->weight_sensitivity =
+        (mt_weight_sensitivity){.factor = nan(""), .factor_addr = MT_NO_ADDR};
     *out = study;
     return MT_OK;
 }
@@ -63,7 +64,7 @@ bool mt_study_has_bands(const mt_study *study)
 
 bool mt_goal_is_limit(const mt_goal *goal)
 {
-    return goal->shake != NULL && MT_HAS(goal->at_most) && !MT_HAS(goal->at_least);
+    return goal->response_limit != NULL && MT_HAS(goal->at_most) && !MT_HAS(goal->at_least);
 }
 
 bool mt_study_has_limits(const mt_study *study)
@@ -112,7 +113,7 @@ const mt_unit *mt_study_shown(const mt_study *study, mt_dimension dimension)
                                  : unit;
 }
 
-const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e)
+const mt_unit *mt_study_requirement_unit(const mt_study *study, const mt_expr *e)
 {
     const mt_kind kind =
         e->length == 0 ? MT_KIND_UNKNOWN : mt_expr_kind(e, mt_model_kind, study->model).kind;
@@ -137,9 +138,9 @@ const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e)
 
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal)
 {
-    const mt_unit *const other = mt_study_demand_unit(study, &goal->expression);
-    if (goal->shake != NULL) {
-        return goal->shake->unit;
+    const mt_unit *const other = mt_study_requirement_unit(study, &goal->expression);
+    if (goal->response_limit != NULL) {
+        return goal->response_limit->unit;
     }
     return other != NULL ? other->si : mt_goal_kind_of(goal->type)->unit;
 }
@@ -154,19 +155,19 @@ int mt_study_find_reference(const mt_study *study, const char *name)
     return MT_ABSENT;
 }
 
-void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt)
+void mt_study_place_warning(const mt_study *study, mt_warning *warning)
 {
-    for (int i = 0; i < study->n_places && doubt->line == 0; i++) {
+    for (int i = 0; i < study->n_places && warning->line == 0; i++) {
         const mt_study_place *const p = &study->places[i];
-        if (p->addr == doubt->addr) {
-            doubt->line = p->line;
-            doubt->column = p->column;
-            doubt->pointer = p->pointer;
+        if (p->addr == warning->addr) {
+            warning->line = p->line;
+            warning->column = p->column;
+            warning->pointer = p->pointer;
         }
     }
 }
 
-const mt_study_place *mt_study_find_place(const mt_study *study, const char *text)
+const mt_study_place *mt_study_locate(const mt_study *study, const char *text)
 {
     const size_t length = strcspn(text, ":");
     for (int i = 0; i < study->n_places; i++) {
@@ -244,15 +245,15 @@ mt_avoid mt_avoid_default(mt_addr addr)
     };
 }
 
-mt_shake mt_shake_default(mt_addr addr)
+mt_response_limit mt_response_limit_default(mt_addr addr)
 {
-    return (mt_shake){.lower_hz = nan(""),
-                      .upper_hz = nan(""),
-                      .unit = "",
-                      .measurement = MT_ABSENT,
-                      .band_addr = addr,
-                      .at_addr = addr,
-                      .quantity_addr = addr};
+    return (mt_response_limit){.lower_hz = nan(""),
+                               .upper_hz = nan(""),
+                               .unit = "",
+                               .measurement = MT_ABSENT,
+                               .band_addr = addr,
+                               .at_addr = addr,
+                               .quantity_addr = addr};
 }
 
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
@@ -291,8 +292,9 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
 
 mt_study_response mt_study_response_default(mt_addr addr)
 {
-    return (mt_study_response){
-        .configuration = MT_ABSENT, .shake = mt_shake_default(addr), .addr = addr};
+    return (mt_study_response){.configuration = MT_ABSENT,
+                               .response_limit = mt_response_limit_default(addr),
+                               .addr = addr};
 }
 
 #define NAME_CASE(id, name) \

@@ -4,7 +4,7 @@
 
 #include "modetune/study.h"
 
-#include "base/doubt.h"
+#include "base/warning.h"
 #include "model/count_box.h"
 #include "model/model.h"
 #include "study/aircraft.h"
@@ -12,7 +12,7 @@
 #include "study/goal_kinds.h"
 #include "study/measurement.h"
 #include "study/objective_kinds.h"
-#include "study/shake.h"
+#include "study/response_limit.h"
 
 /*
  * A question asked of a model: variables, goals, objective, references, published values.
@@ -24,8 +24,8 @@
  */
 #define MT_HAS(x) ((x) == (x))
 
-/* A goal is met within this, in percent of the demand, where it does not say: far below what an
- * engineer can build, far above rounding. */
+/* A goal is met within this, in percent of the requirement, where it does not say: far below
+ * what an engineer can build, far above rounding. */
 #define MT_DEFAULT_TOLERANCE_PERCENT 1e-4
 
 typedef struct mt_variable {
@@ -106,8 +106,8 @@ typedef struct mt_goal {
     int reference_mode; /* 1-based; 0: same index as mode */
     mt_expr expression; /* limit */
     const char *expression_text;
-    mt_avoid *avoid; /* avoid: in the study's arena; else NULL */
-    mt_shake *shake; /* of ports: likewise */
+    mt_avoid *avoid;                   /* avoid: in the study's arena; else NULL */
+    mt_response_limit *response_limit; /* of ports: likewise */
     const char *description;
     mt_addr addr;
 } mt_goal;
@@ -195,7 +195,7 @@ typedef struct mt_published {
 typedef struct mt_study_response {
     mt_name configuration_name;
     int configuration;
-    mt_shake shake; /* ports and frequencies; a profile, where there is one */
+    mt_response_limit response_limit; /* ports and frequencies; a profile, where there is one */
     const char *description;
     const char *source;
     mt_addr addr;
@@ -260,11 +260,11 @@ const char *mt_search_budget(const mt_search *s);
 
 /* How far the best design of a misfit moves when single weights are changed: the uncertainty
  * that a choice of weights hides. */
-typedef struct mt_spread {
+typedef struct mt_weight_sensitivity {
     /* every weighted goal's weight times and divided by it in turn; NaN: not asked for */
     double factor;
     mt_addr factor_addr;
-} mt_spread;
+} mt_weight_sensitivity;
 
 typedef struct mt_input_file {
     const char *name;   /* relative to the study's folder */
@@ -280,14 +280,14 @@ typedef struct mt_study_place {
 } mt_study_place;
 
 /* A number that is asked for instead of what files say. */
-typedef struct mt_asked_number {
+typedef struct mt_requested_number {
     const char *kind; /* "parameter": of the model; "search": member of the study's search */
     const char *name;
     const char *unit; /* of a parameter; NULL */
     const mt_unit *shown;
     double value;
     double original; /* what the files say; NaN: nothing */
-} mt_asked_number;
+} mt_requested_number;
 
 typedef struct mt_study {
     mt_arena mem; /* owns everything but the models' own memory */
@@ -326,7 +326,7 @@ typedef struct mt_study {
      * were merged); by finish */
     MT_LIST_OF(const char *, warnings);
     /* of the study's own numbers; by finish, their places by the reader */
-    mt_doubt_list doubts;
+    mt_warning_list warning_list;
     mt_accepted accepted; /* warnings that are known and meant, of its model, too */
     /* of goals, variables and their numbers; by the reader */
     MT_LIST_OF(mt_study_place, places);
@@ -335,9 +335,9 @@ typedef struct mt_study {
     bool alternatives;   /* that is said: others are wanted where the original is the best */
     mt_addr recommendations_addr;
     mt_search search;
-    mt_spread spread;
-    MT_LIST_OF(mt_asked_number, asked); /* by the reader; model and search have them */
-    int n_inputs;                       /* files read: study, models */
+    mt_weight_sensitivity weight_sensitivity;
+    MT_LIST_OF(mt_requested_number, asked); /* by the reader; model and search have them */
+    int n_inputs;                           /* files read: study, models */
     mt_input_file *inputs;
 } mt_study;
 
@@ -349,7 +349,7 @@ mt_status mt_study_new(mt_study **out, mt_err *err);
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
 mt_avoid mt_avoid_default(mt_addr addr);
-mt_shake mt_shake_default(mt_addr addr);
+mt_response_limit mt_response_limit_default(mt_addr addr);
 /* Tolerance of a goal, of 1. */
 double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
@@ -358,8 +358,8 @@ mt_study_response mt_study_response_default(mt_addr addr);
 /*
  * Resolve names and check meaning, all problems at once: unknown names with "did you mean",
  * bounds in the wrong order, catalogue and bounds together, duplicate variables, goals without
- * a demand, weights without the objective "misfit" and the reverse, a variable overridden in
- * every configuration that the goals name, references without a common sensor, mode indices
+ * a requirement, weights without the objective "misfit" and the reverse, a variable overridden
+ * in every configuration that the goals name, references without a common sensor, mode indices
  * below 1, ... Fills in defaults (configuration: the model's only one; objective: change; range
  * of a variable), sorts catalogues, looks up aircraft, makes the bands, sets `original` and
  * `warnings`. study->model is set and finished before. Bounds at or below 0 are fine for a
@@ -376,7 +376,7 @@ const mt_unit *mt_study_shown(const mt_study *study, mt_dimension dimension);
 /* The unit that somebody thinks in who asks for a value of an expression of a length, an angle
  * or a speed: that of a parameter in it, else the study's. NULL: SI, or it is none of these.
  * The expression is in SI all the same. */
-const mt_unit *mt_study_demand_unit(const mt_study *study, const mt_expr *e);
+const mt_unit *mt_study_requirement_unit(const mt_study *study, const mt_expr *e);
 /* The unit of a goal's numbers, "" for none: of its kind (goal_kinds.h), of its ports, or that
  * of SI of its expression, where parameters in it are shown in another. */
 const char *mt_study_goal_unit(const mt_study *study, const mt_goal *goal);
@@ -395,10 +395,10 @@ bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
 /* Whether a goal asks for this configuration. */
 bool mt_study_asks(const mt_study *study, int configuration);
 /* Fill in where a doubt's address stands, if that is known. */
-void mt_study_place_doubt(const mt_study *study, mt_doubt *doubt);
+void mt_study_place_warning(const mt_study *study, mt_warning *warning);
 /* Where what the text's leading JSON pointer names ("/goals/2: ...") stands; NULL: it begins
  * with none, or the place was not kept. */
-const mt_study_place *mt_study_find_place(const mt_study *study, const char *text);
+const mt_study_place *mt_study_locate(const mt_study *study, const char *text);
 /* The names that files use: "verifies", "parameter". */
 const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);

@@ -23,10 +23,10 @@ static void check_intervals(mt_study_check *c, const mt_bands_source *source)
 static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
                              const mt_aircraft *aircraft)
 {
-    mt_rotor_doubt doubts[MT_ROTOR_DOUBTS];
-    const int n = mt_rotor_doubts(rotor, aircraft, doubts);
+    mt_rotor_warning warning_list[MT_ROTOR_WARNINGS];
+    const int n = mt_rotor_warnings(rotor, aircraft, warning_list);
     for (int i = 0; i < n; i++) {
-        const mt_rotor_doubt *const d = &doubts[i];
+        const mt_rotor_warning *const d = &warning_list[i];
         mt_diag_warning(c->diags, rotor->aircraft.addr, "%s: the %s (%s) is unconfirmed",
                         rotor->aircraft.s, d->what, d->value->text);
         mt_check_warn_result(

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "model/judge.h"
+#include "model/lint.h"
 #include "model/values.h"
 
 enum { MOST_ENUMERATED = 6 };
@@ -30,7 +30,7 @@ typedef struct corners {
     const mt_goal **limited; /* [limits.n] the goals of these expressions */
     double *limit_value;     /* [limits.n] */
     mt_numbers *numbers;     /* [n_configurations], of those that count */
-    mt_doubt_list told;
+    mt_warning_list told;
     mt_status rc; /* memory ran out */
 } corners;
 
@@ -92,21 +92,21 @@ static bool is_allowed(corners *k)
 }
 
 /* All that is said of the design x, of every configuration that counts. */
-static void judge(corners *k, mt_doubt_list *out)
+static void judge(corners *k, mt_warning_list *out)
 {
     const mt_model *const m = k->c->model;
     for (int c = 0; c < m->n_configurations && k->rc == MT_OK; c++) {
         if (is_asked(k->c->study, c)) {
             k->rc = mt_numbers_at(&k->numbers[c], k->x, k->value, NULL, NULL);
             if (k->rc == MT_OK) {
-                mt_model_judge(m, c, k->value, out);
+                mt_model_lint(m, c, k->value, out);
             }
         }
     }
     k->rc = mt_arena_failed(out->mem) ? MT_E_MEMORY : k->rc;
 }
 
-static const mt_doubt *fault_at(const mt_doubt_list *list, mt_addr addr)
+static const mt_warning *fault_at(const mt_warning_list *list, mt_addr addr)
 {
     for (int i = 0; i < list->n; i++) {
         if (list->items[i].level == MT_LEVEL_FAULT && list->items[i].addr == addr) {
@@ -120,7 +120,7 @@ static void one_variable(corners *k, int i, bool upper)
 {
     const mt_variable *const v = &k->c->study->variables[i];
     const mt_addr own = upper ? v->upper_addr : v->lower_addr;
-    mt_doubt_list list = mt_doubt_list_default(&k->mem);
+    mt_warning_list list = mt_warning_list_default(&k->mem);
     k->x[i] = upper ? v->upper : v->lower;
     if (is_allowed(k)) {
         judge(k, &list);
@@ -132,7 +132,7 @@ static void one_variable(corners *k, int i, bool upper)
                           "with %s at %g%s%s, %s", v->parameter_name.s,
                           mt_unit_from_si(v->shown, k->x[i]), v->shown == NULL ? "" : " ",
                           mt_unit_name(v->shown, ""), list.items[d].text);
-            mt_doubt_copy(&k->told, &list.items[d]);
+            mt_warning_copy(&k->told, &list.items[d]);
         }
     }
     k->x[i] = v->original;
@@ -142,7 +142,7 @@ static void one_variable(corners *k, int i, bool upper)
 static void reduce(corners *k, mt_addr addr)
 {
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
-        mt_doubt_list list = mt_doubt_list_default(&k->mem);
+        mt_warning_list list = mt_warning_list_default(&k->mem);
         const double had = k->x[i];
         k->x[i] = k->c->study->variables[i].original;
         if (is_allowed(k)) {
@@ -152,7 +152,7 @@ static void reduce(corners *k, mt_addr addr)
     }
 }
 
-static void tell_corner(corners *k, const mt_doubt *fault)
+static void report_corner(corners *k, const mt_warning *fault)
 {
     const mt_study *const s = k->c->study;
     const char *where = "";
@@ -178,7 +178,7 @@ static void tell_corner(corners *k, const mt_doubt *fault)
         where, fault->text);
     mt_check_warn_result(k->c, text);
     mt_diag_warning(k->c->diags, addr, "%s", text == NULL ? "" : text);
-    mt_doubt_copy(&k->told, fault);
+    mt_warning_copy(&k->told, fault);
 }
 
 static void go_to_corner(corners *k, unsigned which)
@@ -193,7 +193,7 @@ static void go_to_corner(corners *k, unsigned which)
 
 static void one_corner(corners *k, unsigned which)
 {
-    mt_doubt_list list = mt_doubt_list_default(&k->mem);
+    mt_warning_list list = mt_warning_list_default(&k->mem);
     go_to_corner(k, which);
     if (is_allowed(k)) {
         judge(k, &list);
@@ -202,7 +202,7 @@ static void one_corner(corners *k, unsigned which)
         if (list.items[d].level == MT_LEVEL_FAULT &&
             fault_at(&k->told, list.items[d].addr) == NULL) {
             go_to_corner(k, which);
-            tell_corner(k, &list.items[d]);
+            report_corner(k, &list.items[d]);
         }
     }
 }
@@ -263,7 +263,7 @@ void mt_study_check_bounds(mt_study_check *c)
         mt_arena_free(&k.mem);
         return;
     }
-    k.told = mt_doubt_list_default(&k.mem);
+    k.told = mt_warning_list_default(&k.mem);
     k.inputs = mt_arena_int(&k.mem, n);
     k.x = mt_arena_f64(&k.mem, n, 1);
     k.value = mt_arena_f64(&k.mem, (size_t)m->n_nums, 1);

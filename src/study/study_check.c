@@ -237,7 +237,7 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
                       "recommendations (%d) must be above 0", study->recommendations);
     }
     if (!mt_arena_failed(&study->mem)) {
-        mt_study_check_doubts(&c);
+        mt_study_check_warnings(&c);
     }
     if (diags->errors == 0 && !mt_arena_failed(&study->mem)) {
         mt_study_check_bounds(&c);

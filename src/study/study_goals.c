@@ -35,7 +35,7 @@ static bool given(const mt_goal *goal, mt_goal_slot slot)
 
 /* An equality excludes another one and limits, limits must leave room, and only an equality has
  * a residual. Of kinds that can ask for a value. */
-static void check_demands(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
+static void check_requirements(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
 {
     const bool value = given(goal, MT_SLOT_EQUALS);
     const bool reference = goal->reference_name.addr != goal->addr;
@@ -83,7 +83,7 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
         mt_study_check_avoid(c, goal);
     }
     if (mt_goal_member_at(kind, MT_SLOT_OUTPUT) >= 0) {
-        mt_study_check_shake(c, goal);
+        mt_study_check_response_limit(c, goal);
     }
     if (mt_goal_member_at(kind, MT_SLOT_MODE) >= 0) {
         index = mt_check_mode(c, &goal->mode);
@@ -98,7 +98,7 @@ static void check_goal(mt_study_check *c, mt_goal *goal)
         }
     }
     if (values) {
-        check_demands(c, goal, kind);
+        check_requirements(c, goal, kind);
     }
 }
 

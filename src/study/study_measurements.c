@@ -128,7 +128,7 @@ void mt_study_check_measurements(mt_study_check *c)
     }
 }
 
-void mt_study_check_measured(mt_study_check *c, mt_shake *s)
+void mt_study_check_measured(mt_study_check *c, mt_response_limit *s)
 {
     s->measurement = mt_check_measurement(c, s->measurement_name);
     mt_check_range(c, s);

@@ -81,16 +81,16 @@ static void check_misfit(mt_study_check *c)
 }
 
 /* Only a misfit has weights to change, and a factor of 1 changes none. */
-static void check_spread(mt_study_check *c)
+static void check_weight_sensitivity(mt_study_check *c)
 {
-    const mt_spread *const spread = &c->study->spread;
-    if (spread->factor_addr == MT_NO_ADDR) {
+    const mt_weight_sensitivity *const weight_sensitivity = &c->study->weight_sensitivity;
+    if (weight_sensitivity->factor_addr == MT_NO_ADDR) {
         return;
     }
     const bool first = c->study->n_objectives > 0 &&
                        mt_objective_is(c->study->objectives[0].type, MT_RESIDUALS);
     if (!first) {
-        mt_diag_error(c->diags, spread->factor_addr,
+        mt_diag_error(c->diags, weight_sensitivity->factor_addr,
                       "a spread needs \"objective\": {\"minimise\": \"misfit\"}");
     }
 }
@@ -117,7 +117,7 @@ void mt_study_check_objectives(mt_study_check *c)
         check_objective(c, i);
     }
     check_misfit(c);
-    check_spread(c);
+    check_weight_sensitivity(c);
     check_vibration(c);
     const mt_objective *const clearance = find(s, MT_BANDS);
     if (clearance != NULL && !mt_study_has_bands(s)) {

@@ -14,12 +14,13 @@ typedef struct mt_study_check { /* a shortage is known to the study's arena */
 
 void mt_study_check_references(mt_study_check *c);   /* study_references.c */
 void mt_study_check_measurements(mt_study_check *c); /* study_measurements.c */
-/* what a goal is compared with; by mt_study_check_shake */
-void mt_study_check_measured(mt_study_check *c, mt_shake *s);
+/* what a goal is compared with; by mt_study_check_response_limit */
+void mt_study_check_measured(mt_study_check *c, mt_response_limit *s);
 void mt_study_check_variables(mt_study_check *c);            /* study_variables.c */
 void mt_study_check_goals(mt_study_check *c);                /* study_goals.c */
 void mt_study_check_avoid(mt_study_check *c, mt_goal *goal); /* study_avoid.c; by the former */
-void mt_study_check_shake(mt_study_check *c, mt_goal *goal); /* study_shake.c; likewise */
+/* study_response_limit.c; likewise */
+void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal);
 void mt_study_check_overrides(mt_study_check *c);  /* study_variables.c; after the goals */
 void mt_study_check_objectives(mt_study_check *c); /* study_objectives.c; after the goals */
 void mt_study_check_published(mt_study_check *c);  /* study_published.c */
@@ -28,8 +29,8 @@ void mt_study_check_trade(mt_study_check *c);      /* study_trade.c; last of the
 void mt_study_fill_counted(mt_study_check *c);     /* study_counted.c; after all of them */
 void mt_study_check_bounds(mt_study_check *c);     /* study_bounds.c; where nothing is wrong */
 void mt_study_check_redundant(mt_study_check *c);  /* study_redundant.c; after them, likewise */
-/* study_doubts.c; after them; what is beside others is doubted where nothing is wrong */
-void mt_study_check_doubts(mt_study_check *c);
+/* study_warnings.c; after them; what is beside others is doubted where nothing is wrong */
+void mt_study_check_warnings(mt_study_check *c);
 
 /* Shared: names to indices, with "did you mean". An absent name gives MT_ABSENT without a
  * message. */
@@ -61,7 +62,7 @@ int mt_count_common_channels(const mt_model *model, const mt_measured_mode *mode
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
 /* Whether a number was given, even if it could not be read (then its own address is known). */
 bool mt_check_given(double value, mt_addr value_addr, mt_addr owner);
-/* Check that its two frequencies ascend. (study_shake.c) */
-void mt_check_range(mt_study_check *c, const mt_shake *s);
+/* Check that its two frequencies ascend. (study_response_limit.c) */
+void mt_check_range(mt_study_check *c, const mt_response_limit *s);
 
 #endif

@@ -313,16 +313,16 @@ static const char *name_source(mt_vibration *v, const mt_vibration_source *s)
 static void mark_source(marking *m, const mt_vibration_source *s)
 {
     mt_vibration *const v = m->v;
-    mt_rotor_doubt doubts[MT_ROTOR_DOUBTS];
+    mt_rotor_warning warning_list[MT_ROTOR_WARNINGS];
     const mt_aircraft *const a = s->has_rotor && s->rotor.aircraft.s != NULL
                                      ? mt_aircraft_find(&v->aircraft, s->rotor.aircraft.s)
                                      : NULL;
-    const int n = a == NULL ? 0 : mt_rotor_doubts(&s->rotor, a, doubts);
+    const int n = a == NULL ? 0 : mt_rotor_warnings(&s->rotor, a, warning_list);
     for (int i = 0; i < n; i++) {
         mark(m, s->rotor.aircraft.addr,
              mt_arena_printf(&v->mem, "%s: the %s (%s) is unconfirmed (source needed: %s)",
-                             s->rotor.aircraft.s, doubts[i].what, doubts[i].value->text,
-                             doubts[i].value->source));
+                             s->rotor.aircraft.s, warning_list[i].what,
+                             warning_list[i].value->text, warning_list[i].value->source));
     }
     const char *const name = name_source(v, s);
     if (s->origin.origin == MT_ORIGIN_ASSUMED && name != NULL) {

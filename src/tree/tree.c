@@ -260,12 +260,12 @@ static mt_status make_edges(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_e
     int *const depth = mt_arena_int(mem, n);
     t->point = mt_arena_alloc(mem, n, sizeof *t->point);
     t->y_at = mt_arena_int(mem, n + 1);
-    t->loose_at = mt_arena_int(mem, n + 1);
+    t->free_dof_at = mt_arena_int(mem, n + 1);
     t->arm = mt_arena_f64(mem, 3, n);
     t->mass = mt_arena_f64(mem, n * s, s);
     t->basis = mt_arena_f64(mem, s, (size_t)t->sys->nq);
     t->length = mt_arena_f64(mem, n, 1);
-    t->doubt = mt_arena_f64(mem, n, 1);
+    t->warning = mt_arena_f64(mem, n, 1);
     t->lost = mt_arena_f64(mem, (size_t)t->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < t->n && *is_tree; i++) {
@@ -273,18 +273,18 @@ static mt_status make_edges(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_e
         const mt_pose *const before =
             mt_pose_of(m->pose, t->before[i] < 0 ? MT_GROUND : t->body[t->before[i]]);
         int n_y = 0;
-        int n_loose = 0;
+        int n_free_dofs = 0;
         t->point[i] = body->dof[MT_TREE_MOTION - 1] < 0;
         for (int k = 0; k < 3; k++) {
             t->arm[k + ((ptrdiff_t)3 * i)] =
                 creal(m->pose[t->body[i]].x[k]) - creal(before->x[k]);
         }
         double basis[MT_TREE_MOTION * MT_TREE_MOTION];
-        *is_tree = mt_tree_edge(m, i, basis, &n_y, &n_loose);
-        memcpy(t->basis + (s * (size_t)(t->y_at[i] + t->loose_at[i])), basis,
-               s * (size_t)(n_y + n_loose) * sizeof *basis);
+        *is_tree = mt_tree_edge(m, i, basis, &n_y, &n_free_dofs);
+        memcpy(t->basis + (s * (size_t)(t->y_at[i] + t->free_dof_at[i])), basis,
+               s * (size_t)(n_y + n_free_dofs) * sizeof *basis);
         t->y_at[i + 1] = t->y_at[i] + n_y;
-        t->loose_at[i + 1] = t->loose_at[i] + n_loose;
+        t->free_dof_at[i + 1] = t->free_dof_at[i] + n_free_dofs;
         depth[i] = 1 + (t->before[i] < 0 ? 0 : depth[t->before[i]]);
         t->depth = depth[i] > t->depth ? depth[i] : t->depth;
     }
@@ -298,19 +298,19 @@ static mt_status choose_coordinates(mt_tree_maker *m, mt_arena *mem, bool *is_tr
     const size_t n = (size_t)t->n;
     const size_t s = (size_t)t->s;
     const int n_y = t->y_at[t->n];
-    const int loose = t->loose_at[t->n];
-    t->n_x = t->curved == NULL ? n_y : n_y + loose;
-    t->n_rigid = n_y + loose - t->n_x;
-    if (t->n_rigid > MT_TREE_LOOSE) {
+    const int free_dofs = t->free_dof_at[t->n];
+    t->n_x = t->geometric_stiffness == NULL ? n_y : n_y + free_dofs;
+    t->n_rigid = n_y + free_dofs - t->n_x;
+    if (t->n_rigid > MT_TREE_FREE_DOFS) {
         *is_tree = false;
         (void)mt_snprintf(m->why, MT_TREE_WHY,
                           "%d of its motions meet no stiffness, more than %d", t->n_rigid,
-                          (int)MT_TREE_LOOSE);
+                          (int)MT_TREE_FREE_DOFS);
     }
-    if (t->curved == NULL) {
+    if (t->geometric_stiffness == NULL) {
         return MT_OK;
     }
-    t->carried = mt_arena_f64(mem, n * s, s);
+    t->transport = mt_arena_f64(mem, n * s, s);
     t->settled = mt_arena_f64(mem, n * s, s);
     t->scaled = mt_arena_f64(mem, s, (size_t)t->n_x);
     MT_TRY(mt_arena_check(mem, err));

@@ -39,29 +39,30 @@ typedef struct mt_tree {
     int *next_constraint;
     int *first_spring; /* [n] of those that act, likewise; next_spring[springs] */
     int *next_spring;
-    bool *point;    /* [n] a point mass: does not turn */
-    int *y_at;      /* [n + 1] */
-    int *loose_at;  /* [n + 1] */
-    double *arm;    /* 3 x n, to the centre from that of the body before it [m] */
-    double *basis;  /* N F, then N R, of body i from s (y_at[i] + loose_at[i]) on */
-    double *length; /* [n] of its edge: makes translations and rotations alike [m] */
+    bool *point;      /* [n] a point mass: does not turn */
+    int *y_at;        /* [n + 1] */
+    int *free_dof_at; /* [n + 1] */
+    double *arm;      /* 3 x n, to the centre from that of the body before it [m] */
+    double *basis;    /* N F, then N R, of body i from s (y_at[i] + free_dof_at[i]) on */
+    double *length;   /* [n] of its edge: makes translations and rotations alike [m] */
     /* [n] what rounding may turn a column of its edge by, as a part of the column's size, in
      * roundings: 1 over how far its equations are from dependent ones */
-    double *doubt;
-    double *lost;          /* by y: likewise of the energy of each, for what cancels in it */
-    double *mass;          /* s x s of each body */
-    double *shared;        /* s x s: v_before^T shared v_i; NULL: no mass is shared */
-    double *curved;        /* s x s of each body: geometric stiffness; NULL: nothing loads */
-    double *curved_shared; /* as shared */
-    double *force;         /* [n] sum of the sizes of all forces there, and beyond [N] */
-    double *pushed;        /* s x n: gradient of the loads' potential there, and beyond */
-    double *held;          /* [constraints] what each equation holds of them */
-    double *carried;       /* X', s x s of each body, where something loads */
-    double *scaled;        /* N', as basis */
-    double *settled;       /* sizes of all that made the stiffness of each, s x s, likewise */
+    double *warning;
+    double *lost;   /* by y: likewise of the energy of each, for what cancels in it */
+    double *mass;   /* s x s of each body */
+    double *shared; /* s x s: v_before^T shared v_i; NULL: no mass is shared */
+    /* s x s of each body: geometric stiffness; NULL: nothing loads */
+    double *geometric_stiffness;
+    double *geometric_stiffness_shared; /* as shared */
+    double *force;     /* [n] sum of the sizes of all forces there, and beyond [N] */
+    double *pushed;    /* s x n: gradient of the loads' potential there, and beyond */
+    double *held;      /* [constraints] what each equation holds of them */
+    double *transport; /* X', s x s of each body, where something loads */
+    double *scaled;    /* N', as basis */
+    double *settled;   /* sizes of all that made the stiffness of each, s x s, likewise */
 } mt_tree;
 
-enum { MT_TREE_WHY = 200, MT_TREE_LOOSE = 64 };
+enum { MT_TREE_WHY = 200, MT_TREE_FREE_DOFS = 64 };
 
 /**
  * @param[in]  inputs  [n_inputs] of the system
@@ -87,7 +88,7 @@ void mt_tree_shift(const mt_tree *t, int axis, double *v);
 void mt_tree_within(const mt_tree *t, const double *x, const double *r, const double *v,
                     double *w);
 /* f[s n] := (K_g - lambda M_bodies) v of each body and all beyond it: what its edge carries. */
-void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f);
+void mt_tree_transport(const mt_tree *t, double lambda, const double *v, double *f);
 /* What a motion says of its mode: lambda = energy / mass, and the part of it that rounding may
  * have made. */
 typedef struct mt_tree_quotient {

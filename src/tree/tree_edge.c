@@ -334,7 +334,7 @@ static bool sort_columns(const mt_tree *t, const edge *e, int d, const double *b
     return true;
 }
 
-bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose)
+bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_dofs)
 {
     const mt_tree *const t = m->t;
     edge joints;
@@ -367,13 +367,13 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose
         jacobi(t, springs.n, d, b, null);
     }
     t->length[i] = length;
-    t->doubt[i] = 1.0 / least;
+    t->warning[i] = 1.0 / least;
     if (!clear || !sort_columns(t, &springs, d, b, null, basis, n_y, t->lost + t->y_at[i])) {
         (void)mt_snprintf(m->why, MT_TREE_WHY, "what holds \"%s\" nearly fails to hold it",
                           t->sys->bodies[t->body[i]].name);
         return false;
     }
-    *n_loose = d - *n_y;
+    *n_free_dofs = d - *n_y;
     for (int c = 0; c < d; c++) {
         for (int k = 0; k < t->s; k++) {
             basis[k + (t->s * c)] /= mt_tree_freedom(t, k) >= 3 ? length : 1.0;

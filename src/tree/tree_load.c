@@ -51,7 +51,7 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
             const int row = k % t->s;
             const int col = k / t->s;
             if (is_free(t, body[side], row) && is_free(t, body[side], col)) {
-                t->curved[k + (square * at)] +=
+                t->geometric_stiffness[k + (square * at)] +=
                     c * along(t,
                               jet->h + ((ptrdiff_t)MT_LOCAL *
                                         ((6 * side) + mt_tree_freedom(t, col))),
@@ -71,7 +71,7 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
         const int row = k % t->s;
         const int col = k / t->s;
         if (is_free(t, body[first], row) && is_free(t, body[1 - first], col)) {
-            t->curved_shared[k + (square * at)] +=
+            t->geometric_stiffness_shared[k + (square * at)] +=
                 c * along(t,
                           jet->h + ((ptrdiff_t)MT_LOCAL *
                                     ((6 * (1 - first)) + mt_tree_freedom(t, col))),
@@ -107,8 +107,8 @@ static bool is_at_rest(const loading *l, int i)
 {
     const mt_tree *const t = l->m->t;
     const double *const g = l->g + ((ptrdiff_t)t->s * i);
-    const ptrdiff_t first = t->y_at[i] + t->loose_at[i];
-    const ptrdiff_t end = t->y_at[i + 1] + t->loose_at[i + 1];
+    const ptrdiff_t first = t->y_at[i] + t->free_dof_at[i];
+    const ptrdiff_t end = t->y_at[i + 1] + t->free_dof_at[i + 1];
     for (ptrdiff_t c = first; c < end; c++) {
         const double *const b = t->basis + (t->s * c);
         double power = 0.0;
@@ -221,8 +221,8 @@ mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *
     t->held = mt_arena_f64(mem, (size_t)t->sys->n_constraints, 1);
     loading l = {.m = m, .g = t->pushed};
     t->force = mt_arena_f64(mem, n, 1);
-    t->curved = mt_arena_f64(mem, n * s, s);
-    t->curved_shared = mt_arena_f64(mem, n * s, s);
+    t->geometric_stiffness = mt_arena_f64(mem, n * s, s);
+    t->geometric_stiffness_shared = mt_arena_f64(mem, n * s, s);
     MT_TRY(mt_arena_check(mem, err));
     *is_tree = mt_forces_each(&m->data, m->pose, add_force, &l);
     if (!*is_tree) {

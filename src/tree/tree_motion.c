@@ -84,12 +84,12 @@ static inline void add_product(int s, const double *a, bool transposed, const do
 }
 
 /* h (s x s) := curved - tau mass of body i; either may be NULL: none. */
-static void block(const mt_tree *t, const double *mass, const double *curved, double tau, int i,
-                  double *h)
+static void block(const mt_tree *t, const double *mass, const double *geometric_stiffness,
+                  double tau, int i, double *h)
 {
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
     for (int k = 0; k < square; k++) {
-        h[k] = (curved == NULL ? 0.0 : curved[k + (square * i)]) -
+        h[k] = (geometric_stiffness == NULL ? 0.0 : geometric_stiffness[k + (square * i)]) -
                (mass == NULL ? 0.0 : tau * mass[k + (square * i)]);
     }
 }
@@ -106,8 +106,8 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
         for (int k = 0; k < s; k++) {
             own[k] = 0.0;
         }
-        if (other != NULL && t->carried != NULL) {
-            add_product(s, t->carried + (square * i), false, other, own);
+        if (other != NULL && t->transport != NULL) {
+            add_product(s, t->transport + (square * i), false, other, own);
         } else if (other != NULL) {
             mt_tree_carry(t, i, other, own);
         }
@@ -116,7 +116,7 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
                 own[k] += b[k] * x[c];
             }
         }
-        for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && rigid; c++, b += s) {
+        for (int c = t->free_dof_at[i]; c < t->free_dof_at[i + 1] && rigid; c++, b += s) {
             for (int k = 0; k < s; k++) {
                 own[k] += b[k] * r[c];
             }
@@ -139,14 +139,14 @@ static inline void hand_back(const mt_tree *t, int i, double *f, double *x, doub
             x[c] += b[k] * own[k];
         }
     }
-    for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && r != NULL; c++, b += s) {
+    for (int c = t->free_dof_at[i]; c < t->free_dof_at[i + 1] && r != NULL; c++, b += s) {
         r[c] = 0.0;
         for (int k = 0; k < s; k++) {
             r[c] += b[k] * own[k];
         }
     }
-    if (p >= 0 && t->carried != NULL) {
-        add_product(s, t->carried + ((ptrdiff_t)s * s * i), true, own, other);
+    if (p >= 0 && t->transport != NULL) {
+        add_product(s, t->transport + ((ptrdiff_t)s * s * i), true, own, other);
     } else if (p >= 0) {
         mt_tree_carry_back(t, i, own, other);
     }
@@ -205,7 +205,7 @@ void mt_tree_within(const mt_tree *t, const double *x, const double *r, const do
     const int s = t->s;
     for (int i = 0; i < t->n; i++) {
         double *const own = w + ((ptrdiff_t)s * i);
-        if (t->carried != NULL) {
+        if (t->transport != NULL) {
             double along[MOST] = {0.0};
             if (t->before[i] >= 0) {
                 mt_tree_carry(t, i, v + ((ptrdiff_t)s * t->before[i]), along);
@@ -220,13 +220,13 @@ void mt_tree_within(const mt_tree *t, const double *x, const double *r, const do
         for (int c = t->y_at[i]; c < t->y_at[i + 1]; c++, b += s) {
             mt_axpy(s, x[c], b, own);
         }
-        for (int c = t->loose_at[i]; c < t->loose_at[i + 1]; c++, b += s) {
+        for (int c = t->free_dof_at[i]; c < t->free_dof_at[i + 1]; c++, b += s) {
             mt_axpy(s, r[c], b, own);
         }
     }
 }
 
-void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f)
+void mt_tree_transport(const mt_tree *t, double lambda, const double *v, double *f)
 {
     const int s = t->s;
     memset(f, 0, (size_t)t->n * (size_t)s * sizeof *f);
@@ -235,13 +235,13 @@ void mt_tree_carried(const mt_tree *t, double lambda, const double *v, double *f
         const double *const shape = v + ((ptrdiff_t)s * i);
         double *const own = f + ((ptrdiff_t)s * i);
         double h[SQUARE];
-        block(t, t->mass, t->curved, lambda, i, h);
+        block(t, t->mass, t->geometric_stiffness, lambda, i, h);
         add_product(s, h, false, shape, own);
         if (p < 0) {
             continue;
         }
-        if (t->shared != NULL || t->curved_shared != NULL) {
-            block(t, t->shared, t->curved_shared, lambda, i, h);
+        if (t->shared != NULL || t->geometric_stiffness_shared != NULL) {
+            block(t, t->shared, t->geometric_stiffness_shared, lambda, i, h);
             add_product(s, h, true, v + ((ptrdiff_t)s * p), own);
             add_product(s, h, false, shape, f + ((ptrdiff_t)s * p));
         }
@@ -359,7 +359,7 @@ static void hand_on(int s, const eliminated *e, const double *add, double *other
  * them is not less. */
 static double load_of(const mt_tree *t, int i, int k)
 {
-    const double *const b = t->basis + ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i] + k));
+    const double *const b = t->basis + ((ptrdiff_t)t->s * (t->y_at[i] + t->free_dof_at[i] + k));
     const double length = t->sys->length_m;
     double most = 0.0;
     for (int r = 0; r < t->s; r++) {
@@ -376,9 +376,9 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, double *si
     const int s = t->s;
     const ptrdiff_t square = (ptrdiff_t)s * s;
     const int n_y = t->y_at[i + 1] - t->y_at[i];
-    const int d = n_y + t->loose_at[i + 1] - t->loose_at[i];
+    const int d = n_y + t->free_dof_at[i + 1] - t->free_dof_at[i];
     const double *const own = h + (square * i);
-    const double *const basis = t->basis + ((ptrdiff_t)s * (t->y_at[i] + t->loose_at[i]));
+    const double *const basis = t->basis + ((ptrdiff_t)s * (t->y_at[i] + t->free_dof_at[i]));
     double hb[SQUARE];
     double size[MOST];
     e->d = d;
@@ -397,10 +397,10 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, double *si
     carry_matrix(t, i, e->x);
     product(false, s, s, s, own, e->x, g);
     product(true, s, s, s, e->x, g, add);
-    if (t->shared != NULL || t->curved_shared != NULL) {
+    if (t->shared != NULL || t->geometric_stiffness_shared != NULL) {
         double c[SQUARE] = {0.0};
         double cx[SQUARE] = {0.0};
-        block(t, t->shared, t->curved_shared, tau, i, c);
+        block(t, t->shared, t->geometric_stiffness_shared, tau, i, c);
         product(false, s, s, s, c, e->x, cx);
         for (int k = 0; k < s; k++) {
             for (int l = 0; l < s; l++) {
@@ -421,7 +421,7 @@ static double *blocks(const mt_tree *t, double tau, mt_arena *scratch)
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
     double *const h = mt_arena_f64(scratch, (size_t)t->n, (size_t)square);
     for (int i = 0; i < t->n && h != NULL; i++) {
-        block(t, t->mass, t->curved, tau, i, h + (square * i));
+        block(t, t->mass, t->geometric_stiffness, tau, i, h + (square * i));
     }
     return h;
 }
@@ -451,9 +451,9 @@ static void keep(mt_tree *t, int i, const eliminated *e)
 {
     const int s = t->s;
     const int d = e->d;
-    const ptrdiff_t first = (ptrdiff_t)s * (t->y_at[i] + t->loose_at[i]);
+    const ptrdiff_t first = (ptrdiff_t)s * (t->y_at[i] + t->free_dof_at[i]);
     double *const scaled = t->scaled + first;
-    double *const carried = t->carried + ((ptrdiff_t)s * s * i);
+    double *const transport = t->transport + ((ptrdiff_t)s * s * i);
     memcpy(scaled, t->basis + first, (size_t)(s * d) * sizeof *scaled);
     for (int j = 0; j < d; j++) { /* B L^-T */
         for (int k = 0; k < j; k++) {
@@ -463,12 +463,12 @@ static void keep(mt_tree *t, int i, const eliminated *e)
         }
     }
     if (t->before[i] >= 0) {
-        memcpy(carried, e->x, (size_t)(s * s) * sizeof *carried);
+        memcpy(transport, e->x, (size_t)(s * s) * sizeof *transport);
         for (int c = 0; c < s; c++) {
             for (int j = 0; j < d; j++) {
                 const double share = e->w[j + (c * d)] / e->delta[j + (j * d)];
                 for (int r = 0; r < s; r++) {
-                    carried[r + (c * s)] -= scaled[r + (j * s)] * share;
+                    transport[r + (c * s)] -= scaled[r + (j * s)] * share;
                 }
             }
         }

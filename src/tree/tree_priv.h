@@ -29,18 +29,18 @@ void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p);
 static inline const double *mt_tree_basis(const mt_tree *t, int i)
 {
     return (t->scaled != NULL ? t->scaled : t->basis) +
-           ((ptrdiff_t)t->s * (t->y_at[i] + t->loose_at[i]));
+           ((ptrdiff_t)t->s * (t->y_at[i] + t->free_dof_at[i]));
 }
 
 /* Coordinates x of body i: from the first to before the end. */
 static inline int mt_tree_first(const mt_tree *t, int i)
 {
-    return t->scaled != NULL ? t->y_at[i] + t->loose_at[i] : t->y_at[i];
+    return t->scaled != NULL ? t->y_at[i] + t->free_dof_at[i] : t->y_at[i];
 }
 
-/* Basis of the edge of body i into basis[s x s]: *n_y columns N F, then *n_loose columns N R;
- * its length, doubt and lost. False with the reason in why: what is no tree. */
-bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_loose);
+/* Basis of the edge of body i into basis[s x s]: *n_y columns N F, then *n_free_dofs columns N
+ * R; its length, doubt and lost. False with the reason in why: what is no tree. */
+bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_dofs);
 /* Masses of all bodies; *is_tree false: the same. Fails: MT_E_MEMORY. */
 mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
 /* What loads it: geometric stiffness where it is drawn at rest; *is_tree false: the same.

@@ -27,7 +27,7 @@ static const double STRAIN_ULPS = 8.0;
 static const double MASS_ULPS = 16.0;
 
 /* v += |X_i| |p|. */
-static void add_carried(const mt_tree *t, int i, const double *p, double *v)
+static void add_transport(const mt_tree *t, int i, const double *p, double *v)
 {
     const double *const a = t->arm + ((ptrdiff_t)3 * i);
     for (int k = 0; k < t->s; k++) {
@@ -66,18 +66,18 @@ static double error_of(const mt_tree *t, int i, const double *x, const double *r
     const double *column = mt_tree_basis(t, i);
     double terms[MOST] = {0.0};
     double whole = 0.0;
-    double turned = COLUMN_ULPS * t->doubt[i];
+    double turned = COLUMN_ULPS * t->warning[i];
     for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, column += t->s) {
         add_column(t, i, column, x[c], terms, &whole);
     }
-    for (int c = t->loose_at[i]; c < t->loose_at[i + 1] && t->scaled == NULL; c++) {
+    for (int c = t->free_dof_at[i]; c < t->free_dof_at[i + 1] && t->scaled == NULL; c++) {
         add_column(t, i, column, r == NULL ? 0.0 : r[c], terms, &whole);
         column += t->s;
     }
     if (other != NULL) {
-        add_carried(t, i, other, terms);
+        add_transport(t, i, other, terms);
     }
-    if (other != NULL && t->carried != NULL) { /* X' = X less what follows the load */
+    if (other != NULL && t->transport != NULL) { /* X' = X less what follows the load */
         double along[MOST];
         mt_tree_carry(t, i, other, along);
         for (int k = 0; k < t->s; k++) {

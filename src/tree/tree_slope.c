@@ -232,14 +232,14 @@ static double stretch(const mt_tree_slope *w, int i, int a, const double *row,
                       const double *product)
 {
     const mt_tree *const t = w->t;
-    if (t->carried != NULL) {
+    if (t->transport != NULL) {
         return mt_dot(t->s, row, mt_tree_slope_at(w, w->within, i, a));
     }
     const int n_y = t->y_at[i + 1] - t->y_at[i];
-    const int loose = t->loose_at[i + 1] - t->loose_at[i];
+    const int free_dofs = t->free_dof_at[i + 1] - t->free_dof_at[i];
     const double *const x = w->modes->x + ((ptrdiff_t)t->n_x * a) + t->y_at[i];
-    const double *const r = w->modes->r + ((ptrdiff_t)t->n_rigid * a) + t->loose_at[i];
-    return mt_dot(n_y, product, x) + mt_dot(loose, product + n_y, r);
+    const double *const r = w->modes->r + ((ptrdiff_t)t->n_rigid * a) + t->free_dof_at[i];
+    return mt_dot(n_y, product, x) + mt_dot(free_dofs, product + n_y, r);
 }
 
 static void spring_of_edge(mt_tree_slope *w, int q, int i)
@@ -248,8 +248,8 @@ static void spring_of_edge(mt_tree_slope *w, int q, int i)
     const mt_spring_def *const def = &w->sys->springs[q];
     const mt_measure_def *const measure = &w->sys->measures[def->measure[0]];
     const double k = w->data.value[def->stiffness];
-    const int first = t->y_at[i] + t->loose_at[i];
-    const int d = t->y_at[i + 1] + t->loose_at[i + 1] - first;
+    const int first = t->y_at[i] + t->free_dof_at[i];
+    const int d = t->y_at[i + 1] + t->free_dof_at[i + 1] - first;
     double row[MOST];
     double drow[MOST];
     double product[MOST];
@@ -332,11 +332,11 @@ static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
     int n = 0;
     for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
         const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
-        mt_tree_slope_jet(w, def, w->curved != NULL, &jet);
+        mt_tree_slope_jet(w, def, w->geometric_stiffness != NULL, &jet);
         mt_tree_slope_row(w, def, i, &jet, row + ((ptrdiff_t)t->s * c), drow);
-        if (w->curved != NULL) {
+        if (w->geometric_stiffness != NULL) {
             mt_tree_slope_form(w, def->body, &jet, false,
-                               w->curved + ((ptrdiff_t)w->modes->n_pairs * k));
+                               w->geometric_stiffness + ((ptrdiff_t)w->modes->n_pairs * k));
         }
     }
     for (int q = t->first_spring[i]; q >= 0 && c > 0; q = t->next_spring[q], n++) {
@@ -346,7 +346,7 @@ static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
     }
     MT_TRY(mt_tree_hold(t, c, row, &held, err));
     for (int a = 0; a < w->modes->n && c > 0; a++) {
-        memcpy(g, mt_tree_slope_at(w, w->carried, i, a), (size_t)t->s * sizeof *g);
+        memcpy(g, mt_tree_slope_at(w, w->transport, i, a), (size_t)t->s * sizeof *g);
         n = 0;
         for (int q = t->first_spring[i]; q >= 0; q = t->next_spring[q], n++) {
             mt_axpy(t->s, w->force[q + ((ptrdiff_t)sys->n_springs * a)],
@@ -396,7 +396,7 @@ static void add_arm(mt_tree_slope *w, int i)
         a[k] = cx_derivative(w->pose[t->body[i]].x[k] - w->pose[t->body[p]].x[k]);
     }
     for (int k = 0; k < 2 * m->n_pairs; k++) {
-        const double *const f = mt_tree_slope_at(w, w->carried, i, m->pair[k / 2][k % 2]);
+        const double *const f = mt_tree_slope_at(w, w->transport, i, m->pair[k / 2][k % 2]);
         const double *const v = mt_tree_slope_at(w, m->v, p, m->pair[k / 2][1 - (k % 2)]);
         if (t->s == 3) {
             slope[k / 2] += v[2] * ((f[1] * a[0]) - (f[0] * a[1]));
@@ -515,13 +515,14 @@ static mt_status init(mt_tree_slope *w, const double *inputs, mt_err *err)
     w->vec_inputs = mt_arena_alloc(mem, (size_t)sys->n_vecs * (size_t)sys->program.words,
                                    sizeof *w->vec_inputs);
     w->within = mt_arena_f64(mem, motions, modes);
-    w->carried = mt_arena_f64(mem, motions, modes);
+    w->transport = mt_arena_f64(mem, motions, modes);
     w->force = mt_arena_f64(mem, (size_t)sys->n_springs, modes);
     w->mu = mt_arena_f64(mem, (size_t)sys->n_constraints, modes);
     w->projected = mt_arena_f64(mem, 2, modes);
-    w->curved = w->t->curved == NULL
-                    ? NULL
-                    : mt_arena_f64(mem, (size_t)w->modes->n_pairs, (size_t)sys->n_constraints);
+    w->geometric_stiffness =
+        w->t->geometric_stiffness == NULL
+            ? NULL
+            : mt_arena_f64(mem, (size_t)w->modes->n_pairs, (size_t)sys->n_constraints);
     w->energy = mt_arena_f64(mem, (size_t)w->modes->n_pairs, 1);
     MT_TRY(mt_data_init(&w->data, sys, mem, err));
     MT_TRY(mt_program_gradient(&sys->program, inputs, value, grad, NULL, err));
@@ -537,13 +538,13 @@ static mt_status carry_out(mt_tree_slope *w, mt_err *err)
 {
     const mt_tree *const t = w->t;
     const mt_tree_modes *const m = w->modes;
-    const bool shaped = !w->sys->geometry_fixed || t->curved != NULL;
+    const bool shaped = !w->sys->geometry_fixed || t->geometric_stiffness != NULL;
     for (int a = 0; a < m->n; a++) {
         const ptrdiff_t at = (ptrdiff_t)t->s * t->n * a;
         mt_tree_within(t, m->x + ((ptrdiff_t)t->n_x * a), m->r + ((ptrdiff_t)t->n_rigid * a),
                        m->v + at, w->within + at);
         if (shaped) {
-            mt_tree_carried(t, m->lambda[a], m->v + at, w->carried + at);
+            mt_tree_transport(t, m->lambda[a], m->v + at, w->transport + at);
         }
         MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
     }
@@ -558,7 +559,7 @@ static mt_status carry_out(mt_tree_slope *w, mt_err *err)
             return MT_OK;
         }
         add_shape(w);
-        if (t->curved != NULL) {
+        if (t->geometric_stiffness != NULL) {
             MT_TRY(mt_tree_slope_loads(w, err));
         }
         if (w->why[0] != '\0') {

@@ -127,7 +127,8 @@ static void add_load(const along *l, const mt_load_def *load)
 static bool stays_at_rest(const along *l, int i, const double *g)
 {
     const mt_tree *const t = l->w->t;
-    for (int c = t->y_at[i] + t->loose_at[i]; c < t->y_at[i + 1] + t->loose_at[i + 1]; c++) {
+    for (int c = t->y_at[i] + t->free_dof_at[i]; c < t->y_at[i + 1] + t->free_dof_at[i + 1];
+         c++) {
         const double *const b = t->basis + ((ptrdiff_t)t->s * c);
         double most = 0.0;
         for (int k = 0; k < t->s; k++) {
@@ -199,7 +200,7 @@ static mt_status balance(const along *l, int i, bool *rests, mt_err *err)
     mt_tree_multipliers(t, &held, g, slope);
     c = 0;
     for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
-        add_form(w, slope[c], w->curved + ((ptrdiff_t)w->modes->n_pairs * k));
+        add_form(w, slope[c], w->geometric_stiffness + ((ptrdiff_t)w->modes->n_pairs * k));
     }
     hand_on(l, i);
     return MT_OK;

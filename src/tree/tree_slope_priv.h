@@ -15,13 +15,14 @@ typedef struct mt_tree_slope {
     mt_pose *pose;        /* [bodies] likewise */
     uint64_t *vec_inputs; /* [n_vecs x words] inputs of each vector, as bits */
     double *within;       /* s n x modes: w of mt_tree_within */
-    double *carried;      /* s n x modes: P of mt_tree_carried */
+    double *transport;    /* s n x modes: P of mt_tree_transport */
     double *force;        /* springs x modes: k times how far the mode stretches it */
     double *mu;           /* constraints x modes: what the mode makes each equation hold */
-    double *curved;       /* n_pairs x constraints: phi_a^T H phi_b, where something loads */
-    double *projected;    /* [2 x modes] work */
-    double *energy;       /* [n_pairs] work */
-    double *slope;        /* n_pairs x n_inputs */
+    /* n_pairs x constraints: phi_a^T H phi_b, where something loads */
+    double *geometric_stiffness;
+    double *projected; /* [2 x modes] work */
+    double *energy;    /* [n_pairs] work */
+    double *slope;     /* n_pairs x n_inputs */
     char *why;
     mt_arena *scratch;
 } mt_tree_slope;

@@ -133,7 +133,7 @@ static double at_ends(const mt_spectral *r, const mt_spectral_segment *segment)
 }
 
 static mt_spectral_sum best(const mt_spectral *r, const mt_spectral_segment *segment,
-                            mt_spectral_way way, bool *closed)
+                            mt_spectral_method way, bool *closed)
 {
     *closed = way != MT_SPECTRAL_PANELS;
     mt_spectral_sum a = {.bound = HUGE_VAL};
@@ -165,7 +165,7 @@ double mt_spectral_root_bound(double bound, double root)
 }
 
 mt_spectral_answer mt_spectral_rms(const mt_spectral *r, const mt_psd *input,
-                                   mt_spectral_way way)
+                                   mt_spectral_method way)
 {
     mt_spectral_answer a;
     double square = 0.0;

@@ -25,11 +25,11 @@ typedef struct mt_spectral {
     double *rest_size;    /* of the summands of it */
 } mt_spectral;
 
-typedef enum mt_spectral_way {
+typedef enum mt_spectral_method {
     MT_SPECTRAL_BEST,
     MT_SPECTRAL_CLOSED,
     MT_SPECTRAL_PANELS
-} mt_spectral_way;
+} mt_spectral_method;
 
 typedef struct mt_spectral_answer {
     mt_forced_end end; /* numbers are NaN where it is not MT_FORCED_FINITE */
@@ -48,7 +48,7 @@ mt_status mt_spectral_init(mt_spectral *r, const mt_pole_sum *sum, mt_arena *mem
 double mt_spectral_psd(const mt_spectral *r, const mt_psd *input, double hz);
 
 mt_spectral_answer mt_spectral_rms(const mt_spectral *r, const mt_psd *input,
-                                   mt_spectral_way way);
+                                   mt_spectral_method way);
 
 /* A bound of the error of a root, by that of what it is the root of. */
 double mt_spectral_root_bound(double bound, double root);

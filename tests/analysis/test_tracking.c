@@ -50,13 +50,13 @@ static double lambda_at(double theta, double k1, double k2, double c)
     return (a * a * (k1 + c)) + (b * b * (k2 + c)) - (2.0 * a * b * c);
 }
 
-static const mt_view_work *track_at(mt_workspace *w, double k1, mt_err *err)
+static const mt_configuration_work *track_at(mt_workspace *w, double k1, mt_err *err)
 {
     const double t = mt_problem_t(w->p, 0, k1);
-    mt_view_work *const view = &w->views[0];
+    mt_configuration_work *const view = &w->views[0];
     const bool ok = mt_workspace_place(w, &t, false, err) == MT_OK &&
-                    mt_view_solve(w, view, false, err) == MT_OK &&
-                    mt_view_track(w, view, err) == MT_OK;
+                    mt_configuration_solve(w, view, false, err) == MT_OK &&
+                    mt_configuration_track(w, view, err) == MT_OK;
     return ok ? view : NULL;
 }
 
@@ -67,8 +67,8 @@ typedef struct sweep_count {
 } sweep_count;
 
 /* The names at one point of the sweep against the closed form. */
-static void check_point(mt_test *t, const mt_view_work *view, double k1, double c, double start,
-                        sweep_count *count)
+static void check_point(mt_test *t, const mt_configuration_work *view, double k1, double c,
+                        double start, sweep_count *count)
 {
     const double theta = angle(k1, 2.0, c);
     const double stays = pow(cos(theta - start), 2.0);
@@ -112,7 +112,7 @@ static void sweep(mt_test *t, const char *coupling, sweep_count *count)
         for (int i = 0; i < POINTS; i++) {
             const double k1 = 1.0 + (3.0 * i / (POINTS - 1));
             mt_err err = {0};
-            const mt_view_work *const view = track_at(w, k1, &err);
+            const mt_configuration_work *const view = track_at(w, k1, &err);
             mt_test_row(t, "c = %s, k1 = %g", coupling, k1);
             if (CHECK(t, view != NULL)) {
                 check_point(t, view, k1, c, start, count);
@@ -298,16 +298,16 @@ static void tracking__dissolved_shapes_are_followed(mt_test *t)
         double x[N];
         double now[N];
         mt_track direct[N];
-        mt_view_work *const view = &w->views[0];
+        mt_configuration_work *const view = &w->views[0];
         for (int i = 0; i < N; i++) {
             x[i] = log((i + 1.0) * exp(mt_random_in(&random, -1.2, 1.2)));
         }
         mt_test_row(t, "design %d", d);
         CHECK_INT(t, mt_workspace_place(w, x, false, NULL), MT_OK);
-        CHECK_INT(t, mt_view_solve(w, view, false, NULL), MT_OK);
+        CHECK_INT(t, mt_configuration_solve(w, view, false, NULL), MT_OK);
         CHECK_INT(t, mt_track_match(view->analysis, N, view->of->shape, direct, NULL), MT_OK);
         memcpy(now, view->analysis->modes.lambda, sizeof now);
-        CHECK_INT(t, mt_view_track(w, view, NULL), MT_OK);
+        CHECK_INT(t, mt_configuration_track(w, view, NULL), MT_OK);
         for (int i = 0; i < N; i++) {
             CHECK(t, now[i] == view->analysis->modes.lambda[i]);
         }
@@ -350,7 +350,7 @@ static mt_status solve_beside_gap(void *context, double s, mt_analysis **out, mt
 {
     enum { N = 6 };
     const gap_way *const way = context;
-    mt_view_work *const view = &way->w->views[0];
+    mt_configuration_work *const view = &way->w->views[0];
     const double part = s < way->end ? way->before * s / way->from : 1.0;
     double t[N];
     if (s > way->from && s < way->end) {
@@ -361,7 +361,7 @@ static mt_status solve_beside_gap(void *context, double s, mt_analysis **out, mt
     }
     *out = view->analysis;
     MT_TRY(mt_workspace_place(way->w, t, false, err));
-    return mt_view_solve(way->w, view, false, err);
+    return mt_configuration_solve(way->w, view, false, err);
 }
 
 /* How many modes are told beyond a gap of so many shortest steps that ends so many before the
@@ -370,7 +370,7 @@ static int told_beyond(mt_test *t, const mt_workspace *w, gap_way *way, double w
                        double left, mt_arena *mem)
 {
     enum { N = 6, STEPS = 64 };
-    const mt_view_work *const view = &w->views[0];
+    const mt_configuration_work *const view = &w->views[0];
     const mt_track_way path = {
         .solve = solve_beside_gap, .context = way, .resolution = 1.0 / STEPS};
     mt_track tracks[N];
@@ -396,7 +396,7 @@ static bool leap_gaps(mt_test *t, mt_workspace *w, gap_way *way, mt_arena *mem, 
     static const double narrow = 2.5;
     static const double wide = 5.0;
     CHECK_INT(t, mt_workspace_place(w, way->to, false, NULL), MT_OK);
-    CHECK_INT(t, mt_view_solve(w, &w->views[0], false, NULL), MT_OK);
+    CHECK_INT(t, mt_configuration_solve(w, &w->views[0], false, NULL), MT_OK);
     const bool half_way = told_beyond(t, w, way, narrow, 32.0, mem) == N &&
                           told_beyond(t, w, way, wide, 32.0, mem) < N;
     for (int k = 0; half_way && k < MT_COUNT(LEFT); k++) {
@@ -477,7 +477,7 @@ static void tracking__without_another_mode_there_is_no_rival(mt_test *t)
         CHECK_INT(t, mt_workspace_new(p, &w, &err), MT_OK)) {
         static const double stiffness[] = {1000.0, 2000.0, 500.0};
         for (int i = 0; i < MT_COUNT(stiffness); i++) {
-            const mt_view_work *const view = track_at(w, stiffness[i], &err);
+            const mt_configuration_work *const view = track_at(w, stiffness[i], &err);
             mt_test_row(t, "k = %g", stiffness[i]);
             if (CHECK(t, view != NULL)) {
                 CHECK_INT(t, (int)view->track[0].state, (int)MT_TRACKED);
@@ -486,7 +486,7 @@ static void tracking__without_another_mode_there_is_no_rival(mt_test *t)
                 CHECK(t, view->track[0].rival_share == 0.0);
             }
         }
-        const mt_view_work *const unstable = track_at(w, -100.0, &err);
+        const mt_configuration_work *const unstable = track_at(w, -100.0, &err);
         mt_test_row(t, "k = -100");
         if (CHECK(t, unstable != NULL)) {
             CHECK_INT(t, (int)unstable->track[0].state, (int)MT_TRACK_LOST_STATE);

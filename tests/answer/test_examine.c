@@ -4,8 +4,8 @@
  * comes near, targets far from where the mode is, references in another unit. One mass, whose
  * frequency is 1 Hz sqrt(stiffness), and two.
  */
-#include "answer/doubts.h"
 #include "answer/examine.h"
+#include "answer/warnings.h"
 #include "study_fixture.h"
 
 enum { TEXT = 2048 };
@@ -30,7 +30,7 @@ static int doubts_of(mt_test *t, const char *model, const char *members, const c
     text[0] = '\0';
     if (study_load(t, model, members, &c) &&
         CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK)) {
-        mt_doubt_list list = mt_doubt_list_default(&mem);
+        mt_warning_list list = mt_warning_list_default(&mem);
         CHECK_INT(t, mt_study_examine(c.study, HUGE_VAL, &list, &err), MT_OK);
         for (int i = 0; i < list.n; i++) {
             const bool is = strcmp(list.items[i].kind, kind) == 0;
@@ -110,7 +110,7 @@ static void examine__targets_a_hundred_times_away_are_doubted(mt_test *t)
     static const struct {
         const char *goal;
         double hz;
-        int doubts;
+        int warning_list;
     } rows[] = {{"'target_hz'", 99.0, 0},     {"'target_hz'", 101.0, 1},
                 {"'target_hz'", 0.0101, 0},   {"'target_hz'", 0.0099, 1},
                 {"'at_least_hz'", 99.0, 0},   {"'at_least_hz'", 101.0, 1},
@@ -130,8 +130,8 @@ static void examine__targets_a_hundred_times_away_are_doubted(mt_test *t)
         (void)snprintf(says, sizeof says, "is %.3g times %s the original frequency, 1 Hz",
                        above ? rows[i].hz : 1.0 / rows[i].hz, above ? "above" : "below");
         mt_test_row(t, "%s %g", rows[i].goal, rows[i].hz);
-        CHECK_INT(t, doubts_of(t, model, members, "target", text), rows[i].doubts);
-        CHECK(t, rows[i].doubts == 0 || strstr(text, says) != NULL);
+        CHECK_INT(t, doubts_of(t, model, members, "target", text), rows[i].warning_list);
+        CHECK(t, rows[i].warning_list == 0 || strstr(text, says) != NULL);
     }
 }
 
@@ -204,7 +204,7 @@ static void examine__bands_take_an_analysis_for_every_bound(mt_test *t)
                        rows[i].goals);
         mt_test_row(t, "%s", rows[i].goals);
         if (study_load(t, model, members, &c)) {
-            const double work = rows[i].times * mt_doubts_work(c.study->model, 0);
+            const double work = rows[i].times * mt_warnings_work(c.study->model, 0);
             CHECK(t, work > 0.0 && mt_study_takes_more(c.study, work * (1.0 - 1e-12)));
             CHECK(t, !mt_study_takes_more(c.study, work * (1.0 + 1e-12)));
         }

@@ -72,7 +72,7 @@ static int ask(void *context)
     (void)context;
     worst = fmax(worst, work / (n * n * n));
     work = 0.0;
-    return MT_WISH_NONE;
+    return MT_STOP_REQUEST_NONE;
 }
 
 static void judge(mt_test *t, const char *name, const mt_study *study)

@@ -36,21 +36,22 @@ typedef struct moment {
     long later; /* from this many questions later on at once; 0: never */
 } moment;
 
-static int wish(void *context)
+static int request(void *context)
 {
     moment *const m = context;
     m->asked++;
     if (m->at == 0 || m->asked < m->at) {
-        return MT_WISH_NONE;
+        return MT_STOP_REQUEST_NONE;
     }
-    return m->later > 0 && m->asked - m->at >= m->later - 1 ? MT_WISH_END : MT_WISH_FINISH;
+    return m->later > 0 && m->asked - m->at >= m->later - 1 ? MT_STOP_REQUEST_END
+                                                            : MT_STOP_REQUEST_FINISH;
 }
 
 static mt_status solve(const mt_study *study, moment *m, mt_result **out, mt_err *err)
 {
     mt_solve_options opt = {.size = sizeof opt};
     m->asked = 0;
-    opt.stop = wish;
+    opt.stop = request;
     opt.stop_context = m;
     return mt_study_solve(study, &opt, out, err);
 }
@@ -102,16 +103,16 @@ static void rest_is_whole(mt_test *t, const mt_result *whole, const mt_result *r
     expected.run = r->run;
     if (is_cut(r, "search")) {
         expected.recommendations = r->recommendations;
-        expected.n_undetermined = 0;
-        expected.undetermined = NULL; /* not computed, which is not the same as none */
+        expected.n_unidentifiable = 0;
+        expected.unidentifiable = NULL; /* not computed, which is not the same as none */
     }
     expected.unchecked = r->unchecked;
     expected.n_unchecked = r->n_unchecked;
     expected.n_recommendations = is_cut(r, "recommendations") || is_cut(r, "search")
                                      ? r->n_recommendations
                                      : whole->n_recommendations;
-    expected.n_spread = is_cut(r, "spread") ? 0 : whole->n_spread;
-    expected.spread = is_cut(r, "spread") ? NULL : whole->spread;
+    expected.n_weight_sensitivity = is_cut(r, "spread") ? 0 : whole->n_weight_sensitivity;
+    expected.weight_sensitivity = is_cut(r, "spread") ? NULL : whole->weight_sensitivity;
     expected.n_certificates = is_cut(r, "certificates") ? 0 : whole->n_certificates;
     expected.certificates = is_cut(r, "certificates") ? NULL : whole->certificates;
     expected.n_relaxations = is_cut(r, "relaxations") ? 0 : whole->n_relaxations;

@@ -75,7 +75,7 @@ static void rank__a_band_sees_the_mode_that_the_spring_brings(mt_test *t)
                     &c)) {
         CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
         CHECK_INT(t, c.result->n_recommendations, 1);
-        CHECK_INT(t, c.result->recommendations[0].gaps[0].modes_below, 1);
+        CHECK_INT(t, c.result->recommendations[0].placements[0].modes_below, 1);
         CHECK(t, study_value(&c, 1, "k1") < spring_for(1.2) + 1e-3);
     }
     study_free(&c);

@@ -236,7 +236,7 @@ static void write_study(const network *w, char *text)
     add(text, "}]");
 }
 
-/* Are the demands met at k, with this much to spare (relative)? *below: modes below the
+/* Are the requirements met at k, with this much to spare (relative)? *below: modes below the
  * band. */
 static bool meets(const network *w, const double *k, double spare, int *below)
 {
@@ -286,7 +286,7 @@ static void check_design(mt_test *t, const network *w, const mt_recommendation *
     CHECK(t, r->disagreement == NULL);
     if (r->feasible) {
         CHECK(t, meets(w, k, -2e-6, &below));
-        CHECK(t, r->n_gaps == 0 || r->gaps[0].modes_below == below);
+        CHECK(t, r->n_placements == 0 || r->placements[0].modes_below == below);
     }
 }
 
@@ -309,7 +309,7 @@ static bool is_listed(const mt_result *result, int below)
 {
     for (int i = 0; i < result->n_recommendations; i++) {
         const mt_recommendation *const r = &result->recommendations[i];
-        if (r->feasible && r->n_gaps == 1 && r->gaps[0].modes_below == below) {
+        if (r->feasible && r->n_placements == 1 && r->placements[0].modes_below == below) {
             return true;
         }
     }
@@ -349,7 +349,7 @@ static bool proves_assignments(const mt_result *result)
     return false;
 }
 
-/* The tolerance box of a design: the demands hold all over it. */
+/* The tolerance box of a design: the requirements hold all over it. */
 static void check_box(mt_test *t, mt_random *r, const network *w, const mt_recommendation *rec)
 {
     double k[MOST_SPRINGS];

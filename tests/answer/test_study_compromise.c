@@ -52,9 +52,9 @@ static void undetermined_parameter__keeps_its_value_and_is_named(mt_test *t)
             &c)) {
         CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
         CHECK_NEAR_ABS(t, study_value(&c, 1, "idle"), 0.1234567890123456, 0.0);
-        CHECK_INT(t, c.result->n_undetermined, 1);
-        CHECK_STR(t, c.result->undetermined[0].text, "idle");
-        CHECK(t, c.result->undetermined[0].effect_percent <= 1e-4);
+        CHECK_INT(t, c.result->n_unidentifiable, 1);
+        CHECK_STR(t, c.result->unidentifiable[0].text, "idle");
+        CHECK(t, c.result->unidentifiable[0].effect_percent <= 1e-4);
         CHECK(t, study_reasons(&c, 1, "Not identifiable: idle"));
         CHECK(t, study_reasons(&c, 1, "idle keeps its original value."));
     }
@@ -81,8 +81,8 @@ static void undetermined_direction__is_named_as_a_combination(mt_test *t)
         CHECK_INT(t, c.result->status, MT_RESULT_SOLVED);
         CHECK_NEAR(t, a * b, 2.0, TOL);
         CHECK_NEAR(t, a / b, 1.5 / 1.2, TOL);
-        CHECK_INT(t, c.result->n_undetermined, 1);
-        const char *const text = c.result->undetermined[0].text;
+        CHECK_INT(t, c.result->n_unidentifiable, 1);
+        const char *const text = c.result->unidentifiable[0].text;
         CHECK(t, strcmp(text, "0.71 ln a - 0.71 ln b") == 0 ||
                      strcmp(text, "-0.71 ln a + 0.71 ln b") == 0);
         CHECK(t, study_reasons(&c, 1, text));

@@ -60,7 +60,7 @@ static void override__wins_over_a_variable_and_like_inherits(mt_test *t)
     study_free(&c);
 }
 
-/* One goal over several configurations is one demand in each. */
+/* One goal over several configurations is one requirement in each. */
 static void goal_over_several_configurations__holds_in_each(mt_test *t)
 {
     study_case c;

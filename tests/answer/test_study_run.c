@@ -80,20 +80,21 @@ static void spent_budget__ends_the_list_of_objectives(mt_test *t)
 }
 
 typedef struct interruption {
-    int wish;
+    int request;
     int calls;
 } interruption;
 
 static int wish_of(void *context)
 {
-    return ((interruption *)context)->wish;
+    return ((interruption *)context)->request;
 }
 
 static void interrupt(void *context, const char *text)
 {
     interruption *const i = context;
     i->calls++;
-    i->wish = text[0] != '\0' && i->calls > 1 ? MT_WISH_FINISH : MT_WISH_NONE;
+    i->request =
+        text[0] != '\0' && i->calls > 1 ? MT_STOP_REQUEST_FINISH : MT_STOP_REQUEST_NONE;
 }
 
 /* The second progress line comes in the middle of the search, and stops it there. */
@@ -121,7 +122,7 @@ static void interruption__keeps_what_was_found(mt_test *t)
 static void stop_before_the_first_design__is_an_answer_too(mt_test *t)
 {
     study_case c;
-    interruption i = {MT_WISH_FINISH, 0};
+    interruption i = {MT_STOP_REQUEST_FINISH, 0};
     mt_err err = {.text = ""};
     if (study_load(t, MODEL, SPRINGS TARGETS, &c)) {
         mt_solve_options opt = {.size = sizeof opt};
@@ -133,7 +134,7 @@ static void stop_before_the_first_design__is_an_answer_too(mt_test *t)
             CHECK_NEAR(t, study_value(&c, 0, "k1"), 2.9, 0.0); /* the baseline is there */
         }
         mt_result *none = NULL;
-        i.wish = MT_WISH_END; /* and where it is not, there is no answer */
+        i.request = MT_STOP_REQUEST_END; /* and where it is not, there is no answer */
         CHECK_INT(t, mt_study_solve(c.study, &opt, &none, &err), MT_E_INTERRUPTED);
         CHECK(t, none == NULL && strstr(err.text, "before the original design") != NULL);
     }

@@ -305,7 +305,7 @@ static void catalogue__of_absorbers_is_judged_by_the_peak(mt_test *t)
         CHECK_NEAR(t, study_value(&s, 1, "k"), SPRINGS[best[0]], 0.0);
         CHECK_NEAR(t, study_value(&s, 1, "c"), DASHPOTS[best[1]], 0.0);
         CHECK_NEAR(t, s.result->recommendations[0].score, 100.0 * least, 1e-8 * least);
-        CHECK_INT(t, s.result->n_undetermined, 0);
+        CHECK_INT(t, s.result->n_unidentifiable, 0);
     }
     study_free(&s);
 }

@@ -26,7 +26,7 @@ static void progress__counts_the_outermost_step_only(mt_test *t)
 {
     mt_progress p;
     CHECK_INT(t, mt_progress_init(&p, NULL), MT_OK);
-    mt_progress_view v = mt_progress_look(&p);
+    mt_progress_view v = mt_progress_read(&p);
     CHECK(t, v.phase == NULL && v.step == 0 && isnan(v.share));
     mt_progress_phase(&p, "search", true);
     const bool outer = mt_progress_begin(&p, "starts", 4);
@@ -39,17 +39,17 @@ static void progress__counts_the_outermost_step_only(mt_test *t)
     mt_progress_phase(&p, "trade", false); /* a part of the step, too */
     mt_progress_boxed(&p);
     mt_progress_evaluated(&p);
-    v = mt_progress_look(&p);
+    v = mt_progress_read(&p);
     CHECK(t, strcmp(v.phase, "search") == 0 && strcmp(v.unit, "starts") == 0);
     CHECK(t, v.step == 2 && v.done == 1 && v.total == 4 && !v.ended);
     CHECK(t, v.share == 0.25);
     CHECK(t, v.boxes == 1 && v.evaluations == 1);
     mt_progress_end(&p, outer);
-    v = mt_progress_look(&p);
+    v = mt_progress_read(&p);
     CHECK(t, v.ended);
     CHECK(t, v.share == 1.0);
     mt_progress_phase(&p, "trade", false);
-    v = mt_progress_look(&p);
+    v = mt_progress_read(&p);
     CHECK(t, strcmp(v.phase, "trade") == 0 && v.step == 3 && v.unit == NULL && v.done == 0);
     CHECK(t, isnan(v.share) && v.evaluations == 1 && !mt_progress_seeks(&p));
     mt_progress_free(&p);
@@ -65,7 +65,7 @@ static void progress__a_step_never_comes_again(mt_test *t)
     for (int round = 1; round <= 3; round++) {
         mt_progress_phase(&p, "recommendations", false);
         const bool told = mt_progress_begin(&p, "designs", round);
-        const mt_progress_view v = mt_progress_look(&p);
+        const mt_progress_view v = mt_progress_read(&p);
         CHECK(t, v.total == round && v.step > last);
         last = v.step;
         mt_progress_end(&p, told);
@@ -78,16 +78,16 @@ static void progress__a_share_never_becomes_less(mt_test *t)
     mt_progress p;
     CHECK_INT(t, mt_progress_init(&p, NULL), MT_OK);
     const bool told = mt_progress_begin(&p, "designs decided", 0);
-    CHECK(t, isnan(mt_progress_look(&p).share));
+    CHECK(t, isnan(mt_progress_read(&p).share));
     const double given[] = {0.25, 0.125, 2.0};
     const double shown[] = {0.25, 0.25, 1.0};
     for (int i = 0; i < MT_COUNT(given); i++) {
         mt_progress_share(&p, told, given[i]);
-        CHECK(t, mt_progress_look(&p).share == shown[i]);
+        CHECK(t, mt_progress_read(&p).share == shown[i]);
     }
     mt_progress_end(&p, told);
     CHECK(t, mt_progress_begin(&p, "designs decided", 0));
-    CHECK(t, isnan(mt_progress_look(&p).share)); /* of the next step nothing is known */
+    CHECK(t, isnan(mt_progress_read(&p).share)); /* of the next step nothing is known */
     mt_progress_free(&p);
 }
 
@@ -96,12 +96,12 @@ static void progress__the_best_is_the_least(mt_test *t)
     mt_progress p;
     CHECK_INT(t, mt_progress_init(&p, NULL), MT_OK);
     mt_progress_phase(&p, "search", true);
-    CHECK(t, mt_progress_seeks(&p) && mt_progress_look(&p).what == NULL);
+    CHECK(t, mt_progress_seeks(&p) && mt_progress_read(&p).what == NULL);
     mt_progress_found(&p, "clearance", -2.0, 2.0);
     mt_progress_found(&p, "clearance", nan(""), 5.0);
     mt_progress_found(&p, "clearance", -1.0, 1.0);
-    CHECK(t, strcmp(mt_progress_look(&p).what, "clearance") == 0);
-    CHECK(t, mt_progress_look(&p).best == 2.0);
+    CHECK(t, strcmp(mt_progress_read(&p).what, "clearance") == 0);
+    CHECK(t, mt_progress_read(&p).best == 2.0);
     mt_progress_free(&p);
 }
 
@@ -134,7 +134,7 @@ static void progress__marks_say_when(mt_test *t)
         if (i > 0) {
             mt_progress_found(&p, "change", rows[i].value, rows[i].value);
         }
-        const mt_progress_view v = mt_progress_look(&p);
+        const mt_progress_view v = mt_progress_read(&p);
         mt_test_row(t, "row %d", i);
         CHECK(t, i == 0
                      ? isnan(v.first.cpu_s) && isnan(v.best_at.cpu_s)
@@ -143,11 +143,11 @@ static void progress__marks_say_when(mt_test *t)
         CHECK(t, isnan(v.proof.cpu_s));
     }
     mt_progress_proved(&p);
-    CHECK(t, mt_progress_look(&p).proof.cpu_s == now_s);
+    CHECK(t, mt_progress_read(&p).proof.cpu_s == now_s);
     mt_progress_free(&p);
 }
 
-static mt_status count(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status count(void *context, int worker, int task, mt_task_path *own, mt_err *err)
 {
     mt_progress *const p = context;
     (void)worker;
@@ -162,12 +162,13 @@ static void progress__a_list_of_tasks_is_a_step(mt_test *t)
 {
     mt_progress p;
     CHECK_INT(t, mt_progress_init(&p, NULL), MT_OK);
-    mt_scope scope = {.progress = &p};
+    mt_task_path task_path = {.progress = &p};
     const mt_tasks tasks = {TASKS, count, NULL, &p, "tasks"};
-    mt_scope inside = mt_scope_in(&scope, "search"); /* no ledger, and yet told */
+    /* no ledger, and yet told */
+    mt_task_path inside = mt_task_path_enter(&task_path, "search");
     for (int i = 1; i <= 2; i++) {
         CHECK_INT(t, mt_workers_run(WORKERS, &inside, &tasks, NULL), MT_OK);
-        const mt_progress_view v = mt_progress_look(&p);
+        const mt_progress_view v = mt_progress_read(&p);
         CHECK(t, v.step == i && v.done == TASKS && v.total == TASKS && v.ended);
         CHECK(t, strcmp(v.unit, "tasks") == 0 && v.evaluations == (long)i * TASKS);
     }

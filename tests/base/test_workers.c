@@ -18,19 +18,19 @@ typedef struct job {
     bool inner; /* every task begins a list of its own */
 } job;
 
-static mt_status square(void *context, int worker, int task, mt_scope *own, mt_err *err);
+static mt_status square(void *context, int worker, int task, mt_task_path *own, mt_err *err);
 
-static void tape_square(void *context, int task, mt_tape *tape)
+static void serialize_square(void *context, int task, mt_serializer *serializer)
 {
     job *const j = context;
     int got = j->done[task];
-    mt_tape_int(tape, &got, 0, TASKS * TASKS);
-    if (!tape->reads || mt_tape_is_read(tape)) {
+    mt_serializer_int(serializer, &got, 0, TASKS * TASKS);
+    if (!serializer->reads || mt_serializer_is_read(serializer)) {
         j->done[task] = got;
     }
 }
 
-static mt_status square(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status square(void *context, int worker, int task, mt_task_path *own, mt_err *err)
 {
     job *const j = context;
     j->runs[task]++;
@@ -41,7 +41,7 @@ static mt_status square(void *context, int worker, int task, mt_scope *own, mt_e
     }
     if (j->inner) {
         job below = {.fail_from = 0};
-        const mt_tasks tasks = {2, square, tape_square, &below, "tasks"};
+        const mt_tasks tasks = {2, square, serialize_square, &below, "tasks"};
         MT_TRY(mt_workers_run(1, own, &tasks, err));
         MT_TRY(mt_workers_run(1, own, &tasks, err));
     }
@@ -53,7 +53,7 @@ static mt_status square(void *context, int worker, int task, mt_scope *own, mt_e
 
 /* A ledger in memory. */
 typedef struct book {
-    mt_ledger ledger;
+    mt_checkpoint_store store;
     int n;
     char keys[RECORDS][MT_KEY_SIZE];
     uint64_t words[RECORDS][4];
@@ -87,14 +87,14 @@ static void put(void *context, const char *key, const uint64_t *words, size_t n)
     }
 }
 
-static mt_scope open_book(mt_test *t, book *b)
+static mt_task_path open_book(mt_test *t, book *b)
 {
     *b = (book){.n = 0};
-    CHECK_INT(t, mt_ledger_init(&b->ledger, NULL), MT_OK);
-    b->ledger.find = find;
-    b->ledger.put = put;
-    b->ledger.context = b;
-    return (mt_scope){.ledger = &b->ledger, .path = "all"};
+    CHECK_INT(t, mt_checkpoint_store_init(&b->store, NULL), MT_OK);
+    b->store.find = find;
+    b->store.put = put;
+    b->store.context = b;
+    return (mt_task_path){.store = &b->store, .path = "all"};
 }
 
 static void workers__every_task_is_done_once_whatever_their_number(mt_test *t)
@@ -140,23 +140,23 @@ static void workers__what_is_known_is_not_done_again(mt_test *t)
     static job first;
     static job second;
     first = second = (job){.fail_from = 0};
-    mt_scope scope = open_book(t, &b);
-    const mt_tasks tasks = {8, square, tape_square, &first, "tasks"};
-    CHECK_INT(t, mt_workers_run(3, &scope, &tasks, NULL), MT_OK);
-    CHECK_INT(t, mt_workers_run(3, &scope, &tasks, NULL), MT_OK);
+    mt_task_path task_path = open_book(t, &b);
+    const mt_tasks tasks = {8, square, serialize_square, &first, "tasks"};
+    CHECK_INT(t, mt_workers_run(3, &task_path, &tasks, NULL), MT_OK);
+    CHECK_INT(t, mt_workers_run(3, &task_path, &tasks, NULL), MT_OK);
     CHECK_INT(t, b.n, 16);
     CHECK(t, at(&b, "all/0/0") < b.n && at(&b, "all/1/7") < b.n);
     b.words[at(&b, "all/0/2")][0] = TASKS * TASKS + 1; /* out of its range */
     b.counts[at(&b, "all/0/3")] = 2;                   /* too long */
     b.counts[at(&b, "all/0/4")] = 0;                   /* too short */
-    mt_scope again = {.ledger = &b.ledger, .path = "all"};
-    const mt_tasks same = {8, square, tape_square, &second, "tasks"};
+    mt_task_path again = {.store = &b.store, .path = "all"};
+    const mt_tasks same = {8, square, serialize_square, &second, "tasks"};
     CHECK_INT(t, mt_workers_run(2, &again, &same, NULL), MT_OK);
     for (int k = 0; k < 8; k++) {
         CHECK_INT(t, second.done[k], k * k);
         CHECK_INT(t, second.runs[k], k >= 2 && k <= 4 ? 1 : 0);
     }
-    mt_ledger_free(&b.ledger);
+    mt_checkpoint_store_free(&b.store);
 }
 
 /* A task that is kept as a whole keeps none of its parts; one that is not keeps them. */
@@ -166,12 +166,12 @@ static void workers__parts_of_a_task_have_keys_below_its_own(mt_test *t)
     static job j;
     for (int whole = 0; whole < 2; whole++) {
         j = (job){.inner = true};
-        mt_scope scope = open_book(t, &b);
-        const mt_tasks tasks = {2, square, whole ? tape_square : NULL, &j, "tasks"};
-        CHECK_INT(t, mt_workers_run(1, &scope, &tasks, NULL), MT_OK);
+        mt_task_path task_path = open_book(t, &b);
+        const mt_tasks tasks = {2, square, whole ? serialize_square : NULL, &j, "tasks"};
+        CHECK_INT(t, mt_workers_run(1, &task_path, &tasks, NULL), MT_OK);
         CHECK_INT(t, b.n, whole ? 2 : 8);
         CHECK(t, (at(&b, "all/0/1/1/0") < b.n) == (whole == 0));
-        mt_ledger_free(&b.ledger);
+        mt_checkpoint_store_free(&b.store);
     }
 }
 
@@ -182,18 +182,18 @@ static void workers__parts_share_the_tasks(mt_test *t)
     static job j;
     for (int parts = 1; parts <= 11; parts += 5) {
         j = (job){.inner = true};
-        mt_scope scope = open_book(t, &b);
-        b.ledger.parts = parts;
+        mt_task_path task_path = open_book(t, &b);
+        b.store.parts = parts;
         for (int part = 1; part <= parts; part++) {
             const mt_tasks tasks = {8, square, NULL, &j, "tasks"};
-            b.ledger.part = part;
-            CHECK_INT(t, mt_workers_run(2, &scope, &tasks, NULL),
+            b.store.part = part;
+            CHECK_INT(t, mt_workers_run(2, &task_path, &tasks, NULL),
                       parts == 1 ? MT_OK : MT_E_INTERRUPTED);
         }
         for (int k = 0; k < 8; k++) {
             CHECK_INT(t, j.runs[k], 1);
         }
-        mt_ledger_free(&b.ledger);
+        mt_checkpoint_store_free(&b.store);
     }
 }
 
@@ -205,12 +205,12 @@ static void workers__nothing_is_kept_after_a_cut(mt_test *t)
     mt_interrupt interrupt;
     mt_interrupt_init(&interrupt, NULL, NULL, NULL);
     j = (job){.cut_at_5 = &interrupt};
-    mt_scope scope = open_book(t, &b);
-    scope.interrupt = &interrupt;
-    const mt_tasks tasks = {8, square, tape_square, &j, "tasks"};
-    CHECK_INT(t, mt_workers_run(1, &scope, &tasks, NULL), MT_OK);
+    mt_task_path task_path = open_book(t, &b);
+    task_path.interrupt = &interrupt;
+    const mt_tasks tasks = {8, square, serialize_square, &j, "tasks"};
+    CHECK_INT(t, mt_workers_run(1, &task_path, &tasks, NULL), MT_OK);
     CHECK_INT(t, b.n, 5);
-    mt_ledger_free(&b.ledger);
+    mt_checkpoint_store_free(&b.store);
 }
 
 /* Beyond the room for a key nothing is known, and everything is done. */
@@ -223,18 +223,18 @@ static void workers__a_record_without_room_is_a_shortage(mt_test *t)
         job j = {.fail_from = 0};
         book b;
         mt_err err = {.code = MT_OK};
-        mt_scope scope = open_book(t, &b);
-        const mt_tasks tasks = {N, square, tape_square, &j, "tasks"};
+        mt_task_path task_path = open_book(t, &b);
+        const mt_tasks tasks = {N, square, serialize_square, &j, "tasks"};
         mt_test_row(t, "allocation %ld", nth);
         mt_alloc_fail_only(nth);
-        const mt_status rc = mt_workers_run(1, &scope, &tasks, &err);
+        const mt_status rc = mt_workers_run(1, &task_path, &tasks, &err);
         mt_alloc_fail_after(-1);
         short_of = rc != MT_OK;
         CHECK_INT(t, rc, short_of ? MT_E_MEMORY : MT_OK);
         CHECK_INT(t, err.code, rc);
         CHECK(t, short_of == (b.n < N));
         CHECK(t, nth > N || short_of); /* the list of what is left out, and each record */
-        mt_ledger_free(&b.ledger);
+        mt_checkpoint_store_free(&b.store);
     }
     CHECK(t, !mt_alloc_works() || !short_of);
 }
@@ -243,18 +243,18 @@ static void workers__a_key_that_is_too_long_is_none(mt_test *t)
 {
     static book b;
     static job j;
-    mt_scope scope = open_book(t, &b);
+    mt_task_path task_path = open_book(t, &b);
     j = (job){.fail_from = 0};
-    const mt_tasks tasks = {8, square, tape_square, &j, "tasks"};
+    const mt_tasks tasks = {8, square, serialize_square, &j, "tasks"};
     for (int length = MT_KEY_SIZE - 4; length < MT_KEY_SIZE; length++) {
-        memset(scope.path, 'x', (size_t)length);
-        scope.path[length] = '\0';
+        memset(task_path.path, 'x', (size_t)length);
+        task_path.path[length] = '\0';
         j = (job){.fail_from = 0};
-        CHECK_INT(t, mt_workers_run(2, &scope, &tasks, NULL), MT_OK);
+        CHECK_INT(t, mt_workers_run(2, &task_path, &tasks, NULL), MT_OK);
         CHECK_INT(t, b.n, 0);
         CHECK_INT(t, j.done[7], 49);
     }
-    mt_ledger_free(&b.ledger);
+    mt_checkpoint_store_free(&b.store);
 }
 
 static uint64_t bits_of(double x)
@@ -264,7 +264,7 @@ static uint64_t bits_of(double x)
     return bits;
 }
 
-static void tape__gives_back_what_was_written(mt_test *t)
+static void serialize__gives_back_what_was_written(mt_test *t)
 {
     double x[] = {0.1, -0.0, nan(""), HUGE_VAL, 5e-324};
     const char *text = "eight...and more";
@@ -273,35 +273,35 @@ static void tape__gives_back_what_was_written(mt_test *t)
     bool flag = true;
     mt_arena mem;
     REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
-    mt_tape tape = {.words = NULL};
-    mt_tape_numbers(&tape, MT_COUNT(x), x);
-    mt_tape_text(&tape, &text, &mem);
-    mt_tape_text(&tape, &none, &mem);
-    mt_tape_long(&tape, &far, -9, 9);
-    mt_tape_flag(&tape, &flag);
-    CHECK(t, !tape.failed);
-    for (size_t n = 0; n <= tape.n; n++) { /* cut anywhere, it is none */
+    mt_serializer serializer = {.words = NULL};
+    mt_serializer_numbers(&serializer, MT_COUNT(x), x);
+    mt_serializer_text(&serializer, &text, &mem);
+    mt_serializer_text(&serializer, &none, &mem);
+    mt_serializer_long(&serializer, &far, -9, 9);
+    mt_serializer_flag(&serializer, &flag);
+    CHECK(t, !serializer.failed);
+    for (size_t n = 0; n <= serializer.n; n++) { /* cut anywhere, it is none */
         double y[MT_COUNT(x)];
         const char *got = NULL;
         const char *nothing = "";
         long away = 0;
         bool yes = false;
-        mt_tape back = mt_tape_of(tape.words, n);
-        mt_tape_numbers(&back, MT_COUNT(y), y);
-        mt_tape_text(&back, &got, &mem);
-        mt_tape_text(&back, &nothing, &mem);
-        mt_tape_long(&back, &away, -9, 9);
-        mt_tape_flag(&back, &yes);
-        CHECK(t, mt_tape_is_read(&back) == (n == tape.n));
-        if (n == tape.n) {
+        mt_serializer back = mt_serializer_of(serializer.words, n);
+        mt_serializer_numbers(&back, MT_COUNT(y), y);
+        mt_serializer_text(&back, &got, &mem);
+        mt_serializer_text(&back, &nothing, &mem);
+        mt_serializer_long(&back, &away, -9, 9);
+        mt_serializer_flag(&back, &yes);
+        CHECK(t, mt_serializer_is_read(&back) == (n == serializer.n));
+        if (n == serializer.n) {
             CHECK(t, nothing == NULL && away == -3 && yes);
             for (int i = 0; i < MT_COUNT(x); i++) {
-                CHECK(t, tape.words[i] == bits_of(y[i]));
+                CHECK(t, serializer.words[i] == bits_of(y[i]));
             }
             CHECK_STR(t, got, text);
         }
     }
-    mt_tape_free(&tape);
+    mt_serializer_free(&serializer);
     mt_arena_free(&mem);
 }
 
@@ -314,4 +314,4 @@ MT_TEST_MAIN(MT_TEST(workers__every_task_is_done_once_whatever_their_number),
              MT_TEST(workers__nothing_is_kept_after_a_cut),
              MT_TEST(workers__a_record_without_room_is_a_shortage),
              MT_TEST(workers__a_key_that_is_too_long_is_none),
-             MT_TEST(tape__gives_back_what_was_written))
+             MT_TEST(serialize__gives_back_what_was_written))

@@ -131,7 +131,7 @@ static void load(const char *name, bench *b)
     stop(path, mt_problem_new(b->study, &b->problem, &err), &err);
     stop(path, mt_workspace_new(b->problem, &b->w, &err), &err);
     stop(path, mt_arena_init(&b->mem, 0, &err), &err);
-    stop(path, mt_case_values_init(b->w->c, &b->mem, &b->out, &err), &err);
+    stop(path, mt_subproblem_values_init(b->w->c, &b->mem, &b->out, &err), &err);
     b->t = mt_arena_f64(&b->mem, (size_t)mt_workspace_nlp(b->w).n, 1);
     stop(path, mt_arena_check(&b->mem, &err), &err);
 }

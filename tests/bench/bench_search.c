@@ -26,7 +26,7 @@
 #include "problem/problem.h"
 #include "problem/workspace.h"
 #include "result/result.h"
-#include "search/gaps.h"
+#include "search/mode_placements.h"
 #include "timing.h"
 
 enum { LEVELS = 11, STARTS = 9, QUICK_STARTS = 2, MOST = 64 };
@@ -352,7 +352,7 @@ typedef struct bench {
     race race; /* as each run finds it */
     mt_arena mem;
     mt_workspace *ws;
-    mt_case in_gap;
+    mt_subproblem in_gap;
     double *starts; /* n x STARTS */
 } bench;
 
@@ -410,14 +410,16 @@ static void best_answer(bench *b, const mt_study *study)
     }
     mt_result_delete(result);
     if (b->ws->p->n_bands > 0) {
-        stop(b->study, mt_gap_assignment(b->ws, t, below, &violation, &err), &err);
+        stop(b->study, mt_mode_placement_assignment(b->ws, t, below, &violation, &err), &err);
         stop(b->study,
-             mt_case_in_gap(b->ws->c, below, 0, NULL, b->ws, &b->mem, &b->in_gap, &err), &err);
+             mt_subproblem_in_placement(b->ws->c, below, 0, NULL, b->ws, &b->mem, &b->in_gap,
+                                        &err),
+             &err);
         mt_workspace_back(b->ws, &b->in_gap);
     }
     b->race.nlp = mt_workspace_nlp(b->ws);
-    stop(b->study, mt_case_values_init(b->ws->c, &b->mem, &b->race.at, &err), &err);
-    stop(b->study, mt_case_values_init(b->ws->c, &b->mem, &b->race.near, &err), &err);
+    stop(b->study, mt_subproblem_values_init(b->ws->c, &b->mem, &b->race.at, &err), &err);
+    stop(b->study, mt_subproblem_values_init(b->ws->c, &b->mem, &b->race.near, &err), &err);
     stop(b->study, mt_workspace_eval(b->ws, t, false, &b->race.at, &err), &err);
     b->race.best_f = objective(&b->race.nlp, &b->race.at);
 }

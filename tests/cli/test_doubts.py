@@ -404,12 +404,12 @@ class Doubts(CliTest):
         self.assertIn('/accepted/0: unknown warning "densty"; did you mean "density"?', done.stderr)
 
     def test_every_doubt_has_a_name_that_can_be_accepted(self):
-        header = (SOURCE / "src/base/doubt.h").read_text(encoding="utf-8")
+        header = (SOURCE / "src/base/warning.h").read_text(encoding="utf-8")
         names = re.findall(r'X\("(\w+)", "', header)
         self.assertEqual(names, sorted(names))
         used = set()
         for file in sorted((SOURCE / "src").glob("*/*.c")):
-            used |= set(re.findall(r'MT_LEVEL_DOUBT,\s*"(\w+)"', file.read_text(encoding="utf-8")))
+            used |= set(re.findall(r'MT_LEVEL_WARNING,\s*"(\w+)"', file.read_text(encoding="utf-8")))
         self.assertEqual(used - set(names), set())
         for schema in ("model", "study"):
             text = json.loads((SOURCE / f"schemas/{schema}.schema.json").read_text(encoding="utf-8"))

@@ -22,10 +22,10 @@ STICK = {
 WITH = {
     "nonzero": "tests/io/wrong/structure_space.json", "judge_matrix": "tests/io/wrong/structure_space.json",
     "judge_axes": "tests/io/wrong/structure_space.json", "judge_line": "test_a_bound_at_which_points_coincide",
-    "mt_judge_tensor": "test_inertia_by_expressions_configurations_and_bounds", "judge_section": "test_bounds_at_which_nothing_can_be_built",
+    "mt_lint_tensor": "test_inertia_by_expressions_configurations_and_bounds", "judge_section": "test_bounds_at_which_nothing_can_be_built",
     "judge_stout": "test_values_of_a_model", "judge_drive": "test_values_of_a_model", "judge_stroke": "test_a_stroke_longer_than_the_drawing",
     "judge_gravity": "test_values_of_a_model", "mt_reader_count": "tests/io/wrong/study_counts.json",
-    "doubt_target": "test_values_of_a_study", "doubt_reference": "test_measured_frequencies_in_other_units",
+    "warn_target": "test_values_of_a_study", "warn_reference": "test_measured_frequencies_in_other_units",
 }
 # ... and functions that the test of studies, profiles and catalogues drives member by member, each from both sides.
 BY_MEMBER = "tests/io/test_possible_files.c"
@@ -36,9 +36,9 @@ class Possible(CliTest):
         rows = (SOURCE / "src/model/possible.c").read_text(encoding="utf-8")
         named = set(re.findall(r'\.with = "(\w+)"', rows))
         kinds = re.search(r"ANALYSED\[\] = \{(.*?)\}", (SOURCE / BY_MEMBER).read_text(encoding="utf-8"))[1]
-        self.assertEqual(set(re.findall(r'"(\w+)"', kinds)), {"doubt_target", "doubt_reference"})
+        self.assertEqual(set(re.findall(r'"(\w+)"', kinds)), {"warn_target", "warn_reference"})
         models = re.findall(r'\.with = "(\w+)"', rows[:rows.index("[MT_POSSIBLE_WHOLE]")])
-        self.assertEqual(set(models) | {"mt_reader_count", "doubt_target", "doubt_reference"}, set(WITH))
+        self.assertEqual(set(models) | {"mt_reader_count", "warn_target", "warn_reference"}, set(WITH))
         sources = "".join(p.read_text(encoding="utf-8") for p in sorted((SOURCE / "src").glob("*/*.c")))
         tests = "".join((SOURCE / f"tests/cli/{name}.py").read_text(encoding="utf-8") for name in ("test_possible", "test_doubts"))
         for function in named:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """
 Every sentence that describes a design is reached by some study, and its claim is computed again. The sentences are read from the sources
-(every text of mt_say in src/describe). Small studies of one mass, and the shipped ones, reach them; the numbers in them are computed here
+(every text of mt_add_sentence in src/describe). Small studies of one mass, and the shipped ones, reach them; the numbers in them are computed here
 from the rest of the result and from closed forms, or in the test that ELSEWHERE names. A sentence in the sources that nothing reaches, or
 that nobody computes again, fails.
 """
@@ -50,7 +50,7 @@ ELSEWHERE = {
 def formats():
     found = []
     for path in sorted((SOURCE / "src/describe").glob("*.c")):
-        for m in re.finditer(r'mt_say\(\s*(?:s|&s),\s*((?:"(?:\\.|[^"\\])*"\s*)+)', path.read_text(encoding="utf-8")):
+        for m in re.finditer(r'mt_add_sentence\(\s*(?:s|&s),\s*((?:"(?:\\.|[^"\\])*"\s*)+)', path.read_text(encoding="utf-8")):
             found.append("".join(re.findall(r'"((?:\\.|[^"\\])*)"', m[1])))
     return [f for f in dict.fromkeys(found) if f != "%s"]  # of catalogues: search/discrete's own sentence
 

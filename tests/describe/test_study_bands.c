@@ -21,7 +21,7 @@ static void bands__are_goals_with_clearance_and_margin(mt_test *t)
     const mt_recommendation *const r = &c.result->baseline;
     const double f1 = study_hz(FIRST);
     const double f2 = study_hz(SECOND);
-    REQUIRE(t, r->n_goals == 1 && r->n_clearances == 3 && r->n_gaps == 2);
+    REQUIRE(t, r->n_goals == 1 && r->n_clearances == 3 && r->n_placements == 2);
     CHECK_STR(t, r->goals[0].text, "default clear of 2 bands up to 0.34 Hz");
     CHECK(t, !r->goals[0].met && !r->feasible);
     /* mode 2 inside the second band: to its upper edge it is 2.9 %, and 5 % more are asked */
@@ -34,10 +34,10 @@ static void bands__are_goals_with_clearance_and_margin(mt_test *t)
     CHECK_STR(t, r->clearances[1].side, "below");
     CHECK_NEAR(t, r->clearances[1].percent, 100.0 * (0.3 - f1) / f1, 1e-9);
     CHECK_STR(t, r->clearances[2].side, "inside");
-    CHECK_INT(t, r->gaps[0].modes_below, 0);
-    CHECK_INT(t, r->gaps[1].modes_below, 1);
-    CHECK_NEAR(t, r->gaps[1].margin_lower_hz, 0.285, 1e-12);
-    CHECK_NEAR(t, r->gaps[1].margin_upper_hz, 0.357, 1e-12);
+    CHECK_INT(t, r->placements[0].modes_below, 0);
+    CHECK_INT(t, r->placements[1].modes_below, 1);
+    CHECK_NEAR(t, r->placements[1].margin_lower_hz, 0.285, 1e-12);
+    CHECK_NEAR(t, r->placements[1].margin_upper_hz, 0.357, 1e-12);
     study_free(&c);
 }
 

@@ -26,7 +26,7 @@ static int find(const void *context, const char *name, size_t length)
     return -1;
 }
 
-static void demand_enclosed(const mt_program *p, mt_arena *mem)
+static void requirement_enclosed(const mt_program *p, mt_arena *mem)
 {
     static const double at[N_PARAMS] = {0.75, -2.0, 3.0, 1e3};
     static const double lower[N_PARAMS] = {0.5, -2.0, 2.0, 999.0};
@@ -69,7 +69,7 @@ static void use(const mt_expr *e, mt_arena *mem)
     if (mt_expr_is_constant(e, &value)) {
         DEMAND(mt_program_is_constant(&p, root));
     }
-    demand_enclosed(&p, mem);
+    requirement_enclosed(&p, mem);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -13,7 +13,7 @@
 
 enum { LIKE_THEM = 12 };
 
-static void demand_response(const mt_measured_response *r)
+static void requirement_response(const mt_measured_response *r)
 {
     DEMAND(isnan(r->si) || (isfinite(r->si) && r->si >= 0.0));
     for (int i = 0; i < r->n_lines; i++) {
@@ -41,7 +41,7 @@ static void read_one(const uint8_t *data, size_t size)
     } else {
         DEMAND(m.read && m.n_responses > 0 && said.count == 0);
         for (int i = 0; i < m.n_responses; i++) {
-            demand_response(&m.responses[i]);
+            requirement_response(&m.responses[i]);
         }
         DEMAND(strlen(mt_measured_list_text(&m, &mem)) > 0 || m.responses[0].dataset > 0);
     }

@@ -8,7 +8,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/damping.h"
-#include "answer/doubts.h"
+#include "answer/warnings.h"
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "io/json_print.h"
@@ -34,13 +34,13 @@ static bool is_small(const mt_model *m)
            m->n_bodies <= MOST_PARTS && elements < MOST_ELEMENTS;
 }
 
-static void demand_failed(mt_status rc, const mt_err *err)
+static void requirement_failed(mt_status rc, const mt_err *err)
 {
     DEMAND(fuzz_is_refusal(rc));
     DEMAND(err->code == rc && err->text[0] != '\0');
 }
 
-static void demand_modes(const mt_modes *m)
+static void requirement_modes(const mt_modes *m)
 {
     DEMAND(m->count == m->n - m->n_condensed && m->count >= 0);
     for (int i = 0; i < m->count; i++) {
@@ -63,16 +63,16 @@ static void use_slopes(mt_analysis *a, int n, const double *at)
     opt.gradient = true;
     mt_status rc = mt_analysis_solve(a, at, &opt, &err);
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
         return;
     }
-    demand_modes(&a->modes);
+    requirement_modes(&a->modes);
     for (int i = 0; i < a->modes.count; i++) {
         double slope[MOST_INPUTS] = {0.0};
         bool repeated = false;
         rc = mt_analysis_dlambda(a, i, slope, &repeated, &err);
         if (rc != MT_OK) {
-            demand_failed(rc, &err);
+            requirement_failed(rc, &err);
             continue;
         }
         for (int k = 0; k < n; k++) {
@@ -83,20 +83,20 @@ static void use_slopes(mt_analysis *a, int n, const double *at)
 
 static void use_doubts(mt_analysis *a, mt_arena *mem, const uint8_t *data, size_t size)
 {
-    mt_doubt_list doubts = mt_doubt_list_default(mem);
+    mt_warning_list warning_list = mt_warning_list_default(mem);
     mt_err err = {.code = MT_OK};
     mt_info info;
-    const mt_status rc = mt_doubts_of_analysis(a, 0, NULL, NULL, &doubts, &err);
+    const mt_status rc = mt_warnings_of_analysis(a, 0, NULL, NULL, &warning_list, &err);
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
         return;
     }
     mt_text said = {0};
-    for (int i = 0; i < doubts.n; i++) {
-        DEMAND(doubts.items[i].text != NULL);
-        mt_text_addf(&said, "%s\n", doubts.items[i].text);
+    for (int i = 0; i < warning_list.n; i++) {
+        DEMAND(warning_list.items[i].text != NULL);
+        mt_text_addf(&said, "%s\n", warning_list.items[i].text);
     }
-    fuzz_demand_finite_words(&said, data, size);
+    fuzz_requirement_finite_words(&said, data, size);
     mt_text_free(&said);
     DEMAND(mt_info_fill(a->lin, &info, &err) == MT_OK);
     DEMAND(info.freedoms >= 0 && info.redundant >= 0 && info.mass_kg >= 0.0);
@@ -110,7 +110,7 @@ static void use_damping(mt_analysis *a, const double *at)
     mt_status rc = mt_analysis_solve(a, at, &opt, &err);
     rc = rc == MT_OK ? mt_analysis_damped(a, &d, &err) : rc;
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
         return;
     }
     for (int i = 0; i < d->count; i++) {
@@ -137,7 +137,7 @@ static void use_sweep(const mt_model *m, int c, mt_arena *mem)
                                     mem, &sweep, &err)
                      : rc;
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
     }
     for (int i = 0; rc == MT_OK && i < sweep.n_points; i++) {
         const mt_sweep_point *const p = &sweep.points[i];
@@ -163,11 +163,11 @@ static void use_configuration(const mt_model *m, int c, const double *original,
     }
     const mt_status rc = mt_analysis_new(m, c, n, inputs, at, &a, &err);
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
         DEMAND(a == NULL);
         return;
     }
-    demand_modes(&a->modes);
+    requirement_modes(&a->modes);
     use_doubts(a, &mem, data, size);
     use_slopes(a, n, at);
     use_damping(a, at);
@@ -183,7 +183,7 @@ static void use(const mt_model *m, const uint8_t *data, size_t size)
     double *const original = mt_arena_f64(&mem, (size_t)m->n_parameters, 1);
     const mt_status rc = mt_model_original_values(m, &mem, original, NULL, &err);
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
     }
     for (int c = 0; rc == MT_OK && c < m->n_configurations && c < MOST_CONFIGURATIONS; c++) {
         use_configuration(m, c, original, data, size);

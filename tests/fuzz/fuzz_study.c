@@ -33,10 +33,10 @@ enum {
 
 static volatile sig_atomic_t stop;
 
-static int wish(void *unused)
+static int request(void *unused)
 {
     (void)unused;
-    return stop != 0 ? MT_WISH_FINISH : MT_WISH_NONE;
+    return stop != 0 ? MT_STOP_REQUEST_FINISH : MT_STOP_REQUEST_NONE;
 }
 
 static void tell_to_stop(int signal_number)
@@ -84,7 +84,7 @@ static bool is_small(const mt_study *s)
            s->n_variables <= MOST_VARIABLES && s->n_goals <= MOST_GOALS && bands <= MOST_POINTS;
 }
 
-static void demand_failed(mt_status rc, const mt_err *err)
+static void requirement_failed(mt_status rc, const mt_err *err)
 {
     DEMAND(fuzz_is_refusal(rc));
     DEMAND(err->code == rc && err->text[0] != '\0');
@@ -98,7 +98,7 @@ static void evaluate(const mt_problem *p)
     mt_status rc = mt_workspace_new(p, &w, &err);
     if (rc == MT_OK) {
         const mt_nlp nlp = mt_workspace_nlp(w);
-        DEMAND(mt_case_values_init(w->c, &w->mem, &v, &err) == MT_OK);
+        DEMAND(mt_subproblem_values_init(w->c, &w->mem, &v, &err) == MT_OK);
         for (int i = 0; i < nlp.n; i++) {
             DEMAND(!isnan(nlp.lower[i]) && !isnan(nlp.upper[i]) &&
                    nlp.lower[i] <= nlp.upper[i]);
@@ -106,7 +106,7 @@ static void evaluate(const mt_problem *p)
         rc = mt_workspace_eval(w, w->c->origin_t, true, &v, &err);
     }
     if (rc != MT_OK) {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
     }
     mt_workspace_delete(w);
 }
@@ -119,23 +119,23 @@ static void compile(const mt_study *study)
     if (rc == MT_OK) {
         evaluate(p);
     } else {
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
     }
     mt_problem_delete(p);
 }
 
-static void demand_table(mt_table t, const uint8_t *data, size_t size)
+static void requirement_table(mt_table t, const uint8_t *data, size_t size)
 {
     mt_text said = {0};
     mt_table_print(&t, 0, 0, &said);
     mt_table_csv(&t, &said);
     DEMAND(!t.failed && !said.failed);
-    fuzz_demand_finite_words(&said, data, size);
+    fuzz_requirement_finite_words(&said, data, size);
     mt_text_free(&said);
     mt_table_free(&t);
 }
 
-static void demand_told(const mt_result *r, const uint8_t *data, size_t size)
+static void requirement_told(const mt_result *r, const uint8_t *data, size_t size)
 {
     mt_text said = {0};
     mt_err err = {.code = MT_OK};
@@ -150,15 +150,15 @@ static void demand_told(const mt_result *r, const uint8_t *data, size_t size)
     mt_text_free(&said);
     mt_report_summary(r, true, 0, &said);
     DEMAND(!said.failed);
-    fuzz_demand_finite_words(&said, data, size);
+    fuzz_requirement_finite_words(&said, data, size);
     mt_text_free(&said);
     mt_report_html_told(r, &said);
     DEMAND(!said.failed);
-    fuzz_demand_finite_words(&said, data, size);
+    fuzz_requirement_finite_words(&said, data, size);
     mt_text_free(&said);
-    demand_table(mt_report_designs(r), data, size);
-    demand_table(mt_report_published(r), data, size);
-    demand_table(mt_report_trade(r), data, size);
+    requirement_table(mt_report_designs(r), data, size);
+    requirement_table(mt_report_published(r), data, size);
+    requirement_table(mt_report_trade(r), data, size);
 }
 
 static void answer(mt_study *study, const uint8_t *data, size_t size)
@@ -166,20 +166,21 @@ static void answer(mt_study *study, const uint8_t *data, size_t size)
     mt_result *result = NULL;
     mt_err err = {.code = MT_OK};
     mt_solve_options opt = {.size = sizeof opt};
-    opt.stop = wish;
+    opt.stop = request;
     opt.progress = hear_progress;
     study->search.starts = 1;
     study->search.max_evaluations = EVALUATIONS;
     study->recommendations = 1;
-    study->spread.factor = study->n_variables > 2 ? nan("") : study->spread.factor;
+    study->weight_sensitivity.factor =
+        study->n_variables > 2 ? nan("") : study->weight_sensitivity.factor;
     start_clock();
     const mt_status rc = mt_study_solve(study, &opt, &result, &err);
     if (rc != MT_OK) {
         DEMAND(result == NULL);
-        demand_failed(rc, &err);
+        requirement_failed(rc, &err);
         return;
     }
-    demand_told(result, data, size);
+    requirement_told(result, data, size);
     mt_result_delete(result);
 }
 

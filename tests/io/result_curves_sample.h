@@ -14,8 +14,9 @@ static mt_result_extreme EXTREMES[] = {
     {"resonance", 22.1012345678901, 0.0, 0.0, 22.0, 0.0},
     {"antiresonance", 30.0, 0.1 + 0.2, -12.5, 0.0, 0.0},
 };
-static mt_result_shaken_tone SHAKEN_TONES[] = {{"4P", 17.2, 3.25, 1e-12, true}};
-static mt_result_shaken SHAKEN = {"finite", true, 1.5, 1e-13, 3.25, 7.75, 1, SHAKEN_TONES};
+static mt_result_forced_response_tone SHAKEN_TONES[] = {{"4P", 17.2, 3.25, 1e-12, true}};
+static mt_result_forced_response SHAKEN = {"finite", true, 1.5, 1e-13,
+                                           3.25,     7.75, 1,   SHAKEN_TONES};
 static mt_design_curve DESIGN_CURVES[] = {
     {.pointer = "/responses/0",
      .configuration = "installed",

@@ -56,13 +56,13 @@ static mt_result_digest INPUTS[] = {{"study.json", SHA256}};
 static mt_result_override OVERRIDES[] = {{"parameter", "l", "m", "mm", 1e-3, 0.5, 0.25}};
 static mt_result_step HISTORY[] = {{1, 1, 3, 0.5, 12.5, false}, {2, 1, 1000, 0.25, 0.0, true}};
 static mt_result_digest OUTPUTS[] = {{"report.html", SHA256}};
-static mt_doubt DOUBTS[] = {{.kind = "margin",
-                             .text = "a margin of 0.1 %",
-                             .level = MT_LEVEL_DOUBT,
-                             .file = "study_1.json",
-                             .line = 12,
-                             .column = 3}};
-static mt_doubt FACTS[] = {
+static mt_warning DOUBTS[] = {{.kind = "margin",
+                               .text = "a margin of 0.1 %",
+                               .level = MT_LEVEL_WARNING,
+                               .file = "study_1.json",
+                               .line = 12,
+                               .column = 3}};
+static mt_warning FACTS[] = {
     {.kind = "free_motion", .text = "2 free motions", .configuration = "installed"}};
 static mt_result_assumption ASSUMPTIONS[] = {{"l", "m", "mm", 1e-3, 0.25, NULL, true}};
 static double DESIGN[] = {1e4, 0.25};
@@ -95,8 +95,8 @@ typedef struct sample {
     mt_result_frequency frequency;
     mt_recommendation recommendation;
     mt_unchecked unchecked;
-    mt_undetermined undetermined;
-    mt_result_spread spread;
+    mt_unidentifiable_direction unidentifiable;
+    mt_result_weight_sensitivity weight_sensitivity;
     mt_certificate certificate;
     mt_tolerance_box box;
     mt_trade_point point;
@@ -146,7 +146,7 @@ static mt_result_clearance CLEARANCES[] = {
      .percent = 30.0,
      .side = "above"},
 };
-static mt_result_gap GAPS[] = {
+static mt_result_mode_placement GAPS[] = {
     {.id = 1, .configuration = "installed", .band = "4P of UH-60", .modes_below = 1},
 };
 static mt_result_motion MOTIONS[] = {
@@ -225,8 +225,8 @@ static void fill_bands(sample *s)
     r->clearance_percent = 12.5;
     r->n_clearances = MT_COUNT(CLEARANCES);
     r->clearances = CLEARANCES;
-    r->n_gaps = MT_COUNT(GAPS);
-    r->gaps = GAPS;
+    r->n_placements = MT_COUNT(GAPS);
+    r->placements = GAPS;
     r->n_motions = MT_COUNT(MOTIONS);
     r->motions = MOTIONS;
     r->n_responses = MT_COUNT(RESPONSES);
@@ -260,8 +260,8 @@ static void fill_run(mt_result *r)
                              .spent = {1000, 100, 14, 20, 30, 70, 123456789},
                              .starts = 16,
                              .distinct_designs = 9,
-                             .found_once = 3,
-                             .estimated_missing = 1.5,
+                             .singletons = 3,
+                             .estimated_unseen = 1.5,
                              .n_history = MT_COUNT(HISTORY),
                              .history = HISTORY,
                              .n_overrides = MT_COUNT(OVERRIDES),
@@ -284,7 +284,7 @@ static inline void fill_published(sample *s)
     s->published[0].kind = "parameter";
     s->published[0].published = 0.2;
     s->published[0].computed = 0.2;
-    s->published[0].demand = "within 1 %";
+    s->published[0].requirement = "within 1 %";
     s->published[0].holds = true;
     s->published[1] = s->published[0];
     s->published[1].kind = "status";
@@ -311,19 +311,19 @@ static inline bool make_sample(sample *s)
     fill_design(s, &s->recommendation);
     s->recommendation.rank = 1;
     s->unchecked = (mt_unchecked){DIRECTION, "M_SAU = 0.5 kg"};
-    s->undetermined = (mt_undetermined){DIRECTION, "M_SAU", 1e-5};
-    s->spread = (mt_result_spread){.parameter = "M_SAU",
-                                   .unit = "kg",
-                                   .display_unit = NULL,
-                                   .display_factor = nan(""),
-                                   .value = 0.4,
-                                   .low = 0.3,
-                                   .high = 0.4,
-                                   .low_percent = -25.0,
-                                   .high_percent = nan(""),
-                                   .low_goal = "/goals/0",
-                                   .low_factor = 0.25,
-                                   .high_factor = nan("")};
+    s->unidentifiable = (mt_unidentifiable_direction){DIRECTION, "M_SAU", 1e-5};
+    s->weight_sensitivity = (mt_result_weight_sensitivity){.parameter = "M_SAU",
+                                                           .unit = "kg",
+                                                           .display_unit = NULL,
+                                                           .display_factor = nan(""),
+                                                           .value = 0.4,
+                                                           .low = 0.3,
+                                                           .high = 0.4,
+                                                           .low_percent = -25.0,
+                                                           .high_percent = nan(""),
+                                                           .low_goal = "/goals/0",
+                                                           .low_factor = 0.25,
+                                                           .high_factor = nan("")};
     s->certificate = mt_certificate_default();
     s->certificate.kind = "range";
     s->certificate.text = "Mode 1 stays below 20 Hz.";
@@ -354,10 +354,10 @@ static inline bool make_sample(sample *s)
     r->recommendations = &s->recommendation;
     r->n_unchecked = 1;
     r->unchecked = &s->unchecked;
-    r->n_undetermined = 1;
-    r->undetermined = &s->undetermined;
-    r->n_spread = 1;
-    r->spread = &s->spread;
+    r->n_unidentifiable = 1;
+    r->unidentifiable = &s->unidentifiable;
+    r->n_weight_sensitivity = 1;
+    r->weight_sensitivity = &s->weight_sensitivity;
     r->n_certificates = 1;
     r->certificates = &s->certificate;
     r->n_published = 2;

@@ -3,8 +3,8 @@
  * allocation fails. What they say is tested by tests/cli/test_doubts.py. */
 #include <unistd.h>
 
-#include "answer/doubts.h"
 #include "answer/examine.h"
+#include "answer/warnings.h"
 #include "io/io.h"
 #include "mt_alloc.h"
 #include "mt_test.h"
@@ -17,7 +17,7 @@ static mt_status examine(const char *name, int *found)
     mt_status rc = mt_study_load(name, NULL, &study, NULL, &err);
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     if (rc == MT_OK) {
-        mt_doubt_list list = mt_doubt_list_default(&mem);
+        mt_warning_list list = mt_warning_list_default(&mem);
         rc = mt_study_examine(study, HUGE_VAL, &list, &err);
         *found = list.n;
     }

@@ -41,12 +41,12 @@ static void put(mt_journal *j, int key, int changed)
 {
     uint64_t words[WORDS];
     char name[MT_KEY_SIZE];
-    mt_ledger *const ledger = mt_journal_ledger(j, 0, 0);
+    mt_checkpoint_store *const store = mt_journal_checkpoint_store(j, 0, 0);
     for (int i = 0; i < WORDS; i++) {
         words[i] = word_of(key, i) + (uint64_t)changed;
     }
     key_of(key, name);
-    ledger->put(ledger->context, name, words, (size_t)(key % (WORDS + 1)));
+    store->put(store->context, name, words, (size_t)(key % (WORDS + 1)));
 }
 
 /* What was there; -1 where it failed. */
@@ -72,13 +72,13 @@ static void write_keys(mt_test *t, int from, int to, bool adds)
 /* How many records come back as they were put; -1 where one is another. */
 static int intact(mt_journal *j)
 {
-    const mt_ledger *const ledger = mt_journal_ledger(j, 0, 0);
+    const mt_checkpoint_store *const store = mt_journal_checkpoint_store(j, 0, 0);
     int found = 0;
     for (int k = 0; k < KEYS; k++) {
         char name[MT_KEY_SIZE];
         size_t n = 0;
         key_of(k, name);
-        const uint64_t *const words = ledger->find(ledger->context, name, &n);
+        const uint64_t *const words = store->find(store->context, name, &n);
         if (words == NULL) {
             continue;
         }
@@ -244,7 +244,7 @@ static void journal__is_a_file_from_its_first_record_on(mt_test *t)
         (void)remove(path);
         mt_journal *const j = opened(t, IDENTITY);
         CHECK_INT(t, write_to(j, false), MT_JOURNAL_NEW);
-        (void)mt_journal_ledger(j, 1, 2);
+        (void)mt_journal_checkpoint_store(j, 1, 2);
         if (done == 1) {
             mt_journal_begin(j);
         }

@@ -336,10 +336,10 @@ static void json__values_and_places_are_found_by_address(mt_test *t)
     CHECK_INT(t, mt_json_type_of(doc, c), MT_JSON_NULL);
     CHECK_STR(t, mt_json_name(doc, c), "c");
     CHECK_INT(t, mt_json_member(doc, MT_JSON_ROOT, "c"), MT_NO_ADDR);
-    mt_json_place(doc, c, &line, &column);
+    mt_json_locate(doc, c, &line, &column);
     CHECK_INT(t, line, 3);
     CHECK_INT(t, column, 14);
-    mt_json_place(doc, mt_json_name_addr(doc, c), &line, &column);
+    mt_json_locate(doc, mt_json_name_addr(doc, c), &line, &column);
     CHECK_INT(t, column, 9);
     mt_json_pointer(doc, c, &pointer);
     CHECK_STR(t, pointer.s, "/b/c");

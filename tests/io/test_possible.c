@@ -159,7 +159,7 @@ static void drive_file(mt_test *t, subject *s, const char *path)
             const char *at = file.bytes;
             /* a few of each kind in each file */
             if (is_product(m, i) || of_row[m->nums[i].possible]++ % EVERY != 0 ||
-                !mt_model_place(m, m->nums[i].addr, &line, &column)) {
+                !mt_model_locate(m, m->nums[i].addr, &line, &column)) {
                 continue;
             }
             for (int k = 1; k < line; k++) {

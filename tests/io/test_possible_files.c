@@ -82,7 +82,7 @@ static const struct beside {
     {"tone", "acceleration_g", 0, MT_SEVERITY_ERROR, "1e31", "1", "must be within"},
 };
 /* What only an analysis of the model can judge is driven by tests/cli/test_doubts.py. */
-static const char *const ANALYSED[] = {"doubt_target", "doubt_reference"};
+static const char *const ANALYSED[] = {"warn_target", "warn_reference"};
 
 static const struct kind {
     const char *schema;

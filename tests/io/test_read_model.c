@@ -47,10 +47,10 @@ static void model__items_of_a_plane_model_are_read(mt_test *t)
     CHECK_NEAR(t, constant(m, m->parameters[0].value), 9.81, 0.0);
     int line = 0;
     int column = 0;
-    CHECK(t, mt_model_place(m, m->nums[m->parameters[2].value].addr, &line, &column));
+    CHECK(t, mt_model_locate(m, m->nums[m->parameters[2].value].addr, &line, &column));
     CHECK_INT(t, line, 12);
     CHECK_INT(t, column, 10);
-    CHECK(t, !mt_model_place(m, MT_NO_ADDR, &line, &column));
+    CHECK(t, !mt_model_locate(m, MT_NO_ADDR, &line, &column));
     CHECK_INT(t, mt_model_find_parameter(m, "k"), 2);
     CHECK_INT(t, mt_model_find_parameter(m, "K"), MT_ABSENT);
     const mt_body *const crank = &m->bodies[find_body(m, "crank")];

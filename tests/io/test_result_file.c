@@ -69,7 +69,7 @@ static void result_file__comes_back_whole(mt_test *t)
         CHECK_INT(t, mt_result_write(r, &again, NULL), MT_OK);
         CHECK_STR(t, again.s, text.s);
         CHECK(t, isnan(r->recommendations[0].misfit));
-        CHECK(t, r->doubts[0].level == MT_LEVEL_DOUBT && r->facts[0].level == MT_LEVEL_FACT);
+        CHECK(t, r->doubts[0].level == MT_LEVEL_WARNING && r->facts[0].level == MT_LEVEL_NOTE);
     }
     mt_result_delete(r);
     mt_text_free(&again);

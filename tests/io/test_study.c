@@ -130,12 +130,12 @@ static void check_measured(mt_test *t, const mt_study *s)
     }
     const mt_measurement *const m = &s->measurements[0];
     CHECK_INT(t, g->n_configurations, 2);
-    CHECK_STR(t, g->shake->input.s, "s1.x");
-    CHECK_STR(t, g->shake->output.s, "s2.x:acceleration");
-    CHECK_INT(t, g->shake->measurement, 0);
-    CHECK(t, g->shake->coherence);
-    CHECK_NEAR(t, g->shake->lower_hz, 0.5, TOL);
-    CHECK_NEAR(t, g->shake->upper_hz, 3.0, TOL);
+    CHECK_STR(t, g->response_limit->input.s, "s1.x");
+    CHECK_STR(t, g->response_limit->output.s, "s2.x:acceleration");
+    CHECK_INT(t, g->response_limit->measurement, 0);
+    CHECK(t, g->response_limit->coherence);
+    CHECK_NEAR(t, g->response_limit->lower_hz, 0.5, TOL);
+    CHECK_NEAR(t, g->response_limit->upper_hz, 3.0, TOL);
     CHECK_NEAR(t, g->weight, 2.0, TOL);
     CHECK_NEAR(t, m->factor, 2.0, TOL);
     if (CHECK_INT(t, m->n_responses, 1) && CHECK_INT(t, m->responses[0].n_lines, 3)) {
@@ -216,7 +216,7 @@ static void study__every_member_arrives(mt_test *t)
     CHECK_INT(t, s->search.max_evaluations, 5000);
     CHECK_INT(t, s->search.max_modal_solutions, 90000);
     CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
-    CHECK_NEAR(t, s->spread.factor, 4.0, 0.0);
+    CHECK_NEAR(t, s->weight_sensitivity.factor, 4.0, 0.0);
     if (CHECK_INT(t, s->n_goals, 8)) {
         check_frequency_goals(t, s);
         check_other_goals(t, s);
@@ -251,7 +251,7 @@ static void study__defaults_are_filled_in(mt_test *t)
         CHECK_INT(t, s->recommendations, 5);
         CHECK_INT(t, s->search.seed, 1);
         CHECK_INT(t, s->search.starts, 0);
-        CHECK(t, isnan(s->spread.factor));
+        CHECK(t, isnan(s->weight_sensitivity.factor));
         CHECK_INT(t, s->n_objectives, 0); /* nothing may change */
     }
     mt_study_delete(s);

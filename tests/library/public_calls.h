@@ -38,7 +38,7 @@ static mt_diagnostics *list;
 static mt_diagnostics *wrong; /* of a file that is */
 static mt_err said;
 static const double one[1] = {1.0};
-static int finish = MT_WISH_FINISH;
+static int finish = MT_STOP_REQUEST_FINISH;
 
 /* Argument number k of a call where pointer number `null` is to be NULL. */
 #define ARG(k, pointer) (null == (k) ? NULL : (pointer))
@@ -230,10 +230,10 @@ static mt_status call_vibration_delete(int null)
 }
 
 TELLS(vibration_rms, isfinite(mt_vibration_rms(ARG(0, profile))))
-static mt_vibration_answer shaken[8];
+static mt_vibration_answer forced_response[8];
 GIVES(mechanism_vibration,
       mt_mechanism_vibration(ARG(0, mechanism), ARG(1, &ports), ARG(2, profile), 8,
-                             ARG(3, shaken), ARG(4, &said)))
+                             ARG(3, forced_response), ARG(4, &said)))
 static const mt_motion_options moves = {
     .size = sizeof moves, .duration_s = 0.01, .sample_s = 0.01};
 static const char *const seen[] = {"pivot"};
@@ -269,7 +269,8 @@ TELLS(study_variable_name, mt_study_variable_name(ARG(0, study), 0) != NULL)
 TELLS(study_variable_original, isfinite(mt_study_variable_original(ARG(0, study), 0)))
 TELLS(study_variable_lower, isfinite(mt_study_variable_lower(ARG(0, study), 0)))
 TELLS(study_variable_upper, isfinite(mt_study_variable_upper(ARG(0, study), 0)))
-TELLS(wish_at, mt_wish_at(ARG(0, &finish)) == (null == 0 ? MT_WISH_NONE : MT_WISH_FINISH))
+TELLS(wish_at, mt_stop_request_at(ARG(0, &finish)) ==
+                   (null == 0 ? MT_STOP_REQUEST_NONE : MT_STOP_REQUEST_FINISH))
 static mt_status call_study_solve(int null)
 {
     mt_result *out = null == 0 ? result : NULL;

@@ -449,7 +449,7 @@ typedef struct share {
     double hz[TASKS];
 } share;
 
-static mt_status one_task(void *context, int worker, int task, mt_scope *own, mt_err *err)
+static mt_status one_task(void *context, int worker, int task, mt_task_path *own, mt_err *err)
 {
     (void)own;
     share *const s = context;

@@ -56,7 +56,7 @@ static double value_of(const void *context, int n, const double *inputs)
     }
     const mt_state *const at = state_of(j->s);
     double sum = 1.0 + (j->pull_trim * at->equilibrium.trim_force);
-    mt_poses_way(sys, j->base, at->at.pose, way);
+    mt_poses_increment(sys, j->base, at->at.pose, way);
     for (int i = 0; i < sys->nq; i++) {
         sum += j->pull[i] * way[i];
     }

@@ -111,7 +111,7 @@ static void rods__of_every_kind_give_one_mechanism(mt_test *t)
         const char *name;
         rod_kind kind;
         rod_kind reference;
-        int idle;
+        int free_spins;
         int rigid;
     } rows[] = {
         {"without mass", BODY, DISTANCE, RODS, 0},
@@ -126,7 +126,7 @@ static void rods__of_every_kind_give_one_mechanism(mt_test *t)
         if (mech_must(t, hung_plate(t, rows[i / 2].reference, g), NULL, "", &reference) &&
             mech_must(t, hung_plate(t, rows[i / 2].kind, g), NULL, "", &s)) {
             const double hz[2] = {mech_hz(&reference, 1), mech_hz(&reference, 2)};
-            CHECK_INT(t, mt_linear_idle(s.a->lin, NULL), rows[i / 2].idle);
+            CHECK_INT(t, mt_linear_free_spins(s.a->lin, NULL), rows[i / 2].free_spins);
             mech_expect(t, &s, 2, hz, rows[i / 2].rigid, TOL);
             mech_free(&s);
         }
@@ -188,7 +188,7 @@ static void rods__spin_idly_as_a_whole_or_not_at_all(mt_test *t)
         "\"held\": {}}}";
     static const struct {
         const char *name;
-        int idle;
+        int free_spins;
         int rigid;
     } rows[] = {
         {"idle", 1, 0},
@@ -200,7 +200,7 @@ static void rods__spin_idly_as_a_whole_or_not_at_all(mt_test *t)
         mech s;
         mt_test_row(t, "%s", rows[i].name);
         if (mech_must(t, mech_parse(t, model), rows[i].name, "", &s)) {
-            CHECK_INT(t, mt_linear_idle(s.a->lin, NULL), rows[i].idle);
+            CHECK_INT(t, mt_linear_free_spins(s.a->lin, NULL), rows[i].free_spins);
             for (int k = 0; k < 2 && i == 0; k++) {
                 hz[k] = mech_hz(&s, k + 1);
             }
@@ -214,12 +214,12 @@ static void rods__spin_idly_as_a_whole_or_not_at_all(mt_test *t)
     mech s;
     mt_test_row(t, "sprung: a spring to a point of the axis leaves it idle");
     if (mech_must(t, mech_parse(t, model), "sprung", "", &s)) {
-        CHECK_INT(t, mt_linear_idle(s.a->lin, NULL), 1);
+        CHECK_INT(t, mt_linear_free_spins(s.a->lin, NULL), 1);
     }
     mech_free(&s);
     mt_test_row(t, "held: a torsional spring holds it, and it is condensed");
     if (mech_must(t, mech_parse(t, model), "held", "", &s)) {
-        CHECK_INT(t, mt_linear_idle(s.a->lin, NULL), 0);
+        CHECK_INT(t, mt_linear_free_spins(s.a->lin, NULL), 0);
         CHECK_INT(t, s.a->modes.n_condensed, 1);
     }
     mech_free(&s);
@@ -273,7 +273,7 @@ static void rods__couple_crank_and_rocker_in_every_position(mt_test *t)
         if (mech_must(t, mech_parse(t, distance), names[i], "", &reference) &&
             mech_must(t, mech_parse(t, body), names[i], "", &s)) {
             const double hz = mech_hz(&reference, 1);
-            CHECK_INT(t, mt_linear_idle(s.a->lin, NULL), 1);
+            CHECK_INT(t, mt_linear_free_spins(s.a->lin, NULL), 1);
             mech_expect(t, &s, i < 2 ? 1 : 0, &hz, 0, TOL);
             for (int k = 0; k < 2; k++) {
                 CHECK_NEAR_ABS(t, creal(mt_linear_position(s.a->lin)->at.pose[k].x[2]),

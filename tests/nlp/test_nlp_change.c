@@ -34,7 +34,7 @@ static void nlp_change__both_minima_are_kept_and_vertices_are_not(mt_test *t)
     const mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
     REQUIRE(t, c.result.n_solutions == 2);
-    CHECK_INT(t, c.result.n_undetermined, 1);
+    CHECK_INT(t, c.result.n_unidentifiable, 1);
     for (int i = 0; i < 2; i++) {
         const mt_nlp_solution *const s = &c.result.solutions[i];
         CHECK_NEAR(t, s->t[0], 0.4, 1e-11);
@@ -309,17 +309,17 @@ static void nlp_change__combination_without_influence_is_named(mt_test *t)
     c.origin[0] = 0.1;
     mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
-    REQUIRE(t, c.result.n_undetermined == 1);
-    CHECK_NEAR(t, c.result.undetermined[0], sqrt(0.5), 1e-12);
-    CHECK_NEAR(t, c.result.undetermined[1], -sqrt(0.5), 1e-12);
-    CHECK(t, c.result.undetermined_effect[0] < 1e-6);
+    REQUIRE(t, c.result.n_unidentifiable == 1);
+    CHECK_NEAR(t, c.result.unidentifiable[0], sqrt(0.5), 1e-12);
+    CHECK_NEAR(t, c.result.unidentifiable[1], -sqrt(0.5), 1e-12);
+    CHECK(t, c.result.unidentifiable_effect[0] < 1e-6);
     REQUIRE(t, c.result.n_solutions == 1);
     const double s = asin(0.5); /* both move by (s - 0.1)/2 */
     CHECK_NEAR(t, c.result.solutions[0].t[0], 0.1 + (s - 0.1) / 2, 1e-9);
     CHECK_NEAR(t, c.result.solutions[0].t[1], (s - 0.1) / 2, 1e-9);
     opt.least_change = false; /* the objective counts: it does see the direction */
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
-    CHECK_INT(t, c.result.n_undetermined, 0);
+    CHECK_INT(t, c.result.n_unidentifiable, 0);
     mt_arena_free(&c.mem);
 }
 

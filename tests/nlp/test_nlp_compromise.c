@@ -35,7 +35,7 @@ static void nlp_compromise__contradicting_targets_are_averaged(mt_test *t)
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         CHECK(t, c.result.compromise);
         CHECK_INT(t, c.result.n_solutions, 1);
-        CHECK_INT(t, c.result.n_undetermined, n - 1);
+        CHECK_INT(t, c.result.n_unidentifiable, n - 1);
         const mt_nlp_solution *const s = &c.result.solutions[0];
         CHECK_NEAR(t, s->t[0], 0.3, 1e-10);
         CHECK_NEAR(t, s->squares, 0.04 + 0.01 + 0.09, 1e-10);
@@ -135,8 +135,8 @@ static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
-/* One demand is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of all
- * equal compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
+/* One requirement is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of
+ * all equal compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
 static mt_status line(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
                       mt_err *err)
 {
@@ -162,7 +162,7 @@ static void nlp_compromise__of_equal_ones_the_least_change_is_taken(mt_test *t)
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_solutions, 1);
-    CHECK_INT(t, c.result.n_undetermined, 1); /* (0, 2, -1)/sqrt 5 */
+    CHECK_INT(t, c.result.n_unidentifiable, 1); /* (0, 2, -1)/sqrt 5 */
     const mt_nlp_solution *const s = &c.result.solutions[0];
     CHECK(t, s->t[0] == 2 && s->start == 0);
     CHECK_NEAR(t, s->t[1], 0.2, 1e-9);
@@ -198,14 +198,14 @@ static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_solutions, 1);
-    CHECK_INT(t, c.result.n_undetermined, 0);
+    CHECK_INT(t, c.result.n_unidentifiable, 0);
     CHECK_NEAR(t, c.result.solutions[0].t[1], 0.6, 1e-8);
     CHECK_NEAR(t, c.result.solutions[0].t[2], 0.8, 1e-8);
     mt_arena_free(&c.mem);
 }
 
 /* t_0 = 0 and t_0 = 0.1 - 1e-4 t_1: t_1 at its bound would miss by 7e-5 less, which is less
- * than the demands' tolerance of 1e-3. */
+ * than the requirements' tolerance of 1e-3. */
 static mt_status weakly_seen(void *context, const double *t, bool with_gradient,
                              mt_nlp_values *out, mt_err *err)
 {
@@ -224,7 +224,7 @@ static mt_status weakly_seen(void *context, const double *t, bool with_gradient,
     return MT_OK;
 }
 
-static void nlp_compromise__what_demands_do_not_see_stays_at_the_origin(mt_test *t)
+static void nlp_compromise__what_requirements_do_not_see_stays_at_the_origin(mt_test *t)
 {
     nlp_case c = {0};
     case_begin(&c, 2, weakly_seen, -1, 1);
@@ -235,7 +235,7 @@ static void nlp_compromise__what_demands_do_not_see_stays_at_the_origin(mt_test 
     const mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
     CHECK(t, c.result.compromise);
-    CHECK_INT(t, c.result.n_undetermined, 1);
+    CHECK_INT(t, c.result.n_unidentifiable, 1);
     CHECK(t, c.result.solutions[0].t[1] == 0.3);
     CHECK_NEAR(t, c.result.solutions[0].t[0], 0.05 - (0.5e-4 * 0.3), 1e-6);
     mt_arena_free(&c.mem);
@@ -247,4 +247,4 @@ MT_TEST_MAIN(MT_TEST(nlp_compromise__contradicting_targets_are_averaged),
              MT_TEST(nlp_compromise__excluding_inequalities_meet_half_way),
              MT_TEST(nlp_compromise__of_equal_ones_the_least_change_is_taken),
              MT_TEST(nlp_compromise__least_change_also_on_a_curve),
-             MT_TEST(nlp_compromise__what_demands_do_not_see_stays_at_the_origin))
+             MT_TEST(nlp_compromise__what_requirements_do_not_see_stays_at_the_origin))

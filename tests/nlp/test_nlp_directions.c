@@ -27,9 +27,9 @@ static void nlp_directions__a_combination_through_a_corner_is_still_found(mt_tes
     c.nlp.n_eq = 1;
     const mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
-    REQUIRE(t, c.result.n_solutions == 1 && c.result.n_undetermined == 1);
-    CHECK_NEAR(t, fabs(c.result.undetermined[0]), sqrt(0.5), 1e-12);
-    CHECK_NEAR(t, c.result.undetermined[0], c.result.undetermined[1], 1e-12);
+    REQUIRE(t, c.result.n_solutions == 1 && c.result.n_unidentifiable == 1);
+    CHECK_NEAR(t, fabs(c.result.unidentifiable[0]), sqrt(0.5), 1e-12);
+    CHECK_NEAR(t, c.result.unidentifiable[0], c.result.unidentifiable[1], 1e-12);
     CHECK_NEAR_ABS(t, c.result.solutions[0].t[0], 0, 1e-12);
     mt_arena_free(&c.mem);
 }
@@ -49,7 +49,7 @@ static void nlp_directions__no_room_at_the_solution_is_no_direction(mt_test *t)
         const mt_nlp_options opt = mt_nlp_options_default();
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         REQUIRE(t, c.result.n_solutions == 1);
-        CHECK_INT(t, c.result.n_undetermined, SHORT[k] > 1e-6);
+        CHECK_INT(t, c.result.n_unidentifiable, SHORT[k] > 1e-6);
         mt_arena_free(&c.mem);
     }
 }
@@ -131,11 +131,11 @@ static void nlp_directions__a_plane_has_one_basis(mt_test *t)
         memcpy(c.target + 3, WEIGHT, sizeof WEIGHT);
         mt_test_row(t, "rounding %d, said %d times", i % MT_COUNT(rounding), c.nlp.n_res);
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
-        REQUIRE(t, c.result.n_undetermined == 2);
+        REQUIRE(t, c.result.n_unidentifiable == 2);
         for (int k = 0; k < MT_COUNT(wanted); k++) {
             mt_test_row(t, "rounding %d, said %d times, entry %d", i % MT_COUNT(rounding),
                         c.nlp.n_res, k);
-            CHECK(t, fabs(c.result.undetermined[k] - wanted[k]) <= 1e-12);
+            CHECK(t, fabs(c.result.unidentifiable[k] - wanted[k]) <= 1e-12);
         }
         mt_arena_free(&c.mem);
     }
@@ -178,8 +178,8 @@ static void nlp_directions__an_objective_of_0_sees_what_it_changes_with(mt_test 
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         REQUIRE(t, c.result.n_solutions >= 1);
         CHECK(t, c.result.solutions[0].t[0] == 0.0);
-        if (CHECK_INT(t, c.result.n_undetermined, rows[i].n) && rows[i].n == 1) {
-            CHECK(t, c.result.undetermined[0] == 0.0 && c.result.undetermined[1] == 1.0);
+        if (CHECK_INT(t, c.result.n_unidentifiable, rows[i].n) && rows[i].n == 1) {
+            CHECK(t, c.result.unidentifiable[0] == 0.0 && c.result.unidentifiable[1] == 1.0);
         }
         mt_arena_free(&c.mem);
     }
@@ -247,7 +247,7 @@ static void nlp_directions__flat_is_what_is_open_beside_single_variables(mt_test
         mt_test_row(t, "%s", rows[i].name);
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         REQUIRE(t, c.result.n_solutions >= 1);
-        CHECK_INT(t, c.result.n_undetermined, rows[i].n);
+        CHECK_INT(t, c.result.n_unidentifiable, rows[i].n);
         CHECK_INT(t, c.result.solutions[0].flat, rows[i].flat);
         mt_arena_free(&c.mem);
     }
@@ -389,8 +389,8 @@ static void nlp_directions__directions_are_the_best_solutions(mt_test *t)
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
     REQUIRE(t, c.result.n_solutions >= 1);
     CHECK_NEAR_ABS(t, c.result.solutions[0].f, 1.0, 1e-3);
-    REQUIRE(t, c.result.n_undetermined == 1);
-    CHECK(t, c.result.undetermined[0] == 0.0 && c.result.undetermined[1] == 1.0);
+    REQUIRE(t, c.result.n_unidentifiable == 1);
+    CHECK(t, c.result.unidentifiable[0] == 0.0 && c.result.unidentifiable[1] == 1.0);
     CHECK(t, c.result.solutions[0].t[1] == 0.75);
     mt_arena_free(&c.mem);
 }

@@ -57,7 +57,7 @@ static void nlp_identification__linear_matches_closed_form(mt_test *t)
     }
     CHECK_NEAR(t, s->mult_eq[0], lambda, 1e-9);
     CHECK(t, s->kkt < 1e-9 && s->feasible);
-    CHECK_INT(t, c.result.n_undetermined, 0);
+    CHECK_INT(t, c.result.n_unidentifiable, 0);
     mt_arena_free(&c.mem);
 }
 
@@ -168,7 +168,7 @@ static void nlp_identification__misfit_with_an_unseen_parameter(mt_test *t)
     c.origin[2] = -0.25;
     const mt_nlp_options opt = mt_nlp_options_default();
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
-    CHECK_INT(t, c.result.n_undetermined, 1);
+    CHECK_INT(t, c.result.n_unidentifiable, 1);
     REQUIRE(t, c.result.n_solutions == 1);
     const mt_nlp_solution *const s = &c.result.solutions[0];
     CHECK(t, s->t[2] == -0.25);
@@ -218,7 +218,7 @@ static void nlp_identification__what_an_exact_fit_does_not_see_stays_at_the_orig
         c.origin[1] = -0.2;
         const mt_nlp_options opt = mt_nlp_options_default();
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
-        CHECK_INT(t, c.result.n_undetermined, 1);
+        CHECK_INT(t, c.result.n_unidentifiable, 1);
         CHECK_INT(t, c.result.n_solutions, 1);
         CHECK_NEAR(t, c.result.solutions[0].t[0], log(y) + 0.25, 1e-12);
         CHECK_NEAR(t, c.result.solutions[0].t[1], log(y) - 0.25, 1e-12);

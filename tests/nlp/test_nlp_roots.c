@@ -63,7 +63,7 @@ static void nlp_roots__chain_finds_both_spring_pairs_ranked(mt_test *t)
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);
     CHECK_INT(t, c.result.n_solutions, 2);
     CHECK(t, !c.result.compromise);
-    CHECK_INT(t, c.result.n_undetermined, 0);
+    CHECK_INT(t, c.result.n_unidentifiable, 0);
     CHECK_INT(t, c.result.stop, MT_STOP_DONE);
     CHECK_INT(t, c.result.evals, c.calls);
     static const double want[2][2] = {{3, 1}, {2, 1.5}};
@@ -90,7 +90,7 @@ static void nlp_roots__double_root_is_one_singular_solution(mt_test *t)
         opt.seed = seed;
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         CHECK_INT(t, c.result.n_solutions, 1);
-        CHECK_INT(t, c.result.n_undetermined, 0);
+        CHECK_INT(t, c.result.n_unidentifiable, 0);
         if (c.result.n_solutions > 0) {
             const mt_nlp_solution *const s = &c.result.solutions[0];
             CHECK_NEAR(t, exp(s->t[0]), 2, 1e-4);
@@ -145,15 +145,15 @@ static void nlp_roots__variable_without_influence_stays_exactly(mt_test *t)
         const mt_nlp_options opt = mt_nlp_options_default();
         REQUIRE(t, case_solve(&c, &opt) == MT_OK);
         CHECK_INT(t, c.result.n_solutions, 2);
-        CHECK_INT(t, c.result.n_undetermined, 1);
+        CHECK_INT(t, c.result.n_unidentifiable, 1);
         for (int i = 0; i < c.result.n_solutions; i++) {
             CHECK(t, c.result.solutions[i].t[2] == 0.123);
             CHECK(t, !c.result.solutions[i].singular);
         }
-        if (c.result.n_undetermined == 1) {
-            CHECK(t, c.result.undetermined[0] == 0 && c.result.undetermined[1] == 0 &&
-                         c.result.undetermined[2] == 1);
-            CHECK(t, c.result.undetermined_effect[0] == 0);
+        if (c.result.n_unidentifiable == 1) {
+            CHECK(t, c.result.unidentifiable[0] == 0 && c.result.unidentifiable[1] == 0 &&
+                         c.result.unidentifiable[2] == 1);
+            CHECK(t, c.result.unidentifiable_effect[0] == 0);
         }
         CHECK_NEAR(t, exp(c.result.solutions[0].t[0]), 3, 1e-8);
     }

@@ -79,22 +79,22 @@ static void steps__come_back_from_tape_as_they_were(mt_test *t)
     const mt_step two = step(7, -0.0, 0.25);
     mt_steps_add(&s, &one);
     mt_steps_add(&s, &two);
-    mt_tape written = {.words = NULL};
-    mt_steps_tape(&s, &written);
+    mt_serializer written = {.words = NULL};
+    mt_steps_serialize(&s, &written);
     for (size_t cut = 0; cut <= written.n; cut++) {
-        mt_tape read = mt_tape_of(written.words, cut);
+        mt_serializer read = mt_serializer_of(written.words, cut);
         mt_steps got = mt_steps_new(8, &mem);
-        mt_steps_tape(&got, &read);
+        mt_steps_serialize(&got, &read);
         const bool whole = cut == written.n;
-        CHECK(t, mt_tape_is_read(&read) == whole && got.n == (whole ? 2 : 0));
+        CHECK(t, mt_serializer_is_read(&read) == whole && got.n == (whole ? 2 : 0));
         CHECK(t, !whole || same_bytes(got.at, s.at, 2 * sizeof *s.at));
     }
-    mt_tape few = mt_tape_of(written.words, written.n);
+    mt_serializer few = mt_serializer_of(written.words, written.n);
     mt_steps none = mt_steps_new(8, &mem);
     none.most = 1; /* more than there is room for is no record */
-    mt_steps_tape(&none, &few);
+    mt_steps_serialize(&none, &few);
     CHECK(t, few.failed && none.n == 0);
-    mt_tape_free(&written);
+    mt_serializer_free(&written);
     mt_arena_free(&mem);
 }
 

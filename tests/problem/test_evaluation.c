@@ -36,7 +36,7 @@ static bool open_study(mt_test *t, const char *name, compiled *s)
         return false;
     }
     s->t = mt_arena_f64(&s->mem, (size_t)mt_workspace_nlp(s->w).n, 1);
-    return CHECK_INT(t, mt_case_values_init(s->w->c, &s->mem, &s->out, &err), MT_OK);
+    return CHECK_INT(t, mt_subproblem_values_init(s->w->c, &s->mem, &s->out, &err), MT_OK);
 }
 
 static void close_study(compiled *s)

@@ -30,13 +30,13 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
             const double h = 1e-7 * fmax(x, p->floor[0]);
             double back = nan("");
             mt_test_row(t, "x = %g", x);
-            mt_case_x(&p->whole, &at, &back);
+            mt_subproblem_x(&p->whole, &at, &back);
             CHECK_NEAR_ABS(t, back, x, ROUNDING * fmax(x, p->floor[0]));
             CHECK(t, at > before);
             /* a difference across the floor is wrong by the jump of the curvature,
              * h/floor^2/2 */
             CHECK_NEAR(t, (mt_problem_t(p, 0, x + h) - mt_problem_t(p, 0, x - h)) / (2.0 * h),
-                       1.0 / mt_problem_stretch_at(p, 0, x), 2e-7);
+                       1.0 / mt_problem_dx_dt_at(p, 0, x), 2e-7);
             before = at;
         }
         mt_test_row(t, "ends");

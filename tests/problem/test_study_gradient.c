@@ -56,7 +56,7 @@ static const mt_nlp_values *values_at(seen *s, int n, const double *t)
         }
     }
     if (n > VARIABLES || s->n == POINTS ||
-        mt_case_values_init(s->w->c, s->mem, &s->v[s->n], NULL) != MT_OK ||
+        mt_subproblem_values_init(s->w->c, s->mem, &s->v[s->n], NULL) != MT_OK ||
         mt_workspace_eval(s->w, t, false, &s->v[s->n], NULL) != MT_OK) {
         return NULL;
     }
@@ -108,7 +108,7 @@ static void check_stage(mt_test *t, mt_workspace *w, double *at, mt_arena *mem)
     const mt_nlp nlp = mt_workspace_nlp(w);
     seen s = {.w = w, .mem = mem};
     mt_nlp_values g;
-    CHECK_INT(t, mt_case_values_init(w->c, mem, &g, NULL), MT_OK);
+    CHECK_INT(t, mt_subproblem_values_init(w->c, mem, &g, NULL), MT_OK);
     if (CHECK_INT(t, mt_workspace_eval(w, at, true, &g, NULL), MT_OK)) {
         check_rows(t, &s, at, OBJECTIVE, 1, g.df);
         check_rows(t, &s, at, RESIDUAL, nlp.n_res, g.dr);
@@ -152,13 +152,14 @@ static void callback__has_exact_gradients(mt_test *t)
         CHECK_INT(t, s.p->n_in, 6);
         CHECK_INT(t, s.p->n_res, 9);
         CHECK_INT(t, s.p->n_aims, 4);
-        mt_case later;
-        CHECK_INT(t, mt_case_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
+        mt_subproblem later;
+        CHECK_INT(t, mt_subproblem_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
         for (int k = 0; k < s.p->n_aims; k++) {
             later.stage = k;
             check_stage(t, s.w, at, &s.mem);
-            mt_aim_hold(&later, s.w, k, 1.01 * mt_aim_value(s.w, k, NULL));
+            mt_objective_stage_hold(&later, s.w, k,
+                                    1.01 * mt_objective_stage_value(s.w, k, NULL));
         }
     }
     compiled_free(&s);
@@ -261,8 +262,8 @@ static void shaken_goals__have_exact_gradients(mt_test *t)
         double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03)};
         CHECK_INT(t, s.p->n_eq, 1);
         CHECK_INT(t, s.p->n_res, 1);
-        CHECK(t, s.p->demands[0].n_parts > 2);
-        CHECK_INT(t, s.p->n_in, s.p->demands[0].n_parts + 4);
+        CHECK(t, s.p->requirements[0].n_parts > 2);
+        CHECK_INT(t, s.p->n_in, s.p->requirements[0].n_parts + 4);
         check_stage(t, s.w, at, &s.mem);
     }
     compiled_free(&s);
@@ -283,23 +284,24 @@ static void shaken_objective__has_an_exact_gradient(mt_test *t)
                 "'objective': [{'minimise': 'vibration'}, {'minimise': 'change'}]",
                 &s)) {
         double at[6] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03), 51.5};
-        mt_case later;
+        mt_subproblem later;
         mt_nlp_values v;
         CHECK_INT(t, s.p->n_in, 1);
-        CHECK_INT(t, s.p->n_soft, s.p->demands[1].n_parts + 1);
-        CHECK_INT(t, mt_case_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
+        CHECK_INT(t, s.p->n_soft, s.p->requirements[1].n_parts + 1);
+        CHECK_INT(t, mt_subproblem_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
         for (int k = 0; k < s.p->n_aims; k++) {
             later.stage = k;
             check_stage(t, s.w, at, &s.mem);
-            mt_aim_hold(&later, s.w, k, 1.01 * mt_aim_value(s.w, k, NULL));
+            mt_objective_stage_hold(&later, s.w, k,
+                                    1.01 * mt_objective_stage_value(s.w, k, NULL));
         }
         later.stage = 0;
         at[5] = 0.0; /* not given: looked up */
-        CHECK_INT(t, mt_case_values_init(s.w->c, &s.mem, &v, NULL), MT_OK);
+        CHECK_INT(t, mt_subproblem_values_init(s.w->c, &s.mem, &v, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_eval(s.w, at, false, &v, NULL), MT_OK);
         CHECK(t, isfinite(s.w->worst));
-        CHECK_NEAR(t, mt_aim_value(s.w, 0, NULL), s.w->worst, 0.0);
+        CHECK_NEAR(t, mt_objective_stage_value(s.w, 0, NULL), s.w->worst, 0.0);
     }
     compiled_free(&s);
 }

@@ -173,7 +173,7 @@ static void enclosure__six_masses_within_five_percent_are_infeasible(mt_test *t)
 static int at_once(void *context)
 {
     (void)context;
-    return MT_WISH_FINISH;
+    return MT_STOP_REQUEST_FINISH;
 }
 
 static void enclosure__a_spent_budget_says_what_is_open(mt_test *t)

@@ -214,7 +214,7 @@ static void beam__identification_finds_the_paper_s_springs(mt_test *t)
     if (result != NULL && CHECK(t, result->n_recommendations > 0)) {
         CHECK_INT(t, result->status, MT_RESULT_SOLVED);
         CHECK(t, result->recommendations[0].feasible);
-        CHECK_INT(t, result->n_undetermined, 0);
+        CHECK_INT(t, result->n_unidentifiable, 0);
         check_symmetry(t, &result->recommendations[0]);
         check_published(t, result, 29);
     }

@@ -251,7 +251,7 @@ static void inceptor__its_values_are_identified_again(mt_test *t)
         identified[i] = v->original;
         v->original *= exp(away[i]);
     }
-    study->spread.factor = nan("");
+    study->weight_sensitivity.factor = nan("");
     study->search.starts = 1;
     CHECK_INT(t, mt_study_solve(study, NULL, &result, NULL), MT_OK);
     if (result != NULL && CHECK(t, result->n_recommendations == 1)) {
@@ -261,7 +261,7 @@ static void inceptor__its_values_are_identified_again(mt_test *t)
             CHECK(t, fabs(best->parameters[i].original / identified[i] - 1.0) > 0.02);
             CHECK_NEAR(t, best->parameters[i].recommended, identified[i], AGAIN);
         }
-        CHECK_INT(t, result->n_undetermined, 1);
+        CHECK_INT(t, result->n_unidentifiable, 1);
     }
     mt_result_delete(result);
     mt_study_delete(study);

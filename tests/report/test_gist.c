@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "report/gist.h"
+#include "report/abstract.h"
 #include "support/mt_test.h"
 
 static mt_result_parameter parameter(const char *name, double original, double recommended)
@@ -41,7 +41,7 @@ static void expect(mt_test *t, const char *grade, int n_certificates, bool prove
                               .n_certificates = n_certificates,
                               .certificates = &certificate};
     mt_text out = {.s = NULL};
-    mt_report_gist(&result, &out);
+    mt_report_abstract(&result, &out);
     mt_test_row(t, "%s", words);
     CHECK(t, !out.failed && out.s != NULL && strstr(out.s, words) != NULL);
     CHECK(t, out.s != NULL && strstr(out.s, "<i>") == NULL && strstr(out.s, "inf") == NULL);

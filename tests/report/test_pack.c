@@ -6,7 +6,7 @@
 
 #include "mt_alloc.h"
 #include "mt_test.h"
-#include "report/pack.h"
+#include "report/dedupe_json.h"
 
 static void pack__says_once_what_is_said_twice(mt_test *t)
 {
@@ -33,7 +33,7 @@ static void pack__says_once_what_is_said_twice(mt_test *t)
     for (int i = 0; i < MT_COUNT(rows); i++) {
         mt_text out = {.s = NULL};
         mt_test_row(t, "%s", rows[i].name);
-        mt_pack_json(rows[i].json, &out);
+        mt_dedupe_json(rows[i].json, &out);
         CHECK(t, !out.failed && out.s != NULL);
         CHECK_STR(t, out.s, rows[i].want);
         mt_text_free(&out);
@@ -49,7 +49,7 @@ static void pack__survives_every_failing_allocation(mt_test *t)
     for (long nth = 0; mt_alloc_works() && failed; nth++) {
         mt_text out = {.s = NULL};
         mt_alloc_fail_after(nth);
-        mt_pack_json(json, &out);
+        mt_dedupe_json(json, &out);
         mt_alloc_fail_after(-1);
         failed = out.failed;
         mt_text_free(&out);
@@ -70,7 +70,7 @@ static void pack__ends_where_its_text_is_damaged(mt_test *t)
             memcpy(damaged + i, cut ? "" : json + i + 1, cut ? 1 : sizeof json - i - 1);
             char *const own = strdup(damaged); /* so that a step beyond it shows */
             mt_test_row(t, "%s", damaged);
-            mt_pack_json(own, &out);
+            mt_dedupe_json(own, &out);
             CHECK(t, own != NULL && !out.failed && out.length < 8 * sizeof json);
             free(own);
             mt_text_free(&out);

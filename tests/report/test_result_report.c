@@ -14,8 +14,8 @@ static mt_result_parameter parameters[2];
 static mt_result_frequency frequencies[2];
 static mt_recommendation recommendations[1];
 static mt_result_published published[3];
-static mt_undetermined undetermined;
-static mt_result_spread spread;
+static mt_unidentifiable_direction unidentifiable;
+static mt_result_weight_sensitivity weight_sensitivity;
 static mt_certificate certificate;
 static mt_relaxation relaxation;
 static mt_result_objective objectives[] = {{"mass", "mass of <bar>*", "kg"},
@@ -92,8 +92,8 @@ static mt_result *make(mt_test *t)
     r->n_variables = 2;
     r->published = published;
     r->n_published = 3;
-    r->undetermined = &undetermined; /* computed, and there are none */
-    r->spread = &spread;
+    r->unidentifiable = &unidentifiable; /* computed, and there are none */
+    r->weight_sensitivity = &weight_sensitivity;
     r->certificates = &certificate;
     r->relaxations = &relaxation;
     return r;
@@ -166,9 +166,9 @@ static void sections__that_an_interrupt_cut_say_so(mt_test *t)
     mt_result *const r = make(t);
     REQUIRE(t, r != NULL);
     check_missing(t, r, "What is proven", 0);
-    r->undetermined = NULL;
+    r->unidentifiable = NULL;
     check_missing(t, r, "Not identifiable: directions along which the goals hardly change", 1);
-    r->spread = NULL;
+    r->weight_sensitivity = NULL;
     check_missing(
         t, r,
         "Sensitivity to the weights (the scatter of repeated tests may be many times larger)",
@@ -224,7 +224,7 @@ static mt_result_clearance clearances[] = {
     {"held", "8P of X", 1, 2, 2.0, -1.5, 10.0, "inside", 0.0, 0.0},
     {"up", "4P of X", 1, 2, 2.5, 40.0, 10.0, "below", 0.0, 0.0},
 };
-static mt_result_gap gaps[] = {
+static mt_result_mode_placement placements[] = {
     {1, "held", "4P of X", 1.25, 1.5, 1.125, 1.65, 1},
     {2, "up", "4P of X", 1.25, 1.5, 1.125, 1.65, 2},
 };
@@ -236,8 +236,8 @@ static mt_result *make_banded(mt_test *t)
     if (r != NULL) {
         recommendations[0].clearances = clearances;
         recommendations[0].n_clearances = MT_COUNT(clearances);
-        recommendations[0].gaps = gaps;
-        recommendations[0].n_gaps = MT_COUNT(gaps);
+        recommendations[0].placements = placements;
+        recommendations[0].n_placements = MT_COUNT(placements);
         recommendations[0].clearance_percent = -1.5;
         r->baseline = recommendations[0];
         r->baseline.rank = 0;
@@ -365,7 +365,7 @@ static void designs__with_many_bands_have_the_first_of_them(mt_test *t)
 {
     enum { BANDS = 400, LIST = 4 * BANDS };
     static const int firsts[] = {0, 10, 100}; /* of one digit more each */
-    static mt_result_gap many[BANDS];
+    static mt_result_mode_placement many[BANDS];
     static const size_t room = 120; /* of a cell, its end included */
     mt_result *const r = make(t);
     for (int k = 0; r != NULL && k < MT_COUNT(firsts) * 62; k++) {
@@ -376,17 +376,17 @@ static void designs__with_many_bands_have_the_first_of_them(mt_test *t)
         mt_text out = {.s = NULL};
         for (int i = 0; i < n; i++) {
             const int below = i == 0 ? firsts[k % MT_COUNT(firsts)] : i;
-            many[i] =
-                (mt_result_gap){.id = i + 1, .configuration = "held", .modes_below = below};
+            many[i] = (mt_result_mode_placement){
+                .id = i + 1, .configuration = "held", .modes_below = below};
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%d", i == 0 ? "" : " ",
                                      below);
             kept = used < room ? used : kept;
         }
         list[kept] = '\0';
-        r->baseline.gaps = many;
-        r->baseline.n_gaps = n;
-        recommendations[0].gaps = many;
-        recommendations[0].n_gaps = n;
+        r->baseline.placements = many;
+        r->baseline.n_placements = n;
+        recommendations[0].placements = many;
+        recommendations[0].n_placements = n;
         mt_test_row(t, "%d bands, the first %d", n, firsts[k % MT_COUNT(firsts)]);
         mt_table table = mt_report_alternatives(r);
         mt_table_csv(&table, &out);

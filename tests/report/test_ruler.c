@@ -9,7 +9,7 @@
 enum { MODES = 3 };
 
 /* Three modes of "held": 5 to 10, 20 to 30, 900 Hz; a band from 14 to 16, margin 12 to 18. */
-static mt_recommendation make(mt_result_frequency f[MODES], mt_result_gap *gap)
+static mt_recommendation make(mt_result_frequency f[MODES], mt_result_mode_placement *gap)
 {
     static const double hz[MODES][2] = {{5.0, 10.0}, {20.0, 30.0}, {900.0, 900.0}};
     mt_recommendation r = mt_recommendation_default();
@@ -20,16 +20,16 @@ static mt_recommendation make(mt_result_frequency f[MODES], mt_result_gap *gap)
         f[i].original_hz = hz[i][0];
         f[i].recommended_hz = hz[i][1];
     }
-    *gap = (mt_result_gap){.configuration = "held",
-                           .lower_hz = 14.0,
-                           .upper_hz = 16.0,
-                           .margin_lower_hz = 12.0,
-                           .margin_upper_hz = 18.0};
+    *gap = (mt_result_mode_placement){.configuration = "held",
+                                      .lower_hz = 14.0,
+                                      .upper_hz = 16.0,
+                                      .margin_lower_hz = 12.0,
+                                      .margin_upper_hz = 18.0};
     r.rank = 1;
     r.frequencies = f;
     r.n_frequencies = MODES;
-    r.gaps = gap;
-    r.n_gaps = 1;
+    r.placements = gap;
+    r.n_placements = 1;
     return r;
 }
 
@@ -46,7 +46,7 @@ static double hz_at(const char *ruler, const char *at)
 static void ruler__has_every_mark_at_its_place(mt_test *t)
 {
     mt_result_frequency f[MODES];
-    mt_result_gap gap;
+    mt_result_mode_placement gap;
     mt_recommendation r = make(f, &gap);
     r.frequencies[1].target_hz = 33.0;
     for (int width = 0; width <= 200; width += 50) {
@@ -77,12 +77,12 @@ static void ruler__has_every_mark_at_its_place(mt_test *t)
 static void ruler__ends_within_a_band_that_goes_far_beyond(mt_test *t)
 {
     mt_result_frequency f[MODES];
-    mt_result_gap gap;
+    mt_result_mode_placement gap;
     mt_recommendation r = make(f, &gap);
     mt_text out = {.s = NULL};
     r.n_frequencies = 2;
-    r.gaps[0].upper_hz = 5000.0;
-    r.gaps[0].margin_upper_hz = 6000.0;
+    r.placements[0].upper_hz = 5000.0;
+    r.placements[0].margin_upper_hz = 6000.0;
     r.frequencies[1].target_hz = 33.0;
     mt_report_ruler(&r, 100, &out);
     REQUIRE(t, out.s != NULL && !out.failed);
@@ -95,10 +95,10 @@ static void ruler__ends_within_a_band_that_goes_far_beyond(mt_test *t)
 static void ruler__is_not_drawn_where_nothing_is_asked(mt_test *t)
 {
     mt_result_frequency f[MODES];
-    mt_result_gap gap;
+    mt_result_mode_placement gap;
     mt_recommendation r = make(f, &gap);
     mt_text out = {.s = NULL};
-    r.n_gaps = 0;
+    r.n_placements = 0;
     mt_report_ruler(&r, 0, &out);
     CHECK(t, out.s == NULL && !out.failed);
     r.frequencies[0].target_hz = nan("");

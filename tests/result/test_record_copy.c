@@ -12,7 +12,7 @@ enum { VARIABLES = 2 };
 /* What a design is made of, each in the memory of the test. */
 typedef struct made {
     mt_result_parameter parameters[VARIABLES];
-    mt_result_gap gaps[2];
+    mt_result_mode_placement placements[2];
     mt_reason reasons[2];
     mt_result_frequency frequencies[1];
     double slopes[VARIABLES];
@@ -28,7 +28,8 @@ static void make(made *m)
         m->parameters[i] =
             (mt_result_parameter){.name = i == 0 ? "k" : "mass", .recommended = 1.25 * i};
         m->tolerances[i] = (mt_result_tolerance){m->parameters[i].name, 2.5, "an edge"};
-        m->gaps[i] = (mt_result_gap){.id = i + 1, .configuration = "held", .band = "4P"};
+        m->placements[i] =
+            (mt_result_mode_placement){.id = i + 1, .configuration = "held", .band = "4P"};
         m->slopes[i] = 0.5 + i;
     }
     m->reasons[0] = (mt_reason){"change", NULL, "k rises by 3 %."};
@@ -43,8 +44,8 @@ static void make(made *m)
     m->r.n_parameters = VARIABLES;
     m->r.frequencies = m->frequencies;
     m->r.n_frequencies = 1;
-    m->r.gaps = m->gaps;
-    m->r.n_gaps = 2;
+    m->r.placements = m->placements;
+    m->r.n_placements = 2;
     m->r.reasons = m->reasons;
     m->r.n_reasons = 2;
     m->r.tolerance_box = &m->box;
@@ -53,14 +54,14 @@ static void make(made *m)
 /* All that both hold is the same. */
 static bool are_equal(mt_recommendation *a, mt_recommendation *b)
 {
-    mt_tape x = {.words = NULL};
-    mt_tape y = {.words = NULL};
-    mt_record_tape(&mt_design_record, a, VARIABLES, &x, NULL);
-    mt_record_tape(&mt_design_record, b, VARIABLES, &y, NULL);
+    mt_serializer x = {.words = NULL};
+    mt_serializer y = {.words = NULL};
+    mt_record_serialize(&mt_design_record, a, VARIABLES, &x, NULL);
+    mt_record_serialize(&mt_design_record, b, VARIABLES, &y, NULL);
     const bool same = !x.failed && !y.failed && x.n == y.n && x.n > 0 &&
                       memcmp(x.words, y.words, x.n * sizeof *x.words) == 0;
-    mt_tape_free(&x);
-    mt_tape_free(&y);
+    mt_serializer_free(&x);
+    mt_serializer_free(&y);
     return same;
 }
 
@@ -93,7 +94,7 @@ static void change_slope(made *m)
 
 static void change_count(made *m)
 {
-    m->gaps[1].modes_below = 3;
+    m->placements[1].modes_below = 3;
 }
 
 static void change_flag(made *m)
@@ -108,8 +109,8 @@ static void leave_item(made *m)
 
 static void leave_list(made *m)
 {
-    m->r.gaps = NULL;
-    m->r.n_gaps = 0;
+    m->r.placements = NULL;
+    m->r.n_placements = 0;
 }
 
 static void leave_option(made *m)
@@ -178,7 +179,7 @@ static void copy__keeps_once_what_both_say(mt_test *t)
     const size_t alone = mem.used;
     CHECK_INT(t, mt_recommendation_copy(&other.r, &first, &mem, &second, &err), MT_OK);
     CHECK(t, mem.used - alone < alone / 4);
-    CHECK(t, second.parameters == first.parameters && second.gaps == first.gaps);
+    CHECK(t, second.parameters == first.parameters && second.placements == first.placements);
     CHECK(t, second.tolerance_box == first.tolerance_box && second.grade == first.grade);
     CHECK(t, second.frequencies == first.frequencies);
     CHECK(t, second.reasons != first.reasons && second.reasons != other.reasons);

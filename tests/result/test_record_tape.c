@@ -22,7 +22,7 @@ static mt_tolerance_box box = {.all_percent = 2.5,
                                .n_variables = VARIABLES,
                                .variables = tolerances};
 static mt_result_parameter parameters[VARIABLES];
-static mt_result_gap gaps[1] = {
+static mt_result_mode_placement placements[1] = {
     {.id = 1, .configuration = "held", .band = "4P", .upper_hz = 3.5, .modes_below = 2}};
 static mt_reason reasons[1] = {{"change", NULL, "k rises by 3 %."}};
 
@@ -50,19 +50,19 @@ static mt_recommendation design(bool with_box)
     r.parameters = parameters;
     r.n_parameters = VARIABLES;
     r.tolerance_box = with_box ? &box : NULL;
-    r.gaps = gaps;
-    r.n_gaps = 1;
+    r.placements = placements;
+    r.n_placements = 1;
     r.reasons = reasons;
     r.n_reasons = 1;
     return r;
 }
 
 /* Its words; to be freed. */
-static mt_tape written(mt_recommendation *r)
+static mt_serializer written(mt_recommendation *r)
 {
-    mt_tape tape = {.words = NULL};
-    mt_record_tape(&mt_design_record, r, VARIABLES, &tape, NULL);
-    return tape;
+    mt_serializer serializer = {.words = NULL};
+    mt_record_serialize(&mt_design_record, r, VARIABLES, &serializer, NULL);
+    return serializer;
 }
 
 /* Are these words refused, or those of the design that is read of them? */
@@ -71,14 +71,14 @@ static bool are_honest(const uint64_t *words, size_t n, bool *read)
     mt_recommendation r = mt_recommendation_default();
     mt_arena mem = {0};
     bool honest = mt_arena_init(&mem, 0, NULL) == MT_OK;
-    mt_tape tape = mt_tape_of(words, n);
-    mt_record_tape(&mt_design_record, &r, VARIABLES, &tape, &mem);
-    *read = mt_tape_is_read(&tape);
+    mt_serializer serializer = mt_serializer_of(words, n);
+    mt_record_serialize(&mt_design_record, &r, VARIABLES, &serializer, &mem);
+    *read = mt_serializer_is_read(&serializer);
     if (*read) {
-        mt_tape again = written(&r);
+        mt_serializer again = written(&r);
         honest = honest && !again.failed && again.n == n &&
                  memcmp(again.words, words, n * sizeof *words) == 0;
-        mt_tape_free(&again);
+        mt_serializer_free(&again);
     }
     mt_arena_free(&mem);
     return honest;
@@ -89,15 +89,15 @@ static void record_tape__reads_what_was_written_and_nothing_else(mt_test *t)
     for (int with_box = 0; with_box < 2; with_box++) {
         bool read = false;
         mt_recommendation r = design(with_box == 1);
-        mt_tape tape = written(&r);
+        mt_serializer serializer = written(&r);
         mt_test_row(t, "%s box", with_box == 1 ? "a" : "no");
-        REQUIRE(t, !tape.failed && tape.n > 50);
-        CHECK(t, are_honest(tape.words, tape.n, &read) && read);
-        for (size_t n = 0; n < tape.n; n++) {
+        REQUIRE(t, !serializer.failed && serializer.n > 50);
+        CHECK(t, are_honest(serializer.words, serializer.n, &read) && read);
+        for (size_t n = 0; n < serializer.n; n++) {
             mt_test_row(t, "cut behind word %d", (int)n);
-            CHECK(t, are_honest(tape.words, n, &read) && !read);
+            CHECK(t, are_honest(serializer.words, n, &read) && !read);
         }
-        mt_tape_free(&tape);
+        mt_serializer_free(&serializer);
     }
 }
 
@@ -107,26 +107,26 @@ static void record_tape__changed_words_are_refused_or_another_design(mt_test *t)
         0, 1, 2, 3, 7, 1000, INT_MAX, (uint64_t)INT_MAX + 1, UINT64_C(1) << 40, UINT64_MAX};
     for (int with_box = 0; with_box < 2; with_box++) {
         mt_recommendation r = design(with_box == 1);
-        mt_tape tape = written(&r);
+        mt_serializer serializer = written(&r);
         int refused = 0;
-        REQUIRE(t, !tape.failed);
-        for (size_t i = 0; i < tape.n; i++) {
-            const uint64_t was = tape.words[i];
+        REQUIRE(t, !serializer.failed);
+        for (size_t i = 0; i < serializer.n; i++) {
+            const uint64_t was = serializer.words[i];
             for (int k = 0; k < MT_COUNT(values) + 2; k++) {
                 bool read = false;
-                tape.words[i] = k < MT_COUNT(values)    ? values[k]
-                                : k == MT_COUNT(values) ? was + 1
-                                                        : was ^ 1;
+                serializer.words[i] = k < MT_COUNT(values)    ? values[k]
+                                      : k == MT_COUNT(values) ? was + 1
+                                                              : was ^ 1;
                 mt_test_row(t, "%s box, word %d: %llx in place of %llx",
                             with_box == 1 ? "a" : "no", (int)i,
-                            (unsigned long long)tape.words[i], (unsigned long long)was);
-                CHECK(t, are_honest(tape.words, tape.n, &read));
+                            (unsigned long long)serializer.words[i], (unsigned long long)was);
+                CHECK(t, are_honest(serializer.words, serializer.n, &read));
                 refused += !read;
             }
-            tape.words[i] = was;
+            serializer.words[i] = was;
         }
         CHECK(t, refused > 100);
-        mt_tape_free(&tape);
+        mt_serializer_free(&serializer);
     }
 }
 
@@ -134,9 +134,9 @@ static void record_tape__changed_words_are_refused_or_another_design(mt_test *t)
 static void record_tape__of_an_option_there_is_one(mt_test *t)
 {
     mt_recommendation r = design(false);
-    mt_tape without = written(&r);
+    mt_serializer without = written(&r);
     r = design(true);
-    mt_tape with = written(&r);
+    mt_serializer with = written(&r);
     size_t flag = 0;
     REQUIRE(t, !without.failed && !with.failed && with.n > without.n);
     while (flag < without.n && with.words[flag] == without.words[flag]) {
@@ -160,8 +160,8 @@ static void record_tape__of_an_option_there_is_one(mt_test *t)
         CHECK(t, are_honest(words, n, &read));
         CHECK(t, read == (count == 1));
     }
-    mt_tape_free(&without);
-    mt_tape_free(&with);
+    mt_serializer_free(&without);
+    mt_serializer_free(&with);
 }
 
 MT_TEST_MAIN(MT_TEST(record_tape__reads_what_was_written_and_nothing_else),

@@ -16,7 +16,7 @@ static const double TOL = 1e-9;
 static mt_scene *scene_of(mt_test *t, mt_model *model)
 {
     enum { MOST = 20 };
-    const mt_scene_ask ask = {.label = "original", .n_shown = -1};
+    const mt_scene_query ask = {.label = "original", .n_shown = -1};
     mt_err err = {.text = ""};
     mt_scene *scene = NULL;
     int configurations[MOST];
@@ -247,7 +247,7 @@ static void scene__places_are_those_of_the_file(mt_test *t)
     if (model == NULL || !CHECK(t, mt_arena_init(&mem, 0, &err) == MT_OK)) {
         return;
     }
-    const mt_scene_ask ask = {.label = "original", .n_shown = 0};
+    const mt_scene_query ask = {.label = "original", .n_shown = 0};
     const int first = 1; /* "installed" */
     double *const value = mt_arena_f64(&mem, (size_t)model->n_nums, 1);
     CHECK(t, mt_model_numbers(model, first, 0, NULL, NULL, &mem, value, &err) == MT_OK);
@@ -337,7 +337,7 @@ static mt_scene *scene_of_range(mt_test *t, const mt_model *model, mt_scene_trav
     for (int j = 0; j < model->n_joints; j++) {
         travel[j] = kind;
     }
-    const mt_scene_ask ask = {.label = "original", .n_shown = 0};
+    const mt_scene_query ask = {.label = "original", .n_shown = 0};
     const mt_scene_extent extent = {.n_configurations = 1,
                                     .configurations = &configuration,
                                     .work = MT_SCENE_WORK,
@@ -418,9 +418,9 @@ static void scene__designs_together_are_those_alone(mt_test *t)
                               .configurations = configurations,
                               .work = MT_SCENE_WORK,
                               .threads = 3};
-    mt_scene_ask asks[DESIGNS];
+    mt_scene_query asks[DESIGNS];
     for (int d = 0; d < DESIGNS; d++) {
-        asks[d] = (mt_scene_ask){
+        asks[d] = (mt_scene_query){
             .label = "design", .rank = d, .n_inputs = 2, .inputs = inputs, .at = values[d]};
     }
     CHECK(t, mt_scene_new(model, DESIGNS, asks, &extent, &all, &err) == MT_OK);

@@ -13,11 +13,11 @@ MEANT = {
     "MT_OBJECTIVE_EXPRESSION": ("src/io/read_study_objectives.c",),  # what is no word is an expression
     "MT_OBJECTIVE_CHANGE": (  # the distance from the original design itself
         "src/study/study_objectives.c",  # the objective where none is given
-        "src/search/relax_moves.c",  # the nearest design
+        "src/search/relaxation_moves.c",  # the nearest design
         "src/search/search_nearest.c",  # of optima that are as good
-        "src/search/search.c", "src/search/gaps.c",  # what no goal settles stays at the original
-        "src/search/gaps_bounds.c",  # how far a box is from the original
-        "src/search/discrete.c",  # combinations come in the order of their change
+        "src/search/search.c", "src/search/mode_placements.c",  # what no goal settles stays at the original
+        "src/search/mode_placements_bounds.c",  # how far a box is from the original
+        "src/search/catalogue_search.c",  # combinations come in the order of their change
         "src/answer/solve_original.c",  # the original itself
         "src/answer/trade_front.c",  # results tell the change of every design
     ),

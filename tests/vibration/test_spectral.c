@@ -11,12 +11,12 @@
 #include "reference.h"
 #include "vibration/spectral.h"
 
-static const mt_spectral_way WAYS[] = {MT_SPECTRAL_BEST, MT_SPECTRAL_CLOSED,
-                                       MT_SPECTRAL_PANELS};
+static const mt_spectral_method WAYS[] = {MT_SPECTRAL_BEST, MT_SPECTRAL_CLOSED,
+                                          MT_SPECTRAL_PANELS};
 static const char *const WAY_NAMES[] = {"best", "closed", "panels"};
 
 static mt_spectral_answer rms_of(mt_test *t, const mt_pole_sum *h, const mt_psd *g,
-                                 mt_spectral_way way)
+                                 mt_spectral_method way)
 {
     mt_arena mem = {0};
     mt_spectral s;

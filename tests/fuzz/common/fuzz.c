@@ -39,7 +39,7 @@ static bool has_word(const char *s, size_t length, const char *word)
     return false;
 }
 
-void fuzz_demand_finite_words(const mt_text *said, const uint8_t *data, size_t size)
+void fuzz_requirement_finite_words(const mt_text *said, const uint8_t *data, size_t size)
 {
     static const char *const words[] = {"nan", "inf", "infinity"};
     for (int i = 0; i < MT_COUNT(words) && said->s != NULL; i++) {

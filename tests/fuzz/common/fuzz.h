@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 _Noreturn void fuzz_broken(const char *text, const char *file, int line);
 /* No number that is not finite shows in a text ("nan", "-inf" as words), unless such a word
  * stands in the input itself. */
-void fuzz_demand_finite_words(const mt_text *said, const uint8_t *data, size_t size);
+void fuzz_requirement_finite_words(const mt_text *said, const uint8_t *data, size_t size);
 /* Is this a status that a file may cause? (Not an internal error, not wrong use.) */
 bool fuzz_is_refusal(mt_status rc);
 

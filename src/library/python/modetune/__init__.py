@@ -37,7 +37,7 @@ __version__ = version
 
 PathLike = Union[str, "os.PathLike[str]"]
 Value = Union[float, int, str]
-WISH_END = 2  # of mt_wish
+WISH_END = 2  # of mt_stop_request
 MOST_START_S = 1.0  # a thread that has begun by then is waited for as long as it takes
 MOST_SEED = 2**31 - 1
 
@@ -99,7 +99,7 @@ class _Search:
         self._tell = PROGRESS(lambda _, text: self._said.put(text_of(text)))
         self._options = SolveOptions(
             size=sizeof(SolveOptions), threads=workers,
-            stop=ctypes.cast(lib.mt_wish_at, c_void_p),
+            stop=ctypes.cast(lib.mt_stop_request_at, c_void_p),
             stop_context=ctypes.cast(ctypes.pointer(self._wish), c_void_p), progress=self._tell)
         self._turn = threading.Lock()  # who has it decides whether there is a search
         self._over = threading.Event()  # the thread's last word

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ANSWER_WEIGHT_SENSITIVITY_H
+#define ANSWER_WEIGHT_SENSITIVITY_H
+
+#include "describe/describe.h"
+
+/*
+ * How the best design moves when the weight of one goal at a time is multiplied or divided by
+ * the study's factor, the misfit minimised again from the best design. Nothing where the study
+ * does not ask for it. Evaluations are added to *evaluations. Cost: one local search for each
+ * weighted goal and side, shared out to the workers, which are set to what is asked.
+ */
+/* Whether the study asks for it. */
+bool mt_weight_sensitivity_is_asked(const mt_problem *p);
+mt_status mt_weight_sensitivity_solve(mt_workspace *const *workers, int n_workers,
+                                      const mt_nlp_solution *best, mt_arena *mem, long most,
+                                      long *evaluations, mt_result *result, mt_err *err);
+
+#endif

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a search over catalogues may claim. */
+#include "describe/describe_catalogue_search.h"
+
+#include <math.h>
+
+#include "describe/certificates.h"
+
+/* Pure enumeration proves; a continuous search within each combination is sampled, a heuristic
+ * all the more. */
+static bool proves(const mt_catalogue_search_report *report)
+{
+    return report->all && !report->mixed;
+}
+
+/* Whether branch and bound excludes every combination. */
+static bool excluded(const mt_catalogue_search_report *report)
+{
+    return report->settled && report->n_kinds == 0 && report->feasible == 0;
+}
+
+/* How far branch and bound came beside continuous variables. */
+static const char *branched_text(const mt_catalogue_search_report *r, mt_arena *mem,
+                                 const char *rest)
+{
+    if (r->all) {
+        return mt_arena_printf(mem,
+                               "Of %.6g combinations of catalogue values %d were judged, and "
+                               "branch and bound excludes all others: none of them meets all "
+                               "goals%s.%s",
+                               r->combinations, r->judged,
+                               r->feasible > 0 ? " and is better in the first objective than "
+                                                 "the best design"
+                                               : "",
+                               rest);
+    }
+    const double share = 100.0 * (r->combinations - r->open) / r->combinations;
+    const char *const gap = MT_HAS(r->open_within)
+                                ? mt_arena_printf(mem, ", which are better by %.3g %% at most",
+                                                  100.0 * r->open_within)
+                                : "";
+    return mt_arena_printf(
+        mem,
+        "Of %.6g combinations of catalogue values %d were judged; with those "
+        "that branch and bound excludes this settles %.3g %%, and its effort "
+        "ended before the other %.6g%s%s%s",
+        r->combinations, r->judged, share, r->open, gap,
+        excluded(r) || MT_HAS(r->best_within) ? " (what is proven of all of them follows)."
+                                              : " (heuristic): a better one may exist.",
+        rest);
+}
+
+static const char *certificate_text(const mt_catalogue_search_report *r,
+                                    const mt_nlp_result *found, mt_arena *mem)
+{
+    const char *const rest =
+        r->mixed && !excluded(r)
+            ? " The other variables were searched from several starts for each of them, "
+              "which is sampled, not proven."
+            : "";
+    if (r->branched) {
+        return branched_text(r, mem, rest);
+    }
+    if (!r->all) {
+        return mt_arena_printf(mem,
+                               "Of %.6g combinations of catalogue values %d were judged, near "
+                               "the designs of the relaxed problem and their neighbours%s",
+                               r->combinations, r->judged,
+                               excluded(r) || MT_HAS(r->best_within)
+                                   ? " (what is proven of all of them follows)."
+                                   : " (heuristic): a better one may exist.");
+    }
+    if (found->n_solutions == 0 || found->compromise) {
+        return mt_arena_printf(mem,
+                               "None of the %.0f combinations of catalogue values meets all "
+                               "goals: all were enumerated.%s",
+                               r->combinations, rest);
+    }
+    if ((double)r->judged < r->combinations) {
+        return mt_arena_printf(mem,
+                               "Enumerated: of %.0f combinations of catalogue values %d were "
+                               "judged, in the order of their change, and the others change "
+                               "more than every design listed.%s",
+                               r->combinations, r->judged, rest);
+    }
+    const char *const between =
+        r->broken ? " at the named positions, and not between them"
+        : r->driven && r->followed < r->feasible
+            ? mt_arena_printf(
+                  mem,
+                  " at the named positions (%d of these were followed between them, "
+                  "those that rank)",
+                  r->followed)
+        : r->driven ? " (between the named positions by samples)"
+                    : "";
+    return mt_arena_printf(mem,
+                           "Enumerated: all %.0f combinations of catalogue values were "
+                           "judged, %d of them meet%s all goals%s.%s",
+                           r->combinations, r->feasible, r->feasible == 1 ? "s" : "", between,
+                           rest);
+}
+
+static const char *with_others(const mt_catalogue_search_report *r)
+{
+    return r->mixed ? " and values of the other variables within their bounds" : "";
+}
+
+/* Which combinations can meet the goals at all. */
+static mt_status describe_kinds(const mt_catalogue_search_report *r, mt_result *result,
+                                mt_err *err)
+{
+    mt_arena *const mem = &result->mem;
+    if (r->reason != NULL) {
+        return r->feasible > 0 ? MT_OK
+                               : mt_describe_certificate(
+                                     result, "infeasible", false,
+                                     mt_arena_printf(mem,
+                                                     "No combination was found that meets all "
+                                                     "goals; this is not proven, because %s.",
+                                                     r->reason),
+                                     err);
+    }
+    if (excluded(r)) {
+        return mt_describe_certificate(
+            result, "infeasible", true,
+            mt_arena_printf(mem,
+                            "No combination of catalogue values%s meets all goals: "
+                            "proven by branch and bound (%ld boxes).",
+                            with_others(r), r->boxes),
+            err);
+    }
+    if (!r->settled) {
+        return mt_describe_certificate(
+            result, "gap_assignments", false,
+            mt_arena_printf(mem,
+                            "The budget of branch and bound ended before all "
+                            "combinations were settled (%ld boxes).",
+                            r->boxes),
+            err);
+    }
+    if (!(r->n_possible > 1.0)) {
+        return MT_OK;
+    }
+    return mt_describe_certificate(
+        result, "gap_assignments", true,
+        mt_arena_printf(mem,
+                        "Of %.0f mode placements %d %s be met by catalogue values%s; "
+                        "all others are proven infeasible (branch and bound).",
+                        r->n_possible, r->n_kinds, r->complete ? "can" : "may", with_others(r)),
+        err);
+}
+
+static mt_status describe_best(const mt_catalogue_search_report *r, mt_result *result,
+                               mt_err *err)
+{
+    mt_arena *const mem = &result->mem;
+    const char *const text =
+        r->mixed
+            ? mt_arena_printf(mem,
+                              "No combination of catalogue values%s is better in the first "
+                              "objective than the best design by more than %.3g %%: proven "
+                              "by branch and bound (%ld boxes).",
+                              with_others(r), 100.0 * r->best_within, r->boxes)
+            : mt_arena_printf(mem,
+                              "No combination of catalogue values is better in the first "
+                              "objective than the best design: proven by branch and bound "
+                              "(%ld boxes).",
+                              r->boxes);
+    return mt_describe_certificate(result, "optimal", true, text, err);
+}
+
+mt_status mt_describe_catalogue_certificate(const mt_catalogue_search_report *report,
+                                            const mt_nlp_result *found, mt_result *result,
+                                            bool *infeasible, mt_err *err)
+{
+    MT_TRY(mt_describe_certificate(result, "enumeration", proves(report),
+                                   certificate_text(report, found, &result->mem), err));
+    *infeasible =
+        excluded(report) || (proves(report) && (found->n_solutions == 0 || found->compromise));
+    if (report->asked) {
+        MT_TRY(describe_kinds(report, result, err));
+    }
+    if (report->cut && isnan(report->best_within)) {
+        return mt_describe_certificate(
+            result, "optimal", false,
+            mt_arena_printf(&result->mem,
+                            "No combination of catalogue values%s was found that is better in "
+                            "the first objective; this is not proven: the budget of branch and "
+                            "bound ended after %ld boxes.",
+                            with_others(report), report->boxes),
+            err);
+    }
+    return MT_HAS(report->best_within) ? describe_best(report, result, err) : MT_OK;
+}
+
+/* How sure the order of the combinations is. */
+static const char *certainty(const mt_catalogue_search_report *r, mt_arena *mem)
+{
+    if (proves(r)) {
+        return "enumerated, which is exact";
+    }
+    if (MT_HAS(r->best_within)) {
+        return r->mixed ? mt_arena_printf(mem, "proven: none is better by more than %.3g %%",
+                                          100.0 * r->best_within)
+                        : "proven: none is better than the first";
+    }
+    if (r->branched && r->all) {
+        return "branch and bound; the other variables sampled";
+    }
+    return r->all ? "enumerated; the other variables sampled"
+                  : "heuristic: a better one may exist";
+}
+
+const char *mt_describe_rank_text(const mt_catalogue_search_report *report,
+                                  const mt_nlp_result *found, int rank, const char *objective,
+                                  mt_arena *mem)
+{
+    const char *const how = excluded(report) ? "proven for all" : certainty(report, mem);
+    if (found->compromise) {
+        return mt_arena_printf(mem,
+                               "No combination of catalogue values that was judged meets all "
+                               "goals (%d of %.6g, %s); this one comes %s.",
+                               report->judged, report->combinations, how,
+                               rank == 1 ? "nearest" : "behind those that rank before it");
+    }
+    return mt_arena_printf(
+        mem,
+        "Of the combinations of catalogue values it ranks %d by %s (%d of %.6g judged, %s).",
+        rank, objective, report->judged, report->combinations, how);
+}

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef DESCRIBE_DESCRIBE_RELAXATION_H
+#define DESCRIBE_DESCRIBE_RELAXATION_H
+
+#include "search/relaxation.h"
+
+/* Into result->relaxations, and a sentence for the status where there is a move. */
+mt_status mt_describe_relaxations(const mt_problem *p, const mt_moves *moves, mt_result *result,
+                                  mt_err *err);
+
+#endif

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/element_forces.h"
+
+#include <float.h>
+#include <math.h>
+
+/* The slope of a beam element's chord: coordinates over its length. */
+static bool is_chord(const mt_measure_def *def)
+{
+    return def->kind == MT_MEASURE_BEAM && def->component >= MT_BEAM_SWAY_2;
+}
+
+bool mt_piece_is_angle(const mt_measure_def *def)
+{
+    return def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
+           def->kind == MT_MEASURE_DOT ||
+           (def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH &&
+            !is_chord(def));
+}
+
+/* Largest coordinate of the two bodies: what rounding of their positions is relative to. */
+static double extent_of(const mt_pose *poses, const int body[2])
+{
+    double extent = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const mt_pose *const pose = mt_pose_of(poses, body[side]);
+        for (int k = 0; k < 3; k++) {
+            extent = fmax(extent, fabs(creal(pose->x[k])));
+        }
+    }
+    return extent;
+}
+
+double mt_jet_along(const mt_system *sys, const int body[2], const mt_jet *jet,
+                    const double *motion)
+{
+    double sum = 0.0;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(sys, body, k);
+        sum += dof >= 0 ? creal(jet->g[k]) * motion[dof] : 0.0;
+    }
+    return sum;
+}
+
+double mt_piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_pose *poses)
+{
+    double extent =
+        mt_piece_is_angle(def) ? 1.0 : fmax(d->sys->length_m, extent_of(poses, def->body));
+    if (is_chord(def)) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
+    }
+    return DBL_EPSILON * extent;
+}
+
+void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                   const mt_jet *jet, const double size_force[2], double *terms, mt_piece *out)
+{
+    double extent = mt_piece_is_angle(def) ? 0.0 : extent_of(poses, def->body);
+    *out = (mt_piece){.size = size_force[0],
+                      .equation = -1,
+                      .factor = 1.0,
+                      .roundness = mt_piece_roundness(d, def, poses)};
+    if (is_chord(def)) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
+    }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        out->dof[k] = mt_local_dof(d->sys, def->body, k);
+        out->g[k] = creal(jet->g[k]);
+    }
+    for (int c = 0; c < MT_LOCAL; c++) {
+        for (int r = 0; r < MT_LOCAL; r++) {
+            const double entry = creal(jet->h[r + (MT_LOCAL * c)]);
+            const bool turns = r % 6 >= 3 && c % 6 >= 3;
+            out->h[r + (MT_LOCAL * c)] = entry;
+            if (out->dof[r] >= 0 && out->dof[c] >= 0) {
+                terms[out->dof[r] + ((ptrdiff_t)out->dof[c] * d->sys->nq)] +=
+                    (size_force[0] * fabs(entry)) + (turns ? size_force[1] * extent : 0.0);
+            }
+        }
+    }
+}
+
+static bool is_pose(const mt_pose *a, const mt_pose *b)
+{
+    bool same = true;
+    for (int k = 0; k < 3; k++) {
+        same = same && a->x[k] == b->x[k];
+    }
+    for (int k = 0; k < 9; k++) {
+        same = same && a->r[k] == b->r[k];
+    }
+    return same;
+}
+
+bool mt_piece_is_still(const mt_measure_def *def, const mt_pose *poses, const mt_pose *rest)
+{
+    bool still = true;
+    for (int side = 0; side < 2; side++) {
+        const int b = def->body[side];
+        still = still && (b == MT_GROUND || is_pose(&poses[b], &rest[b]));
+    }
+    return still;
+}

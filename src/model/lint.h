@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODEL_LINT_H
+#define MODEL_LINT_H
+
+#include "base/warning.h"
+#include "model/model.h"
+#include "model/values.h"
+
+/**
+ * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections
+ * without area) and doubts (a modulus that no material has, a drive beyond a turn). Each names
+ * item and member, carries its JSON pointer and, where the model was read from a file, its
+ * place.
+ * @param[in]  value  [n_nums] as mt_model_numbers gives them
+ */
+void mt_model_lint(const mt_model *model, int configuration, const double *value,
+                   mt_warning_list *out);
+
+/* What a kind of link leaves out, in a sentence in mem, which every answer says; NULL:
+ * nothing. */
+const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
+                                mt_arena *mem);
+
+/* Succeeds where the numbers of a configuration are those of a mechanism, with these inputs.
+ * Scratch from mem. Fails: MT_E_USAGE (the first fault that mt_model_lint finds), as
+ * mt_model_numbers. */
+mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
+                         const int *inputs, const double *at, mt_arena *mem, mt_err *err);
+/* The same by all numbers of the model, compiled for that configuration. */
+mt_status mt_model_admit_numbers(const mt_model *model, int configuration,
+                                 const mt_numbers *numbers, const double *at, mt_arena *mem,
+                                 mt_err *err);
+
+#endif

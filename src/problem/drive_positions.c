@@ -1,0 +1,454 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "problem/drive_positions.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "problem/goal.h"
+#include "problem/mode_band_pairs.h"
+
+static const mt_system *system_of(const mt_problem *p, int view)
+{
+    return p->views[view].original->sys;
+}
+
+double mt_drive_positions_position(const mt_analysis *a)
+{
+    return a->sys->drive == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, a->sys->drive);
+}
+
+bool mt_drive_positions_any(const mt_problem *p)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        if (p->families[i].banded) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int mt_drive_positions_of(const mt_problem *p, int view)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        for (int k = 0; k < p->families[i].n; k++) {
+            if (p->families[i].view[k] == view) {
+                return i;
+            }
+        }
+    }
+    return -1;
+}
+
+static bool is_equal(double a, double b)
+{
+    return a == b || (!MT_HAS(a) && !MT_HAS(b));
+}
+
+static bool is_text(const char *a, const char *b)
+{
+    return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
+}
+
+/* The same is shaken, and the same looked at. */
+static bool same_response_limit(const mt_response_limit *a, const mt_response_limit *b)
+{
+    if (a == NULL || b == NULL) {
+        return a == b;
+    }
+    return is_text(a->input.s, b->input.s) && is_text(a->output.s, b->output.s) &&
+           is_equal(a->lower_hz, b->lower_hz) && is_equal(a->upper_hz, b->upper_hz) &&
+           a->profile == b->profile && a->quantity == b->quantity;
+}
+
+bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement *b)
+{
+    return a->goal_index == b->goal_index ||
+           (a->ops == b->ops && a->mode == b->mode && a->named < 0 && b->named < 0 &&
+            a->row_res < 0 && b->row_res < 0 && is_equal(a->equals, b->equals) &&
+            is_equal(a->goal->at_least, b->goal->at_least) &&
+            is_equal(a->goal->at_most, b->goal->at_most) &&
+            same_response_limit(a->goal->response_limit, b->goal->response_limit) &&
+            is_text(a->shape.reference, b->shape.reference) && a->shape.mode == b->shape.mode);
+}
+
+/* A number with a limit, and two of its values in one family: what lies between them is asked
+ * for as well. A target, and what has a weight, is of the positions that are named. */
+static bool is_limited(const mt_problem *p, const mt_requirement *d)
+{
+    const bool limits = d->ops->value != NULL && d->row_res < 0 && !MT_HAS(d->equals);
+    const int drive_positions = limits && d->view >= 0 ? mt_drive_positions_of(p, d->view) : -1;
+    for (int i = 0; i < p->n_requirements && drive_positions >= 0; i++) {
+        const mt_requirement *const other = &p->requirements[i];
+        if (mt_drive_positions_same_limit(other, d) && other->view != d->view &&
+            mt_drive_positions_of(p, other->view) == drive_positions) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool mt_drive_positions_limits_first(const mt_problem *p, const mt_requirement *d)
+{
+    for (const mt_requirement *other = p->requirements; other < d; other++) {
+        if (mt_drive_positions_same_limit(other, d) &&
+            mt_drive_positions_of(p, other->view) == mt_drive_positions_of(p, d->view)) {
+            return false;
+        }
+    }
+    return is_limited(p, d);
+}
+
+static void find_limited(mt_problem *p)
+{
+    for (int i = 0; i < p->n_requirements; i++) {
+        if (is_limited(p, &p->requirements[i])) {
+            p->families[mt_drive_positions_of(p, p->requirements[i].view)].limited = true;
+        }
+    }
+}
+
+/* What drives the family: from a view that has a drive. */
+static void name_drive(const mt_problem *p, mt_drive_positions *f)
+{
+    f->fixed = true;
+    for (int k = 0; k < f->n; k++) {
+        const mt_system *const sys = system_of(p, f->view[k]);
+        if (sys->driven) {
+            f->configuration = p->views[f->view[k]].configuration;
+            f->joint = sys->joints[sys->drive_joint].name;
+            f->spring = sys->trim ? sys->springs[sys->trim_spring].name : NULL;
+            f->angle = sys->joints[sys->drive_joint].angle;
+            f->fixed = f->fixed && mt_program_is_constant(&sys->program, sys->drive);
+        }
+    }
+}
+
+/* Views that are the same mechanism as `first`, which is in no family yet. A view without a
+ * drive belongs to the family of the first driven one that it is like. */
+static mt_status gather(mt_problem *p, int first, mt_drive_positions *f, mt_err *err)
+{
+    f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    for (int i = 0; i < p->n_views; i++) {
+        bool same = i == first;
+        if (mt_drive_positions_of(p, i) < 0 && !same) {
+            MT_TRY(mt_system_same_drive(system_of(p, first), system_of(p, i), &same, err));
+        }
+        if (same) {
+            f->view[f->n++] = i;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status tie(mt_problem *p, mt_err *err);
+
+/* A view of the family's mechanism, counted as its positions are. */
+static mt_configuration_problem view_of(const mt_problem *p, const mt_drive_positions *f)
+{
+    const mt_configuration_problem *const like = &p->views[f->view[0]];
+    return (mt_configuration_problem){
+        .configuration = f->configuration, .n_rigid = like->n_rigid, .n_most = like->n_most};
+}
+
+/* The mechanism whose positions are followed; that it does not exist is told where it is asked
+ * for. */
+static mt_status set_moving(mt_problem *p, mt_drive_positions *f, mt_err *err)
+{
+    const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};
+    const size_t n = (size_t)p->n;
+    mt_err own = {.code = MT_OK};
+    f->moving = view_of(p, f);
+    f->moving_at = mt_arena_f64(&p->mem, n + 1, 1);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    memcpy(f->moving_at, p->original, n * sizeof *f->moving_at);
+    f->moving_at[n] = mt_drive_positions_position(p->views[f->view[0]].original);
+    const mt_status rc =
+        mt_configuration_drive(p, &f->moving, &drive, f->moving_at, &f->moving.original, &own);
+    if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    f->why = rc != MT_OK ? mt_arena_strdup(&p->mem, own.text) : NULL;
+    return mt_arena_check(&p->mem, err);
+}
+
+mt_status mt_cut_init(const mt_problem *p, int drive_positions, double position, mt_cut *out,
+                      mt_err *err)
+{
+    const mt_drive_positions *const f = &p->families[drive_positions];
+    const mt_configuration_problem view = view_of(p, f);
+    const mt_system_drive drive = {
+        .joint = f->joint, .spring = f->spring, .fixed = true, .position = position};
+    *out =
+        (mt_cut){.drive_positions = drive_positions, .requirement = -1, .position = position};
+    return mt_configuration_drive(p, &view, &drive, p->original, &out->original, err);
+}
+
+void mt_cut_free(mt_cut *cut)
+{
+    mt_analysis_delete(cut->original);
+    *cut = (mt_cut){.original = NULL};
+}
+
+void mt_families_free(mt_problem *p)
+{
+    for (int i = 0; i < p->n_families; i++) {
+        mt_analysis_delete(p->families[i].moving.original);
+    }
+}
+
+mt_status mt_families_init(mt_problem *p, mt_err *err)
+{
+    p->families = mt_arena_alloc(&p->mem, (size_t)p->n_views, sizeof *p->families);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    for (int i = 0; i < p->n_views; i++) {
+        mt_drive_positions f = {.n = 0};
+        if (!system_of(p, i)->driven || mt_drive_positions_of(p, i) >= 0) {
+            continue;
+        }
+        MT_TRY(gather(p, i, &f, err));
+        if (f.n > 1) {
+            name_drive(p, &f);
+            p->families[p->n_families++] = f;
+        }
+    }
+    MT_TRY(tie(p, err));
+    find_limited(p);
+    for (int i = 0; i < p->n_families; i++) {
+        const bool followed = p->families[i].banded || p->families[i].limited;
+        MT_TRY(followed ? set_moving(p, &p->families[i], err) : MT_OK);
+    }
+    return MT_OK;
+}
+
+/* Common frequencies, of the bases and, over more than a point, with the margins. */
+static bool overlap(const mt_band *a, const mt_band *b)
+{
+    return fmax(a->base_lower_hz, b->base_lower_hz) <=
+               fmin(a->base_upper_hz, b->base_upper_hz) &&
+           fmax(a->lower_hz, b->lower_hz) < fmin(a->upper_hz, b->upper_hz);
+}
+
+static void join(mt_problem *p, int a, int b)
+{
+    const int low = p->tie[a] < p->tie[b] ? p->tie[a] : p->tie[b];
+    const int high = p->tie[a] < p->tie[b] ? p->tie[b] : p->tie[a];
+    for (int i = 0; i < p->n_bands; i++) {
+        p->tie[i] = p->tie[i] == high ? low : p->tie[i];
+    }
+}
+
+static void tie_avoidances(mt_problem *p, const mt_avoidance *a, const mt_avoidance *b)
+{
+    for (int i = 0; i < a->bands.n; i++) {
+        for (int k = 0; k < b->bands.n; k++) {
+            if (overlap(&a->bands.items[i], &b->bands.items[k])) {
+                join(p, a->first + i, b->first + k);
+            }
+        }
+    }
+}
+
+static mt_status tie(mt_problem *p, mt_err *err)
+{
+    p->tie = mt_arena_int(&p->mem, (size_t)p->n_bands);
+    MT_TRY(mt_arena_check(&p->mem, err));
+    for (int i = 0; i < p->n_bands; i++) {
+        p->tie[i] = i;
+    }
+    for (int i = 0; i < p->n_avoidances; i++) {
+        const int drive_positions = mt_drive_positions_of(p, p->avoidances[i].view);
+        for (int k = 0; k < i && drive_positions >= 0; k++) {
+            if (mt_drive_positions_of(p, p->avoidances[k].view) == drive_positions) {
+                p->families[drive_positions].banded = true;
+                tie_avoidances(p, &p->avoidances[k], &p->avoidances[i]);
+            }
+        }
+    }
+    return MT_OK;
+}
+
+bool mt_ties_agree(const mt_problem *p, const int *below)
+{
+    for (int i = 0; i < p->n_bands; i++) {
+        if (below[i] != below[p->tie[i]]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void mt_ties_settle(const mt_problem *p, bool most, int *below)
+{
+    for (int i = 0; i < p->n_bands; i++) {
+        const int first = p->tie[i];
+        const bool better = most ? below[i] > below[first] : below[i] < below[first];
+        below[first] = better ? below[i] : below[first];
+    }
+    for (int i = 0; i < p->n_bands; i++) {
+        below[i] = below[p->tie[i]];
+    }
+}
+
+static const mt_modes *modes_of(const mt_workspace *w, const mt_avoidance *c)
+{
+    return &w->views[c->view].analysis->modes;
+}
+
+/* The least room of all bands tied to `tie` with k modes below. */
+static double tie_margin_with(const mt_workspace *w, int tie, int k, bool *stable, int *most)
+{
+    const mt_problem *const p = w->p;
+    double room = HUGE_VAL;
+    for (int i = 0; i < p->n_avoidances; i++) {
+        const mt_avoidance *const c = &p->avoidances[i];
+        const mt_modes *const modes = modes_of(w, c);
+        for (int b = 0; b < c->bands.n; b++) {
+            if (p->tie[c->first + b] != tie) {
+                continue;
+            }
+            const int flexible = mt_modal_vibrations(modes);
+            *stable = *stable && mt_modal_indexed(modes);
+            *most = flexible > *most ? flexible : *most;
+            room = fmin(room, mt_band_margin_with(modes, &c->bands.items[b], k));
+        }
+    }
+    return room;
+}
+
+double mt_tie_margin(const mt_workspace *w, int tie, int *below)
+{
+    bool stable = true;
+    int most = 0;
+    double best = tie_margin_with(w, tie, 0, &stable, &most);
+    *below = 0;
+    for (int k = 1; k <= most; k++) {
+        const double room = tie_margin_with(w, tie, k, &stable, &most);
+        if (room > best) {
+            best = room;
+            *below = k;
+        }
+    }
+    return stable ? best : nan("");
+}
+
+double mt_ties_violation(const mt_workspace *w, const int *below)
+{
+    const mt_problem *const p = w->p;
+    double worst = 0.0;
+    for (int i = 0; i < p->n_avoidances; i++) {
+        const mt_avoidance *const c = &p->avoidances[i];
+        const mt_modes *const modes = modes_of(w, c);
+        for (int b = 0; b < c->bands.n; b++) {
+            const double room =
+                mt_band_margin_with(modes, &c->bands.items[b], below[c->first + b]);
+            worst = fmax(worst, mt_modal_indexed(modes) ? -room : nan(""));
+        }
+    }
+    return worst;
+}
+
+double mt_ties_margin(const mt_workspace *w, int *below)
+{
+    const mt_problem *const p = w->p;
+    double least = HUGE_VAL;
+    for (int i = 0; i < p->n_bands; i++) {
+        int k = 0;
+        if (p->tie[i] == i) {
+            const double room = mt_tie_margin(w, i, &k);
+            least = !(room >= least) ? room : least;
+        }
+        if (below != NULL) {
+            below[i] = p->tie[i] == i ? k : below[p->tie[i]];
+        }
+    }
+    return least;
+}
+
+/* Add a band unless one that is there holds it; those that it holds go. */
+static void put(mt_band_along_path *list, int *n, const mt_band_along_path *fresh)
+{
+    int kept = 0;
+    for (int i = 0; i < *n; i++) {
+        const mt_band *const has = &list[i].band;
+        if (has->lower_hz <= fresh->band.lower_hz && has->upper_hz >= fresh->band.upper_hz) {
+            return; /* nothing has been dropped: what it holds would be held by that too */
+        }
+    }
+    for (int i = 0; i < *n; i++) {
+        const mt_band *const has = &list[i].band;
+        if (!(has->lower_hz >= fresh->band.lower_hz && has->upper_hz <= fresh->band.upper_hz)) {
+            list[kept++] = list[i];
+        }
+    }
+    int at = kept;
+    for (; at > 0 && list[at - 1].band.lower_hz > fresh->band.lower_hz; at--) {
+        list[at] = list[at - 1];
+    }
+    list[at] = *fresh;
+    *n = kept + 1;
+}
+
+static void intersect(const mt_problem *p, const mt_avoidance *a, const mt_avoidance *b,
+                      mt_band_along_path *list, int *n)
+{
+    for (int i = 0; i < a->bands.n; i++) {
+        for (int k = 0; k < b->bands.n; k++) {
+            const mt_band *const x = &a->bands.items[i];
+            const mt_band *const y = &b->bands.items[k];
+            if (p->tie[a->first + i] != p->tie[b->first + k] || !overlap(x, y)) {
+                continue;
+            }
+            const mt_band_along_path fresh = {
+                .tie = p->tie[a->first + i],
+                .band = {.base_lower_hz = fmax(x->base_lower_hz, y->base_lower_hz),
+                         .base_upper_hz = fmin(x->base_upper_hz, y->base_upper_hz),
+                         .lower_hz = fmax(x->lower_hz, y->lower_hz),
+                         .upper_hz = fmin(x->upper_hz, y->upper_hz),
+                         .label = x->label},
+                .tolerance = fmin(a->tolerance, b->tolerance)};
+            put(list, n, &fresh);
+        }
+    }
+}
+
+static const mt_avoidance *clear_of(const mt_problem *p, int view)
+{
+    for (int i = 0; i < p->n_avoidances; i++) {
+        if (p->avoidances[i].view == view) {
+            return &p->avoidances[i];
+        }
+    }
+    return NULL;
+}
+
+/* Pairs of tied bands: what intersect may put down at most. */
+static size_t count_tied(const mt_problem *p)
+{
+    size_t n = 0;
+    for (int i = 0; i < p->n_bands; i++) {
+        for (int k = 0; k < p->n_bands; k++) {
+            n += p->tie[i] == p->tie[k] ? 1 : 0;
+        }
+    }
+    return n;
+}
+
+mt_status mt_drive_positions_bands(const mt_problem *p, const mt_drive_positions *f,
+                                   const double *at, double left, double right, mt_arena *mem,
+                                   mt_band_along_paths *out, mt_err *err)
+{
+    *out =
+        (mt_band_along_paths){.items = mt_arena_alloc(mem, count_tied(p), sizeof *out->items)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < f->n; i++) {
+        const mt_avoidance *const a = clear_of(p, f->view[i]);
+        for (int k = 0; k < f->n && a != NULL; k++) {
+            const mt_avoidance *const b = k == i ? NULL : clear_of(p, f->view[k]);
+            if (b != NULL && at[i] <= left && at[k] >= right) {
+                intersect(p, a, b, out->items, &out->n);
+            }
+        }
+    }
+    return MT_OK;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef PROBLEM_FORCED_RESPONSE_SAMPLED_H
+#define PROBLEM_FORCED_RESPONSE_SAMPLED_H
+
+#include "response/response.h"
+#include "vibration/respond.h"
+
+/*
+ * Forced vibration without a sum over poles, of the only output of an open problem to its only
+ * input: curves that follow the shape (response/curve.h), and quadrature. All of it is in
+ * r->mem. Of the largest value nobody knows a bound: its excess is NaN.
+ */
+/* The largest |H| from lower to upper [rad/s], which may be equal, and d|H|/dw there. */
+mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_peak *out,
+                          double *by_omega, mt_err *err);
+mt_status mt_sampled_respond(mt_response *r, const mt_vibration *v, mt_vibration_response *out,
+                             mt_err *err);
+/* As mt_vibration_respond_nodes. */
+mt_status mt_sampled_nodes(mt_response *r, const mt_vibration *v,
+                           const mt_vibration_response *of, double by_rms, double by_sine,
+                           mt_spectral_nodes *out, mt_err *err);
+
+#endif

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which corners of the tolerances may be the worst, which goals can be judged there, and their
+ * rows. */
+#include "problem/tolerance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem/goal_avoid.h"
+#include "prove/enclosure.h"
+
+/* All combinations of so many variables whose sign is not known; of more: all low, all high,
+ * and each alone against the others. */
+enum { COMBINED_MOST = 5 };
+/* A target's range is kept within this, relatively. */
+static const double ROW_TOLERANCE = MT_DEFAULT_TOLERANCE_PERCENT / 100.0;
+
+double mt_tolerance_of_variable(const mt_problem *p, int i)
+{
+    const double percent = p->study->variables[i].tolerance_percent;
+    return MT_HAS(percent) ? percent / 100.0 : 0.0;
+}
+
+static bool any_tolerance(const mt_problem *p)
+{
+    for (int i = 0; i < p->n; i++) {
+        if (mt_tolerance_of_variable(p, i) > 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d)
+{
+    return any_tolerance(p) && MT_HAS(d->equals) && d->goal->tolerance_addr != d->goal->addr;
+}
+
+/* The bounds, wider by the tolerances. */
+static void widen(const mt_subproblem *c)
+{
+    for (int i = 0; i < c->p->n; i++) {
+        const double tolerance = mt_tolerance_of_variable(c->p, i);
+        c->tolerance_box->lower[i] = c->lower[i] - (tolerance * fabs(c->lower[i]));
+        c->tolerance_box->upper[i] = c->upper[i] + (tolerance * fabs(c->upper[i]));
+    }
+}
+
+double mt_tolerance_factor(const mt_subproblem *c, int i, int side)
+{
+    const double sign = c->upper[i] > 0.0 ? 1.0 : -1.0;
+    return 1.0 + (sign * (double)side * mt_tolerance_of_variable(c->p, i));
+}
+
+/* Whether the j-th of n variables of unknown sign is high in combination c. */
+static bool is_high(int c, int j, int n)
+{
+    if (n <= COMBINED_MOST) {
+        return ((c >> j) & 1) != 0;
+    }
+    return c < 2 ? c == 1 : ((c & 1) != 0) != (j == (c - 2) / 2);
+}
+
+/* Corner k of sides * combinations: which side, and which combination of the variables of
+ * unknown sign. */
+static mt_status make_corner(const mt_subproblem *c, const int *signs, int sides, int unknown,
+                             int k, mt_arena *mem, mt_tolerance_corner *out, mt_err *err)
+{
+    const int side = k % sides;
+    int j = 0;
+    *out = (mt_tolerance_corner){
+        .factor = mt_arena_f64(mem, (size_t)c->p->n, 1),
+        .may = {sides == 1 || side == MT_LOWEST, sides == 1 || side == MT_HIGHEST}};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->p->n; i++) {
+        int at = side == MT_LOWEST ? -signs[i] : signs[i];
+        if (signs[i] == MT_UNKNOWN) {
+            at = is_high(k / sides, j++, unknown) ? 1 : -1;
+        }
+        out->factor[i] = mt_tolerance_factor(c, i, at);
+    }
+    return MT_OK;
+}
+
+/* The corners that signs[n] leave, without analyses; at least the design itself, where a range
+ * has no other rows. */
+static mt_status make_corners(const mt_subproblem *c, const int *signs, bool ranged,
+                              mt_arena *mem, mt_tolerance_corners *out, mt_err *err)
+{
+    int known = 0;
+    int unknown = 0;
+    for (int i = 0; i < c->p->n; i++) {
+        known += signs[i] == MT_RISES || signs[i] == MT_FALLS ? 1 : 0;
+        unknown += signs[i] == MT_UNKNOWN ? 1 : 0;
+    }
+    *out = (mt_tolerance_corners){.exact = unknown == 0};
+    if (known + unknown == 0 && !ranged) {
+        return MT_OK;
+    }
+    const int sides = known > 0 ? MT_TOLERANCE_SIDES : 1;
+    const int n = sides * (unknown <= COMBINED_MOST ? 1 << unknown : 2 * (unknown + 1));
+    out->corners = mt_arena_alloc(mem, (size_t)n, sizeof *out->corners);
+    MT_TRY(mt_arena_check(mem, err));
+    for (; out->n < n; out->n++) {
+        MT_TRY(make_corner(c, signs, sides, unknown, out->n, mem, &out->corners[out->n], err));
+    }
+    return MT_OK;
+}
+
+/* Bounds on both sides of 0 turn the ends of a relative tolerance over: no sign then says which
+ * end is the soft one. */
+static int sign_of(const mt_subproblem *c, int i, bool rises, bool falls)
+{
+    const bool turns = c->lower[i] < 0.0 && c->upper[i] > 0.0;
+    if (!(mt_tolerance_of_variable(c->p, i) > 0.0) || (!rises && !falls)) {
+        return MT_NOTHING;
+    }
+    return turns || (rises && falls) ? MT_UNKNOWN : rises ? MT_RISES : MT_FALLS;
+}
+
+/* Signs over the whole box of all variables. */
+static mt_status signs_of_view(const mt_subproblem *c, const mt_analysis *a, int *signs,
+                               mt_err *err)
+{
+    char reason[MT_REASON_SIZE] = "";
+    mt_enclosure *e = NULL;
+    MT_TRY(
+        mt_enclosure_new(a, c->tolerance_box->lower, c->tolerance_box->upper, &e, reason, err));
+    if (e != NULL) {
+        mt_enclosure_effects(e, c->tolerance_box->lower, c->tolerance_box->upper, signs);
+    }
+    for (int i = 0; i < c->p->n; i++) {
+        const int effect = e == NULL ? MT_STIFFENS | MT_SOFTENS : signs[i];
+        signs[i] = sign_of(c, i, (effect & MT_STIFFENS) != 0, (effect & MT_SOFTENS) != 0);
+    }
+    mt_enclosure_delete(e);
+    return MT_OK;
+}
+
+static bool has_range(const mt_problem *p, int view)
+{
+    bool any = false;
+    for (int i = 0; i < p->n_requirements; i++) {
+        any = any || (p->requirements[i].view == view && p->requirements[i].ranged);
+    }
+    return any;
+}
+
+static mt_status check_requirement(const mt_requirement *d, mt_err *err)
+{
+    if (d->row_res >= 0) {
+        return MT_OK;
+    }
+    if (d->quantity == MT_QUANTITY_OTHER) {
+        return mt_fail(err, MT_E_INPUT,
+                       "/goals/%d: a goal of type \"%s\" is not judged over "
+                       "\"tolerance_percent\": give it a weight, or the variables no tolerance",
+                       d->goal_index, mt_goal_kind_of(d->goal->type)->name);
+    }
+    return d->mode > 0 ? MT_OK
+                       : mt_fail(err, MT_E_INPUT,
+                                 "/goals/%d: with \"tolerance_percent\" a mode is meant by its "
+                                 "index, as frequencies keep their order over the tolerances: "
+                                 "name its number instead of \"%s\"",
+                                 d->goal_index, d->goal->mode.mode_name.s);
+}
+
+/* Whether a search can go on from a design that misses a corner. */
+static bool goes_on(const mt_problem *p)
+{
+    bool any = false;
+    for (int i = 0; i < p->n; i++) {
+        any = any || p->study->variables[i].n_catalogue == 0;
+    }
+    return any;
+}
+
+static bool any_unknown(const mt_problem *p, const int *signs)
+{
+    bool any = false;
+    for (int i = 0; i < p->n; i++) {
+        any = any || signs[i] == MT_UNKNOWN;
+    }
+    return any;
+}
+
+/* Corners of one view. Those of a cut (a position of a drive) are judged by nobody later. */
+static mt_status init_view(mt_subproblem *c, int view, mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    mt_tolerance_corners *const set = &c->tolerance_box->views[view];
+    int *const signs = mt_arena_int(mem, (size_t)p->n);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(signs_of_view(c, c->views[view].original, signs, err));
+    if (view < p->n_views && goes_on(p) && any_unknown(p, signs)) {
+        MT_TRY(mt_tolerance_first(c, view, signs, mem, set, err));
+    }
+    return set->n > 0 ? MT_OK : make_corners(c, signs, has_range(p, view), mem, set, err);
+}
+
+/* Corners of the views that constraints or bands look at; those of the problem's own may be
+ * known. */
+static mt_status init_views(mt_subproblem *c, const mt_problem_tolerance_box *known,
+                            mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    int *const wanted = mt_arena_int(mem, (size_t)c->n_views + 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
+        if (d->view >= 0) {
+            MT_TRY(check_requirement(d, err));
+            const bool held = d->row_in >= 0 || d->ranged;
+            wanted[d->view] = wanted[d->view] || held;
+        }
+    }
+    for (int i = 0; i < c->n_avoidances; i++) {
+        wanted[c->avoidances[i].view] = 1;
+    }
+    for (int i = 0; i < c->n_views; i++) {
+        if (known != NULL && i < p->n_views) {
+            c->tolerance_box->views[i] = known->views[i];
+        } else if (wanted[i]) {
+            MT_TRY(init_view(c, i, mem, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Signs of the expressions' slopes over the bounds decide their corners. */
+static mt_status init_limits(mt_subproblem *c, mt_arena *mem, mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    const size_t n = (size_t)p->n;
+    const size_t count = (size_t)p->program.count;
+    int *const signs = mt_arena_int(mem, n);
+    double *const lo = mt_arena_f64(mem, count, 1);
+    double *const hi = mt_arena_f64(mem, count, 1);
+    double *const dlo = mt_arena_f64(mem, count, n);
+    double *const dhi = mt_arena_f64(mem, count, n);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_program_interval_gradient(&p->program, c->tolerance_box->lower, c->tolerance_box->upper,
+                                 lo, hi, dlo, dhi);
+    for (int k = 0; k < p->n_requirements; k++) {
+        const mt_requirement *const d = &p->requirements[k];
+        const bool held = d->row_in >= 0 || d->ranged;
+        if (d->quantity != MT_QUANTITY_EXPRESSION || !held) {
+            continue;
+        }
+        const size_t row = (size_t)d->node * n;
+        for (int i = 0; i < p->n; i++) {
+            signs[i] = sign_of(c, i, dhi[row + (size_t)i] > 0.0, dlo[row + (size_t)i] < 0.0);
+        }
+        MT_TRY(make_corners(c, signs, d->ranged, mem, &c->tolerance_box->limits[k], err));
+    }
+    return MT_OK;
+}
+
+/* Rows of one limit at all corners of its side. The worst corner takes the place of the
+ * design's own row `own`; where the corners are samples, or there is no such row (-1), they
+ * come on top. */
+static void list_rows(mt_subproblem *c, const mt_tolerance_corners *set,
+                      const mt_tolerance_row *what, int own, mt_tolerance_row *rows)
+{
+    mt_problem_tolerance_box *const r = c->tolerance_box;
+    for (int k = 0; k < set->n; k++) {
+        if (!set->corners[k].may[what->side]) {
+            continue;
+        }
+        if (rows != NULL) {
+            rows[r->n_rows] = *what;
+            rows[r->n_rows].corner = k;
+            rows[r->n_rows].row = set->exact && own >= 0 ? own : c->n_in;
+        }
+        c->n_in += set->exact && own >= 0 ? 0 : 1;
+        r->n_rows++;
+    }
+}
+
+static void list_requirement(mt_subproblem *c, int requirement, mt_tolerance_row *rows)
+{
+    const mt_requirement *const d = &c->p->requirements[requirement];
+    const mt_tolerance_corners *const set = d->view >= 0
+                                                ? &c->tolerance_box->views[d->view]
+                                                : &c->tolerance_box->limits[requirement];
+    const bool target = d->ranged;
+    const bool asked[MT_TOLERANCE_SIDES] = {MT_HAS(d->goal->at_least),
+                                            MT_HAS(d->goal->at_most)};
+    int own = d->row_in;
+    for (int side = 0; side < MT_TOLERANCE_SIDES; side++) {
+        if (target || (d->row_in >= 0 && asked[side])) {
+            const mt_tolerance_row what = {.requirement = requirement,
+                                           .side = (mt_tolerance_side)side,
+                                           .tolerance = target ? ROW_TOLERANCE : d->tolerance};
+            list_rows(c, set, &what, target ? -1 : own++, rows);
+        }
+    }
+}
+
+static void list_all(mt_subproblem *c, mt_tolerance_row *rows)
+{
+    mt_avoidance_row at;
+    c->tolerance_box->n_rows = 0;
+    for (int i = 0; i < c->p->n_requirements; i++) {
+        list_requirement(c, i, rows);
+    }
+    for (int k = 0; c->below != NULL && mt_avoidance_row_at(c, c->below, k, &at); k++) {
+        const mt_avoidance *const avoidance = &c->avoidances[at.avoidance];
+        const mt_tolerance_row what = {.requirement = -1,
+                                       .at = at,
+                                       .side = at.above ? MT_LOWEST : MT_HIGHEST,
+                                       .tolerance = avoidance->tolerance};
+        list_rows(c, &c->tolerance_box->views[avoidance->view], &what, c->first_band_row + k,
+                  rows);
+    }
+}
+
+/* Number the rows, once to count them and once to keep them, and make room for their
+ * tolerances. */
+static mt_status init_rows(mt_subproblem *c, mt_arena *mem, mt_err *err)
+{
+    mt_problem_tolerance_box *const r = c->tolerance_box;
+    const int before = c->n_in;
+    list_all(c, NULL);
+    r->rows = mt_arena_alloc(mem, (size_t)r->n_rows, sizeof *r->rows);
+    double *const tolerances = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    if (before > 0) {
+        memcpy(tolerances, c->in_tol, (size_t)before * sizeof *tolerances);
+    }
+    c->n_in = before;
+    list_all(c, r->rows);
+    for (int i = 0; i < r->n_rows; i++) {
+        tolerances[r->rows[i].row] = r->rows[i].tolerance;
+    }
+    c->in_tol = tolerances;
+    c->n_corner_rows = c->n_in - before;
+    return MT_OK;
+}
+
+mt_status mt_tolerance_init(mt_subproblem *c, const mt_problem_tolerance_box *known,
+                            mt_arena *mem, mt_err *err)
+{
+    const size_t n = (size_t)c->p->n;
+    c->n_corner_rows = 0;
+    if (!any_tolerance(c->p)) {
+        return MT_OK;
+    }
+    mt_problem_tolerance_box *const r = mt_arena_alloc(mem, 1, sizeof *r);
+    MT_TRY(mt_arena_check(mem, err));
+    *r = (mt_problem_tolerance_box){
+        .views = mt_arena_alloc(mem, (size_t)c->n_views, sizeof *r->views),
+        .limits = known != NULL
+                      ? known->limits
+                      : mt_arena_alloc(mem, (size_t)c->p->n_requirements, sizeof *r->limits),
+        .lower = mt_arena_f64(mem, n, 1),
+        .upper = mt_arena_f64(mem, n, 1)};
+    MT_TRY(mt_arena_check(mem, err));
+    c->tolerance_box = r;
+    widen(c);
+    MT_TRY(init_views(c, known, mem, err));
+    MT_TRY(known != NULL ? MT_OK : init_limits(c, mem, err));
+    return init_rows(c, mem, err);
+}
+
+mt_status mt_tolerance_work_init(mt_workspace *w, mt_err *err)
+{
+    const size_t n = (size_t)w->p->n;
+    const size_t count = (size_t)w->p->program.count;
+    if (!any_tolerance(w->p)) {
+        return MT_OK;
+    }
+    mt_tolerance_work *const r = mt_arena_alloc(&w->mem, 1, sizeof *r);
+    MT_TRY(mt_arena_check(&w->mem, err));
+    *r = (mt_tolerance_work){.x = mt_arena_f64(&w->mem, n, 1),
+                             .slope = mt_arena_f64(&w->mem, n, 1),
+                             .value = mt_arena_f64(&w->mem, count, 1),
+                             .grad = mt_arena_f64(&w->mem, count, n)};
+    w->tolerance_box = r;
+    return mt_arena_check(&w->mem, err);
+}
+
+const mt_tolerance_row *mt_tolerance_corner_row(const mt_subproblem *c, int row)
+{
+    const int first = c->n_in - c->n_corner_rows;
+    for (int k = 0; c->tolerance_box != NULL && row >= first && k < c->tolerance_box->n_rows;
+         k++) {
+        if (c->tolerance_box->rows[k].row == row) {
+            return &c->tolerance_box->rows[k];
+        }
+    }
+    return NULL;
+}

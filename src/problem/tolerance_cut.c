@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "problem/tolerance_cut.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+
+/* Factors that differ by less are those of one corner: rounding of x (1 + tolerance) / x. */
+static const double SAME_FACTOR = 1e-12;
+/* A row keeps this many times the way to the corner that its slopes name, and as many times the
+ * largest tolerance (where slopes vanish the way is short): worse points, three times as far,
+ * are not looked for before the design is described. */
+static const double FAR = 2.0;
+
+int mt_tolerance_row_configuration(const mt_subproblem *c, const mt_tolerance_row *row)
+{
+    return row->requirement >= 0 ? c->p->requirements[row->requirement].view
+                                 : c->avoidances[row->at.avoidance].view;
+}
+
+int mt_tolerance_row_mode(const mt_subproblem *c, const mt_tolerance_row *row)
+{
+    return row->requirement >= 0 ? c->p->requirements[row->requirement].mode : row->at.mode;
+}
+
+static const mt_tolerance_corners *set_of(const mt_subproblem *c, int view, int requirement)
+{
+    return view >= 0 ? &c->tolerance_box->views[view] : &c->tolerance_box->limits[requirement];
+}
+
+/* Views of cuts of a motion are judged at their corners alone. */
+static bool is_judged(const mt_subproblem *c, const mt_tolerance_row *row)
+{
+    const int view = mt_tolerance_row_configuration(c, row);
+    return view < c->p->n_views && !set_of(c, view, row->requirement)->exact;
+}
+
+/* Whether two rows hold one number on one side, at two corners. */
+static bool is_same(const mt_tolerance_row *a, const mt_tolerance_row *b)
+{
+    return a->requirement == b->requirement && a->side == b->side &&
+           (a->requirement >= 0 || (a->at.avoidance == b->at.avoidance &&
+                                    a->at.band == b->at.band && a->at.mode == b->at.mode));
+}
+
+bool mt_tolerance_is_sampled(const mt_subproblem *c)
+{
+    for (int k = 0; c->tolerance_box != NULL && k < c->tolerance_box->n_rows; k++) {
+        if (is_judged(c, &c->tolerance_box->rows[k])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool same_factor(int n, const double *a, const double *b)
+{
+    for (int i = 0; i < n; i++) {
+        if (!(fabs(a[i] - b[i]) <= SAME_FACTOR)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* One more corner where the number of a row is worst, unless it is one already. */
+static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, const double *at,
+                         mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
+{
+    const mt_subproblem *const c = w->c;
+    const int n = c->p->n;
+    const int view = mt_tolerance_row_configuration(c, row);
+    const mt_tolerance_corners *const set = set_of(c, view, row->requirement);
+    double *const factor = mt_arena_f64(mem, (size_t)n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n; i++) {
+        factor[i] = w->x[i] != 0.0 ? at[i] / w->x[i] : 1.0;
+    }
+    for (int k = 0; k < set->n; k++) {
+        const mt_tolerance_corner *const known = &set->corners[k];
+        if (known->may[row->side] && same_factor(n, known->factor, factor)) {
+            return MT_OK;
+        }
+    }
+    for (int k = 0; k < cuts->n; k++) {
+        mt_tolerance_cut *const known = &cuts->items[k];
+        const bool own =
+            known->view == view && (view >= 0 || known->requirement == row->requirement);
+        if (own && same_factor(n, known->factor, factor)) {
+            cuts->added += known->may[row->side] ? 0 : 1;
+            known->may[row->side] = true;
+            return MT_OK;
+        }
+    }
+    mt_tolerance_cut *const grown =
+        mt_arena_grow(mem, cuts->items, cuts->n, &cuts->room, sizeof *grown);
+    MT_TRY(mt_arena_check(mem, err));
+    cuts->items = grown;
+    grown[cuts->n] =
+        (mt_tolerance_cut){.view = view, .requirement = row->requirement, .factor = factor};
+    grown[cuts->n++].may[row->side] = true;
+    cuts->added++;
+    return MT_OK;
+}
+
+/* The number that a row limits, over the tolerances; NULL: it is not there. */
+static const mt_tolerance_range *range_of(const mt_subproblem *c, const mt_ranges *ranges,
+                                          const mt_tolerance_row *row)
+{
+    const int view = mt_tolerance_row_configuration(c, row);
+    const int mode = mt_tolerance_row_mode(c, row);
+    return view >= 0 ? mt_ranges_hz(ranges, view, mode) : &ranges->number[row->requirement];
+}
+
+static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_nlp_values *v,
+                       mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
+{
+    const mt_subproblem *const c = w->c;
+    const mt_tolerance_row *before = NULL;
+    for (int k = 0; k < c->tolerance_box->n_rows; k++) {
+        const mt_tolerance_row *const row = &c->tolerance_box->rows[k];
+        const bool again = before != NULL && is_same(before, row);
+        before = row;
+        const mt_tolerance_range *const range =
+            again || !is_judged(c, row) ? NULL : range_of(c, ranges, row);
+        if (range == NULL) {
+            continue;
+        }
+        const double room = mt_tolerance_row_margin(c, row, range->value[row->side]);
+        const double wanted = row->requirement < 0 && c->clearance ? w->t[c->p->n] : 0.0;
+        mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
+        cuts->band_margin =
+            row->requirement < 0 ? fmin(cuts->band_margin, room) : cuts->band_margin;
+        v->in[row->row] = fmin(v->in[row->row], room - wanted);
+        /* where it has no value no row leads on */
+        if (room - wanted < -row->tolerance) {
+            MT_TRY(add_cut(w, row, range->at[row->side], mem, cuts, err));
+        }
+    }
+    return MT_OK;
+}
+
+static void begin_judging(mt_tolerance_cuts *cuts)
+{
+    cuts->added = 0;
+    cuts->missed = (mt_missed){0.0, 0.0};
+    cuts->band_margin = HUGE_VAL;
+}
+
+/* leave: [n_views of the problem] views whose rows keep far from their limits; NULL: none. */
+static mt_status lower(mt_workspace *w, mt_nlp_values *v, const bool *leave, mt_arena *mem,
+                       mt_tolerance_cuts *cuts, mt_err *err)
+{
+    mt_arena own;
+    mt_ranges ranges = {.solutions = 0};
+    begin_judging(cuts);
+    if (!mt_tolerance_is_sampled(w->c)) {
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&own, 0, err));
+    mt_status rc = mt_tolerance_ranges_of_rows(w, leave, &own, &ranges, err);
+    /* what is cut off has no value at some sample: nothing is known */
+    rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
+    rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
+    cuts->solutions += ranges.solutions;
+    mt_arena_free(&own);
+    return rc;
+}
+
+mt_status mt_tolerance_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
+                             mt_tolerance_cuts *cuts, mt_err *err)
+{
+    return lower(w, v, NULL, mem, cuts, err);
+}
+
+/* x[n] := the corner that is worst to first order for the mode of a row at the design that w
+ * was evaluated at with slopes; false: it has none. */
+static bool name_worst(mt_workspace *w, const mt_tolerance_row *row, int mode, double *x)
+{
+    mt_analysis *const a = w->views[mt_tolerance_row_configuration(w->c, row)].analysis;
+    const int pos = mt_modal_flexible(&a->modes, mode);
+    mt_err own = {.code = MT_OK};
+    if (pos < 0 || mt_analysis_dlambda_raw(a, pos, w->tolerance_box->slope, &own) != MT_OK) {
+        return false;
+    }
+    for (int i = 0; i < w->p->n; i++) {
+        const double half = mt_tolerance_of_variable(w->p, i) * fabs(w->x[i]);
+        const bool low = (w->tolerance_box->slope[i] > 0.0) == (row->side == MT_LOWEST);
+        x[i] = w->x[i] + (low ? -half : half);
+    }
+    return true;
+}
+
+static double largest_tolerance(const mt_problem *p)
+{
+    double most = 0.0;
+    for (int i = 0; i < p->n; i++) {
+        most = fmax(most, mt_tolerance_of_variable(p, i));
+    }
+    return most;
+}
+
+/* A row of a mode at the corner that its slopes name, solved with an analysis of a corner.
+ * *far: it keeps its limit by much there. */
+static mt_status verify_first(mt_workspace *w, const mt_tolerance_row *row, double *x,
+                              mt_arena *mem, mt_tolerance_cuts *cuts, bool *far, mt_err *err)
+{
+    const mt_subproblem *const c = w->c;
+    const int mode = mt_tolerance_row_mode(c, row);
+    const mt_configuration_work *const view = &w->views[mt_tolerance_row_configuration(c, row)];
+    const mt_analysis_options opt = mt_configuration_queries(w, view, false);
+    mt_analysis *const a = view->corners[0];
+    mt_err own = {.code = MT_OK};
+    *far = false;
+    if (!name_worst(w, row, mode, x)) {
+        return MT_OK;
+    }
+    mt_problem_note_modal(w->p, 1);
+    cuts->solutions++;
+    const mt_status rc = mt_analysis_solve(a, x, &opt, &own);
+    const int pos = rc == MT_OK ? mt_modal_flexible(&a->modes, mode) : -1;
+    MT_TRY(mt_pass_final(rc, &own, err));
+    if (pos < 0) {
+        return MT_OK; /* what is not there is judged by samples */
+    }
+    const double room = mt_tolerance_row_margin(c, row, mt_modal_hz(&a->modes, pos));
+    const double wanted = row->requirement < 0 && c->clearance ? w->t[c->p->n] : 0.0;
+    const mt_modes *const modes = &view->analysis->modes;
+    const double here =
+        mt_tolerance_row_margin(c, row, mt_modal_hz(modes, mt_modal_flexible(modes, mode)));
+    const double way = fmax(fabs(here - room), largest_tolerance(w->p));
+    /* of bands the least room is asked for, wherever it is */
+    *far = (row->requirement >= 0 || c->clearance) && room - wanted > FAR * way;
+    if (room - wanted < -row->tolerance) {
+        mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
+        MT_TRY(add_cut(w, row, x, mem, cuts, err));
+    }
+    return MT_OK;
+}
+
+/* All rows of modes that are held at samples. far: [n_views of the problem] of a view, all of
+ * them keep their limits by much. */
+static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_cuts *cuts,
+                                  bool *far, mt_err *err)
+{
+    const mt_subproblem *const c = w->c;
+    const mt_tolerance_row *before = NULL;
+    double *const x = mt_arena_f64(mem, (size_t)c->p->n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->p->n_views; i++) {
+        far[i] = true;
+    }
+    for (int k = 0; k < c->tolerance_box->n_rows; k++) {
+        const mt_tolerance_row *const row = &c->tolerance_box->rows[k];
+        const int view = mt_tolerance_row_configuration(c, row);
+        const bool again = before != NULL && is_same(before, row);
+        bool own = false;
+        before = row;
+        if (!again && is_judged(c, row) && view >= 0) {
+            MT_TRY(verify_first(w, row, x, mem, cuts, &own, err));
+            far[view] = far[view] && own;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_tolerance_verify(mt_workspace *w, const double *t, mt_arena *mem,
+                              mt_tolerance_cuts *cuts, mt_err *err)
+{
+    mt_nlp_values v;
+    begin_judging(cuts);
+    cuts->solutions = 0;
+    if (!mt_tolerance_is_sampled(w->c)) {
+        return MT_OK;
+    }
+    bool *const far = mt_arena_alloc(mem, (size_t)w->p->n_views, sizeof *far);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_subproblem_values_init(w->c, mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, t, true, &v, err));
+    MT_TRY(verify_by_slopes(w, mem, cuts, far, err));
+    return cuts->added > 0 ? MT_OK : lower(w, &v, far, mem, cuts, err);
+}
+
+/* The corners of one set, and those of its cuts. */
+static mt_status extend(const mt_subproblem *c, const mt_tolerance_cuts *cuts, int view,
+                        int requirement, mt_arena *mem, mt_tolerance_corners *out, mt_err *err)
+{
+    const size_t n = (size_t)c->p->n;
+    const mt_tolerance_corners *const set = set_of(c, view, requirement);
+    *out = *set;
+    out->corners = mt_arena_alloc(mem, (size_t)set->n + (size_t)cuts->n, sizeof *out->corners);
+    MT_TRY(mt_arena_check(mem, err));
+    if (set->n > 0) {
+        memcpy(out->corners, set->corners, (size_t)set->n * sizeof *out->corners);
+    }
+    for (int k = 0; k < cuts->n; k++) {
+        const mt_tolerance_cut *const cut = &cuts->items[k];
+        if (cut->view != view || (view < 0 && cut->requirement != requirement)) {
+            continue;
+        }
+        mt_tolerance_corner *const corner = &out->corners[out->n++];
+        *corner = (mt_tolerance_corner){.factor = mt_arena_f64(mem, n, 1),
+                                        .may = {cut->may[MT_LOWEST], cut->may[MT_HIGHEST]}};
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(corner->factor, cut->factor, n * sizeof *corner->factor);
+    }
+    return MT_OK;
+}
+
+mt_status mt_tolerance_add_cuts(const mt_subproblem *c, const mt_tolerance_cuts *cuts,
+                                mt_arena *mem, mt_problem_tolerance_box **out, mt_err *err)
+{
+    const size_t n_views = (size_t)c->p->n_views;
+    const size_t n_requirements = (size_t)c->p->n_requirements;
+    mt_problem_tolerance_box *const r = mt_arena_alloc(mem, 1, sizeof *r);
+    MT_TRY(mt_arena_check(mem, err));
+    *r = (mt_problem_tolerance_box){.views = mt_arena_alloc(mem, n_views, sizeof *r->views),
+                                    .limits =
+                                        mt_arena_alloc(mem, n_requirements, sizeof *r->limits)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < c->p->n_views; i++) {
+        MT_TRY(extend(c, cuts, i, -1, mem, &r->views[i], err));
+    }
+    for (int i = 0; i < c->p->n_requirements; i++) {
+        MT_TRY(extend(c, cuts, -1, i, mem, &r->limits[i], err));
+    }
+    *out = r;
+    return MT_OK;
+}

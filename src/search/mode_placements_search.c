@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The search of one gap assignment. Where configurations are positions of one drive, its best
+ * design is followed from position to position (motion.h); where a mode crosses an edge on the
+ * way, the position of the worst crossing becomes one more configuration that has to keep the
+ * assignment, and the search begins again from there (a cutting plane: what it removes
+ * crosses). A few rounds end it, as each begins next to its answer; a design that still crosses
+ * then is no design of that assignment.
+ */
+#include "search/mode_placements_priv.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "problem/goal_avoid.h"
+#include "problem/objective.h"
+#include "search/drive_path.h"
+
+/* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
+enum { CUT_ROUNDS = 12, CUTS_MOST = 32, CUT_STARTS = 6 };
+
+/* The caller's design where it is of this kind, else the one that the candidate comes with;
+ * NULL: none. */
+static const double *hint_of(const mt_mode_placement_job *j, int k)
+{
+    const size_t size = (size_t)j->p->n_bands * sizeof(int);
+    const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
+    if (j->hint_below != NULL && memcmp(below, j->hint_below, size) == 0) {
+        return j->c->hint;
+    }
+    const double *const at =
+        j->candidates->at == NULL ? NULL : j->candidates->at + ((ptrdiff_t)k * j->p->n);
+    return at == NULL || j->p->n == 0 || isnan(at[0]) ? NULL : at;
+}
+
+/* The objectives in order, each with those before it held (search.h). */
+static mt_status search_in_order(mt_workspace *w, mt_mode_placement_slot *s, mt_err *err)
+{
+    int stage = 0;
+    mt_err why = {0};
+    mt_nlp_values v;
+    MT_TRY(mt_search_designs(&w, 1, &s->mem, &s->found, &stage, &why, err));
+    if (s->found.n_solutions == 0 || s->found.compromise || s->found.stop == MT_STOP_USER) {
+        return MT_OK;
+    }
+    /* all of them at the best solution, by which the candidates are ranked */
+    s->aims = mt_arena_f64(&s->mem, (size_t)w->c->n_aims, 1);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    MT_TRY(mt_subproblem_values_init(w->c, &s->mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, s->found.solutions[0].t, false, &v, err));
+    s->evals++;
+    for (int k = 0; k < w->c->n_aims; k++) {
+        s->aims[k] = mt_objective_stage_value(w, k, NULL);
+    }
+    s->found.solutions[0].f = s->aims[w->c->n_aims - 1];
+    return MT_OK;
+}
+
+/* Where the motion of a family comes nearer than `room`, one more cut for each way between two
+ * positions: *added of them. */
+static mt_status add_cuts(mt_mode_placement_slot *s, const mt_problem *p, int drive_positions,
+                          const mt_drive_path *m, double room, int *added, mt_err *err)
+{
+    for (int i = 0; i < m->n_ways && p->families[drive_positions].fixed; i++) {
+        if (m->way_margin[i] < room - m->tolerance && MT_HAS(m->way_at[i]) &&
+            s->n_cuts < CUTS_MOST) {
+            MT_TRY(mt_cut_init(p, drive_positions, m->way_at[i], &s->cuts[s->n_cuts], err));
+            s->n_cuts++;
+            (*added)++;
+        }
+    }
+    return MT_OK;
+}
+
+/* Follow the best design, which has been evaluated, over the range of motion. *added: cuts to
+ * search again with; with none a design that crosses is refused. *room: down to the least on
+ * the way. */
+static mt_status follow_best(mt_mode_placement_slot *s, mt_workspace *w, bool last, int *added,
+                             double *room, mt_err *err)
+{
+    mt_nlp_solution *const best = &s->found.solutions[0];
+    const double wanted = w->c->clearance ? best->t[w->p->n] : 0.0;
+    double short_of = 0.0;
+    double tolerance = 1.0;
+    *added = 0;
+    for (int i = 0; i < w->p->n_families; i++) {
+        mt_drive_path m = {.room = 0.0};
+        if (!w->p->families[i].banded) {
+            continue;
+        }
+        MT_TRY(mt_drive_path_follow(w, i, w->c->below, &s->mem, &m, err));
+        s->evals += m.positions;
+        *room = fmin(*room, m.room);
+        MT_TRY(last ? MT_OK : add_cuts(s, w->p, i, &m, wanted, added, err));
+        if (m.end == MT_MOTION_UNSTABLE || m.room < -m.tolerance) {
+            const double here = m.end == MT_MOTION_UNSTABLE ? 1.0 : -m.room;
+            tolerance = here > short_of && m.tolerance > 0.0 ? m.tolerance : tolerance;
+            short_of = fmax(short_of, here);
+        }
+    }
+    if (*added == 0 && short_of > 0.0) {
+        mt_mode_placement_refuse(best, short_of, tolerance);
+    }
+    return MT_OK;
+}
+
+/* What is asked of a search is z within the tolerance of a band, and that differs from kind to
+ * kind: the best design is ranked by what it has. */
+static void report_clearance(mt_mode_placement_slot *s, double room, int n_aims)
+{
+    if (n_aims == 1) {
+        s->found.solutions[0].f = -room;
+    } else if (s->aims != NULL) {
+        s->aims[0] = -room;
+    }
+}
+
+/* The best design over the range of motion and over its tolerances; *again: with one more cut
+ * at least. */
+static mt_status verify_best(mt_mode_placement_slot *s, mt_workspace *w, bool last, bool *again,
+                             mt_err *err)
+{
+    mt_nlp_solution *const best = &s->found.solutions[0];
+    mt_nlp_values v;
+    int added = 0;
+    bool worse = false;
+    double room = HUGE_VAL;
+    if (best->feasible && (w->c->clearance || mt_drive_positions_any(w->p))) {
+        MT_TRY(mt_subproblem_values_init(w->c, &s->mem, &v, err));
+        MT_TRY(mt_workspace_eval(w, best->t, false, &v, err));
+        s->evals++;
+        room = mt_avoidances_margin(w);
+    }
+    if (best->feasible && mt_drive_positions_any(w->p)) {
+        MT_TRY(follow_best(s, w, last, &added, &room, err));
+    }
+    if (best->feasible && mt_search_has_positions(w->c)) {
+        MT_TRY(mt_search_verify_positions(w, best->t, last, &s->mem, &s->at_position, err));
+        s->evals += s->at_position.evals;
+        added += s->at_position.added;
+    }
+    if (best->feasible && mt_tolerance_is_sampled(w->c)) {
+        MT_TRY(mt_search_verify(w, last, &s->mem, &s->corners, best, &worse, err));
+        s->evals += 1 + mt_subproblem_worth(w->c, s->corners.solutions);
+        /* the worst within the tolerances, where they were looked at for it */
+        room = fmin(room, s->corners.band_margin);
+    }
+    if (best->feasible && w->c->clearance && isfinite(room)) {
+        report_clearance(s, room, w->c->n_aims);
+    }
+    *again = added > 0 || worse;
+    return MT_OK;
+}
+
+/* True while enough of a candidate's share is left for one more round. */
+static bool has_round(const mt_mode_placement_job *j, long evals)
+{
+    const long most = j->options.max_evals;
+    return most <= 0 || most - evals >= mt_mode_placement_verdict(j->c) + MT_GAP_SEARCH_LEAST;
+}
+
+/* One search of candidate k with the cuts so far, from `from` (NULL: no hint). *again: a cut
+ * was added. */
+static mt_status search_round(const mt_mode_placement_job *j, mt_workspace *w,
+                              mt_mode_placement_slot *s, int k, int round, const double *from,
+                              bool *again, mt_err *why)
+{
+    const int *const below = j->candidates->below + ((ptrdiff_t)k * j->p->n_bands);
+    mt_nlp_options options = j->options;
+    mt_subproblem c;
+    *again = false;
+    mt_subproblem held = *j->c;
+    if (s->corners.n > 0) {
+        MT_TRY(mt_tolerance_add_cuts(j->c, &s->corners, &s->mem, &held.tolerance_box, why));
+    }
+    if (options.max_evals > 0) {
+        const long left = options.max_evals - s->evals - mt_mode_placement_verdict(j->c);
+        options.max_evals = left > 1 ? mt_subproblem_afford(&held, left) : 1;
+        held.search.max_evaluations = options.max_evals;
+    }
+    mt_cut *cuts = NULL;
+    MT_TRY(mt_at_position_cuts_used(&s->at_position, s->n_cuts, s->cuts, &s->mem, &cuts, why));
+    MT_TRY(mt_subproblem_in_placement(&held, below, s->n_cuts + s->at_position.n, cuts, w,
+                                      &s->mem, &c, why));
+    options.starts =
+        round > 1 && options.starts > CUT_STARTS ? (int)CUT_STARTS : options.starts;
+    options.starts = j->few && from != NULL && options.starts < 2 ? 2 : options.starts;
+    c.search.starts = j->few ? 0 : c.search.starts;
+    c.starts = options.starts;
+    s->n_t = c.n_t;
+    double *const hint = mt_arena_f64(&s->mem, (size_t)c.n_t, 1);
+    MT_TRY(mt_arena_check(&s->mem, why));
+    if (from != NULL) {
+        memcpy(hint, from, (size_t)j->p->n * sizeof *hint);
+    }
+    c.hint = from != NULL ? hint : NULL;
+    const mt_nlp nlp = mt_workspace_nlp(w);
+    mt_status rc = c.n_aims > 1
+                       ? search_in_order(w, s, why)
+                       : mt_workspace_solve(w, &nlp, &options, &s->mem, &s->found, why);
+    if (rc == MT_OK && c.n_aims == 1) {
+        rc = mt_search_repeated_eigenvalues(w, options.max_evals, &s->mem, &s->found, why);
+    }
+    if (rc == MT_OK) {
+        mt_mode_placement_verify_clearance(&c, &s->found);
+    }
+    if (rc == MT_OK && c.n_aims == 1) {
+        rc = mt_search_nearest(w, options.max_evals, NULL, NULL, &s->mem, &s->found, why);
+    }
+    s->begun = s->evals;
+    s->evals += mt_subproblem_counted(&c, s->found.evals);
+    s->starts += s->found.starts;
+    if (rc == MT_OK && s->found.n_solutions > 0) {
+        rc =
+            mt_mode_placement_hold(&c, s->cuts, &s->found.solutions[0], &s->mem, &s->held, why);
+    }
+    if (rc == MT_OK && s->found.n_solutions > 0 && s->found.stop != MT_STOP_USER) {
+        const long judged = s->evals + mt_mode_placement_verdict(j->c); /* at most */
+        const bool last = round + 1 == CUT_ROUNDS || !has_round(j, judged);
+        rc = verify_best(s, w, last, again, why);
+    }
+    return rc;
+}
+
+bool mt_mode_placement_is_met(const mt_mode_placement_slot *s)
+{
+    return s->found.n_solutions > 0 && s->found.solutions[0].feasible;
+}
+
+mt_status mt_mode_placement_search_candidate(void *context, int worker, int k,
+                                             mt_task_path *own, mt_err *err)
+{
+    mt_mode_placement_job *const j = context;
+    k += j->from;
+    mt_mode_placement_slot *const s = &j->slots[k];
+    mt_workspace *const w = j->workers[worker];
+    mt_task_path *const before = w->task_path;
+    mt_err why = {0};
+    bool again = true;
+    if (s->carried || k >= j->most || mt_interrupted(j->p->study->model->interrupt)) {
+        s->found.stop = !s->carried && k >= j->most ? MT_STOP_MAX_EVALS : s->found.stop;
+        return MT_OK;
+    }
+    MT_TRY(mt_arena_init(&s->mem, 0, err));
+    s->cuts = mt_arena_alloc(&s->mem, CUTS_MOST, sizeof *s->cuts);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    w->task_path = own;
+    for (int round = 0; again && round < CUT_ROUNDS; round++) {
+        const bool known = round > 0 && s->found.n_solutions > 0;
+        s->rc = search_round(j, w, s, k, round, known ? s->found.solutions[0].t : hint_of(j, k),
+                             &again, &why);
+    }
+    if (s->rc != MT_OK) { /* perhaps on the way from position to position: nothing is known */
+        s->found.n_solutions = 0;
+        s->found.stop = s->rc == MT_E_INTERRUPTED ? MT_STOP_USER : s->found.stop;
+    }
+    w->task_path = before;
+    mt_workspace_back(w, j->c); /* the candidate's case goes, and its cuts */
+    if (mt_mode_placement_is_met(s)) {
+        mt_workspace_judged(w, s->aims != NULL ? s->aims[0] : s->found.solutions[0].f);
+    }
+    for (int i = 0; i < s->n_cuts; i++) {
+        mt_cut_free(&s->cuts[i]);
+    }
+    mt_at_position_cuts_free(&s->at_position);
+    const bool fatal = mt_is_final(s->rc);
+    return fatal ? mt_fail(err, s->rc, "%s", why.text) : MT_OK;
+}

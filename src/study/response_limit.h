@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_RESPONSE_LIMIT_H
+#define STUDY_RESPONSE_LIMIT_H
+
+#include "study/vibration.h"
+
+/* What of a forced vibration a goal limits. */
+typedef enum mt_response_limit_quantity {
+    MT_RESPONSE_LIMIT_RESPONSE, /* |H|, the largest of it over a band */
+    MT_RESPONSE_LIMIT_RMS,      /* under a profile: of its random parts, */
+    MT_RESPONSE_LIMIT_SINE,     /* of its tones, */
+    MT_RESPONSE_LIMIT_PEAK,     /* of both */
+    MT_RESPONSE_LIMIT_QUANTITIES
+} mt_response_limit_quantity;
+/* "response", "rms", "sine", "peak". */
+extern const char *const mt_response_limit_names[MT_RESPONSE_LIMIT_QUANTITIES];
+
+/* From where to where a mechanism shakes, and how large that may be. */
+typedef struct mt_response_limit {
+    mt_name input; /* ports (response/ports.h); of a profile by finish, where not given */
+    mt_name output;
+    double lower_hz; /* its band; both equal: at one frequency; NaN: all that was measured */
+    double upper_hz;
+    mt_name profile_name;        /* as written; s NULL: none */
+    const mt_vibration *profile; /* of the study's; NULL: none, or it could not be read */
+    mt_response_limit_quantity quantity;
+    const char *unit;         /* of the numbers, from the names of the ports; "": not known */
+    mt_name measurement_name; /* frequency_response: what it is compared with; s NULL: none */
+    int measurement;          /* of the study's; by finish */
+    bool coherence;           /* its lines weigh by it */
+    mt_addr band_addr;        /* the addresses of what was not given equal the goal's */
+    mt_addr at_addr;
+    mt_addr quantity_addr;
+} mt_response_limit;
+
+/* A profile of vibration that goals name. */
+typedef struct mt_study_profile {
+    mt_name name;
+    mt_vibration *profile; /* NULL: it could not be read, which has been noted */
+} mt_study_profile;
+
+#endif
