@@ -8,7 +8,7 @@
 /* "4P", "nT": the harmonics of a rotor, of a study or a profile; what has not their form is
  * noted. */
 void mt_read_harmonics(mt_reader *r, mt_addr list, mt_rotor *rotor);
-/* Factors of a nominal speed that are hardly meant (mt_rotor_warning_range): a doubt at addr. */
+/* Warns at addr of suspicious factors of a nominal speed (mt_rotor_warning_range). */
 void mt_read_warning_range(mt_reader *r, double lower, double upper, double least,
                            const char *whose, mt_addr addr);
 /* How a multiple per turn that is written another way ("4p", "4/rev", "2") is written with

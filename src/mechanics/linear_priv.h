@@ -31,7 +31,8 @@ struct mt_linear {
     int m;             /* constraints in force */
     double *a;         /* m x nq */
     int n;             /* freedoms */
-    int n_free_spins; /* spins without mass, stiffness or joint, left out of the freedoms (free_spin.h) */
+    /* spins without mass, stiffness or joint, left out of the freedoms (free_spin.h) */
+    int n_free_spins;
     bool *free_spins;                  /* [bodies] takes part in one */
     int n_pieces;                      /* of pieces */
     double *rows[MT_TERM_KINDS];       /* 12 x n_rows, local freedoms */

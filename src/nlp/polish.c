@@ -270,7 +270,8 @@ static void keep(polish *w)
     const double mine = constrained ? fmax(p->kkt, p->violation * STATIONARY) : p->kkt;
     const double theirs = constrained ? fmax(b->kkt, b->violation * STATIONARY) : b->kkt;
     const bool first = constrained && mt_nlp_feasible(p) && !mt_nlp_feasible(b);
-    if (first) { /* from outside, the requirements cost what they cost: the limit counts from here */
+    /* from outside, the requirements cost what they cost: the limit counts from here */
+    if (first) {
         w->limit = fmax(w->limit, p->f + rise_allowed(w, p));
     }
     if (mine < theirs || first) {

@@ -51,7 +51,7 @@ mt_status mt_goal_sense(mt_workspace *w, const mt_requirement *d, int pos, bool 
                         double *norm, mt_err *err);
 /* Look up the reference's shape. (goal_shape.c) */
 mt_status mt_goal_compile_shape(mt_problem *p, mt_requirement *d, mt_err *err);
-/* The mode of the reference that the requirement names, or else means: that of its own index. */
+/* The mode of the reference that the requirement names, by default that of its own index. */
 int mt_goal_reference_mode(const mt_problem *p, const mt_requirement *d);
 
 #endif

@@ -134,7 +134,7 @@ static mt_status no_mode(const mt_workspace *w, const mt_requirement *d, mt_err 
                    why);
 }
 
-/* Where the requirement's mode is; -1 for a goal without one, and for a frequency at infinity. */
+/* Index of the requirement's mode; -1: a goal without one, or a frequency at infinity. */
 static mt_status find_mode(mt_workspace *w, const mt_requirement *d, int *pos, mt_err *err)
 {
     *pos = -1;

@@ -200,7 +200,8 @@ typedef struct mt_result_motion {
     double hz;
     int mode;         /* whose it is, or which crosses; 0: none */
     const char *band; /* NULL: none */
-    int band_id; /* as in mt_result_mode_placement, of the first position that has it; 0: none */
+    /* as in mt_result_mode_placement, of the first position that has it; 0: none */
+    int band_id;
     /* a mode is nearer to a band than its margin, or inside, between the positions */
     bool crosses;
     /* "sampled" | "sampled coarsely" | "incomplete" | "unstable" | "not followed" */

@@ -153,7 +153,7 @@ mt_status mt_catalogue_search_prove(mt_catalogue_search *d, mt_combination ***al
  * 1000 searches, and certificates up to the budget of a proof. */
 mt_status mt_catalogue_search_branch(mt_catalogue_search *d, mt_combination ***all, int *n,
                                      mt_catalogue_search_report *report, mt_err *err);
-/* catalogue_search_near.c: the heuristic. (*list)[*n] are the combinations that it has judged. */
+/* The heuristic (catalogue_search_near.c). (*list)[*n]: the combinations that it evaluated. */
 mt_status mt_catalogue_search_near(mt_catalogue_search *d, mt_combination ***list, int *n,
                                    mt_err *err);
 

@@ -20,11 +20,11 @@ STICK = {
 
 # Functions that rows of src/model/possible.c name, and what drives each from both sides: a test here, of doubts, or a wrong file.
 WITH = {
-    "nonzero": "tests/io/wrong/structure_space.json", "judge_matrix": "tests/io/wrong/structure_space.json",
-    "judge_axes": "tests/io/wrong/structure_space.json", "judge_line": "test_a_bound_at_which_points_coincide",
-    "mt_lint_tensor": "test_inertia_by_expressions_configurations_and_bounds", "judge_section": "test_bounds_at_which_nothing_can_be_built",
-    "judge_stout": "test_values_of_a_model", "judge_drive": "test_values_of_a_model", "judge_stroke": "test_a_stroke_longer_than_the_drawing",
-    "judge_gravity": "test_values_of_a_model", "mt_reader_count": "tests/io/wrong/study_counts.json",
+    "nonzero": "tests/io/wrong/structure_space.json", "lint_matrix": "tests/io/wrong/structure_space.json",
+    "lint_axes": "tests/io/wrong/structure_space.json", "lint_line": "test_a_bound_at_which_points_coincide",
+    "mt_lint_tensor": "test_inertia_by_expressions_configurations_and_bounds", "lint_section": "test_bounds_at_which_nothing_can_be_built",
+    "lint_stout": "test_values_of_a_model", "lint_drive": "test_values_of_a_model", "lint_stroke": "test_a_stroke_longer_than_the_drawing",
+    "lint_gravity": "test_values_of_a_model", "mt_reader_count": "tests/io/wrong/study_counts.json",
     "warn_target": "test_values_of_a_study", "warn_reference": "test_measured_frequencies_in_other_units",
 }
 # ... and functions that the test of studies, profiles and catalogues drives member by member, each from both sides.

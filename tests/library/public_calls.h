@@ -269,7 +269,7 @@ TELLS(study_variable_name, mt_study_variable_name(ARG(0, study), 0) != NULL)
 TELLS(study_variable_original, isfinite(mt_study_variable_original(ARG(0, study), 0)))
 TELLS(study_variable_lower, isfinite(mt_study_variable_lower(ARG(0, study), 0)))
 TELLS(study_variable_upper, isfinite(mt_study_variable_upper(ARG(0, study), 0)))
-TELLS(wish_at, mt_stop_request_at(ARG(0, &finish)) ==
+TELLS(stop_request_at, mt_stop_request_at(ARG(0, &finish)) ==
                    (null == 0 ? MT_STOP_REQUEST_NONE : MT_STOP_REQUEST_FINISH))
 static mt_status call_study_solve(int null)
 {

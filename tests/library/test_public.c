@@ -4,6 +4,7 @@
  * in modetune/status.h says is what happens. The headers are read, so that a function, or an
  * argument, that is not in the table here is found.
  */
+
 #include <dirent.h>
 
 #include "library/public_calls.h"
@@ -77,7 +78,7 @@ static const struct {
     ROW(study_variable_original, "n"),
     ROW(study_variable_lower, "n"),
     ROW(study_variable_upper, "n"),
-    ROW(wish_at, "a"),
+    ROW(stop_request_at, "a"),
     ROW(study_solve, "rara"),
     ROW(result_delete, "a"),
     ROW(result_outcome, "n"),

@@ -18,7 +18,7 @@ static double draw(uint64_t *state)
     return (double)((*state * UINT64_C(2685821657736338717)) >> 11) * 0x1p-53;
 }
 
-/* Masses m0, m1 between walls: springs exp(t0), exp(t1), exp(t2). One requirement on one mode. */
+/* Masses m0, m1 between walls: springs exp(t0), exp(t1), exp(t2); one requirement on a mode. */
 typedef enum requirement { TARGET, AT_LEAST, AT_MOST } requirement;
 
 typedef struct springs_case {
