@@ -45,12 +45,6 @@ void mt_analysis_delete(mt_analysis *a)
     }
 }
 
-mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
-                          const int *inputs, const double *at, mt_analysis **out, mt_err *err)
-{
-    return mt_analysis_new_lowest(model, configuration, n_inputs, inputs, at, 0, out, err);
-}
-
 /* Shapes of the modes that damping ratios name, at the first design. */
 static mt_status name_modes(mt_analysis *a, mt_err *err)
 {
@@ -96,21 +90,11 @@ static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysi
     return MT_OK;
 }
 
-/* What a new analysis is of, and the vibration modes that are asked for at once. */
-typedef struct origin {
-    const mt_model *model;
-    int configuration;
-    const mt_system_drive *drive;
-    int n_inputs;
-    const int *inputs;
-    const double *at;
-    int first;
-} origin;
-
-static mt_status begin(const origin *o, mt_analysis **out, mt_err *err)
+mt_status mt_analysis_new_of(const mt_system_def *def, int first, mt_analysis **out,
+                             mt_err *err)
 {
-    const double bodies = mt_lowest_bodies(o->model, o->configuration);
-    const char *const name = o->model->configurations[o->configuration].name.s;
+    const double bodies = mt_lowest_bodies(def->model, def->configuration);
+    const char *const name = def->model->configurations[def->configuration].name.s;
     *out = NULL;
     if (bodies > MT_ANALYSIS_BODIES) {
         return mt_fail(
@@ -123,40 +107,24 @@ static mt_status begin(const origin *o, mt_analysis **out, mt_err *err)
     if (a == NULL) {
         return mt_fail_memory(err);
     }
-    const mt_status rc = mt_system_new_driven(o->model, o->configuration, o->drive, o->n_inputs,
-                                              o->inputs, o->at, &a->own_sys, err);
+    const mt_status rc = mt_system_new_of(def, &a->own_sys, err);
     if (rc != MT_OK) {
         mt_analysis_delete(a);
         return mt_err_in(err, rc, "configuration \"%s\"", name);
     }
     a->sys = a->own_sys;
-    return open_at(a, o->at, o->first, out, err);
+    return open_at(a, def->at, first, out, err);
 }
 
-mt_status mt_analysis_new_lowest(const mt_model *model, int configuration, int n_inputs,
-                                 const int *inputs, const double *at, int first,
-                                 mt_analysis **out, mt_err *err)
+mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
+                          const int *inputs, const double *at, mt_analysis **out, mt_err *err)
 {
-    const origin o = {.model = model,
-                      .configuration = configuration,
-                      .n_inputs = n_inputs,
-                      .inputs = inputs,
-                      .at = at,
-                      .first = first};
-    return begin(&o, out, err);
-}
-
-mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
-                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
-                                 const double *at, mt_analysis **out, mt_err *err)
-{
-    const origin o = {.model = model,
-                      .configuration = configuration,
-                      .drive = drive,
-                      .n_inputs = n_inputs,
-                      .inputs = inputs,
-                      .at = at};
-    return begin(&o, out, err);
+    const mt_system_def def = {.model = model,
+                               .configuration = configuration,
+                               .n_inputs = n_inputs,
+                               .inputs = inputs,
+                               .at = at};
+    return mt_analysis_new_of(&def, 0, out, err);
 }
 
 mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_analysis **out,
@@ -207,7 +175,7 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
                                         .c = r->c,
                                         .noise = r->noise,
                                         .g = r->g,
-                                        .interrupt = a->sys->model->interrupt};
+                                        .interrupt = a->sys->run->interrupt};
     MT_TRY(mt_modal_solve(r->k, &a->mass, &factor, options, &a->mem, &a->modes, err));
     const int all = a->modes.count;
     const bool whole = r->loaded || bounds || options->judged;
@@ -360,7 +328,7 @@ static mt_status solve(mt_analysis *a, const double *inputs, const mt_analysis_o
                        mt_err *err)
 {
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
-    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(a->sys->run->interrupt, err));
     return run_modes(a, opt, inputs, err);
 }
 
@@ -401,7 +369,7 @@ mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
 {
     const ptrdiff_t n = mt_linear_freedoms(a->lin);
     MT_TRY(has_slopes(a, pos, err));
-    MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(a->sys->run->interrupt, err));
     for (int p = 0; p < a->sys->n_inputs; p++) {
         MT_TRY(mt_linear_products(a->lin, p, 1, mt_modal_shape(&a->modes, pos),
                                   a->dky + (p * n), a->dmy + (p * n), err));
@@ -415,7 +383,7 @@ mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_e
     MT_TRY(has_slopes(a, pos, err));
     double *const slope = a->slopes + ((size_t)pos * np);
     if (!a->sloped[pos]) {
-        MT_TRY(mt_interrupt_check(a->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(a->sys->run->interrupt, err));
         MT_TRY(mt_linear_slopes(a->lin, a->modes.lambda[pos], mt_modal_shape(&a->modes, pos),
                                 slope, err));
     }

@@ -94,16 +94,11 @@ enum { MT_ANALYSIS_BODIES = 5000 };
  */
 mt_status mt_analysis_new(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_analysis **out, mt_err *err);
-/* The same, and only the `first` lowest vibration modes are asked for (mt_analysis_options): an
- * analysis that is solved once. */
-mt_status mt_analysis_new_lowest(const mt_model *model, int configuration, int n_inputs,
-                                 const int *inputs, const double *at, int first,
-                                 mt_analysis **out, mt_err *err);
-/* The same with a drive whose position is one more input, the last (mt_system_new_driven):
- * at[n_inputs + 1]. drive NULL: mt_analysis_new. */
-mt_status mt_analysis_new_driven(const mt_model *model, int configuration,
-                                 const mt_system_drive *drive, int n_inputs, const int *inputs,
-                                 const double *at, mt_analysis **out, mt_err *err);
+/* The same within a run, with a drive (mt_system_new_of). first > 0: only the `first` lowest
+ * vibration modes are computed (mt_analysis_options), for an analysis that is solved once; 0:
+ * all. */
+mt_status mt_analysis_new_of(const mt_system_def *def, int first, mt_analysis **out,
+                             mt_err *err);
 /* Another one of the same system, which `like` lends: it has to outlive this one. Solved at
  * at[n_inputs], too, and counted as that design is alone. Any number of workers may share a
  * system. Fails as mt_linear_update and mt_modal_solve, MT_E_MEMORY. */

@@ -55,7 +55,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
                                         .b = r.b,
                                         .c = c,
                                         .noise = r.noise,
-                                        .interrupt = mt_linear_system(lin)->model->interrupt};
+                                        .interrupt = mt_linear_system(lin)->run->interrupt};
     mt_modal_options opt = mt_modal_options_default();
     mt_modes modes;
     bool squares = !r.loaded;
@@ -193,8 +193,14 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
     f->lower[box->n] = position;
     f->upper[box->n] = position;
     f->at[box->n] = position;
-    return mt_analysis_new_driven(a->sys->model, a->sys->configuration, drive, box->n,
-                                  box->parameter, f->at, &f->a, err);
+    const mt_system_def def = {.model = a->sys->model,
+                               .run = a->sys->run,
+                               .configuration = a->sys->configuration,
+                               .drive = drive,
+                               .n_inputs = box->n,
+                               .inputs = box->parameter,
+                               .at = f->at};
+    return mt_analysis_new_of(&def, 0, &f->a, err);
 }
 
 /* Whether the rank of K is a matter of which coefficients vanish. Couplings that vary may

@@ -47,8 +47,8 @@ void mt_lowest_solve_free(const operation *o)
 static mt_status multiply(const operation *o, const double *x, double *y, mt_err *err)
 {
     const mt_tree *const t = o->tree;
-    MT_TRY(mt_interrupt_check(t->sys->model->interrupt, err));
-    mt_progress_done(t->sys->model->progress, o->told);
+    MT_TRY(mt_interrupt_check(t->sys->run->interrupt, err));
+    mt_progress_done(t->sys->run->progress, o->told);
     mt_tree_motion(t, x, NULL, o->v);
     mt_tree_momentum(t, o->v, o->f, y, o->r);
     if (t->n_rigid > 0) {
@@ -93,7 +93,7 @@ static mt_status refine(void *context, int count, const double *x, double *y,
         const ptrdiff_t at = (ptrdiff_t)o->tree->n_x * i;
         mt_tree_quotient q;
         double open = 0.0;
-        MT_TRY(mt_interrupt_check(o->tree->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(o->tree->sys->run->interrupt, err));
         follow(o, x + at, y + at, &open);
         mt_tree_rate(o->tree, x + at, o->along, o->v, o->f, &q);
         own[i] =
@@ -107,7 +107,7 @@ static mt_status below(void *context, double tau, int known, int *count, bool *c
 {
     (void)known;
     const operation *const o = context;
-    MT_TRY(mt_interrupt_check(o->tree->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(o->tree->sys->run->interrupt, err));
     return mt_tree_count(o->tree, tau, o->scratch, count, certain, err);
 }
 
@@ -168,7 +168,7 @@ static mt_status solve(mt_lowest *l, mt_lowest_want want, mt_err *err)
                                  .refine = refine,
                                  .below = below,
                                  .context = o};
-    mt_progress *const progress = t->sys->model->progress;
+    mt_progress *const progress = t->sys->run->progress;
     o->told = mt_progress_begin(progress, ITERATIONS, 0);
     const mt_status rc = mt_modal_lowest(&p, &l->mem, &l->found, err);
     mt_progress_end(progress, o->told);
@@ -179,15 +179,15 @@ enum { WHY_SIZE = MT_ABSOLUTE_WHY + MT_SPARSE_WHY };
 
 /* The iterations in coordinates of the bodies. */
 typedef struct turns {
-    const mt_model *model;
+    const mt_run *run;
     bool told; /* where the progress is */
 } turns;
 
 static mt_status go_on(void *context, mt_err *err)
 {
     const turns *const t = context;
-    mt_progress_done(t->model->progress, t->told);
-    return mt_interrupt_check(t->model->interrupt, err);
+    mt_progress_done(t->run->progress, t->told);
+    return mt_interrupt_check(t->run->interrupt, err);
 }
 
 /* What loads make of the bodies' stiffness, where they rest. */
@@ -229,12 +229,12 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
                               bool *is, bool *rests, char *why, mt_err *err)
 {
     mt_absolute_load load = {.mu = NULL};
-    turns t = {.model = l->sys->model};
+    turns t = {.run = l->sys->run};
     mt_err own = {.code = MT_OK};
     mt_absolute *const o = &l->bodies;
-    t.told = mt_progress_begin(t.model->progress, "matrices of the bodies", 0);
+    t.told = mt_progress_begin(t.run->progress, "matrices of the bodies", 0);
     const mt_status made = mt_absolute_new(l->sys, l->at, settled, &l->mem, o, is, why, err);
-    mt_progress_end(t.model->progress, t.told);
+    mt_progress_end(t.run->progress, t.told);
     MT_TRY(made);
     mt_sparse_problem p = {.n = o->n,
                            .k = o->k,
@@ -255,9 +255,9 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
     if (!*is) {
         return MT_OK;
     }
-    t.told = mt_progress_begin(t.model->progress, ITERATIONS, 0);
+    t.told = mt_progress_begin(t.run->progress, ITERATIONS, 0);
     const mt_status rc = mt_modal_sparse(&p, &l->mem, &l->found, &l->mu, is, why, &own);
-    mt_progress_end(t.model->progress, t.told);
+    mt_progress_end(t.run->progress, t.told);
     if (rc == MT_E_NO_CONVERGENCE) {
         *is = false;
         (void)mt_snprintf(why, WHY_SIZE, "%s", own.text);
@@ -313,34 +313,33 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
     return MT_OK;
 }
 
-mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
-                        const int *inputs, const double *at, mt_lowest_want want,
-                        mt_lowest **out, mt_err *err)
+mt_status mt_lowest_new(const mt_system_def *def, mt_lowest_want want, mt_lowest **out,
+                        mt_err *err)
 {
+    const mt_run *const run = mt_run_or_none(def->run);
     mt_lowest *const l = calloc(1, sizeof *l);
     *out = NULL;
     if (l == NULL) {
         return mt_fail_memory(err);
     }
     mt_status rc = mt_arena_init(&l->mem, 0, err);
-    l->at = mt_arena_f64(&l->mem, (size_t)n_inputs, 1);
+    l->at = mt_arena_f64(&l->mem, (size_t)def->n_inputs, 1);
     rc = rc == MT_OK ? mt_arena_check(&l->mem, err) : rc;
-    for (int i = 0; i < n_inputs && rc == MT_OK; i++) {
-        l->at[i] = at[i];
+    for (int i = 0; i < def->n_inputs && rc == MT_OK; i++) {
+        l->at[i] = def->at[i];
     }
-    bool told = mt_progress_begin(model->progress, "equations", 0);
-    rc = rc == MT_OK ? mt_system_new(model, configuration, n_inputs, inputs, at, &l->sys, err)
-                     : rc;
-    mt_progress_end(model->progress, told);
-    told = mt_progress_begin(model->progress, "order of the bodies", 0);
-    rc = rc == MT_OK ? mt_tree_new(l->sys, at, &l->mem, &l->tree, l->why, err) : rc;
-    mt_progress_end(model->progress, told);
+    bool told = mt_progress_begin(run->progress, "equations", 0);
+    rc = rc == MT_OK ? mt_system_new_of(def, &l->sys, err) : rc;
+    mt_progress_end(run->progress, told);
+    told = mt_progress_begin(run->progress, "order of the bodies", 0);
+    rc = rc == MT_OK ? mt_tree_new(l->sys, def->at, &l->mem, &l->tree, l->why, err) : rc;
+    mt_progress_end(run->progress, told);
     rc = rc == MT_OK && l->tree != NULL ? solve(l, want, err) : rc;
     rc = rc == MT_OK && l->tree == NULL && !want.tree ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {
         mt_lowest_delete(l);
         return mt_err_in(err, rc, "configuration \"%s\"",
-                         model->configurations[configuration].name.s);
+                         def->model->configurations[def->configuration].name.s);
     }
     *out = l;
     return MT_OK;

@@ -55,9 +55,8 @@ double mt_lowest_bodies(const mt_model *model, int configuration);
  * mt_modal_sparse (but MT_E_NO_CONVERGENCE of that is no way), the text naming the
  * configuration.
  */
-mt_status mt_lowest_new(const mt_model *model, int configuration, int n_inputs,
-                        const int *inputs, const double *at, mt_lowest_want want,
-                        mt_lowest **out, mt_err *err);
+mt_status mt_lowest_new(const mt_system_def *def, mt_lowest_want want, mt_lowest **out,
+                        mt_err *err);
 /* Where loads have brought it; NULL: it is told as drawn. */
 const mt_state *mt_lowest_settled(const mt_lowest *l);
 /* Where shapes were wanted, as what follows: those of the first n positions over all states (nq

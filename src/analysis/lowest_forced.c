@@ -60,7 +60,7 @@ double mt_lowest_base(const mt_lowest *l, int axis, double *x, double *a)
 mt_status mt_lowest_mass(const mt_lowest *l, const double *x, double *y, mt_err *err)
 {
     const struct mt_lowest_operation *const o = l->operation;
-    MT_TRY(mt_interrupt_check(l->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(l->sys->run->interrupt, err));
     mt_tree_motion(l->tree, x, NULL, o->v);
     mt_tree_momentum(l->tree, o->v, o->f, y, o->r);
     (void)part(l, y, NULL);

@@ -69,7 +69,8 @@ static void set_design(const mt_study *s, int which, double *x)
     }
 }
 
-static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, mt_err *err)
+static mt_status look_around(const mt_study *s, const mt_run *run, int c, reach *r,
+                             mt_arena *mem, mt_err *err)
 {
     const int n = s->n_variables;
     int *const inputs = mt_arena_int(mem, (size_t)n);
@@ -88,7 +89,13 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
         r->above[k] = -1;
     }
     set_design(s, 0, x);
-    mt_status rc = mt_analysis_new(s->model, c, n, inputs, x, &a, err);
+    const mt_system_def def = {.model = s->model,
+                               .run = run,
+                               .configuration = c,
+                               .n_inputs = n,
+                               .inputs = inputs,
+                               .at = x};
+    mt_status rc = mt_analysis_new_of(&def, 0, &a, err);
     if (rc == MT_OK) {
         a->recount = true; /* a spring that is 0 in the original has modes elsewhere */
     }
@@ -105,7 +112,8 @@ static mt_status look_around(const mt_study *s, int c, reach *r, mt_arena *mem, 
     return rc;
 }
 
-static mt_status examine_bands(const mt_study *s, int g, mt_warning_list *out, mt_err *err)
+static mt_status examine_bands(const mt_study *s, const mt_run *run, int g,
+                               mt_warning_list *out, mt_err *err)
 {
     const mt_goal *const goal = &s->goals[g];
     reach r = {.goal = goal, .room = HUGE_VAL};
@@ -113,7 +121,7 @@ static mt_status examine_bands(const mt_study *s, int g, mt_warning_list *out, m
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = MT_OK;
     for (int i = 0; rc == MT_OK && i < goal->n_configurations; i++) {
-        rc = look_around(s, goal->configurations[i], &r, &mem, err);
+        rc = look_around(s, run, goal->configurations[i], &r, &mem, err);
     }
     mt_arena_free(&mem);
     const mt_bands *const bands = &goal->avoid->bands;
@@ -276,13 +284,14 @@ static void warn_reference(const mt_study *s, int reference, const double *ratio
 }
 
 /* ratio[n_goals]: of what references ask for to what the model has, as far as they are seen. */
-static mt_status examine_configuration(const mt_study *s, int c, double *ratio,
-                                       mt_warning_list *of_study, mt_warning_list *of_model,
-                                       mt_err *err)
+static mt_status examine_configuration(const mt_study *s, const mt_run *run, int c,
+                                       double *ratio, mt_warning_list *of_study,
+                                       mt_warning_list *of_model, mt_err *err)
 {
     mt_analysis *a = NULL;
     const int first = of_model->n;
-    mt_status rc = mt_analysis_new(s->model, c, 0, NULL, NULL, &a, err);
+    const mt_system_def def = {.model = s->model, .run = run, .configuration = c};
+    mt_status rc = mt_analysis_new_of(&def, 0, &a, err);
     rc = rc == MT_OK ? mt_warnings_of_analysis(a, 0, NULL, NULL, of_model, err) : rc;
     /* modes are counted as the study does */
     rc = rc == MT_OK ? mt_analysis_count(a, &s->counted, NULL, 0.0, err) : rc;
@@ -342,8 +351,8 @@ bool mt_study_takes_more(const mt_study *study, double most_work)
     return work > most_work;
 }
 
-mt_status mt_study_examine(const mt_study *study, double most_work, mt_warning_list *out,
-                           mt_err *err)
+mt_status mt_study_examine(const mt_study *study, const mt_run *run, double most_work,
+                           mt_warning_list *out, mt_err *err)
 {
     const int first = out->n;
     double work = 0.0;
@@ -357,12 +366,12 @@ mt_status mt_study_examine(const mt_study *study, double most_work, mt_warning_l
     MT_TRY(mt_arena_check(out->mem, err));
     for (int c = 0; c < study->model->n_configurations && look; c++) {
         if (mt_study_asks(study, c)) {
-            MT_TRY(examine_configuration(study, c, ratio, out, &of_model, err));
+            MT_TRY(examine_configuration(study, run, c, ratio, out, &of_model, err));
         }
     }
     for (int g = 0; g < study->n_goals && look; g++) {
         if (study->goals[g].avoid != NULL) {
-            MT_TRY(examine_bands(study, g, out, err));
+            MT_TRY(examine_bands(study, run, g, out, err));
         }
     }
     for (int i = 0; i < study->n_references; i++) {

@@ -2,19 +2,20 @@
 #ifndef ANSWER_EXAMINE_H
 #define ANSWER_EXAMINE_H
 
+#include "base/run.h"
 #include "base/warning.h"
 #include "study/study.h"
 
 /**
  * What is to be said of a study at its original design, before it is answered: its own numbers
- * (study->doubts), every configuration that a goal names, targets far from the original
+ * (study->warning_list), every configuration that a goal names, targets far from the original
  * frequencies, bands that no mode comes near. Names of files are those that the study knows (no
  * folders). One analysis per configuration, and 2 n + 3 where bands are to be avoided; none,
- * and a fact that tells, where that would take more than most_work (as mt_warnings_work
+ * and a note that tells, where that would take more than most_work (as mt_warnings_work
  * counts). Fails: as mt_analysis_new.
  */
-mt_status mt_study_examine(const mt_study *study, double most_work, mt_warning_list *out,
-                           mt_err *err);
+mt_status mt_study_examine(const mt_study *study, const mt_run *run, double most_work,
+                           mt_warning_list *out, mt_err *err);
 /* Whether looking at what it asks about takes more. */
 bool mt_study_takes_more(const mt_study *study, double most_work);
 

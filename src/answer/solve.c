@@ -135,7 +135,7 @@ static mt_status phase(mt_answer *a, mt_phase which, mt_err *err)
     a->task_path = mt_task_path_enter(a->whole, phases[which].name);
     mt_interrupt_enter(a->interrupt, (int)which, phases[which].makes_ready);
     a->spent->phase = (int)which;
-    mt_progress_phase(a->study->model->progress, phases[which].name, which == MT_PHASE_SEARCH);
+    mt_progress_phase(a->p->run->progress, phases[which].name, which == MT_PHASE_SEARCH);
     const mt_status rc = phases[which].work(a, &own);
     const bool cut = mt_interrupt_is_cut(a->interrupt, (int)which);
     if (rc != MT_OK && !(cut && !mt_is_final(rc))) {
@@ -155,7 +155,7 @@ static int positions_of(long most)
 
 long mt_question_left(const mt_question *q)
 {
-    const mt_search *const s = &q->study.search;
+    const mt_search *const s = &q->p->whole.search;
     const long spent = mt_work_counters_of(&q->spent, MT_WORK_DESIGNS) +
                        mt_work_counters_of(&q->spent, MT_WORK_POSITIONS);
     const long left = s->max_evaluations <= 0      ? LONG_MAX
@@ -174,7 +174,7 @@ long mt_question_left(const mt_question *q)
 /* The budget of the study as it is asked; one of modal solutions in evaluations. */
 static void set_budget(mt_question *q)
 {
-    mt_search *const s = &q->study.search;
+    mt_search *const s = &q->p->whole.search;
     if (s->max_modal_solutions > 0) {
         const long each = mt_subproblem_solutions(&q->p->whole);
         s->solutions_each = each > 1 ? each : 1;
@@ -183,26 +183,6 @@ static void set_budget(mt_question *q)
         s->max_evaluations = s->by_solutions ? (n > 1 ? n : 1) : s->max_evaluations;
     }
     s->max_positions = positions_of(s->max_evaluations);
-    q->p->whole.search = *s;
-}
-
-/* The question, asked of a model that knows the interrupt. */
-static mt_status ask(mt_question *q, const mt_study *study, mt_err *err)
-{
-    const size_t n = (size_t)study->n_references;
-    q->model = *study->model;
-    q->model.interrupt = &q->interrupt;
-    q->model.spent = &q->spent;
-    q->study = *study;
-    q->study.model = &q->model;
-    q->study.references = mt_arena_alloc(&q->mem, n, sizeof *study->references);
-    MT_TRY(mt_arena_check(&q->mem, err));
-    for (size_t i = 0; i < n; i++) {
-        mt_reference *const r = &q->study.references[i];
-        *r = study->references[i];
-        r->model = r->model == study->model ? &q->model : r->model;
-    }
-    return MT_OK;
 }
 
 /* The original design is needed for whatever there is to tell. */
@@ -215,17 +195,22 @@ static mt_status end_at_once(const mt_question *q, mt_status rc, const mt_err *o
     return rc == MT_OK ? MT_OK : mt_fail(err, rc, "%s", own->text);
 }
 
-mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve_options *opt,
-                           mt_err *err)
+mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_run *run,
+                           const mt_solve_options *opt, mt_err *err)
 {
+    const mt_run *const whole = mt_run_or_none(run);
     mt_err own = {.code = MT_OK};
-    MT_TRY(mt_arena_init(&q->mem, 0, err));
-    mt_interrupt_init(&q->interrupt, opt->stop, opt->stop_context, study->model->interrupt);
+    mt_interrupt_init(&q->interrupt, opt->stop, opt->stop_context, whole->interrupt);
     q->interrupt.cause = opt->cause;
     mt_interrupt_enter(&q->interrupt, MT_PHASE_BASELINE, true);
     mt_work_counters_init(&q->spent);
-    MT_TRY(ask(q, study, err));
-    const mt_status rc = mt_problem_new(&q->study, &q->p, &own);
+    q->study = study;
+    q->run = (mt_run){.interrupt = &q->interrupt,
+                      .progress = whole->progress,
+                      .work = &q->spent,
+                      .profile = whole->profile,
+                      .tasks = whole->tasks};
+    const mt_status rc = mt_problem_new(study, &q->run, &q->p, &own);
     if (rc == MT_OK) {
         set_budget(q);
     }
@@ -235,7 +220,6 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve
 void mt_question_free(mt_question *q)
 {
     mt_problem_delete(q->p);
-    mt_arena_free(&q->mem);
     q->p = NULL;
 }
 
@@ -389,14 +373,14 @@ mt_status mt_answer_incumbent(void *answer, const mt_mode_placement_result *foun
     now.interrupt = &own;
     mt_work_counters_copy(a->spent, &spent);
     now.spent = &spent;
-    a->q->model.spent = &spent;
+    a->q->run.work = &spent;
     now.mem = (mt_arena){.first = NULL};
     now.placements = *found;
     now.result = NULL;
     mt_status rc = mt_arena_init(&now.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&now.result, err) : rc;
     rc = rc == MT_OK ? incumbent_result(&now, err) : rc;
-    a->q->model.spent = a->spent;
+    a->q->run.work = a->spent;
     if (!mt_interrupted(a->interrupt)) { /* else that brings it about */
         rc = rc == MT_OK ? a->incumbent->tell(a->incumbent->context, now.result, err) : rc;
     } else if (!mt_is_final(rc)) {
@@ -422,7 +406,7 @@ mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt,
                              const mt_incumbent_callback *incumbent, mt_result **out,
                              mt_err *err)
 {
-    mt_answer a = {.q = q, .study = &q->study, .p = q->p, .interrupt = &q->interrupt};
+    mt_answer a = {.q = q, .study = q->study, .p = q->p, .interrupt = &q->interrupt};
     a.spent = &q->spent;
     a.threads = opt->threads;
     a.whole = task_path;
@@ -451,9 +435,8 @@ mt_status mt_study_solve(const mt_study *study, const mt_solve_options *opt, mt_
 }
 
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
-                              mt_checkpoint_store *store,
-                              const mt_incumbent_callback *incumbent, mt_result **out,
-                              mt_err *err)
+                              const mt_run *run, const mt_incumbent_callback *incumbent,
+                              mt_result **out, mt_err *err)
 {
     mt_solve_options use;
     mt_question q = {.p = NULL};
@@ -461,15 +444,17 @@ mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt
     *out = NULL;
     MT_NOT_NULL(study, err);
     MT_TRY(MT_OPTIONS_TAKE(opt, &use, err));
-    mt_progress_phase(study->model->progress, "baseline", false);
+    run = mt_run_or_none(run);
+    mt_progress_phase(run->progress, "baseline", false);
     for (int i = 0; use.hint != NULL && i < study->n_variables; i++) {
         if (!isfinite(use.hint[i])) {
             return mt_fail(err, MT_E_USAGE, "mt_study_solve: hint[%d] is not finite", i);
         }
     }
-    mt_status rc = mt_question_init(&q, study, &use, err);
-    const mt_task_path whole = {
-        .store = store, .interrupt = &q.interrupt, .progress = study->model->progress};
+    mt_status rc = mt_question_init(&q, study, run, &use, err);
+    const mt_task_path whole = {.store = run->tasks != NULL ? run->tasks->store : NULL,
+                                .interrupt = &q.interrupt,
+                                .progress = run->progress};
     rc = rc == MT_OK ? mt_question_answer(&q, &use, &whole, incumbent, out, err) : rc;
     mt_question_free(&q);
     return rc;

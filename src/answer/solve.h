@@ -2,6 +2,7 @@
 #ifndef ANSWER_SOLVE_H
 #define ANSWER_SOLVE_H
 
+#include "base/run.h"
 #include "base/workers.h"
 #include "study/study.h"
 
@@ -12,14 +13,15 @@ typedef struct mt_incumbent_callback {
     void *context;
 } mt_incumbent_callback;
 
-/* mt_study_solve with what earlier runs of the same question have left of their tasks, and a
- * place for this one's; NULL: neither. Whatever a ledger knows, the result is the same. Where
- * it asks for a part of the work (ledger->parts > 0) there is no answer: *out says of the
- * question what it says at once, and what matters is in the ledger. early may be NULL. Fails
- * also: as early->tell. */
+/*
+ * mt_study_solve within a run (NULL: none). run->tasks: the place of its tasks, whose store has
+ * what earlier runs of the same question have left and keeps what this one does. The result is
+ * the same whatever the store knows. Where the store asks for a part of the work (parts > 0)
+ * there is no answer: the tasks are in the store, and *out has what is known without them.
+ * incumbent may be NULL. Fails also: as incumbent->tell.
+ */
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
-                              mt_checkpoint_store *store,
-                              const mt_incumbent_callback *incumbent, mt_result **out,
-                              mt_err *err);
+                              const mt_run *run, const mt_incumbent_callback *incumbent,
+                              mt_result **out, mt_err *err);
 
 #endif

@@ -26,7 +26,7 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     MT_TRY(mt_describe_asked_curves(p, result, err));
     if (!a->study->examined) {
         mt_warning_list list = mt_warning_list_default(&result->mem);
-        MT_TRY(mt_study_examine(a->study, HUGE_VAL, &list, err));
+        MT_TRY(mt_study_examine(a->study, a->p->run, HUGE_VAL, &list, err));
         MT_TRY(mt_result_take_warnings(result, &list, err));
     }
     MT_TRY(mt_describe_design(p, &original, NULL, result, &result->baseline, err));
@@ -111,7 +111,7 @@ static mt_status search_placements(mt_answer *a, mt_err *err)
  * nothing of the answer, nor of its price, depends on that. */
 static mt_status report_infeasible(mt_answer *a, mt_err *err)
 {
-    mt_progress *const progress = a->study->model->progress;
+    mt_progress *const progress = a->p->run->progress;
     const mt_infeasible_presolve_question q = {.c = &a->asked, .but = -1, .bands = true};
     mt_err own = {.code = MT_OK};
     bool presolve = false;
@@ -248,7 +248,7 @@ static mt_status recommend_others(mt_answer *a, int n, bool told, mt_err *err)
 {
     others o = {.a = a,
                 .parts = mt_arena_alloc(&a->mem, (size_t)n, sizeof *o.parts),
-                .progress = a->study->model->progress,
+                .progress = a->p->run->progress,
                 .told = told};
     MT_TRY(mt_arena_check(&a->mem, err));
     const mt_tasks tasks = {n, describe_other, NULL, &o, "designs"};
@@ -272,7 +272,7 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     const int asked = a->study->recommendations;
     const int most = limited(mt_question_left(a->q) / description(a), 1, asked);
     const int n = found->n_solutions < most ? found->n_solutions : most;
-    mt_progress *const progress = a->study->model->progress;
+    mt_progress *const progress = a->p->run->progress;
     result->recommendations =
         mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->recommendations);
     MT_TRY(mt_arena_check(&result->mem, err));
@@ -296,7 +296,7 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     if (found->n_solutions > n) {
         MT_TRY(mt_describe_warn(result, err, "%d more distinct designs were found; \"%s\" %s",
                                 found->n_solutions - n,
-                                n < asked ? mt_search_budget(&a->study->search)
+                                n < asked ? mt_search_budget(&a->p->whole.search)
                                           : "recommendations",
                                 n < asked ? "leaves no evaluations to check them"
                                           : "in the study says how many to report"));
@@ -363,7 +363,7 @@ mt_status mt_answer_relaxation(mt_answer *a, mt_err *err)
             a->result, err,
             "the single change that would make the study feasible is not known: there are too "
             "many combinations, or \"%s\" left no evaluations for it",
-            mt_search_budget(&a->study->search));
+            mt_search_budget(&a->p->whole.search));
     }
     return mt_describe_relaxations(a->p, &moves, a->result, err);
 }
@@ -382,5 +382,5 @@ mt_status mt_answer_publish(mt_answer *a, mt_err *err)
 
 mt_status mt_answer_trade(mt_answer *a, mt_err *err)
 {
-    return mt_trade_solve(a->study, a->threads, &a->task_path, a->result, err);
+    return mt_trade_solve(a->study, a->p->run, a->threads, &a->task_path, a->result, err);
 }

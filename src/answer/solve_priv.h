@@ -29,25 +29,24 @@ typedef enum mt_phase { MT_PHASE_LIST(MT_PHASE_ENUM) MT_PHASE_COUNT } mt_phase;
 #undef MT_PHASE_ENUM
 
 /*
- * What was asked, compiled, of a model that knows the interrupt; everything else is the
- * caller's. It may be answered again (one answer at a time), and stays where it is: the problem
- * points into it.
+ * A study, compiled, and the run of its own in which it is answered. The study is the caller's.
+ * It may be answered again (one answer at a time), and stays where it is: the problem points
+ * into it.
  */
 typedef struct mt_question {
-    mt_study study;
-    mt_model model;
+    const mt_study *study;
+    mt_run run; /* with the next two in it */
     mt_interrupt interrupt;
     mt_work_counters spent; /* on all answers to it */
-    mt_arena mem;
-    mt_problem *p; /* owned */
+    mt_problem *p;          /* owned */
 } mt_question;
 
 /* Evaluations that are left to the question; LONG_MAX: the study sets no budget. */
 long mt_question_left(const mt_question *q);
-/* Zeroed before. An interrupt of the study's model is the whole of the question's own. Fails:
+/* Zeroed before. run (NULL: none) is the whole of the question's own. Fails:
  * as mt_problem_new. mt_question_free follows, whatever comes back. */
-mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_solve_options *opt,
-                           mt_err *err);
+mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_run *run,
+                           const mt_solve_options *opt, mt_err *err);
 /* Accepts a zeroed one. */
 void mt_question_free(mt_question *q);
 /* mt_study_solve of what was compiled, in its place (NULL: nowhere). */

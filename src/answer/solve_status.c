@@ -29,7 +29,7 @@ static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
         "%d of the %d designs found %s reached from one of %d starts only: %s; more "
         "\"starts\" or \"%s\" may find them",
         f->n_once, f->n_found, f->n_once == 1 ? "was" : "were", f->starts, more,
-        mt_search_budget(&a->study->search));
+        mt_search_budget(&a->p->whole.search));
 }
 
 /* What the engineer should know of the search besides its answers. */
@@ -51,7 +51,7 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
         }
     }
     if (a->found.stop == MT_STOP_MAX_EVALS) {
-        const mt_search *const s = &a->study->search;
+        const mt_search *const s = &a->p->whole.search;
         MT_TRY(mt_describe_warn(
             a->result, err,
             "the budget of %s ran out (%ld of %ld were made in the search): a "

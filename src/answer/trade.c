@@ -38,6 +38,7 @@ enum { WAYS = 4 }; /* neighbours of a point */
 
 typedef struct trade {
     const mt_study *study;
+    const mt_run *run; /* of all points */
     int n;
     int size[MT_MAX_VARY]; /* values of each quantity; 1 where there is none */
     int from;              /* point of the first task */
@@ -52,7 +53,7 @@ typedef struct trade {
 
 static bool stopped(const trade *t)
 {
-    return mt_interrupted(t->study->model->interrupt);
+    return mt_interrupted(t->run->interrupt);
 }
 
 static const mt_recommendation *best_of(const mt_result *r)
@@ -117,12 +118,12 @@ static mt_status told(const trade *t, int k, mt_status rc, mt_err *err)
 static mt_status ask(const trade *t, point *p, mt_err *err)
 {
     static const mt_solve_options opt = {.size = sizeof opt};
-    mt_study study;
     MT_TRY(mt_arena_init(&p->mem, 0, err));
     p->q = mt_arena_alloc(&p->mem, 1, sizeof *p->q);
+    mt_study *const study = mt_arena_alloc(&p->mem, 1, sizeof *study);
     MT_TRY(mt_arena_check(&p->mem, err));
-    MT_TRY(mt_trade_study(t->study, p->values, &p->mem, &study, err));
-    return mt_question_init(p->q, &study, &opt, err);
+    MT_TRY(mt_trade_study(t->study, p->values, &p->mem, study, err));
+    return mt_question_init(p->q, study, t->run, &opt, err);
 }
 
 static void forget(point *p)
@@ -262,7 +263,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
         }
         mt_result *fresh = NULL;
         MT_TRY(answer(p, x, own, &fresh, err));
-        if (better(&p->q->study, fresh, answer_of(p))) {
+        if (better(p->q->study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
             MT_TRY(values_of(best_of(fresh), mem, &best_x, err));
@@ -479,7 +480,7 @@ static mt_status report_point(trade *t, const char *unanswered, mt_err *err)
 static mt_status report_points(trade *t, int to, mt_err *err)
 {
     const char *const unanswered =
-        mt_interrupt_reason(t->study->model->interrupt) == MT_STOP_REASON_TIME_LIMIT
+        mt_interrupt_reason(t->run->interrupt) == MT_STOP_REASON_TIME_LIMIT
             ? "Not answered: the time limit came first."
             : "Interrupted before it was answered.";
     while (t->told < to && t->out->points != NULL) {
@@ -533,10 +534,11 @@ static mt_status solve_all(trade *t, int threads, const mt_task_path *task_path,
     return part;
 }
 
-mt_status mt_trade_solve(const mt_study *study, int threads, const mt_task_path *task_path,
-                         mt_result *result, mt_err *err)
+mt_status mt_trade_solve(const mt_study *study, const mt_run *run, int threads,
+                         const mt_task_path *task_path, mt_result *result, mt_err *err)
 {
     trade t = {.study = study,
+               .run = run,
                .warm = study->n_objectives > 0 && !mt_study_has_catalogues(study)};
     mt_arena mem;
     if (study->trade.n_vary == 0) {

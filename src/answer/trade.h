@@ -13,12 +13,12 @@
  * second pass searches every point from the best designs of its neighbours as well and keeps
  * what is better: a curve without gaps, and the same for any number of workers. Fills
  * result->trade; adds to its evaluations and warnings. Nothing where the study has no trade
- * part. Cost: that of the study times the number of points. An interrupt of the study's model
+ * part. Cost: that of the study times the number of points. An interrupt of the run
  * leaves points without an answer, which say so. scope: the place of its points; a part of the
  * work does its points and is interrupted. Fails: as mt_study_solve; the text names the point.
  */
-mt_status mt_trade_solve(const mt_study *study, int threads, const mt_task_path *task_path,
-                         mt_result *result, mt_err *err);
+mt_status mt_trade_solve(const mt_study *study, const mt_run *run, int threads,
+                         const mt_task_path *task_path, mt_result *result, mt_err *err);
 
 /* trade_study.c: the study of one point, values[n_vary] put in. It borrows all that is not
  * replaced; what is lives in mem. Fails: MT_E_MEMORY, MT_E_DOMAIN (a parameter without a

@@ -211,7 +211,7 @@ mt_status mt_weight_sensitivity_solve(mt_workspace *const *workers, int n_worker
         return mt_describe_warn(result, err,
                                 "sensitivity to the weights: not computed, since \"%s\" leaves "
                                 "no evaluations for it",
-                                mt_search_budget(&p->study->search));
+                                mt_search_budget(&p->whole.search));
     }
     return search_all(&s, n_workers, evaluations, err);
 }

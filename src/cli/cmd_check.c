@@ -102,7 +102,8 @@ static mt_status examine_model(const mt_model *model, mt_warning_list *found, mt
             continue;
         }
         work += takes;
-        mt_status rc = mt_analysis_new_lowest(model, c, 0, NULL, NULL, 1, &a, err);
+        const mt_system_def def = {.model = model, .configuration = c};
+        mt_status rc = mt_analysis_new_of(&def, 1, &a, err);
         rc = rc == MT_OK ? mt_warnings_of_analysis(a, 0, NULL, NULL, found, err) : rc;
         mt_analysis_delete(a);
         MT_TRY(rc);
@@ -159,7 +160,7 @@ static mt_status examine(const subject *s, const char *path, mt_diagnostics *mes
         return mt_err_in(err, rc, "%s", path);
     }
     if (s->study != NULL) {
-        rc = mt_study_examine(s->study, MT_WARNINGS_WORK, found, err);
+        rc = mt_study_examine(s->study, NULL, MT_WARNINGS_WORK, found, err);
         if (rc == MT_OK && s->study->n_goals <= MOST_TRIED &&
             s->study->n_variables <= MOST_TRIED &&
             !mt_study_takes_more(s->study, MT_WARNINGS_WORK)) {

@@ -331,6 +331,7 @@ typedef struct sink {
     mt_text *out;
     mt_json_writer *w;
     mt_table table; /* CSV */
+    mt_run run;     /* of all configurations */
 } sink;
 
 static mt_status csv_view(sink *to, const view *v)
@@ -382,9 +383,9 @@ static mt_status one(sink *to, const mt_loaded_model *s, int c, mt_err *err)
     mt_arena mem = {.first = NULL};
     mt_status rc = mt_arena_init(&mem, 0, err);
     v.warning_list = mt_warning_list_default(&mem);
-    s->model->progress = mt_watch_begin(to->args, 0, "modes");
+    to->run.progress = mt_watch_begin(to->args, 0, "modes");
     rc = rc == MT_OK ? look(to->args, &v, err) : rc;
-    s->model->progress = NULL;
+    to->run.progress = NULL;
     mt_watch_end(rc == MT_OK);
     if (rc != MT_OK || v.m == NULL) {
         goto done;
@@ -461,7 +462,8 @@ int mt_cmd_modes(const mt_args *args, mt_text *out)
     if (code != MT_EXIT_DONE) {
         goto done;
     }
-    s.model->profile = profile;
+    to.run.profile = profile;
+    s.run = &to.run;
     const bool list = to.w != NULL && !args->given[MT_OPT_CONFIGURATION];
     if (list) {
         mt_json_open(&w, NULL, '[');

@@ -156,7 +156,8 @@ static mt_status sensitivity(job *j, int parameter, double *value, double *to, m
     MT_TRY(inputs_with(j, parameter, &j->r.mem, &n, &inputs, &at, &slot, err));
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true;
-    mt_status rc = mt_analysis_new(j->s->model, j->c, n, inputs, at, &a, err);
+    const mt_system_def def = mt_loaded_model_system(j->s, j->c, n, inputs, at);
+    mt_status rc = mt_analysis_new_of(&def, 0, &a, err);
     rc = rc == MT_OK ? mt_analysis_solve(a, at, &opt, err) : rc;
     if (rc == MT_OK) {
         *value = mt_linear_value(a->lin, a->sys->parameters[parameter]);
@@ -260,8 +261,9 @@ static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why,
     mt_err own = {.code = MT_OK};
     mt_lowest_delete(j->l);
     j->l = NULL;
-    const mt_status rc = mt_lowest_new(j->s->model, j->c, j->s->n_inputs, j->s->inputs,
-                                       j->s->at, want, &j->l, &own);
+    const mt_system_def def =
+        mt_loaded_model_system(j->s, j->c, j->s->n_inputs, j->s->inputs, j->s->at);
+    const mt_status rc = mt_lowest_new(&def, want, &j->l, &own);
     if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
         return mt_fail(err, rc, "%s", own.text);
     }

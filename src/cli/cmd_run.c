@@ -27,6 +27,7 @@ typedef struct job {
     double seconds;
     mt_profile counts; /* --profile */
     mt_profile *profile;
+    mt_run run;                  /* of the answer */
     bool stops;                  /* a signal ends the search, not the program */
     char sha256[MT_SHA256_TEXT]; /* of result.json, "" as long as it is not written */
     mt_err err;
@@ -101,14 +102,14 @@ static int answer(job *j)
     opt.progress = j->stops && j->args->given[MT_OPT_TIME] ? leave_time : NULL;
     opt.progress_context = j;
     j->profile = mt_cli_profile(j->args, &j->counts);
-    j->study->model->profile = j->profile;
-    mt_checkpoint_store *store = NULL;
+    j->run.profile = j->profile;
+    mt_task_path tasks = {.store = NULL};
     if (j->args->command != MT_CMD_COMPARE) {
         const int begun = mt_work_begin(j->args, j->path, j->study, &j->journal);
         if (begun != MT_EXIT_DONE) {
             return begun;
         }
-        store = mt_journal_checkpoint_store(j->journal, j->args->part, j->args->parts);
+        tasks.store = mt_journal_checkpoint_store(j->journal, j->args->part, j->args->parts);
     }
     const mt_incumbent_callback early = {keep, j};
     const bool kept = j->args->command != MT_CMD_COMPARE && j->args->part == 0;
@@ -117,12 +118,14 @@ static int answer(job *j)
         mt_terminal_hold_signals();
         mt_terminal_limit(j->args->time_s);
     }
-    j->study->model->progress = mt_watch_begin(j->args, j->operand, "baseline");
-    rc = mt_study_solve_with(j->study, &opt, store, kept ? &early : NULL, &j->result, &j->err);
+    j->run.progress = mt_watch_begin(j->args, j->operand, "baseline");
+    j->run.tasks = &tasks;
+    rc =
+        mt_study_solve_with(j->study, &opt, &j->run, kept ? &early : NULL, &j->result, &j->err);
     j->seconds = mt_terminal_seconds() - j->start;
     j->stopped = mt_terminal_stop_request(NULL) != MT_STOP_REQUEST_NONE;
     mt_terminal_limit(0.0);
-    j->study->model->progress = NULL;
+    j->run = (mt_run){.interrupt = NULL};
     mt_watch_end(rc == MT_OK && !is_cut(j->result));
     const bool late = is_late(j) && (rc == MT_E_INTERRUPTED || j->args->part > 0 ||
                                      (rc == MT_OK && is_cut(j->result)));
@@ -181,7 +184,6 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
         return j->complete ? MT_EXIT_DONE : is_late(j) ? MT_EXIT_GOALS : MT_EXIT_INTERRUPTED;
     }
     mt_text scene = {.s = NULL};
-    j->study->model->profile = NULL; /* it was asked of the answer */
     if (j->result->status == MT_RESULT_TIME_LIMIT && j->args->command == MT_CMD_RUN) {
         j->result->status_text = mt_arena_printf(
             &j->result->mem, "%s `run --resume` goes on from here.", j->result->status_text);

@@ -15,6 +15,7 @@ typedef struct job {
     const mt_args *args;
     mt_vibration *profile; /* --vibration, owned; NULL */
     mt_loaded_model *s;
+    mt_run run; /* stopped by the terminal while the motion is computed */
     int c;
     mt_arena mem;
     mt_analysis *a; /* with --mode */
@@ -54,14 +55,15 @@ static mt_status make(job *j, mt_err *err)
                        "joint is moved");
     }
     if (j->args->given[MT_OPT_ALONG]) {
-        MT_TRY(mt_analysis_new(s->model, j->c, s->n_inputs, s->inputs, s->at, &j->a, err));
+        MT_TRY(mt_loaded_model_analyse(s, j->c, 0, &j->a, err));
         j->sys = j->a->own_sys;
         j->lin = j->a->lin;
         return MT_OK;
     }
     mt_loaded_model_warn_dropped(s, j->c, "--input", drive.joint);
-    MT_TRY(mt_system_new_driven(s->model, j->c, drive.joint == NULL ? NULL : &drive,
-                                s->n_inputs, s->inputs, s->at, &j->sys, err));
+    mt_system_def def = mt_loaded_model_system(s, j->c, s->n_inputs, s->inputs, s->at);
+    def.drive = drive.joint == NULL ? NULL : &drive;
+    MT_TRY(mt_system_new_of(&def, &j->sys, err));
     MT_TRY(mt_linear_new(j->sys, &j->lin, err));
     return mt_linear_update(j->lin, s->at, false, err);
 }
@@ -78,8 +80,9 @@ static mt_status start_held(job *j, const mt_sim_joint *at, mt_err *err)
         return mt_fail(err, MT_E_USAGE, "--start: joint \"%s\" goes at most to %g", drive.joint,
                        mt_drive_reach(j->sys, at->joint));
     }
-    mt_status rc =
-        mt_system_new_driven(s->model, j->c, &drive, s->n_inputs, s->inputs, s->at, &sys, err);
+    mt_system_def def = mt_loaded_model_system(s, j->c, s->n_inputs, s->inputs, s->at);
+    def.drive = &drive;
+    mt_status rc = mt_system_new_of(&def, &sys, err);
     rc = rc == MT_OK ? mt_linear_new(sys, &lin, err) : rc;
     rc = rc == MT_OK ? mt_linear_update(lin, s->at, false, err) : rc;
     rc = rc == MT_OK ? mt_start_from(j->lin, lin, &j->start, err) : rc;
@@ -208,10 +211,10 @@ static mt_status move(job *j, mt_err *err)
     mt_interrupt_init(&interrupt, mt_terminal_stop_request, NULL, NULL);
     mt_terminal_hold_signals();
     mt_terminal_limit(j->args->time_s);
-    j->s->model->interrupt = &interrupt;
+    j->run.interrupt = &interrupt;
     const mt_status rc =
         mt_simulate(j->lin, &j->start, &j->request.opt, &j->mem, &j->result, err);
-    j->s->model->interrupt = NULL;
+    j->run.interrupt = NULL;
     mt_terminal_limit(0.0);
     return rc;
 }
@@ -281,6 +284,7 @@ int mt_cmd_simulate(const mt_args *args, mt_text *out)
     mt_err err = {.code = MT_OK};
     int code =
         mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
+    s.run = &j.run;
     code = code == MT_EXIT_DONE ? load(&j) : code;
     if (code != MT_EXIT_DONE) {
         goto done;

@@ -142,14 +142,14 @@ static mt_status run(const mt_args *args, const mt_loaded_model *s, int c, job *
     for (int i = 1; i < r->n; i++) {
         at[n] = fabs(r->positions[i]) < fabs(at[n]) ? r->positions[i] : at[n];
     }
-    MT_TRY(
-        mt_system_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->sys, err));
+    mt_system_def def = mt_loaded_model_system(s, c, s->n_inputs, s->inputs, at);
+    def.drive = &r->drive;
+    MT_TRY(mt_system_new_of(&def, &j->sys, err));
     MT_TRY(check_reach(j->sys, r, err));
     if (args->given[MT_OPT_MODES]) {
         mt_system_delete(j->sys);
         j->sys = NULL;
-        MT_TRY(mt_analysis_new_driven(s->model, c, &r->drive, s->n_inputs, s->inputs, at, &j->a,
-                                      err));
+        MT_TRY(mt_analysis_new_of(&def, 0, &j->a, err));
         j->a->recount = true; /* a spring may get hold of a direction on the way */
         MT_TRY(prepare_modes(j, args->count > 0 ? args->count : DEFAULT_MODES, err));
         j->sys = j->a->own_sys;

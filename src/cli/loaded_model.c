@@ -182,11 +182,22 @@ mt_status mt_loaded_model_parameters(const mt_loaded_model *s, const char *optio
                   : mt_fail(err, MT_E_INPUT, "%s: there are no parameters to vary", s->path);
 }
 
+mt_system_def mt_loaded_model_system(const mt_loaded_model *s, int c, int n_inputs,
+                                     const int *inputs, const double *at)
+{
+    return (mt_system_def){.model = s->model,
+                           .run = s->run,
+                           .configuration = c,
+                           .n_inputs = n_inputs,
+                           .inputs = inputs,
+                           .at = at};
+}
+
 mt_status mt_loaded_model_analyse(const mt_loaded_model *s, int c, int first, mt_analysis **out,
                                   mt_err *err)
 {
-    const mt_status rc =
-        mt_analysis_new_lowest(s->model, c, s->n_inputs, s->inputs, s->at, first, out, err);
+    const mt_system_def def = mt_loaded_model_system(s, c, s->n_inputs, s->inputs, s->at);
+    const mt_status rc = mt_analysis_new_of(&def, first, out, err);
     return rc == MT_OK ? rc : mt_err_in(err, rc, "%s", s->path);
 }
 
@@ -210,7 +221,8 @@ mt_status mt_loaded_model_lowest(const mt_loaded_model *s, int c, int n_inputs,
     char why[MT_LOWEST_WHY + 50] = "ask for the lowest modes only, without dampers (--count)";
     *out = NULL;
     if (want.count > 0 && want.count <= bodies / 2 && bodies >= MT_LOWEST_BODIES) {
-        const mt_status rc = mt_lowest_new(s->model, c, n_inputs, inputs, at, want, out, err);
+        const mt_system_def def = mt_loaded_model_system(s, c, n_inputs, inputs, at);
+        const mt_status rc = mt_lowest_new(&def, want, out, err);
         if (rc != MT_OK) {
             return mt_err_in(err, rc, "%s", s->path);
         }

@@ -10,7 +10,8 @@
 
 /* A model with the parameters that --set changes, and the configurations to look at. */
 typedef struct mt_loaded_model {
-    mt_model *model; /* owned */
+    mt_model *model;   /* owned */
+    const mt_run *run; /* of what is made of it; NULL: none */
     mt_arena mem;
     const char *path;
     int n_inputs;
@@ -56,6 +57,9 @@ mt_status mt_loaded_model_lowest(const mt_loaded_model *s, int c, int n_inputs,
                                  mt_lowest **out, mt_err *err);
 /* "dense", "tree", "sparse": what JSON calls the way of an answer. */
 const char *mt_cli_method(mt_lowest_method way);
+/* Configuration c with these inputs, in the run of the model. */
+mt_system_def mt_loaded_model_system(const mt_loaded_model *s, int c, int n_inputs,
+                                     const int *inputs, const double *at);
 /* MT_E_USAGE where configuration c is too large for dense matrices, led by why there is no
  * other way. */
 mt_status mt_loaded_model_admit_dense(const mt_loaded_model *s, int c, const char *why,

@@ -96,8 +96,8 @@ static mt_status answer_by_all(mt_sensitivity_table *v, const question *q, mt_er
     mt_analysis_options opt = mt_analysis_options_default();
     opt.gradient = true;
     opt.modes.first = q->wanted;
-    mt_status rc = mt_analysis_new_lowest(v->s->model, v->c, q->count, q->inputs, q->at,
-                                          q->wanted, &a, err);
+    const mt_system_def def = mt_loaded_model_system(v->s, v->c, q->count, q->inputs, q->at);
+    mt_status rc = mt_analysis_new_of(&def, q->wanted, &a, err);
     rc = rc == MT_OK ? mt_analysis_solve(a, q->at, &opt, err) : rc;
     rc = rc == MT_OK ? choose_modes(v, &a->modes, q->wanted, err) : rc;
     for (int i = 0; rc == MT_OK && i < q->n; i++) {

@@ -263,7 +263,7 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_
         rc = jointly(&proof, mem, result, infeasible, err);
     }
     if (rc == MT_OK && *infeasible) {
-        mt_progress_proved(p->study->model->progress);
+        mt_progress_proved(p->run->progress);
     }
     mt_proof_free(&proof);
     return rc;

@@ -206,7 +206,7 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
 {
     mt_workspace *fresh = NULL;
     MT_TRY(mt_workspace_new(p, &fresh, err));
-    mt_work_counters_note(p->study->model->spent, MT_WORK_DESIGNS, ANALYSES);
+    mt_work_counters_note(p->run->work, MT_WORK_DESIGNS, ANALYSES);
     mt_problem_note_modal(p, ANALYSES * mt_subproblem_solutions(&p->whole));
     mt_status rc = describe(fresh, design, baseline, result, rec, err);
     rc = rc == MT_OK ? mt_describe_slopes(fresh, design, result, rec, err) : rc;

@@ -163,7 +163,8 @@ static mt_status describe(const mt_workspace *fresh, const mt_result_curve *aske
     const int configuration = mt_model_find_configuration(model, asked->configuration);
     mt_analysis *a = NULL;
     mt_err why = {.code = MT_OK};
-    mt_status rc = mt_analysis_new(model, configuration, p->n, p->inputs, fresh->x, &a, &why);
+    const mt_system_def def = mt_problem_system(p, configuration, fresh->x);
+    mt_status rc = mt_analysis_new_of(&def, 0, &a, &why);
     rc = rc == MT_OK ? trace(a, asked, profile_of(p->study, asked), mem, out, &why) : rc;
     mt_analysis_delete(a);
     MT_TRY(mt_pass_final(rc, &why, err));

@@ -75,8 +75,8 @@ static mt_status put_ports(const mt_problem *p, int configuration, const mt_resp
     mt_system *sys = NULL;
     mt_port in;
     mt_port to;
-    mt_status rc =
-        mt_system_new(p->study->model, configuration, p->n, p->inputs, p->original, &sys, err);
+    const mt_system_def def = mt_problem_system(p, configuration, p->original);
+    mt_status rc = mt_system_new_of(&def, &sys, err);
     rc = rc == MT_OK ? mt_port_input(sys, s->input.s, mem, &in, err) : rc;
     rc = rc == MT_OK ? mt_port_output(sys, s->output.s, mem, &to, err) : rc;
     if (rc == MT_OK) {

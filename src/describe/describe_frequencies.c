@@ -258,9 +258,9 @@ mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
             continue;
         }
         mt_err why = {.code = MT_OK};
-        mt_status rc =
-            mt_analysis_new(fresh->p->study->model, l.view->of->configuration, fresh->p->n,
-                            fresh->p->inputs, fresh->x, &l.scratch, &why);
+        const mt_system_def def =
+            mt_problem_system(fresh->p, l.view->of->configuration, fresh->x);
+        mt_status rc = mt_analysis_new_of(&def, 0, &l.scratch, &why);
         rc = rc == MT_OK ? list_view(&l, v, count, err) : note_failure(&l, &why, err);
         mt_analysis_delete(l.scratch);
         MT_TRY(rc);

@@ -307,7 +307,7 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
     mt_term_list list[MT_TERM_KINDS];
     MT_TRY(mt_terms_new(sys, scratch, list, err));
     MT_TRY(mt_absolute_stand(sys, o->settled, inputs, &data, &at, scratch, err));
-    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
     *is = !sys->driven;
     if (!*is) {
         (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "a joint is driven");
@@ -322,15 +322,15 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
     o->part = g.part;
     o->arm = g.arm;
     MT_TRY(constrain(&data, o, &g, mem, scratch, is, why, err));
-    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
     if (*is) {
         MT_TRY(squares_of(&data, o, &g, MT_TERM_STIFFNESS, &list[MT_TERM_STIFFNESS], mem, &o->k,
                           err));
-        MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
         MT_TRY(squares_of(&data, o, &g, MT_TERM_MASS, &list[MT_TERM_MASS], mem, &o->m, err));
         MT_TRY(measure(o, &g, mem, scratch, err));
     }
-    return mt_interrupt_check(sys->model->interrupt, err);
+    return mt_interrupt_check(sys->run->interrupt, err);
 }
 
 mt_status mt_absolute_new(const mt_system *sys, const double *inputs, const mt_state *settled,

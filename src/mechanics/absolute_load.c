@@ -428,7 +428,7 @@ mt_status mt_absolute_load_new(const mt_absolute *o, const double *inputs, mt_ar
         w.n = 0;
         w.list = round == 0 ? NULL : mt_arena_alloc(&scratch, n, sizeof *w.list);
         rc = mt_arena_check(&scratch, err);
-        rc = rc == MT_OK ? mt_interrupt_check(o->sys->model->interrupt, err) : rc;
+        rc = rc == MT_OK ? mt_interrupt_check(o->sys->run->interrupt, err) : rc;
         if (rc == MT_OK) {
             add_forces(&w);
             add_constraints(&w, out->mu, out->open);

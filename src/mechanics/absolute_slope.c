@@ -306,7 +306,7 @@ mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
     memset(slope, 0, (size_t)modes->n_pairs * (size_t)sys->n_inputs * sizeof *slope);
     MT_TRY(init(&w, inputs, scratch, err));
     for (int p = 0; p < sys->n_inputs && why[0] == '\0'; p++) {
-        MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
         w.form = slope + ((ptrdiff_t)modes->n_pairs * p);
         turn_to(&w, p);
         add_terms(&w, MT_TERM_STIFFNESS);

@@ -481,7 +481,7 @@ mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int 
     double h = DRIVE_STEP * w.unit;
     int steps = 0;
     for (; at->drive != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
-        MT_TRY(mt_interrupt_check(w.sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(w.sys->run->interrupt, err));
         MT_TRY(advance(&w, &h, err));
     }
     *iterations += w.iterations;

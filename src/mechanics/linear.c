@@ -49,7 +49,7 @@ static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
     MT_TRY(mt_arena_check(&lin->base, err));
     mt_couplings_find(lin, lin->coupling);
     mt_stages_init(&lin->stages, sys, lin->list, &lin->base);
-    lin->stages.profile = sys->model->profile;
+    lin->stages.profile = sys->run->profile;
     return mt_arena_check(&lin->base, err);
 }
 
@@ -163,7 +163,7 @@ void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double
 /* True where what is summed is to be left as it is. Who sums asks again. */
 static bool is_left(const mt_linear *lin)
 {
-    return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->model->interrupt);
+    return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->run->interrupt);
 }
 
 /* out (n x n) += sum of the terms' contributions, lower triangle; which: 0 terms without
@@ -313,9 +313,9 @@ static mt_status place(mt_linear *lin, mt_err *err)
     MT_TRY(find_position(lin, err));
     MT_TRY(constrain(lin, err));
     keep_last(lin); /* not from a dead centre: which way led on would be open */
-    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(lin->sys->run->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));
-    return mt_interrupt_check(lin->sys->model->interrupt, err);
+    return mt_interrupt_check(lin->sys->run->interrupt, err);
 }
 
 static mt_status reduce(mt_linear *lin, mt_err *err)
@@ -327,9 +327,9 @@ static mt_status reduce(mt_linear *lin, mt_err *err)
     MT_TRY(mt_reduce_basis(lin, err));
     MT_TRY(mt_free_spin_remove(lin, err));
     MT_TRY(mt_reduce_rows(lin, err));
-    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(lin->sys->run->interrupt, err));
     MT_TRY(fixed_parts(lin, err));
-    return mt_interrupt_check(lin->sys->model->interrupt, err);
+    return mt_interrupt_check(lin->sys->run->interrupt, err);
 }
 
 static mt_status where_in_model(const mt_linear *lin, mt_node bad, mt_status rc, mt_err *err)
@@ -436,7 +436,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
                            mt_err *err)
 {
     mt_stages *const st = &lin->stages;
-    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(lin->sys->run->interrupt, err));
     MT_TRY(run_program(lin, inputs, with_gradient, err));
     MT_TRY(run_geometry(lin, inputs, err));
     if (mt_stages_begin(st, MT_STAGE_REDUCTION, reduces_with(lin), inputs)) {
@@ -460,7 +460,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
 
 mt_status mt_linear_set_inputs(mt_linear *lin, const double *inputs, mt_err *err)
 {
-    MT_TRY(mt_interrupt_check(lin->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(lin->sys->run->interrupt, err));
     MT_TRY(run_program(lin, inputs, false, err));
     lin->stages.valid[MT_STAGE_GEOMETRY] = false;
     lin->stages.valid[MT_STAGE_TANGENT] = false;

@@ -399,7 +399,7 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     const int nq = w->sys->nq;
     mt_saddle least;
     *solver = (mt_newton_solver){.sparse = true};
-    MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
     mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_FULL,
                        &w->sparse);
     MT_TRY(mt_newton_least_squares(w, first && !p->sparse, mem, &least, sure, err));
@@ -474,7 +474,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
     const int nq = w->sys->nq;
     mt_elimination *const e = &solver->e;
     *solver = (mt_newton_solver){.sparse = false};
-    MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
     w->factors += 2;
     MT_TRY(balance(w, at, mem, e, err));
     MT_TRY(mt_newton_invert(w, e, mem, &solver->inverse, err));

@@ -7,7 +7,7 @@
 
 /*
  * The static response of a mechanism along the range of one driven joint: a system made by
- * mt_system_new_driven, solved at one position after the other. The walk begins at the point
+ * mt_system_new_of, solved at one position after the other. The walk begins at the point
  * nearest to the reference position and goes outwards both ways, each point from its neighbour,
  * so that every point lies on the branch of the drawing.
  */

@@ -195,10 +195,9 @@ static mt_status build(mt_system *sys, const mt_system_drive *drive, const doubl
     return settle(sys, at, err);
 }
 
-mt_status mt_system_new_driven(const mt_model *model, int configuration,
-                               const mt_system_drive *drive, int n_inputs, const int *inputs,
-                               const double *at, mt_system **out, mt_err *err)
+mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err)
 {
+    const int n_inputs = def->n_inputs;
     mt_system *const sys = calloc(1, sizeof *sys);
     *out = NULL;
     if (sys == NULL) {
@@ -206,20 +205,21 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
     }
     mt_status rc = mt_arena_init(&sys->mem, 0, err);
     if (rc == MT_OK) {
-        sys->model = model;
-        sys->configuration = configuration;
-        sys->dimension = model->dimension;
-        sys->n_inputs = n_inputs + (drive != NULL && !drive->fixed ? 1 : 0);
+        sys->model = def->model;
+        sys->run = mt_run_or_none(def->run);
+        sys->configuration = def->configuration;
+        sys->dimension = def->model->dimension;
+        sys->n_inputs = n_inputs + (def->drive != NULL && !def->drive->fixed ? 1 : 0);
         sys->drive = MT_NO_NODE;
         sys->inputs = mt_arena_int(&sys->mem, (size_t)n_inputs + 1);
         rc = mt_arena_check(&sys->mem, err);
     }
     if (rc == MT_OK && sys->inputs != NULL) {
         if (n_inputs > 0) {
-            memcpy(sys->inputs, inputs, (size_t)n_inputs * sizeof *inputs);
+            memcpy(sys->inputs, def->inputs, (size_t)n_inputs * sizeof *def->inputs);
         }
         sys->inputs[n_inputs] = MT_ABSENT;
-        rc = build(sys, drive, at, err);
+        rc = build(sys, def->drive, def->at, err);
     }
     if (rc != MT_OK) {
         mt_system_delete(sys);
@@ -232,7 +232,12 @@ mt_status mt_system_new_driven(const mt_model *model, int configuration,
 mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_system **out, mt_err *err)
 {
-    return mt_system_new_driven(model, configuration, NULL, n_inputs, inputs, at, out, err);
+    const mt_system_def def = {.model = model,
+                               .configuration = configuration,
+                               .n_inputs = n_inputs,
+                               .inputs = inputs,
+                               .at = at};
+    return mt_system_new_of(&def, out, err);
 }
 
 void mt_system_delete(mt_system *sys)

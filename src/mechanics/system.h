@@ -2,6 +2,7 @@
 #ifndef MECHANICS_SYSTEM_H
 #define MECHANICS_SYSTEM_H
 
+#include "base/run.h"
 #include "expr/program.h"
 #include "mechanics/measure.h"
 #include "model/model.h"
@@ -169,7 +170,8 @@ typedef struct mt_layout mt_layout;
 
 typedef struct mt_system {
     mt_arena mem;
-    const mt_model *model; /* not owned; must outlive the system */
+    const mt_model *model; /* not owned; must outlive the system, like the run */
+    const mt_run *run;     /* never NULL */
     int configuration;
     int dimension;
     int n_inputs;
@@ -227,13 +229,20 @@ typedef struct mt_system_drive {
     bool fixed;         /* the joint stands at `position`, which is then no input */
     double position;    /* where fixed [rad or m from the reference position] */
 } mt_system_drive;
-/* The same with a drive whose position [rad or m from the reference position] is one more
- * input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs. A drive that is
- * fixed adds no input. drive NULL: mt_system_new. Fails also MT_E_INPUT: no such joint or
- * spring. */
-mt_status mt_system_new_driven(const mt_model *model, int configuration,
-                               const mt_system_drive *drive, int n_inputs, const int *inputs,
-                               const double *at, mt_system **out, mt_err *err);
+/* What a system is made of. Nothing is owned; model and run must outlive the system. */
+typedef struct mt_system_def {
+    const mt_model *model;
+    const mt_run *run; /* asked and told by all work on the system; NULL: none */
+    int configuration;
+    const mt_system_drive *drive; /* NULL: none but the configuration's own */
+    int n_inputs;
+    const int *inputs; /* [n_inputs] indices of parameters */
+    const double *at;  /* [n_inputs], and one more with a drive that is not fixed */
+} mt_system_def;
+/* mt_system_new within a run. The position of a drive [rad or m from the reference position]
+ * is one more input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs; a
+ * drive that is fixed adds none. Fails as mt_system_new; MT_E_INPUT: no such joint or spring. */
+mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 /*
  * *same: two configurations of one model are the same mechanism but for the position of one

@@ -439,14 +439,6 @@ typedef struct mt_model {
     int n_places;
     mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
-    /* NULL in a model that was made or read. Who answers a question that may be interrupted
-     * asks it of a copy of this record that has the interrupt (and borrows everything else):
-     * then no work on the model can be begun without passing by it. */
-    struct mt_interrupt *interrupt;
-    struct mt_profile *profile; /* NULL: nobody asks what evaluations do (base/profile.h) */
-    /* NULL: nobody asks what the work costs (base/work_counters.h) */
-    struct mt_work_counters *spent;
-    struct mt_progress *progress; /* NULL: nobody asks how far it is (base/progress.h) */
 } mt_model;
 
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */

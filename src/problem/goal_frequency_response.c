@@ -254,7 +254,7 @@ static mt_status values(mt_workspace *w, const mt_requirement *d, const forced *
     mt_arena *const mem = &w->views[d->view].analysis->mem;
     for (int i = 0; i < d->fit->n; i++) {
         double complex h = 0.0;
-        MT_TRY(mt_interrupt_check(w->p->study->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(w->p->run->interrupt, err));
         MT_TRY(mt_transfer_at(&f->basis.t, d->fit->w[i], &(mt_sample){.h = &h}, mem, err));
         MT_TRY(line(w, d, i, h, err));
     }

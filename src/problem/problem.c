@@ -83,7 +83,7 @@ static mt_status init_references(mt_problem *p, mt_err *err)
 {
     p->references = mt_arena_alloc(&p->mem, 1, sizeof *p->references);
     MT_TRY(mt_arena_check(&p->mem, err));
-    return mt_reference_cache_init(p->references, p->study, &p->mem, err);
+    return mt_reference_cache_init(p->references, p->study, p->run, &p->mem, err);
 }
 
 static double proof_work(const mt_search *s)
@@ -123,7 +123,18 @@ static mt_status init_whole(mt_problem *p, mt_err *err)
     return mt_subproblem_lay_out(c, NULL, 0, NULL, NULL, &p->mem, err);
 }
 
-mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
+mt_system_def mt_problem_system(const mt_problem *p, int configuration, const double *x)
+{
+    return (mt_system_def){.model = p->study->model,
+                           .run = p->run,
+                           .configuration = configuration,
+                           .n_inputs = p->n,
+                           .inputs = p->inputs,
+                           .at = x};
+}
+
+mt_status mt_problem_new(const mt_study *study, const mt_run *run, mt_problem **out,
+                         mt_err *err)
 {
     *out = NULL;
     mt_problem *const p = calloc(1, sizeof *p);
@@ -131,6 +142,7 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
         return mt_fail_memory(err);
     }
     p->study = study;
+    p->run = mt_run_or_none(run);
     p->n = study->n_variables;
     mt_status rc = mt_arena_init(&p->mem, 0, err);
     rc = rc == MT_OK ? init_references(p, err) : rc;
@@ -154,13 +166,13 @@ mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err)
 mt_status mt_problem_try(const mt_study *study, mt_err *err)
 {
     mt_problem *p = NULL;
-    const mt_status rc = mt_problem_new(study, &p, err);
+    const mt_status rc = mt_problem_new(study, NULL, &p, err);
     mt_problem_delete(p);
     return rc;
 }
 
 void mt_problem_note_modal(const mt_problem *p, long n)
 {
-    mt_work_counters_note(p->study->model->spent, MT_WORK_MODAL, n);
-    mt_progress_solved(p->study->model->progress, n);
+    mt_work_counters_note(p->run->work, MT_WORK_MODAL, n);
+    mt_progress_solved(p->run->progress, n);
 }

@@ -119,7 +119,8 @@ typedef struct mt_objective_stage {
 } mt_objective_stage;
 
 typedef struct mt_problem {
-    const mt_study *study; /* must outlive the problem */
+    const mt_study *study; /* must outlive the problem, like the run */
+    const mt_run *run;     /* never NULL */
     mt_reference_cache *references;
     mt_arena mem;
     int n;            /* variables */
@@ -159,9 +160,12 @@ typedef struct mt_problem {
  * text (a mode that is not there, no common sensor; what this version does not search),
  * numerical failures at the original design (no equilibrium, ...), MT_E_MEMORY.
  */
-mt_status mt_problem_new(const mt_study *study, mt_problem **out, mt_err *err);
+mt_status mt_problem_new(const mt_study *study, const mt_run *run, mt_problem **out,
+                         mt_err *err);
 /* Accepts NULL. */
 void mt_problem_delete(mt_problem *p);
+/* The system of a configuration at inputs x[n] (with a drive that the caller adds, x[n + 1]). */
+mt_system_def mt_problem_system(const mt_problem *p, int configuration, const double *x);
 /* n modal solutions were made: to who counts them and to who watches. */
 void mt_problem_note_modal(const mt_problem *p, long n);
 /* Compile and forget: whether the study can be asked. Fails as mt_problem_new. */

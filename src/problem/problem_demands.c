@@ -36,7 +36,8 @@ mt_status mt_problem_analyse(const mt_problem *p, int configuration, const doubl
 {
     mt_analysis *a = NULL;
     *out = NULL;
-    MT_TRY(mt_analysis_new(p->study->model, configuration, p->n, p->inputs, x, &a, err));
+    const mt_system_def def = mt_problem_system(p, configuration, x);
+    MT_TRY(mt_analysis_new_of(&def, 0, &a, err));
     mt_status rc = mt_analysis_count(a, &p->study->counted, NULL, 0.0, err);
     rc = rc == MT_OK ? solve_counted(a, a->n_null, x, err) : rc;
     if (rc != MT_OK) {
@@ -77,8 +78,9 @@ mt_status mt_configuration_drive(const mt_problem *p, const mt_configuration_pro
 {
     mt_analysis *a = NULL;
     *out = NULL;
-    MT_TRY(mt_analysis_new_driven(p->study->model, view->configuration, drive, p->n, p->inputs,
-                                  at, &a, err));
+    mt_system_def def = mt_problem_system(p, view->configuration, at);
+    def.drive = drive;
+    MT_TRY(mt_analysis_new_of(&def, 0, &a, err));
     return count_as(view, a, at, out, err);
 }
 
@@ -300,7 +302,7 @@ mt_status mt_problem_init_requirements(mt_problem *p, mt_err *err)
     p->requirements = mt_arena_alloc(&p->mem, most, sizeof *p->requirements);
     p->views = mt_arena_alloc(&p->mem, (size_t)s->model->n_configurations, sizeof *p->views);
     MT_TRY(mt_arena_check(&p->mem, err));
-    mt_progress *const progress = s->model->progress;
+    mt_progress *const progress = p->run->progress;
     const bool told = mt_progress_begin(progress, "goals", s->n_goals);
     mt_status rc = MT_OK;
     for (int i = 0; i < s->n_goals && rc == MT_OK; i++) {

@@ -24,8 +24,8 @@ static mt_status check(const mt_problem *p, int index, mt_arena *mem, mt_err *er
     mt_system *sys = NULL;
     const char *const at = mt_arena_printf(mem, "/responses/%d", index);
     MT_TRY(mt_arena_check(mem, err));
-    mt_status rc = mt_system_new(p->study->model, r->configuration, p->n, p->inputs,
-                                 p->original, &sys, err);
+    const mt_system_def def = mt_problem_system(p, r->configuration, p->original);
+    mt_status rc = mt_system_new_of(&def, &sys, err);
     rc = rc == MT_OK
              ? mt_forced_response_ports_at(sys, &r->response_limit, at, mem, &in, &out, err)
              : rc;

@@ -68,8 +68,9 @@ static mt_status measured(const mt_reference *r, const mt_system *sys, double le
 }
 
 mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
-                                  mt_arena *mem, mt_err *err)
+                                  const mt_run *run, mt_arena *mem, mt_err *err)
 {
+    cache->run = run;
     cache->analysis = mt_arena_alloc(mem, (size_t)study->n_references, sizeof(mt_analysis *));
     cache->study = study;
     return mt_arena_check(mem, err);
@@ -91,9 +92,10 @@ static mt_status computed_mode(mt_reference_cache *cache, int reference, int mod
     const mt_reference *const r = &cache->study->references[reference];
     mt_analysis **const cached = &cache->analysis[reference];
     if (*cached == NULL) {
-        MT_TRY(mt_err_in(
-            err, mt_analysis_new(r->model, r->configuration, 0, NULL, NULL, cached, err),
-            "reference \"%s\"", r->name.s));
+        const mt_system_def def = {
+            .model = r->model, .run = cache->run, .configuration = r->configuration};
+        MT_TRY(mt_err_in(err, mt_analysis_new_of(&def, 0, cached, err), "reference \"%s\"",
+                         r->name.s));
     }
     *out = *cached;
     *pos = mt_modal_flexible(&(*cached)->modes, mode);

@@ -25,13 +25,14 @@ typedef struct mt_reference_shape {
  * problems of a study: they do not depend on the design. */
 typedef struct mt_reference_cache {
     const mt_study *study;
+    const mt_run *run;
     mt_analysis **analysis; /* [n_references] owned */
 } mt_reference_cache;
 
-/* The study must outlive the cache; its array lives in mem, so free the cache first. Fails:
+/* The study and the run must outlive the cache; its array lives in mem, so free the cache first. Fails:
  * MT_E_MEMORY. */
 mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
-                                  mt_arena *mem, mt_err *err);
+                                  const mt_run *run, mt_arena *mem, mt_err *err);
 /* Accepts a zeroed cache. */
 void mt_reference_cache_free(mt_reference_cache *cache);
 

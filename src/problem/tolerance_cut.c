@@ -161,7 +161,7 @@ static mt_status lower(mt_workspace *w, mt_nlp_values *v, const bool *leave, mt_
     MT_TRY(mt_arena_init(&own, 0, err));
     mt_status rc = mt_tolerance_ranges_of_rows(w, leave, &own, &ranges, err);
     /* what is cut off has no value at some sample: nothing is known */
-    rc = rc == MT_OK ? mt_interrupt_check(w->p->study->model->interrupt, err) : rc;
+    rc = rc == MT_OK ? mt_interrupt_check(w->p->run->interrupt, err) : rc;
     rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
     cuts->solutions += ranges.solutions;
     mt_arena_free(&own);

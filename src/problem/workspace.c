@@ -302,15 +302,14 @@ static bool judged_later(const mt_workspace *w)
 static bool is_wanted(const mt_workspace *w)
 {
     const mt_subproblem *const c = w->c;
-    return mt_progress_seeks(w->p->study->model->progress) && c->n_aims > 0 &&
+    return mt_progress_seeks(w->p->run->progress) && c->n_aims > 0 &&
            c->aims[0].ops->value != NULL;
 }
 
 static void report_found(const mt_workspace *w, double f)
 {
     const mt_objective_stage *const objective_stage = &w->c->aims[0];
-    mt_progress_found(w->p->study->model->progress,
-                      mt_objective_kind_of(objective_stage->type)->name, f,
+    mt_progress_found(w->p->run->progress, mt_objective_kind_of(objective_stage->type)->name, f,
                       mt_objective_stage_shown(objective_stage, f));
 }
 
@@ -324,8 +323,8 @@ void mt_workspace_judged(const mt_workspace *w, double f)
 static void say_found(const mt_workspace *w, const mt_nlp_values *v)
 {
     const mt_subproblem *const c = w->c;
-    mt_progress_evaluated(w->p->study->model->progress);
-    mt_progress_solved(w->p->study->model->progress, mt_subproblem_solutions(c));
+    mt_progress_evaluated(w->p->run->progress);
+    mt_progress_solved(w->p->run->progress, mt_subproblem_solutions(c));
     if (!is_wanted(w) || judged_later(w)) {
         return;
     }
@@ -338,7 +337,7 @@ static void say_found(const mt_workspace *w, const mt_nlp_values *v)
 
 void mt_workspace_note_designs(const mt_workspace *w, long n)
 {
-    mt_work_counters *const spent = w->p->study->model->spent;
+    mt_work_counters *const spent = w->p->run->work;
     mt_work_counters_note(spent, MT_WORK_DESIGNS, n);
     mt_work_counters_note(spent, MT_WORK_MODAL, n * mt_subproblem_solutions(w->c));
 }
@@ -365,7 +364,7 @@ mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_
 {
     mt_workspace *const w = context;
     const mt_problem *const p = w->p;
-    MT_TRY(mt_interrupt_check(p->study->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(p->run->interrupt, err));
     w->evaluations++;
     say_progress(w);
     MT_TRY(mt_workspace_place(w, t, with_gradient, err));

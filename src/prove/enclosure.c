@@ -102,7 +102,7 @@ static mt_status build(mt_enclosure *e, const mt_analysis *a, const double *lowe
                           "rounding hides whether the mechanism is stable");
         return MT_OK;
     }
-    e->interrupt = a->sys->model->interrupt;
+    e->interrupt = a->sys->run->interrupt;
     MT_TRY(mt_interrupt_check(e->interrupt, err));
     e->n_rigid = a->n_rigid;
     MT_TRY(mt_enclosure_collect(e, a->lin, ok, reason, err));

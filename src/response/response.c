@@ -109,7 +109,7 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
     mt_curve_options own = *opt;
     own.n_poles = r->n_poles;
     own.poles = r->poles;
-    own.interrupt = r->sys->model->interrupt;
+    own.interrupt = r->sys->run->interrupt;
     return mt_curve_trace(r->chosen, &own, &r->mem, out, err);
 }
 

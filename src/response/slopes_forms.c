@@ -520,7 +520,7 @@ mt_status mt_slope_forms_at(const mt_slope_forms *f, int count, const double *w,
 {
     const ptrdiff_t inputs = f->p->a->sys->n_inputs;
     for (ptrdiff_t i = 0; i < count && f->single; i++) {
-        MT_TRY(mt_interrupt_check(f->p->a->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(f->p->a->sys->run->interrupt, err));
         MT_TRY(single_at(f, w[i], &h[i], dh + (i * inputs), scratch, err));
     }
     if (f->single) {
@@ -533,7 +533,7 @@ mt_status mt_slope_forms_at(const mt_slope_forms *f, int count, const double *w,
     MT_TRY(new_batch(f, most, scratch, &b, err));
     for (ptrdiff_t at = 0; at < count; at += most) {
         const int own = count - at < most ? (int)(count - at) : most;
-        MT_TRY(mt_interrupt_check(f->p->a->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(f->p->a->sys->run->interrupt, err));
         MT_TRY(batch_at(f, &b, own, w + at, h + at, dh + (at * inputs), scratch, err));
     }
     mt_arena_rewind(scratch, mark);

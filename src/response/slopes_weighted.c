@@ -119,7 +119,7 @@ static mt_status add_up(work *k, bool *singular, mt_err *err)
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(mt_solutions_open(k->p->basis, k->of->out, k->of->in, k->mem, &s, err));
     for (int at = 0; at < k->of->n && !*singular; at += AT_ONCE) {
-        MT_TRY(mt_interrupt_check(k->p->a->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(k->p->a->sys->run->interrupt, err));
         b.count = k->of->n - at < AT_ONCE ? k->of->n - at : AT_ONCE;
         b.w = k->of->w + at;
         b.weight = k->of->weight + at;

@@ -174,8 +174,8 @@ static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive,
         w->out->positions[i].at = positions[i];
     }
     at[ask->n_inputs] = nearest_of(n, positions);
-    return mt_system_new_driven(f->model, f->configuration, drive, ask->n_inputs, ask->inputs,
-                                at, &w->sys, err);
+    const mt_system_def def = mt_scene_system(f, drive, at);
+    return mt_system_new_of(&def, &w->sys, err);
 }
 
 /* pose: R R0^T of the body `from`, to what it is of the body `to`. */
@@ -261,8 +261,8 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
         return MT_OK;
     }
     if (modes) {
-        MT_TRY(mt_analysis_new_driven(m, f->configuration, &drive, ask->n_inputs, ask->inputs,
-                                      at, &w->a, err));
+        const mt_system_def def = mt_scene_system(f, &drive, at);
+        MT_TRY(mt_analysis_new_of(&def, 0, &w->a, err));
         w->a->recount = true; /* a spring may get hold of a direction on the way */
     } else {
         MT_TRY(mt_linear_new(w->sys, &w->lin, err));

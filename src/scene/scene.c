@@ -109,8 +109,8 @@ static mt_status analyse(const mt_scene_frame *f, mt_err *err)
     mt_analysis_delete(known->by);
     known->by = NULL;
     known->ask = a;
-    return mt_analysis_new_lowest(f->model, f->configuration, a->n_inputs, a->inputs, a->at,
-                                  MT_SCENE_MODES, &known->by, err);
+    const mt_system_def def = mt_scene_system(f, NULL, a->at);
+    return mt_analysis_new_of(&def, MT_SCENE_MODES, &known->by, err);
 }
 
 static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
@@ -122,8 +122,8 @@ static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     mt_lowest *l = NULL;
     mt_status rc = MT_OK;
     if (bodies >= MT_LOWEST_BODIES) {
-        rc = mt_lowest_new(f->model, f->configuration, a->n_inputs, a->inputs, a->at, want, &l,
-                           err);
+        const mt_system_def def = mt_scene_system(f, NULL, a->at);
+        rc = mt_lowest_new(&def, want, &l, err);
     }
     if (rc == MT_OK && l != NULL && l->way != MT_LOWEST_NONE) {
         rc = by_lowest(f, l, err);

@@ -48,6 +48,19 @@ typedef struct mt_scene_frame {
     mt_scene_way *way; /* of this configuration of this design */
 } mt_scene_frame;
 
+/* The system of the frame's configuration with a drive (NULL: none) at inputs
+ * at[n_inputs of ask], and with a drive one more. */
+static inline mt_system_def mt_scene_system(const mt_scene_frame *f,
+                                            const mt_system_drive *drive, const double *at)
+{
+    return (mt_system_def){.model = f->model,
+                           .configuration = f->configuration,
+                           .drive = drive,
+                           .n_inputs = f->ask->n_inputs,
+                           .inputs = f->ask->inputs,
+                           .at = at};
+}
+
 /* The range of a driven joint that is to be followed when everything stands: nothing of the
  * design's analysis is needed for it any more. */
 struct mt_scene_way {

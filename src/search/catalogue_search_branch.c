@@ -473,7 +473,7 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
     }
     for (int i = 0; i < v->n_now; i++) {
         v->work += (double)v->looks[i].work;
-        mt_work_counters_note(d->p->study->model->spent, MT_WORK_MULTIPLICATIONS,
+        mt_work_counters_note(d->p->run->work, MT_WORK_MULTIPLICATIONS,
                               v->looks[i].multiplications);
     }
     v->enclosed = v->enclosed && v->work < d->c->proof_work;

@@ -209,7 +209,7 @@ static mt_status look(walk *w, double position, int next, mt_err *err)
                   .slope = mt_arena_f64(w->mem, (size_t)w->n_edges, 1)};
     MT_TRY(mt_arena_check(w->mem, err));
     w->out->positions++;
-    mt_work_counters_note(w->ws->p->study->model->spent, MT_WORK_POSITIONS, 1);
+    mt_work_counters_note(w->ws->p->run->work, MT_WORK_POSITIONS, 1);
     mt_problem_note_modal(w->ws->p, 1);
     w->inputs[w->ws->p->n] = at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);

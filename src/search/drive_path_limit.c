@@ -93,7 +93,7 @@ static mt_status find(walk *w, sample *s, mt_forced_response_value *v, mt_err *e
     mt_guards_query(w->d, &opt);
     *v = (mt_forced_response_value){.value = nan(""), .end = MT_FORCED_UNSTABLE};
     w->out->positions++;
-    mt_work_counters_note(w->ws->p->study->model->spent, MT_WORK_POSITIONS, 1);
+    mt_work_counters_note(w->ws->p->run->work, MT_WORK_POSITIONS, 1);
     mt_problem_note_modal(w->ws->p, 1);
     w->inputs[w->ws->p->n] = s->at;
     mt_status rc = mt_analysis_solve(w->a, w->inputs, &opt, &why);

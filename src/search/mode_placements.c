@@ -221,7 +221,7 @@ static mt_status report_incumbent(const mt_mode_placement_job *first,
     for (int k = 0; incumbent != NULL && k < first->candidates->n; k++) {
         met = met || mt_mode_placement_is_met(&first->slots[k]);
     }
-    if (!met || mt_interrupted(first->p->study->model->interrupt)) {
+    if (!met || mt_interrupted(first->p->run->interrupt)) {
         return MT_OK;
     }
     now.n_candidates = first->candidates->n;
@@ -343,7 +343,7 @@ static mt_status search_and_prove(mt_mode_placement_job *first, mt_mode_placemen
         first->candidates = listed;
         MT_TRY(claim_slots(first, mem, err));
         MT_TRY(mt_mode_placement_search_best(first, n_workers, asked, mem, &last, err));
-        if (last < HUGE_VAL || mt_interrupted(j->p->study->model->interrupt)) {
+        if (last < HUGE_VAL || mt_interrupted(j->p->run->interrupt)) {
             MT_TRY(all->proven ? MT_OK
                                : mt_mode_placement_candidates_settle(w, proof, mem, all, err));
             MT_TRY(mt_mode_placement_search_known(first, n_workers, all, mem, err));
@@ -364,7 +364,7 @@ static mt_status search_and_prove(mt_mode_placement_job *first, mt_mode_placemen
     /* what they were given, not what they took: parts of a run agree on the rest */
     const long spent = begin->evals + (first->options.max_evals * first->most);
     MT_TRY(all->proven ? MT_OK : report_incumbent(first, incumbent, mem, out, err));
-    if (!all->proven && mt_interrupted(j->p->study->model->interrupt)) {
+    if (!all->proven && mt_interrupted(j->p->run->interrupt)) {
         *all = *begin;
         all->evals = 0; /* counted with the first */
         all->reason = "interrupted before it";

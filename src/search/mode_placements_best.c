@@ -204,7 +204,7 @@ mt_status mt_mode_placement_search_best(mt_mode_placement_job *j, int n_workers,
 {
     const int starts = j->options.starts;
     const int n = j->candidates->n;
-    mt_interrupt *const interrupt = j->p->study->model->interrupt;
+    mt_interrupt *const interrupt = j->p->run->interrupt;
     const bool few = starts > 1;
     *last = HUGE_VAL;
     j->most = n;

@@ -207,7 +207,7 @@ mt_status mt_mode_placement_bounds_make(const mt_subproblem *c, const mt_proof *
         out->any[i] = out->n_levels;
     }
     MT_TRY(find_levels(proof, whole, mem, out, err));
-    *known = !mt_interrupted(p->study->model->interrupt);
+    *known = !mt_interrupted(p->run->interrupt);
     return MT_OK;
 }
 

@@ -266,7 +266,7 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent,
     bool enough = false; /* nothing comes nearer than a design that is clear */
     for (int k = 0; rc == MT_OK && k < n && !enough; k++) {
         double violation = 0.0;
-        if (mt_interrupted(p->study->model->interrupt)) {
+        if (mt_interrupted(p->run->interrupt)) {
             break;
         }
         rc = mt_mode_placement_assignment(w, t + ((ptrdiff_t)k * p->n), below, &violation, err);
@@ -277,7 +277,7 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent,
         enough = enough || (k + 1 >= n / SAMPLES_PART && k + 1 >= SAMPLES_PER_VARIABLE &&
                             all_met_often(list, out->n));
         out->evals++;
-        mt_work_counters_note(p->study->model->spent, MT_WORK_DESIGNS, 1);
+        mt_work_counters_note(p->run->work, MT_WORK_DESIGNS, 1);
         mt_problem_note_modal(p, w->c->n_avoidances);
     }
     MT_TRY(rc);

@@ -237,7 +237,7 @@ mt_status mt_mode_placement_search_candidate(void *context, int worker, int k,
     mt_task_path *const before = w->task_path;
     mt_err why = {0};
     bool again = true;
-    if (s->carried || k >= j->most || mt_interrupted(j->p->study->model->interrupt)) {
+    if (s->carried || k >= j->most || mt_interrupted(j->p->run->interrupt)) {
         s->found.stop = !s->carried && k >= j->most ? MT_STOP_MAX_EVALS : s->found.stop;
         return MT_OK;
     }

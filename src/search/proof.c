@@ -166,7 +166,7 @@ mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, 
     const size_t n = (size_t)p->n;
     const size_t n_requirements = (size_t)p->n_requirements;
     const size_t n_bands = (size_t)p->n_bands;
-    *proof = (mt_proof){.left = c->proof_work, .spent = p->study->model->spent};
+    *proof = (mt_proof){.left = c->proof_work, .spent = p->run->work};
     proof->views = mt_arena_alloc(mem, (size_t)p->n_views, sizeof(mt_enclosure *));
     proof->bands = mt_arena_alloc(mem, n_bands, sizeof *proof->bands);
     proof->bases = mt_arena_alloc(mem, n_bands, sizeof *proof->bases);
@@ -187,8 +187,8 @@ mt_status mt_proof_init(mt_proof *proof, const mt_subproblem *c, mt_arena *mem, 
                                    .upper = proof->upper,
                                    .scale = p->scale,
                                    .max_work = c->proof_work,
-                                   .interrupt = p->study->model->interrupt,
-                                   .progress = p->study->model->progress};
+                                   .interrupt = p->run->interrupt,
+                                   .progress = p->run->progress};
     if (c->proof_work > 0.0) {
         MT_TRY(enclose(proof, p, mem, err));
     } else {

@@ -70,7 +70,7 @@ static mt_status search(const mt_workspace *w, const bool *shapes, const double 
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_subproblem_copy(w->c, mem, &c, err));
     c.proof_work = fmin(SLICE_WORK, w->c->proof_work / (double)out->n);
-    for (int k = 0; k < out->n && !mt_interrupted(p->study->model->interrupt); k++) {
+    for (int k = 0; k < out->n && !mt_interrupted(p->run->interrupt); k++) {
         bool possible = false;
         mt_subproblem_x(w->c, t + ((ptrdiff_t)k * p->n), x);
         for (int i = 0; i < p->n; i++) {

@@ -279,7 +279,7 @@ static mt_status go(mt_propagation *r, mt_err *err)
         const double next = r->out->n * opt->sample_s;
         const double until =
             next < opt->duration_s - (SAME_TIME * opt->sample_s) ? next : opt->duration_s;
-        if (mt_interrupted(r->o.sys->model->interrupt)) {
+        if (mt_interrupted(r->o.sys->run->interrupt)) {
             r->out->stop = MT_SIM_INTERRUPTED;
             return MT_OK;
         }

@@ -358,7 +358,7 @@ static mt_status go(run *r, double *t, mt_err *err)
         const double until =
             next < opt->duration_s - (SAME_TIME * opt->sample_s) ? next : opt->duration_s;
         while (*t < until) {
-            if (mt_interrupted(r->s.sys->model->interrupt)) {
+            if (mt_interrupted(r->s.sys->run->interrupt)) {
                 r->out->stop = MT_SIM_INTERRUPTED;
                 return MT_OK;
             }

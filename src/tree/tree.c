@@ -333,7 +333,7 @@ static mt_status make(mt_tree_maker *m, const double *inputs, mt_arena *mem, mt_
     m->pose = mt_arena_alloc(scratch, (size_t)sys->n_bodies, sizeof *m->pose);
     MT_TRY(mt_data_init(&m->data, sys, scratch, err));
     MT_TRY(mt_program_eval(&sys->program, inputs, value, NULL, err));
-    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
     m->data.value = value;
     *is_tree = has_form(m);
     if (!*is_tree) {
@@ -345,11 +345,11 @@ static mt_status make(mt_tree_maker *m, const double *inputs, mt_arena *mem, mt_
     if (*is_tree) {
         MT_TRY(order_bodies(m, mem, scratch, is_tree, err));
     }
-    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
     if (*is_tree) {
         MT_TRY(make_edges(m, mem, is_tree, err));
     }
-    MT_TRY(mt_interrupt_check(sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
     if (*is_tree) {
         MT_TRY(mt_tree_masses(m, mem, is_tree, err));
     }

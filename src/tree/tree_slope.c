@@ -546,14 +546,14 @@ static mt_status carry_out(mt_tree_slope *w, mt_err *err)
         if (shaped) {
             mt_tree_transport(t, m->lambda[a], m->v + at, w->transport + at);
         }
-        MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
     }
     coefficients(w);
     for (int i = 0; i < t->n && shaped; i++) {
         MT_TRY(hold(w, i, err));
     }
     for (int p = 0; p < w->sys->n_inputs && shaped; p++) {
-        MT_TRY(mt_interrupt_check(w->sys->model->interrupt, err));
+        MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
         turn_to(w, p);
         if (!stays_closed(w)) {
             return MT_OK;

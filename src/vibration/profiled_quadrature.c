@@ -92,7 +92,7 @@ static mt_status add_panel(work *k, const mt_psd *g, const mt_panel *on, mt_err 
         k->whole[p] = 0.0;
         k->halves[p] = 0.0;
     }
-    MT_TRY(mt_interrupt_check(k->r->sys->model->interrupt, err));
+    MT_TRY(mt_interrupt_check(k->r->sys->run->interrupt, err));
     MT_TRY(add_gauss(k, g, on, k->whole, false, err));
     MT_TRY(add_gauss(k, g, &left, k->halves, true, err));
     MT_TRY(add_gauss(k, g, &right, k->halves, true, err));

@@ -485,7 +485,11 @@ static void check_trees(mt_test *t, kind what, int least)
             continue; /* a mechanism that the dense way refuses: a dead centre */
         }
         CHECK_INT(t,
-                  mt_lowest_new(dense.model, 0, INPUTS, input, dense.at,
+                  mt_lowest_new(&(mt_system_def){.model = dense.model,
+                                                 .configuration = 0,
+                                                 .n_inputs = INPUTS,
+                                                 .inputs = input,
+                                                 .at = dense.at},
                                 (mt_lowest_want){.count = COUNT, .shapes = true}, &l, &err),
                   MT_OK);
         if (l != NULL && l->way != MT_LOWEST_NONE) {

@@ -227,8 +227,12 @@ static void ask_for_few(mt_test *t, const session *s, int first, long *fewer)
 {
     const mt_analysis *const all = s->s.a;
     mt_analysis *few = NULL;
-    const mt_status rc = mt_analysis_new_lowest(s->model, s->configuration, s->s.n,
-                                                s->parameter, s->s.at, first, &few, NULL);
+    const mt_status rc = mt_analysis_new_of(&(mt_system_def){.model = s->model,
+                                                             .configuration = s->configuration,
+                                                             .n_inputs = s->s.n,
+                                                             .inputs = s->parameter,
+                                                             .at = s->s.at},
+                                            first, &few, NULL);
     mt_test_row(t, "configuration %d, first %d", s->configuration, first);
     CHECK_INT(t, rc, MT_OK);
     if (all != NULL && few != NULL) {
@@ -549,10 +553,18 @@ static void stages__are_told_to_who_asks(mt_test *t)
     if (model == NULL) {
         return;
     }
-    model->profile = &profile;
     if (mech_must(t, model, NULL, "x2 x5", &s)) {
         const mt_analysis_options opt = mt_analysis_options_default();
-        CHECK_INT(t, mt_analysis_solve(s.a, s.at, &opt, NULL), MT_OK);
+        const mt_run run = {.profile = &profile};
+        const mt_system_def def = {.model = model,
+                                   .run = &run,
+                                   .n_inputs = s.n,
+                                   .inputs = s.a->sys->inputs,
+                                   .at = s.at};
+        mt_analysis *a = NULL;
+        CHECK_INT(t, mt_analysis_new_of(&def, 0, &a, NULL), MT_OK);
+        CHECK_INT(t, mt_analysis_solve(a, s.at, &opt, NULL), MT_OK);
+        mt_analysis_delete(a);
     }
     mech_free(&s);
     for (int stage = 0; stage < MT_STAGES; stage++) {

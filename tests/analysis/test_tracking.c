@@ -106,7 +106,7 @@ static void sweep(mt_test *t, const char *coupling, sweep_count *count)
         return;
     }
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
-    if (CHECK_INT(t, mt_problem_new(s.study, &p, NULL), MT_OK) &&
+    if (CHECK_INT(t, mt_problem_new(s.study, NULL, &p, NULL), MT_OK) &&
         CHECK_INT(t, mt_workspace_new(p, &w, NULL), MT_OK)) {
         const double start = angle(1.0, 2.0, c);
         for (int i = 0; i < POINTS; i++) {
@@ -292,7 +292,7 @@ static void tracking__dissolved_shapes_are_followed(mt_test *t)
     write_row(&model, &study);
     REQUIRE(t, model.s != NULL && study.s != NULL && study_load(t, model.s, study.s, &s));
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
-    CHECK_INT(t, mt_problem_new(s.study, &p, NULL), MT_OK);
+    CHECK_INT(t, mt_problem_new(s.study, NULL, &p, NULL), MT_OK);
     CHECK_INT(t, mt_workspace_new(p, &w, NULL), MT_OK);
     for (int d = 0; d < DESIGNS && w != NULL; d++) {
         double x[N];
@@ -422,7 +422,7 @@ static void tracking__a_gap_of_less_than_three_steps_is_leapt(mt_test *t)
     write_row(&model, &study);
     REQUIRE(t, model.s != NULL && study.s != NULL && study_load(t, model.s, study.s, &s));
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
-    CHECK_INT(t, mt_problem_new(s.study, &p, NULL), MT_OK);
+    CHECK_INT(t, mt_problem_new(s.study, NULL, &p, NULL), MT_OK);
     CHECK_INT(t, mt_workspace_new(p, &w[0], NULL), MT_OK);
     CHECK_INT(t, mt_workspace_new(p, &w[1], NULL), MT_OK);
     for (int d = 0; d < DESIGNS && w[1] != NULL; d++) {
@@ -473,7 +473,7 @@ static void tracking__without_another_mode_there_is_no_rival(mt_test *t)
         return;
     }
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
-    if (CHECK_INT(t, mt_problem_new(s.study, &p, &err), MT_OK) &&
+    if (CHECK_INT(t, mt_problem_new(s.study, NULL, &p, &err), MT_OK) &&
         CHECK_INT(t, mt_workspace_new(p, &w, &err), MT_OK)) {
         static const double stiffness[] = {1000.0, 2000.0, 500.0};
         for (int i = 0; i < MT_COUNT(stiffness); i++) {

@@ -31,30 +31,22 @@ static _Thread_local int own_systems; /* of a thread: designs are described side
         (void)atomic_fetch_add(&(counter), 1);     \
         return __real_##name arguments;            \
     }
-WRAP(mt_problem_new, problems, (const mt_study *study, mt_problem **out, mt_err *err),
-     (study, out, err))
+WRAP(mt_problem_new, problems,
+     (const mt_study *study, const mt_run *run, mt_problem **out, mt_err *err),
+     (study, run, out, err))
 WRAP(mt_workspace_new, workspaces, (const mt_problem *p, mt_workspace **out, mt_err *err),
      (p, out, err))
 
-mt_status __real_mt_system_new_driven(const mt_model *model, int configuration,
-                                      const mt_system_drive *drive, int n_inputs,
-                                      const int *inputs, const double *at, mt_system **out,
-                                      mt_err *err);
-mt_status __wrap_mt_system_new_driven(const mt_model *model, int configuration,
-                                      const mt_system_drive *drive, int n_inputs,
-                                      const int *inputs, const double *at, mt_system **out,
-                                      mt_err *err);
-mt_status __wrap_mt_system_new_driven(const mt_model *model, int configuration,
-                                      const mt_system_drive *drive, int n_inputs,
-                                      const int *inputs, const double *at, mt_system **out,
-                                      mt_err *err)
+mt_status __real_mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err);
+mt_status __wrap_mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err);
+mt_status __wrap_mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err)
 {
+    const mt_system_drive *const drive = def->drive;
     own_systems++;
     (void)atomic_fetch_add(&systems, 1);
     (void)atomic_fetch_add(&moving, drive != NULL && !drive->fixed ? 1 : 0);
     (void)atomic_fetch_add(&cuts, drive != NULL && drive->fixed ? 1 : 0);
-    return __real_mt_system_new_driven(model, configuration, drive, n_inputs, inputs, at, out,
-                                       err);
+    return __real_mt_system_new_of(def, out, err);
 }
 
 mt_status __real_mt_describe_design(const mt_problem *p, const mt_design *design,

@@ -31,7 +31,7 @@ static int doubts_of(mt_test *t, const char *model, const char *members, const c
     if (study_load(t, model, members, &c) &&
         CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK)) {
         mt_warning_list list = mt_warning_list_default(&mem);
-        CHECK_INT(t, mt_study_examine(c.study, HUGE_VAL, &list, &err), MT_OK);
+        CHECK_INT(t, mt_study_examine(c.study, NULL, HUGE_VAL, &list, &err), MT_OK);
         for (int i = 0; i < list.n; i++) {
             const bool is = strcmp(list.items[i].kind, kind) == 0;
             if (is && n == 0) {

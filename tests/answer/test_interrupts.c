@@ -158,7 +158,7 @@ static void designs_hold(mt_test *t, const mt_study *study, const mt_result *r)
     if (!CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK)) {
         return;
     }
-    mt_status rc = mt_problem_new(study, &p, &err);
+    mt_status rc = mt_problem_new(study, NULL, &p, &err);
     rc = rc == MT_OK ? mt_result_new(&own, &err) : rc;
     for (int k = 0; k < r->n_recommendations && rc == MT_OK; k++) {
         const mt_recommendation *const rec = &r->recommendations[k];

@@ -275,7 +275,7 @@ static bool open_problem(mt_test *t, const char *model, const char *members, ope
     *o = (opened){.p = NULL};
     return study_load(t, model, members, &o->c) &&
            CHECK_INT(t, mt_arena_init(&o->mem, 0, &err), MT_OK) &&
-           CHECK_INT(t, mt_problem_new(o->c.study, &o->p, &err), MT_OK) &&
+           CHECK_INT(t, mt_problem_new(o->c.study, NULL, &o->p, &err), MT_OK) &&
            CHECK_INT(t, mt_workspace_new(o->p, &o->w, &err), MT_OK);
 }
 

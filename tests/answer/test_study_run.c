@@ -2,7 +2,9 @@
 /* How a study runs: the same bytes every time and for any number of workers, budgets,
  * interruption, shortage of memory, and the comparison with a fresh analysis. */
 #include <gsl/gsl_errno.h>
+#include <pthread.h>
 
+#include "answer/solve.h"
 #include "describe/describe.h"
 #include "mt_alloc.h"
 #include "study_fixture.h"
@@ -45,6 +47,69 @@ static void same_study__gives_the_same_bytes_for_any_workers(mt_test *t)
             free(again);
         }
         free(first);
+    }
+    study_free(&c);
+}
+
+/* One of several runs of one study at once. */
+typedef struct one_run {
+    const mt_study *study;
+    mt_progress progress;
+    mt_profile profile;
+    mt_status rc;
+    mt_text text;
+} one_run;
+
+static double no_clock(void)
+{
+    return 0.0;
+}
+
+static void *answer_in_a_run(void *context)
+{
+    one_run *const o = context;
+    mt_solve_options opt = {.size = sizeof opt};
+    const mt_run run = {.progress = &o->progress, .profile = &o->profile};
+    mt_result *result = NULL;
+    opt.threads = 2;
+    o->rc = mt_study_solve_with(o->study, &opt, &run, NULL, &result, NULL);
+    o->rc = o->rc == MT_OK ? mt_result_write(result, &o->text, NULL) : o->rc;
+    mt_result_delete(result);
+    return NULL;
+}
+
+/* A study is only read: two threads answer it at once, each in a run of its own, which counts
+ * its own work alone. (The thread sanitizer runs this, too.) */
+static void const_study__is_answered_by_two_threads_at_once(mt_test *t)
+{
+    study_case c;
+    if (study_load(t, MODEL, SPRINGS TARGETS ", 'search': {'seed': 7}", &c)) {
+        char *const alone = answer(t, &c, NULL);
+        one_run runs[2] = {{.study = c.study}, {.study = c.study}};
+        pthread_t thread[MT_COUNT(runs)];
+        for (int i = 0; i < MT_COUNT(runs); i++) {
+            mt_profile_init(&runs[i].profile, no_clock);
+            REQUIRE(t, mt_progress_init(&runs[i].progress, NULL) == MT_OK);
+            REQUIRE(t, pthread_create(&thread[i], NULL, answer_in_a_run, &runs[i]) == 0);
+        }
+        for (int i = 0; i < MT_COUNT(runs); i++) {
+            REQUIRE(t, pthread_join(thread[i], NULL) == 0);
+        }
+        const mt_progress_view first = mt_progress_read(&runs[0].progress);
+        CHECK(t, first.evaluations > 0 && first.solutions > 0);
+        for (int i = 0; i < MT_COUNT(runs); i++) {
+            const mt_progress_view view = mt_progress_read(&runs[i].progress);
+            mt_test_row(t, "run %d", i);
+            CHECK_INT(t, runs[i].rc, MT_OK);
+            CHECK(t, alone != NULL && runs[i].text.s != NULL &&
+                         strcmp(alone, runs[i].text.s) == 0);
+            CHECK(t, view.evaluations == first.evaluations);
+            CHECK(t, view.solutions == first.solutions);
+            CHECK(t, atomic_load(&runs[i].profile.done[MT_STAGE_MODES]) > 0);
+            free(runs[i].text.s);
+            mt_progress_free(&runs[i].progress);
+        }
+        free(alone);
     }
     study_free(&c);
 }
@@ -152,7 +217,7 @@ static void fresh_analysis_that_differs__is_a_warning(mt_test *t)
     if (study_load(t, MODEL, SPRINGS TARGETS, &c) &&
         CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK)) {
         CHECK_INT(t, mt_result_new(&result, NULL), MT_OK);
-        if (CHECK_INT(t, mt_problem_new(c.study, &p, NULL), MT_OK)) {
+        if (CHECK_INT(t, mt_problem_new(c.study, NULL, &p, NULL), MT_OK)) {
             const double at[2] = {log(3.0), log(1.0)};
             const double d[2] = {log(3.0 / 2.9), log(1.0 / 1.05)};
             mt_nlp_solution found = {.f = 0.5 * ((d[0] * d[0]) + (d[1] * d[1]))};
@@ -250,6 +315,7 @@ static void shortage_of_memory__is_reported_and_leaks_nothing(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(same_study__gives_the_same_bytes_for_any_workers),
+             MT_TEST(const_study__is_answered_by_two_threads_at_once),
              MT_TEST(spent_budget__is_said), MT_TEST(spent_budget__ends_the_list_of_objectives),
              MT_TEST(interruption__keeps_what_was_found),
              MT_TEST(stop_before_the_first_design__is_an_answer_too),

@@ -127,7 +127,11 @@ static mt_lowest *solve_lowest(const bench *b)
     mt_lowest *l = NULL;
     mt_err err = {.text = ""};
     stop("lowest modes",
-         mt_lowest_new(b->model, b->configuration, 1, &b->input, &b->at,
+         mt_lowest_new(&(mt_system_def){.model = b->model,
+                                        .configuration = b->configuration,
+                                        .n_inputs = 1,
+                                        .inputs = &b->input,
+                                        .at = &b->at},
                        (mt_lowest_want){.count = MODES}, &l, &err),
          &err);
     if (l->way == MT_LOWEST_NONE) {

@@ -128,7 +128,7 @@ static void load(const char *name, bench *b)
         (void)snprintf(path, sizeof path, "%s", name);
     }
     stop(path, mt_study_load(path, &opt, &b->study, NULL, &err), &err);
-    stop(path, mt_problem_new(b->study, &b->problem, &err), &err);
+    stop(path, mt_problem_new(b->study, NULL, &b->problem, &err), &err);
     stop(path, mt_workspace_new(b->problem, &b->w, &err), &err);
     stop(path, mt_arena_init(&b->mem, 0, &err), &err);
     stop(path, mt_subproblem_values_init(b->w->c, &b->mem, &b->out, &err), &err);

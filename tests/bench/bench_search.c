@@ -456,7 +456,7 @@ static void bench_study(bench *b)
     const mt_io_options opt = {.root = tree == NULL ? "." : tree};
     (void)snprintf(path, sizeof path, "%s/studies/%s.json", opt.root, b->study);
     stop(path, mt_study_load(path, &opt, &study, NULL, &err), &err);
-    stop(path, mt_problem_new(study, &p, &err), &err);
+    stop(path, mt_problem_new(study, NULL, &p, &err), &err);
     stop(path, mt_workspace_new(p, &b->ws, &err), &err);
     stop(path, mt_arena_init(&b->mem, 0, &err), &err);
     b->race = (race){.most_s = b->quick ? 0.1 : 1.0};

@@ -115,7 +115,7 @@ static void compile(const mt_study *study)
 {
     mt_problem *p = NULL;
     mt_err err = {.code = MT_OK};
-    const mt_status rc = mt_problem_new(study, &p, &err);
+    const mt_status rc = mt_problem_new(study, NULL, &p, &err);
     if (rc == MT_OK) {
         evaluate(p);
     } else {

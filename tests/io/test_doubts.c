@@ -18,7 +18,7 @@ static mt_status examine(const char *name, int *found)
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
     if (rc == MT_OK) {
         mt_warning_list list = mt_warning_list_default(&mem);
-        rc = mt_study_examine(study, HUGE_VAL, &list, &err);
+        rc = mt_study_examine(study, NULL, HUGE_VAL, &list, &err);
         *found = list.n;
     }
     mt_arena_free(&mem);

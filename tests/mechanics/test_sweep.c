@@ -46,7 +46,13 @@ static bool run_sweep(mt_test *t, mt_model *model, const char *configuration,
     }
     const int c = configuration == NULL ? 0 : mt_model_find_configuration(model, configuration);
     mt_sweep_range(range[0], range[1], n, positions);
-    r->rc = mt_system_new_driven(model, c, drive, 0, NULL, input, &r->sys, &r->err);
+    r->rc = mt_system_new_of(&(mt_system_def){.model = model,
+                                              .configuration = c,
+                                              .drive = drive,
+                                              .n_inputs = 0,
+                                              .inputs = NULL,
+                                              .at = input},
+                             &r->sys, &r->err);
     if (r->rc == MT_OK) {
         r->rc = mt_linear_new(r->sys, &r->lin, &r->err);
     }
@@ -429,8 +435,13 @@ static void sweep__meets_the_configuration_that_drives_the_same(mt_test *t)
         mt_test_row(t, "%s", configurations[k]);
         const int c = mt_model_find_configuration(model, configurations[k]);
         if (CHECK(t, mt_analysis_new(model, c, 0, NULL, at, &own, &err) == MT_OK) &&
-            CHECK(t, mt_analysis_new_driven(model, 0, &drives[k], 0, NULL, at, &outside,
-                                            &err) == MT_OK)) {
+            CHECK(t, mt_analysis_new_of(&(mt_system_def){.model = model,
+                                                         .configuration = 0,
+                                                         .drive = &drives[k],
+                                                         .n_inputs = 0,
+                                                         .inputs = NULL,
+                                                         .at = at},
+                                        0, &outside, &err) == MT_OK)) {
             CHECK_INT(t, outside->modes.count, own->modes.count);
             for (int i = 0; i < own->modes.count; i++) {
                 CHECK_NEAR(t, outside->modes.lambda[i], own->modes.lambda[i], TOL);
@@ -514,7 +525,13 @@ static void sweep__failing_allocations_are_errors(mt_test *t)
         mt_alloc_fail_after(nth);
         r.rc = mt_arena_init(&r.mem, 0, &r.err);
         if (r.rc == MT_OK) {
-            r.rc = mt_system_new_driven(model, 0, &drive, 0, NULL, at, &r.sys, &r.err);
+            r.rc = mt_system_new_of(&(mt_system_def){.model = model,
+                                                     .configuration = 0,
+                                                     .drive = &drive,
+                                                     .n_inputs = 0,
+                                                     .inputs = NULL,
+                                                     .at = at},
+                                    &r.sys, &r.err);
         }
         if (r.rc == MT_OK) {
             r.rc = mt_linear_new(r.sys, &r.lin, &r.err);

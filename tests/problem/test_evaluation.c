@@ -31,7 +31,7 @@ static bool open_study(mt_test *t, const char *name, compiled *s)
     (void)snprintf(path, sizeof path, "%s/studies/%s.json", MT_TEST_SOURCE_DIR, name);
     if (!CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) ||
         !CHECK_INT(t, mt_study_load(path, &opt, &s->study, NULL, &err), MT_OK) ||
-        !CHECK_INT(t, mt_problem_new(s->study, &s->p, &err), MT_OK) ||
+        !CHECK_INT(t, mt_problem_new(s->study, NULL, &s->p, &err), MT_OK) ||
         !CHECK_INT(t, mt_workspace_new(s->p, &s->w, &err), MT_OK)) {
         return false;
     }

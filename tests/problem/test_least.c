@@ -59,7 +59,7 @@ static bool begin(mt_test *t, const char *study, rig *g)
     *g = (rig){.p = NULL};
     return study_load(t, MODEL, study, &g->c) &&
            CHECK_INT(t, mt_arena_init(&g->mem, 0, NULL), MT_OK) &&
-           CHECK_INT(t, mt_problem_new(g->c.study, &g->p, &g->c.err), MT_OK) &&
+           CHECK_INT(t, mt_problem_new(g->c.study, NULL, &g->p, &g->c.err), MT_OK) &&
            CHECK_INT(t, mt_workspace_new(g->p, &g->w, &g->c.err), MT_OK) &&
            CHECK_INT(t, mt_proof_cap_init(&g->cap, g->p, &g->mem, &g->c.err), MT_OK) &&
            CHECK(t, g->cap.known);

@@ -22,7 +22,7 @@ static void coordinates__are_smooth_and_invert(mt_test *t)
     if (study_load(t, STUDY_TWO_MASSES(ORIGINAL, ""),
                    "'variables': [{'parameter': 'k1', 'lower': 0, 'upper': 4}]," FIRST_MODE,
                    &c) &&
-        CHECK(t, mt_problem_new(c.study, &p, &c.err) == MT_OK)) {
+        CHECK(t, mt_problem_new(c.study, NULL, &p, &c.err) == MT_OK)) {
         double before = -HUGE_VAL;
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             const double x = rows[i];

@@ -23,7 +23,7 @@ static bool compile(mt_test *t, const char *model, const char *members, compiled
     *s = (compiled){.p = NULL};
     return study_load(t, model, members, &s->c) &&
            CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) &&
-           CHECK_INT(t, mt_problem_new(s->c.study, &s->p, &s->c.err), MT_OK) &&
+           CHECK_INT(t, mt_problem_new(s->c.study, NULL, &s->p, &s->c.err), MT_OK) &&
            CHECK_INT(t, mt_workspace_new(s->p, &s->w, &s->c.err), MT_OK);
 }
 

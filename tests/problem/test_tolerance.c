@@ -202,7 +202,7 @@ static void robust__slopes_are_those_of_the_corners(mt_test *t)
     with_tolerances(&s);
     limit_mode_1(&s, 6.0, 7.0);
     if (CHECK(t, mt_arena_init(&mem, 0, &err) == MT_OK)) {
-        if (CHECK(t, mt_problem_new(s.study, &p, &err) == MT_OK) &&
+        if (CHECK(t, mt_problem_new(s.study, NULL, &p, &err) == MT_OK) &&
             CHECK(t, mt_workspace_new(p, &w, &err) == MT_OK)) {
             check_slopes(t, w, &mem);
         }

@@ -77,7 +77,7 @@ static void follow__goes_from_the_first_position_to_the_last(mt_test *t)
                        names[rows[i].n]);
         if (CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK) &&
             study_load(t, model, members, &c) &&
-            CHECK_INT(t, mt_problem_new(c.study, &p, &err), MT_OK) &&
+            CHECK_INT(t, mt_problem_new(c.study, NULL, &p, &err), MT_OK) &&
             CHECK_INT(t, mt_workspace_new(p, &w, &err), MT_OK) &&
             CHECK_INT(t, p->n_families, 1)) {
             static const int below[2 * MOST] = {1, 1, 1, 1, 1, 1, 1, 1};

@@ -113,7 +113,7 @@ static void hopeless__no_sample_is_a_design(mt_test *t)
         mt_test_row(t, "%s", members);
         CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
         if (study_load(t, "six_masses", members, &c) &&
-            CHECK_INT(t, mt_problem_new(c.study, &p, &c.err), MT_OK) &&
+            CHECK_INT(t, mt_problem_new(c.study, NULL, &p, &c.err), MT_OK) &&
             CHECK_INT(t, mt_workspace_new(p, &w, &c.err), MT_OK)) {
             judge(t, p, w, &mem, &n);
         }

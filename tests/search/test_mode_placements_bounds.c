@@ -50,7 +50,7 @@ static bool open_bounded(mt_test *t, const char *members, bounded *s)
     *s = (bounded){0};
     return CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) &&
            study_load(t, ROW, members, &s->c) &&
-           CHECK_INT(t, mt_problem_new(s->c.study, &s->p, &s->c.err), MT_OK) &&
+           CHECK_INT(t, mt_problem_new(s->c.study, NULL, &s->p, &s->c.err), MT_OK) &&
            CHECK_INT(t, mt_workspace_new(s->p, &s->w, &s->c.err), MT_OK) &&
            CHECK_INT(t, mt_proof_init(&s->proof, &s->p->whole, &s->mem, &s->c.err), MT_OK) &&
            CHECK_INT(t,

@@ -51,7 +51,7 @@ static bool open_row(mt_test *t, mt_random *r, row *s)
                    bands);
     good = CHECK_INT(t, mt_arena_init(&s->mem, 0, NULL), MT_OK) &&
            study_load(t, "six_masses", members, &s->c) &&
-           CHECK_INT(t, mt_problem_new(s->c.study, &s->p, &s->c.err), MT_OK);
+           CHECK_INT(t, mt_problem_new(s->c.study, NULL, &s->p, &s->c.err), MT_OK);
     for (int i = 0; i < WORKERS && good; i++) {
         good = CHECK_INT(t, mt_workspace_new(s->p, &s->workers[i], &s->c.err), MT_OK);
     }

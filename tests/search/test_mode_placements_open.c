@@ -31,7 +31,7 @@ static void solve(mt_test *t, const char *bands, double work, long evaluations,
                    SPRINGS "'goals': [{'type': 'avoid', 'bands_hz': %s}]", bands);
     CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
     if (study_load(t, "six_masses", members, &c) &&
-        CHECK_INT(t, mt_problem_new(c.study, &p, &c.err), MT_OK)) {
+        CHECK_INT(t, mt_problem_new(c.study, NULL, &p, &c.err), MT_OK)) {
         mt_subproblem few = p->whole;
         few.proof_work = work;
         few.search.max_evaluations = evaluations;

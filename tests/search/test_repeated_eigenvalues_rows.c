@@ -60,7 +60,7 @@ static bool ask(mt_test *t, asked *a, const char *spring, const char *goals, dou
                    spring, spring, spring, goals);
     if (!CHECK_INT(t, mt_arena_init(&a->mem, 0, NULL), MT_OK) ||
         !study_load(t, MODEL, text, &a->c) ||
-        !CHECK_INT(t, mt_problem_new(a->c.study, &a->p, &err), MT_OK) ||
+        !CHECK_INT(t, mt_problem_new(a->c.study, NULL, &a->p, &err), MT_OK) ||
         !CHECK_INT(t, mt_workspace_new(a->p, &a->w, &err), MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);
         return false;

@@ -43,7 +43,7 @@ static bool open_rig(mt_test *t, const char *more, const char *members, rig *r)
     (void)snprintf(model, sizeof model, LEVER, more);
     return CHECK_INT(t, mt_arena_init(&r->mem, 0, NULL), MT_OK) &&
            study_load(t, model, members, &r->c) &&
-           CHECK_INT(t, mt_problem_new(r->c.study, &r->p, &r->c.err), MT_OK) &&
+           CHECK_INT(t, mt_problem_new(r->c.study, NULL, &r->p, &r->c.err), MT_OK) &&
            CHECK_INT(t, mt_workspace_new(r->p, &r->w, &r->c.err), MT_OK) &&
            CHECK_INT(t, mt_workspace_use(r->w, &r->p->whole, &r->c.err), MT_OK);
 }
