@@ -14,11 +14,11 @@
  * worked on in any number of runs at once.
  */
 typedef struct mt_run {
-    mt_interrupt *interrupt;     /* asked before each unit of work; NULL: never stopped */
-    mt_progress *progress;       /* told how far the work is; NULL: nobody listens */
-    mt_work_counters *work;      /* what the work has cost; NULL: not counted */
-    mt_profile *profile;         /* stages of the evaluations; NULL: not measured */
-    const struct mt_task_path *tasks; /* where lists of tasks stand (base/workers.h); NULL: nowhere */
+    mt_interrupt *interrupt;          /* asked before each unit of work; NULL: never stopped */
+    mt_progress *progress;            /* told how far the work is; NULL: nobody listens */
+    mt_work_counters *work;           /* what the work has cost; NULL: not counted */
+    mt_profile *profile;              /* stages of the evaluations; NULL: not measured */
+    const struct mt_task_path *tasks; /* where lists of tasks stand (base/workers.h) */
 } mt_run;
 
 /* A run that is never stopped and reports to nobody. */

@@ -156,8 +156,9 @@ static mt_model *load_model(mt_study_reader *s, mt_name path)
     return model;
 }
 
-mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
+const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
 {
+    mt_study *const study = s->study;
     if (path.s == NULL) {
         return NULL;
     }
@@ -167,11 +168,16 @@ mt_model *mt_read_study_model(mt_study_reader *s, mt_name path)
         }
     }
     mt_study_file *const read =
-        mt_arena_grow(&s->study->mem, s->read, s->n_read, &s->cap_read, sizeof *read);
-    if (read == NULL) {
+        mt_arena_grow(&study->mem, s->read, s->n_read, &s->cap_read, sizeof *read);
+    mt_model **const models = mt_arena_grow(&study->mem, study->models, study->n_models,
+                                            &study->cap_models, sizeof(mt_model *));
+    if (read == NULL || models == NULL) {
         return NULL;
     }
-    read[s->n_read] = (mt_study_file){path, load_model(s, path)};
+    study->models = models;
+    models[study->n_models] = load_model(s, path);
+    read[s->n_read] = (mt_study_file){path, models[study->n_models]};
+    study->n_models += models[study->n_models] != NULL ? 1 : 0;
     s->read = read;
     return s->read[s->n_read++].model;
 }

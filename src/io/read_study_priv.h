@@ -10,8 +10,8 @@
 
 /* A model file that has been asked for. */
 typedef struct mt_study_file {
-    mt_name path;    /* as written */
-    mt_model *model; /* NULL: it could not be read, which has been noted */
+    mt_name path;          /* as written */
+    const mt_model *model; /* NULL: it could not be read, which has been noted */
 } mt_study_file;
 
 /* A study being read: what its parts (read_study_*.c) share. */
@@ -71,7 +71,7 @@ mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int
 /* An index from 1; 0 where absent or wrong. */
 int mt_read_study_index(mt_study_reader *s, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
-mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
+const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
 /* A list of two numbers, lower and upper, a member or an item of it; false (noted) where it is
  * anything else. Numbers that are wrong are NaN. */
 bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2]);

@@ -164,7 +164,7 @@ mt_status mt_problem_new(const mt_study *study, const mt_run *run, mt_problem **
                          mt_err *err);
 /* Accepts NULL. */
 void mt_problem_delete(mt_problem *p);
-/* The system of a configuration at inputs x[n] (with a drive that the caller adds, x[n + 1]). */
+/* The system of a configuration at inputs x[n]; with a drive that the caller adds, x[n + 1]. */
 mt_system_def mt_problem_system(const mt_problem *p, int configuration, const double *x);
 /* n modal solutions were made: to who counts them and to who watches. */
 void mt_problem_note_modal(const mt_problem *p, long n);

@@ -29,8 +29,8 @@ typedef struct mt_reference_cache {
     mt_analysis **analysis; /* [n_references] owned */
 } mt_reference_cache;
 
-/* The study and the run must outlive the cache; its array lives in mem, so free the cache first. Fails:
- * MT_E_MEMORY. */
+/* The study and the run must outlive the cache; its array lives in mem, so free the cache
+ * first. Fails: MT_E_MEMORY. */
 mt_status mt_reference_cache_init(mt_reference_cache *cache, const mt_study *study,
                                   const mt_run *run, mt_arena *mem, mt_err *err);
 /* Accepts a zeroed cache. */

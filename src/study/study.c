@@ -34,20 +34,12 @@ void mt_study_delete(mt_study *study)
     if (study == NULL) {
         return;
     }
-    for (int i = 0; i < study->n_references; i++) {
-        mt_model *const model = study->references[i].model;
-        bool shared = model == study->model;
-        for (int j = i + 1; j < study->n_references; j++) {
-            shared = shared || study->references[j].model == model;
-        }
-        if (!shared) {
-            mt_model_delete(model);
-        }
+    for (int i = 0; i < study->n_models; i++) {
+        mt_model_delete(study->models[i]);
     }
     for (int i = 0; i < study->n_profiles; i++) {
         mt_vibration_delete(study->profiles[i].profile);
     }
-    mt_model_delete(study->model);
     mt_arena_free(&study->mem);
     free(study);
 }

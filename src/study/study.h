@@ -124,8 +124,8 @@ typedef struct mt_measured_mode {
 
 typedef struct mt_reference {
     mt_name name;
-    mt_name model_path; /* as written; NULL: measured */
-    mt_model *model;    /* owned by the study; NULL: measured */
+    mt_name model_path;    /* as written; NULL: measured */
+    const mt_model *model; /* of the study's models; NULL: measured */
     mt_name configuration_name;
     int configuration;
     int n_modes;
@@ -298,7 +298,11 @@ typedef struct mt_study {
     const char *revision;
     const char *date;
     mt_name model_path;
-    mt_model *model; /* owned */
+    const mt_model *model; /* the first of them */
+    /* [n_models] owned: the study's own and those of references, each file once */
+    mt_model **models;
+    int n_models;
+    int cap_models;
     /* what numbers for parameters are in; NULL: each in its own. Those of the study are in SI
      * from the reader on. */
     const mt_unit *units[MT_DIMENSION_COUNT];
