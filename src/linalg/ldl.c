@@ -62,7 +62,7 @@ static void enter(front *w, const mt_envelope *p, const double *value, int row)
     }
 }
 
-/* The last row takes the place of one that leaves. */
+/* Remove a row; the last row takes its place. */
 static void leave(front *w, int at)
 {
     const int from = --w->n;
@@ -190,8 +190,8 @@ static void eliminate(front *w, int c, int r, const double d[3], mt_arena *mem, 
     }
 }
 
-/* Eliminate the whole row c where that is stable: alone, or with the whole row that it is
- * coupled with most. */
+/* Eliminate the whole row c where that is stable: alone, or with the whole row of its largest
+ * entry. */
 static bool try_pivot(front *w, int c, double tol, mt_arena *mem, mt_ldl *out)
 {
     double d[3] = {0.0, 0.0, 0.0};
@@ -219,7 +219,7 @@ static void try_all(front *w, double tol, mt_arena *mem, mt_ldl *out)
     }
 }
 
-/* The last front, by its largest entries. */
+/* Eliminate the last front, by its largest entries. */
 static void finish(front *w, double tol, mt_arena *mem, mt_ldl *out)
 {
     for (;;) {
