@@ -21,7 +21,7 @@ static part made(mt_kind kind, double value, bool mixed, double bare)
     return (part){.value = value, .bare = bare, .kind = kind, .mixed = mixed};
 }
 
-/* How an operation makes its kind. */
+/* Rule for the kind of an operation's result. */
 typedef enum rule {
     RULE_NUMBER, /* sin, exp, ln: a number, of whatever */
     RULE_SAME,
@@ -52,7 +52,7 @@ static bool is_number(mt_kind kind)
     return kind == MT_KIND_NUMBER || kind == MT_KIND_ZERO || kind == MT_KIND_PI;
 }
 
-/* Of a + b, and of what needs parts of one kind as a sum does. */
+/* Kind of a + b, and of operations with terms of one kind as in a sum. */
 static mt_kind sum_kind(mt_kind a, mt_kind b)
 {
     if (a == b || b == MT_KIND_ZERO) {
@@ -70,8 +70,8 @@ static mt_kind sum_kind(mt_kind a, mt_kind b)
     return a == MT_KIND_UNKNOWN ? b : MT_KIND_UNKNOWN;
 }
 
-/* True where a, beside b in a sum, is of another kind. What is not known goes with all but a
- * number. */
+/* True where a and b are of different kinds as terms of a sum. An unknown kind differs from
+ * numbers only. */
 static bool differs(mt_kind a, mt_kind b)
 {
     if (a == b || a == MT_KIND_ZERO || b == MT_KIND_ZERO || (is_number(a) && is_number(b))) {
