@@ -278,7 +278,7 @@ static void spring_of_edge(mt_tree_slope *w, int q, int i)
     }
 }
 
-/* Stiffnesses and masses, at the geometry that there is; forces of springs. */
+/* Derivatives of stiffnesses and masses at constant geometry; spring forces of the modes. */
 static void coefficients(mt_tree_slope *w)
 {
     const mt_system *const sys = w->sys;
@@ -453,7 +453,7 @@ static void add_inertia(mt_tree_slope *w, int i)
     }
 }
 
-/* Whether the joints stay closed as drawn. */
+/* True where the joints stay closed in the reference position. */
 static bool stays_closed(mt_tree_slope *w)
 {
     const mt_system *const sys = w->sys;

@@ -123,7 +123,7 @@ static void add_load(const along *l, const mt_load_def *load)
     add_force(l, body, -1.0, &jet);
 }
 
-/* Whether what is left balances where the edge is free. */
+/* True where the residual is balanced along the free motions of the edge. */
 static bool stays_at_rest(const along *l, int i, const double *g)
 {
     const mt_tree *const t = l->w->t;
@@ -168,7 +168,7 @@ static void hand_on(const along *l, int i)
     }
 }
 
-/* What the joints of edge i hold changes, and what it is held by. False: not at rest. */
+/* Derivative of the forces that the joints of edge i hold. False: not in equilibrium. */
 static mt_status balance(const along *l, int i, bool *rests, mt_err *err)
 {
     mt_tree_slope *const w = l->w;
