@@ -215,8 +215,8 @@ static const mt_position *side_at(int n_at, const mt_position *at, int side)
     return &at[n_at == 2 ? side : 0];
 }
 
-/* How far x is from all else that body has: centre, other joints, springs, sensors. Infinite:
- * there is nothing else. */
+/* Distance of x from the nearest other point of the body: centre, other joints, springs,
+ * sensors. Infinite: none. */
 static double distance_to_body(const mt_lint *j, int body, const mt_joint *joint,
                                const mt_spring *spring, const double x[3])
 {
@@ -312,7 +312,7 @@ static void lint_side(mt_lint *j, const holder *h, int side)
     }
 }
 
-/* What closing has to bring to nothing, as drawn; NaN: nothing of the kind. */
+/* Closing error of the joint in the reference position; NaN: none. */
 static double gap_of(const mt_lint *j, const mt_joint *joint)
 {
     double a[3];

@@ -24,8 +24,8 @@ static const double MATRIX_NOISE = 1e-9;
 /* Of the coordinates' size: points that differ by rounding are the same point. */
 static const double SAME_POINT = 1e-14;
 
-/* Whether the symmetric 3 x 3 matrix xx yy zz xy xz yz has no eigenvalue below -noise: by its
- * principal minors, each with what `noise` on the diagonal can make of it. */
+/* True where the symmetric 3 x 3 matrix xx yy zz xy xz yz has no eigenvalue below -noise, by
+ * its principal minors, each with the effect of `noise` on the diagonal. */
 static bool is_positive(const double v[6], double noise)
 {
     const double a = v[0] + noise;

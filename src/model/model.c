@@ -235,9 +235,9 @@ static mt_kind kind_of(const mt_model *m, const mt_parameter *p)
     return kind == MT_KIND_ZERO ? MT_KIND_NUMBER : kind;
 }
 
-/* Expressions may look ahead, and back: forwards and backwards in turn, as often as something
- * changes. What a chain of parameters without units ends in that goes to and fro more often
- * stays unknown, which nobody holds against it. */
+/* Expressions may refer to later and earlier parameters: passes forwards and backwards in turn
+ * while something changes. A chain of parameters without units that needs more passes stays
+ * unknown, which is not reported. */
 void mt_model_find_kinds(mt_model *model)
 {
     enum { MOST_PASSES = 8 };

@@ -60,7 +60,7 @@ static void find_order(mt_resolve *f, int *chain, int *state)
     }
 }
 
-/* Own overrides first, then those inherited that are not given again. overridden [n_parameters]
+/* Own overrides first, then inherited ones that are not overridden. overridden [n_parameters]
  * is false before and after. */
 static void inherit_overrides(mt_resolve *f, mt_configuration *c, bool *overridden)
 {
@@ -96,7 +96,7 @@ static void inherit_overrides(mt_resolve *f, mt_configuration *c, bool *overridd
     }
 }
 
-/* Which configuration gives the drive that is in force in this one. */
+/* The configuration that defines the drive in force in this one. */
 static const mt_configuration *driver_of(const mt_resolve *f, const mt_configuration *c)
 {
     while (c->drive.inherited) {
@@ -105,8 +105,8 @@ static const mt_configuration *driver_of(const mt_resolve *f, const mt_configura
     return c;
 }
 
-/* A configuration has one drive: its own takes the place of an inherited one of the same joint.
- * Of another joint it would let go what the configuration that it is like holds. */
+/* A configuration has one drive: its own replaces an inherited one of the same joint. A drive
+ * of another joint would release the joint that the inherited drive holds. */
 static void check_dropped_drive(mt_resolve *f, const mt_configuration *c,
                                 const mt_configuration *parent)
 {

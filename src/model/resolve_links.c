@@ -2,7 +2,7 @@
 /* Flexible links: which members a kind and a section need, and the lengths of lists. */
 #include "model/resolve_priv.h"
 
-/* Whether a member was given where it must be, or must not be. */
+/* Check that a member was given where it is required, and absent where it is forbidden. */
 static void wants(mt_resolve *f, const mt_link *l, bool given, bool wanted, const char *member,
                   const char *why)
 {

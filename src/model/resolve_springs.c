@@ -37,8 +37,8 @@ bool mt_resolve_hinge(mt_resolve *f, mt_name name, int *at, int *number)
     return true;
 }
 
-/* Whether the joint has what the spring acts on: an angle, or a way along its axis. Of a type
- * that could not be read nothing is known, and nothing said against it. */
+/* True where the joint has the coordinate that the spring acts on: an angle, or a displacement.
+ * Also true for a type that could not be read. */
 static bool has_freedom(const mt_joint *joint, bool torsion)
 {
     if (joint->type == MT_JOINT_TYPE_COUNT) {
