@@ -107,8 +107,8 @@ static double kinds(mt_modes *out, int n_rigid)
     return most;
 }
 
-/* True where fewer shapes than all may be wanted, and be had for less. How many modes lie up to
- * a frequency nobody knows before. */
+/* True where fewer shapes than all may be wanted and are cheaper. The number of modes up to a
+ * frequency is not known beforehand. */
 static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
 {
     const int modes = opt->modes.first > 0 ? opt->modes.first : mass->rank;
@@ -119,7 +119,8 @@ static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
            least <= mass->rank / MT_MODAL_PART;
 }
 
-/* How many of the lowest modes hold all of a part; doubts: and all that may be 0. */
+/* Number of lowest modes that contain all of a part; warning_list: and all modes that may be
+ * 0. */
 static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_list)
 {
     const bool all = part->first <= 0 && !(part->up_to > 0.0);
@@ -137,7 +138,7 @@ static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_l
     return end;
 }
 
-/* Leave out what was not asked for. */
+/* Drop modes and shapes that are not wanted. */
 static void keep(mt_modes *out, const mt_modal_options *opt)
 {
     out->count = end_of(out, &opt->modes, false);
