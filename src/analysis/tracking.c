@@ -176,7 +176,7 @@ typedef struct walk {
     double s;
 } walk;
 
-/* Whether the shape has dissolved among several modes. */
+/* True where the shape is spread among several modes. */
 static bool dissolved(const mt_track *k)
 {
     return k->pos >= 0 && k->state != MT_TRACKED &&
