@@ -386,7 +386,7 @@ mt_status mt_absolute_forces(const mt_absolute *o, const double *inputs, double 
     return MT_OK;
 }
 
-/* Whether the forces of loads and joints balance. */
+/* True where the forces of loads and joints balance. */
 static bool is_at_rest(const work *w, char *why)
 {
     const mt_system *const sys = w->o->sys;

@@ -210,7 +210,7 @@ static void equations(work *w, bool slope)
                        w->o->sys->n_constraints, NULL, MT_CURVATURE_NONE, &l);
 }
 
-/* Whether the joints stay closed as drawn. */
+/* True where the joints stay closed in the reference position. */
 static bool stays_closed(const work *w)
 {
     const mt_system *const sys = w->o->sys;

@@ -262,7 +262,7 @@ static mt_status try_step(walk *w, double to, double length, bool *good, bool *t
     return MT_OK;
 }
 
-/* Where a step towards the goal ends: no crumb is left for the last. */
+/* End of a step towards the goal, without a tiny last step. */
 static double step_end(const walk *w, double step)
 {
     const double way = w->goal - w->at->drive;
@@ -291,8 +291,8 @@ static void note_turned(walk *w, double to)
     }
 }
 
-/* Where branches meet no step but a long one leads over, and both sides look like one straight
- * line: the first that did is taken. */
+/* Where branches meet only a long step passes, and both sides look like one straight line: the
+ * first step that passed is taken. */
 static void go_straight(walk *w)
 {
     take(w, w->beyond.pose, w->beyond.to);

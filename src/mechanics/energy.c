@@ -114,8 +114,8 @@ static inline void add_square(double c, const elongation *a, bool moves, sums *o
     out->size += moves ? fabs(energy) : 0.0;
 }
 
-/* Returns whether the energy of the term is more than rounding of what its row, without the
- * signs, would have. */
+/* Add a term; true where its energy exceeds the rounding of its row's terms taken without
+ * signs. */
 static bool add_term(const worker *k, int kind, const mt_term *t, const double *phi, sums *out)
 {
     const mt_linear *const lin = k->lin;

@@ -14,7 +14,7 @@
  * unit length. */
 static const double DETERMINED = 1e-9;
 
-/* The body whose equations say the force, and its sign: the second, or the first where that is
+/* The body whose equations give the force, and its sign: the second, or the first where that is
  * the ground. */
 static int side_of(const mt_system *sys, int joint, double *sign)
 {

@@ -251,7 +251,7 @@ static mt_status take_all(search *s, mt_err *err)
     return take_load(s, err);
 }
 
-/* phi [nq] := the spin v in scaled coordinates; whose it is is noted. */
+/* phi [nq] := the spin v in scaled coordinates; records its bodies. */
 static void spin_of(search *s, int v, double *phi)
 {
     mt_linear *const lin = s->lin;

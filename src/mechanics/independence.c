@@ -19,7 +19,7 @@ static const double VANISHES = 1e-8;
  * tell an equation that takes part from one that does not. */
 static const double TAKES_PART = 1e-13;
 
-/* Length of row j of A. in scaled coordinates, the row of A being of unit length. */
+/* Length of row j of A. in scaled coordinates, with the row of A scaled to unit length. */
 static double row_length(const mt_elimination *e, const mt_linear_tangent *t, int j)
 {
     double squares = 0.0;

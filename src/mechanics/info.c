@@ -19,7 +19,7 @@ enum { MOTIONS = 6 };
 /* The third axis beside two different ones. */
 static const int THIRD[3][3] = {{0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
 
-/* What a row of a mass term says of motion k of the whole: translation along axis k, or
+/* Component of a row of a mass term along motion k of the whole: translation along axis k, or
  * rotation about axis k - 3 through the origin. */
 static double row_of_motion(const mt_linear *lin, const mt_term *t, const double *row, int k)
 {

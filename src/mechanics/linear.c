@@ -160,7 +160,7 @@ void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double
     }
 }
 
-/* True where what is summed is to be left as it is. Who sums asks again. */
+/* True where the sum can be left as it is after an interrupt; the caller checks again. */
 static bool is_left(const mt_linear *lin)
 {
     return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->run->interrupt);

@@ -303,7 +303,7 @@ void mt_relative_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, const mt_relative
     mt_relative_chain(&c, &psi, cosine, out);
 }
 
-/* Whether the parts are those of this element, here, with as much of the Hessian. */
+/* True where the parts are those of this element at these poses, with enough of the Hessian. */
 static bool has_parts(const mt_beam_parts *p, const mt_measure_data *m, const mt_pose *a,
                       const mt_pose *b, mt_second second)
 {

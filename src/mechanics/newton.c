@@ -279,8 +279,8 @@ typedef struct ending {
     double before; /* the energy where the stage began */
 } ending;
 
-/* end->saddle: the stationary point that was last evaluated is, with the drive held, a saddle
- * that the way from the start leads down from. That direction goes into w->step. */
+/* end->saddle: the stationary point last evaluated is, with the drive held, a saddle from which
+ * the way from the start leads down. That direction is stored in w->step. */
 static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_placement *at,
                        const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
 {

@@ -183,7 +183,7 @@ static bool same_counts(const mt_system *a, const mt_system *b)
            same_ints(a->n_inputs, a->inputs, b->inputs);
 }
 
-/* Whether they stand on one way of one joint. */
+/* True where both are positions of the same motion of one joint. */
 static bool one_drive(const mt_system *a, const mt_system *b)
 {
     if (a->driven && b->driven) {
