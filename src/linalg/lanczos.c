@@ -106,11 +106,11 @@ static bool append(iteration *it, int j, const double *w, double whole, double n
     return is;
 }
 
-/* Unit vectors of their own directions, orthogonal to the first j, as the next `count` of V;
- * width: how many there are. No direction is of another iteration, of another seed: of a
- * repeated eigenvalue each gives but one vector for each column, which then is locked. Where M
- * may be blind, the vectors are ones that A made: what M does not see of it would stay in all
- * that follow (Nour-Omid, Parlett, Ericsson and Jensen, Math. Comp. 48, 1987). */
+/* Append up to `count` random unit vectors, orthogonal to the first j columns, to V; width:
+ * their number. Every iteration uses another seed: each gives only one vector of a repeated
+ * eigenvalue per column, which is then locked. With a semidefinite M the vectors are products
+ * with A: components that M does not see would remain in all later ones (Nour-Omid, Parlett,
+ * Ericsson and Jensen, Math. Comp. 48, 1987). */
 static mt_status fresh(iteration *it, int j, int count, mt_err *err)
 {
     const ptrdiff_t n = it->p->n;

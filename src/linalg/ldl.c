@@ -81,7 +81,7 @@ static void leave(front *w, int at)
     }
 }
 
-/* fmax of C asks for NaN, and took a tenth of a factorisation. */
+/* Without the NaN rules of fmax, which took a tenth of a factorisation. */
 static double larger(double most, double x)
 {
     return fabs(x) > most ? fabs(x) : most;
@@ -166,7 +166,7 @@ static void keep(const front *w, int c, int r, const double d[3], mt_arena *mem,
     }
 }
 
-/* What multiply found is done. */
+/* Subtract the pivot's contribution, computed by multiply, from the front. */
 static void eliminate(front *w, int c, int r, const double d[3], mt_arena *mem, mt_ldl *out)
 {
     const double *const x = column(w, c);
