@@ -225,7 +225,7 @@ mt_kind_found mt_expr_kind(const mt_expr *e, mt_kind_lookup lookup, const void *
     return (mt_kind_found){p->kind, p->mixed, is_number(p->kind) ? p->value : p->bare};
 }
 
-/* "a length" of what an expression measures; NULL: nothing that has such a name. */
+/* "a length" for the kind of an expression; NULL: the kind has no name. */
 static const char *kind_text(mt_kind kind)
 {
     for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
@@ -255,7 +255,7 @@ void mt_kind_bare_text(double number, const mt_unit *unit, const char *what, cha
     }
 }
 
-/* What an expression without a unit is multiplied by. */
+/* Factor that gives an expression the unit. */
 static const char *factor_text(const mt_unit *unit, char *out, size_t size)
 {
     if (unit->constant != NULL) {
@@ -265,7 +265,8 @@ static const char *factor_text(const mt_unit *unit, char *out, size_t size)
     return out;
 }
 
-/* What is said of a part that is no number, or of none that is known. */
+/* Complaint about an expression without a unit, with mixed units, or of another kind; false:
+ * none. */
 static bool say_measures(const mt_kind_found *f, bool number, const mt_unit *unit, char *out,
                          size_t size)
 {
