@@ -91,8 +91,8 @@ int mt_model_find_mode(const mt_model *model, const char *name)
     return find(&model->tables->modes, name);
 }
 
-/* Bodies and links share a table: link i stands there as -1 - i, absent is -1, which would be
- * link 0. */
+/* Bodies and links share a table, where link i has the value -1 - i. `found` tells absent (-1)
+ * from link 0, which has the same value. */
 int mt_model_find_link(const mt_model *model, const char *name)
 {
     bool found = false;

@@ -41,8 +41,8 @@ static void check_like(mt_resolve *f, int c, int *state)
     }
 }
 
-/* order[n_configurations]: all configurations, those that others are like first. chain
- * [n_configurations]; state, likewise, is 0. */
+/* order[n_configurations]: all configurations, each after the one that it is like. chain
+ * [n_configurations] is work; state [n_configurations] is 0 on entry. */
 static void find_order(mt_resolve *f, int *chain, int *state)
 {
     const int n = f->m->n_configurations;
@@ -191,7 +191,7 @@ void mt_resolve_configurations(mt_resolve *f)
     }
 }
 
-/* present[c] = c is named, or what c is like contains the item. */
+/* present[c]: c is named, or the configuration that c is like contains the item. */
 static void resolve_presence(mt_resolve *f, mt_presence *in)
 {
     mt_model *const m = f->m;

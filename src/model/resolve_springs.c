@@ -220,7 +220,7 @@ static void check_members(mt_resolve *f, const mt_spring *s)
     }
 }
 
-/* What depends on several members at once. */
+/* Checks that involve several members. */
 static void check_together(mt_resolve *f, const mt_spring *s)
 {
     const bool lists = s->translation[0] != MT_ABSENT || s->rotation[2] != MT_ABSENT;
