@@ -249,7 +249,7 @@ void mt_tree_transport(const mt_tree *t, double lambda, const double *v, double 
     }
 }
 
-/* Of a motion of 1 along x. */
+/* From the kinetic energy of a motion of 1 along x. */
 double mt_tree_mass(const mt_tree *t)
 {
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
@@ -333,7 +333,8 @@ typedef struct eliminated {
     double x[SQUARE];
 } eliminated;
 
-/* other (s x s) += add - W^T Delta^-1 W; sizes likewise, of the terms (NULL: not asked). */
+/* other (s x s) += add - W^T Delta^-1 W; sizes (NULL: not wanted) += sums of magnitudes of the
+ * terms. */
 static void hand_on(int s, const eliminated *e, const double *add, double *other, double *sizes)
 {
     const int d = e->d;

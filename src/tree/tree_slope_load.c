@@ -55,7 +55,7 @@ static void add_form(mt_tree_slope *w, double scale, const double *form)
             w->slope + ((ptrdiff_t)w->modes->n_pairs * w->data.input));
 }
 
-/* A force c on what a jet is of: its part of G', and of the slope. */
+/* Add the contribution of a force c along a measure with this jet to G' and to the slope. */
 static void add_force(const along *l, const int body[2], mt_cx c, const mt_jet *jet)
 {
     const mt_tree *const t = l->w->t;
