@@ -43,7 +43,8 @@ typedef struct work {
     double *trim;   /* [nq] work */
 } work;
 
-/* phi[nq] := the motion of the bodies' groups, or what other arms make of it alone. */
+/* phi[nq] := the motion of the bodies' groups; without `whole` only the part of the given
+ * arms. */
 static void expand(const mt_absolute *o, const double *x, const double *arm, bool whole,
                    double *phi)
 {

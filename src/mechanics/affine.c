@@ -200,7 +200,7 @@ static bool is_affine(const mt_linear *lin, const mt_affine *a, const mt_measure
     return false;
 }
 
-/* What y turns body b with: *fixed false where that is no one axis. */
+/* Axis about which y rotates body b; *fixed false where there is more than one. */
 static void find_axis(const mt_linear *lin, const mt_affine *a, int b, bool *fixed)
 {
     mt_affine_body *const out = &a->body[b];

@@ -31,7 +31,7 @@ static double row_length(const mt_elimination *e, const mt_linear_tangent *t, in
 }
 
 /* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled
- * coordinates, none shorter than what rounding of w makes of it. */
+ * coordinates, each at least the rounding of w. */
 static double combine(const mt_linear *lin, const mt_linear_tangent *t, const double *w,
                       double *row)
 {

@@ -77,7 +77,8 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
     }
 }
 
-/* Dampers, each once (a bushing's directions stand together), and the range of loss factors. */
+/* Dampers, each once (a bushing's directions are consecutive), and the range of loss
+ * factors. */
 static void count_damping(const mt_linear *lin, mt_info *out)
 {
     const mt_system *const sys = lin->sys;

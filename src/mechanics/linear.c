@@ -199,8 +199,8 @@ static void square_couplings(mt_linear *lin, mt_coupling kind)
     }
 }
 
-/* k += the springs with couplings that depend on no input, by their squares where they have
- * some: what cancels there is 0. */
+/* k += the coupled springs that depend on no input, by their squares where possible, which
+ * makes cancelling entries exactly 0. */
 static void add_couplings(const mt_linear *lin, double *k)
 {
     const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
