@@ -45,9 +45,9 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
 /* Errors of eigenvalues that quotients make the 1e-9 of mt_modal_rough of, by the square. */
 static const double SHAPES = 3e-5;
 
-/* True where the plain result is not good enough. Signs and ranks are in doubt where a factor
- * (K semidefinite by construction) shows instability, rigid-body modes that nobody announced,
- * or announced ones that stiffness seems to hold. */
+/* True where the plain result is not accurate enough. Signs and ranks are uncertain where a
+ * factor (K semidefinite by construction) has an unstable mode, rigid-body modes that were not
+ * given, or given ones with stiffness. */
 static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
 {
     if (modes->n_unstable > 0 || modes->n_held > 0 ||
@@ -61,7 +61,7 @@ static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
     return lowest >= 0 && DBL_EPSILON * modes->scale > opt->accuracy * modes->lambda[lowest];
 }
 
-/* n_held as the classification left it counts what is above the noise; say it for sure. */
+/* Correct n_held, which classification counts above the noise only. */
 static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigid_most,
                        int null_count)
 {
@@ -72,8 +72,8 @@ static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigi
     }
 }
 
-/* The factor, and on top of it what is no sum of squares: then the rank of B says nothing of
- * the null directions of K (null_count -1). */
+/* Solve with the factor, then add G; the rank of B then says nothing about the null directions
+ * of K (null_count -1). */
 static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                            mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
 {
@@ -91,8 +91,8 @@ static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_fact
     return rc;
 }
 
-/* Kinds and errors; whether an eigenvalue is zero is a question to the absolute bound, and
- * where the answer was yes, what it was is part of the error. */
+/* Kinds and errors; zero eigenvalues are decided by the absolute bound, and the value set to
+ * zero is then part of its error. */
 static double kinds(mt_modes *out, int n_rigid)
 {
     for (int i = 0; i < out->count; i++) {
