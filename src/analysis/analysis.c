@@ -67,7 +67,7 @@ static mt_status name_modes(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
-/* Solve for the first time; *out is a, which goes where that fails. */
+/* Solve for the first time; *out is a, which is deleted on failure. */
 static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysis **out,
                          mt_err *err)
 {
@@ -154,7 +154,7 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
-/* Of `count` shapes y, from place `at` on. */
+/* Energies of `count` shapes y, stored from `at` on. */
 static mt_status energies_of(mt_analysis *a, int at, int count, const double *y,
                              mt_mode_energies *e, mt_err *err)
 {
