@@ -78,7 +78,7 @@ typedef struct mt_analysis_options {
      * almost dependent */
     bool bounds;
 } mt_analysis_options;
-/* Vectors, check and bounds on, default accuracy; no gradient. */
+/* Vectors, check and bounds on, accuracy MT_MODAL_ACCURACY; no gradient. */
 mt_analysis_options mt_analysis_options_default(void);
 
 /* Configurations with more bodies are not analysed as a whole: the matrices alone take

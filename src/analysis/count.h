@@ -13,7 +13,7 @@
  * whole box. Otherwise it is the least over a fixed list of designs (the first, corners,
  * middle, eight more), and a solve at a design with fewer free directions fails. Cost: nothing
  * where no direction is free at the first design; otherwise one more system and one eigensolve,
- * or some fifteen solves. Fails as mt_analysis_new_driven.
+ * or some fifteen solves. Fails as mt_analysis_new_of.
  */
 mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
                             const mt_system_drive *drive, double position, mt_err *err);

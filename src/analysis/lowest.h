@@ -34,7 +34,7 @@ typedef struct mt_lowest {
     mt_tree *tree;           /* NULL: the configuration is not such a tree */
     mt_absolute bodies;      /* for the sparse method */
     mt_state position;       /* equilibrium position; sys NULL: the reference position */
-    double *mu;              /* constraint forces of mt_modal_sparse in it */
+    double *mu;              /* constraint forces of the modes (mt_modal_sparse) */
     char why[MT_LOWEST_WHY]; /* why no method applies */
     double mass_kg;
     int equations; /* of joints, possibly dependent; 0: a tree */

@@ -113,7 +113,7 @@ static inline mt_cx cx_scale(mt_cx a, int exponent)
     return exponent == 0 ? a : cx_pair(ldexp(creal(a), exponent), ldexp(cimag(a), exponent));
 }
 
-/* v| for components of any size. */
+/* |v| for components of any size. */
 static inline mt_cx cx_norm3(const mt_cx *v)
 {
     const int e = cx_exponent3(v);

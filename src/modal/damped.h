@@ -61,7 +61,7 @@ mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_m
 /* True where every oscillating motion has an index, from 1 by ascending |s|: no mode is
  * undecided. */
 bool mt_damped_indexed(const mt_damped_modes *d);
-/* s|/2 pi and Im s/2 pi [Hz]; damping ratio -Re s/|s| (NaN where s = 0). */
+/* |s|/2 pi and Im s/2 pi [Hz]; damping ratio -Re s/|s| (NaN where s = 0). */
 double mt_damped_natural_hz(const mt_damped_modes *d, int i);
 double mt_damped_hz(const mt_damped_modes *d, int i);
 double mt_damped_ratio(const mt_damped_modes *d, int i);

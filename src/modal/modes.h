@@ -57,7 +57,7 @@ bool mt_modal_indexed(const mt_modes *modes);
 /* lambda -> Hz: sqrt(lambda)/(2 pi); 0 for rigid-body modes; NaN for unstable and undecided
  * ones. */
 double mt_modal_hz(const mt_modes *modes, int i);
-/* error of mt_modal_hz| <= this [Hz], from error_i; NaN where the frequency is NaN. */
+/* |error of mt_modal_hz| <= this [Hz], from error_i; NaN where the frequency is NaN. */
 double mt_modal_error_hz(const mt_modes *modes, int i);
 /* d lambda -> d Hz of a mode at hz: d lambda/(8 pi^2 hz). NaN at 0 Hz, where the square of a
  * frequency has a derivative and the frequency has none. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a system is a tree, and the order in which its bodies stand: breadth first from the
- * ground, then from the first body of each part that nothing ties to it. */
+/* Checks whether a system is a tree, and orders its bodies: breadth first from the ground, then
+ * from the first body of each part that nothing connects to it. */
 #include "tree/tree.h"
 
 #include "tree/tree_priv.h"
