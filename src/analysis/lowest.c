@@ -224,7 +224,7 @@ static bool is_held(const mt_lowest *l, char *why)
     return !dependent && m->n_rigid == 0;
 }
 
-/* In coordinates of the bodies, at the reference or equilibrium position. *rests: closed and in
+/* In coordinates of the bodies, in the drawn or equilibrium position. *rests: closed and in
  * equilibrium. */
 static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state *settled,
                               bool *is, bool *rests, char *why, mt_err *err)

@@ -18,7 +18,7 @@ typedef struct mt_lowest_want {
     int count;   /* vibration modes, at least 1 */
     bool shapes; /* shapes or their derivatives are wanted */
     bool tree;   /* only by the tree method */
-    /* only in equilibrium at the reference position, which derivatives and scenes require */
+    /* only in equilibrium in the drawn position, which derivatives and scenes require */
     bool drawn;
 } mt_lowest_want;
 
@@ -33,7 +33,7 @@ typedef struct mt_lowest {
     mt_lowest_method way;
     mt_tree *tree;           /* NULL: the configuration is not such a tree */
     mt_absolute bodies;      /* for the sparse method */
-    mt_state position;       /* equilibrium position; sys NULL: the reference position */
+    mt_state position;       /* equilibrium position; sys NULL: the drawn position */
     double *mu;              /* constraint forces of the modes (mt_modal_sparse) */
     char why[MT_LOWEST_WHY]; /* why no method applies */
     double mass_kg;
@@ -58,7 +58,7 @@ double mt_lowest_bodies(const mt_model *model, int configuration);
  */
 mt_status mt_lowest_new(const mt_system_def *def, mt_lowest_want want, mt_lowest **out,
                         mt_err *err);
-/* Equilibrium position under loads; NULL: the reference position. */
+/* Equilibrium position under loads; NULL: the drawn position. */
 const mt_state *mt_lowest_settled(const mt_lowest *l);
 /* After shapes were wanted: shapes of the first n positions over all states (nq of the system),
  * unit mass, sign by mt_modal_fix_sign: phi nq x n, zeroed on entry. Fails: MT_E_INTERRUPTED,

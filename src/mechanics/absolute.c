@@ -219,7 +219,7 @@ bool mt_absolute_holds_already(const mt_absolute *o, int i)
     return mt_absolute_together(o, body, 2 * c->terms);
 }
 
-/* Rows of the constraints' Jacobian; *closed: they hold in the reference position. */
+/* Rows of the constraints' Jacobian; *closed: they hold in the drawn position. */
 static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt_arena *mem,
                            mt_arena *scratch, bool *closed, char *why, mt_err *err)
 {

@@ -7,14 +7,14 @@
 #include "mechanics/position.h"
 
 /*
- * A mechanism of any size and topology, at the reference position or in equilibrium under
+ * A mechanism of any size and topology, in its drawn position or in equilibrium under
  * loads, in the coordinates of its bodies; bodies held together by fixed joints count as one. K
  * and M are sums of squares of sparse rows, one for each spring and each part of a mass; A
  * holds the Jacobian rows of the remaining constraints. All costs are O(bodies).
  */
 typedef struct mt_absolute {
     const mt_system *sys;
-    const mt_state *settled; /* NULL: the reference position */
+    const mt_state *settled; /* NULL: the drawn position */
     int n;                   /* coordinates */
     mt_squares k;
     mt_squares m;
@@ -32,7 +32,7 @@ enum { MT_ABSOLUTE_WHY = 200 };
 /**
  * @param[in]  inputs   [n_inputs] of the system
  * @param[in]  settled  equilibrium position at these inputs, must outlive out; NULL: the
- *                      reference position
+ *                      drawn position
  * @param[out] out      its arrays in mem
  * @param[out] why      the reason where *is is false: driven, or not closed as drawn
  * Fails: MT_E_DOMAIN (a number has no value), MT_E_INTERRUPTED, MT_E_MEMORY.
@@ -53,7 +53,7 @@ bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
 bool mt_absolute_holds_already(const mt_absolute *o, int i);
 /* phi[nq] := x[n] by states. */
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
-/* The system's channels at the reference or equilibrium position for n shapes, phi nq x n:
+/* The system's channels in the drawn or equilibrium position for n shapes, phi nq x n:
  * value n_channels x n. Scratch is returned. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const double *inputs,
                             int n, const double *phi, double *value, mt_arena *scratch,

@@ -211,7 +211,7 @@ static void equations(work *w, bool slope)
                        w->o->sys->n_constraints, NULL, MT_CURVATURE_NONE, &l);
 }
 
-/* True where the joints stay closed in the reference position. */
+/* True where the joints stay closed in the drawn position. */
 static bool stays_closed(const work *w)
 {
     const mt_system *const sys = w->o->sys;

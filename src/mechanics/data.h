@@ -21,7 +21,7 @@ typedef struct mt_data {
 mt_status mt_data_init(mt_data *d, const mt_system *sys, mt_arena *mem, mt_err *err);
 /* Compute vector i from earlier vectors and the nodes. */
 void mt_data_vec(mt_data *d, int i);
-/* Compute all vectors; all targets at the reference position. */
+/* Compute all vectors; all targets, from the drawn position. */
 void mt_data_vecs(mt_data *d);
 void mt_data_targets(mt_data *d);
 /* Compute rest values and the target of the drive at the reference position (poses may have
@@ -44,7 +44,7 @@ void mt_data_eval(const mt_data *d, const mt_measure_def *def, const mt_placemen
                   bool second, mt_beam_parts *kept, mt_jet *out);
 void mt_data_relative(const mt_data *d, const mt_measure_def *def, const mt_placement *at,
                       bool second, mt_beam_parts *kept, mt_relative_jet *out);
-/* Reference positions (with their derivative); poses[n_bodies]. */
+/* Drawn positions (with their derivative); poses[n_bodies]. */
 void mt_data_drawn(const mt_data *d, mt_pose *poses);
 
 #endif

@@ -10,7 +10,7 @@
  * possible. Angles are followed over whole turns. On failure at->drive is the position reached;
  * Newton iterations are added to *iterations. Fails: MT_E_ASSEMBLY beyond mt_drive_reach, where
  * MOST_STEPS (drive.c) are not enough, at a limit position, in a position that the other joints
- * hold, and where they do not stay closed; MT_E_DEAD_CENTRE where the reference position is
+ * hold, and where they do not stay closed; MT_E_DEAD_CENTRE where the drawn position is
  * one; MT_E_MEMORY.
  *
  * brief: the mechanism is closed by the smallest steps, not nearest to the predicted position:

@@ -10,8 +10,8 @@
 typedef bool (*mt_force_visit)(void *context, const int body[2], double c, double noise,
                                const mt_jet *jet);
 
-/* Visit every load, and every spring with a force at the reference position (rest values
- * computed). True where all were visited. O(loads + springs). */
+/* Visit every load, and every spring with a free length or preload, at the given poses; needs
+ * the rest values. True where all were visited. O(loads + springs). */
 bool mt_forces_each(const mt_data *d, const mt_pose *pose, mt_force_visit visit, void *context);
 /* Visit every load and spring at an equilibrium: the forces are those after the motion left[nq]
  * from the rounded position to the balance, known to within open[nq]. */

@@ -10,7 +10,7 @@
  * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian,
  * Hessian of L, all in the left exponential chart at those positions. V is the physical energy
  * (springs, preloads, dead loads), or the anchor 1/2 sum |x - x0|^2 + 1/2 l^2 |R - R0|^2/2 that
- * pulls every body to its reference position (l: of the joints' arms; |R - R0|_F^2/2 = 3 -
+ * pulls every body to its drawn position (l: of the joints' arms; |R - R0|_F^2/2 = 3 -
  * tr(R0^T R), about theta^2): closing a loop minimises the anchor under the constraints. V = 0
  * gives the constraints alone.
  */

@@ -12,7 +12,7 @@
  * gradient and Hessian in the twelve local freedoms
  *     (dx_a, theta_a, dx_b, theta_b):  x -> x + dx,  R -> exp(theta^) R
  *         (displacements and rotation vector in global axes),
- * the left exponential chart at the present position. In the reference position every body has
+ * the left exponential chart at the present position. In the drawn position every body has
  * R = I, so a feature fixed to a body is given by its vector in that position.
  *
  * With u, v directions and P, Q points of bodies a, b (Haug, Computer Aided Kinematics and
@@ -64,7 +64,7 @@ typedef struct mt_pose {
     mt_cx r[9]; /* column-major */
 } mt_pose;
 
-/* Vectors in the reference position. */
+/* Vectors in the drawn position. */
 typedef struct mt_measure_data {
     mt_measure_kind kind;
     int component;         /* ROTATION: 0, 1, 2; BEAM: mt_beam_strain */

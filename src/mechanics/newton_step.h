@@ -44,7 +44,7 @@ static const double MT_STEP_DONE = 1e-10;
 /* ...and the unbalanced force below this fraction of the forces (rounding of their sum is ~ n
  * eps). */
 static const double MT_FORCE_DONE = 1e-11;
-/* A drawing has some six digits: nearer than this is at the reference position [model lengths,
+/* A drawing has some six digits: nearer than this is at the drawn position [model lengths,
  * rad]. */
 static const double MT_DRAWN = 1e-6;
 /* Rounding of the largest single spring force, summed over many springs and projected, stays

@@ -16,7 +16,7 @@
  * theta_y, theta_z) in three, translations alone for a point mass.
  */
 
-/* A 3-vector of the geometry, in the reference position. */
+/* A 3-vector of the geometry, in the drawn position. */
 typedef enum mt_vec_kind {
     MT_VEC_NODES, /* components are the nodes */
     MT_VEC_UNIT,  /* the same, normalised */
@@ -54,7 +54,7 @@ typedef struct mt_measure_def {
 
 typedef struct mt_state_body {
     const char *name; /* "crank", "beam.3", "fe.node0" */
-    int centre;       /* vector: reference position of the centre */
+    int centre;       /* vector: drawn position of the centre */
     int dof[6];       /* column of q for x y z rx ry rz; -1: none */
 } mt_state_body;
 
@@ -62,7 +62,7 @@ typedef struct mt_constraint_def {
     int terms; /* 1, or 2 for a gear or rack */
     int measure[2];
     mt_node coefficient[2]; /* gear, rack; else MT_NO_NODE (1) */
-    mt_node target;         /* MT_NO_NODE: the reference value where `drawn`, otherwise 0 */
+    mt_node target;         /* MT_NO_NODE: the drawn value where `drawn`, otherwise 0 */
     bool drawn;
     int joint; /* of the system's joints */
 } mt_constraint_def;
@@ -206,7 +206,7 @@ typedef struct mt_system {
     uint64_t *shape;
     uint64_t *forces;
     bool geometry_fixed; /* `shape` is empty */
-    /* the joints are closed in the reference position for all inputs: each has one point and no
+    /* the joints are closed in the drawn position for all inputs: each has one point and no
      * length */
     bool drawn_closed;
     const mt_layout *layout; /* of states and equations (layout.h) */
@@ -262,7 +262,7 @@ mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *sam
 mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
 /* True where the numbers of the beams' strains affect the geometry of stiffness. They do not in
- * an unloaded system that is closed in the reference position: a straight beam without force
+ * an unloaded system that is closed in the drawn position: a straight beam without force
  * has strains that do not depend on them. */
 bool mt_system_beams_shape(const mt_system *sys);
 

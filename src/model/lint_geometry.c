@@ -312,7 +312,7 @@ static void lint_side(mt_lint *j, const holder *h, int side)
     }
 }
 
-/* Closing error of the joint in the reference position; NaN: none. */
+/* Closing error of the joint in the drawn position; NaN: none. */
 static double gap_of(const mt_lint *j, const mt_joint *joint)
 {
     double a[3];

@@ -228,7 +228,7 @@ static bool has_form(const mt_tree_maker *m)
     return true;
 }
 
-/* True where the joints are closed in the reference position. */
+/* True where the joints are closed in the drawn position. */
 static bool is_closed(mt_tree_maker *m)
 {
     const mt_system *const sys = m->t->sys;

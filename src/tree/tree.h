@@ -5,7 +5,7 @@
 #include "mechanics/system.h"
 
 /*
- * A mechanism that is a tree, in equilibrium at the reference position, in coordinates of its
+ * A mechanism that is a tree, in equilibrium in its drawn position, in coordinates of its
  * edges. Every body has one parent body (or the ground); joints, springs and shared masses
  * connect a body to its parent only. With v the motion of a body (dx, theta; absolute), X the
  * rigid motion with the parent, and N the motions that the joints of its edge allow,

@@ -12,7 +12,7 @@ enum { MT_TREE_MOTION = 6, MT_TREE_EDGE_ROWS = 64 };
 typedef struct mt_tree_maker {
     mt_tree *t;
     mt_data data;
-    mt_pose *pose; /* [bodies] reference position */
+    mt_pose *pose; /* [bodies] drawn position */
     char *why;
 } mt_tree_maker;
 
@@ -44,7 +44,7 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_
 /* Set the masses of all bodies; *is_tree false: not a tree, with the reason in why. Fails:
  * MT_E_MEMORY. */
 mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
-/* Set the geometric stiffness of the loads, with the reference position in equilibrium;
+/* Set the geometric stiffness of the loads, with the drawn position in equilibrium;
  * *is_tree false: not a tree, with the reason in why. Fails: MT_E_MEMORY, MT_E_NOT_SPD. */
 mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *err);
 /* The equations of an edge, rows of A, and the factor of A A^T scaled to a unit diagonal. */

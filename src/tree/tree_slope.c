@@ -455,7 +455,7 @@ static void add_inertia(mt_tree_slope *w, int i)
     }
 }
 
-/* True where the joints stay closed in the reference position. */
+/* True where the joints stay closed in the drawn position. */
 static bool stays_closed(mt_tree_slope *w)
 {
     const mt_system *const sys = w->sys;
