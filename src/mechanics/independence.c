@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Checks whether redundant equations stay redundant as an input changes. The derivatives of rows
- * of unit length are compared with the sums of their own terms: a derivative that should vanish
- * is rounding of them, also through the position's derivative; any other is of their size.
+ * Checks whether redundant equations stay redundant as an input changes. The derivatives of
+ * rows of unit length are compared with the sums of their own terms: a derivative that should
+ * vanish is rounding of them, also through the position's derivative; any other is of their
+ * size.
  */
 #include "mechanics/independence.h"
 

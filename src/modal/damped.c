@@ -307,8 +307,8 @@ static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *e
     return MT_OK;
 }
 
-/* |s|^2 up to which a root belongs to an undecided mode: the greatest possible eigenvalue, and a
- * few times more for the effect of dampers. */
+/* |s|^2 up to which a root belongs to an undecided mode: the greatest possible eigenvalue, and
+ * a few times more for the effect of dampers. */
 static double undecided_square(const mt_modes *modes)
 {
     static const double times = 4.0;
