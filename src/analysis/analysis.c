@@ -67,7 +67,7 @@ static mt_status name_modes(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
-/* Solve for the first time; *out is a, which goes where that fails. */
+/* Solve for the first time; *out is a, which is deleted on failure. */
 static mt_status open_at(mt_analysis *a, const double *at, int first, mt_analysis **out,
                          mt_err *err)
 {
@@ -154,7 +154,7 @@ static mt_status refresh_mass(mt_analysis *a, mt_err *err)
     return MT_OK;
 }
 
-/* Of `count` shapes y, from place `at` on. */
+/* Energies of `count` shapes y, stored from `at` on. */
 static mt_status energies_of(mt_analysis *a, int at, int count, const double *y,
                              mt_mode_energies *e, mt_err *err)
 {
@@ -210,16 +210,16 @@ static mt_status solve_and_judge(mt_analysis *a, const mt_reduced *r,
     return MT_OK;
 }
 
-/* True where vibration modes are missing that were asked for and that there are. Judged, a mode
- * may be no vibration any more. */
+/* True where wanted vibration modes exist but are missing. After mt_modal_judge a mode may no
+ * longer be a vibration. */
 static bool is_short(const mt_modes *modes, int first)
 {
     return first > 0 && modes->count < modes->all && mt_modal_indexed(modes) &&
            mt_modal_flexible(modes, first) < 0;
 }
 
-/* Modes of K and M as they are, counted as a->n_rigid says or, where that does not hold,
- * anew. */
+/* Modes of K and M as they are, with a->n_rigid rigid-body modes or, where that does not hold,
+ * counted again. */
 static mt_status find_modes(mt_analysis *a, const mt_reduced *r, mt_modal_options *options,
                             bool bounds, mt_err *err)
 {
@@ -323,7 +323,7 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
     return MT_OK;
 }
 
-/* Where an update or a count fails, no modes are left. */
+/* Where an update or a count fails, no modes remain. */
 static mt_status solve(mt_analysis *a, const double *inputs, const mt_analysis_options *opt,
                        mt_err *err)
 {

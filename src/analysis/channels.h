@@ -4,7 +4,7 @@
 
 #include "analysis/analysis.h"
 
-/* Channels whose names two analyses share: numbers of them in either, in the order of a. */
+/* Channels whose names two analyses share: their indices in each, in the order of a. */
 typedef struct mt_common_channels {
     int n;
     int *a; /* [n] */
@@ -15,12 +15,11 @@ typedef struct mt_common_channels {
 mt_status mt_analysis_common_channels(const mt_analysis *a, const mt_analysis *b, mt_arena *mem,
                                       mt_common_channels *out, mt_err *err);
 
-/* Where these channels are displacements and angles together: what each counts as, 1 or the
- * length [m] at which an angle is an arc, in mem; *scale is NULL where they are of one kind.
- * Fails: MT_E_MEMORY. */
+/* Weights of channels with displacements and angles: 1, or the length [m] that turns an angle
+ * into an arc, in mem; *scale is NULL where all are of one kind. Fails: MT_E_MEMORY. */
 mt_status mt_channels_scale(const mt_system *sys, int n, const int *channels, double length,
                             mt_arena *mem, double **scale, mt_err *err);
-/* Multiply shapes[n x columns] so; scale NULL: as they are. */
+/* Multiply the rows of shapes[n x columns] by scale; NULL: unchanged. */
 void mt_channels_weigh(int n, const double *scale, int columns, double *shapes);
 
 #endif

@@ -203,8 +203,8 @@ static mt_status open_family(const mt_analysis *a, const mt_count_box *box,
     return mt_analysis_new_of(&def, 0, &f->a, err);
 }
 
-/* Whether the rank of K is a matter of which coefficients vanish. Couplings that vary may
- * cancel what they couple. */
+/* True where the rank of K depends on which coefficients vanish. Couplings that vary may cancel
+ * the terms that they couple. */
 static bool is_structural(const mt_linear *lin)
 {
     const mt_term_list *const list = mt_linear_terms(lin, MT_TERM_STIFFNESS);

@@ -6,33 +6,33 @@
 #include "model/count_box.h"
 
 /*
- * Count the modes as for all designs of the box (NULL or empty: nothing changes) and take
- * n_rigid from there; the modes of the last solve are void where it changed. n_rigid never
- * exceeds what any design of the box has free, as long as geometry is fixed and nothing loads
- * the mechanism: a term of K counts unless interval arithmetic shows its coefficient to be 0
- * over the whole box. Elsewhere it is the least of a fixed list of designs (the first, corners,
- * middle, eight more), and a solve that meets a design with less freedom fails. Cost: nothing
- * where no direction is free at the first design; else one more system and one eigensolve, or
- * some fifteen solves. Fails as mt_analysis_new_driven.
+ * Count the modes for all designs of the box (NULL or empty: nothing changes) and set n_rigid
+ * accordingly; the modes of the last solve are void where it changed. With constant geometry
+ * and without loads, n_rigid never exceeds the number of free directions of any design of the
+ * box: a term of K counts unless interval arithmetic shows its coefficient to be 0 over the
+ * whole box. Otherwise it is the least over a fixed list of designs (the first, corners,
+ * middle, eight more), and a solve at a design with fewer free directions fails. Cost: nothing
+ * where no direction is free at the first design; otherwise one more system and one eigensolve,
+ * or some fifteen solves. Fails as mt_analysis_new_of.
  */
 mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
                             const mt_system_drive *drive, double position, mt_err *err);
-/* Position in a->modes of the vibration mode that the model names by `index`: it counts at the
- * first design alone, without the vibrations of 0 Hz that only a family has. -1: as
+/* Position in a->modes of the vibration mode that the model names by `index`, which counts at
+ * the first design alone, without the vibrations of 0 Hz of other designs. -1: as
  * mt_modal_flexible. */
 int mt_analysis_named(const mt_analysis *a, int index);
 /* True where the family has more vibration modes than the last solve's design, and this index
- * is one of those that are missing there (a mass is 0): it is at infinity. */
+ * is one of the missing ones (a mass is 0): its frequency is infinite. */
 bool mt_analysis_is_infinite(const mt_analysis *a, int index);
-/* Directions that remain free where only the terms of K with holds[t] (one for each of
- * mt_linear_terms(lin, MT_TERM_STIFFNESS)) resist: the null directions of their sum, whatever
- * their sizes. Geometry and mass are those of the last update. Not where the mechanism is
- * loaded (mt_reduced.loaded). O(n^3). */
+/* Number of directions that remain free where only the terms of K with holds[t] (one for each
+ * of mt_linear_terms(lin, MT_TERM_STIFFNESS)) resist: null directions of their sum, for any
+ * sizes. Geometry and mass are those of the last update. Not where the mechanism is loaded
+ * (mt_reduced.loaded). O(n^3). */
 mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor *mass,
                                       const bool *holds, mt_arena *scratch, int *n,
                                       mt_err *err);
-/* Whether the mode at pos is a vibration of 0 Hz (after a solve with vectors), and the springs
- * of zero stiffness that would hold it: "\"ground\", \"k2\"", perhaps "", in text[size]. */
+/* True where the mode at pos is a vibration of 0 Hz (after a solve with vectors); text[size]:
+ * the springs of zero stiffness that would resist it, "\"ground\", \"k2\"", or "". */
 bool mt_analysis_slack(const mt_analysis *a, int pos, char *text, size_t size);
 
 #endif

@@ -68,8 +68,8 @@ static mt_status apply(void *context, int count, const double *x, double *y, mt_
     return MT_OK;
 }
 
-/* As apply, but as the momentum of the whole motion (x, along): where what leads and what
- * follows cancel, they do so in the motion. *open: the mass of what `along` is still off by. */
+/* As apply, from the momentum of the whole motion (x, along): x and the motion that follows
+ * cancel in the motion itself. *open: the mass of the remaining error of `along`. */
 static void follow(const operation *o, const double *x, double *y, double *open)
 {
     const mt_tree *const t = o->tree;
@@ -190,7 +190,7 @@ static mt_status go_on(void *context, mt_err *err)
     return mt_interrupt_check(t->run->interrupt, err);
 }
 
-/* What loads make of the bodies' stiffness, where they rest. */
+/* Geometric stiffness of the loads in equilibrium. */
 static mt_status load_bodies(mt_lowest *l, const mt_sparse_problem *p, mt_absolute_load *load,
                              bool *is, char *why, mt_err *err)
 {
@@ -209,8 +209,8 @@ static mt_status load_bodies(mt_lowest *l, const mt_sparse_problem *p, mt_absolu
     return mt_absolute_load_new(&l->bodies, l->at, &l->mem, load, is, why, err);
 }
 
-/* What small motions under load do not tell: whether equations that follow from others do so
- * beside where it rests, and how far it goes where nothing holds it. */
+/* False where a small motion under load does not determine the modes: dependent equations may
+ * become independent next to the equilibrium, and free motions are not bounded. */
 static bool is_held(const mt_lowest *l, char *why)
 {
     const mt_absolute *const o = &l->bodies;
@@ -224,7 +224,8 @@ static bool is_held(const mt_lowest *l, char *why)
     return !dependent && m->n_rigid == 0;
 }
 
-/* In coordinates of the bodies, as drawn or settled. *rests: closed there, and at rest. */
+/* In coordinates of the bodies, in the drawn or equilibrium position. *rests: closed and in
+ * equilibrium. */
 static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state *settled,
                               bool *is, bool *rests, char *why, mt_err *err)
 {
@@ -268,7 +269,7 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
     return MT_OK;
 }
 
-/* Where loads bring it, without dense matrices; *is: it rests there. */
+/* Find the equilibrium under loads, without dense matrices; *is: found. */
 static mt_status settle(mt_lowest *l, bool *is, char *why, mt_err *err)
 {
     mt_data data;

@@ -4,14 +4,14 @@
 
 #include "analysis/lowest.h"
 
-/* The work of the way by a tree. */
+/* Work arrays of the tree method. */
 struct mt_lowest_operation {
     const mt_tree *tree;
-    bool told;     /* where the progress is */
+    bool told;     /* progress is reported */
     double *v;     /* motion of all bodies */
     double *f;     /* work */
     double *r;     /* [n_rigid] */
-    double *along; /* [n_rigid] what follows a motion x */
+    double *along; /* [n_rigid] rigid-body motion that follows x */
     double *left;  /* [n_rigid] work */
     double *m_yr;  /* n_x x n_rigid */
     double *m_rr;  /* its Cholesky factor */

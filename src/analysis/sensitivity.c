@@ -41,7 +41,7 @@ mt_status mt_analysis_sensitivity(mt_analysis *a, int p, int n, const int *posit
     double *const values = mt_arena_f64(mem, (size_t)modes->count, 1);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_linear_independence(a->lin, p, mem, why, err));
-    /* where a mode is blocked, those above it are counted anew */
+    /* where a mode is blocked, those above it are counted again */
     bool gone = why->opens;
     for (int i = 0; i < n;) {
         int size = 1;

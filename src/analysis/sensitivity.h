@@ -6,12 +6,12 @@
 #include "mechanics/independence.h"
 
 /**
- * How far input p moves the frequencies of vibration modes, after a solve with gradient.
+ * Derivatives of the frequencies of vibration modes by input p, after a solve with gradient.
  * @param[in]  position  [n] of the first n flexible modes, ascending
- * @param[out] hz_per_unit [n] Hz per unit of the input. At repeated modes no single one has a
- *   derivative: directional values instead (eigenvalues of Y^T (dK - lambda dM) Y over the
- *   cluster), ascending. NaN where there is none: at 0 Hz, and where the independence says so
- * @param[out] why  what joints do there; its names are in mem
+ * @param[out] hz_per_unit [n] Hz per unit of the input. Repeated modes have no derivatives:
+ *   directional values (eigenvalues of Y^T (dK - lambda dM) Y over the
+ *   cluster), ascending. NaN where there is none: at 0 Hz, and by mt_linear_independence
+ * @param[out] why  the joints that cause it; names are in mem
  * Scratch from mem. Fails: as mt_linear_products and mt_linear_independence, MT_E_MEMORY.
  */
 mt_status mt_analysis_sensitivity(mt_analysis *a, int p, int n, const int *position,

@@ -65,7 +65,8 @@ static void put_track(const mt_analysis *a, int n, const double *all, int r, int
                                               : MT_TRACKED;
 }
 
-/* The mode's own vector in the cluster [first, first + size), and whether that holds it. */
+/* The mode's own vector in the cluster [first, first + size); *own: the cluster contains enough
+ * of it. */
 static void own_vector(const mt_analysis *a, const double *w, int first, int size, double *phi,
                        double *y, bool *own)
 {
@@ -176,14 +177,14 @@ typedef struct walk {
     double s;
 } walk;
 
-/* Whether the shape has dissolved among several modes. */
+/* True where the shape is spread among several modes. */
 static bool dissolved(const mt_track *k)
 {
     return k->pos >= 0 && k->state != MT_TRACKED &&
            k->share + k->rival_share < MT_TRACK_EXCHANGE;
 }
 
-/* Every mode that the walk is for is told. */
+/* True where every mode that the path is followed for is identified. */
 static bool settled(const walk *k)
 {
     for (int r = 0; r < k->n; r++) {
@@ -195,7 +196,8 @@ static bool settled(const walk *k)
     return true;
 }
 
-/* Tell the modes at s from those reached; *told: all are, and w->s is there. */
+/* Match the modes at s with those of the last point; *told: all are identified, and w->s is
+ * s. */
 static mt_status try_at(walk *k, double s, bool *told, mt_err *err)
 {
     mt_analysis *a = k->end;
@@ -218,7 +220,7 @@ static mt_status try_at(walk *k, double s, bool *told, mt_err *err)
     return MT_OK;
 }
 
-/* Over a place where nothing can be told: two, three, ... shortest steps at once. */
+/* Pass a point where modes are ambiguous by two, three, ... shortest steps at once. */
 static mt_status leap(walk *k, bool *told, mt_err *err)
 {
     *told = false;
@@ -229,7 +231,7 @@ static mt_status leap(walk *k, bool *told, mt_err *err)
     return MT_OK;
 }
 
-/* To the end; *arrived: k->tracks tells all modes there. */
+/* Follow the path to its end; *arrived: k->tracks identifies all modes there. */
 static mt_status go(walk *k, bool *arrived, mt_err *err)
 {
     const double least = k->way->resolution;
@@ -252,8 +254,8 @@ static mt_status go(walk *k, bool *arrived, mt_err *err)
     return MT_OK;
 }
 
-/* What the walk found, for the modes that were not settled without it. Two names for one mode:
- * neither can be told. */
+/* Take the result of the path for the modes that were not identified without it. A mode with
+ * two names is ambiguous for both. */
 static void merge(int n, const mt_track *walked, mt_track *tracks)
 {
     for (int r = 0; r < n; r++) {

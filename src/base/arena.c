@@ -45,8 +45,8 @@ struct mt_arena_block {
     size_t dirty; /* bytes that may be other than 0: none behind them was handed out */
 };
 
-/* Bytes between the end of what is handed out and what comes next, which nobody may touch:
- * under AddressSanitizer as many as one item has, so that an item too many falls into them. */
+/* Bytes between an allocation and the next one, poisoned under AddressSanitizer: the size of
+ * one item, so that access to one item too many is detected. */
 static size_t zone(size_t size)
 {
 #ifdef ARENA_ASAN
@@ -190,7 +190,7 @@ int *mt_arena_int(mt_arena *a, size_t n)
     return mt_arena_alloc(a, n, sizeof(int));
 }
 
-/* Room for a text: a name would fill a fifth of what an allocation takes. */
+/* Room for a text; a short name alone would fill a fifth of an allocation. */
 static char *text_room(mt_arena *a, size_t bytes)
 {
 #ifdef ARENA_ASAN
@@ -258,7 +258,8 @@ char *mt_arena_printf(mt_arena *a, const char *fmt, ...)
     return s;
 }
 
-/* Of what nobody looks at any more, the whole pages: they stay claimed, and are zero. */
+/* Give the whole pages of abandoned memory back to the system; they stay mapped and read as
+ * zero. */
 static void abandon(void *items, size_t bytes)
 {
 #ifdef MADV_DONTNEED

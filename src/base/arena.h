@@ -10,26 +10,26 @@
 #include "base/base.h"
 
 /*
- * Growing arena: memory that lives and dies together. Blocks are chained (a pointer handed out
- * never moves), every allocation is 64-byte aligned and zeroed, products are checked for
- * overflow; short texts stand one behind the other. `mark`/`rewind` give scratch back without
- * freeing blocks, so a loop that has run once allocates nothing more. Under AddressSanitizer
- * all but the bytes that were asked for is poisoned: what is free, at least 64 bytes and one
- * item behind every allocation, and what mt_arena_grow leaves behind. Not thread safe: one
- * arena, one worker.
+ * Growing arena: memory that is allocated piece by piece and freed at once. Blocks are chained,
+ * so a pointer never moves. Every allocation is 64-byte aligned and zeroed; products are
+ * checked for overflow; short texts are packed one behind the other. `mark`/`rewind` release
+ * scratch without freeing blocks, so the second pass of a loop allocates nothing from the heap.
+ * Under AddressSanitizer every byte that was not requested is poisoned: the free part, at least
+ * 64 bytes and one item behind every allocation, and the old copy that mt_arena_grow leaves.
+ * Not thread safe: one arena, one worker.
  *
- * A request that cannot be met (memory is out, or a product overflows) gives NULL, and the
- * arena remembers: every later request gives NULL as well, without a look at its arguments. So
- * nobody asks after each request, but once, before the first use of what the group was for:
+ * A request that cannot be met (memory is out, or a product overflows) returns NULL and sets
+ * `failed`; every later request then returns NULL without reading its arguments. The caller
+ * checks once for a group of requests, before it first uses the memory:
  *
  *     double *const K = mt_arena_f64(mem, n, n);
  *     int *const pivot = mt_arena_int(mem, n);
  *     MT_TRY(mt_arena_check(mem, err));
  *
- * Who only collects (texts, a list that grows, nodes of a program) leaves out what is NULL and
- * lets the owner of the arena ask at the end. A rewind loses no failure that nobody was told
- * of; one that mt_arena_check has told ends with the rewind to a mark from before it, so that
- * an arena outlives a shortage.
+ * A caller that only collects (texts, a growing list, nodes of a program) skips NULL and leaves
+ * the check to the owner of the arena. A rewind keeps a failure that mt_arena_check has not
+ * returned yet. It clears a returned failure if the mark is older than the failure, so the
+ * arena can be used again after a shortage.
  */
 enum { MT_ALIGN = 64 };
 
@@ -41,10 +41,10 @@ typedef struct mt_arena {
     size_t used;             /* bytes handed out */
     size_t peak;             /* largest `used` ever */
     size_t block_size;       /* least size of a new block */
-    char *text;              /* where the next short text goes */
-    size_t text_left;        /* bytes there */
+    char *text;              /* where the next short text starts */
+    size_t text_left;        /* bytes left there */
     bool failed;             /* a request could not be met */
-    bool told;               /* and mt_arena_check has said so */
+    bool told;               /* mt_arena_check has returned the failure */
 } mt_arena;
 
 typedef struct mt_arena_mark {
@@ -56,17 +56,16 @@ typedef struct mt_arena_mark {
     bool failed;
 } mt_arena_mark;
 
-/* block_size bytes are claimed at once; 0 chooses 64 KiB. Fails: MT_E_MEMORY. */
+/* Allocates the first block of block_size bytes; 0: 64 KiB. Fails: MT_E_MEMORY. */
 mt_status mt_arena_init(mt_arena *a, size_t block_size, mt_err *err);
 /* Accepts a zeroed or already freed arena. */
 void mt_arena_free(mt_arena *a);
-/* MT_E_MEMORY where a request since the start, or since a rewind that ended it, could not be
- * met. */
+/* MT_E_MEMORY where a request since the start, or since the rewind that cleared a failure, was
+ * not met. */
 mt_status mt_arena_check(mt_arena *a, mt_err *err);
-/* The same as a question, for loops that end early: it does not count as told. */
+/* True where mt_arena_check would fail, for loops that end early; does not count as a check. */
 bool mt_arena_failed(const mt_arena *a);
-/* Have it remember a shortage that was met elsewhere (by a text on the heap, by another
- * arena). */
+/* Mark the arena as failed after a shortage elsewhere (a text on the heap, another arena). */
 void mt_arena_fail(mt_arena *a);
 /* count * size bytes, zeroed. A zero product gives a valid pointer. */
 void *mt_arena_alloc(mt_arena *a, size_t count, size_t size);
@@ -80,18 +79,17 @@ char *mt_arena_strndup(mt_arena *a, const char *s, size_t length);
 /* printf into the arena. */
 char *mt_arena_printf(mt_arena *a, const char *fmt, ...) MT_PRINTF(2, 3);
 char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args) MT_PRINTF(2, 0);
-/* Growable array in an arena: returns a pointer to the count items with room for one more
- * (doubling; the old copy is abandoned in the arena); *capacity is the room. After NULL items
- * and *capacity stand unchanged. */
+/* Growable array: returns a pointer to the count items with room for at least one more;
+ * *capacity is the room. The capacity doubles and the old copy stays in the arena. On NULL the
+ * items and *capacity are unchanged. */
 void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t size);
-/* Everything handed out after the mark was taken is void after a rewind to it; marks nest like
- * a stack. */
+/* A rewind releases everything allocated after the mark was taken; marks nest like a stack. */
 mt_arena_mark mt_arena_get_mark(const mt_arena *a);
 void mt_arena_rewind(mt_arena *a, mt_arena_mark mark);
-/* A rewind to the very start. */
+/* Rewind to the very start. */
 void mt_arena_clear(mt_arena *a);
 
-/* Fill err with MT_E_MEMORY: for what is not an arena's. */
+/* Fill err with MT_E_MEMORY, for memory outside of an arena. */
 mt_status mt_fail_memory(mt_err *err);
 
 #endif

@@ -17,27 +17,28 @@
         }                                   \
     } while (0)
 
-/* Of a public function: MT_E_USAGE with its name and the argument's where that is NULL. */
+/* For public functions: MT_E_USAGE with the names of the function and the argument where the
+ * argument is NULL. */
 mt_status mt_check_argument(const void *argument, const char *function, const char *name,
                             mt_err *err);
 #define MT_NOT_NULL(argument, err) \
     MT_TRY(mt_check_argument((argument), __func__, #argument, (err)))
 
-/* True where this failure ends the work, instead of telling something about what was tried (a
- * design without an equilibrium). Memory that is out must never be taken for an answer. */
+/* True where this failure ends the work. Other failures are results of one trial (a design
+ * without an equilibrium). A lack of memory must never be taken for a result. */
 static inline bool mt_is_final(mt_status rc)
 {
     return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
 }
-/* What the end of one try, with its own text, means for the work: the failure where it is
- * final, else MT_OK. */
+/* The status of the work after a trial that ended with rc and its own text: rc where it is
+ * final, otherwise MT_OK. */
 static inline mt_status mt_pass_final(mt_status rc, const mt_err *own, mt_err *err)
 {
     return mt_is_final(rc) ? mt_fail(err, rc, "%s", own->text) : MT_OK;
 }
 
-/* A function whose divisions by zero are meant as IEEE 754 has them (x / 0 is infinite, 0 / 0
- * NaN), because those who use the quotient look whether it is finite. */
+/* Marks a function that divides by zero on purpose, by the rules of IEEE 754 (x / 0 is
+ * infinite, 0 / 0 NaN); its callers check whether the quotient is finite. */
 #if defined(__GNUC__) || defined(__clang__)
 #    define MT_DIVIDES_BY_ZERO __attribute__((no_sanitize("float-divide-by-zero")))
 #else

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/build.h"
 
-/* made anew by every build, and changed where the commit is another */
+/* made again by every build, and changed where the commit differs */
 #include "base/build_info.h"
 
 const char *mt_build_commit(void)

@@ -51,7 +51,7 @@ static uint64_t scaled(uint64_t m, int e, int s)
     return whole + (twice > unit || (twice == unit && (whole & 1U) != 0) ? 1U : 0U);
 }
 
-/* The p digits of n, the first of which stands for 10^k, without zeros at the end. */
+/* Write the p digits of n, the first of which is at 10^k, without trailing zeros. */
 static size_t lay_out(uint64_t n, int p, int k, char *out)
 {
     char digits[MT_DECIMAL_DIGITS] = "";

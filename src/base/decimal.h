@@ -6,8 +6,9 @@
 
 enum { MT_DECIMAL_DIGITS = 17, MT_DECIMAL_TEXT = 32 };
 
-/* What the C library's "%.*g" writes of x, with a point in every locale: its length. 0: digits
- * are not 1 to MT_DECIMAL_DIGITS, |x| is below 1e-4 and not 0, or the text has an exponent. */
+/* Writes x as "%.*g" of the C library does, with a decimal point in every locale; returns the
+ * length. Returns 0 where digits is not in 1 to MT_DECIMAL_DIGITS, where 0 < |x| < 1e-4, or
+ * where the text has an exponent. */
 size_t mt_decimal(double x, int digits, char out[MT_DECIMAL_TEXT]);
 
 #endif

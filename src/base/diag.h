@@ -7,20 +7,20 @@
 #include "base/arena.h"
 
 /*
- * Problems found in an input, all of them, in the order found. An address is a number that the
- * reader of the file hands out (for JSON: the index of the value in document order); only that
- * reader can turn it into file:line:column and a JSON pointer. MT_NO_ADDR: the problem belongs
- * to no place (a model built in memory).
+ * All problems found in an input, in the order found. An address is a number that the reader of
+ * the file assigns (for JSON: the index of the value in document order); only that reader turns
+ * it into file:line:column and a JSON pointer. MT_NO_ADDR: the problem has no location (a model
+ * built in memory).
  */
 typedef int mt_addr;
-/* So many problems are kept; so many of them, the first, say what may have been meant: to look
- * for it takes a walk through all names. */
+/* MT_DIAG_LIMIT problems are kept. The first MT_DIAG_SUGGESTIONS of them get a suggestion,
+ * which costs a walk through all names. */
 enum { MT_NO_ADDR = -1, MT_DIAG_LIMIT = 200, MT_DIAG_SUGGESTIONS = 50 };
 
 typedef struct mt_diag {
     mt_addr addr;
     mt_severity severity;
-    bool structural; /* an error that a schema of the format can see as well */
+    bool structural; /* a schema of the format finds this error as well */
     const char *text;
 } mt_diag;
 
@@ -29,21 +29,21 @@ typedef struct mt_diags {
     mt_diag *items;
     int count;
     int capacity;
-    int errors;     /* how many of them are errors (also those beyond the limit) */
-    int structural; /* how many of the errors are structural, likewise */
-    int warnings;   /* how many are warnings, likewise */
+    int errors;     /* number of errors, including those beyond the limit */
+    int structural; /* number of structural errors, including those beyond the limit */
+    int warnings;   /* number of warnings, including those beyond the limit */
 } mt_diags;
 
-/* Empty list whose texts live in mem, which remembers where there is no memory for one. */
+/* Empty list with its texts in mem; a shortage is kept in mem (mt_arena_check). */
 mt_diags mt_diags_default(mt_arena *mem);
-/* Add a problem; beyond MT_DIAG_LIMIT only counted. */
+/* Add a problem; beyond MT_DIAG_LIMIT it is counted only. */
 void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
-/* An error of structure: a schema (types, names of members, choices) sees it as well. */
+/* Add an error of structure (types, names of members, choices), which a schema finds as
+ * well. */
 void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
-/* Whether another problem will be kept. */
+/* True where another problem would be kept. */
 bool mt_diag_has_room(const mt_diags *d);
-/* True where a suggestion ("did you mean") is still worth its search: for the first
- * MT_DIAG_SUGGESTIONS errors. */
+/* True for the first MT_DIAG_SUGGESTIONS errors, which get a suggestion ("did you mean"). */
 bool mt_diag_may_suggest(const mt_diags *d);
 void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 

@@ -8,18 +8,18 @@
 
 #include "base/text.h"
 
-/* A problem with its place: offsets into `parts`, where NUL-terminated texts stand. */
+/* A problem with its location; file, pointer and message are offsets of NUL-terminated texts in
+ * `parts`. */
 typedef struct mt_diagnostic {
     mt_severity severity;
-    int line; /* 0: no place, and no pointer */
+    int line; /* 0: no location and no pointer */
     int column;
     size_t file;
     size_t pointer;
     size_t message;
 } mt_diagnostic;
 
-/* What is told about files. Zeroed: an empty list. Memory that is out sets `lines.failed`, as
- * in every text. */
+/* Messages about files. Zeroed: an empty list. A lack of memory sets `lines.failed`. */
 struct mt_diagnostics {
     mt_text lines; /* as the program prints them */
     mt_text parts;
@@ -29,25 +29,25 @@ struct mt_diagnostics {
     int left_out;
 };
 
-/* Where something stands. */
+/* Location of a value in a file. */
 typedef struct mt_diagnostic_place {
     const char *file;
-    int line; /* 0: in no place */
+    int line; /* 0: no location */
     int column;
-    const char *pointer; /* NULL: none, as the empty one */
+    const char *pointer; /* NULL or empty: none */
 } mt_diagnostic_place;
 
-/* Add one; texts are copied. What a terminal would obey is made visible in message and line,
- * and both are cut where they are long; the pointer stays as it is. */
+/* Add one; texts are copied. In message and line, what a terminal would obey is made visible
+ * and long texts are cut; the pointer is kept as it is. */
 void mt_diagnostics_add(mt_diagnostics *d, mt_severity severity,
                         const mt_diagnostic_place *place, const char *message);
-/* "file: n more not shown" */
+/* Adds "file: n more not shown". */
 void mt_diagnostics_leave_out(mt_diagnostics *d, const char *file, int n);
-/* Those of `more` behind those of d. */
+/* Append the messages of `more` to d. */
 void mt_diagnostics_append(mt_diagnostics *d, const mt_diagnostics *more);
-/* The first error; -1: there is none. */
+/* Index of the first error; -1: none. */
 int mt_diagnostics_first_error(const mt_diagnostics *d);
-/* Give back what it holds, for one that is no heap object of its own: it is empty then. */
+/* Free the contents of a struct that is not itself on the heap; it is empty afterwards. */
 void mt_diagnostics_free(mt_diagnostics *d);
 
 #endif

@@ -82,7 +82,7 @@ static void put_visible(sink *s, const char *text, size_t n)
     }
 }
 
-/* How many bytes at the end of s[n] are the beginning of a character that is not whole. */
+/* Number of bytes at the end of s[n] that begin an incomplete UTF-8 character. */
 static size_t begun(const char *s, size_t n)
 {
     size_t from = n;
@@ -314,7 +314,7 @@ static bool convert(sink *s, spec *f, arguments *from)
     }
 }
 
-/* The end of what there is room for: where a character does not fit, before it. */
+/* End the output; a character that does not fit whole is left out. */
 static void finish(sink *s)
 {
     size_t n = s->length;

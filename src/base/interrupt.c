@@ -21,8 +21,8 @@ void mt_interrupt_enter(mt_interrupt *i, int phase, bool makes_ready)
     i->makes_ready = makes_ready;
 }
 
-/* The strongest wish so far, asked anew until there can be no stronger one. Parts have none of
- * their own: that of the outermost work counts for all. */
+/* The strongest request so far, asked again until it cannot become stronger. Parts have no
+ * request of their own: that of the outermost computation applies. */
 static int request_of(mt_interrupt *i)
 {
     while (i->whole != NULL) {

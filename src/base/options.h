@@ -5,10 +5,10 @@
 #include "base/base.h"
 
 /*
- * A public struct of options, which begins with its size (modetune/read.h), as the one that
- * this library knows: out[size] bytes, its size included; 0 where `given` is shorter or NULL.
- * Fails: MT_E_USAGE, named by function, where the size is missing or beyond reason, or a member
- * that is not known here is not 0.
+ * Copy a public options struct, which begins with its size (modetune/read.h), into the struct
+ * that this library knows: out[size] bytes including the size; 0 where `given` is shorter or
+ * NULL. Fails: MT_E_USAGE with the name of the function, where the size is missing or
+ * implausible, or a member unknown to this library is not 0.
  */
 mt_status mt_options_take(const char *function, const void *given, size_t size, void *out,
                           mt_err *err);

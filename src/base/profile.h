@@ -5,9 +5,9 @@
 #include <stdatomic.h>
 
 /*
- * The stages of an evaluation, in their order. Each is done again only where something that it
- * depends on has another value than at its last time; else it is skipped, as it would give the
- * same bits.
+ * The stages of an evaluation, in order. A stage is computed again only where a value that it
+ * depends on has changed since its last computation; otherwise it is skipped, because it would
+ * give the same bits.
  */
 #define MT_STAGE_LIST(X)                                                 \
     X(PROGRAM, "program", "numbers of the model from the inputs")        \
@@ -22,15 +22,15 @@
 typedef enum mt_stage_id { MT_STAGE_LIST(MT_STAGE_ID) MT_STAGES } mt_stage_id;
 #undef MT_STAGE_ID
 
-/* What one evaluator did. */
+/* Work of one evaluator. */
 typedef struct mt_stage_counts {
     long done[MT_STAGES];
     long shared[MT_STAGES]; /* taken from another evaluator of the same worker */
     long skipped[MT_STAGES];
-    double seconds[MT_STAGES]; /* where somebody has a clock */
+    double seconds[MT_STAGES]; /* 0 without a clock */
 } mt_stage_counts;
 
-/* What all evaluators of a model did together, any number of workers. */
+/* Work of all evaluators of a model, any number of workers. */
 typedef struct mt_profile {
     double (*clock_s)(void); /* CPU time of the thread [s] */
     atomic_long done[MT_STAGES];
@@ -40,11 +40,11 @@ typedef struct mt_profile {
 } mt_profile;
 
 void mt_profile_init(mt_profile *p, double (*clock_s)(void));
-/* Add what an evaluator did; p NULL: nobody asks. */
+/* Add the work of an evaluator; p NULL: does nothing. */
 void mt_profile_add(mt_profile *p, const mt_stage_counts *counts);
-/* Time, where somebody asks; else 0. */
+/* CPU time of the thread [s] where p has a clock; otherwise 0. */
 double mt_profile_now(const mt_profile *p);
-/* "geometry" and what it is. */
+/* Name ("geometry") and description of a stage. */
 const char *mt_stage_name(mt_stage_id stage);
 const char *mt_stage_text(mt_stage_id stage);
 

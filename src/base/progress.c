@@ -4,8 +4,8 @@
 #include <math.h>
 
 static const double MILLION = 1e6;
-/* What makes the best better by a smaller share are its last digits, which later starts still
- * turn over. */
+/* A better design that improves the best one by a smaller share changes only its last digits,
+ * which later starts still do. */
 static const double LAST_DIGITS = 1e-6;
 
 mt_status mt_progress_init(mt_progress *p, mt_err *err)
@@ -31,7 +31,7 @@ void mt_progress_free(mt_progress *p)
     (void)pthread_mutex_destroy(&p->lock);
 }
 
-/* What begins has nothing done yet. */
+/* Begin a phase or step with nothing done. */
 static void start(mt_progress *p, const char *unit, long total)
 {
     p->now.step++;

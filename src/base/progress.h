@@ -9,86 +9,87 @@
 #include "base/base.h"
 
 /*
- * How far a long piece of work is. Those who do it leave word here, from any thread; somebody
- * outside looks now and then (mt_progress_read), so that nobody who works waits for a terminal.
+ * Progress of a long computation. The workers record it here, from any thread; a reader polls
+ * it (mt_progress_read), so no worker waits for a terminal.
  *
- * The work has phases, a phase steps one after the other: "12 of 28 starts". A step that begins
- * while another one is open is a part of that one's work and is not told: it is enough to begin
- * and to end what may be outermost. What only counts is told wherever it happens. All functions
- * accept NULL: nobody listens.
+ * The work is a sequence of phases, and a phase a sequence of steps: "12 of 28 starts". A step
+ * that begins while another one is open is part of that one and is not reported, so any step
+ * that may be outermost calls begin and end. Counters count at every level. All functions
+ * accept NULL and then do nothing.
  */
 typedef struct mt_progress_mark {
-    double cpu_s;     /* of who looks (mt_progress.clock); NaN: it has not happened */
-    long evaluations; /* of designs until then */
+    double cpu_s;     /* by mt_progress.clock; NaN: has not happened */
+    long evaluations; /* designs evaluated until then */
 } mt_progress_mark;
 
 typedef struct mt_progress_view {
     const char *phase; /* NULL: none yet */
-    /* counts what has begun, phases and steps of them, from 1; 0: none yet. A phase may come
-     * again, a step does not: its time counts from where this changed. */
+    /* number of phases and steps begun so far; 0: none yet. A phase may be entered again, a
+     * step is not: the time of a step starts when this number changes. */
     long step;
-    const char *unit; /* of what the step consists: "starts"; NULL: not in parts */
-    long done;        /* of them */
+    const char *unit; /* unit of the step: "starts"; NULL: not divided */
+    long done;        /* units done */
     long total;       /* 0: not known */
     double share;     /* of the step, 0 to 1; NaN: not known */
-    bool ended;       /* the step has */
+    bool ended;       /* the step has ended */
     long evaluations; /* of designs */
-    long solutions;   /* modal ones that these and others took (base/work_counters.h) */
-    long boxes;       /* of proofs */
-    const char *what; /* the objective that `best` is the value of; NULL: none yet */
+    long solutions;   /* modal solutions, of designs and others (base/work_counters.h) */
+    long boxes;       /* boxes of proofs */
+    const char *what; /* the objective whose value is `best`; NULL: none yet */
     double best;
-    mt_progress_mark first;   /* a design was known that meets all goals */
-    mt_progress_mark best_at; /* the best so far was, but for its last digits */
-    bool impossible;          /* it is proven that no design meets all goals */
-    mt_progress_mark proof;   /* the last proof that has settled its question so far did */
+    mt_progress_mark first;   /* the first design that meets all goals */
+    mt_progress_mark best_at; /* the best design so far, up to its last digits */
+    bool impossible;          /* proven that no design meets all goals */
+    mt_progress_mark proof;   /* the last proof so far that settled its question */
 } mt_progress_view;
 
 typedef struct mt_progress {
-    pthread_mutex_t lock; /* of `now`, but for what is counted */
+    pthread_mutex_t lock; /* of `now`, except for the counters */
     mt_progress_view now;
-    /* CPU seconds so far, by who looks, who sets it before the work begins; asked when a mark
-     * is made, by any thread. NULL: marks have no time */
+    /* CPU seconds so far; set by the reader before the work begins, called by any thread when a
+     * mark is made. NULL: marks have no time */
     double (*clock)(void);
-    double best_f;       /* what makes a design better is less */
-    double marked;       /* the best at its mark */
-    bool open;           /* a step is */
-    atomic_bool designs; /* the phase looks for them */
+    double best_f;       /* objective of the best design; less is better */
+    double marked;       /* `best` at the last mark */
+    bool open;           /* a step is open */
+    atomic_bool designs; /* the phase looks for designs */
     atomic_long done;
     atomic_long evaluations;
     atomic_long solutions;
     atomic_long boxes;
-    atomic_int ppm; /* share of a step that is not counted, in millionths; -1: not known */
+    atomic_int ppm; /* share of a step that is not divided, in millionths; -1: not known */
 } mt_progress;
 
-/* Fails: MT_E_SYSTEM; mt_progress_free follows where it does not. */
+/* Fails: MT_E_SYSTEM. After success the caller calls mt_progress_free. */
 mt_status mt_progress_init(mt_progress *p, mt_err *err);
 void mt_progress_free(mt_progress *p);
 
-/* A phase begins, of a name that stays; not while a step is open. designs: it looks for
- * designs that meet the goals, the best of which is told. */
+/* Begin a phase; name is not copied. Ignored while a step is open. designs: the phase looks for
+ * designs that meet the goals, and its best design is reported. */
 void mt_progress_phase(mt_progress *p, const char *name, bool designs);
-/* A step of `total` units (0: how many is not known) begins. False: it is a part of another
- * one, and not told. */
+/* Begin a step of `total` units (0: not known). False: the step is part of an open step and is
+ * not reported. */
 bool mt_progress_begin(mt_progress *p, const char *unit, long total);
-/* Of a step that was begun so (outermost: what mt_progress_begin said): one more unit is done;
- * or a share of it is, which never becomes less; or all of it, be it that some was left out. */
+/* One more unit of the step is done; the given share of it is done, which never decreases; the
+ * whole step is done, even if units were skipped. outermost: the result of
+ * mt_progress_begin. */
 void mt_progress_done(mt_progress *p, bool outermost);
 void mt_progress_share(mt_progress *p, bool outermost, double share);
 void mt_progress_end(mt_progress *p, bool outermost);
-/* A design was evaluated; n modal solutions were made; a box of a proof was looked at. */
+/* Count one evaluated design; n modal solutions; one examined box of a proof. */
 void mt_progress_evaluated(mt_progress *p);
 void mt_progress_solved(mt_progress *p, long n);
 void mt_progress_boxed(mt_progress *p);
-/* Whether the phase is one that looks for designs. */
+/* True where the phase looks for designs. */
 bool mt_progress_seeks(mt_progress *p);
-/* A design that meets all goals has the value f, which is made least, of an objective, shown
+/* Record a design that meets all goals, with the objective `what` of value f (minimised), shown
  * as `value`. */
 void mt_progress_found(mt_progress *p, const char *what, double f, double value);
-/* A proof settled its question; no design meets all goals, which is proven. */
+/* Record a proof that settled its question; the proof that no design meets all goals. */
 void mt_progress_proved(mt_progress *p);
 void mt_progress_impossible(mt_progress *p);
 
-/* What is known now. */
+/* The current state. */
 mt_progress_view mt_progress_read(mt_progress *p);
 
 #endif

@@ -8,20 +8,20 @@
 #include "base/work_counters.h"
 
 /*
- * A run: what long work shares with whoever conducts it, besides the model and the study, which
- * it only reads. The conductor makes one and hands it down; the work asks it whether to stop,
- * and reports to it. It outlives the work. Every member may be NULL. One model or study may be
- * worked on in any number of runs at once.
+ * The mutable state that a long computation shares with its caller, besides model and study,
+ * which it only reads. The caller makes one, passes it down, and keeps it until the computation
+ * ends; the computation checks it for requests to stop and reports to it. Every member may be
+ * NULL. Any number of runs may use one model or study at once.
  */
 typedef struct mt_run {
-    mt_interrupt *interrupt;          /* asked before each unit of work; NULL: never stopped */
-    mt_progress *progress;            /* told how far the work is; NULL: nobody listens */
-    mt_work_counters *work;           /* what the work has cost; NULL: not counted */
-    mt_profile *profile;              /* stages of the evaluations; NULL: not measured */
-    const struct mt_task_path *tasks; /* where lists of tasks stand (base/workers.h) */
+    mt_interrupt *interrupt; /* checked before each unit of work; NULL: never stopped */
+    mt_progress *progress;   /* NULL: not reported */
+    mt_work_counters *work;  /* counts of the work done; NULL: not counted */
+    mt_profile *profile;     /* stages of the evaluations; NULL: not measured */
+    const struct mt_task_path *tasks; /* position of task lists (base/workers.h); NULL: none */
 } mt_run;
 
-/* A run that is never stopped and reports to nobody. */
+/* All members NULL: a run that is never stopped and not reported. */
 extern const mt_run mt_run_none;
 
 /* run, or mt_run_none where it is NULL. */

@@ -9,36 +9,36 @@
 #include "base/base.h"
 
 /*
- * A record as a list of 64-bit words. One function tells what a struct holds, and the tape is
- * either written from it or read into it: the two cannot differ. Numbers keep their bits. What
- * is read is believed in nothing: a word that is missing or out of its range fails the tape,
- * from then on nothing more is read; mt_serializer_is_read is asked at the end, before anything
- * that was read is used.
+ * A record as a list of 64-bit words. One function lists the members of a struct, and the same
+ * function writes or reads them, so the two directions cannot differ. Numbers keep their bits.
+ * Input is not trusted: a missing word or a word out of its range sets `failed`, and nothing
+ * more is read; the caller checks mt_serializer_is_read at the end, before it uses anything it
+ * read.
  */
 typedef struct mt_serializer {
-    uint64_t *words; /* heap, owned, while it is written; borrowed while it is read */
+    uint64_t *words; /* heap and owned when writing; borrowed when reading */
     size_t n;
     size_t room;
-    size_t at; /* next to be read */
+    size_t at; /* next word to be read */
     bool reads;
-    bool failed; /* or: what was to be written is no record */
-    /* what was to be written had no room: that is no answer to whether it is a record */
+    bool failed; /* reading failed, or the value to be written is not a valid record */
+    /* writing ran out of memory, which does not say whether the value is a valid record */
     bool no_memory;
 } mt_serializer;
 
-mt_serializer mt_serializer_of(const uint64_t *words, size_t n); /* to be read */
+mt_serializer mt_serializer_of(const uint64_t *words, size_t n); /* for reading */
 void mt_serializer_free(mt_serializer *t);
-/* Whether all of it was read, and no more. */
+/* True where all words were read and none is missing. */
 bool mt_serializer_is_read(const mt_serializer *t);
 
 void mt_serializer_numbers(mt_serializer *t, size_t n, double *x);
 void mt_serializer_long(mt_serializer *t, long *x, long least, long most);
 void mt_serializer_int(mt_serializer *t, int *x, int least, int most);
 void mt_serializer_flag(mt_serializer *t, bool *x);
-/* NULL is a text, too; what is read lies in mem. */
+/* NULL is a valid text; a text that is read is in mem. */
 void mt_serializer_text(mt_serializer *t, const char **text, mt_arena *mem);
-/* Room in mem for *n items of `size` bytes that come next, one word each at least; while the
- * tape is written, the items themselves. NULL: none. */
+/* Reading: zeroed room in mem for the *n items of `size` bytes that follow, each at least one
+ * word; writing: returns items. NULL: none. */
 void *mt_serializer_items(mt_serializer *t, int *n, size_t size, void *items, mt_arena *mem);
 
 #endif

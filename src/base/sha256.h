@@ -13,10 +13,10 @@ enum {
 /* SHA-256 (FIPS 180-4) of the bytes, in lower-case hexadecimal digits. */
 void mt_sha256(const void *bytes, size_t length, char out[MT_SHA256_TEXT]);
 
-/* The same in two steps, for texts that begin alike: what the whole blocks of these bytes make;
- * and the digest of `length` bytes that begin with them. */
+/* SHA-256 in two steps, for texts with a common beginning: the state after the whole blocks of
+ * the beginning, and the digest of `length` bytes that begin with it. */
 typedef struct mt_sha256_start {
-    size_t length; /* of the blocks */
+    size_t length; /* bytes of the whole blocks */
     uint32_t words[MT_SHA256_WORDS];
 } mt_sha256_start;
 mt_sha256_start mt_sha256_begin(const void *bytes, size_t length);

@@ -49,7 +49,7 @@ static int skew(const mt_sorted *t, int at)
     return before;
 }
 
-/* Of three on one level the second comes up, and one level higher. */
+/* Three items on one level: the second becomes the parent, one level higher. */
 static int split(const mt_sorted *t, int at)
 {
     const int behind = *link_of(t, at, BEHIND);

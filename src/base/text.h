@@ -19,12 +19,11 @@ typedef struct mt_text {
 void mt_text_free(mt_text *t);
 void mt_text_add(mt_text *t, const char *s);
 void mt_text_add_n(mt_text *t, const char *s, size_t n);
-/* Formatted, see base/format.h: %s arguments are made visible, so a path is put together with
+/* Formatted, see base/format.h. %s arguments are made visible, so a path is put together with
  * mt_text_add. */
 void mt_text_addf(mt_text *t, const char *fmt, ...) MT_PRINTF(2, 3);
 
-/* A path as a URI has it (RFC 3986): every byte that is neither unreserved nor a slash as
- * %XX. */
+/* A path as a URI (RFC 3986): %XX for every byte that is neither unreserved nor a slash. */
 void mt_text_add_uri(mt_text *t, const char *path);
 
 /* Names longer than this (bytes) are compared for equality only. */
@@ -40,8 +39,8 @@ const char *mt_text_nearest(const char *name, const char *const *names, int n);
 /* True where `name` matches `pattern`, in which * stands for any run of characters and ? for
  * one. (Bytes: names are ASCII.) */
 bool mt_text_matches(const char *pattern, const char *name);
-/* What a path ends with, "beam.json" of "studies/beam.json"; "" after a last slash; NULL of
- * NULL. */
+/* The last component of a path, "beam.json" of "studies/beam.json"; "" after a last slash; NULL
+ * of NULL. */
 const char *mt_text_base_name(const char *path);
 /* Display width in terminal columns of UTF-8 text: marks that combine take none, ideographs
  * two. */

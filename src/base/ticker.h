@@ -5,18 +5,18 @@
 #include <pthread.h>
 #include <stdbool.h>
 
-/* A thread beside those who work, with a small stack. */
+/* A background thread with a small stack. */
 typedef struct mt_ticker {
-    /* Waits for as long as it likes, then does what is due; false: that was the last time. */
+    /* waits as long as needed, then does one turn; false ends the thread */
     bool (*turn)(void *context);
     void *context;
     pthread_t thread;
 } mt_ticker;
 
-/* Turn after turn until one is the last; t stays where it is until mt_ticker_join. False where
- * the system has no thread for it. */
+/* Start the thread, which calls turn until it returns false; t must not move until
+ * mt_ticker_join. False where the system has no thread. */
 bool mt_ticker_start(mt_ticker *t, bool (*turn)(void *context), void *context);
-/* Wait for the last turn, which the caller has brought about. */
+/* Wait for the end of the thread; the caller has made turn return false. */
 void mt_ticker_join(mt_ticker *t);
 
 #endif

@@ -5,27 +5,26 @@
 #include "base/text.h"
 
 /*
- * Text from outside (names, titles, paths, arguments) may hold what a terminal obeys or a
- * reader cannot see: control characters (C0, DEL, C1), marks that turn the direction of
- * writing, zero-width characters, line and paragraph separators, tags, bytes that are no UTF-8.
- * Shown they are as JSON writes them, \u001b, beyond U+FFFF as a pair of surrogates, a byte
- * that is no UTF-8 as \x9b. Within a JSON text, where such characters stand in strings only,
- * its meaning stays what it was.
+ * Escapes for text from outside (names, titles, paths, arguments), which may hold control
+ * characters (C0, DEL, C1), marks that change the direction of writing, zero-width characters,
+ * line and paragraph separators, tags, and bytes that are not UTF-8. They are shown as JSON
+ * escapes, \u001b, beyond U+FFFF as a pair of surrogates, a byte that is not UTF-8 as \x9b. A
+ * JSON text, where such characters occur in strings only, keeps its meaning.
  */
 enum { MT_VISIBLE_SIZE = 16 };
 
-/* Bytes of the well-formed UTF-8 character that the n bytes at s begin with (Unicode 15, table
- * 3-7); 0: there is none. */
+/* Length in bytes of the well-formed UTF-8 character at the start of the n bytes at s (Unicode
+ * 15, table 3-7); 0: not well formed. */
 size_t mt_utf8_length(const char *s, size_t n);
-/* The code point of the well-formed character of so many bytes. */
+/* Code point of the well-formed character of `length` bytes. */
 unsigned mt_utf8_code(const char *s, size_t length);
-/* How many of the n bytes at s, from the first on, can be shown as they are. `lines`: so can
- * tabs, line feeds, and carriage returns before a line feed. */
+/* Number of leading bytes of s that can be shown unchanged. `lines`: tabs, line feeds, and
+ * carriage returns before a line feed can. */
 size_t mt_visible_run(const char *s, size_t n, bool lines);
-/* What the n > 0 bytes at s begin with, escaped, into out; returns how many bytes of s that
- * was. */
+/* Escape the first character or byte of the n > 0 bytes at s into out; returns the number of
+ * bytes of s consumed. */
 size_t mt_visible_escape(const char *s, size_t n, char out[MT_VISIBLE_SIZE]);
-/* Append s with all of that escaped. */
+/* Append s with the escapes above. */
 void mt_text_add_visible(mt_text *t, const char *s);
 
 #endif

@@ -8,9 +8,9 @@
 #include "base/diag.h"
 
 /*
- * What an engineer should hear before any answer: a fact of the model that surprises where it
- * is not meant ("2 free motions"), a doubt (a value that is allowed and hardly meant: a margin
- * of 0.1 %), or a fault (a value that cannot be: a negative mass).
+ * A message about the model that comes before the results: a note (a property that surprises
+ * where it is not intended: "2 free motions"), a warning (an allowed but suspicious value: a
+ * margin of 0.1 %), or a fault (an impossible value: a negative mass).
  */
 typedef enum mt_warning_level {
     MT_LEVEL_NOTE,
@@ -21,18 +21,18 @@ typedef enum mt_warning_level {
 
 typedef struct mt_warning {
     mt_warning_level level;
-    const char *kind;          /* a short name that does not change: "margin", "free_motion" */
+    const char *kind;          /* a short stable name: "margin", "free_motion" */
     const char *text;          /* a sentence without a full stop */
     const char *configuration; /* NULL: of the whole file */
     const char *pointer;       /* JSON pointer; NULL: not known */
     const char *file;          /* NULL: not known */
     int line;                  /* 0: not known */
     int column;
-    mt_addr addr; /* for the reader of the file, which knows the rest */
-    double size;  /* how far, in a unit of the kind: the largest is said first */
+    mt_addr addr; /* for the reader of the file, which derives pointer, file, line and column */
+    double size;  /* deviation in a unit of the kind; the largest comes first */
 } mt_warning;
 
-/* Names of warnings (doubts), which a file may accept by them: name, of what. */
+/* Names of warnings, by which a file accepts them: name, meaning. */
 #define MT_WARNING_NAMES(X)                                                            \
     X("angle", "an angle above 2 pi without a unit in a trigonometric function")       \
     X("band", "a band without width")                                                  \
@@ -71,13 +71,14 @@ enum {
 };
 extern const char *const mt_warning_names[MT_WARNING_NAME_COUNT];
 
-/* Names of warnings that a file accepts; the file's arena owns them. */
+/* Names of the warnings that a file accepts; owned by the file's arena. */
 typedef struct mt_accepted {
     int n;
     const char **names;
 } mt_accepted;
 
-/* So many are kept, and as many faults besides: no doubt hides one. */
+/* Number of notes and warnings kept, and of faults besides, so that no warning displaces a
+ * fault. */
 enum { MT_WARNING_LIMIT = 1000 };
 
 typedef struct mt_warning_list {
@@ -87,17 +88,17 @@ typedef struct mt_warning_list {
     int capacity;
 } mt_warning_list;
 
-/* Empty list whose texts live in mem, which remembers where there is no memory for one. */
+/* Empty list with its texts in mem; a shortage is kept in mem (mt_arena_check). */
 mt_warning_list mt_warning_list_default(mt_arena *mem);
-/* Add one with a formatted text; returns it (until the next), NULL when out of memory and
- * beyond MT_WARNING_LIMIT, where none is added. */
+/* Add one with a formatted text; returns it (valid until the next addition), NULL where none
+ * was added: out of memory, or beyond MT_WARNING_LIMIT. */
 mt_warning *mt_warning_add(mt_warning_list *list, mt_warning_level level, const char *kind,
                            const char *fmt, ...) MT_PRINTF(4, 5);
-/* Items first .. n - 1 in the order of falling size; equal ones keep their order. */
+/* Sort items first .. n - 1 by descending size; equal sizes keep their order. */
 void mt_warning_sort(mt_warning_list *list, int first);
-/* Doubts from `first` on that are accepted become facts, which say so. */
+/* Turn accepted warnings from `first` on into notes that say so. */
 void mt_warning_accept(mt_warning_list *list, int first, const mt_accepted *accepted);
-/* Copy of an item, with all its texts, into another list. */
+/* Copy an item with all its texts into another list. */
 void mt_warning_copy(mt_warning_list *list, const mt_warning *item);
 
 #endif

@@ -109,8 +109,8 @@ static void note_failure(pool *p, int task, mt_status rc, const mt_err *err)
     (void)pthread_mutex_unlock(&p->lock);
 }
 
-/* What the task at s has left. One that has no room to be kept is not left out: a part of a run
- * would be told to be done without it. */
+/* Store the result of the task at s. A lack of memory is a failure: otherwise a part of a run
+ * would be reported as done without it. */
 static mt_status keep(const mt_tasks *tasks, int task, const mt_task_path *s, mt_err *err)
 {
     mt_serializer serializer = {.words = NULL};
@@ -146,7 +146,8 @@ static void *work(void *argument)
     return NULL;
 }
 
-/* Which tasks are left out: those that are known, and those of other parts: *missing. */
+/* Find the tasks to leave out: those with known records, and those of other parts; *missing:
+ * some are left to other parts. */
 static mt_status look_up(pool *p, bool *missing, mt_err *err)
 {
     const mt_tasks *const tasks = p->tasks;

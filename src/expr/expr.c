@@ -175,7 +175,7 @@ static mt_status unknown_name(parser *p, size_t from, size_t length, bool functi
                    (int)SHOWN, name, near);
 }
 
-/* The arguments of a function whose name began at `from`; p stands at the "(". */
+/* The arguments of a function whose name begins at `from`; p is at the "(". */
 static mt_status parse_call(parser *p, size_t from, size_t length)
 {
     mt_op op = MT_OP_CONST;
@@ -209,8 +209,8 @@ static mt_status lone_unit(parser *p, size_t from, size_t length)
                    character(p, from), (int)length, name, (int)length, name);
 }
 
-/* True where the name that began at `from`, and has just been read, is multiplied, divided or
- * raised. A unit of length that is not is a slip of somebody who has a parameter of nearly that
+/* True where the name just read, which begins at `from`, is multiplied, divided or raised to a
+ * power. A unit of length that is not is probably a slip for a parameter of nearly that
  * name. */
 static bool is_factor(parser *p, size_t from)
 {
@@ -255,8 +255,7 @@ static mt_status parse_name(parser *p)
     return emit(p, MT_OP_PARAM, param, 0.0);
 }
 
-/* What is wrong with the number that begins at `from`: shows it up to the end of what looks
- * like one. */
+/* Error message for the number that begins at `from`, with all of its text. */
 static mt_status bad_number(parser *p, size_t from, const char *what)
 {
     size_t end = from;
@@ -267,7 +266,7 @@ static mt_status bad_number(parser *p, size_t from, const char *what)
                    shown(end - from), p->text + from, what);
 }
 
-/* Whether a name of `length` bytes stands for something. */
+/* True where a name of `length` bytes is known. */
 static bool is_known(const parser *p, const char *name, size_t length)
 {
     double value = 0.0;
@@ -420,8 +419,8 @@ static size_t word_end(const parser *p)
     return end == p->at && p->text[end] == '%' ? end + 1 : end;
 }
 
-/* What is left is no part of the expression: the unit of a number, perhaps, what it is to be
- * multiplied with, or what follows a decimal comma. */
+/* Error for text behind the expression: the unit of a number, a missing multiplication, or a
+ * decimal comma. */
 static mt_status left_over(parser *p)
 {
     char meant[2 * SHOWN];

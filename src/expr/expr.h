@@ -15,15 +15,14 @@
  *     power   = atom [ "^" unary ]      right associative, binds tighter than a sign
  *     atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
  *     number  = decimal digits with an optional point and exponent
- * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; there is no
- * hexadecimal, no inf and no nan. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan
- * asin acos atan sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 =
- * 1 for every x; a negative number has powers with integer exponents only. Constants: pi, deg
- * (pi/180), rpm (1/60: "258*rpm" is a speed in Hz), mm, cm, inch and ft (in metres); e is not a
- * constant. A parameter name is
- * [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved. Limits, so that no
- * text can exhaust anything: bytes of text; levels of parentheses, arguments, signs and
- * exponents; parts of the code.
+ * So -2^2 = -4. Numbers are correctly rounded, the same in every locale; hexadecimal, inf and
+ * nan are not accepted. Functions of one argument: sqrt cbrt exp ln log10 sin cos tan asin acos
+ * atan sinh cosh tanh abs; of two: atan2 min max hypot pow. Angles in radians. x^0 = 1 for
+ * every x; a negative base takes integer exponents only. Constants: pi, deg (pi/180), rpm
+ * (1/60: "258*rpm" is a speed in Hz), mm, cm, inch and ft (in metres); e is not a constant. A
+ * parameter name is [A-Za-z_][A-Za-z0-9_]*; names of functions and constants are reserved. The
+ * limits below, on bytes of text, on levels of parentheses, arguments, signs and exponents, and
+ * on elements of the code, bound the cost of any text.
  */
 enum { MT_EXPR_MAX_LENGTH = 4096, MT_EXPR_MAX_DEPTH = 64, MT_EXPR_MAX_CODE = 1024 };
 
@@ -60,7 +59,7 @@ typedef enum mt_op {
 
 typedef struct mt_code {
     mt_op op;
-    int param;    /* MT_OP_PARAM: which; MT_OP_CONST: its mt_kind (expr/kind.h) */
+    int param; /* MT_OP_PARAM: index of the parameter; MT_OP_CONST: its mt_kind (expr/kind.h) */
     double value; /* MT_OP_CONST */
 } mt_code;
 
@@ -74,19 +73,19 @@ typedef struct mt_expr {
 typedef int (*mt_expr_lookup)(const void *context, const char *name, size_t length);
 
 /*
- * Parse NUL-terminated text into code that lives in mem. lookup (with context) knows the
- * parameters; NULL: there are none. names[n_names] are the candidates for "did you mean"
- * besides functions and constants; may be NULL. Fails: MT_E_INPUT with place (characters from
- * 1) and problem, "at character 7: unknown name \"K_T9\"; did you mean \"K_T8\"?"; MT_E_MEMORY.
- * *out is set on success only. O(length of text).
+ * Parse NUL-terminated text into code in mem. lookup (with context) finds the parameters; NULL:
+ * there are none. names[n_names] are suggested besides functions and constants; may be NULL.
+ * Fails: MT_E_INPUT with location (characters from 1) and problem, "at character 7: unknown
+ * name \"K_T9\"; did you mean \"K_T8\"?"; MT_E_MEMORY. *out is set on success only. O(length of
+ * text).
  */
 mt_status mt_expr_parse(const char *text, mt_expr_lookup lookup, const void *context,
                         const char *const *names, int n_names, mt_arena *mem, mt_expr *out,
                         mt_err *err);
-/* The expression that is one number. */
+/* An expression of one number. */
 mt_status mt_expr_number(double value, mt_arena *mem, mt_expr *out, mt_err *err);
-/* True where there is no parameter in it. Then *value is its value, which may be infinite or
- * NaN ("1/0"): look. */
+/* True where the expression has no parameter; *value is then its value, which may be infinite
+ * or NaN ("1/0"). */
 bool mt_expr_is_constant(const mt_expr *e, double *value);
 
 #endif

@@ -216,10 +216,10 @@ static mt_interval logarithm(double (*f)(double), mt_interval a)
 }
 
 /*
- * Whether the interval holds a point (k + phase) * period, k an integer. With t = x / period -
- * phase the question is for an integer between t(lo) and t(hi). The four roundings (period,
+ * True where the interval may contain a point (k + phase) * period, k an integer. With t = x /
+ * period - phase that is an integer between t(lo) and t(hi). The four roundings (period,
  * quotient, product and difference) leave an error below 4 eps (|t| + 1); twice that is allowed
- * for, and "yes" is the safe side.
+ * for, and true is the safe side.
  */
 static bool has_point(mt_interval a, double phase, double period)
 {

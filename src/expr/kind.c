@@ -21,7 +21,7 @@ static part made(mt_kind kind, double value, bool mixed, double bare)
     return (part){.value = value, .bare = bare, .kind = kind, .mixed = mixed};
 }
 
-/* How an operation makes its kind. */
+/* Rule for the kind of an operation's result. */
 typedef enum rule {
     RULE_NUMBER, /* sin, exp, ln: a number, of whatever */
     RULE_SAME,
@@ -52,7 +52,7 @@ static bool is_number(mt_kind kind)
     return kind == MT_KIND_NUMBER || kind == MT_KIND_ZERO || kind == MT_KIND_PI;
 }
 
-/* Of a + b, and of what needs parts of one kind as a sum does. */
+/* Kind of a + b, and of operations with terms of one kind as in a sum. */
 static mt_kind sum_kind(mt_kind a, mt_kind b)
 {
     if (a == b || b == MT_KIND_ZERO) {
@@ -70,8 +70,8 @@ static mt_kind sum_kind(mt_kind a, mt_kind b)
     return a == MT_KIND_UNKNOWN ? b : MT_KIND_UNKNOWN;
 }
 
-/* True where a, beside b in a sum, is of another kind. What is not known goes with all but a
- * number. */
+/* True where a and b are of different kinds as terms of a sum. An unknown kind differs from
+ * numbers only. */
 static bool differs(mt_kind a, mt_kind b)
 {
     if (a == b || a == MT_KIND_ZERO || b == MT_KIND_ZERO || (is_number(a) && is_number(b))) {
@@ -225,7 +225,7 @@ mt_kind_found mt_expr_kind(const mt_expr *e, mt_kind_lookup lookup, const void *
     return (mt_kind_found){p->kind, p->mixed, is_number(p->kind) ? p->value : p->bare};
 }
 
-/* "a length" of what an expression measures; NULL: nothing that has such a name. */
+/* "a length" for the kind of an expression; NULL: the kind has no name. */
 static const char *kind_text(mt_kind kind)
 {
     for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
@@ -255,7 +255,7 @@ void mt_kind_bare_text(double number, const mt_unit *unit, const char *what, cha
     }
 }
 
-/* What an expression without a unit is multiplied by. */
+/* Factor that gives an expression the unit. */
 static const char *factor_text(const mt_unit *unit, char *out, size_t size)
 {
     if (unit->constant != NULL) {
@@ -265,7 +265,8 @@ static const char *factor_text(const mt_unit *unit, char *out, size_t size)
     return out;
 }
 
-/* What is said of a part that is no number, or of none that is known. */
+/* Complaint about an expression without a unit, with mixed units, or of another kind; false:
+ * none. */
 static bool say_measures(const mt_kind_found *f, bool number, const mt_unit *unit, char *out,
                          size_t size)
 {

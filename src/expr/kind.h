@@ -8,18 +8,17 @@
 #include "expr/units.h"
 
 /*
- * What an expression measures, as far as lengths, angles and speeds go: where numbers may be in
- * other units than SI, an expression (which is always in SI) must not hold a number that looks
- * like one of those. "L + 50" is 50 m longer than L, "50" is 50 m: they are told from
- * "L + 50*mm". Products and quotients by numbers keep the kind, sums and the like have that of
- * their parts, anything else is not known and not judged.
+ * Physical kind of an expression, for lengths, angles and speeds. In a file with units other
+ * than SI, expressions are still in SI, so a bare number added to a length is suspicious: "L +
+ * 50" adds 50 m, "L + 50*mm" adds 50 mm. Products and quotients by numbers keep the kind, sums
+ * and the like have the kind of their parts; any other combination is unknown and not checked.
  */
 typedef enum mt_kind {
-    MT_KIND_NUMBER, /* made of numbers without a unit */
+    MT_KIND_NUMBER, /* from numbers without a unit */
     MT_KIND_ZERO,   /* 0, which is 0 in every unit */
-    MT_KIND_PI,     /* a number, and an angle */
+    MT_KIND_PI,     /* a number or an angle */
     MT_KIND_LENGTH,
-    MT_KIND_AREA, /* a length times a length: the root of one is a length */
+    MT_KIND_AREA, /* length times length; its square root is a length */
     MT_KIND_ANGLE,
     MT_KIND_SPEED,
     MT_KIND_UNKNOWN
@@ -32,27 +31,27 @@ typedef mt_kind (*mt_kind_lookup)(const void *context, int parameter);
 
 typedef struct mt_kind_found {
     mt_kind kind;
-    /* something is added to, subtracted from or compared with what is of another kind: a number
-     * with a length, a number with what is not known, an angle with a length */
+    /* terms of different kinds are added, subtracted or compared: a number with a length or an
+     * unknown kind, an angle with a length */
     bool mixed;
-    /* the number that is mixed in, or that all of it is; NaN: it follows parameters */
+    /* the number in question: a term, or the whole expression; NaN: it depends on parameters */
     double bare;
 } mt_kind_found;
 
 /* O(length of the expression). */
 mt_kind_found mt_expr_kind(const mt_expr *e, mt_kind_lookup lookup, const void *context);
-/* Why a number cannot be meant in an expression where numbers are in this unit, which is not of
- * SI: what it is, since these are, and how that is written ("14*mm" of 0.014 m: below 1, it
- * looks like SI). */
+/* Message that a number in SI is suspicious where numbers are in `unit`, which is not SI;
+ * `what`: what is in SI ("expressions"). Suggests the form with a unit ("14*mm" for 0.014 m: a
+ * value below 1 is taken as SI). */
 void mt_kind_bare_text(double number, const mt_unit *unit, const char *what, char *out,
                        size_t size);
 /*
- * Why an expression cannot be meant where numbers are in this unit ("50 is 50 m here ...: write
- * \"50*mm\""), in out[size]. False, and nothing written: it can be, or the unit is NULL or SI,
- * where a number alone has no other meaning.
+ * Message that an expression is suspicious where numbers are in `unit` ("50 is 50 m here ...:
+ * write \"50*mm\""), in out[size]. False without a message: it is plausible, or the unit is
+ * NULL or SI, where a bare number has no other meaning.
  */
 bool mt_kind_complaint(const mt_expr *e, const mt_unit *unit, mt_kind_lookup lookup,
                        const void *context, char *out, size_t size);
-enum { MT_KIND_TEXT = 256 }; /* size that holds every complaint */
+enum { MT_KIND_TEXT = 256 }; /* size for every message */
 
 #endif

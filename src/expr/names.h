@@ -5,13 +5,13 @@
 #include "expr/expr.h"
 #include "expr/kind.h"
 
-/* The functions and constants of the expression language by name (length bytes); false: no
- * such. A constant is of a kind (expr/kind.h): "mm" is a length. */
+/* Find a function or constant of the expression language by name (length bytes); false:
+ * unknown. A constant has a kind (expr/kind.h): "mm" is a length. */
 bool mt_expr_find_function(const char *name, size_t length, mt_op *op);
 bool mt_expr_find_constant(const char *name, size_t length, double *value, mt_kind *kind);
-/* Whether the name is taken by a function or a constant. */
+/* True where the name is that of a function or a constant. */
 bool mt_expr_reserved(const char *name);
-/* Names of all functions and constants, for "did you mean"; *n their number. */
+/* Names of all functions and constants, for suggestions; *n their number. */
 const char *const *mt_expr_names(int *n);
 
 #endif

@@ -16,8 +16,8 @@
 const char *mt_op_name(mt_op op);
 /* Number of operands: 0, 1 or 2. */
 int mt_op_operands(mt_op op);
-/* Value; b is ignored where op has one operand. NaN or infinite outside the domain, without
- * dividing by zero on the way. Not for MT_OP_CONST and MT_OP_PARAM (NaN). */
+/* Value; b is ignored where op has one operand. NaN or infinite outside the domain, without a
+ * division by zero. NaN for MT_OP_CONST and MT_OP_PARAM. */
 double mt_op_value(mt_op op, double a, double b);
 
 typedef struct mt_partials {
@@ -26,8 +26,8 @@ typedef struct mt_partials {
 } mt_partials;
 
 /* Partial derivatives at (a, b) with v = mt_op_value(op, a, b); not finite where there is none.
- * At a kink the side of the first operand: abs'(0) = 1, min(x, x) and max(x, x) go with the
- * first. */
+ * At a kink the derivative of the first operand is taken: abs'(0) = 1, min(x, x) and max(x, x)
+ * follow the first. */
 mt_partials mt_op_partials(mt_op op, double a, double b, double v);
 
 #endif

@@ -93,7 +93,7 @@ mt_node mt_program_input(mt_program *p, int input, mt_addr addr)
     return intern(p, &n);
 }
 
-/* Whether the node is the constant `value`. */
+/* True where the node is the constant `value`. */
 static bool is_value(const mt_program *p, mt_node node, double value)
 {
     return p->nodes[node].op == MT_OP_CONST && p->nodes[node].value == value;

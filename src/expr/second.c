@@ -78,8 +78,8 @@ static curvatures curvatures_of(mt_op op, double a, double b, double v)
                                    : (curvatures){of_one(op, a, v), 0.0, 0.0};
 }
 
-/* 0 times what is not finite counts as 0: an operand that stands still has no need of a slope
- * along it. */
+/* Product in which 0 times a value that is not finite is 0: a constant operand needs no
+ * derivative. */
 static double times(double slope, double by)
 {
     return by == 0.0 ? 0.0 : slope * by;

@@ -4,7 +4,7 @@
 
 #include "expr/program.h"
 
-/* node[count] = value, first and second derivative by the input at t, of a program with one
+/* node[count] = value, first and second derivative by the input at t, for a program with one
  * input. O(count). Fails: MT_E_DOMAIN where one of them is not finite. */
 mt_status mt_program_second(const mt_program *p, double t, double (*node)[3], mt_err *err);
 

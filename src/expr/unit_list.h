@@ -3,11 +3,11 @@
 #define EXPR_UNIT_LIST_H
 
 /*
- * Units that a parameter's number may be in, but that are no constants of expressions, where a
- * parameter may be called t or g: name, unit of SI, what it measures, numerator, denominator.
- * They follow from lb = 0.45359237 kg, in = 0.0254 m, ft = 12 in, g = 9.80665 m/s^2,
- * lbf = lb g, kip = 1000 lbf, slug = lbf s^2/ft, all exact (NIST SP 811), as fractions in
- * lowest terms of exact doubles; DEG is a degree in rad, which is not.
+ * Units of parameters that are not constants of expressions, because parameters may be called t
+ * or g: name, SI unit, dimension, numerator, denominator. They follow from lb = 0.45359237 kg,
+ * in = 0.0254 m, ft = 12 in, g = 9.80665 m/s^2, lbf = lb g, kip = 1000 lbf, slug = lbf s^2/ft,
+ * all exact (NIST SP 811), as fractions in lowest terms of exact doubles; DEG, a degree in rad,
+ * is not exact.
  */
 #define MT_UNIT_LIST(X)                                                      \
     X("mg", "kg", MT_OTHER, 1.0, 1e6)                                        \

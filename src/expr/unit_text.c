@@ -165,8 +165,8 @@ static mt_unit_worth quotient_of(const mt_unit_worth *a, const mt_unit_worth *b)
     return product_of(a, &below);
 }
 
-/* A word, of which "g0" alone has a digit that is no exponent; of two that measure different
- * things, as "kgm", the first. */
+/* Read a word; only "g0" has a digit that is not an exponent. Of two readings of different
+ * dimension, as for "kgm", the first is taken. */
 static bool read_word(reader *r, mt_unit_worth *out)
 {
     const char *const word = r->at;

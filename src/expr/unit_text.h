@@ -5,14 +5,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* 1 of a unit is so many m^a kg^b s^c rad^d. */
+/* 1 of a unit is factor m^a kg^b s^c rad^d, powers in this order. */
 enum { MT_BASE_M, MT_BASE_KG, MT_BASE_S, MT_BASE_RAD, MT_BASES };
 typedef struct mt_unit_worth {
     double factor;
     int power[MT_BASES];
 } mt_unit_worth;
 
-/* What words mean that have two meanings: a gram or 9.80665 m/s^2, a pound or its weight. */
+/* Reading of symbols with two meanings: g is a gram or 9.80665 m/s^2, lb a mass or a force. */
 typedef enum mt_unit_reading {
     MT_READ_MASSES,
     MT_READ_ACCELERATIONS, /* g */
@@ -22,15 +22,15 @@ typedef enum mt_unit_reading {
 } mt_unit_reading;
 
 /*
- * A unit as people and instruments write it: "N mm/rad", "(m/s^2)/N", "m/(N*s**2)", "m/s2",
- * "kg*mm²" (UTF-8 or Latin-1), "10^3 N", "lbf-in". Factors follow each other, or have a blank,
- * *, a dot or a hyphen between them; what a / stands before, alone, divides. Symbols are as of
- * SI, with its prefixes, and of inches and pounds. False: it is none.
+ * Parse a unit as people and instruments write it: "N mm/rad", "(m/s^2)/N", "m/(N*s**2)",
+ * "m/s2", "kg*mm²" (UTF-8 or Latin-1), "10^3 N", "lbf-in". Factors are adjacent, or separated
+ * by a blank, *, a dot or a hyphen; a / divides by the one factor after it. Symbols of SI with
+ * prefixes, and of inches and pounds. False: not a unit.
  */
 bool mt_unit_read(const char *text, mt_unit_reading reading, mt_unit_worth *out);
-/* Whether they measure the same. A radian counts where `radians` says so. */
+/* True where both have the same powers; that of rad is compared where `radians` is set. */
 bool mt_unit_same_powers(const mt_unit_worth *a, const mt_unit_worth *b, bool radians);
-/* Factors that are equal, but for their rounding. */
+/* True where the factors are equal up to rounding. */
 bool mt_unit_same_factor(double a, double b);
 
 #endif

@@ -46,7 +46,7 @@ static bool same(const char *word, size_t n_word, const char *s)
     return strlen(s) == n_word && memcmp(s, word, n_word) == 0;
 }
 
-/* The constant that the word is, or stands for; NULL: none. */
+/* The constant with this name or synonym; NULL: none. */
 static const char *constant_of(const char *word, size_t n_word)
 {
     int n = 0;

@@ -5,9 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What a number with a unit behind it, as "15 deg" or "2 mm", may have meant: "15*deg",
- * "2*1e3 (m)", in out[size]. number and word with their lengths in bytes. False: the word is
- * no unit. */
+/* Suggestion for a number followed by a unit, "15 deg" or "2 mm": "15*deg", "2*1e3 (m)", in
+ * out[size]. n_number, n_word: lengths in bytes. False: the word is not a unit. */
 bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t n_word,
                    char *out, size_t size);
 

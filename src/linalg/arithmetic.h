@@ -4,8 +4,9 @@
 
 enum { MT_ARITHMETIC_TEXT = 17 };
 
-/* The bits of the C library's functions on this processor, as digits of a hash: where they
- * differ (fused multiply-add or not, another version), results may in their last digits. */
+/* Hash of the bits that the C library's functions give on this processor. Where two hashes
+ * differ (fused multiply-add or not, another version), results may differ in their last
+ * digits. */
 void mt_arithmetic_digest(char out[MT_ARITHMETIC_TEXT]);
 
 #endif

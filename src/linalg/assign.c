@@ -38,7 +38,8 @@ static double cost(const matching *g, int row, int column)
     return -(isfinite(s) ? s : g->lowest);
 }
 
-/* So low that one missing score outweighs the spread of all others: the fewest are taken. */
+/* A score so low that one missing pair outweighs the spread of all others: as few as possible
+ * are missing. */
 static double lowest_score(int m, int n, const double *score)
 {
     double least = HUGE_VAL;

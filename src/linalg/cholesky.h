@@ -7,7 +7,8 @@
 #include "base/base.h"
 
 /* L L^T = A (lower triangle read and overwritten; strictly upper part untouched). Fails
- * MT_E_NOT_SPD, *bad (may be NULL) the pivot, 0-based; it is -1 unless so. n^3/3 flops. */
+ * MT_E_NOT_SPD; *bad (may be NULL) is then the 0-based index of the pivot, otherwise -1. n^3/3
+ * flops. */
 mt_status mt_cholesky(int n, double *a, int *bad, mt_err *err);
 /* X := op(L)^-1 X for n x nrhs X (left), L lower from mt_cholesky. */
 void mt_tri_solve(bool trans, int n, int nrhs, const double *l, double *x, int ldx);

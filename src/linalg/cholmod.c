@@ -21,7 +21,8 @@ static bool find(void *library, const char *name, void *function)
     return address != NULL;
 }
 
-/* What the loader says is a text alone; where memory is out, it ends in the system's words. */
+/* Status from the loader's text, the only report it gives; a lack of memory is recognised in
+ * it. */
 static mt_status failed(mt_err *err)
 {
     const char *const said = dlerror();

@@ -6,7 +6,7 @@
 
 #include "base/base.h"
 
-/* What is used of CHOLMOD; include/suitesparse/cholmod_core.h has the contracts. */
+/* The functions of CHOLMOD in use; include/suitesparse/cholmod_core.h has the contracts. */
 typedef struct mt_cholmod {
     int (*start)(cholmod_common *c);
     cholmod_factor *(*analyze)(cholmod_sparse *a, cholmod_common *c);
@@ -17,8 +17,8 @@ typedef struct mt_cholmod {
 } mt_cholmod;
 
 /**
- * The library, loaded when it is first asked for: with METIS and what else it needs it takes a
- * fifth of the time in which a program starts, and only large mechanisms ask. It stays loaded.
+ * Load the library at the first call: with METIS and its other dependencies that takes a fifth
+ * of the start-up time of the program, and only large mechanisms need it. It stays loaded.
  * Fails: MT_E_MEMORY; MT_E_INTERNAL where it is not installed.
  */
 mt_status mt_cholmod_load(mt_cholmod *cholmod, mt_err *err);

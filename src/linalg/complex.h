@@ -4,7 +4,7 @@
 
 #include <complex.h>
 
-/* re + i im: CMPLX of C11, which clang's view of the C library does not offer. */
+/* re + i im: CMPLX of C11, which clang does not offer with this C library. */
 static inline double complex mt_complex(double re, double im)
 {
     const union {
@@ -14,7 +14,7 @@ static inline double complex mt_complex(double re, double im)
     return u.z;
 }
 
-/* a b, both finite: without C's questions about infinities. */
+/* a b for finite a and b, without C's checks for infinities. */
 static inline double complex mt_times(double complex a, double complex b)
 {
     return mt_complex((creal(a) * creal(b)) - (cimag(a) * cimag(b)),

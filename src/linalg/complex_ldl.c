@@ -51,7 +51,7 @@ static void swap(double complex *x, double complex *y)
     *y = z;
 }
 
-/* Where in row i, from column k on and beside the diagonal, the largest entry stands. */
+/* Column of the largest off-diagonal entry in row i, from column k on. */
 static ptrdiff_t largest(ptrdiff_t n, double complex *a, ptrdiff_t i, ptrdiff_t k)
 {
     ptrdiff_t best = i == k ? k + 1 : k;
@@ -84,7 +84,8 @@ static ptrdiff_t choose(ptrdiff_t n, double complex *a, ptrdiff_t k, bool *pair)
     return row;
 }
 
-/* Rows and columns `to` and `from` > to of what is left from step k on. */
+/* Swap rows and columns `to` and `from` > to in the part that is not factored, from step k
+ * on. */
 static void interchange(ptrdiff_t n, double complex *a, ptrdiff_t k, ptrdiff_t to,
                         ptrdiff_t from)
 {

@@ -154,9 +154,10 @@ mt_status mt_eig_sym_values(int n, double *a, double *w, mt_arena *mem, mt_tridi
     return rc;
 }
 
-/* dstein makes vectors orthogonal whose eigenvalues lie within a thousandth of the norm of T;
- * beyond, they are it to eps times the norm over the distance, up to a thousand eps. What is
- * taken away changes the equation by that times the distance: by eps times the norm. */
+/* dstein orthogonalises vectors whose eigenvalues differ by less than a thousandth of the norm
+ * of T; other pairs are orthogonal to eps times the norm over their distance, up to a thousand
+ * eps. The correction changes the residual by its size times the distance: by eps times the
+ * norm. */
 static void make_orthogonal(int n, int count, double *z)
 {
     for (ptrdiff_t i = 0; i < count; i++) {

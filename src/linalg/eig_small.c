@@ -53,7 +53,8 @@ static void take_sorted(reduced *t, const double *a, int *place)
     }
 }
 
-/* x[n] becomes u with (I - u u^T / h) x = (0, ..., 0, *beside): h; 0: x is like that. */
+/* x[n] becomes u with (I - u u^T / h) x = (0, ..., 0, *beside); returns h, 0 where x has that
+ * form already. */
 static double reflect(int n, double *x, double *beside)
 {
     double others = 0.0;
@@ -176,7 +177,8 @@ static void rotate(int n, double c, double s, double *restrict low, double *rest
     }
 }
 
-/* The end of the block that begins at l: beside it T is zero to rounding. */
+/* The end of the block that begins at l, behind which the off-diagonal entry of T is zero to
+ * rounding. */
 static int block_end(const reduced *t, int l)
 {
     int m = l;

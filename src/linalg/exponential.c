@@ -85,7 +85,7 @@ static interval new_interval(size_t n, bool has_q, mt_arena *mem)
     return (interval){mt_arena_f64(mem, n, n), has_q ? mt_arena_f64(mem, n, n) : NULL};
 }
 
-/* to := twice the step `from`. */
+/* to := the step of twice the length of `from`. */
 static void double_up(int n, const interval *from, const interval *to, double *work[2])
 {
     const size_t n2 = (size_t)n * (size_t)n;

@@ -16,8 +16,8 @@
 
 #include "linalg/kernels.h"
 
-/* Columns of a block that are made together: products of a few dozen columns run as fast as
- * larger ones, and what of them is above the diagonal is little. */
+/* Columns of a block that are factored together: products of a few dozen columns run as fast as
+ * larger ones, and waste little above the diagonal. */
 enum { PANEL = 48 };
 /* The same where several columns are solved for. */
 enum { TRIANGLE = 32 };
@@ -55,8 +55,8 @@ static void wait_for(const making *m, int k)
     }
 }
 
-/* c times the entries of h into the blocks; an entry (i, j) stands in the column that comes
- * first. */
+/* Add c times the entries of h to the blocks; entry (i, j) is stored in the column that is
+ * first in the order of P. */
 static void scatter(const mt_factor_pattern *p, double c, const mt_lower *h, double *l)
 {
     for (int j = 0; j < h->n; j++) {
@@ -94,7 +94,8 @@ static void weigh_rows(int columns, int inner, const double *d, const double *l,
     }
 }
 
-/* Block s less what supernode k adds to it: the lower triangle, panel by panel of columns. */
+/* Subtract from block s the contribution of supernode k: the lower triangle, panel by panel of
+ * columns. */
 static void subtract(const making *m, int s, int k)
 {
     const mt_factor_pattern *const p = m->p;
@@ -153,8 +154,8 @@ static bool eliminate_square(int n, double *l, ptrdiff_t ld, double *d)
     return true;
 }
 
-/* Panel by panel: less what the block's columns before it add, then its own square, then the
- * rows below, B := B L^-T D^-1. */
+/* For each panel: subtract the contributions of the earlier columns of the block, factor its
+ * square, then compute the rows below, B := B L^-T D^-1. */
 static bool eliminate(const making *m, int s)
 {
     const mt_factor_pattern *const p = m->p;
@@ -186,7 +187,7 @@ static bool eliminate(const making *m, int s)
     return true;
 }
 
-/* Of each pivot |d_i| + sum |l_ik|^2 |d_k|: what its terms amount to without their signs. */
+/* For each pivot |d_i| + sum |l_ik|^2 |d_k|: the sum of the magnitudes of its terms. */
 static void judge(const making *m)
 {
     const mt_factor_pattern *const p = m->p;

@@ -67,8 +67,8 @@ static mt_status refused(const cholmod_common *c, mt_err *err)
                : mt_fail(err, MT_E_INTERNAL, "cholmod_analyze: status %d", c->status);
 }
 
-/* Rows of the parts that columns first .. end - 1 of h meet into row[], which met[] marks; how
- * many. row NULL: only counted. */
+/* Write to row[] the rows of the parts that columns first .. end - 1 of h couple to, marked in
+ * met[]; returns their number. row NULL: count only. */
 static int meet(const mt_lower *h, const int *part, int first, int end, int *met, int *row)
 {
     int count = 0;
@@ -86,8 +86,8 @@ static int meet(const mt_lower *h, const int *part, int first, int end, int *met
     return count;
 }
 
-/* Which parts have an entry in common: the pattern of h where all rows of a part are one. Rows
- * of a column as they are met, not in order. first[n_parts + 1]: rows of the parts. */
+/* Pattern of h by parts: an entry where two parts couple. Rows of a column are unsorted.
+ * first[n_parts + 1]: rows of the parts. */
 static mt_status join(const mt_lower *h, const int *part, int n_parts, const int *first,
                       mt_arena *mem, mt_lower *out, mt_err *err)
 {

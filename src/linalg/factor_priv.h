@@ -7,13 +7,13 @@
 struct mt_factor_pattern {
     int n;
     int n_super;
-    int *to;          /* [n] place of a row in the order of P */
-    int *first;       /* [n_super + 1] column where a supernode begins */
-    int *row_at;      /* [n_super + 1] of its rows in `row`, its own columns first */
+    int *to;          /* [n] index of a row in the order of P */
+    int *first;       /* [n_super + 1] first column of a supernode */
+    int *row_at;      /* [n_super + 1] start of its rows in `row`, its own columns first */
     int *row;         /* ascending, in the order of P */
-    ptrdiff_t *at;    /* [n_super + 1] of its block in l: rows x columns */
-    int *super_of;    /* [n] supernode of a column */
-    size_t most_rows; /* of a supernode */
+    ptrdiff_t *at;    /* [n_super + 1] start of its block in l: rows x columns */
+    int *super_of;    /* [n] supernode that has the column */
+    size_t most_rows; /* largest number of rows of a supernode */
     size_t most_columns;
 };
 

@@ -5,11 +5,11 @@
 #include "base/arena.h"
 
 /* Eigenvalues (*descending*, w[n]) and orthonormal eigenvectors (over A) of symmetric positive
- * definite A (lower read) in the accuracy of its grading: where A = D C D, D diagonal and C
- * well conditioned, all digits of all eigenvalues, and an entry of a vector that mixes two of
- * them is off by eps times the root of their quotient, not by eps times the quotient. Cholesky,
- * then Jacobi's method for the factor (dgejsv; Demmel and Veselic, SIAM J. Matrix Anal. 13).
- * Fails MT_E_NOT_SPD, as mt_svd_jacobi. */
+ * definite A (lower read) to the accuracy of its grading: for A = D C D, D diagonal and C well
+ * conditioned, all eigenvalues have all digits, and the entry of a vector that mixes two of
+ * them has an error of eps times the square root of their quotient, not eps times the quotient.
+ * Cholesky, then Jacobi's method on the factor (dgejsv; Demmel and Veselic, SIAM J. Matrix
+ * Anal. 13). Fails MT_E_NOT_SPD, or as mt_svd_jacobi. */
 mt_status mt_eig_graded(int n, double *a, double *w, mt_arena *scratch, mt_err *err);
 
 #endif

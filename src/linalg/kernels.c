@@ -84,7 +84,7 @@ double mt_max_abs(ptrdiff_t n, const double *x)
     return most;
 }
 
-/* 0 * x is 0 for a finite x and NaN for any other, so one sum answers without a branch. */
+/* 0 * x is 0 for finite x and NaN otherwise, so one sum checks all entries without a branch. */
 bool mt_all_finite(ptrdiff_t n, const double *x)
 {
     double sum = 0.0;

@@ -17,15 +17,15 @@ double mt_norm2(int n, const double *x);
 void mt_axpy(int n, double alpha, const double *x, double *y);
 /* Largest absolute entry; NaN if any entry is NaN. */
 double mt_max_abs(ptrdiff_t n, const double *x);
-/* Where the first entry of the largest size stands; n >= 1, finite. */
+/* Index of the first entry of largest magnitude; n >= 1, finite. */
 int mt_max_index(int n, const double *x);
 /* True where all n entries (of the lower triangle of an n x n matrix) are finite. */
 bool mt_all_finite(ptrdiff_t n, const double *x);
 bool mt_lower_finite(int n, const double *a);
 /* C := A B with symmetric A (n x n, lower read), B and C n x nrhs. */
 void mt_symm(int n, int nrhs, const double *a, const double *b, double *c);
-/* V := V Q in place, V n x m and Q m x count, count <= m; column k of Q stands at q + k step;
- * row: room for m. */
+/* V := V Q in place, V n x m and Q m x count, count <= m; column k of Q starts at q + k step;
+ * row: work [m]. */
 void mt_turn_columns(ptrdiff_t n, int m, int count, const double *q, ptrdiff_t step, double *v,
                      double *row);
 /* B := A^T, A m x n, B n x m. */

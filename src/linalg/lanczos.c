@@ -65,8 +65,8 @@ static double norm(const iteration *it, const double *w)
                           : sqrt(fmax(mt_dot(it->p->n, w, weigh(it, w)), 0.0));
 }
 
-/* w := w - V V^T M w of the first j columns, locked vectors included; the coefficients of V are
- * added to h[j]. */
+/* w := w - V V^T M w for the first j columns of V, locked vectors included; adds the
+ * coefficients to h[j]. */
 static void orthogonalise(const iteration *it, int j, double *w, double *h)
 {
     const int n = it->p->n;
@@ -92,7 +92,8 @@ static mt_status check_finite(double size, mt_err *err)
                : mt_fail(err, MT_E_DOMAIN, "a vector of Lanczos' method is not finite");
 }
 
-/* w as column j of V, of size one; false: of its size `whole` as much as `none` is left. */
+/* Append w as column j of V with size one; false where the part that is left, `none`, is too
+ * small beside its size `whole`. */
 static bool append(iteration *it, int j, const double *w, double whole, double none,
                    double *size)
 {
@@ -105,11 +106,11 @@ static bool append(iteration *it, int j, const double *w, double whole, double n
     return is;
 }
 
-/* Unit vectors of their own directions, orthogonal to the first j, as the next `count` of V;
- * width: how many there are. No direction is of another iteration, of another seed: of a
- * repeated eigenvalue each gives but one vector for each column, which then is locked. Where M
- * may be blind, the vectors are ones that A made: what M does not see of it would stay in all
- * that follow (Nour-Omid, Parlett, Ericsson and Jensen, Math. Comp. 48, 1987). */
+/* Append up to `count` random unit vectors, orthogonal to the first j columns, to V; width:
+ * their number. Every iteration uses another seed: each gives only one vector of a repeated
+ * eigenvalue per column, which is then locked. With a semidefinite M the vectors are products
+ * with A: components that M does not see would remain in all later ones (Nour-Omid, Parlett,
+ * Ericsson and Jensen, Math. Comp. 48, 1987). */
 static mt_status fresh(iteration *it, int j, int count, mt_err *err)
 {
     const ptrdiff_t n = it->p->n;
@@ -279,7 +280,7 @@ static mt_status init(iteration *it, mt_err *err)
     return mt_arena_check(it->mem, err);
 }
 
-/* Whether to look at the Ritz pairs: every few columns. */
+/* True every few columns, where the Ritz pairs are examined. */
 static bool is_time(const iteration *it, int before)
 {
     const int over = it->j - it->p->wanted;

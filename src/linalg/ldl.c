@@ -62,7 +62,7 @@ static void enter(front *w, const mt_envelope *p, const double *value, int row)
     }
 }
 
-/* The last row takes the place of one that leaves. */
+/* Remove a row; the last row takes its place. */
 static void leave(front *w, int at)
 {
     const int from = --w->n;
@@ -81,7 +81,7 @@ static void leave(front *w, int at)
     }
 }
 
-/* fmax of C asks for NaN, and took a tenth of a factorisation. */
+/* Without the NaN rules of fmax, which took a tenth of a factorisation. */
 static double larger(double most, double x)
 {
     return fabs(x) > most ? fabs(x) : most;
@@ -166,7 +166,7 @@ static void keep(const front *w, int c, int r, const double d[3], mt_arena *mem,
     }
 }
 
-/* What multiply found is done. */
+/* Subtract the pivot's contribution, computed by multiply, from the front. */
 static void eliminate(front *w, int c, int r, const double d[3], mt_arena *mem, mt_ldl *out)
 {
     const double *const x = column(w, c);
@@ -190,8 +190,8 @@ static void eliminate(front *w, int c, int r, const double d[3], mt_arena *mem, 
     }
 }
 
-/* Eliminate the whole row c where that is stable: alone, or with the whole row that it is
- * coupled with most. */
+/* Eliminate the whole row c where that is stable: alone, or with the whole row of its largest
+ * entry. */
 static bool try_pivot(front *w, int c, double tol, mt_arena *mem, mt_ldl *out)
 {
     double d[3] = {0.0, 0.0, 0.0};
@@ -219,7 +219,7 @@ static void try_all(front *w, double tol, mt_arena *mem, mt_ldl *out)
     }
 }
 
-/* The last front, by its largest entries. */
+/* Eliminate the last front, by its largest entries. */
 static void finish(front *w, double tol, mt_arena *mem, mt_ldl *out)
 {
     for (;;) {

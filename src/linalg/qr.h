@@ -6,9 +6,8 @@
 
 #include "base/arena.h"
 
-/* QR with column pivoting of m x n A: A P = Q R. Rank is decided against tol * |R(0,0)|: the
- * first diagonal entry at or below it ends the rank (the entries never grow). A zero matrix has
- * rank 0. dgeqp3. */
+/* QR with column pivoting of m x n A: A P = Q R. The rank ends at the first diagonal entry of R
+ * at or below tol |R(0,0)| (the entries never grow). A zero matrix has rank 0. dgeqp3. */
 typedef struct mt_qr {
     int m;
     int n;
@@ -25,8 +24,8 @@ mt_status mt_qr_factor(int m, int n, const double *a, int lda, double tol, mt_ar
 /* X := Q X or (trans) Q^T X, X m x nrhs. */
 mt_status mt_qr_apply_q(const mt_qr *f, bool trans, int nrhs, double *x, mt_arena *scratch,
                         mt_err *err);
-/* Q (m x m) or only columns from..m-1 of it, m x (m - from), into q (ld m). from = rank gives
- * an orthonormal basis of the orthogonal complement of range(A). */
+/* Columns from .. m - 1 of Q (m x m), m x (m - from), into q (ld m). from = rank gives an
+ * orthonormal basis of the orthogonal complement of range(A). */
 mt_status mt_qr_q(const mt_qr *f, int from, double *q, mt_arena *scratch, mt_err *err);
 /* Minimum-residual basic solution of A x ~ b using the leading rank columns (other entries 0):
  * x [n x nrhs], b [m x nrhs] (unchanged). */

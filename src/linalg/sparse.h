@@ -7,8 +7,8 @@
 #include "base/arena.h"
 
 /*
- * Sparse rows: of each row the entries that are not 0, by ascending index. Entries of row i are
- * start[i] .. start[i + 1] - 1; a row without any is 0.
+ * Sparse rows: the nonzero entries of each row by ascending index. Entries of row i are
+ * start[i] .. start[i + 1] - 1; an empty row is 0.
  */
 typedef struct mt_rows {
     int n_rows;
@@ -23,8 +23,8 @@ typedef struct mt_squares {
     const double *c; /* [row.n_rows] */
 } mt_squares;
 
-/* Room for n_rows rows of at most `most` entries in all; then mt_rows_push and mt_rows_end for
- * one row after the other. A failure is the arena's. */
+/* Allocate n_rows rows of at most `most` entries in all; then call mt_rows_push for the entries
+ * of each row and mt_rows_end after it. A failure is the arena's. */
 void mt_rows_begin(mt_rows *s, int n_rows, size_t most, mt_arena *mem);
 
 static inline void mt_rows_push(mt_rows *s, int row, int index, double value)
@@ -34,7 +34,7 @@ static inline void mt_rows_push(mt_rows *s, int row, int index, double value)
     s->value[at] = value;
 }
 
-/* Row `row` is whole. */
+/* Ends row `row`. */
 static inline void mt_rows_end(mt_rows *s, int row)
 {
     if (row + 1 < s->n_rows) {
@@ -56,7 +56,7 @@ static inline double mt_rows_dot(const mt_rows *s, int row, const double *x)
     return sum;
 }
 
-/* The same; *size: the sum of the magnitudes of its terms. */
+/* mt_rows_dot; *size: the sum of the magnitudes of its terms. */
 static inline double mt_rows_dot_size(const mt_rows *s, int row, const double *x, double *size)
 {
     double sum = 0.0;
@@ -69,7 +69,7 @@ static inline double mt_rows_dot_size(const mt_rows *s, int row, const double *x
     return sum;
 }
 
-/* y += alpha times the row. */
+/* y += alpha times row `row`. */
 static inline void mt_rows_axpy(const mt_rows *s, int row, double alpha, double *y)
 {
     for (int k = s->start[row]; k < s->start[row + 1]; k++) {
@@ -79,7 +79,7 @@ static inline void mt_rows_axpy(const mt_rows *s, int row, double alpha, double 
 
 /* The n columns of a as rows. A failure is the arena's. */
 void mt_rows_transpose(const mt_rows *a, int n, mt_arena *mem, mt_rows *out);
-/* The columns of a dense matrix, n x count, as so many rows. A failure is the arena's. */
+/* The columns of a dense matrix, n x count, as `count` rows. A failure is the arena's. */
 void mt_rows_of_columns(int n, int count, const double *dense, mt_arena *mem, mt_rows *out);
 /* out (n x n, lower triangle) += c a a^T of row a. */
 void mt_rows_square(const mt_rows *s, int a, double c, int n, double *out);

@@ -9,8 +9,8 @@
 mt_status mt_svd(int m, int n, double *a, double *s, double *u, double *vt, mt_arena *scratch,
                  mt_err *err);
 /* Singular values and right vectors (m x n A with m >= n; V n x n or NULL) to high *relative*
- * accuracy for A = D C with D diagonal and C well conditioned, however graded: one-sided Jacobi
- * (dgejsv with row pivoting; Drmac and Veselic). Values descending. A destroyed. Fails
+ * accuracy for A = D C with any diagonal D and well conditioned C: one-sided Jacobi (dgejsv
+ * with row pivoting; Drmac and Veselic). Values descending. A destroyed. Fails
  * MT_E_NO_CONVERGENCE. */
 mt_status mt_svd_jacobi(int m, int n, double *a, double *s, double *v, mt_arena *scratch,
                         mt_err *err);

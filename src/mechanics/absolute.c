@@ -92,7 +92,7 @@ static mt_status group(groups *g, mt_arena *mem, mt_arena *scratch, mt_err *err)
     return MT_OK;
 }
 
-/* To each body from the one that it moves with. */
+/* Vector to each body from the first body of its group. */
 static mt_status measure_arms(groups *g, mt_arena *mem, mt_err *err)
 {
     g->arm = mt_arena_f64(mem, 3, (size_t)g->sys->n_bodies);
@@ -219,7 +219,7 @@ bool mt_absolute_holds_already(const mt_absolute *o, int i)
     return mt_absolute_together(o, body, 2 * c->terms);
 }
 
-/* Rows of the constraints' Jacobian; *closed: they hold as drawn. */
+/* Rows of the constraints' Jacobian; *closed: they hold in the drawn position. */
 static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt_arena *mem,
                            mt_arena *scratch, bool *closed, char *why, mt_err *err)
 {
@@ -256,7 +256,7 @@ static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt
     return MT_OK;
 }
 
-/* The unit of each state, and what weighs in the direction of x. */
+/* The unit of each state, and the total mass, from the motion along x. */
 static mt_status measure(mt_absolute *o, const groups *g, mt_arena *mem, mt_arena *scratch,
                          mt_err *err)
 {

@@ -109,7 +109,7 @@ static void add_turning(const double *f, const double *r, int first, patch *p)
     }
 }
 
-/* Where its coordinates are, and c times the measure's derivatives by the states there are. */
+/* Fill p with its coordinates, and c times the measure's derivatives by their states. */
 static void fill_patch(const work *w, const int body[2], double c, const mt_jet *jet, patch *p)
 {
     const mt_absolute *const o = w->o;
@@ -175,7 +175,7 @@ static void make_patch(const work *w, const int body[2], double c, const mt_jet 
     }
 }
 
-/* open: of what the entries' sizes are made of. */
+/* Add the entries of p. open: relative error of their terms. */
 static void add_entries(work *w, double open, const patch *p)
 {
     for (int k = 0; k < L; k++) {
@@ -321,9 +321,9 @@ static bool add_gradient(void *context, const int body[2], double c, double nois
 }
 
 /*
- * Positions are rounded, and what rounding makes of a stiff spring's force may be far above
- * that of the forces themselves: the step that Newton's method did not take goes from there to
- * where they balance. What a second one from there would add tells how well that is known.
+ * Rounding of positions may change a stiff spring's force by far more than the rounding of the
+ * forces themselves: Newton's step that was not taken leads to the balance. A second step
+ * estimates the error of the first.
  */
 static mt_status balance(work *w, mt_arena *scratch, mt_err *err)
 {
@@ -361,7 +361,7 @@ static mt_status open_at(work *w, const double *inputs, mt_arena *scratch, mt_er
     return settled == NULL ? MT_OK : balance(w, scratch, err);
 }
 
-/* Of loads and springs. */
+/* Add the forces of loads and springs. */
 static void add_forces(work *w)
 {
     if (w->o->settled == NULL) {
@@ -386,7 +386,7 @@ mt_status mt_absolute_forces(const mt_absolute *o, const double *inputs, double 
     return MT_OK;
 }
 
-/* Whether the forces of loads and joints balance. */
+/* True where the forces of loads and joints balance. */
 static bool is_at_rest(const work *w, char *why)
 {
     const mt_system *const sys = w->o->sys;

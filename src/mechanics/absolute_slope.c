@@ -43,7 +43,8 @@ typedef struct work {
     double *trim;   /* [nq] work */
 } work;
 
-/* phi[nq] := the motion of the bodies' groups, or what other arms make of it alone. */
+/* phi[nq] := the motion of the bodies' groups; without `whole` only the part of the given
+ * arms. */
 static void expand(const mt_absolute *o, const double *x, const double *arm, bool whole,
                    double *phi)
 {
@@ -210,7 +211,7 @@ static void equations(work *w, bool slope)
                        w->o->sys->n_constraints, NULL, MT_CURVATURE_NONE, &l);
 }
 
-/* Whether the joints stay closed as drawn. */
+/* True where the joints stay closed in the drawn position. */
 static bool stays_closed(const work *w)
 {
     const mt_system *const sys = w->o->sys;

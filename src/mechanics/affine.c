@@ -63,7 +63,7 @@ static bool is_steady(const mt_affine *a, int body, const double s[3])
     return !body_turns(a, body) || is_parallel(s, a->body[body].axis);
 }
 
-/* Whether the part along the steady vector u of a body's vector s is steady. */
+/* True where the component of a body's vector s along the constant vector u is constant. */
 static bool is_steady_along(const mt_affine *a, int body, const double s[3], const double u[3])
 {
     return is_steady(a, body, s) || is_parallel(u, a->body[body].axis);
@@ -81,7 +81,8 @@ static void relative_way(const mt_linear *lin, const mt_affine *a, const int bod
     }
 }
 
-/* Whether the centres keep their distance vector, or (along not NULL) change it along that. */
+/* True where the vector between the centres is constant, or (along not NULL) changes along that
+ * direction only. */
 static bool moves_along(const mt_linear *lin, const mt_affine *a, const int body[2],
                         const double *along)
 {
@@ -199,7 +200,7 @@ static bool is_affine(const mt_linear *lin, const mt_affine *a, const mt_measure
     return false;
 }
 
-/* What y turns body b with: *fixed false where that is no one axis. */
+/* Axis about which y rotates body b; *fixed false where there is more than one. */
 static void find_axis(const mt_linear *lin, const mt_affine *a, int b, bool *fixed)
 {
     mt_affine_body *const out = &a->body[b];

@@ -64,7 +64,7 @@ static int compare_vecs(const void *context, const void *key, int i)
     return 0;
 }
 
-/* The vector, which is made where there is none like it. */
+/* Index of the vector, added where there is no equal one. */
 static int add_vec(mt_builder *b, const mt_vec_def *def)
 {
     mt_system *const sys = b->sys;

@@ -5,8 +5,8 @@
 #include "base/sorted.h"
 #include "mechanics/system.h"
 
-/* What the files build_*.c share while a system is made. A shortage is remembered by the arena
- * of the system, which is asked at the end. */
+/* Shared by the files build_*.c while a system is made. A shortage is kept in the arena of the
+ * system, which is checked at the end. */
 typedef struct mt_builder {
     mt_system *sys;
     const mt_model *model;
@@ -39,18 +39,18 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
 void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
 void mt_build_load(mt_builder *b, const mt_load_def *def);
 void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
-/* A uniform thin rod between two points: its velocity is linear along it, so that the
- * consistent mass m/6 [2 I, I; I, 2 I] is exact, stretched or rigid, and half its weight at
- * each end too. */
+/* A uniform thin rod between two points: its velocity is linear along it, so the consistent
+ * mass m/6 [2 I, I; I, 2 I] is exact, elastic or rigid, and so is half its weight at each
+ * end. */
 void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node mass, int item);
 int mt_build_item(mt_builder *b, const char *name, mt_node mass);
 const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
-/* State body that an attachment means; false where it is absent in this configuration.
- * MT_GROUND for the ground. */
+/* State body of an attachment, MT_GROUND for the ground; false where it is absent in this
+ * configuration. */
 bool mt_build_attach(mt_builder *b, const mt_attach *a, int *body);
 mt_measure_def mt_measure_def_default(mt_measure_kind kind, int body_a, int body_b);
-/* Coordinate of the joint, or of the hinge of a link, that stands in the model under these
- * indices (MT_ABSENT: not that); -1: it is not in this configuration or has none. */
+/* Coordinate of a joint, or of a hinge of a link, given by its indices in the model (MT_ABSENT:
+ * the other one); -1: absent in this configuration, or without a coordinate. */
 int mt_build_find_coordinate(const mt_builder *b, int joint, int link, int hinge, bool angle);
 /* The node of a loss factor; MT_NO_NODE where it is absent or the constant 0. */
 mt_node mt_build_loss(mt_builder *b, mt_num loss_factor);
@@ -59,7 +59,7 @@ int mt_build_angle(mt_builder *b, int body_a, int body_b, int axis);
 
 mt_status mt_build_bodies(mt_builder *b);
 mt_status mt_build_links(mt_builder *b);
-/* Where node `node` of a link lies. */
+/* Position of node `node` of a link. */
 void mt_build_link_node(mt_builder *b, int link, int node, mt_node out[3]);
 mt_status mt_build_joints(mt_builder *b);
 mt_status mt_build_springs(mt_builder *b);
@@ -67,10 +67,10 @@ mt_status mt_build_loads(mt_builder *b);
 mt_status mt_build_sensors(mt_builder *b, const double *original);
 mt_status mt_build_drive(mt_builder *b);
 void mt_build_damping(mt_builder *b);
-/* shape, forces and geometry_fixed of a system whose program is finished
- * (build_inputs.c). A failure is the arena's. */
+/* Fill shape, forces and geometry_fixed of a system whose program is finished (build_inputs.c).
+ * A failure is the arena's. */
 void mt_build_inputs(mt_system *sys);
-/* Equations of one joint between bodies at arms; used by joints and hinges. */
+/* Equations of one joint between bodies at arms; for joints and hinges. */
 void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[2],
                               const int arm[2], const int axis[2], mt_node length);
 

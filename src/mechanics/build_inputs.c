@@ -3,8 +3,8 @@
 
 #include "mechanics/build.h"
 
-/* All numbers that shape the geometry of stiffness and mass: vectors, joints, drive, what is
- * cut out of a beam. */
+/* Add all inputs of the geometry of stiffness and mass: vectors, joints, drive, sections of
+ * beams. */
 static void include_frame(const mt_system *sys, uint64_t *set)
 {
     const mt_program *const p = &sys->program;

@@ -14,7 +14,7 @@ static mt_status absent(mt_builder *b, const mt_load *load)
                    b->model->configurations[b->sys->configuration].name.s);
 }
 
-/* Where it acts: as given, at the end or node of a link, or at the centre (-1). */
+/* Point of the load: as given, at the end or node of a link, or at the centre (-1). */
 static int point_of(mt_builder *b, const mt_load *load, int body)
 {
     mt_node at[3];

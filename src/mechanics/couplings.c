@@ -98,8 +98,8 @@ static bool gather(const mt_linear *lin, int first, int end, group *g)
     return true;
 }
 
-/* C to unit diagonal; false where a diagonal entry is negative or a coupling stands beside one
- * that is 0. */
+/* Scale C to unit diagonal; false where a diagonal entry is negative, or is 0 with a coupling
+ * in its row. */
 static bool scale(group *g)
 {
     for (int a = 0; a < g->n; a++) {
@@ -148,7 +148,7 @@ static void take_pivot(group *g, int at, bool *used)
     g->rank++;
 }
 
-/* False where what is left is not positive. */
+/* False where the remaining matrix is not positive definite. */
 static bool factor(group *g)
 {
     const double tol = PIVOT_ULPS * DBL_EPSILON;

@@ -4,8 +4,8 @@
 
 #include "mechanics/linear.h"
 
-/* Whether the spring that a term of K comes from couples its measures (a bushing's matrix), and
- * whether any of its terms depends on an input. */
+/* Coupling of the spring of a term of K: none; its matrix (a bushing's) couples its measures;
+ * and some of its terms depend on an input. */
 typedef enum mt_coupling {
     MT_COUPLING_NONE,
     MT_COUPLING_WHOLE,
@@ -15,13 +15,13 @@ typedef enum mt_coupling {
 /* coupling[n_terms] of the stiffness terms. */
 void mt_couplings_find(const mt_linear *lin, mt_coupling *coupling);
 /*
- * The terms `first` .. `end` - 1 of one such spring as a sum of squares at the present values:
- * rows of factor_b (with factor_noise) and factor_c from the first row of the spring on, 0 in
- * the rows beyond. False, and the rows are those of the measures, where they are none: an
- * indefinite matrix. O(6 n).
+ * Terms `first` .. `end` - 1 of one coupled spring as a sum of squares at the present values:
+ * fills factor_b (with factor_noise) and factor_c from the first row of the spring on, 0 in the
+ * remaining rows. False for an indefinite matrix; the rows are then those of the measures. O(6
+ * n).
  */
 bool mt_couplings_square(mt_linear *lin, int first, int end);
-/* k (n x n, lower) += what stands in the rows of term t after that. */
+/* k (n x n, lower) += the squares of the spring's rows of term t, after mt_couplings_square. */
 void mt_couplings_add(const mt_linear *lin, const mt_term *t, double *k);
 /* End of the spring that begins with term `first`. */
 int mt_couplings_end(const mt_linear *lin, int first);

@@ -5,10 +5,9 @@
 #include "mechanics/lagrangian.h"
 
 /*
- * Sum of the Hessians of measures that lie between the same two bodies, one after the other (a
- * joint's equations, a bushing's directions, a beam element's strains), by relative position;
- * it goes to the Hessian of all states when the next is of other bodies, and at last with
- * mt_curvature_flush.
+ * Sum of the Hessians of consecutive measures between the same two bodies (a joint's equations,
+ * a bushing's directions, a beam element's strains), by relative position; it is added to the
+ * Hessian of all states when the bodies change, and finally by mt_curvature_flush.
  */
 typedef struct mt_curvature_sum {
     mt_lagrangian *out;
@@ -25,7 +24,7 @@ void mt_curvature_begin(mt_curvature_sum *s, const mt_system *sys, mt_lagrangian
 void mt_curvature_add(mt_curvature_sum *s, const int body[2], const mt_relative_jet *a,
                       const mt_relative_jet *b, mt_cx scale, mt_cx outer);
 void mt_curvature_flush(mt_curvature_sum *s);
-/* Entry of the Hessian of all states += value; where that is sparse, of its lower triangle. */
+/* Entry of the Hessian of all states += value; of a sparse one, the lower triangle only. */
 void mt_curvature_add_entry(mt_lagrangian *out, int nq, int r, int c, double value);
 
 #endif

@@ -9,18 +9,18 @@
 
 /*
  * Complex-step arithmetic. All geometry kernels are written once, analytically, in complex
- * numbers: a real number x travels as x, a number with a derivative x' (with respect to
- * whatever is being differentiated) as x + i h x' with h = 2^-300. Then the real part of a
- * result is its value and imag/h its derivative, exact to rounding: the next term of the series
- * is h^2 = 2^-600 smaller and nothing is subtracted (Squire and Trapp, SIAM Review 40 (1998)
- * 110-112). h is a power of two, so scaling by it rounds nothing. Only analytic operations may
- * be used: no cabs, no conj, no comparison of anything but real parts.
+ * numbers: a real number x is passed as x, a number with derivative x' (by any variable) as x +
+ * i h x' with h = 2^-300. The real part of a result is then its value and imag/h its
+ * derivative, exact to rounding: the next term of the series is h^2 = 2^-600 smaller and
+ * nothing is subtracted (Squire and Trapp, SIAM Review 40 (1998) 110-112). h is a power of two,
+ * so scaling by it is exact. Only analytic operations are allowed: no cabs, no conj, no
+ * comparison of anything but real parts.
  */
 typedef double complex mt_cx;
 
 #define MT_CX_STEP 0x1p-300
 
-/* CMPLX of C11, which clang's view of the C library does not offer. */
+/* CMPLX of C11, which clang does not offer with this C library. */
 static inline mt_cx cx_pair(double re, double im)
 {
     const union {
@@ -47,9 +47,9 @@ static inline mt_cx cx_mul(mt_cx a, mt_cx b)
                    (creal(a) * cimag(b)) + (cimag(a) * creal(b)));
 }
 
-/* Where geometry degenerates (a hinge without a direction, the angle of nothing) a kernel has
- * no value and no derivative: infinite and NaN say so, and equations and derivatives are looked
- * at before anybody counts on them. */
+/* Where geometry degenerates (a hinge without a direction, the angle of a zero vector) a kernel
+ * returns infinite and NaN values and derivatives; equations and derivatives are checked before
+ * they are used. */
 
 /* The imaginary part of a divisor is h times its derivative, so |b|^2 = (re b)^2 to the last
  * bit. */
@@ -91,12 +91,12 @@ static inline void cx_cross3(const mt_cx *a, const mt_cx *b, mt_cx *out)
     out[2] = z;
 }
 
-/* Squares of components between 2^-400 and 2^400 and their sums neither vanish nor overflow,
- * nor do derivatives. */
+/* Squares of components between 2^-400 and 2^400, their sums and their derivatives neither
+ * under- nor overflow. */
 #define MT_CX_SAFE 0x1p400
 
-/* The power of two by which the components of v are divided before they are squared: 1 unless
- * they are very small or very great. */
+/* Exponent of the power of two by which the components of v are divided before they are
+ * squared: 0 unless they are very small or very large. */
 static inline int cx_exponent3(const mt_cx *v)
 {
     const double largest = fmax(fmax(fabs(creal(v[0])), fabs(creal(v[1]))), fabs(creal(v[2])));
@@ -113,7 +113,7 @@ static inline mt_cx cx_scale(mt_cx a, int exponent)
     return exponent == 0 ? a : cx_pair(ldexp(creal(a), exponent), ldexp(cimag(a), exponent));
 }
 
-/* |v|; no component is too small or too great for it. */
+/* |v| for components of any size. */
 static inline mt_cx cx_norm3(const mt_cx *v)
 {
     const int e = cx_exponent3(v);
@@ -121,7 +121,7 @@ static inline mt_cx cx_norm3(const mt_cx *v)
     return cx_scale(cx_sqrt(cx_dot3(w, w)), e);
 }
 
-/* v /= |v|, likewise; NaN where |v| is 0. */
+/* v /= |v| for components of any size; NaN where |v| is 0. */
 static inline void cx_unit3(mt_cx *v)
 {
     const int e = cx_exponent3(v);

@@ -138,7 +138,7 @@ static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, m
     return MT_OK;
 }
 
-/* The first m equations where the walk stands. */
+/* The first m equations at the current position. */
 static mt_newton_problem problem_here(const walk *w, int m)
 {
     return (mt_newton_problem){
@@ -171,7 +171,8 @@ static const double *gradients(walk *w, const mt_placement *at)
     return w->equations.a;
 }
 
-/* e: the elimination where the walk stands; NULL: the equations are independent. */
+/* Set the branch to the current position. e: its elimination; NULL: the equations are
+ * independent. */
 static void stand(walk *w, const mt_elimination *e)
 {
     if (w->branch.most > 0) {
@@ -194,8 +195,8 @@ static mt_status relax_dense(walk *w, mt_newton_work *work, mt_err *err)
     return w->held ? MT_OK : relax(w, work, &e, err);
 }
 
-/* dq/ds where the walk stands, and its size in model lengths per unit of the coordinate. Held:
- * the old rate stays. */
+/* dq/ds at the current position, and its size in model lengths per unit of the coordinate.
+ * Held: the old rate is kept. */
 static mt_status find_rate(walk *w, double *size, mt_err *err)
 {
     const mt_system *const sys = w->sys;
@@ -262,7 +263,7 @@ static mt_status try_step(walk *w, double to, double length, bool *good, bool *t
     return MT_OK;
 }
 
-/* Where a step towards the goal ends: no crumb is left for the last. */
+/* End of a step towards the goal, without a tiny last step. */
 static double step_end(const walk *w, double step)
 {
     const double way = w->goal - w->at->drive;
@@ -291,8 +292,8 @@ static void note_turned(walk *w, double to)
     }
 }
 
-/* Where branches meet no step but a long one leads over, and both sides look like one straight
- * line: the first that did is taken. */
+/* Where branches meet only a long step passes, and both sides look like one straight line: the
+ * first step that passed is taken. */
 static void go_straight(walk *w)
 {
     take(w, w->beyond.pose, w->beyond.to);
@@ -307,8 +308,8 @@ static double next_growth(const walk *w, double part)
     return straight ? fmin(w->growth * by, most) : 1.0;
 }
 
-/* One step of at most *h towards the goal, halved until it holds. *h: what to try next; 0: no
- * step holds. */
+/* One step of at most *h towards the goal, halved until it succeeds. *h: the next step to try;
+ * 0: no step succeeds. */
 static mt_status advance(walk *w, double *h, mt_err *err)
 {
     const mt_system *const sys = w->sys;

@@ -18,7 +18,7 @@ bool mt_piece_is_angle(const mt_measure_def *def)
             !is_chord(def));
 }
 
-/* Largest coordinate of the two bodies: what rounding of their positions is relative to. */
+/* Largest coordinate of the two bodies, the scale of the rounding of their positions. */
 static double extent_of(const mt_pose *poses, const int body[2])
 {
     double extent = 0.0;

@@ -4,7 +4,7 @@
 
 #include "mechanics/data.h"
 
-/* The forces at work at a position, one by one, and what rounding makes of their measures. */
+/* The forces at a position, one by one, and the rounding errors of their measures. */
 
 /* One force and the curvature of its work: gradient and Hessian of its measure over the
  * freedoms dof (-1: none). */
@@ -12,17 +12,17 @@ typedef struct mt_piece {
     int dof[MT_LOCAL];
     double g[MT_LOCAL];
     double h[MT_LOCAL * MT_LOCAL];
-    double force; /* Kg is the sum of these times h */
-    double size;  /* of the force, for its rounding */
-    /* of a spring: what its force grows by with the measure of the piece `partner` from here
-     * (0: its own; half of the spring's stiffness where it couples two); else 0 */
+    double force; /* Kg is the sum of force h */
+    double size;  /* magnitude of the terms of the force, for its rounding */
+    /* of a spring: derivative of its force by the measure of the piece at offset `partner` (0:
+     * its own; half of the spring's stiffness where it couples two); otherwise 0 */
     double stiffness;
     int partner;
     bool trimmed;  /* the force is an unknown, whatever its stiffness */
-    int equation;  /* whose multiplier the force is; -1: none */
-    double factor; /* of the measure in it */
-    /* what rounding of positions may make of the measure less its rest value, both rounded
-     * alike where nothing has moved */
+    int equation;  /* equation whose multiplier the force is; -1: none */
+    double factor; /* coefficient of the measure in it */
+    /* rounding error of the measure less its rest value, from rounded positions; both are
+     * rounded alike where nothing has moved */
     double roundness;
 } mt_piece;
 
@@ -32,20 +32,20 @@ static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
     const int b = body[k / 6];
     return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
 }
-/* What a motion of the states makes of a measure with this jet. */
+/* Change of a measure with this jet along a motion of the states. */
 double mt_jet_along(const mt_system *sys, const int body[2], const mt_jet *jet,
                     const double *motion);
 /* True for an angle or a cosine, false for a length. */
 bool mt_piece_is_angle(const mt_measure_def *def);
-/* What rounding makes of a measure: positions are known to eps of the coordinates that they are
- * the difference of, angles to eps, the slope of a beam element's chord to eps of the
- * coordinates over its length. */
+/* Rounding error of a measure: positions are known to eps of the coordinates that they are the
+ * difference of, angles to eps, the slope of a beam element's chord to eps of the coordinates
+ * over its length. */
 double mt_piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_pose *poses);
-/* Whether the bodies of a measure stand where they do in `rest`, to the bit. */
+/* True where the bodies of a measure have the same poses as in `rest`, to the bit. */
 bool mt_piece_is_still(const mt_measure_def *def, const mt_pose *poses, const mt_pose *rest);
-/* A piece with this jet, of no spring or equation yet. terms (nq x nq) += size |jet.h|, and
- * force times the coordinates' size: two lengths that cancel in an entry between rotations have
- * been the difference of coordinates. */
+/* Fill a piece with this jet; spring and equation are set later. terms (nq x nq) += size
+ * |jet.h|, and force times the coordinates' size: lengths that cancel in an entry between
+ * rotations are differences of coordinates. */
 void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                    const mt_jet *jet, const double size_force[2], double *terms, mt_piece *out);
 

@@ -25,7 +25,7 @@ typedef struct mt_elimination {
 /* a: m x nq column-major. Results in mem. */
 mt_status mt_eliminate(const mt_system *sys, int m, const double *a, mt_arena *mem,
                        mt_elimination *out, mt_err *err);
-/* Its parts: all but z; the orthonormal basis into e->z (nq x n, which is there). */
+/* Parts of mt_eliminate: all but z; the orthonormal basis into e->z (nq x n, allocated). */
 mt_status mt_eliminate_factor(const mt_system *sys, int m, const double *a, mt_arena *mem,
                               mt_elimination *out, mt_err *err);
 mt_status mt_eliminate_basis(mt_elimination *e, mt_arena *scratch, mt_err *err);
@@ -38,12 +38,12 @@ mt_status mt_eliminate_multipliers(const mt_elimination *e, const double *g, dou
 /* out = Z^T g; out = Z y. */
 void mt_eliminate_project(const mt_elimination *e, const double *g, double *out);
 void mt_eliminate_expand(const mt_elimination *e, const double *y, double *out);
-/* Left null vector k of A (k < m - rank): combination of equations that is empty, w[m], in
+/* Left null vector k of A (k < m - rank): a combination of equations that vanishes, w[m], in
  * equilibrated rows, largest entry 1. */
 mt_status mt_eliminate_left_null(const mt_elimination *e, int k, double *w, mt_arena *scratch,
                                  mt_err *err);
-/* The same where only the first `rank` pivoted equations count as independent: the combination
- * is then as small as the rest of R. */
+/* The same with only the first `rank` pivoted equations as independent: the combination is then
+ * as small as the rest of R. */
 mt_status mt_eliminate_left_vector(const mt_elimination *e, int rank, int k, double *w,
                                    mt_arena *scratch, mt_err *err);
 

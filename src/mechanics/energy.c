@@ -77,7 +77,7 @@ static inline elongation row_part(const worker *w, int kind, int row, const doub
     return out;
 }
 
-/* Springs of one item of the model stand together. */
+/* Item of a term; springs of one item of the model are consecutive. */
 static int item_of(const mt_linear *lin, int kind, const mt_term *t)
 {
     return kind == MT_TERM_STIFFNESS ? lin->sys->springs[t->source].item : t->source;
@@ -114,8 +114,8 @@ static inline void add_square(double c, const elongation *a, bool moves, sums *o
     out->size += moves ? fabs(energy) : 0.0;
 }
 
-/* Returns whether the energy of the term is more than rounding of what its row, without the
- * signs, would have. */
+/* Add a term; true where its energy exceeds the rounding of its row's terms taken without
+ * signs. */
 static bool add_term(const worker *k, int kind, const mt_term *t, const double *phi, sums *out)
 {
     const mt_linear *const lin = k->lin;
@@ -141,8 +141,8 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
     return moves;
 }
 
-/* Energy and noise of all terms of a kind, and whether any spring is strained. A bushing that
- * couples directions is one spring, of which the terms may cancel. */
+/* Energy and noise of all terms of a kind; *strained: any spring is strained. A bushing that
+ * couples directions is one spring, whose terms may cancel. */
 static void sum_terms(const worker *k, int kind, const double *phi, sums *all, bool *strained)
 {
     const mt_linear *const lin = k->lin;

@@ -125,7 +125,7 @@ static mt_status joint_forces(mt_equilibrium_rounding *r, double lambda, const d
                : mt_eliminate_multipliers(&lin->e, r->pull, r->mu, &lin->scratch, err);
 }
 
-/* pull and across; returns what a unit of the trimmed spring's force makes. */
+/* Compute pull and across; returns the coefficient of the trimmed spring's force. */
 static double load(mt_equilibrium_rounding *r, const double *phi)
 {
     const mt_linear *const lin = r->lin;

@@ -5,14 +5,14 @@
 #include "mechanics/linear.h"
 
 /*
- * What rounding of the forces that balance leaves open of the eigenvalue of a shape phi, of
- * mass 1 and with what the joints carry in it, A^T mu = (K - lambda M) phi. The eigenvalue
- * depends on the position through the rows of springs and joints, and on the forces there: with
- * the gradient g_t and the Hessian H_t of a measure,
+ * Error of the eigenvalue of a shape phi from rounding of the balancing forces; phi has mass 1,
+ * and its joint forces mu satisfy A^T mu = (K - lambda M) phi. The eigenvalue depends on the
+ * position through the rows of springs and joints, and on the forces: with the gradient g_t and
+ * the Hessian H_t of a measure,
  *     d lambda = sum_t [2 k_t (g_t . phi) - 2 mu_t] phi^T H_t dq + sum_t e_t df_t,
  *         e_t = phi^T H_t phi.
  * Position and forces are those of an equilibrium: where rounding n_t of a measure makes f_t =
- * k_t (d_t + n_t), they move by dq, df_t = k_t (n_t + g_t . dq) and the joints' dlambda, such
+ * k_t (d_t + n_t), they change by dq, df_t = k_t (n_t + g_t . dq) and the joints' dlambda, such
  * that the forces balance again. By the adjoint (x, y) of those equations (newton_tangent.h)
  * for
  *     pull = sum_t [2 k_t (g_t . phi) - 2 mu_t] H_t phi + sum of springs e_t k_t g_t,
@@ -20,17 +20,17 @@
  * this is
  *     |d lambda| <= sum of springs |e_t - g_t . x| (k_t n_t + eps |f_t|)
  *                   + sum of joints |y_i| n_i + sum of bodies eps |forces| |x|,
- * the last for their sum. What is stiff counts as far as it can move something: a spring of the
- * stiffness k whose lever r is short against the size l of its bodies holds them to eps l / r
- * alone, and so its lever, on which r^2 k depends.
+ * the last for the sum of forces on each body. Stiff springs count as far as they can move
+ * something: a spring of stiffness k with a lever r short against the size l of its bodies
+ * holds them to eps l / r, and so its lever, on which r^2 k depends.
  */
 typedef struct mt_equilibrium_rounding mt_equilibrium_rounding;
 
-/* out: NULL where nothing loads. Lives in the scratch of lin. */
+/* *out is NULL without loads. In the scratch of lin. */
 mt_status mt_equilibrium_rounding_new(mt_linear *lin, mt_equilibrium_rounding **out,
                                       mt_err *err);
-/* The above [rad^2/s^2 kg m^2, as phi is normalised]; phi [nq]. O(nq) where the
- * equilibrium was found sparse, else O(nq^2). */
+/* The bound above [rad^2/s^2 kg m^2, as phi is normalised]; phi [nq]. O(nq) where the
+ * equilibrium was found sparse, otherwise O(nq^2). */
 mt_status mt_equilibrium_rounding_of(mt_equilibrium_rounding *r, double lambda,
                                      const double *phi, double *noise, mt_err *err);
 

@@ -4,18 +4,17 @@
 
 #include "mechanics/data.h"
 
-/* A force at work: c times the gradient of a measure of these bodies is its part of that of the
- * potential, and c times the Hessian its part of the geometric stiffness; noise: what rounding
- * of positions may be of c. False: no more. */
+/* Visit one force: c times the gradient of a measure of these bodies is its contribution to the
+ * gradient of the potential, c times the Hessian that to the geometric stiffness; noise:
+ * rounding error of c. False ends the visits. */
 typedef bool (*mt_force_visit)(void *context, const int body[2], double c, double noise,
                                const mt_jet *jet);
 
-/* Every load, and every spring that is not as long as it would be; rest values loaded. Returns
- * whether all were visited. O(loads + springs). */
+/* Visit every load, and every spring with a free length or preload, at the given poses; needs
+ * the rest values. True where all were visited. O(loads + springs). */
 bool mt_forces_each(const mt_data *d, const mt_pose *pose, mt_force_visit visit, void *context);
-/* Every load and spring at a place where the mechanism has settled, likewise: from there, which
- * is rounded, by the motion left[nq] to where the forces balance, which is known to within
- * open[nq]. */
+/* Visit every load and spring at an equilibrium: the forces are those after the motion left[nq]
+ * from the rounded position to the balance, known to within open[nq]. */
 bool mt_forces_at(const mt_data *d, const mt_placement *at, const double *left,
                   const double *open, mt_force_visit visit, void *context);
 

@@ -14,7 +14,7 @@
  * unit length. */
 static const double DETERMINED = 1e-9;
 
-/* The body whose equations say the force, and its sign: the second, or the first where that is
+/* The body whose equations give the force, and its sign: the second, or the first where that is
  * the ground. */
 static int side_of(const mt_system *sys, int joint, double *sign)
 {
@@ -23,7 +23,8 @@ static int side_of(const mt_system *sys, int joint, double *sign)
     return second == MT_GROUND ? sys->joints[joint].body[0] : second;
 }
 
-/* force += the pieces of the joint's equations: what their standing forces turn. */
+/* out += rows of the geometric stiffness of the joint's equations; true where any entry is not
+ * 0. */
 static bool add_geometric(const mt_linear *lin, int joint, int dof, double sign, double *out)
 {
     bool any = false;

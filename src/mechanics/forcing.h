@@ -5,31 +5,32 @@
 #include "mechanics/products.h"
 
 /*
- * What forces and their ways through the joints need of a linearised system, over all its
- * states q (nq). The equations of motion with the forces lambda of the joints' equations are
+ * Forces and their transmission through the joints of a linearised system, over all its states
+ * q (nq). The equations of motion with the forces lambda of the joints' equations are
  *     M q'' + C q' + K q + A^T lambda = f,    A q = 0.
  * After an update.
  */
 
-/* The force of a joint along a global axis, of the first body on the second at the joint, as
- * functions of f and q. The equations' part t of it is A v for a motion v, so that
+/*
+ * Force of a joint along a global axis, of the first body on the second, as a function of f and
+ * q. Its coefficients t in the equations are A v for a motion v, so that
  *     force = v . (M q'' + C q' + K q - f) - geometric . q
- * whatever lambda is; the second term is the standing force of a loaded joint that turns with
- * its bodies. */
+ * for any lambda; the second term is the static force of a loaded joint that turns with its
+ * bodies.
+ */
 typedef struct mt_joint_force {
     const double *v;         /* [nq] */
-    const double *t;         /* [m] by the equations */
-    const double *geometric; /* [nq]; NULL: nothing stands in it */
+    const double *t;         /* [m] coefficients of the equations */
+    const double *geometric; /* [nq]; NULL: no static force */
 } mt_joint_force;
 
 /* Results in mem. *unique false: the joint is redundant along this axis, and its force is not
- * determined. Fails: MT_E_USAGE (a coupling of joints, which has no bodies of its own),
- * MT_E_MEMORY. */
+ * determined. Fails: MT_E_USAGE (a coupling of joints, which has no bodies), MT_E_MEMORY. */
 mt_status mt_linear_joint_force(mt_linear *lin, int joint, int axis, mt_arena *mem,
                                 mt_joint_force *out, bool *unique, mt_err *err);
-/* r[nq]: every body moved by 1 along a global axis. */
+/* r[nq] := translation of every body by 1 along a global axis. */
 void mt_linear_shift(const mt_linear *lin, int axis, double *r);
-/* out[n] = Z^T w. */
+/* out[n] := Z^T w. */
 void mt_linear_project(const mt_linear *lin, const double *w, double *out);
 /* Row i of a term's rows over the states, times phi (nq). */
 double mt_linear_row_dot(const mt_linear *lin, mt_term_kind kind, int row, const double *phi);
@@ -37,17 +38,17 @@ double mt_linear_row_dot(const mt_linear *lin, mt_term_kind kind, int row, const
 void mt_linear_row_add(const mt_linear *lin, mt_term_kind kind, int row, double factor,
                        double *out);
 
-/* Derivatives with respect to input p, after an update with gradients. */
+/* Derivatives by input p, after an update with gradients. */
 /* Of the row at fixed phi: its own motion. */
 double mt_linear_row_dot_slope(const mt_linear *lin, int p, mt_term_kind kind, int row,
                                const double *phi);
 /* out[m] = (dA/dp) phi. */
 void mt_linear_jacobian_slope(const mt_linear *lin, int p, const double *phi, double *out);
-/* Sum over entries of lambda (m x nq) times dA/dp. */
+/* Sum of lambda (m x nq) times dA/dp over all entries. */
 double mt_linear_jacobian_contract(const mt_linear *lin, int p, const double *lambda);
-/* lambda[m]: A^T lambda ~ w. */
+/* lambda[m]: least-squares solution of A^T lambda = w. */
 mt_status mt_linear_multipliers(mt_linear *lin, const double *w, double *lambda, mt_err *err);
-/* out[nq] := derivative of the joint's `geometric`; 0 where nothing loads. */
+/* out[nq] := derivative of the joint's `geometric`; 0 without loads. */
 mt_status mt_linear_joint_geometric_slope(mt_linear *lin, int p, int joint, int axis,
                                           double *out, mt_err *err);
 /* Sum over the joint's equations of lambda times the derivative of t. */

@@ -185,8 +185,8 @@ static void take_joints(search *s)
     }
 }
 
-/* Of two bodies: rows of one body's own mass are nothing by the choice of the candidates. A
- * coefficient of 0 that an input may change holds as well. */
+/* Add the rows of a kind. Rows of one body's own mass are zero by the choice of the candidates.
+ * A coefficient of 0 that an input may change counts as well. */
 static void take_terms(search *s, int kind)
 {
     const mt_linear *const lin = s->lin;
@@ -251,7 +251,7 @@ static mt_status take_all(search *s, mt_err *err)
     return take_load(s, err);
 }
 
-/* phi [nq] := the spin v in scaled coordinates; whose it is is noted. */
+/* phi [nq] := the spin v in scaled coordinates; records its bodies. */
 static void spin_of(search *s, int v, double *phi)
 {
     mt_linear *const lin = s->lin;

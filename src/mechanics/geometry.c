@@ -60,7 +60,8 @@ mt_status mt_geometry_open(mt_linear *lin, mt_err *err)
     return MT_OK;
 }
 
-/* The factors of the closure point into the system of who made them. */
+/* Invalidate geometries made by a system that is deleted: their closure's factors point into
+ * it. */
 static void forget_maker(const mt_geometries *pool, const mt_linear *maker)
 {
     for (int i = 0; i < pool->n; i++) {

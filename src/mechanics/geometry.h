@@ -7,19 +7,19 @@
 typedef struct mt_linear_tangent mt_linear_tangent;
 
 /*
- * What the stages geometry and tangent of one design left. Configurations of one shape
- * (mt_system_same_shape) that stand at one design need it once: linearised systems that share
- * hold it together, and one that moves on leaves it as it is to those that have not. There
- * are as many as systems: for who leaves one that others stand on one is free.
+ * Results of the stages geometry and tangent at one design. Configurations of one shape
+ * (mt_system_same_shape) at the same design compute them once: linearised systems that share
+ * use one object, and a system that moves to another design leaves it to the others. There are
+ * as many objects as systems, so a free one always exists.
  */
 typedef struct mt_geometry {
     mt_arena mem;
-    int users;              /* systems that stand on it */
+    int users;              /* systems that use it */
     const mt_linear *maker; /* whose factors may point into its system */
-    bool made;              /* all of this is there, of the inputs `at` */
-    bool sloped;            /* and the derivatives */
+    bool made;              /* valid for the inputs `at` */
+    bool sloped;            /* derivatives are valid as well */
     mt_state position;
-    mt_elimination e; /* without z, which is of the reduction */
+    mt_elimination e; /* without z, which belongs to the reduction */
     double *a;
     double *rows[MT_TERM_KINDS];
     mt_rows full[MT_TERM_KINDS];
@@ -31,22 +31,22 @@ typedef struct mt_geometry {
 typedef struct mt_geometries {
     int n;
     mt_linear **systems;
-    int n_all; /* geometries, n at least */
+    int n_all; /* geometries, at least n */
     mt_geometry **all;
 } mt_geometries;
 
-/* One for a system by itself. Fails: MT_E_MEMORY. */
+/* Create one for a system that shares with none. Fails: MT_E_MEMORY. */
 mt_status mt_geometry_open(mt_linear *lin, mt_err *err);
-/* lin, by itself so far, shares with another system from now on. Fails: MT_E_MEMORY. */
+/* lin, which shares with none yet, shares with `with` from now on. Fails: MT_E_MEMORY. */
 mt_status mt_geometry_join(mt_linear *lin, mt_linear *with, mt_err *err);
-/* The system goes; what it made is not used any more. */
+/* Remove the system; the geometry it made is no longer used. */
 void mt_geometry_leave(mt_linear *lin);
-/* Stand on one that nobody else stands on, to be made: empty. */
+/* Use an empty geometry that no other system uses. */
 void mt_geometry_renew(mt_linear *lin);
-/* It is made, of these inputs. */
+/* Mark it as valid for these inputs. */
 void mt_geometry_made(mt_linear *lin, const double *inputs);
-/* Stand on one that another system made where the inputs of `moves` had the same bits. False:
- * there is none. */
+/* Use a geometry that another system made with the same bits of the inputs of `moves`. False:
+ * none. */
 bool mt_geometry_take(mt_linear *lin, const uint64_t *moves, const double *inputs);
 
 #endif

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Whether redundant equations stay redundant as an input moves. The derivatives of rows of unit
- * length are judged against the sum of their own terms: what should vanish is rounding of them,
- * also through the position's derivative; what does not is of their size.
+ * Checks whether redundant equations stay redundant as an input changes. The derivatives of
+ * rows of unit length are compared with the sums of their own terms: a derivative that should
+ * vanish is rounding of them, also through the position's derivative; any other is of their
+ * size.
  */
 #include "mechanics/independence.h"
 
@@ -19,7 +20,7 @@ static const double VANISHES = 1e-8;
  * tell an equation that takes part from one that does not. */
 static const double TAKES_PART = 1e-13;
 
-/* Length of row j of A. in scaled coordinates, the row of A being of unit length. */
+/* Length of row j of A. in scaled coordinates, with the row of A scaled to unit length. */
 static double row_length(const mt_elimination *e, const mt_linear_tangent *t, int j)
 {
     double squares = 0.0;
@@ -31,7 +32,7 @@ static double row_length(const mt_elimination *e, const mt_linear_tangent *t, in
 }
 
 /* row[nq] = sum_j w_j dr_j A._j; returns the sum of the lengths of its terms in scaled
- * coordinates, none shorter than what rounding of w makes of it. */
+ * coordinates, each at least the rounding of w. */
 static double combine(const mt_linear *lin, const mt_linear_tangent *t, const double *w,
                       double *row)
 {

@@ -19,7 +19,7 @@ enum { MOTIONS = 6 };
 /* The third axis beside two different ones. */
 static const int THIRD[3][3] = {{0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
 
-/* What a row of a mass term says of motion k of the whole: translation along axis k, or
+/* Component of a row of a mass term along motion k of the whole: translation along axis k, or
  * rotation about axis k - 3 through the origin. */
 static double row_of_motion(const mt_linear *lin, const mt_term *t, const double *row, int k)
 {
@@ -77,7 +77,8 @@ static void from_energy(const double g[MOTIONS][MOTIONS], int dimension, mt_info
     }
 }
 
-/* Dampers, each once (a bushing's directions stand together), and the range of loss factors. */
+/* Dampers, each once (a bushing's directions are consecutive), and the range of loss
+ * factors. */
 static void count_damping(const mt_linear *lin, mt_info *out)
 {
     const mt_system *const sys = lin->sys;

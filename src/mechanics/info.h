@@ -4,22 +4,22 @@
 
 #include "mechanics/linear.h"
 
-/* What a configuration weighs and how it can move, at the position where it is linearised. */
+/* Mass and mobility of a configuration at the position where it is linearised. */
 typedef struct mt_info {
     int states;         /* coordinates of all bodies */
     int equations;      /* of joints, links' hinges and the locked drive */
-    int freedoms;       /* states less independent equations (mobility), less idle spins */
-    int free_spins;     /* spins that nothing resists and no inertia feels (free_spin.h) */
+    int freedoms;       /* states less independent equations (mobility), less free spins */
+    int free_spins;     /* spins without inertia and resistance (free_spin.h) */
     int redundant;      /* equations less independent ones; names: mt_linear_redundant_set */
     double mass_kg;     /* everything with mass, fixed or moving */
     double centre_m[3]; /* of mass, global; NaN where there is no mass */
-    /* about the centre, global axes: xx yy zz xy xz yz as they stand in the tensor (xy = -sum m
-     * x y); in two dimensions zz alone, else 0 */
+    /* about the centre, global axes: xx yy zz xy xz yz as in the tensor (xy = -sum m x y); in
+     * two dimensions zz alone, the others 0 */
     double inertia_kg_m2[6];
     double residual; /* of the equilibrium, relative to the forces at work */
     double gap_m;    /* largest violation of a joint */
     int dampers;
-    double least_loss; /* loss factors of springs and links that have one; NaN: none has */
+    double least_loss; /* loss factors of springs and links that have one; NaN: none */
     double most_loss;
 } mt_info;
 

@@ -60,7 +60,7 @@ mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_ar
     return mt_arena_check(mem, err);
 }
 
-/* What is asked for of a number: its value or its derivative. */
+/* The wanted part of a number: its value or its derivative. */
 static double part_of(const mt_lagrangian *l, mt_cx z)
 {
     return l->slope ? cx_derivative(z) : creal(z);
@@ -82,7 +82,7 @@ static void add_gradient(const mt_system *sys, const int body[2], const mt_relat
     }
 }
 
-/* Returns the piece, or NULL where nobody asks. */
+/* Returns the piece, or NULL where terms are not wanted. */
 static mt_piece *note_terms(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                             const mt_relative_jet *jet, double size, double force,
                             mt_lagrangian *out)
@@ -151,8 +151,8 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
     }
 }
 
-/* Returns the spring's force. What the step that is left adds to it (way) would drown in the
- * stretch of one whose preload all but takes that back. */
+/* Returns the spring's force. The elongation `way` of the remaining step is added separately,
+ * because it would be lost to rounding in a large stretch that the preload almost cancels. */
 static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way,
                         const mt_relative_jet *jet, mt_curvature curvature,
                         mt_curvature_sum *sum, mt_lagrangian *out)
@@ -209,7 +209,7 @@ static bool is_forceless(const mt_data *d, int i)
            creal(force) == 0.0 && cimag(force) == 0.0;
 }
 
-/* What the step that is left makes of a measure. */
+/* Change of a measure along the remaining step. */
 static double along_left(const mt_system *sys, const int body[2], const mt_relative_jet *jet,
                          const double *left)
 {
@@ -268,8 +268,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
     mt_curvature_flush(&sum);
 }
 
-/* Jet of what a load does work along: F . x, or its measure; *size: what that is multiplied
- * with. */
+/* Jet of the measure of a load, F . x or its own measure; *size: its factor. */
 static void load_jet(const mt_data *d, const mt_load_def *load, const mt_placement *at,
                      bool hessian, int body[2], mt_cx *size, mt_relative_jet *jet)
 {

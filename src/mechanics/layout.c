@@ -208,7 +208,7 @@ static void find_envelope(const mt_system *sys, mt_layout *o)
     }
 }
 
-/* Where rows stand, and what a factorisation will cost. closed[n]: zeroed. */
+/* Set the positions of rows, and the cost of a factorisation. closed[n]: zeroed. */
 static void measure(mt_layout *o, int *closed)
 {
     mt_envelope *const e = &o->envelope;

@@ -6,14 +6,14 @@
 #include "mechanics/system.h"
 
 /*
- * An order of states and equations along the mechanism, in which
+ * Order of states and equations along the mechanism, in which
  *     [H A^T; A 0],    H the Hessian of the Lagrangian, A the Jacobian of the constraints,
- * has its entries near the diagonal: bodies breadth first from an end of the mechanism, joints
- * and springs being the ways between them; each equation after the last of its bodies.
+ * has its entries near the diagonal: bodies breadth first from one end of the mechanism along
+ * joints and springs; each equation after the last of its bodies.
  */
 struct mt_layout {
-    int *state;    /* [nq] place of a state */
-    int *equation; /* [n_constraints] */
+    int *state;    /* [nq] row of a state */
+    int *equation; /* [n_constraints] row of an equation */
     mt_envelope envelope;
     double work; /* multiplications of a factorisation */
 };

@@ -160,7 +160,7 @@ void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double
     }
 }
 
-/* True where what is summed is to be left as it is. Who sums asks again. */
+/* True where the sum can be left as it is after an interrupt; the caller checks again. */
 static bool is_left(const mt_linear *lin)
 {
     return lin->n >= MT_INTERRUPT_ORDER && mt_interrupted(lin->sys->run->interrupt);
@@ -199,8 +199,8 @@ static void square_couplings(mt_linear *lin, mt_coupling kind)
     }
 }
 
-/* k += the springs with couplings that depend on no input, by their squares where they have
- * some: what cancels there is 0. */
+/* k += the coupled springs that depend on no input, by their squares where possible, which
+ * makes cancelling entries exactly 0. */
 static void add_couplings(const mt_linear *lin, double *k)
 {
     const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];

@@ -6,13 +6,13 @@
 #include "mechanics/geometry.h"
 #include "mechanics/linear.h"
 
-/* What the files of this room share of a linearised system. */
+/* Data of a linearised system, shared by the files of this room. */
 
 struct mt_linear {
     const mt_system *sys;
-    mt_arena base;         /* lives as long as this */
-    mt_geometries *pool;   /* those of the systems that share; owned by all of these */
-    mt_geometry *geometry; /* of the stage geometry and of the tangents on top of it */
+    mt_arena base;         /* freed with this */
+    mt_geometries *pool;   /* geometries of the systems that share; owned by all of them */
+    mt_geometry *geometry; /* of the stages geometry and tangent */
     mt_arena reduced_mem;  /* of the stage reduction and of the matrices */
     mt_arena scratch;
     mt_stages stages;
@@ -20,18 +20,18 @@ struct mt_linear {
     double *grad;  /* [program.count x n_inputs], after an update with gradients */
     mt_term_list list[MT_TERM_KINDS];
     mt_coupling *coupling; /* of the terms of K (couplings.h) */
-    bool *squared; /* of the terms of K: their spring with couplings is a sum of squares */
-    mt_data data;  /* real */
-    mt_data dual;  /* with derivative */
+    bool *squared;         /* of the terms of K: the coupled spring is a sum of squares */
+    mt_data data;          /* real */
+    mt_data dual;          /* with derivative */
     mt_state position;
-    mt_placement last; /* where it left the driven joint */
-    int first_input;   /* derivatives are asked for from this input on; 0: of all of them */
+    mt_placement last; /* position of the driven joint at the last update */
+    int first_input;   /* derivatives are wanted from this input on; 0: for all */
     mt_elimination e;  /* at the final position, constraints of the linearised system */
     double *z_error;   /* nq x n: bounds of the errors of e.z */
     int m;             /* constraints in force */
     double *a;         /* m x nq */
     int n;             /* freedoms */
-    /* spins without mass, stiffness or joint, left out of the freedoms (free_spin.h) */
+    /* spins without inertia, stiffness or joint, left out of the freedoms (free_spin.h) */
     int n_free_spins;
     bool *free_spins;                  /* [bodies] takes part in one */
     int n_pieces;                      /* of pieces */
@@ -39,12 +39,12 @@ struct mt_linear {
     mt_rows full[MT_TERM_KINDS];       /* the same over the states, by local freedom */
     double *full_error[MT_TERM_KINDS]; /* bounds of the errors of their entries */
     double *reduced[MT_TERM_KINDS];    /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
-    mt_rows entries[MT_TERM_KINDS];    /* of reduced; a row that the joints block has none */
+    mt_rows entries[MT_TERM_KINDS];    /* nonzero entries of reduced; none in a blocked row */
     double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
-    double *kg;       /* nq x nq geometric stiffness; NULL where nothing loads */
-    mt_piece *pieces; /* [n_pieces] the forces at work; NULL where nothing loads */
+    double *kg;       /* nq x nq geometric stiffness; NULL without loads */
+    mt_piece *pieces; /* [n_pieces] the forces; NULL without loads */
     double *push;     /* [bodies] magnitudes of all forces on each */
-    double *kg_terms; /* nq x nq: magnitudes of the terms that kg is the sum of */
+    double *kg_terms; /* nq x nq: sums of magnitudes of the terms of kg */
     double *k;        /* n x n */
     double *m_r;      /* n x n */
     double *k_fixed;  /* part of K_r from terms without inputs (and Kg) */
@@ -53,27 +53,27 @@ struct mt_linear {
     double *factor_b; /* list[STIFFNESS].n_rows x n: B */
     double *factor_c;
     double *factor_noise; /* bounds of the errors of factor_b's entries */
-    /* n x n: what is no sum of squares: geometric stiffness, indefinite couplings, negative
-     * coefficients; K_r = B^T diag(c) B + G */
+    /* n x n: the part that is not a sum of squares: geometric stiffness, indefinite couplings,
+     * negative coefficients; K_r = B^T diag(c) B + G */
     double *factor_g;
-    unsigned long stiffness_version; /* changes when K_r is made again */
-    unsigned long mass_version;      /* when M_r is */
-    bool unstressed;   /* driven to its place with no spring stretched: as good as unloaded */
-    bool has_factor_g; /* there is a factor_g */
-    bool graded;       /* grad belongs to value */
-    bool started;      /* value has what depends on no input */
-    /* a driven joint begins where the last update left it, instead of at the reference
-     * position: for sweeps */
+    unsigned long stiffness_version; /* changes when K_r is computed again */
+    unsigned long mass_version;      /* changes when M_r is computed again */
+    bool unstressed;                 /* driven with no spring stretched: treated as unloaded */
+    bool has_factor_g;               /* there is a factor_g */
+    bool graded;                     /* grad belongs to value */
+    bool started;                    /* value has the nodes without inputs */
+    /* a driven joint starts at its position of the last update, not at the reference position:
+     * for sweeps */
     bool follow;
-    bool has_last;              /* `last` is some place */
-    bool free_spin_varies;      /* whether there are idle spins depends on inputs */
+    bool has_last;              /* `last` is valid */
+    bool free_spin_varies;      /* the existence of free spins depends on inputs */
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
 };
 
 /* out (n x n) += c times the term's rows, lower triangle. */
 void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double c,
                         double *out);
-/* What a term has in H: loss * coefficient; 0 without a loss factor. */
+/* Contribution of a term to H: loss * coefficient; 0 without a loss factor. */
 double mt_linear_loss(const mt_linear *lin, const mt_term *t);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "mechanics/linear_priv.h"
 
-/* Only what an input moves is made more than once; what is loaded or driven depends on more
- * than its shape. */
+/* Only geometry that an input moves is worth sharing; loaded or driven systems depend on more
+ * than their shape. */
 static mt_status can_share(const mt_system *a, const mt_system *b, bool *can, mt_err *err)
 {
     *can = false;

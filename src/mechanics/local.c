@@ -181,7 +181,8 @@ static void subtract(work *w, int n, const int *list, double factor, double fact
     }
 }
 
-/* Columns with an entry in equation i that are no pivots yet, into list; how many. */
+/* Columns with an entry in equation i that are not pivots yet, into list; returns their
+ * number. */
 static int list_open(const work *w, int i, int *list)
 {
     const double *const g = w->g + ((ptrdiff_t)i * w->nq);
@@ -305,7 +306,7 @@ static void fill(const work *w, mt_elimination *e, double *error)
     }
 }
 
-/* As fill, from X and what is open of it: an entry within that is 0. */
+/* As fill, from X and its error bounds: an entry within its bound is set to 0. */
 static void fill_found(const mt_follow *f, mt_elimination *e, double *error)
 {
     const ptrdiff_t nq = f->nq;
@@ -331,7 +332,8 @@ static void fill_found(const mt_follow *f, mt_elimination *e, double *error)
     }
 }
 
-/* Choose again what follows, without errors, and find how; false where that is not known. */
+/* Choose the dependent coordinates again, without errors, and compute X; false where it is not
+ * determined. */
 static mt_status choose_and_find(work *w, const double *a, double extent, mt_arena *mem,
                                  mt_elimination *e, double *error, bool *found, mt_err *err)
 {
@@ -351,7 +353,7 @@ static mt_status choose_and_find(work *w, const double *a, double extent, mt_are
     return MT_OK;
 }
 
-/* The orthonormal basis is known to about nq eps / kept, all its columns alike. */
+/* Error bound of the orthonormal basis: about nq eps / kept for all columns. */
 static void bound_orthonormal(const mt_elimination *e, double extent, double *error)
 {
     const double unit = ENTRY_ULPS * (double)e->nq * DBL_EPSILON / e->qr.kept;

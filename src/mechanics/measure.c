@@ -303,7 +303,7 @@ void mt_relative_rotation(mt_cx (*e)[3], mt_cx (*f)[3], int k, const mt_relative
     mt_relative_chain(&c, &psi, cosine, out);
 }
 
-/* Whether the parts are those of this element, here, with as much of the Hessian. */
+/* True where the parts are those of this element at these poses, with enough of the Hessian. */
 static bool has_parts(const mt_beam_parts *p, const mt_measure_data *m, const mt_pose *a,
                       const mt_pose *b, mt_second second)
 {
@@ -342,7 +342,7 @@ static void beam_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *
     mt_beam_strain_fill(m, parts, out);
 }
 
-/* w := the vector v of a body as it stands, of none 0; returns whether it has no derivative. */
+/* w := the vector v rotated with its body, 0 for NULL; true where it has no derivative. */
 static bool turn(const mt_pose *pose, const mt_cx *v, mt_cx w[3])
 {
     if (v == NULL) {
@@ -353,7 +353,7 @@ static bool turn(const mt_pose *pose, const mt_cx *v, mt_cx w[3])
     return all_real(3, w);
 }
 
-/* d = x_b - x_a, s and t; returns whether they have no derivative. */
+/* d = x_b - x_a, s and t; true where they have no derivative. */
 static bool reach(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, mt_cx d[3],
                   mt_cx s[3], mt_cx t[3])
 {
@@ -380,7 +380,7 @@ static void rotation_jet(const mt_measure_data *m, const mt_pose *a, const mt_po
     mt_relative_rotation(e, f, m->component, &cosine, g, out);
 }
 
-/* Of all kinds but a beam's strains. */
+/* All kinds but a beam's strains. */
 static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
                       mt_second second, mt_relative_jet *out)
 {

@@ -178,7 +178,7 @@ static void add_kinetic_slope(mt_motion *o, const mt_placement *at, const mt_ter
     }
 }
 
-/* M, and what it makes of the velocities. */
+/* Add a term to M, and its velocity terms. */
 static void add_inertia(mt_motion *o, const mt_placement *at, const mt_term *t,
                         const double *velocity)
 {
@@ -341,7 +341,7 @@ bool mt_motion_has_value(const mt_system *sys, mt_gauge gauge)
     return gauge.channel < 0 || sys->channels[gauge.channel].kind == MT_CHANNEL_POINT;
 }
 
-/* Where the point of a sensor stands along its axis. */
+/* Coordinate of a sensor's point along its axis. */
 static double point_at(const mt_linear *lin, const mt_channel_def *c, const mt_pose *poses)
 {
     static const mt_cx centre[3] = {0.0, 0.0, 0.0};

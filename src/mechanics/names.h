@@ -4,16 +4,16 @@
 
 #include "mechanics/eliminate.h"
 
-/* What an elimination found, in the words of the model. */
+/* Results of an elimination in names of the model. */
 
-/* Joints whose equations depend on each other, each once, in the order of their equations. */
+/* Joints with dependent equations, each once, in the order of their equations. */
 typedef struct mt_joint_names {
     int n;
     const char *const *name; /* [n] of the system */
     const char *text;        /* for messages: "a", "b" (in quotes) */
 } mt_joint_names;
 
-/* The joints with an entry in the combination w[m] of the first m equations. In mem; fails
+/* Joints with an entry in the combination w[m] of the first m equations. In mem. Fails:
  * MT_E_MEMORY. */
 mt_status mt_name_joints(const mt_system *sys, int m, const double *w, mt_arena *mem,
                          mt_joint_names *out, mt_err *err);

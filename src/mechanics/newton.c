@@ -32,8 +32,8 @@ static const double ENERGY_ROUNDING = 1e-12;
 /* Entries of a left null vector (largest 1) above this belong to the dependent set. */
 static const double IN_THE_SET = 1e-6;
 
-/* What the step last found, w->step and trim, would change: with r = g + A^T lambda + t trim +
- * H step unbalanced, A^T lambda' = -r. */
+/* Store the last step, w->step and trim, and the change of the multipliers: with r = g + A^T
+ * lambda + t trim + H step unbalanced, A^T lambda' = -r. */
 static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solver, double trim,
                            mt_arena *mem, mt_newton_residual *left, mt_err *err)
 {
@@ -100,9 +100,9 @@ static bool balanced(const mt_newton_work *w)
 }
 
 /*
- * The equations at a place, sparse where they are regular beyond doubt, dense else. first: of
- * the stage; then the dense way looks whether several ways lead on, and *falls tells whether
- * energy leads elsewhere at once.
+ * The equations at a position, sparse where they are safely regular, otherwise dense. first: of
+ * the stage; the dense method then checks for several continuations, and *falls: energy
+ * decreases elsewhere.
  */
 static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first, mt_arena *mem,
                            mt_newton_solver *solver, bool *falls, mt_err *err)
@@ -148,7 +148,7 @@ static bool use_elastic(mt_newton_work *w, double previous)
     return shrinks;
 }
 
-/* Plain Newton from the present position; *done tells whether it converged. */
+/* Plain Newton from the present position; *done: converged. */
 static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
                          bool *done, mt_err *err)
 {
@@ -214,8 +214,8 @@ static mt_status attempt(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
     return rc == MT_E_DOMAIN || rc == MT_E_NO_CONVERGENCE ? MT_OK : rc;
 }
 
-/* Which joints to name: those in the left null vectors of A that the gap lies along (they
- * contradict each other), else the one furthest open. */
+/* Name joints: those in the left null vectors of A along which the gap lies (they contradict
+ * each other), otherwise the one with the largest gap. */
 static mt_status say_open(const mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
                           mt_err *err)
 {
@@ -279,8 +279,8 @@ typedef struct ending {
     double before; /* the energy where the stage began */
 } ending;
 
-/* end->saddle: the stationary point that was last evaluated is, with the drive held, a saddle
- * that the way from the start leads down from. That direction goes into w->step. */
+/* end->saddle: the stationary point last evaluated is, with the drive held, a saddle from which
+ * the way from the start leads down. That direction is stored in w->step. */
 static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_placement *at,
                        const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
 {
@@ -317,7 +317,7 @@ static mt_status note(const mt_newton_work *w, const mt_placement *at, mt_placem
     return MT_OK;
 }
 
-/* Downhill from `at`, and out of every saddle on the way. */
+/* Descend from `at`, and leave every saddle on the way. */
 static mt_status settle(mt_newton_work *w, const mt_placement *start, mt_placement *at,
                         mt_arena *mem, mt_stage *stage, ending *end, mt_err *err)
 {
@@ -357,8 +357,8 @@ static mt_status lock_first(const mt_newton_work *w, mt_placement *at, mt_arena 
     return rc == MT_E_MEMORY ? mt_fail_memory(err) : MT_OK;
 }
 
-/* A physical stage whose plain Newton ended as `end` says: downhill from the start, unless it
- * may stay. */
+/* After plain Newton of a physical stage ended as `end`: accept its result, or descend from the
+ * start. */
 static mt_status go_on(mt_newton_work *w, const mt_placement *start, mt_placement *at,
                        mt_arena *mem, mt_stage *stage, ending *end, mt_err *err)
 {

@@ -12,43 +12,43 @@ typedef struct mt_newton_problem {
     mt_energy energy;
     const mt_pose *drawn; /* anchor */
     int m;
-    /* The last constraint (the drive) is held by the unknown force of the trimmed spring
-     * instead of by its multiplier. */
+    /* the drive's constraint, the last, is held by the unknown force of the trimmed spring
+     * instead of its multiplier */
     bool trim;
-    /* No dense matrices: MT_E_EQUILIBRIUM where the sparse ones do not do. Freedoms without
-     * stiffness are not looked for. */
+    /* sparse matrices only: MT_E_EQUILIBRIUM where they are not sufficient. Freedoms without
+     * stiffness are not detected */
     bool sparse;
 } mt_newton_problem;
 
 /*
- * How the equations of a step are solved. Sparse, as a saddle-point system, where that is
- * regular beyond doubt; else in a basis of the freedoms, dense, with a pseudo-inverse:
- * redundant equations, freedoms without stiffness and trimmed springs are seen to there.
+ * Solver of the equations of a step. Sparse, as a saddle-point system, where that is safely
+ * regular; otherwise dense in a basis of the freedoms with a pseudo-inverse, which handles
+ * redundant equations, freedoms without stiffness and trimmed springs.
  */
 typedef struct mt_newton_solver {
     bool sparse;
     mt_saddle saddle;
-    mt_elimination e; /* (with trim: without the drive's row) */
-    /* pseudo-inverse of the (bordered) reduced Hessian, order n (+1 with trim) */
+    mt_elimination e; /* with trim: without the drive's row */
+    /* pseudo-inverse of the (bordered) reduced Hessian, order n (n + 1 with trim) */
     double *inverse;
 } mt_newton_solver;
 
-/* Its solution. */
+/* Result of a stage. */
 typedef struct mt_stage {
     bool active;             /* this stage ran */
-    int iterations;          /* also where it was not solved */
-    int factors;             /* of matrices, in them */
+    int iterations;          /* also where it failed */
+    int factors;             /* matrix factorisations in them */
     mt_newton_solver solver; /* at the solution */
     int m;
     double *lambda;          /* [m] multipliers: constraint force A^T lambda */
     double *h;               /* nq x nq Hessian of the Lagrangian; NULL: the solver is sparse */
-    double *a;               /* m x nq; likewise */
+    double *a;               /* m x nq; NULL: the solver is sparse */
     double *trim;            /* [nq] gradient of the trimmed spring's measure */
     double trim_force;       /* its force; physical energy [N, N m] */
     double residual;         /* largest unbalanced force / largest force */
     mt_newton_residual left; /* with the physical energy */
     int null_freedoms;       /* freedoms without stiffness at the solution */
-    /* derivatives with respect to one input, of the physical energy (newton_tangent.h) */
+    /* derivatives by one input, for the physical energy (newton_tangent.h) */
     double *d_lambda; /* [m] */
     double d_trim_force;
 } mt_stage;
@@ -56,15 +56,15 @@ typedef struct mt_stage {
 /* Largest |c| of the first m constraints (angles and cosines in model lengths) [m]. */
 mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at, mt_arena *mem,
                         double *gap_m, mt_err *err);
-/* Solve from `at`, which is moved to the solution. stage: iterations are added to what stands
- * there, all else is filled where there is a solution. Fails: MT_E_ASSEMBLY, MT_E_EQUILIBRIUM,
- * MT_E_DEAD_CENTRE, MT_E_MEMORY, MT_E_INTERRUPTED. */
+/* Solve from `at`, which is moved to the solution. Adds to stage->iterations; the rest of stage
+ * is filled on success. Fails: MT_E_ASSEMBLY, MT_E_EQUILIBRIUM, MT_E_DEAD_CENTRE, MT_E_MEMORY,
+ * MT_E_INTERRUPTED. */
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt_arena *mem,
                           mt_stage *stage, mt_err *err);
-/* Close the first m constraints by the smallest steps from `at`, which is moved: to a gap of
- * `enough` model lengths, 0: to rounding. *closed false: the steps do not converge as they do
- * beside a regular position, or joints contradict each other; `at` is then anywhere.
- * *iterations grows. (newton_close.c) Fails: MT_E_MEMORY. */
+/* Close the first m constraints by the smallest steps from `at`, which is moved, to a gap of
+ * `enough` model lengths; 0: to rounding. *closed false: the steps do not converge as at a
+ * regular position, or joints contradict each other; `at` is then arbitrary. Adds to
+ * *iterations. (newton_close.c) Fails: MT_E_MEMORY. */
 mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_placement *at,
                           int *iterations, bool *closed, mt_arena *mem, mt_err *err);
 

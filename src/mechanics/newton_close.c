@@ -18,7 +18,7 @@ static const double CONTRACTION = 0.1;
 /* A gap of that many eps is none, model lengths. */
 static const double NO_GAP = 8.0;
 
-/* w->c, and what a step from there needs. */
+/* Evaluate w->c and the Jacobian for a step. */
 static mt_status evaluate(mt_newton_work *w, const mt_placement *at, bool dense, mt_arena *mem,
                           mt_err *err)
 {

@@ -61,8 +61,7 @@ static mt_status direction_of(mt_newton_work *w, const mt_elimination *e, mt_are
     return MT_OK;
 }
 
-/* Halve the step until the energy is lower; *lower tells whether it is, else the poses are back
- * where they were. */
+/* Halve the step until the energy is lower; *lower: it is, otherwise the poses are restored. */
 static mt_status search_line(mt_newton_work *w, mt_placement *at, double *energy, bool *lower,
                              mt_arena *mem, mt_err *err)
 {

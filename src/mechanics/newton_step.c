@@ -91,8 +91,7 @@ double mt_newton_gap_at(mt_newton_work *w, const mt_placement *at)
     return mt_newton_gap_of(w);
 }
 
-/* What residuals are compared with: the anchor's own unit is a displacement of one model
- * length. */
+/* Set the scales of residuals: the anchor's own unit is a displacement of one model length. */
 static void weigh(mt_newton_work *w, const mt_lagrangian *l, double unbalanced)
 {
     const bool anchor = w->p->energy == MT_ENERGY_ANCHOR;
@@ -175,8 +174,8 @@ mt_status mt_newton_reduce_hessian(const mt_newton_work *w, const mt_elimination
     return MT_OK;
 }
 
-/* Length of a row in the elimination's coordinates, in which angles and displacements weigh
- * alike; 1 where it is empty. */
+/* Length of a row in the elimination's coordinates, in which angles and displacements have
+ * equal weight; 1 for an empty row. */
 static double row_length(const mt_elimination *e, const double *row, ptrdiff_t step)
 {
     double length = 0.0;
@@ -333,8 +332,8 @@ bool mt_newton_at_rest(mt_newton_work *w, const mt_elimination *e)
     return rest;
 }
 
-/* out[nq] = g + A^T lambda: as Z^T g, but forces cancel where they act, not in a sum over all
- * freedoms, whose rounding would move what is soft. */
+/* out[nq] = g + A^T lambda. Unlike Z^T g, forces cancel where they act, not in a sum over all
+ * freedoms, whose rounding would move soft freedoms. */
 static void find_unbalanced(const mt_newton_work *w, double *out)
 {
     for (int j = 0; j < w->sys->nq; j++) {
@@ -443,10 +442,10 @@ mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *fi
 }
 
 /*
- * A step that is too long is shortened in the eigenvectors of Z^T H Z, each by itself: what has
- * next to no stiffness (a rod's spin between ball joints, which has none at an equilibrium, but
- * off it some, as large as what is unbalanced) goes as far as a step may, and the rest where it
- * has to go. Shortened as a whole such a step would get nowhere.
+ * Shorten a step that is too long in each eigenvector of Z^T H Z by itself: motions with almost
+ * no stiffness (a rod's spin between ball joints, which has none at an equilibrium, but off it
+ * some, as large as the unbalanced force) go as far as a step may, and the others their full
+ * way. Shortened as a whole such a step would get nowhere.
  */
 static mt_status shorten(mt_newton_work *w, const mt_elimination *e, double *eta, mt_arena *mem,
                          mt_err *err)

@@ -55,10 +55,10 @@ static mt_status balance(mt_state *p, const mt_data *data, mt_arena *mem, mt_err
 }
 
 /*
- * Nothing but the way that the drive took says where a freedom without stiffness stands. Begin
- * again from the closure next to the drawing: that makes the result a function of the design
+ * Only the path of the drive determines the position of a freedom without stiffness. Start
+ * again from the closure nearest to the drawing: the result is then a function of the design
  * alone, with a derivative. Where that closure or the equilibrium from there fails (far from
- * the drawing the anchor pulls no longer), what was found stands.
+ * the drawing the anchor has no effect), the first result is kept.
  */
 static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, bool *anchored,
                                        mt_arena *mem, mt_err *err)
@@ -119,8 +119,8 @@ static mt_status is_minimum_locked(const mt_state *p, bool *minimum, mt_arena *m
     return MT_OK;
 }
 
-/* *direct: a minimum of the energy that stands by itself, or beside the drawing where freedoms
- * have no stiffness (anchored), straight from where the drive came to. */
+/* *direct: a minimum of the energy without freedoms without stiffness, or with them anchored,
+ * found directly from the driven position. */
 static mt_status is_direct(const mt_state *p, bool anchored, bool *direct, mt_arena *mem,
                            mt_err *err)
 {
@@ -141,10 +141,10 @@ static const double TRIM_LEAST = 1e-7;
 enum { PLACE_SIZE = 320 };
 
 /*
- * The force tau of a trimmed spring acts along the gradient t of its stretch. Along v = dq/ds,
- * the motion of the driven joint in which nothing else is held against it, the equilibrium asks
- * for v . (g + tau t) = 0: where v . t = 0 no force of the spring makes it. Says so instead of
- * the search that failed with rc.
+ * The force tau of a trimmed spring acts along the gradient t of its elongation. Along v =
+ * dq/ds, the motion of the driven joint with nothing else held, equilibrium requires v . (g +
+ * tau t) = 0: where v . t = 0 no force of the spring satisfies it. Reports that instead of the
+ * failure rc of the search.
  */
 static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt_arena *mem,
                               mt_err *err)
@@ -184,7 +184,7 @@ static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt
                    spring, joint, joint, place, joint);
 }
 
-/* From `from` to the driven position, and to the equilibrium beside it. */
+/* From `from` to the driven position, and to the equilibrium next to it. */
 static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *from, bool brief,
                        bool *anchored, mt_arena *mem, mt_err *err)
 {
@@ -202,10 +202,10 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
 }
 
 /*
- * Of walks to the same place on the same branch the brief one is enough where the equilibrium
- * is direct: then it is the same one, from wherever beside it Newton begins. All else (saddles,
- * freedoms without stiffness that nothing anchors, energies that are followed downhill, and
- * whatever fails) may depend on the place, and is found with the exact one.
+ * The brief path is sufficient where the equilibrium is direct: it is then the same from any
+ * start next to it on the same branch. All other results (saddles, freedoms without stiffness
+ * that nothing anchors, energies followed downhill, and failures) may depend on the start, and
+ * are computed with the exact path.
  */
 static mt_status drive_from(mt_state *p, const mt_data *data, const mt_placement *from,
                             mt_arena *mem, mt_err *err)
@@ -244,7 +244,7 @@ static double turn_between(const mt_pose *from, const mt_pose *to)
     return atan2(mt_norm2(3, axis), r[0][0] + r[1][1] + r[2][2] - 1.0);
 }
 
-/* The bodies that move and turn farthest, the first of those that do alike. */
+/* The bodies with the largest motion and rotation, the first of equal ones. */
 static void measure_motion(mt_state *p)
 {
     const mt_pose *const from = p->sys->driven ? p->driven.pose : p->drawn;

@@ -8,59 +8,59 @@
  * Positions of a system at one design, each the minimiser of an energy under constraints:
  *   reference    the drawn position with its loops closed by the smallest motion (anchor
  *                energy); skipped where the drawing already closes
- *   driven       the same with the driven joint at its place; only with `drive`, and only where
- *                the equilibrium leaves freedoms without stiffness, which then stay next to the
- *                drawing
- *   equilibrium  the physical energy; skipped where nothing loads the mechanism
+ *   driven       the same with the driven joint at its position; only with `drive`, and only
+ *                where the equilibrium leaves freedoms without stiffness, which then stay next
+ *                to the drawing
+ *   equilibrium  the physical energy; skipped without loads
  * Each stage solves grad V + A^T lambda = 0, c = 0 by Newton with multipliers and checks its
  * residual; a stage that does not converge is an error, never a result. The derivative of a
- * stage with respect to an input follows from the same equations (implicit function theorem).
- *     Every design begins at its own drawing, none at the equilibrium of the design before:
- * which of several equilibria is meant is said by the drawing, a start elsewhere may lead to
- * another one (beyond a fold, across a saddle), and where it leads to the same, the last bits
- * would tell which designs were evaluated before, and by which worker. It would save one or two
- * of five steps.
+ * stage by an input follows from the same equations (implicit function theorem).
+ *
+ * Every design starts at its own drawing, none at the equilibrium of the design before: the
+ * drawing selects one of several equilibria, and another start may lead to another one (beyond
+ * a fold, across a saddle). Where it leads to the same, the last bits would depend on which
+ * designs were evaluated before, and by which worker. It would save one or two of five steps.
  */
 typedef struct mt_state {
     const mt_system *sys;
     bool sparse; /* as mt_newton_problem */
     mt_pose *drawn;
     mt_placement reference;
-    mt_placement driven; /* after the driven stage, or as far as it came */
+    mt_placement driven; /* after the driven stage, or where it failed */
     mt_placement at;     /* where the system is linearised */
     mt_stage closure;
-    mt_stage anchored; /* the driven stage where freedoms without stiffness need it */
+    mt_stage anchored; /* the driven stage, where freedoms without stiffness need it */
     mt_stage equilibrium;
     int iterations; /* of Newton's method, in all stages */
     double gap_m;   /* largest violation of a constraint at the final position */
-    /* how far the bodies went from the drawing, or from where the drive brought them, to
-     * `at` */
-    double moved_m;    /* furthest centre */
-    double turned_rad; /* furthest turn, at most half a turn */
-    int moved_body;    /* whose centre and whose turn; -1: none */
+    /* largest motions of bodies from the drawing, or from the driven position, to `at` */
+    double moved_m;    /* of a centre */
+    double turned_rad; /* rotation, at most half a turn */
+    int moved_body;    /* body of moved_m and of turned_rad; -1: none */
     int turned_body;
-    /* derivatives with respect to one input (mt_position_tangent) */
+    /* derivatives by one input (mt_position_tangent) */
     double *d_reference; /* [nq] */
     double *d_pose;      /* [nq] */
 } mt_state;
 
-/* QUICK: closures by the smallest steps where they converge as they should. EXACT: none, which
- * is the slow way that the quick one is judged by. SPARSE: not driven, in O(bodies) of a chain,
- * or as the fill of a factor costs; fails with MT_E_EQUILIBRIUM where that does not do. */
+/* QUICK: closure by the smallest steps where they converge. EXACT: without it, the slow
+ * reference method for QUICK. SPARSE: not driven, in O(bodies) for a chain, or at the cost of
+ * the fill-in of a factor; fails with MT_E_EQUILIBRIUM where sparse matrices are not
+ * sufficient. */
 typedef enum mt_position_method {
     MT_POSITION_QUICK,
     MT_POSITION_EXACT,
     MT_POSITION_SPARSE
 } mt_position_method;
 
-/* data holds values (input -1) with vectors loaded; targets and rest values are filled here.
- * Results and work in mem. start: NULL, or where a driven joint begins instead of at the
- * reference position: a sweep's last point. Fails: MT_E_ASSEMBLY (a gap, named with its
- * joint; contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under
- * load), MT_E_DEAD_CENTRE (singular.h: where it begins). */
+/* data holds values (input -1) with vectors computed; targets and rest values are filled here.
+ * Results and work in mem. start: NULL, or the start of a driven joint instead of the reference
+ * position: a sweep's last point. Fails: MT_E_ASSEMBLY (a gap, named with its joint;
+ * contradictory joints), MT_E_EQUILIBRIUM (does not converge, or free to move under load),
+ * MT_E_DEAD_CENTRE (singular.h: at the start). */
 mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placement *start,
                             mt_position_method way, mt_arena *mem, mt_state *out, mt_err *err);
-/* Derivative with respect to data->input (vectors, targets loaded with derivatives here). Fills
+/* Derivative by data->input (vectors and targets are computed with derivatives here). Fills
  * d_*, and data's rest values with their derivative. */
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err);
 

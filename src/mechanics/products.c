@@ -69,7 +69,7 @@ typedef struct piece {
     double part;
 } piece;
 
-/* The first piece from row *i on that joints do not block; *i goes behind it. */
+/* The first piece from row *i on that joints do not block; *i is set behind it. */
 static bool next_piece(const mt_linear *lin, sum s, int *i, piece *out)
 {
     const mt_term_list *const list = &lin->list[s.kind];
@@ -284,7 +284,7 @@ void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *p
     full_product(lin, MASS, -lambda, phi, w);
 }
 
-/* v->lambda := mu, A^T mu = (K - lambda M) phi: what the joints carry in the mode. */
+/* v->lambda := mu, A^T mu = (K - lambda M) phi: joint forces of the mode. */
 static mt_status joint_forces(mt_linear *lin, double lambda, moving *v, mt_err *err)
 {
     const int nq = lin->sys->nq;

@@ -72,7 +72,7 @@ mt_status mt_reduce_basis(mt_linear *lin, mt_err *err)
     return MT_OK;
 }
 
-/* What rounding may have made of the entries of a row over local freedoms. */
+/* Rounding errors of the entries of a row over local freedoms. */
 static void row_error(const double row[MT_LOCAL], double extent, double error[MT_LOCAL])
 {
     double most = 0.0; /* of the translations: what an arm stands on */
@@ -85,7 +85,7 @@ static void row_error(const double row[MT_LOCAL], double extent, double error[MT
     }
 }
 
-/* Of the entries of the rows over the states. */
+/* Rounding errors of the entries of the rows over the states. */
 static mt_status row_errors(mt_linear *lin, int kind, double extent, mt_err *err)
 {
     const mt_term_list *const list = &lin->list[kind];

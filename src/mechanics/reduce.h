@@ -7,9 +7,9 @@
 /* Replace the basis of the elimination by one local to the bodies (local.h), with bounds of its
  * errors. After the elimination and the rows. */
 mt_status mt_reduce_basis(mt_linear *lin, mt_err *err);
-/* reduced = Z^T row for all rows of all kinds at the present position, entries that are
- * rounding made exactly 0, and blocked where nothing is left. After the basis; the memory is
- * that of the geometry. O(rows n). */
+/* reduced = Z^T row for all rows of all kinds at the present position; entries that are
+ * rounding are set to 0, and rows without others are blocked. After the basis; in the memory of
+ * the geometry. O(rows n). */
 mt_status mt_reduce_rows(mt_linear *lin, mt_err *err);
 
 #endif

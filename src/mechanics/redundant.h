@@ -5,18 +5,18 @@
 #include "mechanics/linear.h"
 #include "mechanics/singular.h"
 
-/* What elimination found at the linearised position, in the words of the model. After an
+/* Results of the elimination at the linearised position, in names of the model. After an
  * update. */
 
-/* Number of redundant equations (m - rank) and, for set k, its joints' names, in mem. */
+/* Number of redundant equations (m - rank); names of the joints of set k, in mem. */
 int mt_linear_redundant(const mt_linear *lin);
 mt_status mt_linear_redundant_set(mt_linear *lin, int k, mt_arena *mem, mt_joint_names *out,
                                   mt_err *err);
-/* How near the position is to one where equations depend on each other there only (singular.h).
- * Names are in mem. */
+/* Distance to a position where equations are dependent there only (singular.h). Names are in
+ * mem. */
 mt_status mt_linear_nearness(mt_linear *lin, mt_arena *mem, mt_nearness *out, mt_err *err);
-/* Names of the bodies and directions that dominate a direction y in the freedoms: "bob
- * (rotation)", for messages. Buffer of size bytes. */
+/* Names of the bodies and directions that dominate a direction y in the freedoms, "bob
+ * (rotation)", for messages, in text[size]. */
 void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size);
 
 #endif

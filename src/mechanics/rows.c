@@ -40,7 +40,7 @@ static void push(mt_term_list *list, const mt_program *p, mt_term term)
     list->terms[list->n_terms++] = term;
 }
 
-/* How many terms and rows each kind has. */
+/* Number of terms and rows of each kind. */
 static void count_terms(const mt_system *sys, int terms[MT_TERM_KINDS], int rows[MT_TERM_KINDS])
 {
     for (int i = 0; i < sys->n_springs; i++) {

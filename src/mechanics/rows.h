@@ -9,9 +9,9 @@
  * Stiffness, damping, mass and sensors as sparse rows over the states of (at most) two bodies:
  *     K = sum_t k_t f_t f_t^T (+ geometric part),   M = sum_t m_t sum_i f_ti f_ti^T,
  *     C = sum_t c_t f_t f_t^T,   H = sum_t eta_t k_t f_t f_t^T,   sensor = f . dq.
- * A term's coefficient is one node of the program, its rows are geometry. That is what makes
- * repeated evaluation at fixed geometry a short sum, gives derivatives and interval bounds of K
- * and M term by term, and keeps the factor of K for badly scaled models.
+ * A term's coefficient is one node of the program, its rows are geometry. So repeated
+ * evaluation at constant geometry is a short sum, derivatives and interval bounds of K and M
+ * are available term by term, and badly scaled models keep the factor of K.
  */
 typedef enum mt_term_kind {
     MT_TERM_STIFFNESS,
@@ -23,12 +23,11 @@ typedef enum mt_term_kind {
 
 typedef struct mt_term {
     mt_node coefficient; /* MT_NO_NODE for channels */
-    /* of a spring: its part of the structural damping H is loss * coefficient; MT_NO_NODE:
-     * none */
+    /* of a spring: its part of the structural damping H is loss * coefficient; MT_NO_NODE: 0 */
     mt_node loss;
     int first; /* rows first .. first + count - 1 */
     int count;
-    bool pair;   /* two rows a, b: coefficient * (a b^T + b a^T)/2; else the sum of squares */
+    bool pair;   /* two rows a, b: coefficient * (a b^T + b a^T)/2; else a sum of squares */
     bool varies; /* the coefficient depends on an input */
     int body[2];
     int source; /* spring, inertia or channel it comes from */
@@ -43,7 +42,7 @@ typedef struct mt_term_list {
 
 /* The terms of a system (topology only). lists[MT_TERM_KINDS]. */
 mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists, mt_err *err);
-/* The term of one inertia, without its place in a list. */
+/* The term of one inertia, without its rows in a list. */
 mt_term mt_term_of_inertia(const mt_system *sys, int i);
 /* Rows of one term at given poses: rows[12 * count], entry k of a row belongs to local freedom
  * k of the term's bodies; all rows of one kind: rows[12 * n_rows]. */
@@ -51,7 +50,7 @@ void mt_term_rows(const mt_data *d, mt_term_kind kind, const mt_term *t, const m
                   mt_cx *rows);
 void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
                   const mt_pose *poses, mt_cx *rows);
-/* The entries of such rows (real) that are not 0, by state. A failure is the arena's. */
+/* Nonzero entries of such rows (real) by state. A failure is the arena's. */
 void mt_rows_over_states(const mt_system *sys, const mt_term_list *list, const double *rows,
                          mt_arena *mem, mt_rows *out);
 

@@ -8,34 +8,35 @@
  * Saddle-point systems of a stage,
  *     [ H  A^T ] [x]   [f]
  *     [ A   0  ] [y] = [b],
- * factored as they stand, sparse, in the order of the mechanism (layout.h): no basis of the
- * freedoms is made. With H = I in the elimination's coordinates (eliminate.h) they are least
- * squares: b = 0 gives y with A^T y ~ f, f = 0 gives the least x with A x = b. Rows of A are
- * equilibrated, rotations scaled by the model length, H by its largest entry, so that pivots
- * and norms mean the same whatever the units.
+ * factored directly, sparse, in the order of the mechanism (layout.h), without a basis of the
+ * freedoms. With H = I in the elimination's coordinates (eliminate.h) they are least squares: b
+ * = 0 gives y with A^T y ~ f, f = 0 gives the least x with A x = b. Rows of A are equilibrated,
+ * rotations scaled by the model length, H by its largest entry, so that pivots and norms have
+ * the same meaning in all units.
  */
 typedef struct mt_saddle {
     const mt_system *sys;
     int m;
-    double scale; /* largest entry of H in scaled coordinates [N/m]; 1 where there is none */
+    double scale; /* largest entry of H in scaled coordinates [N/m]; 1 where H is 0 */
     double *d;    /* [places] scale of each row and column */
     mt_ldl f;
     bool whole; /* regular, and factored */
 } mt_saddle;
 
-/* LEAST_SQUARES: H = I. REGULAR: H = l->h, and pivots that may be a freedom's without stiffness
- * are none. SOFT: pivots are all that are above rounding; what is free is for others to see. */
+/* LEAST_SQUARES: H = I. REGULAR: H = l->h, without pivots that may belong to a freedom without
+ * stiffness. SOFT: all pivots above rounding; freedoms without stiffness are detected
+ * elsewhere. */
 typedef enum mt_saddle_kind {
     MT_SADDLE_LEAST_SQUARES,
     MT_SADDLE_REGULAR,
     MT_SADDLE_SOFT
 } mt_saddle_kind;
 
-/* True where this way is cheaper than the dense one (eliminate.h). */
+/* True where this is cheaper than the dense method (eliminate.h). */
 bool mt_saddle_pays(const mt_system *sys);
-/* The system with the first m rows of A = l->row. value: of all
- * entries of the layout's envelope, overwritten; may be l->h where H is. Results in mem.
- * Fails: MT_E_MEMORY, MT_E_DOMAIN. */
+/* The system with the first m rows of A = l->row. value: work for all entries of the layout's
+ * envelope, overwritten; may be l->h where that is H. Results in mem. Fails: MT_E_MEMORY,
+ * MT_E_DOMAIN. */
 mt_status mt_saddle_factor(const mt_system *sys, int m, const mt_lagrangian *l,
                            mt_saddle_kind kind, double *value, mt_arena *mem, mt_saddle *out,
                            mt_err *err);
@@ -44,7 +45,7 @@ mt_status mt_saddle_solve(const mt_saddle *s, const double *f, const double *b, 
                           double *y, mt_arena *scratch, mt_err *err);
 /* True where all eigenvalues of H on the motions that A allows are above 0. */
 bool mt_saddle_convex(const mt_saddle *s);
-/* *below: the inverse, in scaled units, is certainly below `most`. */
+/* *below: the norm of the inverse, in scaled units, is safely below `most`. */
 mt_status mt_saddle_below(const mt_saddle *s, double most, mt_arena *scratch, bool *below,
                           mt_err *err);
 

@@ -280,7 +280,7 @@ typedef struct walk {
     double left;  /* of the independent equations, model lengths */
 } walk;
 
-/* dq := what closes the independent equations beside it; *closed. */
+/* dq := correction that closes the independent equations; *closed. */
 static mt_status close(const near *v, walk *w, bool *closed, mt_arena *mem, mt_err *err)
 {
     const mt_elimination *const e = v->e;
@@ -311,7 +311,7 @@ static mt_status close(const near *v, walk *w, bool *closed, mt_arena *mem, mt_e
     return MT_OK;
 }
 
-/* The dependent equation that is furthest open after a finite motion; -1: none is. e: with the
+/* The dependent equation with the largest gap after a finite motion; -1: none. e: with the
  * orthonormal basis. */
 static mt_status find_open(const near *v, const mt_elimination *e, uint64_t *state, walk *w,
                            int *open, mt_arena *mem, mt_err *err)

@@ -6,42 +6,43 @@
 #include "mechanics/singular.h"
 
 /*
- * The static response of a mechanism along the range of one driven joint: a system made by
- * mt_system_new_of, solved at one position after the other. The walk begins at the point
- * nearest to the reference position and goes outwards both ways, each point from its neighbour,
- * so that every point lies on the branch of the drawing.
+ * Static response of a mechanism along the range of one driven joint: a system made by
+ * mt_system_new_of, solved at one position after the other. The sweep starts at the point
+ * nearest to the reference position and goes outwards in both directions, each point from its
+ * neighbour, so that every point is on the branch of the drawing.
  */
 typedef struct mt_sweep_point {
     double drive;     /* position of the driven joint from the reference position [rad, m] */
-    mt_status status; /* MT_OK, or why there is nothing at this point */
+    mt_status status; /* MT_OK, or the failure at this point */
     const char *why;  /* its text; NULL where MT_OK */
-    /* [n_joints] of each joint from the reference position, whole turns counted [rad, m]; NaN
-     * for a joint without one */
+    /* [n_joints] coordinate of each joint from the reference position, whole turns counted
+     * [rad, m]; NaN for a joint without one */
     double *coordinate;
     double *ratio; /* [n_joints] d coordinate / d drive, exact, along the equilibria */
-    /* what holds the joint: the moment or force of the lock along its coordinate, or the force
-     * of the trimmed spring [N m, N] */
+    /* moment or force of the lock along the joint's coordinate, or force of the trimmed spring
+     * [N m, N] */
     double hold;
     double residual; /* of the equilibrium, relative to the forces at work */
     double gap_m;    /* largest violation of a constraint */
-    /* how near a dead centre is; NULL where nothing is at this point */
+    /* distance to a dead centre; NULL where the point failed */
     const mt_nearness *near;
 } mt_sweep_point;
 
 typedef struct mt_sweep {
     int n_joints;
     int n_points;
-    mt_sweep_point *points; /* in the order asked for */
+    mt_sweep_point *points; /* in the order of the given positions */
     int n_reached;          /* points with MT_OK */
 } mt_sweep;
 
-/* Brings lin to inputs (with gradient) and looks at what it wants to see there. What it fails
- * with is noted at the point; memory, an interrupt, or our own error ends the sweep. */
+/* Brings lin to inputs (with gradient) and evaluates what it needs there. Its failure is
+ * recorded at the point; a lack of memory, an interrupt, or an internal error ends the
+ * sweep. */
 typedef struct mt_sweep_visitor {
     mt_status (*visit)(void *context, int point, const double *inputs, mt_err *err);
     void *context;
-    /* it has all that is wanted: points get neither coordinates nor ratios, forces or
-     * residuals, and it may do without the gradient */
+    /* the visitor does everything: points get no coordinates, ratios, forces or residuals, and
+     * no gradient is needed */
     bool alone;
 } mt_sweep_visitor;
 
@@ -51,13 +52,13 @@ void mt_sweep_range(double from, double to, int steps, double *positions);
 
 /**
  * @param lin        of a system with a caller's drive; its scratch is used
- * @param inputs     [lin->sys->n_inputs - 1] the others than the position
+ * @param inputs     [lin->sys->n_inputs - 1] all but the position
  * @param positions  [n] of the driven joint
  * @param visitor    NULL: mt_linear_update alone
- * @param mem holds the result A point in a dead centre has MT_E_DEAD_CENTRE; the next ones go
- *   on from the point before it. A point beyond a limit position has MT_E_ASSEMBLY and the text
- *   that names the limit; so have all points further that way. Fails: MT_E_MEMORY,
- *   MT_E_INTERNAL, MT_E_INTERRUPTED.
+ * @param mem        holds the result
+ * A point at a dead centre has MT_E_DEAD_CENTRE, and the sweep continues from the point before
+ * it. A point beyond a limit position has MT_E_ASSEMBLY and a text that names the limit, as
+ * have all points beyond it. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
  */
 mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double *positions,
                        const mt_sweep_visitor *visitor, mt_arena *mem, mt_sweep *out,

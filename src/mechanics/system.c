@@ -248,8 +248,8 @@ void mt_system_delete(mt_system *sys)
     }
 }
 
-/* An equilibrium is found anew for every design anyway; loops that are closed by force may
- * leave a beam bent in its reference position. */
+/* An equilibrium is found again for every design; loops that are closed by force may leave a
+ * beam bent in its reference position. */
 bool mt_system_beams_shape(const mt_system *sys)
 {
     return sys->loaded || !sys->drawn_closed;

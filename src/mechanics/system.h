@@ -10,7 +10,7 @@
 /*
  * One configuration of a model, flattened: links are elements, joints are equations, springs
  * are energies of measures, every number is a node of one program. A system is immutable once
- * made and may be shared by threads; what moves lives in mt_linear (linear.h).
+ * made and may be shared by threads; mutable data is in mt_linear (linear.h).
  *
  * States q: increments of each body, (dx, dy, dtheta) in two dimensions, (dx, dy, dz, theta_x,
  * theta_y, theta_z) in three, translations alone for a point mass.
@@ -18,7 +18,7 @@
 
 /* A 3-vector of the geometry, in the drawn position. */
 typedef enum mt_vec_kind {
-    MT_VEC_NODES, /* as the nodes say */
+    MT_VEC_NODES, /* components are the nodes */
     MT_VEC_UNIT,  /* the same, normalised */
     MT_VEC_PERP1, /* unit, perpendicular to vector `axis`: axis x e_helper, normalised */
     MT_VEC_PERP2, /* axis x PERP1 */
@@ -54,7 +54,7 @@ typedef struct mt_measure_def {
 
 typedef struct mt_state_body {
     const char *name; /* "crank", "beam.3", "fe.node0" */
-    int centre;       /* vector: position of the centre as drawn */
+    int centre;       /* vector: drawn position of the centre */
     int dof[6];       /* column of q for x y z rx ry rz; -1: none */
 } mt_state_body;
 
@@ -62,7 +62,7 @@ typedef struct mt_constraint_def {
     int terms; /* 1, or 2 for a gear or rack */
     int measure[2];
     mt_node coefficient[2]; /* gear, rack; else MT_NO_NODE (1) */
-    mt_node target;         /* MT_NO_NODE: the value as drawn where `drawn`, else 0 */
+    mt_node target;         /* MT_NO_NODE: the drawn value where `drawn`, otherwise 0 */
     bool drawn;
     int joint; /* of the system's joints */
 } mt_constraint_def;
@@ -82,8 +82,8 @@ typedef struct mt_system_joint {
     int hinge;
 } mt_system_joint;
 
-/* V = 1/2 k d_a d_b (+ preload d_a), d = measure - rest value, rest value: that of the
- * reference position or `free`. a == b but for couplings of a bushing. */
+/* V = 1/2 k d_a d_b (+ preload d_a), d = measure - rest value; the rest value is that of the
+ * reference position or `free`. a == b except for couplings of a bushing. */
 typedef struct mt_spring_def {
     const char *name;
     int measure[2];
@@ -91,8 +91,8 @@ typedef struct mt_spring_def {
     mt_node free;    /* MT_NO_NODE: unstressed in the reference position */
     mt_node preload; /* MT_NO_NODE: 0 */
     mt_node loss;    /* loss factor; MT_NO_NODE: 0 */
-    bool damper;     /* no energy, a damping coefficient */
-    int item;        /* springs of one item of the model stand together */
+    bool damper;     /* no energy; `stiffness` is a damping coefficient */
+    int item;        /* springs of one item of the model are consecutive */
 } mt_spring_def;
 
 typedef enum mt_inertia_kind {
@@ -152,8 +152,8 @@ typedef struct mt_item_def { /* what `mass` counts: bodies, links, bars */
     mt_node mass; /* MT_NO_NODE: none */
 } mt_item_def;
 
-/* Damping besides dampers and loss factors (model.h: mt_damping), as nodes; MT_NO_NODE: none.
- * */
+/* Damping in addition to dampers and loss factors (model.h: mt_damping), as nodes; MT_NO_NODE:
+ * none. */
 typedef struct mt_damping_def {
     mt_node mass;      /* 1/s */
     mt_node stiffness; /* s */
@@ -192,47 +192,46 @@ typedef struct mt_system {
     MT_LIST_OF(mt_channel_def, channels);
     MT_LIST_OF(mt_item_def, items);
     mt_damping_def damping;
-    bool loaded; /* gravity, preload or free length present: equilibrium needed */
+    bool loaded; /* gravity, preload or free length present: the equilibrium must be found */
     bool driven;
     mt_node drive;        /* position of the driven joint's coordinate */
     int drive_constraint; /* its constraint; -1 */
     int drive_joint;      /* of joints; -1 */
-    /* hold by a spring: the drive's constraint is absent from the linearised system */
+    /* held by a spring: the linearised system has no constraint of the drive */
     bool trim;
     int trim_spring; /* of springs; -1 */
-    /* inputs, as bits of the program's words: those that a vector, a target or a shape of a
-     * mass depends on; those and where sensors stand; those that an equilibrium depends on
-     * besides */
+    /* inputs, as bit sets of the program: those of vectors, targets and mass shapes; those and
+     * the positions of sensors; those of the equilibrium in addition */
     uint64_t *frame;
     uint64_t *shape;
     uint64_t *forces;
-    bool geometry_fixed; /* nothing is in `shape` */
-    /* the joints are closed as drawn, whatever the inputs: each has one point and no length of
-     * its own */
+    bool geometry_fixed; /* `shape` is empty */
+    /* the joints are closed in the drawn position for all inputs: each has one point and no
+     * length */
     bool drawn_closed;
     const mt_layout *layout; /* of states and equations (layout.h) */
 } mt_system;
 
 /*
  * Flatten configuration `configuration` of the model. inputs: parameters that the caller will
- * vary (an override of the configuration wins over an input; an input wins over the parameter's
- * own definition); at[n_inputs]: their values at the original design, where discrete choices
- * (helper axes, model length) are made. Fails: MT_E_INPUT (a point mass held away from its
- * centre, beam section incomplete, ...), MT_E_DOMAIN, MT_E_MEMORY.
+ * vary (an override of the configuration takes precedence over an input, an input over the
+ * parameter's own definition); at[n_inputs]: their values at the original design, where
+ * discrete choices (helper axes, model length) are made. Fails: MT_E_INPUT (a point mass held
+ * away from its centre, beam section incomplete, ...), MT_E_DOMAIN, MT_E_MEMORY.
  */
 mt_status mt_system_new(const mt_model *model, int configuration, int n_inputs,
                         const int *inputs, const double *at, mt_system **out, mt_err *err);
-/* A joint driven from outside: it takes the place of the configuration's own drive. */
+/* A joint driven from outside; replaces the configuration's own drive. */
 typedef struct mt_system_drive {
     const char *joint;  /* a joint with a coordinate, or a link's hinge ("beam.h3") */
-    const char *spring; /* re-trimmed to hold it; NULL: locked */
-    bool fixed;         /* the joint stands at `position`, which is then no input */
+    const char *spring; /* trimmed to hold it; NULL: locked */
+    bool fixed;         /* the joint is fixed at `position`, which is then not an input */
     double position;    /* where fixed [rad or m from the reference position] */
 } mt_system_drive;
 /* What a system is made of. Nothing is owned; model and run must outlive the system. */
 typedef struct mt_system_def {
     const mt_model *model;
-    const mt_run *run; /* asked and told by all work on the system; NULL: none */
+    const mt_run *run; /* checked and updated by all work on the system; NULL: none */
     int configuration;
     const mt_system_drive *drive; /* NULL: none but the configuration's own */
     int n_inputs;
@@ -240,34 +239,35 @@ typedef struct mt_system_def {
     const double *at;  /* [n_inputs], and one more with a drive that is not fixed */
 } mt_system_def;
 /* mt_system_new within a run. The position of a drive [rad or m from the reference position]
- * is one more input, the last: at[n_inputs + 1], and the system has n_inputs + 1 inputs; a
- * drive that is fixed adds none. Fails as mt_system_new; MT_E_INPUT: no such joint or spring. */
+ * is an additional, last input: at[n_inputs + 1], and the system has n_inputs + 1 inputs; a
+ * fixed drive adds none. Fails as mt_system_new; MT_E_INPUT: no such joint or spring. */
 mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
 /*
- * *same: two configurations of one model are the same mechanism but for the position of one
+ * *same: two configurations of one model are the same mechanism except for the position of one
  * driven joint. Bodies, joints, springs, inertias and loads are the same, number by number as
- * expressions of the same inputs (system_same.c); both drive the same joint and hold it alike,
- * or one of them has no drive, nothing loads it, and a trimmed spring holds the other: it then
- * is that mechanism in its reference position. Two configurations without a drive are not.
- * Fails: MT_E_MEMORY.
+ * expressions of the same inputs (system_same.c); both drive the same joint and hold it the
+ * same way, or one of them has no drive and no loads, and a trimmed spring holds the other: it
+ * then is that mechanism in its reference position. False for two configurations without a
+ * drive. Fails: MT_E_MEMORY.
  */
 mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
 /*
  * *same: two configurations of one model have the same geometry at every design, and rows of K,
- * C, M and the sensors in the same places. As above, but for the coefficients of springs,
- * dampers and inertias, preload and free lengths; without drive and loads. Fails: MT_E_MEMORY.
+ * C, M and the sensors in the same positions. As mt_system_same_drive, but coefficients of
+ * springs, dampers and inertias, preload and free lengths may differ; without drive and loads.
+ * Fails: MT_E_MEMORY.
  */
 mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
 
-/* Whether the numbers of the beams' strains shape the geometry of stiffness. In an unloaded
- * system that is closed as drawn they do not: straight, without force, a beam's strains change
- * with none of them. */
+/* True where the numbers of the beams' strains affect the geometry of stiffness. They do not in
+ * an unloaded system that is closed in the drawn position: a straight beam without force
+ * has strains that do not depend on them. */
 bool mt_system_beams_shape(const mt_system *sys);
 
-/* What a displacement is compared with (system_length.c), of the values v of all nodes; above
- * 0. */
+/* Model length, the reference length of displacements (system_length.c), from the values v of
+ * all nodes; above 0. */
 double mt_system_length(const mt_system *sys, const double *v);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);

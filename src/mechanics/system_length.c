@@ -55,7 +55,7 @@ static double reach(const mt_system *sys, const double *v)
     return most;
 }
 
-/* Coordinate k of an end of a measure, as drawn. */
+/* Coordinate k of an end of a measure in the drawn position. */
 static double end_of(const mt_system *sys, const mt_measure_def *m, int side, int k,
                      const double *v)
 {

@@ -91,7 +91,7 @@ static bool same_bodies(const pair *p)
     return true;
 }
 
-/* Without the drive's, which is the last one where there is one. */
+/* Number of constraints without the drive's, which is the last. */
 static int own_constraints(const mt_system *sys)
 {
     return sys->n_constraints - (sys->driven ? 1 : 0);
@@ -183,7 +183,7 @@ static bool same_counts(const mt_system *a, const mt_system *b)
            same_ints(a->n_inputs, a->inputs, b->inputs);
 }
 
-/* Whether they stand on one way of one joint. */
+/* True where both are positions of the same motion of one joint. */
 static bool one_drive(const mt_system *a, const mt_system *b)
 {
     if (a->driven && b->driven) {
@@ -207,7 +207,7 @@ static mt_status pair_of(const mt_system *a, const mt_system *b, pair *p, mt_err
     return MT_OK;
 }
 
-/* Places and directions, and what is measured and closed there. */
+/* True where positions, directions, measures and constraints are the same. */
 static bool same_geometry(pair *p)
 {
     return same_vecs(p) && same_measures(p) && same_bodies(p) && same_constraints(p);

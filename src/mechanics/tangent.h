@@ -4,7 +4,7 @@
 
 #include "mechanics/linear_priv.h"
 
-/* What depends on one input beyond the coefficients: geometry, position, constraint forces. */
+/* Derivatives by one input beyond the coefficients: geometry, position, constraint forces. */
 struct mt_linear_tangent {
     bool moves;                  /* something below is not 0 */
     mt_rows rows[MT_TERM_KINDS]; /* derivative of lin->full */
@@ -12,17 +12,17 @@ struct mt_linear_tangent {
     /* [m] derivative of the constraints along the motion of the position: 0 where it stays
      * closed */
     double *c;
-    double terms;  /* largest sum of the terms of an entry of c, in rows of unit length */
+    double terms;  /* largest sum of |terms| of an entry of c, in rows of unit length */
     double motion; /* length of the motion that the input causes, in scaled coordinates */
-    double *kg;    /* nq x nq; NULL where nothing loads */
-    mt_pose *pose; /* [bodies] with their derivatives; NULL where nothing loads */
-    mt_cx *lambda; /* [all constraints] likewise */
+    double *kg;    /* nq x nq; NULL without loads */
+    mt_pose *pose; /* [bodies] with their derivatives; NULL without loads */
+    mt_cx *lambda; /* [all constraints] with their derivatives; NULL without loads */
 };
 
-/* Fill lin->tangent, of the inputs in the set moves: nothing here depends on the others. */
+/* Fill lin->tangent for the inputs in the set `moves`; the others have no effect here. */
 mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err);
-/* out (nq x nq) := derivative of the part of Kg that the equations of one joint make; 0 where
- * nothing loads. */
+/* out (nq x nq) := derivative of the contribution of one joint's equations to Kg; 0 without
+ * loads. */
 mt_status mt_tangent_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err);
 
 #endif

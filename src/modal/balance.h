@@ -5,12 +5,11 @@
 #include "modal/sparse.h"
 
 /**
- * The forces with which constraints hold a load: mu[rows of A] with A^T mu = f[n], least in
- * themselves where there are many, f - A^T mu least where there are none. Of p: n, a, unit and
- * check.
- * @param[out] open   [rows of A] about what rounding leaves open of each
- * @param[out] found  false: sixteen digits do not hold them
- * Fails: as mt_factor_make, MT_E_MEMORY, what `check` fails with.
+ * Constraint forces that balance a load: mu[rows of A] with A^T mu = f[n], of least norm where
+ * there are many, least-squares where there are none. Uses n, a, unit and check of p.
+ * @param[out] open   [rows of A] about the rounding error of each
+ * @param[out] found  false: double precision is not enough
+ * Fails: as mt_factor_make, MT_E_MEMORY, as `check`.
  */
 mt_status mt_modal_balance(const mt_sparse_problem *p, const double *f, double *mu,
                            double *open, bool *found, mt_err *err);

@@ -4,7 +4,7 @@
 
 #include "modal/derivative.h"
 
-/* The two matrices of an eigenproblem, as above. */
+/* The two matrices of the eigenproblem K y = lambda M y. */
 typedef struct mt_pencil {
     int n;
     const double *k;
@@ -12,8 +12,8 @@ typedef struct mt_pencil {
 } mt_pencil;
 
 /*
- * By the bordered system (Lee and Jung 1997), valid for a simple mode of any kind, also with
- * singular M:
+ * Derivatives of one mode by the bordered system (Lee and Jung 1997), valid for a simple mode
+ * of any kind, also with singular M:
  *   [K - lambda M   -M y] [dy     ]   [-(dK - lambda dM) y]
  *   [-y^T M          0  ] [dlambda] = [ 1/2 y^T dM y       ]
  * One factorisation, np right-hand sides. Fails: MT_E_SINGULAR at a repeated mode (reciprocal

@@ -307,8 +307,8 @@ static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *e
     return MT_OK;
 }
 
-/* |s|^2 up to which a root is that of an undecided mode: what its eigenvalue may be, and a few
- * times more for what dampers make of it. */
+/* |s|^2 up to which a root belongs to an undecided mode: the greatest possible eigenvalue, and
+ * a few times more for the effect of dampers. */
 static double undecided_square(const mt_modes *modes)
 {
     static const double times = 4.0;
@@ -321,8 +321,8 @@ static double undecided_square(const mt_modes *modes)
     return most;
 }
 
-/* About a position that holds, what grows in a passive system is rounding; the last digits of
- * the roots have been mended since their kinds were told. */
+/* Final kinds, after the refinement of the roots. At a stable position, growing roots of a
+ * passive system are rounding. */
 static mt_status settle_kinds(const mt_damped_problem *p, mt_damped_modes *out, mt_arena *mem,
                               mt_err *err)
 {

@@ -7,23 +7,23 @@
 /*
  * Modes with damping:  (s^2 M + s C + K + i H) y = 0,  s = sigma +- i omega_d.
  *   natural frequency |s| / 2 pi, damped frequency Im s / 2 pi, damping ratio -Re s / |s|.
- * Without structural damping H one entry for a pair of conjugate s (with Im s > 0), one for
- * each real s: an overdamped motion has two of them, a spring and a damper in a row without
+ * Without structural damping H: one entry for a pair of conjugate s (with Im s > 0), one for
+ * each real s. An overdamped motion has two real roots, a spring and a damper in series without
  * mass between them one.
  *
- * H stands for motions e^{i w t}, w > 0: with it the roots with Im s > 0 are listed alone, one
- * for each mode, and they have no conjugates (those with Im s < 0 belong to no motion). A mass
- * on a spring k (1 + i eta) has s = i sqrt(k (1 + i eta)/m), a damping ratio of about eta/2.
- * Real roots of what H has no part in are listed as above.
+ * H applies to motions e^{i w t}, w > 0. With it only the roots with Im s > 0 are listed, one
+ * for each mode; they have no conjugates (roots with Im s < 0 belong to no motion). A mass on a
+ * spring k (1 + i eta) has s = i sqrt(k (1 + i eta)/m), a damping ratio of about eta/2. Real
+ * roots of motions without H are listed as above.
  */
 typedef enum mt_damped_kind {
     MT_DAMPED_OSCILLATING, /* Im s > 0, Re s <= 0 (to rounding) */
     MT_DAMPED_OVERDAMPED,  /* s real, <= 0: decays without oscillation */
-    /* s = 0: one entry for each rigid-body mode of the undamped system; where it is damped, its
-     * other root is real */
+    /* s = 0: one entry for each rigid-body mode of the undamped system; a damped one has a
+     * second, real root */
     MT_DAMPED_RIGID_BODY,
     MT_DAMPED_UNSTABLE, /* Re s > 0 */
-    /* of an undecided mode of the undamped system: s^2 is rounding beside its stiffness */
+    /* of an undecided mode of the undamped system: rounding hides the sign of s^2 */
     MT_DAMPED_UNDECIDED
 } mt_damped_kind;
 
@@ -45,22 +45,23 @@ typedef struct mt_damped_modes {
     /* [count] ||(s^2 M + s C + K + i H) y|| / ((|s|^2 ||M|| + |s| ||C|| + ||K|| + ||H||) ||y||
      * n eps) in coordinates scaled to m_ii = 1; 0 for rigid-body modes */
     double *residual;
-    /* n x count shapes, their largest entry 1; 0 for rigid-body modes (those of the undamped
-     * system) */
+    /* n x count shapes, largest entry 1; 0 for rigid-body modes (their shapes are those of the
+     * undamped system) */
     double *y_re;
     double *y_im;
 } mt_damped_modes;
 
-/* All damped modes. Results in mem. O(n^3), a general eigenproblem of order up to 2 n, with H a
- * complex one. C must be positive semidefinite where there are directions without mass. Fails:
- * MT_E_USAGE (modes without vectors), MT_E_SINGULAR (a direction without mass and damping that
- * no stiffness holds), MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY. */
+/* All damped modes. Results in mem. O(n^3): a general eigenproblem of order up to 2 n, complex
+ * with H. C must be positive semidefinite where there are directions without mass. Fails:
+ * MT_E_USAGE (modes without vectors), MT_E_SINGULAR (a direction without mass, damping and
+ * stiffness), MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY. */
 mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_modes *out,
                           mt_err *err);
 
-/* Each oscillating motion has an index, from 1 by |s|: none is undecided. */
+/* True where every oscillating motion has an index, from 1 by ascending |s|: no mode is
+ * undecided. */
 bool mt_damped_indexed(const mt_damped_modes *d);
-/* |s|/2 pi and Im s/2 pi [Hz]; -Re s/|s| (NaN where s = 0). */
+/* |s|/2 pi and Im s/2 pi [Hz]; damping ratio -Re s/|s| (NaN where s = 0). */
 double mt_damped_natural_hz(const mt_damped_modes *d, int i);
 double mt_damped_hz(const mt_damped_modes *d, int i);
 double mt_damped_ratio(const mt_damped_modes *d, int i);

@@ -6,8 +6,8 @@
 
 #include <complex.h>
 
-/* The pieces of damped.c. r modes with mass, z directions without, of which zd are damped and
- * zu are not. */
+/* Matrices of damped.c. r modes with mass, z directions without, of which zd are damped and zu
+ * are not. */
 typedef struct mt_damped_parts {
     const mt_damped_problem *p;
     mt_arena *mem;
@@ -18,7 +18,7 @@ typedef struct mt_damped_parts {
     int zu;
     double *y; /* n x r, rigid-body modes turned so that their damping is diagonal */
     double *t; /* n x z: the directions without mass, its first zu columns the undamped ones */
-    double *b; /* n x zd: columns of y for unit b_D, the static following of U in them */
+    double *b; /* n x zd: columns of y for unit b_D, including the static response of U */
     double *omega; /* [r] signed: S Omega */
     double *caa;   /* r x r */
     double *cda;   /* zd x r */
@@ -33,11 +33,11 @@ typedef struct mt_damped_parts {
 /* out := A^T B C, A n x ra, C n x rc, B symmetric n x n. */
 mt_status mt_damped_sandwich(const mt_damped_parts *s, const double *b, int ra, const double *a,
                              int rc, const double *c, double *out, mt_err *err);
-/* Of a root s = re + i im, im >= 0, of which rounding leaves `noise` open. */
+/* Kind of a root s = re + i im, im >= 0, with rounding error `noise`. */
 mt_damped_kind mt_damped_kind_of(double re, double im, double noise);
-/* A shape divided by its largest entry. */
+/* Divide a shape by its largest entry. */
 void mt_damped_scale(int n, double *y_re, double *y_im);
-/* Room for the results. */
+/* Allocate the results. */
 mt_status mt_damped_claim(mt_damped_modes *out, int n, int count, mt_arena *mem, mt_err *err);
 /* Roots and shapes with structural damping (damped_structural.c). */
 mt_status mt_damped_structural(const mt_damped_parts *s, mt_damped_modes *out, mt_err *err);

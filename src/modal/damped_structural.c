@@ -111,7 +111,7 @@ static mt_status stiffness(structural *c, mt_err *err)
     return MT_OK;
 }
 
-/* Which of x and v there are. */
+/* Count the states x and v that exist. */
 static void count_states(structural *c)
 {
     const mt_damped_parts *const s = c->s;
@@ -129,8 +129,7 @@ static void count_states(structural *c)
     c->order += s->zd;
 }
 
-/* What a force f[nw] that a state of size 1 brings about does to the rates: b' = -mu^-1 f_D, v'
- * = -f_a - C_aD b'. */
+/* Rates caused by the force f[nw] of a unit state: b' = -mu^-1 f_D, v' = -f_a - C_aD b'. */
 static void put(const structural *c, const double complex *f, double complex *column)
 {
     const mt_damped_parts *const s = c->s;

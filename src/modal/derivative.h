@@ -6,9 +6,9 @@
 #include "modal/modes.h"
 
 /*
- * Derivatives. The caller gives, for a parameter p, products with the chosen modes: dky =
- * (dK/dp) y_i, dmy = (dM/dp) y_i, columns n each, one column per listed mode. dmy may be NULL
- * everywhere: M does not depend on p.
+ * Derivatives. For a parameter p the caller gives products with the chosen modes: dky = (dK/dp)
+ * y_i, dmy = (dM/dp) y_i, one column of n entries per mode. dmy may be NULL everywhere: M does
+ * not depend on p.
  */
 /* For a cluster: the symmetric r x r matrix Y^T (dK - lambda dM) Y (lambda: mean of the
  * cluster), whose eigenvalues are the directional derivatives of the cluster. first: its first
@@ -24,11 +24,11 @@ typedef struct mt_directions {
 } mt_directions;
 
 /*
- * Derivatives of the mass-normalised vector of a simple mode, its sign held: dy n x np,
+ * Derivatives of the mass-normalised vector of a simple mode with constant sign: dy n x np,
  * dlambda np (may be NULL).
  *
- * By all other modes (Fox and Kapoor 1968; exact since all of them are there): two small
- * products per mode, the fast way when a solve has given all vectors. Fails: MT_E_SINGULAR at a
+ * Expansion in all other modes (Fox and Kapoor 1968; exact with all modes): two small products
+ * per mode, the fastest method when a solve has given all vectors. Fails: MT_E_SINGULAR at a
  * mode of a cluster (dy is NaN then), MT_E_USAGE without vectors or with condensed directions.
  */
 mt_status mt_modal_dvector_by_modes(const mt_modes *modes, int i, const mt_directions *dir,

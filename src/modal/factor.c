@@ -56,8 +56,8 @@ static void transform(const mt_stiffness_factor *b, const mt_mass_factor *mass, 
     }
 }
 
-/* What the errors of row j of B make of row j of C, relative to its length: |dC_j|^2 = db^T
- * M^-1 db, of which the diagonal is what independent errors leave. */
+/* Error of row j of C from the errors of row j of B, relative to its length: |dC_j|^2 = db^T
+ * M^-1 db; for independent errors only the diagonal remains. */
 static double relative_noise(const mt_stiffness_factor *b, const mt_mass_factor *mass, int j,
                              double norm)
 {
@@ -245,9 +245,9 @@ static mt_status vectors(const graded *g, const mt_mass_factor *mass, mt_arena *
 }
 
 /*
- * What eps in every entry of B makes of the eigenvalues, in eps of the one that has most of it:
+ * Effect of eps in every entry of B on the eigenvalues, in eps of the most affected one:
  *     sum_j 2 c_j |b_j . y| |b_j| . |y| / lambda.
- * As many springs as freedoms have no more of it than 1 / kept; elimination has it of all.
+ * With as many springs as freedoms it is at most 1 / kept; elimination has all of it.
  */
 static mt_status find_entry_condition(const mt_stiffness_factor *b, const mt_modes *modes,
                                       int first, mt_arena *scratch, double *most, mt_err *err)
@@ -281,7 +281,7 @@ static mt_status find_entry_condition(const mt_stiffness_factor *b, const mt_mod
     return MT_OK;
 }
 
-/* The relative error that rows beside those that hold each mode leave. */
+/* Relative error from rows other than those that determine each mode. */
 static mt_status find_error_beside(const graded *g, const mt_stiffness_factor *b,
                                    const mt_modes *modes, mt_arena *scratch, double *beside,
                                    mt_err *err)

@@ -79,8 +79,8 @@ static double coupling(const mt_mode_energies *e, double lambda, int i, int k, i
     return fabs(stiffness - (lambda * mass)) + stiffness_noise + (fabs(lambda) * mass_noise);
 }
 
-/* lambda[end - first] of the modes first .. end - 1, whose pairs stand from *pair on; returns
- * their error. */
+/* lambda[end - first] of the modes first .. end - 1, whose pairs start at *pair; returns their
+ * error. */
 static double quotients(const mt_modes *modes, const mt_mode_energies *e, int first, int end,
                         int *pair, double *lambda)
 {
@@ -169,7 +169,8 @@ bool mt_modal_rough(const mt_modes *modes)
     return rough;
 }
 
-/* Where they are surer: group by group, with the errors and gaps that were there before. */
+/* Take the quotients where they are more accurate, group by group, with the errors and gaps
+ * before the change. */
 static void take_quotients(mt_mode_energies *e, mt_modes *modes)
 {
     for (int i = 0; i < e->count; i++) {

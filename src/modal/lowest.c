@@ -132,7 +132,7 @@ static void measure(finding *f, int i)
     f->n_free += f->own[i].rigid ? 1 : 0;
 }
 
-/* Of `count` vectors from the first on, with their own quotients. */
+/* Compute the images and quotients of `count` vectors from the first on. */
 static mt_status look_at(finding *f, int first, int count, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
@@ -144,7 +144,7 @@ static mt_status look_at(finding *f, int first, int count, mt_err *err)
     return MT_OK;
 }
 
-/* `more` in the complement of what was found. */
+/* Search `more` modes in the complement of those found. */
 static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
@@ -172,8 +172,8 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
     return MT_OK;
 }
 
-/* Where to count: behind the mode, none before the last that is wanted, with the widest gap;
- * -1: there is none. */
+/* Number of modes to count behind: at least the wanted ones, with the widest gap; -1: no
+ * gap. */
 static int split(const finding *f)
 {
     const int wanted = f->p->count + f->n_free;
@@ -190,7 +190,8 @@ static int split(const finding *f)
     return best;
 }
 
-/* Count behind j modes; where a pivot is in doubt, elsewhere in the gap. */
+/* Count the modes below a frequency behind mode j; where a pivot is uncertain, try other
+ * frequencies in the gap. */
 static mt_status count_behind(const finding *f, int j, double *tau, int *below, bool *certain,
                               mt_err *err)
 {
@@ -205,7 +206,8 @@ static mt_status count_behind(const finding *f, int j, double *tau, int *below, 
     return MT_OK;
 }
 
-/* Until the count says that nothing is missing below *tau; *upto of those found lie there. */
+/* Search until the count confirms that no mode below *tau is missing; *upto: number of modes
+ * found below. */
 static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
@@ -244,7 +246,7 @@ static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err 
                          *tau);
 }
 
-/* Whether the intervals of k and k + 1 are apart. */
+/* True where the intervals of k and k + 1 are disjoint. */
 static bool apart(const finding *f, int k)
 {
     return f->theta[k] - f->rho[k] > f->theta[k + 1] + f->rho[k + 1];
@@ -316,8 +318,8 @@ static void fill(const finding *f, int upto, double tau, mt_lowest_modes *out)
     mt_modal_find_clusters(m);
 }
 
-/* Of those counted the ones that are wanted beside the free ones, and what is repeated with the
- * last of them. */
+/* Number of counted modes to return: those wanted and the free ones, and the repetitions of the
+ * last. */
 static int whole(const finding *f, int upto)
 {
     const int wanted = f->p->count + f->n_free;
@@ -328,8 +330,8 @@ static int whole(const finding *f, int upto)
     return n;
 }
 
-/* The images of the first n, orthonormal, instead of them: what has no mass, of which the
- * metric sees nothing, is in them no more. */
+/* Replace the first n vectors by their images, orthonormal: these have no components without
+ * mass, which the metric does not see. */
 static void purify(const finding *f, int n, double *x)
 {
     for (int i = 0; i < n; i++) {
@@ -356,9 +358,9 @@ static bool rough(const finding *f, int n)
     return is;
 }
 
-/* The Ritz vectors of all that were found instead of them, the first n looked at again. What is
- * left in one of the others comes of the method's vectors without mass, in which rounding is as
- * large as they are. */
+/* Replace all vectors found by Ritz vectors, and compute the first n again. Residuals of the
+ * others come from the method's vectors without mass, in which rounding is as large as they
+ * are. */
 static mt_status settle(finding *f, int n, mt_arena *scratch, mt_err *err)
 {
     const ptrdiff_t found = f->n;

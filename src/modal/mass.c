@@ -100,7 +100,7 @@ static mt_status check_coupling(int n, const double *m, const double *d, mt_err 
     return MT_OK;
 }
 
-/* Try M = L L^T; *regular tells whether that will do. */
+/* Try M = L L^T; *regular: M is regular enough. */
 static mt_status by_cholesky(mt_mass_factor *f, double *l, const double *d, double *w,
                              mt_arena *scratch, bool *regular, mt_err *err)
 {

@@ -4,11 +4,11 @@
 
 #include "base/arena.h"
 
-/* A mass matrix made ready for many solves. Lives in the arena that it was made in; fields are
- * for src/modal only, except n, rank and condition. */
+/* A mass matrix factored for many solves. In the arena that it was made in; fields are for
+ * src/modal only, except n, rank and condition. */
 typedef struct mt_mass_factor {
     int n;
-    int rank;        /* directions with mass; n - rank have none */
+    int rank;        /* directions with mass; the other n - rank have none */
     const double *m; /* n x n, the caller's, must outlive this; NULL: identity */
     /* n x n Cholesky factor of m; NULL where t is used, or m is the identity */
     const double *l;
@@ -18,7 +18,7 @@ typedef struct mt_mass_factor {
     const double *w;  /* [n] diagonal of M^-1 (of T1 T1^T) */
     double condition; /* max m_ii (M^-1)_ii, >= 1: how oblique the coordinates are to M;
                          infinite where singular */
-    double kept;      /* the same of the directions that have mass */
+    double kept;      /* the same for the directions with mass only */
 } mt_mass_factor;
 
 /* Factor M. O(n^3), 2 us for n = 11. A direction has no mass where the eigenvalue of the mass

@@ -26,25 +26,27 @@ static const double MT_MODAL_NOISE_ULPS = 16.0;
 
 /* 16 n eps. */
 double mt_modal_tolerance(int n);
-/* The relative error of an eigenvalue that comes with the matrices: an entry of K or M is a sum
- * of rounded products (a spring's elongation through a loop of joints has a few dozen
- * roundings), whatever n is. Measured: 33 eps, a four-bar of one freedom, among 1500 random
+/* Relative error of an eigenvalue due to the entries of the matrices: an entry of K or M is a
+ * sum of rounded products (a spring's elongation through a loop of joints has a few dozen
+ * roundings), for any n. Measured: 33 eps, a four-bar of one freedom, among 1500 random
  * mechanisms. */
 double mt_modal_relative(int n);
 
-/* Fill lambda, y (when there), n_condensed..., scale from K restricted to what has mass. Kinds,
- * clusters, sign and checks come later. later (may be NULL) is filled where y is left to
- * mt_modal_plain_lowest, which makes what out->shaped says then; else later->n is 0. */
+/* Fill lambda, y (where wanted), n_condensed..., scale from K restricted to directions with
+ * mass. Kinds, clusters, sign and checks come later. later (may be NULL) is filled where y is
+ * left to mt_modal_plain_lowest, which computes out->shaped vectors; otherwise later->n is
+ * 0. */
 mt_status mt_modal_plain(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
                          mt_modes *out, mt_tridiagonal *later, mt_err *err);
 mt_status mt_modal_plain_lowest(const double *k, const mt_mass_factor *mass,
                                 const mt_tridiagonal *later, mt_arena *scratch, mt_modes *out,
                                 mt_err *err);
-/* The same with K = B^T diag(c) B and regular M: null_count eigenvalues are exactly zero. */
+/* As mt_modal_plain with K = B^T diag(c) B and regular M: *null_count eigenvalues are exactly
+ * zero. */
 mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                              mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err);
-/* D C of rank >= 1 with C^T in ct (n x rows, destroyed), D = diag(d), is made U w Q1^T: U
- * orthonormal, Q1 the first rank columns of q, its row i at coordinate place[i]. */
+/* Factor D C of rank >= 1, C^T in ct (n x rows, destroyed), D = diag(d), as U w Q1^T: U
+ * orthonormal, Q1 the first rank columns of q, with its row i at coordinate place[i]. */
 typedef struct mt_graded {
     int n;
     int rows;
@@ -57,30 +59,30 @@ typedef struct mt_graded {
     mt_interrupt *interrupt;
 } mt_graded;
 mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err);
-/* Y := T1 Q: from the coordinates in which M is the identity back to the caller's. q, y n x
- * count, may be the same only where mass->t is NULL. Regular M only. */
+/* Y := T1 Q: from the coordinates in which M is the identity to the caller's. q, y n x count;
+ * the same array only where mass->t is NULL. Regular M only. */
 void mt_modal_back(const mt_mass_factor *mass, int count, const double *q, double *y);
-/* After mt_modal_by_factor with y: the modes of B^T diag(c) B + G from those without G, n x n
- * symmetric G, lower read. */
+/* After mt_modal_by_factor with y: modes of B^T diag(c) B + G from those without G; G n x n
+ * symmetric, lower read. */
 mt_status mt_modal_add_load(const double *g, const mt_mass_factor *mass, mt_arena *scratch,
                             mt_modes *out, mt_err *err);
-/* Kinds, n_rigid, n_unstable, lambda of rigid-body modes; n_rigid < 0: decide. n_held:
- * announced ones above the noise. The greatest |lambda| of an announced rigid-body mode.
- * noise[count]: at most that is 0 (NULL: error_bound); strained[count]: not where springs move
- * (NULL: nobody knows). */
+/* Set kinds, n_rigid, n_unstable, and lambda of rigid-body modes; n_rigid < 0: decide here.
+ * n_held: given rigid-body modes above the noise. Returns the greatest |lambda| of a given
+ * rigid-body mode. noise[count]: at most this is 0 (NULL: error_bound); strained[count]: not 0
+ * where springs are strained (NULL: unknown). */
 double mt_modal_classify(mt_modes *modes, int n_rigid, const double *noise,
                          const bool *strained);
-/* Without a factor, an announced rigid-body mode counts as held above HELD times the noise:
- * what an equilibrium found by iteration leaves on a null direction stays below (forces of 1e4
- * times the rounding of the positions count as none in the mechanics room). */
+/* Without a factor, a given rigid-body mode counts as held above HELD times the noise: the
+ * residual of an equilibrium found by iteration stays below that on a null direction (the
+ * mechanics room takes forces of up to 1e4 times the rounding of the positions as none). */
 static const double MT_MODAL_HELD = 1e4;
-/* Clusters; after the kinds. */
+/* Find clusters; after the kinds. */
 void mt_modal_find_clusters(mt_modes *modes);
-/* residual and orthogonality. */
+/* Fill residual and orthogonality. */
 mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
                          mt_modes *modes, mt_err *err);
-/* K restricted to what has mass, with the part without mass condensed: a (rank x rank, full),
- * t1 (n x rank) with Y = t1 Q. Fails MT_E_MASSLESS. */
+/* K restricted to directions with mass, the others condensed: a (rank x rank, full), t1 (n x
+ * rank) with Y = t1 Q. Fails MT_E_MASSLESS. */
 mt_status mt_modal_condense(const double *k, const mt_mass_factor *mass, mt_arena *scratch,
                             double *a, double *t1, mt_modes *out, mt_err *err);
 

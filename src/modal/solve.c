@@ -45,9 +45,9 @@ static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, 
 /* Errors of eigenvalues that quotients make the 1e-9 of mt_modal_rough of, by the square. */
 static const double SHAPES = 3e-5;
 
-/* True where the plain result is not good enough. Signs and ranks are in doubt where a factor
- * (K semidefinite by construction) shows instability, rigid-body modes that nobody announced,
- * or announced ones that stiffness seems to hold. */
+/* True where the plain result is not accurate enough. Signs and ranks are uncertain where a
+ * factor (K semidefinite by construction) has an unstable mode, rigid-body modes that were not
+ * given, or given ones with stiffness. */
 static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
 {
     if (modes->n_unstable > 0 || modes->n_held > 0 ||
@@ -61,7 +61,7 @@ static bool needs_factor(const mt_modes *modes, const mt_modal_options *opt)
     return lowest >= 0 && DBL_EPSILON * modes->scale > opt->accuracy * modes->lambda[lowest];
 }
 
-/* n_held as the classification left it counts what is above the noise; say it for sure. */
+/* Correct n_held, which classification counts above the noise only. */
 static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigid_most,
                        int null_count)
 {
@@ -72,8 +72,8 @@ static void judge_held(mt_modes *modes, const mt_modal_options *opt, double rigi
     }
 }
 
-/* The factor, and on top of it what is no sum of squares: then the rank of B says nothing of
- * the null directions of K (null_count -1). */
+/* Solve with the factor, then add G; the rank of B then says nothing about the null directions
+ * of K (null_count -1). */
 static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_factor *mass,
                            mt_arena *scratch, mt_modes *out, int *null_count, mt_err *err)
 {
@@ -91,8 +91,8 @@ static mt_status by_factor(const mt_stiffness_factor *factor, const mt_mass_fact
     return rc;
 }
 
-/* Kinds and errors; whether an eigenvalue is zero is a question to the absolute bound, and
- * where the answer was yes, what it was is part of the error. */
+/* Kinds and errors; zero eigenvalues are decided by the absolute bound, and the value set to
+ * zero is then part of its error. */
 static double kinds(mt_modes *out, int n_rigid)
 {
     for (int i = 0; i < out->count; i++) {
@@ -107,8 +107,8 @@ static double kinds(mt_modes *out, int n_rigid)
     return most;
 }
 
-/* True where fewer shapes than all may be wanted, and be had for less. How many modes lie up to
- * a frequency nobody knows before. */
+/* True where fewer shapes than all may be wanted and are cheaper. The number of modes up to a
+ * frequency is not known beforehand. */
 static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
 {
     const int modes = opt->modes.first > 0 ? opt->modes.first : mass->rank;
@@ -119,7 +119,8 @@ static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
            least <= mass->rank / MT_MODAL_PART;
 }
 
-/* How many of the lowest modes hold all of a part; doubts: and all that may be 0. */
+/* Number of lowest modes that contain all of a part; warning_list: and all modes that may be
+ * 0. */
 static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_list)
 {
     const bool all = part->first <= 0 && !(part->up_to > 0.0);
@@ -137,7 +138,7 @@ static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_l
     return end;
 }
 
-/* Leave out what was not asked for. */
+/* Drop modes and shapes that are not wanted. */
 static void keep(mt_modes *out, const mt_modal_options *opt)
 {
     out->count = end_of(out, &opt->modes, false);

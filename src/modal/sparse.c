@@ -194,8 +194,8 @@ static mt_status hold(mt_sparse *s, bool *held, char *why, mt_err *err)
     return MT_OK;
 }
 
-/* The lowest of the modes that are no rigid-body ones, negative where one is unstable (it
- * stands before the rigid-body ones, in the order of 1/(lambda + s)); 0: none. */
+/* lambda of the lowest mode that is not a rigid-body mode, negative where it is unstable (it
+ * comes before the rigid-body ones, in the order of 1/(lambda + s)); 0: none. */
 static double lowest_lambda(const mt_modes *m)
 {
     double lowest = HUGE_VAL;

@@ -7,37 +7,37 @@
 #include "modal/lowest.h"
 
 /*
- * K phi + A^T mu = lambda M phi, A phi = 0: a mechanism in coordinates of its bodies, of any
- * size and form. K and M are sums of squares of sparse rows, with whatever is no such sum
- * (geometric stiffness) as a matrix of its own.
+ * K phi + A^T mu = lambda M phi, A phi = 0: a mechanism of any size and topology in coordinates
+ * of its bodies. K and M are sums of squares of sparse rows; the rest of K (geometric
+ * stiffness) is a matrix of its own.
  */
 typedef struct mt_sparse_problem {
     int n;
     mt_squares k;
-    const mt_lower *g;     /* K has this besides; NULL: nothing */
+    const mt_lower *g;     /* additional part of K; NULL: none */
     const double *g_noise; /* bounds of the errors of its entries */
     mt_squares m;
-    mt_rows a;          /* may depend on each other */
-    const int *part;    /* [n] as mt_factor_analyse has them: states of one body */
+    mt_rows a;          /* rows may be dependent */
+    const int *part;    /* [n] see mt_factor_analyse: states of one body */
     const double *unit; /* [n] a state times this is a displacement: 1, or 1/length of a turn */
     int count;          /* vibration modes wanted, at least 1 */
-    bool shapes;        /* x as exactly as can be, and the constraints' forces */
-    mt_status (*check)(void *context, mt_err *err); /* before each product: MT_OK to go on */
+    bool shapes;        /* x as accurately as possible, and the constraint forces */
+    mt_status (*check)(void *context, mt_err *err); /* before each product: MT_OK to continue */
     void *context;
 } mt_sparse_problem;
 
 enum { MT_SPARSE_WHY = 200 };
 
 /**
- * The lowest modes by Lanczos' method on (K + shift M)^-1 M, on whose factor (linalg/factor.h)
- * the constraints stand as stiff springs, their forces found by iteration; shift 0 where K
- * allows it. Rigid-body modes are those whose strains are rounding. What cancels in strains, as
- * in a long slender chain, is in the errors.
+ * The lowest modes by Lanczos' method on (K + shift M)^-1 M, with constraints as stiff springs
+ * in the factor (linalg/factor.h) and their forces found by iteration; shift 0 where K allows
+ * it. Rigid-body modes are those whose strains are rounding. The errors include the
+ * cancellation in strains, as in a long slender chain.
  * @param[out] out       in mem; modes.n: freedoms
  * @param[out] mu        rows of A x modes.count, with shapes: K x + A^T mu = lambda M x of each
- *   vibration mode, in mem; else NULL
+ *   vibration mode, in mem; otherwise NULL
  * @param[out] why       the reason where *answered is false: free or unstable without mass
- * Fails: as mt_modal_lowest and mt_factor_make, MT_E_MEMORY, what `check` fails with.
+ * Fails: as mt_modal_lowest and mt_factor_make, MT_E_MEMORY, as `check`.
  */
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
                           double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err);

@@ -4,55 +4,55 @@
 
 #include "modal/sparse.h"
 
-/* Right-hand sides that are solved for at a time: ten modes and two to tell where they end. */
+/* Right-hand sides per solve: ten modes and two beyond the last. */
 enum { MT_SPARSE_COLUMNS = 12 };
 
-/* H = K + s M + A^T Gamma A of a sparse problem, factored, and what is solved with it. */
+/* H = K + s M + A^T Gamma A of a sparse problem, factored, and work arrays of its solves. */
 typedef struct mt_sparse {
     const mt_sparse_problem *p;
     double shift;
     double *gamma;    /* [rows of A] */
-    double stiffer;   /* one of STIFFER */
-    bool outweigh;    /* that of G in each state that they hold, not of all in units */
-    double stiffest;  /* that times the largest stiffness */
-    mt_rows by_state; /* of A: by state, (row, value) */
+    double stiffer;   /* a factor of STIFFER */
+    bool outweigh;    /* gamma outweighs G in each constrained state */
+    double stiffest;  /* `stiffer` times the largest stiffness */
+    mt_rows by_state; /* transpose of A: by state, (row, value) */
     mt_lower k;       /* K + A^T Gamma A, with places for M */
     mt_lower m;
-    mt_factor factor; /* of H, or of what was counted last: one has room */
-    bool holds;       /* of H */
+    mt_factor factor; /* of H, or of the last matrix counted: there is room for one */
+    bool holds;       /* `factor` is that of H */
     double least;     /* of the factor of H */
     int freedoms;     /* states less independent rows of A */
-    bool refined;     /* products are refined */
-    bool sound;       /* the last steps of a solution were small parts of it */
+    bool refined;     /* products are refined iteratively */
+    bool sound;       /* the last steps of a solution were small relative to it */
     double *x, *w;    /* [n] */
-    double *f, *r;    /* n x MT_SPARSE_COLUMNS: right-hand sides, what is left of them */
+    double *f, *r;    /* n x MT_SPARSE_COLUMNS: right-hand sides, residuals */
     double *s;        /* as r: the step */
     double *mu;       /* rows of A x MT_SPARSE_COLUMNS */
     double *gap;      /* the same: A x + A dx */
     mt_arena *mem;
 } mt_sparse;
 
-/* Everything but values of the factor, of one that is zeroed but for p, mem, stiffer and
+/* Prepare everything but the values of the factor; s is zeroed except for p, mem, stiffer and
  * outweigh. */
 mt_status mt_sparse_prepare(mt_sparse *s, mt_err *err);
-/* H with this shift; *sound: positive, and it solves. */
+/* Factor H with this shift; *sound: positive definite, and its solutions are accurate. */
 mt_status mt_sparse_factor(mt_sparse *s, double shift, bool *sound, mt_err *err);
-/* That of the shift again where something else was factored since. */
+/* Factor H with its shift again if another matrix was factored since. */
 mt_status mt_sparse_hold(mt_sparse *s, mt_err *err);
-/* X, s->mu with (K + s M) X + A^T mu = F, A X = 0, n x count, at most MT_SPARSE_COLUMNS, each
- * column to a part `close` of its energy, or as close as rounding lets it come. F is not s->r.
- */
+/* X, s->mu with (K + s M) X + A^T mu = F, A X = 0, n x count, at most MT_SPARSE_COLUMNS
+ * columns, each to a fraction `close` of its energy, or as accurately as rounding allows. F
+ * must not be s->r. */
 mt_status mt_sparse_solve(mt_sparse *s, int count, const double *f, double close, double *x,
                           mt_err *err);
-/* The factor of K + part A^T Gamma A + c M, which then is not H. */
+/* Factor K + part A^T Gamma A + c M; `factor` is then not that of H. */
 mt_status mt_sparse_inertia(mt_sparse *s, double part, double c, int *negative, double *least,
                             mt_err *err);
 /* y := M x. */
 void mt_sparse_metric(void *context, const double *x, double *y);
-/* s->freedoms: states less independent rows of A. The factor then is not H. */
+/* Set s->freedoms: states less independent rows of A. `factor` is then not that of H. */
 mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err);
 
-/* Of mt_sparse_solve: as close as rounding lets it come. */
+/* `close` of mt_sparse_solve: to rounding. */
 static const double MT_SPARSE_SOLVED = 1e-16;
 
 #endif

@@ -219,7 +219,7 @@ typedef struct pending {
     bool sound[MT_SPARSE_COLUMNS];
 } pending;
 
-/* The step s->s of what is open; those columns that go on stay so. */
+/* Take the step s->s in the open columns; converged columns are removed from o. */
 static void step_all(mt_sparse *s, int step, const double *f, double close, double *x,
                      pending *o)
 {

@@ -7,26 +7,26 @@
 #include "model/values.h"
 
 /**
- * Judge the numbers of a configuration: faults (masses and stiffnesses below 0, sections
- * without area) and doubts (a modulus that no material has, a drive beyond a turn). Each names
- * item and member, carries its JSON pointer and, where the model was read from a file, its
- * place.
+ * Check the numbers of a configuration: faults (masses and stiffnesses below 0, sections
+ * without area) and warnings (a modulus that no material has, a drive beyond a turn). Each
+ * names item and member, has its JSON pointer and, where the model was read from a file, its
+ * location.
  * @param[in]  value  [n_nums] as mt_model_numbers gives them
  */
 void mt_model_lint(const mt_model *model, int configuration, const double *value,
                    mt_warning_list *out);
 
-/* What a kind of link leaves out, in a sentence in mem, which every answer says; NULL:
- * nothing. */
+/* A sentence in mem on what the model of this kind of link neglects, part of every result;
+ * NULL: nothing. */
 const char *mt_model_link_limit(const mt_model *model, int configuration, int link,
                                 mt_arena *mem);
 
-/* Succeeds where the numbers of a configuration are those of a mechanism, with these inputs.
- * Scratch from mem. Fails: MT_E_USAGE (the first fault that mt_model_lint finds), as
+/* Succeeds where the numbers of a configuration are free of faults at these inputs. Scratch
+ * from mem. Fails: MT_E_USAGE (the first fault that mt_model_lint finds), as
  * mt_model_numbers. */
 mt_status mt_model_admit(const mt_model *model, int configuration, int n_inputs,
                          const int *inputs, const double *at, mt_arena *mem, mt_err *err);
-/* The same by all numbers of the model, compiled for that configuration. */
+/* As mt_model_admit, with all numbers of the model compiled for that configuration. */
 mt_status mt_model_admit_numbers(const mt_model *model, int configuration,
                                  const mt_numbers *numbers, const double *at, mt_arena *mem,
                                  mt_err *err);

@@ -91,7 +91,8 @@ static part binary(mt_op op, const part *a, const part *b)
     return (part){v, 0.0, true, MT_ABSENT};
 }
 
-/* Whether it has been said of this number here. What goes into cos() goes into sin(), too. */
+/* True where this number has been reported here. An argument of cos() is reported for sin() as
+ * well. */
 static bool is_said(const mt_lint *j, mt_addr addr)
 {
     const char *const here = j->model->configurations[j->configuration].name.s;

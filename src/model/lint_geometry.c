@@ -74,7 +74,7 @@ bool mt_lint_position(const mt_lint *j, const mt_position *p, double x[3])
     return known && own[0] != MT_ABSENT;
 }
 
-/* The number that stands first in a position, for the place of a message. */
+/* The address of the first number of a position, for messages. */
 static mt_addr addr_of(const mt_position *p)
 {
     return p->addr;
@@ -105,8 +105,8 @@ static void include_sides(const mt_lint *j, box *boxes, const mt_attach bodies[2
     }
 }
 
-/* The box around everything that is drawn, but for one joint and one spring (NULL: nothing is
- * left out). */
+/* The box around the whole drawing except for one joint and one spring (NULL: none is left
+ * out). */
 static box box_without(const mt_lint *j, const mt_joint *joint, const mt_spring *spring)
 {
     const mt_model *const m = j->model;
@@ -163,7 +163,7 @@ static double part_of_whole(const mt_lint *j, const mt_link *l, int count, doubl
     return l->n_element_length > 0 ? sum : (double)count / (double)l->elements;
 }
 
-/* What an attachment to a link means: a rigid element, or a node. */
+/* The part of a link that is attached: a rigid element, or a node. */
 static segment segment_of(const mt_lint *j, const mt_attach *a)
 {
     const mt_link *const l = &j->model->links[a->index];
@@ -215,8 +215,8 @@ static const mt_position *side_at(int n_at, const mt_position *at, int side)
     return &at[n_at == 2 ? side : 0];
 }
 
-/* How far x is from all else that body has: centre, other joints, springs, sensors. Infinite:
- * there is nothing else. */
+/* Distance of x from the nearest other point of the body: centre, other joints, springs,
+ * sensors. Infinite: none. */
 static double distance_to_body(const mt_lint *j, int body, const mt_joint *joint,
                                const mt_spring *spring, const double x[3])
 {
@@ -312,7 +312,7 @@ static void lint_side(mt_lint *j, const holder *h, int side)
     }
 }
 
-/* What closing has to bring to nothing, as drawn; NaN: nothing of the kind. */
+/* Closing error of the joint in the drawn position; NaN: none. */
 static double gap_of(const mt_lint *j, const mt_joint *joint)
 {
     double a[3];
@@ -372,7 +372,7 @@ static void lint_gap(mt_lint *j, const mt_item *item, const mt_joint *joint, dou
     }
 }
 
-/* What the model says of masses, without those that follow from density and section. */
+/* The masses given in the model, without those from density and section. */
 static double mass_of(const mt_lint *j)
 {
     const mt_model *const m = j->model;

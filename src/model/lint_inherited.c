@@ -14,8 +14,8 @@ static void say(mt_lint *j, mt_addr addr, const char *member, const char *text)
                         j->model->configurations[j->configuration].name.s, member));
 }
 
-/* The same joint, trimmed by the inherited drive and locked by the own one, which says nothing
- * of it. */
+/* The same joint, trimmed by the inherited drive and locked by the own one, which does not
+ * mention the hold. */
 static void lint_hold(mt_lint *j, const mt_drive *own, const mt_drive *other)
 {
     if (own->given && !own->inherited && other->given && other->trim && !own->hold_given) {

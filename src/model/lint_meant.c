@@ -88,7 +88,7 @@ static void lint_gravity(mt_lint *j)
         j->model->nums[c->gravity[most]].addr, gravity_pointer(j));
 }
 
-/* What gives a motion energy instead of taking it. */
+/* Negative damping, which adds energy to a motion. */
 static void lint_damper(mt_lint *j, const mt_item *item, const mt_spring *s)
 {
     const mt_num all[] = {s->stiffness,      s->translation[0], s->translation[1],

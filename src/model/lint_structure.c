@@ -24,8 +24,8 @@ static const double MATRIX_NOISE = 1e-9;
 /* Of the coordinates' size: points that differ by rounding are the same point. */
 static const double SAME_POINT = 1e-14;
 
-/* Whether the symmetric 3 x 3 matrix xx yy zz xy xz yz has no eigenvalue below -noise: by its
- * principal minors, each with what `noise` on the diagonal can make of it. */
+/* True where the symmetric 3 x 3 matrix xx yy zz xy xz yz has no eigenvalue below -noise, by
+ * its principal minors, each with the effect of `noise` on the diagonal. */
 static bool is_positive(const double v[6], double noise)
 {
     const double a = v[0] + noise;
@@ -84,7 +84,8 @@ static mt_addr addr_of(const mt_lint *j, mt_num num, mt_addr other)
     return num == MT_ABSENT ? other : j->model->nums[num].addr;
 }
 
-/* Of two entries across the diagonal the error is told at the one that stands later. */
+/* Check symmetry of a bushing's matrix; an error is reported at the later of the two
+ * entries. */
 static void lint_matrix(mt_lint *j, const mt_item *item, const mt_spring *s)
 {
     double k[MATRIX * MATRIX];
@@ -117,7 +118,8 @@ static void lint_matrix(mt_lint *j, const mt_item *item, const mt_spring *s)
     }
 }
 
-/* Where a side of what stands between two points is: its `at`, else the centre of the body. */
+/* The position of one side of an item between two points: its `at`, otherwise the centre of the
+ * body. */
 static bool side_of(const mt_lint *j, const mt_attach *body, int n_at, const mt_position *at,
                     double x[3])
 {
@@ -228,7 +230,7 @@ static void lint_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
     }
 }
 
-/* The plane that a link bends in is that of its length and what is across its hinge axis. */
+/* Check that a link's hinge axis has a direction and is perpendicular to the link. */
 static void lint_hinge_axis(mt_lint *j, int i, const mt_link *l)
 {
     static const double NOT_PERPENDICULAR = 1e-6; /* cosine; as the mechanism is built */

@@ -91,8 +91,8 @@ int mt_model_find_mode(const mt_model *model, const char *name)
     return find(&model->tables->modes, name);
 }
 
-/* Bodies and links share a table: link i stands there as -1 - i, absent is -1, which would be
- * link 0. */
+/* Bodies and links share a table, where link i has the value -1 - i. `found` tells absent (-1)
+ * from link 0, which has the same value. */
 int mt_model_find_link(const mt_model *model, const char *name)
 {
     bool found = false;
@@ -235,9 +235,9 @@ static mt_kind kind_of(const mt_model *m, const mt_parameter *p)
     return kind == MT_KIND_ZERO ? MT_KIND_NUMBER : kind;
 }
 
-/* Expressions may look ahead, and back: forwards and backwards in turn, as often as something
- * changes. What a chain of parameters without units ends in that goes to and fro more often
- * stays unknown, which nobody holds against it. */
+/* Expressions may refer to later and earlier parameters: passes forwards and backwards in turn
+ * while something changes. A chain of parameters without units that needs more passes stays
+ * unknown, which is not reported. */
 void mt_model_find_kinds(mt_model *model)
 {
     enum { MOST_PASSES = 8 };

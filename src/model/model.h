@@ -20,13 +20,13 @@
  * Geometry: the reference position, global coordinates [m]; angles [rad].
  */
 enum { MT_ABSENT = -1, MT_GROUND = -1, MT_MAX_LIST = 100000 };
-/* Elements of a link at most: what is listed for them, too. */
+/* Greatest number of elements of a link, and of entries listed for them. */
 enum { MT_MAX_ELEMENTS = 1000000 };
-/* A drive goes so far at most from the reference position: rad (159 turns), or lengths of the
- * mechanism. The way there is walked in steps of a tenth at most. */
+/* Greatest position of a drive from the reference position: rad (159 turns), or lengths of the
+ * mechanism. It is approached in steps of at most a tenth. */
 enum { MT_DRIVE_REACH = 1000 };
-/* Configurations times (numbers and items) of a model at most: every configuration is checked
- * with all its numbers. */
+/* Greatest product of configurations and (numbers and items) of a model: every configuration is
+ * checked with all its numbers. */
 enum { MT_MAX_CONFIGURED = 10000000 };
 
 /* Index into mt_model.nums; MT_ABSENT where the member was not given. */
@@ -35,11 +35,11 @@ typedef int mt_num;
 typedef struct mt_number {
     mt_expr expr;
     mt_addr addr;
-    mt_possible_id possible;  /* the row of its member, by the reader */
-    const char *unit_warning; /* why it is no number of its member, by units; NULL: it may be */
+    mt_possible_id possible;  /* row of its member; set by the reader */
+    const char *unit_warning; /* why its unit does not fit the member; NULL: it fits */
 } mt_number;
 
-/* A name in the file: what it says and where. s == NULL: absent. */
+/* A name in the file: text and location. s == NULL: absent. */
 typedef struct mt_name {
     const char *s;
     mt_addr addr;
@@ -67,10 +67,11 @@ typedef enum mt_origin {
 typedef struct mt_parameter {
     mt_name name;
     mt_num value;
-    const char *unit; /* of its values, which are in SI: "m" where the file says "mm"; NULL */
-    /* what the file gives its number in, where that is none of SI ("mm"); NULL */
+    /* SI unit of its values: "m" where the file has "mm"; NULL: none */
+    const char *unit;
+    /* unit of its number in the file where that is not an SI unit ("mm"); NULL */
     const mt_unit *written;
-    mt_kind kind; /* of its value; mt_model_find_kinds */
+    mt_kind kind; /* of its value; see mt_model_find_kinds */
     const char *description;
     const char *source;
     mt_origin origin;
@@ -90,9 +91,9 @@ typedef struct mt_point {
     mt_num x[3];
 } mt_point;
 
-/* What a joint, spring or sensor holds on to. Written "ground", "crank", "beam.start",
- * "beam.end", "beam.3" (rigid element, 1-based), "beam.node3" (node, 0-based: of a beam, or
- * where rigid elements meet). */
+/* Attachment of a joint, spring or sensor. Written "ground", "crank", "beam.start", "beam.end",
+ * "beam.3" (rigid element, 1-based), "beam.node3" (node, 0-based: of a beam, or between rigid
+ * elements). */
 typedef enum mt_attach_kind {
     MT_ATTACH_GROUND,
     MT_ATTACH_BODY,
@@ -106,7 +107,7 @@ typedef struct mt_attach {
     mt_attach_kind kind;
     int index;   /* body or link */
     int element; /* MT_ATTACH_LINK_ELEMENT, MT_ATTACH_LINK_NODE: 0-based */
-    int part;    /* of a link: how many of its bodies come before the one that is meant */
+    int part;    /* of a link: number of its bodies before the attached one */
 } mt_attach;
 
 /* A rigid body; without `inertia_kg_m2` a point mass (no rotation of its own, 2 or 3
@@ -151,7 +152,7 @@ typedef struct mt_section {
 typedef struct mt_shear {
     bool given;
     mt_num coefficient;
-    mt_num coefficient_other; /* 3-D; absent: the same */
+    mt_num coefficient_other; /* equal to `coefficient` if absent (3-D) */
     mt_num poissons_ratio;    /* instead of the link's shear_modulus: G = E/(2 (1 + nu)) */
     mt_addr addr;
 } mt_shear;
@@ -265,7 +266,7 @@ typedef struct mt_spring {
     mt_num youngs_modulus; /* bar */
     mt_num area;
     mt_num density;
-    mt_num loss_factor; /* not of a damper; absent: 0 */
+    mt_num loss_factor; /* not for dampers; absent: 0 */
     /* bushing N/m in global axes of the reference position, attached to bodies[0] */
     mt_num translation[3];
     mt_num rotation[3]; /* bushing N m/rad */
@@ -274,12 +275,12 @@ typedef struct mt_spring {
 } mt_spring;
 
 /*
- * A dead load: constant in size, and in direction as far as it has one. On a body: a force at
- * one of its points, along global directions whatever the body does; in two dimensions also a
- * moment. On a joint: a force along its displacement or a moment about its angle, on the second
- * body, with the reaction on the first. Each has a potential. A moment that keeps its direction
- * in space has none where its body can turn about other axes (the work depends on the order of
- * turns): finish refuses it.
+ * A dead load: constant in size and in direction. On a body: a force at one of its points, in
+ * global directions however the body moves; in two dimensions also a moment. On a joint: a
+ * force along its displacement or a moment about its angle, on the second body, with the
+ * reaction on the first. Each has a potential. A moment of constant direction in space has none
+ * where its body can turn about other axes (the work depends on the order of rotations):
+ * mt_model_resolve refuses it.
  */
 typedef struct mt_load {
     mt_name name;
@@ -299,7 +300,7 @@ typedef struct mt_load {
     mt_num moment; /* N m */
     mt_addr force_addr;
     mt_addr moment_addr;
-    bool unread; /* its faults are in diags already */
+    bool unread; /* its errors are in diags already */
     mt_presence in;
 } mt_load;
 
@@ -307,7 +308,7 @@ typedef struct mt_load {
 typedef struct mt_sensor {
     mt_name name;
     mt_name on_name;
-    /* MT_ATTACH_BODY, MT_ATTACH_LINK_ELEMENT, or MT_ATTACH_LINK_START meaning: on a link at
+    /* MT_ATTACH_BODY, MT_ATTACH_LINK_ELEMENT, or MT_ATTACH_LINK_START for a link at
      * `fraction` */
     mt_attach_kind on_kind;
     int on; /* body or link */
@@ -337,16 +338,16 @@ typedef struct mt_drive {
     mt_name joint_name;
     int joint;
     mt_num position;        /* rad or m, relative to the reference position */
-    bool position_is_angle; /* which of position_rad / position_m was written */
-    bool hold_given;        /* false: locked, as nothing else is said */
+    bool position_is_angle; /* position_rad was given, not position_m */
+    bool hold_given;        /* false: locked, the default */
     bool trim;              /* false: locked there */
     mt_name trim_name;
     int trim_spring;
-    bool inherited; /* by finish: taken over from the configuration that this one is like */
+    bool inherited; /* set by mt_model_resolve: from the configuration that this one is like */
     mt_addr addr;
 } mt_drive;
 
-/* The damping ratio of a mode that the model names. */
+/* Damping ratio of a named mode of the model. */
 typedef struct mt_mode_ratio {
     mt_name mode_name;
     int mode; /* of the model's named modes */
@@ -354,11 +355,11 @@ typedef struct mt_mode_ratio {
 } mt_mode_ratio;
 
 /*
- * Damping of a configuration besides its dampers and the loss factors of its springs:
+ * Damping of a configuration in addition to its dampers and the loss factors of its springs:
  *     C = mass M + stiffness K + M Phi diag(2 ratio_j omega_j) Phi^T M,
- * K the tangent stiffness where the mechanism is at rest (loads and preload included), Phi its
- * mass-normalised modes. A vibration mode has the ratio that is given under its name, else
- * ratios[index - 1], else `ratio`, else none; a rigid-body mode has none.
+ * K the tangent stiffness in equilibrium (loads and preload included), Phi its mass-normalised
+ * modes. A vibration mode has the ratio given under its name, otherwise ratios[index - 1],
+ * otherwise `ratio`, otherwise none; a rigid-body mode has none.
  */
 typedef struct mt_damping {
     bool given;
@@ -366,10 +367,10 @@ typedef struct mt_damping {
     int n_ratios;
     mt_num *ratios; /* [n_ratios] of vibration modes 1 ... */
     int n_named;
-    mt_mode_ratio *named; /* [n_named] those of other configurations count for nothing here */
+    mt_mode_ratio *named; /* [n_named]; those of other configurations have no effect here */
     mt_num mass;          /* 1/s */
     mt_num stiffness;     /* s */
-    bool inherited;       /* by finish: that of the configuration it is like, or the model's */
+    bool inherited;       /* set by mt_model_resolve: from `like`, or from the model */
     mt_addr addr;
     mt_addr ratios_addr;
 } mt_damping;
@@ -378,23 +379,23 @@ typedef struct mt_configuration {
     mt_name name;
     mt_name like_name;
     int like;        /* MT_ABSENT */
-    int n_overrides; /* own ones as read; after finish: all, inherited ones included */
+    int n_overrides; /* own ones as read; after mt_model_resolve with inherited ones */
     mt_override *overrides;
     bool has_gravity;
-    mt_num gravity[3];  /* after finish: the one in force (inherited or the model's) */
-    mt_drive drive;     /* after finish: the one in force */
-    mt_damping damping; /* likewise */
+    mt_num gravity[3]; /* after mt_model_resolve: the one in force (inherited or the model's) */
+    mt_drive drive;    /* after mt_model_resolve: the one in force */
+    mt_damping damping; /* after mt_model_resolve: the one in force */
 } mt_configuration;
 
-/* Where an address of the model's file stands, kept for messages about values: lines and
- * columns from 1. */
+/* Location of an address of the model's file, kept for messages about values: lines and columns
+ * from 1. */
 typedef struct mt_place {
     mt_addr addr;
     int line;
     int column;
 } mt_place;
 
-/* A parameter that has another value than the file gives it (model/setting.h). */
+/* A parameter whose value differs from that in the file (model/setting.h). */
 typedef struct mt_setting {
     int parameter;
     double value;
@@ -411,14 +412,14 @@ typedef struct mt_model {
     const char *path; /* as given to the reader; NULL */
     const char *name;
     const char *description;
-    /* what its file says of coordinates, angles and speeds; NULL: nothing, which is SI */
+    /* units of coordinates, angles and speeds declared in its file; NULL: SI */
     const mt_unit *units[MT_DIMENSION_COUNT];
     int dimension; /* 2 or 3 */
     mt_addr dimension_addr;
     bool has_gravity;
     mt_num gravity[3];
     mt_damping damping;   /* of configurations that have none of their own */
-    mt_accepted accepted; /* warnings that are known and meant */
+    mt_accepted accepted; /* warnings that the author of the model accepts */
     MT_LIST_OF(mt_number, nums);
     MT_LIST_OF(mt_parameter, parameters);
     MT_LIST_OF(mt_point, points);
@@ -429,13 +430,13 @@ typedef struct mt_model {
     MT_LIST_OF(mt_load, loads);
     MT_LIST_OF(mt_sensor, sensors);
     MT_LIST_OF(mt_named_mode, modes);
-    /* never empty after finish: "default" is made where none is given */
+    /* never empty after mt_model_resolve, which makes "default" where there is none */
     MT_LIST_OF(mt_configuration, configurations);
-    /* by their parameters; the model is as if its file said so */
+    /* by parameter; the model is as if its file had these values */
     MT_LIST_OF(mt_setting, settings);
     const char *sha256; /* of the file's bytes, hexadecimal; NULL: not read from a file */
-    /* of every number and of what else is told by its place, sorted by address; 0: not read
-     * from a file */
+    /* of every number and of other items with a location, sorted by address; 0: not read from a
+     * file */
     int n_places;
     mt_place *places;
     struct mt_model_names *tables; /* private: names to indices */
@@ -444,13 +445,13 @@ typedef struct mt_model {
 /* An empty model (dimension 0). Fails: MT_E_MEMORY. */
 mt_status mt_model_new(mt_model **out, mt_err *err);
 void mt_model_delete(mt_model *model);
-/* Add a number; returns its index, MT_ABSENT when out of memory (noted; mt_model_resolve fails
- * then). */
+/* Add a number; returns its index, MT_ABSENT when out of memory (mt_model_resolve then
+ * fails). */
 mt_num mt_model_add_num(mt_model *model, mt_expr expr, mt_addr addr);
 /* Lookup function for mt_expr_parse over model->parameters (context: the model). */
 int mt_model_lookup(const void *model, const char *name, size_t length);
 
-/* MT_ABSENT where there is none, likewise below */
+/* Index by name; MT_ABSENT: none */
 int mt_model_find_parameter(const mt_model *model, const char *name);
 int mt_model_find_configuration(const mt_model *model, const char *name);
 int mt_model_find_mode(const mt_model *model, const char *name);
@@ -458,26 +459,27 @@ int mt_model_find_joint(const mt_model *model, const char *name);
 int mt_model_find_spring(const mt_model *model, const char *name);
 int mt_model_find_link(const mt_model *model, const char *name);
 int mt_model_find_sensor(const mt_model *model, const char *name);
-/* Line and column in model->path of what stands at an address (of a number, a position, a name,
- * a drive); false where it is not known. */
+/* Line and column in model->path of an address (of a number, a position, a name, a drive);
+ * false where it is not known. */
 bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column);
-/* Whether the item is present in configuration c. */
+/* True where the item is present in the configuration. */
 bool mt_model_present(const mt_presence *in, int configuration);
 const char *mt_joint_type_name(mt_joint_type type);
 const char *mt_spring_type_name(mt_spring_type type);
 
-/* The fixed list of unit strings that a parameter's `unit` may have; *n their number. */
+/* The list of unit strings that a parameter's `unit` may have; *n their number. */
 const char *const *mt_model_units(int *n);
-/* The kinds of all parameters: that of the unit, or of the expression where none is given. */
+/* Set the kinds of all parameters: from the unit, or from the expression where none is
+ * given. */
 void mt_model_find_kinds(mt_model *model);
-/* The mt_kind_lookup of a model. */
+/* mt_kind_lookup of a model. */
 mt_kind mt_model_kind(const void *model, int parameter);
-/* The unit of the kind of this parameter's unit (a length's: m); NULL: it has none of those. */
+/* The SI unit of the dimension of this parameter's unit (a length: m); NULL: none. */
 const mt_unit *mt_parameter_si(const mt_parameter *parameter);
-/* What people are shown coordinates of this dimension in: the file's unit; NULL: SI. */
+/* The unit in which values of this dimension are shown: the file's unit; NULL: SI. */
 const mt_unit *mt_model_shown(const mt_model *model, mt_dimension dimension);
-/* The unit that a number for this parameter would be taken to be in, by its own unit or by the
- * file's: what its expressions are held against (mt_kind_complaint). NULL: SI. */
+/* The unit of a bare number for this parameter, from its own unit or the file's, against which
+ * its expressions are checked (mt_kind_complaint). NULL: SI. */
 const mt_unit *mt_model_number_unit(const mt_model *model, int parameter);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct mt_names {
     mt_sorted order; /* of the names */
 } mt_names;
 
-/* One table per name space. Bodies and links share one: both stand where a body may. */
+/* One table per name space. Bodies and links share one: both may be given as a body. */
 typedef struct mt_model_names {
     mt_names parameters;
     mt_names points;
@@ -31,15 +31,15 @@ typedef struct mt_model_names {
     mt_names configurations;
 } mt_model_names;
 
-/* Enter a name. *taken: it was there already, and stays as it was. */
+/* Add a name. *taken: it exists already and is unchanged. */
 void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken);
-/* The value of a name of so many bytes; *found tells whether there is one. */
+/* Value of a name of `length` bytes; *found: it exists. */
 int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found);
 
-/* Make the table of parameters before the others exist, so that mt_model_lookup is fast while
+/* Make the table of parameters before the others, so that mt_model_lookup is fast while
  * expressions are read. Duplicates are left to mt_model_resolve. */
 void mt_model_index_parameters(mt_model *model);
-/* The same for points, while positions are read. */
+/* The same for points, for reading positions. */
 void mt_model_index_points(mt_model *model);
 
 #endif

@@ -5,18 +5,18 @@
 #include <stdbool.h>
 
 /*
- * What the number of a member can be. The readers' tables of members name a row for each member
- * that holds numbers; what stands outside least .. most is impossible (an error at its place),
- * outside low .. high implausible (a warning, by its name). What a number can be beside others
- * is judged by the function that the row names.
+ * Ranges of the numbers of members. The readers' tables name a row for each member with
+ * numbers; a value outside least .. most is impossible (an error at its location), outside low
+ * .. high implausible (a warning, by its name). The function named in `with` checks the number
+ * against others.
  */
 typedef enum mt_possible_id {
-    MT_POSSIBLE_NONE, /* no number */
+    MT_POSSIBLE_NONE, /* not a number */
     MT_POSSIBLE_ANY,  /* every finite number */
     MT_POSSIBLE_NOT_NEGATIVE,
     MT_POSSIBLE_POSITIVE,
     MT_POSSIBLE_NONZERO,
-    MT_POSSIBLE_PART, /* of a whole: 0 to 1 */
+    MT_POSSIBLE_PART, /* fraction of a whole: 0 to 1 */
     MT_POSSIBLE_MODULUS,
     MT_POSSIBLE_DENSITY,
     MT_POSSIBLE_THICKNESS,
@@ -32,13 +32,13 @@ typedef enum mt_possible_id {
     MT_POSSIBLE_AXIS,
     MT_POSSIBLE_GRAVITY,
     MT_POSSIBLE_WHOLE, /* a whole number: its limits are those of mt_reader_count */
-    MT_POSSIBLE_SHARE, /* a MAC or a damping ratio that is asked for: above 0, at most 1 */
+    MT_POSSIBLE_SHARE, /* a required MAC or damping ratio: above 0, at most 1 */
     MT_POSSIBLE_PROOF, /* seconds of a proof */
-    MT_POSSIBLE_WEIGHT_SENSITIVITY, /* what weights are multiplied with and divided by */
+    MT_POSSIBLE_WEIGHT_SENSITIVITY, /* factor of weights */
     MT_POSSIBLE_MET,                /* percent within which a goal is met */
     MT_POSSIBLE_TOLERANCE,          /* percent of manufacturing */
     MT_POSSIBLE_MARGIN,             /* percent around a band */
-    MT_POSSIBLE_ASKED,              /* a frequency that a goal asks for [Hz] */
+    MT_POSSIBLE_ASKED,              /* a frequency required by a goal [Hz] */
     MT_POSSIBLE_MEASURED,           /* a measured frequency [Hz] */
     MT_POSSIBLE_BAND,               /* ends of bands to avoid, or of a measurement [Hz] */
     MT_POSSIBLE_RANGE,              /* ends of a range of a response [Hz] */
@@ -66,11 +66,11 @@ typedef struct mt_possible {
     double most;
     double low;
     double high;
-    const char *impossible; /* "must not be negative"; NULL: nothing is by itself */
-    const char *warning;    /* its name; NULL: nothing is implausible by itself */
+    const char *impossible; /* "must not be negative"; NULL: no impossible values */
+    const char *warning;    /* its name; NULL: no implausible values */
     const char *below;      /* "below 10 kg/m^3, ..." */
     const char *beyond;
-    const char *with; /* the function that judges it beside others; NULL: none */
+    const char *with; /* the function that checks it against others; NULL: none */
     bool above;       /* `least` itself is impossible */
     bool under;       /* `most` itself is impossible */
     bool at_high;     /* `high` itself is implausible */
@@ -78,9 +78,9 @@ typedef struct mt_possible {
 
 extern const mt_possible mt_possible_of[MT_POSSIBLE_COUNT];
 
-/* Whether a value can be, by itself. So can a NaN, which nobody knows. */
+/* True where a value is possible by itself; true for NaN, which is unknown. */
 bool mt_possible_is(const mt_possible *p, double value);
-/* What a value that can be is hardly meant as: `below` or `beyond`; NULL: it is plausible. */
+/* Reason why a possible value is implausible: `below` or `beyond`; NULL: plausible. */
 const char *mt_possible_doubted(const mt_possible *p, double value);
 
 #endif

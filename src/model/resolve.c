@@ -172,8 +172,7 @@ static void ensure_configuration(mt_resolve *f)
     }
 }
 
-/* What every configuration costs, all together. Without room for it nothing more is looked
- * at. */
+/* Check the cost of all configurations together. Beyond the limit, nothing else is checked. */
 static bool fits(const mt_model *m, mt_diags *diags)
 {
     const double parts = (double)m->n_nums + m->n_bodies + m->n_links + m->n_joints +

@@ -6,7 +6,7 @@
 #include <limits.h>
 #include <string.h>
 
-/* The number that s is, 0 or more without leading zeros; -1 where it is none. */
+/* The number written in s, 0 or more without leading zeros; -1: not a number. */
 static int whole_number(const char *s)
 {
     int n = 0;
@@ -22,8 +22,8 @@ static int whole_number(const char *s)
     return n;
 }
 
-/* "start", "end", "3", "node3"; false where the part is none of them. Elements count from 1,
- * nodes from 0. */
+/* "start", "end", "3", "node3"; false for any other part. Elements count from 1, nodes from
+ * 0. */
 static bool read_part(mt_attach *a, const mt_link *l, const char *part)
 {
     static const char node[] = "node";
@@ -74,7 +74,7 @@ static void attach_link(mt_resolve *f, mt_attach *a, int link, const char *part)
     }
 }
 
-/* What others call the ground. */
+/* True for other common names of the ground. */
 static bool is_ground(const char *word)
 {
     static const char *const words[] = {"world", "World",    "base",  "Base",

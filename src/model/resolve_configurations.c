@@ -41,8 +41,8 @@ static void check_like(mt_resolve *f, int c, int *state)
     }
 }
 
-/* order[n_configurations]: all configurations, those that others are like first. chain
- * [n_configurations]; state, likewise, is 0. */
+/* order[n_configurations]: all configurations, each after the one that it is like. chain
+ * [n_configurations] is work; state [n_configurations] is 0 on entry. */
 static void find_order(mt_resolve *f, int *chain, int *state)
 {
     const int n = f->m->n_configurations;
@@ -60,7 +60,7 @@ static void find_order(mt_resolve *f, int *chain, int *state)
     }
 }
 
-/* Own overrides first, then those inherited that are not given again. overridden [n_parameters]
+/* Own overrides first, then inherited ones that are not overridden. overridden [n_parameters]
  * is false before and after. */
 static void inherit_overrides(mt_resolve *f, mt_configuration *c, bool *overridden)
 {
@@ -96,7 +96,7 @@ static void inherit_overrides(mt_resolve *f, mt_configuration *c, bool *overridd
     }
 }
 
-/* Which configuration gives the drive that is in force in this one. */
+/* The configuration that defines the drive in force in this one. */
 static const mt_configuration *driver_of(const mt_resolve *f, const mt_configuration *c)
 {
     while (c->drive.inherited) {
@@ -105,8 +105,8 @@ static const mt_configuration *driver_of(const mt_resolve *f, const mt_configura
     return c;
 }
 
-/* A configuration has one drive: its own takes the place of an inherited one of the same joint.
- * Of another joint it would let go what the configuration that it is like holds. */
+/* A configuration has one drive: its own replaces an inherited one of the same joint. A drive
+ * of another joint would release the joint that the inherited drive holds. */
 static void check_dropped_drive(mt_resolve *f, const mt_configuration *c,
                                 const mt_configuration *parent)
 {
@@ -191,7 +191,7 @@ void mt_resolve_configurations(mt_resolve *f)
     }
 }
 
-/* present[c] = c is named, or what c is like contains the item. */
+/* present[c]: c is named, or the configuration that c is like contains the item. */
 static void resolve_presence(mt_resolve *f, mt_presence *in)
 {
     mt_model *const m = f->m;

@@ -2,7 +2,7 @@
 /* Damping: the modes that it names. */
 #include "model/resolve_priv.h"
 
-/* Whether configuration c has the damping of `owner`, as far as its `like` says. */
+/* True where configuration c inherits the damping of `owner` through `like`. */
 static bool takes_over(const mt_model *m, int c, int owner)
 {
     while (c != owner && c != MT_ABSENT && !m->configurations[c].damping.given) {

@@ -2,7 +2,7 @@
 /* Flexible links: which members a kind and a section need, and the lengths of lists. */
 #include "model/resolve_priv.h"
 
-/* Whether a member was given where it must be, or must not be. */
+/* Check that a member was given where it is required, and absent where it is forbidden. */
 static void wants(mt_resolve *f, const mt_link *l, bool given, bool wanted, const char *member,
                   const char *why)
 {
@@ -69,7 +69,7 @@ static void check_list(mt_resolve *f, const mt_link *l, int count, int wanted,
     }
 }
 
-/* Where the mass comes from: exactly one of the whole link's, the elements', or density with a
+/* Exactly one source of the mass: the whole link's, the elements', or density with a
  * section. */
 static void check_mass(mt_resolve *f, const mt_link *l)
 {
@@ -86,7 +86,8 @@ static void check_mass(mt_resolve *f, const mt_link *l)
     }
 }
 
-/* The shear modulus: in space of every beam, in the plane of one with shear, and in one way. */
+/* The shear modulus is required of every beam in space, and in the plane with shear; it is
+ * given in one way only. */
 static void check_shear(mt_resolve *f, const mt_link *l)
 {
     const bool ratio = l->shear.poissons_ratio != MT_ABSENT;

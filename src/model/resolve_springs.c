@@ -37,8 +37,8 @@ bool mt_resolve_hinge(mt_resolve *f, mt_name name, int *at, int *number)
     return true;
 }
 
-/* Whether the joint has what the spring acts on: an angle, or a way along its axis. Of a type
- * that could not be read nothing is known, and nothing said against it. */
+/* True where the joint has the coordinate that the spring acts on: an angle, or a displacement.
+ * Also true for a type that could not be read. */
 static bool has_freedom(const mt_joint *joint, bool torsion)
 {
     if (joint->type == MT_JOINT_TYPE_COUNT) {
@@ -220,7 +220,7 @@ static void check_members(mt_resolve *f, const mt_spring *s)
     }
 }
 
-/* What depends on several members at once. */
+/* Checks that involve several members. */
 static void check_together(mt_resolve *f, const mt_spring *s)
 {
     const bool lists = s->translation[0] != MT_ABSENT || s->rotation[2] != MT_ABSENT;

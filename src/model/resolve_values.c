@@ -20,7 +20,7 @@ static bool is_told(const mt_warning_list *list, int n, const mt_warning *d)
     return false;
 }
 
-/* A value that an override made is told with its configuration. */
+/* Report a warning, with the configuration where an override caused it. */
 static void tell(mt_resolve *f, const mt_warning *d, const mt_configuration *c)
 {
     const bool own = c->n_overrides > 0;

@@ -6,49 +6,49 @@
 #include "model/model.h"
 
 /*
- * Values at the original design: every parameter at the value that the model's file gives it,
- * no configuration's overrides.
+ * Values at the original design: every parameter has the value of the model's file, without
+ * overrides of configurations.
  */
 
 /**
- * @param[in]  model   finished (no cycles among parameters)
+ * @param[in]  model   resolved (no cycles among parameters)
  * @param[out] values  [n_parameters], each in its parameter's unit
  * @param[out] bad     may be NULL: the parameter without a finite value where MT_E_DOMAIN is
- *                     returned, else MT_ABSENT
- * Scratch comes from mem and goes back. O(total length of the expressions).
- * Fails: MT_E_DOMAIN, the message names the parameter; MT_E_MEMORY, MT_E_INTERNAL (a cycle).
+ *                     returned, otherwise MT_ABSENT
+ * Scratch from mem is returned. O(total length of the expressions). Fails: MT_E_DOMAIN, the
+ * message names the parameter; MT_E_MEMORY, MT_E_INTERNAL (a cycle).
  */
 mt_status mt_model_original_values(const mt_model *model, mt_arena *mem, double *values,
                                    int *bad, mt_err *err);
 
 /**
- * The value of one expression of the model's parameters where these have the given values.
+ * The value of an expression of the model's parameters at the given parameter values.
  * @param[in]  values  [n_parameters]
- * Scratch from mem, given back. Fails: MT_E_DOMAIN (the value is not finite), MT_E_MEMORY.
+ * Scratch from mem is returned. Fails: MT_E_DOMAIN (the value is not finite), MT_E_MEMORY.
  */
 mt_status mt_model_expr_value(const mt_model *model, const double *values, const mt_expr *e,
                               mt_arena *mem, double *out, mt_err *err);
 
-/* Emit all parameters of a configuration (MT_ABSENT: of the file) into a program; is_input[p]
- * >= 0: parameter p is that input (NULL: none is; an override wins over an input).
- * nodes[n_parameters]. The model has been checked for cycles. Fails: MT_E_MEMORY, MT_E_INTERNAL
- * (a cycle). */
+/* Add all parameters of a configuration (MT_ABSENT: of the file) to a program; is_input[p] >=
+ * 0: parameter p is that input (NULL: no inputs; an override takes precedence over an input).
+ * nodes[n_parameters]. The model must have no cycles. Fails: MT_E_MEMORY, MT_E_INTERNAL (a
+ * cycle). */
 mt_status mt_emit_parameters(const mt_model *model, int configuration, const int *is_input,
                              mt_program *program, mt_node *nodes, mt_arena *mem, mt_err *err);
 
 /**
- * Values of all parameters in a configuration (MT_ABSENT: in the file) where some are inputs,
- * those made of others following.
+ * Values of all parameters in a configuration (MT_ABSENT: in the file) at given inputs;
+ * parameters that depend on them follow.
  * @param[out] value  [n_parameters]
- * Scratch from mem, given back. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
+ * Scratch from mem is returned. Fails: MT_E_DOMAIN, MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_model_parameters(const mt_model *model, int configuration, int n_inputs,
                               const int *inputs, const double *at, mt_arena *mem, double *value,
                               mt_err *err);
 
 /*
- * Numbers of a configuration (MT_ABSENT: of the file) as functions of some parameters: compiled
- * once, for many designs.
+ * Numbers of a configuration (MT_ABSENT: of the file) as functions of some parameters, compiled
+ * once for many designs.
  */
 typedef struct mt_numbers {
     mt_program program;
@@ -58,9 +58,9 @@ typedef struct mt_numbers {
 } mt_numbers;
 
 /**
- * @param[in]  inputs   [n_inputs] parameters, others follow from them
+ * @param[in]  inputs   [n_inputs] parameters; others follow from them
  * @param[in]  numbers  [n] of the model, or other expressions of its parameters
- * Lives in mem, with the model. O(total length of the expressions). Fails: MT_E_MEMORY,
+ * In mem; the model must outlive it. O(total length of the expressions). Fails: MT_E_MEMORY,
  * MT_E_INTERNAL.
  */
 mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
@@ -68,23 +68,23 @@ mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
                          mt_numbers *out, mt_err *err);
 /**
  * @param[in]  at     [n_inputs]
- * @param[out] value  [n]; NaN where a number has no finite value (or stands behind one that has
- *                    none)
- * @param[out] whole  may be NULL; true: all of them, and all parameters, have a finite value
+ * @param[out] value  [n]; NaN where a number is not finite, or is evaluated after one that is
+ *                    not
+ * @param[out] whole  may be NULL; true: all numbers and all parameters are finite
  * Fails: MT_E_INTERNAL.
  */
 mt_status mt_numbers_at(const mt_numbers *numbers, const double *at, double *value, bool *whole,
                         mt_err *err);
 
-/* Both, for one design and one number of the model, MT_ABSENT: 0. One that depends on nothing
- * costs nothing. NaN: it has no finite value. Scratch from mem, given back. Fails: MT_E_MEMORY,
- * MT_E_INTERNAL. */
+/* mt_numbers_new and mt_numbers_at for one design and one number of the model; MT_ABSENT: 0.
+ * Constant numbers cost nothing. NaN: not finite. Scratch from mem is returned. Fails:
+ * MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_model_number(const mt_model *model, int configuration, int n_inputs,
                           const int *inputs, const double *at, mt_num number, mt_arena *mem,
                           double *value, mt_err *err);
 
-/* Both, for one design and all numbers of the model: value[n_nums]. Scratch from mem, given
- * back. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
+/* mt_numbers_new and mt_numbers_at for one design and all numbers of the model: value[n_nums].
+ * Scratch from mem is returned. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_model_numbers(const mt_model *model, int configuration, int n_inputs,
                            const int *inputs, const double *at, mt_arena *mem, double *value,
                            mt_err *err);

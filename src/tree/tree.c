@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a system is a tree, and the order in which its bodies stand: breadth first from the
- * ground, then from the first body of each part that nothing ties to it. */
+/* Checks whether a system is a tree, and orders its bodies: breadth first from the ground, then
+ * from the first body of each part that nothing connects to it. */
 #include "tree/tree.h"
 
 #include "tree/tree_priv.h"
@@ -102,7 +102,8 @@ static void tell_loop(const order *o, const tie *e, char *why)
     }
 }
 
-/* All that hangs on body b (MT_GROUND: on the ground); false where a tie closes a loop. */
+/* Visit all bodies connected to body b (MT_GROUND: the ground); false where a connection closes
+ * a loop. */
 static bool visit(order *o, mt_tree *t, int b, char *why)
 {
     const int at = b == MT_GROUND ? o->sys->n_bodies : b;
@@ -199,7 +200,8 @@ static mt_status order_bodies(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch
     return MT_OK;
 }
 
-/* What no recursion of ours can answer, before any order is looked for. */
+/* True where the system has properties that the recursions do not cover; checked before the
+ * order. */
 static bool has_form(const mt_tree_maker *m)
 {
     const mt_system *const sys = m->t->sys;
@@ -226,7 +228,7 @@ static bool has_form(const mt_tree_maker *m)
     return true;
 }
 
-/* Whether the joints hold as drawn. */
+/* True where the joints are closed in the drawn position. */
 static bool is_closed(mt_tree_maker *m)
 {
     const mt_system *const sys = m->t->sys;

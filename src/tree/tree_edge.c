@@ -38,7 +38,7 @@ typedef struct edge {
     double size[ROWS];                /* of springs: of the terms of a strain of unit motion */
 } edge;
 
-/* One measure's gradient as a row of the edge; false where it is no measure of two bodies'
+/* Add a measure's gradient as a row of the edge; false where it is not a measure of two bodies'
  * relative position. */
 static bool add_row(const mt_tree_maker *m, int i, const mt_measure_def *def, double weight,
                     edge *e)
@@ -82,7 +82,7 @@ static bool add_row(const mt_tree_maker *m, int i, const mt_measure_def *def, do
     return true;
 }
 
-/* The length that makes translations and rotations alike. */
+/* The length that scales rotations to translations. */
 static double length_of(const mt_tree *t, const edge *e)
 {
     double half[2] = {0.0, 0.0};
@@ -128,7 +128,7 @@ static void normalise(int s, edge *e)
     }
 }
 
-/* Of the rows from `rank` on the longest, its entries from `rank` on; -1: none. */
+/* Index of the longest row from `rank` on, over its entries from `rank` on; -1: none. */
 static int longest_row(int s, const edge *e, int rank, double *length)
 {
     int best = -1;
@@ -166,7 +166,8 @@ static void eliminate(int s, int rank, int best, double length, edge *e, double 
 }
 
 /* The null space of the rows: Householder QR of A^T, the longest row first. null (s x s), *d
- * its columns. *least: what was left of the last row. False where the rank is in doubt. */
+ * its columns. *least: length of the last row that was used. False where the rank is
+ * uncertain. */
 static bool null_space(int s, edge *e, double *null, int *d, double *least)
 {
     double u[SQUARE];
@@ -197,7 +198,7 @@ static bool null_space(int s, edge *e, double *null, int *d, double *least)
     return true;
 }
 
-/* b (ROWS x d) := weight f^T N, what is rounding made 0; fills e->size. */
+/* b (ROWS x d) := weight f^T N, with rounding set to 0; fills e->size. */
 static void stiffness_rows(const mt_tree *t, edge *e, const double *null, int d, double *b)
 {
     for (int r = 0; r < e->n; r++) {
@@ -288,7 +289,7 @@ static bool collect(mt_tree_maker *m, int i, bool springs, edge *e)
     return true;
 }
 
-/* What cancels in the energy of column c: a strain has the rounding of its terms. */
+/* Cancellation in the energy of column c: a strain has the rounding of its terms. */
 static double lost_of(const edge *e, const double *b, int c, double sigma)
 {
     double sum = 0.0;
@@ -298,7 +299,8 @@ static double lost_of(const edge *e, const double *b, int c, double sigma)
     return sum;
 }
 
-/* Columns with stiffness first, each over its own; false where one is in doubt. lost[n_y]. */
+/* Columns with stiffness first, each scaled by its own; false where one is uncertain.
+ * lost[n_y]. */
 static bool sort_columns(const mt_tree *t, const edge *e, int d, const double *b,
                          const double *null, double *basis, int *n_y, double *lost)
 {

@@ -102,7 +102,7 @@ static bool add_force(void *context, const int body[2], double c, double noise,
     return add_curvature(l->m, body, c, jet);
 }
 
-/* Whether G_i balances where the edge is free. */
+/* True where G_i is balanced along the free motions of the edge. */
 static bool is_at_rest(const loading *l, int i)
 {
     const mt_tree *const t = l->m->t;
@@ -175,7 +175,8 @@ void mt_tree_multipliers(const mt_tree *t, const mt_tree_held *h, const double *
     }
 }
 
-/* The joints of edge i hold G_i: their curvature, and G of the body before. */
+/* Multipliers of the joints of edge i that balance G_i: adds their curvature, and adds G_i to
+ * the parent's G. */
 static mt_status hold(const loading *l, int i, mt_err *err)
 {
     const mt_tree_maker *const m = l->m;

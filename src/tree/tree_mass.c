@@ -22,7 +22,7 @@ static void add_block(const mt_tree *t, double c, const mt_cx *a, int u, const m
     }
 }
 
-/* Rotations of point masses are no freedoms. */
+/* Set rotations of point masses to 0: they are not freedoms. */
 static void leave_out(const mt_system *sys, const mt_term *term, mt_cx *rows)
 {
     for (int r = 0; r < term->count; r++) {

@@ -83,7 +83,7 @@ static inline void add_product(int s, const double *a, bool transposed, const do
     }
 }
 
-/* h (s x s) := curved - tau mass of body i; either may be NULL: none. */
+/* h (s x s) := geometric stiffness - tau mass of body i; NULL: without that term. */
 static void block(const mt_tree *t, const double *mass, const double *geometric_stiffness,
                   double tau, int i, double *h)
 {
@@ -124,8 +124,8 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
     }
 }
 
-/* Of the force on body i and all beyond it: entries of x and r (NULL), and what it hands to the
- * body before. */
+/* For the force on body i and its descendants: entries of x and r (NULL), and the force passed
+ * to the parent. */
 static inline void hand_back(const mt_tree *t, int i, double *f, double *x, double *r)
 {
     const int s = t->s;
@@ -249,7 +249,7 @@ void mt_tree_transport(const mt_tree *t, double lambda, const double *v, double 
     }
 }
 
-/* Of a motion of 1 along x. */
+/* From the kinetic energy of a motion of 1 along x. */
 double mt_tree_mass(const mt_tree *t)
 {
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
@@ -333,7 +333,8 @@ typedef struct eliminated {
     double x[SQUARE];
 } eliminated;
 
-/* other (s x s) += add - W^T Delta^-1 W; sizes likewise, of the terms (NULL: not asked). */
+/* other (s x s) += add - W^T Delta^-1 W; sizes (NULL: not wanted) += sums of magnitudes of the
+ * terms. */
 static void hand_on(int s, const eliminated *e, const double *add, double *other, double *sizes)
 {
     const int d = e->d;
@@ -355,8 +356,8 @@ static void hand_on(int s, const eliminated *e, const double *add, double *other
     }
 }
 
-/* What the forces on body i could make of the stiffness of column k of its basis: rounding of
- * them is not less. */
+/* Rounding that the forces on body i may cause in the stiffness of column k of its basis, at
+ * least. */
 static double load_of(const mt_tree *t, int i, int k)
 {
     const double *const b = t->basis + ((ptrdiff_t)t->s * (t->y_at[i] + t->free_dof_at[i] + k));
@@ -368,8 +369,8 @@ static double load_of(const mt_tree *t, int i, int k)
     return t->force == NULL ? 0.0 : t->force[i] * length * most * most;
 }
 
-/* Eliminate body i, whose H is complete; what is left goes to the one before it. sizes: of what
- * was summed into each H (NULL: not asked). */
+/* Eliminate body i, whose H is complete, and add the Schur complement to its parent. sizes:
+ * sums of magnitudes of the terms of each H (NULL: not wanted). */
 static void eliminate(const mt_tree *t, int i, double tau, double *h, double *sizes, int *below,
                       double *least, eliminated *e)
 {

@@ -108,7 +108,8 @@ static double form(int s, const double *a, const double *u, const double *v, dou
     return sum;
 }
 
-/* Sum of u^T settled u, u the sizes of each body's motion, and of that beyond its edge. */
+/* Sum of u^T settled u, u the magnitudes of each body's motion plus those of its motion
+ * relative to the parent. */
 static double settled_by(const mt_tree *t, const double *v)
 {
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
@@ -129,7 +130,7 @@ static double settled_by(const mt_tree *t, const double *v)
     return sum;
 }
 
-/* What cancelled in the strains of a motion of this energy, in roundings. */
+/* Cancellation in the strains of a motion of this energy, in roundings. */
 static double lost_by(const mt_tree *t, const double *x, double energy)
 {
     double sum = 0.0;

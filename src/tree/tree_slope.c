@@ -226,8 +226,9 @@ static void term_energies(mt_tree_slope *w, mt_term_kind kind, const mt_term *te
     }
 }
 
-/* How far mode a stretches a spring of edge i: by coordinates, whose products with the row are
- * rounding or clear, where the mode is told in these. */
+/* Elongation of a spring of edge i in mode a: from the coordinates x and r without loads, where
+ * the products with the row are exact zeros or well above rounding; otherwise from the
+ * motion. */
 static double stretch(const mt_tree_slope *w, int i, int a, const double *row,
                       const double *product)
 {
@@ -278,7 +279,7 @@ static void spring_of_edge(mt_tree_slope *w, int q, int i)
     }
 }
 
-/* Stiffnesses and masses, at the geometry that there is; forces of springs. */
+/* Derivatives of stiffnesses and masses at constant geometry; spring forces of the modes. */
 static void coefficients(mt_tree_slope *w)
 {
     const mt_system *const sys = w->sys;
@@ -316,7 +317,7 @@ static void coefficients(mt_tree_slope *w)
     }
 }
 
-/* What the mode makes of the joints of edge i: A^T mu = -(P + sum of k s f). */
+/* Joint forces of mode a at edge i: A^T mu = -(P + sum of k s f). */
 static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
 {
     const mt_tree *const t = w->t;
@@ -361,7 +362,8 @@ static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
     return MT_OK;
 }
 
-/* slope += f' . w of a measure of edge i times what it transmits, of[list a + which]. */
+/* slope += f' . w of a measure of edge i times the force that it transmits, of[list a +
+ * which]. */
 static void add_row(mt_tree_slope *w, int i, const mt_measure_def *def, const double *of,
                     ptrdiff_t list)
 {
@@ -453,7 +455,7 @@ static void add_inertia(mt_tree_slope *w, int i)
     }
 }
 
-/* Whether the joints stay closed as drawn. */
+/* True where the joints stay closed in the drawn position. */
 static bool stays_closed(mt_tree_slope *w)
 {
     const mt_system *const sys = w->sys;
@@ -481,7 +483,7 @@ static bool stays_closed(mt_tree_slope *w)
     return true;
 }
 
-/* What moves along the present input. */
+/* Slopes from the geometry that depends on the present input. */
 static void add_shape(mt_tree_slope *w)
 {
     const mt_tree *const t = w->t;

@@ -55,7 +55,7 @@ static void add_form(mt_tree_slope *w, double scale, const double *form)
             w->slope + ((ptrdiff_t)w->modes->n_pairs * w->data.input));
 }
 
-/* A force c on what a jet is of: its part of G', and of the slope. */
+/* Add the contribution of a force c along a measure with this jet to G' and to the slope. */
 static void add_force(const along *l, const int body[2], mt_cx c, const mt_jet *jet)
 {
     const mt_tree *const t = l->w->t;
@@ -123,7 +123,7 @@ static void add_load(const along *l, const mt_load_def *load)
     add_force(l, body, -1.0, &jet);
 }
 
-/* Whether what is left balances where the edge is free. */
+/* True where the residual is balanced along the free motions of the edge. */
 static bool stays_at_rest(const along *l, int i, const double *g)
 {
     const mt_tree *const t = l->w->t;
@@ -168,7 +168,7 @@ static void hand_on(const along *l, int i)
     }
 }
 
-/* What the joints of edge i hold changes, and what it is held by. False: not at rest. */
+/* Derivative of the forces that the joints of edge i hold. False: not in equilibrium. */
 static mt_status balance(const along *l, int i, bool *rests, mt_err *err)
 {
     mt_tree_slope *const w = l->w;

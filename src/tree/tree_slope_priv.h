@@ -6,19 +6,19 @@
 
 #include "mechanics/rows.h"
 
-/* What the files tree_slope*.c share. */
+/* Shared by the files tree_slope*.c. */
 typedef struct mt_tree_slope {
     const mt_tree *t;
     const mt_system *sys;
     const mt_tree_modes *modes;
-    mt_data data;         /* along one input after the other */
-    mt_pose *pose;        /* [bodies] likewise */
-    uint64_t *vec_inputs; /* [n_vecs x words] inputs of each vector, as bits */
+    mt_data data;         /* along the current input */
+    mt_pose *pose;        /* [bodies] along the current input */
+    uint64_t *vec_inputs; /* [n_vecs x words] bit set of the inputs of each vector */
     double *within;       /* s n x modes: w of mt_tree_within */
     double *transport;    /* s n x modes: P of mt_tree_transport */
-    double *force;        /* springs x modes: k times how far the mode stretches it */
-    double *mu;           /* constraints x modes: what the mode makes each equation hold */
-    /* n_pairs x constraints: phi_a^T H phi_b, where something loads */
+    double *force;        /* springs x modes: k times the mode's elongation of the spring */
+    double *mu;           /* constraints x modes: multiplier of each equation in the mode */
+    /* n_pairs x constraints: phi_a^T H phi_b; NULL without loads */
     double *geometric_stiffness;
     double *projected; /* [2 x modes] work */
     double *energy;    /* [n_pairs] work */
@@ -27,32 +27,32 @@ typedef struct mt_tree_slope {
     mt_arena *scratch;
 } mt_tree_slope;
 
-/* Whether the present input moves what the measure is made of. */
+/* True where the measure (the vector) depends on the current input. */
 bool mt_tree_slope_moves(const mt_tree_slope *w, const mt_measure_def *def);
 bool mt_tree_slope_moves_vec(const mt_tree_slope *w, int vec);
-/* Derivative of a node by the present input. */
+/* Derivative of a node by the current input. */
 double mt_tree_slope_of(const mt_tree_slope *w, mt_node node);
 void mt_tree_slope_jet(const mt_tree_slope *w, const mt_measure_def *def, bool second,
                        mt_jet *jet);
-/* The measure's gradient over the motion of body i itself, row[s], and its derivative
- * drow[s]. */
+/* Gradient of the measure over the motion of body i, row[s], and its derivative by the current
+ * input, drow[s]. */
 void mt_tree_slope_row(const mt_tree_slope *w, const mt_measure_def *def, int i,
                        const mt_jet *jet, double *row, double *drow);
-/* Motion of two bodies in mode a: phi[12], 0 where there is no freedom. */
+/* Motion of two bodies in mode a: phi[12], 0 for constrained freedoms. */
 void mt_tree_slope_pair(const mt_tree_slope *w, int a, const int body[2], double *phi);
-/* Motion of body i within its edge in mode a; what its edge carries. */
+/* Column of body i in mode a of `of`: within or transport. */
 static inline const double *mt_tree_slope_at(const mt_tree_slope *w, const double *of, int i,
                                              int a)
 {
     return of + ((ptrdiff_t)w->t->s * (i + ((ptrdiff_t)w->t->n * a)));
 }
-/* phi_a^T H phi_b of a jet over two bodies, for each pair, into form[n_pairs]; of the
- * derivative of H where that is asked for. */
+/* phi_a^T H phi_b of a jet over two bodies, for each pair, into form[n_pairs]; derivative: of
+ * the derivative of H by the current input. */
 void mt_tree_slope_form(const mt_tree_slope *w, const int body[2], const mt_jet *jet,
                         bool derivative, double *form);
-/* No slopes, as of the present input what `text` says. */
+/* Report that there are no slopes: reason `text` for the current input. */
 void mt_tree_slope_refuse(const mt_tree_slope *w, const char *text);
-/* What the loads make of it, along the present input. Fails: MT_E_NOT_SPD. */
+/* Contribution of the loads along the current input. Fails: MT_E_NOT_SPD. */
 mt_status mt_tree_slope_loads(mt_tree_slope *w, mt_err *err);
 
 #endif
