@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Whether two that vary limit one number from its two sides. */
+/* True where two that vary limit one number from its two sides. */
 static bool opposite(const mt_vary *a, const mt_vary *b)
 {
     if (a->kind != b->kind || a == b) {
