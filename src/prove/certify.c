@@ -254,7 +254,7 @@ static int unknown(search *s)
     return count;
 }
 
-/* Whether the bounds can be met in the box (all: are met everywhere in it). */
+/* True where the bounds can be met in the box (all: are met everywhere in it). */
 static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
 {
     const mt_certify *const c = s->c;
@@ -273,7 +273,7 @@ static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
     return true;
 }
 
-/* Whether limit i can be met in the box. */
+/* True where limit i can be met in the box. */
 static bool limit_possible(search *s, int i)
 {
     const mt_certify_limit *const l = &s->c->limits[i];
@@ -347,7 +347,7 @@ static bool same_counts(const search *s, const int *tuple)
     return true;
 }
 
-/* Whether the design that is set has at least so many modes below the edge; or fewer. */
+/* True where the design that is set has at least so many modes below the edge; or fewer. */
 static bool has_below(const search *s, int edge, int modes)
 {
     const mt_edge *const g = &s->edges.edges[edge];
@@ -515,7 +515,7 @@ static mt_status visit(search *s, bool *deeper)
     return note_open(s);
 }
 
-/* Whether what was found is all that is asked for. */
+/* True where what was found is all that is asked for. */
 static bool satisfied(const search *s)
 {
     return (s->only != NULL || s->c->any) && s->out->n_found > 0;

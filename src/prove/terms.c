@@ -208,7 +208,7 @@ static bool block_matrix(const mt_linear *lin, mt_matrix m, const block *b, doub
     return positive;
 }
 
-/* *yes: whether B is semidefinite, to rounding. */
+/* *yes: true where B is semidefinite, to rounding. */
 static mt_status semidefinite(const mt_linear *lin, mt_matrix m, const block *b,
                               mt_arena *scratch, bool *yes, mt_err *err)
 {
