@@ -171,7 +171,7 @@ static void add_line(mt_scene_view *v, int *capacity, mt_arena *mem, const mt_sc
     }
 }
 
-/* Whether there is a line of the body to this place already. They begin at `first`. */
+/* True where there is a line of the body to this place already. They begin at `first`. */
 static bool has_line(const mt_scene_view *v, int first, const double to[3], double same)
 {
     bool has = false;

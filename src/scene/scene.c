@@ -177,7 +177,7 @@ static mt_status view_new(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
                                   : mt_pass_final(rc, &other, err);
 }
 
-/* Whether a parameter's value in the file is a plain number. */
+/* True where a parameter's value in the file is a plain number. */
 static bool is_plain(const mt_model *model, int parameter)
 {
     double value = 0.0;
