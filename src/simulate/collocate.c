@@ -110,7 +110,7 @@ static mt_status begin(mt_sim *s, mt_collocation *q, mt_err *err)
     return MT_OK;
 }
 
-/* Whether the highest frequencies stand apart from the others, and from how fast the motion
+/* True where the highest frequencies stand apart from the others, and from how fast the motion
  * begins. */
 static bool is_stiff(const mt_sim *s, const mt_collocation *q)
 {

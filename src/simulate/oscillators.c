@@ -143,7 +143,7 @@ static void find_rows(mt_oscillators *o)
     }
 }
 
-/* Whether inputs and gauges are those of a linear system. */
+/* True where inputs and gauges are those of a linear system. */
 static bool has_linear_ports(const mt_oscillators *o)
 {
     bool linear = true;

@@ -335,7 +335,7 @@ static mt_status run(mt_propagation *r, const mt_sim_start *start, mt_err *err)
     return go(r, err);
 }
 
-/* Whether the whole equations say the same. */
+/* True where the whole equations say the same. */
 static mt_status check(mt_propagation *r, mt_err *err)
 {
     const int n = r->n;

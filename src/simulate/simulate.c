@@ -211,8 +211,8 @@ static mt_status sample(run *r, double t, mt_err *err)
     return MT_OK;
 }
 
-/* Whether a gauge turns in a step that it ends with this velocity. What is rounding beside the
- * motion of the bodies does not count. */
+/* True where a gauge turns in a step that it ends with this velocity. What is rounding beside
+ * the motion of the bodies does not count. */
 static bool turns(const mt_sim *s, int g, double end)
 {
     const double least = s->opt->tolerance * s->fast;
