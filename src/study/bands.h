@@ -113,7 +113,7 @@ double mt_bands_margin(const mt_bands_source *source, double own);
 /**
  * The bands of a source, merged, sorted, cut off at up_to_hz (a base that lies above it becomes
  * the point up_to_hz).
- * @param[in] margin_percent replaces every margin of the source, those of rotors and machines
+ * @param[in]  margin_percent replaces every margin of the source, those of rotors and machines
  *   too; NaN: margins as given
  * @param[out] out lists and texts in mem
  * Harmonics of unknown frequency and intervals with NaN are left out (the checks of a study
