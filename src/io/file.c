@@ -46,7 +46,7 @@ static bool is_absence(int code)
     return code == ENOENT || code == ENOTDIR || code == ELOOP || code == ENAMETOOLONG;
 }
 
-/* Whether the resolved path lies beneath the resolved folder. */
+/* True where the resolved path lies beneath the resolved folder. */
 static bool beneath(const char *path, const char *folder)
 {
     const size_t n = strlen(folder);

@@ -367,7 +367,7 @@ bool mt_folder_unfinished(const char *folder, const char *last)
     return there;
 }
 
-/* Whether what the descriptor holds is still what the path names. */
+/* True where what the descriptor holds is still what the path names. */
 static bool still_there(int fd, const char *folder)
 {
     struct stat held;
