@@ -63,7 +63,7 @@ static void add_line(const mt_summary_writer *to, mt_text *line)
     add_paragraph(to, "  ", line);
 }
 
-/* Whether it was computed. A section that a stopped run left out says so. */
+/* True where it was computed. A section that a stopped run left out says so. */
 static bool is_known(const mt_summary_writer *to, const char *title, const void *items)
 {
     if (items == NULL) {
