@@ -13,7 +13,7 @@ static bool proves(const mt_catalogue_search_report *report)
     return report->all && !report->mixed;
 }
 
-/* Whether branch and bound excludes every combination. */
+/* True where branch and bound excludes every combination. */
 static bool excluded(const mt_catalogue_search_report *report)
 {
     return report->settled && report->n_kinds == 0 && report->feasible == 0;
