@@ -153,7 +153,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     return MT_OK;
 }
 
-/* Whether the error of this mode's frequency is worth a word. */
+/* True where the error of this mode's frequency is worth a word. */
 static bool is_rough(const mt_modes *m, int i)
 {
     return m->kind[i] == MT_MODE_FLEXIBLE &&

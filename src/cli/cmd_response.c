@@ -240,7 +240,7 @@ static mt_status open_response(job *j, const char *why, mt_err *err)
     return choose_range(j, err);
 }
 
-/* Whether the lowest modes may do. */
+/* True where the lowest modes may do. */
 static bool may_be_large(const job *j, char *why)
 {
     static const int WHOLE[] = {MT_OPT_DIRECT, MT_OPT_POLES, MT_OPT_SENSITIVITY, MT_OPT_KEEP};

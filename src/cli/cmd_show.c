@@ -22,7 +22,7 @@ typedef struct subject {
     mt_scene_query *asks;
 } subject;
 
-/* *is: whether the file says that it is a result. What is wrong with its text is told by who
+/* *is: true where the file says that it is a result. What is wrong with its text is told by who
  * reads it whole. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
 static mt_status is_result(const char *path, bool *is, mt_err *err)
 {

@@ -179,7 +179,7 @@ static void put_line(const svg *p, const double a[2], const double b[2], const c
                  a[0], a[1], b[0], b[1], colour, width);
 }
 
-/* Whether a name there would lie on another one. */
+/* True where a name there would lie on another one. */
 static bool is_taken(const svg *p, double x, double y, double width)
 {
     bool taken = false;
