@@ -257,7 +257,8 @@ typedef struct mt_reason {
 typedef struct mt_recommendation {
     int rank;
     bool feasible;
-    /* "feasible and proven" | "feasible" | "compromise" | "infeasible" | "not verified" */
+    /* "feasible and proven" | "feasible" | "compromise" | "infeasible" | "not verified"; of a
+     * fit also "fitted" | "local minimum" | "not converged" */
     const char *grade;
     /* the disagreement of a repeated analysis with the search, in words (not written; warnings
      * and reasons use it); NULL: none */
