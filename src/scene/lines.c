@@ -207,7 +207,7 @@ static void lines_of(const holds *h, int body, int *capacity)
     }
 }
 
-/* To the lines from the centre of a body to what it holds besides this joint. */
+/* Distance to the lines from the centre of a body to its other items, without this joint. */
 static double distance_to_lines(const holds *h, int body, int joint, const double at[3])
 {
     const double *const centre = h->f->view->bodies[body].at;
