@@ -40,7 +40,7 @@ mt_status mt_file_failed(const char *path, int code, mt_err *err)
     return code == ENOMEM ? mt_fail_memory(err) : mt_locale_plain(say_failed, &f, err);
 }
 
-/* Errors that say of a name that it leads to nothing. */
+/* True for errors that mean that a name leads to nothing. */
 static bool is_absence(int code)
 {
     return code == ENOENT || code == ENOTDIR || code == ELOOP || code == ENAMETOOLONG;

@@ -25,7 +25,7 @@ static bool is_bare(const mt_study_reader *s, mt_addr value)
            mt_json_number(s->r.doc, value) != 0.0;
 }
 
-/* True where the study says units other than SI. */
+/* True where the study gives units other than SI. */
 static bool says_units(const mt_study *study)
 {
     bool says = false;
