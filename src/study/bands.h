@@ -94,7 +94,7 @@ typedef struct mt_bands {
     const char **notes; /* one sentence for each merger */
 } mt_bands;
 
-/* What a list of bands is made from. */
+/* The sources of a list of bands. */
 typedef struct mt_bands_source {
     int n_intervals;
     mt_band_hz *intervals; /* given in Hz */

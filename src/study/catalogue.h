@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 
-/* Catalogues of values by rule instead of by list. */
+/* Catalogues of values given by a rule instead of a list. */
 enum { MT_MAX_CATALOGUE = 10000 };
 
 /* Preferred numbers of IEC 60063. */

@@ -180,8 +180,7 @@ typedef struct mt_published {
     const char *status; /* "solved" | "compromise" | "infeasible" | "fitted" */
     /* "design": "original": compared at the original design, not at the recommended one */
     bool original;
-    /* compared within a tolerance; beside limits it is only shown, and the limits are
-     * compared */
+    /* compared within a tolerance; with limits it is only shown, and the limits are compared */
     double value;
     double tolerance; /* absolute */
     double tolerance_percent;
@@ -218,13 +217,14 @@ typedef enum mt_vary_kind {
 
 typedef struct mt_vary {
     mt_vary_kind kind;
-    mt_name name;       /* of the variable or parameter */
-    int variable;       /* bound: index in the study's variables */
-    bool upper;         /* bound: true for the upper one */
-    int parameter;      /* parameter: of the model */
-    int goal;           /* goal: index in the study's goals */
-    const char *member; /* goal: name of its number; NULL: noted by who filled the study */
-    mt_goal_slot slot;  /* of that number; by finish */
+    mt_name name;  /* of the variable or parameter */
+    int variable;  /* bound: index in the study's variables */
+    bool upper;    /* bound: true for the upper one */
+    int parameter; /* parameter: of the model */
+    int goal;      /* goal: index in the study's goals */
+    /* goal: name of its number; NULL: invalid, which the reader has noted */
+    const char *member;
+    mt_goal_slot slot; /* slot of that number; by finish */
     int n_values;
     double *values;   /* [n_values] in the order given; in the unit of what varies */
     const char *text; /* "upper bound of M_SAU", "target_hz of goal 1": by finish */
@@ -412,7 +412,7 @@ void mt_study_place_warning(const mt_study *study, mt_warning *warning);
 /* The place of the member that the text's leading JSON pointer names ("/goals/2: ..."); NULL:
  * the text begins with none, or the place was not kept. */
 const mt_study_place *mt_study_locate(const mt_study *study, const char *text);
-/* The names that files use: "verifies", "parameter". */
+/* The names in files: "verifies", "parameter". */
 const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);
 /* The possible values of a published `status`, in the order of mt_result_status; *n is their

@@ -68,7 +68,8 @@ typedef struct mt_vibration_tone {
     int source;     /* index of its source */
 } mt_vibration_tone;
 
-/* How peaks of tones are combined: sum of all, the largest, root of the sum of squares. */
+/* The rule that combines peaks of tones: their sum, the largest, the root of the sum of
+ * squares. */
 typedef enum mt_vibration_sum {
     MT_TONES_SUM,
     MT_TONES_LARGEST,
