@@ -20,9 +20,9 @@ typedef struct mt_frf {
     double *im;
     double complex *rho; /* [n] */
     int *index;          /* [n] index in the pole sum */
-    double *slope;       /* [n_pairs] 2 Re r and 2 Re(r conj s): the fraction's numerator is */
-    double *constant;    /* constant - i w slope */
-    double *size;        /* [n_pairs] size of the summands of the constant */
+    double *slope; /* [n_pairs] 2 Re r and 2 Re(r conj s): the numerator of the fraction is */
+    double *constant; /* constant - i w slope */
+    double *size;     /* [n_pairs] size of the summands of the constant */
     double complex c[3];
     int growing; /* mt_pole_sum_growing; -1: none */
 } mt_frf;
@@ -37,7 +37,7 @@ typedef struct mt_near {
 /* Why a response has no finite number. */
 typedef enum mt_forced_end {
     MT_FORCED_FINITE,
-    MT_FORCED_INFINITE, /* an undamped pole lies where the input acts */
+    MT_FORCED_INFINITE, /* an undamped pole lies within the frequencies of the input */
     MT_FORCED_UNSTABLE  /* a pole grows without excitation: there is no steady response */
 } mt_forced_end;
 

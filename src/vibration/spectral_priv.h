@@ -6,7 +6,7 @@
 
 #define MT_TWO_PI 6.28318530717958647693
 
-/* One segment of a density: G = (w / lower)^exponent from lower to upper [rad/s]. */
+/* A segment of a density: G = (w / lower)^exponent from lower to upper [rad/s]. */
 typedef struct mt_spectral_segment {
     double lower;
     double upper;
