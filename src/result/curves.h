@@ -62,7 +62,7 @@ typedef struct mt_result_profile {
     mt_result_tone *tones;
 } mt_result_profile;
 
-/* A response that is shown of every design. */
+/* A response shown for every design. */
 typedef struct mt_result_curve {
     const char *pointer; /* of the goal or response that requests it, "/responses/0" */
     const char *configuration;

@@ -75,7 +75,7 @@ typedef struct mt_result_step {
     int objective;    /* index of the minimised objective, from 1 */
     int round;        /* from 1; later rounds use tighter accuracy or more conditions */
     long evaluations; /* evaluations so far, counted as if one worker had done all of them */
-    double value;     /* of that objective, as mt_design_objective has it; NaN: none */
+    double value;     /* value of that objective, as in mt_design_objective; NaN: none */
     double violation; /* largest violation of a goal or bound, relative to its tolerance */
     bool feasible;
 } mt_result_step;

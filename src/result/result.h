@@ -229,7 +229,7 @@ typedef struct mt_tolerance_box {
     mt_result_tolerance *variables; /* in the study's order */
 } mt_tolerance_box;
 
-/* MAC of a mode with the modes of a reference. */
+/* The MAC of a mode with each mode of a reference. */
 typedef struct mt_result_mac_row {
     int mode; /* vibration index at this design */
     int n_values;
@@ -380,7 +380,7 @@ typedef struct mt_relaxation {
     const char *text; /* as a sentence */
 } mt_relaxation;
 
-/* One study of a trade study, with its best design. */
+/* One point of a trade study, with its best design. */
 typedef struct mt_trade_point {
     int n_values; /* n_vary */
     double *values;
