@@ -95,7 +95,7 @@ typedef struct mt_enclosure {
     int n_pieces;
     mt_enclosure_piece *pieces;
     int *of_term[MT_MATRICES]; /* coefficient of each term; -1: it does not vary */
-    /* name of a spring or body whose coupling is of either sign; NULL: none */
+    /* name of a spring or body whose coupling may have any sign; NULL: none */
     const char *coupled;
     bool coupled_mass;
     mt_enclosure_coefficient *coefficients;
