@@ -28,7 +28,7 @@ typedef enum mt_scene_travel {
 } mt_scene_travel;
 
 /* Budgets of a scene in operations: about a minute where a mechanism is shown on request, a few
- * seconds beside an answer. Beyond them drives are not followed, and modes of large mechanisms
+ * seconds with an answer. Beyond them drives are not followed, and modes of large mechanisms
  * without a fast method for the lowest ones are left out. */
 #define MT_SCENE_WORK       2e11
 #define MT_SCENE_WORK_ALONG 1e10
@@ -77,7 +77,7 @@ typedef struct mt_scene_joint {
     /* distance of its point from the drawing of the more distant body; 0 where it lies on a
      * link or not far beyond a body's ellipsoid */
     double distance;
-    int far; /* that body; MT_ABSENT where the distance is 0 */
+    int far; /* the more distant body; MT_ABSENT where the distance is 0 */
 } mt_scene_joint;
 
 /* A spring, a damper, or the elasticity of a link. */
