@@ -38,8 +38,8 @@ typedef struct mt_steady {
     double mean;
     double amplitude[MT_HARMONICS];
     double phase[MT_HARMONICS]; /* [rad] */
-    double residual;            /* largest difference of the record and the sum, of the largest
-                                   amplitude */
+    /* largest difference of the record and the sum, relative to the largest amplitude */
+    double residual;
 } mt_steady;
 
 /* The samples x[i * stride] at t[i]. */

@@ -13,7 +13,7 @@ typedef struct mt_realised {
     double rms;         /* RMS of the random parts over the duration [m/s^2] */
 } mt_realised;
 
-/* Everything is in mem. Fails: as mt_realise_psd, MT_E_MEMORY. */
+/* Make a realisation, all in mem. Fails: as mt_realise_psd, MT_E_MEMORY. */
 mt_status mt_realise(const mt_vibration *v, double duration_s, unsigned long seed,
                      mt_arena *mem, mt_realised *out, mt_err *err);
 /* A realisation of a density whose period exceeds the duration. Fails: MT_E_USAGE (too many

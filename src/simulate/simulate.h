@@ -52,7 +52,7 @@ typedef struct mt_sim_options {
     mt_sim_start *end; /* [out] the end state; may be the start; NULL: not requested */
 } mt_sim_options;
 mt_sim_options mt_sim_options_default(void);
-/* More samples than this times gauges are refused. */
+/* The largest number of samples times gauges; more are refused. */
 enum { MT_SIM_SAMPLES_MOST = 20000000 };
 
 typedef enum mt_sim_stop { MT_SIM_DONE, MT_SIM_INTERRUPTED } mt_sim_stop;
@@ -94,7 +94,7 @@ typedef struct mt_sim_result {
     long evaluations;
     double gap_m;          /* largest drift off a joint in one step, before projection */
     double left_m;         /* largest gap after projection */
-    double energy_error_j; /* largest |kinetic + potential - work - that of the start| */
+    double energy_error_j; /* largest |kinetic + potential - work - initial energy| */
     double energy_scale_j; /* largest kinetic energy or change of potential energy */
 } mt_sim_result;
 

@@ -46,7 +46,7 @@ typedef struct mt_sim {
     double *speed;  /* [n_gauges] at the beginning of the step */
     mt_gauge_motion gauge;
     double still;    /* drive of the rest position */
-    int rank;        /* of the joints' equations at the start; -1: not known yet */
+    int rank;        /* rank of the joints' equations at the start; -1: not known yet */
     mt_arena names;  /* names of joints, for messages */
     double free_way; /* largest displacement in a step [rad, model lengths] */
     long evaluations;
