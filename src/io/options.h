@@ -9,10 +9,10 @@ typedef struct mt_overrides {
     int n_sets;
     const char *const *sets;  /* NAME=VALUE (model/setting.h), of the study's own model */
     long seed;                /* -1: as the study says */
-    long starts;              /* 0: likewise */
-    long max_evaluations;     /* 0: likewise */
-    long max_modal_solutions; /* 0: likewise */
-    double proof_s;           /* NaN: likewise */
+    long starts;              /* 0: as the study says */
+    long max_evaluations;     /* 0: as the study says */
+    long max_modal_solutions; /* 0: as the study says */
+    double proof_s;           /* NaN: as the study says */
 } mt_overrides;
 
 /* Options of every reader of files. */

@@ -33,7 +33,7 @@ typedef struct mt_reader {
     const void *context;
     const char *const *names; /* candidates for "did you mean" in expressions */
     int n_names;
-    mt_kind_lookup kinds; /* of the parameters, with the context of lookup */
+    mt_kind_lookup kinds; /* kinds of the parameters, with the context of lookup */
     mt_matched matched[MT_MATCHED];
     unsigned n_matched;            /* number matched so far; the last ones are kept */
     mt_warning_list *warning_list; /* of mt_reader_check_range; NULL: warn at once */
@@ -96,7 +96,7 @@ enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
  * latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
-/* The row of a recently matched member. */
+/* The row of model/possible.h of a recently matched member. */
 mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
 /* Check a number (NaN: not known), the value of a recently matched member or an item of it,
  * against the member's row: an impossible value is noted ("weight (0) must be above 0"), an
