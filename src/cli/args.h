@@ -187,14 +187,14 @@ typedef struct mt_args {
     int starts;                    /* --starts, 0: not given */
     int max_evaluations;           /* --max-evaluations, 0: not given */
     int max_modal_solutions;       /* --max-modal-solutions, 0: not given */
-    int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
-    double rel_tol;      /* --rel-tol, default 0 */
-    double abs_tol;      /* --abs-tol, default 0 */
-    double time_s;       /* --time, 0: not given */
-    double duration_s;   /* --duration, 0: not given */
-    double dt_out_s;     /* --dt-out, 0: not given */
-    double tolerance;    /* --tolerance, 0: not given */
-    double proof_s;      /* --proof; valid where given */
+    int threads;       /* --threads, at most MT_WORKERS_MOST; without it set by mt_limits_set */
+    double rel_tol;    /* --rel-tol, default 0 */
+    double abs_tol;    /* --abs-tol, default 0 */
+    double time_s;     /* --time, 0: not given */
+    double duration_s; /* --duration, 0: not given */
+    double dt_out_s;   /* --dt-out, 0: not given */
+    double tolerance;  /* --tolerance, 0: not given */
+    double proof_s;    /* --proof; valid where given */
     unsigned long seed;  /* --seed; valid where given */
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
     int points;          /* --points, 0: not given */

@@ -61,9 +61,9 @@ void mt_terminal_line(const char *text);
  * program, except while they are held. */
 void mt_terminal_ignore_signals(void);
 /*
- * From hold to release the first SIGINT or SIGTERM is only recorded, for work that stops by
- * itself (mt_terminal_stop_request) or must be completed; the second ends the program. A signal
- * ignored at the program's start stays ignored.
+ * Hold and release signals. In between the first SIGINT or SIGTERM is only recorded, for work
+ * that stops by itself (mt_terminal_stop_request) or must be completed; the second ends the
+ * program. A signal ignored at the program's start stays ignored.
  */
 void mt_terminal_hold_signals(void);
 void mt_terminal_release_signals(void);
