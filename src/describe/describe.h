@@ -150,9 +150,9 @@ mt_status mt_describe_reasons(const mt_problem *p, const mt_design *design,
  * used). Fails with the entry's address in the text (describe_published.c). */
 mt_status mt_describe_published(mt_workspace *w, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
-/* Versions, seed, inputs, names of the variables (describe_run.c). */
+/* Fill in versions, seed, inputs, names of the variables (describe_run.c). */
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err);
-/* Rotors and machines of the avoid goals (describe_excitations.c). */
+/* Fill in rotors and machines of the avoid goals (describe_excitations.c). */
 mt_status mt_describe_excitations(const mt_study *study, mt_result *result, mt_err *err);
 /* Copy every borrowed text of study and problem into the result, which may outlive them
  * (describe_run.c). */
