@@ -42,7 +42,7 @@ typedef struct mt_motion_options {
     int n_starts;      /* joints moved before the start, the others follow with */
     int n_rates;       /* the least motion; joints with a rate, the others take */
     int n_sines;       /* the least kinetic energy; sines that excite */
-    int seed;          /* of the profile's random parts, at least 0 */
+    int seed;          /* seed of the profile's random parts, at least 0 */
     const mt_motion_joint *starts; /* [n_starts] */
     const mt_motion_joint *rates;  /* [n_rates] */
     const mt_motion_sine *sines;   /* [n_sines] */

@@ -56,8 +56,8 @@ typedef struct mt_solve_options {
      * returns an mt_stop_request. A request need not be repeated */
     int (*stop)(void *context);
     void *stop_context;
-    /* NULL, or called from the caller's thread with one line of text, when a search begins and
-     * now and then */
+    /* NULL, or called from the caller's thread with one line of text, at the beginning of a
+     * search and occasionally during it */
     void (*progress)(void *context, const char *text);
     void *progress_context;
     /* NULL, or called with stop_context when an answer was cut; returns an mt_stop_reason */
@@ -115,7 +115,7 @@ MT_API mt_status mt_study_solve(const mt_study *study, const mt_solve_options *o
 
 /* Accepts NULL. */
 MT_API void mt_result_delete(mt_result *result);
-/* MT_RESULT_STATUS_COUNT where there is no result. */
+/* The status of a result; MT_RESULT_STATUS_COUNT where there is no result. */
 MT_API mt_result_status mt_result_outcome(const mt_result *result);
 /* "solved" ...; "unknown" for an invalid status; never NULL. */
 MT_API const char *mt_result_status_name(mt_result_status status);
