@@ -11,7 +11,7 @@
 /* A model with the parameters of --set, and the configurations to analyse. */
 typedef struct mt_loaded_model {
     mt_model *model;   /* owned */
-    const mt_run *run; /* of what is made of it; NULL: none */
+    const mt_run *run; /* the run of analyses of the model (base/run.h); NULL: none */
     mt_arena mem;
     const char *path;
     int n_inputs;
@@ -58,7 +58,7 @@ mt_status mt_loaded_model_lowest(const mt_loaded_model *s, int c, int n_inputs,
                                  mt_lowest **out, mt_err *err);
 /* "dense", "tree", "sparse": the name of the method in JSON. */
 const char *mt_cli_method(mt_lowest_method way);
-/* Configuration c with these inputs, in the run of the model. */
+/* The definition of configuration c with these inputs, in the run of the model. */
 mt_system_def mt_loaded_model_system(const mt_loaded_model *s, int c, int n_inputs,
                                      const int *inputs, const double *at);
 /* Fails with MT_E_USAGE where configuration c is too large for dense matrices; the text begins

@@ -86,8 +86,8 @@ bool mt_describe_is_told(const mt_configuration_work *view, const mt_requirement
 /* describe_responses.c: judge the goals of forced vibration. */
 mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
-/* Phrases for these goals: "the acceleration of grip.x for base.z"; ", 45 % below its limit"; "
- * rms". NULL: memory. */
+/* Phrases for these goals: "the acceleration of grip.x for base.z"; ", 45 % below its limit";
+ * "rms" with a blank before. NULL: memory. */
 const char *mt_describe_response_limit(const mt_response_limit *s, mt_arena *mem);
 const char *mt_describe_response_value(const mt_goal *g, double value, mt_arena *mem);
 const char *mt_describe_response_kind(const mt_response_limit *s);

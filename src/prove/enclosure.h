@@ -54,8 +54,8 @@ typedef struct mt_enclosure_coefficient {
     /* a stiffness that was positive over the box that mt_enclosure_note_held noted */
     bool held;
     double least; /* minimum over the bounds */
-    /* maximum over the bounds; where `least` is 0, a box in which the coefficient is positive
-     * may have fewer rigid-body modes */
+    /* maximum over the bounds; where it is 0, a box beyond the bounds in which the coefficient
+     * is positive may have fewer rigid-body modes */
     double most;
     mt_enclosure_part part[MT_MATRICES];
 } mt_enclosure_coefficient;
