@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the shared library shows: everything is built hidden, public functions carry MT_API. */
+/* Visibility of symbols: everything is built hidden, public functions carry MT_API. */
 #ifndef MODETUNE_EXPORT_H
 #define MODETUNE_EXPORT_H
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * One configuration of a model, made ready once and evaluated as often as wanted at other
- * values of its parameters: frequencies with bounds of their errors, shapes at the sensors,
- * correlation of shapes, exact derivatives.
+ * One configuration of a model, prepared once and evaluated at any number of values of its
+ * parameters: frequencies with bounds of their errors, shapes at the sensors, correlation of
+ * shapes, exact derivatives.
  *
  *     const char *const names[] = {"k_servo"};
  *     const double values[] = {450.0};
@@ -11,9 +11,9 @@
  *         hz = mt_mechanism_hz(mechanism, 1);
  *     }
  *
- * What a mechanism says is of its last evaluation, and depends on none before: the same values
- * give the same bits. After one that failed it has no modes. A mechanism is used by one thread
- * at a time; any number of them may share a model. BLAS has to use one thread.
+ * All answers are those of the last evaluation and independent of earlier ones: the same values
+ * give the same bits. After a failed evaluation there are no modes. A mechanism is used by one
+ * thread at a time; any number of mechanisms may share a model. BLAS must use one thread.
  */
 #ifndef MODETUNE_MECHANISM_H
 #define MODETUNE_MECHANISM_H
@@ -30,15 +30,15 @@ extern "C" {
 typedef struct mt_mechanism mt_mechanism;
 
 /**
- * Make a configuration ready, and evaluate it at the model's own values.
+ * Prepare a configuration and evaluate it at the model's own values.
  * @param[in]  model          must outlive the mechanism
- * @param[in]  configuration  name; NULL: the only one of a model that has no more
- * @param[in]  inputs [n_inputs] names of the parameters whose values will be given; others
- *   keep the model's own, and those that are expressions follow, unless they are inputs
- *   themselves. A value that the configuration itself fixes wins. NULL with n_inputs 0
- * @param[out] out owned by the caller; NULL on failure. Fails: MT_E_USAGE (no such
- *   configuration, none said of several, no such parameter, one given twice, a name missing),
- *   and as mt_mechanism_evaluate.
+ * @param[in]  configuration name; NULL: the model's only one
+ * @param[in]  inputs [n_inputs] names of the parameters whose values evaluations set. Other
+ *   parameters keep the model's values; expressions follow, unless they are inputs themselves.
+ *   A value fixed by the configuration takes precedence. NULL with n_inputs 0
+ * @param[out] out owned by the caller; NULL on failure
+ * Fails: MT_E_USAGE (no such configuration, none named of several, no such parameter, one given
+ * twice, a name missing), and as mt_mechanism_evaluate.
  */
 MT_API mt_status mt_mechanism_new(const mt_model *model, const char *configuration,
                                   int n_inputs, const char *const *inputs, mt_mechanism **out,
@@ -48,43 +48,44 @@ MT_API void mt_mechanism_delete(mt_mechanism *mechanism);
 /**
  * Undamped natural modes, linearised at the equilibrium.
  * @param[in]  values  [n_inputs] in the units of the parameters, finite; NULL without inputs
- * O(n^3) in the number of freedoms; no heap after the first evaluations of one size.
- * Fails: MT_E_USAGE (a value is not finite, or makes a number of the model what it may not be,
- * as a mass below 0), MT_E_ASSEMBLY, MT_E_EQUILIBRIUM, MT_E_DEAD_CENTRE, MT_E_MASSLESS,
- * MT_E_DOMAIN, MT_E_NO_CONVERGENCE, MT_E_MEMORY; err tells which joint, number or body.
+ * O(n^3) in the number of freedoms; no heap after the first evaluations of one size. Fails:
+ * MT_E_USAGE (a value is not finite, or makes a number of the model invalid, as a mass below
+ * 0), MT_E_ASSEMBLY, MT_E_EQUILIBRIUM, MT_E_DEAD_CENTRE, MT_E_MASSLESS, MT_E_DOMAIN,
+ * MT_E_NO_CONVERGENCE, MT_E_MEMORY; err names the joint, number or body.
  */
 MT_API mt_status mt_mechanism_evaluate(mt_mechanism *mechanism, const double *values,
                                        mt_err *err);
 
-/* Value of a parameter, in its unit, as it was evaluated; NaN where none has this name. */
+/* Value of a parameter at the last evaluation, in its unit; NaN where none has this name. */
 MT_API double mt_mechanism_value(const mt_mechanism *mechanism, const char *parameter);
 
 /*
- * Modes by kind. Vibration modes have an index, from 1, by ascending frequency; where one mode
- * is unstable or undecided none has, and the functions below that take an index answer with
- * nothing. Undecided: rounding hides the sign of the mode's stiffness while springs do move in
- * it, as at a buckling load.
+ * Numbers of modes by kind. Vibration modes have an index, from 1, by ascending frequency.
+ * Where one mode is unstable or undecided, no mode has an index, and functions that take one
+ * answer as for no such mode. Undecided: springs deform in the mode, but the sign of its
+ * stiffness is within rounding, as at a buckling load.
  */
 MT_API int mt_mechanism_vibration_modes(const mt_mechanism *mechanism);
 MT_API int mt_mechanism_rigid_body_modes(const mt_mechanism *mechanism);
 MT_API int mt_mechanism_unstable_modes(const mt_mechanism *mechanism);
 MT_API int mt_mechanism_undecided_modes(const mt_mechanism *mechanism);
-/* Frequency of vibration mode `mode`, and a bound of what rounding may have made of it [Hz];
- * NaN where there is no such mode. */
+/* Frequency of vibration mode `mode`, and a bound of its rounding error [Hz]; NaN where there
+ * is no such mode. */
 MT_API double mt_mechanism_hz(const mt_mechanism *mechanism, int mode);
 MT_API double mt_mechanism_error_hz(const mt_mechanism *mechanism, int mode);
-/* How many modes have this frequency: 1 is a simple one. 0 where there is no such mode. */
+/* Number of modes of the same frequency, 1 for a simple one; 0 where there is no such mode. */
 MT_API int mt_mechanism_multiplicity(const mt_mechanism *mechanism, int mode);
 
-/* Channels, the directions of all sensors of the configuration: how many, and the name of each,
- * "sensor.direction", from 0 (NULL beyond the last; lives as long as the mechanism). */
+/* Channels, the directions of all sensors of the configuration: their number, and the name of
+ * each from 0, "sensor.direction" (NULL beyond the last; lives as long as the mechanism). */
 MT_API int mt_mechanism_channels(const mt_mechanism *mechanism);
 MT_API const char *mt_mechanism_channel(const mt_mechanism *mechanism, int channel);
 /**
  * Shape of a vibration mode at the channels.
  * @param[out] shape [channels] mass-normalised: a length [m/sqrt(kg)] or an angle
  *   [rad/sqrt(kg)]; its sign is arbitrary, but the same for the same values. NULL without
- *   channels Fails: MT_E_USAGE (no such mode), MT_E_MEMORY.
+ *   channels
+ * Fails: MT_E_USAGE (no such mode), MT_E_MEMORY.
  */
 MT_API mt_status mt_mechanism_shape(mt_mechanism *mechanism, int mode, double *shape,
                                     mt_err *err);
@@ -92,31 +93,30 @@ MT_API mt_status mt_mechanism_shape(mt_mechanism *mechanism, int mode, double *s
  * Modal assurance criterion of the shapes of two mechanisms, which may be of different models,
  * at the channels whose names both have:
  *     mac_ij = (a_i . b_j)^2 / ((a_i . a_i)(b_j . b_j)), in [0, 1].
- * Where the channels are displacements and rotations together, a rotation counts as its arc at
- * the length of a's model.
- * @param[in]  modes_a, modes_b  how many vibration modes, the first ones
- * @param[out] mac  modes_a x modes_b, column-major; NaN where a shape vanishes at all channels
- *   a and b may be the same. Source: Ewins, Modal Testing, 2000, section 5.
- *   Fails: MT_E_USAGE (fewer modes than that, no channel in common), MT_E_MEMORY.
+ * Where channels mix displacements and rotations, a rotation counts as its arc at the length of
+ * a's model.
+ * @param[in]  modes_a, modes_b numbers of vibration modes, from the first
+ * @param[out] mac modes_a x modes_b, column-major; NaN where a shape is 0 at all channels
+ * a and b may be the same. Source: Ewins, Modal Testing, 2000, section 5. Fails: MT_E_USAGE
+ * (fewer modes, no channel in common), MT_E_MEMORY.
  */
 MT_API mt_status mt_mechanism_mac(mt_mechanism *a, int modes_a, mt_mechanism *b, int modes_b,
                                   double *mac, mt_err *err);
 /**
  * Exact derivatives of the first vibration modes with respect to all inputs.
- * @param[in]  modes  how many
- * @param[out] hz_per_unit  modes x n_inputs, column-major [Hz per unit of the input]. Repeated
- *   modes have no derivative each, but along the directions into which an input splits them:
- *   these values, ascending. NaN where there is none: at 0 Hz, and where joints that are
- *   redundant at this value only block the motion, or come apart, at any other. NULL without
- *   inputs
- * O(n^3 + n^2 modes n_inputs); the first call evaluates once more, later evaluations are ready
- * for it. Fails: MT_E_USAGE (fewer modes than that), and as mt_mechanism_evaluate.
+ * @param[in]  modes number of modes
+ * @param[out] hz_per_unit modes x n_inputs, column-major [Hz per unit of the input]. Repeated
+ *   modes get the derivatives along the directions into which an input splits them, ascending.
+ *   NaN where none exists: at 0 Hz, and where joints that are redundant at this value only
+ *   block the motion, or separate, at any other. NULL without inputs
+ * O(n^3 + n^2 modes n_inputs); the first call evaluates once more, later evaluations prepare
+ * it. Fails: MT_E_USAGE (fewer modes), and as mt_mechanism_evaluate.
  */
 MT_API mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes,
                                             double *hz_per_unit, mt_err *err);
 
 /*
- * What a vibration is caused by and seen in, by name, as `modetune response` takes them:
+ * Ports: names of inputs and outputs of a vibration, as of `modetune response`:
  *   inputs   "grip.x", force (moment) along a direction of a sensor [N, N m]; "base.x",
  *            acceleration of the ground along an axis [m/s^2], "base.x:velocity",
  *            "base.x:displacement"
@@ -139,57 +139,57 @@ typedef struct mt_ports {
  * input Re(u e^{i w t}) the output is Re(H u e^{i w t}).
  * @param[in]  n      frequencies, hz[n] > 0
  * @param[out] re, im outputs x inputs x n, column-major, H [unit of the output per unit of the
- *   input]; NaN at the resonance of a mode that nothing damps
- * @param[out] error  the same shape: |error of H| that rounding may have made, to first order;
- *   may be NULL
- * By modes, exact since all of them are used. O(n^3 + frequencies), allocates. Fails:
- * MT_E_USAGE (a name that there is not, a frequency that is not above 0, no evaluation that
- * succeeded, the force of a joint that is redundant with others), MT_E_EQUILIBRIUM (a mode is
- * unstable or undecided, or grows by itself), MT_E_NO_CONVERGENCE, MT_E_MEMORY.
+ *   input]; NaN at the resonance of an undamped mode
+ * @param[out] error the same shape: bound of |error of H| by rounding, to first order; may be
+ *   NULL
+ * By modal superposition of all modes, hence exact. O(n^3 + frequencies), allocates. Fails:
+ * MT_E_USAGE (an unknown name, a frequency not above 0, no successful evaluation, the force of
+ * a joint that is redundant with others), MT_E_EQUILIBRIUM (a mode is unstable, undecided or
+ * negatively damped), MT_E_NO_CONVERGENCE, MT_E_MEMORY.
  */
 MT_API mt_status mt_mechanism_response(mt_mechanism *mechanism, const mt_ports *ports, int n,
                                        const double *hz, double *re, double *im, double *error,
                                        mt_err *err);
 /**
  * Exact derivatives of the responses at one frequency with respect to all inputs of the
- * mechanism (the parameters that it was made with).
+ * mechanism (parameters).
  * @param[out] re, im outputs x inputs x parameters, column-major [unit of H per unit of the
- *   parameter]; NaN where there is none, as of mt_mechanism_sensitivities and
+ *   parameter]; NaN where none exists, as of mt_mechanism_sensitivities and
  *   mt_mechanism_response; NULL without parameters
  * Fails also: MT_E_USAGE (the force of a joint that loads stress).
  */
 MT_API mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *ports,
                                               double hz, double *re, double *im, mt_err *err);
 
-/* What a profile does to one output. */
+/* The vibration of one output under a profile. */
 typedef enum mt_vibration_end {
     MT_VIBRATION_FINITE,
-    MT_VIBRATION_INFINITE, /* a mode that nothing damps lies where the profile acts */
-    MT_VIBRATION_UNSTABLE  /* a mode grows by itself */
+    MT_VIBRATION_INFINITE, /* an undamped mode lies within the profile */
+    MT_VIBRATION_UNSTABLE  /* a mode grows without excitation */
 } mt_vibration_end;
 typedef struct mt_vibration_answer {
-    mt_vibration_end end; /* numbers that it takes away are NaN */
+    mt_vibration_end end; /* numbers without a finite value are NaN */
     double rms;           /* under the random parts together [unit of the output] */
-    /* |error of rms| is at most this, the rounding of the poles to first order; an
-     * estimate where not proven */
+    /* bound of |error of rms|, with the rounding of the poles to first order; an estimate where
+     * not proven */
     double rms_error;
-    double tones; /* the largest amplitudes under the tones, by the profile's rule */
-    double peak;  /* the profile's sigma times rms, and tones */
+    double tones; /* the largest amplitudes under the tones, combined by the profile's rule */
+    double peak;  /* the profile's sigma times rms, plus tones */
     int proven;   /* 1: bounds are proven; 0: by quadrature (see below) */
 } mt_vibration_answer;
 
 /**
- * The evaluated mechanism under a profile: the ground accelerates as it says, and each output
- * answers, about the equilibrium and with all damping.
+ * The vibration of each output of the evaluated mechanism whose ground accelerates as a profile
+ * says, about the equilibrium and with all damping.
  * @param[in]  ports  inputs: accelerations of the ground, each on its own; none: that along the
  *   profile's axis. Outputs as of mt_mechanism_response; none: the accelerations at all
  *   channels. NULL: none of either
- * @param[in]  room     answers that there is room for
+ * @param[in]  room capacity of answers
  * @param[out] answers  outputs x inputs, column-major
  * By the sum over the poles of a response, in closed form or over panels as narrow as the
- * resonances; where there is no such sum (critical damping, a displacement that nothing
- * springs) by quadrature, with errors that are estimated. Allocates. Fails: MT_E_USAGE (less
- * room, a profile without an axis and no input, an input that is no acceleration of the ground,
+ * resonances; where there is no such sum (critical damping, a displacement without a restoring
+ * spring) by quadrature, with estimated errors. Allocates. Fails: MT_E_USAGE (too little room,
+ * a profile without an axis and no input, an input that is not an acceleration of the ground,
  * and as mt_mechanism_response), MT_E_EQUILIBRIUM, MT_E_NO_CONVERGENCE, MT_E_MEMORY.
  */
 MT_API mt_status mt_mechanism_vibration(mt_mechanism *mechanism, const mt_ports *ports,

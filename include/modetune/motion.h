@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Motions of a mechanism in time, however large: its equations of motion integrated, from where
- * it is let go, under what pushes it.
+ * Motions of a mechanism in time, at any amplitude: its equations of motion integrated from a
+ * start at rest or with given rates, under forces, motions of the ground or a profile.
  */
 #ifndef MODETUNE_MOTION_H
 #define MODETUNE_MOTION_H
@@ -17,16 +17,16 @@
 extern "C" {
 #endif
 
-/* A joint (or a link's hinge) and where its coordinate is from the reference position [m, rad],
- * or how fast it is [m/s, rad/s]. */
+/* A joint (or a link's hinge) with its coordinate relative to the reference position [m, rad],
+ * or its rate [m/s, rad/s]. */
 typedef struct mt_motion_joint {
     const char *joint;
     double value;
 } mt_motion_joint;
 
-/* amplitude sin(2 pi hz t + phase) at a port: a force (moment) along a direction of a sensor,
- * "grip.x" [N, N m], or the acceleration of the ground, "base.x" [m/s^2] ("base.x:velocity",
- * "base.x:displacement"). */
+/* A sine amplitude sin(2 pi hz t + phase) at a port: a force (moment) along a direction of a
+ * sensor, "grip.x" [N, N m], or the acceleration of the ground, "base.x" [m/s^2]
+ * ("base.x:velocity", "base.x:displacement"). */
 typedef struct mt_motion_sine {
     const char *port;
     double amplitude;
@@ -38,45 +38,44 @@ typedef struct mt_motion_options {
     size_t size;       /* sizeof(mt_motion_options) */
     double duration_s; /* above 0 */
     double sample_s;   /* above 0: values at 0, sample_s, ... and at the end */
-    double tolerance;  /* largest error of a step, as a part of the motion so far; 0: 1e-11 */
-    int n_starts;      /* joints that are moved before it is let go, the rest following with */
-    int n_rates;       /* the least motion; joints that have a velocity, the rest with the */
-    int n_sines;       /* least kinetic energy; what pushes */
-    int seed;          /* of the profile's random parts, at least 0 */
+    double tolerance;  /* largest error of a step relative to the motion so far; 0: 1e-11 */
+    int n_starts;      /* joints moved before the start, the others follow with */
+    int n_rates;       /* the least motion; joints with a rate, the others take */
+    int n_sines;       /* the least kinetic energy; sines that excite */
+    int seed;          /* seed of the profile's random parts, at least 0 */
     const mt_motion_joint *starts; /* [n_starts] */
     const mt_motion_joint *rates;  /* [n_rates] */
     const mt_motion_sine *sines;   /* [n_sines] */
-    /* NULL, or what the ground accelerates like: one realisation of the random parts, tones
-     * going through their ranges once */
+    /* NULL, or the profile of the ground: one realisation of the random parts, tones sweeping
+     * their ranges once */
     const mt_vibration *vibration;
     const char *along; /* "base.x"; NULL: the profile's axis */
 } mt_motion_options;
 
-/* What of a motion is told. */
+/* Summary of a motion. */
 typedef struct mt_motion_told {
-    int samples;           /* values there are for each output */
-    double energy_scale_j; /* largest kinetic energy, or change of the potential one */
-    double energy_error_j; /* largest kinetic + potential - work - that of the start */
-    double drift_m;        /* largest drift off a joint in one step, before it was taken back */
+    int samples;           /* number of values per output */
+    double energy_scale_j; /* largest kinetic energy or change of potential energy */
+    double energy_error_j; /* largest |kinetic + potential - work - initial energy| */
+    double drift_m;        /* largest drift off a joint in one step, before projection */
     long steps;
 } mt_motion_told;
 
 /**
- * From rest in its equilibrium, unless starts and rates say otherwise.
+ * The motion from rest at the equilibrium, or from `starts` and `rates`.
  * @param[in]  outputs  [n_outputs] "grip.x", a sensor's displacement from the rest position,
  *   "grip.x:velocity" (both against the ground), "grip.x:acceleration" (in space), or a joint's
  *   coordinate ("pivot", "pivot:velocity", "pivot:acceleration")
- * @param[in]  room    values that there is room for, duration_s / sample_s + 2 for each output
- *   are enough
+ * @param[in]  room capacity of values; duration_s / sample_s + 2 per output are enough
  * @param[out] values  outputs x samples, column-major
  * @param[out] told    may be NULL
- * The mechanism is as its last evaluation left it, before and after. Time follows its fastest
- * vibration. Allocates. Fails: MT_E_USAGE (a number or a name, less room, too many samples, a
- * profile without an axis and none given), MT_E_INPUT (damping that is no force in time, rates
- * that the joints cannot have at once), MT_E_ASSEMBLY (starts that are not reached),
- * MT_E_SINGULAR (a direction without mass is pushed), MT_E_DEAD_CENTRE, MT_E_NO_CONVERGENCE,
- * MT_E_DOMAIN, MT_E_MEMORY (from GSL only in a program that has called
- * gsl_set_error_handler_off: else GSL ends it).
+ * The mechanism is unchanged. The computing time grows with its highest frequency. Allocates.
+ * Fails: MT_E_USAGE (a number or a name, too little room, too many samples, a profile without
+ * an axis and no `along`), MT_E_INPUT (damping without a force in time, rates that the joints
+ * cannot have at once), MT_E_ASSEMBLY (starts that are not reached), MT_E_SINGULAR (a force
+ * along a direction without mass), MT_E_DEAD_CENTRE, MT_E_NO_CONVERGENCE, MT_E_DOMAIN,
+ * MT_E_MEMORY (within GSL only in a program that has called gsl_set_error_handler_off: else GSL
+ * ends the process).
  */
 MT_API mt_status mt_mechanism_motion(mt_mechanism *mechanism, const mt_motion_options *options,
                                      int n_outputs, const char *const *outputs, int room,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Profiles of vibration, as files have them: random parts and tones of the acceleration of a
- * base. Immutable; one may be shared by threads. */
+/* Profiles of vibration from files: random parts and tones of the acceleration of a base.
+ * Immutable; one may be shared by threads. */
 #ifndef MODETUNE_PROFILE_H
 #define MODETUNE_PROFILE_H
 
@@ -18,8 +18,8 @@ typedef struct mt_vibration mt_vibration;
  * Read a profile (format "modetune-profile/1") and the catalogue of aircraft that its rotors
  * are in.
  * @param[in]  path  as of mt_model_read
- * @param[in]  opt   NULL: defaults; its diagnostics tell, among others, what of the profile is
- *   assumed or not confirmed
+ * @param[in]  opt NULL: defaults; its diagnostics include warnings of assumed and unconfirmed
+ *   values
  * @param[out] out   owned by the caller; NULL on failure
  * Fails as mt_model_read.
  */

@@ -12,14 +12,13 @@ extern "C" {
 
 /*
  * Arguments, of all functions of the library. A pointer must not be NULL unless its comment
- * says what NULL means; a number must be what its comment says. A call that is given something
- * else changes nothing, and
+ * says what NULL means; a number must be within the range of its comment. A call with an
+ * invalid argument changes nothing, and
  *   - one that returns a status fails with MT_E_USAGE, err naming the argument;
- *   - one that answers with a text, a number or a count answers as for what is not there: NULL,
- *     NaN, 0.
- * Functions that delete accept NULL, and err may be NULL everywhere. A failure leaves NULL in
- * an out argument that would own something. What no call can check is the caller's promise:
- * that an object is alive (deleted once, not used after), and that an array is as long as said.
+ *   - one that returns a text, a number or a count returns NULL, NaN or 0.
+ * Functions that delete accept NULL, and err may be NULL everywhere. On failure an out argument
+ * that would own an object is NULL. Not checked are the caller's guarantees: an object is alive
+ * (deleted once, not used afterwards), an array has the stated length.
  */
 
 /* One list makes the enum, its names and its texts. A search that ends without meeting its
@@ -45,15 +44,15 @@ extern "C" {
 typedef enum mt_status { MT_STATUS_LIST(MT_STATUS_ENUM) MT_STATUS_COUNT } mt_status;
 #undef MT_STATUS_ENUM
 
-/* What a caller wants of long work that is under way (mt_solve_options). */
+/* The request of a caller to work in progress (mt_solve_options). */
 typedef enum mt_stop_request {
     MT_STOP_REQUEST_NONE,   /* go on */
-    MT_STOP_REQUEST_FINISH, /* end the search, make what was found ready */
-    MT_STOP_REQUEST_END     /* at once, also where what was found is being made ready */
+    MT_STOP_REQUEST_FINISH, /* end the search, prepare the designs found */
+    MT_STOP_REQUEST_END     /* end at once, also while the designs found are being prepared */
 } mt_stop_request;
 
-/* Why he wants it to end, which the answer says. At a time limit the best design that was found
- * is analysed anew, however late. */
+/* The reason of a stop, which the answer states. At a time limit the best design found is still
+ * analysed again, however late. */
 typedef enum mt_stop_reason {
     MT_STOP_REASON_INTERRUPT,
     MT_STOP_REASON_TIME_LIMIT
@@ -61,8 +60,7 @@ typedef enum mt_stop_reason {
 
 enum { MT_ERR_TEXT_SIZE = 1024 };
 
-/* The caller's record of a failure: fixed size, no heap, NULL allowed wherever a `mt_err *` is
- * asked for. */
+/* The caller's record of a failure: fixed size, no heap. Every `mt_err *` may be NULL. */
 typedef struct mt_err {
     mt_status code;
     char text[MT_ERR_TEXT_SIZE];
@@ -81,8 +79,8 @@ MT_API const char *mt_status_name(mt_status code);
 /* Set err (when not NULL) to code and the formatted text; longer text is cut at a character
  * boundary. fmt NULL: the general text of the code. Returns code. */
 MT_API mt_status mt_fail(mt_err *err, mt_status code, const char *fmt, ...) MT_PRINTF(3, 4);
-/* Put "context: " before the text that is already in err (context formatted); nothing where rc
- * is MT_OK, or fmt NULL. Returns rc unchanged. */
+/* Put the formatted context and ": " before the text in err; nothing where rc is MT_OK or fmt
+ * NULL. Returns rc. */
 MT_API mt_status mt_err_in(mt_err *err, mt_status rc, const char *fmt, ...) MT_PRINTF(3, 4);
 
 #ifdef __cplusplus

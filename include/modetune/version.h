@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The version, in the one place that C code reads; the build refuses to differ from it. */
+/* The version, the only place for C code; the build fails where it differs from its own. */
 #ifndef MODETUNE_VERSION_H
 #define MODETUNE_VERSION_H
 

@@ -65,7 +65,7 @@ static mt_status unknown_option(int command, const char *name, size_t length, mt
                    did_you_mean(given, names, n, "--", suggestion));
 }
 
-/* A whole number of at least 1. */
+/* Read a whole number of at least 1. */
 static mt_status read_count(const char *s, const char *option, int most, int *out, mt_err *err)
 {
     char *end = NULL;
@@ -107,7 +107,7 @@ static mt_status read_tolerance(const char *s, const char *option, double *out, 
     return MT_OK;
 }
 
-/* Seconds: more than 0, or 0 where that means something. */
+/* Read seconds: above 0, or 0 where allowed. */
 static mt_status read_seconds(const char *s, const char *option, bool zero, double most,
                               double *out, mt_err *err)
 {
@@ -124,7 +124,7 @@ static mt_status read_seconds(const char *s, const char *option, bool zero, doub
     return MT_OK;
 }
 
-/* As a study's. */
+/* Read a seed, with the range of a study's seed. */
 static mt_status read_seed(const char *s, const char *option, unsigned long *out, mt_err *err)
 {
     char *end = NULL;

@@ -9,8 +9,8 @@
 #include "cli/completion.h"
 
 /*
- * The command line, described once: commands, options and exit statuses in tables (commands.c),
- * from which come the parser, --help, the manual page and "did you mean".
+ * The command line in tables of commands, options and exit statuses (commands.c), which drive
+ * the parser, --help, the manual page and "did you mean".
  */
 typedef enum mt_option_id {
     MT_OPT_CONFIGURATION,
@@ -109,7 +109,7 @@ enum { MT_CMD_NONE = -1, MT_OPT_NONE = -1 };
 
 typedef struct mt_option {
     const char *name;  /* without the dashes */
-    const char *value; /* what --help calls its value; NULL: a switch */
+    const char *value; /* name of its value in --help; NULL: a switch */
     const char *help;
     unsigned commands; /* bit 1 << mt_command_id */
     char letter;       /* '\0': long form only */
@@ -133,14 +133,14 @@ enum { MT_EXITS = 6 };
 
 extern const mt_option mt_options[MT_OPT_IDS];
 extern const mt_command mt_commands[MT_CMD_IDS];
-/* The command of that name; MT_CMD_NONE: there is none. */
+/* The command of that name; MT_CMD_NONE: none. */
 int mt_command_named(const char *name);
 extern const mt_exit mt_exits[MT_EXITS];
 
-/* Whether the command takes the option, or the program where it is MT_CMD_NONE. */
+/* True where the command takes the option; MT_CMD_NONE: the program. */
 bool mt_option_is_of(int option, int command);
 
-/* Which of them a command takes says mt_format_of. */
+/* The formats of --format; mt_format_of lists those of a command. */
 typedef enum mt_format {
     MT_FORMAT_TEXT,
     MT_FORMAT_JSON,
@@ -149,10 +149,11 @@ typedef enum mt_format {
     MT_FORMAT_SARIF
 } mt_format;
 enum { MT_FORMATS = MT_FORMAT_SARIF + 1 };
-/* The word of --format for it; NULL where the command does not take it. */
+/* The word of --format for this format; NULL where the command does not take it. */
 const char *mt_format_of(int format, int command);
 
-/* The first: a line on a terminal, else now and then a plain one. */
+/* The forms of --progress. AUTO: a line that is rewritten on a terminal, else a plain line now
+ * and then. */
 typedef enum mt_progress_form {
     MT_PROGRESS_AUTO,
     MT_PROGRESS_LINE,
@@ -160,13 +161,13 @@ typedef enum mt_progress_form {
     MT_PROGRESS_NONE
 } mt_progress_form;
 
-/* An option that may be repeated, as it was given. */
+/* One occurrence of an option that may be repeated. */
 typedef struct mt_repeat {
     mt_option_id option;
     const char *value;
 } mt_repeat;
 
-/* All values of one. */
+/* All values of one option. */
 typedef struct mt_values {
     int n;
     const char **value; /* [n] in order */
@@ -177,45 +178,46 @@ typedef struct mt_args {
     mt_format format;
     mt_progress_form progress;
     bool no_report; /* --report none */
-    mt_shell shell; /* --completion; read it where it is given */
+    mt_shell shell; /* --completion; valid where given */
     bool given[MT_OPT_IDS];
-    const char *value[MT_OPT_IDS]; /* of the last one */
+    const char *value[MT_OPT_IDS]; /* value of the last occurrence */
     int count;                     /* --count, 0: not given; INT_MAX: all */
     int rank;                      /* --rank, default 1 */
     int mode;                      /* --mode, 0: not given */
     int starts;                    /* --starts, 0: not given */
     int max_evaluations;           /* --max-evaluations, 0: not given */
     int max_modal_solutions;       /* --max-modal-solutions, 0: not given */
-    int threads;         /* --threads, at most MT_WORKERS_MOST; else of mt_limits_set */
-    double rel_tol;      /* --rel-tol, default 0 */
-    double abs_tol;      /* --abs-tol, default 0 */
-    double time_s;       /* --time, 0: not given */
-    double duration_s;   /* --duration, 0: not given */
-    double dt_out_s;     /* --dt-out, 0: not given */
-    double tolerance;    /* --tolerance, 0: not given */
-    double proof_s;      /* --proof; read it where it is given */
-    unsigned long seed;  /* --seed; read it where it is given */
+    int threads;       /* --threads, at most MT_WORKERS_MOST; without it set by mt_limits_set */
+    double rel_tol;    /* --rel-tol, default 0 */
+    double abs_tol;    /* --abs-tol, default 0 */
+    double time_s;     /* --time, 0: not given */
+    double duration_s; /* --duration, 0: not given */
+    double dt_out_s;   /* --dt-out, 0: not given */
+    double tolerance;  /* --tolerance, 0: not given */
+    double proof_s;    /* --proof; valid where given */
+    unsigned long seed;  /* --seed; valid where given */
     uint64_t max_memory; /* --max-memory in bytes, 0: not given */
     int points;          /* --points, 0: not given */
     int keep;            /* --modes N, 0: not given */
     int n_repeats;
-    mt_repeat *repeats; /* all that may be repeated, in order; [argc] */
+    mt_repeat *repeats; /* occurrences of all options that may be repeated, in order; [argc] */
     mt_values all[MT_OPT_IDS];
-    const char **pool; /* of their values; [argc] */
-    int part;          /* --shard PART/PARTS; 0: all of it */
+    const char **pool; /* storage of `all`; [argc] */
+    int part;          /* --shard PART/PARTS; 0: the whole */
     int parts;
-    int n_journals; /* of merge */
+    int n_journals; /* number of journals of merge */
     const char *const *journals;
     int n_operands;
     const char **operands; /* [argc] */
-    char *result_path;     /* heap: the first operand, where that is the folder of a result */
+    /* heap: file of the first operand, where that is the folder of a result */
+    char *result_path;
 } mt_args;
 
 /**
  * Read argv[1..argc-1]. Options may stand anywhere after the command; "--" ends them;
  * "--name=value", "-oDIR" are fine. Fails: MT_E_USAGE (err: the first fault, with "did you
- * mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and --version win over
- * missing operands.
+ * mean"), MT_E_MEMORY. mt_args_free in any case. --help, --manual and --version take precedence
+ * over missing operands.
  */
 mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err);
 void mt_args_free(mt_args *args);

@@ -27,8 +27,8 @@ static int by_place(const void *a, const void *b)
     return (x->begin > y->begin) - (x->begin < y->begin);
 }
 
-/* What the model gives the number of this parameter, whose value has this unit of SI, in; NULL:
- * SI, or it says nothing. */
+/* The unit of this parameter's number in the model, its value having this SI unit; NULL: SI, or
+ * none given. */
 static const mt_unit *unit_of(const mt_json *doc, mt_addr parameter, const char *si)
 {
     const mt_addr unit = mt_json_member(doc, parameter, "unit");
@@ -37,7 +37,7 @@ static const mt_unit *unit_of(const mt_json *doc, mt_addr parameter, const char 
 }
 
 /* The text of a parameter's value in the model, and the number for it. The result is a file,
- * too: it may name what is not there (that it names nothing twice its reader has seen). */
+ * too, and may name a missing parameter (its reader has refused duplicates). */
 static mt_status find_place(const mt_json *doc, const char *path, const char *name,
                             const char *si, double value, replacement *out, mt_err *err)
 {
@@ -56,7 +56,7 @@ static mt_status find_place(const mt_json *doc, const char *path, const char *na
                : mt_fail(err, MT_E_INPUT, "the result recommends no value of \"%s\"", name);
 }
 
-/* Where what is recommended goes, and what the study was asked with. */
+/* Find the places of the recommended values and of the study's overrides. */
 static mt_status find_places(const mt_recommendation *r, const mt_result_run *run,
                              const mt_json *doc, const char *path, replacement *list, int *n,
                              mt_err *err)

@@ -33,7 +33,8 @@ static const char *const kinds[KIND_COUNT] = {"model", "study", "result", "aircr
 /* A text that lists them. */
 enum { ALL_FORMATS = 160 };
 
-/* What the document says it is; KIND_COUNT with a diagnostic where that cannot be told. */
+/* The kind of the document by its format; KIND_COUNT with a diagnostic where it is not
+ * known. */
 static int kind_of(mt_json *doc)
 {
     mt_diags *const diags = mt_json_diags(doc);
@@ -89,7 +90,7 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
     return rc;
 }
 
-/* Every configuration as it stands, as long as that does not take too long. */
+/* Analyse every configuration as it is, within a time limit. */
 static mt_status examine_model(const mt_model *model, mt_warning_list *found, mt_err *err)
 {
     double work = 0.0;
@@ -114,8 +115,8 @@ static mt_status examine_model(const mt_model *model, mt_warning_list *found, mt
     return MT_OK;
 }
 
-/* What the analysis says besides the diagnostics of loading, which hold the doubts about single
- * numbers already. */
+/* Add the messages of the analysis; the diagnostics of loading already hold warnings about
+ * single numbers. */
 static void add_messages(const mt_warning_list *found, const char *path,
                          mt_diagnostics *messages)
 {
@@ -150,7 +151,7 @@ typedef struct subject {
 /* More goals or variables are not compiled by who only looks: each costs some derivatives. */
 enum { MOST_TRIED = 200 };
 
-/* What reads well is held against mechanics: each configuration, and each goal of a study. */
+/* Check a valid file against mechanics: each configuration, and each goal of a study. */
 static mt_status examine(const subject *s, const char *path, mt_diagnostics *messages,
                          mt_warning_list *found, mt_err *err)
 {
@@ -171,8 +172,8 @@ static mt_status examine(const subject *s, const char *path, mt_diagnostics *mes
     return rc;
 }
 
-/* The document becomes what it is, or goes: others read their files themselves, with those that
- * they name. */
+/* Load the file by its kind; deletes the document. A model is made from the document; other
+ * kinds read their files again, with those that they name. */
 static mt_status load(int kind, mt_json *doc, const char *path, const mt_io_options *opt,
                       subject *s, mt_diagnostics *messages, mt_err *err)
 {
@@ -245,7 +246,7 @@ static void put_problem(output *to, const mt_file_problem *p)
     mt_json_close(w);
 }
 
-/* What was told, each with its place; or the failure, where that is all there is. */
+/* Write the messages, each with its place, or the failure where there are none. */
 static void put_problems(output *to, const char *path, const mt_diagnostics *messages,
                          const char *failure)
 {
@@ -266,7 +267,7 @@ static void put_problems(output *to, const char *path, const mt_diagnostics *mes
     to->left_out += mt_diagnostics_left_out(messages);
 }
 
-/* What is said of one file. */
+/* Write the messages of one file. */
 static void put_file(output *to, const char *path, const char *kind,
                      const mt_diagnostics *messages, const mt_warning_list *found,
                      const char *failure)
@@ -302,8 +303,8 @@ static void put_file(output *to, const char *path, const char *kind,
     }
 }
 
-/* True where both say the same, at the same place of the same file. The paths lead there in
- * their own ways. */
+/* True where both messages are the same at the same place of the same file, given by any
+ * path. */
 static bool is_same(const mt_diagnostics *a, int i, const mt_diagnostics *b, int k)
 {
     if (mt_diagnostics_line(a, i) != mt_diagnostics_line(b, k) ||
@@ -329,8 +330,8 @@ static bool is_told(const mt_diagnostics *messages, int i, const mt_diagnostics 
     return false;
 }
 
-/* A study's model may be checked itself, and several studies may have the same: what was told
- * of it is not told again. Those that are new, also behind what was told. */
+/* Leave out messages given already: a study's model may be checked itself, and several studies
+ * may have the same model. The new ones are kept and appended to those given. */
 static void leave_told(const mt_diagnostics *messages, const char *path, told_before *told,
                        mt_diagnostics *fresh)
 {

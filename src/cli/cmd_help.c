@@ -17,7 +17,7 @@ static rank rank_of(const mt_shipped *document)
                                                              : WRITTEN;
 }
 
-/* The text has the same item already, byte by byte. */
+/* True where the text already has the same item, byte by byte. */
 static bool has(const mt_text *out, const mt_passage *p)
 {
     const size_t length = (size_t)(p->end - p->begin) - 1; /* the last one has no line feed */
@@ -53,7 +53,7 @@ static void trim(mt_text *out)
     }
 }
 
-/* A passage, behind the name of its document where that is another one than before. */
+/* Show a passage, after the name of its document where that differs from the one before. */
 static void show(const mt_shipped *document, const mt_passage *p, const mt_shipped **last,
                  mt_text *out)
 {
@@ -182,7 +182,7 @@ static void show_mentions(const mt_shipped *document, const char *topic,
     }
 }
 
-/* All that the documents say of the topic in one way. */
+/* Show all passages of the documents about the topic, by one kind of match. */
 static void show_all(const char *topic, way by, const mt_shipped **last, mt_text *out)
 {
     int n = 0;
@@ -276,7 +276,7 @@ static void list_topics(mt_text *out)
     }
 }
 
-/* Names that the topic may have been meant for: near ones, then those that contain it. */
+/* Add names that the topic may mean: near ones, then those that contain it. */
 static void add_near(const char *topic, mt_text *out)
 {
     enum { MOST = 5, LONG_ENOUGH = 3 };

@@ -118,7 +118,7 @@ static void text_ratios(mt_text *out, int *n, const view *v)
     put_part(out, n, "ratio ", number_of(v, d->ratio), listed ? " of other modes" : "");
 }
 
-/* Nothing where nothing damps. */
+/* Write the line "damping"; nothing without damping. */
 static void text_damping(mt_text *out, const view *v)
 {
     const mt_damping_def *const d = &v->a->sys->damping;
@@ -186,7 +186,8 @@ static const char *point_text(const double *x, int n, char *text, size_t size)
     return text;
 }
 
-/* Where another configuration has said the same (*last, which is taken over) nothing is. */
+/* Write the conventions of a configuration; nothing where they equal those of the one before
+ * (*last, which is taken over). */
 static void write_conventions(mt_text *out, const view *v, mt_text *last)
 {
     mt_text text = {.s = NULL};

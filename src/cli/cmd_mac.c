@@ -320,7 +320,7 @@ static void text_matrix(const comparison *c, mt_text *out)
     mt_table_free(&t);
 }
 
-/* Which of its modes take part. */
+/* Write which modes of one side are compared. */
 static void write_side(const side *x, mt_text *out)
 {
     const int all = mt_modal_vibrations(&x->a->modes);

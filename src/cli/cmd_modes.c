@@ -85,7 +85,7 @@ static int n_redundant(const mt_lowest *l)
                : 0;
 }
 
-/* Where it was linearised; NULL: as drawn. */
+/* The position of linearisation; NULL: the reference position. */
 static const mt_state *position_of(const view *v)
 {
     if (v->a != NULL) {
@@ -153,7 +153,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     return MT_OK;
 }
 
-/* Whether the error of this mode's frequency is worth a word. */
+/* True where the error of this mode's frequency is large enough to be shown. */
 static bool is_rough(const mt_modes *m, int i)
 {
     return m->kind[i] == MT_MODE_FLEXIBLE &&
@@ -228,8 +228,8 @@ static void fill_table(mt_table *t, const view *v, bool csv)
     }
 }
 
-/* Rows of channels, columns of modes: a mechanism has more sensors than a page has room
- * beside. */
+/* Print shapes with rows of channels and columns of modes, as a mechanism has more sensors than
+ * fit side by side. */
 static void print_shapes(const view *v, mt_text *out)
 {
     mt_table t = mt_table_default();
@@ -253,7 +253,7 @@ static void print_shapes(const view *v, mt_text *out)
     mt_table_free(&t);
 }
 
-/* Says so where modes are left out that nobody has declined. */
+/* Note where modes are left out that were not declined by an option. */
 static void write_others(const view *v, mt_text *out)
 {
     const int all = mt_modal_vibrations(v->m);
@@ -358,7 +358,7 @@ static mt_status csv_view(sink *to, const view *v)
     return MT_OK;
 }
 
-/* The lowest modes alone where they are what is asked for, and where there is a short way. */
+/* Find the lowest modes only, where these are requested and there is a fast method. */
 static mt_status look(const mt_args *args, view *v, mt_err *err)
 {
     const mt_loaded_model *const s = v->s;
@@ -427,7 +427,7 @@ done:
     return rc;
 }
 
-/* A configuration that cannot be analysed does not hide the others. */
+/* Do each configuration; a failure of one does not hide the others. */
 static int each(sink *to, const mt_loaded_model *s)
 {
     int code = MT_EXIT_DONE;

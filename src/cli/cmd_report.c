@@ -9,7 +9,7 @@
 #include "library/scene_designs.h"
 
 /* The scene of the result's designs, where the model that was solved is found. Fails:
- * MT_E_MEMORY, MT_E_SYSTEM (what may be it cannot be read: the page would be another). */
+ * MT_E_MEMORY, MT_E_SYSTEM (a candidate cannot be read: the page would differ). */
 static mt_status find_scene(const mt_args *args, const mt_result *result, mt_text *scene,
                             mt_err *err)
 {

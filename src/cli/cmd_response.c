@@ -122,8 +122,8 @@ static mt_status inputs_with(const job *j, int parameter, mt_arena *mem, int *n,
     return MT_OK;
 }
 
-/* At a maximum or minimum over frequency, how |H| there moves is how |H| moves at the same
- * frequency: to[n_extremes]. */
+/* Derivatives of |H| at its extremes by an input, equal to those at fixed frequency:
+ * to[n_extremes]. */
 static mt_status slopes_with(job *j, mt_analysis *a, mt_response *r, int slot, double value,
                              double *to, mt_err *err)
 {
@@ -191,7 +191,7 @@ static mt_status sensitivities(job *j, mt_err *err)
     return MT_OK;
 }
 
-/* That there is no sum of poles is part of an answer. */
+/* Find the sums of poles; that there is none is part of the answer. */
 static mt_status poles(job *j, mt_err *err)
 {
     if (!j->args->given[MT_OPT_POLES]) {
@@ -210,7 +210,7 @@ static mt_status poles(job *j, mt_err *err)
     return mt_arena_check(&j->r.mem, err);
 }
 
-/* What the profile does, where one is given. */
+/* The vibration under the profile, where one is given. */
 static mt_status shake(job *j, mt_err *err)
 {
     if (j->profile != NULL) {
@@ -240,7 +240,7 @@ static mt_status open_response(job *j, const char *why, mt_err *err)
     return choose_range(j, err);
 }
 
-/* Whether the lowest modes may do. */
+/* True where the lowest modes may suffice. */
 static bool may_be_large(const job *j, char *why)
 {
     static const int WHOLE[] = {MT_OPT_DIRECT, MT_OPT_POLES, MT_OPT_SENSITIVITY, MT_OPT_KEEP};
@@ -253,8 +253,8 @@ static bool may_be_large(const job *j, char *why)
     return mt_lowest_bodies(j->s->model, j->c) >= MT_LOWEST_BODIES;
 }
 
-/* By the lowest `count` modes; *enough: they go so far above the range that what is left out is
- * known to hardly more than rounding. */
+/* The response by the lowest `count` modes; *enough: true where they reach so far above the
+ * range that the omitted ones are within little more than rounding. */
 static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why, mt_err *err)
 {
     const mt_lowest_want want = {.count = count, .shapes = true, .tree = true};
@@ -384,7 +384,7 @@ static int one(sink *to, mt_loaded_model *s, int c)
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
 }
 
-/* The profile of --vibration; else there has to be an input. */
+/* Load the profile of --vibration; without one an input is required. */
 static int load(sink *to)
 {
     const char *const name = to->args->value[MT_OPT_VIBRATION];

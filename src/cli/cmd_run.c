@@ -37,8 +37,8 @@ typedef struct job {
     bool stopped;        /* by a signal or the end of its time */
 } job;
 
-/* A design is safe before a long proof begins. What cannot be written is said, and again where
- * the whole answer cannot be. */
+/* Save the designs before a long proof begins. A failure to write is reported, and again for
+ * the whole answer. */
 static mt_status keep(void *context, mt_result *so_far, mt_err *err)
 {
     const job *const j = context;
@@ -50,8 +50,8 @@ static mt_status keep(void *context, mt_result *so_far, mt_err *err)
     return MT_OK;
 }
 
-/* What the original design took tells what the best one will take that is found: as long, and
- * again for its slopes and its reasons. */
+/* Reserve time before the time limit: the best design will take as long as the original one,
+ * and again for its slopes and its reasons. */
 static void leave_time(void *context, const char *text)
 {
     enum { TIMES = 4 };
@@ -68,13 +68,13 @@ static bool is_cut(const mt_result *result)
     return result->status == MT_RESULT_INTERRUPTED || result->status == MT_RESULT_TIME_LIMIT;
 }
 
-/* The time ended it, and no signal. */
+/* True where the time limit ended the search, not a signal. */
 static bool is_late(const job *j)
 {
     return j->stopped && !mt_terminal_is_stopped();
 }
 
-/* Load and solve; everything that went wrong is said. */
+/* Load and solve; all failures are reported. */
 static int answer(job *j)
 {
     const mt_args *const args = j->args;
@@ -140,8 +140,8 @@ static int answer(job *j)
     return late && ended == MT_EXIT_INTERRUPTED ? MT_EXIT_GOALS : ended;
 }
 
-/* True where there is a design that was analysed anew and meets all goals. A fit that was cut
- * has not converged, whatever its misfit. */
+/* True where a design was analysed again and meets all goals. A fit that was cut has not
+ * converged, for any misfit. */
 static bool is_met_by_best(const mt_result *r)
 {
     const mt_recommendation *const best = r->recommendations;
@@ -204,8 +204,8 @@ static int run_one(job *j, mt_json_writer *w, mt_text *out)
                          mt_exit_worse(saved, mt_cli_profile_print(j->profile)));
 }
 
-/* Which studies an interrupt leaves out from number `first` on, as an error; heap. NULL: out of
- * memory, which is said. */
+/* The studies from number `first` on that an interrupt leaves out, as an error; heap. NULL: out
+ * of memory, which is reported. */
 static char *words_about(const mt_args *args, int first)
 {
     mt_text t = {.s = NULL};

@@ -12,7 +12,7 @@ static const char *unit_of(const mt_sensitivity_table *v, int k)
     return v->s->model->parameters[v->parameter[k]].unit;
 }
 
-/* What people see its value in; NULL: SI. */
+/* The unit in which its value is shown; NULL: SI. */
 static const mt_unit *shown_in(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].written;
@@ -181,7 +181,7 @@ static void write_text(mt_text *out, const mt_sensitivity_table *v)
     write_notes(out, v, repeated, coordinates, overridden);
 }
 
-/* *wrong: parameters were asked for that there are not. */
+/* One configuration; *wrong: true where unknown parameters were requested. */
 static mt_status one(const mt_args *args, const mt_loaded_model *s, int c, mt_json_writer *w,
                      mt_table *t, mt_text *out, bool *wrong, mt_err *err)
 {

@@ -22,8 +22,8 @@ typedef struct subject {
     mt_scene_query *asks;
 } subject;
 
-/* *is: whether the file says that it is a result. What is wrong with its text is told by who
- * reads it whole. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
+/* *is: true where the file's format is that of a result. Errors in its text are reported by the
+ * full reader. Fails: MT_E_SYSTEM, MT_E_MEMORY. */
 static mt_status is_result(const char *path, bool *is, mt_err *err)
 {
     static const char format[] = "modetune-result/";
@@ -57,7 +57,7 @@ static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
                : MT_OK;
 }
 
-/* Load what the operand names. Returns the exit status, everything said. */
+/* Load the operand. Returns the exit status, with all messages given. */
 static int load(const mt_args *args, subject *o)
 {
     const mt_io_options opt = mt_cli_io(args);
@@ -110,7 +110,7 @@ static int load(const mt_args *args, subject *o)
     return rc == MT_OK ? code : mt_cli_failed(rc, &err);
 }
 
-/* Each reason once, with the first configuration that it stands in. */
+/* Warn with each reason once, with the first configuration that has it. */
 static void warn(const mt_scene *scene, const char *path)
 {
     const mt_scene_view *last = NULL;
@@ -147,8 +147,8 @@ static mt_status page(const mt_scene *scene, const char *title, mt_text *out, mt
     return rc;
 }
 
-/* The last design that is asked for, in the configuration that is: of a result the best
- * recommended one. */
+/* Draw the best recommended design of a result, else the original one, in its first
+ * configuration shown, with the mode of --mode. */
 static mt_status still(const mt_args *args, const mt_scene *scene, mt_text *out, mt_err *err)
 {
     const mt_scene_design *const d = &scene->designs[scene->n_designs > 1 ? 1 : 0];
@@ -166,7 +166,7 @@ static mt_status still(const mt_args *args, const mt_scene *scene, mt_text *out,
     return MT_OK;
 }
 
-/* The file that --output names, whole or not at all. */
+/* Write the file of --output, completely or not at all. */
 static mt_status keep(const char *path, const mt_text *text, mt_err *err)
 {
     const char *const name = mt_text_base_name(path);

@@ -27,7 +27,7 @@ typedef struct job {
     mt_sim_view view;
 } job;
 
-/* The one configuration that is meant. */
+/* Choose the configuration. */
 static mt_status choose(const mt_loaded_model *s, int *c, mt_err *err)
 {
     if (s->n_configurations > 1) {
@@ -68,7 +68,7 @@ static mt_status make(job *j, mt_err *err)
     return mt_linear_update(j->lin, s->at, false, err);
 }
 
-/* Held at one place until the rest is in equilibrium. */
+/* Hold a joint at one position until the rest is in equilibrium. */
 static mt_status start_held(job *j, const mt_sim_joint *at, mt_err *err)
 {
     const mt_loaded_model *const s = j->s;
@@ -91,7 +91,7 @@ static mt_status start_held(job *j, const mt_sim_joint *at, mt_err *err)
     return mt_err_in(err, rc, "--start");
 }
 
-/* Of all channels the one that goes furthest along dq; displacements before rotations. */
+/* The channel of the largest motion along dq; displacements before rotations. */
 static mt_status shape_size(job *j, const double *dq, double *size, mt_err *err)
 {
     mt_motion o;
@@ -204,7 +204,7 @@ static mt_status read_all(job *j, mt_err *err)
     return MT_OK;
 }
 
-/* With the interrupt of the terminal: what there is of the motion is kept. */
+/* Simulate with the interrupt of the terminal: the motion so far is kept. */
 static mt_status move(job *j, mt_err *err)
 {
     mt_interrupt interrupt;

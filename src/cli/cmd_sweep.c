@@ -225,7 +225,8 @@ static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
     return MT_OK;
 }
 
-/* A range beyond a turn is in degrees, or of a motor's shaft: said before its table. */
+/* Warn before the table of a range beyond a turn: it may be in degrees, or of a motor's
+ * shaft. */
 static void warn_range(const job *j)
 {
     static const double ONE_TURN = 6.283185307179586;

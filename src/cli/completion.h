@@ -6,8 +6,8 @@
 
 typedef enum mt_shell { MT_SHELL_BASH, MT_SHELL_ZSH, MT_SHELL_COUNT } mt_shell;
 
-/* A script that completes commands, options, their values and files in that shell, from the
- * tables behind --help. */
+/* A script for this shell that completes commands, options, their values and files, from the
+ * tables of --help. */
 void mt_completion(mt_shell shell, mt_text *out);
 
 #endif

@@ -35,7 +35,7 @@ static int index_of(const mt_damped_modes *d, int i)
     return d->kind[i] == MT_DAMPED_OSCILLATING && mt_damped_indexed(d) ? index : 0;
 }
 
-/* Of an undecided root nothing is known but that it is small. */
+/* A value of a root, or NaN of an undecided one, which is only known to be small. */
 static double known(const mt_damped_modes *d, int i, double x)
 {
     return d->kind[i] == MT_DAMPED_UNDECIDED ? nan("") : x;

@@ -10,7 +10,7 @@
 void mt_damped_columns(mt_table *t, bool with_configuration);
 void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count,
                     const char *configuration);
-/* Table with what is to be said about it. count: oscillating modes to show, 0: all. */
+/* Print the table with its notes. count: oscillating modes to show, 0: all. */
 void mt_damped_print(const mt_damped_modes *d, int count, mt_text *out);
 /* Member "damped_modes". */
 void mt_damped_json(const mt_damped_modes *d, int count, mt_json_writer *w);

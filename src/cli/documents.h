@@ -6,32 +6,33 @@
 
 #include "io/shipped.h"
 
-/* The documents that are part of the program, Markdown, by path; *n their number. */
+/* The Markdown documents built into the program, ordered by path; *n is their number. */
 const mt_shipped *mt_documents_all(int *n);
-/* NULL: there is none. */
+/* The document of that path; NULL: none. */
 const mt_shipped *mt_documents_find(const char *path);
-/* It is a reference that is made from schemas: other pages come before it. */
+/* True where the document is a reference generated from schemas; other documents are listed
+ * first. */
 bool mt_document_is_reference(const mt_shipped *document);
-/* The page of the commands. */
+/* The document of the commands. */
 #define MT_DOCUMENT_COMMANDS "src/cli/README.md"
 
-/* A part of a document: a heading with all below it, or an item of a list or a row of a table
- * that begins with a name in backquotes. Code blocks have none of these. */
+/* A part of a document: a heading with everything below it, or an item of a list or a row of a
+ * table that begins with a name in backquotes. Code blocks have none of these. */
 typedef struct mt_passage {
     int level;         /* of a heading, from 1; 0: an item or a row */
     const char *begin; /* its first line */
-    const char *body;  /* behind the heading's line; else NULL */
-    const char *end;   /* behind its last line */
+    const char *body;  /* after the heading's line; NULL for an item or a row */
+    const char *end;   /* after its last line */
 } mt_passage;
 
-/* Make *p the next heading, item or row of the text; with begin NULL the first one. false:
- * there is none. Time in proportion to what is walked over, and to the section. */
+/* Move *p to the next heading, item or row of the text, or, with begin NULL, to the first one.
+ * False: none. O(text passed over and the section). */
 bool mt_passage_next(const char *text, mt_passage *p);
-/* Its names: all words in backquotes of a heading or of the first cell of a row, of an item
- * the first. *at is NULL before the first; *name, *length: not terminated. false: there are no
- * more. */
+/* The next name of a passage. Names are all words in backquotes of a heading or of the first
+ * cell of a row, and the first one of an item. *at is NULL before the first; *name has *length
+ * bytes, not terminated. False: no more names. */
 bool mt_passage_name(const mt_passage *p, const char **at, const char **name, size_t *length);
-/* That is one of its names. */
+/* True where name is one of the passage's names. */
 bool mt_passage_is(const mt_passage *p, const char *name);
 bool mt_passage_is_row(const mt_passage *p);
 

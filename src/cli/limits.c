@@ -82,7 +82,7 @@ static uint64_t number_in(const char *path, int place)
     return at == NULL ? 0 : number;
 }
 
-/* Half of what the machine has, or the container. */
+/* Half of the memory of the machine or of its container. */
 static uint64_t share_of_machine(void)
 {
     static const char *const containers[] = {"/sys/fs/cgroup/memory.max",
@@ -130,8 +130,9 @@ static int processors(void)
     return n < 1 ? 1 : n < MT_WORKERS_MOST ? (int)n : MT_WORKERS_MOST;
 }
 
-/* A block from a megabyte on is the system's: its pages are zero without being written, and go
- * when it is freed. By itself the C library raises that to 32 megabytes. */
+/* Allocate blocks from a megabyte on from the system directly: their pages are zero without
+ * being written, and are returned when freed. By default the C library raises that size to 32
+ * megabytes. */
 static void map_large_blocks(void)
 {
 #ifdef M_MMAP_THRESHOLD

@@ -8,11 +8,11 @@
 extern char **environ;
 
 /*
- * OpenBLAS starts its threads when it is loaded, as many as there are processors, each of which
- * asks for a buffer until it has one: with little address space for ever. Only
- * OPENBLAS_NUM_THREADS prevents that. What stands in .preinit_array runs before the
- * constructors of all libraries: there it is loaded with an environment that says so, and has
- * its own other settings (OPENBLAS_CORETYPE).
+ * Load OpenBLAS with one thread. When loaded it starts a thread per processor, and each
+ * requests a buffer until it has one: with little address space for ever. Only
+ * OPENBLAS_NUM_THREADS prevents that. Functions in .preinit_array run before the constructors
+ * of all libraries: here it is loaded with that variable set; its other settings
+ * (OPENBLAS_CORETYPE) apply.
  */
 static void load_blas(int argc, char *argv[], char *envp[])
 {
@@ -37,7 +37,7 @@ typedef void (*before_constructors)(int argc, char *argv[], char *envp[]);
 __attribute__((section(".preinit_array"), used)) static const before_constructors preinit =
     load_blas;
 
-/* What belongs to the whole process is set here, and nowhere below. */
+/* Settings of the whole process are made here, and nowhere below. */
 int main(int argc, char *argv[])
 {
     mt_terminal_open();

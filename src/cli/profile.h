@@ -5,9 +5,9 @@
 #include "base/profile.h"
 #include "cli/args.h"
 
-/* --profile: what the evaluations of a model did, counted from here on; else NULL. */
+/* Counters of the evaluations of a model from here on, with --profile; else NULL. */
 mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own);
-/* The stages as a table on standard error; NULL: nothing. Returns the exit status. */
+/* Print the stages as a table on standard error; NULL: nothing. Returns the exit status. */
 int mt_cli_profile_print(mt_profile *p);
 
 #endif

@@ -34,7 +34,7 @@ static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)
     return mt_exit_of(rc);
 }
 
-/* Who reads one result takes the folder that holds it, too. */
+/* Commands that read one result accept its folder, too. */
 static mt_status find_result(mt_args *args, mt_err *err)
 {
     static const unsigned READERS =

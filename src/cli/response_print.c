@@ -42,7 +42,7 @@ static double error_at(const mt_response_view *v, int pair, int point)
     return isfinite(error) ? error : nan("");
 }
 
-/* What rounding leaves of 0 is 0. */
+/* An extreme with rounding set to 0. */
 static double complex extreme_of(const mt_extreme *e)
 {
     return e->infinite ? nan("") : (cabs(e->h) > e->error ? e->h : 0.0);
@@ -106,7 +106,7 @@ static void print_extremes(const mt_response_view *v, mt_text *out)
     mt_table_free(&t);
 }
 
-/* The frequencies of the grid alone: what else there is is for pictures. */
+/* Print the frequencies of the grid only; the other points are for drawings. */
 static void print_grid(const mt_response_view *v, mt_text *out)
 {
     mt_table t = mt_table_default();
@@ -288,7 +288,7 @@ static void json_complex(mt_json_writer *w, const char *re, const char *im, doub
     mt_json_put_number(w, im, cimag(z));
 }
 
-/* Where they were asked for. */
+/* Write the poles where requested. */
 static void json_poles(const mt_response_view *v, int pair, mt_json_writer *w)
 {
     if (v->no_sums != NULL) {

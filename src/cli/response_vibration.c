@@ -20,7 +20,7 @@ static mt_vibrated row_of(const mt_response_view *v, int pair)
                          .unit = to->unit};
 }
 
-/* Which pair it is, before what is told of it. */
+/* Columns that identify the pair, before its values. */
 static void pair_columns(const mt_response_view *v, mt_table *t)
 {
     if (v->r->ports.n_in > 1) {
@@ -87,8 +87,8 @@ static int mode_of(const mt_response_view *v, double complex pole)
     return best;
 }
 
-/* Why a pair has no number; *said: the pole that was named last, so that pairs which one mode
- * takes away are told once. */
+/* Print the reason for a pair without a value; *said: the pole named last, so that pairs with
+ * the same pole are reported once. */
 static void print_end(const mt_response_view *v, int pair, int *said, mt_text *out)
 {
     const mt_vibration_response *const a = &v->profiled->answers[pair];
@@ -152,7 +152,7 @@ void mt_response_vibration_json(const mt_response_view *v, mt_json_writer *w)
                        v->profiled->no_sums == NULL ? "poles" : "quadrature");
 }
 
-/* Not infinite. */
+/* The density at a frequency, or NaN where it is infinite. */
 static double density_at(const mt_response_view *v, int pair, int point)
 {
     const ptrdiff_t at = pair + ((ptrdiff_t)point * v->profiled->n_pairs);

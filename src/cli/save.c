@@ -57,8 +57,8 @@ char *mt_save_folder(const mt_args *args, const char *study_path)
     return t.s;
 }
 
-/* Names of folders, not files: they cannot be studies, and their results would have no folder
- * of their own. */
+/* True for names of folders: they cannot be studies, and their results would have no folder of
+ * their own. */
 static bool is_no_file(const char *path)
 {
     const char *const name = mt_text_base_name(path);
@@ -84,7 +84,7 @@ static int by_name(const void *a, const void *b)
     return order != 0 ? order : x->order - y->order;
 }
 
-/* By what is there already, first; links lead to one folder. */
+/* Order by the existing folder first: links may lead to one folder. */
 static int by_inode(const void *a, const void *b)
 {
     const place *const x = a;
@@ -137,7 +137,8 @@ static int check_place(place *p, bool index)
     return MT_EXIT_DONE;
 }
 
-/* Of studies with one folder each would silently replace the one before. */
+/* Check that no two studies have the same folder: each would silently replace the one
+ * before. */
 static int check_places(place *places, int n)
 {
     int code = MT_EXIT_DONE;
@@ -190,7 +191,8 @@ typedef struct saving {
     mt_err err;
 } saving;
 
-/* What may differ between runs of one result, which it names: result.json does not name it. */
+/* Write timing.json, with the values that may differ between runs of one result. It names the
+ * result; result.json does not name it. */
 static mt_status write_timing(const mt_args *args, const mt_result *result, double seconds,
                               saving *s)
 {

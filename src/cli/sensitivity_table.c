@@ -25,7 +25,7 @@ static bool is_overridden(const mt_sensitivity_table *v, int parameter)
     return false;
 }
 
-/* Which modes, once; later analyses have the same ones. */
+/* Choose the modes once; later analyses use the same ones. */
 static mt_status choose_modes(mt_sensitivity_table *v, const mt_modes *m, int wanted,
                               mt_err *err)
 {
@@ -109,7 +109,7 @@ static mt_status answer_by_all(mt_sensitivity_table *v, const question *q, mt_er
     return mt_err_in(err, rc, "%s", v->s->path);
 }
 
-/* *done false: that way is not open. */
+/* *done false: the method is not available. */
 static mt_status answer_by_lowest(mt_sensitivity_table *v, const question *q, bool *done,
                                   mt_err *err)
 {

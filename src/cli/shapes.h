@@ -5,23 +5,22 @@
 #include "analysis/analysis.h"
 #include "analysis/lowest.h"
 
-/* Shapes of modes where they can be seen: at the sensors, or, without any, as motions of the
- * bodies. */
+/* Shapes of modes at the sensors, or, without sensors, as motions of the bodies. */
 typedef struct mt_shapes {
     bool sensors;
-    int n;             /* channels; 0: nothing */
+    int n;             /* channels; 0: none */
     const char **name; /* [n] "c1.y", "crank.rz" */
     bool *turns;       /* [n] it is an angle */
     double *value;     /* n x modes, mass-normalised */
-    double length_m;   /* what an angle is compared with a displacement by */
-    double *largest;   /* [modes] displacement of any body, or what a sensor reads */
+    double length_m;   /* length at which an angle is compared with a displacement */
+    double *largest;   /* [modes] largest displacement of a body or at a sensor */
 } mt_shapes;
 
-/* A component of column i as a table of a few digits shows it: 0 where it is nothing beside the
- * largest of its mode. */
+/* A component of column i as shown in a table of a few digits: 0 where it is negligible
+ * relative to the largest of its mode. */
 double mt_shapes_shown(const mt_shapes *shapes, int k, int i);
 
-/* Shapes of the first `modes` positions, in mem. What is rounding of the largest component is
+/* Shapes of the first `modes` positions, in mem. Components within rounding of the largest are
  * 0. */
 mt_status mt_shapes_of(mt_analysis *a, int modes, mt_arena *mem, mt_shapes *out, mt_err *err);
 mt_status mt_shapes_of_lowest(mt_lowest *l, int modes, mt_arena *mem, mt_shapes *out,

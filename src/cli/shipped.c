@@ -148,7 +148,7 @@ mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
                          kind->what, name, near);
 }
 
-/* Fails where there is something else under the path; *same: the very bytes are there. */
+/* Fails where another file is at the path; *same: true where it has the same bytes. */
 static mt_status look(const char *path, const mt_shipped *file, bool *same, mt_err *err)
 {
     mt_file there = {.bytes = NULL};

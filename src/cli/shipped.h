@@ -7,13 +7,13 @@
 
 enum { MT_SHIPPED_NAME = 64, MT_SHIPPED_MOST = 100 };
 
-/* Files of one folder and ending, which between them have a name. */
+/* A kind of shipped files: those in one folder with one ending; the name is between these. */
 typedef struct mt_shipped_kind {
-    const char *command; /* that lists them */
-    const char *what;    /* one of them is called so */
+    const char *command; /* command that lists them */
+    const char *what;    /* what one of them is called */
     const char *folder;
     const char *ending;
-    const char *says; /* member of their root that says what they are, and what it is called */
+    const char *says; /* member of their root with their description, and its name */
     const char *heading;
 } mt_shipped_kind;
 
@@ -21,18 +21,19 @@ extern const mt_shipped_kind mt_shipped_examples;
 extern const mt_shipped_kind mt_shipped_schemas;
 extern const mt_shipped_kind mt_shipped_profiles;
 
-/* Append their names, a blank between them. */
+/* Append the names of the files, separated by blanks. */
 void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out);
-/* A list of them, with the first sentence of what they say, in the form asked for: as JSON a
- * list of objects of texts. Returns the exit status. */
+/* List the files, with the first sentence of their descriptions, in the requested format: as
+ * JSON a list of objects of texts. Returns the exit status. */
 int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *out);
-/* The one of a name. Fails: MT_E_USAGE, with the nearest name or where to see them all. */
+/* The file of that name. Fails: MT_E_USAGE, with the nearest name or the command that lists
+ * all. */
 mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
                            const mt_shipped **out, mt_err *err);
 /**
- * Write n files of the distribution beneath a folder, which is made, under names of theirs
- * there. A file that is there and holds other bytes is left alone, and none is written.
- * Fails: MT_E_INPUT (it names the first such file), MT_E_SYSTEM, MT_E_MEMORY.
+ * Write n files of the distribution into a folder, which is made, under the given names. Where
+ * an existing file holds other bytes, none is written. Fails: MT_E_INPUT (naming the first such
+ * file), MT_E_SYSTEM, MT_E_MEMORY.
  */
 typedef struct mt_shipped_copy {
     const mt_shipped *file;

@@ -198,7 +198,7 @@ static mt_status read_expression(mt_loaded_model *s, const char *text, mt_signal
     return mt_arena_check(&s->mem, err);
 }
 
-/* What the model gives the amplitudes of a port in; NULL: SI. */
+/* The unit of amplitudes at a port in the model; NULL: SI. */
 static const mt_unit *unit_of(const mt_loaded_model *s, const mt_system *sys, const port *p)
 {
     switch (p->push) {

@@ -50,7 +50,8 @@ typedef struct svg {
     mt_text *out;
 } svg;
 
-/* Up is against gravity along its greatest component, else z (in a plane y). */
+/* Choose the view: up is opposite to the greatest component of gravity, else z (in a plane
+ * y). */
 static void look_from(svg *p)
 {
     const mt_scene *const s = p->scene;
@@ -179,7 +180,7 @@ static void put_line(const svg *p, const double a[2], const double b[2], const c
                  a[0], a[1], b[0], b[1], colour, width);
 }
 
-/* Whether a name there would lie on another one. */
+/* True where a name there would overlap another one. */
 static bool is_taken(const svg *p, double x, double y, double width)
 {
     bool taken = false;
@@ -329,8 +330,8 @@ static void put_polygon(const svg *p, int n, const double at[2], double phase)
     mt_text_addf(p->out, "\" fill=\"#ffffff\" stroke=\"%s\" stroke-width=\"1.4\"/>\n", REST);
 }
 
-/* A circle turns, a square slides, a diamond is a ball, a cross is fixed, a triangle is any
- * other. */
+/* Draw a joint: a circle for a revolute, a square for a sliding one, a diamond for a ball, a
+ * cross for a fixed one, a triangle for any other. */
 static void put_joint(svg *p, const mt_scene_joint *j)
 {
     double at[2];

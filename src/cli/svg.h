@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "scene/scene.h"
 
-/* A still picture of one configuration as SVG: in space an isometric view, up being against
- * gravity; mode (NULL: none): its shape in a second colour over that at rest. */
+/* A drawing of one configuration as SVG: in space an isometric view with up opposite to
+ * gravity; mode (NULL: none): its shape in a second colour over the position at rest. */
 void mt_svg(const mt_scene *scene, const mt_scene_view *view, const mt_scene_mode *mode,
             mt_text *out);
 

@@ -27,7 +27,7 @@ static const char *unit_of(bool angle)
     return angle ? "rad" : "m";
 }
 
-/* What people are shown its coordinates in: the model's unit; NULL: SI. */
+/* The unit in which its coordinates are shown: the model's; NULL: SI. */
 static const mt_unit *shown_in(const mt_sweep_view *v, bool angle)
 {
     return mt_model_shown(v->sys->model, angle ? MT_ANGLE : MT_LENGTH);
@@ -49,7 +49,7 @@ static double shown_ratio(const mt_sweep_view *v, bool angle, double ratio)
     return shown(v, angle, mt_unit_to_si(shown_in(v, driven(v)->angle), tidy(ratio)));
 }
 
-/* True where what holds the joint pushes along an angle. */
+/* True where the holding force acts along an angle. */
 static bool hold_is_moment(const mt_sweep_view *v)
 {
     if (!v->sys->trim) {
@@ -153,7 +153,7 @@ static void write_modes(const mt_sweep_view *v, mt_text *out)
     write_undecided(v, out);
 }
 
-/* Where the range comes nearest to a dead centre. */
+/* Write the position of the range nearest to a dead centre. */
 static void write_dead_centre(const mt_sweep_view *v, mt_text *out)
 {
     const mt_sweep_point *nearest = NULL;

@@ -97,7 +97,7 @@ static bool takes_colour(int descriptor)
            terminal != NULL && strcmp(terminal, "dumb") != 0;
 }
 
-/* All bytes, at the pace of whoever takes them; false with errno. */
+/* Write all bytes, waiting for the reader; false with errno. */
 static bool write_out(const char *bytes, size_t length)
 {
     size_t done = 0;
@@ -120,8 +120,8 @@ static bool put(FILE *to, const char *s, size_t n)
     return to == stdout ? write_out(s, n) : fwrite(s, 1, n, to) == n;
 }
 
-/* The one way out: what a terminal would obey is made visible. `lines`: the text has lines of
- * its own. */
+/* The only output function: characters that a terminal would obey are made visible. `lines`:
+ * the text contains lines. */
 static bool show(FILE *to, const char *s, size_t n, bool lines)
 {
     bool ok = true;
@@ -287,7 +287,7 @@ int mt_terminal_width(void)
     return known && w.ws_col > 1 ? w.ws_col : 0;
 }
 
-/* What fits beside the cursor: a line that is broken would not be wiped. */
+/* Columns that fit in the line: one that wraps could not be erased. */
 static size_t line_width(void)
 {
     struct winsize w = {0};
@@ -321,8 +321,8 @@ static void wipe_at_once(void)
     }
 }
 
-/* These call only what a signal handler may. SA_RESETHAND: a signal raised in them is the
- * system's to answer, once they return. */
+/* Signal handlers; they call only async-signal-safe functions. SA_RESETHAND: a signal raised in
+ * them gets the system's action after they return. */
 static void note(int number)
 {
     long long none = 0;
@@ -340,8 +340,8 @@ static void say_and_end(int number)
     (void)raise(number);
 }
 
-/* Where the caller of the program had the signal ignored (a job in the background), it stays
- * ignored. */
+/* Set the action of a signal, unless the program was started with it ignored (a job in the
+ * background). */
 static void set_action(int number, void (*to)(int number))
 {
     struct sigaction old;

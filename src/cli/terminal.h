@@ -16,75 +16,75 @@ enum {
     MT_EXIT_INTERRUPTED = 130
 };
 int mt_exit_of(mt_status status);
-/* Whether anything has ended as MT_E_MEMORY so far. */
+/* True where anything has ended with MT_E_MEMORY so far. */
 bool mt_exit_without_memory(void);
-/* The worse of two: 4 (something is lost), then 130, 3, 2, 1, 0. */
+/* The worse of two exit statuses: 4 (output was lost), then 130, 3, 2, 1, 0. */
 int mt_exit_worse(int a, int b);
 
 /*
- * Whatever leaves the program by standard output or error leaves through here, and what a
- * terminal would obey (control characters, marks of direction) is made visible, see
- * base/visible.h: the colours and the wiping of the line of progress are the only ones.
+ * All writing to standard output and error. Characters that a terminal would obey (control
+ * characters, marks of direction) are made visible, see base/visible.h; only colours and the
+ * erasing of the progress line are sent as such.
  */
 
-/* Everything that is written to standard output is collected in a text and leaves through here;
- * the text is empty afterwards. A reader that has gone (EPIPE) is not complained about, but is
- * a failure, too. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
+/* Write the collected standard output; the text is empty afterwards. A closed reader (EPIPE) is
+ * a failure without a message. Returns MT_EXIT_DONE or MT_EXIT_SYSTEM. */
 int mt_terminal_put(mt_text *out);
-/* What is being collected is not whole, memory being out: the next mt_terminal_put throws it
- * away. */
+/* Mark the collected text as incomplete for lack of memory: the next mt_terminal_put discards
+ * it. */
 void mt_terminal_drop(void);
-/* The last word of standard output: a network disk may refuse what was written only now. As
+/* Close standard output: a network disk may report a failed write only now. Returns as
  * mt_terminal_put. */
 int mt_terminal_close(void);
-/* At the start: a descriptor of 0 to 2 that is closed must not become one of a file, which
- * messages would then go into. It is opened so that using it fails. */
+/* Called at the start: open closed descriptors 0 to 2 so that using them fails; otherwise an
+ * opened file could get one, and messages would go into it. */
 void mt_terminal_open(void);
-/* To standard error: "modetune: error: ..." */
+/* Write "modetune: error: ..." to standard error. */
 void mt_terminal_error(const char *fmt, ...) MT_PRINTF(1, 2);
 void mt_terminal_warning(const char *fmt, ...) MT_PRINTF(1, 2);
-/* Lines of diagnostics as they are; "error:" and "warning:" coloured on a terminal. */
+/* Write lines of diagnostics to standard error; "error:" and "warning:" are coloured on a
+ * terminal. */
 void mt_terminal_diagnostics(const char *lines);
-/* Talk: a line to standard error unless quiet. */
+/* Messages: write a line to standard error unless quiet. */
 void mt_terminal_talk(bool quiet, const char *fmt, ...) MT_PRINTF(2, 3);
-/* Columns of the terminal that standard output is; 0: it is none, or does not say. */
+/* Columns of the terminal of standard output; 0: not a terminal, or unknown. */
 int mt_terminal_width(void);
-/* Whether standard error is a terminal. */
+/* True where standard error is a terminal. */
 bool mt_terminal_is_watched(void);
-/* Lines to standard error as they are. */
+/* Write lines to standard error unchanged. */
 void mt_terminal_write(const char *text, size_t length);
-/* One line of a terminal that is written over again and again. Text NULL: wipe it. A signal
- * that ends the program wipes it, too. */
+/* Rewrite the progress line of the terminal. Text NULL: erase it. A signal that ends the
+ * program erases it, too. */
 void mt_terminal_line(const char *text);
 
-/* SIGPIPE and SIGXFSZ become errors of writing. SIGINT and SIGTERM stay as the system has them,
- * and end the program, but while they are held. */
+/* Turn SIGPIPE and SIGXFSZ into write errors. SIGINT and SIGTERM keep their action and end the
+ * program, except while they are held. */
 void mt_terminal_ignore_signals(void);
 /*
- * From here to the release the first SIGINT or SIGTERM is only noted, for work that ends well
- * by itself (mt_terminal_stop_request) or that must not be left half done; the second ends the
- * program. Where the program was started with one of them ignored, it stays so.
+ * Hold and release signals. In between the first SIGINT or SIGTERM is only recorded, for work
+ * that stops by itself (mt_terminal_stop_request) or must be completed; the second ends the
+ * program. A signal ignored at the program's start stays ignored.
  */
 void mt_terminal_hold_signals(void);
 void mt_terminal_release_signals(void);
-/* Whether one has been noted since the program began. */
+/* True where a signal was recorded since the program began. */
 bool mt_terminal_is_stopped(void);
-/* After so many seconds from now (0: never, at most MT_SECONDS_MOST) mt_terminal_stop_request
- * wishes as after a signal. While no worker runs. */
+/* Set a time limit: after so many seconds from now (0: none, at most MT_SECONDS_MOST)
+ * mt_terminal_stop_request answers as after a signal. Call it while no worker runs. */
 #define MT_SECONDS_MOST 1e9
 void mt_terminal_limit(double seconds);
-/* So many seconds before that limit, or half of the time that is left, to finish is wished for
- * already, and to end at the limit. Any thread. */
+/* Reserve time before the limit: so many seconds before it, or at half of the remaining time,
+ * the request becomes to finish, and at the limit to end. Any thread. */
 void mt_terminal_reserve(double seconds);
-/* An mt_stop_request, the stop of a solve: to finish, and, a moment after the signal or the end
- * of the time, to end. Any thread. */
+/* The `stop` of a solve, an mt_stop_request: to finish after a signal or at the time limit, and
+ * a moment later to end. Any thread. */
 int mt_terminal_stop_request(void *unused);
-/* An mt_stop_reason, why it wishes so: a signal, or the end of the time. */
+/* The `cause` of a solve, an mt_stop_reason: a signal, or the time limit. */
 int mt_terminal_stop_reason(void *unused);
-/* One line (cut where it is too long) that is written to standard error when a signal ends the
- * program from now on; NULL: none any more. Not while signals are held. */
+/* Set a line (cut where too long) that is written to standard error when a signal ends the
+ * program; NULL: none. Not while signals are held. */
 void mt_terminal_last_words(const char *text);
-/* Seconds of a clock that only runs forward. */
+/* Seconds of a monotonic clock. */
 double mt_terminal_seconds(void);
 /* CPU seconds of the process so far, of all its threads. */
 double mt_terminal_cpu_seconds(void);

@@ -22,7 +22,7 @@ static const char *unit_of(const mt_vibrated *v)
     return v->is_acceleration ? "m/s^2" : v->unit;
 }
 
-/* What stands where there is no number. */
+/* The text in place of a missing number. */
 static const char *end_of(const mt_vibration_response *r)
 {
     return r->end == MT_FORCED_FINITE ? NULL : mt_forced_end_name(r->end);

@@ -6,21 +6,21 @@
 #include "report/table.h"
 #include "vibration/respond.h"
 
-/* The profile in the file of that name, or, where there is none, the one of the name that is
- * part of the program, with its catalogue. Fails and messages as mt_vibration_load. */
+/* Load the profile in the file of that name, or, where there is none, the profile of that name
+ * built into the program, with its catalogue. Fails and messages as mt_vibration_load. */
 mt_status mt_vibrated_load(const mt_args *args, const char *name, mt_vibration **out,
                            mt_diagnostics *messages, mt_err *err);
 const char *mt_vibrated_axis(const mt_vibration *v); /* "z"; NULL: any */
-const char *mt_vibrated_name(const mt_vibration *v); /* what it says, or its path */
+const char *mt_vibrated_name(const mt_vibration *v); /* its name, or its path */
 /* "the peak is 3 times the RMS and the sum of all tones" */
 void mt_vibrated_rule(const mt_vibration *v, mt_text *out);
-/* What of it is assumed, or unconfirmed; nothing where all is known. */
+/* Append what is assumed or unconfirmed in the profile; nothing where all is confirmed. */
 void mt_vibrated_marks(const mt_vibration *v, mt_text *out);
 /* The rule as members of an open object, and the profile's marks. */
 void mt_vibrated_rule_json(mt_json_writer *w, const mt_vibration *v);
 
-/* What a profile does to responses, as tables and JSON: a row each. What is not an acceleration
- * has no values in g. */
+/* The vibration of a response under a profile, as a row of tables and JSON. Quantities other
+ * than accelerations have no values in g. */
 typedef struct mt_vibrated {
     const mt_vibration *profile;
     const mt_vibration_response *response;
@@ -28,12 +28,12 @@ typedef struct mt_vibrated {
     const char *unit;     /* "m", "N" */
 } mt_vibrated;
 
-/* RMS, largest tones and combined peak. The caller's own columns stand before these. */
+/* Columns and row: RMS, largest tones and combined peak, after the caller's own columns. */
 void mt_vibrated_columns(mt_table *t);
 void mt_vibrated_row(mt_table *t, const mt_vibrated *v);
-/* Each tone: where within its range the response is largest, and how large. */
+/* Columns for each tone: frequency in its range of the largest response, and this response. */
 void mt_vibrated_tone_columns(mt_table *t);
-/* One row of these cells. */
+/* The cells of one tone. */
 void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone);
 /* Members of an open object. */
 void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v);

@@ -163,7 +163,7 @@ static void put_mark(mt_json_writer *w, const char *time, const char *evaluation
     }
 }
 
-/* schemas/progress.schema.json. What finds no memory is left out. */
+/* Write progress as in schemas/progress.schema.json. Parts without memory are left out. */
 static void put_json(const mt_progress_view *v, const char *state, double now)
 {
     mt_text t = {.s = NULL};
@@ -205,7 +205,7 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
     mt_text_free(&t);
 }
 
-/* One look; whoever reads is told if it is time. */
+/* Read the progress once, and report it where it is time. */
 static void look(void)
 {
     const mt_progress_view v = mt_progress_read(&it.progress);
@@ -251,7 +251,7 @@ static bool turn(void *unused)
     return goes_on;
 }
 
-/* Signals are of those who work. */
+/* Start the thread, with signals blocked: the working threads handle them. */
 static bool start(void)
 {
     sigset_t all;

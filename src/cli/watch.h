@@ -6,20 +6,19 @@
 #include "cli/args.h"
 
 /*
- * What standard error says of a long piece of work while it lasts (--progress): a thread of its
- * own looks at the progress, so that neither a slow terminal nor a long step changes the pace
- * of either. One work at a time. Nothing else is to be written to standard error between begin
- * and end.
+ * The progress messages on standard error during long work (--progress). A separate thread
+ * reads the progress, so that a slow terminal does not delay the work, nor a long step the
+ * messages. One work at a time. Nothing else may be written to standard error between begin and
+ * end.
  */
 
-/* Begin to look at what is done for operand i of the command, in its first phase. NULL where
- * nobody is to be told, or where there is nothing to do it with; mt_watch_end follows in any
- * case. */
+/* Begin to report the progress for operand i of the command, in its first phase. NULL where no
+ * reports are requested or possible; mt_watch_end follows in any case. */
 mt_progress *mt_watch_begin(const mt_args *args, int i, const char *phase);
-/* In between: the line is wiped until it goes on, and something else may be said. */
+/* Erase the line between hold and go_on, so that other messages can be written. */
 void mt_watch_hold(void);
 void mt_watch_go_on(void);
-/* The line is wiped, the last word is said. complete: nothing was cut. */
+/* Erase the line and write the last message. complete: nothing was cut. */
 void mt_watch_end(bool complete);
 
 #endif

@@ -9,9 +9,9 @@
 #include "io/file.h"
 #include "linalg/arithmetic.h"
 
-/* What a result says of its own making before anything is computed: program, libraries, files
- * and settings; and what tells processors apart that compute otherwise. Where it is the same,
- * every task leaves the same. */
+/* The identity of a run, known before anything is computed: program, libraries, files and
+ * settings, and the properties of processors that affect arithmetic. Runs with the same
+ * identity give the same record of every task. */
 static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
 {
     mt_result *result = NULL;
@@ -31,7 +31,8 @@ static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
     return rc;
 }
 
-/* Beside the folder of the result; of a part its own. Heap, NULL when out of memory. */
+/* Path of the journal: next to the folder of the result; a part has its own. Heap, NULL when
+ * out of memory. */
 static char *journal_of(const mt_args *args, const char *study_path)
 {
     mt_text t = {.s = NULL};
@@ -51,8 +52,8 @@ static char *journal_of(const mt_args *args, const char *study_path)
     return t.s;
 }
 
-/* What stood where this run's journal goes. Fails: MT_E_SYSTEM, of a part that leaves nothing
- * but its journal. */
+/* Report the state of the path of this run's journal. Fails: MT_E_SYSTEM, for a part, whose
+ * only output is its journal. */
 static mt_status write_place(const mt_args *args, const char *study_path, const char *path,
                              mt_journal *j, mt_journal_place place, mt_err *err)
 {
@@ -138,7 +139,7 @@ int mt_work_begin(const mt_args *args, const char *study_path, const mt_study *s
     return mt_cli_failed(rc, &err);
 }
 
-/* What came of the records that were read; and of the part, where only that was asked for. */
+/* Report the use of the records read, and the state of the part where one was requested. */
 static void tell(const mt_args *args, const char *study_path, bool complete, bool part,
                  const mt_journal *j)
 {

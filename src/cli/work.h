@@ -8,15 +8,16 @@
 #include "study/study.h"
 
 /*
- * The journal of one study's run: what --resume, --shard and merge ask for. All of these return
- * an exit status, everything said.
+ * The journal of one study's run, for --resume, --shard and merge. All functions return an exit
+ * status, with all messages given.
  */
 
-/* Opened for a study that was read; NULL where that fails. */
+/* Open the journal for a study that was read; NULL on failure. */
 int mt_work_begin(const mt_args *args, const char *study_path, const mt_study *study,
                   mt_journal **out);
-/* After the answer, of the exit status so far: `complete` where there is nothing left to be
- * resumed, and the journal goes. What cannot be written of it is a warning, but of a part. */
+/* End the journal after an answer with this exit status so far. `complete`: nothing is left to
+ * resume, and the journal, unless it is a part's, is removed. A failure to write it is a
+ * warning, for a part an error. */
 int mt_work_end(const mt_args *args, const char *study_path, int code, bool complete,
                 mt_journal *j);
 

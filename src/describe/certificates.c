@@ -54,7 +54,8 @@ static double shown_least(double rest)
     return floor(change / unit) * unit;
 }
 
-/* The search ended when no other placement could be among the designs that are asked for. */
+/* Describe a search that ended when no other placement could give one of the requested
+ * designs. */
 static mt_status describe_best_first(const mt_mode_placement_result *placements,
                                      mt_result *result, mt_err *err)
 {
@@ -181,7 +182,7 @@ mt_status mt_describe_placement_certificate(const mt_mode_placement_result *plac
                        "them the design space is not searched.");
 }
 
-/* In words: what one limit's mode can reach. */
+/* Write the frequencies that one limit's mode can reach. */
 static mt_status write_reach(const mt_requirement *d, const char *configuration,
                              const mt_certify_reach *r, mt_result *result, mt_err *err)
 {

@@ -77,7 +77,7 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
 }
 
 /* The objective at this design. The fresh problem has no coordinate for the least clearance: it
- * is looked up among the modes. */
+ * is found among the modes. */
 static double stage_value(const mt_workspace *fresh, int k, double motion_margin)
 {
     if (mt_objective_is(fresh->c->aims[k].type, MT_SHAKES)) {
@@ -138,7 +138,8 @@ static mt_status compare(const mt_workspace *fresh, const mt_design *design,
                             f * fresh->c->aims[k].size);
 }
 
-/* A design at which a fresh analysis disagrees meets nothing: see describe_verify.c. */
+/* Warn of a design at which a fresh analysis disagrees; it does not count as meeting any goal,
+ * see describe_verify.c. */
 static mt_status warning(const mt_design *design, mt_result *result, mt_recommendation *rec,
                          mt_err *err)
 {
@@ -153,7 +154,7 @@ static mt_status warning(const mt_design *design, mt_result *result, mt_recommen
                                   design->rank, rec->disagreement);
 }
 
-/* Of a fit no goal decides: how near its least misfit is. */
+/* Grade a fit, whose goals decide nothing, by how near its misfit is to the least. */
 static void grade_fit(const mt_problem *p, const mt_design *design, mt_recommendation *rec)
 {
     if (mt_study_is_fit(p->study) && rec->feasible && rec->disagreement == NULL) {

@@ -16,7 +16,7 @@ static const double PERCENT = 100.0;
  * of about 1e-14. */
 static const double ON_EDGE_PERCENT = 1e-9;
 
-/* The ways out of a band with its margin, in percent of the edges without it. */
+/* Distances to both ends of a band with its margin, in percent of the edges without it. */
 static double way_down(const mt_band *band, double hz)
 {
     return band->lower_hz > 0.0 ? PERCENT * (hz - band->lower_hz) / band->base_lower_hz
@@ -36,14 +36,14 @@ static double beyond(const mt_band *band, bool lower, double hz)
                                      hz);
 }
 
-/* What an edge is moved out by, as a clearance: 10 % of the lower edge are 11.1 %. */
+/* The margin of an edge as a clearance: 10 % at the lower edge are 11.1 %. */
 static double margin(const mt_band *band, bool lower)
 {
     return beyond(band, lower, lower ? band->lower_hz : band->upper_hz);
 }
 
-/* True where the lower edge is the one that a mode at hz is judged by. It is the nearer one;
- * where a band has been cut off to a point, the one that is left sooner. */
+/* True where the lower edge decides for a mode at hz: the nearer one; where a band is cut off
+ * to a point, the one that needs the smaller move. */
 static bool by_lower_edge(const mt_band *band, double hz)
 {
     if (!(band->base_lower_hz > 0.0)) {
@@ -55,8 +55,8 @@ static bool by_lower_edge(const mt_band *band, double hz)
                                                  : way_down(band, hz) <= way_up(band, hz);
 }
 
-/* What a mode at hz is short of being clear of the band with its margin, by the shorter way; 0
- * where it is. */
+/* The shortest distance of a mode at hz from the outside of the band with its margin, in
+ * percent; 0 outside. */
 static double missing_percent(const mt_band *band, double hz)
 {
     return fmax(fmin(way_down(band, hz), way_up(band, hz)), 0.0);
@@ -79,8 +79,8 @@ static double margin_percent(const mt_band *band, double hz)
     return margin(band, by_lower_edge(band, hz));
 }
 
-/* How a mode at hz stands to the edge that a goal judges it by: inside a band with its margin
- * the one that is left sooner, else the nearer one. Negative within the base. */
+/* Clearance of a mode at hz from the deciding edge: inside a band with its margin the one that
+ * needs the smaller move, else the nearer one. Negative within the base. */
 static double standing(const mt_band *band, double hz, double *asked)
 {
     const bool inside = missing_percent(band, hz) > 0.0;

@@ -19,7 +19,7 @@ static const char *about_text(const mt_requirement *d, mt_arena *mem)
                : mt_arena_printf(mem, "the %s of mode %d", d->ops->number, d->mode);
 }
 
-/* What is known of the worst, and where it is. */
+/* Text of the worst value and its position. */
 static const char *worst_text(const mt_study *study, const mt_drive_positions *f,
                               const mt_requirement *d, const mt_result_between *r,
                               mt_arena *mem)
@@ -58,8 +58,8 @@ static const char *worst_text(const mt_study *study, const mt_drive_positions *f
                                             beside);
 }
 
-/* What samples say: a limit that one of them misses is missed, one that all of them keep may
- * still be missed elsewhere. */
+/* Text of the verdict of samples: a limit is missed where one sample misses it; where all keep
+ * it, it may still be missed between them. */
 static const char *verdict_text(const mt_limit_drive_path *m, const mt_result_between *r)
 {
     const bool capped = m->end == MT_MOTION_CAPPED;
@@ -119,8 +119,8 @@ static mt_status put(const mt_workspace *fresh, const mt_requirement *d,
     return mt_arena_check(mem, err);
 }
 
-/* Who asks for a limit at some positions may take the range for granted. Limits that are but a
- * scale are no promise. */
+/* Warn of a limit that is met at the named positions and missed between them. Limits that are
+ * only a scale are left out. */
 static mt_status warn(const mt_design *design, const mt_result_between *r, mt_result *result,
                       const mt_recommendation *rec, mt_err *err)
 {

@@ -6,20 +6,20 @@
 
 #include "describe/certificates.h"
 
-/* Pure enumeration proves; a continuous search within each combination is sampled, a heuristic
- * all the more. */
+/* True where the search is a proof: pure enumeration. A continuous search within each
+ * combination is sampled, and a heuristic proves nothing. */
 static bool proves(const mt_catalogue_search_report *report)
 {
     return report->all && !report->mixed;
 }
 
-/* Whether branch and bound excludes every combination. */
+/* True where branch and bound excludes every combination. */
 static bool excluded(const mt_catalogue_search_report *report)
 {
     return report->settled && report->n_kinds == 0 && report->feasible == 0;
 }
 
-/* How far branch and bound came beside continuous variables. */
+/* Text of the progress of branch and bound with continuous variables. */
 static const char *branched_text(const mt_catalogue_search_report *r, mt_arena *mem,
                                  const char *rest)
 {
@@ -105,7 +105,7 @@ static const char *with_others(const mt_catalogue_search_report *r)
     return r->mixed ? " and values of the other variables within their bounds" : "";
 }
 
-/* Which combinations can meet the goals at all. */
+/* Describe which combinations can meet the goals. */
 static mt_status describe_kinds(const mt_catalogue_search_report *r, mt_result *result,
                                 mt_err *err)
 {
@@ -193,7 +193,7 @@ mt_status mt_describe_catalogue_certificate(const mt_catalogue_search_report *re
     return MT_HAS(report->best_within) ? describe_best(report, result, err) : MT_OK;
 }
 
-/* How sure the order of the combinations is. */
+/* Text of the certainty of the order of the combinations. */
 static const char *certainty(const mt_catalogue_search_report *r, mt_arena *mem)
 {
     if (proves(r)) {

@@ -75,7 +75,7 @@ static mt_status put_curve(const mt_response *r, const mt_curve *c, mt_arena *me
     return rc;
 }
 
-/* All of the profile, proven where the response is a sum over poles. */
+/* The response to the whole profile, proven where it is a sum over poles. */
 static mt_status response_limit(mt_response *r, const mt_vibration *v, mt_arena *mem,
                                 mt_design_curve *out, mt_err *err)
 {
@@ -154,7 +154,7 @@ static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vi
     return rc;
 }
 
-/* Where there is none that is said. */
+/* Describe a curve, or the reason for none. */
 static mt_status describe(const mt_workspace *fresh, const mt_result_curve *asked,
                           mt_arena *mem, mt_design_curve *out, mt_err *err)
 {

@@ -15,7 +15,7 @@ static const double BESIDE_ONE = 4.0;
 static const double TWO_PI = 6.283185307179586477;
 enum { MOST_MEASURED = 400 };
 
-/* The same ports of the same configuration, shaken likewise. */
+/* True where both have the same ports of the same configuration and the same profile. */
 static bool is_same(const mt_result_curve *a, const mt_result_curve *b,
                     const mt_response_limit *s)
 {
@@ -90,7 +90,7 @@ static mt_status put_ports(const mt_problem *p, int configuration, const mt_resp
     return rc;
 }
 
-/* From where to where a goal's own curve is shown. */
+/* Choose the frequency range of the curve of a goal. */
 static void choose_band(const mt_response_limit *s, mt_result_curve *out)
 {
     const mt_vibration *const v = s->profile;
@@ -106,7 +106,7 @@ static void choose_band(const mt_response_limit *s, mt_result_curve *out)
     }
 }
 
-/* What the goal compares the response with; NULL: nothing. */
+/* The measurement that the goal compares the response with; NULL: none. */
 static const mt_fit *fit_of(const mt_problem *p, int goal, int configuration)
 {
     for (int i = 0; i < p->n_requirements; i++) {
@@ -138,7 +138,7 @@ static mt_status put_measured(const mt_fit *fit, mt_arena *mem, mt_result_curve 
     return MT_OK;
 }
 
-/* What the goal asks, beside its curve. */
+/* Add the limits of the goal to its curve. */
 static mt_status add_limit(const mt_goal *g, const char *pointer, mt_arena *mem,
                            mt_result_curve *to, mt_err *err)
 {

@@ -38,8 +38,7 @@ static mt_status index_of_requirement(mt_workspace *fresh, mt_configuration_work
     return MT_OK;
 }
 
-/* The name of the mode with this index, in the model's words, and how surely it is that
- * mode. */
+/* Set the model's name of the mode with this index, and the certainty of its identity. */
 static mt_status put_name(const listing *l, mt_result_frequency *f, mt_err *err)
 {
     const mt_modes *const modes = &l->view->analysis->modes;
@@ -108,7 +107,7 @@ static void attach_frequency(const mt_requirement *d, mt_result_frequency *f)
     f->error_percent = 100.0 * over;
 }
 
-/* What the requirement wants of its mode, into the row of that mode. */
+/* Enter the requirement into the row of its mode. */
 static mt_status attach(const listing *l, const mt_requirement *d, mt_err *err)
 {
     int index = 0;
@@ -130,7 +129,7 @@ static mt_status attach(const listing *l, const mt_requirement *d, mt_err *err)
     return MT_OK;
 }
 
-/* Named modes that goals speak of and that can no longer be told for sure. */
+/* Warn of named modes of goals that are no longer identified. */
 static mt_status warn_lost(const listing *l, const mt_requirement *d, mt_err *err)
 {
     int index = 0;
@@ -187,8 +186,8 @@ static double original_hz(const mt_recommendation *baseline, const mt_result_fre
     return baseline == NULL ? f->recommended_hz : nan("");
 }
 
-/* Note where the analysis that has just been made here, with its own count, disagrees. From now
- * on it counts as the study does, as far as it can. */
+/* Note where the new analysis, with its own count of rigid-body modes, disagrees. Afterwards it
+ * uses the study's count as far as possible. */
 static mt_status verify(listing *l, mt_err *err)
 {
     const mt_analysis *const had = l->view->analysis;
@@ -203,7 +202,7 @@ static mt_status verify(listing *l, mt_err *err)
     return MT_OK;
 }
 
-/* A design that the study could read, and a fresh analysis cannot. */
+/* Note a design that the search could analyse, but a fresh analysis cannot. */
 static mt_status note_failure(const listing *l, const mt_err *why, mt_err *err)
 {
     if (mt_is_final(why->code)) {

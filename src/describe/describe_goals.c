@@ -60,7 +60,7 @@ static const char *interval_text(const mt_problem *p, const mt_requirement *d, m
     return mt_arena_printf(mem, " at %s %.10g%s", least ? "least" : "most", number, unit);
 }
 
-/* What a requirement limits, and that with what it asks for, as texts. */
+/* Texts of the quantity that a requirement limits, and of the whole requirement. */
 static void name_goal(const mt_problem *p, const mt_requirement *d, mt_arena *mem,
                       mt_result_goal *g)
 {
@@ -137,7 +137,7 @@ static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
     return mt_pass_final(rc, &own, err);
 }
 
-/* Nobody can tell which mode is meant: the goal is not met, whatever its number. */
+/* Warn that the mode of the goal is not identified: the goal is not met, for any value. */
 static mt_status warning(const mt_workspace *fresh, const mt_requirement *d, mt_result *result,
                          mt_result_goal *g, mt_err *err)
 {
@@ -149,7 +149,7 @@ static mt_status warning(const mt_workspace *fresh, const mt_requirement *d, mt_
     return mt_arena_check(&result->mem, err);
 }
 
-/* What is asked for, of what, in figures. */
+/* Write quantity and requirement in numbers. */
 static void write_what(const mt_problem *p, const mt_requirement *d, mt_result_goal *g)
 {
     const mt_goal *const asked = d->goal;
@@ -176,7 +176,7 @@ static void write_what(const mt_problem *p, const mt_requirement *d, mt_result_g
     g->tolerance_percent = asked->tolerance_percent;
 }
 
-/* The measured line where a response is off most. */
+/* Write the measured line of the largest deviation. */
 static void write_line(const mt_workspace *fresh, const mt_requirement *d, mt_result_goal *g)
 {
     double complex off = 0.0;
@@ -228,8 +228,8 @@ static mt_status judge(mt_workspace *fresh, const mt_requirement *d, mt_nlp_valu
                : warning(fresh, d, result, g, err);
 }
 
-/* Sensors of a MAC or a shape that mix displacements and angles, where the length at which an
- * angle is an arc is not the question's own. */
+/* Write the length at which angles count as arcs, where sensors of a MAC or a shape mix
+ * displacements and angles and the study does not give it. */
 static mt_status write_length(const mt_requirement *d, const mt_design *design,
                               mt_result *result, mt_err *err)
 {
@@ -242,8 +242,8 @@ static mt_status write_length(const mt_requirement *d, const mt_design *design,
                                   d->goal_index, d->shape.reference, d->shape.length);
 }
 
-/* What measured data look like that fit no mechanism: told where the original design shows it,
- * or the best one. */
+/* Warn of measured data that fit no mechanism: where the original design or the best one shows
+ * it. */
 static mt_status warn_data(const mt_workspace *fresh, const mt_requirement *d,
                            const mt_design *design, mt_result *result, mt_err *err)
 {

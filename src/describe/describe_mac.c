@@ -11,7 +11,7 @@
 /* Modes of a reference that are compared at most: a table of more says nothing to anybody. */
 enum { REFERENCE_MODES = 24 };
 
-/* Whether it is the first goal that compares shapes of this configuration with that
+/* True where it is the first goal that compares shapes of this configuration with that
  * reference. */
 static bool is_first(const mt_problem *p, int i)
 {

@@ -42,7 +42,7 @@ static mt_dimension dimension_of(const mt_drive_positions *f)
     return f->angle ? MT_ANGLE : MT_LENGTH;
 }
 
-/* What its positions are shown in; NULL: SI. */
+/* The unit in which its positions are shown; NULL: SI. */
 static const mt_unit *shown_in(const described *d)
 {
     return mt_study_shown(d->fresh->p->study, dimension_of(d->drive_positions));
@@ -154,7 +154,7 @@ static mt_status examine(described *d, mt_err *err)
     return MT_OK;
 }
 
-/* What the samples say of the mode that comes nearest. */
+/* Text of the samples of the mode nearest to a band. */
 static const char *nearest_text(const described *d, const char *range)
 {
     const mt_drive_path *const m = &d->motion;

@@ -30,8 +30,8 @@ static mt_status analysis_at(judge *j, int configuration, int design, mt_analysi
     return MT_OK;
 }
 
-/* The same by the view that the goals use, which follows shapes where they dissolve; *found:
- * there is one. */
+/* The position of a named mode in the configuration as goals use it, which follows shapes where
+ * they mix; *found: there is one. */
 static mt_status viewed_at(judge *j, const mt_published *pub, const mt_analysis *a, int *pos,
                            bool *found, mt_err *err)
 {
@@ -125,7 +125,7 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
     return rc;
 }
 
-/* What the numbers of a parameter or a quantity are shown in; NULL: as they are. */
+/* The unit in which numbers of a parameter or a quantity are shown; NULL: unchanged. */
 static const mt_unit *shown_in(const mt_problem *p, const mt_published *pub)
 {
     return pub->kind == MT_PUBLISHED_PARAMETER ? mt_study_unit(p->study, pub->parameter)
@@ -168,7 +168,8 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
     return "";
 }
 
-/* A limit beside a published value is told; alone it stands in the value's place. */
+/* Text of the requirement: a limit beside a published value; a limit alone replaces the
+ * value. */
 static const char *requirement_of(const mt_published *pub, const mt_unit *unit, mt_arena *mem)
 {
     const bool shown = MT_HAS(pub->value);

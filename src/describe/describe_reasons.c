@@ -133,8 +133,8 @@ static double little_more(const mt_result_parameter *p, const char **text)
 }
 
 /* The variable that moves this frequency most, the first of equal ones, by a little more of it:
- * "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does by more than rounding, or it
- * has no slope of its own. */
+ * "; M_SAU moves it most, -0.0494 Hz for 1 % more". "": none does by more than rounding, or the
+ * frequency has no derivative. */
 static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
 {
     double most = 0.0;
@@ -157,8 +157,8 @@ static const char *lever_text(mt_sentences *s, const mt_result_frequency *f)
                            s->rec->parameters[lever].name, most, by);
 }
 
-/* How the frequency (over the tolerances: its worst) stands to the limit that is nearer, the
- * lower one where it is in the middle: "at its lower limit", "2 % below its lower limit of 7
+/* Text of the position of the frequency (over the tolerances: its worst) relative to the nearer
+ * limit, the lower one in the middle: "at its lower limit", "2 % below its lower limit of 7
  * Hz". */
 static void limit_text(const mt_result_frequency *f, char *text)
 {
@@ -208,7 +208,8 @@ static void requirement_text(const mt_result_frequency *f, char *text)
     }
 }
 
-/* Where a goal's frequency goes, what becomes of the requirement, and what moves it. */
+/* Write the change of a goal's frequency, how it meets the requirement, and the most
+ * influential variable. */
 static void write_frequency(mt_sentences *s, const mt_result_frequency *f)
 {
     char from[NUMBER_SIZE];
@@ -298,7 +299,7 @@ static void write_violations(mt_sentences *s)
     }
 }
 
-/* Where responses are off their measurements most. */
+/* Write where responses deviate most from their measurements. */
 static void write_lines(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_goals; i++) {
@@ -315,7 +316,7 @@ static void write_lines(mt_sentences *s)
     }
 }
 
-/* How much it shakes: texts begin with "the". */
+/* Write the forced responses; texts begin with "the". */
 static void write_responses(mt_sentences *s)
 {
     for (int i = 0; i < s->rec->n_responses; i++) {
@@ -330,8 +331,8 @@ static void write_responses(mt_sentences *s)
     }
 }
 
-/* Root mean square of what the weighted goals are off by in percent, each weighted as in the
- * study. */
+/* Write the root mean square deviation of the weighted goals in percent, each weighted as in
+ * the study. */
 static void write_misfit(mt_sentences *s)
 {
     int weighted = 0;
@@ -365,7 +366,7 @@ static const char *best_of(const mt_objective_stage *a)
     return mt_objective_is(a->type, MT_MAXIMISED) ? "greatest" : "least";
 }
 
-/* Among the kinds of design that keep clear of the bands. */
+/* Write the rank among mode placements that avoid the bands. */
 static void write_kind_rank(mt_sentences *s, const char *first)
 {
     const mt_mode_placement_result *const g = s->design->placements;
@@ -389,8 +390,8 @@ static void write_kind_rank(mt_sentences *s, const char *first)
     }
 }
 
-/* One design came out: where it is isolated, the only one found; else designs beside it meet
- * the goals, too, and it is the best near it. */
+/* Write that one design was found: where it is isolated, the only one; else nearby designs meet
+ * the goals, too, and it is the best of them. */
 static void write_only(mt_sentences *s, const mt_nlp_result *search, const char *first)
 {
     const char *const many = search->starts == 1 ? "" : "s";

@@ -113,7 +113,8 @@ static void write_short(mt_sentences *s, const mt_result_clearance *c)
     }
 }
 
-/* What is active or missed, each; of the rest the least, the first of equal ones. */
+/* Write each active or missed clearance, and the least of the others, the first of equal
+ * ones. */
 static void write_clearances(mt_sentences *s)
 {
     const mt_result_clearance *least = NULL;

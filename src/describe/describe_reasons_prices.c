@@ -30,15 +30,15 @@ static mt_price price_of(const mt_sentences *s, double df)
                       .first = s->design->stage == 0};
 }
 
-/* Prices are the slopes of a value at its optimum: this design has some. */
+/* True where the design has multipliers: slopes of an objective at its optimum. */
 static bool has_prices(const mt_sentences *s)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
     return ops->price != NULL && s->rec->feasible && mt_describe_is_optimum(s->rec);
 }
 
-/* Of the objective, what a change df of its value f is called: "the mass by 0.12 kg". NULL:
- * nothing but rounding, further than a slope tells, not known, or out of memory. */
+/* Text of a change df of the objective's value f: "the mass by 0.12 kg". NULL: only rounding,
+ * beyond the validity of a slope, not known, or out of memory. */
 static const char *worth(mt_sentences *s, double df)
 {
     const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
@@ -48,8 +48,8 @@ static const char *worth(mt_sentences *s, double df)
     return noise || !has_prices(s) ? NULL : ops->price(&q, &s->result->mem);
 }
 
-/* What a part of a requirement is worth, and which; slope: df by the logarithm of the
- * requirement. */
+/* Text of the gain from a relaxation of a requirement, and of its size; slope: df by the
+ * logarithm of the requirement. */
 static const char *price(mt_sentences *s, double slope, const char **part)
 {
     const char *text = NULL;
@@ -90,7 +90,7 @@ static void write_hardly(mt_sentences *s, const mt_requirement *d, const mt_resu
     }
 }
 
-/* What a little less of each requirement would save. */
+/* Write the gain from a small relaxation of each requirement. */
 static void say_requirements(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
@@ -119,7 +119,7 @@ static void say_requirements(mt_sentences *s)
     }
 }
 
-/* Edges of bands that hold modes. */
+/* Write the edges of bands that are active. */
 static void write_edges(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
@@ -142,7 +142,7 @@ static void write_edges(mt_sentences *s)
     }
 }
 
-/* Margins that hold modes at positions between the named ones: rows of the search, too. */
+/* Write margins that are active between the named positions: rows of the search, too. */
 static void write_between(mt_sentences *s)
 {
     mt_sentence_of(s, "cost", NULL);
@@ -165,7 +165,7 @@ static void write_between(mt_sentences *s)
     }
 }
 
-/* Limits likewise. */
+/* Write limits that are active between the named positions. */
 static void write_limits_between(mt_sentences *s)
 {
     for (const mt_at_position_price *h = s->design->at_position; h != NULL; h = h->next) {
@@ -200,8 +200,8 @@ static const char *margin_text(mt_sentences *s, const mt_result_parameter *p, do
                            unit != NULL ? unit : "", upper ? "higher" : "lower");
 }
 
-/* Where the objective tells: the multiplier, chained to the parameter, for the largest amount
- * that a slope tells. */
+/* Write the gain in the objective from moving a bound: the multiplier, converted to the
+ * parameter, for the largest change for which a slope is valid. */
 static void write_bound_price(mt_sentences *s, int i, double amount)
 {
     const mt_nlp_solution *const found = s->design->found;
@@ -220,7 +220,7 @@ static void write_bound_price(mt_sentences *s, int i, double amount)
     }
 }
 
-/* Where a frequency is missed: what the bound keeps it from. */
+/* Write the effect of moving a bound on a missed frequency. */
 static void write_bound_frequency(mt_sentences *s, int i, double amount,
                                   const mt_result_frequency *f)
 {

@@ -4,7 +4,7 @@
 
 #include "search/relaxation.h"
 
-/* Into result->relaxations, and a sentence for the status where there is a move. */
+/* Fill result->relaxations, and add a sentence to the status where a relaxation exists. */
 mt_status mt_describe_relaxations(const mt_problem *p, const mt_moves *moves, mt_result *result,
                                   mt_err *err);
 

@@ -111,7 +111,7 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
                                  mt_describe_response_kind(s), beside, where);
 }
 
-/* A failure leaves it without a value: what the goal says of it stands there. */
+/* Fill a response. A failure leaves it without a value: the text of the goal has the reason. */
 static mt_status look(mt_workspace *fresh, const mt_requirement *d, mt_arena *mem,
                       mt_result_response *out, mt_err *err)
 {

@@ -49,7 +49,7 @@ static bool is_variable(const mt_study *study, int parameter)
     return false;
 }
 
-/* What the model calls assumed: a reader of the answer has to know what it stands on. */
+/* List the values that the model marks as assumed, on which the answer depends. */
 static mt_status describe_assumptions(const mt_study *study, mt_result *result, mt_err *err)
 {
     const mt_model *const m = study->model;

@@ -12,7 +12,7 @@ static bool same(const char *a, const char *b)
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* Of a frequency they have been computed with it: NULL where its mode repeats. */
+/* Derivatives of a frequency, computed with it: NULL where its mode repeats. */
 static double *of_frequency(const mt_recommendation *rec, const mt_result_goal *g)
 {
     for (int i = 0; i < rec->n_frequencies; i++) {
@@ -25,7 +25,7 @@ static double *of_frequency(const mt_recommendation *rec, const mt_result_goal *
     return NULL;
 }
 
-/* Of what else is a number, from its own slope over t. */
+/* Derivatives of another value, from its slope over t. */
 static mt_status of_value(mt_workspace *fresh, const mt_requirement *d, mt_result *result,
                           mt_result_goal *g, mt_err *err)
 {

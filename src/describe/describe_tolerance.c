@@ -20,7 +20,7 @@ static const double MOST_PERCENT = 100.0;
  * boxes cost more and gain less. */
 enum { BOXES_FEW_VARIABLES = 64, BOXES_MANY_VARIABLES = 8, FEW_VARIABLES = 8 };
 
-/* Every band of a clear, by inertia, at the design that its analysis has been solved at. */
+/* Confirm every band of an avoid goal by inertia, at the last solved design of its analysis. */
 static mt_status confirm_here(mt_workspace *fresh, const mt_avoidance *c, mt_result *result,
                               bool *confirmed, mt_err *err)
 {
@@ -58,7 +58,7 @@ static mt_status confirm_corners(mt_workspace *fresh, const mt_avoidance *c, mt_
     return mt_analysis_solve(a, fresh->x, &opt, err);
 }
 
-/* Every band of every clear. */
+/* Confirm every band of every avoid goal. */
 static mt_status confirm(mt_workspace *fresh, mt_result *result, bool *confirmed, mt_err *err)
 {
     *confirmed = fresh->c->n_bands > 0;
@@ -126,7 +126,8 @@ static mt_status fill_box(mt_workspace *fresh, mt_proof *proof, const mt_recomme
     return MT_OK;
 }
 
-/* Boxes speak of bands and limits; a study with exact targets has none to speak of. */
+/* True where a tolerance box makes sense: there are bands or limits; exact targets have
+ * none. */
 static bool worth_a_box(const mt_problem *p)
 {
     bool limits = false;

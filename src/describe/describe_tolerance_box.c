@@ -22,8 +22,8 @@ mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err)
     return MT_OK;
 }
 
-/* How far a range falls short of a limit, relatively; negative: room is left. NaN where there
- * is no value somewhere. */
+/* Relative distance by which a range misses a limit; negative: margin left. NaN where a value
+ * is missing. */
 static double beyond(const mt_tolerance_range *r, mt_tolerance_side side, double limit,
                      const mt_requirement *d)
 {

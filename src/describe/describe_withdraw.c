@@ -18,7 +18,8 @@ bool mt_describe_is_doubted(const mt_result *result)
     return any;
 }
 
-/* What was proven rests on the readings that are not trusted: of any design of the study. */
+/* Withdraw the proven grade of a design: its proof rests on results that disagree, at any
+ * design of the study. */
 static void disgrade(mt_recommendation *rec)
 {
     rec->tolerance_box = NULL;

@@ -40,13 +40,13 @@ mt_status mt_file_failed(const char *path, int code, mt_err *err)
     return code == ENOMEM ? mt_fail_memory(err) : mt_locale_plain(say_failed, &f, err);
 }
 
-/* Errors that say of a name that it leads to nothing. */
+/* True for errors that mean that a name leads to nothing. */
 static bool is_absence(int code)
 {
     return code == ENOENT || code == ENOTDIR || code == ELOOP || code == ENAMETOOLONG;
 }
 
-/* Whether the resolved path lies beneath the resolved folder. */
+/* True where the resolved path lies beneath the resolved folder. */
 static bool beneath(const char *path, const char *folder)
 {
     const size_t n = strlen(folder);

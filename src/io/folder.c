@@ -102,7 +102,8 @@ static mt_status move(const replacement *r, const char *from, const char *to)
     return renameat(r->fd, from, r->fd, to) == 0 ? MT_OK : failed(r, to);
 }
 
-/* Of every file but the last, the one with this mark; the first failure counts, none stops. */
+/* Remove the copy with this mark of every file but the last; the first failure is returned,
+ * none stops the loop. */
 static mt_status sweep_up(const replacement *r, const char *mark)
 {
     mt_status rc = MT_OK;
@@ -158,7 +159,7 @@ static mt_status write_new(const replacement *r, const mt_folder_file *f)
     return closed || rc != MT_OK ? rc : failed(r, f->name);
 }
 
-/* What the new files will stand in the place of. A folder cannot be put aside: its removal
+/* Check the files to be replaced. A folder in their place cannot be put aside: its removal
  * would fail. */
 static mt_status look_first(const replacement *r)
 {
@@ -202,7 +203,7 @@ static mt_status put_aside(const replacement *r, const mt_folder_file *f)
     return fd >= 0 && (close(fd) == 0 || errno == EINTR) ? MT_OK : failed(r, f->name);
 }
 
-/* Everything up to the step that decides, and that step. */
+/* Everything up to and including the decisive step. */
 static mt_status exchange(const replacement *r)
 {
     const mt_folder_file *const last = &r->files[r->n - 1];
@@ -254,7 +255,7 @@ static mt_status go_back(const replacement *r)
     return take_away(r, marked(NEW, &r->files[r->n - 1]).s);
 }
 
-/* What a killed process left. */
+/* Recover from a killed process. */
 static mt_status recover(const replacement *r)
 {
     bool undecided = false;
@@ -290,8 +291,8 @@ static mt_status replace_locked(replacement *r)
     return rc;
 }
 
-/* A new folder is durable when the one that holds it is flushed; a file system that will not is
- * not argued with. */
+/* Make a folder. It is durable when its parent is flushed; file systems that cannot flush are
+ * accepted. */
 static mt_status make_folder(const char *path, mt_err *err)
 {
     if (mkdir(path, 0777) != 0) {
@@ -367,7 +368,7 @@ bool mt_folder_unfinished(const char *folder, const char *last)
     return there;
 }
 
-/* Whether what the descriptor holds is still what the path names. */
+/* True where the path still names the descriptor's folder. */
 static bool still_there(int fd, const char *folder)
 {
     struct stat held;

@@ -2,7 +2,7 @@
 #ifndef IO_IO_H
 #define IO_IO_H
 
-/* What other rooms take of this one. */
+/* The interface of this folder for the others. */
 #include "io/json.h"
 #include "io/options.h"
 #include "io/read_aircraft.h"

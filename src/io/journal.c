@@ -287,7 +287,7 @@ static int lock_folder(mt_journal *j, bool makes)
     return lock;
 }
 
-/* What stands at the path, under the folder's lock: to be gone on with. */
+/* Open the file at the path, under the folder's lock, to continue it. */
 static mt_journal_place go_on(mt_journal *j)
 {
     const int fd = mt_file_create(MT_FILE_HERE, j->path, true);
@@ -333,7 +333,7 @@ static bool rename_to(const mt_journal *j, const char *old)
     return renameat(AT_FDCWD, j->path, AT_FDCWD, old) == 0 && remove_file(j);
 }
 
-/* The same, to be put aside. */
+/* Put the file at the path aside, under the folder's lock. */
 static mt_journal_place put_aside(mt_journal *j)
 {
     mt_text old = {.s = NULL};
@@ -393,7 +393,7 @@ static int by_key(const void *a, const void *b)
     return strcmp(((const record *)a)->key, ((const record *)b)->key);
 }
 
-/* By key, each once; what has two records has none. */
+/* Sort records by key, each once; a key with two different records has none. */
 static void sort(mt_journal *j)
 {
     int kept = 0;

@@ -7,62 +7,62 @@
 #include "base/workers.h"
 
 /*
- * A ledger in files. A journal is text:
+ * A checkpoint store in files. A journal is text:
  *
  *     modetune-journal/1 SHA-256 of the identity
  *     | the identity, line by line: everything that the records follow from
  *     CHECK KEY WORD WORD ...
  *
- * with one line for each record: its words in hexadecimal digits, before them the first 16
- * digits of the SHA-256 of identity and the rest of the line. Lines are appended whole, so a
- * process that is killed at any moment leaves at most a last line that is not; a line that does
- * not check is no record, wherever it comes from. Records need not come in any order; of one
- * key that has two different records none counts.
+ * with one line per record: its words in hexadecimal digits, preceded by the first 16 digits of
+ * the SHA-256 of identity and rest of the line. Lines are appended whole, so a killed process
+ * leaves at most one incomplete line, the last. A line whose check fails is not a record.
+ * Records come in any order; two different records of one key are both ignored.
  */
 typedef struct mt_journal mt_journal;
 
-/* What a journal did. */
+/* Counters of a journal. */
 typedef struct mt_journal_counts {
     long known;   /* records that were read */
-    long used;    /* of them, those that were asked for */
-    long made;    /* new ones */
-    long written; /* of them, into the file */
-    long ignored; /* lines that are no record */
+    long used;    /* of these, records that were used */
+    long made;    /* new records */
+    long written; /* of these, written into the file */
+    long ignored; /* lines that are not records */
 } mt_journal_counts;
 
-/* identity: lines of text, kept until the end. Fails: MT_E_MEMORY. */
+/* identity: lines of text, kept until mt_journal_end. Fails: MT_E_MEMORY. */
 mt_status mt_journal_new(const char *identity, mt_journal **out, mt_err *err);
 /* Accepts NULL. */
 void mt_journal_delete(mt_journal *j);
-/* The records of a file join; one that ends within its head has none. Fails: MT_E_INPUT (no
- * journal; one of another question: what differs), MT_E_SYSTEM, MT_E_MEMORY. *foreign (may be
- * NULL): it fails because the same question was worked on by a processor that computes
- * otherwise; nothing of it is taken, and others may be read. */
+/* Add the records of a file; a file that ends within its head has none. Fails: MT_E_INPUT (not
+ * a journal, or one of another identity: the text gives the difference), MT_E_SYSTEM,
+ * MT_E_MEMORY. *foreign (may be NULL): it fails because a processor with different arithmetic
+ * worked on the same study; nothing of the file is used, and other files may be read. */
 mt_status mt_journal_read(mt_journal *j, const char *path, bool *foreign, mt_err *err);
-/* What stood where new records are to go. */
+/* The state of the path for new records. */
 typedef enum mt_journal_place {
-    MT_JOURNAL_NEW,       /* nothing */
-    MT_JOURNAL_CONTINUED, /* what has been read: they go behind it */
-    MT_JOURNAL_KEPT,      /* what is now called so with MT_JOURNAL_OLD behind its name */
-    MT_JOURNAL_HELD,      /* what another run writes: they go nowhere, and nothing is removed */
-    MT_JOURNAL_FAILED     /* what is no regular file, or cannot be had: the end tells why */
+    MT_JOURNAL_NEW,       /* no file */
+    MT_JOURNAL_CONTINUED, /* a file that has been read: records are appended */
+    MT_JOURNAL_KEPT,      /* another file, renamed with MT_JOURNAL_OLD appended */
+    /* a file that another run writes: records are not written, nothing is removed */
+    MT_JOURNAL_HELD,
+    MT_JOURNAL_FAILED /* not a regular file, or not accessible: mt_journal_end reports why */
 } mt_journal_place;
 #define MT_JOURNAL_OLD ".old"
 
-/* New records go to `path`, whose folder is made; the file is made with the first one, and held
- * until the end. adds: behind what is there, which has been read; else what is there is put
- * aside. Fails: MT_E_MEMORY. */
+/* Write new records to `path`, whose folder is made; the file is made with the first record and
+ * held until mt_journal_end. adds: append to the file there, which has been read; else rename
+ * that file. Fails: MT_E_MEMORY. */
 mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds,
                               mt_journal_place *place, mt_err *err);
-/* All of it, or (of parts) one part. Lives as long as the journal; not before everything has
- * been read. */
+/* The checkpoint store of the whole journal, or of one of `parts` parts. Lives as long as the
+ * journal; call it after all reading. */
 mt_checkpoint_store *mt_journal_checkpoint_store(mt_journal *j, int part, int parts);
 mt_journal_counts mt_journal_count(const mt_journal *j);
-/* Where records go there is a file from here on, also where there are none: of a part that is
- * done. What fails is told at the end. */
+/* Make the file for records now, even without any record: it marks a part that is done.
+ * mt_journal_end reports failures. */
 void mt_journal_begin(mt_journal *j);
-/* No more records: everything is written, and with `remove` the file that they went to goes.
- * Fails: MT_E_SYSTEM: what of them could not be written, or removed. */
+/* End the journal: everything is written, and with `remove` its file is removed. Fails:
+ * MT_E_SYSTEM: what could not be written or removed. */
 mt_status mt_journal_end(mt_journal *j, bool remove, mt_err *err);
 
 #endif

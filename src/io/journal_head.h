@@ -7,13 +7,14 @@
 #include "base/base.h"
 #include "base/text.h"
 
-/* The head of a journal (io/journal.h): format and digest of the identity, and the identity
- * behind bars. */
+/* The head of a journal (io/journal.h): format, digest of the identity, and the identity behind
+ * bars. */
 #define MT_JOURNAL_FORMAT "modetune-journal/1 "
 mt_text mt_journal_head(const char *identity, const char *sha256);
 
-/* MT_E_INPUT, with the first line of the identity in which another head differs that is not of
- * the processor, else (*foreign) with the first one. theirs: the lines behind bars. */
+/* MT_E_INPUT, naming the first line of the identity, other than those of the processor, in
+ * which another head differs; where only the processor differs (*foreign), its first line.
+ * theirs: the lines behind bars. */
 mt_status mt_journal_refuse(const char *identity, const char *path, const char *theirs,
                             bool *foreign, mt_err *err);
 

@@ -23,7 +23,7 @@
 /* LARGE: a text whose items are worth giving back to the system. */
 enum { CJSON_NUMBER_MOST = 63, CJSON_TYPE = 0xFF, LARGE = 1 << 20 };
 
-/* NULL for what is no address of a value. */
+/* The item of a value's address; NULL for other addresses. */
 static cJSON *item_of(const mt_json *doc, mt_addr value)
 {
     return doc->items != NULL && value >= 0 && value < doc->spots.n ? doc->items[value] : NULL;
@@ -59,7 +59,7 @@ static char *without_long_numbers(mt_json *doc, mt_arena *mem)
     return copy;
 }
 
-/* Address and item find each other. False where scanner and cJSON disagree: a bug. */
+/* Link addresses and items. False where scanner and cJSON disagree: a bug. */
 static bool link_items(mt_json *doc)
 {
     cJSON *outer[MT_JSON_MAX_DEPTH];

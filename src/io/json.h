@@ -9,16 +9,16 @@
 #include "base/text.h"
 
 /*
- * A JSON text, strictly RFC 8259: scanned first (io/scan.c validates everything and notes where
- * each value stands), then given to cJSON, which builds the values. Beyond the RFC these are
- * refused: a byte order mark, a name given twice in an object, U+0000 in a string, numbers
+ * A JSON text, strictly RFC 8259: scanned first (io/scan.c validates everything and records the
+ * place of each value), then parsed by cJSON, which builds the values. Also refused, beyond the
+ * RFC, are a byte order mark, a name given twice in an object, U+0000 in a string, numbers
  * outside the range of a double, nesting deeper than MT_JSON_MAX_DEPTH, more than
  * MT_JSON_MAX_BYTES bytes or MT_JSON_MAX_VALUES values.
  *
- * A value's address (mt_addr) is its index in document order; MT_JSON_ROOT is the whole.
- * Addresses that mt_json_name_addr makes stand for the member name in front of a value. Both
- * kinds go into diagnostics, so that those point at the place. Lines count from 1 and end at
- * LF, CR or CR LF; columns count UTF-8 code points from 1.
+ * A value's address (mt_addr) is its index in document order; MT_JSON_ROOT is the whole text.
+ * Addresses of mt_json_name_addr denote the member name in front of a value. Diagnostics take
+ * both kinds and give their places. Lines count from 1 and end at LF, CR or CR LF; columns
+ * count UTF-8 code points from 1.
  */
 enum {
     MT_JSON_ROOT = 0,
@@ -46,31 +46,31 @@ typedef struct mt_json mt_json;
  *                    NULL
  *   Fails: MT_E_INPUT when the text is not JSON (every problem is in mt_json_diags; the
  *   document then has no values and serves mt_json_report only), MT_E_MEMORY. A name given
- *   twice is a problem in mt_json_diags, but MT_OK: reading can go on, the later members of
- *   that name are passed over.
+ *   twice is a problem in mt_json_diags, but MT_OK: reading can go on, and later members of
+ *   that name are ignored.
  */
 mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *err);
 void mt_json_delete(mt_json *doc);
 
-/* The problems found in this document, by the parser and by whoever reads it on. Lives as long
- * as the document. */
+/* The problems found in this document by the parser and its readers. Lives as long as the
+ * document. */
 mt_diags *mt_json_diags(mt_json *doc);
 
 mt_json_type mt_json_type_of(const mt_json *doc, mt_addr value);
 /* "null", "true or false", "a number", "a string", "a list", "an object" */
 const char *mt_json_type_text(mt_json_type type);
-/* The value of a string (never NULL), number, true/false; only for values of that type. Numbers
- * are the nearest doubles whatever the locale. Strings live as long as the document. */
+/* The value of a string (never NULL), number or true/false; the value must have that type.
+ * Numbers are the nearest doubles in any locale. Strings live as long as the document. */
 const char *mt_json_string(const mt_json *doc, mt_addr value);
 double mt_json_number(const mt_json *doc, mt_addr value);
 bool mt_json_bool(const mt_json *doc, mt_addr value);
-/* Number of items of a list or members of an object, the first of them and, from each, the
- * next; MT_NO_ADDR at the end. */
+/* Number of items of a list or members of an object; the first of them; the next after one.
+ * MT_NO_ADDR at the end. */
 int mt_json_count(const mt_json *doc, mt_addr value);
 mt_addr mt_json_first(const mt_json *doc, mt_addr value);
 mt_addr mt_json_next(const mt_json *doc, mt_addr value);
 /* The member of that name (case-sensitive; the first of several); MT_NO_ADDR where there is
- * none or value is no object. O(members). */
+ * none or value is not an object. O(members). */
 mt_addr mt_json_member(const mt_json *doc, mt_addr value, const char *name);
 /* The name in front of a member's value; NULL for other values. */
 const char *mt_json_name(const mt_json *doc, mt_addr value);
@@ -78,8 +78,8 @@ const char *mt_json_name(const mt_json *doc, mt_addr value);
  * object's. */
 mt_addr mt_json_name_addr(const mt_json *doc, mt_addr value);
 
-/* Where the source text of a number or string (quotes included) begins, and one past its end:
- * for whoever replaces it. Offsets in bytes. False for values of other types. */
+/* Offsets in bytes of the beginning and the end (one past) of the source text of a number or
+ * string (quotes included). False for values of other types. */
 bool mt_json_span(const mt_json *doc, mt_addr value, size_t *begin, size_t *end);
 
 #endif

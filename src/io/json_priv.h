@@ -7,18 +7,18 @@
 #include "io/json.h"
 #include "io/scan.h"
 
-/* cJSON holds names, values and who is whose child; beside it stands only what it has no room
- * for: the text, where in it each value stands, and the way from an address to the item (back
- * it is the item's valueint, which nobody else uses). */
+/* cJSON holds names, values and the tree. This struct adds the text, the place of each value in
+ * it, and the map from addresses to items (the map back is the item's valueint, otherwise
+ * unused). */
 struct mt_json {
     mt_arena mem;
     mt_diags diags;
-    char *text; /* copy; a NUL stands behind it */
+    char *text; /* copy, followed by a NUL */
     size_t length;
     mt_json_spots spots;
     cJSON **items;     /* [spots.n]; NULL where the text is not JSON */
-    cJSON *tree;       /* the whole, without what was passed over */
-    cJSON *duplicates; /* a list of what was: members whose name the object has already */
+    cJSON *tree;       /* the whole document without duplicates */
+    cJSON *duplicates; /* members left out, as the object has their name already */
 };
 
 #endif

@@ -4,8 +4,8 @@
 
 #include "base/base.h"
 
-/* f(context, err) with this thread in the locale "C", whose decimal point the C library's
- * numbers then have; it keeps its own. Fails: as f, MT_E_MEMORY. */
+/* Call f(context, err) with this thread in the locale "C", so that numbers of the C library
+ * have its decimal point; then restore the thread's locale. Fails: as f, MT_E_MEMORY. */
 mt_status mt_locale_plain(mt_status (*f)(void *context, mt_err *err), void *context,
                           mt_err *err);
 

@@ -15,13 +15,13 @@
 mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena *mem,
                            mt_aircraft_list *out, mt_diagnostics *messages, mt_err *err);
 
-/* What the catalogue that is part of the program is called, and the options that read it from
- * there; text has to live as long. */
+/* Name of the catalogue built into the program, and the options that read it; text must live as
+ * long as the options. */
 extern const char mt_aircraft_own_name[];
 mt_io_options mt_aircraft_own(mt_file_text *text);
 
-/* The tables of keys of a catalogue of aircraft, for the test that holds them to the JSON
- * Schema; *n their number. */
+/* The key tables of a catalogue of aircraft, for the test that compares them with the JSON
+ * Schema; *n is their number. */
 const mt_key_table *const *mt_aircraft_key_tables(int *n);
 
 #endif

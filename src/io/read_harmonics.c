@@ -34,7 +34,7 @@ const char *mt_read_multiple_meant(const mt_reader *r, const char *text, char le
                                            : NULL;
 }
 
-/* A bare number: of which rotor nobody knows. */
+/* Refuse a bare number: its rotor is not known. */
 static void refuse_number(mt_reader *r, mt_addr at)
 {
     const char *const main_rotor =

@@ -6,7 +6,7 @@
 #include "io/options.h"
 #include "study/measurement.h"
 
-/* A file of measurements is at most so long. */
+/* Largest size of a file of measurements. */
 enum { MT_MEASUREMENT_MAX_BYTES = 1 << 28 };
 
 /**
@@ -14,13 +14,13 @@ enum { MT_MEASUREMENT_MAX_BYTES = 1 << 28 };
  * which begins with a line "-1".
  *
  * A table has a line of names, then a line for each frequency: frequency_hz; real and imag, or
- * magnitude and phase_deg; and if need be coherence, input, output, configuration and unit,
- * which say of what it is. Other columns are skipped, so is what begins with #. Fields are
- * separated by commas, semicolons or tabs, and quoted as RFC 4180 says; without commas between
- * them numbers may have one for a point. What `response` writes is such a table.
+ * magnitude and phase_deg; and optionally coherence, input, output, configuration and unit,
+ * which identify the response. Other columns and lines that begin with # are skipped. Fields
+ * are separated by commas, semicolons or tabs, and quoted as in RFC 4180; where commas do not
+ * separate, numbers may have decimal commas. `response` writes such tables.
  *     A universal file: complex data, in text or binary (58b, IEEE), at even or uneven
- * frequencies; units by dataset 164, signs of directions taken into the values.
- * Frequencies ascend within a response; a line at 0 Hz is left out.
+ * frequencies; units by dataset 164, signs of directions taken into the values. Frequencies
+ * ascend within a response; a line at 0 Hz is left out.
  * @param[in,out] out  gets responses, in mem, and `read`
  * @param[out] sha256  [MT_SHA256_TEXT] of the file
  * Fails: MT_E_INPUT with line and column in messages and err, as mt_files_read, MT_E_MEMORY.

@@ -59,7 +59,8 @@ static void skip_blanks(const table *t)
     }
 }
 
-/* Behind the quote: what it holds moves to `to`, where it ends. */
+/* Read a quoted field from after its quote; its content moves to `to`, which ends at its
+ * end. */
 static mt_status read_quoted(const table *t, char **to)
 {
     mt_measuring *const m = t->m;
@@ -108,7 +109,7 @@ static mt_status read_bare(const table *t, char **to)
     return MT_OK;
 }
 
-/* A field, and over what ends it; *last: that was the end of the line. */
+/* Read a field and skip its separator; *last: true at the end of the line. */
 static mt_status read_field(const table *t, field *out, bool *last)
 {
     mt_measuring *const m = t->m;
@@ -127,7 +128,7 @@ static mt_status read_field(const table *t, field *out, bool *last)
     return MT_OK;
 }
 
-/* Over comments and empty lines; false: there is nothing more. */
+/* Skip comments and empty lines; false: end of the text. */
 static bool next_line(const table *t)
 {
     mt_measuring *const m = t->m;
@@ -161,7 +162,8 @@ static mt_status read_record(table *t, int *n)
     return MT_OK;
 }
 
-/* What the line of names has more of, outside of quotes, separates. */
+/* The separator: the candidate that is most frequent in the line of names, outside of
+ * quotes. */
 static char separator_of(const mt_measuring *m)
 {
     static const char known[] = ",;\t";
@@ -310,8 +312,8 @@ static const char *keep(const table *t, int column)
 
 enum { RESPONSES_MOST = 10000 };
 
-/* The response that the line belongs to: mostly that of the line before. NULL, told: there is
- * none and cannot be one. */
+/* The response of the line, mostly that of the line before, else a new one. Fails: MT_E_INPUT
+ * (too many). */
 static mt_status response_of(table *t, mt_measured_response **out)
 {
     mt_measuring *const m = t->m;

@@ -92,7 +92,7 @@ static bool is_delimiter(const char *s)
     return s[0] == '-' && s[1] == '1' && s[2 + strspn(s + 2, " \t")] == '\0';
 }
 
-/* True where the line that `at` is in, from here on, is a delimiter. It is not changed. */
+/* True where the line of `at`, from there on, is a delimiter. `at` is not changed. */
 static bool at_delimiter(const mt_measuring *m)
 {
     const char *s = m->at + strspn(m->at, " \t"); /* a NUL ends the text */
@@ -145,7 +145,7 @@ static mt_status integer(const reading *u, const record *r, int from, int width,
     return MT_OK;
 }
 
-/* Columns are characters where somebody writes UTF-8 into a label. */
+/* Copy a label by columns, which are characters where it is UTF-8. */
 static void text_of(const record *r, int from, int width, char out[UNIT_TEXT])
 {
     int length = 0;
@@ -203,7 +203,7 @@ static mt_status read_form(const reading *u, const record *r, header *h)
                                      "the number of values must be from 0 to %d", VALUES_MOST);
 }
 
-/* Or nothing that is known to be another unit. */
+/* True where the unit is Hz, or not known to be another one. */
 static bool is_hertz(const char *unit)
 {
     static const char *const turns[] = {"rpm", "RPM", "cpm", "CPM", "1/min", "orders"};
@@ -329,7 +329,8 @@ static ptrdiff_t bytes_of(const header *h)
     return h->binary ? size * h->count * per_value(h) : 0;
 }
 
-/* Those, or as many as were told, where the last block is filled up. */
+/* Bytes to skip: those of the values, or the stated number where the last block is filled
+ * up. */
 static ptrdiff_t bytes_to_pass(const reading *u, const header *h)
 {
     const ptrdiff_t needed = bytes_of(h);
@@ -553,7 +554,7 @@ static mt_status read_dataset(reading *u)
     return is_delimiter(r.text) ? MT_OK : skip_dataset(u);
 }
 
-/* What it has instead of what was asked for. */
+/* Refuse a file without frequency responses, with its contents. */
 static mt_status refuse_contents(const reading *u)
 {
     mt_measuring *const m = u->m;

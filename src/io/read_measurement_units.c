@@ -45,7 +45,7 @@ static const quantity *find_quantity(const char *si)
     return NULL;
 }
 
-/* NULL: it is not said, or nothing that a port has. */
+/* Quantity of a code; NULL: not given, or not a quantity of a port. */
 static const quantity *quantity_of_code(int code, bool turns)
 {
     return code == FORCE || code == REACTION ? find_quantity(turns ? "N m" : "N")
@@ -66,8 +66,8 @@ static bool is_none(const char *label)
     return false;
 }
 
-/* True where the label is a unit of top/bottom (bottom NULL: of top), by any reading; *factor:
- * what it is worth. */
+/* True where the label is a unit of top/bottom (bottom NULL: of top), in any notation; *factor:
+ * its factor to SI. */
 static bool is_unit_of(const char *label, const quantity *top, const quantity *bottom,
                        double *factor)
 {
@@ -96,7 +96,7 @@ static bool is_unit(const char *label)
     return mt_unit_read(label, MT_READ_MASSES, &is);
 }
 
-/* What labels alone say that is measured. */
+/* Guess the measured quantities from the labels alone. */
 static void guess(const mt_measured_labels *l, const quantity **top, const quantity **bottom)
 {
     double factor = 1.0;
@@ -117,7 +117,7 @@ static void guess(const mt_measured_labels *l, const quantity **top, const quant
     }
 }
 
-/* The file's unit is one that is not known, or none of what it says. */
+/* Set the factor to unknown because of this unit of the file. */
 static void refuse(mt_measuring *m, mt_measured_response *r, const char *label,
                    const char *against)
 {
@@ -126,15 +126,15 @@ static void refuse(mt_measuring *m, mt_measured_response *r, const char *label,
     r->against = against;
 }
 
-/* What a number of the file's own units is in SI: 1 where no dataset 164 says. */
+/* Factor from the file's own units to SI: 1 without a dataset 164. */
 static double factor_of_file(const mt_measured_labels *l, const quantity *q)
 {
     return isfinite(l->length) ? 1.0 / (pow(l->length, q->length) * pow(l->force, q->force))
                                : 1.0;
 }
 
-/* The factor that the labels say, of what they leave out that of the file; NaN, and what is
- * wrong in r: they are no such units. */
+/* The factor of the labels, of missing ones that of the file; NaN where they are not such
+ * units, with the reason in r. */
 static double factor_of_labels(mt_measuring *m, const mt_measured_labels *l,
                                const quantity *top, const quantity *bottom,
                                mt_measured_response *r)

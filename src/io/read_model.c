@@ -319,7 +319,7 @@ static void note_places(mt_model_reader *mr)
     mt_arena_rewind(&m->mem, mark);
 }
 
-/* The model as if its file gave these parameters these values. */
+/* Set parameters of the model as if its file gave these values. */
 static void set(mt_model_reader *mr, int n, const mt_setting *settings)
 {
     mt_model *const m = mr->m;
@@ -399,7 +399,7 @@ static int by_parameter(const void *a, const void *b)
     return (x->parameter > y->parameter) - (x->parameter < y->parameter);
 }
 
-/* What is asked for instead of values of this model, by their parameters. */
+/* Read overrides of this model's parameters. */
 static mt_status read_settings(mt_model *m, const mt_overrides *asked, mt_setting **out,
                                mt_err *err)
 {
@@ -414,7 +414,7 @@ static mt_status read_settings(mt_model *m, const mt_overrides *asked, mt_settin
     return rc;
 }
 
-/* The file once more, as if it gave the values that are asked for; *doc is another then. */
+/* Read the file again with the overridden values; *doc is then another document. */
 static mt_status read_with_settings(const mt_file *file, const char *path,
                                     const mt_overrides *asked, mt_json **doc, mt_model **model,
                                     mt_err *err)

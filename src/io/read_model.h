@@ -17,11 +17,11 @@
  */
 mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
                         mt_diagnostics *messages, mt_err *err);
-/* The same from a document that is parsed already; problems go to its diagnostics. `file` names
- * it in err and in the model. */
+/* As mt_model_load, from a parsed document; problems go to its diagnostics. `file` names it in
+ * err and in the model. */
 mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err);
 
-/* All key tables of a model file, `what` being the name of the definition in the schema; *n
+/* All key tables of a model file, `what` being the name of the definition in the schema; *n is
  * their number. */
 const mt_key_table *const *mt_model_key_tables(int *n);
 

@@ -127,7 +127,7 @@ static bool is_point(const mt_model_reader *mr, mt_addr value)
     return found;
 }
 
-/* Whether a list of two strings is one of two points, and not of two expressions. In three
+/* True where a list of two strings is one of two points, and not of two expressions. In three
  * dimensions only points can be meant. */
 static bool names_two_points(mt_model_reader *mr, mt_addr list)
 {

@@ -4,7 +4,7 @@
 
 #include "io/reader.h"
 
-/* What the files read_model*.c share: the reader and the model that it fills. */
+/* Shared by the files read_model*.c: the reader and the model that it fills. */
 typedef struct mt_model_reader {
     mt_reader r;
     mt_model *m;
@@ -39,30 +39,31 @@ extern const mt_key_table mt_damping_keys;
 
 /* A number or expression of the model's parameters; MT_ABSENT where absent or wrong. */
 mt_num mt_read_num(mt_model_reader *mr, mt_addr value);
-/* The same, a bare number in this unit; NULL: SI. */
+/* As mt_read_num, a bare number in this unit; NULL: SI. */
 mt_num mt_read_num_in(mt_model_reader *mr, mt_addr value, const mt_unit *unit);
-/* A list of least..most entries, each a number; *n their number (0 where absent or wrong). A
- * single number gives a list of one where `single` says so. */
+/* A list of least..most entries, each a number; *n is their number (0 where absent or wrong).
+ * With `single` a single number gives a list of one. */
 mt_num *mt_read_nums(mt_model_reader *mr, mt_addr value, bool single, int least, int most,
                      int *n);
-/* As many numbers as the model has dimensions; false (x all absent) where absent or wrong. */
+/* As many numbers as the model has dimensions; false (all x absent) where absent or wrong. */
 bool mt_read_vector(mt_model_reader *mr, mt_addr value, mt_num x[3]);
-/* Such numbers in the file's unit of lengths. */
+/* As mt_read_vector, in the file's unit of length. */
 bool mt_read_coordinates(mt_model_reader *mr, mt_addr value, mt_num x[3]);
 /* The name of a point, or coordinates. An absent one has point MT_ABSENT and given false. */
 mt_position mt_read_position(mt_model_reader *mr, mt_addr value);
-/* One position, or the pair of positions on two bodies; their number. */
+/* One position, or the pair of positions on two bodies; returns their number. */
 int mt_read_at(mt_model_reader *mr, mt_addr value, mt_position at[2]);
-/* Two names of what stands where a body may; names NULL where absent or wrong. */
+/* Two names of bodies or links; names NULL where absent or wrong. */
 void mt_read_bodies(mt_model_reader *mr, mt_addr value, mt_attach bodies[2]);
 mt_presence mt_read_presence(mt_model_reader *mr, mt_addr value);
 
-/* The unit of a parameter's number, and that of its value, which is of SI. */
+/* Set the unit of a parameter's number, and that of its value, which is in SI. */
 void mt_read_parameter_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p);
-/* When all but the configurations is read: what "g" means of each parameter, by its uses; and
- * units of parameters that do not measure what the members do that they are the values of. */
+/* Called when all but the configurations is read: decide the meaning of "g" for each parameter
+ * by its uses, and note units of parameters that do not fit the members that use them. */
 void mt_read_settle_units(mt_model_reader *mr);
-/* When all is read: numbers whose units are not those of their members (unit_warning). */
+/* Called when all is read: warn of numbers whose units are not those of their members
+ * (unit_warning). */
 void mt_read_warning_units(mt_model_reader *mr);
 
 void mt_read_links(mt_model_reader *mr, mt_addr list);
@@ -72,7 +73,7 @@ void mt_read_loads(mt_model_reader *mr, mt_addr list);
 void mt_read_sensors(mt_model_reader *mr, mt_addr list);
 void mt_read_modes(mt_model_reader *mr, mt_addr object);
 void mt_read_configurations(mt_model_reader *mr, mt_addr object);
-/* Of the model, or of a configuration; an absent one is not given. */
+/* The damping of the model or of a configuration; an absent one is marked as not given. */
 mt_damping mt_read_damping(mt_model_reader *mr, mt_addr object);
 
 #endif

@@ -38,8 +38,8 @@ static const char *find_kin(const mt_unit_worth *said, char kin[KIN_TEXT])
     return NULL;
 }
 
-/* What to write for a unit that has no such name here, but is one, in out[HINT_TEXT]. False: it
- * cannot be read. */
+/* The correct form of a unit with an unknown notation, in out[HINT_TEXT]. False: it cannot be
+ * interpreted. */
 static bool name_of_unit(const char *text, char out[HINT_TEXT])
 {
     char kin[KIN_TEXT];
@@ -146,9 +146,8 @@ static const char *member_of(const mt_model_reader *mr, mt_addr value)
     return mt_json_name(mr->r.doc, value);
 }
 
-/* The unit of what a number has to measure: by the member that it is the value of, or, as the
- * value of a parameter (MT_ABSENT: of none), that of the parameter; perhaps in text. NULL:
- * nobody says. */
+/* The unit that a number must have: that of its member, or, as the value of a parameter
+ * (MT_ABSENT: of none), that of the parameter; perhaps in text. NULL: not known. */
 static const char *unit_of_number(const mt_model_reader *mr, const mt_number *number,
                                   int parameter, char text[MEMBER_UNIT])
 {
@@ -193,8 +192,8 @@ static bool is_gram(const mt_parameter *p)
 /* How many numbers that are masses, accelerations, or neither a parameter is part of. */
 enum { USES_MASS, USES_ACCELERATION, USES_OTHER, USES };
 
-/* Masses and what is made of them alone have no time in them, accelerations no mass; forces,
- * and what is not known, may be of either. */
+/* Count the uses of parameters in "g": uses of masses have no time in their dimension,
+ * accelerations no mass; forces and unknown uses fit both. */
 static void count_uses(const mt_model_reader *mr, const mt_number *number, int owner,
                        int (*uses)[USES])
 {
@@ -299,7 +298,7 @@ void mt_read_settle_units(mt_model_reader *mr)
     }
 }
 
-/* An expression that says what it measures. */
+/* True where the expression contains a parameter or a constant with a dimension. */
 static bool has_unit(const mt_expr *e)
 {
     for (int i = 0; i < e->length; i++) {
@@ -343,14 +342,14 @@ static const char *name_of_powers(const mt_unit_worth *is, char text[MEMBER_UNIT
     return text;
 }
 
-/* Between rad/s and Hz lies a factor of 2 pi, which an expression may have. */
+/* True where the units are rad/s and Hz: an expression may contain their factor 2 pi. */
 static bool is_turned(const char *a, const char *b)
 {
     return strcmp(a, "rad/s") == 0 && (strcmp(b, "Hz") == 0 || strcmp(b, "1/s") == 0);
 }
 
-/* [n_nums] moments of inertia of bodies whose mass is written as a number: it may be one of the
- * expression's factors, or the 1 that nobody writes, as in a^2/12. NULL where memory is out. */
+/* [n_nums] moments of inertia of bodies whose mass is written as a number: the mass may be a
+ * factor of the expression, or an omitted 1, as in a^2/12. NULL where memory is out. */
 static bool *find_numbered_masses(mt_model *m)
 {
     bool *const numbered = mt_arena_alloc(&m->mem, (size_t)m->n_nums, sizeof *numbered);

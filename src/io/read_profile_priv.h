@@ -4,13 +4,13 @@
 
 #include "io/read_profile.h"
 
-/* What the files read_profile*.c share. */
+/* Shared by the files read_profile*.c. */
 typedef struct mt_read_profile {
     mt_reader r;
     mt_vibration *v;
     mt_io_options files;
-    mt_diagnostics *others; /* of the catalogue of aircraft */
-    mt_status failed;       /* why that could not be read */
+    mt_diagnostics *others; /* diagnostics of the catalogue of aircraft */
+    mt_status failed;       /* reason of failing to read the catalogue */
     mt_err why;
 } mt_read_profile;
 
@@ -28,12 +28,12 @@ extern const mt_key_table mt_profile_tail_keys;
 double mt_read_profile_number(mt_reader *r, mt_addr value);
 /* [lower, upper]; false where absent, or wrong (noted). */
 bool mt_read_profile_pair(mt_reader *r, mt_addr value, double *lower, double *upper);
-/* Which of two members, neighbours in the table, an object has; MT_ABSENT where both or none
- * (noted). */
+/* The one of two members, neighbours in the table, that an object has; MT_ABSENT where both or
+ * none (noted). */
 int mt_read_profile_one_of(mt_reader *r, mt_addr object, const mt_key_table *table, int first);
-/* MT_NO_ADDR: a rotor without anything. */
+/* Read a rotor. MT_NO_ADDR: one without members. */
 void mt_read_profile_rotor(mt_reader *r, mt_addr value, mt_rotor *rotor);
-/* The catalogue, where a tone needs one or the profile names one. */
+/* Read the catalogue where a tone needs one or the profile names one. */
 void mt_read_profile_aircraft(mt_read_profile *p, mt_addr value);
 
 #endif

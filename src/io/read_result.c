@@ -366,7 +366,7 @@ static void check_trade(result_reader *s, mt_addr trade)
     }
 }
 
-/* They are looked at: few, and where they are said to be. */
+/* Check the outputs: few, and with valid places. */
 static void check_outputs(result_reader *s, mt_addr list)
 {
     mt_items items = mt_reader_items(&s->r, list);
@@ -474,7 +474,8 @@ static mt_status load_alone(const char *path, const mt_io_options *opt, mt_resul
     return MT_OK;
 }
 
-/* Read once more while no run writes: what did not fit together may have been half replaced. */
+/* Read again under the folder's lock: files that did not match may have been in the middle of a
+ * replacement. */
 static mt_status load_locked(const char *path, const mt_io_options *opt, mt_result **out,
                              mt_diagnostics *messages, mt_err *err)
 {

@@ -8,16 +8,16 @@
 #include "result/result.h"
 
 /**
- * Read a result file back, whole: writing it again gives the same bytes. A result.json in its
- * folder is read only where the files beside it belong to it; a run that is just replacing them
- * is waited for. Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM,
- * MT_E_MEMORY; messages as for mt_model_load.
+ * Read a whole result file: writing it again gives the same bytes. A result.json in its folder
+ * is read only where the other files there match it; a run that is replacing them is waited
+ * for. Owned by the caller (mt_result_delete). Fails: MT_E_INPUT, MT_E_SYSTEM, MT_E_MEMORY;
+ * messages as for mt_model_load.
  */
 mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
                          mt_diagnostics *messages, mt_err *err);
 
-/* True where the document is an object. Where it does not say that it is a result, that is
- * noted. */
+/* True where the document is an object whose "format" is not another text than that of a
+ * result; a missing one is noted. */
 bool mt_result_check_format(mt_reader *r);
 
 #endif

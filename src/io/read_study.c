@@ -129,7 +129,7 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
     }
 }
 
-/* What is asked for instead of values of a model is of the study's own. */
+/* Load a model; overrides apply to the study's own only. */
 static mt_model *load_model(mt_study_reader *s, mt_name path)
 {
     const mt_name own = s->study->model_path;
@@ -240,8 +240,7 @@ static void note_settings(mt_study_reader *s)
     }
 }
 
-/* A member of the search as the study says, or as it is asked for; `none`: not said, not asked
- * for. */
+/* A number of the search, overridden or as in the study; `none`: neither. */
 static long ask(mt_study_reader *s, const char *name, long said, long asked, long none)
 {
     if (asked == none) {
@@ -327,7 +326,8 @@ static void note_place(mt_study_reader *s, mt_addr addr)
     study->places = places;
 }
 
-/* The document is gone when the study is held against its model. */
+/* Keep the places of members: the document is deleted before the study is checked with its
+ * model. */
 static void note_places(mt_study_reader *s)
 {
     mt_study *const study = s->study;

@@ -36,7 +36,7 @@ static bool has(const reading *g, mt_goal_slot slot)
     return at >= 0 && mt_read_study_has(g->s, &g->o, at);
 }
 
-/* Where the member stands; the goal where it does not. */
+/* Address of the member; that of the goal where it is absent. */
 static mt_addr place(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
@@ -185,7 +185,7 @@ static const mt_key_table *table_of(mt_study_reader *s, mt_addr value)
     return which == MT_ABSENT ? NULL : &mt_study_goal_keys[which];
 }
 
-/* Numbers that an expression is held against. */
+/* Check the limits of an expression. */
 static void check_requirements(const reading *g)
 {
     static const mt_goal_slot slots[] = {MT_SLOT_EQUALS, MT_SLOT_AT_LEAST, MT_SLOT_AT_MOST};
@@ -194,7 +194,7 @@ static void check_requirements(const reading *g)
     }
 }
 
-/* Every member that the kind has, by where it goes. */
+/* Read every member of the kind into its slot. */
 static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
 {
     reading g = {.s = s, .goal = goal};

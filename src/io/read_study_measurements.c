@@ -40,7 +40,7 @@ static void load(mt_study_reader *s, mt_measurement *m)
     free(joined);
 }
 
-/* A freedom of the test; noted where it is none. */
+/* Read a freedom of the test; noted where invalid. */
 static mt_name read_freedom(mt_study_reader *s, mt_addr value)
 {
     mt_measured_freedom f;

@@ -57,7 +57,7 @@ static void read_minimise(mt_study_reader *s, mt_addr value, mt_objective *o)
     }
 }
 
-/* What is maximised is one of the words. */
+/* Read what is maximised: one of the words. */
 static void read_maximise(mt_study_reader *s, mt_addr value, mt_objective *o)
 {
     mt_objective_type types[MT_OBJECTIVE_TYPE_COUNT];

@@ -53,7 +53,7 @@ static void read_mode(mt_study_reader *s, mt_addr value, bool mac, mt_published 
     }
 }
 
-/* What is published. */
+/* Read the published quantity. */
 static void read_subject(mt_study_reader *s, const mt_study_object *o, mt_published *p)
 {
     int n = 0;

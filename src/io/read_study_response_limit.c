@@ -27,7 +27,7 @@ static mt_addr found(const reading *g, mt_goal_slot slot)
     return at < 0 ? MT_NO_ADDR : g->o->found[at];
 }
 
-/* Where the member stands; the goal where it does not. */
+/* Address of the member; that of the goal where it is absent. */
 static mt_addr place(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
@@ -41,13 +41,14 @@ static mt_name name_at(const reading *g, mt_goal_slot slot)
     return name;
 }
 
-/* A name, no path: of a profile that is part of the program, where there is no such file. */
+/* True where the text is a name, not a path, of a profile built into the program, and no such
+ * file exists. */
 static bool is_shipped(const mt_study_reader *s, const char *name, const char *file)
 {
     return strpbrk(name, "/.") == NULL && mt_files_lack(&s->files.files, file);
 }
 
-/* The one of that name; NULL: there is none (noted, with the nearest). */
+/* The built-in profile of that name; NULL: none (noted, with the nearest). */
 static const mt_shipped *shipped(mt_study_reader *s, mt_name name)
 {
     const char *const path = mt_arena_printf(s->r.mem, "%s%s%s", SHIPPED, name.s, ENDING);

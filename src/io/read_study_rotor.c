@@ -60,8 +60,8 @@ static bool times_rpm(const char *text)
     return false;
 }
 
-/* A speed per minute [Hz]. One that is turned into Hz there would be a sixtieth of what is
- * meant, and be answered. */
+/* Read a speed per minute, in Hz. An expression there that converts to Hz itself is refused:
+ * the result would be a sixtieth of the intended speed. */
 static double read_rpm(mt_study_reader *s, const mt_study_object *o, int key, mt_addr *place)
 {
     const mt_addr at = o->found[key];
@@ -182,7 +182,7 @@ static mt_name beside_model(mt_study_reader *s)
     return path;
 }
 
-/* The one that is part of the program. */
+/* Load the catalogue built into the program. */
 static void load_own(mt_study_reader *s)
 {
     mt_file_text text;

@@ -25,7 +25,7 @@ static bool is_bare(const mt_study_reader *s, mt_addr value)
            mt_json_number(s->r.doc, value) != 0.0;
 }
 
-/* Whether the study says units other than SI. */
+/* True where the study gives units other than SI. */
 static bool says_units(const mt_study *study)
 {
     bool says = false;
@@ -35,7 +35,8 @@ static bool says_units(const mt_study *study)
     return says;
 }
 
-/* Whether the study's units hold for it nobody knows. */
+/* Note a bare number for a parameter of unknown unit: it is not known whether the study's units
+ * apply to it. */
 static void check_known(mt_study_reader *s, mt_addr value, int parameter)
 {
     const mt_parameter *const p = &s->study->model->parameters[parameter];

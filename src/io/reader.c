@@ -201,7 +201,7 @@ bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt
     return true;
 }
 
-/* What it was matched with; NULL: nothing, or too long ago. */
+/* The key that the member was matched with; NULL: none, or too long ago. */
 static const mt_key *key_of(const mt_reader *r, mt_addr value)
 {
     for (unsigned i = 0; i < MT_MATCHED && i < r->n_matched; i++) {
@@ -502,7 +502,7 @@ bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback)
     return mt_reader_type(r, value, MT_KEY_BOOL) ? mt_json_bool(r->doc, value) : fallback;
 }
 
-/* "10 %" where the number is one of per cent: dividing it by 100 would be wrong. */
+/* Note "10 %" for a number in per cent: the value divided by 100 would be wrong. */
 static bool says_percent(mt_reader *r, mt_addr value, const char *text)
 {
     static const char PERCENT[] = "_percent";

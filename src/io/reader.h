@@ -8,16 +8,16 @@
 #include "model/model.h"
 
 /*
- * What the readers of models and studies share: objects are checked against tables of keys,
- * values against types; every problem is noted (mt_json_diags) and reading goes on. A problem
- * that a JSON Schema can see as well (unknown or missing member, wrong type, wrong choice, bad
- * form of a name, wrong count where it is fixed) is noted by mt_diag_structure, others by
- * mt_diag_error: schema and reader agree on the former. An address MT_NO_ADDR stands for "not
- * given" and is accepted everywhere: the answer is then the default that each function names,
+ * Shared by the readers of models and studies. Objects are checked against key tables, values
+ * against types; every problem is noted (mt_json_diags) and reading goes on. A problem that a
+ * JSON Schema can see as well (unknown or missing member, wrong type, wrong choice, bad form of
+ * a name, wrong count where it is fixed) is noted by mt_diag_structure, others by
+ * mt_diag_error: schema and reader agree on the former. The address MT_NO_ADDR means "not
+ * given" and is accepted everywhere: the result is then the default that each function names,
  * without a message.
  */
-/* The members that were matched last, with their rows: objects lie in each other, and each
- * reads its numbers soon after it was matched. */
+/* The members matched last, with their rows. Objects are nested, and each reads its numbers
+ * soon after it was matched. */
 enum { MT_MATCHED = 256 };
 struct mt_key;
 typedef struct mt_matched {
@@ -28,19 +28,19 @@ typedef struct mt_matched {
 typedef struct mt_reader {
     mt_json *doc;
     mt_diags *diags;       /* of doc */
-    mt_arena *mem;         /* what is read is copied into it */
-    mt_expr_lookup lookup; /* parameters of expressions; NULL: none known */
+    mt_arena *mem;         /* owns copies of what is read */
+    mt_expr_lookup lookup; /* parameters of expressions; NULL: none */
     const void *context;
     const char *const *names; /* candidates for "did you mean" in expressions */
     int n_names;
-    mt_kind_lookup kinds; /* of the parameters, with the context of lookup */
+    mt_kind_lookup kinds; /* kinds of the parameters, with the context of lookup */
     mt_matched matched[MT_MATCHED];
-    unsigned n_matched;            /* so far; the last ones are kept */
-    mt_warning_list *warning_list; /* of mt_reader_check_range; NULL: warned of at once */
-    mt_accepted accepted;          /* names of warnings that are not told at once */
+    unsigned n_matched;            /* number matched so far; the last ones are kept */
+    mt_warning_list *warning_list; /* of mt_reader_check_range; NULL: warn at once */
+    mt_accepted accepted;          /* accepted warnings, where warnings are given at once */
 } mt_reader;
 
-/* id, JSON types, what a message calls it */
+/* id, JSON types, name in messages */
 #define MT_KEY_TYPE_LIST(X)                                                                    \
     X(MT_KEY_ANY, 63, "any value")                                                             \
     X(MT_KEY_TEXT, MT_JSON_STRING, "a string")                                                 \
@@ -68,18 +68,17 @@ typedef struct mt_key {
     const char *name;
     mt_key_type type;
     bool required;
-    mt_possible_id possible; /* of its numbers; MT_POSSIBLE_NONE: it has none */
+    mt_possible_id possible; /* row of its numbers; MT_POSSIBLE_NONE: no numbers */
 } mt_key;
 
-/* The last columns of a table of keys: required, and of a member that holds numbers which row
- * of model/possible.h they have. */
+/* The last columns of a key table: required, and for members with numbers their row of
+ * model/possible.h. */
 #define MT_KEY_REST(...) MT_KEY_REST_OF(__VA_ARGS__, NONE, )
 #define MT_KEY_REST_OF(given, numbers, ...) \
     .required = (given), .possible = MT_POSSIBLE_##numbers
 
-/* The members of one kind of object. `what` names it in messages ("unknown member ... of a
- * body" is not said, the pointer tells) and is the name of its definition in the JSON Schema;
- * "" for the root. */
+/* The members of one kind of object. `what` names its definition in the JSON Schema; "" for the
+ * root. Messages use the JSON pointer instead. */
 typedef struct mt_key_table {
     const char *what;
     const mt_key *keys;
@@ -89,29 +88,31 @@ typedef struct mt_key_table {
 enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
 
 /**
- * Match an object with a table: members not in it, missing ones and those of a wrong type are
+ * Match an object with a table; unknown and missing members and those of a wrong type are
  * noted.
  * @param[out] found [table->n] address of each member, in the table's order; MT_NO_ADDR where
- *   absent or of a wrong type Returns false (all of found MT_NO_ADDR) where value is MT_NO_ADDR
- *   or no object; the latter is noted.
+ *   absent or of a wrong type
+ * Returns false (all of found MT_NO_ADDR) where value is MT_NO_ADDR or not an object; the
+ * latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
-/* The row of a member that was matched lately. */
+/* The row of model/possible.h of a recently matched member. */
 mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
-/* Hold a number (NaN: not known), the value of a member that was matched lately or an item of
- * it, against the member's row: what is impossible is noted at it ("weight (0) must be above
- * 0"), what is implausible becomes a doubt. */
+/* Check a number (NaN: not known), the value of a recently matched member or an item of it,
+ * against the member's row: an impossible value is noted ("weight (0) must be above 0"), an
+ * implausible one becomes a warning. */
 void mt_reader_check_range(mt_reader *r, mt_addr member, mt_addr value, double number);
-/* The same of what is called `name`, by this row: of numbers in one member that differ in
- * kind. */
+/* The same check by this row for a number named `name`: for numbers of different kinds in one
+ * member. */
 void mt_reader_check_range_of(mt_reader *r, const char *name, mt_addr value, double number,
                               mt_possible_id row);
-/* A doubt of this name: kept for the file's list, or warned of unless the file accepts it. */
+/* Give a warning of this name: kept for the file's list, or reported at once unless the file
+ * accepts it. */
 void mt_reader_warning(mt_reader *r, mt_addr value, const char *name, const char *fmt, ...)
     MT_PRINTF(4, 5);
-/* True where the document's "format" is this one. Another text is noted, with what the file
- * then is not ("this is no study file"), before its members are held against the wrong table;
- * what is no text, or not there, the table of keys will tell. */
+/* False, and noted with the consequence ("this is not a study"), where the document's "format"
+ * is another text: its members would be matched with the wrong table. True also where it is
+ * missing or not a text, which the key table notes. */
 bool mt_reader_format(mt_reader *r, const char *format, const char *not_this);
 /* True where the value is of this type; noted where not ("must be a number or an expression,
  * not a list"). */
@@ -120,53 +121,52 @@ bool mt_reader_type(mt_reader *r, mt_addr value, mt_key_type type);
 /*
  * The items of a list or the members of an object, in order:
  *     for (mt_items i = mt_reader_items(r, value); mt_items_next(&i);) { ... i.at ... }
- * Whoever fills an array takes its room (mt_reader_room) from the walk that fills it: what is
- * counted is what is walked, and no item comes beyond the room. Nobody else walks or counts
- * values (a test looks).
+ * An array is allocated (mt_reader_room) from the walk that fills it: the count is that of the
+ * walk, so no item exceeds the array. A test checks that no other code walks or counts values.
  */
 typedef struct mt_items {
     const mt_json *doc;
     mt_addr at;   /* the present item; MT_NO_ADDR before the first and after the last */
     mt_addr next; /* the one after it */
-    int count;    /* of the whole walk */
-    int left;     /* still to come */
+    int count;    /* items of the whole walk */
+    int left;     /* items not yet visited */
 } mt_items;
 
-/* None where value is MT_NO_ADDR, or neither list nor object. */
+/* The items; none where value is MT_NO_ADDR, or neither list nor object. */
 mt_items mt_reader_items(const mt_reader *r, mt_addr value);
-/* Where a list of one may be written without the list: anything but a list is its own only
- * item. */
+/* The items where a single item may be written without the list: any value but a list is its
+ * own only item. */
 mt_items mt_reader_one_or_items(const mt_reader *r, mt_addr value);
-/* The items of what must have some; noted ("the list of bands is empty") where given and
- * without any. what: "the list of bands". */
+/* The items of a list that must not be empty; noted ("the list of bands is empty") where given
+ * and empty. what: "the list of bands". */
 mt_items mt_reader_some_items(mt_reader *r, mt_addr value, const char *what);
-/* The first two items, MT_NO_ADDR where there are fewer, and how many there are. */
+/* The first two items, MT_NO_ADDR where missing; returns the number of items. */
 int mt_reader_pair(const mt_reader *r, mt_addr value, mt_addr *first, mt_addr *second);
 /* Go on to the next item; false where there is none. */
 bool mt_items_next(mt_items *items);
-/* Zeroed room in r->mem for all items of a walk; out of memory (noted) gives NULL and ends the
- * walk. */
+/* Zeroed memory in r->mem for all items of a walk; out of memory (noted) gives NULL and ends
+ * the walk. */
 void *mt_reader_room(mt_reader *r, mt_items *items, size_t size);
 
 /* Copy of a string into r->mem; NULL where absent or not a string (noted). */
 const char *mt_reader_text(mt_reader *r, mt_addr value);
 /* A string that refers to something, unchecked; s == NULL where absent or wrong. */
 mt_name mt_reader_ref(mt_reader *r, mt_addr value);
-/* A string that names a new thing: form [A-Za-z_][A-Za-z0-9_+-]*, noted where not. */
+/* A string that names a new item: form [A-Za-z_][A-Za-z0-9_+-]*, noted where not. */
 mt_name mt_reader_name(mt_reader *r, mt_addr value);
-/* The forms of member names that name a thing: item (as above), parameter (without + and -),
- * title (any text, not empty). */
+/* The forms of names of items: item (as mt_reader_name), parameter (without + and -), title
+ * (any text, not empty). */
 typedef enum mt_name_form { MT_NAME_ITEM, MT_NAME_PARAMETER, MT_NAME_TITLE } mt_name_form;
 /* The name of a member of a free object (parameters, points, modes, ...) as the name of a new
- * thing; its addr is the name's. */
+ * item; its addr is the name's. */
 mt_name mt_reader_member_name(mt_reader *r, mt_addr value, mt_name_form form);
 /* A list of strings that refer to something; an absent one gives count 0. */
 mt_name_list mt_reader_refs(mt_reader *r, mt_addr value);
-/* Which of n names the string is; MT_ABSENT where absent or none (noted, with "did you mean"
- * and the known ones). what: "type". */
+/* The index of the string among n names; MT_ABSENT where absent or none (noted, with "did you
+ * mean" and the known ones). what: "type". */
 int mt_reader_choice(mt_reader *r, mt_addr value, const char *what, const char *const *names,
                      int n);
-/* The names of warnings in a list, each noted where there is none of that name. */
+/* The names of warnings in a list; unknown ones are noted. */
 mt_accepted mt_reader_accepted(mt_reader *r, mt_addr value);
 /* A whole number within least..most; fallback where absent or wrong (noted). 9, 9.0 and 9e0 are
  * whole. */
@@ -175,7 +175,7 @@ bool mt_reader_flag(mt_reader *r, mt_addr value, bool fallback);
 /* A number or an expression; false (out is zeroed) where absent, wrong (noted), or out of
  * memory. */
 bool mt_reader_expr(mt_reader *r, mt_addr value, mt_expr *out);
-/* The same for a text that came from elsewhere than a value of its own. */
+/* As mt_reader_expr, for a text that is not a value of its own. */
 bool mt_reader_expr_text(mt_reader *r, mt_addr addr, const char *text, mt_expr *out);
 
 /* MT_E_MEMORY, or mt_json_status of the document. */

@@ -230,7 +230,7 @@ static bool same(const search *s, const step *at, const scales *all, const mt_ad
     return true;
 }
 
-/* The steps from the first to `at`; returns how many. */
+/* The path from the first to `at`; returns the number of steps. */
 static int way_to(const step *at, const step *way[MT_JSON_MAX_DEPTH + 1])
 {
     int n = 0;
@@ -272,8 +272,8 @@ static const char *pointer_of(int n, const step *const *way, int side, mt_arena 
 
 static const char MADE_BY[] = "made by";
 
-/* What of a result a value belongs to, and how many steps lead to that; as a text that lives
- * while the way does. */
+/* The part of a result that a value belongs to, as a text that lives as long as the path, and
+ * the number of steps to it. */
 static const char *part_of(int n, const step *const *way, int *from)
 {
     const char *const name = way[0]->name == NULL ? "" : way[0]->name;
@@ -295,7 +295,7 @@ static const char *part_of(int n, const step *const *way, int *from)
     return n == 1 ? "answer" : name;
 }
 
-/* "%" of "change_percent"; else what stands beside it as its unit, where it has one. */
+/* "%" of "change_percent"; else the unit member next to it, where there is one. */
 static const char *unit_of(const search *s, const char *name, const mt_addr object[SIDES])
 {
     if (ends_with(name, "percent")) {

@@ -70,7 +70,7 @@ mt_status mt_result_note_outputs(mt_result *result, int n, const char *const *na
     return MT_OK;
 }
 
-/* *does: whether timing.json names the result with this digest. */
+/* *does: true where timing.json names the result with this digest. */
 static mt_status names_result(const mt_file *timing, const char *sha256, bool *does,
                               mt_err *err)
 {

@@ -36,7 +36,8 @@ typedef struct quest {
     mt_err why;
 } quest;
 
-/* Read the model as meant by the file `naming`; found where it holds what was solved. */
+/* Read the model at its path relative to the file `naming`; found where its bytes are those
+ * that were solved. */
 static void try_from(quest *q, const char *naming)
 {
     const char *const hash = mt_result_model_sha256(q->result);

@@ -4,19 +4,19 @@
 
 #include <stddef.h>
 
-/* Files of the source distribution that are part of the program, whole: schemas/, problems/,
- * studies/, and what `init` begins with, init/. */
+/* Files of the source distribution that are built into the program: schemas/, problems/,
+ * studies/, and the templates of `init`, init/. */
 typedef struct mt_shipped {
     const char *path;  /* "schemas/model.schema.json" */
     const char *bytes; /* size bytes and a NUL */
     size_t size;
 } mt_shipped;
 
-/* All of them, by path; *n their number. */
+/* All files, ordered by path; *n is their number. */
 const mt_shipped *mt_shipped_all(int *n);
-/* Of n files the one of that path. NULL: there is none. */
+/* The file of that path among n files; NULL: none. */
 const mt_shipped *mt_shipped_among(const mt_shipped *of, int n, const char *path);
-/* Of all of them. */
+/* The file of that path among all files; NULL: none. */
 const mt_shipped *mt_shipped_find(const char *path);
 
 #endif

@@ -119,7 +119,7 @@ static bool plain(const char *word, char *out)
     return true;
 }
 
-/* Whether it stands among the words, as a whole. */
+/* True where the word is among the words, as a whole. */
 static bool has(const char *words, const char *word)
 {
     const size_t n = strlen(word);

@@ -2,9 +2,8 @@
 #ifndef IO_SYNONYMS_H
 #define IO_SYNONYMS_H
 
-/* What engineers and other programs call it: the first of n names that `word` ("Hinge",
- * "ball-and-socket", "centre of mass", "k") stands for, in capital letters or small ones, with
- * blanks, - or _; NULL: none. */
+/* The first of n names that has `word` as a synonym of engineers or other programs ("Hinge",
+ * "ball-and-socket", "centre of mass", "k"), in any case, with blanks, - or _; NULL: none. */
 const char *mt_synonym(const char *word, const char *const *names, int n);
 
 #endif

@@ -18,8 +18,8 @@
  *     if (!mt_json_done(&w)) ...
  *
  * `name` is the member's name inside an object and NULL inside an array or at the top. Misuse
- * (a name in an array, none in an object, a bracket left open, nesting beyond the limit) is our
- * bug: it is remembered, and mt_json_done says so.
+ * (a name in an array, none in an object, a bracket left open, nesting beyond the limit) is a
+ * bug of the caller: it is remembered, and mt_json_done returns false.
  */
 enum { MT_JSON_WRITER_DEPTH = 32, MT_JSON_NUMBER_SIZE = 32 };
 
@@ -35,26 +35,27 @@ typedef struct mt_json_writer {
 mt_json_writer mt_json_writer_default(mt_text *out);
 /* Begin an object '{' or an array '['. */
 void mt_json_open(mt_json_writer *w, const char *name, char bracket);
-/* The same on one line: for short lists of numbers. What is opened inside is flat as well. */
+/* As mt_json_open, on one line: for short lists of numbers. Nested levels are on the same
+ * line. */
 void mt_json_open_flat(mt_json_writer *w, const char *name, char bracket);
 void mt_json_close(mt_json_writer *w);
 /* A number with 17 significant digits, so that reading it gives the same double; NaN and
  * infinities become null. */
 void mt_json_put_number(mt_json_writer *w, const char *name, double value);
-/* The same with so many significant digits, 1 to 17: of numbers that are for pictures. */
+/* The same with `digits` significant digits, 1 to 17: for drawings. */
 void mt_json_put_rounded(mt_json_writer *w, const char *name, double value, int digits);
 void mt_json_put_integer(mt_json_writer *w, const char *name, long long value);
 void mt_json_put_bool(mt_json_writer *w, const char *name, bool value);
 /* Text, escaped; NULL becomes null. Bytes are taken as UTF-8; ill-formed ones become U+FFFD. */
 void mt_json_put_string(mt_json_writer *w, const char *name, const char *value);
 void mt_json_put_null(mt_json_writer *w, const char *name);
-/* Adds the final line feed. True where everything is closed, nothing was misused, and memory
- * held out. */
+/* Add the final line feed. True where all brackets are closed, nothing was misused, and memory
+ * sufficed. */
 bool mt_json_done(mt_json_writer *w);
 
 /* The number as mt_json_put_number writes it; "null" where it is not finite. Returns buffer. */
 const char *mt_json_format_number(double value, char buffer[MT_JSON_NUMBER_SIZE]);
-/* The same number with as few digits as still are that number: for people to read. */
+/* The number with the fewest digits that read back as the same double: for people. */
 const char *mt_json_format_shortest(double value, char buffer[MT_JSON_NUMBER_SIZE]);
 
 #endif

@@ -81,7 +81,7 @@ static void put_places(mt_json_writer *w, const mt_trade_result *trade)
     mt_json_close(w);
 }
 
-/* What varies, in full: points are told by it. */
+/* Write the varied values of all points, which identify them. */
 static void put_values(mt_json_writer *w, const mt_trade_result *trade)
 {
     mt_json_open(w, "values", '[');

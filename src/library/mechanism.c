@@ -38,7 +38,7 @@ static const char **names_of(const mt_model *model, int n,
     return names;
 }
 
-/* Of several configurations none is the one that is meant. */
+/* Fail where no configuration is named and there are several. */
 static mt_status ask_which(int n, const char *const *names, mt_arena *mem, mt_err *err)
 {
     enum { LISTED_MOST = 10 };
@@ -218,7 +218,7 @@ int mt_mechanism_undecided_modes(const mt_mechanism *mechanism)
     return modes_of(mechanism)->n_undecided;
 }
 
-/* Where vibration mode `mode` stands among all; -1: nowhere. */
+/* Position of vibration mode `mode` among all modes; -1: none. */
 static int position_of(const mt_mechanism *m, int mode)
 {
     return mt_modal_flexible(modes_of(m), mode);

@@ -8,12 +8,12 @@
 
 struct mt_mechanism {
     mt_analysis *a; /* owned */
-    mt_arena mem;   /* as long as this */
+    mt_arena mem;   /* lives as long as this */
     mt_arena scratch;
     int n_inputs;
     int *inputs;   /* [n_inputs] parameters */
     double *at;    /* [n_inputs] their values at the last evaluation */
-    bool slopes;   /* derivatives have been asked for: they will be again */
+    bool slopes;   /* derivatives were requested once: prepare them again */
     bool has_none; /* the last evaluation failed */
 };
 

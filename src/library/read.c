@@ -50,7 +50,7 @@ static mt_status check_asked(const mt_read_options *opt, mt_err *err)
                : MT_OK;
 }
 
-/* Options of the library as those of the rooms; empties the diagnostics. */
+/* Convert the options of the library to internal ones; empties the diagnostics. */
 static mt_status take(const char *function, const mt_read_options *opt, request *out,
                       mt_err *err)
 {
@@ -191,7 +191,7 @@ void mt_string_delete(char *text)
     free(text);
 }
 
-/* The study's text among the files that are given, and these behind it; heap. */
+/* The list of given files with the study's text in front; heap. */
 static mt_file_text *with_study(const char *study, const mt_read_options *read, mt_err *err)
 {
     const int n = read->n_files;

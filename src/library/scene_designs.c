@@ -92,8 +92,8 @@ static mt_status admit(source *s, const mt_scene_query *ask, mt_err *err)
     return MT_OK;
 }
 
-/* What was set when the study was asked, then the variables at this design; `original`: as they
- * were before. */
+/* Set the overrides of the study, then the variables at this design; `original`: at their
+ * original values. */
 static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_scene_query *ask,
                       mt_err *err)
 {
@@ -182,8 +182,8 @@ static void ask_travel(const mt_model *model, const char *joint, mt_scene_travel
     }
 }
 
-/* Modes along the ranges that goals are held over, poses along those in which a configuration
- * that is shown holds its joint. travel[joints]. */
+/* Choose modes along the ranges that goals cover, and poses along those in which a shown
+ * configuration holds its joint. travel[joints]. */
 static void find_travel(const mt_model *model, const mt_result *result, int n,
                         const int *configurations, mt_scene_travel *travel)
 {

@@ -162,8 +162,8 @@ static mt_status check_massless(const mt_enclosure *e, const basis *b, mt_arena 
     return MT_OK;
 }
 
-/* Why K low or M low is not positive: the model may be so, or the bounds of couplings are too
- * loose to tell. */
+/* The reason for K low or M low not being positive: the model, or bounds of couplings that are
+ * too loose to tell. */
 static void say_lost(const mt_enclosure *e, bool unstable, char *reason)
 {
     if (e->coupled != NULL) {

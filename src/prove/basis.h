@@ -4,9 +4,9 @@
 
 #include "prove/enclosure.h"
 
-/* Fixed matrices and parts in coordinates in which M at the low end of the
- * bounds is the identity. *ok is false with the reason where massless freedoms or an
- * instability are in the way. */
+/* Compute the fixed matrices and parts in coordinates in which M at the low end of the bounds
+ * is the identity. *ok is false, with the reason, where massless freedoms or an instability
+ * prevent it. */
 mt_status mt_enclosure_reduce(mt_enclosure *e, const mt_linear *lin, bool *ok, char *reason,
                               mt_err *err);
 

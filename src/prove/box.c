@@ -62,7 +62,7 @@ static mt_side other(mt_side side)
     return side == MT_LOW ? MT_HIGH : MT_LOW;
 }
 
-/* Both matrices of a corner of the box that is set. */
+/* Both matrices of a corner of the current box. */
 static void assemble(mt_enclosure *e, mt_side side)
 {
     if (!e->assembled[side]) {

@@ -71,7 +71,7 @@ static bool is_discrete(const mt_boxes *b, int i)
     return b->n_catalogue != NULL && b->n_catalogue[i] > 0;
 }
 
-/* How many values of input i's catalogue are below x (all: or equal to it). */
+/* Number of values of input i's catalogue below x (all: or equal to it). */
 static int rank_of(const mt_boxes *b, int i, double x, bool or_equal)
 {
     const double *const v = b->catalogue[i];
@@ -106,7 +106,7 @@ void mt_boxes_start(mt_boxes *b, const double *lower, const double *upper, const
     }
 }
 
-/* Where the box that was popped is halved. */
+/* The point at which the popped box is halved. */
 static void find_middle(mt_boxes *b, int i)
 {
     if (is_discrete(b, i)) {

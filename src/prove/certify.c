@@ -84,7 +84,7 @@ static mt_status claim(search *s, mt_arena *work)
     return mt_boxes_init(&s->boxes, c, false, s->edges.n_known, work, s->err);
 }
 
-/* Room for one more assignment behind the count in *list; its place. */
+/* Append memory for a placement after *list's count; returns it. */
 static int *append(search *s, int **list, int count, int *capacity)
 {
     const size_t size = ((size_t)s->c->n_bands + 1) * sizeof(int); /* + 1: never 0 */
@@ -111,7 +111,8 @@ int mt_certify_index_of(const int *rows, int n, const int *row, int n_bands)
     return k;
 }
 
-/* How many known assignments come before the tuple in s->order; *there: the next one is it. */
+/* Number of known placements before the tuple in s->order; *there: the next one is the
+ * tuple. */
 static int place_of(const search *s, const int *tuple, bool *there)
 {
     const size_t n = (size_t)s->c->n_bands;
@@ -152,13 +153,13 @@ static mt_status note_known(search *s, const int *tuple)
     return MT_OK;
 }
 
-/* The earlier band that band i has to equal; -1: none. */
+/* The earlier band whose count band i must equal; -1: none. */
 static int same_of(const search *s, int i)
 {
     return s->c->same_as != NULL && s->c->same_as[i] < i ? s->c->same_as[i] : -1;
 }
 
-/* Band i at its least value that suits those before it; false: there is none. */
+/* Set band i to its least value that is consistent with the earlier bands; false: none. */
 static bool place(search *s, int i)
 {
     const int same = same_of(s, i);
@@ -241,7 +242,7 @@ static bool narrow(search *s)
     return true;
 }
 
-/* How many assignments of the box are not known: 0, 1 (then it is in single), or 2 for more. */
+/* Number of unknown placements of the box: 0, 1 (stored in single), or 2 for more. */
 static int unknown(search *s)
 {
     int count = 0;
@@ -254,7 +255,7 @@ static int unknown(search *s)
     return count;
 }
 
-/* Whether the bounds can be met in the box (all: are met everywhere in it). */
+/* True where the bounds can be met in the box (all: are met everywhere in it). */
 static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
 {
     const mt_certify *const c = s->c;
@@ -273,7 +274,7 @@ static bool bounds_met(search *s, const double *lo, const double *hi, bool all)
     return true;
 }
 
-/* Whether limit i can be met in the box. */
+/* True where limit i can be met in the box. */
 static bool limit_possible(search *s, int i)
 {
     const mt_certify_limit *const l = &s->c->limits[i];
@@ -308,8 +309,8 @@ static bool below_cap(const mt_certify *c, const double *lo, const double *hi)
     return c->cap == NULL || c->cap->least(c->cap->context, lo, hi) < c->cap->below;
 }
 
-/* What is left in the box: unknown assignments (0, 1, 2 for more). Where nothing is known of
- * the box, everything is left. */
+/* Number of placements left in the box: unknown ones (0, 1, 2 for more). Where nothing is known
+ * of the box, all are left. */
 static int examine(search *s)
 {
     const mt_certify *const c = s->c;
@@ -347,7 +348,7 @@ static bool same_counts(const search *s, const int *tuple)
     return true;
 }
 
-/* Whether the design that is set has at least so many modes below the edge; or fewer. */
+/* True where the design that is set has at least so many modes below the edge; or fewer. */
 static bool has_below(const search *s, int edge, int modes)
 {
     const mt_edge *const g = &s->edges.edges[edge];
@@ -361,7 +362,7 @@ static bool has_fewer_below(const search *s, int edge, int modes)
     return isnan(g->lambda) || mt_enclosure_most_below(s->c->views[g->view], g->lambda) < modes;
 }
 
-/* Limits of the middle of the box, which is set. */
+/* True where the middle of the box, which is set, meets the limits. */
 static bool limits_met(const search *s)
 {
     bool met = true;
@@ -373,7 +374,7 @@ static bool limits_met(const search *s)
     return met;
 }
 
-/* Bands likewise; its assignment goes to `single`. */
+/* True where the middle of the box meets the bands; its placement goes to `single`. */
 static bool bands_met(search *s)
 {
     bool met = true;
@@ -418,7 +419,7 @@ static mt_status note_found(search *s)
     return MT_OK;
 }
 
-/* Everything unknown that is left in the box stays open. */
+/* Record all unknown placements of the box as open. */
 static mt_status note_open(search *s)
 {
     mt_certify_search *const out = s->out;
@@ -440,7 +441,7 @@ static mt_status note_open(search *s)
     return MT_OK;
 }
 
-/* An assignment that stayed open in one box may have been found in a later one. */
+/* Remove open placements that were found in a later box. */
 static void drop_found(search *s)
 {
     mt_certify_search *const out = s->out;
@@ -476,7 +477,8 @@ static bool spent(const search *s)
     return s->out->stopped || operations(s) - s->before >= most;
 }
 
-/* A box of so many bisections needs no further look: of all designs these are decided. */
+/* Mark a box of this number of bisections as decided, and report the decided share of all
+ * designs. */
 static void settle(search *s, int depth)
 {
     s->decided += ldexp(1.0, -depth);
@@ -515,7 +517,7 @@ static mt_status visit(search *s, bool *deeper)
     return note_open(s);
 }
 
-/* Whether what was found is all that is asked for. */
+/* True where the search can end: any placement was requested, or a given one, and is found. */
 static bool satisfied(const search *s)
 {
     return (s->only != NULL || s->c->any) && s->out->n_found > 0;

@@ -7,15 +7,14 @@
 #include "prove/box.h"
 
 /*
- * Certificates: statements about every design of a box, proved by enclosures and branch and
- * bound. A proof covers the program's own arithmetic (enclosure.h). Everything is
- * deterministic; one question, one worker. Memory for results is the caller's arena; work is
- * given back.
+ * Certificates are statements about every design of a box, proven by enclosures and branch and
+ * bound. A proof covers the program's own arithmetic (enclosure.h). Proofs are deterministic
+ * and run on one worker. Results are in the caller's arena; scratch memory is released.
  */
 
-/* A forbidden band of one configuration. An edge counts as kept within `tolerance` (relative):
- * a design that the search calls feasible is never excluded. Clip bands at up_to_hz before; of
- * one view, list them ascending. */
+/* A forbidden band of one configuration. An edge counts as kept within `tolerance` (relative),
+ * so that no design that the search calls feasible is excluded. The caller clips bands at
+ * up_to_hz and lists those of one view ascending. */
 typedef struct mt_certify_band {
     int view;
     double lower_hz;
@@ -23,7 +22,7 @@ typedef struct mt_certify_band {
     double tolerance;
 } mt_certify_band;
 
-/* Limits of a mode's frequency (NaN: none); a target is both. */
+/* Limits of a mode's frequency (NaN: none); a target sets both. */
 typedef struct mt_certify_limit {
     int view;
     int mode; /* vibration mode, from 1 */
@@ -32,16 +31,16 @@ typedef struct mt_certify_limit {
     double tolerance; /* relative */
 } mt_certify_limit;
 
-/* Limits of an expression's value (NaN: none): absolute tolerance is the caller's, in the
- * limits. */
+/* Limits of an expression's value (NaN: none), already widened by the caller's absolute
+ * tolerance. */
 typedef struct mt_certify_bound {
     mt_node node;
     double at_least;
     double at_most;
 } mt_certify_bound;
 
-/* Only designs whose objective may be less than `below` are asked about. least: no value of the
- * objective in lo <= x <= hi is below it. */
+/* Restricts the proof to designs whose objective may be less than `below`. least: a lower bound
+ * of the objective over lo <= x <= hi. */
 typedef struct mt_certify_cap {
     double (*least)(void *context, const double *lo, const double *hi);
     void *context;
@@ -49,14 +48,14 @@ typedef struct mt_certify_cap {
 } mt_certify_cap;
 
 /*
- * What is asked of the designs lower <= x <= upper, in which inputs with a catalogue take
- * values of it only. An assignment is int[n_bands]: for each band, how many vibration modes lie
- * below it (or on its lower edge); designs whose bands break `same_as` do not meet what is
- * asked. The views share the inputs.
+ * The requirements on the designs lower <= x <= upper, in which inputs with a catalogue take
+ * only its values. A mode placement is int[n_bands]: for each band the number of vibration
+ * modes below it (or on its lower edge). Designs that break `same_as` do not meet the
+ * requirements. The views share the inputs.
  */
 typedef struct mt_certify {
     int n_views;
-    mt_enclosure *const *views; /* made for bounds that hold this box */
+    mt_enclosure *const *views; /* made for bounds that include this box */
     int n_bands;
     const mt_certify_band *bands;
     /* [n_bands] the first band (itself, or an earlier one) that must have the same number of
@@ -74,28 +73,27 @@ typedef struct mt_certify {
     const int *n_catalogue;         /* [n] 0: continuous; NULL: all are */
     const double *const *catalogue; /* [n] ascending values */
     const mt_certify_cap *cap;      /* NULL: any value of the objective */
-    /* one design will do: the search ends with the first that it finds, and proves nothing
-     * then */
+    /* stop at the first design that is found; nothing is proven then */
     bool any;
     /* [n] NaN: bisected in ln x, else linearly; NULL: in ln x where lower > 0 */
     const double *scale;
-    double max_work;         /* in multiplications, about; 0: MT_CERTIFY_WORK */
+    double max_work;         /* budget in multiplications, approximate; 0: MT_CERTIFY_WORK */
     mt_interrupt *interrupt; /* ends the search as an exhausted budget does; NULL: never */
-    mt_progress *progress;   /* NULL: nobody listens */
+    mt_progress *progress;   /* NULL: no progress reports */
 } mt_certify;
 
-/* A budget counts operations, so that the same designs are excluded wherever a proof runs. A
- * nominal second of it is about one of a core; what nobody asks otherwise has five. */
+/* Budgets count operations, so that the same designs are excluded on any machine. A nominal
+ * second is about one second of a core; the default is five. */
 #define MT_CERTIFY_WORK_PER_S 1e9
 #define MT_CERTIFY_WORK       (5.0 * MT_CERTIFY_WORK_PER_S)
 enum { MT_CERTIFY_OPEN_MOST = 256 };
 
-/* Assignments that designs of the box can have. */
+/* Mode placements that designs of the box can have. */
 typedef struct mt_certify_search {
-    /* no design of the box meets bands, limits and bounds, but with an assignment of known or
-     * found */
+    /* every design of the box that meets bands, limits and bounds has a placement of `known` or
+     * `found` */
     bool proven;
-    /* assignments that were not known, each with a design that has it and meets everything */
+    /* new placements, each with a design that has it and meets all requirements */
     int n_found;
     int *found; /* [n_found x n_bands] */
     double *at; /* [n_found x n] */
@@ -105,17 +103,18 @@ typedef struct mt_certify_search {
     bool stopped;
     long boxes;
     double work; /* as max_work counts it */
-    /* of the box (in the coordinates that it is halved in), at most: 0 where proven */
+    /* undecided part of the box's volume (in the coordinates of bisection), at most; 0 where
+     * proven */
     double undecided;
 } mt_certify_search;
 
-/* Branch and bound over the box: every feasible assignment that is not among known[n_known x
- * n_bands] is found, or excluded, or left open. known may be NULL. With n_bands = 0 there is
- * one (empty) assignment: n_found tells whether the limits can be met. Fails: MT_E_MEMORY. */
+/* Branch and bound over the box: every mode placement that is not among known[n_known x
+ * n_bands] is found feasible, excluded, or left open. known may be NULL. With n_bands = 0 there
+ * is one (empty) placement: n_found is 1 where the limits can be met. Fails: MT_E_MEMORY. */
 mt_status mt_certify_assignments(const mt_certify *c, int n_known, const int *known,
                                  mt_arena *mem, mt_certify_search *out, mt_err *err);
 
-/* Which of rows[n x n_bands] is the assignment row[n_bands]; n: none. */
+/* Index of the placement row[n_bands] in rows[n x n_bands]; n: not found. */
 int mt_certify_index_of(const int *rows, int n, const int *row, int n_bands);
 
 typedef enum mt_verdict {
@@ -125,8 +124,8 @@ typedef enum mt_verdict {
     MT_VERDICT_COUNT
 } mt_verdict;
 
-/* Whether a design of the box can have this assignment[n_bands] and meet limits and bounds.
- * at[n] (may be NULL): one that does, where POSSIBLE. boxes may be NULL. */
+/* The verdict whether a design of the box can have this assignment[n_bands] and meet limits and
+ * bounds. at[n] (may be NULL): such a design, where POSSIBLE. boxes may be NULL. */
 mt_status mt_certify_possible(const mt_certify *c, const int *assignment, mt_arena *scratch,
                               mt_verdict *verdict, double *at, long *boxes, mt_err *err);
 

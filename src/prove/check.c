@@ -32,7 +32,7 @@ static bool loads_refused(const mt_system *sys, char *reason)
     return false;
 }
 
-/* True where the analysis stands at this value of the input. */
+/* True where the analysis was last solved at this value of the input. */
 static bool stands_at(const mt_analysis *a, int input, double value)
 {
     const mt_program *const p = &a->sys->program;

@@ -4,9 +4,9 @@
 
 #include "prove/enclosure.h"
 
-/* Coefficients of all terms that vary, each node once, with a program of
- * their own, and what is known of them over the bounds. *ok is false with the reason where one
- * may be negative there. */
+/* Collect the coefficients of all varying terms, each node once, with a program of their own
+ * and their bounds over the enclosure's bounds. *ok is false, with the reason, where one may be
+ * negative there. */
 mt_status mt_enclosure_collect(mt_enclosure *e, const mt_linear *lin, bool *ok, char *reason,
                                mt_err *err);
 /* Bounds of all coefficients over the box into value[2]. */

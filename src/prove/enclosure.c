@@ -54,8 +54,8 @@ static mt_status note_inputs(mt_enclosure *e, mt_err *err)
     return MT_OK;
 }
 
-/* *ok: false where the analysis counts a direction as free that some design of the bounds
- * holds. A term can hold wherever its coefficient can be positive. */
+/* *ok: false where a direction that the analysis counts as free is held at some design within
+ * the bounds. A term can hold it wherever its coefficient can be positive. */
 static mt_status check_count(mt_enclosure *e, const mt_analysis *a, bool *ok, char *reason,
                              mt_err *err)
 {
@@ -144,7 +144,7 @@ bool mt_enclosure_depends(const mt_enclosure *e, int i)
     return e->in[MT_STIFFNESS][i] || e->in[MT_MASS][i];
 }
 
-/* What raising input k does over the box whose gradient is in dnode. */
+/* Effect of raising input k over the box whose gradient is in dnode. */
 static int effect(const mt_enclosure *e, int k)
 {
     int bits = 0;

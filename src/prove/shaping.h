@@ -4,7 +4,7 @@
 
 #include "analysis/analysis.h"
 
-/* found[n_inputs]: which inputs shape the geometry of stiffness and mass. */
+/* found[n_inputs]: true for inputs that shape the geometry of stiffness and mass. */
 void mt_enclosure_shaping(const mt_analysis *a, bool *found);
 
 #endif

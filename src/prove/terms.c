@@ -93,8 +93,8 @@ static bool proportional(const monomial *a, const monomial *b)
     return same;
 }
 
-/* What row `which` (0, 1) of a term is a row of: the measure of a spring, the body and axis of
- * a rotation; -1: terms that are in no block. */
+/* Key of row `which` (0, 1) of a term: the measure of a spring, the body and axis of a
+ * rotation; -1: terms that are in no block. */
 static int key_of(const mt_linear *lin, mt_matrix m, int term, int which)
 {
     const mt_system *const sys = mt_linear_system(lin);
@@ -208,7 +208,7 @@ static bool block_matrix(const mt_linear *lin, mt_matrix m, const block *b, doub
     return positive;
 }
 
-/* *yes: whether B is semidefinite, to rounding. */
+/* *yes: true where B is semidefinite, to rounding. */
 static mt_status semidefinite(const mt_linear *lin, mt_matrix m, const block *b,
                               mt_arena *scratch, bool *yes, mt_err *err)
 {

@@ -4,7 +4,7 @@
 
 #include "prove/enclosure.h"
 
-/* Coefficients (without their nodes) and pieces of all terms that vary. */
+/* List the coefficients (without their nodes) and pieces of all varying terms. */
 mt_status mt_enclosure_list_terms(mt_enclosure *e, const mt_linear *lin, mt_err *err);
 
 #endif

@@ -97,7 +97,7 @@ static bool spent(const tolerance *t)
     return operations(t->c) - t->before >= most;
 }
 
-/* Whether the box is set and every edge kept over it. Notes why not. */
+/* True where the box is set and every edge kept over it. Notes why not. */
 static bool box_holds(tolerance *t, const double *lo, const double *hi)
 {
     if (spent(t)) {

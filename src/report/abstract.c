@@ -41,7 +41,7 @@ static void close_item(mt_text *out)
     mt_text_add(out, "</li>\n");
 }
 
-/* What was 0 has changed by no percentage, and more than all others. */
+/* Size of a change for sorting: a change from 0, which has no percentage, is the largest. */
 static double size_of(const mt_result_parameter *p)
 {
     const bool moved = p->recommended < p->original || p->recommended > p->original;
@@ -135,7 +135,7 @@ static void add_best(const mt_recommendation *r, mt_text *out)
     close_item(out);
 }
 
-/* What decides the status: goals with weights do not. */
+/* Add the goals that decide the status, those without weights. */
 static void add_goals(const mt_recommendation *r, mt_text *out)
 {
     char number[MT_NUMBER_TEXT];
@@ -173,7 +173,7 @@ static void add_goals(const mt_recommendation *r, mt_text *out)
     close_item(out);
 }
 
-/* Certificates, the proven ones in full: those that are not are many, and told below. */
+/* Add what is proven, in full; the unproven statements are many, and follow below. */
 static void add_proof(const mt_result *result, mt_text *out)
 {
     int sampled = 0;

@@ -5,13 +5,13 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* The first thing on a page: the status, then in a few lines what the best design changes, how
- * it meets the goals, what is proven and what else there is. Memory running out shows in
- * out->failed. */
+/* The abstract of a page: the status, then in a few lines the changes of the best design, how
+ * it meets the goals, what is proven, and alternatives. out->failed remembers a shortage of
+ * memory. */
 void mt_report_abstract(const mt_result *result, mt_text *out);
 
-/* "mass 16.94 kg (was 11.92)": what the study makes least or greatest, at this design; false
- * (and nothing) where that is the change. */
+/* The first objective at this design: "mass 16.94 kg (was 11.92)"; false (and no text) where it
+ * is the change. */
 bool mt_report_headline(const mt_recommendation *r, mt_text *out);
 
 #endif

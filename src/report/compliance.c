@@ -72,7 +72,8 @@ static bool is_good(const mt_result_goal *g)
     return g->weighted ? g->violation_percent <= 0.0 : g->met;
 }
 
-/* A limit that is the scale of an objective decides nothing, but it is kept or not. */
+/* The verdict of a requirement. A limit that is the scale of an objective does not decide the
+ * status, but is met or not. */
 static const char *verdict_of(const mt_result_goal *g)
 {
     if (!g->weighted) {
@@ -95,7 +96,7 @@ typedef struct nearest {
     int mode;
 } nearest;
 
-/* How far f is outside an interval, as a part of its nearer end; negative inside. */
+/* Distance of f from an interval relative to its nearer end; negative inside. */
 static double room_of(const mt_result_mode_placement *band, double hz)
 {
     const double below = hz > 0.0 ? band->margin_lower_hz / hz - 1.0 : HUGE_VAL;
@@ -169,14 +170,14 @@ static bool avoids_bands(const mt_result_goal *g)
     return strcmp(g->type, "avoid") == 0;
 }
 
-/* The goal keeps this configuration clear of bands; those of all such goals are united. */
+/* True where the goal avoids bands in this configuration; all such goals are united. */
 static bool avoidances(const mt_result_goal *g, const char *configuration)
 {
     return avoids_bands(g) && g->configuration != NULL &&
            strcmp(g->configuration, configuration) == 0;
 }
 
-/* All goals are met that keep it clear. */
+/* True where all goals that avoid bands in the configuration are met. */
 static bool is_clear(const mt_recommendation *r, const char *configuration)
 {
     for (int i = 0; i < r->n_goals; i++) {
@@ -187,7 +188,8 @@ static bool is_clear(const mt_recommendation *r, const char *configuration)
     return true;
 }
 
-/* Within the tolerance of its goals, which are met, or outside the band. */
+/* True where the mode is outside the band, or within the tolerance of its goals, which are
+ * met. */
 static bool is_kept(double room, bool clear)
 {
     return clear || !(PERCENT * room < -MT_PERCENT_NOISE);
@@ -210,7 +212,7 @@ static void put_band(sheet *s, const mt_result_mode_placement *band, bool clear,
     put(s, &r);
 }
 
-/* The band of a configuration that leaves the least room, which is told; NULL: it has none. */
+/* The shown band of a configuration with the least margin; NULL: none. */
 static const mt_result_mode_placement *tightest_of(const mt_recommendation *r,
                                                    const char *configuration, double *room)
 {
@@ -229,8 +231,8 @@ static const mt_result_mode_placement *tightest_of(const mt_recommendation *r,
     return tightest;
 }
 
-/* All bands of the configuration of goal i, or, of many, the one that leaves least room, at the
- * first of its goals; false where no band shows why a goal is not met. */
+/* Add all bands of the configuration of goal i, or, of many, that with the least margin, at the
+ * first of its goals; false where no band explains an unmet goal. */
 static bool put_bands(sheet *s, int i)
 {
     const mt_recommendation *const d = s->after;
@@ -264,7 +266,7 @@ static bool put_bands(sheet *s, int i)
     return true;
 }
 
-/* Between positions of a drive: the mode that comes nearest to a band there. */
+/* Add the mode nearest to a band between positions of a drive. */
 static bool put_motion(sheet *s, const mt_result_goal *g, int which)
 {
     const mt_result_motion *const m =
@@ -341,13 +343,13 @@ static const char *limit_text(sheet *s, const mt_result_goal *g)
                            avoids_bands(g) ? " clearance" : "");
 }
 
-/* A part of a number; of 0 there is none. */
+/* A difference relative to a number; NaN for 0. */
 static double part_of(double way, double of)
 {
     return of < 0.0 || of > 0.0 ? way / fabs(of) : nan("");
 }
 
-/* Of a limit the room to it, of a target the way off it. */
+/* The distance from a limit, or the deviation from a target. */
 static const char *number_margin(sheet *s, const mt_result_goal *g, double value)
 {
     if (!isnan(g->target)) {
@@ -376,7 +378,7 @@ static void put_number(sheet *s, const mt_result_goal *g, const mt_result_goal *
     put(s, &r);
 }
 
-/* What a goal limits, in whatever configuration. */
+/* The limited quantity of a goal without its configuration. */
 static const char *anywhere(const mt_result_goal *g)
 {
     const size_t n = g->configuration == NULL ? 0 : strlen(g->configuration);
@@ -384,7 +386,8 @@ static const char *anywhere(const mt_result_goal *g)
     return led && g->quantity[n] == ' ' ? g->quantity + n + 1 : g->quantity;
 }
 
-/* A limit between the positions that the goal names: looked at, not asked. */
+/* Add a limit between the positions that the goal names, which is checked there, not
+ * required. */
 static void put_between(sheet *s, const mt_result_between *b)
 {
     char number[MT_NUMBER_TEXT];
@@ -410,7 +413,7 @@ static void put_between(sheet *s, const mt_result_between *b)
     }
 }
 
-/* What the original design has of goal i, NULL: nothing. Its goals stand in the same order, but
+/* The value of goal i at the original design, NULL: none. Its goals are in the same order, but
  * that of a motion may be missing. */
 static const mt_result_goal *goal_before(const sheet *s, int i)
 {

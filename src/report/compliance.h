@@ -7,14 +7,13 @@
 #include "result/result.h"
 
 /*
- * What was asked against what a design does, as an engineer signs it: one row for each
- * requirement, or for each band where they are few; in hertz where the result has a margin as a
- * percentage.
+ * The requirements compared with a design, as a compliance table: one row per requirement, or
+ * per band where they are few; margins in hertz where the result has percentages.
  */
 
 /* requirement, limit, before, after (of the original design: value), at worst, margin, verdict.
- * Margin: how far the value is from its limit, in per cent of the limit; below 0 beyond it. The
- * caller frees it. */
+ * Margin: distance of the value from its limit in per cent of the limit; negative beyond it.
+ * The caller frees the table. */
 mt_table mt_report_compliance(const mt_result *result, const mt_recommendation *r);
 
 #endif

@@ -9,13 +9,13 @@
 
 enum { DIGITS = 6, TOLD_DIGITS = 4, HIGHEST = 3 };
 
-/* Response k of a design; NULL: it has none, as may be in files. */
+/* Response k of a design; NULL: none, which files may have. */
 static const mt_design_curve *at(const mt_recommendation *r, int k)
 {
     return k < r->n_curves ? &r->curves[k] : NULL;
 }
 
-/* Lists are of one length, but for what a file says. */
+/* The common length of the lists; files may differ. */
 static int length_of(const mt_curve_points *c)
 {
     const int n = c->n_hz < c->n_magnitude ? c->n_hz : c->n_magnitude;
@@ -50,7 +50,7 @@ static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
     }
 }
 
-/* Of every response the original design, then the first recommendations. */
+/* Add for every response the original design, then the first recommendations. */
 static void add_all(mt_table *t, const mt_result *result, int most,
                     void (*add)(mt_table *, const mt_result_curve *, int,
                                 const mt_design_curve *))
@@ -112,7 +112,7 @@ mt_table mt_report_extremes(const mt_result *result, int most)
     return t;
 }
 
-/* What has no magnitude is infinite. */
+/* Height of an extreme; one without a magnitude is infinite. */
 static double height(const mt_result_extreme *x)
 {
     return isnan(x->magnitude) ? HUGE_VAL : x->magnitude;

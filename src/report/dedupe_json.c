@@ -88,7 +88,8 @@ static size_t string_end(const char *json, size_t at)
     return at + (json[at] == '"' ? 1 : 0);
 }
 
-/* Behind a bracket or colon; not behind the end of all, where a walk without room has gone. */
+/* The position after a bracket or colon, at most the end, where a walk without memory has
+ * gone. */
 static size_t behind(const packing *p, size_t at)
 {
     return at + (p->json[at] != '\0' ? 1 : 0);
@@ -96,7 +97,8 @@ static size_t behind(const packing *p, size_t at)
 
 static size_t read_value(packing *p, size_t at, bool *words);
 
-/* Members of an object from `at` on, behind which it ends; their names come to `names`. */
+/* Read the members of an object from `at`, which ends after it; their names are added to
+ * `names`. */
 static size_t read_members(packing *p, size_t at, mt_text *names, bool *words)
 {
     while (p->json[at] == '"') {
@@ -147,7 +149,7 @@ static size_t read_node(packing *p, size_t at, bool *words)
     return end;
 }
 
-/* Behind the value at `at`. */
+/* The position after the value at `at`. */
 static size_t read_value(packing *p, size_t at, bool *words)
 {
     if (p->json[at] == '{' || p->json[at] == '[') {
@@ -165,7 +167,7 @@ static bool is_worth(const packing *p, const node *v)
     return v->words || p->values.at[v->class].length >= LEAST_LIST;
 }
 
-/* What is met twice gets a place, in the order of the document. */
+/* Give parts that occur twice an index, in the order of the document. */
 static void count(packing *p)
 {
     for (int i = 0; i < p->n;) {

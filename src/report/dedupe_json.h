@@ -5,14 +5,14 @@
 #include "base/text.h"
 
 /*
- * JSON in which what is said again and again stands once: [keys, shared, value], where in value
- * and in shared
+ * Compact JSON that stores repeated parts once: [keys, shared, value], where in value and in
+ * shared
  *     {"#": i}            is shared[i],
  *     {"~": [k, a, ...]}  is the object with the names keys[k] and the values a, ...
- * (src/report/page/base.js reads it). Nothing is rounded. What is packed depends on the form of
- * the document alone, not on what its texts say. json: valid, without white space between its
- * tokens, no deeper than a reader allows. One with a member "#" or "~" stays as it is, in
- * [[], [], value]. Memory running out shows in out->failed.
+ * (src/report/page/base.js reads it). Numbers are not rounded. The packing depends on the
+ * structure of the document only, not on its texts. json: valid, without white space between
+ * its tokens, no deeper than a reader allows. A document with a member "#" or "~" is kept as it
+ * is, in [[], [], value]. out->failed remembers a shortage of memory.
  */
 void mt_dedupe_json(const char *json, mt_text *out);
 

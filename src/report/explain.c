@@ -21,14 +21,14 @@ typedef struct moved {
     const double *slopes;
 } moved;
 
-/* What 1 % more of variable k adds to it. */
+/* Change of the value for 1 % more of variable k. */
 static double move(const mt_recommendation *r, const moved *m, int k)
 {
     return m->slopes[k] * PERCENT * fabs(r->parameters[k].recommended);
 }
 
-/* The variable that moves it most among those not taken yet, the first of equal ones; -1: none
- * does. */
+/* The most influential variable among those not taken yet, the first of equal ones; -1:
+ * none. */
 static int next_mover(const mt_recommendation *r, const moved *g, const bool *taken)
 {
     int best = -1;
@@ -97,7 +97,7 @@ static bool same(const char *a, const char *b)
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* Of bands: the mode that has least room beside its margin, the first of equal ones. NULL:
+/* The mode of the least clearance relative to its margin, the first of equal ones. NULL:
  * none. */
 static const mt_result_clearance *nearest(const mt_recommendation *r, const char *configuration)
 {
@@ -158,7 +158,7 @@ mt_table mt_report_movers(const mt_recommendation *r)
     return t;
 }
 
-/* "met", "missed by 2.1 %", and that nothing is known of what moves it. */
+/* Add "met" or "missed by 2.1 %", and that sensitivities are not available. */
 static void add_goal_line(const mt_result_goal *g, mt_text *out)
 {
     char number[MT_NUMBER_TEXT];
@@ -199,7 +199,7 @@ static void add_reasons(const mt_recommendation *r, const char *kind, const char
     }
 }
 
-/* Why no price is told: there is none, or none is known. */
+/* The reason for no multiplier: there is none, or it is not known. */
 static const char *no_price(const mt_result *result, const mt_recommendation *r)
 {
     const bool misfit =

@@ -7,14 +7,14 @@
 #include "result/result.h"
 
 /*
- * What moves each goal of a design, what holds it, and what that costs: of every goal the
- * variables whose 1 % moves its value, the most first, and how far each may still go; then the
- * bounds that hold the design, its reasons of the kinds "hold" and "cost". width: of the
- * terminal; 0: none. Memory running out shows in out->failed.
+ * The sensitivities and active limits of a design: for every goal the variables whose change of
+ * 1 % changes its value, the most influential first, with their remaining range; then the
+ * active bounds, the reasons of the kinds "hold" and "cost". width: of the terminal; 0: none.
+ * out->failed remembers a shortage of memory.
  */
 void mt_report_explain(const mt_result *result, const mt_recommendation *r, int width,
                        mt_text *out);
-/* The same as rows: one per goal and variable, the most first. */
+/* The sensitivities as rows: one per goal and variable, the most influential first. */
 mt_table mt_report_movers(const mt_recommendation *r);
 
 #endif

@@ -5,11 +5,11 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* What a result says as one self-contained HTML page: told in words and tables, and drawn by
- * its script from `json`, the same result as a file holds it, and from `scene`, its mechanism
- * (NULL: none). Memory running out shows in out->failed. */
+/* A result as one self-contained HTML page: sentences and tables, and figures that its script
+ * draws from `json`, the same result as in a file, and from `scene`, its mechanism (NULL:
+ * none). out->failed remembers a shortage of memory. */
 void mt_report_html(const mt_result *result, const char *json, const char *scene, mt_text *out);
-/* Of it what is told: words and tables, and the place of the figures. */
+/* The part without script and data: sentences and tables, and the places of the figures. */
 void mt_report_html_told(const mt_result *result, mt_text *out);
 
 #endif

@@ -4,27 +4,27 @@
 
 #include "report/table.h"
 
-/* One of several studies that were run together. */
+/* One of several studies run together. */
 typedef struct mt_index_study {
-    const char *path;    /* as it was asked for */
+    const char *path;    /* path as given */
     const char *file;    /* without folder */
-    const char *folder;  /* of its result, beside the index */
+    const char *folder;  /* folder of its result, next to the index */
     const char *state;   /* "answered" | "not answered" | "not run" */
-    const char *name;    /* from here on NULL and NaN where it is not answered */
+    const char *name;    /* this and the following are NULL and NaN where not answered */
     const char *status;  /* of the result */
     const char *grade;   /* of the best design; NULL: there is none */
-    double change;       /* of it, the size of the redesign */
+    double change;       /* total change of the best design */
     const char *sha256;  /* of result.json */
-    bool has_report;     /* report.html stands beside it */
-    const char *message; /* why it was not answered; NULL: it was */
-    int exit_status;     /* what running it alone would have ended with; -1: not run */
+    bool has_report;     /* report.html exists in the folder */
+    const char *message; /* reason of not answering; NULL: answered */
+    int exit_status;     /* exit status of running it alone; -1: not run */
     double seconds;      /* of the solution */
 } mt_index_study;
 
 /* study, status, grade, change, time. */
 mt_table mt_report_index(const mt_index_study *studies, int n);
-/* One page with a line for each study and links to their reports. It has no times: the same
- * answers make the same page. */
+/* One page with a line per study and links to their reports. It has no times: the same answers
+ * give the same page. */
 void mt_report_index_html(const mt_index_study *studies, int n, mt_text *out);
 
 #endif

@@ -44,7 +44,7 @@ void mt_page_begin(mt_page_kind kind, const char *title, mt_text *out)
 /* "<" in JSON, where it stands in strings only. */
 static const char LESS[] = "\\u003c";
 
-/* Room for it with every "<" as its number. */
+/* Size of the JSON with every "<" escaped as a number. */
 static size_t room_of(const char *json)
 {
     size_t n = 1;
@@ -54,7 +54,7 @@ static size_t room_of(const char *json)
     return n + strlen(json);
 }
 
-/* A string to behind its end, or that of all. */
+/* Copy a string including its end, or up to the end of the text. */
 static const char *copy_string(const char *json, char **to)
 {
     char *out = *to;
@@ -78,9 +78,8 @@ static const char *copy_string(const char *json, char **to)
     return json;
 }
 
-/* JSON in which nothing can end the element, into `out`. White space is left out: nobody reads
- * it here, and it is a third of a large result, and what is said twice stands once
- * (dedupe_json.h). */
+/* Copy JSON into `out` so that it cannot end its element. White space, a third of a large
+ * result, is left out, and repeated parts are stored once (dedupe_json.h). */
 static void copy_json(const char *json, char *out)
 {
     while (*json != '\0') {

@@ -24,15 +24,15 @@ static void add_variables(const mt_result *result, mt_text *out)
     }
 }
 
-/* What is asked of it: "at 18 Hz", "clear of 2 bands". */
+/* The requirement in words: "at 18 Hz", "clear of 2 bands". */
 static const char *requirement_of(const mt_result_goal *g)
 {
     const size_t n = strlen(g->quantity);
     return strncmp(g->text, g->quantity, n) == 0 ? g->text + n : "";
 }
 
-/* Of one goal of the study in several configurations: between positions of a drive bands are
- * asked for as at them. */
+/* True where both rows belong to one goal of the study in several configurations: bands between
+ * positions of a drive have the requirement of the positions. */
 static bool asks_the_same(const mt_result_goal *a, const mt_result_goal *b)
 {
     const bool motion = strcmp(b->type, "avoid") == 0 && b->configuration == NULL;
@@ -112,7 +112,7 @@ static bool is_fit(const mt_recommendation *r)
     return r->n_goals > 0;
 }
 
-/* What a design does with its goals: it fits data, keeps clear of bands, holds numbers. */
+/* The verb for the goals: a design fits data, keeps clear of bands, or holds numbers. */
 static const char *verb_of(const mt_recommendation *r)
 {
     bool bands = true;

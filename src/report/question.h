@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "result/result.h"
 
-/* What a study asks, in one sentence: "Which values of k and m hold installed mode 1 at 18 Hz,
- * with the least total change?" Memory running out shows in out->failed. */
+/* The study as a question in one sentence: "Which values of k and m hold installed mode 1 at 18
+ * Hz, with the least total change?" out->failed remembers a shortage of memory. */
 void mt_report_question(const mt_result *result, mt_text *out);
 
 #endif

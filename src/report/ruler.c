@@ -40,8 +40,8 @@ static double highest_mode(const mt_recommendation *r)
     return top;
 }
 
-/* Modes of which something is asked, as they are and as they were: where they are not far above
- * what is asked of all. */
+/* Widen the range by the required modes, recommended and original, that are not far above all
+ * requirements. */
 static void widen_asked(double *top, const mt_recommendation *r)
 {
     const double near = NEAR * *top;
@@ -73,13 +73,14 @@ static double highest(const mt_recommendation *r)
     return top;
 }
 
-/* What lies in the middle of two places but for rounding has the right one. */
+/* The column of a frequency; one in the middle of two columns, but for rounding, gets the right
+ * one. */
 static int place(const ruler *u, double hz)
 {
     return (int)floor((hz / u->top * (u->length - 1)) + 0.5 + MT_TIE);
 }
 
-/* A mark on the line, if it lies there and nothing of more weight does. */
+/* Put a mark on the line where it is in range and no mark of higher priority is there. */
 static void mark(ruler *u, char *line, double hz, char sign, const char *over)
 {
     if (!(hz >= 0.0) || hz > u->top) {
@@ -124,7 +125,7 @@ static void draw_bands(ruler *u, const mt_recommendation *r, const char *of, cha
     }
 }
 
-/* What is asked for, then what was, then what is: each over the one before. */
+/* Draw requirements, then the original modes, then the recommended ones over them. */
 static int draw_modes(ruler *u, const mt_recommendation *r, const char *of, char *line)
 {
     static const char digits[] = "0123456789";

@@ -6,10 +6,10 @@
 #include "result/result.h"
 
 /*
- * Frequencies of a design in one line of characters per configuration, to one linear scale that
- * ends a little above what the study asks for: digits are the modes as recommended, "o" as they
- * were, "#" a band, "-" its margin, "|" a target, "[" and "]" limits. Nothing where nothing is
- * asked of frequencies. width: of the terminal; 0: none.
+ * The frequencies of a design as one line of characters per configuration, on one linear scale
+ * that ends a little above the study's requirements: digits are the recommended modes, "o" the
+ * original ones, "#" a band, "-" its margin, "|" a target, "[" and "]" limits. No text where no
+ * goal concerns frequencies. width: of the terminal; 0: none.
  */
 void mt_report_ruler(const mt_recommendation *r, int width, mt_text *out);
 

@@ -63,7 +63,7 @@ static void add_line(const mt_summary_writer *to, mt_text *line)
     add_paragraph(to, "  ", line);
 }
 
-/* Whether it was computed. A section that a stopped run left out says so. */
+/* True where the section was computed. A section that a stopped run left out says so. */
 static bool is_known(const mt_summary_writer *to, const char *title, const void *items)
 {
     if (items == NULL) {
@@ -115,7 +115,7 @@ static void write_ruler(const mt_summary_writer *to, const mt_recommendation *r)
     mt_text_free(&ruler);
 }
 
-/* Why a design is what it is. */
+/* Write the reasons of a design. */
 static void write_reasons(const mt_summary_writer *to, const mt_recommendation *r)
 {
     static const struct {
@@ -143,7 +143,7 @@ static void write_reasons(const mt_summary_writer *to, const mt_recommendation *
     mt_text_add(to->out, to->html && r->n_reasons > 0 ? "</div>\n" : "");
 }
 
-/* One whose text was made for it; freed. */
+/* Add an item of a text that is freed afterwards. */
 static void add_made(const mt_summary_writer *to, mt_text *text)
 {
     add_item(to, "", text->s == NULL ? "" : text->s);
@@ -193,14 +193,15 @@ static void add_warnings(const mt_summary_writer *to, const char *title, int n,
     }
 }
 
-/* True where both say the same, of whatever configuration. */
+/* True where both notes have the same text, in any configuration. */
 static bool is_same_fact(const mt_warning *a, const mt_warning *b)
 {
     return a->configuration != NULL && b->configuration != NULL &&
            strcmp(a->text, b->text) == 0;
 }
 
-/* Fact i, with all configurations that it holds in; empty where an earlier one has told it. */
+/* Write note i with all configurations that have it; nothing where an earlier one has listed
+ * it. */
 static void write_fact(int i, int n, const mt_warning *items, mt_text *text)
 {
     for (int k = 0; k < i; k++) {
@@ -303,7 +304,7 @@ static void write_numbers(const mt_summary_writer *to, const mt_result *result,
     add_table(to, mt_report_motions(r), "Over the range of motion");
 }
 
-/* What was asked against what this design does. */
+/* Write the requirements compared with this design. */
 static void write_compliance(const mt_summary_writer *to, const mt_result *result,
                              const mt_recommendation *r)
 {
@@ -474,7 +475,7 @@ static void write_responses(const mt_summary_writer *to, const mt_result *result
     }
 }
 
-/* Values alone: nothing else is known of them. */
+/* Write the values of unchecked designs, of which nothing else is known. */
 static void write_unchecked(const mt_summary_writer *to, const mt_result *result)
 {
     if (open_list(to, "Not re-checked before the end: values of the variables, unverified",
@@ -488,9 +489,9 @@ static void write_unchecked(const mt_summary_writer *to, const mt_result *result
     }
 }
 
-/* The best design (goals, frequencies, parameters, reasons), or the original one where there
- * is none; alternatives, what stays undetermined, certificates, relaxations, designs that
- * were not analysed anew, warnings. */
+/* The best design (goals, frequencies, parameters, reasons), or the original one where there is
+ * none; alternatives, directions that are not identifiable, what is proven, relaxations,
+ * unchecked designs, warnings. */
 static void write_answer(const mt_summary_writer *to, const mt_result *result,
                          bool with_published)
 {
@@ -514,7 +515,7 @@ static void write_answer(const mt_summary_writer *to, const mt_result *result,
     add_sentences(to, "Warnings", result->n_warnings, result->warnings);
 }
 
-/* A place that the page's script draws into. */
+/* Add a place for a figure of the page's script. */
 static void keep_place(const mt_summary_writer *to, const char *id)
 {
     mt_text_addf(to->out, "<div id=\"%s\"></div>\n", id);

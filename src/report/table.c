@@ -217,10 +217,9 @@ static bool is_number(const char *s)
 }
 
 /*
- * True for a cell that spreadsheets take for a formula: all do where it begins with one
- * of = + - @ (tabs and line ends are escaped before), some with their full-width forms, some
- * after blanks. A cell that has an apostrophe there already is counted in, so that taking one
- * away always gives the text back.
+ * True for a cell that spreadsheets take for a formula: all do where it begins with = + - @
+ * (tabs and line ends are escaped before), some with their full-width forms, some after blanks.
+ * A cell with an apostrophe there counts, too, so that removing one always restores the text.
  */
 static bool is_formula(const char *s)
 {

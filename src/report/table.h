@@ -6,9 +6,9 @@
 #include "base/text.h"
 
 /*
- * A table, made once and printed in any of three forms: aligned text, CSV (RFC 4180), HTML.
- * Columns first, then cells row by row. Memory running out is remembered and passed on to the
- * mt_text that the table is printed into: check that one at the end.
+ * A table that can be printed as aligned text, CSV (RFC 4180) or HTML. Columns come first, then
+ * cells row by row. A shortage of memory is remembered and passed on to the mt_text of the
+ * printed table, which the caller checks at the end.
  */
 typedef enum mt_align {
     MT_ALIGN_LEFT,
@@ -42,54 +42,56 @@ typedef struct mt_table {
 /* An empty table; mt_table_free accepts one that was never used (zeroed). */
 mt_table mt_table_default(void);
 void mt_table_free(mt_table *t);
-/* All columns before the first cell. Texts are copied. */
+/* Add a column; all columns before the first cell. Texts are copied. */
 void mt_table_column(mt_table *t, const char *heading, const char *member, mt_align align);
-/* Cells. NULL and NaN are "-" for people and empty for machines. */
+/* Add a cell. NULL and NaN are "-" for people and empty for machines. */
 void mt_table_text(mt_table *t, const char *text);
-/* One that a page shows as good or as bad. */
+/* A cell that a page shows as good or bad. */
 void mt_table_verdict(mt_table *t, const char *text, bool good);
 void mt_table_integer(mt_table *t, long long value);
 void mt_table_number(mt_table *t, double value, int digits);
 void mt_table_rounded(mt_table *t, double value, int digits); /* for machines, too */
 void mt_table_change(mt_table *t, double value, int digits);  /* with its sign */
-/* A number, and the name of its unit, that people see in another unit than machines, who get
- * SI: for them value / factor (result/result.h); NULL, and a factor that is not above 0: as it
- * is. */
+/* A number, and the name of its unit, displayed to people in another unit, as value / factor
+ * (result/result.h), and given to machines in SI. Factor NULL or not above 0: in the unit
+ * itself. */
 void mt_table_shown(mt_table *t, double value, double factor, int digits);
-/* The same, and machines see what people see: their heading names the unit. */
+/* The same, with machines given the displayed value: their heading names the unit. */
 void mt_table_in_unit(mt_table *t, double value, double factor, int digits);
 void mt_table_change_shown(mt_table *t, double value, double factor, int digits);
 void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
-/* A number as a source gives it, in such a unit: no more digits than it has. */
+/* A published number in the displayed unit, with at most 10 digits and no trailing zeros. */
 void mt_table_quoted(mt_table *t, double value, double factor);
-/* A percentage with its sign, and a ratio without; for people, what is noise (base/tie.h) is
- * written 0. */
+/* mt_table_percent: a percentage with its sign; mt_table_ratio: a ratio without. For people,
+ * noise (base/tie.h) is written as 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
-/* What a goal is off by: of one that is met, what searches leave open is 0 for people. */
+/* The deviation of a goal; for a met goal, a deviation within the accuracy of searches is 0 for
+ * people. */
 void mt_table_off_by(mt_table *t, double percent, bool met, int digits);
-/* A clearance, or one beside the margin that it keeps, up to what searches leave open. */
+/* A clearance; one that equals its margin within the accuracy of searches is shown as the
+ * margin. */
 void mt_table_clearance(mt_table *t, double percent, double margin, int digits);
 void mt_table_ratio(mt_table *t, double value, int digits);
-/* Two cells: a difference, shown as above, and what it is in percent; both 0 where that is
- * noise. */
+/* Two cells: a difference, displayed as by mt_table_shown, and the same in percent; both 0
+ * where it is noise. */
 void mt_table_difference(mt_table *t, double value, double percent, double factor, int digits);
 int mt_table_rows(const mt_table *t);
 
-/* Heading, rule, rows; two blanks between columns, `indent` before the first, none behind the
- * last. Columns that hold nothing (but the first) are left out; what does not fit into `width`
- * (0: everything does) follows below, behind the same first columns. */
+/* Heading, rule, rows; two blanks between columns, `indent` before the first, none after the
+ * last. Empty columns other than the first are left out; columns beyond `width` (0: unlimited)
+ * follow below, after the same first columns. */
 void mt_table_print(const mt_table *t, int indent, int width, mt_text *out);
 /* Header line and rows, each ended by CR LF. */
 void mt_table_csv(const mt_table *t, mt_text *out);
 /* <table>...</table>, every text escaped. */
 void mt_table_html(const mt_table *t, mt_text *out);
 
-/* One CSV field, quoted where RFC 4180 asks for it, in one line: control characters are made
+/* One CSV field in one line, quoted where RFC 4180 requires it; control characters are made
  * visible (base/visible.h). Text that a spreadsheet would take for a formula (it begins with =
  * + - @) gets an apostrophe in front; a number does not. */
 void mt_csv_field(const char *s, mt_text *out);
-/* Text within HTML or a quoted attribute: & < > " ' become references, control characters but
- * tab and line feed are made visible. */
+/* Escape text for HTML or a quoted attribute: & < > " ' become references, control characters
+ * except tab and line feed are made visible. */
 void mt_html_escape(const char *s, mt_text *out);
 
 #endif

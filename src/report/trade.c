@@ -11,7 +11,7 @@
 
 enum { VALUE_DIGITS = 6, PERCENT_DIGITS = 3, HEADING_TEXT = 160 };
 
-/* Objectives of the front that are none of the study's, and have no column of their own. */
+/* True for objectives of the front that are not among the study's, and so need a column. */
 static bool has_column(const mt_result *result, int k)
 {
     static const char *const own[] = {"change", "clearance"};
@@ -89,7 +89,7 @@ static void point_row(mt_table *t, const mt_result *result, const mt_trade_point
     mt_report_variable_cells(t, result, &p->best);
 }
 
-/* One that has parameters; NULL: none has. */
+/* A design with parameters; NULL: none. */
 static const mt_recommendation *any_design(const mt_trade_result *trade)
 {
     for (int i = 0; i < trade->n_points; i++) {

@@ -5,11 +5,11 @@
 #include "report/table.h"
 #include "result/result.h"
 
-/* One line per point of the trade study: what varies, status, objectives, change, clearance,
- * parameters; the caller frees it. No columns where there is none. */
+/* One row per point of the trade study: varied quantities, status, objectives, change,
+ * clearance, parameters; the caller frees it. No columns without a trade study. */
 mt_table mt_report_trade(const mt_result *result);
-/* Of a large grid those that are shown whole (mt_trade_select), and how many of all these are
- * as a sentence; of any other all, and no text. There is a trade study. */
+/* The rows of the selected points of a large grid (mt_trade_select), and a sentence about their
+ * number; of any other grid all rows, and no sentence. The result must have a trade study. */
 mt_table mt_report_trade_selected(const mt_result *result);
 void mt_report_trade_left(const mt_result *result, mt_text *line);
 

@@ -4,32 +4,32 @@
 
 #include "result/record.h"
 
-/* Frequency responses of a result (result.h): which are shown, and what they are at a design.
- * NaN: not applicable. */
+/* Frequency responses of a result (result.h): the list of those shown, and their values at a
+ * design. NaN: not applicable. */
 
-/* Digits that files keep of a curve: frequencies next to a narrow peak differ late; what is
- * drawn needs no more than that. */
+/* Significant digits of curves in files: frequencies next to a narrow peak differ in late
+ * digits; drawings need no more of the values. */
 enum { MT_CURVE_HZ_DIGITS = 8, MT_CURVE_DIGITS = 6 };
 
-/* |H| and its phase at as many frequencies as a picture needs, where it is finite and not 0; in
- * between both are straight over log frequency, the magnitude in its logarithm. */
+/* |H| and its phase at as many frequencies as a drawing needs, where |H| is finite and not 0.
+ * Between them log |H| and the phase are linear in log frequency. */
 typedef struct mt_curve_points {
-    int n_hz; /* the same number of each; files may say otherwise */
+    int n_hz; /* the three counts are equal; files may differ */
     double *hz;
     int n_magnitude;
     double *magnitude;
     int n_phase;
     double *phase_deg;
-    int n_psd;   /* of the output under the curve's profile; none without */
-    double *psd; /* [output_unit^2/Hz] NaN: the profile has nothing there */
+    int n_psd;   /* density of the output under the curve's profile; 0: no profile */
+    double *psd; /* [output_unit^2/Hz] NaN: outside the profile */
 } mt_curve_points;
 
-/* What a goal asks of a response between two frequencies, which may be equal. */
+/* The limits of a goal on a response between two frequencies, which may be equal. */
 typedef struct mt_result_limit {
     const char *pointer; /* "/goals/0" */
     double lower_hz;
     double upper_hz;
-    double target; /* NaN: not asked for; likewise */
+    double target; /* NaN: no such limit; the same for at_least and at_most */
     double at_least;
     double at_most;
 } mt_result_limit;
@@ -49,22 +49,22 @@ typedef struct mt_result_tone {
     double level; /* amplitude [m/s^2] */
 } mt_result_tone;
 
-/* What the ground accelerates like. */
+/* The acceleration of the ground. */
 typedef struct mt_result_profile {
-    const char *file; /* as the study names it */
+    const char *file; /* file name in the study */
     const char *name; /* NULL: it has none */
     double rms;       /* [m/s^2] of its random parts */
-    double sigma;     /* a peak is sigma rms and the tones, */
-    const char *rule; /* "sum" | "largest" | "root_sum_square" of them */
-    int n_densities;  /* which add up */
+    double sigma;     /* the peak is sigma rms plus the tones combined */
+    const char *rule; /* by "sum" | "largest" | "root_sum_square" */
+    int n_densities;  /* densities add up */
     mt_result_density *densities;
     int n_tones;
     mt_result_tone *tones;
 } mt_result_profile;
 
-/* A response that is shown of every design. */
+/* A response shown for every design. */
 typedef struct mt_result_curve {
-    const char *pointer; /* of what asks for it, "/responses/0" */
+    const char *pointer; /* of the goal or response that requests it, "/responses/0" */
     const char *configuration;
     const char *input; /* ports, in full */
     const char *output;
@@ -74,10 +74,11 @@ typedef struct mt_result_curve {
     double upper_hz;
     const char *description; /* may be NULL */
     const char *source;      /* may be NULL */
-    int n_limits;            /* of goals about the same ports */
+    int n_limits;            /* limits by goals on the same ports */
     mt_result_limit *limits;
     mt_result_profile *profile; /* NULL: none */
-    mt_curve_points measured;   /* that a goal compares it with; none: no points */
+    /* the measurement that a goal compares it with; no points: none */
+    mt_curve_points measured;
 } mt_result_curve;
 
 /* A maximum or minimum of |H| over frequency. */
@@ -85,27 +86,28 @@ typedef struct mt_result_extreme {
     const char *kind; /* "peak" | "resonance" (infinite) | "antiresonance" | "minimum" */
     double hz;
     double magnitude;     /* NaN: infinite */
-    double phase_deg;     /* of it, (-180, 180]; NaN: it has none */
-    double natural_hz;    /* of a peak: size and damping ratio of the pole s nearest to i w, */
-    double damping_ratio; /* |s|/(2 pi) and -Re s/|s|; NaN of others */
+    double phase_deg;     /* phase of H, (-180, 180]; NaN: none */
+    double natural_hz;    /* of a peak: frequency |s|/(2 pi) and damping ratio -Re s/|s| */
+    double damping_ratio; /* of the pole s nearest to i w; NaN for other kinds */
 } mt_result_extreme;
 
 /* The response to a tone of a profile. */
 typedef struct mt_result_forced_response_tone {
     const char *label;
-    double hz;   /* of its range, where the response is the largest; NaN: it has no number */
+    double hz;   /* frequency of its range with the largest response; NaN: no finite value */
     double peak; /* amplitude [output_unit] */
-    double excess_at_most; /* part of the peak, proven; NaN: not proven */
-    bool at_edge;          /* of the range */
+    double excess_at_most; /* proven bound of (maximum - peak)/peak; NaN: not proven */
+    bool at_edge;          /* the peak lies at an end of the range */
 } mt_result_forced_response_tone;
 
-/* What a curve's profile does at one design, all of the profile, whatever is shown. */
+/* The vibration under the whole profile of a curve at one design, also outside the frequencies
+ * shown. */
 typedef struct mt_result_forced_response {
     const char *end; /* "finite" | "infinite" | "unstable": numbers are NaN where not finite */
-    bool proven;     /* false: by quadrature, errors are estimates */
+    bool proven;     /* false: by quadrature, errors are estimated */
     double rms;      /* of the random parts [output_unit] */
     double rms_error_at_most;
-    double sine; /* of the tones by the profile's rule */
+    double sine; /* amplitude of the tones by the profile's rule */
     double peak; /* sigma rms + sine */
     int n_tones;
     mt_result_forced_response_tone *tones;
@@ -113,13 +115,13 @@ typedef struct mt_result_forced_response {
 
 /* A response of result.curves at one design. */
 typedef struct mt_design_curve {
-    const char *pointer; /* pointer and configuration as there */
+    const char *pointer; /* pointer and configuration of the result's curve */
     const char *configuration;
-    const char *trouble; /* why there is no curve; NULL: there is */
+    const char *trouble; /* reason for a missing curve; NULL: there is a curve */
     mt_curve_points drawn;
     int n_extremes;
-    mt_result_extreme *extremes;          /* by ascending frequency, all of the band */
-    mt_result_forced_response *vibration; /* NULL: no profile, or no curve (trouble says) */
+    mt_result_extreme *extremes;          /* by ascending frequency, all within the band */
+    mt_result_forced_response *vibration; /* NULL: no profile, or no curve (see `trouble`) */
 } mt_design_curve;
 
 extern const mt_record mt_curve_record;        /* mt_result_curve */

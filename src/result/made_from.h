@@ -5,9 +5,9 @@
 #include <stdbool.h>
 
 /*
- * What a result was made from: the question and the model with what they say of themselves,
- * the files, the program and its libraries, and what the answer cost. Texts live in the
- * result's arena; members as in result.h.
+ * The origin of a result: study and model with their names and authors, the files, the program
+ * and its libraries, and the work done. Texts live in the result's arena; members as in
+ * result.h.
  */
 
 typedef struct mt_result_source {
@@ -15,10 +15,10 @@ typedef struct mt_result_source {
     const char *file;
 } mt_result_source;
 
-/* Who asked, as the study says it; NULL: it does not. */
+/* Name, file and author of the study; NULL: not given. */
 typedef struct mt_result_study {
     const char *name;
-    const char *file; /* its file name, without folder */
+    const char *file; /* file name without folder */
     const char *author;
     const char *revision;
     const char *date;
@@ -30,9 +30,9 @@ typedef struct mt_result_assumption {
     const char *unit;         /* may be NULL */
     const char *display_unit; /* as in mt_result_parameter */
     double display_factor;
-    double value;       /* as the model has it */
+    double value;       /* value in the model */
     const char *source; /* NULL: the model gives none */
-    bool variable;      /* the study may change it */
+    bool variable;      /* true: a variable of the study */
 } mt_result_assumption;
 
 /* A file that the result names with the SHA-256 of its bytes. */
@@ -41,13 +41,13 @@ typedef struct mt_result_digest {
     const char *sha256; /* hexadecimal */
 } mt_result_digest;
 
-/* What the program was made from. */
+/* The sources and the compiler of the program. */
 typedef struct mt_result_build {
-    const char *commit; /* "unknown" where the sources were no repository */
+    const char *commit; /* "unknown" where the sources were not in a repository */
     const char *compiler;
 } mt_result_build;
 
-/* A number that was asked for instead of what the files say. */
+/* A number that overrides a number of the files. */
 typedef struct mt_result_override {
     const char *kind; /* "parameter" of the model, "search": member of the study's search */
     const char *name;
@@ -55,28 +55,28 @@ typedef struct mt_result_override {
     const char *display_unit; /* as in mt_result_parameter */
     double display_factor;
     double value;
-    double original; /* what the files say; NaN: nothing */
+    double original; /* number in the files; NaN: none */
 } mt_result_override;
 
-/* What an answer cost: evaluations of a design in all configurations, or of one more position
- * of a drive, by what they were for; run.evaluations is their sum. */
+/* The work of an answer by purpose: evaluations of a design in all configurations, or at one
+ * more position of a drive; run.evaluations is their sum (without multiplications). */
 typedef struct mt_result_work_counters {
     long search;
-    long positions;    /* of drives, wherever a design was followed */
-    long descriptions; /* analyses anew of the original design and of those recommended */
+    long positions;    /* positions of drives at which a design was followed */
+    long descriptions; /* repeated analyses of the original design and of those recommended */
     long weight_sensitivity;
     long relaxations;
-    long trade;           /* all points, with all of this */
-    long multiplications; /* of proofs, about */
+    long trade;           /* all points of a trade study, with all of the work of each */
+    long multiplications; /* of proofs, approximate */
 } mt_result_work_counters;
 
-/* A design that a search met that was better than all before it. */
+/* A design of a search that was better than all before it. */
 typedef struct mt_result_step {
-    int objective;    /* that was made least, from 1 */
-    int round;        /* from 1: what follows counts more closely, or under more conditions */
-    long evaluations; /* up to there, as if one worker had done all of it */
-    double value;     /* of that objective, as mt_design_objective has it; NaN: none */
-    double violation; /* the most that a goal or bound is missed by, of its tolerance */
+    int objective;    /* index of the minimised objective, from 1 */
+    int round;        /* from 1; later rounds use tighter accuracy or more conditions */
+    long evaluations; /* evaluations so far, counted as if one worker had done all of them */
+    double value;     /* value of that objective, as in mt_design_objective; NaN: none */
+    double violation; /* largest violation of a goal or bound, relative to its tolerance */
     bool feasible;
 } mt_result_step;
 
@@ -88,24 +88,26 @@ typedef struct mt_result_run {
     const char *gsl_version;
     long seed;
     long evaluations;
-    /* of one configuration at a design, a position or a corner of tolerances each: what the
-     * evaluations and the judgement over tolerances took */
+    /* solutions of one configuration at a design, a position or a tolerance corner, for the
+     * evaluations and the check over tolerances */
     long modal_solutions;
     mt_result_work_counters spent;
     int starts;
-    /* of a search from starts; -1, NaN: not applicable */
+    /* of a search from several starts; -1, NaN: not applicable */
     int distinct_designs;
-    int singletons;          /* of them, by one start only */
-    double estimated_unseen; /* isolated designs that no start met, at least */
-    int n_history;           /* 0: nothing was searched, or an interrupt cut it */
+    int singletons; /* designs that only one start reached */
+    /* estimated lower bound of the isolated designs that no start reached */
+    double estimated_unseen;
+    int n_history; /* 0: nothing was searched, or an interrupt cut it */
     mt_result_step *history;
     int n_overrides;
     mt_result_override *overrides;
     int n_inputs;
     mt_result_digest *inputs;
-    int n_outputs; /* files written beside the result; 0: it is written alone */
+    int n_outputs; /* files written next to the result; 0: none */
     mt_result_digest *outputs;
-    /* phases that an interrupt cut, by the names of what they write ("search", ...) */
+    /* phases that an interrupt cut, by the names of their members in the result ("search",
+     * ...) */
     int n_incomplete;
     const char **incomplete;
     const char *cut_by; /* "interrupt" | "time limit"; NULL: nothing was cut */

@@ -45,7 +45,7 @@ static void *own_items(void *at, int n, size_t size, mt_arena *mem)
     return own;
 }
 
-/* The text of `like` where it says the same; returns whether it does. */
+/* Take the text of `like` where it is equal, else a copy; returns true where equal. */
 static bool own_text(const char **text, const char *like, mt_arena *mem)
 {
     const bool same = *text == NULL ? like == NULL : like != NULL && strcmp(*text, like) == 0;
@@ -98,7 +98,7 @@ static bool own_texts(const twins *t, mt_arena *mem)
 static bool own(const mt_record *record, void *item, const void *like, int n_variables,
                 mt_arena *mem);
 
-/* A list that is the same in every item is that of `like`. */
+/* Take the list of `like` where it is equal in every item. */
 static bool own_list(const mt_record *record, const twins *t, int n_variables, mt_arena *mem)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -118,7 +118,7 @@ static bool own_list(const mt_record *record, const twins *t, int n_variables, m
     return same;
 }
 
-/* How many items lists have whose counts lie there; like NULL: there is no other. */
+/* Numbers of items of the lists of a record; like NULL: no other record. */
 static void read_counts(twins *t, const char *at, const char *like)
 {
     memcpy(&t->n, at, sizeof t->n);
@@ -181,7 +181,8 @@ static bool own_field(const mt_field *f, void *item, const void *like, int n_var
     return false;
 }
 
-/* All of an item; returns whether `like` (NULL: nothing) is the same in every member. */
+/* Own all members of an item; returns true where `like` (NULL: none) is equal in every
+ * member. */
 static bool own(const mt_record *record, void *item, const void *like, int n_variables,
                 mt_arena *mem)
 {

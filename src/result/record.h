@@ -10,24 +10,25 @@
 #include "base/serializer.h"
 
 /*
- * What a struct holds, as a table: whoever writes, reads, copies or checks results walks these
- * tables and knows no struct. A record is plain: its texts and lists lie in an arena that it
- * does not know.
+ * The members of a struct as a table. Writer, reader, copier and checks of results walk these
+ * tables and depend on no struct. A record is plain: its texts and lists lie in an arena that
+ * the record does not own.
  */
 typedef enum mt_field_type {
-    MT_FIELD_TEXT,    /* const char * */
-    MT_FIELD_CHOICE,  /* const char *, one of `choices` */
-    MT_FIELD_ENUM,    /* an enum whose names are `choices` */
-    MT_FIELD_NUMBER,  /* double; null is NaN */
-    MT_FIELD_VALUE,   /* double, or const char * (at `other`) where that is not NULL */
-    MT_FIELD_COUNT,   /* int, `least` or more; null is what is less */
-    MT_FIELD_LONG,    /* long, 0 or more */
-    MT_FIELD_FLAG,    /* bool */
-    MT_FIELD_RECORD,  /* a struct */
-    MT_FIELD_OPTION,  /* a pointer to a struct; null is NULL */
-    MT_FIELD_LIST,    /* a pointer to structs; like the next two, their int count at `other` */
-    MT_FIELD_TEXTS,   /* const char ** */
-    MT_FIELD_NUMBERS, /* double *; in one line */
+    MT_FIELD_TEXT,   /* const char * */
+    MT_FIELD_CHOICE, /* const char *, one of `choices` */
+    MT_FIELD_ENUM,   /* an enum whose names are `choices` */
+    MT_FIELD_NUMBER, /* double; null is NaN */
+    MT_FIELD_VALUE,  /* double, or const char * (at `other`) where that is not NULL */
+    MT_FIELD_COUNT,  /* int, `least` or more; null is what is less */
+    MT_FIELD_LONG,   /* long, 0 or more */
+    MT_FIELD_FLAG,   /* bool */
+    MT_FIELD_RECORD, /* a struct */
+    MT_FIELD_OPTION, /* a pointer to a struct; null is NULL */
+    /* a pointer to structs; of this and the next two, the int count is at `other` */
+    MT_FIELD_LIST,
+    MT_FIELD_TEXTS,       /* const char ** */
+    MT_FIELD_NUMBERS,     /* double *; in one line */
     MT_FIELD_BY_VARIABLE, /* double *, one for each variable of the study, by its name */
     MT_FIELD_TYPE_COUNT
 } mt_field_type;
@@ -43,22 +44,22 @@ typedef struct mt_field {
     mt_field_type type;
     int least;
     int n_choices;
-    int digits;            /* of a list of numbers: significant ones written; 0: all */
+    int digits;            /* of a list of numbers: significant digits written; 0: all */
     bool flat;             /* of a record: in one line */
     bool nullable;         /* of a list: NULL is null, else NULL is empty */
     bool numbers_nullable; /* of numbers by variable: single ones may be NaN */
 } mt_field;
 
 struct mt_record {
-    size_t size; /* of the struct */
+    size_t size; /* size of the struct */
     int n;
     const mt_field *fields; /* in the order in which they are written */
 };
 
 /*
- * How the tables are written, with THIS for the struct. The compiler checks every member's
- * type: MT_F_MEMBER is its offset, times one where the type is the one that is said, and no
- * expression elsewhere.
+ * Macros that write the tables, with THIS for the struct. The compiler checks every member's
+ * type: MT_F_MEMBER is the member's offset times 1 where its type is `of`, and does not compile
+ * otherwise.
  */
 /* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
 #define MT_F_MEMBER(of, m) (offsetof(THIS, m) * _Generic(&((THIS *)NULL)->m, of * : 1U))
@@ -178,20 +179,20 @@ struct mt_record {
     }
 /* NOLINTEND(bugprone-macro-parentheses) */
 
-/* All that is unknown: numbers NaN, counts below their least, nothing in lists, the rest
+/* Set a struct to unknown: numbers NaN, counts below their least, lists empty, the rest
  * zero. */
 void mt_record_clear(const mt_record *record, void *item);
-/* Every text and list of a struct replaced by a copy in mem, which is asked about shortages at
- * the end; n_variables: of the study. What `like` (of the same record, as lasting as mem; NULL:
- * nothing) has in the same place, and says the same, is taken from there: neither may be
- * changed afterwards. */
+/* Replace every text and list of a struct by a copy in mem, which remembers a shortage;
+ * n_variables: of the study. Texts and lists that `like` (of the same record, living as long as
+ * mem; NULL: none) has in the same place with the same content are shared with it: neither
+ * struct may be changed afterwards. */
 void mt_record_own(const mt_record *record, void *item, const void *like, int n_variables,
                    mt_arena *mem);
-/* All of a struct on tape; what is read lies in mem, and the struct is of no use where the tape
- * failed. */
+/* Serialize a whole struct. Read data lies in mem; where the serializer failed the struct is
+ * not usable. */
 void mt_record_serialize(const mt_record *record, void *item, int n_variables,
                          mt_serializer *serializer, mt_arena *mem);
-/* The pointer that lies at a member, whatever it points to. */
+/* The pointer stored at a member, of any pointed-to type. */
 void *mt_record_get_pointer(const void *at);
 void mt_record_set_pointer(void *at, const void *pointer);
 

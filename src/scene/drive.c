@@ -32,8 +32,8 @@ static mt_scene_travel travel_of(const mt_scene_frame *f, const mt_drive *drive)
     return travel == NULL ? MT_TRAVEL_MODES : travel[drive->joint];
 }
 
-/* The configuration's own drive, else the first of another one whose joint, and whose spring,
- * it has. */
+/* The drive to follow: the configuration's own, else the first drive of another configuration
+ * whose joint and spring this one has. */
 static const mt_drive *drive_of(const mt_scene_frame *f)
 {
     const mt_model *const m = f->model;
@@ -148,7 +148,7 @@ static mt_status visit_modes(void *context, int point, const double *inputs, mt_
     return MT_OK;
 }
 
-/* The position nearest to the reference: every system is made there. */
+/* Index of the position nearest to the reference: every system is made there. */
 static double nearest_of(int n, const double *positions)
 {
     double least = positions[0];
@@ -178,7 +178,7 @@ static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive,
     return mt_system_new_of(&def, &w->sys, err);
 }
 
-/* pose: R R0^T of the body `from`, to what it is of the body `to`. */
+/* Convert a pose R R0^T of the body `from` to that of the body `to`. */
 static void turn_back(const mt_scene_body *from, const mt_scene_body *to,
                       const double *rotation, double *out)
 {
@@ -280,7 +280,7 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
     return mt_arena_check(f->mem, err);
 }
 
-/* What the next configuration may share. */
+/* Keep the positions that the next configuration may share. */
 static void keep(walk *w)
 {
     mt_scene_followed *const followed = w->f->followed;

@@ -95,7 +95,7 @@ static double term_energy(const mt_scene_energy *e, mt_term_kind kind, const mt_
     return sum;
 }
 
-/* Parts of their sum and of `rest`, none below 0: the greatest rounding there is. */
+/* Normalise energies by their sum and |rest|; negative ones, which are rounding, become 0. */
 static void share_out(int n, double *energy, double rest)
 {
     double sum = fabs(rest);

@@ -171,7 +171,7 @@ static void add_line(mt_scene_view *v, int *capacity, mt_arena *mem, const mt_sc
     }
 }
 
-/* Whether there is a line of the body to this place already. They begin at `first`. */
+/* True where there is a line of the body to this place already. They begin at `first`. */
 static bool has_line(const mt_scene_view *v, int first, const double to[3], double same)
 {
     bool has = false;
@@ -207,7 +207,7 @@ static void lines_of(const holds *h, int body, int *capacity)
     }
 }
 
-/* To the lines from the centre of a body to what it holds besides this joint. */
+/* Distance to the lines from the centre of a body to its other items, without this joint. */
 static double distance_to_lines(const holds *h, int body, int joint, const double at[3])
 {
     const double *const centre = h->f->view->bodies[body].at;

@@ -18,7 +18,7 @@ static double moved(const mt_scene_body *b, const double *motion, const double p
                  motion[2] + (r[0] * d[1]) - (r[1] * d[0]));
 }
 
-/* Of a spring's or a joint's two ends. */
+/* Largest displacement of the two ends of a spring or a joint. */
 static double ends_moved(const mt_scene_view *v, const double *motion, const int body[2],
                          const double end[2][3])
 {

@@ -37,7 +37,7 @@ static int shown_of(const mt_modes *modes)
     return modes->count;
 }
 
-/* What stands still. */
+/* Add all items at rest. */
 static mt_status draw(mt_scene_frame *f, mt_err *err)
 {
     MT_TRY(mt_scene_bodies(f, err));
@@ -46,7 +46,7 @@ static mt_status draw(mt_scene_frame *f, mt_err *err)
     return mt_scene_lines(f, err);
 }
 
-/* By matrices: where it comes to rest, and its modes there. */
+/* Position at rest and modes by full matrices. */
 static mt_status by_analysis(mt_scene_frame *f, mt_analysis *a, mt_err *err)
 {
     f->sys = a->sys;
@@ -89,9 +89,9 @@ static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
     return rc;
 }
 
-/* The analysis of the configuration at this design: that of the design before it, which knows
- * all that designs do not change, and looks for its position as if it were new. It stays where
- * it is kept. */
+/* The analysis of the configuration at this design. That of the previous design is reused for
+ * all that designs do not change, and its position is computed as if it were new. It remains
+ * owned by its keeper. */
 static mt_status analyse(const mt_scene_frame *f, mt_err *err)
 {
     const mt_scene_query *const a = f->ask;
@@ -140,7 +140,7 @@ static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
     return rc;
 }
 
-/* One configuration of a design; what it fails with is said there. */
+/* Fill one configuration of a design; a failure is stored in it. */
 static mt_status view_new(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     const char *const name = f->model->configurations[f->configuration].name.s;
@@ -177,7 +177,7 @@ static mt_status view_new(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
                                   : mt_pass_final(rc, &other, err);
 }
 
-/* Whether a parameter's value in the file is a plain number. */
+/* True where a parameter's value in the file is a plain number. */
 static bool is_plain(const mt_model *model, int parameter)
 {
     double value = 0.0;
@@ -337,7 +337,8 @@ static int by_distance(const void *a, const void *b)
     return dx != dy ? (dx < dy ? 1 : -1) : x->order - y->order;
 }
 
-/* Of the first design; equal distances as configurations and joints stand. */
+/* List the joints of the first design; equal distances in the order of configurations and
+ * joints. */
 static mt_status list_joints(mt_scene *scene, mt_err *err)
 {
     const mt_scene_design *const d = scene->n_designs > 0 ? &scene->designs[0] : NULL;
@@ -362,7 +363,7 @@ static mt_status list_joints(mt_scene *scene, mt_err *err)
     return MT_OK;
 }
 
-/* That of one configuration at a design. */
+/* Gravity of one configuration at a design. */
 static mt_status gravity_in(const mt_model *model, int configuration, const mt_scene_query *ask,
                             mt_scene *scene, mt_arena *work, mt_err *err)
 {
@@ -375,8 +376,8 @@ static mt_status gravity_in(const mt_model *model, int configuration, const mt_s
     return MT_OK;
 }
 
-/* That of the first configuration which has any but 0, at the first design; of those that are
- * shown, else of all: which way is up should not depend on what is shown. */
+/* Gravity of the first configuration with gravity, at the first design: among those shown, else
+ * among all, so that the up direction does not depend on what is shown. */
 static mt_status find_gravity(const question *q, const mt_scene_query *ask, mt_scene *scene,
                               mt_arena *work, mt_err *err)
 {

@@ -6,38 +6,37 @@
 #include "model/model.h"
 
 /*
- * What there is to see of a mechanism: of one or several designs, in each configuration, where
- * everything stands, how it moves in its lowest modes, and where a driven joint takes it.
- * Ground coordinates, SI units. Bodies are those of mechanics/system.h behind the ground, which
- * is body 0: a link is its rigid elements, or its nodes. What cannot be computed says why in
- * words; what it stands in is then as complete as it can be.
+ * The drawing of a mechanism at one or several designs: in each configuration the position of
+ * every item, its motion in the lowest modes, and its positions along the range of a driven
+ * joint. Ground coordinates, SI units. Body 0 is the ground, the bodies of mechanics/system.h
+ * follow: a link is its rigid elements, or its nodes. A part that cannot be computed has its
+ * reason in words; the rest is complete.
  */
 
-/* Vibration modes of a configuration at most, and as many rigid-body and unstable ones; and the
- * positions of a driven joint. */
+/* The most vibration modes of a configuration, also the most rigid-body and unstable ones; and
+ * the number of positions of a driven joint. */
 enum { MT_SCENE_MODES = 12, MT_SCENE_POSITIONS = 21 };
-/* What a page can show: items (bodies, and four joints, springs, sensors or the like as one) of
- * one configuration; those of all configurations and designs; and bodies times the positions of
- * their drives. What exceeds this is left out, and says so. */
+/* Capacity of a page: items (bodies, and four joints, springs, sensors or the like as one) of
+ * one configuration; items of all configurations and designs; bodies times the positions of
+ * their drives. What exceeds it is left out with a message. */
 enum { MT_SCENE_ITEMS = 3000, MT_SCENE_ALL_ITEMS = 9000, MT_SCENE_POSES = 40000 };
-/* What is shown of the ranges of driven joints. */
+/* The content shown along the ranges of driven joints. */
 typedef enum mt_scene_travel {
     MT_TRAVEL_NONE,
-    MT_TRAVEL_POSES, /* where everything stands at each position */
+    MT_TRAVEL_POSES, /* the position of every item at each position of the drive */
     MT_TRAVEL_MODES  /* and the frequencies of the lowest modes there */
 } mt_scene_travel;
 
-/* What looking may cost in all, in operations: about a minute where somebody asks to see a
- * mechanism, a few seconds where it goes along with an answer. Beyond it drives are not
- * followed, and of large mechanisms without a short way to their lowest modes no modes are
- * sought. */
+/* Budgets of a scene in operations: about a minute where a mechanism is shown on request, a few
+ * seconds with an answer. Beyond them drives are not followed, and modes of large mechanisms
+ * without a fast method for the lowest ones are left out. */
 #define MT_SCENE_WORK       2e11
 #define MT_SCENE_WORK_ALONG 1e10
 
 typedef enum mt_scene_kind { MT_SCENE_GROUND, MT_SCENE_BODY, MT_SCENE_LINK } mt_scene_kind;
 
-/* Uniform, of the same mass and inertia as its body (a disc in two dimensions), about its mass
- * centre. */
+/* The uniform ellipsoid of the same mass and inertia as its body (a disc in two dimensions),
+ * about its mass centre. */
 typedef struct mt_scene_ellipsoid {
     double radii[3];   /* descending [m] */
     double axes[3][3]; /* unit vectors */
@@ -46,19 +45,20 @@ typedef struct mt_scene_ellipsoid {
 typedef struct mt_scene_body {
     const char *name;
     mt_scene_kind kind;
-    double mass;                   /* of a bar or a beam's element each end has half [kg] */
+    double mass;                   /* [kg]; a bar or a beam's element gives half to each end */
     double at[3];                  /* mass centre */
-    double rotation[9];            /* from the drawing, column-major */
+    double rotation[9];            /* from the reference position, column-major */
     mt_scene_ellipsoid *ellipsoid; /* NULL: a link, or nothing resists its rotation */
 } mt_scene_body;
 
 typedef struct mt_scene_point {
     const char *name;
-    int body; /* that holds it */
+    int body; /* the body that it belongs to */
     double at[3];
 } mt_scene_point;
 
-/* What a body is drawn as: from its mass centre, or along a link, to what it holds. */
+/* A line of a body's drawing: from its mass centre, or along a link, to an item attached to
+ * it. */
 typedef struct mt_scene_line {
     int body;
     double from[3];
@@ -71,16 +71,16 @@ typedef struct mt_scene_joint {
     int body[2];
     double end[2][3]; /* its point on each body */
     double at[3];     /* the second of these */
-    bool rod;         /* from one end to the other: a distance joint is drawn so */
+    bool rod;         /* drawn as a rod from one end to the other: a distance joint */
     bool has_axis;
     double axis[3];
-    /* of its point to what is drawn of the body that is farther: 0 where it lies on a link, or
-     * not far beyond the ellipsoid of a body */
+    /* distance of its point from the drawing of the more distant body; 0 where it lies on a
+     * link or not far beyond a body's ellipsoid */
     double distance;
-    int far; /* that body; MT_ABSENT where the distance is 0 */
+    int far; /* the more distant body; MT_ABSENT where the distance is 0 */
 } mt_scene_joint;
 
-/* Or a damper, or what is elastic of a link. */
+/* A spring, a damper, or the elasticity of a link. */
 typedef struct mt_scene_spring {
     const char *name;
     const char *type; /* as in the model; "link" */
@@ -88,10 +88,10 @@ typedef struct mt_scene_spring {
     double end[2][3];
     bool has_axis;
     double axis[3];
-    double stiffness; /* NaN: it is not one number */
+    double stiffness; /* NaN: not a single number */
 } mt_scene_spring;
 
-/* One direction that a sensor reads, or a load's force. */
+/* A direction of a sensor, or the force of a load. */
 typedef struct mt_scene_arrow {
     const char *name;
     int body;
@@ -104,8 +104,8 @@ typedef struct mt_scene_mode {
     double hz;        /* NaN: unstable or undecided */
     const char *name; /* NULL: none */
     const char *note; /* NULL; "rigid-body", "unstable", "undecided" */
-    /* 6 x bodies: translation of the mass centre and rotation vector, scaled so that the
-     * largest displacement of all that is drawn is 1 */
+    /* 6 x bodies: translation of the mass centre and rotation vector, scaled to a largest
+     * displacement of 1 in the drawing */
     double *motion;
     double *spring_share; /* [springs] of the potential energy, loads counted by magnitude */
     double *body_share;   /* [bodies] of the kinetic energy */
@@ -116,23 +116,23 @@ typedef struct mt_scene_position {
     double *pose; /* 12 x bodies: mass centre, rotation (row by row) from the pose of
                         the configuration; NULL: there is none */
     int n_hz;
-    double *hz;      /* [n_hz] lowest vibration modes; none where they were not asked for */
-    const char *why; /* NULL: all went well */
+    double *hz;      /* [n_hz] lowest vibration modes; none where not requested */
+    const char *why; /* reason of a failure; NULL: none */
 } mt_scene_position;
 
 typedef struct mt_scene_drive {
     const char *joint;
     bool angle;
-    double at; /* where the configuration holds it; NaN: it does not */
+    double at; /* position at which the configuration holds it; NaN: it does not */
     int n_positions;
     mt_scene_position *positions; /* ascending */
-    const char *why;              /* there are none; NULL */
+    const char *why;              /* reason for no positions; NULL */
 } mt_scene_drive;
 
 /* One configuration at one design. */
 typedef struct mt_scene_view {
     const char *name;
-    const char *error;     /* why there are no modes; NULL */
+    const char *error;     /* reason for no modes; NULL */
     mt_scene_body *bodies; /* the ground first */
     mt_scene_point *points;
     mt_scene_line *lines;
@@ -143,7 +143,7 @@ typedef struct mt_scene_view {
     mt_scene_arrow *loads;
     mt_scene_mode *modes;
     mt_scene_drive *drive; /* NULL: none */
-    int n_bodies;          /* 0: not even a drawing */
+    int n_bodies;          /* 0: no drawing */
     int n_points;
     int n_lines;
     int n_joints;
@@ -157,7 +157,8 @@ typedef struct mt_scene_view {
 typedef struct mt_scene_parameter {
     const char *name;
     const char *unit; /* NULL: none given */
-    /* what the model gives its number in, value / factor; NULL, NaN: in the unit */
+    /* unit of its number in the model, and its size in `unit`: shown value = value / factor;
+     * NULL, NaN: `unit` itself */
     const char *display_unit;
     double display_factor;
     double value;
@@ -172,17 +173,17 @@ typedef struct mt_scene_design {
     mt_scene_view *views;
 } mt_scene_design;
 
-/* A joint that lies off what it holds, in a list of all of them. */
+/* A joint that lies at a distance from its bodies, in the list of all joints. */
 typedef struct mt_scene_off {
     const char *configuration;
     const char *body; /* NULL where the distance is 0 */
     const mt_scene_joint *joint;
-    int order; /* as configurations and joints stand */
+    int order; /* index in the order of configurations and joints */
 } mt_scene_off;
 
 typedef struct mt_scene {
     mt_arena mem;
-    mt_arena *found; /* [n_designs] what was found along ranges of drives */
+    mt_arena *found; /* [n_designs] results along ranges of drives */
     const char *name;
     int dimension;
     double size;      /* diagonal of the box around all that is drawn [m] */
@@ -191,7 +192,7 @@ typedef struct mt_scene {
     int n_designs;
     mt_scene_design *designs;
     int n_joints;
-    mt_scene_off *joints; /* of the first design, the farthest first */
+    mt_scene_off *joints; /* of the first design, the largest distance first */
 } mt_scene;
 
 /* The name of a mode of a design. */
@@ -201,7 +202,7 @@ typedef struct mt_scene_name {
     const char *name;
 } mt_scene_name;
 
-/* A design to look at: parameters with other values than in the file. */
+/* A design to draw: parameters with values other than in the file. */
 typedef struct mt_scene_query {
     const char *label;
     int rank;
@@ -214,21 +215,20 @@ typedef struct mt_scene_query {
     const int *shown;
 } mt_scene_query;
 
-/* What to show of all designs. */
+/* The content to show of all designs. */
 typedef struct mt_scene_extent {
     int n_configurations;
     const int *configurations; /* [n_configurations] */
-    double work;               /* what it may cost */
-    int threads; /* that share it out, which makes no difference to what there is to see; 0: 1
-                  */
-    /* [joints of the model]: of the range of each, in all configurations that have it; NULL:
-     * of all of them, with modes */
+    double work;               /* budget in operations */
+    int threads;               /* worker threads; the result does not depend on them; 0: 1 */
+    /* [joints of the model] content along the range of each, in all configurations that have
+     * it; NULL: all, with modes */
     const mt_scene_travel *travel;
 } mt_scene_extent;
 
 /**
  * @param[out] out             the caller's (mt_scene_delete); its texts are copies
- * What fails in one configuration is said there. Fails: MT_E_MEMORY, MT_E_INTERRUPTED,
+ * A failure in one configuration is reported in it. Fails: MT_E_MEMORY, MT_E_INTERRUPTED,
  * MT_E_INTERNAL.
  */
 mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_query *designs,

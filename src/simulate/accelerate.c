@@ -226,8 +226,8 @@ static void find_rest(mt_gauss_near *o, int nq, const mt_gauss *g)
     }
 }
 
-/* Corrections of o->x, the last solution, until they are rounding; false: they do not become
- * that, and o->x is 0. */
+/* Refine o->x, the last solution, until the corrections are rounding; false: they do not
+ * converge, and o->x is 0. */
 static bool correct(mt_gauss_near *o, int nq, const mt_gauss *g)
 {
     double before = 0.0;

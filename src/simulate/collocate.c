@@ -110,8 +110,8 @@ static mt_status begin(mt_sim *s, mt_collocation *q, mt_err *err)
     return MT_OK;
 }
 
-/* Whether the highest frequencies stand apart from the others, and from how fast the motion
- * begins. */
+/* True where the highest frequencies are well above the others and above the rate of the
+ * initial motion. */
 static bool is_stiff(const mt_sim *s, const mt_collocation *q)
 {
     double slow = 0.0;
@@ -173,7 +173,7 @@ static void put_twist(const mt_system *sys, int body, const double in[6], double
     }
 }
 
-/* Where the centre goes. */
+/* Path of the centre. */
 static void way_of(const double xi[6], double out[3])
 {
     static const double SMALL = 0.05;
@@ -263,7 +263,7 @@ static void to_local(const mt_system *sys, const double *xi, const double *v, co
     }
 }
 
-/* x := x as bodies carry it along. */
+/* Rotate x with the bodies. */
 static void turn_back(const mt_system *sys, const double *xi, double *x)
 {
     for (int b = 0; b < sys->n_bodies; b++) {
@@ -278,8 +278,9 @@ static void turn_back(const mt_system *sys, const double *xi, double *x)
     }
 }
 
-/* The integral over the step of rate k. Of what is a row f times the velocity V = xi' - N_1 by
- * parts, [f xi] - int f' xi - int f N_1: in xi fast vibrations are as good as none. */
+/* The integral over the step of rate k. Products of a row f with the velocity V = xi' - N_1 are
+ * integrated by parts, [f xi] - int f' xi - int f N_1: fast vibrations hardly contribute to
+ * xi. */
 static double integrate(const mt_collocation *q, int k, double h)
 {
     const ptrdiff_t nq = q->nq;
@@ -300,7 +301,7 @@ static double integrate(const mt_collocation *q, int k, double h)
     return sum;
 }
 
-/* N at point i, from the states there; *err as of accelerations. */
+/* N at point i, from the states there; *err as of the accelerations. */
 static mt_status evaluate(mt_sim *s, mt_collocation *q, int i, double t, mt_err *err)
 {
     const ptrdiff_t nq = q->nq;
@@ -325,8 +326,8 @@ static mt_status evaluate(mt_sim *s, mt_collocation *q, int i, double t, mt_err 
     return MT_OK;
 }
 
-/* xi[nq], v[nq] at point i: what N1, N2 (with their modal parts M1, M2) make of V_0 and its
- * modal part E_0, or of none. */
+/* xi[nq], v[nq] at point i: from V_0 and its modal part E_0 (or none) with N1, N2 and their
+ * modal parts M1, M2. */
 static void state_at(const mt_collocation *q, double h, int i, bool moves, double *xi,
                      double *v)
 {
@@ -365,7 +366,8 @@ static void state_at(const mt_collocation *q, double h, int i, bool moves, doubl
     }
 }
 
-/* States at all points from N; the largest move, over what an error may be. */
+/* Compute the states at all points from N; returns the largest change relative to the allowed
+ * error. */
 static double settle(mt_sim *s, mt_collocation *q, double h)
 {
     const ptrdiff_t nq = q->nq;

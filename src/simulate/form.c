@@ -210,7 +210,7 @@ static bool next_root(const mt_form *d, double t, double *root)
     return true;
 }
 
-/* Of two forms the one that min (sign -1) or max (1) takes behind t; a sign of 0: |a - b|. */
+/* The form of min (sign -1) or max (1) of two forms just after t; a sign of 0: |a - b|. */
 static bool choose(int sign, const mt_form *a, const mt_form *b, double t, double *until,
                    mt_form *out)
 {
@@ -263,7 +263,7 @@ static bool operate(mt_op op, const mt_form *a, const mt_form *b, double t, doub
     }
 }
 
-/* Of an operation on constants, whichever it is. */
+/* Evaluate an operation whose operands are constants. */
 static bool fold(const mt_program_node *n, const mt_form *a, const mt_form *b, mt_form *out)
 {
     const bool two = n->b != MT_NO_NODE;

@@ -143,7 +143,7 @@ static void find_rows(mt_oscillators *o)
     }
 }
 
-/* Whether inputs and gauges are those of a linear system. */
+/* True where inputs and gauges are linear. */
 static bool has_linear_ports(const mt_oscillators *o)
 {
     bool linear = true;
@@ -184,7 +184,7 @@ mt_status mt_oscillators_make(mt_linear *lin, const mt_sim_options *opt, mt_aren
     return MT_OK;
 }
 
-/* out[n] = phi^T M q; whether phi of that is q. */
+/* out[n] = phi^T M q; returns true where phi out is q. */
 static bool project(mt_oscillators *o, const double *q, double scale, double *out)
 {
     double *const mq = o->work[1];

@@ -6,7 +6,7 @@
 #include "simulate/simulate.h"
 
 /*
- * A mechanism whose equations are linear (mechanics/affine.h), in the coordinates of its modes,
+ * A mechanism of linear equations (mechanics/affine.h) in modal coordinates,
  *     q = phi e,   e'' + C e' + diag(lambda) e = sum_i b_i u_i(t),
  * phi^T M phi = 1, u_i the inputs.
  */
@@ -20,43 +20,45 @@ typedef struct mt_oscillators {
     int nq;
     int n;
     const double *lambda; /* [n] [1/s^2] */
-    const double *y;      /* n x n: of the freedoms, y e */
+    const double *y;      /* n x n: the freedoms are y e */
     double *phi;          /* nq x n */
-    double *damping;      /* n x n: C; 0 where nothing damps */
+    double *damping;      /* n x n: C; 0 without dampers */
     double *input;        /* n x inputs: b_i */
-    double *gauge;        /* gauges x n: a gauge's value with e */
+    double *gauge;        /* gauges x n: derivative of a gauge's value by e */
     double *still;        /* [gauges] its value at rest */
-    double *length;       /* lengths x n: distances with e */
-    double *noise;        /* [n] what rounding of positions makes of forces along e */
+    double *length;       /* lengths x n: derivative of distances by e */
+    double *noise;        /* [n] forces along e from rounding of positions */
     double *work[3];      /* [nq] */
     double *row;          /* [nq] */
 } mt_oscillators;
 
-/* *linear false: the equations are not linear, or nothing here shows that they are; what is in
- * *out is void then. Fails: MT_E_MEMORY, MT_E_DOMAIN. */
+/* *linear false: the equations are not linear, or not known to be; *out is then invalid. Fails:
+ * MT_E_MEMORY, MT_E_DOMAIN. */
 mt_status mt_oscillators_make(mt_linear *lin, const mt_sim_options *opt, mt_arena *mem,
                               mt_oscillators *out, bool *linear, mt_err *err);
-/* e[n] and its velocity of a start; *linear false: it is no start of this linear motion. */
+/* e[n] and its rate at a start; *linear false: the start is not a state of this linear
+ * motion. */
 mt_status mt_oscillators_start(mt_oscillators *o, const mt_sim_start *start, double *e,
                                double *rate, bool *linear);
-/* The position at e, velocities into v[nq]. */
+/* The position at e, and its velocities v[nq]. */
 void mt_oscillators_position(mt_oscillators *o, const double *e, const double *rate,
                              mt_placement *at, double *v);
 
-/* How states of the linear motion fit the equations of mechanics/motion.h, the worst so far. */
+/* The largest deviations so far of states of the linear motion from the equations of
+ * mechanics/motion.h. */
 typedef struct mt_oscillators_fit {
     double residual;  /* largest of phi^T (M q'' - f) */
-    double excess;    /* the same less what rounding of positions leaves */
-    double size;      /* largest of the terms that it is the difference of */
+    double excess;    /* the same less the part from rounding of positions */
+    double size;      /* largest of the terms whose difference it is */
     double gap_m;     /* largest gap of a joint */
-    bool independent; /* joints are as independent as at rest */
+    bool independent; /* the rank of the joints is that at rest */
 } mt_oscillators_fit;
-/* At a state with accelerations `second` and inputs u[inputs]: *fit becomes the worse of itself
- * and this. */
+/* Update *fit with the deviation at a state with accelerations `second` and inputs
+ * u[inputs]. */
 mt_status mt_oscillators_check(mt_oscillators *o, const double *e, const double *rate,
                                const double *second, const double *u, mt_arena *scratch,
                                mt_oscillators_fit *fit, mt_err *err);
-/* Whether what is left is rounding. */
+/* True where the deviation is rounding. */
 bool mt_oscillators_fits(const mt_oscillators_fit *fit);
 
 #endif

@@ -50,7 +50,7 @@ static mt_status allocate(mt_propagation *r, mt_err *err)
     return mt_arena_check(r->mem, err);
 }
 
-/* A, P and what gauges see of accelerations. */
+/* Make A, P and the rows of the gauges' accelerations. */
 static mt_status make_matrices(mt_propagation *r, double h, mt_err *err)
 {
     const int n = r->n;
@@ -123,7 +123,7 @@ static double ground(const mt_propagation *r, int axis)
     return sum;
 }
 
-/* Distances stay above 0, also on the way through a step h. By |row . e|^2 <= (sum (row/w)^2)
+/* True where distances stay above 0, also within a step h: by |row . e|^2 <= (sum (row/w)^2)
  * (sum a^2 + b^2), or one by one. */
 static bool keeps_lengths(const mt_propagation *r, double h)
 {
@@ -173,7 +173,7 @@ static void note_check(mt_propagation *r)
     memcpy(to + ((ptrdiff_t)3 * n), r->u, (size_t)r->opt->n_inputs * sizeof *to);
 }
 
-/* At r->t, where the inputs are set. */
+/* Store a sample at r->t, where the inputs are set. */
 static void sample(mt_propagation *r)
 {
     mt_sim_result *const out = r->out;
@@ -198,7 +198,7 @@ static void sample(mt_propagation *r)
     out->n++;
 }
 
-/* From r->t by a step `length`, which the exponential is of. */
+/* Step from r->t by `length`, for which the exponential was made. */
 static mt_status go_by(mt_propagation *r, const mt_exponential *e, double length, mt_err *err)
 {
     const int j = r->halvings;
@@ -220,7 +220,7 @@ static mt_status go_by(mt_propagation *r, const mt_exponential *e, double length
     return MT_OK;
 }
 
-/* To `until`, or to the end of the piece. */
+/* Step to `until`, or to the end of the piece. */
 static mt_status go_on(mt_propagation *r, double until, mt_err *err)
 {
     const double end = fmin(until, r->until);
@@ -246,7 +246,7 @@ static mt_status go_on(mt_propagation *r, double until, mt_err *err)
     return MT_OK;
 }
 
-/* Another piece of the inputs begins at r->t. */
+/* Begin another piece of the inputs at r->t. */
 static mt_status turn_page(mt_propagation *r, mt_err *err)
 {
     bool changed = false;
@@ -256,7 +256,8 @@ static mt_status turn_page(mt_propagation *r, mt_err *err)
     return changed && r->known ? make_matrices(r, r->opt->sample_s, err) : MT_OK;
 }
 
-/* To the sample at `until`, while the inputs are known and no step is too coarse. */
+/* Step to the sample at `until`, while the inputs have known forms and no step is too
+ * coarse. */
 static mt_status go_until(mt_propagation *r, double until, mt_err *err)
 {
     while (r->t < until) {
@@ -294,7 +295,7 @@ static mt_status go(mt_propagation *r, mt_err *err)
     return MT_OK;
 }
 
-/* From the start, each step in 2^halvings parts. */
+/* Run from the start with 2^halvings parts per step. */
 static mt_status run(mt_propagation *r, const mt_sim_start *start, mt_err *err)
 {
     mt_sim_result *const out = r->out;
@@ -335,7 +336,7 @@ static mt_status run(mt_propagation *r, const mt_sim_start *start, mt_err *err)
     return go(r, err);
 }
 
-/* Whether the whole equations say the same. */
+/* True where the motion satisfies the full equations. */
 static mt_status check(mt_propagation *r, mt_err *err)
 {
     const int n = r->n;
@@ -356,7 +357,7 @@ static mt_status check(mt_propagation *r, mt_err *err)
     return MT_OK;
 }
 
-/* Frequencies, and halvings that turning points need. */
+/* Compute the frequencies, and the halvings required for turning points. */
 static void find_steps(mt_propagation *r)
 {
     double highest = 0.0;

@@ -9,14 +9,14 @@
  * are one linear system z' = A z, and each step is a product with exp(A h)
  * (linalg/exponential.h).
  *
- * Inputs that are polynomials and sines, piece by piece (simulate/form.h), are states; of other
- * ones that are smooth a polynomial is, fitted to each step as well as rounding allows.
+ * Inputs that are polynomials and sines, piece by piece (simulate/form.h), are states. Other
+ * smooth inputs are replaced in each step by a polynomial, fitted as well as rounding allows.
  */
 
 /**
- * @param room  of the result's lists: samples
- * @param done  false: the equations or inputs are not of this kind, or the motion that came out
- *              does not fulfil the whole equations; the result is void then
+ * @param room capacity of the result's lists in samples
+ * @param done false: the equations or inputs are not of this kind, or the computed motion does
+ *              not satisfy the full equations; the result is then invalid
  * Fails: MT_E_MEMORY; MT_E_DOMAIN (an input has no value).
  */
 mt_status mt_propagate(mt_linear *lin, const mt_sim_start *start, const mt_sim_options *opt,

@@ -54,7 +54,7 @@ mt_status mt_propagation_forms(mt_propagation *r, bool *changed, mt_err *err)
     return MT_OK;
 }
 
-/* Input i pushes with s times its state. */
+/* Add a column: input i acts with s times its state. */
 static void add_column(mt_propagation *r, int i, int state, double scale)
 {
     const double *const b = r->o.input + ((ptrdiff_t)i * r->n);

@@ -6,15 +6,15 @@
 #include "simulate/form.h"
 #include "simulate/propagate.h"
 
-/* A linear motion under way (propagate.c says which states it has). */
+/* The state of a linear motion during propagation (its states are listed in propagate.c). */
 
-/* One input's own states. */
+/* The states of one input. */
 typedef struct mt_input_state {
     bool fitted;
-    int first;  /* its states */
+    int first;  /* index of its first state */
     int degree; /* of the polynomial; -1: none */
     double scale;
-    mt_form form; /* now */
+    mt_form form; /* the present form */
     double largest;
 } mt_input_state;
 
@@ -31,32 +31,32 @@ typedef struct mt_propagation {
     mt_input_state *input;
     double *a; /* nz x nz */
     double *p;
-    double *see;          /* gauges x nz: accelerations */
-    mt_exponential whole; /* a sample's step */
+    double *see;          /* gauges x nz: accelerations of gauges */
+    mt_exponential whole; /* over one sample */
     bool has_whole;
-    int halvings; /* of each step */
+    int halvings; /* halvings of each step */
     double *z;
-    double *begin; /* [nz] of the step */
-    double *inner; /* [nz] within it */
+    double *begin; /* [nz] at the beginning of the step */
+    double *inner; /* [nz] within the step */
     double *rate;  /* [nz] z' */
     double *work;  /* [nz] */
     double *u;     /* [inputs] */
     double t;
-    double until; /* the end of the piece */
+    double until; /* end of the present piece */
     double done;  /* work [J] */
     double energy0;
     double potential0;
-    double set_at; /* where the states of inputs stand, NaN: nowhere, and for which step */
+    double set_at; /* time of the states of inputs, NaN: none */
     double set_step;
-    int pieces;          /* of the inputs, so far */
-    double free_state;   /* |(a, b)| below which no distance comes to 0 */
-    double fast;         /* how fast bodies have been [m/s] */
+    int pieces;          /* pieces of the inputs so far */
+    double free_state;   /* |(a, b)| below which no distance becomes 0 */
+    double fast;         /* largest speed of a body so far [m/s] */
     double *turn_weight; /* [nq] 1, or the model's length on rotations */
-    double *speed;       /* [gauges] at the begin of the step */
+    double *speed;       /* [gauges] at the beginning of the step */
     double *checked;     /* CHECKS x (n e, n e', n e'', inputs): states to be checked */
-    double *weight;      /* [CHECKS] their size */
-    bool known;          /* inputs and lengths are as they have to be */
-    bool coarse;         /* an input is not fitted by its polynomial */
+    double *weight;      /* [CHECKS] size of these states */
+    bool known;          /* inputs and lengths meet the conditions of this method */
+    bool coarse;         /* the polynomial of an input does not fit it */
 } mt_propagation;
 
 static inline void mt_propagation_add(mt_propagation *r, int row, int column, double value)
@@ -64,17 +64,18 @@ static inline void mt_propagation_add(mt_propagation *r, int row, int column, do
     r->a[row + ((ptrdiff_t)column * r->nz)] += value;
 }
 
-/* Forms of all inputs behind r->t, r->until and r->known. *changed: they have other states than
- * before, or there were none. */
+/* Set the forms of all inputs after r->t, r->until and r->known. *changed: their states differ
+ * from those before, or there were none. */
 mt_status mt_propagation_forms(mt_propagation *r, bool *changed, mt_err *err);
-/* The entries of input i in A and P; h: unit of time of its polynomial. */
+/* Set the entries of input i in A and P; h: unit of time of its polynomial. */
 void mt_propagation_couple(mt_propagation *r, int i, double h);
-/* The states of inputs at t, where a step h begins (below 0: ends), and r->u. */
+/* Set the states of inputs at t, the beginning of a step h (the end where h < 0), and r->u. */
 mt_status mt_propagation_set(mt_propagation *r, double t, double h, mt_err *err);
-/* Value and velocity of a gauge, and its acceleration against the ground. */
+/* Value and velocity of a gauge, and its acceleration relative to the ground. */
 void mt_propagation_see(const mt_propagation *r, int g, double out[3]);
-/* Turning points of all gauges in the step of e->f[j] from t on; its begin is in r->begin, its
- * end in r->z. What is rounding beside the motion of the bodies does not count. */
+/* Add the turning points of all gauges within the step of e->f[j] from t, which begins at
+ * r->begin and ends at r->z. Turning points within rounding of the motion of the bodies are
+ * left out. */
 mt_status mt_propagation_turnings(mt_propagation *r, const mt_exponential *e, int j, double t,
                                   mt_err *err);
 

@@ -28,7 +28,7 @@ void mt_propagation_see(const mt_propagation *r, int g, double out[3])
     }
 }
 
-/* Where gauge g turns within the step of e->f[from] from t on, at whose begin r->z is. */
+/* Find where gauge g turns within the step of e->f[from] from t, which begins at r->z. */
 static mt_status find_turning(mt_propagation *r, const mt_exponential *e, int from, double t,
                               int g, mt_err *err)
 {

@@ -4,13 +4,13 @@
 
 #include "base/arena.h"
 
-/* What frequencies and amplitudes a motion in time has. */
+/* Frequencies and amplitudes of a motion in time. */
 
-/* Where a scalar turns back. */
+/* A local maximum or minimum of a scalar in time. */
 typedef struct mt_turning {
     double t;
     double value;
-    bool highest; /* else lowest */
+    bool highest; /* a maximum; else a minimum */
 } mt_turning;
 
 typedef struct mt_turnings {
@@ -19,14 +19,13 @@ typedef struct mt_turnings {
     int room;
 } mt_turnings;
 
-/* Read from the turnings of a free motion. */
+/* The frequency and damping of a free motion, from its turning points. */
 typedef struct mt_ring {
-    int periods;      /* between the first highest and the last one; 0: there are none */
-    double hz;        /* of the mean period */
-    double spread;    /* (longest - shortest period) / mean: 0 of a motion of one frequency */
+    int periods;      /* periods between the first and the last maximum; 0: none */
+    double hz;        /* frequency of the mean period */
+    double spread;    /* (longest - shortest period) / mean: 0 for a single frequency */
     double amplitude; /* half of the first swing */
-    /* share of critical damping by which the swings become less; NaN where there are fewer than
-     * two */
+    /* damping ratio from the decrease of the swings; NaN for fewer than two */
     double damping;
 } mt_ring;
 mt_ring mt_ring_read(const mt_turnings *t);
@@ -35,15 +34,15 @@ enum { MT_HARMONICS = 5 };
 
 /* A steady motion: value = mean + sum_h amplitude_h sin(2 pi h hz t + phase_h). */
 typedef struct mt_steady {
-    int periods; /* whole ones at the end of the record that it was read from; 0: too short */
+    int periods; /* whole periods at the end of the record that were used; 0: too short */
     double mean;
     double amplitude[MT_HARMONICS];
     double phase[MT_HARMONICS]; /* [rad] */
-    double residual;            /* largest difference of the record and the sum, of the largest
-                                   amplitude */
+    /* largest difference of the record and the sum, relative to the largest amplitude */
+    double residual;
 } mt_steady;
 
-/* Samples x[i * stride] at t[i]. */
+/* The samples x[i * stride] at t[i]. */
 typedef struct mt_samples {
     int n;
     int stride;
@@ -51,8 +50,8 @@ typedef struct mt_samples {
     const double *x;
 } mt_samples;
 
-/* Least squares over the last whole periods of the samples, at most `periods`. Fails:
- * MT_E_MEMORY. */
+/* Fit a steady motion by least squares to the last whole periods of the samples, at most
+ * `periods`. Fails: MT_E_MEMORY. */
 mt_status mt_steady_read(const mt_samples *s, double hz, int periods, mt_arena *scratch,
                          mt_steady *out, mt_err *err);
 

@@ -5,19 +5,19 @@
 #include "simulate/simulate.h"
 #include "study/vibration.h"
 
-/* A profile of vibration as a motion of the ground: one realisation of it, random parts first,
- * then tones, each of which stays at its frequency or goes through its range once. */
+/* One realisation of a profile of vibration as a motion of the ground: random parts first, then
+ * tones, each of which stays at its frequency or sweeps its range once. */
 typedef struct mt_realised {
     int n;
     mt_signal *signals; /* [n] accelerations [m/s^2] */
-    double rms;         /* of the random parts over the duration [m/s^2] */
+    double rms;         /* RMS of the random parts over the duration [m/s^2] */
 } mt_realised;
 
-/* Everything is in mem. Fails: as mt_realise_psd, MT_E_MEMORY. */
+/* Make a realisation, all in mem. Fails: as mt_realise_psd, MT_E_MEMORY. */
 mt_status mt_realise(const mt_vibration *v, double duration_s, unsigned long seed,
                      mt_arena *mem, mt_realised *out, mt_err *err);
-/* A realisation of a density that does not repeat in the duration. Fails: MT_E_USAGE (it takes
- * too many lines), as mt_signal_of_psd. */
+/* A realisation of a density whose period exceeds the duration. Fails: MT_E_USAGE (too many
+ * lines are needed), as mt_signal_of_psd. */
 mt_status mt_realise_psd(const mt_psd *psd, double duration_s, unsigned long seed,
                          mt_arena *mem, mt_signal *out, mt_err *err);
 /* The signals as inputs that accelerate the ground along an axis: inputs[n]. */

@@ -21,8 +21,8 @@ static void add_sine(const mt_sine *s, double t, double out[3])
     out[2] -= w * w * value;
 }
 
-/* e^(i w_k t) is turned on from line to line, which costs a product where sine and cosine cost
- * some ten; what rounding leaves of that is taken back every so many lines. */
+/* e^(i w_k t) is multiplied from line to line, at a tenth of the cost of sine and cosine; it is
+ * recomputed every so many lines, which removes the accumulated rounding. */
 static void add_lines(const mt_signal *s, double t, double out[3])
 {
     enum { FRESH = 64 };

@@ -95,8 +95,8 @@ static double error_ratio(const mt_sim *s, double h)
     return most;
 }
 
-/* So long that no body turns further than MOST_TURN, and that none goes further than the way
- * that is free. */
+/* The longest step in which no body turns by more than MOST_TURN or moves by more than the free
+ * distance. */
 static double longest_step(const mt_sim *s)
 {
     const double *const v = s->begin + s->nq;
@@ -157,8 +157,8 @@ static mt_status reserve(run *r, const mt_sim_options *opt, mt_arena *mem, mt_er
     return mt_arena_check(mem, err);
 }
 
-/* Where all is measured from: potential energy and, for what is the integral of a velocity, the
- * way from the rest position to the start (a rotation: the shortest one). */
+/* Set the reference values: potential energy and, for integrals of velocities, the displacement
+ * from the rest position to the start (a rotation: the shortest one). */
 static mt_status measure_rest(run *r, mt_err *err)
 {
     mt_sim *const s = &r->s;
@@ -190,7 +190,7 @@ static void note_energy(run *r)
     r->out->energy_scale_j = fmax(r->out->energy_scale_j, fabs(o->potential - r->potential0));
 }
 
-/* At the begin of a step, at t. */
+/* Store a sample at the beginning of a step, at t. */
 static mt_status sample(run *r, double t, mt_err *err)
 {
     mt_sim_result *const out = r->out;
@@ -211,8 +211,8 @@ static mt_status sample(run *r, double t, mt_err *err)
     return MT_OK;
 }
 
-/* Whether a gauge turns in a step that it ends with this velocity. What is rounding beside the
- * motion of the bodies does not count. */
+/* True where a gauge that ends a step with this velocity turns within it. Changes within
+ * rounding of the motion of the bodies do not count. */
 static bool turns(const mt_sim *s, int g, double end)
 {
     const double least = s->opt->tolerance * s->fast;
@@ -281,7 +281,7 @@ static void note_speeds(mt_sim *s)
     }
 }
 
-/* By which factor the next step is longer. */
+/* Factor from this step to the next one. */
 static double change_of(const run *r, double ratio, bool taken)
 {
     const double change =
@@ -290,7 +290,7 @@ static double change_of(const run *r, double ratio, bool taken)
     return fmin(fmax(change, LEAST_CHANGE), MOST_CHANGE);
 }
 
-/* The step from *t that is in s->y is taken; h becomes what the next one begins with. */
+/* Accept the step from *t in s->y; h becomes the first length of the next step. */
 static mt_status take(run *r, double *t, double until, double length, double ratio, double *h,
                       mt_err *err)
 {
@@ -308,7 +308,7 @@ static mt_status take(run *r, double *t, double until, double length, double rat
     return mt_sim_accept(s, *t, err);
 }
 
-/* What becomes of a step that failed: shorter, unless that is of no use. */
+/* Handle a failed step: shorten it, unless that cannot help. */
 static mt_status after_failure(run *r, mt_status rc, const mt_err *failed, mt_err *err)
 {
     r->out->rejected++;
@@ -317,7 +317,7 @@ static mt_status after_failure(run *r, mt_status rc, const mt_err *failed, mt_er
                : MT_OK;
 }
 
-/* One step towards `until`, of about *h, which becomes the next one's. */
+/* Make one step towards `until` of about *h; *h becomes the length of the next one. */
 static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
 {
     mt_sim *const s = &r->s;
@@ -371,8 +371,8 @@ static mt_status go(run *r, double *t, mt_err *err)
     return MT_OK;
 }
 
-/* What is defined for small motions about a rest position alone, or for motions that go on for
- * ever, is no force on a mechanism that moves. */
+/* Refuse damping that has no force in time: that defined only for small motions about a rest
+ * position, or for steady vibrations. */
 static mt_status only_dampers(const mt_system *sys, mt_err *err)
 {
     const mt_damping_def *const d = &sys->damping;
@@ -427,8 +427,8 @@ static mt_status integrate(run *r, mt_linear *lin, const mt_sim_start *start,
     return rc == MT_OK || mt_is_final(rc) ? rc : mt_err_in(err, rc, "after %.6g s", t);
 }
 
-/* Without integration, where equations and inputs allow that. Whatever it fails with but memory
- * the integration meets, too, and knows when. */
+/* Propagate without integration where equations and inputs allow it. Failures other than memory
+ * are ignored: the integration meets them, too, with their time. */
 static mt_status propagate(run *r, mt_linear *lin, const mt_sim_start *start,
                            const mt_sim_options *opt, mt_arena *mem, bool *done, mt_err *err)
 {

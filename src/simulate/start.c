@@ -67,7 +67,7 @@ static mt_status augmented_init(augmented *g, mt_linear *lin, int n, mt_arena *m
     return mt_arena_check(mem, err);
 }
 
-/* A, G and what is left of the equations, with velocities v. */
+/* A, G and the residual of the equations, with velocities v. */
 static void augmented_eval(augmented *g, const mt_placement *at, const double *v, int n,
                            const mt_sim_joint *joints)
 {
@@ -88,7 +88,7 @@ static void augmented_eval(augmented *g, const mt_placement *at, const double *v
     }
 }
 
-/* Newton with least-norm steps at `at`. *holds false: it does not get there. */
+/* Newton's method with least-norm steps at `at`. *holds false: it does not converge. */
 static mt_status close_all(augmented *g, mt_placement *at, int n, const mt_sim_joint *joints,
                            bool *holds, mt_arena *mem, mt_err *err)
 {
@@ -136,7 +136,7 @@ mt_status mt_start_rest(mt_linear *lin, mt_arena *mem, mt_sim_start *out, mt_err
     return MT_OK;
 }
 
-/* Where the joints are now. */
+/* Read the present coordinates of the joints. */
 static void read_joints(augmented *g, const mt_placement *at, int n, mt_sim_joint *joints)
 {
     augmented_eval(g, at, g->v, n, joints);
@@ -145,7 +145,7 @@ static void read_joints(augmented *g, const mt_placement *at, int n, mt_sim_join
     }
 }
 
-/* The place that a stride may leave. */
+/* Keep the position to return to after a failed stride. */
 static mt_status stand(augmented *g, const mt_placement *at, int n, const mt_sim_joint *joints,
                        mt_arena *mem, mt_err *err)
 {
@@ -159,8 +159,8 @@ static mt_status stand(augmented *g, const mt_placement *at, int n, const mt_sim
     return MT_OK;
 }
 
-/* Closes `at`, which was moved from where the walk stands, on its branch; straight: or on
- * another one that meets it. Where that fails, back to where it stood. */
+/* Close `at`, which was moved from the position of the walk, on its branch, or (straight) on
+ * another branch that meets it. On failure restore the position of the walk. */
 static mt_status stride(augmented *g, mt_placement *at, int n, const mt_sim_joint *to,
                         bool straight, bool *good, mt_arena *mem, mt_err *err)
 {
@@ -189,7 +189,7 @@ static mt_status refuse_walk(const augmented *g, const mt_sim_joint *joint, doub
                    j->name, at, j->angle ? "rad" : "m");
 }
 
-/* From where `at` stands, joint by joint in proportion. */
+/* Move the joints from their values at `at` in proportion. */
 static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placement *at,
                       mt_arena *mem, mt_err *err)
 {
@@ -233,7 +233,8 @@ static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placem
     return MT_OK;
 }
 
-/* *there: with the joints held, a way leads from `from`, which goes along it, to `to`. */
+/* *there: true where, with the joints held, a path leads from `from`, which moves along it, to
+ * `to`. */
 static mt_status leads(augmented *g, int n, const mt_sim_joint *joints, mt_placement *from,
                        const mt_placement *to, bool *there, mt_arena *mem, mt_err *err)
 {

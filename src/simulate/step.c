@@ -71,8 +71,8 @@ static int drive_of(const mt_sim *s)
     return drive < s->m ? drive : -1;
 }
 
-/* What the inputs prescribe of the driven joint at t: its position, from where it is held,
- * velocity and acceleration. */
+/* The prescribed motion of the driven joint at t: position relative to its held one, velocity
+ * and acceleration. */
 static mt_status moved(const mt_sim *s, double t, double out[3], mt_err *err)
 {
     memset(out, 0, 3 * sizeof *out);
@@ -192,11 +192,12 @@ static double as_length(const mt_elimination *e, const double *x)
 }
 
 /*
- * Where joints begin to depend on each other (a parallelogram in a line) the motion may go on
- * in more than one way, and next to it accelerations are rounding over almost nothing: a step
- * across it could end on either branch. So steps are made short beside such a position, by half
- * of the way to it, and one that leads into it is refused. It is seen from 0.05 rad (or model
- * lengths) on (singular.h), which no step may pass over where the equations are weak.
+ * Limit steps near a dead centre. Where joints become dependent (a parallelogram in a line) the
+ * motion may continue on more than one branch, and nearby accelerations are dominated by
+ * rounding: a step across it could end on either branch. So a step goes at most half of the
+ * distance to such a position, and one that leads into it is refused. The position is detected
+ * from 0.05 rad (or model lengths) on (singular.h), which no step may exceed where the
+ * equations are weak.
  */
 static mt_status look_out(mt_sim *s, const mt_elimination *e, mt_err *err)
 {
@@ -214,7 +215,7 @@ static mt_status look_out(mt_sim *s, const mt_elimination *e, mt_err *err)
                    near.near ? near.joints.text : "of a loop");
 }
 
-/* s->at, with velocities v, onto the joints. */
+/* Project s->at, with velocities v, onto the joints. */
 static mt_status close_joints(mt_sim *s, double *v, const double drive[3], mt_err *err)
 {
     mt_motion *const o = &s->motion;
@@ -313,7 +314,8 @@ static double base_acceleration(const mt_sim *s, int axis, double t, mt_err *err
     return sum;
 }
 
-/* Relative to the ground, at s->at, where s->motion was evaluated, with accelerations a. */
+/* Read a gauge relative to the ground, at s->at, where s->motion was evaluated, with
+ * accelerations a. */
 static void read_gauge(mt_sim *s, int gauge, const double *y, const double *a, double out[3])
 {
     const mt_gauge g = s->opt->gauges[gauge];

@@ -4,12 +4,12 @@
 
 #include "model/model.h"
 
-/* A catalogue of rotors: plain records, read by io. Each value says where it comes from and
- * whether anybody has read that. */
+/* A catalogue of rotors: plain records, read by io. Each value names its source and says
+ * whether the value was confirmed there. */
 typedef struct mt_aircraft_value {
     double value;     /* Hz, or the number of blades */
     const char *text; /* "258 rpm", "4": as the catalogue gives it */
-    bool confirmed;   /* read in a public document: its source */
+    bool confirmed;   /* confirmed in a public document: its source */
     const char *source;
 } mt_aircraft_value;
 
@@ -31,7 +31,7 @@ typedef struct mt_aircraft_list {
     const char *sha256; /* of the file, hexadecimal */
 } mt_aircraft_list;
 
-/* NULL where the catalogue has none of that name. */
+/* The aircraft of that name; NULL where the catalogue has none. */
 const mt_aircraft *mt_aircraft_find(const mt_aircraft_list *list, const char *name);
 /* The nearest name of the catalogue, for "did you mean"; NULL: none is near. Scratch in mem. */
 const char *mt_aircraft_nearest(const mt_aircraft_list *list, const char *name, mt_arena *mem);

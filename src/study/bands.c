@@ -141,8 +141,8 @@ static int by_frequency(const void *a, const void *b)
     return x->order - y->order;
 }
 
-/* "8P + 1T of UH-60 + 1P of Lynx": an owner is named behind the last of its neighbours in the
- * list. */
+/* A label "8P + 1T of UH-60 + 1P of Lynx": an owner is named after the last of its consecutive
+ * harmonics. */
 static const char *label_of(parts *p, int first, int last)
 {
     const char *label = "";
@@ -179,7 +179,7 @@ static mt_band merge(parts *p, int first, int last)
     return band;
 }
 
-/* What of a band lies above the limit is forgotten. */
+/* Cut a band off at the limit. */
 static void cut_off(mt_band *band, double up_to_hz)
 {
     if (band->upper_hz > up_to_hz) {

@@ -15,7 +15,7 @@
  * base.
  *
  * Bands that overlap or touch with their margins are one band: no mode fits between them. Its
- * base is the hull of their bases. Nothing is lost by that: a mode that starts outside the
+ * base is the hull of their bases. Merging loses no design: a mode that starts outside the
  * merged band and moves continuously meets one of the bases before it can reach a gap between
  * them.
  */
@@ -44,9 +44,9 @@ enum {
  */
 bool mt_harmonic_parse(const char *text, mt_harmonic *out);
 
-/* Numbers are NaN (MT_HAS in study/study.h) and counts 0 where not given. */
+/* Numbers that are not given are NaN (MT_HAS in study/study.h), counts 0. */
 typedef struct mt_rotor {
-    /* of the catalogue: speeds and blades come from there; s NULL: they are given here */
+    /* of the catalogue, which gives speeds and blades; s NULL: the file gives them */
     mt_name aircraft;
     const char *name; /* in labels; NULL: the aircraft's, else "rotor" */
     double speed_hz;
@@ -67,10 +67,10 @@ typedef struct mt_rotor {
     mt_addr margin_addr;
 } mt_rotor;
 
-/* Every optional member at "not given" or its default, all addresses at addr. */
+/* A rotor with every optional member at "not given" or its default, all addresses at addr. */
 mt_rotor mt_rotor_default(mt_addr addr);
-/* Frequency of a harmonic at the nominal speed [Hz]; NaN where the speed or the number of
- * blades that it needs is not given. */
+/* Frequency of a harmonic at the nominal speed [Hz]; NaN where its speed or its number of
+ * blades is not given. */
 double mt_rotor_harmonic_hz(const mt_rotor *rotor, const mt_harmonic *harmonic);
 
 typedef struct mt_band_hz {
@@ -91,10 +91,10 @@ typedef struct mt_bands {
     int n;
     mt_band *items; /* [n] ascending, disjoint with their margins */
     int n_notes;
-    const char **notes; /* sentences: what was merged */
+    const char **notes; /* one sentence for each merger */
 } mt_bands;
 
-/* What a list of bands is made from. */
+/* The sources of a list of bands. */
 typedef struct mt_bands_source {
     int n_intervals;
     mt_band_hz *intervals; /* given in Hz */
@@ -102,43 +102,45 @@ typedef struct mt_bands_source {
     mt_rotor *rotors;
     int n_machines;
     mt_machine *machines;
-    double margin_percent; /* of the intervals, and of rotors and machines without; NaN: 0 */
-    double up_to_hz;       /* bands are cut off there; NaN: not at all */
+    /* of the intervals, and of rotors and machines that have none; NaN: 0 */
+    double margin_percent;
+    double up_to_hz; /* bands end there; NaN: no cut-off */
 } mt_bands_source;
 
-/* The margin of what gives `own`, or of the list where that is NaN [%]. */
+/* The margin in percent: `own`, or that of the list where `own` is NaN. */
 double mt_bands_margin(const mt_bands_source *source, double own);
 
 /**
  * The bands of a source, merged, sorted, cut off at up_to_hz (a base that lies above it becomes
  * the point up_to_hz).
- * @param[in] margin_percent replaces every margin of the source, of all rotors and machines
+ * @param[in]  margin_percent replaces every margin of the source, those of rotors and machines
  *   too; NaN: margins as given
- * @param[out] out lists and texts in mem Harmonics whose frequency is not known and intervals
- *   with NaN are left out: the checks of a study have noted them. O(n log n) bands. Fails:
- *   MT_E_MEMORY.
+ * @param[out] out lists and texts in mem
+ * Harmonics of unknown frequency and intervals with NaN are left out (the checks of a study
+ * note them). O(n log n) in the bands. Fails: MT_E_MEMORY.
  */
 mt_status mt_bands_make(const mt_bands_source *source, double margin_percent, mt_arena *mem,
                         mt_bands *out, mt_err *err);
-/* One list from several (all goals that name one configuration), merged again; notes tell of
+/* One list from several (of all goals that name one configuration), merged again; notes hold
  * the new mergers only. Fails: MT_E_MEMORY. */
 mt_status mt_bands_unite(int n, const mt_bands *const *lists, mt_arena *mem, mt_bands *out,
                          mt_err *err);
 
-/* "below" and "above": on that side of the base; "inside" it. */
+/* Position relative to the base of a band. */
 typedef enum mt_band_side { MT_BELOW_BAND, MT_INSIDE_BAND, MT_ABOVE_BAND } mt_band_side;
 const char *mt_band_side_name(mt_band_side side);
 /**
- * Clearance |ln(f/edge)| of a frequency from an edge, as the greater of the two over the
- * smaller less 1, in percent; negative beyond it. below: clear is below the edge, not above.
- * Of two that are not both above 0: infinite.
+ * Clearance |ln(f/edge)| of a frequency from an edge in percent: 100 (greater/smaller - 1),
+ * negative beyond the edge. The allowed side is below the edge where `below`, else above it.
+ * Infinite unless both numbers are above 0.
  */
 double mt_edge_clearance_percent(double edge_hz, bool below, double hz);
-/** That of the nearest edge of a band's base; negative inside. side: NULL, or where it lies. */
+/** Clearance from the nearest edge of a band's base; negative inside. side: NULL, or the
+ * position */
 double mt_band_clearance_percent(const mt_band *band, double hz, mt_band_side *side);
 
-/** ln(a/b) of frequencies or edges, a >= 0; HUGE_VAL where b is not above 0: a mode that
- * vanishes, a band that begins at 0. */
+/** ln(a/b) of frequencies or edges, a >= 0; HUGE_VAL where b is not above 0 (a mode of 0 Hz, a
+ * band that begins at 0). */
 double mt_log_ratio(double a_hz, double b_hz);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 
-/* Catalogues of values by rule instead of by list. */
+/* Catalogues of values given by a rule instead of a list. */
 enum { MT_MAX_CATALOGUE = 10000 };
 
 /* Preferred numbers of IEC 60063. */
@@ -17,21 +17,22 @@ enum { MT_MAX_CATALOGUE = 10000 };
     X(96)                 \
     X(192)
 
-/* "E3" ... "E192"; *n their number. */
+/* "E3" ... "E192"; *n is their number. */
 const char *const *mt_series_names(int *n);
 
 /**
  * The values of an E series from lower to upper, both included, ascending. Bounds that miss a
  * value by rounding (1e-12, relative) include it.
  * @param[in]  which     position in mt_series_names
- * @param[out] values up to `most` of them; NULL: only counted Every value is the double nearest
- *   to the decimal number. Returns how many there are, MT_MAX_CATALOGUE + 1 where more than
- *   that; 0 where lower is not above 0 or a bound is not finite.
+ * @param[out] values up to `most` of them, each the double nearest to the decimal number; NULL:
+ *   only counted
+ * Returns their number, MT_MAX_CATALOGUE + 1 where there are more than MT_MAX_CATALOGUE; 0
+ * where lower is not above 0 or a bound is not finite.
  */
 int mt_catalogue_series(int which, double lower, double upper, int most, double *values);
 /**
- * lower, lower + step, ... up to upper (included where a step hits it, within 1e-9 of a step).
- * Returns as above; 0 where step is not above 0.
+ * The values lower, lower + step, ... up to upper, which is included where a step hits it
+ * within 1e-9 of a step. Returns as mt_catalogue_series; 0 where step is not above 0.
  */
 int mt_catalogue_steps(double step, double lower, double upper, int most, double *values);
 

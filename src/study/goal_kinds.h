@@ -7,13 +7,13 @@
 #include "model/possible.h"
 
 /*
- * The kinds of goals as a table: what files call them, the members that each reads, what their
- * numbers may be, and how a value is measured against them. Readers, checks, trade studies and
- * sentences go through it.
+ * The kinds of goals as a table: their names in files, the members that each reads, the
+ * possible numbers of those, and how the deviation of a value is measured. Readers, checks,
+ * trade studies and sentences go through it.
  *
- * X(slot, name, type, required, row) for each member: where it goes in an mt_goal, its name in
- * files, its type there (MT_KEY_... of io/reader.h), whether it must be there, and what its
- * numbers can be, a row of model/possible.h.
+ * X(slot, name, type, required, row) for each member: its place in an mt_goal, its name in
+ * files, its type there (MT_KEY_... of io/reader.h), true where it is required, and the row of
+ * model/possible.h with its possible numbers.
  */
 #define MT_GOAL_ANY(X)                               \
     X(TYPE, "type", TEXT, true, NONE)                \
@@ -95,7 +95,7 @@
     X(UP_TO, "up_to_hz", NUMBER, false, POSITIVE)      \
     X(CLUSTER, "cluster", COUNT, false, WHOLE)
 
-/* X(id, name in files, unit of the numbers, how a value is measured against them). Its members
+/* X(id, name in files, unit of the numbers, measure of the deviation). The members of a kind
  * are MT_GOAL_<id>_MEMBERS, its operations mt_goal_<name> of problem/goal.h. */
 #define MT_GOAL_LIST(X)                                       \
     X(FREQUENCY, frequency, "Hz", RATIO)                      \
@@ -111,7 +111,7 @@
 typedef enum mt_goal_type { MT_GOAL_LIST(MT_GOAL_ENUM) MT_GOAL_TYPE_COUNT } mt_goal_type;
 #undef MT_GOAL_ENUM
 
-/* Where a member goes. The first ones are numbers of any kind of goal: mt_goal.number[]. */
+/* The place of a member. The first ones index mt_goal.number[] of any goal. */
 typedef enum mt_goal_slot {
     MT_SLOT_EQUALS,
     MT_SLOT_AT_LEAST,
@@ -120,7 +120,7 @@ typedef enum mt_goal_slot {
     MT_SLOT_WEIGHT,
     MT_SLOT_LENGTH,
     MT_GOAL_NUMBERS,
-    MT_SLOT_MARGIN = MT_GOAL_NUMBERS, /* from here on each is known to its reader */
+    MT_SLOT_MARGIN = MT_GOAL_NUMBERS, /* from here on each is placed by its reader */
     MT_SLOT_UP_TO,
     MT_SLOT_TYPE,
     MT_SLOT_DESCRIPTION,
@@ -147,7 +147,7 @@ typedef enum mt_goal_slot {
     MT_SLOT_COHERENCE
 } mt_goal_slot;
 
-/* What a value v is off by, where v0 is asked for. */
+/* Deviation of a value v from the requested value v0. */
 typedef enum mt_goal_measure {
     MT_MEASURE_RATIO,      /* ln(v / v0) */
     MT_MEASURE_PART,       /* (v - v0) / |v0|, or v where v0 is 0 */
@@ -163,20 +163,20 @@ typedef struct mt_goal_member {
 
 typedef struct mt_goal_kind {
     const char *name;
-    const char *unit; /* "": none, or that of an expression, which nobody knows */
+    const char *unit; /* "": none, or that of the goal's expression */
     mt_goal_measure measure;
     int n;
-    const mt_goal_member *members; /* [n] in the order in which readers look at them */
+    const mt_goal_member *members; /* [n] in the order in which readers read them */
 } mt_goal_kind;
 
 const mt_goal_kind *mt_goal_kind_of(mt_goal_type type);
-/* Place of a member among those of its kind; -1: the kind has none. */
+/* Index of a member among those of its kind; -1: the kind has none. */
 int mt_goal_member_at(const mt_goal_kind *kind, mt_goal_slot slot);
-/* The name that files use; NULL: the kind has no such member. */
+/* The member's name in files; NULL: the kind has no such member. */
 const char *mt_goal_member_name(const mt_goal_kind *kind, mt_goal_slot slot);
-/* What a difference from `asked` is divided by. */
+/* The scale of a deviation: what the difference v - asked is divided by. */
 double mt_measure_unit(mt_goal_measure measure, double asked);
-/* Whether the member is one of the numbers that a trade study may vary. */
+/* True where the member is one of the numbers that a trade study may vary. */
 bool mt_goal_may_vary(const mt_goal_member *member);
 
 #endif

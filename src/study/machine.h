@@ -5,19 +5,20 @@
 #include "model/model.h"
 
 /*
- * A machine that excites: an engine, a pump, a gearbox. Its shaft turns at f [1/s], somewhere
- * within f1 to f2, and whatever it does happens a fixed number of times per turn, its order:
+ * A machine that excites: an engine, a pump, a gearbox. Its shaft turns at f [1/s], anywhere
+ * within f1 to f2, and each of its excitations occurs a fixed number of times per turn, its
+ * order:
  *     order k of the shaft      k                       "0.5E", "1E", "1.5E": a four-stroke
  *                               cylinder fires every second turn
  *     mesh of a gear            k z r                   "1G", "2G": z teeth on a shaft that
  *                                                       turns r times as fast as the machine's
  *     its sidebands             (k z + s) r             "1G+1", "1G-2": modulated by the turns
  *                                                       of the gear's own shaft, s = -S .. S
- * Each forbids the frequencies order f1 to order f2 (bands.h). Rotors, with blades and a tail,
- * are in bands.h.
+ * Each order forbids the frequencies from order f1 to order f2 (bands.h). Rotors, with blades
+ * and a tail, are in bands.h.
  */
 
-/* An order as written, in thousandths: exact, and a product with it is rounded once. */
+/* An order as written, in thousandths, which are exact: a product with it is rounded once. */
 typedef struct mt_order {
     const char *text;
     mt_addr addr;
@@ -41,17 +42,17 @@ typedef struct mt_gear {
     int n_orders; /* multiples of the mesh; 0: the mesh itself */
     mt_order *orders;
     mt_addr addr;
-    mt_addr ratio_addr; /* of what was not given: addr */
+    mt_addr ratio_addr; /* addr where not given */
     mt_addr sidebands_addr;
 } mt_gear;
 
 /* Numbers are NaN where not given. */
 typedef struct mt_machine {
     const char *name;   /* in labels; NULL: "machine" */
-    double speed_hz;    /* nominal, with range_lower and range_upper times it; or */
+    double speed_hz;    /* nominal; its range is range_lower to range_upper times it; or */
     double range_lower; /* default 1 and 1 */
     double range_upper;
-    double lower_hz; /* least and greatest speed themselves */
+    double lower_hz; /* the lowest and highest speed themselves */
     double upper_hz;
     int n_orders;
     mt_order *orders;
@@ -66,10 +67,10 @@ typedef struct mt_machine {
 
 mt_gear mt_gear_default(mt_addr addr);
 mt_machine mt_machine_default(mt_addr addr);
-/* Least (end 0) or greatest (1) speed [1/s]; NaN where not known. */
+/* Lowest (end 0) or highest (end 1) speed [1/s]; NaN where not known. */
 double mt_machine_speed_hz(const mt_machine *machine, int end);
 
-/* Something that happens `order` times per turn of the machine: `what` ("1.5E", "1G-1") of `of`
+/* An excitation of `order` times per turn of the machine: `what` ("1.5E", "1G-1") of `of`
  * ("engine", "pinion"). */
 typedef struct mt_order_line {
     double order;
@@ -77,10 +78,10 @@ typedef struct mt_order_line {
     const char *of;
 } mt_order_line;
 
-/* How many lines a machine has. */
+/* The number of lines of a machine. */
 int mt_machine_line_count(const mt_machine *machine);
-/* All of them, lines[mt_machine_line_count]; texts that the machine lends or in mem. Fails:
- * MT_E_MEMORY. */
+/* All lines of a machine, lines[mt_machine_line_count]. Texts are the machine's or in mem.
+ * Fails: MT_E_MEMORY. */
 mt_status mt_machine_lines(const mt_machine *machine, mt_arena *mem, mt_order_line *lines,
                            mt_err *err);
 

@@ -5,19 +5,19 @@
 #include <stdbool.h>
 
 /*
- * The kinds of objectives as a table: X(id, name, unit of what results show, properties). Their
- * operations are mt_objective_<name> of problem/objective.h. Properties:
+ * The kinds of objectives as a table: X(id, name, unit in results, properties). The operations
+ * of a kind are mt_objective_<name> of problem/objective.h. Properties:
  *     WORD         files name it by its name (an expression is its own text)
- *     MAXIMISED    its value is the negative of what is made greatest
- *     HALF_SQUARE  its value is half the square of what results show, which has a derivative
+ *     MAXIMISED    its value is the negative of the quantity that is maximised
+ *     HALF_SQUARE  its value is half the square of the value in results; it has a derivative
  *                  where the square's root has none
- *     AMOUNT       of something without a natural size: two are equal relative to themselves
+ *     AMOUNT       without a natural size: two values are compared relative to themselves
  *     RESIDUALS    half the square of the weighted goals' residuals, which it needs
  *     BANDS        of the bands that goals keep clear of, which it needs; a coordinate of the
- *                  search for one gap assignment, elsewhere looked up among the modes
+ *                  search for one mode placement, elsewhere found among the modes
  *     SHAKES       of the goals of forced vibration that are limited from above, which it
  *                  needs, and which then limit nothing; a coordinate of the search, elsewhere
- *                  looked up
+ *                  found among the responses
  *     OF_ITEMS     "of" may list items
  *     FRONT        can be one side of a Pareto front; with OF_STUDY, if the study has it
  */
@@ -50,15 +50,15 @@ enum {
 
 typedef struct mt_objective_kind {
     const char *name;
-    const char *unit; /* of what results show */
+    const char *unit; /* of the value in results */
     unsigned properties;
 } mt_objective_kind;
 
 const mt_objective_kind *mt_objective_kind_of(mt_objective_type type);
-/* All that have these properties, in the order of the table: types[] and names[], both of
- * MT_OBJECTIVE_TYPE_COUNT. Returns their number. */
+/* The kinds that have all of these properties, in the order of the table: types[] and names[],
+ * both of MT_OBJECTIVE_TYPE_COUNT. Returns their number. */
 int mt_objectives_with(unsigned properties, mt_objective_type *types, const char **names);
-/* Whether it has all of these properties. */
+/* True where the kind has all of these properties. */
 bool mt_objective_is(mt_objective_type type, unsigned properties);
 
 #endif

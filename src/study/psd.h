@@ -15,7 +15,7 @@ typedef struct mt_psd {
 
 /* ln(b / a) of numbers above 0, exact to rounding next to 1. */
 double mt_psd_log_ratio(double a, double b);
-/* b of segment i, 0 <= i < n - 1; 0 of a step. */
+/* The exponent b of segment i, 0 <= i < n - 1; 0 of a step. */
 double mt_psd_exponent(const mt_psd *psd, int i);
 /* Slope of segment i [dB/octave]. */
 double mt_psd_slope_db(const mt_psd *psd, int i);
@@ -25,7 +25,7 @@ double mt_psd_at(const mt_psd *psd, double hz);
 double mt_psd_power_integral(double e, double l);
 /* Integral of G df between two frequencies, in closed form [unit of the input^2]. */
 double mt_psd_area(const mt_psd *psd, double from_hz, double to_hz);
-/* The same over all of it. */
+/* Integral of G df over all frequencies [unit of the input^2]. */
 double mt_psd_mean_square(const mt_psd *psd);
 
 #endif

@@ -4,31 +4,32 @@
 
 #include "study/vibration.h"
 
-/* What of a forced vibration a goal limits. */
+/* The quantity of a forced vibration that a goal limits. */
 typedef enum mt_response_limit_quantity {
-    MT_RESPONSE_LIMIT_RESPONSE, /* |H|, the largest of it over a band */
-    MT_RESPONSE_LIMIT_RMS,      /* under a profile: of its random parts, */
-    MT_RESPONSE_LIMIT_SINE,     /* of its tones, */
-    MT_RESPONSE_LIMIT_PEAK,     /* of both */
+    MT_RESPONSE_LIMIT_RESPONSE, /* |H|, its maximum over a band */
+    MT_RESPONSE_LIMIT_RMS,      /* under a profile: RMS of its random parts, */
+    MT_RESPONSE_LIMIT_SINE,     /* amplitude of its tones, */
+    MT_RESPONSE_LIMIT_PEAK,     /* combined peak of both */
     MT_RESPONSE_LIMIT_QUANTITIES
 } mt_response_limit_quantity;
 /* "response", "rms", "sine", "peak". */
 extern const char *const mt_response_limit_names[MT_RESPONSE_LIMIT_QUANTITIES];
 
-/* From where to where a mechanism shakes, and how large that may be. */
+/* Input, output, band and quantity of a forced vibration that a goal limits. */
 typedef struct mt_response_limit {
     mt_name input; /* ports (response/ports.h); of a profile by finish, where not given */
     mt_name output;
-    double lower_hz; /* its band; both equal: at one frequency; NaN: all that was measured */
+    double lower_hz; /* its band; equal: one frequency; NaN: all that was measured */
     double upper_hz;
     mt_name profile_name;        /* as written; s NULL: none */
     const mt_vibration *profile; /* of the study's; NULL: none, or it could not be read */
     mt_response_limit_quantity quantity;
-    const char *unit;         /* of the numbers, from the names of the ports; "": not known */
-    mt_name measurement_name; /* frequency_response: what it is compared with; s NULL: none */
-    int measurement;          /* of the study's; by finish */
-    bool coherence;           /* its lines weigh by it */
-    mt_addr band_addr;        /* the addresses of what was not given equal the goal's */
+    const char *unit; /* of the numbers, from the names of the ports; "": not known */
+    /* frequency_response: the measurement to compare with; s NULL: none */
+    mt_name measurement_name;
+    int measurement;   /* of the study's; by finish */
+    bool coherence;    /* lines are weighted by their coherence */
+    mt_addr band_addr; /* the addresses of what was not given equal the goal's */
     mt_addr at_addr;
     mt_addr quantity_addr;
 } mt_response_limit;

@@ -19,7 +19,7 @@ static void check_intervals(mt_study_check *c, const mt_bands_source *source)
     }
 }
 
-/* A value that nobody has read in a document is used, and everybody is told. */
+/* Warn, also in the result, that an unconfirmed value is used. */
 static void warn_unconfirmed(mt_study_check *c, const mt_rotor *rotor,
                              const mt_aircraft *aircraft)
 {
@@ -105,7 +105,8 @@ static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_mac
     }
 }
 
-/* A catalogue that could not be read (noted) leaves rotors without a speed. */
+/* True where the rotor's speed is known. A catalogue that could not be read (noted) leaves
+ * rotors without a speed. */
 static bool is_known(const mt_bands_source *source)
 {
     for (int i = 0; i < source->n_rotors; i++) {
@@ -133,7 +134,8 @@ static void make_bands(mt_study_check *c, const mt_goal *goal)
     }
 }
 
-/* What turns by name is a body of the model: its modes are those of a body that does not. */
+/* Warn where the name is that of a body of the model: its modes are those of the mechanism at
+ * rest. */
 static void warn_spin(mt_study_check *c, const mt_goal *goal, const char *name)
 {
     const mt_model *const model = c->study->model;

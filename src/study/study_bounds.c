@@ -91,7 +91,7 @@ static bool is_allowed(corners *k)
     return k->rc == MT_OK && allowed;
 }
 
-/* All that is said of the design x, of every configuration that counts. */
+/* Note all problems of the design x in every configuration that counts. */
 static void judge(corners *k, mt_warning_list *out)
 {
     const mt_model *const m = k->c->model;
@@ -138,7 +138,7 @@ static void one_variable(corners *k, int i, bool upper)
     k->x[i] = v->original;
 }
 
-/* Variables that the fault does not need go back to their original values. */
+/* Reset variables that the fault does not need to their original values. */
 static void reduce(corners *k, mt_addr addr)
 {
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {

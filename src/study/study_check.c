@@ -9,7 +9,7 @@
 
 enum { KNOWN_MOST = 20 }; /* names that a message lists */
 
-/* "a, b, c" in the study's arena; NULL: out of memory, which its owner asks. */
+/* "a, b, c" in the study's arena; NULL: out of memory, which the arena remembers. */
 static const char *joined(mt_study_check *c, const char *const *names, int n)
 {
     const char *text = "";
@@ -19,8 +19,8 @@ static const char *joined(mt_study_check *c, const char *const *names, int n)
     return text;
 }
 
-/* Every record that a name can mean begins with its mt_name. Told with the nearest of the n
- * records of `size` bytes; where none is near and there are few, with all of them. */
+/* Note an unknown name, with the nearest of the n records of `size` bytes, or with all where
+ * none is near and there are few. Every such record begins with its mt_name. */
 static void unknown(mt_study_check *c, mt_name name, const char *what, const void *records,
                     int n, size_t size)
 {

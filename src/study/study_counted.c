@@ -12,7 +12,7 @@ static void widen(mt_count_box *box, int at, double x)
     }
 }
 
-/* Place of a parameter in the box, made where it is not there yet. */
+/* Index of a parameter in the box, added where missing. */
 static int place(mt_count_box *box, const mt_study *s, int parameter)
 {
     for (int i = 0; i < box->n; i++) {

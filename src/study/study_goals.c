@@ -33,8 +33,8 @@ static bool given(const mt_goal *goal, mt_goal_slot slot)
     return mt_check_given(goal->number[slot], goal->number_addr[slot], goal->addr);
 }
 
-/* An equality excludes another one and limits, limits must leave room, and only an equality has
- * a residual. Of kinds that can ask for a value. */
+/* Check the requirements of a goal of a kind with values: an equality excludes another one and
+ * limits, limits must leave a range, and only an equality has a residual. */
 static void check_requirements(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
 {
     const bool value = given(goal, MT_SLOT_EQUALS);

@@ -18,8 +18,8 @@ int mt_study_find_measurement(const mt_study *study, const char *name)
     return MT_ABSENT;
 }
 
-/* True where one of the file is the one that was asked for. A node alone means any direction;
- * against a direction is the same freedom, the sign is in the values. */
+/* True where the freedom of the file is the requested one. A node alone means any direction;
+ * the opposite direction is the same freedom, as the sign is in the values. */
 static bool is_freedom(mt_name asked, const mt_measured_freedom *has)
 {
     mt_measured_freedom f;
@@ -37,7 +37,7 @@ static bool is_meant(const mt_measurement *m, const mt_measured_response *r)
            is_freedom(m->reference_name, &r->reference);
 }
 
-/* Where the study asks for one of several. */
+/* The address of the member that selects one of several responses. */
 static mt_addr choice_of(const mt_measurement *m)
 {
     return m->dataset > 0                ? m->dataset_addr
@@ -46,7 +46,7 @@ static mt_addr choice_of(const mt_measurement *m)
                                          : m->addr;
 }
 
-/* Those that are meant alone stay. */
+/* Keep only the selected response of a measurement. */
 static void choose(mt_study_check *c, mt_measurement *m)
 {
     const bool table = m->n_responses > 0 && m->responses[0].dataset == 0;

@@ -95,7 +95,8 @@ static void check_weight_sensitivity(mt_study_check *c)
     }
 }
 
-/* What comes before it would be searched without the goals that it is made of. */
+/* The vibration must be the first objective: one before it would be searched without the goals
+ * that the vibration consists of. */
 static void check_vibration(mt_study_check *c)
 {
     const mt_study *const s = c->study;

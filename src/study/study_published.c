@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/study_priv.h"
 
-/* What a value is judged by: a tolerance, absolute or relative, or limits; one that is not
- * comparable needs none. Limits do without a value, too: it is then only shown. */
+/* Check the criterion of a published value: a tolerance, absolute or relative, or limits; a
+ * value that is not comparable needs none. Limits need no value: beside them it is only
+ * shown. */
 static void check_judgement(mt_study_check *c, const mt_published *p)
 {
     const bool absolute = mt_check_given(p->tolerance, p->tolerance_addr, p->addr);

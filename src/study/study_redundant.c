@@ -44,7 +44,8 @@ static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *er
     return MT_OK;
 }
 
-/* What fails here fails again, with its reason, when the study is answered. */
+/* Check one configuration for redundancies. Failures are ignored: they occur again, with their
+ * reason, when the study is solved. */
 static mt_status look_at(mt_study_check *c, int configuration, const int *inputs,
                          const double *at, bool *told, mt_err *err)
 {

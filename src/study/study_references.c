@@ -19,7 +19,7 @@ static bool measures(const mt_model *m, const mt_sensor *sensor, const char *dir
     return false;
 }
 
-/* Whether "sensor.direction" is a channel of the model. */
+/* True where "sensor.direction" is a channel of the model. */
 static bool has_channel(const mt_model *m, const char *channel)
 {
     const char *const dot = strrchr(channel, '.');

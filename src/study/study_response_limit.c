@@ -11,7 +11,7 @@
 static const char BASE[] = "base.";
 static const char AXES[] = "xyz";
 
-/* "grip.x:relative_velocity": 1, of something without a colon: `none`. */
+/* The derivative in a port's name, "grip.x:relative_velocity": 1; without a colon: `none`. */
 static int motion_of(const char *port, int none)
 {
     static const char *const motions[] = {"displacement", "velocity", "acceleration"};
@@ -24,7 +24,7 @@ static int motion_of(const char *port, int none)
     return none;
 }
 
-/* True where the last part of the name, before its motion, turns: "grip.rx". */
+/* True where the last part of the name, before the colon, is a rotation: "grip.rx". */
 static bool turns(const char *port)
 {
     const size_t length = strcspn(port, ":");
@@ -46,8 +46,8 @@ static bool begins(const char *text, const char *with)
     return strncmp(text, with, strlen(with)) == 0;
 }
 
-/* Of a spring or damper "spring.NAME", by its type: one of joints that turn is not told from
- * one of joints that slide here. NULL: not known. */
+/* Unit of the force of "spring.NAME" or a damper, by its type; for one of joints, whose
+ * rotation or sliding is not known here, and otherwise: NULL. */
 static const char *force_unit(const mt_model *m, const char *name, bool damper)
 {
     for (int i = 0; i < m->n_springs; i++) {

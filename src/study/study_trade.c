@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Whether two that vary limit one number from its two sides. */
+/* True where two varied quantities limit one number from its two sides. */
 static bool opposite(const mt_vary *a, const mt_vary *b)
 {
     if (a->kind != b->kind || a == b) {
@@ -24,7 +24,7 @@ static bool opposite(const mt_vary *a, const mt_vary *b)
     return false;
 }
 
-/* What varies on the other side; NULL: that side is as the study says. */
+/* The varied quantity on the other side; NULL: that side is fixed. */
 static const mt_vary *other_side(const mt_study_check *c, const mt_vary *v)
 {
     const mt_trade *const trade = &c->study->trade;
@@ -41,7 +41,7 @@ static const char *side_name(const mt_vary *v)
     return v->kind == MT_VARY_GOAL ? v->member : (v->upper ? "upper bound" : "lower bound");
 }
 
-/* Where both sides vary every value of the one has to leave room to every value of the
+/* Where both sides vary, every value of one must be compatible with every value of the
  * other. */
 static void check_sides(mt_study_check *c, const mt_vary *v)
 {

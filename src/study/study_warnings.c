@@ -39,8 +39,8 @@ static void at(mt_warning *warning, mt_addr addr)
     }
 }
 
-/* Speeds are in turns per second; what is meant for turns per minute is sixty times too
- * fast. */
+/* Warn of implausible speeds: they are in turns per second, and a number meant per minute is
+ * sixty times too high. */
 static void warn_speed(mt_warning_list *out, const mt_machine *machine)
 {
     const double lower = mt_machine_speed_hz(machine, 0);
@@ -139,7 +139,8 @@ static void warn_variable(mt_warning_list *out, const mt_study *s, const mt_vari
     }
 }
 
-/* What is made to its number is made to a part of it, and lengths to so many metres. */
+/* Warn of tolerances finer than parts are made: relative for stiffnesses, absolute in metres
+ * for lengths. */
 static void warn_fine(mt_warning_list *out, const mt_study *s, const mt_variable *v)
 {
     const char *const unit =
@@ -182,7 +183,7 @@ static void warn_trade(mt_warning_list *out, const mt_trade *trade)
     }
 }
 
-/* Of a mode, a number that a reference can give. */
+/* True where the goal's kind has a target that a reference can give: a frequency of a mode. */
 static bool asks_frequency(const mt_goal *goal)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
@@ -267,7 +268,7 @@ static bool share_configuration(const mt_goal *a, const mt_goal *b)
     return false;
 }
 
-/* Modes are counted by ascending frequency: a higher one is not lower. */
+/* Warn of limits against the order of modes, which are counted by ascending frequency. */
 static void warn_order(mt_warning_list *out, const mt_study *s, const mt_goal *goal)
 {
     for (int i = 0; i < s->n_goals && asks_frequency(goal); i++) {
@@ -294,7 +295,7 @@ static void warn_order(mt_warning_list *out, const mt_study *s, const mt_goal *g
     }
 }
 
-/* A limit's expression has another value where one of the variables is at a bound, or that is
+/* True where the expression of a limit changes when a variable is at a bound, or where that is
  * not known. */
 static bool follows_variables(const mt_study *s, const mt_goal *goal, mt_arena *mem)
 {

@@ -43,7 +43,7 @@ void mt_vibration_delete(mt_vibration *v)
     }
 }
 
-/* True where it is a number, and one that it can be. Else the reader has noted it. */
+/* True where the number is given and possible; otherwise the reader has noted it. */
 static bool is_good(mt_possible_id row, double value)
 {
     return value == value && mt_possible_is(&mt_possible_of[row], value);
@@ -160,7 +160,8 @@ typedef struct marking {
     int room; /* for marks */
 } marking;
 
-/* Sources that follow each other say the same of their aircraft: once is enough. */
+/* True where one of the last marks has the same text: consecutive sources of one aircraft have
+ * the same marks. */
 static bool is_said(const mt_vibration *v, const char *text)
 {
     bool said = false;
@@ -170,7 +171,7 @@ static bool is_said(const mt_vibration *v, const char *text)
     return said;
 }
 
-/* In the profile, for who uses it, and as a warning. */
+/* Add a mark to the profile, and a warning. */
 static void mark(marking *m, mt_addr addr, const char *text)
 {
     mt_vibration *const v = m->v;

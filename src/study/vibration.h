@@ -9,13 +9,13 @@
 #include "study/psd.h"
 
 /*
- * A profile of vibration: what a base accelerates like. Random parts, whose densities add up,
- * and tones, each a sine whose frequency lies anywhere within a range; both together are sine
- * on random. SI; levels are kept in g as well, as a file has them.
+ * A profile of vibration: the acceleration of a base. It has random parts, whose densities add
+ * up, and tones, each a sine of a frequency anywhere within a range; both together are sine on
+ * random. SI; levels are also kept in g, as files give them.
  */
 #define MT_STANDARD_GRAVITY 9.80665 /* m/s^2 to 1 g */
 
-/* Where a number comes from; what is assumed is marked wherever it is used. */
+/* The origin of a number; assumed numbers are marked wherever they are used. */
 typedef struct mt_vibration_origin {
     mt_origin origin;
     const char *source; /* NULL: none given */
@@ -35,14 +35,14 @@ typedef struct mt_vibration_random {
     int n_points;
     mt_vibration_point *points;
     bool in_g;            /* levels are in g^2/Hz, else in (m/s^2)^2/Hz */
-    double published_rms; /* what the source prints for the whole of it [m/s^2], NaN: nothing */
+    double published_rms; /* RMS of the random part that the source prints [m/s^2], NaN: none */
     mt_vibration_origin origin;
     mt_addr addr;
     mt_addr points_addr;
     mt_addr published_addr;
-    mt_psd psd;      /* [(m/s^2)^2/Hz], of mt_vibration_finish */
+    mt_psd psd;      /* [(m/s^2)^2/Hz], by mt_vibration_finish */
     double *level_g; /* [psd.n] the same in g^2/Hz */
-    double rms;      /* of the input itself [m/s^2] */
+    double rms;      /* RMS of the input itself [m/s^2] */
 } mt_vibration_random;
 
 /* A tone as given. */
@@ -65,17 +65,18 @@ typedef struct mt_vibration_tone {
     double upper_hz;
     double level;   /* amplitude [m/s^2] */
     double level_g; /* the same in g */
-    int source;     /* which of the sources it is of */
+    int source;     /* index of its source */
 } mt_vibration_tone;
 
-/* How peaks of tones add up: all at once, the largest alone, the root of the sum of squares. */
+/* The rule that combines peaks of tones: their sum, the largest, the root of the sum of
+ * squares. */
 typedef enum mt_vibration_sum {
     MT_TONES_SUM,
     MT_TONES_LARGEST,
     MT_TONES_ROOT
 } mt_vibration_sum;
 enum { MT_TONES_RULES = 3 };
-/* "sum", "largest", "root_sum_square"; all of them, in order. */
+/* "sum", "largest", "root_sum_square", in the order of mt_vibration_sum. */
 extern const char *const mt_vibration_sum_names[MT_TONES_RULES];
 
 struct mt_vibration {
@@ -86,7 +87,7 @@ struct mt_vibration {
     const char *description;
     const char *source;
     int axis; /* 0, 1, 2: x, y, z; MT_ABSENT: any */
-    /* of the catalogue that was read: relative to the profile's folder, or as the program calls
+    /* name of the catalogue read: relative to the profile's folder, or the program's name of
      * its own; NULL: none */
     const char *aircraft_name;
     mt_aircraft_list aircraft;
@@ -98,24 +99,23 @@ struct mt_vibration {
     double sigma; /* default 3 */
     mt_vibration_sum rule;
     mt_addr sigma_addr;
-    /* of mt_vibration_finish */
+    /* by mt_vibration_finish */
     int n_tones;
     mt_vibration_tone *tones;
     int n_marks;
-    const char **marks; /* sentences: what of this is assumed, or not confirmed */
+    const char **marks; /* sentences about values that are assumed or not confirmed */
 };
 
-/* Everything at its default. Fails: MT_E_MEMORY. */
+/* A profile with every member at its default. Fails: MT_E_MEMORY. */
 mt_status mt_vibration_new(mt_vibration **out, mt_err *err);
 
-/* Check all numbers, noting every problem, look up aircraft, follow slopes, make tones and
- * marks. What could not be made is left empty where there are errors; a shortage is known to
- * the arena. */
+/* Check all numbers and note every problem, look up aircraft, resolve slopes into levels, make
+ * tones and marks. Parts with errors are left empty; a shortage is remembered by the arena. */
 void mt_vibration_finish(mt_vibration *v, mt_diags *diags);
 
-/* Density of all random parts together at a frequency [(m/s^2)^2/Hz]. */
+/* Sum of the densities of all random parts at a frequency [(m/s^2)^2/Hz]. */
 double mt_vibration_density(const mt_vibration *v, double hz);
-/* The lowest and highest frequency of its random parts, its tones, or both [Hz]. */
+/* The lowest and highest frequency of the random parts, the tones, or both [Hz]. */
 void mt_vibration_range(const mt_vibration *v, bool random, bool tones, double hz[2]);
 
 #endif

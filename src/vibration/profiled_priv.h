@@ -4,7 +4,7 @@
 
 #include "vibration/profiled.h"
 
-/* Without a sum of poles: out->answers, each with its list of tones, are filled. */
+/* Fill out->answers, each with its list of tones, by quadrature, without a sum of poles. */
 mt_status mt_profiled_quadrature(mt_response *r, mt_profiled *out, mt_err *err);
 
 #endif

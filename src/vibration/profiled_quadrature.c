@@ -36,7 +36,7 @@ static void note_end(work *k, int pair, mt_forced_end end, int pole)
     }
 }
 
-/* Which pairs resonate at undamped poles within a range. */
+/* Note pairs that resonate at undamped poles within a range. */
 static mt_status note_resonances(work *k, double lower, double upper, mt_err *err)
 {
     int growing = -1;
@@ -125,7 +125,7 @@ static mt_status add_random(work *k, const mt_psd *g, mt_err *err)
     return MT_OK;
 }
 
-/* All random parts: their mean squares add up. */
+/* RMS of all random parts: their mean squares add up. */
 static mt_status find_rms(work *k, mt_err *err)
 {
     const mt_vibration *const v = k->out->v;

@@ -14,9 +14,9 @@ static void note_end(mt_vibration_response *out, mt_forced_end end, int pole)
     }
 }
 
-/* What the rounding of the poles themselves takes of the mean square. The resonance of a pole
- * re + i im, |H| = |rho| / |w - p|, makes |rho|^2 G / (2 im) of it where the density is G: next
- * to an undamped pole all of that may be wrong. */
+/* Error of the mean square by the rounding of the poles. The resonance of a pole re + i im, |H|
+ * = |rho| / |w - p|, contributes |rho|^2 G / (2 im) where the density is G: next to an undamped
+ * pole all of it may be wrong. */
 static double pole_rounding(const mt_psd *psd, const mt_spectral *of)
 {
     const mt_frf *const h = &of->h;
@@ -120,7 +120,7 @@ double mt_vibration_respond_psd(const mt_vibration *v, const mt_spectral *h, dou
     return sum;
 }
 
-/* d peak by the amplitude of tone i. */
+/* Derivative of the peak by the amplitude of tone i. */
 static double by_tone(const mt_vibration *v, const mt_vibration_response *r, int i)
 {
     switch (v->rule) {
@@ -170,7 +170,7 @@ mt_status mt_vibration_respond_slopes(const mt_vibration *v, const mt_pole_sum *
     return MT_OK;
 }
 
-/* Nodes of random part i, behind those that are there. */
+/* Append the nodes of random part i. */
 static mt_status add_nodes(const mt_spectral *of, const mt_psd *g, double share, mt_arena *mem,
                            mt_spectral_nodes *out, mt_err *err)
 {

@@ -90,8 +90,8 @@ static double parabola(double f1, double f2, double h)
                                               : h * (slope + (h * f2));
 }
 
-/* No frequency of the interval has more than that. *floor: the part of it that rounding takes
- * of F at the centre, which no halving makes smaller. */
+/* Upper bound of F over the interval. *floor: its part from rounding of F at the centre, which
+ * halving does not reduce. */
 static double bound(const mt_frf *h, const mt_panel *p, mt_near centre, double *floor)
 {
     const double half = 0.5 * (p->b - p->a);
@@ -151,8 +151,8 @@ static void climb(search *s)
     }
 }
 
-/* The top is flat, and its place by F alone known to half the digits: the last steps of
- * Newton's method, as long as F does not tell the difference. */
+/* Refine the place of the maximum, which F alone gives to half the digits: last steps of
+ * Newton's method, while F does not decrease. */
 static void settle(search *s)
 {
     static const double same = 1.0 - (16.0 * DBL_EPSILON);
@@ -176,7 +176,7 @@ static mt_near centre_of(const mt_panel *p)
     return (mt_near){p->anchor, 0.5 * (p->a + p->b)};
 }
 
-/* The panels as they are: a best point to begin with. */
+/* Find a first best point from the ends and centres of the panels. */
 static void look(search *s)
 {
     mt_panels walk;
@@ -193,7 +193,7 @@ static void look(search *s)
     }
 }
 
-/* One panel, halved until all of it is done. */
+/* Halve one panel until all its parts are finished. */
 static void exhaust(search *s, const mt_panel *panel)
 {
     mt_panel stack[MT_PANEL_DEPTH];

@@ -118,8 +118,8 @@ static mt_spectral_sum over_panels(const mt_spectral *r, const mt_spectral_segme
     return sum;
 }
 
-/* What the rounding of 2 pi f takes where the segment ends: of weight next to narrow resonances
- * only. */
+/* Error by the rounding of 2 pi f at the ends of the segment: significant next to narrow
+ * resonances only. */
 static double at_ends(const mt_spectral *r, const mt_spectral_segment *segment)
 {
     const double ends[] = {segment->lower, segment->upper};
@@ -148,7 +148,7 @@ static mt_spectral_sum best(const mt_spectral *r, const mt_spectral_segment *seg
     return *closed ? a : b;
 }
 
-/* No number: what is in the way of one. */
+/* True where the response is not finite; *a is then the answer with the reason. */
 static bool is_refused(const mt_spectral *r, const mt_psd *input, mt_spectral_answer *a)
 {
     *a = (mt_spectral_answer){.rms = nan(""), .bound = nan(""), .pole = -1};

@@ -9,20 +9,19 @@
  * Response to stationary random excitation: an input with the one-sided density G(f), straight
  * between its breakpoints in log-log scales and 0 outside, gives an output with
  *     G_y(f) = |H(2 pi f)|^2 G(f),        RMS^2 = integral of G_y df.
- * Two ways, of which each segment takes the one with the smaller bound of its error:
- *   - in closed form, |H|^2 in partial fractions over the poles and their conjugates:
- *     O(n) logarithms for each segment, and a few nodes where G is not constant;
+ * Each segment takes the method with the smaller error bound:
+ *   - in closed form, |H|^2 in partial fractions over the poles and their conjugates: O(n)
+ *     logarithms for each segment, and a few nodes where G is not constant;
  *   - by Gauss's rule on panels that are halved towards the resonances (vibration/panels.h),
- *     all of whose terms are positive: never less exact than H itself.
- * A bound holds what rounding and truncation may take, given the poles and residues as they
- * are.
+ *     whose terms are all positive: it is as exact as H itself.
+ * A bound includes rounding and truncation; poles and residues are taken as exact.
  */
 typedef struct mt_spectral {
     const mt_pole_sum *sum;
     mt_frf h;
     mt_gauss gauss;
     double complex *rest; /* [n] conj H at p_k without the pole's own conjugate */
-    double *rest_size;    /* of the summands of it */
+    double *rest_size;    /* size of its summands */
 } mt_spectral;
 
 typedef enum mt_spectral_method {
@@ -33,14 +32,15 @@ typedef enum mt_spectral_method {
 
 typedef struct mt_spectral_answer {
     mt_forced_end end; /* numbers are NaN where it is not MT_FORCED_FINITE */
-    int pole;          /* which then is in the way; else -1 */
+    int pole;          /* index of the responsible pole; else -1 */
     double rms;        /* [unit of H times unit of the input] */
-    double bound;      /* of |error of rms| */
-    int n_closed;      /* segments of the density that were taken in closed form */
+    double bound;      /* bound of |error of rms| */
+    int n_closed;      /* number of segments in closed form */
 } mt_spectral_answer;
 
-/* Everything is in mem; the pole sum is borrowed. Residues that are nothing but rounding should
- * be 0 where their poles have no damping. Fails: MT_E_DOMAIN, MT_E_MEMORY. O(n^2). */
+/* Prepare a pole sum, which is borrowed, for densities and RMS; all in mem. Residues of
+ * undamped poles that are rounding only should be 0. Fails: MT_E_DOMAIN, MT_E_MEMORY.
+ * O(n^2). */
 mt_status mt_spectral_init(mt_spectral *r, const mt_pole_sum *sum, mt_arena *mem, mt_err *err);
 
 /* The density of the response at a frequency [Hz]; 0 outside of the input's. Infinite at an
@@ -50,29 +50,29 @@ double mt_spectral_psd(const mt_spectral *r, const mt_psd *input, double hz);
 mt_spectral_answer mt_spectral_rms(const mt_spectral *r, const mt_psd *input,
                                    mt_spectral_method way);
 
-/* A bound of the error of a root, by that of what it is the root of. */
+/* Bound of the error of the root of a number, from the bound of that number's error. */
 double mt_spectral_root_bound(double bound, double root);
 
 /*
- * The derivative of the RMS by whatever moves H:
+ * The derivative of the RMS for any change dH of the response:
  *     d RMS = Re integral conj(H) dH G df / RMS = Re sum_i weight_i dH(w_i) + error,
  * exact to 1e-15 sum_i |weight_i dH(w_i)| where dH is a sum over the same poles, single and
- * double (what moves poles and residues gives just that), apart from the rounding of w_i next
- * to narrow resonances: eps w_i / (damping of the pole) of dH.
+ * double (as by changes of poles and residues), except for the rounding of w_i next to narrow
+ * resonances: eps w_i / (damping of the pole) of dH.
  */
 typedef struct mt_spectral_nodes {
     int n;
     double *omega;          /* [n] [rad/s] */
     double complex *weight; /* [n] */
 } mt_spectral_nodes;
-/* In mem; no nodes where the RMS is 0 or not finite. */
+/* The nodes of the derivative, in mem; none where the RMS is 0 or not finite. */
 mt_status mt_spectral_slope_nodes(const mt_spectral *r, const mt_psd *input, mt_arena *mem,
                                   mt_spectral_nodes *out, mt_err *err);
 
 /*
- * The same summed up for poles and residues:
+ * The derivative of the RMS by poles and residues:
  *     d RMS = Re [ sum_k (by_s_k ds_k + by_residue_k dr_k) + sum_j by_d_j dd_j ],
- * of the pole sum, conjugates on their own.
+ * of the pole sum, each conjugate on its own.
  * @param[out] by_s, by_residue  sum->n; 0 of poles that are left out (undamped, residue 0)
  * @param[out] by_d              3
  */

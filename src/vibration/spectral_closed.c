@@ -41,7 +41,7 @@ static double complex log_of_1_and(double complex z)
                           atan2(y, 1.0 + x));
 }
 
-/* exp(z) - 1, likewise. */
+/* exp(z) - 1, exact to rounding for small z. */
 static double complex exp_less_1(double complex z)
 {
     const double half = sin(0.5 * cimag(z));
