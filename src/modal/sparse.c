@@ -27,8 +27,6 @@
 static const double STIFFER[] = {1e6, 1e8};
 /* The same of a count that says more than was found, in that. */
 static const double COUNTED[] = {1e3, 1e6};
-/* Below this part of what it is the rest of, the sign of a pivot is by chance. */
-static const double CERTAIN = 64.0 * DBL_EPSILON;
 /* Below this the factor's rounding is refined away in each product. */
 static const double WELL = 1e-7;
 /* The first shift, in the largest K_ii/M_ii; and the least and most that it should be of the
@@ -152,7 +150,7 @@ static mt_status below(void *context, double tau, int known, int *n, bool *certa
         }
         MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
         MT_TRY(mt_sparse_inertia(s, i == 0 ? 1.0 : COUNTED[i - 1], -tau, &here, &least, err));
-        if (least > CERTAIN && (!*certain || here < *n)) {
+        if (least > MT_SPARSE_CERTAIN && (!*certain || here < *n)) {
             *n = here;
             *certain = true;
         }

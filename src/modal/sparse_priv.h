@@ -2,6 +2,8 @@
 #ifndef MODAL_SPARSE_PRIV_H
 #define MODAL_SPARSE_PRIV_H
 
+#include <float.h>
+
 #include "modal/sparse.h"
 
 /* Right-hand sides that are solved for at a time: ten modes and two to tell where they end. */
@@ -52,6 +54,8 @@ void mt_sparse_metric(void *context, const double *x, double *y);
 /* s->freedoms: states less independent rows of A. The factor then is not H. */
 mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err);
 
+/* Below this part of what it is the rest of, the sign of a pivot is by chance. */
+static const double MT_SPARSE_CERTAIN = 64.0 * DBL_EPSILON;
 /* Of mt_sparse_solve: as close as rounding lets it come. */
 static const double MT_SPARSE_SOLVED = 1e-16;
 
