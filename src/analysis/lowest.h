@@ -30,11 +30,14 @@ typedef struct mt_lowest {
     mt_arena mem;
     mt_system *sys; /* owned */
     mt_lowest_method way;
-    mt_tree *tree;           /* NULL: the configuration is no such tree */
-    mt_absolute bodies;      /* of the sparse way */
-    mt_state position;       /* where loads bring it; sys NULL: as drawn */
-    double *mu;              /* of that, forces of its constraints: mt_modal_sparse */
-    char why[MT_LOWEST_WHY]; /* why there is no way */
+    mt_tree *tree;             /* NULL: the configuration is no such tree */
+    mt_absolute bodies;        /* of the sparse way */
+    mt_sparse_problem problem; /* its, without `check` */
+    mt_sparse_solver *solver;  /* of forces on it: lowest_forced.h */
+    double *work;              /* [coordinates] its */
+    mt_state position;         /* where loads bring it; sys NULL: as drawn */
+    double *mu;                /* of that, forces of its constraints: mt_modal_sparse */
+    char why[MT_LOWEST_WHY];   /* why there is no way */
     double mass_kg;
     int equations; /* of joints, of which some may follow from others; 0: of a tree */
     mt_lowest_modes found;

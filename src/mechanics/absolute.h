@@ -51,6 +51,12 @@ bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
 bool mt_absolute_holds_already(const mt_absolute *o, int i);
 /* phi[nq] := x[n] by states. */
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
+/* The reverse: f[n] := what forces on all states, force[nq], are by coordinates. */
+void mt_absolute_push(const mt_absolute *o, const double *force, double *f);
+/* f[n] := M times the motion of all bodies by 1 along a global axis, of those that are fixed to
+ * the ground, too. Scratch is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+mt_status mt_absolute_shift(const mt_absolute *o, const double *inputs, int axis, double *f,
+                            mt_arena *scratch, mt_err *err);
 /* The system's channels, as drawn or where it has settled, for n such shapes, phi nq x n: value
  * n_channels x n. Scratch is given back. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const double *inputs,

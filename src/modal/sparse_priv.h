@@ -51,6 +51,15 @@ mt_status mt_sparse_inertia(mt_sparse *s, double part, double c, int *negative, 
                             mt_err *err);
 /* y := M x. */
 void mt_sparse_metric(void *context, const double *x, double *y);
+/* y -= K x, strain by strain. */
+void mt_sparse_subtract(const mt_sparse *s, const double *x, double *y);
+/* A sum of squares at x, and of the squares of its strains' roundings. */
+double mt_sparse_energy(const mt_squares *of, const double *x, double *noise);
+/* Rounding of x^T G x, of G's own errors, too. */
+double mt_sparse_load_noise(const mt_sparse *s, const double *x);
+/* How many stiffnesses of constraints there are to try, and try i of them, to be prepared. */
+int mt_sparse_tries(const mt_sparse_problem *p);
+mt_sparse mt_sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem);
 /* s->freedoms: states less independent rows of A. The factor then is not H. */
 mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err);
 

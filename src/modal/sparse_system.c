@@ -172,8 +172,7 @@ void mt_sparse_metric(void *context, const double *x, double *y)
     }
 }
 
-/* y -= K x, strain by strain. */
-static void subtract_force(const mt_sparse *s, const double *x, double *y)
+void mt_sparse_subtract(const mt_sparse *s, const double *x, double *y)
 {
     const mt_sparse_problem *const p = s->p;
     for (int r = 0; r < p->k.row.n_rows; r++) {
@@ -197,7 +196,7 @@ static void leave(mt_sparse *s, bool first, const double *f, const double *x, co
     if (!first) {
         mt_sparse_metric(s, x, s->w);
         mt_axpy(p->n, -s->shift, s->w, r);
-        subtract_force(s, x, r);
+        mt_sparse_subtract(s, x, r);
     }
     for (int i = 0; i < p->a.n_rows; i++) {
         gap[i] = first ? 0.0 : mt_rows_dot(&p->a, i, x);

@@ -47,6 +47,7 @@ RUNS = {
     "sensitivity": ("sensitivity", "problems/inceptor.json"),
     "response": ("response", "problems/den_hartog.json", "--input", "machine.x", "--from", "1", "--to", "20", "--points", "200"),
     "response_large": ("response", "{link}", "--input", "base.y", "--from", "0.1", "--to", "50", "--points", "300"),
+    "response_frame": ("response", "{seen}", "--input", "base.x", "--from", "1", "--to", "12", "--points", "200"),
     "motion_linear": ("simulate", "problems/six_masses.json", "--start", "guide_1=0.001", "--duration", "1", "--dt-out", "0.001"),
     "mounts_gravity": (*STUDY, "--max-evaluations", "100", "{mounts}"),
     "stick_gravity": ("sensitivity", "{stick}"),
@@ -61,7 +62,7 @@ RUNS = {
 
 
 def count(name, folder):
-    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "frame", "link", "mounts", "stick", "pedal", "tolerances", "grid")}}
+    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "frame", "seen", "link", "mounts", "stick", "pedal", "tolerances", "grid")}}
     command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
                           env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
@@ -72,10 +73,12 @@ def count(name, folder):
 
 
 def measure():
-    with tempfile.TemporaryDirectory() as top:
-        folder = Path(top)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
         (folder / "sag.json").write_text(json.dumps({**large.link(300), "gravity_m_per_s2": [0, -9.81]}), encoding="utf-8")
         (folder / "frame.json").write_text(json.dumps(large.frame(6, 6, 6, 1)), encoding="utf-8")
+        top = {"sensors": [{"name": "top", "on": "L539", "fraction": 1, "directions": ["x"]}], "damping": {"mass_per_s": 1}}
+        (folder / "seen.json").write_text(json.dumps({**large.frame(6, 6, 6, 1), **top}), encoding="utf-8")
         tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]}
         (folder / "link.json").write_text(json.dumps({**large.link(2000), **tip}), encoding="utf-8")
         pump = json.loads((SOURCE / "problems/pump_on_mounts.json").read_text(encoding="utf-8"))
