@@ -229,10 +229,12 @@ static bool is_held(const mt_lowest *l, char *why)
 static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state *settled,
                               bool *is, bool *rests, char *why, mt_err *err)
 {
-    mt_absolute_load load = {.mu = NULL};
+    mt_absolute_load *const load = mt_arena_alloc(&l->mem, 1, sizeof *load);
     turns t = {.run = l->sys->run};
     mt_err own = {.code = MT_OK};
     mt_absolute *const o = &l->bodies;
+    MT_TRY(mt_arena_check(&l->mem, err));
+    *load = (mt_absolute_load){.mu = NULL};
     t.told = mt_progress_begin(t.run->progress, "matrices of the bodies", 0);
     const mt_status made = mt_absolute_new(l->sys, l->at, settled, &l->mem, o, is, why, err);
     mt_progress_end(t.run->progress, t.told);
@@ -248,10 +250,13 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
                            .check = go_on,
                            .context = &t};
     if (*is && l->sys->loaded) {
-        MT_TRY(load_bodies(l, &p, &load, is, why, err));
-        p.g = &load.g;
-        p.g_noise = load.noise;
+        MT_TRY(load_bodies(l, &p, load, is, why, err));
+        p.g = &load->g;
+        p.g_noise = load->noise;
     }
+    l->problem = p;
+    l->problem.check = NULL;
+    l->problem.context = NULL;
     *rests = *is;
     if (!*is) {
         return MT_OK;

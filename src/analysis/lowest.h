@@ -31,11 +31,14 @@ typedef struct mt_lowest {
     mt_arena mem;
     mt_system *sys; /* owned */
     mt_lowest_method way;
-    mt_tree *tree;           /* NULL: the configuration is not such a tree */
-    mt_absolute bodies;      /* for the sparse method */
-    mt_state position;       /* equilibrium position; sys NULL: the drawn position */
-    double *mu;              /* constraint forces of the modes (mt_modal_sparse) */
-    char why[MT_LOWEST_WHY]; /* why no method applies */
+    mt_tree *tree;             /* NULL: the configuration is not such a tree */
+    mt_absolute bodies;        /* for the sparse method, like the next three */
+    mt_sparse_problem problem; /* without `check` */
+    mt_sparse_solver *solver;  /* for forces (lowest_forced.h) */
+    double *work;              /* [coordinates] */
+    mt_state position;         /* equilibrium position; sys NULL: the drawn position */
+    double *mu;                /* constraint forces of the modes (mt_modal_sparse) */
+    char why[MT_LOWEST_WHY];   /* why no method applies */
     double mass_kg;
     int equations; /* of joints, possibly dependent; 0: a tree */
     mt_lowest_modes found;

@@ -257,7 +257,7 @@ static bool may_be_large(const job *j, char *why)
  * range that the omitted ones are within little more than rounding. */
 static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why, mt_err *err)
 {
-    const mt_lowest_want want = {.count = count, .shapes = true, .tree = true};
+    const mt_lowest_want want = {.count = count, .shapes = true};
     mt_err own = {.code = MT_OK};
     mt_lowest_delete(j->l);
     j->l = NULL;
@@ -267,15 +267,15 @@ static mt_status try_large(job *j, int count, bool *is, bool *enough, char *why,
     if (mt_is_final(rc) || rc == MT_E_INTERRUPTED) {
         return mt_fail(err, rc, "%s", own.text);
     }
-    *is = rc == MT_OK && j->l->way == MT_LOWEST_TREE;
+    *is = rc == MT_OK && j->l->way != MT_LOWEST_NONE;
     *enough = true;
     if (rc != MT_OK) {
         (void)mt_snprintf(why, WHY_SIZE, "its lowest modes alone: %s", own.text);
         return MT_OK;
     }
     if (!*is) {
-        (void)mt_snprintf(why, WHY_SIZE, "a response by its lowest modes needs a tree: %s",
-                          j->l->why[0] != '\0' ? j->l->why : "it has loops");
+        (void)mt_snprintf(why, WHY_SIZE,
+                          "the method for large trees does not apply, because %s", j->l->why);
         return MT_OK;
     }
     j->modes = &j->l->found.modes;

@@ -82,8 +82,8 @@ const mt_option mt_options[MT_OPT_IDS] = {
            "a grid in equal ratios instead of equal steps"),
     OPTION(MT_OPT_KEEP, '\0', "modes", "N", BIT(MT_CMD_RESPONSE),
            "use the lowest N modes, rigid-body modes included, and the static response of the "
-           "others (default: all modes; of a tree of 100 bodies or more as many as the range "
-           "needs, with shapes of the others that make them as good)"),
+           "others (default: all modes; of 100 bodies or more as many as the range needs, with "
+           "shapes of the others that make them as good)"),
     OPTION(MT_OPT_DIRECT, '\0', "direct", NULL, BIT(MT_CMD_RESPONSE),
            "factor the dynamic stiffness at every frequency instead of using modes"),
     OPTION(MT_OPT_POLES, '\0', "poles", NULL, BIT(MT_CMD_RESPONSE),

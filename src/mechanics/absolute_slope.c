@@ -78,6 +78,33 @@ void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi)
     expand(o, x, o->arm, true, phi);
 }
 
+void mt_absolute_push(const mt_absolute *o, const double *force, double *f)
+{
+    const mt_system *const sys = o->sys;
+    memset(f, 0, (size_t)o->n * sizeof *f);
+    for (int b = 0; b < sys->n_bodies; b++) {
+        const int first = o->with[b];
+        if (first == MT_GROUND) {
+            continue;
+        }
+        const double *const r = o->arm + ((ptrdiff_t)3 * b);
+        double g[6];
+        for (int k = 0; k < 6; k++) {
+            const int dof = sys->bodies[b].dof[k];
+            g[k] = dof < 0 ? 0.0 : force[dof];
+        }
+        for (int k = 0; k < 3; k++) { /* r x force */
+            const int next = (k + 1) % 3;
+            const int last = (k + 2) % 3;
+            g[3 + k] += (r[next] * g[last]) - (r[last] * g[next]);
+        }
+        for (int k = 0; k < 6; k++) {
+            const int dof = sys->bodies[first].dof[k];
+            f[dof < 0 ? 0 : o->place[dof]] += dof < 0 ? 0.0 : g[k];
+        }
+    }
+}
+
 mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const double *inputs,
                             int n, const double *phi, double *value, mt_arena *scratch,
                             mt_err *err)

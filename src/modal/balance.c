@@ -12,9 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-/* A constraint's stiffness over that of a state: forces that add up along some ten thousand
+/* A constraint's stiffness over that of a state: forces that add up along some hundred thousand
  * joints converge still, and eps times this is well below 1. */
-static const double STIFFER = 1e10;
+static const double STIFFER = 1e12;
 
 /* D^-2. */
 static mt_status springs(const mt_sparse_problem *of, mt_arena *mem, mt_squares *out,

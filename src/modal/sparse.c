@@ -27,8 +27,6 @@
 static const double STIFFER[] = {1e6, 1e8};
 /* The same of a count that says more than was found, in that. */
 static const double COUNTED[] = {1e3, 1e6};
-/* Below this part of what it is the rest of, the sign of a pivot is by chance. */
-static const double CERTAIN = 64.0 * DBL_EPSILON;
 /* Below this the factor's rounding is refined away in each product. */
 static const double WELL = 1e-7;
 /* The first shift, in the largest K_ii/M_ii; and the least and most that it should be of the
@@ -64,8 +62,7 @@ static mt_status apply(void *context, int count, const double *x, double *y, mt_
     return MT_OK;
 }
 
-/* A sum of squares at x, and of the squares of its strains' roundings. */
-static double energy(const mt_squares *of, const double *x, double *noise)
+double mt_sparse_energy(const mt_squares *of, const double *x, double *noise)
 {
     double sum = 0.0;
     *noise = 0.0;
@@ -79,24 +76,38 @@ static double energy(const mt_squares *of, const double *x, double *noise)
     return sum;
 }
 
+/* *k += x^T G x, *noise += its rounding. */
+static void add_load(const mt_sparse_problem *p, const double *x, double *k, double *noise)
+{
+    for (int j = 0; p->g != NULL && j < p->n; j++) {
+        for (int i = p->g->start[j]; i < p->g->start[j + 1]; i++) {
+            const double twice = p->g->row[i] == j ? 1.0 : 2.0;
+            const double part = twice * p->g->value[i] * x[j] * x[p->g->row[i]];
+            *k += part;
+            *noise += STRAIN_ULPS * DBL_EPSILON * fabs(part);
+            *noise += twice * p->g_noise[i] * fabs(x[j] * x[p->g->row[i]]);
+        }
+    }
+}
+
+double mt_sparse_load_noise(const mt_sparse *s, const double *x)
+{
+    double k = 0.0;
+    double noise = 0.0;
+    add_load(s->p, x, &k, &noise);
+    return noise;
+}
+
 /* The quotient of y, whose constraints' forces are mu. */
 static void weigh(const mt_sparse *s, const double *y, const double *mu, mt_lowest_quotient *q)
 {
     const mt_sparse_problem *const p = s->p;
     double k_noise = 0.0;
     double m_noise = 0.0;
-    double k = energy(&p->k, y, &k_noise);
-    const double m = energy(&p->m, y, &m_noise);
+    double k = mt_sparse_energy(&p->k, y, &k_noise);
+    const double m = mt_sparse_energy(&p->m, y, &m_noise);
     double other = 0.0;
-    for (int j = 0; p->g != NULL && j < p->n; j++) {
-        for (int i = p->g->start[j]; i < p->g->start[j + 1]; i++) {
-            const double twice = p->g->row[i] == j ? 1.0 : 2.0;
-            const double part = twice * p->g->value[i] * y[j] * y[p->g->row[i]];
-            k += part;
-            other += STRAIN_ULPS * DBL_EPSILON * fabs(part);
-            other += twice * p->g_noise[i] * fabs(y[j] * y[p->g->row[i]]);
-        }
-    }
+    add_load(p, y, &k, &other);
     /* what y leaves open of the constraints, their forces pay for */
     for (int r = 0; r < p->a.n_rows; r++) {
         double size = 0.0;
@@ -152,7 +163,7 @@ static mt_status below(void *context, double tau, int known, int *n, bool *certa
         }
         MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
         MT_TRY(mt_sparse_inertia(s, i == 0 ? 1.0 : COUNTED[i - 1], -tau, &here, &least, err));
-        if (least > CERTAIN && (!*certain || here < *n)) {
+        if (least > MT_SPARSE_CERTAIN && (!*certain || here < *n)) {
             *n = here;
             *certain = true;
         }
@@ -309,6 +320,20 @@ static mt_status shape(mt_sparse *s, mt_arena *mem, const mt_lowest_modes *out, 
     return MT_OK;
 }
 
+/* Without constraints, or stiffnesses, all of STIFFER are one. */
+int mt_sparse_tries(const mt_sparse_problem *p)
+{
+    return p->a.n_rows == 0 ? 1 : p->g == NULL ? MT_COUNT(STIFFER) : 2 * MT_COUNT(STIFFER);
+}
+
+mt_sparse mt_sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem)
+{
+    return (mt_sparse){.p = p,
+                       .mem = mem,
+                       .stiffer = STIFFER[i % MT_COUNT(STIFFER)],
+                       .outweigh = i >= MT_COUNT(STIFFER)};
+}
+
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
                           double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err)
 {
@@ -318,17 +343,13 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
     *mu = NULL;
     *out = (mt_lowest_modes){.below = 0};
     mt_status rc = mt_arena_init(&work, 0, err);
-    bool more = true; /* without constraints, or stiffnesses, all of STIFFER are one */
-    const int tries = p->g == NULL ? MT_COUNT(STIFFER) : 2 * MT_COUNT(STIFFER);
-    for (int i = 0; i < tries && rc == MT_OK && more; i++) {
+    bool more = true;
+    for (int i = 0; i < mt_sparse_tries(p) && rc == MT_OK && more; i++) {
         mt_arena_clear(&work);
-        s = (mt_sparse){.p = p,
-                        .mem = &work,
-                        .stiffer = STIFFER[i % MT_COUNT(STIFFER)],
-                        .outweigh = i >= MT_COUNT(STIFFER)};
+        s = mt_sparse_try(p, i, &work);
         rc = mt_sparse_prepare(&s, err);
         rc = rc == MT_OK ? hold(&s, answered, why, err) : rc;
-        more = !*answered && p->a.n_rows > 0 && s.stiffest > 0.0;
+        more = !*answered && s.stiffest > 0.0;
     }
     if (rc == MT_OK && *answered) {
         rc = find(&s, mem, out, answered, err);

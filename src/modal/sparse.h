@@ -42,4 +42,24 @@ enum { MT_SPARSE_WHY = 200 };
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
                           double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err);
 
+/* K + shift M of such a problem, factored to solve for forces. */
+typedef struct mt_sparse_solver mt_sparse_solver;
+
+/**
+ * Without shift where that can be; else, and where the problem is not held (has rigid-body
+ * modes), with lambda, the lowest vibration mode's [rad^2/s^2].
+ * @param[out] out  in mem; NULL where sixteen digits do not resolve its motions
+ * What p points to outlives it. Fails: as mt_factor_make, MT_E_MEMORY, what `check` fails with.
+ */
+mt_status mt_sparse_solver_new(const mt_sparse_problem *p, bool held, double lambda,
+                               mt_arena *mem, mt_sparse_solver **out, mt_err *err);
+double mt_sparse_solver_shift(const mt_sparse_solver *o);
+/* (K + shift M) x + A^T mu = f, A x = 0; *noise (may be NULL): a bound of what rounding made of
+ * x, in the norm of K + shift M. Fails: what `check` fails with. */
+mt_status mt_sparse_solver_solve(mt_sparse_solver *o, const double *f, double *x, double *noise,
+                                 mt_err *err);
+/* y := M x; y := (K + shift M) x. */
+void mt_sparse_solver_mass(mt_sparse_solver *o, const double *x, double *y);
+void mt_sparse_solver_stiffness(mt_sparse_solver *o, const double *x, double *y);
+
 #endif

@@ -2,6 +2,8 @@
 #ifndef MODAL_SPARSE_PRIV_H
 #define MODAL_SPARSE_PRIV_H
 
+#include <float.h>
+
 #include "modal/sparse.h"
 
 /* Right-hand sides per solve: ten modes and two beyond the last. */
@@ -49,9 +51,20 @@ mt_status mt_sparse_inertia(mt_sparse *s, double part, double c, int *negative, 
                             mt_err *err);
 /* y := M x. */
 void mt_sparse_metric(void *context, const double *x, double *y);
+/* y -= K x, strain by strain. */
+void mt_sparse_subtract(const mt_sparse *s, const double *x, double *y);
+/* A sum of squares at x, and of the squares of its strains' roundings. */
+double mt_sparse_energy(const mt_squares *of, const double *x, double *noise);
+/* Rounding of x^T G x, including errors of G. */
+double mt_sparse_load_noise(const mt_sparse *s, const double *x);
+/* Number of constraint stiffnesses to try, and try i of them, ready to be prepared. */
+int mt_sparse_tries(const mt_sparse_problem *p);
+mt_sparse mt_sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem);
 /* Set s->freedoms: states less independent rows of A. `factor` is then not that of H. */
 mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err);
 
+/* Below this part of the terms whose difference it is, the sign of a pivot is uncertain. */
+static const double MT_SPARSE_CERTAIN = 64.0 * DBL_EPSILON;
 /* `close` of mt_sparse_solve: to rounding. */
 static const double MT_SPARSE_SOLVED = 1e-16;
 

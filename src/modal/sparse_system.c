@@ -2,6 +2,7 @@
 /* Assembles and factors H, and solves with it: the iteration is derived in sparse.c. */
 #include "modal/sparse_priv.h"
 
+#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +18,11 @@ enum { MOST_STEPS = 30 };
  * singular but for rounding, no step comes nearer. */
 static const double SOUND = 1e-6;
 static const double GOLDEN = 0.61803398874989485;
-/* Squares of singular values of A, in scaled rows, below this are 0. */
+/* Squares of singular values of A, in scaled rows, are 0 below what rounding makes of 0: so
+ * many roundings of the largest, more by RAISED each time that a pivot's sign may be chance, up
+ * to DEPENDENT. */
+static const double RANK_ULPS = 64.0;
+static const double RAISED = 8.0;
 static const double DEPENDENT = 1e-9;
 
 /* One column of a lower triangle that is being summed. */
@@ -167,8 +172,7 @@ void mt_sparse_metric(void *context, const double *x, double *y)
     }
 }
 
-/* y -= K x, strain by strain. */
-static void subtract_force(const mt_sparse *s, const double *x, double *y)
+void mt_sparse_subtract(const mt_sparse *s, const double *x, double *y)
 {
     const mt_sparse_problem *const p = s->p;
     for (int r = 0; r < p->k.row.n_rows; r++) {
@@ -192,7 +196,7 @@ static void leave(mt_sparse *s, bool first, const double *f, const double *x, co
     if (!first) {
         mt_sparse_metric(s, x, s->w);
         mt_axpy(p->n, -s->shift, s->w, r);
-        subtract_force(s, x, r);
+        mt_sparse_subtract(s, x, r);
     }
     for (int i = 0; i < p->a.n_rows; i++) {
         gap[i] = first ? 0.0 : mt_rows_dot(&p->a, i, x);
@@ -389,27 +393,57 @@ static void scale_constraints(mt_sparse *s)
     }
 }
 
-/* D A^T A D - c I, in the places of H, has one positive eigenvalue for each independent row. */
-static mt_status rank(mt_sparse *s, mt_arena *scratch, mt_err *err)
+/* D A^T A D in the places of H, *norm a bound of its largest eigenvalue: the largest sum of
+ * magnitudes in a row. */
+static mt_status square_constraints(mt_sparse *s, mt_arena *scratch, mt_lower *h, double *norm,
+                                    mt_err *err)
 {
     const mt_sparse_problem *const p = s->p;
-    mt_lower h = s->k;
     column c;
-    bool regular = false;
-    h.value = mt_arena_f64(scratch, (size_t)h.start[h.n], 1);
+    *h = s->k;
+    h->value = mt_arena_f64(scratch, (size_t)h->start[h->n], 1);
+    double *const sum = mt_arena_f64(scratch, (size_t)p->n, 1);
     MT_TRY(column_init(&c, p->n, scratch, err));
     for (int j = 0; j < p->n; j++) {
         begin(&c);
         add_squares(&c, &p->a, s->gamma, &s->by_state, j, 1.0);
-        for (int q = h.start[j]; q < h.start[j + 1]; q++) {
-            const int i = h.row[q];
-            const double sum = c.mark[i] == j + 1 ? c.sum[i] : 0.0;
-            h.value[q] = sum * p->unit[i] * p->unit[j] / s->stiffest;
-            h.value[q] -= i == j ? DEPENDENT : 0.0;
+        for (int q = h->start[j]; q < h->start[j + 1]; q++) {
+            const int i = h->row[q];
+            const double here = c.mark[i] == j + 1 ? c.sum[i] : 0.0;
+            h->value[q] = here * p->unit[i] * p->unit[j] / s->stiffest;
+            sum[i] += fabs(h->value[q]);
+            sum[j] += i == j ? 0.0 : fabs(h->value[q]);
         }
     }
-    MT_TRY(make(s, &h, 0.0, NULL, &regular, err));
-    s->freedoms = s->factor.negative;
+    *norm = mt_max_abs(p->n, sum);
+    return MT_OK;
+}
+
+/*
+ * D A^T A D - c I has one positive eigenvalue for each independent row. The unpivoted factor of
+ * what is semidefinite but for c does not grow: it is that of a matrix which is off by some
+ * roundings of the norm, so that c need be no more than these. The joints of a chain of n
+ * bodies are 1/n from dependent, their square some 2/n^2.
+ */
+static mt_status rank(mt_sparse *s, mt_arena *scratch, mt_err *err)
+{
+    mt_lower h;
+    double norm = 0.0;
+    bool certain = false;
+    MT_TRY(square_constraints(s, scratch, &h, &norm, err));
+    double c = RANK_ULPS * DBL_EPSILON * norm;
+    double was = 0.0;
+    while (!certain) {
+        bool regular = false;
+        for (int j = 0; j < h.n; j++) { /* the diagonal comes first */
+            h.value[h.start[j]] -= c - was;
+        }
+        MT_TRY(make(s, &h, 0.0, NULL, &regular, err));
+        s->freedoms = s->factor.negative;
+        certain = (regular && s->factor.least > MT_SPARSE_CERTAIN) || !(c < DEPENDENT);
+        was = c;
+        c *= RAISED;
+    }
     return MT_OK;
 }
 

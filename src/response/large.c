@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * With X the coordinates (x^T x = 1), of M_r = X^T A X = Z theta Z^T the problem has unit mass
- * in columns u_j = X z_j lambda_j^(1/2), lambda_j = 1/theta_j, those of the exact modes being
- * known better; of a force f it is lambda_j^(1/2) z_j^T X^T f. Nothing else of size n is
- * formed: K is the identity, and rows of dampers are forces, too.
+ * With X the coordinates (X^T H X = I), of M_r = X^T H A X = Z theta Z^T the problem has unit
+ * mass in columns u_j = X z_j theta_j^(-1/2), with lambda_j = 1/theta_j - s, those of the exact
+ * modes being known better; of a force f it is theta_j^(-1/2) z_j^T X^T f. Nothing else of size
+ * n is formed: H is the identity then, and rows of dampers are forces, too.
  */
 #include "response/large_priv.h"
 
@@ -20,9 +20,6 @@ static const double NEGLIGIBLE = 1e-9;
 /* What is left of a shape beside the others, below which it is one of them. */
 static const double DEPENDENT = 1e-8;
 
-/* Roundings of a force for each body that it goes through. */
-static const double RECURSION_ULPS = 2.0;
-
 typedef mt_large_force force;
 typedef mt_large_side side;
 typedef mt_large_work work;
@@ -30,20 +27,29 @@ typedef mt_large_work work;
 /* x -= columns of the first n of k->x. */
 static void clear_of(const work *k, int n, double *x)
 {
+    const double *const dual = mt_lowest_dual(k->l, x, k->dual);
     for (int i = 0; i < n; i++) {
         const double *const own = k->x + ((ptrdiff_t)k->n_x * i);
-        mt_axpy(k->n_x, -mt_dot(k->n_x, own, x), own, x);
+        mt_axpy(k->n_x, -mt_dot(k->n_x, own, dual), own, x);
     }
+}
+
+/* In the norm of H. */
+static double size_of(const work *k, const double *x)
+{
+    const double *const dual = mt_lowest_dual(k->l, x, k->dual);
+    return dual == x ? mt_norm2(k->n_x, x) : sqrt(fmax(mt_dot(k->n_x, x, dual), 0.0));
 }
 
 /* Takes x, which is overwritten, in: with its image. */
 static mt_status take(work *k, double *x, mt_err *err)
 {
-    const double was = mt_norm2(k->n_x, x);
+    const double was = size_of(k, x);
     double size = was;
     for (int round = 0; round < 2 && size > 0.0; round++) {
         clear_of(k, k->size, x);
-        size = mt_norm2(k->n_x, x);
+        MT_TRY(round == 0 ? mt_lowest_admit(k->l, x, err) : MT_OK);
+        size = size_of(k, x);
     }
     if (!(size > DEPENDENT * was)) {
         return MT_OK;
@@ -52,7 +58,7 @@ static mt_status take(work *k, double *x, mt_err *err)
     for (int j = 0; j < k->n_x; j++) {
         to[j] = x[j] / size;
     }
-    MT_TRY(mt_lowest_mass(k->l, to, k->ax + ((ptrdiff_t)k->n_x * k->size), err));
+    MT_TRY(mt_lowest_momentum(k->l, to, k->ax + ((ptrdiff_t)k->n_x * k->size), err));
     k->size++;
     return MT_OK;
 }
@@ -65,23 +71,22 @@ static mt_status add_shapes(work *k, force *f, mt_err *err)
     MT_TRY(mt_arena_check(k->scratch, err));
     double *const copy = x + k->n_x;
     double *const next = copy + k->n_x;
-    const double m = k->to * hypot(k->to, k->alpha);
-    memcpy(x, f->x, (size_t)k->n_x * sizeof *x);
+    const double m = (k->to * hypot(k->to, k->alpha)) + k->shift;
+    memcpy(x, f->push.x, (size_t)k->n_x * sizeof *x);
     clear_of(k, k->kept, x);
     clear_of(k, k->kept, x);
-    const double unit = RECURSION_ULPS * (1.0 + k->l->tree->depth) * DBL_EPSILON;
-    f->left = (mt_left_part){.size = mt_norm2(k->n_x, x),
-                             .open = mt_norm2(k->n_x, x),
-                             .noise = unit * f->size,
-                             .loose = unit * mt_norm2(k->free, f->a)};
+    f->left = (mt_left_part){.size = size_of(k, x),
+                             .open = size_of(k, x),
+                             .noise = f->push.noise,
+                             .loose = f->push.loose};
     while (f->left.order < MOST_SHAPES &&
-           pow(m, f->left.order) * f->left.open > NEGLIGIBLE * f->size) {
+           pow(m, f->left.order) * f->left.open > NEGLIGIBLE * f->push.size) {
         memcpy(copy, x, (size_t)k->n_x * sizeof *copy);
         MT_TRY(take(k, copy, err));
         MT_TRY(mt_lowest_mass(k->l, x, next, err));
         memcpy(x, next, (size_t)k->n_x * sizeof *x);
         clear_of(k, k->kept, x);
-        f->left.open = mt_norm2(k->n_x, x);
+        f->left.open = size_of(k, x);
         f->left.order++;
     }
     mt_arena_rewind(k->scratch, mark);
@@ -95,14 +100,40 @@ static bool keep_modes(work *k, double *lambda)
     const mt_modes *const m = &found->modes;
     for (int i = m->n_rigid; i < m->count; i++) {
         if (m->kind[i] != MT_MODE_FLEXIBLE) {
-            return mt_large_refuse(k, "a motion without stiffness moves more than the tree");
+            return mt_large_refuse(
+                k, "a motion without stiffness is none of its rigid-body modes");
         }
     }
     k->kept = m->count - k->free;
-    *lambda = k->kept == k->n_x         ? HUGE_VAL
-              : found->below > m->count ? m->lambda[m->count - 1]
-                                        : found->tau;
+    *lambda = k->kept == m->all - k->free ? HUGE_VAL
+              : found->below > m->count   ? m->lambda[m->count - 1]
+                                          : found->tau;
     return k->kept > 0 ? true : mt_large_refuse(k, "it has no vibration modes");
+}
+
+/* Motions that cancel leave the coordinates not quite orthonormal: a bound of the norm of
+ * X^T H X - I, which is what a solution in them is off by, as a part of its force. */
+static mt_status find_skew(work *k, double *skew, mt_err *err)
+{
+    double *const dual = mt_arena_f64(k->scratch, (size_t)k->n_x, 1);
+    double *const row = mt_arena_f64(k->scratch, (size_t)k->size, 1);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    *skew = 0.0;
+    for (int i = 0; i < k->size; i++) {
+        const double *const x = k->x + ((ptrdiff_t)k->n_x * i);
+        const double *const own = mt_lowest_dual(k->l, x, dual);
+        double sum = 0.0;
+        if (own == x) {
+            return MT_OK; /* the recursion's own rounding is in the forces' */
+        }
+        mt_gemv(true, k->n_x, k->size, 1.0, k->x, k->n_x, own, 0.0, row);
+        row[i] -= 1.0;
+        for (int j = 0; j < k->size; j++) {
+            sum += fabs(row[j]);
+        }
+        *skew = fmax(*skew, sum);
+    }
+    return MT_OK;
 }
 
 static mt_status make_basis(work *k, mt_err *err)
@@ -112,10 +143,11 @@ static mt_status make_basis(work *k, mt_err *err)
     k->most = k->kept + (forces * MOST_SHAPES);
     k->x = mt_arena_f64(k->scratch, n_x, (size_t)k->most);
     k->ax = mt_arena_f64(k->scratch, n_x, (size_t)k->most);
+    k->dual = mt_arena_f64(k->scratch, n_x, 1);
     double *const copy = mt_arena_f64(k->scratch, n_x, 1);
     MT_TRY(mt_arena_check(k->scratch, err));
     for (int i = 0; i < k->kept; i++) {
-        memcpy(copy, k->l->found.x + (n_x * (size_t)i), n_x * sizeof *copy);
+        memcpy(copy, mt_lowest_mode(k->l, i), n_x * sizeof *copy);
         MT_TRY(take(k, copy, err));
     }
     for (int i = 0; i < k->ports->n_in; i++) {
@@ -127,6 +159,15 @@ static mt_status make_basis(work *k, mt_err *err)
     for (int s = 0; s < k->n_sides; s++) {
         MT_TRY(add_shapes(k, &k->sides[s].f, err));
     }
+    double skew = 0.0;
+    MT_TRY(find_skew(k, &skew, err));
+    for (int i = 0; i < forces; i++) {
+        force *const f = i < k->ports->n_in ? &k->in[i]
+                         : i < k->ports->n_in + k->ports->n_out
+                             ? &k->outs[i - k->ports->n_in]
+                             : &k->sides[i - k->ports->n_in - k->ports->n_out].f;
+        f->left.noise += skew * f->push.size;
+    }
     return MT_OK;
 }
 
@@ -137,8 +178,9 @@ static mt_status reduce(const work *k, force *f, mt_err *err)
     f->in_all = mt_arena_f64(k->scratch, (size_t)k->free + (size_t)n, 1);
     double *const by = mt_arena_f64(k->scratch, (size_t)n, 1);
     MT_TRY(mt_arena_check(k->scratch, err));
-    memcpy(f->in_all, f->a, (size_t)k->free * sizeof *f->a);
-    mt_gemv(true, k->n_x, n, 1.0, k->x, k->n_x, f->x, 0.0, by);
+    memcpy(f->in_all, f->push.a, (size_t)k->free * sizeof *f->push.a);
+    mt_gemv(true, k->n_x, n, 1.0, k->x, k->n_x, f->push.dual != NULL ? f->push.dual : f->push.x,
+            0.0, by);
     mt_gemv(true, n, n, 1.0, k->z, n, by, 0.0, f->in_all + k->free);
     for (int j = 0; j < n; j++) {
         f->in_all[k->free + j] /= sqrt(k->theta[j]);
@@ -177,7 +219,7 @@ static mt_status find_modes(work *k, bool *is, mt_err *err)
         m->kind[i] = i < k->free ? MT_MODE_RIGID_BODY : MT_MODE_FLEXIBLE;
         m->cluster[i] = i;
         if (j >= 0) {
-            m->lambda[i] = j < k->kept ? exact->lambda[i] : 1.0 / k->theta[j];
+            m->lambda[i] = j < k->kept ? exact->lambda[i] : (1.0 / k->theta[j]) - k->shift;
             m->error[i] =
                 j < k->kept ? exact->error[i] : (double)n * DBL_EPSILON * m->lambda[i];
         }
@@ -353,9 +395,10 @@ static mt_status note_left(work *k, double lambda, mt_err *err)
         memcpy(row + (s * n), own->f.in_all, n * sizeof *row);
     }
     for (size_t j = 0; j < n; j++) {
-        root[j] = sqrt(k->out->modes.lambda[j]);
+        root[j] = j < (size_t)k->free ? 0.0 : sqrt(k->out->modes.lambda[j] + k->shift);
     }
     *left = (mt_left_out){.lambda = lambda,
+                          .shift = k->shift,
                           .root = root,
                           .alpha = k->alpha,
                           .beta = k->beta,
@@ -421,8 +464,9 @@ mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_ar
     *out = (mt_large){.shapes = 0};
     *is = false;
     why[0] = '\0';
-    if (l->way != MT_LOWEST_TREE) {
-        (void)mt_snprintf(why, MT_LARGE_WHY, "it has to be a tree that is drawn at rest");
+    MT_TRY(mt_lowest_open_forced(l, is, err));
+    if (!*is) {
+        (void)mt_snprintf(why, MT_LARGE_WHY, "sixteen digits do not resolve its motions");
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&scratch, 0, err));
@@ -434,7 +478,8 @@ mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_ar
               .why = why,
               .n_x = mt_lowest_coordinates(l),
               .free = mt_lowest_free(l),
-              .to = to};
+              .to = to,
+              .shift = mt_lowest_shift(l)};
     const mt_status rc = make(&k, is, err);
     mt_arena_free(&scratch);
     return rc;

@@ -5,7 +5,7 @@
 #include "response/response.h"
 
 /*
- * The forced problem of a large tree in few coordinates: its rigid-body modes, its lowest
+ * The forced problem of a large mechanism in few coordinates: its rigid-body modes, its lowest
  * modes, and of every force that comes in, is seen or damps locally the shapes g, A g, A^2 g
  * ... of what those modes leave of it (lowest_forced.h), which is what a series in w^2 has.
  * (Modal synthesis with static correction of all orders: Krylov's space; Galerkin's error in

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What pushes, what is seen and what damps locally, each as a force in the coordinates of the
- * tree. */
+ * search for modes. */
 #include "response/large_priv.h"
 
 #include <string.h>
@@ -29,8 +29,7 @@ double mt_large_value(const mt_large_work *k, mt_node node)
 
 static mt_status new_force(const work *k, force *f, mt_err *err)
 {
-    f->x = mt_arena_f64(k->scratch, (size_t)k->n_x, 1);
-    f->a = mt_arena_f64(k->scratch, (size_t)k->free, 1);
+    mt_lowest_push_init(k->l, k->scratch, &f->push);
     return mt_arena_check(k->scratch, err);
 }
 
@@ -67,16 +66,10 @@ static mt_status open_inputs(work *k, mt_err *err)
         const mt_port *const port = &k->ports->in[i];
         MT_TRY(new_force(k, &k->in[i], err));
         if (port->kind == MT_PORT_BASE) {
-            k->in[i].size = mt_lowest_base(k->l, port->index, k->in[i].x, k->in[i].a);
-            for (int j = 0; j < k->n_x; j++) {
-                k->in[i].x[j] = -k->in[i].x[j];
-            }
-            for (int j = 0; j < k->free; j++) {
-                k->in[i].a[j] = -k->in[i].a[j];
-            }
+            MT_TRY(mt_lowest_base(k->l, port->index, &k->in[i].push, err));
         } else {
             mt_large_sensor_row(k, port->index);
-            k->in[i].size = mt_lowest_force(k->l, k->states, k->in[i].x, k->in[i].a);
+            MT_TRY(mt_lowest_force(k->l, k->states, &k->in[i].push, err));
         }
     }
     return MT_OK;
@@ -132,7 +125,7 @@ static mt_status open_outputs(work *k, bool *is, mt_err *err)
                                      "all modes");
             return MT_OK;
         }
-        k->outs[o].size = mt_lowest_force(k->l, k->states, k->outs[o].x, k->outs[o].a);
+        MT_TRY(mt_lowest_force(k->l, k->states, &k->outs[o].push, err));
     }
     return MT_OK;
 }
@@ -146,7 +139,7 @@ static mt_status add_side(work *k, const mt_term *t, const mt_cx *row, double da
     MT_TRY(new_force(k, &s->f, err));
     clear(k);
     add_row(k, t, row, 1.0);
-    s->f.size = mt_lowest_force(k->l, k->states, s->f.x, s->f.a);
+    MT_TRY(mt_lowest_force(k->l, k->states, &s->f.push, err));
     k->n_sides++;
     return MT_OK;
 }
@@ -216,7 +209,8 @@ static mt_status open_sides(work *k, bool *is, mt_err *err)
 mt_status mt_large_forces(mt_large_work *k, bool *is, mt_err *err)
 {
     MT_TRY(mt_terms_new(k->l->sys, k->scratch, k->list, err));
-    MT_TRY(mt_absolute_stand(k->l->sys, NULL, k->l->at, &k->d, &k->at, k->scratch, err));
+    MT_TRY(mt_absolute_stand(k->l->sys, mt_lowest_settled(k->l), k->l->at, &k->d, &k->at,
+                             k->scratch, err));
     MT_TRY(open_inputs(k, err));
     MT_TRY(open_outputs(k, is, err));
     return *is ? open_sides(k, is, err) : MT_OK;

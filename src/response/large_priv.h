@@ -10,9 +10,7 @@
 
 /* A force: what it does to the bodies, by coordinates. */
 typedef struct mt_large_force {
-    double *x;      /* [n_x] */
-    double *a;      /* [rigid-body modes] */
-    double size;    /* in which its rounding is measured */
+    mt_lowest_push push;
     double loss;    /* of a spring's force: 1 + i loss times this */
     double *in_all; /* [n] by the coordinates of the problem */
     mt_left_part left;
@@ -37,12 +35,14 @@ typedef struct mt_large_work {
     mt_term_list list[MT_TERM_KINDS];
     int n_x;
     int free;
-    int kept;  /* vibration modes */
-    int size;  /* columns of x */
-    int most;  /* room for them */
-    double *x; /* n_x x most, orthonormal */
-    double *ax;
+    int kept;     /* vibration modes */
+    int size;     /* columns of x */
+    int most;     /* room for them */
+    double *x;    /* n_x x most, orthonormal */
+    double *ax;   /* H A of each: x^T A x in the norm of H is x^T ax */
+    double *dual; /* [n_x] work */
     double to;
+    double shift;
     double alpha;
     double beta;
     double loss; /* of all springs alike */

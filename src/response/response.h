@@ -22,10 +22,10 @@ typedef struct mt_response_request {
 } mt_response_request;
 
 typedef struct mt_response {
-    mt_analysis *a; /* not owned; NULL: of a large tree (large.h), without derivatives */
+    mt_analysis *a; /* not owned; NULL: of a large one (large.h), without derivatives */
     const mt_system *sys;
-    const mt_modes *modes; /* those of a large tree that are wanted, the others left out */
-    int shapes;            /* of a large tree: beside its modes */
+    const mt_modes *modes; /* those of a large one that are wanted, the others left out */
+    int shapes;            /* of a large one: beside its modes */
     mt_arena mem;
     mt_port_set ports;
     mt_forced f;
@@ -44,9 +44,9 @@ mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, m
                            mt_err *err);
 enum { MT_LARGE_WHY = 200 };
 /**
- * The same of a large tree by its lowest modes (and so many shapes of what is left that it is
- * as good as all of them), after mt_lowest_new with shapes, and until that is deleted; the
- * errors hold what is left out. Up to `to` [rad/s], which the modes have to be well above of.
+ * The same of a large mechanism by its lowest modes (and so many shapes of what is left that
+ * it is as good as all of them), after mt_lowest_new with shapes, and until that is deleted;
+ * the errors hold what is left out. Up to `to` [rad/s], far above which the modes have to go.
  * @param[out] why  the reason where *is false
  * Fails as mt_response_open, MT_E_INTERRUPTED, MT_E_DOMAIN.
  */

@@ -354,13 +354,15 @@ static double left_error(const work *k, ptrdiff_t o, ptrdiff_t i)
     }
     const double complex *const a = k->a + (o * k->t->n);
     const double complex *const x = k->q + (i * k->t->n);
-    const double m = k->w * hypot(k->w, l->alpha);
-    const double q = 1.0 - (m / l->lambda);
+    const double lossy = (k->w * l->beta) + l->loss;
+    const double m = (k->w * hypot(k->w, l->alpha)) + (l->shift * hypot(1.0, lossy));
+    const double lambda = l->lambda + l->shift;
+    const double q = 1.0 - (m / lambda);
     if (!(q > 0.0)) {
         return HUGE_VAL;
     }
     const double turn =
-        1.0 + (((k->w * l->beta) + l->loss + (k->w * l->alpha / l->lambda)) / q);
+        1.0 + (((lossy * (1.0 + (l->shift / lambda))) + (k->w * l->alpha / lambda)) / q);
     double sum =
         noise_of(k, &l->in[i], l->in_power[i], a) + noise_of(k, &l->out[o], l->out_power[o], x);
     for (int whole = 0; whole < (l->ratio > 0.0 ? 2 : 1); whole++) {

@@ -18,23 +18,24 @@
 enum { MT_REST_LOWEST = -2, MT_REST_HIGHEST = 4, MT_REST_POWERS = 7 };
 
 /* A force or a motion that a reduced problem has in few coordinates: the rest of it, g, is of
- * modes above `lambda` (mt_left_out), in which K is the identity and M is A. */
+ * modes above `lambda` (mt_left_out), in which H = K + shift M is the identity and M is A. */
 typedef struct mt_left_part {
     int order;    /* p: (A^j g, j < p) are among the coordinates */
     double size;  /* |g| */
     double open;  /* |A^p g| [s^2p] */
-    double noise; /* rounding of what the modes have of it, in coordinates where K is 1 */
+    double noise; /* rounding of what the modes have of it, in coordinates where H is 1 */
     double loose; /* of what its rigid-body modes have */
 } mt_left_part;
 
-/* What a reduced problem leaves out. Of forces f and outputs s, with m = w sqrt(w^2 + a^2) and
- * q = 1 - m/lambda, Galerkin's error of H is at most
+/* What a reduced problem leaves out. Of forces f and outputs s, with m = w sqrt(w^2 + a^2),
+ * more by the shift, and q = 1 - m/(lambda + shift), Galerkin's error is at most
  *     c |A^p f| |A^r s| m^(p + r) / q,
- * c from how damping turns D; damping ratios of what is left out, which coordinates show as
- * those of other modes, are worth at most 4 zeta (w / sqrt(lambda)) |f| |s| / q^2. What damps
- * locally is a force there, too. */
+ * c from how damping turns D = (1 + i t) H - (w^2 + shift (1 + i t) - i w a) M; damping ratios
+ * of what is left out, which coordinates show as those of other modes, are worth at most
+ * 4 zeta (w / sqrt(lambda)) |f| |s| / q^2. What damps locally is a force there, too. */
 typedef struct mt_left_out {
     double lambda; /* [rad^2/s^2] */
+    double shift;  /* [rad^2/s^2] */
     double alpha;  /* damping by mass [1/s] */
     double beta;   /* by stiffness [s] */
     double loss;   /* of all springs */
@@ -46,7 +47,7 @@ typedef struct mt_left_out {
     const double *row;        /* n x n_side: motion along each, by coordinate */
     const double *damping;    /* [n_side] */
     const double *structural; /* [n_side] */
-    const double *root;       /* [n] of K's diagonal; 0: of a rigid-body mode */
+    const double *root;       /* [n] of H's diagonal; 0: of a rigid-body mode */
     const double *in_power;   /* [n_in] of w */
     const double *out_power;  /* [n_out] */
 } mt_left_out;

@@ -35,7 +35,7 @@ PLAIN = {"OPENBLAS_NUM_THREADS": "1", "OPENBLAS_CORETYPE": "Prescott", "GLIBC_TU
 STUDY = ("run", "--threads", "1", "--quiet", "--report", "none", "--output", "{out}")
 # name: command. {sag} is a link of 300 elements that its weight bends, {frame} one in space of 540 beams, {link} one of 2,000 with a sensor,
 # {mounts} the study of the pump on its mounts under its weight, {stick} a stick of beam elements in space under its own, {pedal} a study of bands in three
-# driven positions, {grid} a trade study of 16 points, {out} a folder for results.
+# driven positions, {seen} a frame of 144 beams with a sensor, {grid} a trade study of 16 points, {out} a folder for results.
 RUNS = {
     "start": ("--version",),
     "check": ("check", "studies/inceptor_rotor.json"),
@@ -47,6 +47,7 @@ RUNS = {
     "sensitivity": ("sensitivity", "problems/inceptor.json"),
     "response": ("response", "problems/den_hartog.json", "--input", "machine.x", "--from", "1", "--to", "20", "--points", "200"),
     "response_large": ("response", "{link}", "--input", "base.y", "--from", "0.1", "--to", "50", "--points", "300"),
+    "response_frame": ("response", "{seen}", "--input", "base.x", "--from", "1", "--to", "8", "--points", "200"),
     "motion_linear": ("simulate", "problems/six_masses.json", "--start", "guide_1=0.001", "--duration", "1", "--dt-out", "0.001"),
     "mounts_gravity": (*STUDY, "--max-evaluations", "100", "{mounts}"),
     "stick_gravity": ("sensitivity", "{stick}"),
@@ -61,7 +62,8 @@ RUNS = {
 
 
 def count(name, folder):
-    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in ("sag", "frame", "link", "mounts", "stick", "pedal", "tolerances", "grid")}}
+    files = ("sag", "frame", "seen", "link", "mounts", "stick", "pedal", "tolerances", "grid")
+    places = {"out": str(folder / name), **{file: str(folder / f"{file}.json") for file in files}}
     command = [PROGRAM, *(word.format(**places) for word in RUNS[name])]
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/{name}.counts", *command], cwd=SOURCE,
                           env={**os.environ, **PLAIN}, capture_output=True, encoding="utf-8", timeout=600)
@@ -72,10 +74,12 @@ def count(name, folder):
 
 
 def measure():
-    with tempfile.TemporaryDirectory() as top:
-        folder = Path(top)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
         (folder / "sag.json").write_text(json.dumps({**large.link(300), "gravity_m_per_s2": [0, -9.81]}), encoding="utf-8")
         (folder / "frame.json").write_text(json.dumps(large.frame(6, 6, 6, 1)), encoding="utf-8")
+        top = {"sensors": [{"name": "top", "on": "L143", "fraction": 1, "directions": ["x"]}], "damping": {"mass_per_s": 1}}
+        (folder / "seen.json").write_text(json.dumps({**large.frame(4, 4, 4, 1), **top}), encoding="utf-8")
         tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["y"]}]}
         (folder / "link.json").write_text(json.dumps({**large.link(2000), **tip}), encoding="utf-8")
         pump = json.loads((SOURCE / "problems/pump_on_mounts.json").read_text(encoding="utf-8"))

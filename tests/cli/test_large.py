@@ -110,6 +110,13 @@ class Large(CliTest):
         for name in ("largest_motion_m", "largest_turn_rad"):
             self.assertAlmostEqual(few["equilibrium"][name] / whole["equilibrium"][name], 1, delta=1e-9)
         self.assertGreater(many["equilibrium"]["largest_turn_rad"], 1)
+        if EVERY:  # what is 1/n^2 off, from two that are not so long
+            f = [[m["frequency_hz"] for m in self.modes(loaded(n), "--count", "3")["modes"]] for n in (800, 3000)]
+            longest = self.modes(loaded(100000), "--count", "3")["modes"]
+            for mode, coarse, fine in zip(longest, *f):
+                want = fine + (fine - coarse) * (1 / 3000 ** 2 - 1 / 100000 ** 2) / (1 / 800 ** 2 - 1 / 3000 ** 2)
+                self.assertAlmostEqual(mode["frequency_hz"] / want, 1, delta=1e-9)
+                self.assertLess(mode["omega_squared_error"], 1e-8 * mode["omega_squared"])
         self.assertEqual([d["kind"] for d in few["facts"]], [d["kind"] for d in whole["facts"]])
 
     def test_frames_and_loops_need_no_tree(self):

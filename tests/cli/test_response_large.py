@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Responses of large trees by their lowest modes are those of all modes (response/test_large compares random ones), and those of a beam where there are more bodies than dense
+"""Responses of large trees, frames and loaded chains by their lowest modes are those of all modes (response/test_large compares random ones), and those of a beam where there are more bodies than dense
 matrices take; what they cannot have is refused with its reason."""
 import json
 import math
@@ -58,6 +58,42 @@ class ResponseLarge(CliTest):
         peak = whole["responses"][0]["extremes"][0]
         self.assertAlmostEqual(peak["frequency_hz"], 1.8751040687 ** 2 / (2 * math.pi), delta=0.03)
         self.assertAlmostEqual(peak["magnitude"], 4 / 3.516015, delta=0.02)
+
+    def test_frames(self):
+        """Clamped, and free: what they differ by is within the errors told, and these are small."""
+        for clamped in (True, False):
+            frame = large.frame(4, 3, 2, 2, clamped)
+            frame["sensors"] = [{"name": "top", "on": "L45", "fraction": 1, "directions": ["x", "z"]}, {"name": "low", "on": "L2", "fraction": 0.5, "directions": ["y"]}]
+            model = self.write("frame.json", json.dumps(frame))
+            options = ("--input", "top.x", *(("--input", "base.y") if clamped else ()), "--output", "top.z", "--output", "low.y:acceleration", "--from", "2", "--to", "30", "--points", "40")
+            some, whole = self.both(model, *options)
+            for one, other in zip(some["responses"], whole["responses"]):
+                at = {f: i for i, f in enumerate(whole["frequencies_hz"])}
+                told = []
+                for i, f in enumerate(some["frequencies_hz"]):
+                    if f in at and one["re"][i] is not None and other["re"][at[f]] is not None:
+                        value = complex(other["re"][at[f]], other["im"][at[f]])
+                        off = abs(complex(one["re"][i], one["im"][i]) - value)
+                        self.assertLessEqual(off, one["error"][i] + other["error"][at[f]])
+                        told.append(one["error"][i] / abs(value))
+                self.assertGreaterEqual(len(told), 20)
+                self.assertLess(sorted(told)[len(told) // 2], 1e-8)
+
+    def test_what_settles_far_from_the_drawing(self):
+        """A cantilever that its weight bends by sixty degrees: of 6000 links as of 150, but for 1/n^2."""
+        def bent(n):
+            tip = {"sensors": [{"name": "tip", "on": "beam", "fraction": 1, "directions": ["x", "y"]}], "damping": {"mass_per_s": 2}}
+            return self.write(f"bent{n}.json", json.dumps({**large.link(n), **tip, "gravity_m_per_s2": [0, -9.81]}))
+        options = ("--input", "tip.y", "--output", "tip.x", "--output", "tip.y", "--from", "0.2", "--to", "10", "--points", "30")
+        some, whole = self.both(bent(150), *options)
+        fine = self.response(bent(6000), *options)
+        self.assertIn("shapes_of_others", fine)
+        for one, other, third in zip(some["responses"], whole["responses"], fine["responses"]):
+            self.assertEqual([len(r["extremes"]) for r in (one, third)], [len(other["extremes"])] * 2)
+            for a, b, c in zip(one["extremes"], other["extremes"], third["extremes"]):
+                self.assertAlmostEqual(a["frequency_hz"] / b["frequency_hz"], 1.0, delta=1e-9)
+                self.assertAlmostEqual(a["magnitude"] / b["magnitude"], 1.0, delta=1e-7)
+                self.assertAlmostEqual(c["frequency_hz"] / b["frequency_hz"], 1.0, delta=1e-3)
 
     def test_what_needs_all_modes_says_so(self):
         link = large.link(5000)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Responses of random trees by a few of their modes, and shapes of the others, against those of
- * all modes: within what both say of their errors, which is little. In the plane and in space,
- * held and free, hanging in gravity, by forces and by the ground; each kind of damping.
+ * Responses of random trees, and of such with loops, by a few of their modes, and shapes of the
+ * others, against those of all modes: within what both say of their errors, which is little. In
+ * the plane and in space, held and free, hanging in gravity, by forces and by the ground; each
+ * kind of damping.
  * MT_STRESS_ROUNDS=N: N times as many.
  */
 #include <float.h>
@@ -61,6 +62,7 @@ typedef struct tree {
     int axes;
     bool free;
     bool hung;
+    bool looped;
     kind kind;
     double at[BODIES][3];
     int before[BODIES];
@@ -131,6 +133,14 @@ static void add_joints(writer *w, tree *r)
         ADD(w, " }");
         first = false;
     }
+    if (r->looped && !r->hung) {
+        ADD(w, ", { \"name\": \"bar\", \"type\": \"distance\", \"bodies\": [\"b5\", \"b30\"], "
+               "\"at\": [");
+        add_point(w, r, r->at[5]);
+        ADD(w, ", ");
+        add_point(w, r, r->at[30]);
+        ADD(w, "] }");
+    }
     ADD(w, "], ");
 }
 
@@ -155,6 +165,17 @@ static void add_springs(writer *w, tree *r)
         }
         ADD(w, " }");
         first = false;
+    }
+    if (r->looped) {
+        const double aside[] = {r->at[0][0] + 0.5, r->at[0][1], r->at[0][2]};
+        ADD(w,
+            ", { \"name\": \"tie\", \"type\": \"axial\", \"bodies\": [\"b0\", \"b%d\"], "
+            "\"stiffness_n_per_m\": 3000, \"at\": [",
+            BODIES - 1);
+        add_point(w, r, aside);
+        ADD(w, ", ");
+        add_point(w, r, r->at[BODIES - 1]);
+        ADD(w, "]%s }", r->kind == LOSS ? ", \"loss_factor\": 0.04" : "");
     }
     ADD(w, "], ");
     first = true;
@@ -197,15 +218,14 @@ static void write_tree(tree *r, char *text)
     ADD(&w, "], \"configurations\": { \"c\": {} } }");
 }
 
-/* Errors of a kind, of all its trees. */
+/* Errors of a kind, of all its mechanisms. */
 typedef struct seen {
     int n;
     double off[ROUNDS * FREQUENCIES * PAIRS];
     double told[ROUNDS * FREQUENCIES * PAIRS];
 } seen;
 
-static seen plain;
-static seen by_ratio;
+static seen seen_of[2][2]; /* with loops; of damping ratios of all modes */
 
 static int ascending(const void *a, const void *b)
 {
@@ -293,14 +313,14 @@ static void try_tree(mt_test *t, tree *r, char *text)
                                                        .at = NULL},
                                       want, &l, &m.err),
                         MT_OK) &&
-              CHECK_INT(t, l->way, MT_LOWEST_TREE);
+              CHECK_INT(t, l->way, r->looped ? MT_LOWEST_SPARSE : MT_LOWEST_TREE);
     const double to = ok ? 0.5 * sqrt(l->found.tau) : nan("");
     ok = ok &&
          CHECK_INT(t, mt_response_open_large(l, &request, to, &few, &is, why, &m.err), MT_OK) &&
          CHECK(t, is);
     if (ok) {
         compare(t, &few, &all, to, r->free ? 1 : 2, &r->g,
-                r->kind == RATIO ? &by_ratio : &plain);
+                &seen_of[r->looped ? 1 : 0][r->kind == RATIO ? 1 : 0]);
     }
     mt_response_free(&few);
     mt_response_free(&all);
@@ -308,31 +328,50 @@ static void try_tree(mt_test *t, tree *r, char *text)
     mech_free(&m);
 }
 
-static void large__responses_are_those_of_all_modes(mt_test *t)
+static void check_medians(mt_test *t, seen *plain, seen *by_ratio)
 {
-    const char *const more = getenv("MT_STRESS_ROUNDS");
-    const int times = more == NULL ? 1 : (int)strtol(more, NULL, 10);
-    char *const text = malloc(TEXT);
-    for (int round = 0; round < times * ROUNDS && text != NULL; round++) {
-        tree r = {.g = mt_random_seed((uint64_t)round + 1), .kind = (kind)(round % KINDS)};
-        r.axes = 2 + mt_random_int(&r.g, 2);
-        r.hung = round / KINDS % 4 == 3 && r.kind != LOSS;
-        r.axes = r.hung ? 2 : r.axes;
-        r.free = !r.hung && round / KINDS % 4 == 2;
-        mt_test_row(t, "tree %d", round);
-        plain.n = round % ROUNDS == 0 ? 0 : plain.n;
-        by_ratio.n = round % ROUNDS == 0 ? 0 : by_ratio.n;
-        try_tree(t, &r, text);
-    }
-    free(text);
-    mt_test_row(t, "medians");
-    const double figures[] = {median(plain.n, plain.off), median(plain.n, plain.told),
-                              median(by_ratio.n, by_ratio.off),
-                              median(by_ratio.n, by_ratio.told)};
+    const double figures[] = {median(plain->n, plain->off), median(plain->n, plain->told),
+                              median(by_ratio->n, by_ratio->off),
+                              median(by_ratio->n, by_ratio->told)};
     CHECK(t, figures[0] <= USUALLY_OFF);
     CHECK(t, figures[1] <= USUALLY_TOLD);
     CHECK(t, figures[2] <= RATIO_OFF);
     CHECK(t, figures[3] <= RATIO_TOLD);
 }
 
-MT_TEST_MAIN(MT_TEST(large__responses_are_those_of_all_modes))
+static void try_all(mt_test *t, bool looped)
+{
+    const char *const more = getenv("MT_STRESS_ROUNDS");
+    const int times = more == NULL ? 1 : (int)strtol(more, NULL, 10);
+    char *const text = malloc(TEXT);
+    seen *const own = seen_of[looped ? 1 : 0];
+    for (int round = 0; round < times * ROUNDS && text != NULL; round++) {
+        tree r = {.g = mt_random_seed((uint64_t)round + 1),
+                  .kind = (kind)(round % KINDS),
+                  .looped = looped};
+        r.axes = 2 + mt_random_int(&r.g, 2);
+        r.hung = round / KINDS % 4 == 3 && r.kind != LOSS;
+        r.axes = r.hung ? 2 : r.axes;
+        r.free = !r.hung && round / KINDS % 4 == 2;
+        mt_test_row(t, "%s %d", looped ? "loops" : "tree", round);
+        own[0].n = round % ROUNDS == 0 ? 0 : own[0].n;
+        own[1].n = round % ROUNDS == 0 ? 0 : own[1].n;
+        try_tree(t, &r, text);
+    }
+    free(text);
+    mt_test_row(t, "medians of %s", looped ? "loops" : "trees");
+    check_medians(t, &own[0], &own[1]);
+}
+
+static void large__responses_are_those_of_all_modes(mt_test *t)
+{
+    try_all(t, false);
+}
+
+static void large__loops_have_them_too(mt_test *t)
+{
+    try_all(t, true);
+}
+
+MT_TEST_MAIN(MT_TEST(large__responses_are_those_of_all_modes),
+             MT_TEST(large__loops_have_them_too))
