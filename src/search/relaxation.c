@@ -366,6 +366,27 @@ static mt_status search_placements(const job *j, const mt_subproblem *plain, mt_
     return rc;
 }
 
+/* Whether little work proves that no such move makes a design possible, in its case c. A bound
+ * is moved for a design beyond it: only what is between the old bound and the new one is asked
+ * about. */
+static mt_status is_useless(const job *j, const mt_subproblem *c, const mt_move *m,
+                            mt_arena *mem, bool *useless, mt_err *err)
+{
+    const int i = m->variable;
+    mt_subproblem beyond = *c;
+    if (m->kind == MT_MOVE_BOUND) {
+        MT_TRY(mt_subproblem_copy(c, mem, &beyond, err));
+        mt_subproblem_bound(&beyond, i, m->upper ? j->c->upper[i] : c->lower[i],
+                            m->upper ? c->upper[i] : j->c->lower[i]);
+    }
+    const mt_infeasible_presolve_question q = {.c = &beyond,
+                                               .but = m->kind == MT_MOVE_GOAL ? m->requirement
+                                                                              : -1,
+                                               .bands = m->kind != MT_MOVE_EDGE,
+                                               .counted = true};
+    return mt_infeasible_presolve(&q, mem, useless, err);
+}
+
 static mt_status search_move(void *context, int worker, int k, mt_task_path *own, mt_err *err)
 {
     const job *const j = context;
@@ -378,15 +399,10 @@ static mt_status search_move(void *context, int worker, int k, mt_task_path *own
     MT_TRY(mt_arena_init(&out->mem, 0, err));
     w->task_path = own;
     mt_status rc = mt_relaxation_subproblem(j->c, m, w, &out->mem, &c, &useful, err);
-    if (rc == MT_OK && useful) { /* what no such move makes possible is not searched */
-        const mt_infeasible_presolve_question q = {
-            .c = &c,
-            .but = m->kind == MT_MOVE_GOAL ? m->requirement : -1,
-            .bands = m->kind != MT_MOVE_EDGE,
-            .counted = true};
-        bool presolve = false;
-        rc = mt_infeasible_presolve(&q, &out->mem, &presolve, err);
-        useful = !presolve;
+    if (rc == MT_OK && useful) {
+        bool useless = false;
+        rc = is_useless(j, &c, m, &out->mem, &useless, err);
+        useful = !useless;
     }
     if (rc == MT_OK && useful) {
         rc = w->p->n_avoidances > 0 ? search_placements(j, &c, w, k, out, err)
