@@ -18,8 +18,9 @@ bool mt_describe_placements_unsearched(const mt_mode_placement_result *placement
 const char *mt_describe_placements_left(const mt_mode_placement_result *placements,
                                         mt_arena *mem);
 /* After a search without bands that met no goal fully: what each limit can reach, and whether
- * that is a proof. */
-mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_result *result,
-                                         bool *infeasible, mt_err *err);
+ * that is a proof. boxes: of the search's own proof that all of them together have no design;
+ * 0: it has none. */
+mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_arena *mem,
+                                         mt_result *result, bool *infeasible, mt_err *err);
 
 #endif
