@@ -66,6 +66,8 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, const 
         opt.prove_none = prove_none;
         opt.prove_context = &asked;
     }
+    /* roots are all met twice, whatever they cost */
+    opt.settles = c->search.settles && c->p->n_eq < c->p->n;
     if (from != NULL) {
         opt.starts = 1;
         nlp.origin = from;

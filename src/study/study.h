@@ -239,7 +239,10 @@ typedef struct mt_trade {
 enum { MT_STARTS_MOST = 100000 };
 typedef struct mt_search {
     unsigned long seed;
-    int starts;           /* 0: chosen by the number of variables */
+    int starts; /* 0: chosen by the number of variables */
+    /* where starts are not said: they end when those so far leave little hope of another
+     * design. By a trade study, whose neighbours are tried, too */
+    bool settles;
     long max_evaluations; /* of everything that the answer takes; 0: no limit */
     /* likewise; what it comes to in evaluations is put into max_evaluations by who answers */
     long max_modal_solutions;
