@@ -331,7 +331,8 @@ mt_status mt_answer_certify(mt_answer *a, mt_err *err)
     if (!a->found.compromise) {
         return MT_OK;
     }
-    MT_TRY(mt_describe_limit_certificates(a->p, &a->mem, a->result, &a->infeasible, err));
+    MT_TRY(mt_describe_limit_certificates(a->p, a->found.boxes, &a->mem, a->result,
+                                          &a->infeasible, err));
     a->impossible = a->infeasible;
     /* exact targets are answered by the nearest design, also where it is proven that they
      * cannot be met */

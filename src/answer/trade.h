@@ -9,9 +9,10 @@
 
 /*
  * The trade study of a study: every point is the study with one or two numbers replaced,
- * answered and described like a study of its own (mt_study_solve), on `threads` workers. A
- * second pass searches every point from the best designs of its neighbours as well and keeps
- * what is better: a curve without gaps, and the same for any number of workers. Fills
+ * answered and described like a study of its own (mt_study_solve), on `threads` workers, but
+ * that its starts end when little is left to find (mt_search.settles). A second pass searches
+ * every point from the best designs of its neighbours as well and keeps what is better: a curve
+ * without gaps, and the same for any number of workers. Fills
  * result->trade; adds to its evaluations and warnings. Nothing where the study has no trade
  * part. Cost: that of the study times the number of points. An interrupt of the run
  * leaves points without an answer, which say so. scope: the place of its points; a part of the

@@ -70,6 +70,7 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
     out->examined = true;
     out->weight_sensitivity.factor = nan("");
     out->recommendations = 1;
+    out->search.settles = study->search.starts <= 0;
     out->variables =
         copied(mem, study->variables, study->n_variables, sizeof *study->variables);
     out->goals = copied(mem, study->goals, study->n_goals, sizeof *study->goals);

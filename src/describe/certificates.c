@@ -220,13 +220,14 @@ static mt_status reach(const mt_problem *p, const mt_proof *proof, int limit, mt
     return mt_arena_check(&result->mem, err);
 }
 
-static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result,
+/* boxes: of the search's own proof; 0: it has none. */
+static mt_status jointly(const mt_proof *proof, long boxes, mt_arena *mem, mt_result *result,
                          bool *infeasible, mt_err *err)
 {
     mt_certify q = proof->question;
-    mt_certify_search found = {0};
+    mt_certify_search found = {.proven = boxes > 0, .boxes = boxes};
     q.n_bands = 0;
-    MT_TRY(mt_certify_assignments(&q, 0, NULL, mem, &found, err));
+    MT_TRY(boxes > 0 ? MT_OK : mt_certify_assignments(&q, 0, NULL, mem, &found, err));
     if (found.n_found > 0 || found.stopped) {
         return MT_OK;
     }
@@ -244,8 +245,8 @@ static mt_status jointly(const mt_proof *proof, mt_arena *mem, mt_result *result
                  found.boxes);
 }
 
-mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_result *result,
-                                         bool *infeasible, mt_err *err)
+mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_arena *mem,
+                                         mt_result *result, bool *infeasible, mt_err *err)
 {
     mt_proof proof;
     *infeasible = false;
@@ -261,7 +262,7 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_
         rc = reach(p, &proof, i, mem, result, infeasible, err);
     }
     if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
-        rc = jointly(&proof, mem, result, infeasible, err);
+        rc = jointly(&proof, boxes, mem, result, infeasible, err);
     }
     if (rc == MT_OK && *infeasible) {
         mt_progress_proved(p->run->progress);

@@ -18,8 +18,9 @@ bool mt_describe_placements_unsearched(const mt_mode_placement_result *placement
 const char *mt_describe_placements_left(const mt_mode_placement_result *placements,
                                         mt_arena *mem);
 /* Add the reachable range of each limit, after a search without bands that did not meet all
- * goals. *infeasible: it is proven that no design exists. */
-mt_status mt_describe_limit_certificates(const mt_problem *p, mt_arena *mem, mt_result *result,
-                                         bool *infeasible, mt_err *err);
+ * goals. boxes: of the search's own proof that no design meets all of them; 0: there is none.
+ * *infeasible: it is proven that no design exists. */
+mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_arena *mem,
+                                         mt_result *result, bool *infeasible, mt_err *err);
 
 #endif

@@ -139,6 +139,7 @@ void mt_nlp_point_copy(const mt_nlp_engine *e, mt_nlp_point *to, const mt_nlp_po
     to->squares = from->squares;
     to->kkt = from->kkt;
     to->n_loose = from->n_loose;
+    to->isolated = from->isolated;
 }
 
 void mt_nlp_point_swap(mt_nlp_point **a, mt_nlp_point **b)
@@ -202,6 +203,7 @@ static void derive(const mt_nlp_engine *e, mt_nlp_point *p, bool with_gradient)
     p->squares = m.squares;
     p->kkt = HUGE_VAL;
     p->n_loose = 0;
+    p->isolated = false;
 }
 
 /* Constraints relative to what a compromise reaches. */

@@ -29,6 +29,7 @@ typedef struct mt_nlp_point {
     double squares;   /* sum of squares of eq and of the negative part of in */
     double kkt;       /* last known relative KKT residual, infinity where unknown */
     int n_loose;      /* directions that nothing holds at a minimum (polish.c); 0: none known */
+    bool isolated;    /* no design next to it is as near to the requirements (likewise) */
 } mt_nlp_point;
 
 typedef struct mt_nlp_engine {
@@ -47,6 +48,7 @@ typedef struct mt_nlp_engine {
     long evals;
     atomic_int *abort; /* set when one worker must end the search for all; may be NULL */
     bool open_starts;  /* the caller leaves their number to the search */
+    bool impossible;   /* it is proven that nothing is feasible */
     bool ended;        /* budget spent, interrupted or fatal: no evaluation happens any more */
     mt_stop stop;
     mt_status fatal;   /* status that must be returned */

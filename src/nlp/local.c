@@ -197,7 +197,10 @@ static void approach(mt_nlp_engine *e, mt_nlp_local *s)
     for (s->n_rows = 0; s->n_rows < q->n_eq; s->n_rows++) {
         s->rows[s->n_rows] = s->n_rows;
     }
-    if (q->n_eq >= e->n_free) {
+    if (e->impossible) {
+        s->stage = MT_NLP_SQUARES;
+        mt_nlp_least_squares(e, MT_NLP_SQUARES, s->p);
+    } else if (q->n_eq >= e->n_free) {
         s->stage = MT_NLP_SQUARES;
         find_root(e, s);
     } else if (q->n_res > 0 && q->n_eq == 0 && q->n_in == 0) {

@@ -19,6 +19,7 @@ static void serialize_point(const mt_nlp_engine *e, mt_nlp_point *p, mt_serializ
     mt_serializer_numbers(serializer, 1, &p->squares);
     mt_serializer_numbers(serializer, 1, &p->kkt);
     mt_serializer_int(serializer, &p->n_loose, 0, INT_MAX);
+    mt_serializer_flag(serializer, &p->isolated);
 }
 
 /* Everything else at the design of p; false where its numbers come out otherwise. */
@@ -29,6 +30,7 @@ static bool evaluate_again(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *at)
                       memcmp(at->t, p->t, (size_t)e->n * sizeof *p->t) == 0;
     at->kkt = p->kkt;
     at->n_loose = p->n_loose;
+    at->isolated = p->isolated;
     return same;
 }
 

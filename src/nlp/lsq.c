@@ -40,6 +40,15 @@ static const double STAGNATION = 64 * DBL_EPSILON;
 /* Violations this far below their tolerances need no stubborn search for a further
  * reduction. */
 static const double VIOLATION_EXACT = 1e-3;
+/* Squares of violations above so many tolerances, where a minimum is no root: it is reached
+ * where the step that was taken gains no more than this part of them, and the slope along no
+ * variable is more than that part of |R| and of its column; where a longer step was refused, of
+ * SHORT of the longest column. (What is left of t is about that part: the slope is the
+ * curvature that R has, times it; Newton's method does the rest.) */
+static const double NO_ROOT = 100.0;
+static const double LITTLE = 1e-7;
+static const double UPRIGHT = 1e-5;
+static const double SHORT = 0.1;
 
 typedef struct lsq {
     mt_nlp_engine *e;
@@ -100,6 +109,21 @@ static double choose_free(lsq *w, const mt_nlp_point *p)
         }
     }
     return largest;
+}
+
+/* True where R, which is no root and has gained `less`, stands upright on the columns of all
+ * free variables. least: no column counts as shorter. */
+static bool is_least(const lsq *w, const mt_nlp_point *p, double less, double least)
+{
+    bool upright = w->stage == MT_NLP_SQUARES && p->violation > NO_ROOT &&
+                   less <= LITTLE * (half_squares(w, p) + less);
+    const double size = mt_norm2(w->m, w->R);
+    for (int j = 0; j < w->e->n && upright; j++) {
+        const double *const Jj = w->J + (ptrdiff_t)j * w->m;
+        const double column = fmax(mt_norm2(w->m, Jj), least);
+        upright = !w->free[j] || fabs(mt_dot(w->m, Jj, w->R)) <= UPRIGHT * size * column;
+    }
+    return upright;
 }
 
 /* Solve for the step of the free variables, the others' steps in s standing. */
@@ -182,6 +206,12 @@ static double try_step(lsq *w, const mt_nlp_point *p, mt_nlp_point *trial)
     return model > 0 ? actual / model : -1;
 }
 
+/* After a step of such a gain. */
+static double next_mu(double mu, double gain)
+{
+    return fmax(MU_LEAST, gain > GAIN_GOOD ? mu / 100 : (gain > 0.25 ? mu / 4 : mu * 2));
+}
+
 static void iterate(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
 {
     mt_nlp_point *cur = a;
@@ -203,8 +233,12 @@ static void iterate(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
             mt_nlp_point_swap(&cur, &trial);
             linearise(w, cur);
             scale = choose_free(w, cur);
-            stagnant += before - half_squares(w, cur) <= STAGNATION * before;
-            mu = fmax(MU_LEAST, gain > GAIN_GOOD ? mu / 100 : (gain > 0.25 ? mu / 4 : mu * 2));
+            const double less = before - half_squares(w, cur);
+            if (is_least(w, cur, less, rejected > 0 ? SHORT * scale : 0.0)) {
+                break;
+            }
+            stagnant += less <= STAGNATION * before;
+            mu = next_mu(mu, gain);
             grow = 2;
             rejected = 0;
             continue;

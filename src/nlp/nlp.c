@@ -19,6 +19,7 @@
 #include "base/workers.h"
 #include "nlp/engine.h"
 #include "nlp/local.h"
+#include "nlp/merit.h"
 #include "nlp/solution_pool.h"
 #include "nlp/starts.h"
 #include "nlp/unidentifiable_directions.h"
@@ -27,6 +28,8 @@
 enum { HALVINGS = 6 };
 /* Starts between which it is asked whether more are of use. */
 enum { STARTS_EACH = 8 };
+/* ... and those that meet nothing feasible before it is asked whether anything is. */
+enum { STARTS_ASKED = 2 };
 /* So many times the first starts are made at most to meet every root twice. */
 enum { ROOT_ROUNDS = 12 };
 
@@ -65,6 +68,7 @@ typedef struct start_job {
     double *t;         /* n x n, the starts where they begin */
     job_slot *slots;   /* [n] */
     int n;
+    int from;        /* the first one that is done now */
     long budget;     /* of all of them */
     mt_steps *steps; /* of the whole search */
     atomic_int abort;
@@ -77,6 +81,7 @@ static mt_status run_task(void *context, int worker, int k, mt_task_path *own, m
     (void)own;
     start_job *const job = context;
     const mt_nlp_engine *const all = job->e;
+    k += job->from;
     job_slot *const slot = &job->slots[k];
     mt_nlp_local *const s = job->at[k];
     mt_nlp nlp = *all->nlp;
@@ -95,6 +100,7 @@ static mt_status run_task(void *context, int worker, int k, mt_task_path *own, m
     e.steps = &slot->steps;
     e.abort = &job->abort;
     e.df_scale = all->df_scale;
+    e.impossible = all->impossible;
     if (job->task == BEGIN) {
         s->begun = begin(&e, job->t + (ptrdiff_t)k * e.n, s->p);
     } else if (s->begun && e.n_free > 0) {
@@ -157,6 +163,7 @@ static void note_steps(const start_job *job, long before)
 static void serialize_task(void *context, int k, mt_serializer *serializer)
 {
     start_job *const job = context;
+    k += job->from;
     job_slot *const slot = &job->slots[k];
     job_slot got = *slot;
     int stop = (int)slot->stop;
@@ -182,16 +189,18 @@ static void serialize_task(void *context, int k, mt_serializer *serializer)
     *slot = got;
 }
 
-/* The first values are nothing to be kept; searches are. */
-static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before)
+/* Tasks [from, to). The first values are nothing to be kept; searches are. */
+static void run_part(mt_nlp_engine *e, start_job *job, job_task task, int from, int to,
+                     long before)
 {
     mt_task_path *const place = e->nlp->task_path;
     const bool first = task == BEGIN;
-    const mt_tasks tasks = {job->n, run_task, serialize_task, job,
+    const mt_tasks tasks = {to - from, run_task, serialize_task, job,
                             task == FINISH ? "ends of searches" : "starts"};
     job->task = task;
+    job->from = from;
     job->progress = place != NULL && first ? place->progress : NULL;
-    job->told = mt_progress_begin(job->progress, "first values", job->n);
+    job->told = mt_progress_begin(job->progress, "first values", to - from);
     mt_err own = {.code = MT_OK};
     const mt_status rc = mt_workers_run(e->nlp->n_workers, first ? NULL : place, &tasks, &own);
     mt_progress_end(job->progress, job->told);
@@ -199,6 +208,46 @@ static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before
     if (rc != MT_OK && e->fatal == MT_OK) {
         (void)mt_nlp_ok(e, mt_fail(e->err, rc, "%s", own.text));
     }
+}
+
+static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before)
+{
+    run_part(e, job, task, 0, job->n, before);
+}
+
+/* Whether it is proven that nothing is feasible: asked where none of the first `n` searches met
+ * it. */
+static bool is_impossible(mt_nlp_engine *e, const start_job *job, int n)
+{
+    bool none = e->fatal == MT_OK && e->stop == MT_STOP_DONE;
+    for (int k = 0; k < n && none; k++) {
+        const mt_nlp_local *const s = job->at[k];
+        none = !s->begun || (!mt_nlp_feasible(s->p) && !mt_nlp_feasible(s->last));
+    }
+    if (!none) {
+        return false;
+    }
+    none = false;
+    return mt_nlp_ok(e, e->opt.prove_none(e->opt.prove_context, &none, e->err)) && none;
+}
+
+/* The approaches of all; where it is proven meanwhile that nothing is feasible, of the first
+ * ones alone. Returns how many. */
+static int approach_all(mt_nlp_engine *e, start_job *job, long before)
+{
+    const bool asks = e->opt.prove_none != NULL && e->opt.starts > STARTS_EACH;
+    const int first = asks && job->n > STARTS_ASKED ? STARTS_ASKED : job->n;
+    run_part(e, job, APPROACH, 0, first, before);
+    if (asks) {
+        e->impossible = is_impossible(e, job, first);
+        e->opt.prove_none = NULL; /* it is asked once */
+    }
+    const bool less = asks && e->impossible && job->n > STARTS_EACH;
+    const int n = less ? STARTS_EACH : job->n;
+    if (first < n && e->fatal == MT_OK && e->stop != MT_STOP_USER) {
+        run_part(e, job, APPROACH, first, n, before);
+    }
+    return n;
 }
 
 /* The approach from starts all->starts .. all->starts + n - 1; their ends are added to the
@@ -229,7 +278,7 @@ static bool add_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int n, mt_st
         e->df_scale = fmax(e->df_scale, first[k].begun ? mt_norm2(e->n, first[k].p->df) : 0.0);
     }
     if (e->fatal == MT_OK && e->stop != MT_STOP_USER) {
-        run_job(e, &job, APPROACH, before);
+        n = approach_all(e, &job, before);
     }
     note_steps(&job, before);
     for (int k = 0; k < n; k++) {
@@ -285,6 +334,24 @@ static void finish_pool(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *s
     }
 }
 
+/* The starts asked for, `first` of them, or less where these are enough. False: no more of
+ * them. */
+static bool make_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int first, mt_steps *steps)
+{
+    bool more = true;
+    for (int left = first; left > 0 && more;) {
+        const int agree = all->starts == 0 ? e->opt.agree : 0;
+        const int batch = agree > 0 ? agree : e->opt.settles ? STARTS_EACH : left;
+        const int now = batch < left ? batch : left;
+        more = add_starts(e, all, now, steps);
+        const bool enough = e->impossible ||
+                            (agree > 0 && mt_nlp_solution_pool_agree(e, all)) ||
+                            (e->opt.settles && more && mt_nlp_solution_pool_settled(e, all));
+        left = enough ? 0 : left - now;
+    }
+    return more;
+}
+
 /*
  * The starts asked for; where the equalities settle everything and there is more than one root,
  * as many again each time, within the budget, until every root was met twice (what was met once
@@ -297,13 +364,7 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *st
     e->opt.skip = e->n_free > 0 && e->opt.skip < e->opt.starts ? e->opt.skip : 0;
     const int first = e->n_free > 0 ? e->opt.starts - e->opt.skip : 1;
     all->starts = e->opt.skip;
-    bool more = true;
-    for (int left = first; left > 0 && more;) {
-        const int now = e->opt.settles && left > STARTS_EACH ? STARTS_EACH : left;
-        more = add_starts(e, all, now, steps);
-        left = e->opt.settles && more && mt_nlp_solution_pool_settled(e, all) ? 0 : left - now;
-    }
-    more = more && e->open_starts;
+    bool more = make_starts(e, all, first, steps) && e->open_starts;
     int before = 1;
     while (more && e->stop == MT_STOP_DONE && all->starts < ROOT_ROUNDS * first) {
         const int left = ROOT_ROUNDS * first - all->starts;
@@ -316,6 +377,29 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *st
         more = add_starts(e, all, all->starts < left ? all->starts : left, steps);
     }
     out->starts = all->starts - e->opt.skip;
+}
+
+/* All ends are one design. */
+static bool are_one(const mt_nlp_engine *e, const mt_nlp_solution_pool *all)
+{
+    bool one = all->count > 0;
+    for (int k = 1; k < all->count && one; k++) {
+        one = mt_nlp_distance(e, all->at[0].p, all->at[k].p) <= MT_SAME_DESIGN;
+    }
+    return one;
+}
+
+/* Where nothing is feasible, and the first starts did not all end at one compromise: the rest
+ * of the starts. */
+static void make_rest(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *steps,
+                      mt_arena *mem, mt_nlp_result *out)
+{
+    const int left = e->opt.starts - all->starts;
+    if (e->impossible && !are_one(e, all) && left > 0 && e->stop == MT_STOP_DONE &&
+        add_starts(e, all, left, steps)) {
+        finish_pool(e, all, steps, mem, out);
+        out->starts = all->starts - e->opt.skip;
+    }
 }
 
 mt_nlp_options mt_nlp_options_default(void)
@@ -334,10 +418,12 @@ mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *m
     (void)mt_nlp_has_room(&e, mem);
     all_starts(&e, &all, &out->steps, out);
     finish_pool(&e, &all, &out->steps, mem, out);
+    make_rest(&e, &all, &out->steps, mem, out);
     mt_nlp_verify_kkt(&e, &all, mem, out);
     (void)mt_nlp_has_room(&e, &e.scratch);
     out->evals = e.evals;
     out->stop = e.stop;
+    out->impossible = e.impossible;
     mt_status rc = e.fatal;
     if (rc == MT_OK && all.count == 0 && e.stop == MT_STOP_DONE && e.refused != MT_OK) {
         rc = mt_fail(err, e.refused, "no start of the search has a value: %s",

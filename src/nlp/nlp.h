@@ -81,6 +81,8 @@ typedef struct mt_nlp_options {
     /* they end when those so far leave little hope of another end
      * (mt_nlp_solution_pool_settled) */
     bool settles;
+    /* they end when the first ones, so many, all lead to one feasible design; 0: they do not */
+    int agree;
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* how many distinct ones to keep; 0: 16 */
     /* f is the change: it does not count when undetermined directions are sought (without
@@ -89,6 +91,12 @@ typedef struct mt_nlp_options {
     /* ends that are infeasible are of no use: those far from feasible are given up, instead of
      * being brought to the least sum of squares */
     bool no_compromise;
+    /* asked once, where none of the first starts ended at a feasible point: *none, where it is
+     * proven that there is none. Then what is left to find is the compromise: squares are
+     * minimised from the next ones, and others are made only where these do not end at one
+     * place. NULL: nobody knows */
+    mt_status (*prove_none)(void *context, bool *none, mt_err *err);
+    void *prove_context;
 } mt_nlp_options;
 mt_nlp_options mt_nlp_options_default(void);
 
@@ -131,6 +139,8 @@ typedef struct mt_nlp_result {
     /* none is feasible: these minimise the sum of squares of the violations relative to the
      * requirements */
     bool compromise;
+    bool impossible; /* nothing is feasible: options.prove_none said so */
+    long boxes;      /* of the proof of that (set by mt_search_designs only) */
     long evals;
     int starts;
     int n_found; /* distinct ones, those beyond max_solutions among them */

@@ -48,6 +48,8 @@ static const double STATIONARY = 1e-6;
  * this part of the largest one met counts, as in kkt.c. */
 static const double LOOSE = 1e-5;
 static const double GRADIENT_FLOOR = 1e-3;
+/* Squares whose least curvature is more than this part of the greatest rise on all sides. */
+static const double RISES = 1e-4;
 /* A step must not be longer than this part of the one before, or the iteration is not
  * converging; with an old Hessian not longer than the second, or it takes a new one. */
 static const double CONTRACTION = 0.7;
@@ -74,8 +76,9 @@ typedef struct polish {
     mt_nlp_point *cur;
     mt_nlp_point *trial;
     mt_nlp_point *best;
-    double limit; /* the objective must not end above this */
-    int n_loose;  /* at cur; -1: not known */
+    double limit;  /* the objective must not end above this */
+    int n_loose;   /* at cur; -1: not known */
+    bool isolated; /* likewise: squares rise on all sides */
 } polish;
 
 /* The active set as numbers: sides of the variables, rows. */
@@ -366,6 +369,23 @@ static int loose_directions(const polish *w)
     return n;
 }
 
+/* Squares of violations rise from cur into every direction that the bounds leave: by their
+ * curvature, or by their slope at a bound. */
+static bool is_isolated(const polish *w)
+{
+    const mt_nlp_active *const a = &w->a;
+    bool rises = w->stage == MT_NLP_SQUARES && w->n_v > 0 && w->n_v == a->n_free &&
+                 w->w[0] > RISES * w->w[w->n_v - 1];
+    double scale = 0.0;
+    for (int j = 0; j < w->e->n && rises; j++) {
+        scale = fmax(scale, fabs(a->z[j]));
+    }
+    for (int j = 0; j < w->e->n && rises; j++) {
+        rises = a->side[j] == 0 || fabs(a->z[j]) > LOOSE * scale;
+    }
+    return rises;
+}
+
 static double longest(const polish *w)
 {
     return mt_max_abs(w->e->n, w->step);
@@ -401,6 +421,7 @@ static bool newton_step(polish *w, double *size, double *saddle)
         reduced_step(w);
     }
     w->n_loose = loose_directions(w);
+    w->isolated = is_isolated(w);
     if (saddle != NULL && w->a.kkt <= STATIONARY && find_saddle(w, saddle)) {
         return false;
     }
@@ -454,6 +475,7 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p, double
         mt_nlp_point_copy(e, w.best, p);
         iterate(&w, saddle);
         w.best->n_loose = w.n_loose >= 0 ? w.n_loose : p->n_loose;
+        w.best->isolated = w.isolated && w.best->kkt <= STATIONARY;
         mt_nlp_point_copy(e, p, w.best);
     }
     mt_arena_rewind(mem, mark);

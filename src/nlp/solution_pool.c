@@ -104,15 +104,16 @@ static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_lo
            (a->polished && apart(e->n, pa->t, b->from, directions, d) <= MT_SAME_DESIGN);
 }
 
-bool mt_nlp_solution_pool_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *all)
+/* So many feasible ends, and the places that they are in. */
+static int count_places(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *places)
 {
     static const mt_nlp_result none = {.n_unidentifiable = 0};
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     double *const d = mt_arena_f64(&e->scratch, (size_t)e->n, 1);
     int n = 0;
-    int w = 0;
+    *places = 0;
     if (!mt_nlp_has_room(e, &e->scratch)) {
-        return false;
+        return 0;
     }
     for (int i = 0; i < all->count; i++) {
         const bool met = mt_nlp_feasible(mt_nlp_local_stand(&all->at[i]));
@@ -122,10 +123,23 @@ bool mt_nlp_solution_pool_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *
                     alike(e, &all->at[i], &all->at[k], &none, d);
         }
         n += met ? 1 : 0;
-        w += met && !known ? 1 : 0;
+        *places += met && !known ? 1 : 0;
     }
     mt_arena_rewind(&e->scratch, mark);
+    return n;
+}
+
+bool mt_nlp_solution_pool_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *all)
+{
+    int w = 0;
+    const int n = count_places(e, all, &w);
     return w > 0 && n > w + 2 && 2.0 * w * (n - 1) < ((2.0 * w) + 1.0) * (n - w - 2);
+}
+
+bool mt_nlp_solution_pool_agree(mt_nlp_engine *e, const mt_nlp_solution_pool *all)
+{
+    int places = 0;
+    return count_places(e, all, &places) == all->starts && places == 1;
 }
 
 bool mt_nlp_came_to_rest(const mt_nlp_local *s)

@@ -23,6 +23,8 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *once);
  * place more than w. One place takes eight of its ends, two take seventeen.
  */
 bool mt_nlp_solution_pool_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *all);
+/* True where all starts so far lead to one feasible design. */
+bool mt_nlp_solution_pool_agree(mt_nlp_engine *e, const mt_nlp_solution_pool *all);
 /* Ends to polish next, chosen[all->count]: of those that are near each other one; ends that lie
  * at one that is polished are dropped. Returns how many. */
 int mt_nlp_solution_pool_choose(mt_nlp_engine *e, mt_nlp_solution_pool *all,

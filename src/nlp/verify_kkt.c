@@ -192,9 +192,9 @@ static void merge(const mt_nlp_engine *e, mt_nlp_solution_pool *all)
 }
 
 /*
- * Many designs may be equally far from the requirements: then the one of least objective is
- * wanted. With the constraints moved to what the compromise reaches, that is a feasible
- * problem.
+ * Many designs may be equally far from the requirements (which is not so next to one where
+ * squares rise on all sides): then the one of least objective is wanted. With the constraints
+ * moved to what the compromise reaches, that is a feasible problem.
  */
 static void settle(mt_nlp_engine *e, mt_nlp_point *p)
 {
@@ -337,7 +337,9 @@ void mt_nlp_verify_kkt(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_arena *me
     if (out->compromise && !unused && e->n_free > 0) {
         const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
         for (int i = 0; i < all->count && !e->ended; i++) {
-            settle(e, all->at[i].p);
+            if (!all->at[i].p->isolated) {
+                settle(e, all->at[i].p);
+            }
             mt_arena_rewind(&e->scratch, mark);
         }
         rank(e, all);

@@ -9,6 +9,9 @@ typedef struct mt_infeasible_presolve_question {
     int but;      /* a requirement that is left out; -1: none */
     bool bands;   /* those of the case are asked about, too */
     bool counted; /* its multiplications are noted in what the answer spent */
+    double most;  /* work of branch and bound; 0: a little */
+    /* of branch and bound where it proves it, as it is where that need not be asked; NULL */
+    long *boxes;
 } mt_infeasible_presolve_question;
 
 /**

@@ -24,8 +24,9 @@
 #include "search/infeasible_presolve.h"
 #include "search/mode_placements.h"
 
-/* Local searches of one move in one assignment, and what each of them may cost. */
-enum { STARTS = 6, EVALUATIONS = 200, ASSIGNMENTS = 6 };
+/* Local searches of one move in one assignment, those that are enough where they end at one
+ * design (from the original, from what came nearest, and from afar), and what each may cost. */
+enum { STARTS = 6, AGREE = 3, EVALUATIONS = 200, ASSIGNMENTS = 6 };
 /* Where the study sets a budget: what a search of one move needs at least of it. */
 enum { BUDGET_LEAST = 2 * EVALUATIONS };
 /* A move smaller than this is none: then a design exists without it, and the search has missed
@@ -245,9 +246,10 @@ static mt_status solve(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options 
 }
 
 /* The search for the least change with the move that was found, which ends in *to; NULL: none
- * was found, or there is nothing left for it. */
-static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, long left,
-                        task_result *out, const double **to, mt_err *err)
+ * was found, or there is nothing left for it. one: all searches ended at it, so that the slack
+ * leaves designs about it alone. */
+static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, bool one,
+                        long left, task_result *out, const double **to, mt_err *err)
 {
     relaxed *const r = nlp.context;
     const int k = r->move->kind == MT_MOVE_BOUND ? r->move->variable : nlp.n - 1;
@@ -270,6 +272,8 @@ static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, lon
     nlp.upper = upper;
     nlp.hint = found;
     opt.starts = STARTS_CHANGE;
+    opt.skip = one ? STARTS_CHANGE - 1 : 0;
+    opt.agree = 0;
     opt.max_evals =
         left < (long)STARTS_CHANGE * EVALUATIONS ? left : (long)STARTS_CHANGE * EVALUATIONS;
     r->settled = true;
@@ -295,6 +299,7 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
         return MT_OK;
     }
     opt.max_evals = left < most ? left : most;
+    opt.agree = AGREE;
     opt.max_solutions = 1;
     opt.least_change = false;
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
@@ -311,7 +316,8 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     }
     const double *least = NULL;
     a->value = nan("");
-    MT_TRY(settle(nlp, opt, s->t, left_of(j, c, out, a), out, &least, err));
+    const bool one = found.starts == AGREE && s->hits == AGREE;
+    MT_TRY(settle(nlp, opt, s->t, one, left_of(j, c, out, a), out, &least, err));
     MT_TRY(least != NULL ? keep(c, m, size, least, a, again, err) : MT_OK);
     return MT_HAS(a->value) || *again ? MT_OK : keep(c, m, size, s->t, a, again, err);
 }
@@ -366,6 +372,27 @@ static mt_status search_placements(const job *j, const mt_subproblem *plain, mt_
     return rc;
 }
 
+/* Whether little work proves that no such move makes a design possible, in its case c. A bound
+ * is moved for a design beyond it: only what is between the old bound and the new one is asked
+ * about. */
+static mt_status is_useless(const job *j, const mt_subproblem *c, const mt_move *m,
+                            mt_arena *mem, bool *useless, mt_err *err)
+{
+    const int i = m->variable;
+    mt_subproblem beyond = *c;
+    if (m->kind == MT_MOVE_BOUND) {
+        MT_TRY(mt_subproblem_copy(c, mem, &beyond, err));
+        mt_subproblem_bound(&beyond, i, m->upper ? j->c->upper[i] : c->lower[i],
+                            m->upper ? c->upper[i] : j->c->lower[i]);
+    }
+    const mt_infeasible_presolve_question q = {.c = &beyond,
+                                               .but = m->kind == MT_MOVE_GOAL ? m->requirement
+                                                                              : -1,
+                                               .bands = m->kind != MT_MOVE_EDGE,
+                                               .counted = true};
+    return mt_infeasible_presolve(&q, mem, useless, err);
+}
+
 static mt_status search_move(void *context, int worker, int k, mt_task_path *own, mt_err *err)
 {
     const job *const j = context;
@@ -378,15 +405,10 @@ static mt_status search_move(void *context, int worker, int k, mt_task_path *own
     MT_TRY(mt_arena_init(&out->mem, 0, err));
     w->task_path = own;
     mt_status rc = mt_relaxation_subproblem(j->c, m, w, &out->mem, &c, &useful, err);
-    if (rc == MT_OK && useful) { /* what no such move makes possible is not searched */
-        const mt_infeasible_presolve_question q = {
-            .c = &c,
-            .but = m->kind == MT_MOVE_GOAL ? m->requirement : -1,
-            .bands = m->kind != MT_MOVE_EDGE,
-            .counted = true};
-        bool presolve = false;
-        rc = mt_infeasible_presolve(&q, &out->mem, &presolve, err);
-        useful = !presolve;
+    if (rc == MT_OK && useful) {
+        bool useless = false;
+        rc = is_useless(j, &c, m, &out->mem, &useless, err);
+        useful = !useless;
     }
     if (rc == MT_OK && useful) {
         rc = w->p->n_avoidances > 0 ? search_placements(j, &c, w, k, out, err)

@@ -6,12 +6,18 @@
 
 #include "nlp/merit.h"
 #include "problem/objective.h"
+#include "search/catalogue_search.h"
+#include "search/infeasible_presolve.h"
 
 /* KKT residuals of local optima, and of what is none. */
 static const double SHOWN = 1e-6;
 static const double NOT_SHOWN = 1e-4;
 /* Evaluations of one stage from one design where the study sets no budget. */
 enum { STAGE_EVALUATIONS = 2000 };
+
+/* Of a proof that there is no design, where the first starts found none: some milliseconds.
+ * What it says is not asked again later. */
+static const double PROOF_WORK = 4e6;
 
 /* Options that all stages share. */
 static mt_nlp_options options_of(const mt_subproblem *c)
@@ -22,6 +28,21 @@ static mt_nlp_options options_of(const mt_subproblem *c)
     opt.max_evals = c->search.max_evaluations;
     opt.least_change = c->aims[c->stage].type == MT_OBJECTIVE_CHANGE;
     return opt;
+}
+
+/* A case of which it may be proven that it has no design. */
+typedef struct impossible {
+    const mt_subproblem *c;
+    mt_arena *mem;
+    long boxes; /* of the proof */
+} impossible;
+
+static mt_status prove_none(void *context, bool *none, mt_err *err)
+{
+    impossible *const i = context;
+    const mt_infeasible_presolve_question q = {
+        .c = i->c, .but = -1, .counted = true, .most = PROOF_WORK, .boxes = &i->boxes};
+    return mt_infeasible_presolve(&q, i->mem, none, err);
 }
 
 /* From many starts; from one design where `from` is not NULL. */
@@ -37,12 +58,24 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, const 
     }
     nlp.n_workers = n_workers;
     nlp.contexts = contexts;
+    const mt_subproblem *const c = workers[0]->c;
+    impossible asked = {.c = c, .mem = mem};
+    /* who asks for more than one design wants other compromises, too */
+    if (c->p->n_avoidances == 0 && c->search.starts <= 0 && c->p->study->recommendations == 1 &&
+        !mt_study_has_catalogues(c->p->study)) {
+        opt.prove_none = prove_none;
+        opt.prove_context = &asked;
+    }
+    /* roots are all met twice, whatever they cost */
+    opt.settles = c->search.settles && c->p->n_eq < c->p->n;
     if (from != NULL) {
         opt.starts = 1;
         nlp.origin = from;
         nlp.hint = NULL;
     }
-    return mt_workspace_solve(workers[0], &nlp, &opt, mem, out, err);
+    const mt_status rc = mt_workspace_solve(workers[0], &nlp, &opt, mem, out, err);
+    out->boxes = asked.boxes;
+    return rc;
 }
 
 /* The stages of one search after the first. */

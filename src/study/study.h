@@ -246,7 +246,10 @@ typedef struct mt_trade {
 enum { MT_STARTS_MOST = 100000 };
 typedef struct mt_search {
     unsigned long seed;
-    int starts;           /* 0: chosen from the number of variables */
+    int starts; /* 0: chosen from the number of variables */
+    /* where starts is 0: starts end where those so far leave little hope of another design. Set
+     * by a trade study, which also starts from neighbouring points */
+    bool settles;
     long max_evaluations; /* evaluations of the whole answer at most; 0: no limit */
     /* modal solutions of the whole answer at most; 0: no limit. The caller that answers
      * converts it to evaluations and puts them into max_evaluations */

@@ -77,4 +77,35 @@ static void trade__a_neighbour_improves_a_point(mt_test *t)
     study_free(&c);
 }
 
-MT_TEST_MAIN(MT_TEST(hint__is_one_more_start), MT_TEST(trade__a_neighbour_improves_a_point))
+/* Starts of a point are not all made where the first ones end at one design: fewer evaluations,
+ * and the same designs. A study that says how many has as many. */
+static void trade__starts_of_a_point_end_where_all_agree(mt_test *t)
+{
+#define CHANGE                                                                              \
+    "'goals': [{'type': 'frequency', 'mode': 1, 'at_least_hz': 0.11}], 'objective': "       \
+    "{'minimise': 'change'}, 'variables': [{'parameter': 'k1', 'lower': 0.5, 'upper': 5}, " \
+    "{'parameter': 'k2', 'lower': 0.5, 'upper': 5}, {'parameter': 'm', 'lower': 0.5, "      \
+    "'upper': 2}]"
+#define GRID                                                                             \
+    ", 'trade': {'vary': [{'goal': 0, 'member': 'at_least_hz', 'values': [0.11, 0.115, " \
+    "0.12]}]}"
+    static const char *const starts[] = {"", ", 'search': {'starts': 20}"};
+    long evaluations[2] = {0};
+    double change[2] = {0.0};
+    for (int i = 0; i < 2; i++) {
+        char text[2048];
+        study_case c;
+        (void)snprintf(text, sizeof text, "%s%s%s", CHANGE, GRID, starts[i]);
+        if (study_solve(t, MODEL, text, &c) && CHECK(t, c.result->trade != NULL)) {
+            evaluations[i] = c.result->run.spent.trade;
+            change[i] = c.result->trade->points[2].best.score;
+            CHECK(t, c.result->trade->points[2].best.feasible);
+        }
+        study_free(&c);
+    }
+    CHECK(t, evaluations[0] > 0 && 3 * evaluations[0] < 2 * evaluations[1]);
+    CHECK_NEAR(t, change[0], change[1], 1e-9);
+}
+
+MT_TEST_MAIN(MT_TEST(hint__is_one_more_start), MT_TEST(trade__a_neighbour_improves_a_point),
+             MT_TEST(trade__starts_of_a_point_end_where_all_agree))

@@ -135,6 +135,113 @@ static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
     mt_arena_free(&c.mem);
 }
 
+/* Within a circle of radius 1, and outside of a curve about it that comes as near as 2 in
+ * `lobes` directions: nothing is, and half way in these is the least. At it the slopes of both
+ * rows are opposite: steps by slopes alone come near slowly. */
+typedef struct ring {
+    nlp_case c; /* first: what the callback gets */
+    int lobes;
+    int asked;
+    bool none; /* what is said to be proven */
+} ring;
+
+static mt_status rings(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                       mt_err *err)
+{
+    ring *const r = context;
+    const double radius = hypot(t[0], t[1]);
+    if (radius == 0.0) {
+        return mt_fail(err, MT_E_DOMAIN, "the middle has no direction");
+    }
+    const double turn = (double)r->lobes * atan2(t[1], t[0]);
+    const double slope = (double)r->lobes * sin(turn) / (radius * radius);
+    (void)with_gradient;
+    r->c.calls++;
+    change(&r->c, t, out);
+    out->in[0] = 1.0 - radius;
+    out->in[1] = radius - 2.0 + 0.5 * (cos(turn) - 1.0);
+    out->din[0] = -t[0] / radius;
+    out->din[2] = -t[1] / radius;
+    out->din[1] = (t[0] / radius) + 0.5 * slope * t[1];
+    out->din[3] = (t[1] / radius) - 0.5 * slope * t[0];
+    return MT_OK;
+}
+
+static mt_status prove(void *context, bool *none, mt_err *err)
+{
+    ring *const r = context;
+    (void)err;
+    r->asked++;
+    *none = r->none;
+    return MT_OK;
+}
+
+static mt_status ring_solve(ring *r, int lobes, bool none, int starts)
+{
+    case_begin(&r->c, 2, rings, -4, 4);
+    r->c.nlp.n_in = 2;
+    r->c.nlp.context = r;
+    r->c.origin[0] = 2.0;
+    r->c.origin[1] = 0.7;
+    r->lobes = lobes;
+    r->none = none;
+    r->asked = 0;
+    mt_nlp_options opt = mt_nlp_options_default();
+    opt.starts = starts;
+    opt.prove_none = prove;
+    opt.prove_context = r;
+    return case_solve(&r->c, &opt);
+}
+
+/* One place: the first starts are enough where nothing is feasible, and find what all find. */
+static void nlp_compromise__first_starts_are_enough_where_a_proof_says_so(mt_test *t)
+{
+    ring r = {.asked = 0};
+    enum { STARTS = 20, FIRST = 8 };
+    for (int proven = 0; proven < 2; proven++) {
+        mt_test_row(t, "proven %d", proven);
+        REQUIRE(t, ring_solve(&r, 1, proven == 1, STARTS) == MT_OK);
+        CHECK_INT(t, r.asked, 1);
+        CHECK(t, r.c.result.compromise);
+        CHECK_INT(t, r.c.result.starts, proven == 1 ? FIRST : STARTS);
+        CHECK_NEAR(t, r.c.result.solutions[0].t[0], 1.5, 1e-10);
+        CHECK_NEAR_ABS(t, r.c.result.solutions[0].t[1], 0.0, 1e-10);
+        CHECK_NEAR(t, r.c.result.solutions[0].squares, 0.5, 1e-10);
+    }
+    mt_arena_free(&r.c.mem);
+}
+
+/* Three places as good: the first starts do not end at one, so that all are made. */
+static void nlp_compromise__all_starts_are_made_where_the_first_do_not_agree(mt_test *t)
+{
+    ring r = {.asked = 0};
+    REQUIRE(t, ring_solve(&r, 3, true, 20) == MT_OK);
+    CHECK_INT(t, r.asked, 1);
+    CHECK_INT(t, r.c.result.starts, 20);
+    CHECK(t, r.c.result.n_solutions == 3);
+    mt_arena_free(&r.c.mem);
+}
+
+/* Fewer starts than the first ones are all made, and nothing is asked. */
+static void nlp_compromise__few_starts_ask_for_no_proof(mt_test *t)
+{
+    ring r = {.asked = 0};
+    REQUIRE(t, ring_solve(&r, 1, true, 8) == MT_OK);
+    CHECK_INT(t, r.asked, 0);
+    CHECK_INT(t, r.c.result.starts, 8);
+    mt_arena_free(&r.c.mem);
+}
+
+/* A least of squares that is no root is left where R stands upright on the columns, instead of
+ * after dozens of refused steps. */
+static void nlp_compromise__least_squares_end_where_nothing_is_left(mt_test *t)
+{
+    ring r = {.asked = 0};
+    REQUIRE(t, ring_solve(&r, 1, false, 8) == MT_OK);
+    CHECK(t, r.c.calls <= 8L * 70);
+    mt_arena_free(&r.c.mem);
+}
+
 /* One requirement is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of
  * all equal compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
 static mt_status line(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
@@ -245,6 +352,10 @@ MT_TEST_MAIN(MT_TEST(nlp_compromise__contradicting_targets_are_averaged),
              MT_TEST(nlp_compromise__bounds_are_respected),
              MT_TEST(nlp_compromise__local_ones_are_kept_and_ranked_by_squares),
              MT_TEST(nlp_compromise__excluding_inequalities_meet_half_way),
+             MT_TEST(nlp_compromise__first_starts_are_enough_where_a_proof_says_so),
+             MT_TEST(nlp_compromise__all_starts_are_made_where_the_first_do_not_agree),
+             MT_TEST(nlp_compromise__few_starts_ask_for_no_proof),
+             MT_TEST(nlp_compromise__least_squares_end_where_nothing_is_left),
              MT_TEST(nlp_compromise__of_equal_ones_the_least_change_is_taken),
              MT_TEST(nlp_compromise__least_change_also_on_a_curve),
              MT_TEST(nlp_compromise__what_requirements_do_not_see_stays_at_the_origin))

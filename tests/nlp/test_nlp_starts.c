@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Starting points: the origin, then a sequence that fills the bounds in any dimension. */
+/* Starting points: the origin, then a sequence that fills the bounds in any dimension; and when
+ * there are enough of them. */
 #include "nlp/starts.h"
 #include "nlp_problem.h"
 
@@ -102,6 +103,49 @@ static void nlp_starts__seed_turns_the_sequence_reproducibly(mt_test *t)
     }
 }
 
+/* A bowl, with waves in it where target[0] is their height. */
+static mt_status valleys(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
+                         mt_err *err)
+{
+    nlp_case *const c = context;
+    (void)with_gradient;
+    (void)err;
+    c->calls++;
+    out->f = (0.5 * t[0] * t[0]) + (c->target[0] * (1.0 - cos(4.0 * t[0]))) +
+             (0.5 * (t[1] - 1.0) * (t[1] - 1.0));
+    out->df[0] = t[0] + (4.0 * c->target[0] * sin(4.0 * t[0]));
+    out->df[1] = t[1] - 1.0;
+    out->in[0] = t[0] + 5.0; /* it always holds */
+    out->din[0] = 1.0;
+    out->din[1] = 0.0;
+    return MT_OK;
+}
+
+/* Where the first ones end at one design no more are made; else all of them. */
+static void nlp_starts__end_where_the_first_ones_agree(mt_test *t)
+{
+    nlp_case c = {0};
+    enum { ALL = 12, FIRST = 3 };
+    for (int waves = 0; waves < 2; waves++) {
+        for (int agree = 0; agree <= FIRST; agree += FIRST) {
+            mt_test_row(t, "waves %d, agree %d", waves, agree);
+            case_begin(&c, 2, valleys, -3, 3);
+            c.nlp.n_in = 1;
+            c.target[0] = waves == 1 ? 2.0 : 0.0;
+            mt_nlp_options opt = mt_nlp_options_default();
+            opt.starts = ALL;
+            opt.agree = agree;
+            REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+            CHECK_INT(t, c.result.starts, waves == 0 && agree > 0 ? FIRST : ALL);
+            CHECK_NEAR_ABS(t, c.result.solutions[0].t[0], 0.0, 1e-8);
+            CHECK_NEAR(t, c.result.solutions[0].t[1], 1.0, 1e-8);
+            CHECK(t, waves == 0 ? c.result.n_solutions == 1 : c.result.n_solutions > 2);
+        }
+    }
+    mt_arena_free(&c.mem);
+}
+
 MT_TEST_MAIN(MT_TEST(nlp_starts__fill_the_bounds_in_any_dimension),
              MT_TEST(nlp_starts__beyond_40_variables_are_not_constant),
-             MT_TEST(nlp_starts__seed_turns_the_sequence_reproducibly))
+             MT_TEST(nlp_starts__seed_turns_the_sequence_reproducibly),
+             MT_TEST(nlp_starts__end_where_the_first_ones_agree))
