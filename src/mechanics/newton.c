@@ -76,6 +76,7 @@ static mt_status keep(mt_newton_work *w, const mt_newton_solver *solver, double 
     MT_TRY(mt_arena_check(mem, err));
     memcpy(stage->lambda, w->lambda, m * sizeof *stage->lambda);
     memcpy(stage->trim, w->trim, nq * sizeof *stage->trim);
+    stage->solver.border.along = solver->border.along == NULL ? NULL : stage->trim;
     if (!solver->sparse) {
         memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
         memcpy(stage->a, w->a, m * nq * sizeof *stage->a);
@@ -108,6 +109,7 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
                            mt_newton_solver *solver, bool *falls, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const double tau = w->tau;
     bool sure = false;
     if (w->least != NULL) {
         const bool physical = w->p->energy == MT_ENERGY_PHYSICAL;
@@ -121,6 +123,7 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
         return MT_OK;
     }
     mt_arena_rewind(mem, mark);
+    w->tau = tau;
     MT_TRY(mt_newton_dense(w, mem, err));
     MT_TRY(mt_newton_linearise(w, at, mem, solver, err));
     if (!first || w->gap > MT_STEP_DONE) {
@@ -171,7 +174,7 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
             memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
             w->moved = 0.0;
         }
-        if (w->elastic && !solver.sparse) {
+        if (w->elastic) {
             if (!use_elastic(w, previous)) {
                 w->tau = tau;
                 previous = HUGE_VAL;
@@ -298,8 +301,10 @@ static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_pl
     double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     if (solver.sparse) {
+        const double tau = w->tau;
         MT_TRY(mt_newton_dense(w, mem, err));
         MT_TRY(mt_newton_linearise(w, at, mem, &solver, err));
+        w->tau = tau;
     }
     if (w->p->trim) {
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));

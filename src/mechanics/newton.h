@@ -2,8 +2,8 @@
 #ifndef MECHANICS_NEWTON_H
 #define MECHANICS_NEWTON_H
 
+#include "mechanics/border.h"
 #include "mechanics/eliminate.h"
-#include "mechanics/saddle.h"
 
 /* One stage of the position analysis: a stationary point of an energy under the first m
  * constraints. */
@@ -23,11 +23,12 @@ typedef struct mt_newton_problem {
 /*
  * How the equations of a step are solved. Sparse, as a saddle-point system, where that is
  * regular beyond doubt; else in a basis of the freedoms, dense, with a pseudo-inverse:
- * redundant equations, freedoms without stiffness and trimmed springs are seen to there.
+ * redundant equations and freedoms without stiffness are seen to there.
  */
 typedef struct mt_newton_solver {
     bool sparse;
-    mt_saddle saddle;
+    mt_saddle saddle; /* with all equations, the drive's too */
+    mt_border border; /* of it, with trim */
     mt_elimination e; /* (with trim: without the drive's row) */
     /* pseudo-inverse of the (bordered) reduced Hessian, order n (+1 with trim) */
     double *inverse;
