@@ -151,6 +151,18 @@ static bool use_elastic(mt_newton_work *w, double previous)
     return shrinks;
 }
 
+/* Multipliers that a step of Newton's makes of those before it are off by its square, as those
+ * by least squares at its end: after longer ones they are found anew [model lengths]. */
+static const double FOLLOWS = 1e-2;
+
+/* Take the step that was found. */
+static void move(mt_newton_work *w, mt_placement *at, const mt_newton_solver *solver)
+{
+    w->followed = solver->sparse && !w->p->sparse && w->moved <= FOLLOWS;
+    mt_newton_take_step(w, at, MT_STEP_LIMIT);
+    mt_newton_follow(w, at);
+}
+
 /* Plain Newton from the present position; *done tells whether it converged. */
 static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
                          bool *done, mt_err *err)
@@ -158,12 +170,14 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
     double previous = HUGE_VAL;
     double unbalanced = HUGE_VAL;
     *done = false;
+    w->followed = false;
     w->elastic = w->p->trim && w->p->energy == MT_ENERGY_PHYSICAL;
     for (int it = 0; it < NEWTON_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         const bool dense = w->h != NULL;
         mt_newton_solver solver;
         const double tau = w->tau;
+        const bool followed = w->followed;
         bool falls = false;
         MT_TRY(linearise(w, at, it == 0, mem, &solver, &falls, err));
         stage->iterations++;
@@ -181,8 +195,7 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
                 continue;
             }
             previous = w->moved;
-            mt_newton_take_step(w, at, MT_STEP_LIMIT);
-            mt_newton_follow(w, at);
+            move(w, at, &solver);
             continue;
         }
         const bool rest = rests(w, previous);
@@ -191,13 +204,17 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
             *done = rc == MT_OK;
             return rc;
         }
+        if (rest && followed && solver.sparse) {
+            w->tau = tau; /* what is unbalanced may be the multipliers' own error */
+            mt_arena_rewind(mem, mark);
+            continue;
+        }
         if (rest && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
             return MT_OK; /* something pushes along a freedom without stiffness */
         }                 /* else the force of the trimmed spring is still settling */
         previous = w->moved;
         unbalanced = w->residual;
-        mt_newton_take_step(w, at, MT_STEP_LIMIT);
-        mt_newton_follow(w, at);
+        move(w, at, &solver);
         if (dense == (w->h != NULL)) { /* else there is room for dense matrices from here on */
             mt_arena_rewind(mem, mark);
         }

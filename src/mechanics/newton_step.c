@@ -9,7 +9,8 @@
  *     q      <- q (+) (v + Z eta).
  * No basis Z is needed for that where the equations are regular: with r = g + A^T lambda
  *     [ I A^T; A 0 ] [r; -lambda] = [g; 0],      [ H A^T; A 0 ] [v + Z eta; .] = [-r; -c]
- * (I in scaled coordinates), which stay sparse (saddle.h).
+ * (I in scaled coordinates), which stay sparse (saddle.h). After a short step lambda is what
+ * the second made of it: the first is solved where there is no such step.
  * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in
  * scaled coordinates) take no step; the residual test then decides whether something still
  * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row
@@ -412,32 +413,51 @@ static mt_status solve_sparse(mt_newton_work *w, mt_newton_solver *solver, doubl
                  : MT_OK;
 }
 
+/* w->lambda by least squares, and what they leave unbalanced. */
+static mt_status find_multipliers(mt_newton_work *w, bool first, mt_arena *mem, bool *sure,
+                                  mt_err *err)
+{
+    const int m = w->p->m;
+    mt_saddle least;
+    MT_TRY(mt_newton_least_squares(w, first && !w->p->sparse, mem, &least, sure, err));
+    if (!*sure) {
+        return MT_OK;
+    }
+    memset(w->lambda, 0, (size_t)m * sizeof *w->lambda);
+    MT_TRY(mt_saddle_solve(&least, w->g, NULL, NULL, w->lambda, mem, err));
+    for (int i = 0; i < m; i++) {
+        w->lambda[i] = -w->lambda[i];
+    }
+    weigh(w, &w->sparse, unbalanced(w, &least));
+    return MT_OK;
+}
+
 mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
                                      mt_arena *mem, mt_newton_solver *solver, bool *sure,
                                      mt_err *err)
 {
     const mt_newton_problem *const p = w->p;
     const int nq = w->sys->nq;
-    mt_saddle least;
     *solver = (mt_newton_solver){.sparse = true};
     MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
-    memset(w->lambda, 0, (size_t)p->m * sizeof *w->lambda);
     w->sparse.trim_force = w->tau;
     mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL,
                        w->elastic ? MT_CURVATURE_ELASTIC : MT_CURVATURE_FULL, &w->sparse);
-    MT_TRY(mt_newton_least_squares(w, first && !p->sparse, mem, &least, sure, err));
+    const bool followed = w->followed;
+    w->followed = false;
+    *sure = true;
+    if (followed) {
+        mt_axpy(p->m, 1.0, w->turn, w->lambda);
+    } else {
+        MT_TRY(find_multipliers(w, first, mem, sure, err));
+    }
     if (!*sure) {
         return MT_OK;
-    }
-    MT_TRY(mt_saddle_solve(&least, w->g, NULL, NULL, w->lambda, mem, err));
-    for (int i = 0; i < p->m; i++) {
-        w->lambda[i] = -w->lambda[i];
     }
     if (!w->elastic) {
         load_multipliers(w);
         mt_lagrangian_curve(p->data, at, p->m, w->lambda_cx, &w->sparse);
     }
-    weigh(w, &w->sparse, unbalanced(w, &least));
     w->factors++;
     MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse,
                             p->sparse ? MT_SADDLE_SOFT : MT_SADDLE_REGULAR, w->sparse.h, mem,
@@ -445,6 +465,9 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     *sure = solver->saddle.whole && (!first || mt_saddle_convex(&solver->saddle));
     if (!*sure) {
         return MT_OK;
+    }
+    if (followed) { /* (not of soft ones, which are scaled otherwise) */
+        weigh(w, &w->sparse, unbalanced(w, &solver->saddle));
     }
     for (int j = 0; j < nq; j++) {
         w->reduced[j] = -w->reduced[j];

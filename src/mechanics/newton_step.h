@@ -33,7 +33,9 @@ typedef struct mt_newton_work {
     /* leave plain Newton at once where the Hessian is indefinite and the start no
      * equilibrium */
     bool watch;
-    /* dense: leave out of the Hessian what forces make of it */
+    /* sparse: w->lambda and w->turn are of a step that was taken whole, and short */
+    bool followed;
+    /* leave out of the Hessian what forces make of it */
     bool elastic;
 } mt_newton_work;
 
