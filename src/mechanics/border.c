@@ -38,7 +38,7 @@ mt_status mt_border_init(const mt_saddle *s, const double *along, double most, m
     const size_t m = (size_t)s->m;
     const int drive = s->m - 1;
     double unit = 0.0;
-    *out = (mt_border){.along = along};
+    *out = (mt_border){.s = *s, .along = along};
     out->x_along = mt_arena_f64(mem, (size_t)nq, 1);
     out->y_along = mt_arena_f64(mem, m, 1);
     out->x_drive = mt_arena_f64(mem, (size_t)nq, 1);
@@ -66,10 +66,10 @@ mt_status mt_border_init(const mt_saddle *s, const double *along, double most, m
     return MT_OK;
 }
 
-mt_status mt_border_solve(const mt_saddle *s, const mt_border *border, const double *f,
-                          const double *b, double *x, double *y, double *tau, mt_arena *scratch,
-                          mt_err *err)
+mt_status mt_border_solve(const mt_border *border, const double *f, const double *b, double *x,
+                          double *y, double *tau, mt_arena *scratch, mt_err *err)
 {
+    const mt_saddle *const s = &border->s;
     MT_TRY(mt_saddle_solve(s, f, b, x, y, scratch, err));
     *tau = y[s->m - 1] / border->pivot;
     mt_axpy(s->sys->nq, -*tau, border->x_along, x);
@@ -78,10 +78,10 @@ mt_status mt_border_solve(const mt_saddle *s, const mt_border *border, const dou
     return MT_OK;
 }
 
-mt_status mt_border_adjoint(const mt_saddle *s, const mt_border *border, const double *f,
-                            const double *b, double pull, double *x, double *y,
-                            mt_arena *scratch, mt_err *err)
+mt_status mt_border_adjoint(const mt_border *border, const double *f, const double *b,
+                            double pull, double *x, double *y, mt_arena *scratch, mt_err *err)
 {
+    const mt_saddle *const s = &border->s;
     MT_TRY(mt_saddle_solve(s, f, b, x, y, scratch, err));
     const double alpha = (pull - mt_dot(s->sys->nq, border->along, x)) / border->pivot;
     mt_axpy(s->sys->nq, alpha, border->x_drive, x);

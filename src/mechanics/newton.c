@@ -155,6 +155,15 @@ static bool use_elastic(mt_newton_work *w, double previous)
  * by least squares at its end: after longer ones they are found anew [model lengths]. */
 static const double FOLLOWS = 1e-2;
 
+/* Where a stage begins at rest there is no step, as little as may hold it. */
+static void stay_at_rest(mt_newton_work *w, const mt_newton_solver *solver)
+{
+    if (w->watch && !solver->sparse && mt_newton_at_rest(w, &solver->e)) {
+        memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
+        w->moved = 0.0;
+    }
+}
+
 /* Take the step that was found. */
 static void move(mt_newton_work *w, mt_placement *at, const mt_newton_solver *solver)
 {
@@ -184,9 +193,8 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
         if (falls) {
             return MT_OK;
         }
-        if (it == 0 && w->watch && !solver.sparse && mt_newton_at_rest(w, &solver.e)) {
-            memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
-            w->moved = 0.0;
+        if (it == 0) {
+            stay_at_rest(w, &solver);
         }
         if (w->elastic) {
             if (!use_elastic(w, previous)) {

@@ -408,8 +408,8 @@ static mt_status solve_sparse(mt_newton_work *w, mt_newton_solver *solver, doubl
         return mt_saddle_solve(s, w->reduced, w->turn, w->step, w->turn, mem, err);
     }
     MT_TRY(mt_border_init(s, w->trim, FIRM, mem, &solver->border, sure, err));
-    return *sure ? mt_border_solve(s, &solver->border, w->reduced, w->turn, w->step, w->turn,
-                                   more, mem, err)
+    return *sure ? mt_border_solve(&solver->border, w->reduced, w->turn, w->step, w->turn, more,
+                                   mem, err)
                  : MT_OK;
 }
 

@@ -91,8 +91,8 @@ static mt_status respond_sparse(mt_newton_work *w, const mt_stage *stage, double
         w->g[j] = -w->g[j];
     }
     MT_TRY(w->p->trim
-               ? mt_border_solve(&solver->saddle, &solver->border, w->g, w->c, w->step,
-                                 d_lambda, d_trim, scratch, err)
+               ? mt_border_solve(&solver->border, w->g, w->c, w->step, d_lambda, d_trim,
+                                 scratch, err)
                : mt_saddle_solve(&solver->saddle, w->g, w->c, w->step, d_lambda, scratch, err));
     mt_axpy(nq, 1.0, w->step, d);
     return MT_OK;
@@ -131,8 +131,8 @@ mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const dou
     const mt_newton_solver *const solver = &stage->solver;
     if (solver->sparse) {
         return solver->border.along != NULL
-                   ? mt_border_adjoint(&solver->saddle, &solver->border, pull, across,
-                                       pull_trim, x, y, scratch, err)
+                   ? mt_border_adjoint(&solver->border, pull, across, pull_trim, x, y, scratch,
+                                       err)
                    : mt_saddle_solve(&solver->saddle, pull, across, x, y, scratch, err);
     }
     const mt_elimination *const e = &stage->solver.e;
