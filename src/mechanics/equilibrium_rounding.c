@@ -59,38 +59,45 @@ mt_status mt_equilibrium_rounding_new(mt_linear *lin, mt_equilibrium_rounding **
     return MT_OK;
 }
 
+/* What a motion of the states is to a piece, 0 where it has none. */
+static inline void take(const mt_piece *p, const double *way, double *local)
+{
+    for (int k = 0; k < MT_LOCAL; k++) {
+        local[k] = p->dof[k] >= 0 ? way[p->dof[k]] : 0.0;
+    }
+}
+
 /* g . way. */
 static double along(const mt_piece *p, const double *way)
 {
+    double local[MT_LOCAL];
     double sum = 0.0;
+    take(p, way, local);
     for (int k = 0; k < MT_LOCAL; k++) {
-        sum += p->dof[k] >= 0 ? p->g[k] * way[p->dof[k]] : 0.0;
+        sum += p->g[k] * local[k];
     }
     return sum;
 }
 
-/* out[MT_LOCAL] = H phi, where there are states: six of twelve in the plane; returns
+/* out[MT_LOCAL] = H phi, of which what belongs to no state is for nobody; returns
  * phi^T H phi. */
 static double bend(const mt_piece *p, const double *phi, double *out)
 {
-    int own[MT_LOCAL] = {0};
-    int n = 0;
+    double way[MT_LOCAL];
+    double bent[MT_LOCAL] = {0.0};
     double energy = 0.0;
-    for (int k = 0; k < MT_LOCAL; k++) {
-        out[k] = 0.0;
-        if (p->dof[k] >= 0) {
-            own[n++] = k;
+    take(p, phi, way);
+    for (int c = 0; c < MT_LOCAL; c++) {
+        const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * c);
+        if (way[c] != 0.0) {
+            for (int r = 0; r < MT_LOCAL; r++) {
+                bent[r] += h[r] * way[c];
+            }
         }
     }
-    for (int c = 0; c < n; c++) {
-        const double way = phi[p->dof[own[c]]];
-        const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * own[c]);
-        for (int r = 0; r < n && way != 0.0; r++) {
-            out[own[r]] += h[own[r]] * way;
-        }
-    }
-    for (int r = 0; r < n; r++) {
-        energy += phi[p->dof[own[r]]] * out[own[r]];
+    for (int r = 0; r < MT_LOCAL; r++) {
+        energy += way[r] * bent[r];
+        out[r] = bent[r];
     }
     return energy;
 }

@@ -76,6 +76,7 @@ static mt_status keep(mt_newton_work *w, const mt_newton_solver *solver, double 
     MT_TRY(mt_arena_check(mem, err));
     memcpy(stage->lambda, w->lambda, m * sizeof *stage->lambda);
     memcpy(stage->trim, w->trim, nq * sizeof *stage->trim);
+    stage->solver.border.along = solver->border.along == NULL ? NULL : stage->trim;
     if (!solver->sparse) {
         memcpy(stage->h, w->h, nq * nq * sizeof *stage->h);
         memcpy(stage->a, w->a, m * nq * sizeof *stage->a);
@@ -108,6 +109,7 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
                            mt_newton_solver *solver, bool *falls, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const double tau = w->tau;
     bool sure = false;
     if (w->least != NULL) {
         const bool physical = w->p->energy == MT_ENERGY_PHYSICAL;
@@ -121,6 +123,7 @@ static mt_status linearise(mt_newton_work *w, const mt_placement *at, bool first
         return MT_OK;
     }
     mt_arena_rewind(mem, mark);
+    w->tau = tau;
     MT_TRY(mt_newton_dense(w, mem, err));
     MT_TRY(mt_newton_linearise(w, at, mem, solver, err));
     if (!first || w->gap > MT_STEP_DONE) {
@@ -148,6 +151,27 @@ static bool use_elastic(mt_newton_work *w, double previous)
     return shrinks;
 }
 
+/* The error of multipliers that a Newton step updates is of second order in the step, like that
+ * of a least-squares fit at its end. After longer steps they are fitted again [model lengths]. */
+static const double FOLLOWS = 1e-2;
+
+/* Set the step to zero where a stage begins in equilibrium, however weakly held. */
+static void stay_at_rest(mt_newton_work *w, const mt_newton_solver *solver)
+{
+    if (w->watch && !solver->sparse && mt_newton_at_rest(w, &solver->e)) {
+        memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
+        w->moved = 0.0;
+    }
+}
+
+/* Take the computed step and update the multipliers. */
+static void move(mt_newton_work *w, mt_placement *at, const mt_newton_solver *solver)
+{
+    w->followed = solver->sparse && !w->p->sparse && w->moved <= FOLLOWS;
+    mt_newton_take_step(w, at, MT_STEP_LIMIT);
+    mt_newton_follow(w, at);
+}
+
 /* Plain Newton from the present position; *done: converged. */
 static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
                          bool *done, mt_err *err)
@@ -155,31 +179,31 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
     double previous = HUGE_VAL;
     double unbalanced = HUGE_VAL;
     *done = false;
+    w->followed = false;
     w->elastic = w->p->trim && w->p->energy == MT_ENERGY_PHYSICAL;
     for (int it = 0; it < NEWTON_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
         const bool dense = w->h != NULL;
         mt_newton_solver solver;
         const double tau = w->tau;
+        const bool followed = w->followed;
         bool falls = false;
         MT_TRY(linearise(w, at, it == 0, mem, &solver, &falls, err));
         stage->iterations++;
         if (falls) {
             return MT_OK;
         }
-        if (it == 0 && w->watch && !solver.sparse && mt_newton_at_rest(w, &solver.e)) {
-            memset(w->step, 0, (size_t)w->sys->nq * sizeof *w->step);
-            w->moved = 0.0;
+        if (it == 0) {
+            stay_at_rest(w, &solver);
         }
-        if (w->elastic && !solver.sparse) {
+        if (w->elastic) {
             if (!use_elastic(w, previous)) {
                 w->tau = tau;
                 previous = HUGE_VAL;
                 continue;
             }
             previous = w->moved;
-            mt_newton_take_step(w, at, MT_STEP_LIMIT);
-            mt_newton_follow(w, at);
+            move(w, at, &solver);
             continue;
         }
         const bool rest = rests(w, previous);
@@ -188,13 +212,17 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
             *done = rc == MT_OK;
             return rc;
         }
+        if (rest && followed && solver.sparse) {
+            w->tau = tau; /* what is unbalanced may be the multipliers' own error */
+            mt_arena_rewind(mem, mark);
+            continue;
+        }
         if (rest && (!w->p->trim || w->residual >= 0.25 * unbalanced)) {
             return MT_OK; /* something pushes along a freedom without stiffness */
         }                 /* else the force of the trimmed spring is still settling */
         previous = w->moved;
         unbalanced = w->residual;
-        mt_newton_take_step(w, at, MT_STEP_LIMIT);
-        mt_newton_follow(w, at);
+        move(w, at, &solver);
         if (dense == (w->h != NULL)) { /* else there is room for dense matrices from here on */
             mt_arena_rewind(mem, mark);
         }
@@ -298,8 +326,10 @@ static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_pl
     double *const way = mt_arena_f64(mem, (size_t)w->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     if (solver.sparse) {
+        const double tau = w->tau;
         MT_TRY(mt_newton_dense(w, mem, err));
         MT_TRY(mt_newton_linearise(w, at, mem, &solver, err));
+        w->tau = tau;
     }
     if (w->p->trim) {
         MT_TRY(mt_eliminate(w->sys, w->p->m, w->a, mem, &held, err));

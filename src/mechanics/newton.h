@@ -2,8 +2,8 @@
 #ifndef MECHANICS_NEWTON_H
 #define MECHANICS_NEWTON_H
 
+#include "mechanics/border.h"
 #include "mechanics/eliminate.h"
-#include "mechanics/saddle.h"
 
 /* One stage of the position analysis: a stationary point of an energy under the first m
  * constraints. */
@@ -23,11 +23,12 @@ typedef struct mt_newton_problem {
 /*
  * Solver of the equations of a step. Sparse, as a saddle-point system, where that is safely
  * regular; otherwise dense in a basis of the freedoms with a pseudo-inverse, which handles
- * redundant equations, freedoms without stiffness and trimmed springs.
+ * redundant equations and freedoms without stiffness.
  */
 typedef struct mt_newton_solver {
     bool sparse;
-    mt_saddle saddle;
+    mt_saddle saddle; /* of all equations, the drive's included */
+    mt_border border; /* of the saddle, with trim */
     mt_elimination e; /* with trim: without the drive's row */
     /* pseudo-inverse of the (bordered) reduced Hessian, order n (n + 1 with trim) */
     double *inverse;

@@ -9,7 +9,8 @@
  *     q      <- q (+) (v + Z eta).
  * No basis Z is needed for that where the equations are regular: with r = g + A^T lambda
  *     [ I A^T; A 0 ] [r; -lambda] = [g; 0],      [ H A^T; A 0 ] [v + Z eta; .] = [-r; -c]
- * (I in scaled coordinates), which stay sparse (saddle.h).
+ * (I in scaled coordinates), which stay sparse (saddle.h). After a short step lambda is what
+ * the second made of it: the first is solved where there is no such step.
  * Freedoms without stiffness (singular values of Z^T H Z below NO_STIFFNESS of H itself in
  * scaled coordinates) take no step; the residual test then decides whether something still
  * pushes along them. With `trim` the force tau of one spring is unknown and the drive's row
@@ -53,7 +54,7 @@ mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_
     w->g = mt_arena_f64(mem, nq, 1);
     w->c = mt_arena_f64(mem, m, 1);
     w->trim = mt_arena_f64(mem, nq, 1);
-    if (!p->trim && mt_saddle_pays(sys)) {
+    if (mt_saddle_pays(sys)) {
         w->sparse = (mt_lagrangian){.g = w->g, .c = w->c, .trim = w->trim};
         mt_lagrangian_want_rows(&w->sparse, sys, mem);
         w->least = mt_arena_f64(mem, sys->layout->envelope.count, 1);
@@ -119,11 +120,17 @@ void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian)
                        hessian ? MT_CURVATURE_FULL : MT_CURVATURE_NONE, &w->l);
 }
 
-/* Elimination of the rows that carry a multiplier: with trim all but the last. */
+/* How many rows carry a multiplier: with trim all but the last. */
+static int rows(const mt_newton_work *w)
+{
+    return w->p->trim ? w->p->m - 1 : w->p->m;
+}
+
+/* Elimination of those rows. */
 static mt_status eliminate(const mt_newton_work *w, mt_arena *mem, mt_elimination *e,
                            mt_err *err)
 {
-    const int m = w->p->trim ? w->p->m - 1 : w->p->m;
+    const int m = rows(w);
     if (m == w->p->m) {
         return mt_eliminate(w->sys, m, w->a, mem, e, err);
     }
@@ -384,10 +391,44 @@ mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
                                   mt_saddle *least, bool *sure, mt_err *err)
 {
     w->factors++;
-    MT_TRY(mt_saddle_factor(w->sys, w->p->m, &w->sparse, MT_SADDLE_LEAST_SQUARES, w->least, mem,
+    MT_TRY(mt_saddle_factor(w->sys, rows(w), &w->sparse, MT_SADDLE_LEAST_SQUARES, w->least, mem,
                             least, err));
     *sure = least->whole;
     return *sure && apart ? mt_saddle_below(least, FAR_FROM_DEPENDENT, mem, sure, err) : MT_OK;
+}
+
+/* w->step, w->turn and how much *more the trimmed spring pushes, of w->reduced and w->turn;
+ * *sure: the border of such a spring leaves the equations regular. */
+static mt_status solve_sparse(mt_newton_work *w, mt_newton_solver *solver, double *more,
+                              bool *sure, mt_arena *mem, mt_err *err)
+{
+    const mt_saddle *const s = &solver->saddle;
+    if (!w->p->trim) {
+        return mt_saddle_solve(s, w->reduced, w->turn, w->step, w->turn, mem, err);
+    }
+    MT_TRY(mt_border_init(s, w->trim, FIRM, mem, &solver->border, sure, err));
+    return *sure ? mt_border_solve(&solver->border, w->reduced, w->turn, w->step, w->turn, more,
+                                   mem, err)
+                 : MT_OK;
+}
+
+/* w->lambda by least squares, and what they leave unbalanced. */
+static mt_status find_multipliers(mt_newton_work *w, bool first, mt_arena *mem, bool *sure,
+                                  mt_err *err)
+{
+    const int m = w->p->m;
+    mt_saddle least;
+    MT_TRY(mt_newton_least_squares(w, first && !w->p->sparse, mem, &least, sure, err));
+    if (!*sure) {
+        return MT_OK;
+    }
+    memset(w->lambda, 0, (size_t)m * sizeof *w->lambda);
+    MT_TRY(mt_saddle_solve(&least, w->g, NULL, NULL, w->lambda, mem, err));
+    for (int i = 0; i < m; i++) {
+        w->lambda[i] = -w->lambda[i];
+    }
+    weigh(w, &w->sparse, unbalanced(w, &least));
+    return MT_OK;
 }
 
 mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, bool first,
@@ -396,22 +437,26 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
 {
     const mt_newton_problem *const p = w->p;
     const int nq = w->sys->nq;
-    mt_saddle least;
     *solver = (mt_newton_solver){.sparse = true};
     MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
-    mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL, MT_CURVATURE_FULL,
-                       &w->sparse);
-    MT_TRY(mt_newton_least_squares(w, first && !p->sparse, mem, &least, sure, err));
+    w->sparse.trim_force = w->tau;
+    mt_lagrangian_eval(p->data, p->energy, p->drawn, at, p->m, NULL,
+                       w->elastic ? MT_CURVATURE_ELASTIC : MT_CURVATURE_FULL, &w->sparse);
+    const bool followed = w->followed;
+    w->followed = false;
+    *sure = true;
+    if (followed) {
+        mt_axpy(p->m, 1.0, w->turn, w->lambda);
+    } else {
+        MT_TRY(find_multipliers(w, first, mem, sure, err));
+    }
     if (!*sure) {
         return MT_OK;
     }
-    MT_TRY(mt_saddle_solve(&least, w->g, NULL, NULL, w->lambda, mem, err));
-    for (int i = 0; i < p->m; i++) {
-        w->lambda[i] = -w->lambda[i];
+    if (!w->elastic) {
+        load_multipliers(w);
+        mt_lagrangian_curve(p->data, at, p->m, w->lambda_cx, &w->sparse);
     }
-    load_multipliers(w);
-    mt_lagrangian_curve(p->data, at, p->m, w->lambda_cx, &w->sparse);
-    weigh(w, &w->sparse, unbalanced(w, &least));
     w->factors++;
     MT_TRY(mt_saddle_factor(w->sys, p->m, &w->sparse,
                             p->sparse ? MT_SADDLE_SOFT : MT_SADDLE_REGULAR, w->sparse.h, mem,
@@ -420,19 +465,27 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
     if (!*sure) {
         return MT_OK;
     }
+    if (followed) { /* (not of soft ones, which are scaled otherwise) */
+        weigh(w, &w->sparse, unbalanced(w, &solver->saddle));
+    }
     for (int j = 0; j < nq; j++) {
         w->reduced[j] = -w->reduced[j];
     }
     for (int i = 0; i < p->m; i++) {
         w->turn[i] = -w->c[i];
     }
-    MT_TRY(mt_saddle_solve(&solver->saddle, w->reduced, w->turn, w->step, w->turn, mem, err));
+    double more = 0.0;
+    MT_TRY(solve_sparse(w, solver, &more, sure, mem, err));
+    if (!*sure) {
+        return MT_OK;
+    }
     w->moved = mt_newton_scaled_norm(w, w->step);
     w->null_freedoms = 0;
     const bool convex = mt_saddle_convex(&solver->saddle);
     /* (with nothing to compare, one that is too long is shortened as a whole) */
     *sure = w->moved <= (convex ? LITTLE_LONGER : 1.0) * MT_STEP_LIMIT ||
             (p->sparse && w->moved < HUGE_VAL);
+    w->tau += *sure ? more : 0.0;
     return MT_OK;
 }
 

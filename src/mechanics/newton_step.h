@@ -34,7 +34,9 @@ typedef struct mt_newton_work {
     /* leave plain Newton at once where the Hessian is indefinite and the start is not an
      * equilibrium */
     bool watch;
-    /* dense: leave the geometric part out of the Hessian */
+    /* sparse: w->lambda and w->turn belong to a full, short step */
+    bool followed;
+    /* leave the geometric part out of the Hessian */
     bool elastic;
 } mt_newton_work;
 

@@ -80,15 +80,20 @@ static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *d, do
     return mt_eliminate_multipliers(e, w->g, d_lambda, scratch, err);
 }
 
-/* The same at once: H x + A^T lambda' = -(grad L)., A x = -c. */
+/* The same at once: H x + A^T lambda' + t tau' = -(grad L)., A x = -c. */
 static mt_status respond_sparse(mt_newton_work *w, const mt_stage *stage, double *d,
-                                double *d_lambda, mt_arena *scratch, mt_err *err)
+                                double *d_lambda, double *d_trim, mt_arena *scratch,
+                                mt_err *err)
 {
     const int nq = w->sys->nq;
+    const mt_newton_solver *const solver = &stage->solver;
     for (int j = 0; j < nq; j++) {
         w->g[j] = -w->g[j];
     }
-    MT_TRY(mt_saddle_solve(&stage->solver.saddle, w->g, w->c, w->step, d_lambda, scratch, err));
+    MT_TRY(w->p->trim
+               ? mt_border_solve(&solver->border, w->g, w->c, w->step, d_lambda, d_trim,
+                                 scratch, err)
+               : mt_saddle_solve(&solver->saddle, w->g, w->c, w->step, d_lambda, scratch, err));
     mt_axpy(nq, 1.0, w->step, d);
     return MT_OK;
 }
@@ -109,7 +114,7 @@ mt_status mt_newton_tangent(const mt_newton_problem *problem, const mt_placement
     }
     MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(differentiate(&w, at, stage, d, scratch, err));
-    MT_TRY(stage->solver.sparse ? respond_sparse(&w, stage, d, d_lambda, scratch, err)
+    MT_TRY(stage->solver.sparse ? respond_sparse(&w, stage, d, d_lambda, &d_trim, scratch, err)
                                 : respond(&w, stage, d, d_lambda, &d_trim, scratch, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
         memcpy(stage->d_lambda, d_lambda, (size_t)problem->m * sizeof *d_lambda);
@@ -123,8 +128,12 @@ mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const dou
                             double pull_trim, double *x, double *y, mt_arena *scratch,
                             mt_err *err)
 {
-    if (stage->solver.sparse) {
-        return mt_saddle_solve(&stage->solver.saddle, pull, across, x, y, scratch, err);
+    const mt_newton_solver *const solver = &stage->solver;
+    if (solver->sparse) {
+        return solver->border.along != NULL
+                   ? mt_border_adjoint(&solver->border, pull, across, pull_trim, x, y, scratch,
+                                       err)
+                   : mt_saddle_solve(&solver->saddle, pull, across, x, y, scratch, err);
     }
     const mt_elimination *const e = &stage->solver.e;
     const ptrdiff_t nq = e->nq;

@@ -15,6 +15,8 @@ static const double X = 0.25;
 static const double Y = -0.9;
 /* Of plain Newton from there. */
 enum { MOST_ITERATIONS = 8 };
+/* Of these, those after a short step: it tells the multipliers, and one factor does. */
+enum { FOLLOWING = 2 };
 
 /* Equal masses l apart on rods without mass, hung at the ground and drawn at a slant. */
 static mt_model *hanging(mt_test *t, const char *drive)
@@ -71,7 +73,8 @@ static double first_zero(int n)
     return (double)low;
 }
 
-static void newton__a_long_chain_takes_two_factorisations_a_step_and_no_memory(mt_test *t)
+static void newton__a_long_chain_takes_one_or_two_factorisations_a_step_and_no_memory(
+    mt_test *t)
 {
     mech s;
     mt_analysis_options opt = mt_analysis_options_default();
@@ -88,7 +91,7 @@ static void newton__a_long_chain_takes_two_factorisations_a_step_and_no_memory(m
             CHECK(t, i < 3 || after == before || !mt_alloc_works());
             CHECK(t, stage->solver.sparse);
             CHECK(t, stage->iterations <= MOST_ITERATIONS);
-            CHECK_INT(t, stage->factors, 2 * stage->iterations);
+            CHECK_INT(t, stage->factors, (2 * stage->iterations) - FOLLOWING);
             const double exact = sqrt(at / length * first_zero(LINKS)) / (2.0 * MECH_PI);
             CHECK_NEAR(t, mech_hz(&s, 1), exact, TOL);
             const int first = 0;
@@ -127,7 +130,7 @@ static void newton__a_driven_chain_takes_no_memory(mt_test *t)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        MT_TEST(newton__a_long_chain_takes_two_factorisations_a_step_and_no_memory),
+        MT_TEST(newton__a_long_chain_takes_one_or_two_factorisations_a_step_and_no_memory),
         MT_TEST(newton__a_driven_chain_takes_no_memory),
     };
     return cmocka_run_group_tests_name(__FILE__, tests, NULL, NULL) != 0;

@@ -184,6 +184,10 @@ static void adjoint__slopes_of_a_linkage_are_those_of_its_equilibria(mt_test *t)
         {"a rope and two pins", "loose", "", true},
         {"held by a spring", "trimmed", "", true},
         {"locked", "locked", "", true},
+        {"held by a spring, a pin that is there twice", "trimmed",
+         "{\"name\": \"again\", \"type\": \"revolute\", \"bodies\": [\"ground\", \"arm\"], "
+         "\"at\": [0, 0]},",
+         false},
         {"a pin that is there twice", "loose",
          "{\"name\": \"again\", \"type\": \"revolute\", \"bodies\": [\"ground\", \"arm\"], "
          "\"at\": [0, 0]},",
@@ -216,34 +220,45 @@ static void adjoint__slopes_of_a_linkage_are_those_of_its_equilibria(mt_test *t)
     }
 }
 
+/* Hung, and with its first link held off the vertical by a spring there. */
+static const char CHAIN[] =
+    "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"gravity_m_per_s2\": [0, -9.75],"
+    "\"parameters\": {\"P\": {\"value\": 4, \"unit\": \"N\"}, \"Q\": {\"value\": 3, \"unit\": "
+    "\"N m\"}, \"A\": {\"value\": 0.1, \"unit\": \"rad\"}},"
+    "\"links\": [{\"name\": \"c\", \"from\": [0, 2], \"to\": [0.5, 0.5], \"elements\": 40, "
+    "\"mass_kg\": 3, \"stiffness_n_m_per_rad\": 20}],"
+    "\"joints\": [{\"name\": \"pin\", \"type\": \"revolute\", \"bodies\": [\"ground\", "
+    "\"c.start\"], \"at\": [0, 2]}],"
+    "\"springs\": [{\"name\": \"coil\", \"type\": \"torsion\", \"joint\": \"pin\", "
+    "\"stiffness_n_m_per_rad\": 15}],"
+    "\"loads\": [{\"name\": \"p\", \"on\": \"c.40\", \"force_n\": [\"P\", 0]}, {\"name\": "
+    "\"q\", \"on\": \"c.20\", \"moment_n_m\": \"Q\"}],"
+    "\"configurations\": {\"hung\": {}, \"held\": {\"drive\": {\"joint\": \"pin\", "
+    "\"position_rad\": \"A\", \"hold\": {\"trim\": \"coil\"}}}}}";
+
 static void adjoint__slopes_of_a_long_chain_are_found_sparse(mt_test *t)
 {
-    mech s;
-    functional j;
-    adjoint a = {0};
-    if (mech_must(
-            t,
-            mech_parse(
-                t,
-                "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"gravity_m_per_s2\": "
-                "[0, -9.75], \"parameters\": {\"P\": {\"value\": 4, \"unit\": \"N\"}, \"Q\": "
-                "{\"value\": 3, \"unit\": \"N m\"}},"
-                "\"links\": [{\"name\": \"c\", \"from\": [0, 2], \"to\": [0.5, 0.5], "
-                "\"elements\": 40, \"mass_kg\": 3, \"stiffness_n_m_per_rad\": 20}],"
-                "\"joints\": [{\"name\": \"pin\", \"type\": \"revolute\", \"bodies\": "
-                "[\"ground\", \"c.start\"], \"at\": [0, 2]}],"
-                "\"loads\": [{\"name\": \"p\", \"on\": \"c.40\", \"force_n\": [\"P\", 0]}, "
-                "{\"name\": \"q\", \"on\": \"c.20\", \"moment_n_m\": \"Q\"}]}"),
-            NULL, "P Q", &s)) {
-        draw(&j, &s, 3, true);
-        if (solve(t, &j, &a)) {
-            CHECK(t, a.stage->solver.sparse);
-            check_slope(t, &j, 0, a.x[state(s.a->sys, "c.40", 0)]);
-            check_slope(t, &j, 1, a.x[state(s.a->sys, "c.20", 5)]);
+    static const char *const configurations[] = {"hung", "held"};
+    for (int i = 0; i < MT_COUNT(configurations); i++) {
+        mech s;
+        functional j;
+        adjoint a = {0};
+        mt_test_row(t, "%s", configurations[i]);
+        if (mech_must(t, mech_parse(t, CHAIN), configurations[i], "P Q A", &s)) {
+            const mt_system *const sys = s.a->sys;
+            draw(&j, &s, 3, true);
+            if (solve(t, &j, &a)) {
+                CHECK(t, a.stage->solver.sparse);
+                check_slope(t, &j, 0, a.x[state(sys, "c.40", 0)]);
+                check_slope(t, &j, 1, a.x[state(sys, "c.20", 5)]);
+                if (sys->driven) {
+                    check_slope(t, &j, 2, a.y[sys->drive_constraint]);
+                }
+            }
+            mt_arena_free(&a.mem);
         }
-        mt_arena_free(&a.mem);
+        mech_free(&s);
     }
-    mech_free(&s);
 }
 
 MT_TEST_MAIN(MT_TEST(adjoint__bead_on_a_wire_has_its_closed_form),
