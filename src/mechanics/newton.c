@@ -151,8 +151,9 @@ static bool use_elastic(mt_newton_work *w, double previous)
     return shrinks;
 }
 
-/* The error of multipliers that a Newton step updates is of second order in the step, like that
- * of a least-squares fit at its end. After longer steps they are fitted again [model lengths]. */
+/* The error of multipliers that a Newton step updates is of second order in the step, as is
+ * that of a least-squares fit at its end. After longer steps they are fitted
+ * [model lengths]. */
 static const double FOLLOWS = 1e-2;
 
 /* Set the step to zero where a stage begins in equilibrium, however weakly held. */

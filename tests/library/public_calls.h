@@ -270,7 +270,7 @@ TELLS(study_variable_original, isfinite(mt_study_variable_original(ARG(0, study)
 TELLS(study_variable_lower, isfinite(mt_study_variable_lower(ARG(0, study), 0)))
 TELLS(study_variable_upper, isfinite(mt_study_variable_upper(ARG(0, study), 0)))
 TELLS(stop_request_at, mt_stop_request_at(ARG(0, &finish)) ==
-                   (null == 0 ? MT_STOP_REQUEST_NONE : MT_STOP_REQUEST_FINISH))
+                           (null == 0 ? MT_STOP_REQUEST_NONE : MT_STOP_REQUEST_FINISH))
 static mt_status call_study_solve(int null)
 {
     mt_result *out = null == 0 ? result : NULL;
