@@ -140,8 +140,8 @@ static mt_status compare(const mt_workspace *fresh, const mt_design *design,
 
 /* Warn of a design at which a fresh analysis disagrees; it does not count as meeting any goal,
  * see describe_verify.c. */
-static mt_status warning(const mt_design *design, mt_result *result, mt_recommendation *rec,
-                         mt_err *err)
+static mt_status warn_disagreement(const mt_design *design, mt_result *result,
+                                   mt_recommendation *rec, mt_err *err)
 {
     if (rec->disagreement == NULL) {
         return MT_OK;
@@ -176,7 +176,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     MT_TRY(mt_describe_between(fresh, design, result, rec, err));
     MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
-    MT_TRY(warning(design, result, rec, err));
+    MT_TRY(warn_disagreement(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
     MT_TRY(describe_objectives(fresh, motion_margin, baseline, result, rec, err));
     if (fresh->c->tolerance_box != NULL) {

@@ -138,8 +138,8 @@ static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
 }
 
 /* Warn that the mode of the goal is not identified: the goal is not met, for any value. */
-static mt_status warning(const mt_workspace *fresh, const mt_requirement *d, mt_result *result,
-                         mt_result_goal *g, mt_err *err)
+static mt_status warn_unidentified(const mt_workspace *fresh, const mt_requirement *d,
+                                   mt_result *result, mt_result_goal *g, mt_err *err)
 {
     const char *const why =
         mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
@@ -225,7 +225,7 @@ static mt_status judge(mt_workspace *fresh, const mt_requirement *d, mt_nlp_valu
     MT_TRY(mt_arena_check(&result->mem, err));
     return !mt_requirement_is_modal(d) || mt_describe_is_told(&fresh->views[d->view], d)
                ? MT_OK
-               : warning(fresh, d, result, g, err);
+               : warn_unidentified(fresh, d, result, g, err);
 }
 
 /* Write the length at which angles count as arcs, where sensors of a MAC or a shape mix

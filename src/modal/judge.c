@@ -151,10 +151,10 @@ int mt_modal_doubtful(const mt_modes *modes)
     int count = 0;
     const bool exact = modes->from_factor && modes->error_bound == 0.0;
     for (int i = 0; i < modes->count; i++) {
-        const bool warning = modes->kind[i] == MT_MODE_FLEXIBLE
-                                 ? !(modes->error[i] < FINE * fabs(modes->lambda[i]))
-                                 : !exact;
-        count = warning ? i + 1 : count;
+        const bool rough = modes->kind[i] == MT_MODE_FLEXIBLE
+                               ? !(modes->error[i] < FINE * fabs(modes->lambda[i]))
+                               : !exact;
+        count = rough ? i + 1 : count;
     }
     return count;
 }

@@ -119,9 +119,9 @@ static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
            least <= mass->rank / MT_MODAL_PART;
 }
 
-/* Number of lowest modes that contain all of a part; warning_list: and all modes that may be
+/* Number of lowest modes that contain all of a part; maybe_zero: and all modes that may be
  * 0. */
-static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_list)
+static int end_of(const mt_modes *out, const mt_modal_part *part, bool maybe_zero)
 {
     const bool all = part->first <= 0 && !(part->up_to > 0.0);
     int seen = 0;
@@ -132,8 +132,8 @@ static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_l
         const bool asked =
             seen <= part->first || (part->up_to > 0.0 && out->lambda[i] <= part->up_to);
         const bool repeated = i > 0 && end == i && out->cluster[i] == out->cluster[i - 1];
-        const bool warning = warning_list && out->lambda[i] <= out->error[i];
-        end = all || !flexible || asked || repeated || warning ? i + 1 : end;
+        const bool zero = maybe_zero && out->lambda[i] <= out->error[i];
+        end = all || !flexible || asked || repeated || zero ? i + 1 : end;
     }
     return end;
 }

@@ -267,7 +267,7 @@ static mt_status make_edges(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_e
     t->mass = mt_arena_f64(mem, n * s, s);
     t->basis = mt_arena_f64(mem, s, (size_t)t->sys->nq);
     t->length = mt_arena_f64(mem, n, 1);
-    t->warning = mt_arena_f64(mem, n, 1);
+    t->condition = mt_arena_f64(mem, n, 1);
     t->lost = mt_arena_f64(mem, (size_t)t->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < t->n && *is_tree; i++) {

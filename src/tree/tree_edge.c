@@ -369,7 +369,7 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_
         jacobi(t, springs.n, d, b, null);
     }
     t->length[i] = length;
-    t->warning[i] = 1.0 / least;
+    t->condition[i] = 1.0 / least;
     if (!clear || !sort_columns(t, &springs, d, b, null, basis, n_y, t->lost + t->y_at[i])) {
         (void)mt_snprintf(m->why, MT_TREE_WHY, "what holds \"%s\" nearly fails to hold it",
                           t->sys->bodies[t->body[i]].name);

@@ -66,7 +66,7 @@ static double error_of(const mt_tree *t, int i, const double *x, const double *r
     const double *column = mt_tree_basis(t, i);
     double terms[MOST] = {0.0};
     double whole = 0.0;
-    double turned = COLUMN_ULPS * t->warning[i];
+    double turned = COLUMN_ULPS * t->condition[i];
     for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, column += t->s) {
         add_column(t, i, column, x[c], terms, &whole);
     }
