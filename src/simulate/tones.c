@@ -103,6 +103,14 @@ static mt_status find_poles(record *r, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
+/* Sample at which the column of pole p has the size 1: the last one where it grows, as a record
+ * of rounding may say, else the first. Its size at the first one then may underflow, but no
+ * entry overflows. */
+static int unit_sample(const record *r, int p)
+{
+    return r->re[p] * r->n > 1.0 ? r->n - 1 : 0;
+}
+
 /* Columns of the least squares: z^i, of a pair its real and imaginary part. dgeev has pairs
  * next to each other, the positive one first. */
 static void fill(const record *r, double *a)
@@ -110,8 +118,9 @@ static void fill(const record *r, double *a)
     for (int p = 0; p < r->poles; p++) {
         const bool second = p > 0 && r->im[p] < 0.0;
         double *const column = a + ((ptrdiff_t)p * r->n);
+        const int unit = unit_sample(r, p);
         for (int i = 0; i < r->n; i++) {
-            const double size = exp(r->re[p] * i);
+            const double size = exp(r->re[p] * (i - unit));
             column[i] = size * (second ? -sin(r->im[p - 1] * i) : cos(r->im[p] * i));
         }
     }
@@ -135,12 +144,13 @@ static void tell(const record *r, double dt, const double *a, const double *c, m
     double mean = 0.0;
     double largest = 0.0;
     for (int p = 0; p < r->poles; p++) {
+        const double first = exp(-r->re[p] * unit_sample(r, p)); /* size at the first sample */
         if (fabs(r->im[p]) <= STILL) {
-            mean += c[p];
+            mean += first * c[p];
         } else if (r->im[p] > 0.0 && p + 1 < r->poles) {
             add_tone(out, (mt_tone){.hz = r->im[p] / (2.0 * PI * dt),
                                     .damping = -r->re[p] / hypot(r->re[p], r->im[p]),
-                                    .amplitude = hypot(c[p], c[p + 1]),
+                                    .amplitude = first * hypot(c[p], c[p + 1]),
                                     .phase = atan2(c[p + 1], c[p])});
         }
     }
