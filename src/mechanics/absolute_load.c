@@ -326,7 +326,7 @@ static bool add_gradient(void *context, const int body[2], double c, double nois
  * forces themselves: Newton's step that was not taken leads to the balance. A second step
  * estimates the error of the first.
  */
-static mt_status add_unbalanced_forces(work *w, mt_arena *scratch, mt_err *err)
+static mt_status find_motion_to_balance(work *w, mt_arena *scratch, mt_err *err)
 {
     const mt_system *const sys = w->o->sys;
     const mt_stage *const stage = &w->o->settled->equilibrium;
@@ -359,7 +359,7 @@ static mt_status open_at(work *w, const double *inputs, mt_arena *scratch, mt_er
     w->push = mt_arena_f64(scratch, (size_t)w->o->n, 1);
     w->round = mt_arena_f64(scratch, (size_t)w->o->n, 1);
     MT_TRY(mt_absolute_stand(w->o->sys, settled, inputs, &w->data, &w->at, scratch, err));
-    return settled == NULL ? MT_OK : add_unbalanced_forces(w, scratch, err);
+    return settled == NULL ? MT_OK : find_motion_to_balance(w, scratch, err);
 }
 
 /* Add the forces of loads and springs. */

@@ -196,7 +196,7 @@ static void add_terms(work *w, mt_term_kind kind)
     }
 }
 
-static double motion_along_row(const mt_sparse_row *row, const double *phi)
+static double row_dot_motion(const mt_sparse_row *row, const double *phi)
 {
     double sum = 0.0;
     for (int k = 0; k < row->n; k++) {
@@ -216,8 +216,8 @@ static void add_constraints(work *w)
             continue;
         }
         for (int a = 0; a < m->n; a++) {
-            w->s[a] = motion_along_row(&w->da[i], w->phi + (nq * a)) +
-                      motion_along_row(&w->a[i], w->moved + (nq * a));
+            w->s[a] = row_dot_motion(&w->da[i], w->phi + (nq * a)) +
+                      row_dot_motion(&w->a[i], w->moved + (nq * a));
         }
         for (int k = 0; k < m->n_pairs; k++) {
             const int a = m->pair[k][0];

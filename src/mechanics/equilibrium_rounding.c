@@ -133,7 +133,7 @@ static mt_status joint_forces(mt_equilibrium_rounding *r, double lambda, const d
 }
 
 /* Compute pull and across; returns the coefficient of the trimmed spring's force. */
-static double load_pieces(mt_equilibrium_rounding *r, const double *phi)
+static double sum_piece_forces(mt_equilibrium_rounding *r, const double *phi)
 {
     const mt_linear *const lin = r->lin;
     double trim = 0.0;
@@ -166,7 +166,7 @@ mt_status mt_equilibrium_rounding_of(mt_equilibrium_rounding *r, double lambda,
     const mt_system *const sys = lin->sys;
     double sum = 0.0;
     MT_TRY(joint_forces(r, lambda, phi, err));
-    const double trim = load_pieces(r, phi);
+    const double trim = sum_piece_forces(r, phi);
     MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, r->pull, r->across, trim, r->x, r->y,
                              &lin->scratch, err));
     for (int i = 0; i < lin->n_pieces; i++) {

@@ -311,9 +311,9 @@ typedef struct ending {
 
 /* end->saddle: the stationary point last evaluated is, with the drive held, a saddle from which
  * the way from the start leads down. That direction is stored in w->step. */
-static mt_status verify_minimum(mt_newton_work *w, const mt_placement *start,
-                                const mt_placement *at, const mt_stage *stage, ending *end,
-                                mt_arena *mem, mt_err *err)
+static mt_status check_for_saddle(mt_newton_work *w, const mt_placement *start,
+                                  const mt_placement *at, const mt_stage *stage, ending *end,
+                                  mt_arena *mem, mt_err *err)
 {
     mt_elimination held;
     mt_newton_solver solver = stage->solver;
@@ -362,7 +362,7 @@ static mt_status descend_to_minimum(mt_newton_work *w, const mt_placement *start
         MT_TRY(mt_newton_descend(w, at, mem, err));
         mt_placement_copy(w->sys, at, &low);
         MT_TRY(attempt(w, at, mem, stage, &end->done, err));
-        MT_TRY(verify_minimum(w, start, at, stage, end, mem, err));
+        MT_TRY(check_for_saddle(w, start, at, stage, end, mem, err));
         on = end->saddle;
         if (on) {
             MT_TRY(mt_newton_leave_saddle(w, at, &on, mem, err));
@@ -397,7 +397,7 @@ static mt_status accept_or_descend(mt_newton_work *w, const mt_placement *start,
                                    mt_placement *at, mt_arena *mem, mt_stage *stage,
                                    ending *end, mt_err *err)
 {
-    MT_TRY(verify_minimum(w, start, at, stage, end, mem, err));
+    MT_TRY(check_for_saddle(w, start, at, stage, end, mem, err));
     const double rounding = ENERGY_ROUNDING * (fabs(end->before) + fabs(end->energy));
     const bool uphill = !w->p->trim && end->done && end->energy > end->before + rounding;
     const bool settled = !end->saddle && !uphill;

@@ -350,8 +350,8 @@ static void find_unbalanced(const mt_newton_work *w, double *out)
 }
 
 /* Multipliers, then gradient, Hessian and residual with them. */
-static mt_status balance_with_multipliers(mt_newton_work *w, const mt_placement *at,
-                                          mt_arena *mem, mt_elimination *e, mt_err *err)
+static mt_status evaluate_with_multipliers(mt_newton_work *w, const mt_placement *at,
+                                           mt_arena *mem, mt_elimination *e, mt_err *err)
 {
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
     w->l.trim_force = w->tau;
@@ -528,7 +528,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
     *solver = (mt_newton_solver){.sparse = false};
     MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
     w->factors += 2;
-    MT_TRY(balance_with_multipliers(w, at, mem, e, err));
+    MT_TRY(evaluate_with_multipliers(w, at, mem, e, err));
     MT_TRY(mt_newton_invert(w, e, mem, &solver->inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);

@@ -374,8 +374,8 @@ static mt_status walk_away(const near *v, mt_arena *mem, mt_err *err)
     return refuse_dependent_joints(v, null, mem, err);
 }
 
-static mt_status find_dead_centre(const mt_data *d, const mt_placement *at,
-                                  const mt_elimination *e, mt_arena *mem, mt_err *err)
+static mt_status check_dead_centre(const mt_data *d, const mt_placement *at,
+                                   const mt_elimination *e, mt_arena *mem, mt_err *err)
 {
     near v;
     int worst = -1;
@@ -394,7 +394,7 @@ mt_status mt_singular_refuse(const mt_data *d, const mt_placement *at, const mt_
                              mt_arena *scratch, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = find_dead_centre(d, at, e, scratch, err);
+    const mt_status rc = check_dead_centre(d, at, e, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }
