@@ -30,8 +30,8 @@ static double scaled_norm(int n, const double *a, const double *d)
 }
 
 /* f += alpha A x, A lower; NULL: identity. */
-static void add_symmetric_product(int n, double alpha, const double *a, const double *x,
-                                  double *work, double *f)
+static void add_lower_product(int n, double alpha, const double *a, const double *x,
+                              double *work, double *f)
 {
     if (a == NULL) {
         mt_axpy(n, alpha, x, f);
@@ -66,10 +66,10 @@ static double residual_of_damped(const checker *c, const mt_damped_modes *out, i
         c->f[1][j] = 0.0;
     }
     for (int k = 0; k < c->n_matrices; k++) {
-        add_symmetric_product(n, factor[k][0], c->matrix[k], y[0], c->work, c->f[0]);
-        add_symmetric_product(n, -factor[k][1], c->matrix[k], y[1], c->work, c->f[0]);
-        add_symmetric_product(n, factor[k][0], c->matrix[k], y[1], c->work, c->f[1]);
-        add_symmetric_product(n, factor[k][1], c->matrix[k], y[0], c->work, c->f[1]);
+        add_lower_product(n, factor[k][0], c->matrix[k], y[0], c->work, c->f[0]);
+        add_lower_product(n, -factor[k][1], c->matrix[k], y[1], c->work, c->f[0]);
+        add_lower_product(n, factor[k][0], c->matrix[k], y[1], c->work, c->f[1]);
+        add_lower_product(n, factor[k][1], c->matrix[k], y[0], c->work, c->f[1]);
     }
     for (int j = 0; j < n; j++) {
         force = hypot(force, c->d[j] * hypot(c->f[0][j], c->f[1][j]));
@@ -90,7 +90,7 @@ static double complex form(const checker *c, const double *a, const double *re,
     double part[3];
     for (int k = 0; k < 3; k++) { /* re re, re im, im im */
         memset(f, 0, (size_t)n * sizeof *f);
-        add_symmetric_product(n, 1.0, a, k == 0 ? re : im, c->work, f);
+        add_lower_product(n, 1.0, a, k == 0 ? re : im, c->work, f);
         part[k] = mt_dot(n, k == 2 ? im : re, f);
     }
     return mt_complex(part[0] - part[2], 2.0 * part[1]);

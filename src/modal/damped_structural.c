@@ -41,7 +41,7 @@ static mt_status shapes(const mt_damped_parts *s, double **out, mt_err *err)
 }
 
 /* W by the real system [K -H; H K] [Re W; Im W] = [H_Uw; 0]. */
-static mt_status solve_massless_following(structural *c, const double *huw, mt_err *err)
+static mt_status solve_massless_directions(structural *c, const double *huw, mt_err *err)
 {
     const mt_damped_parts *const s = c->s;
     const ptrdiff_t u = s->zu;
@@ -92,7 +92,7 @@ static mt_status stiffness(structural *c, mt_err *err)
     MT_TRY(mt_damped_sandwich(s, s->p->h, c->nw, yb, c->nw, yb, h, err));
     if (u > 0) {
         MT_TRY(mt_damped_sandwich(s, s->p->h, s->zu, s->t, c->nw, yb, huw, err));
-        MT_TRY(solve_massless_following(c, huw, err));
+        MT_TRY(solve_massless_directions(c, huw, err));
     }
     for (ptrdiff_t j = 0; j < nw; j++) {
         for (ptrdiff_t i = 0; i < nw; i++) {
