@@ -44,8 +44,8 @@ void mt_lowest_solve_free(const operation *o)
     mt_tri_solve(true, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
 }
 
-static mt_status multiply_by_flexibility(const operation *o, const double *x, double *y,
-                                         mt_err *err)
+static mt_status multiply_by_condensed_mass(const operation *o, const double *x, double *y,
+                                            mt_err *err)
 {
     const mt_tree *const t = o->tree;
     MT_TRY(mt_interrupt_check(t->sys->run->interrupt, err));
@@ -59,19 +59,20 @@ static mt_status multiply_by_flexibility(const operation *o, const double *x, do
     return MT_OK;
 }
 
-static mt_status apply_flexibility(void *context, int count, const double *x, double *y,
-                                   mt_err *err)
+static mt_status apply_condensed_mass(void *context, int count, const double *x, double *y,
+                                      mt_err *err)
 {
     const operation *const o = context;
     for (int c = 0; c < count; c++) {
         const ptrdiff_t at = (ptrdiff_t)o->tree->n_x * c;
-        MT_TRY(multiply_by_flexibility(o, x + at, y + at, err));
+        MT_TRY(multiply_by_condensed_mass(o, x + at, y + at, err));
     }
     return MT_OK;
 }
 
-/* As apply_flexibility, from the momentum of the whole motion (x, along): x and the motion that
- * follows cancel in the motion itself. *open: the mass of the remaining error of `along`. */
+/* As apply_condensed_mass, from the momentum of the whole motion (x, along): x and the motion
+ * that follows cancel in the motion itself. *open: the mass of the remaining error of
+ * `along`. */
 static void apply_to_whole_motion(const operation *o, const double *x, double *y, double *open)
 {
     const mt_tree *const t = o->tree;
@@ -166,7 +167,7 @@ static mt_status solve_lowest_modes(mt_lowest *l, mt_lowest_want want, mt_err *e
                                  .n_rigid = t->n_rigid,
                                  .count = want.count,
                                  .shapes = want.shapes,
-                                 .apply = apply_flexibility,
+                                 .apply = apply_condensed_mass,
                                  .refine = refine_quotients,
                                  .below = count_modes_below,
                                  .context = o};
@@ -372,7 +373,7 @@ static mt_status make_motions_room(const mt_lowest *l, int n, motions *out, mt_a
 
 /* The mode at a position as column i, of unit mass: of x = 0 that is r^T M_rr r; else x^T A x =
  * 1/lambda, and r follows. */
-static void copy_mode_as_column(const mt_lowest *l, int position, int i, const motions *to)
+static void write_mode_of_unit_mass(const mt_lowest *l, int position, int i, const motions *to)
 {
     const mt_tree *const t = l->tree;
     const operation *const o = l->operation;
@@ -413,7 +414,7 @@ mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
     for (int i = 0; i < n; i++) {
         double *const to = phi + ((ptrdiff_t)nq * i);
         if (l->way == MT_LOWEST_TREE) {
-            copy_mode_as_column(l, i, 0, &m);
+            write_mode_of_unit_mass(l, i, 0, &m);
             mt_tree_states(l->tree, m.v, to);
         } else {
             mt_absolute_shape(&l->bodies, l->found.x + ((ptrdiff_t)l->bodies.n * i), to);
@@ -515,7 +516,7 @@ static mt_status forms_of_tree(const mt_lowest *l, const pairs *p, double *form,
     motions m;
     MT_TRY(make_motions_room(l, p->n, &m, mem, err));
     for (int i = 0; i < p->n; i++) {
-        copy_mode_as_column(l, l->tree->n_rigid + i, i, &m);
+        write_mode_of_unit_mass(l, l->tree->n_rigid + i, i, &m);
     }
     const mt_tree_modes modes = {.n = p->n,
                                  .x = m.x,
