@@ -83,7 +83,7 @@ static mt_status make_e(work *k, mt_err *err)
 }
 
 /* F and G of what pushes: f, and sigma or what stands in a joint. */
-static mt_status add_load_forms(work *k, mt_err *err)
+static mt_status set_load_multipliers(work *k, mt_err *err)
 {
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     double *const balanced = mt_arena_f64(k->mem, (size_t)k->m, 1);
@@ -189,7 +189,7 @@ static mt_status open_work(work *k, mt_err *err)
         MT_TRY(mt_analysis_ratio_modes(k->p->a, &k->ratio, err));
     }
     MT_TRY(make_e(k, err));
-    MT_TRY(add_load_forms(k, err));
+    MT_TRY(set_load_multipliers(k, err));
     MT_TRY(pull_matrices(k, err));
     return k->ratio.r > 0 ? pull_ratios(k, err) : MT_OK;
 }

@@ -154,8 +154,9 @@ static void back(const mt_solutions *s, int count, const side *from, double *con
     }
 }
 
-static mt_status solve_columns(const mt_solutions *s, int count, const double *w,
-                               const mt_solved *out, bool *singular, mt_arena *mem, mt_err *err)
+static mt_status solve_at_frequencies(const mt_solutions *s, int count, const double *w,
+                                      const mt_solved *out, bool *singular, mt_arena *mem,
+                                      mt_err *err)
 {
     const ptrdiff_t n = s->one.n;
     const ptrdiff_t more = s->basis->n_follow;
@@ -186,7 +187,7 @@ mt_status mt_solutions_at(const mt_solutions *s, int count, const double *w,
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     *singular = false;
-    const mt_status rc = solve_columns(s, count, w, out, singular, scratch, err);
+    const mt_status rc = solve_at_frequencies(s, count, w, out, singular, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }
