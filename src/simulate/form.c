@@ -211,8 +211,8 @@ static bool next_root(const mt_form *d, double t, double *root)
 }
 
 /* The form of min (sign -1) or max (1) of two forms just after t; a sign of 0: |a - b|. */
-static bool form_of_extremum(int sign, const mt_form *a, const mt_form *b, double t,
-                             double *until, mt_form *out)
+static bool form_of_min_or_max(int sign, const mt_form *a, const mt_form *b, double t,
+                               double *until, mt_form *out)
 {
     mt_form d = *a;
     double root = HUGE_VAL;
@@ -254,10 +254,10 @@ static bool operate(mt_op op, const mt_form *a, const mt_form *b, double t, doub
     case MT_OP_COS:
         return wave_of(op == MT_OP_SIN, a, out);
     case MT_OP_ABS:
-        return form_of_extremum(0, a, &none, t, until, out);
+        return form_of_min_or_max(0, a, &none, t, until, out);
     case MT_OP_MIN:
     case MT_OP_MAX:
-        return form_of_extremum(op == MT_OP_MAX ? 1 : -1, a, b, t, until, out);
+        return form_of_min_or_max(op == MT_OP_MAX ? 1 : -1, a, b, t, until, out);
     default:
         return false;
     }
