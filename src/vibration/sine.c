@@ -34,7 +34,7 @@ typedef struct search {
 } search;
 
 /* F, F' and F''. */
-static void squared_and_slopes(const mt_frf *h, mt_near w, double *f)
+static void squared_gain_jet(const mt_frf *h, mt_near w, double *f)
 {
     double complex jet[3];
     mt_frf_jet(h, w, jet);
@@ -138,7 +138,7 @@ static void climb(search *s)
     double t = s->at.t;
     for (int step = 0; step < NEWTON_STEPS && low < high; step++) {
         double f[3];
-        squared_and_slopes(s->h, (mt_near){in.anchor, t}, f);
+        squared_gain_jet(s->h, (mt_near){in.anchor, t}, f);
         low = f[1] > 0.0 ? t : low;
         high = f[1] > 0.0 ? high : t;
         const double newton = f[2] < 0.0 ? t - (f[1] / f[2]) : HUGE_VAL;
@@ -158,7 +158,7 @@ static void refine_maximum(search *s)
     static const double same = 1.0 - (16.0 * DBL_EPSILON);
     for (int step = 0; step < LAST_STEPS; step++) {
         double f[3];
-        squared_and_slopes(s->h, s->at, f);
+        squared_gain_jet(s->h, s->at, f);
         if (!(f[2] < 0.0)) {
             break;
         }
