@@ -113,7 +113,7 @@ static int unit_sample(const record *r, int p)
 
 /* Columns of the least squares: z^i, of a pair its real and imaginary part. dgeev has pairs
  * next to each other, the positive one first. */
-static void fill(const record *r, double *a)
+static void fill_pole_columns(const record *r, double *a)
 {
     for (int p = 0; p < r->poles; p++) {
         const bool second = p > 0 && r->im[p] < 0.0;
@@ -139,7 +139,8 @@ static void add_tone(mt_tones *out, mt_tone tone)
     out->tone[at] = tone;
 }
 
-static void tell(const record *r, double dt, const double *a, const double *c, mt_tones *out)
+static void write_tones(const record *r, double dt, const double *a, const double *c,
+                        mt_tones *out)
 {
     double mean = 0.0;
     double largest = 0.0;
@@ -176,10 +177,10 @@ static mt_status read_record(record *r, double dt, mt_arena *mem, mt_tones *out,
     double *const a = mt_arena_f64(mem, (size_t)r->n, (size_t)r->poles);
     double *const c = mt_arena_f64(mem, (size_t)r->poles, 1);
     MT_TRY(mt_arena_check(mem, err));
-    fill(r, a);
+    fill_pole_columns(r, a);
     MT_TRY(mt_qr_factor(r->n, r->poles, a, r->n, DEPENDENT, mem, &qr, err));
     MT_TRY(mt_qr_solve(&qr, 1, r->x, c, mem, err));
-    tell(r, dt, a, c, out);
+    write_tones(r, dt, a, c, out);
     return MT_OK;
 }
 
