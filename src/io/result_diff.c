@@ -297,7 +297,8 @@ static const char *find_result_part(int n, const step *const *way, int *from)
 }
 
 /* "%" of "change_percent"; else the unit member next to it, where there is one. */
-static const char *unit_of(const search *s, const char *name, const mt_addr object[SIDES])
+static const char *difference_unit(const search *s, const char *name,
+                                   const mt_addr object[SIDES])
 {
     if (ends_with(name, "percent")) {
         return "%";
@@ -340,7 +341,7 @@ static void add_difference(search *s, const step *at, const mt_addr object[SIDES
     d->what = kept(&out->mem, &what);
     d->member = mt_arena_strdup(&out->mem, at->name == NULL ? "" : at->name);
     d->derived = d->derived || is_among(at->name, DERIVED, MT_COUNT(DERIVED));
-    const char *const unit = unit_of(s, at->name, object);
+    const char *const unit = difference_unit(s, at->name, object);
     d->unit = unit == NULL || unit[0] == '\0' ? NULL : unit;
     d->provenance = strcmp(part, MADE_BY) == 0;
     out->of_answer += d->provenance ? 0 : 1;
