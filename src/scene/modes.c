@@ -32,7 +32,7 @@ static double ends_moved(const mt_scene_view *v, const double *motion, const int
 
 /* The largest displacement of what is drawn; where none moves, a turn counts by the size of
  * its ellipsoid, or by itself. */
-static double largest_displacement(const mt_scene_view *v, const double *motion)
+static double largest_drawn_motion(const mt_scene_view *v, const double *motion)
 {
     double most = 0.0;
     double turn = 0.0;
@@ -71,7 +71,7 @@ static void fill_motion(const mt_scene_frame *f, const double *phi, double *moti
             motion[(6 * ((ptrdiff_t)b + 1)) + k] = dof >= 0 ? phi[dof] : 0.0;
         }
     }
-    const double most = largest_displacement(v, motion);
+    const double most = largest_drawn_motion(v, motion);
     for (ptrdiff_t i = 0; i < n; i++) {
         motion[i] = most > 0.0 && isfinite(most) ? motion[i] / most : 0.0;
     }
