@@ -85,7 +85,17 @@ def faults(place, text):
         yield f"{place}: {len(text)} characters in one piece"
 
 
+def questions(place, text):
+    """Comments of C that end with a question mark: a comment states what is so, or when."""
+    for match in re.finditer(r"/\*(.*?)\*/", text, re.S):
+        said = re.sub(r"\n\s*\*", "\n", match[1]).rstrip()
+        if said.endswith("?"):
+            yield f"{place}:{text.count(chr(10), 0, match.end()) + 1}: a comment asks: {' '.join(said.split())[-60:]}"
+
+
 def self_test():
+    if not list(questions("x.h", "/* Is it\n * there? */")) or list(questions("x.h", '/* True where "?" is there. */')):
+        return ["self-test: questions are not told from statements"]
     bad = ["Of 3 gap assignments", "it falls over", "is done anew", "x" * (LONGEST + 1)]
     return [f"self-test: {text[:40]!r} passed" for text in bad if not list(faults("src/x/y.c:1", text))]
 
@@ -97,4 +107,6 @@ if __name__ == "__main__":
             print(f"{where}: {' '.join(what.split())}")
         sys.exit(0)
     wrong = [fault for where, what in found for fault in faults(where, what)]
+    for file in sorted([*(ROOT / "src").rglob("*.[ch]"), *(ROOT / "include").rglob("*.h")]):
+        wrong += questions(file.relative_to(ROOT), file.read_text(encoding="utf-8"))
     verdict("english", len(found), wrong + self_test() + ([] if len(found) > 1500 else [f"only {len(found)} strings were found"]))
