@@ -71,8 +71,8 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
             is_text(a->shape.reference, b->shape.reference) && a->shape.mode == b->shape.mode);
 }
 
-/* A number with a limit, and two of its values in one family: what lies between them is asked
- * for as well. A target, and what has a weight, is of the positions that are named. */
+/* True where a value is limited in at least two positions of one drive, so that the limit also
+ * applies between them. A target, and a weighted goal, applies at the named positions only. */
 static bool is_limited(const mt_problem *p, const mt_requirement *d)
 {
     const bool limits = d->ops->value != NULL && d->row_res < 0 && !MT_HAS(d->equals);
@@ -143,7 +143,7 @@ static mt_status gather(mt_problem *p, int first, mt_drive_positions *f, mt_err 
 
 static mt_status tie(mt_problem *p, mt_err *err);
 
-/* A view of the family's mechanism, counted as its positions are. */
+/* An analysis of the drive's mechanism with the mode count of its positions. */
 static mt_configuration_problem view_of(const mt_problem *p, const mt_drive_positions *f)
 {
     const mt_configuration_problem *const like = &p->views[f->view[0]];
@@ -151,8 +151,8 @@ static mt_configuration_problem view_of(const mt_problem *p, const mt_drive_posi
         .configuration = f->configuration, .n_rigid = like->n_rigid, .n_most = like->n_most};
 }
 
-/* The mechanism whose positions are followed; that it does not exist is told where it is asked
- * for. */
+/* Makes the mechanism that is followed between positions; where that fails, the reason is kept
+ * in `why` and reported on use. */
 static mt_status set_moving(mt_problem *p, mt_drive_positions *f, mt_err *err)
 {
     const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};

@@ -84,9 +84,9 @@ mt_status mt_configuration_drive(const mt_problem *p, const mt_configuration_pro
     return count_as(view, a, at, out, err);
 }
 
-/* Shape of each named mode of the configuration at the original design; of those that are
- * there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
- * the study counts, have none there. */
+/* Shape of each named mode of the configuration that exists at the original design. The model
+ * names a mode by its index at its own design, where vibrations of 0 Hz, which only the study
+ * counts, have no index. */
 static mt_status name_modes(mt_problem *p, mt_configuration_problem *view, mt_err *err)
 {
     const mt_model *const model = p->study->model;
@@ -168,8 +168,8 @@ static mt_status resolve_name(const mt_problem *p, const mt_configuration_proble
                    mt_analysis_configuration(view->original), instability(view));
 }
 
-/* An index must be there at some design; where the original one is unstable nothing has an
- * index, and it is enough that there are as many freedoms. */
+/* A mode index must exist at some design; where the original design is unstable no mode has an
+ * index, and enough degrees of freedom suffice. */
 static mt_status resolve_index(const mt_configuration_problem *view, const mt_requirement *d,
                                mt_err *err)
 {

@@ -53,7 +53,7 @@ double mt_tolerance_factor(const mt_subproblem *c, int i, int side)
     return 1.0 + (sign * (double)side * mt_tolerance_of_variable(c->p, i));
 }
 
-/* Whether the j-th of n variables of unknown sign is high in combination c. */
+/* True where the j-th of n variables of unknown sign is high in combination c. */
 static bool is_high(int c, int j, int n)
 {
     if (n <= COMBINED_MOST) {
@@ -166,7 +166,7 @@ static mt_status check_requirement(const mt_requirement *d, mt_err *err)
                                  d->goal_index, d->goal->mode.mode_name.s);
 }
 
-/* Whether a search can go on from a design that misses a corner. */
+/* True where a search can continue from a design that violates a corner. */
 static bool goes_on(const mt_problem *p)
 {
     bool any = false;
@@ -185,7 +185,8 @@ static bool any_unknown(const mt_problem *p, const int *signs)
     return any;
 }
 
-/* Corners of one view. Those of a cut (a position of a drive) are judged by nobody later. */
+/* Corners of one configuration. Those of a cut (a position of a drive) are not verified
+ * later. */
 static mt_status init_view(mt_subproblem *c, int view, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
@@ -199,8 +200,8 @@ static mt_status init_view(mt_subproblem *c, int view, mt_arena *mem, mt_err *er
     return set->n > 0 ? MT_OK : make_corners(c, signs, has_range(p, view), mem, set, err);
 }
 
-/* Corners of the views that constraints or bands look at; those of the problem's own may be
- * known. */
+/* Corners of the configurations that constraints or bands use; those of the problem's own may
+ * be known. */
 static mt_status init_views(mt_subproblem *c, const mt_problem_tolerance_box *known,
                             mt_arena *mem, mt_err *err)
 {

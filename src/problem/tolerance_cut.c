@@ -29,14 +29,14 @@ static const mt_tolerance_corners *set_of(const mt_subproblem *c, int view, int 
     return view >= 0 ? &c->tolerance_box->views[view] : &c->tolerance_box->limits[requirement];
 }
 
-/* Views of cuts of a motion are judged at their corners alone. */
+/* Configurations of cuts along a drive are evaluated at their corners only. */
 static bool is_judged(const mt_subproblem *c, const mt_tolerance_row *row)
 {
     const int view = mt_tolerance_row_configuration(c, row);
     return view < c->p->n_views && !set_of(c, view, row->requirement)->exact;
 }
 
-/* Whether two rows hold one number on one side, at two corners. */
+/* True where two rows limit one value on one side, at two corners. */
 static bool is_same(const mt_tolerance_row *a, const mt_tolerance_row *b)
 {
     return a->requirement == b->requirement && a->side == b->side &&
@@ -148,7 +148,8 @@ static void begin_judging(mt_tolerance_cuts *cuts)
     cuts->band_margin = HUGE_VAL;
 }
 
-/* leave: [n_views of the problem] views whose rows keep far from their limits; NULL: none. */
+/* leave: [n_views of the problem] configurations whose rows are far from their limits; NULL:
+ * none. */
 static mt_status lower(mt_workspace *w, mt_nlp_values *v, const bool *leave, mt_arena *mem,
                        mt_tolerance_cuts *cuts, mt_err *err)
 {

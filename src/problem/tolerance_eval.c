@@ -185,8 +185,8 @@ mt_status mt_tolerance_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *
     return MT_OK;
 }
 
-/* Lowest and highest frequency of vibration mode k of a view: its range where that is known,
- * else of the design itself and its corners; false: there is no such mode. */
+/* Lowest and highest frequency of vibration mode k of a configuration: its range where known,
+ * else over the nominal design and its corners; false: no such mode. */
 static bool span_of(const mt_workspace *w, int view, int k, double *low, double *high)
 {
     const int n_corners = w->c->tolerance_box->views[view].n;

@@ -45,7 +45,7 @@ mt_status mt_tolerance_range_init(int n, mt_arena *mem, mt_tolerance_range *out,
 }
 
 /* What does not exist somewhere is the least and the greatest there is. */
-/* Compare value[m] at x with what is known: out[m]. */
+/* Updates out[m] with value[m] at x. */
 static void note(const mt_tolerance_probe *q, const double *x, const double *value,
                  mt_tolerance_range *out)
 {
@@ -176,8 +176,8 @@ static mt_status search_line(sampler *s, int k, mt_tolerance_side side, mt_err *
     return visit_between(s, 1.0, err);
 }
 
-/* *changes: whether number k changes along input i, through the point that it is best at, by
- * more than rounding. Its ends say so where its slope is nothing. */
+/* *changes: value k changes along input i, through its best point, by more than rounding;
+ * tested at the ends of i where its slope is 0. */
 static mt_status changes_along(sampler *s, int k, int i, double value, bool *changes,
                                mt_err *err)
 {

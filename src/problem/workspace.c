@@ -99,7 +99,7 @@ mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
     return MT_OK;
 }
 
-/* Places for n views, those that are there with what they have. */
+/* Grows the list to n configurations, keeping existing ones. */
 static mt_status make_room(mt_workspace *w, int n, mt_err *err)
 {
     if (n <= w->n_views) {
@@ -290,15 +290,14 @@ static void say_progress(const mt_workspace *w)
     }
 }
 
-/* Values that are known; what is judged over tolerances or positions of a drive later may not
- * hold. */
+/* True where a feasible value is verified later over tolerances or positions of a drive, and
+ * may still fail. */
 static bool judged_later(const mt_workspace *w)
 {
     return mt_drive_positions_any(w->p) || mt_tolerance_is_sampled(w->c);
 }
 
-/* True where somebody wants to know of a design that meets all goals, and can be told its
- * value. */
+/* True where progress of feasible designs is reported and the value can be. */
 static bool is_wanted(const mt_workspace *w)
 {
     const mt_subproblem *const c = w->c;
