@@ -170,8 +170,8 @@ static void serialize_look(void *context, int task, mt_serializer *serializer)
     }
 }
 
-/* Find whether there is a certificate for the geometry of a combination that has been judged;
- * then there is for others. */
+/* Tests whether a proof is possible for the geometry of an evaluated combination; it is then
+ * possible for others too. */
 static mt_status probe(branching *v, mt_err *err)
 {
     const mt_catalogue_search *const d = v->d;
@@ -298,7 +298,7 @@ static const mt_combination *best_of(const branching *v)
     return best;
 }
 
-/* The combination of these values among those that are known; NULL: it is not. */
+/* The known combination with these values; NULL: none. */
 static mt_combination *known(const branching *v, const int *pick)
 {
     const size_t size = (size_t)v->d->n_listed * sizeof *pick;
@@ -310,8 +310,8 @@ static mt_combination *known(const branching *v, const int *pick)
     return NULL;
 }
 
-/* Designs of the first objective below this are asked for: better than the best one by more
- * than searches differ, or as good where other objectives follow. Infinite: no best one. */
+/* Bound of the first objective for wanted designs: better than the best one by more than
+ * searches differ, or equal where other objectives follow. Infinite without a best one. */
 static double cap_of(const branching *v)
 {
     const mt_combination *const best = best_of(v);
@@ -351,8 +351,8 @@ static void take(branching *v, double cap)
     }
 }
 
-/* To be searched next, where that has not been done; from x (NULL: from nowhere), where it has
- * been done, too. */
+/* Adds the combination to those searched next, unless it was searched; from the design x (NULL:
+ * no start) in any case. */
 static mt_status propose(branching *v, const int *pick, const double *x, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -459,7 +459,7 @@ static mt_status search_fresh(branching *v, mt_err *err)
     return MT_OK;
 }
 
-/* One round; boxes whose combination has not been searched stay open. */
+/* One round; boxes whose combination was not searched stay open. */
 static mt_status round_of(branching *v, double cap, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -492,7 +492,7 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
     return MT_OK;
 }
 
-/* Before a round: how much is left to look at, and how much better that may be. */
+/* Progress before a round: what remains open, and by how much it may be better. */
 static void note_open(const branching *v, mt_catalogue_search_report *report)
 {
     const mt_combination *const best = best_of(v);

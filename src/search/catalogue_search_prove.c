@@ -78,7 +78,7 @@ static mt_status best_of(const prover *v, const mt_combination **out, mt_err *er
     return MT_OK;
 }
 
-/* The combination of x, which joins the list where it is not in it. */
+/* The combination of x; appended to the list where it is not in it. */
 static mt_status combination_at(prover *v, const double *x, mt_combination **out, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -108,8 +108,8 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
     return MT_OK;
 }
 
-/* Judge the combination of a design that meets the question: on its own, or searched from
- * there. */
+/* Evaluates the combination of a design that the proof found: alone, or searched from that
+ * design. */
 static mt_status judge(prover *v, const double *x, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -168,7 +168,7 @@ static mt_status note_kinds(prover *v, const mt_certify_search *found, mt_err *e
     return MT_OK;
 }
 
-/* Ask each geometry with its share of `most`, and judge what is found. */
+/* Runs the proof of each geometry with its share of `most`, and evaluates the designs found. */
 static mt_status ask(prover *v, outcome *out, mt_err *err)
 {
     double most = fmin(PART * v->d->c->proof_work, v->left);
@@ -260,7 +260,7 @@ static mt_status prove(prover *v, mt_err *err)
     return MT_OK;
 }
 
-/* Why the question as a whole cannot be asked. */
+/* Reason why the whole question cannot be proven. */
 static mt_status give_reason(const prover *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;

@@ -49,7 +49,8 @@ typedef struct continua {
     mt_err err;
 } continua;
 
-/* The objectives at t, half squares as roots; false where it has none, or misses a goal. */
+/* The objectives at t, half squares as roots; false where they have no value or a goal is not
+ * met. */
 static bool measure(continua *c, const double *t, double *aims)
 {
     mt_workspace *const ws = c->ws;
@@ -194,8 +195,8 @@ bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t)
     return mt_is_nearer(c->p->n, c->origin_t, c->change_weight, s, t);
 }
 
-/* One record for both, at the place of the better: it is that of the nearer to the original,
- * unless directions are told of the better, or the nearer is no local solution. */
+/* Joins `other` into solution `into`. The record is that of the one nearer to the original,
+ * unless unidentifiable directions belong to `into` or the nearer one is no local solution. */
 static void join(const continua *c, int into, const mt_nlp_solution *other)
 {
     mt_nlp_result *const out = c->out;
@@ -211,8 +212,8 @@ static void join(const continua *c, int into, const mt_nlp_solution *other)
     s->continuum = true;
 }
 
-/* group[i]: the first solution of i's continuum, i itself where it is alone. All pairs are
- * compared, so that it does not matter which of a continuum is kept. */
+/* group[i]: the first solution of i's continuum; i itself where it is alone. All pairs are
+ * compared, so the result does not depend on which one is kept. */
 static void find_groups(continua *c, int *group)
 {
     for (int i = 0; i < c->out->n_solutions; i++) {
