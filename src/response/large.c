@@ -63,7 +63,7 @@ static mt_status take(work *k, double *x, mt_err *err)
     return MT_OK;
 }
 
-/* The shapes of one force beside the modes. */
+/* Adds the shapes of one force. */
 static mt_status add_shapes(work *k, force *f, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(k->scratch);
@@ -111,8 +111,8 @@ static bool keep_modes(work *k, double *lambda)
     return k->kept > 0 ? true : mt_large_refuse(k, "it has no vibration modes");
 }
 
-/* Motions that cancel leave the coordinates not quite orthonormal: a bound of the norm of
- * X^T H X - I, which is what a solution in them is off by, as a part of its force. */
+/* Cancellation leaves the coordinates not quite orthonormal: returns a bound of the norm of X^T
+ * H X - I, the relative error of a solution in them, as a part of its force. */
 static mt_status find_skew(work *k, double *skew, mt_err *err)
 {
     double *const dual = mt_arena_f64(k->scratch, (size_t)k->n_x, 1);

@@ -125,7 +125,7 @@ static mt_status add_input(build *k, int i, mt_err *err)
     return MT_OK;
 }
 
-/* What moves with the ground besides, of a sensor's motion in space. */
+/* Ground motion in a sensor's motion in space. */
 static mt_status add_ground(build *k, int o, int row, mt_err *err)
 {
     for (int i = 0; i < k->n_in; i++) {

@@ -121,7 +121,7 @@ static void residual(const work *k, int cols, const double complex *b, const dou
     }
 }
 
-/* x := the factor's solution of D x = b; in place where they are one. */
+/* x := solution of D x = b by the factor; x and b may be the same array. */
 static mt_status back(const work *k, int cols, const double complex *b, double complex *x,
                       mt_err *err)
 {
@@ -214,8 +214,8 @@ static mt_status solutions(work *k, bool slope, bool adjoint, mt_arena *mem, mt_
     return adjoint ? solve(k, n_out, k->a, mem, err) : MT_OK;
 }
 
-/* y := sigma q, a column of it. By hand: half of it is 0 most often, and C's own products of
- * complex numbers ask whether any is infinite. */
+/* y := sigma q, one column. Written out: half of sigma is usually 0, and C's complex product
+ * tests for infinities. */
 static void sense(const mt_transfer *t, int p, const double complex *q, double complex *y)
 {
     const ptrdiff_t n_out = t->n_out;
@@ -314,7 +314,7 @@ static double error_of(const work *k, ptrdiff_t o, ptrdiff_t i)
     return (ROUNDINGS * DBL_EPSILON * sum) + (left * right);
 }
 
-/* |A^p g| m^p, or |g| where whole, of a force and of what damps along its motion x. */
+/* |A^p g| m^p (|g| where whole) of a force and of the local damping along its motion x. */
 static double left_of(const work *k, const mt_left_part *own, double power,
                       const double complex *x, double m, bool whole)
 {
@@ -333,7 +333,7 @@ static double left_of(const work *k, const mt_left_part *own, double power,
     return sum;
 }
 
-/* The rounding of one force, which x meets. */
+/* Rounding error of one force times x. */
 static double noise_of(const work *k, const mt_left_part *own, double power,
                        const double complex *x)
 {
@@ -345,7 +345,7 @@ static double noise_of(const work *k, const mt_left_part *own, double power,
     return pow(k->w, power) * sum;
 }
 
-/* What is left out may be worth so much. */
+/* Error bound of what is left out (mt_left_out). */
 static double left_error(const work *k, ptrdiff_t o, ptrdiff_t i)
 {
     const mt_left_out *const l = k->t->left;
