@@ -84,7 +84,7 @@ static mt_status find_measured(mt_problem *p, const mt_requirement *d, mt_fit *f
     return found == 1 ? MT_OK : none_found(p, d, found, &p->mem, err);
 }
 
-/* Units are held against each other where the file says them. */
+/* Compares units where the file gives them. */
 static mt_status check_unit(mt_problem *p, const mt_requirement *d, const mt_fit *fit,
                             mt_err *err)
 {
@@ -199,7 +199,7 @@ static mt_status prepare(mt_analysis *a, const mt_fit *fit, forced *out, mt_err 
     return mt_basis_make(&problem, &a->mem, &out->basis, err);
 }
 
-/* The measured file's name is said with its line, which is where the trouble is seen. */
+/* Names the measured file and its line, where the fault is. */
 static mt_status no_value(const mt_workspace *w, const mt_requirement *d, int i,
                           const char *what, mt_err *err)
 {

@@ -9,7 +9,7 @@
 
 /* A measured response to be fitted: the lines within the goal's band. */
 typedef struct mt_fit {
-    mt_port_set ports; /* one input, one output, of the view's system */
+    mt_port_set ports; /* one input and one output, of the configuration's system */
     const mt_measured_response *measured;
     int n;
     double *w;         /* [n] [rad/s] */

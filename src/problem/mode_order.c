@@ -22,7 +22,7 @@ typedef struct mt_mode_order {
     int mode; /* vibration index */
 } mt_mode_order;
 
-/* Rows that follow from row `row`, behind n that are there, unless list is NULL; their
+/* Appends the rows implied by row `row` to the n present, unless list is NULL; returns their
  * number. */
 static int add(const mt_subproblem *c, const mt_mode_order *what, int row, mt_mode_order *list,
                int *next_of, int n)

@@ -74,8 +74,8 @@ static mt_status init_tolerances(mt_subproblem *c, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* Behind the rows of bands those of the objective "vibration", and its coordinate: any ratio of
- * e^-49 to e^50. */
+/* Appends the rows of the objective "vibration" to those of the bands, and its coordinate: any
+ * ratio of e^-49 to e^50. */
 static void lay_out_soft(mt_subproblem *c)
 {
     const int n = c->p->n;

@@ -37,7 +37,7 @@ bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d)
     return any_tolerance(p) && MT_HAS(d->equals) && d->goal->tolerance_addr != d->goal->addr;
 }
 
-/* The bounds, wider by the tolerances. */
+/* Bounds widened by the tolerances. */
 static void widen(const mt_subproblem *c)
 {
     for (int i = 0; i < c->p->n; i++) {
@@ -83,8 +83,8 @@ static mt_status make_corner(const mt_subproblem *c, const int *signs, int sides
     return MT_OK;
 }
 
-/* The corners that signs[n] leave, without analyses; at least the design itself, where a range
- * has no other rows. */
+/* Corners by signs[n], without analyses; at least the nominal design, where a range has no
+ * other rows. */
 static mt_status make_corners(const mt_subproblem *c, const int *signs, bool ranged,
                               mt_arena *mem, mt_tolerance_corners *out, mt_err *err)
 {
@@ -108,8 +108,8 @@ static mt_status make_corners(const mt_subproblem *c, const int *signs, bool ran
     return MT_OK;
 }
 
-/* Bounds on both sides of 0 turn the ends of a relative tolerance over: no sign then says which
- * end is the soft one. */
+/* Effect of raising variable i; MT_UNKNOWN for bounds on both sides of 0, where the ends of a
+ * relative tolerance swap. */
 static int sign_of(const mt_subproblem *c, int i, bool rises, bool falls)
 {
     const bool turns = c->lower[i] < 0.0 && c->upper[i] > 0.0;
@@ -317,8 +317,7 @@ static void list_all(mt_subproblem *c, mt_tolerance_row *rows)
     }
 }
 
-/* Number the rows, once to count them and once to keep them, and make room for their
- * tolerances. */
+/* Numbers the rows, first to count and then to store them, with memory for their tolerances. */
 static mt_status init_rows(mt_subproblem *c, mt_arena *mem, mt_err *err)
 {
     mt_problem_tolerance_box *const r = c->tolerance_box;

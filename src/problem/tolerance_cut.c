@@ -64,7 +64,7 @@ static bool same_factor(int n, const double *a, const double *b)
     return true;
 }
 
-/* One more corner where the number of a row is worst, unless it is one already. */
+/* Adds the corner where the value of a row is worst, unless it is one already. */
 static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, const double *at,
                          mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
 {
@@ -104,7 +104,7 @@ static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, con
     return MT_OK;
 }
 
-/* The number that a row limits, over the tolerances; NULL: it is not there. */
+/* Range over the tolerances of the value that a row limits; NULL: not available. */
 static const mt_tolerance_range *range_of(const mt_subproblem *c, const mt_ranges *ranges,
                                           const mt_tolerance_row *row)
 {
@@ -202,8 +202,8 @@ static double largest_tolerance(const mt_problem *p)
     return most;
 }
 
-/* A row of a mode at the corner that its slopes name, solved with an analysis of a corner.
- * *far: it keeps its limit by much there. */
+/* Evaluates a row of a mode at the corner given by its slopes, with an analysis of a corner.
+ * *far: its limit holds there by a wide margin. */
 static mt_status verify_first(mt_workspace *w, const mt_tolerance_row *row, double *x,
                               mt_arena *mem, mt_tolerance_cuts *cuts, bool *far, mt_err *err)
 {
@@ -240,8 +240,8 @@ static mt_status verify_first(mt_workspace *w, const mt_tolerance_row *row, doub
     return MT_OK;
 }
 
-/* All rows of modes that are held at samples. far: [n_views of the problem] of a view, all of
- * them keep their limits by much. */
+/* All rows of modes evaluated at sampled corners. far: [n_views of the problem] all rows of a
+ * configuration hold by a wide margin. */
 static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_cuts *cuts,
                                   bool *far, mt_err *err)
 {

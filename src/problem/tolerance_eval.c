@@ -42,7 +42,7 @@ typedef struct quantity {
     double z; /* least clearance that is asked for */
 } quantity;
 
-/* ln(f / edge_hz) at the corner, its slopes over t into robust->slope. */
+/* ln(f / edge_hz) at the corner, with its slopes over t in tolerance_box->slope. */
 static mt_status frequency(mt_workspace *w, int view, const mt_tolerance_row *row, int mode,
                            double edge_hz, bool with_gradient, double *value, mt_err *err)
 {
@@ -88,7 +88,7 @@ static mt_status expression(mt_workspace *w, const mt_tolerance_corner *c, mt_no
     return MT_OK;
 }
 
-/* The limit that a row keeps, of a target with its tolerance. */
+/* Limit of a row; of a target with its tolerance. */
 static double limit_of(const mt_problem *p, const mt_tolerance_row *row)
 {
     const mt_requirement *const d = &p->requirements[row->requirement];

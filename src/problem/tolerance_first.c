@@ -45,8 +45,8 @@ static mt_status make_first(const mt_subproblem *c, const int *signs, const doub
     return MT_OK;
 }
 
-/* Sides on which goals limit mode `mode` of a view: of bands either, below their upper edges
- * and one beyond. */
+/* Sides on which goals limit mode `mode` of a configuration: bands on both sides, for modes
+ * below their upper edges and one above. */
 static void find_sides(const mt_subproblem *c, int view, int mode, double hz_before,
                        bool *sides)
 {

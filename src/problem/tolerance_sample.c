@@ -237,8 +237,8 @@ static mt_status step(sampler *s, int k, mt_tolerance_side side, mt_err *err)
     return s->out[k].value[side] == before ? search_line(s, k, side, err) : MT_OK;
 }
 
-/* Some of the same points in boxes about the best of number k, each half as wide as the one
- * before: over ridges, where frequencies meet, no slope and no axis leads on. */
+/* Sample points in boxes about the best point of value k, each half as wide as the one before:
+ * this crosses ridges, where frequencies meet and neither slopes nor axes lead on. */
 static mt_status step_around(sampler *s, int k, mt_tolerance_side side, mt_err *err)
 {
     const mt_tolerance_probe *const q = s->q;
@@ -290,8 +290,8 @@ static mt_status repeat(sampler *s, move step_of, int k, mt_tolerance_side side,
     return MT_OK;
 }
 
-/* True where another number has been looked at about the corner where number k is best. All are
- * noted wherever one is. */
+/* True where another value's search has sampled around the corner where value k is best: all
+ * values are recorded at every sample. */
 static bool is_explored(const sampler *s, const double *at)
 {
     const size_t n = (size_t)s->q->n;

@@ -115,7 +115,7 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
     return MT_OK;
 }
 
-/* Views of one geometry make it once. */
+/* Configurations with the same geometry share it. */
 static mt_status share_view(mt_workspace *w, const mt_configuration_work *view, mt_err *err)
 {
     bool shared = false;
@@ -128,7 +128,7 @@ static mt_status share_view(mt_workspace *w, const mt_configuration_work *view, 
     return MT_OK;
 }
 
-/* An analysis of the view, unless it is there already. */
+/* Makes the configuration's analysis where missing. */
 static mt_status open_view(mt_workspace *w, mt_configuration_work *view,
                            const mt_configuration_problem *of, mt_err *err)
 {
