@@ -77,8 +77,8 @@ static mt_status list_all(const mt_catalogue_search *d, int n, mt_combination **
     return MT_OK;
 }
 
-/* By the change that cannot be avoided, then in the order of the list (pick lies in one array
- * in that order). */
+/* Orders by unavoidable change, then by the order of the list (pick is in one array in that
+ * order). */
 static int by_change(const void *a, const void *b)
 {
     const mt_combination *const x = a;
@@ -232,7 +232,8 @@ static mt_status collect(const mt_catalogue_search *d, const ranking *r, mt_nlp_
     return MT_OK;
 }
 
-/* Where none keeps its limits between the positions, those that keep them at these stand. */
+/* Where none satisfies its limits between the positions, those that satisfy them at the named
+ * ones count as feasible. */
 static bool take_broken(const ranking *r, mt_combination *const *all, int n)
 {
     bool any = false;

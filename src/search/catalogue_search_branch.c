@@ -226,7 +226,7 @@ static void end(const branching *v)
     }
 }
 
-/* One more box, its ranges those of b but for catalogue k (-1: all are b's). */
+/* Adds a box with the ranges of b except for catalogue k (-1: all are b's). */
 static mt_status push(branching *v, const box *b, int k, int first, int last, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -262,8 +262,8 @@ static mt_status push_all(branching *v, mt_err *err)
     return push(v, &whole, -1, 0, 0, err);
 }
 
-/* Both halves of a box, at the catalogue of which it has the greatest share: among those that
- * shape the geometry, if there are certificates to be had. */
+/* Halves a box at the catalogue of which it has the greatest share; at those that shape the
+ * geometry first, where proofs are possible. */
 static mt_status halve(branching *v, const box *b, mt_err *err)
 {
     const mt_catalogue_search *const d = v->d;
@@ -332,7 +332,7 @@ static int by_bound(const void *a, const void *b)
     return x->number < y->number ? 1 : -1;
 }
 
-/* The boxes of the next round; those that cannot be better leave the list with it. */
+/* Selects the boxes of the next round, and drops those that cannot be better. */
 static void take(branching *v, double cap)
 {
     int kept = 0;
@@ -391,7 +391,7 @@ static void pick_of(const mt_catalogue_search *d, const box *b, const double *x,
     }
 }
 
-/* What follows from the looks: boxes are gone, halved, or searched. */
+/* Applies the results of a round: boxes are excluded, halved, or searched. */
 static mt_status follow_up(branching *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -417,7 +417,7 @@ static mt_status follow_up(branching *v, mt_err *err)
     return MT_OK;
 }
 
-/* A combination that was searched joins the others, or takes the place of itself. */
+/* Adds a searched combination to the others, or replaces its earlier record. */
 static mt_status join(branching *v, mt_combination *c, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;

@@ -133,7 +133,7 @@ static bool is_astray(const walk *w, const sample *s)
            mt_guards_astray(&w->guards, &a->guard, before, &s->guard, after, &b->guard);
 }
 
-/* What sample i makes known of itself and its neighbours. */
+/* Updates the estimates of sample i and its neighbours. */
 static void verify_neighbours(walk *w, int i)
 {
     for (int k = i > 0 ? i - 1 : 0; k <= i && k + 1 < w->n; k++) {
@@ -144,7 +144,7 @@ static void verify_neighbours(walk *w, int i)
     }
 }
 
-/* One more position, which becomes sample i of the way. */
+/* Inserts a position as sample i of the interval. */
 static mt_status look(walk *w, int i, double at, bool given, mt_err *err)
 {
     mt_limit_drive_path *const out = w->out;

@@ -280,8 +280,8 @@ static mt_status order(const mt_mode_placement_job *first,
     return MT_OK;
 }
 
-/* The list has room: what was met so far has a search of its own before the proof, from its
- * design, as all the others that the proof leaves have after it. */
+/* Where the list is not full: each placement met so far is searched before the proof, from its
+ * design, and those the proof leaves after it. */
 static mt_status keep_met(mt_mode_placement_job *first, mt_mode_placement_candidates *begin,
                           mt_arena *mem, mt_err *err)
 {

@@ -47,7 +47,7 @@ typedef struct mt_mode_placement_result {
     int n_feasible; /* of these, with a design that meets all goals */
     /* ended: candidates were searched best first until the requested designs were known.
      * Proven: no design of an unsearched one has a first objective below `rest` (HUGE_VAL: none
-     * has a design), and, where `bounded`, none ranks before those listed */
+     * has a design), nor, where `bounded`, below those listed */
     double rest;
     bool ended;
     bool bounded;

@@ -223,7 +223,7 @@ static mt_status keep(const mt_problem *p, const sampled *list, const bool *kept
     return MT_OK;
 }
 
-/* True where all that was met, but for what slices found, was met often. */
+/* True where every placement met, except those of sampled geometries, was met often. */
 static bool all_met_often(const sampled *list, int n)
 {
     bool often = n > 0;

@@ -222,8 +222,7 @@ static mt_nlp nlp_of(relaxed *r, mt_subproblem *c, const double *near, double *h
     return nlp;
 }
 
-/* Evaluations that are left to the move, without its confirmations', and their places' along a
- * motion. */
+/* Evaluations left for the move, without those of its confirmations and of following drives. */
 static long left_of(const job *j, const mt_subproblem *c, const task_result *out,
                     const answer *a)
 {
@@ -245,9 +244,8 @@ static mt_status solve(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options 
     return mt_pass_final(own, &why, err);
 }
 
-/* The search for the least change with the move that was found, which ends in *to; NULL: none
- * was found, or there is nothing left for it. one: all searches ended at it, so that the slack
- * leaves designs about it alone. */
+/* Searches the least total change with the move found; *to: its end, NULL: none found or no
+ * budget. one: all searches ended at one design, so the slack allows only designs around it. */
 static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, bool one,
                         long left, task_result *out, const double **to, mt_err *err)
 {

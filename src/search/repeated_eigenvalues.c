@@ -36,7 +36,7 @@ static bool known(const mt_repeated_eigenvalues *m, const mt_repeated_eigenvalue
     return false;
 }
 
-/* True where there is a block for the same modes, from the other side; that then stands for
+/* True where a block with the same modes exists from the other side; it is then used for
  * both. */
 static bool joined(mt_repeated_eigenvalues *m, const mt_repeated_eigenvalues_side *s, int index,
                    int r)

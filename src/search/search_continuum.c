@@ -168,7 +168,7 @@ static bool restore_near(continua *c, double aside)
     return near;
 }
 
-/* True where all that is between solutions i and k is as good as they are. */
+/* True where all designs between solutions i and k are as good as they are. */
 static bool connected(continua *c, int i, int k)
 {
     const double *const a = c->out->solutions[i].t;
@@ -231,8 +231,8 @@ static void find_groups(continua *c, int *group)
     }
 }
 
-/* Ranked: what belongs to a better one goes into it. group: afterwards its place in the list,
- * as -1 - place, for each first. */
+/* Ranked: joins each solution into the better one of its group. group: on return the place of
+ * each group's first in the list, as -1 - place. */
 static void join_all(const continua *c, int *group)
 {
     mt_nlp_result *const out = c->out;

@@ -332,7 +332,7 @@ static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
     return MT_OK;
 }
 
-/* Where all that is loose at s are single variables: along these alone. */
+/* Where only single variables are free at s: moves along these alone. */
 static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solution **end,
                             mt_err *err)
 {
@@ -380,7 +380,7 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
     return rc;
 }
 
-/* The design `end` instead of s, which is known as what s was found as. */
+/* Replaces the design of s by `end`, keeping how s was found. */
 static void put_nearer(mt_nlp_solution *s, const mt_nlp_solution *end)
 {
     const mt_nlp_solution old = *s;

@@ -194,7 +194,7 @@ static mt_status hold_cuts(rounds *r, mt_subproblem *held, mt_err *err)
                                  r->mem, err);
 }
 
-/* All that is open once more, with the cuts so far. */
+/* Searches again from all open solutions, with the cuts so far. */
 static mt_status search_again(rounds *r, mt_err *err)
 {
     const mt_subproblem *const c = r->c;
@@ -327,7 +327,7 @@ static void drop_broken(rounds *r)
     out->n_solutions = n;
 }
 
-/* Where some design meets everything those that do not are none. */
+/* Drops designs that violate something where another meets everything. */
 static mt_status sort_out(rounds *r, mt_err *err)
 {
     mt_nlp_result *const out = r->out;
