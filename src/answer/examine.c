@@ -185,7 +185,7 @@ static void warn_target(mt_warning_list *out, const mt_goal *goal, mt_goal_slot 
     }
 }
 
-/* Goals ask for modes of a position that does not hold: said with them. */
+/* Adds to the warning of an unstable position that goals name it. */
 static void add_goals(const mt_study *s, int c, mt_warning_list *of_model, int first)
 {
     const char *const name = s->model->configurations[c].name.s;
@@ -320,8 +320,8 @@ static mt_status examine_configuration(const mt_study *s, const mt_run *run, int
     return rc;
 }
 
-/* How many configurations the study asks about, and what looking at them takes: with bands once
- * for every bound, too. */
+/* Number of configurations that the study names, and the work of analysing them, with bands
+ * once more for every bound. */
 static int count_asked(const mt_study *study, double *work)
 {
     int asked = 0;

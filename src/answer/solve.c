@@ -185,7 +185,7 @@ static void set_budget(mt_question *q)
     s->max_positions = positions_of(s->max_evaluations);
 }
 
-/* The original design is needed for whatever there is to tell. */
+/* Analyses the original design, which every part of the answer needs. */
 static mt_status end_at_once(const mt_question *q, mt_status rc, const mt_err *own, mt_err *err)
 {
     if (mt_interrupt_is_cut(&q->interrupt, MT_PHASE_BASELINE) && !mt_is_final(rc)) {

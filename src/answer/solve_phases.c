@@ -33,7 +33,7 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     return mt_describe_baseline_reasons(p, result, err);
 }
 
-/* Where the budget is one of modal solutions, what those of the original design count as. */
+/* With a budget in modal solutions: evaluations that those of the original design count as. */
 static long original(const mt_answer *a)
 {
     const long solved = mt_work_counters_in(a->spent, MT_PHASE_BASELINE, MT_WORK_MODAL);

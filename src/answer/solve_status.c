@@ -11,7 +11,7 @@
 #include "describe/certificates.h"
 #include "describe/describe.h"
 
-/* Isolated designs that no start met are to be expected where some were met once only. */
+/* Warns that further isolated designs are likely where some were met only once. */
 static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
 {
     const mt_nlp_result *const f = &a->found;
@@ -414,7 +414,8 @@ static mt_result_status status_of(const mt_answer *a, const mt_recommendation *b
                                                               : MT_RESULT_COMPROMISE;
 }
 
-/* A posture that settles far from the drawing is said first. */
+/* Puts the warning of an equilibrium far from the reference position before the status
+ * sentence. */
 static void report_posture(mt_result *result)
 {
     for (int i = 0; i < result->n_facts && result->status_text != NULL; i++) {

@@ -100,7 +100,7 @@ static const char *point_text(const trade *t, int k, mt_arena *mem)
     return second == NULL ? NULL : mt_arena_printf(mem, "%s, %s", first, second);
 }
 
-/* What happened at point k; that it was interrupted the interrupt knows. */
+/* Status of point k: MT_OK where it was interrupted, else the error with the point's name. */
 static mt_status told(const trade *t, int k, mt_status rc, mt_err *err)
 {
     if (rc == MT_OK || rc == MT_E_INTERRUPTED) {
@@ -222,7 +222,7 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
                            MT_EQUAL_FOUND);
 }
 
-/* The same within rounding as a design that was tried before it. */
+/* True where a design equals an earlier one within rounding. */
 static bool is_tried(const point *p, int n, const double *const tried[WAYS], const double *x)
 {
     static const double ROUNDING = 1e-10;
@@ -432,7 +432,7 @@ static mt_status begin(trade *t, mt_err *err)
     return describe_what(t, t->kept, t->out, err);
 }
 
-/* Starts for the neighbours of points [from, to). */
+/* Stores the best designs of points [from, to) as starts for their neighbours. */
 static mt_status note_near(trade *t, int from, int to, mt_err *err)
 {
     for (int k = from; k < to; k++) {

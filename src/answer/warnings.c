@@ -160,7 +160,7 @@ static bool is_tied(const tied *t, const char *name)
     return false;
 }
 
-/* Those of one set that t has not. Room for all was made. */
+/* Appends the members of one set that t lacks; t has enough memory. */
 static void tie(tied *t, int equations, int n, const char *const *name)
 {
     t->equations += equations;
@@ -171,7 +171,7 @@ static void tie(tied *t, int equations, int n, const char *const *name)
     }
 }
 
-/* One more set, and all that it shares a joint with, become one. */
+/* Adds a set and joins it with all sets that share a joint with it. */
 static void add_set(tied *list, int n, const mt_joint_names *set)
 {
     tied *const own = &list[n];

@@ -77,8 +77,8 @@ static void scale_weight(const mt_problem *p, double *weight, int goal, double f
     }
 }
 
-/* Solve again with one weight changed, from the best design, which is also what undetermined
- * directions are kept at. */
+/* Solves again with one weight changed, from the best design, at which unidentifiable
+ * directions are kept. */
 static mt_status solve(const weight_sensitivity *s, mt_workspace *w, search *a, mt_arena *mem,
                        mt_err *err)
 {

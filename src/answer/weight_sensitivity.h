@@ -8,7 +8,7 @@
  * Change of the best design when the weight of one goal at a time is multiplied or divided by
  * the study's factor and the misfit is minimised again from the best design. No effect where
  * the study does not request it. Evaluations are added to *evaluations. Cost: one local search
- * for each weighted goal and side, distributed over the workers, which are set to the whole
+ * for each weighted goal and side, distributed over the workers, which are all set to one
  * subproblem.
  */
 /* True where the study requests it. */
