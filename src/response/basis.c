@@ -72,8 +72,8 @@ static mt_status sandwich(parts *s, const double *b, int ra, const double *a, in
     return MT_OK;
 }
 
-/* Directions without mass: undamped ones to the end of `follow`, damped ones to that of x, each
- * scaled to |k| = 1, c of the latter diagonal. */
+/* Directions without mass: appends undamped ones to `follow`, damped ones to x, each scaled to
+ * |k| = 1, with c of the latter diagonal. */
 static mt_status split_massless(parts *s, int z, const double *t0, mt_err *err)
 {
     const ptrdiff_t n = s->n;
@@ -142,7 +142,7 @@ static mt_status split(parts *s, const mt_basis_problem *p, mt_err *err)
                   : split_massless(s, z, p->mass->t + ((ptrdiff_t)p->mass->rank * s->n), err);
 }
 
-/* What follows, eliminated: factor of G_UU, W. */
+/* Eliminates the following coordinates: factor of G_UU, W. */
 static mt_status eliminate(parts *s, const mt_modes *m, mt_err *err)
 {
     const ptrdiff_t u = s->u;

@@ -166,7 +166,7 @@ static bool is_bent(const trace *c, const point *a, const point *b)
     return false;
 }
 
-/* Halve every interval that asks for it, once. */
+/* Halves once every interval that needs it. */
 static mt_status halve(trace *c, mt_err *err)
 {
     const int had = c->n;

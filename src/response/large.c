@@ -41,7 +41,7 @@ static double size_of(const work *k, const double *x)
     return dual == x ? mt_norm2(k->n_x, x) : sqrt(fmax(mt_dot(k->n_x, x, dual), 0.0));
 }
 
-/* Takes x, which is overwritten, in: with its image. */
+/* Adds x (overwritten) and its image to the coordinates. */
 static mt_status take(work *k, double *x, mt_err *err)
 {
     const double was = size_of(k, x);
@@ -277,7 +277,7 @@ static double *ensure(const work *k, double **m, int rows, int cols)
     return *m;
 }
 
-/* A place in space moves along with the ground. */
+/* Adds the ground motion to a sensor's motion in space. */
 static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
 {
     const mt_port *const out = &k->ports->out[o];
@@ -348,7 +348,7 @@ static mt_status fill(work *k, mt_err *err)
     return MT_OK;
 }
 
-/* The greatest ratio that modes left out have. */
+/* Largest damping ratio of the modes left out. */
 static double ratio_left(const work *k)
 {
     const mt_damping_def *const d = &k->l->sys->damping;

@@ -41,7 +41,7 @@ static bool is_rigid(const mt_poles *k, ptrdiff_t j)
     return j < k->b->n_modes && k->omega[j] == 0.0;
 }
 
-/* Places of the states of the coupled coordinates. */
+/* Indices of the states of the coupled coordinates. */
 static mt_status place_states(mt_poles *k, mt_err *err)
 {
     k->x_of = mt_arena_int(k->mem, (size_t)k->n);
@@ -261,7 +261,7 @@ static void hand_out(const mt_poles *k, int first, mt_pole_sum *out, double comp
     }
 }
 
-/* Refuses a sum that is not what direct solves say, at the frequencies of all poles. */
+/* Refuses a sum that deviates from direct solves at the frequencies of all poles. */
 static mt_status verify(const mt_poles *k, const mt_pole_sum *sum, mt_err *err)
 {
     const mt_sample got = {.h = mt_arena_alloc(k->mem, (size_t)k->pairs, sizeof *got.h)};

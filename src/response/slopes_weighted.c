@@ -394,7 +394,7 @@ static double force_slope(const work *k, int p, double *part, double *e)
                : -mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e, k->shift);
 }
 
-/* The same of a joint's force, what stands in it and turns included. */
+/* The same for a joint's force, with its own coefficients and turns. */
 static mt_status joint_slope(work *k, int p, double *part, double *motion, double *out,
                              mt_err *err)
 {

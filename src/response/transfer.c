@@ -136,7 +136,7 @@ static mt_status back(const work *k, int cols, const double complex *b, double c
     return MT_OK;
 }
 
-/* b := D^-1 b, n x cols. What resonates is left at 0. */
+/* b := D^-1 b, n x cols; resonant coordinates are left at 0. */
 static mt_status solve(const work *k, int cols, double complex *b, mt_arena *mem, mt_err *err)
 {
     const ptrdiff_t n = k->t->n;
@@ -172,7 +172,7 @@ static void sum_powers(ptrdiff_t n, const double complex *factor_p,
     }
 }
 
-/* x := D' q - beta' with its sign turned: what D q' is. */
+/* x := beta' - D' q, which equals D q'. */
 static void slope_side(const work *k, double complex *x)
 {
     const ptrdiff_t n = k->t->n;
@@ -403,7 +403,7 @@ static void set_infinite(const mt_sample *out, ptrdiff_t at)
     }
 }
 
-/* Entries that a resonant coordinate has a part in. */
+/* Marks the entries in which a resonant coordinate takes part. */
 static void mark_resonant(const work *k, const mt_sample *out)
 {
     const ptrdiff_t n = k->t->n;
@@ -425,7 +425,7 @@ static void mark_resonant(const work *k, const mt_sample *out)
     }
 }
 
-/* Nothing has a value. */
+/* Marks all entries as without a value. */
 static void all_infinite(const mt_transfer *t, const mt_sample *out)
 {
     for (ptrdiff_t at = 0; at < (ptrdiff_t)t->n_in * t->n_out; at++) {
