@@ -39,8 +39,8 @@ typedef struct mt_nlp_engine {
     int n_free;     /* variables with lower < upper */
     double *origin; /* [n] clamped */
     bool *held;     /* [n] */
-    /* [n_eq], [n_in] constraint values at a compromise, subtracted from the constraints while
-     * its change is minimised; NULL otherwise */
+    /* [n_eq], [n_in] violations at a compromise (eq, and the negative part of in), subtracted
+     * from the constraints while its objective is minimised; NULL otherwise */
     const double *eq_shift;
     const double *in_shift;
     double eq_tol;   /* largest tolerance of an equality, 0 without */

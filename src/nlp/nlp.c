@@ -231,8 +231,8 @@ static bool is_impossible(mt_nlp_engine *e, const start_job *job, int n)
     return mt_nlp_ok(e, e->opt.prove_none(e->opt.prove_context, &none, e->err)) && none;
 }
 
-/* Approaches from all starts; where no feasible point is proven to exist, from the first ones
- * alone. Returns their number. */
+/* Approaches from all starts; where it is proven that no feasible point exists, from the first
+ * ones alone. Returns their number. */
 static int approach_all(mt_nlp_engine *e, start_job *job, long before)
 {
     const bool asks = e->opt.prove_none != NULL && e->opt.starts > STARTS_EACH;
