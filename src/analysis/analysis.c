@@ -259,7 +259,7 @@ static bool same_part(const mt_modal_part *a, const mt_modal_part *b)
     return a->first == b->first && a->up_to == b->up_to;
 }
 
-static bool is_same(const struct mt_modes_key *had, const struct mt_modes_key *now)
+static bool is_same_key(const struct mt_modes_key *had, const struct mt_modes_key *now)
 {
     return had->stiffness_version == now->stiffness_version &&
            had->mass_version == now->mass_version && had->n_rigid == now->n_rigid &&
@@ -309,7 +309,7 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
                                      .accuracy = opt->accuracy,
                                      .check = opt->check,
                                      .bounds = opt->bounds};
-    st->valid[MT_STAGE_MODES] = st->valid[MT_STAGE_MODES] && is_same(&a->key, &key);
+    st->valid[MT_STAGE_MODES] = st->valid[MT_STAGE_MODES] && is_same_key(&a->key, &key);
     if (!mt_stages_begin(st, MT_STAGE_MODES, st->none, inputs)) {
         mt_arena_rewind(&a->mem, a->after_modes);
         return MT_OK;
@@ -324,8 +324,8 @@ static mt_status run_modes(mt_analysis *a, const mt_analysis_options *opt, const
 }
 
 /* Where an update or a count fails, no modes remain. */
-static mt_status solve(mt_analysis *a, const double *inputs, const mt_analysis_options *opt,
-                       mt_err *err)
+static mt_status update_and_solve_modes(mt_analysis *a, const double *inputs,
+                                        const mt_analysis_options *opt, mt_err *err)
 {
     MT_TRY(mt_linear_update(a->lin, inputs, opt->gradient, err));
     MT_TRY(mt_interrupt_check(a->sys->run->interrupt, err));
@@ -338,7 +338,7 @@ mt_status mt_analysis_solve(mt_analysis *a, const double *inputs,
     a->solves++;
     a->with_gradient = false;
     a->damping = NULL;
-    const mt_status rc = solve(a, inputs, opt, err);
+    const mt_status rc = update_and_solve_modes(a, inputs, opt, err);
     if (rc != MT_OK) {
         a->modes = (mt_modes){0};
         mt_linear_stages(a->lin)->valid[MT_STAGE_MODES] = false;

@@ -36,7 +36,7 @@ static void add_pair(ptrdiff_t n, double size, const double *a, const double *b,
 }
 
 /* A term that holds counts with its own size, or 1 where that is 0: any size will do. */
-static double size_of(const mt_linear *lin, const mt_term *term)
+static double size_of_term(const mt_linear *lin, const mt_term *term)
 {
     const double now = mt_linear_value(lin, term->coefficient);
     return now != 0.0 && isfinite(now) ? (term->pair ? now : fabs(now)) : 1.0;
@@ -65,7 +65,7 @@ mt_status mt_analysis_free_directions(const mt_linear *lin, const mt_mass_factor
         if (!holds[t]) {
             continue;
         }
-        const double size = size_of(lin, term);
+        const double size = size_of_term(lin, term);
         const double *const a = mt_linear_row(lin, MT_TERM_STIFFNESS, term->first);
         squares = squares && !term->pair;
         c[term->first] = term->pair ? 0.0 : size;
@@ -145,7 +145,7 @@ static mt_status count_masses(const family *f, mt_arena *mem, int *n_most, mt_er
 }
 
 /* Design number k: 0 and 1 corners, 2 the middle, then spread. */
-static void place(const family *f, int k)
+static void place_design(const family *f, int k)
 {
     static const double PRIMES[] = {2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0};
     for (int i = 0; i < f->n; i++) {
@@ -162,7 +162,7 @@ static mt_status count_designs(family *f, int *n_rigid, mt_err *err)
     const mt_analysis_options opt = {.accuracy = MT_MODAL_ACCURACY};
     for (int k = 0; k < FIRST_DESIGNS + SPREAD_DESIGNS; k++) {
         mt_err ignored = {0};
-        place(f, k);
+        place_design(f, k);
         f->a->n_rigid = -1;
         const mt_status rc = mt_analysis_solve(f->a, f->x, &opt, &ignored);
         if (mt_is_final(rc)) {
@@ -216,8 +216,9 @@ static bool is_structural(const mt_linear *lin)
     return structural;
 }
 
-static mt_status count(mt_analysis *a, const mt_count_box *box, const mt_system_drive *drive,
-                       double position, mt_arena *mem, mt_err *err)
+static mt_status count_modes_in_box(mt_analysis *a, const mt_count_box *box,
+                                    const mt_system_drive *drive, double position,
+                                    mt_arena *mem, mt_err *err)
 {
     family f = {.a = NULL};
     int n_rigid = a->n_null;
@@ -243,7 +244,7 @@ mt_status mt_analysis_count(mt_analysis *a, const mt_count_box *box,
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_status rc = count(a, box, drive, position, &mem, err);
+    const mt_status rc = count_modes_in_box(a, box, drive, position, &mem, err);
     mt_arena_free(&mem);
     return rc;
 }

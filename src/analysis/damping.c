@@ -108,7 +108,7 @@ static mt_status find_modal(mt_analysis *a, work *w, mt_err *err)
     return MT_OK;
 }
 
-static double value_of(const mt_analysis *a, mt_node node)
+static double value_or_zero(const mt_analysis *a, mt_node node)
 {
     return node == MT_NO_NODE ? 0.0 : mt_linear_value(a->lin, node);
 }
@@ -124,8 +124,8 @@ static mt_status add_to_dampers(mt_analysis *a, work *w, mt_err *err)
     const mt_damping_def *const d = &a->sys->damping;
     const mt_reduced k = mt_linear_reduced(a->lin);
     const ptrdiff_t n = w->n;
-    const double alpha = value_of(a, d->mass);
-    const double beta = value_of(a, d->stiffness);
+    const double alpha = value_or_zero(a, d->mass);
+    const double beta = value_or_zero(a, d->stiffness);
     double *const nf = mt_arena_f64(&a->damping_mem, (size_t)n, (size_t)w->r);
     MT_TRY(mt_arena_check(&a->damping_mem, err));
     for (ptrdiff_t i = 0; i < n * n; i++) {
@@ -144,7 +144,7 @@ static mt_status add_to_dampers(mt_analysis *a, work *w, mt_err *err)
 }
 
 /* Once for each solve. */
-static mt_status prepare(mt_analysis *a, work **out, mt_err *err)
+static mt_status prepare_damping_work(mt_analysis *a, work **out, mt_err *err)
 {
     *out = a->damping;
     if (*out != NULL) {
@@ -174,7 +174,7 @@ mt_status mt_analysis_damping(mt_analysis *a, double *c, double *h, bool *struct
                               mt_err *err)
 {
     work *w = NULL;
-    MT_TRY(prepare(a, &w, err));
+    MT_TRY(prepare_damping_work(a, &w, err));
     const size_t bytes = (size_t)w->n * (size_t)w->n * sizeof *c;
     if (c != NULL) {
         memcpy(c, w->c, bytes);
@@ -291,8 +291,8 @@ static mt_status add_proportional(mt_analysis *a, const work *w, int p, int cols
     MT_TRY(mt_arena_check(&a->damping_mem, err));
     MT_TRY(mt_linear_products(a->lin, p, cols, x, dk, dm, err));
     const int whole = n * cols;
-    mt_axpy(whole, value_of(a, d->mass), dm, dcx);
-    mt_axpy(whole, value_of(a, d->stiffness), dk, dcx);
+    mt_axpy(whole, value_or_zero(a, d->mass), dm, dcx);
+    mt_axpy(whole, value_or_zero(a, d->stiffness), dk, dcx);
     mt_symm(n, cols, k.m, x, dm);
     mt_symm(n, cols, k.k, x, dk);
     mt_axpy(whole, slope_of(a, d->mass, p), dm, dcx);
@@ -307,7 +307,7 @@ mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const do
     if (!a->with_gradient) {
         return mt_fail(err, MT_E_INTERNAL, "derivatives asked for after a solve without them");
     }
-    MT_TRY(prepare(a, &w, err));
+    MT_TRY(prepare_damping_work(a, &w, err));
     MT_TRY(mt_linear_damping_products(a->lin, p, cols, x, dcx, dhx, err));
     const mt_arena_mark mark = mt_arena_get_mark(&a->damping_mem);
     mt_status rc = add_proportional(a, w, p, cols, x, dcx, err);
@@ -319,7 +319,7 @@ mt_status mt_analysis_damping_products(mt_analysis *a, int p, int cols, const do
 mt_status mt_analysis_ratio_modes(mt_analysis *a, mt_ratio_modes *out, mt_err *err)
 {
     work *w = NULL;
-    MT_TRY(prepare(a, &w, err));
+    MT_TRY(prepare_damping_work(a, &w, err));
     *out = (mt_ratio_modes){.r = w->r, .y = a->modes.y, .f = w->f};
     return MT_OK;
 }
@@ -327,7 +327,7 @@ mt_status mt_analysis_ratio_modes(mt_analysis *a, mt_ratio_modes *out, mt_err *e
 mt_status mt_analysis_ratio_slope(mt_analysis *a, int p, double *q, mt_err *err)
 {
     work *w = NULL;
-    MT_TRY(prepare(a, &w, err));
+    MT_TRY(prepare_damping_work(a, &w, err));
     const mt_arena_mark mark = mt_arena_get_mark(&a->damping_mem);
     double *const dm = mt_arena_f64(&a->damping_mem, (size_t)w->n, (size_t)w->r);
     MT_TRY(mt_arena_check(&a->damping_mem, err));
@@ -339,7 +339,7 @@ mt_status mt_analysis_ratio_slope(mt_analysis *a, int p, double *q, mt_err *err)
 mt_status mt_analysis_ratio_force(mt_analysis *a, const double *w, double *out, mt_err *err)
 {
     work *k = NULL;
-    MT_TRY(prepare(a, &k, err));
+    MT_TRY(prepare_damping_work(a, &k, err));
     for (ptrdiff_t j = 0; j < k->r; j++) {
         const double force = k->f[j] * mt_dot(k->n, a->modes.y + (j * k->n), w);
         mt_axpy(k->n, force, k->n_phi + (j * k->n), out);

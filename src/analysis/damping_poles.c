@@ -111,8 +111,8 @@ static double complex denominator(const mt_analysis *a, const work *w, const dou
     return (2.0 * s * m) + form(r.n, y, ay);
 }
 
-static mt_status slopes(mt_analysis *a, const work *w, int i, double *dre, double *dim,
-                        mt_err *err)
+static mt_status slopes_of_pole(mt_analysis *a, const work *w, int i, double *dre, double *dim,
+                                mt_err *err)
 {
     const int n = w->n;
     const size_t size = (size_t)n;
@@ -154,7 +154,7 @@ mt_status mt_analysis_dpole(mt_analysis *a, int i, double *dre, double *dim, boo
         return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(&a->damping_mem);
-    const mt_status rc = slopes(a, a->damping, i, dre, dim, err);
+    const mt_status rc = slopes_of_pole(a, a->damping, i, dre, dim, err);
     mt_arena_rewind(&a->damping_mem, mark);
     return rc;
 }

@@ -44,7 +44,8 @@ void mt_lowest_solve_free(const operation *o)
     mt_tri_solve(true, o->tree->n_rigid, 1, o->m_rr, o->r, o->tree->n_rigid);
 }
 
-static mt_status multiply(const operation *o, const double *x, double *y, mt_err *err)
+static mt_status multiply_by_condensed_mass(const operation *o, const double *x, double *y,
+                                            mt_err *err)
 {
     const mt_tree *const t = o->tree;
     MT_TRY(mt_interrupt_check(t->sys->run->interrupt, err));
@@ -58,19 +59,21 @@ static mt_status multiply(const operation *o, const double *x, double *y, mt_err
     return MT_OK;
 }
 
-static mt_status apply(void *context, int count, const double *x, double *y, mt_err *err)
+static mt_status apply_condensed_mass(void *context, int count, const double *x, double *y,
+                                      mt_err *err)
 {
     const operation *const o = context;
     for (int c = 0; c < count; c++) {
         const ptrdiff_t at = (ptrdiff_t)o->tree->n_x * c;
-        MT_TRY(multiply(o, x + at, y + at, err));
+        MT_TRY(multiply_by_condensed_mass(o, x + at, y + at, err));
     }
     return MT_OK;
 }
 
-/* As apply, from the momentum of the whole motion (x, along): x and the motion that follows
- * cancel in the motion itself. *open: the mass of the remaining error of `along`. */
-static void follow(const operation *o, const double *x, double *y, double *open)
+/* As apply_condensed_mass, from the momentum of the whole motion (x, along): x and the motion
+ * that follows cancel in the motion itself. *open: the mass of the remaining error of
+ * `along`. */
+static void apply_to_whole_motion(const operation *o, const double *x, double *y, double *open)
 {
     const mt_tree *const t = o->tree;
     const int n = t->n_rigid;
@@ -85,8 +88,8 @@ static void follow(const operation *o, const double *x, double *y, double *open)
     *open = mt_dot(n, o->left, o->r);
 }
 
-static mt_status refine(void *context, int count, const double *x, double *y,
-                        mt_lowest_quotient *own, mt_err *err)
+static mt_status refine_quotients(void *context, int count, const double *x, double *y,
+                                  mt_lowest_quotient *own, mt_err *err)
 {
     const operation *const o = context;
     for (int i = 0; i < count; i++) {
@@ -94,7 +97,7 @@ static mt_status refine(void *context, int count, const double *x, double *y,
         mt_tree_quotient q;
         double open = 0.0;
         MT_TRY(mt_interrupt_check(o->tree->sys->run->interrupt, err));
-        follow(o, x + at, y + at, &open);
+        apply_to_whole_motion(o, x + at, y + at, &open);
         mt_tree_rate(o->tree, x + at, o->along, o->v, o->f, &q);
         own[i] =
             (mt_lowest_quotient){.lambda = q.lambda, .noise = q.noise + fabs(open / q.mass)};
@@ -102,8 +105,8 @@ static mt_status refine(void *context, int count, const double *x, double *y,
     return MT_OK;
 }
 
-static mt_status below(void *context, double tau, int known, int *count, bool *certain,
-                       mt_err *err)
+static mt_status count_modes_below(void *context, double tau, int known, int *count,
+                                   bool *certain, mt_err *err)
 {
     (void)known;
     const operation *const o = context;
@@ -133,7 +136,7 @@ static mt_status free_motions(operation *o, bool *regular, mt_arena *mem, mt_err
     return rc == MT_OK || rc == MT_E_NOT_SPD ? MT_OK : mt_fail(err, rc, "free motions");
 }
 
-static mt_status solve(mt_lowest *l, mt_lowest_want want, mt_err *err)
+static mt_status solve_lowest_modes(mt_lowest *l, mt_lowest_want want, mt_err *err)
 {
     const mt_tree *const t = l->tree;
     const size_t motions = (size_t)t->n * (size_t)t->s;
@@ -164,9 +167,9 @@ static mt_status solve(mt_lowest *l, mt_lowest_want want, mt_err *err)
                                  .n_rigid = t->n_rigid,
                                  .count = want.count,
                                  .shapes = want.shapes,
-                                 .apply = apply,
-                                 .refine = refine,
-                                 .below = below,
+                                 .apply = apply_condensed_mass,
+                                 .refine = refine_quotients,
+                                 .below = count_modes_below,
                                  .context = o};
     mt_progress *const progress = t->sys->run->progress;
     o->told = mt_progress_begin(progress, ITERATIONS, 0);
@@ -183,7 +186,7 @@ typedef struct turns {
     bool told; /* where the progress is */
 } turns;
 
-static mt_status go_on(void *context, mt_err *err)
+static mt_status check_stop_request(void *context, mt_err *err)
 {
     const turns *const t = context;
     mt_progress_done(t->run->progress, t->told);
@@ -247,7 +250,7 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
                            .unit = o->unit,
                            .count = want.count,
                            .shapes = want.shapes,
-                           .check = go_on,
+                           .check = check_stop_request,
                            .context = &t};
     if (*is && l->sys->loaded) {
         MT_TRY(load_bodies(l, &p, load, is, why, err));
@@ -275,7 +278,7 @@ static mt_status solve_bodies(mt_lowest *l, mt_lowest_want want, const mt_state 
 }
 
 /* Find the equilibrium under loads, without dense matrices; *is: found. */
-static mt_status settle(mt_lowest *l, bool *is, char *why, mt_err *err)
+static mt_status find_loaded_equilibrium(mt_lowest *l, bool *is, char *why, mt_err *err)
 {
     mt_data data;
     mt_placement at;
@@ -304,7 +307,7 @@ static mt_status solve_sparse(mt_lowest *l, mt_lowest_want want, mt_err *err)
     bool rests = false;
     MT_TRY(solve_bodies(l, want, NULL, &is, &rests, why, err));
     if (!is && !rests && l->sys->loaded && !l->sys->driven && !want.drawn) {
-        MT_TRY(settle(l, &is, why, err));
+        MT_TRY(find_loaded_equilibrium(l, &is, why, err));
         if (is) {
             MT_TRY(solve_bodies(l, want, &l->position, &is, &rests, why, err));
         }
@@ -340,7 +343,7 @@ mt_status mt_lowest_new(const mt_system_def *def, mt_lowest_want want, mt_lowest
     told = mt_progress_begin(run->progress, "order of the bodies", 0);
     rc = rc == MT_OK ? mt_tree_new(l->sys, def->at, &l->mem, &l->tree, l->why, err) : rc;
     mt_progress_end(run->progress, told);
-    rc = rc == MT_OK && l->tree != NULL ? solve(l, want, err) : rc;
+    rc = rc == MT_OK && l->tree != NULL ? solve_lowest_modes(l, want, err) : rc;
     rc = rc == MT_OK && l->tree == NULL && !want.tree ? solve_sparse(l, want, err) : rc;
     if (rc != MT_OK) {
         mt_lowest_delete(l);
@@ -358,7 +361,8 @@ typedef struct motions {
 } motions;
 
 /* Room for n modes in mem. */
-static mt_status make_room(const mt_lowest *l, int n, motions *out, mt_arena *mem, mt_err *err)
+static mt_status make_motions_room(const mt_lowest *l, int n, motions *out, mt_arena *mem,
+                                   mt_err *err)
 {
     const mt_tree *const t = l->tree;
     out->x = mt_arena_f64(mem, (size_t)t->n_x, (size_t)n);
@@ -369,7 +373,7 @@ static mt_status make_room(const mt_lowest *l, int n, motions *out, mt_arena *me
 
 /* The mode at a position as column i, of unit mass: of x = 0 that is r^T M_rr r; else x^T A x =
  * 1/lambda, and r follows. */
-static void move(const mt_lowest *l, int position, int i, const motions *to)
+static void write_mode_of_unit_mass(const mt_lowest *l, int position, int i, const motions *to)
 {
     const mt_tree *const t = l->tree;
     const operation *const o = l->operation;
@@ -384,7 +388,8 @@ static void move(const mt_lowest *l, int position, int i, const motions *to)
         mt_tri_solve(true, t->n_rigid, 1, o->m_rr, r, t->n_rigid);
     } else {
         double open = 0.0;
-        follow(o, l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)), x, &open);
+        apply_to_whole_motion(o, l->found.x + ((ptrdiff_t)t->n_x * (position - t->n_rigid)), x,
+                              &open);
         mt_axpy(t->n_rigid, sqrt(lambda), o->along, r);
         memset(x, 0, (size_t)t->n_x * sizeof *x);
         mt_axpy(t->n_x, sqrt(lambda),
@@ -404,12 +409,12 @@ mt_status mt_lowest_shapes(mt_lowest *l, int n, double *phi, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(&l->mem);
     motions m;
     if (l->way == MT_LOWEST_TREE) {
-        MT_TRY(make_room(l, 1, &m, &l->mem, err));
+        MT_TRY(make_motions_room(l, 1, &m, &l->mem, err));
     }
     for (int i = 0; i < n; i++) {
         double *const to = phi + ((ptrdiff_t)nq * i);
         if (l->way == MT_LOWEST_TREE) {
-            move(l, i, 0, &m);
+            write_mode_of_unit_mass(l, i, 0, &m);
             mt_tree_states(l->tree, m.v, to);
         } else {
             mt_absolute_shape(&l->bodies, l->found.x + ((ptrdiff_t)l->bodies.n * i), to);
@@ -466,8 +471,8 @@ static mt_status find_pairs(const mt_lowest *l, int n, pairs *p, mt_arena *mem, 
 }
 
 /* Hz by one input of the modes of one cluster, from the forms of their pairs. */
-static mt_status split(int size, const double *form, double hz, double *slope,
-                       mt_arena *scratch, mt_err *err)
+static mt_status slopes_of_cluster(int size, const double *form, double hz, double *slope,
+                                   mt_arena *scratch, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     double *const matrix = mt_arena_f64(scratch, (size_t)size, (size_t)size);
@@ -495,7 +500,8 @@ static mt_status fill_slopes(const mt_lowest *l, const pairs *p, const double *f
         const double *at = form + ((ptrdiff_t)p->count * k);
         for (int i = 0, size = 0; i < p->n; i += size) {
             (void)mt_modal_cluster(m, m->n_rigid + i, &size);
-            MT_TRY(split(size, at, mt_modal_hz(m, m->n_rigid + i), slope + i, scratch, err));
+            MT_TRY(slopes_of_cluster(size, at, mt_modal_hz(m, m->n_rigid + i), slope + i,
+                                     scratch, err));
             at += (ptrdiff_t)size * (size + 1) / 2;
         }
         memcpy(hz_per_unit + ((ptrdiff_t)n * k), slope, (size_t)n * sizeof *slope);
@@ -508,9 +514,9 @@ static mt_status forms_of_tree(const mt_lowest *l, const pairs *p, double *form,
                                mt_arena *mem, mt_err *err)
 {
     motions m;
-    MT_TRY(make_room(l, p->n, &m, mem, err));
+    MT_TRY(make_motions_room(l, p->n, &m, mem, err));
     for (int i = 0; i < p->n; i++) {
-        move(l, l->tree->n_rigid + i, i, &m);
+        write_mode_of_unit_mass(l, l->tree->n_rigid + i, i, &m);
     }
     const mt_tree_modes modes = {.n = p->n,
                                  .x = m.x,

@@ -27,7 +27,7 @@ static bool of_tree(const mt_lowest *l)
     return l->way == MT_LOWEST_TREE;
 }
 
-static mt_status go_on(const mt_lowest *l, mt_err *err)
+static mt_status check_interrupt(const mt_lowest *l, mt_err *err)
 {
     return mt_interrupt_check(l->sys->run->interrupt, err);
 }
@@ -166,7 +166,7 @@ static mt_status part_of_bodies(const mt_lowest *l, mt_lowest_push *p, mt_err *e
 mt_status mt_lowest_force(const mt_lowest *l, const double *force, mt_lowest_push *p,
                           mt_err *err)
 {
-    MT_TRY(go_on(l, err));
+    MT_TRY(check_interrupt(l, err));
     if (!of_tree(l)) {
         mt_absolute_push(&l->bodies, force, p->dual);
         return part_of_bodies(l, p, err);
@@ -180,7 +180,7 @@ mt_status mt_lowest_force(const mt_lowest *l, const double *force, mt_lowest_pus
 
 mt_status mt_lowest_base(mt_lowest *l, int axis, mt_lowest_push *p, mt_err *err)
 {
-    MT_TRY(go_on(l, err));
+    MT_TRY(check_interrupt(l, err));
     if (!of_tree(l)) {
         MT_TRY(mt_absolute_shift(&l->bodies, l->at, axis, p->dual, &l->mem, err));
         for (int j = 0; j < l->bodies.n; j++) {
@@ -225,7 +225,7 @@ mt_status mt_lowest_momentum(const mt_lowest *l, const double *x, double *y, mt_
 
 mt_status mt_lowest_mass(const mt_lowest *l, const double *x, double *y, mt_err *err)
 {
-    MT_TRY(go_on(l, err));
+    MT_TRY(check_interrupt(l, err));
     if (!of_tree(l)) {
         mt_sparse_solver_mass(l->solver, x, l->work);
         MT_TRY(mt_sparse_solver_solve(l->solver, l->work, y, NULL, err));

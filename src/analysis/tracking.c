@@ -232,7 +232,7 @@ static mt_status leap(walk *k, bool *told, mt_err *err)
 }
 
 /* Follow the path to its end; *arrived: k->tracks identifies all modes there. */
-static mt_status go(walk *k, bool *arrived, mt_err *err)
+static mt_status follow_path_to_end(walk *k, bool *arrived, mt_err *err)
 {
     const double least = k->way->resolution;
     double h = 0.5; /* the whole way at once has been tried */
@@ -256,7 +256,7 @@ static mt_status go(walk *k, bool *arrived, mt_err *err)
 
 /* Take the result of the path for the modes that were not identified without it. A mode with
  * two names is ambiguous for both. */
-static void merge(int n, const mt_track *walked, mt_track *tracks)
+static void merge_walked_tracks(int n, const mt_track *walked, mt_track *tracks)
 {
     for (int r = 0; r < n; r++) {
         if (dissolved(&tracks[r])) {
@@ -303,9 +303,9 @@ mt_status mt_track_follow(const mt_track_way *way, int n, const double *const *w
     }
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     mt_status rc = walk_init(&k, w, mem, err);
-    rc = rc == MT_OK ? go(&k, &arrived, err) : rc;
+    rc = rc == MT_OK ? follow_path_to_end(&k, &arrived, err) : rc;
     if (rc == MT_OK && arrived) {
-        merge(n, k.tracks, tracks);
+        merge_walked_tracks(n, k.tracks, tracks);
     }
     mt_arena_rewind(mem, mark);
     return rc;

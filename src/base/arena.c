@@ -128,7 +128,7 @@ void mt_arena_fail(mt_arena *a)
     a->failed = true;
 }
 
-static void *refuse(mt_arena *a)
+static void *fail_allocation(mt_arena *a)
 {
     mt_arena_fail(a);
     return NULL;
@@ -166,7 +166,7 @@ void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
     const size_t bytes = rounded(count, size);
     if (a->failed || bytes == 0 || bytes > SIZE_MAX - zone(size) ||
         !make_room(a, bytes + zone(size))) {
-        return refuse(a);
+        return fail_allocation(a);
     }
     mt_arena_block *const b = a->current;
     unsigned char *const p = b->data + b->used;
@@ -182,7 +182,8 @@ void *mt_arena_alloc(mt_arena *a, size_t count, size_t size)
 
 double *mt_arena_f64(mt_arena *a, size_t m, size_t n)
 {
-    return n != 0 && m > SIZE_MAX / n ? refuse(a) : mt_arena_alloc(a, m * n, sizeof(double));
+    return n != 0 && m > SIZE_MAX / n ? fail_allocation(a)
+                                      : mt_arena_alloc(a, m * n, sizeof(double));
 }
 
 int *mt_arena_int(mt_arena *a, size_t n)
@@ -221,7 +222,7 @@ char *mt_arena_strdup(mt_arena *a, const char *s)
 
 char *mt_arena_strndup(mt_arena *a, const char *s, size_t length)
 {
-    char *const copy = length == SIZE_MAX ? refuse(a) : text_room(a, length + 1);
+    char *const copy = length == SIZE_MAX ? fail_allocation(a) : text_room(a, length + 1);
     if (copy != NULL) {
         memcpy(copy, s, length);
         copy[length] = '\0';
@@ -239,7 +240,7 @@ char *mt_arena_vprintf(mt_arena *a, const char *fmt, va_list args)
     }
     va_copy(again, args);
     const int n = mt_vsnprintf(text, sizeof text, fmt, args);
-    char *const s = n < 0 ? refuse(a) : text_room(a, (size_t)n + 1);
+    char *const s = n < 0 ? fail_allocation(a) : text_room(a, (size_t)n + 1);
     if (s != NULL && (size_t)n < sizeof text) {
         memcpy(s, text, (size_t)n + 1);
     } else if (s != NULL) {
@@ -284,7 +285,7 @@ void *mt_arena_grow(mt_arena *a, void *items, int count, int *capacity, size_t s
         return items;
     }
     if (count > INT_MAX / 2) {
-        return refuse(a);
+        return fail_allocation(a);
     }
     const int room = count < FIRST_CAPACITY / 2 ? FIRST_CAPACITY : 2 * count;
     void *const grown = mt_arena_alloc(a, (size_t)room, size);

@@ -14,8 +14,8 @@ mt_diags mt_diags_default(mt_arena *mem)
 enum { TEXT_SIZE = 2048 };
 
 MT_PRINTF(5, 0)
-static void add(mt_diags *d, mt_addr addr, mt_severity severity, bool structural,
-                const char *fmt, va_list args)
+static void add_diagnostic(mt_diags *d, mt_addr addr, mt_severity severity, bool structural,
+                           const char *fmt, va_list args)
 {
     char line[TEXT_SIZE];
     const bool written = mt_vsnprintf(line, sizeof line, fmt, args) >= 0;
@@ -49,7 +49,7 @@ void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEVERITY_ERROR, false, fmt, args);
+    add_diagnostic(d, addr, MT_SEVERITY_ERROR, false, fmt, args);
     va_end(args);
 }
 
@@ -62,7 +62,7 @@ void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEVERITY_ERROR, true, fmt, args);
+    add_diagnostic(d, addr, MT_SEVERITY_ERROR, true, fmt, args);
     va_end(args);
 }
 
@@ -74,6 +74,6 @@ void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...)
     }
     va_list args;
     va_start(args, fmt);
-    add(d, addr, MT_SEVERITY_WARNING, false, fmt, args);
+    add_diagnostic(d, addr, MT_SEVERITY_WARNING, false, fmt, args);
     va_end(args);
 }

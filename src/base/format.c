@@ -38,7 +38,7 @@ typedef struct arguments {
     va_list list;
 } arguments;
 
-static void put(sink *s, const char *text, size_t n)
+static void append_text(sink *s, const char *text, size_t n)
 {
     const size_t room = s->size > s->length ? s->size - s->length : 0; /* with the NUL */
     const size_t kept = n < room ? n : (room == 0 ? 0 : room - 1);
@@ -55,13 +55,13 @@ static void put_padded(sink *s, const spec *f, const char *text, size_t n)
 {
     const size_t width = (size_t)f->width;
     const size_t sign = f->zero && n > 0 && (*text == '-' || *text == '+') ? 1 : 0;
-    put(s, text, sign);
+    append_text(s, text, sign);
     for (size_t i = n; !f->left && i < width; i++) {
-        put(s, f->zero ? "0" : " ", 1);
+        append_text(s, f->zero ? "0" : " ", 1);
     }
-    put(s, text + sign, n - sign);
+    append_text(s, text + sign, n - sign);
     for (size_t i = n; f->left && i < width; i++) {
-        put(s, " ", 1);
+        append_text(s, " ", 1);
     }
 }
 
@@ -69,13 +69,13 @@ static void put_visible(sink *s, const char *text, size_t n)
 {
     while (n > 0) {
         const size_t run = mt_visible_run(text, n, false);
-        put(s, text, run);
+        append_text(s, text, run);
         text += run;
         n -= run;
         if (n > 0) {
             char escape[MT_VISIBLE_SIZE];
             const size_t used = mt_visible_escape(text, n, escape);
-            put(s, escape, strlen(escape));
+            append_text(s, escape, strlen(escape));
             text += used;
             n -= used;
         }
@@ -105,11 +105,11 @@ static void put_string(sink *s, const spec *f, const char *text)
     }
     n -= n == room ? begun(given, n) : 0;
     for (size_t i = n; !f->left && i < (size_t)f->width; i++) {
-        put(s, " ", 1);
+        append_text(s, " ", 1);
     }
     put_visible(s, given, n);
     for (size_t i = n; f->left && i < (size_t)f->width; i++) {
-        put(s, " ", 1);
+        append_text(s, " ", 1);
     }
 }
 
@@ -286,7 +286,7 @@ static bool convert(sink *s, spec *f, arguments *from)
     char c = '\0';
     switch (f->conversion) {
     case '%':
-        put(s, "%", 1);
+        append_text(s, "%", 1);
         return true;
     case 'd':
     case 'i':
@@ -315,7 +315,7 @@ static bool convert(sink *s, spec *f, arguments *from)
 }
 
 /* End the output; a character that does not fit whole is left out. */
-static void finish(sink *s)
+static void terminate_output(sink *s)
 {
     size_t n = s->length;
     if (n >= s->size) {
@@ -337,7 +337,7 @@ int mt_vsnprintf(char *out, size_t size, const char *fmt, va_list args)
     bool ok = true;
     for (const char *at = fmt; ok && *at != '\0';) {
         const size_t plain = strcspn(at, "%");
-        put(&s, at, plain);
+        append_text(&s, at, plain);
         at += plain;
         if (*at == '%') {
             at++;
@@ -347,7 +347,7 @@ int mt_vsnprintf(char *out, size_t size, const char *fmt, va_list args)
     }
     va_end(from.list);
     if (size > 0) {
-        finish(&s);
+        terminate_output(&s);
     }
     return ok && s.length <= INT_MAX ? (int)s.length : -1;
 }

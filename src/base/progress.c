@@ -125,7 +125,7 @@ bool mt_progress_seeks(mt_progress *p)
     return p != NULL && atomic_load_explicit(&p->designs, memory_order_relaxed);
 }
 
-static mt_progress_mark mark(const mt_progress *p)
+static mt_progress_mark mark_of_now(const mt_progress *p)
 {
     return (mt_progress_mark){p->clock == NULL ? nan("") : p->clock(),
                               atomic_load_explicit(&p->evaluations, memory_order_relaxed)};
@@ -144,7 +144,7 @@ void mt_progress_found(mt_progress *p, const char *what, double f, double value)
         p->now.best = value;
         if (first || fabs(value - p->marked) > LAST_DIGITS * fabs(value)) {
             p->marked = value;
-            p->now.best_at = mark(p);
+            p->now.best_at = mark_of_now(p);
         }
         p->now.first = first ? p->now.best_at : p->now.first;
     }
@@ -155,7 +155,7 @@ void mt_progress_proved(mt_progress *p)
 {
     if (p != NULL) {
         (void)pthread_mutex_lock(&p->lock);
-        p->now.proof = mark(p);
+        p->now.proof = mark_of_now(p);
         (void)pthread_mutex_unlock(&p->lock);
     }
 }

@@ -39,7 +39,7 @@ static uint64_t get(mt_serializer *t)
     return t->words[t->at++];
 }
 
-static void put(mt_serializer *t, uint64_t word)
+static void append_word(mt_serializer *t, uint64_t word)
 {
     if (t->n == t->room && !t->failed) {
         const size_t room = t->room > 0 ? 2 * t->room : FIRST_ROOM;
@@ -64,7 +64,7 @@ void mt_serializer_numbers(mt_serializer *t, size_t n, double *x)
             memcpy(&x[i], &word, sizeof word);
         } else {
             memcpy(&word, &x[i], sizeof word);
-            put(t, word);
+            append_word(t, word);
         }
     }
 }
@@ -72,7 +72,7 @@ void mt_serializer_numbers(mt_serializer *t, size_t n, double *x)
 void mt_serializer_long(mt_serializer *t, long *x, long least, long most)
 {
     if (!t->reads) {
-        put(t, (uint64_t)*x);
+        append_word(t, (uint64_t)*x);
         return;
     }
     const uint64_t word = get(t);
@@ -131,7 +131,7 @@ void mt_serializer_text(mt_serializer *t, const char **text, mt_arena *mem)
             t->failed = t->failed || kept != word; /* behind the text there is nothing */
         } else if (*text != NULL) {
             memcpy(&word, *text + (i * WORD), size);
-            put(t, word);
+            append_word(t, word);
         }
     }
     if (t->reads) {

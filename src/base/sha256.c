@@ -28,7 +28,7 @@ static const uint32_t initial_hash[WORDS] = {
     0x510e527fU, 0x9b05688cU, 0x1f83d9abU, 0x5be0cd19U,
 };
 
-static uint32_t rotate(uint32_t x, int n)
+static uint32_t rotate_right(uint32_t x, int n)
 {
     return (x >> n) | (x << (32 - n));
 }
@@ -36,7 +36,7 @@ static uint32_t rotate(uint32_t x, int n)
 /* The sum of x rotated by a, by a + b, and by a + b + c. */
 static uint32_t rotate3(uint32_t x, int a, int b, int c)
 {
-    return rotate(rotate(rotate(x, c) ^ x, b) ^ x, a);
+    return rotate_right(rotate_right(rotate_right(x, c) ^ x, b) ^ x, a);
 }
 
 /* A round. Instead of moving all eight words to the next letter, letters move: at round t
@@ -67,8 +67,8 @@ static void compress(uint32_t hash[WORDS], const unsigned char *block)
     for (int t = 16; t < ROUNDS; t++) {
         const uint32_t x = w[t - 15];
         const uint32_t y = w[t - 2];
-        w[t] = w[t - 16] + (rotate(x, 7) ^ rotate(x, 18) ^ (x >> 3)) + w[t - 7] +
-               (rotate(y, 17) ^ rotate(y, 19) ^ (y >> 10));
+        w[t] = w[t - 16] + (rotate_right(x, 7) ^ rotate_right(x, 18) ^ (x >> 3)) + w[t - 7] +
+               (rotate_right(y, 17) ^ rotate_right(y, 19) ^ (y >> 10));
     }
     memcpy(s, hash, sizeof s);
     for (int t = 0; t < ROUNDS; t += 8) {

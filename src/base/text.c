@@ -91,7 +91,7 @@ void mt_text_addf(mt_text *t, const char *fmt, ...)
     va_end(args);
 }
 
-static int least(int a, int b)
+static int lesser_of(int a, int b)
 {
     return a < b ? a : b;
 }
@@ -110,16 +110,16 @@ static int fill_row(const char *a, const char *b, int i, int n, int most,
     const int *const last = rows[(i + 2) % 3];
     int *const row = rows[i % 3];
     const int first = i > most ? i - most : 1;
-    const int end = least(n, i + most);
-    int nearest = least(i, most + 1);
+    const int end = lesser_of(n, i + most);
+    int nearest = lesser_of(i, most + 1);
     row[first - 1] = nearest;
     for (int j = first; j <= end; j++) {
         const int replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-        row[j] = least(replaced, least(last[j], row[j - 1]) + 1);
+        row[j] = lesser_of(replaced, lesser_of(last[j], row[j - 1]) + 1);
         if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-            row[j] = least(row[j], before[j - 2] + 1);
+            row[j] = lesser_of(row[j], before[j - 2] + 1);
         }
-        nearest = least(nearest, row[j]);
+        nearest = lesser_of(nearest, row[j]);
     }
     row[end + 1] = most + 1;
     return nearest;
@@ -150,7 +150,7 @@ int mt_text_distance(const char *a, const char *b, int most)
         }
         far = beyond;
     }
-    return least(rows[m % 3][n], most + 1);
+    return lesser_of(rows[m % 3][n], most + 1);
 }
 
 const char *mt_text_nearest(const char *name, const char *const *names, int n)
@@ -159,7 +159,7 @@ const char *mt_text_nearest(const char *name, const char *const *names, int n)
     if (length > MT_TEXT_DISTANCE_MAX) {
         return NULL;
     }
-    int most = least(1 + (int)length / 4, (int)length - 1);
+    int most = lesser_of(1 + (int)length / 4, (int)length - 1);
     const char *best = NULL;
     for (int i = 0; i < n && most >= 0; i++) {
         const int d = mt_text_distance(name, names[i], most);
@@ -205,7 +205,7 @@ bool mt_text_matches(const char *pattern, const char *name)
 
 /* Columns of a character, after Unicode's East Asian Width and general categories Mn and Me:
  * the ranges that matter most. */
-static int columns(unsigned code)
+static int columns_of_character(unsigned code)
 {
     static const struct {
         unsigned first, last;
@@ -239,7 +239,7 @@ int mt_text_width(const char *s)
     size_t left = strlen(s);
     while (left > 0) {
         const size_t length = mt_utf8_length(s, left);
-        width += length == 0 ? 1 : columns(mt_utf8_code(s, length));
+        width += length == 0 ? 1 : columns_of_character(mt_utf8_code(s, length));
         s += length == 0 ? 1 : length;
         left -= length == 0 ? 1 : length;
     }

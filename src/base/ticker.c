@@ -5,7 +5,7 @@
 
 enum { STACK = 1 << 20 };
 
-static void *run(void *argument)
+static void *run_ticker(void *argument)
 {
     const mt_ticker *const t = argument;
     while (t->turn(t->context)) {
@@ -21,7 +21,7 @@ bool mt_ticker_start(mt_ticker *t, bool (*turn)(void *context), void *context)
         return false;
     }
     (void)pthread_attr_setstacksize(&how, STACK);
-    const bool made = pthread_create(&t->thread, &how, run, t) == 0;
+    const bool made = pthread_create(&t->thread, &how, run_ticker, t) == 0;
     (void)pthread_attr_destroy(&how);
     return made;
 }

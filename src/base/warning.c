@@ -21,7 +21,7 @@ static bool is_full(const mt_warning_list *list, mt_warning_level level)
     return list->n >= (level == MT_LEVEL_FAULT ? 2 : 1) * MT_WARNING_LIMIT;
 }
 
-static mt_warning *add(mt_warning_list *list, const mt_warning *item)
+static mt_warning *append_warning(mt_warning_list *list, const mt_warning *item)
 {
     if (is_full(list, item->level)) {
         return NULL;
@@ -47,7 +47,7 @@ mt_warning *mt_warning_add(mt_warning_list *list, mt_warning_level level, const 
     va_start(args, fmt);
     item.text = mt_arena_vprintf(list->mem, fmt, args);
     va_end(args);
-    return add(list, &item);
+    return append_warning(list, &item);
 }
 
 void mt_warning_sort(mt_warning_list *list, int first)
@@ -89,5 +89,5 @@ void mt_warning_copy(mt_warning_list *list, const mt_warning *item)
     copy.configuration = text(list, item->configuration);
     copy.pointer = text(list, item->pointer);
     copy.file = text(list, item->file);
-    (void)add(list, &copy);
+    (void)append_warning(list, &copy);
 }

@@ -43,7 +43,7 @@ void mt_checkpoint_store_free(mt_checkpoint_store *store)
     (void)pthread_mutex_destroy(&store->lock);
 }
 
-static const uint64_t *find(mt_checkpoint_store *store, const char *key, size_t *n)
+static const uint64_t *find_stored(mt_checkpoint_store *store, const char *key, size_t *n)
 {
     (void)pthread_mutex_lock(&store->lock);
     const uint64_t *const words = store->find(store->context, key, n);
@@ -51,7 +51,8 @@ static const uint64_t *find(mt_checkpoint_store *store, const char *key, size_t 
     return words;
 }
 
-static void put(mt_checkpoint_store *store, const char *key, const mt_serializer *serializer)
+static void put_stored(mt_checkpoint_store *store, const char *key,
+                       const mt_serializer *serializer)
 {
     (void)pthread_mutex_lock(&store->lock);
     store->put(store->context, key, serializer->words, serializer->n);
@@ -86,7 +87,7 @@ static mt_task_path path_of_task(const mt_task_path *list, int task)
     return s;
 }
 
-static int take(pool *p)
+static int take_next_task(pool *p)
 {
     (void)pthread_mutex_lock(&p->lock);
     while (p->next < p->tasks->n && p->left != NULL && p->left[p->next]) {
@@ -111,14 +112,15 @@ static void note_failure(pool *p, int task, mt_status rc, const mt_err *err)
 
 /* Store the result of the task at s. A lack of memory is a failure: otherwise a part of a run
  * would be reported as done without it. */
-static mt_status keep(const mt_tasks *tasks, int task, const mt_task_path *s, mt_err *err)
+static mt_status store_task_result(const mt_tasks *tasks, int task, const mt_task_path *s,
+                                   mt_err *err)
 {
     mt_serializer serializer = {.words = NULL};
     bool no_memory = false;
     if (s->interrupt == NULL || !mt_interrupt_any(s->interrupt)) {
         tasks->serializer(tasks->context, task, &serializer);
         if (!serializer.failed) {
-            put(s->store, s->path, &serializer);
+            put_stored(s->store, s->path, &serializer);
         }
         no_memory = serializer.no_memory;
     }
@@ -130,14 +132,14 @@ static void *work(void *argument)
 {
     worker *const w = argument;
     const mt_tasks *const tasks = w->pool->tasks;
-    for (int task = take(w->pool); task >= 0; task = take(w->pool)) {
+    for (int task = take_next_task(w->pool); task >= 0; task = take_next_task(w->pool)) {
         mt_err err = {0};
         const mt_task_path own = path_of_task(w->pool->task_path, task);
         const bool kept = tasks->serializer != NULL && own.store != NULL;
         mt_task_path inner = own;
         inner.store = kept ? NULL : own.store;
         mt_status rc = tasks->run(tasks->context, w->number, task, &inner, &err);
-        rc = rc == MT_OK && kept ? keep(tasks, task, &own, &err) : rc;
+        rc = rc == MT_OK && kept ? store_task_result(tasks, task, &own, &err) : rc;
         if (rc != MT_OK) {
             note_failure(w->pool, task, rc, &err);
         }
@@ -159,8 +161,9 @@ static mt_status look_up(pool *p, bool *missing, mt_err *err)
     for (int k = 0; k < tasks->n; k++) {
         const mt_task_path own = path_of_task(p->task_path, k);
         size_t n = 0;
-        const uint64_t *const words =
-            tasks->serializer == NULL || own.store == NULL ? NULL : find(store, own.path, &n);
+        const uint64_t *const words = tasks->serializer == NULL || own.store == NULL
+                                          ? NULL
+                                          : find_stored(store, own.path, &n);
         if (words != NULL) {
             mt_serializer serializer = mt_serializer_of(words, n);
             tasks->serializer(tasks->context, k, &serializer);

@@ -249,7 +249,7 @@ static mt_status read_shell(const char *s, const char *option, mt_shell *out, mt
     return MT_OK;
 }
 
-static mt_status store(mt_args *args, int option, const char *value, mt_err *err)
+static mt_status store_option_value(mt_args *args, int option, const char *value, mt_err *err)
 {
     const mt_option *const o = &mt_options[option];
     if (args->given[option] && o->value != NULL && !o->repeats) {
@@ -349,13 +349,13 @@ static mt_status read_long(mt_args *args, int argc, char *const argv[], int *at,
     if (mt_options[option].value == NULL) {
         return attached
                    ? mt_fail(err, MT_E_USAGE, "--%s takes no value", mt_options[option].name)
-                   : store(args, option, NULL, err);
+                   : store_option_value(args, option, NULL, err);
     }
     if (!attached && *at + 1 >= argc) {
         return mt_fail(err, MT_E_USAGE, "--%s needs a value: %s", mt_options[option].name,
                        mt_options[option].value);
     }
-    return store(args, option, attached ? name + length + 1 : argv[++*at], err);
+    return store_option_value(args, option, attached ? name + length + 1 : argv[++*at], err);
 }
 
 static mt_status read_short(mt_args *args, int argc, char *const argv[], int *at, mt_err *err)
@@ -367,13 +367,13 @@ static mt_status read_short(mt_args *args, int argc, char *const argv[], int *at
             continue;
         }
         if (o->value == NULL) {
-            return text[1] == '\0' ? store(args, i, NULL, err)
+            return text[1] == '\0' ? store_option_value(args, i, NULL, err)
                                    : mt_fail(err, MT_E_USAGE, "-%c takes no value", o->letter);
         }
         if (text[1] == '\0' && *at + 1 >= argc) {
             return mt_fail(err, MT_E_USAGE, "-%c needs a value: %s", o->letter, o->value);
         }
-        return store(args, i, text[1] != '\0' ? text + 1 : argv[++*at], err);
+        return store_option_value(args, i, text[1] != '\0' ? text + 1 : argv[++*at], err);
     }
     return mt_fail(err, MT_E_USAGE, "unknown option \"-%s\"", text);
 }
@@ -424,7 +424,7 @@ static mt_status check_operands(const mt_args *args, mt_err *err)
 }
 
 /* The values of each option that may be repeated, one behind the other. */
-static void gather(mt_args *args)
+static void group_repeated_values(mt_args *args)
 {
     const char **at = args->pool;
     for (int option = 0; option < MT_OPT_IDS; option++) {
@@ -466,7 +466,7 @@ mt_status mt_args_parse(int argc, char *const argv[], mt_args *out, mt_err *err)
         }
         MT_TRY(rc);
     }
-    gather(out);
+    group_repeated_values(out);
     return check_operands(out, err);
 }
 

@@ -29,7 +29,7 @@ static int by_place(const void *a, const void *b)
 
 /* The unit of this parameter's number in the model, its value having this SI unit; NULL: SI, or
  * none given. */
-static const mt_unit *unit_of(const mt_json *doc, mt_addr parameter, const char *si)
+static const mt_unit *find_parameter_unit(const mt_json *doc, mt_addr parameter, const char *si)
 {
     const mt_addr unit = mt_json_member(doc, parameter, "unit");
     const bool is_text = unit != MT_NO_ADDR && mt_json_type_of(doc, unit) == MT_JSON_STRING;
@@ -45,7 +45,7 @@ static mt_status find_place(const mt_json *doc, const char *path, const char *na
     mt_addr at = parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
     out->value = value;
     if (at != MT_NO_ADDR && mt_json_type_of(doc, at) == MT_JSON_OBJECT) {
-        out->value = mt_unit_written(unit_of(doc, at, si), value);
+        out->value = mt_unit_written(find_parameter_unit(doc, at, si), value);
         at = mt_json_member(doc, at, "value");
     }
     if (at == MT_NO_ADDR || !mt_json_span(doc, at, &out->begin, &out->end)) {
@@ -114,7 +114,8 @@ done:
     return rc;
 }
 
-static mt_status apply(const mt_args *args, const mt_result *result, mt_text *out, mt_err *err)
+static mt_status apply_recommendation(const mt_args *args, const mt_result *result,
+                                      mt_text *out, mt_err *err)
 {
     const char *const path = args->operands[0];
     const mt_recommendation *chosen = NULL;
@@ -148,7 +149,7 @@ int mt_cmd_apply(const mt_args *args, mt_text *out)
     mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
     int code = mt_cli_loaded(rc, &messages, &err);
     if (rc == MT_OK) {
-        rc = apply(args, result, out, &err);
+        rc = apply_recommendation(args, result, out, &err);
         code = rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
     }
     mt_result_delete(result);

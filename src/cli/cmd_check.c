@@ -35,7 +35,7 @@ enum { ALL_FORMATS = 160 };
 
 /* The kind of the document by its format; KIND_COUNT with a diagnostic where it is not
  * known. */
-static int kind_of(mt_json *doc)
+static int find_document_kind(mt_json *doc)
 {
     mt_diags *const diags = mt_json_diags(doc);
     const mt_addr value = mt_json_member(doc, MT_JSON_ROOT, "format");
@@ -77,7 +77,7 @@ static mt_status find_kind(const char *path, const mt_io_options *opt, int *kind
         rc = mt_json_parse(file.bytes, file.length, &doc, err);
     }
     if (doc != NULL) {
-        *kind = rc == MT_OK ? kind_of(doc) : KIND_COUNT;
+        *kind = rc == MT_OK ? find_document_kind(doc) : KIND_COUNT;
         if (*kind == KIND_COUNT) {
             rc = rc == MT_OK ? mt_fail(err, MT_E_INPUT, "%s: the format is unknown", path) : rc;
             mt_json_report(doc, path, messages);
@@ -152,8 +152,8 @@ typedef struct subject {
 enum { MOST_TRIED = 200 };
 
 /* Check a valid file against mechanics: each configuration, and each goal of a study. */
-static mt_status examine(const subject *s, const char *path, mt_diagnostics *messages,
-                         mt_warning_list *found, mt_err *err)
+static mt_status examine_mechanics(const subject *s, const char *path, mt_diagnostics *messages,
+                                   mt_warning_list *found, mt_err *err)
 {
     mt_status rc = MT_OK;
     if (s->model != NULL) {
@@ -174,8 +174,9 @@ static mt_status examine(const subject *s, const char *path, mt_diagnostics *mes
 
 /* Load the file by its kind; deletes the document. A model is made from the document; other
  * kinds read their files again, with those that they name. */
-static mt_status load(int kind, mt_json *doc, const char *path, const mt_io_options *opt,
-                      subject *s, mt_diagnostics *messages, mt_err *err)
+static mt_status load_document(int kind, mt_json *doc, const char *path,
+                               const mt_io_options *opt, subject *s, mt_diagnostics *messages,
+                               mt_err *err)
 {
     mt_aircraft_list aircraft = {0};
     mt_status rc = MT_OK;
@@ -305,7 +306,7 @@ static void put_file(output *to, const char *path, const char *kind,
 
 /* True where both messages are the same at the same place of the same file, given by any
  * path. */
-static bool is_same(const mt_diagnostics *a, int i, const mt_diagnostics *b, int k)
+static bool is_same_message(const mt_diagnostics *a, int i, const mt_diagnostics *b, int k)
 {
     if (mt_diagnostics_line(a, i) != mt_diagnostics_line(b, k) ||
         mt_diagnostics_column(a, i) != mt_diagnostics_column(b, k) ||
@@ -323,7 +324,7 @@ static bool is_same(const mt_diagnostics *a, int i, const mt_diagnostics *b, int
 static bool is_told(const mt_diagnostics *messages, int i, const mt_diagnostics *told)
 {
     for (int k = 0; k < mt_diagnostics_count(told); k++) {
-        if (is_same(messages, i, told, k)) {
+        if (is_same_message(messages, i, told, k)) {
             return true;
         }
     }
@@ -363,7 +364,7 @@ static void leave_told(const mt_diagnostics *messages, const char *path, told_be
                           told->of_others.lines.failed || told->of_their_own.lines.failed;
 }
 
-static int check(const mt_args *args, const char *path, output *to)
+static int check_file(const mt_args *args, const char *path, output *to)
 {
     const mt_io_options opt = mt_cli_io(args);
     mt_diagnostics messages = {.count = 0};
@@ -374,9 +375,9 @@ static int check(const mt_args *args, const char *path, output *to)
     subject read = {.model = NULL};
     mt_json *doc = NULL;
     mt_status rc = find_kind(path, &opt, &kind, &doc, &messages, &err);
-    rc = rc == MT_OK ? load(kind, doc, path, &opt, &read, &messages, &err) : rc;
+    rc = rc == MT_OK ? load_document(kind, doc, path, &opt, &read, &messages, &err) : rc;
     rc = rc == MT_OK ? mt_arena_init(&mem, 0, &err) : rc;
-    rc = rc == MT_OK ? examine(&read, path, &messages, &found, &err) : rc;
+    rc = rc == MT_OK ? examine_mechanics(&read, path, &messages, &found, &err) : rc;
     add_messages(&found, path, &messages);
     mt_diagnostics fresh = {.count = 0};
     leave_told(&messages, path, &to->told, &fresh);
@@ -410,7 +411,7 @@ int mt_cmd_check(const mt_args *args, mt_text *out)
         mt_sarif_begin(&to.w);
     }
     for (int i = 0; i < args->n_operands; i++) {
-        code = mt_exit_worse(code, check(args, args->operands[i], &to));
+        code = mt_exit_worse(code, check_file(args, args->operands[i], &to));
     }
     if (json) {
         mt_json_close(&to.w);

@@ -54,7 +54,7 @@ static void add_value(mt_table *t, const mt_reported *told, const char *unit)
     mt_table_text(t, "missing");
 }
 
-static mt_table columns(bool with_part)
+static mt_table make_difference_columns(bool with_part)
 {
     mt_table t = mt_table_default();
     if (with_part) {
@@ -69,7 +69,7 @@ static mt_table columns(bool with_part)
     return t;
 }
 
-static void add_row(mt_table *t, const mt_difference *d, bool with_part)
+static void add_difference_row(mt_table *t, const mt_difference *d, bool with_part)
 {
     if (with_part) {
         mt_table_text(t, d->part);
@@ -88,13 +88,13 @@ static int print_part(const mt_difference *items, int first, int last, bool prov
                       mt_text *out)
 {
     int left_out = 0;
-    mt_table t = columns(false);
+    mt_table t = make_difference_columns(false);
     for (int pass = 0; pass < 2 && mt_table_rows(&t) == 0; pass++) {
         left_out = 0;
         for (int i = first; i < last; i++) {
             const bool shown = pass == 1 || !items[i].derived;
             if (items[i].provenance == provenance && shown) {
-                add_row(&t, &items[i], false);
+                add_difference_row(&t, &items[i], false);
             }
             left_out += items[i].provenance == provenance && !shown ? 1 : 0;
         }
@@ -192,9 +192,9 @@ static int print(const mt_args *args, const mt_result_diff *diff, mt_text *out)
         return mt_cli_json_done(&w);
     }
     if (args->format == MT_FORMAT_CSV) {
-        mt_table t = columns(true);
+        mt_table t = make_difference_columns(true);
         for (int i = 0; i < diff->n; i++) {
-            add_row(&t, &diff->items[i], true);
+            add_difference_row(&t, &diff->items[i], true);
         }
         mt_table_csv(&t, out);
         mt_table_free(&t);

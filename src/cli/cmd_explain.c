@@ -15,8 +15,8 @@ static void print_json(const mt_result *result, const mt_recommendation *r, mt_j
 }
 
 /* The design asked for; without --rank the best, and where none is recommended the original. */
-static mt_status choose(const mt_args *args, const mt_result *result,
-                        const mt_recommendation **out, mt_err *err)
+static mt_status choose_explained_design(const mt_args *args, const mt_result *result,
+                                         const mt_recommendation **out, mt_err *err)
 {
     if (!args->given[MT_OPT_RANK] && result->n_recommendations == 0) {
         *out = &result->baseline;
@@ -30,7 +30,7 @@ static int print(const mt_args *args, const mt_result *result, mt_text *out)
     const mt_recommendation *r = NULL;
     mt_json_writer w = mt_json_writer_default(out);
     mt_err err = {.code = MT_OK};
-    const mt_status rc = choose(args, result, &r, &err);
+    const mt_status rc = choose_explained_design(args, result, &r, &err);
     if (rc != MT_OK) {
         return mt_cli_failed(rc, &err);
     }

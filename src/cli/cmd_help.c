@@ -18,7 +18,7 @@ static rank rank_of(const mt_shipped *document)
 }
 
 /* True where the text already has the same item, byte by byte. */
-static bool has(const mt_text *out, const mt_passage *p)
+static bool is_listed_already(const mt_text *out, const mt_passage *p)
 {
     const size_t length = (size_t)(p->end - p->begin) - 1; /* the last one has no line feed */
     for (const char *at = out->s; at != NULL && (at = strstr(at, "\n- `")) != NULL; at++) {
@@ -142,7 +142,7 @@ static void show_items(const mt_shipped *document, const char *topic, way by,
             at.chapter = p.level <= CHAPTER ? p : at.chapter;
             at.section = p;
         } else if ((by == BY_ITEMS ? mt_passage_is(&p, topic) : has_value(&p, topic)) &&
-                   !has(out, &p)) {
+                   !is_listed_already(out, &p)) {
             show_item(document, &p, &at, last, out);
         }
     }
@@ -307,7 +307,7 @@ static void add_near(const char *topic, mt_text *out)
     mt_text_free(&names);
 }
 
-static int unknown(const char *topic)
+static int report_unknown_topic(const char *topic)
 {
     mt_text near = {.s = NULL};
     mt_text topics = {.s = NULL};
@@ -346,5 +346,5 @@ int mt_cmd_help(const mt_args *args, mt_text *out)
         show_all(topic, by, &last, out);
     }
     mt_text_add(out, last == NULL ? "" : "\n");
-    return last == NULL && !out->failed ? unknown(topic) : MT_EXIT_DONE;
+    return last == NULL && !out->failed ? report_unknown_topic(topic) : MT_EXIT_DONE;
 }

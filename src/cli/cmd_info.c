@@ -54,7 +54,7 @@ static void json_units(mt_json_writer *w, const mt_loaded_model *s)
     mt_json_close(w);
 }
 
-static double number_of(const view *v, mt_node node)
+static double info_value(const view *v, mt_node node)
 {
     return node == MT_NO_NODE ? nan("") : mt_linear_value(v->a->lin, node);
 }
@@ -71,19 +71,19 @@ static void json_damping(mt_json_writer *w, const view *v)
     mt_json_put_integer(w, "dampers", v->info.dampers);
     mt_json_put_number(w, "least_loss_factor", v->info.least_loss);
     mt_json_put_number(w, "most_loss_factor", v->info.most_loss);
-    mt_json_put_number(w, "ratio", number_of(v, d->ratio));
+    mt_json_put_number(w, "ratio", info_value(v, d->ratio));
     mt_json_open_flat(w, "ratios", '[');
     for (int k = 0; k < d->n_ratios; k++) {
-        mt_json_put_number(w, NULL, number_of(v, d->ratios[k]));
+        mt_json_put_number(w, NULL, info_value(v, d->ratios[k]));
     }
     mt_json_close(w);
     mt_json_open(w, "modes", '{');
     for (int k = 0; k < d->n_named; k++) {
-        mt_json_put_number(w, named_mode(v, k), number_of(v, d->named_ratios[k]));
+        mt_json_put_number(w, named_mode(v, k), info_value(v, d->named_ratios[k]));
     }
     mt_json_close(w);
-    mt_json_put_number(w, "mass_per_s", number_of(v, d->mass));
-    mt_json_put_number(w, "stiffness_s", number_of(v, d->stiffness));
+    mt_json_put_number(w, "mass_per_s", info_value(v, d->mass));
+    mt_json_put_number(w, "stiffness_s", info_value(v, d->stiffness));
     mt_json_close(w);
 }
 
@@ -105,17 +105,17 @@ static void text_ratios(mt_text *out, int *n, const view *v)
     for (int k = 0; k < d->n_named && k < MOST_RATIOS; k++) {
         const char *const of =
             mt_arena_printf(v->warning_list.mem, " of \"%s\"", named_mode(v, k));
-        put_part(out, n, "ratio ", number_of(v, d->named_ratios[k]), of == NULL ? "" : of);
+        put_part(out, n, "ratio ", info_value(v, d->named_ratios[k]), of == NULL ? "" : of);
     }
     for (int k = 0; k < d->n_ratios && k < MOST_RATIOS; k++) {
         char of[32];
         (void)mt_snprintf(of, sizeof of, " of mode %d", k + 1);
-        put_part(out, n, "ratio ", number_of(v, d->ratios[k]), of);
+        put_part(out, n, "ratio ", info_value(v, d->ratios[k]), of);
     }
     if (d->n_named > MOST_RATIOS || d->n_ratios > MOST_RATIOS) {
         mt_text_add(out, ", ...");
     }
-    put_part(out, n, "ratio ", number_of(v, d->ratio), listed ? " of other modes" : "");
+    put_part(out, n, "ratio ", info_value(v, d->ratio), listed ? " of other modes" : "");
 }
 
 /* Write the line "damping"; nothing without damping. */
@@ -136,12 +136,12 @@ static void text_damping(mt_text *out, const view *v)
     }
     put_part(out, &n, "loss factors ", v->info.least_loss, most);
     text_ratios(out, &n, v);
-    put_part(out, &n, "", number_of(v, d->mass), " 1/s of the mass");
-    put_part(out, &n, "", number_of(v, d->stiffness), " s of the stiffness");
+    put_part(out, &n, "", info_value(v, d->mass), " 1/s of the mass");
+    put_part(out, &n, "", info_value(v, d->stiffness), " s of the stiffness");
     mt_text_add(out, n > 0 ? "\n" : "");
 }
 
-static mt_status write_json(mt_json_writer *w, view *v, mt_err *err)
+static mt_status write_info_json(mt_json_writer *w, view *v, mt_err *err)
 {
     const mt_info *const i = &v->info;
     const bool planar = v->s->model->dimension == 2;
@@ -200,7 +200,7 @@ static void write_conventions(mt_text *out, const view *v, mt_text *last)
     *last = text;
 }
 
-static void write_text(mt_text *out, const view *v, mt_text *last)
+static void write_info_text(mt_text *out, const view *v, mt_text *last)
 {
     const mt_info *const i = &v->info;
     const int n = v->s->model->dimension;
@@ -316,7 +316,8 @@ static mt_status find_conventions(view *v, mt_err *err)
     return mt_arena_check(&v->mem, err);
 }
 
-static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
+static mt_status show_configuration_info(const mt_args *args, view *v, const sinks *to,
+                                         mt_err *err)
 {
     MT_TRY(mt_loaded_model_analyse(v->s, v->c, 1, &v->a, err));
     MT_TRY(mt_info_fill(v->a->lin, &v->info, err));
@@ -328,14 +329,14 @@ static mt_status one(const mt_args *args, view *v, const sinks *to, mt_err *err)
     MT_TRY(find_conventions(v, err));
     switch (args->format) {
     case MT_FORMAT_JSON:
-        return write_json(to->w, v, err);
+        return write_info_json(to->w, v, err);
     case MT_FORMAT_CSV:
         fill_table(to->t, v);
         return MT_OK;
     case MT_FORMAT_HTML:  /* of report alone */
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
-        write_text(to->out, v, to->last);
+        write_info_text(to->out, v, to->last);
         return MT_OK;
     }
     return MT_OK;
@@ -365,7 +366,7 @@ int mt_cmd_info(const mt_args *args, mt_text *out)
         view v = {.s = &s, .c = s.configurations[i]};
         mt_err err = {.code = MT_OK};
         mt_loaded_model_warn_overridden(&s, v.c);
-        const mt_status rc = one(args, &v, &to, &err);
+        const mt_status rc = show_configuration_info(args, &v, &to, &err);
         if (rc != MT_OK) {
             code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         }

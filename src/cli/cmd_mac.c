@@ -37,13 +37,13 @@ typedef struct comparison {
     mt_arena mem;
 } comparison;
 
-static const char *name_of(const side *x)
+static const char *side_configuration(const side *x)
 {
     return mt_loaded_model_configuration(&x->s, x->s.configurations[0]);
 }
 
 /* "MODEL:CONFIGURATION", split at the last colon that is not part of a folder's name. */
-static int load(const mt_args *args, const char *text, comparison *c, side *x)
+static int load_compared_side(const mt_args *args, const char *text, comparison *c, side *x)
 {
     const char *const colon = strrchr(text, ':');
     const bool split = colon != NULL && strchr(colon, '/') == NULL;
@@ -60,7 +60,7 @@ static int load(const mt_args *args, const char *text, comparison *c, side *x)
     const int code = mt_loaded_model_load(args, path, configuration, &x->s);
     if (code == MT_EXIT_DONE && x->s.n_configurations != 1) {
         mt_terminal_error("\"%s\" has %d configurations: name one, as %s:%s", path,
-                          x->s.n_configurations, path, name_of(x));
+                          x->s.n_configurations, path, side_configuration(x));
         return MT_EXIT_INPUT;
     }
     return code;
@@ -250,7 +250,7 @@ static mt_status json_subspaces(comparison *c, mt_json_writer *w, mt_err *err)
     return MT_OK;
 }
 
-static mt_status write_json(comparison *c, mt_json_writer *w, mt_err *err)
+static mt_status write_mac_json(comparison *c, mt_json_writer *w, mt_err *err)
 {
     mt_json_open(w, NULL, '{');
     mt_json_open(w, "pairs", '[');
@@ -324,7 +324,7 @@ static void text_matrix(const comparison *c, mt_text *out)
 static void write_side(const side *x, mt_text *out)
 {
     const int all = mt_modal_vibrations(&x->a->modes);
-    mt_text_addf(out, "%s: %s, %s, ", x->letter, x->s.path, name_of(x));
+    mt_text_addf(out, "%s: %s, %s, ", x->letter, x->s.path, side_configuration(x));
     if (x->n < all) {
         mt_text_addf(out, "the lowest %d of %d vibration modes\n", x->n, all);
     } else {
@@ -332,7 +332,7 @@ static void write_side(const side *x, mt_text *out)
     }
 }
 
-static mt_status write_text(comparison *c, mt_text *out, mt_err *err)
+static mt_status write_mac_text(comparison *c, mt_text *out, mt_err *err)
 {
     write_side(&c->a, out);
     write_side(&c->b, out);
@@ -362,7 +362,7 @@ static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err
     mt_table t;
     switch (format) {
     case MT_FORMAT_JSON:
-        MT_TRY(write_json(c, &w, err));
+        MT_TRY(write_mac_json(c, &w, err));
         return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
     case MT_FORMAT_CSV:
         t = pairs_table(c);
@@ -374,7 +374,7 @@ static mt_status write_out(comparison *c, mt_format format, mt_text *out, mt_err
     case MT_FORMAT_TEXT:
         break;
     }
-    return write_text(c, out, err);
+    return write_mac_text(c, out, err);
 }
 
 int mt_cmd_mac(const mt_args *args, mt_text *out)
@@ -384,8 +384,9 @@ int mt_cmd_mac(const mt_args *args, mt_text *out)
     int code = MT_EXIT_DONE;
     mt_status rc = mt_arena_init(&c.mem, 0, &err);
     if (rc == MT_OK) {
-        code = load(args, args->operands[0], &c, &c.a);
-        code = code == MT_EXIT_DONE ? load(args, args->operands[1], &c, &c.b) : code;
+        code = load_compared_side(args, args->operands[0], &c, &c.a);
+        code =
+            code == MT_EXIT_DONE ? load_compared_side(args, args->operands[1], &c, &c.b) : code;
     }
     if (rc == MT_OK && code == MT_EXIT_DONE) {
         rc = correlate(&c, args->count, &err);

@@ -263,7 +263,7 @@ static void write_others(const view *v, mt_text *out)
     }
 }
 
-static void tell(const view *v, mt_text *out)
+static void write_solution_notes(const view *v, mt_text *out)
 {
     const mt_modes *const m = v->m;
     const mt_state *const at = position_of(v);
@@ -315,7 +315,7 @@ static void text_view(const view *v, mt_text *out)
     mt_cli_print_warnings(&v->warning_list, out);
     mt_table_print(&t, 2, mt_terminal_width(), out);
     mt_table_free(&t);
-    tell(v, out);
+    write_solution_notes(v, out);
     if (v->shapes.n > 0) {
         print_shapes(v, out);
     }
@@ -359,7 +359,7 @@ static mt_status csv_view(sink *to, const view *v)
 }
 
 /* Find the lowest modes only, where these are requested and there is a fast method. */
-static mt_status look(const mt_args *args, view *v, mt_err *err)
+static mt_status solve_view_modes(const mt_args *args, view *v, mt_err *err)
 {
     const mt_loaded_model *const s = v->s;
     const mt_lowest_want want = {.count = args->given[MT_OPT_DAMPED] ? 0 : v->count,
@@ -376,7 +376,8 @@ static mt_status look(const mt_args *args, view *v, mt_err *err)
     return mt_warnings_of_analysis(v->a, s->n_inputs, s->inputs, s->at, &v->warning_list, err);
 }
 
-static mt_status one(sink *to, const mt_loaded_model *s, int c, mt_err *err)
+static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, int c,
+                                          mt_err *err)
 {
     const bool asked = to->args->given[MT_OPT_COUNT];
     view v = {.s = s, .c = c, .count = asked ? to->args->count : DEFAULT_MODES, .asked = asked};
@@ -384,7 +385,7 @@ static mt_status one(sink *to, const mt_loaded_model *s, int c, mt_err *err)
     mt_status rc = mt_arena_init(&mem, 0, err);
     v.warning_list = mt_warning_list_default(&mem);
     to->run.progress = mt_watch_begin(to->args, 0, "modes");
-    rc = rc == MT_OK ? look(to->args, &v, err) : rc;
+    rc = rc == MT_OK ? solve_view_modes(to->args, &v, err) : rc;
     to->run.progress = NULL;
     mt_watch_end(rc == MT_OK);
     if (rc != MT_OK || v.m == NULL) {
@@ -435,7 +436,7 @@ static int each(sink *to, const mt_loaded_model *s)
         const int c = s->configurations[i];
         mt_err err = {.code = MT_OK};
         mt_loaded_model_warn_overridden(s, c);
-        const mt_status rc = one(to, s, c, &err);
+        const mt_status rc = show_configuration_modes(to, s, c, &err);
         if (rc == MT_OK) {
             continue;
         }

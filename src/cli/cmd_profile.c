@@ -156,7 +156,7 @@ static void put_spectrum(mt_json_writer *w, const view *s)
     mt_json_close(w);
 }
 
-static int write_json(const view *s, mt_text *out)
+static int write_profile_json(const view *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
     mt_json_writer w = mt_json_writer_default(out);
@@ -294,7 +294,7 @@ static void print_peaks(const view *s, mt_text *out)
     mt_table_free(&t);
 }
 
-static void write_text(const view *s, mt_text *out)
+static void write_profile_text(const view *s, mt_text *out)
 {
     const mt_vibration *const v = s->v;
     mt_text_addf(out, "%s%s%s%s\n\n", mt_vibrated_name(v),
@@ -385,14 +385,14 @@ static int print(const mt_args *args, const view *s, mt_text *out)
 {
     switch (args->format) {
     case MT_FORMAT_JSON:
-        return write_json(s, out);
+        return write_profile_json(s, out);
     case MT_FORMAT_CSV:
         write_csv(s, out);
         break;
     case MT_FORMAT_HTML:  /* of report alone */
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
-        write_text(s, out);
+        write_profile_text(s, out);
         break;
     }
     return MT_EXIT_DONE;

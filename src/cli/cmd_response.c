@@ -332,7 +332,7 @@ static mt_status open_either(job *j, mt_err *err)
     return open_response(j, why, err);
 }
 
-static mt_status run(job *j, mt_err *err)
+static mt_status compute_response(job *j, mt_err *err)
 {
     mt_status rc = open_either(j, err);
     rc = rc == MT_OK ? mt_response_curve(&j->r, &j->v.opt, &j->curve, err) : rc;
@@ -349,7 +349,7 @@ typedef struct sink {
     mt_table table; /* CSV */
 } sink;
 
-static int one(sink *to, mt_loaded_model *s, int c)
+static int show_configuration_response(sink *to, mt_loaded_model *s, int c)
 {
     job j = {.args = to->args, .profile = to->profile, .s = s, .c = c};
     mt_err err = {.code = MT_OK};
@@ -359,7 +359,7 @@ static int one(sink *to, mt_loaded_model *s, int c)
                              .curve = &j.curve,
                              .direct = to->args->given[MT_OPT_DIRECT]};
     mt_loaded_model_warn_overridden(s, c);
-    const mt_status rc = run(&j, &err);
+    const mt_status rc = compute_response(&j, &err);
     if (rc == MT_OK) {
         switch (to->args->format) {
         case MT_FORMAT_JSON:
@@ -385,7 +385,7 @@ static int one(sink *to, mt_loaded_model *s, int c)
 }
 
 /* Load the profile of --vibration; without one an input is required. */
-static int load(sink *to)
+static int load_response_profile(sink *to)
 {
     const char *const name = to->args->value[MT_OPT_VIBRATION];
     mt_diagnostics messages = {.count = 0};
@@ -413,7 +413,7 @@ int mt_cmd_response(const mt_args *args, mt_text *out)
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
     int code =
         mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
-    code = code == MT_EXIT_DONE ? load(&to) : code;
+    code = code == MT_EXIT_DONE ? load_response_profile(&to) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
     }
@@ -421,7 +421,7 @@ int mt_cmd_response(const mt_args *args, mt_text *out)
         mt_json_open(&to.w, NULL, '[');
     }
     for (int i = 0; i < s.n_configurations; i++) {
-        code = mt_exit_worse(code, one(&to, &s, s.configurations[i]));
+        code = mt_exit_worse(code, show_configuration_response(&to, &s, s.configurations[i]));
     }
     if (list) {
         mt_json_close(&to.w);

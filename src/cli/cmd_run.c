@@ -39,7 +39,7 @@ typedef struct job {
 
 /* Save the designs before a long proof begins. A failure to write is reported, and again for
  * the whole answer. */
-static mt_status keep(void *context, mt_result *so_far, mt_err *err)
+static mt_status save_designs_so_far(void *context, mt_result *so_far, mt_err *err)
 {
     const job *const j = context;
     char sha256[MT_SHA256_TEXT] = "";
@@ -111,7 +111,7 @@ static int answer(job *j)
         }
         tasks.store = mt_journal_checkpoint_store(j->journal, j->args->part, j->args->parts);
     }
-    const mt_incumbent_callback early = {keep, j};
+    const mt_incumbent_callback early = {save_designs_so_far, j};
     const bool kept = j->args->command != MT_CMD_COMPARE && j->args->part == 0;
     j->start = mt_terminal_seconds();
     if (j->stops) {

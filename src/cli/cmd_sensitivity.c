@@ -7,18 +7,18 @@
 
 enum { DEFAULT_MODES = 6, DIGITS = 4, HZ_DIGITS = 6, HEADING_TEXT = 40, NAME_TEXT = 128 };
 
-static const char *unit_of(const mt_sensitivity_table *v, int k)
+static const char *parameter_si_unit(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].unit;
 }
 
 /* The unit in which its value is shown; NULL: SI. */
-static const mt_unit *shown_in(const mt_sensitivity_table *v, int k)
+static const mt_unit *shown_parameter_unit(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].written;
 }
 
-static const char *name_of(const mt_sensitivity_table *v, int k)
+static const char *parameter_name(const mt_sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
@@ -34,7 +34,7 @@ static void json_no_derivatives(mt_json_writer *w, const mt_sensitivity_table *v
     for (int k = 0; k < v->n; k++) {
         if (has_none(v, k)) {
             mt_json_open(w, NULL, '{');
-            mt_json_put_string(w, "parameter", name_of(v, k));
+            mt_json_put_string(w, "parameter", parameter_name(v, k));
             mt_json_put_string(w, "reason",
                                v->independence[k].opens ? "opens_joints" : "blocks_motion");
             mt_cli_json_joints(w, "joints", &v->independence[k].joints);
@@ -44,7 +44,7 @@ static void json_no_derivatives(mt_json_writer *w, const mt_sensitivity_table *v
     mt_json_close(w);
 }
 
-static void write_json(mt_json_writer *w, const mt_sensitivity_table *v)
+static void write_sensitivity_json(mt_json_writer *w, const mt_sensitivity_table *v)
 {
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
@@ -58,8 +58,8 @@ static void write_json(mt_json_writer *w, const mt_sensitivity_table *v)
         mt_json_open(w, "sensitivities", '[');
         for (int k = 0; k < v->n; k++) {
             mt_json_open(w, NULL, '{');
-            mt_json_put_string(w, "parameter", name_of(v, k));
-            mt_json_put_string(w, "unit", unit_of(v, k));
+            mt_json_put_string(w, "parameter", parameter_name(v, k));
+            mt_json_put_string(w, "unit", parameter_si_unit(v, k));
             mt_json_put_number(w, "value", v->value[k]);
             mt_json_put_number(w, "hz_per_percent", mt_sensitivity_table_per_percent(v, i, k));
             mt_json_put_number(w, "hz_per_unit", v->per_unit[i + ((ptrdiff_t)k * v->room)]);
@@ -96,11 +96,11 @@ static void fill_csv(mt_table *t, const mt_sensitivity_table *v)
             mt_table_integer(t, i + 1);
             mt_table_number(t, v->hz[i], HZ_DIGITS);
             mt_table_text(t, v->repeated[i] ? "true" : "false");
-            mt_table_text(t, name_of(v, k));
+            mt_table_text(t, parameter_name(v, k));
             mt_table_number(t, v->value[k], HZ_DIGITS);
             mt_table_number(t, mt_sensitivity_table_per_percent(v, i, k), DIGITS);
             mt_table_number(t, v->per_unit[i + ((ptrdiff_t)k * v->room)], DIGITS);
-            mt_table_text(t, unit_of(v, k));
+            mt_table_text(t, parameter_si_unit(v, k));
         }
     }
 }
@@ -121,7 +121,7 @@ static void write_notes(mt_text *out, const mt_sensitivity_table *v, bool repeat
     }
     for (int k = 0; k < v->n; k++) {
         if (has_none(v, k)) {
-            mt_text_addf(out, "  No derivative by %s: joints %s %s.\n", name_of(v, k),
+            mt_text_addf(out, "  No derivative by %s: joints %s %s.\n", parameter_name(v, k),
                          v->independence[k].joints.text,
                          v->independence[k].opens
                              ? "could not stay closed at any other value"
@@ -145,7 +145,7 @@ static void write_notes(mt_text *out, const mt_sensitivity_table *v, bool repeat
     mt_text_add(out, "\n");
 }
 
-static void write_text(mt_text *out, const mt_sensitivity_table *v)
+static void write_sensitivity_text(mt_text *out, const mt_sensitivity_table *v)
 {
     mt_table t = mt_table_default();
     bool repeated = false;
@@ -164,11 +164,12 @@ static void write_text(mt_text *out, const mt_sensitivity_table *v)
     for (int k = 0; k < v->n; k++) {
         const bool percent = mt_sensitivity_table_has_percent(v, k);
         char name[NAME_TEXT];
-        (void)mt_snprintf(name, sizeof name, "%s (1 mm)", name_of(v, k));
-        mt_table_text(&t, percent ? name_of(v, k) : name);
+        (void)mt_snprintf(name, sizeof name, "%s (1 mm)", parameter_name(v, k));
+        mt_table_text(&t, percent ? parameter_name(v, k) : name);
         coordinates = coordinates || !percent;
-        mt_table_number(&t, mt_unit_from_si(shown_in(v, k), v->value[k]), HZ_DIGITS);
-        mt_table_text(&t, mt_unit_name(shown_in(v, k), unit_of(v, k)));
+        mt_table_number(&t, mt_unit_from_si(shown_parameter_unit(v, k), v->value[k]),
+                        HZ_DIGITS);
+        mt_table_text(&t, mt_unit_name(shown_parameter_unit(v, k), parameter_si_unit(v, k)));
         for (int i = 0; i < v->modes; i++) {
             mt_table_change(&t, mt_sensitivity_table_shown(v, i, k), DIGITS);
         }
@@ -182,8 +183,9 @@ static void write_text(mt_text *out, const mt_sensitivity_table *v)
 }
 
 /* One configuration; *wrong: true where unknown parameters were requested. */
-static mt_status one(const mt_args *args, const mt_loaded_model *s, int c, mt_json_writer *w,
-                     mt_table *t, mt_text *out, bool *wrong, mt_err *err)
+static mt_status show_configuration_slopes(const mt_args *args, const mt_loaded_model *s, int c,
+                                           mt_json_writer *w, mt_table *t, mt_text *out,
+                                           bool *wrong, mt_err *err)
 {
     mt_sensitivity_table v = {.s = NULL};
     const int modes = args->count > 0 ? args->count : DEFAULT_MODES;
@@ -192,7 +194,7 @@ static mt_status one(const mt_args *args, const mt_loaded_model *s, int c, mt_js
     if (rc == MT_OK) {
         switch (args->format) {
         case MT_FORMAT_JSON:
-            write_json(w, &v);
+            write_sensitivity_json(w, &v);
             break;
         case MT_FORMAT_CSV:
             fill_csv(t, &v);
@@ -200,7 +202,7 @@ static mt_status one(const mt_args *args, const mt_loaded_model *s, int c, mt_js
         case MT_FORMAT_HTML:  /* of report alone */
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
-            write_text(out, &v);
+            write_sensitivity_text(out, &v);
             mt_loaded_model_note_links(s, c, out);
             break;
         }
@@ -229,7 +231,8 @@ int mt_cmd_sensitivity(const mt_args *args, mt_text *out)
         mt_err err = {.code = MT_OK};
         mt_loaded_model_warn_overridden(&s, s.configurations[i]);
         bool wrong = false;
-        const mt_status rc = one(args, &s, s.configurations[i], &w, &t, out, &wrong, &err);
+        const mt_status rc =
+            show_configuration_slopes(args, &s, s.configurations[i], &w, &t, out, &wrong, &err);
         if (rc != MT_OK) {
             code = mt_exit_worse(code, mt_cli_failed(rc, &err));
         }

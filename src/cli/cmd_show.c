@@ -58,7 +58,7 @@ static mt_status of_model(const mt_args *args, subject *o, mt_err *err)
 }
 
 /* Load the operand. Returns the exit status, with all messages given. */
-static int load(const mt_args *args, subject *o)
+static int load_shown_file(const mt_args *args, subject *o)
 {
     const mt_io_options opt = mt_cli_io(args);
     const char *const operand = args->operands[0];
@@ -167,7 +167,7 @@ static mt_status still(const mt_args *args, const mt_scene *scene, mt_text *out,
 }
 
 /* Write the file of --output, completely or not at all. */
-static mt_status keep(const char *path, const mt_text *text, mt_err *err)
+static mt_status save_output_file(const char *path, const mt_text *text, mt_err *err)
 {
     const char *const name = mt_text_base_name(path);
     if (name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
@@ -209,7 +209,7 @@ static mt_status write(const mt_args *args, const subject *o, const mt_scene *sc
                                                     : page(scene, title, to, err);
     rc = rc == MT_OK && to->failed ? mt_fail_memory(err) : rc;
     if (rc == MT_OK && to == &own) {
-        rc = keep(args->value[MT_OPT_OUTPUT], &own, err);
+        rc = save_output_file(args->value[MT_OPT_OUTPUT], &own, err);
     }
     if (rc == MT_OK && to == &own) {
         mt_terminal_talk(args->given[MT_OPT_QUIET], "%s: written to %s", args->operands[0],
@@ -225,7 +225,7 @@ int mt_cmd_show(const mt_args *args, mt_text *out)
     mt_scene *scene = NULL;
     mt_err err = {.code = MT_OK};
     mt_status rc = check_use(args, &err);
-    int code = rc == MT_OK ? load(args, &o) : mt_cli_failed(rc, &err);
+    int code = rc == MT_OK ? load_shown_file(args, &o) : mt_cli_failed(rc, &err);
     if (code != MT_EXIT_DONE) {
         goto done;
     }

@@ -28,7 +28,7 @@ typedef struct job {
 } job;
 
 /* Choose the configuration. */
-static mt_status choose(const mt_loaded_model *s, int *c, mt_err *err)
+static mt_status choose_moving_configuration(const mt_loaded_model *s, int *c, mt_err *err)
 {
     if (s->n_configurations > 1) {
         return mt_fail(err, MT_E_USAGE,
@@ -40,7 +40,7 @@ static mt_status choose(const mt_loaded_model *s, int *c, mt_err *err)
 }
 
 /* The system, driven where an input moves a joint, at its rest position. */
-static mt_status make(job *j, mt_err *err)
+static mt_status make_driven_system(job *j, mt_err *err)
 {
     mt_loaded_model *const s = j->s;
     mt_system_drive drive = {.fixed = true};
@@ -131,7 +131,7 @@ static mt_status start_along(job *j, mt_err *err)
 }
 
 /* Position and velocities to begin with. */
-static mt_status begin(job *j, mt_err *err)
+static mt_status set_start_state(job *j, mt_err *err)
 {
     const mt_sim_request *const r = &j->request;
     const int d = j->sys->driven && !j->sys->trim ? j->sys->drive_joint : -1;
@@ -164,7 +164,7 @@ static mt_status begin(job *j, mt_err *err)
         "--rate");
 }
 
-static mt_status read_one(job *j, int g, mt_sim_reading *out, mt_err *err)
+static mt_status read_gauge_tones(job *j, int g, mt_sim_reading *out, mt_err *err)
 {
     const mt_sim_result *const r = &j->result;
     const mt_gauge gauge = j->request.opt.gauges[g];
@@ -199,13 +199,13 @@ static mt_status read_all(job *j, mt_err *err)
     j->view.readings = mt_arena_alloc(&j->mem, (size_t)n, sizeof *j->view.readings);
     MT_TRY(mt_arena_check(&j->mem, err));
     for (int g = 0; g < n; g++) {
-        MT_TRY(read_one(j, g, &j->view.readings[g], err));
+        MT_TRY(read_gauge_tones(j, g, &j->view.readings[g], err));
     }
     return MT_OK;
 }
 
 /* Simulate with the interrupt of the terminal: the motion so far is kept. */
-static mt_status move(job *j, mt_err *err)
+static mt_status simulate_until_interrupt(job *j, mt_err *err)
 {
     mt_interrupt interrupt;
     mt_interrupt_init(&interrupt, mt_terminal_stop_request, NULL, NULL);
@@ -219,20 +219,20 @@ static mt_status move(job *j, mt_err *err)
     return rc;
 }
 
-static mt_status run(job *j, mt_err *err)
+static mt_status run_motion(job *j, mt_err *err)
 {
     MT_TRY(mt_arena_init(&j->mem, 0, err));
-    MT_TRY(choose(j->s, &j->c, err));
+    MT_TRY(choose_moving_configuration(j->s, &j->c, err));
     mt_loaded_model_warn_overridden(j->s, j->c);
     MT_TRY(mt_loaded_model_admit_dense(j->s, j->c, "a motion needs them", err));
-    MT_TRY(make(j, err));
+    MT_TRY(make_driven_system(j, err));
     MT_TRY(mt_sim_read(j->args, j->s, j->sys, j->profile, &j->request, err));
-    MT_TRY(begin(j, err));
-    MT_TRY(move(j, err));
+    MT_TRY(set_start_state(j, err));
+    MT_TRY(simulate_until_interrupt(j, err));
     return read_all(j, err);
 }
 
-static int put(const job *j, mt_text *out)
+static int print_motion(const job *j, mt_text *out)
 {
     mt_json_writer w = mt_json_writer_default(out);
     switch (j->args->format) {
@@ -264,7 +264,7 @@ static int stopped(const job *j)
     return mt_terminal_is_stopped() ? MT_EXIT_INTERRUPTED : MT_EXIT_GOALS;
 }
 
-static int load(job *j)
+static int load_motion_profile(job *j)
 {
     const char *const text = j->args->value[MT_OPT_VIBRATION];
     const char *port = NULL;
@@ -285,13 +285,13 @@ int mt_cmd_simulate(const mt_args *args, mt_text *out)
     int code =
         mt_loaded_model_load(args, args->operands[0], args->value[MT_OPT_CONFIGURATION], &s);
     s.run = &j.run;
-    code = code == MT_EXIT_DONE ? load(&j) : code;
+    code = code == MT_EXIT_DONE ? load_motion_profile(&j) : code;
     if (code != MT_EXIT_DONE) {
         goto done;
     }
-    const mt_status rc = run(&j, &err);
+    const mt_status rc = run_motion(&j, &err);
     if (rc == MT_OK) {
-        code = put(&j, out);
+        code = print_motion(&j, out);
         code = mt_exit_worse(code, stopped(&j));
     } else {
         if (rc != MT_E_USAGE) {

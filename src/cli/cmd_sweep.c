@@ -72,7 +72,7 @@ typedef struct job {
 } job;
 
 /* Modes at one point. */
-static mt_status visit(void *context, int point, const double *inputs, mt_err *err)
+static mt_status store_point_modes(void *context, int point, const double *inputs, mt_err *err)
 {
     job *const j = context;
     mt_analysis_options opt = mt_analysis_options_default();
@@ -127,10 +127,11 @@ static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt
     return MT_OK;
 }
 
-static mt_status run(const mt_args *args, const mt_loaded_model *s, int c, job *j, mt_err *err)
+static mt_status sweep_configuration(const mt_args *args, const mt_loaded_model *s, int c,
+                                     job *j, mt_err *err)
 {
     const mt_sweep_request *const r = j->v.request;
-    const mt_sweep_visitor visitor = {.visit = visit, .context = j};
+    const mt_sweep_visitor visitor = {.visit = store_point_modes, .context = j};
     const size_t n = (size_t)s->n_inputs;
     MT_TRY(mt_arena_init(&j->mem, 0, err));
     double *const at = mt_arena_f64(&j->mem, n + 1, 1);
@@ -243,7 +244,8 @@ static void warn_range(const job *j)
     }
 }
 
-static int one(sink *to, const mt_loaded_model *s, int c, const mt_sweep_request *request)
+static int show_configuration_sweep(sink *to, const mt_loaded_model *s, int c,
+                                    const mt_sweep_request *request)
 {
     job j = {.a = NULL};
     mt_err err = {.code = MT_OK};
@@ -252,7 +254,7 @@ static int one(sink *to, const mt_loaded_model *s, int c, const mt_sweep_request
     mt_loaded_model_warn_dropped(s, c, "--drive", request->drive.joint);
     j.v.request = request;
     mt_loaded_model_warn_overridden(s, c);
-    mt_status rc = run(to->args, s, c, &j, &err);
+    mt_status rc = sweep_configuration(to->args, s, c, &j, &err);
     if (rc != MT_E_USAGE) {
         (void)mt_err_in(&err, rc, "%s", s->path);
     }
@@ -307,7 +309,8 @@ int mt_cmd_sweep(const mt_args *args, mt_text *out)
         mt_json_open(&to.w, NULL, '[');
     }
     for (int i = 0; i < s.n_configurations; i++) {
-        code = mt_exit_worse(code, one(&to, &s, s.configurations[i], &request));
+        code = mt_exit_worse(code,
+                             show_configuration_sweep(&to, &s, s.configurations[i], &request));
     }
     if (list) {
         mt_json_close(&to.w);

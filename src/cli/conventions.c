@@ -25,7 +25,7 @@ typedef struct writer {
 } writer;
 
 /* A number that is given and not 0. */
-static bool has(const writer *w, mt_num num, double *v)
+static bool has_nonzero_value(const writer *w, mt_num num, double *v)
 {
     *v = num == MT_ABSENT ? 0.0 : w->value[num];
     return *v != 0.0;
@@ -56,8 +56,8 @@ typedef struct subject {
     pair of;
 } subject;
 
-static void say(writer *w, const subject *s, const char *fmt, ...) MT_PRINTF(3, 4);
-static void say(writer *w, const subject *s, const char *fmt, ...)
+static void add_convention(writer *w, const subject *s, const char *fmt, ...) MT_PRINTF(3, 4);
+static void add_convention(writer *w, const subject *s, const char *fmt, ...)
 {
     mt_convention_list *const out = w->out;
     va_list args;
@@ -87,7 +87,7 @@ static const char *about(const writer *w)
     return w->m->dimension == 2 ? "clockwise" : "against the axis";
 }
 
-static const char *along(const writer *w)
+static const char *rotation_sense(const writer *w)
 {
     return w->m->dimension == 2 ? "counter-clockwise" : "about the axis";
 }
@@ -106,14 +106,15 @@ static void write_products(writer *w)
             continue;
         }
         for (int k = 0; k < 3 && text != NULL; k++) {
-            if (has(w, b->inertia[3 + k], &v)) {
+            if (has_nonzero_value(w, b->inertia[3 + k], &v)) {
                 text = mt_arena_printf(w->out->mem, "%s %s %g", text, names[k], v);
                 first.value = first.member == NULL ? v : first.value;
                 first.member = first.member == NULL ? members[k] : first.member;
             }
         }
         if (text != NULL && *text != '\0') {
-            say(w, &first,
+            add_convention(
+                w, &first,
                 "body \"%s\": inertia%s: elements of the tensor, minus the integrals of x y, x "
                 "z, y z over the mass (a CAD system's positive integrals change sign)",
                 b->name.s, text);
@@ -136,17 +137,19 @@ static void write_torsion(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, s->joint, s->bodies);
     double v = 0.0;
-    if (has(w, s->preload, &v)) {
+    if (has_nonzero_value(w, s->preload, &v)) {
         const subject at = of_spring(w, s, "preload_n_m", v, of);
-        say(w, &at, "spring \"%s\": preload_n_m %g turns \"%s\" against \"%s\" %s, as drawn",
-            s->name.s, v, of.second, of.first, v > 0.0 ? about(w) : along(w));
+        add_convention(
+            w, &at, "spring \"%s\": preload_n_m %g turns \"%s\" against \"%s\" %s, as drawn",
+            s->name.s, v, of.second, of.first, v > 0.0 ? about(w) : rotation_sense(w));
     }
-    if (has(w, s->free_angle, &v)) {
+    if (has_nonzero_value(w, s->free_angle, &v)) {
         const subject at = of_spring(w, s, "free_angle_rad", v, of);
-        say(w, &at,
+        add_convention(
+            w, &at,
             "spring \"%s\": no torque where \"%s\" is turned by %g rad %s against \"%s\", from "
             "the drawing",
-            s->name.s, of.second, fabs(v), v > 0.0 ? along(w) : about(w), of.first);
+            s->name.s, of.second, fabs(v), v > 0.0 ? rotation_sense(w) : about(w), of.first);
     }
 }
 
@@ -154,17 +157,19 @@ static void write_axial(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, s->joint, s->bodies);
     double v = 0.0;
-    if (!has(w, s->preload, &v)) {
+    if (!has_nonzero_value(w, s->preload, &v)) {
         return;
     }
     const subject at = of_spring(w, s, "preload_n", v, of);
     if (s->joint_name.s != NULL) {
-        say(w, &at, "spring \"%s\": preload_n %g pushes \"%s\" %s the axis of \"%s\"",
-            s->name.s, v, of.second, v > 0.0 ? "against" : "along", s->joint_name.s);
+        add_convention(w, &at,
+                       "spring \"%s\": preload_n %g pushes \"%s\" %s the axis of \"%s\"",
+                       s->name.s, v, of.second, v > 0.0 ? "against" : "along", s->joint_name.s);
     } else {
-        say(w, &at, "spring \"%s\": preload_n %g is %s: it %s", s->name.s, v,
-            v > 0.0 ? "tension" : "compression",
-            v > 0.0 ? "draws its two points together" : "pushes its two points apart");
+        add_convention(w, &at, "spring \"%s\": preload_n %g is %s: it %s", s->name.s, v,
+                       v > 0.0 ? "tension" : "compression",
+                       v > 0.0 ? "draws its two points together"
+                               : "pushes its two points apart");
     }
 }
 
@@ -172,7 +177,8 @@ static void write_bushing(writer *w, const mt_spring *s)
 {
     const pair of = pair_of(w, MT_ABSENT, s->bodies);
     const subject at = of_spring(w, s, s->n_at > 0 ? "at" : NULL, nan(""), of);
-    say(w, &at,
+    add_convention(
+        w, &at,
         "%s \"%s\": along the drawing's x, y%s, carried by \"%s\"; about %s of \"%s\", where "
         "its forces act on both",
         s->damper ? "damper" : "spring", s->name.s, w->m->dimension == 2 ? "" : ", z", of.first,
@@ -211,17 +217,19 @@ static void write_gears(writer *w)
         if (!mt_model_present(&j->in, w->configuration)) {
             continue;
         }
-        if (has(w, j->ratio, &v)) {
+        if (has_nonzero_value(w, j->ratio, &v)) {
             const subject at = {
                 "joints", i, "ratio", v, {j->gear_joints[0].s, j->gear_joints[1].s}};
-            say(w, &at,
+            add_convention(
+                w, &at,
                 "gear \"%s\": \"%s\" turns %g times as far as \"%s\", each about its own axis",
                 j->name.s, j->gear_joints[1].s, v, j->gear_joints[0].s);
         }
-        if (has(w, j->ratio_m_per_rad, &v)) {
+        if (has_nonzero_value(w, j->ratio_m_per_rad, &v)) {
             const subject at = {
                 "joints", i, "ratio_m_per_rad", v, {j->gear_joints[0].s, j->gear_joints[1].s}};
-            say(w, &at,
+            add_convention(
+                w, &at,
                 "rack \"%s\": \"%s\" slides by %g m along its axis when \"%s\" turns by 1 rad",
                 j->name.s, j->gear_joints[1].s, v, j->gear_joints[0].s);
         }
@@ -235,14 +243,16 @@ static void write_load(writer *w, int i)
     const bool on_joint = load->joint_name.s != NULL;
     const pair of =
         on_joint ? pair_of(w, load->joint, NULL) : (pair){"ground", load->on.name.s};
-    if (load->has_moment && has(w, load->moment, &v)) {
+    if (load->has_moment && has_nonzero_value(w, load->moment, &v)) {
         const subject at = {"loads", i, "moment_n_m", v, of};
-        say(w, &at, "load \"%s\": moment_n_m %g turns \"%s\" %s%s%s%s", load->name.s, v,
-            of.second, v > 0.0 ? along(w) : about(w), on_joint ? ", and \"" : "",
-            on_joint ? of.first : "", on_joint ? "\" the other way" : "");
-    } else if (load->has_force && on_joint && has(w, load->force[0], &v)) {
+        add_convention(w, &at, "load \"%s\": moment_n_m %g turns \"%s\" %s%s%s%s", load->name.s,
+                       v, of.second, v > 0.0 ? rotation_sense(w) : about(w),
+                       on_joint ? ", and \"" : "", on_joint ? of.first : "",
+                       on_joint ? "\" the other way" : "");
+    } else if (load->has_force && on_joint && has_nonzero_value(w, load->force[0], &v)) {
         const subject at = {"loads", i, "force_n", v, of};
-        say(w, &at,
+        add_convention(
+            w, &at,
             "load \"%s\": force_n %g pushes \"%s\" %s the axis, and \"%s\" the other way",
             load->name.s, v, of.second, v > 0.0 ? "along" : "against", of.first);
     }
@@ -268,10 +278,10 @@ static void write_sections(writer *w)
             continue;
         }
         const subject at = {.list = "links", .index = i, .member = "section", .value = nan("")};
-        say(w, &at,
-            rectangle ? "link \"%s\": width_m is along %s, height_m across it"
-                      : "link \"%s\": second_moment_m4 is for bending about %s",
-            l->name.s, axis);
+        add_convention(w, &at,
+                       rectangle ? "link \"%s\": width_m is along %s, height_m across it"
+                                 : "link \"%s\": second_moment_m4 is for bending about %s",
+                       l->name.s, axis);
     }
 }
 
@@ -279,11 +289,11 @@ static void write_drive(writer *w)
 {
     const mt_drive *const d = &w->m->configurations[w->configuration].drive;
     double v = 0.0;
-    if (!d->given || d->joint == MT_ABSENT || !has(w, d->position, &v)) {
+    if (!d->given || d->joint == MT_ABSENT || !has_nonzero_value(w, d->position, &v)) {
         return;
     }
     const pair of = pair_of(w, d->joint, NULL);
-    const char *const way = d->position_is_angle ? v > 0.0 ? along(w) : about(w)
+    const char *const way = d->position_is_angle ? v > 0.0 ? rotation_sense(w) : about(w)
                             : v > 0.0 ? "along the axis"
                                                  : "against the axis";
     const mt_configuration *owner = &w->m->configurations[w->configuration];
@@ -294,8 +304,8 @@ static void write_drive(writer *w)
                                         owner->name.s,
                                         d->position_is_angle ? "position_rad" : "position_m"),
                         -1, NULL, v, of};
-    say(w, &at, "drive: \"%s\" stands %g %s %s against \"%s\", from the drawing", of.second,
-        fabs(v), d->position_is_angle ? "rad" : "m", way, of.first);
+    add_convention(w, &at, "drive: \"%s\" stands %g %s %s against \"%s\", from the drawing",
+                   of.second, fabs(v), d->position_is_angle ? "rad" : "m", way, of.first);
 }
 
 void mt_cli_find_conventions(const mt_model *model, int configuration, const double *value,

@@ -36,12 +36,12 @@ static int index_of(const mt_damped_modes *d, int i)
 }
 
 /* A value of a root, or NaN of an undecided one, which is only known to be small. */
-static double known(const mt_damped_modes *d, int i, double x)
+static double decided_value(const mt_damped_modes *d, int i, double x)
 {
     return d->kind[i] == MT_DAMPED_UNDECIDED ? nan("") : x;
 }
 
-static bool shown(const mt_damped_modes *d, int i, int count)
+static bool is_within_count(const mt_damped_modes *d, int i, int count)
 {
     return count == 0 || index_of(d, i) <= count;
 }
@@ -71,7 +71,7 @@ void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count, const char
     for (int i = 0; i < d->count; i++) {
         char text[24];
         const int index = index_of(d, i);
-        if (!shown(d, i, count)) {
+        if (!is_within_count(d, i, count)) {
             continue;
         }
         (void)mt_snprintf(text, sizeof text, "%d", index);
@@ -82,10 +82,10 @@ void mt_damped_rows(mt_table *t, const mt_damped_modes *d, int count, const char
         mt_table_text(t, configuration == NULL && d->kind[i] == MT_DAMPED_RIGID_BODY
                              ? "rigid body"
                              : kind_name(d->kind[i]));
-        mt_table_number(t, known(d, i, mt_damped_natural_hz(d, i)), DIGITS);
-        mt_table_number(t, known(d, i, damped_hz(d, i)), DIGITS);
-        mt_table_number(t, known(d, i, 100.0 * mt_damped_ratio(d, i)), DIGITS);
-        mt_table_number(t, known(d, i, 0.0 - d->re[i]), DIGITS);
+        mt_table_number(t, decided_value(d, i, mt_damped_natural_hz(d, i)), DIGITS);
+        mt_table_number(t, decided_value(d, i, damped_hz(d, i)), DIGITS);
+        mt_table_number(t, decided_value(d, i, 100.0 * mt_damped_ratio(d, i)), DIGITS);
+        mt_table_number(t, decided_value(d, i, 0.0 - d->re[i]), DIGITS);
         mt_table_number(t, d->residual[i], RATIO_DIGITS);
     }
 }
@@ -113,7 +113,7 @@ void mt_damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
     mt_json_open(w, "damped_modes", '[');
     for (int i = 0; i < d->count; i++) {
         const int index = index_of(d, i);
-        if (!shown(d, i, count)) {
+        if (!is_within_count(d, i, count)) {
             continue;
         }
         mt_json_open(w, NULL, '{');
@@ -123,11 +123,12 @@ void mt_damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
             mt_json_put_null(w, "index");
         }
         mt_json_put_string(w, "kind", kind_name(d->kind[i]));
-        mt_json_put_number(w, "natural_frequency_hz", known(d, i, mt_damped_natural_hz(d, i)));
-        mt_json_put_number(w, "damped_frequency_hz", known(d, i, damped_hz(d, i)));
+        mt_json_put_number(w, "natural_frequency_hz",
+                           decided_value(d, i, mt_damped_natural_hz(d, i)));
+        mt_json_put_number(w, "damped_frequency_hz", decided_value(d, i, damped_hz(d, i)));
         mt_json_put_number(w, "damping_ratio_percent",
-                           known(d, i, 100.0 * mt_damped_ratio(d, i)));
-        mt_json_put_number(w, "decay_per_s", known(d, i, 0.0 - d->re[i]));
+                           decided_value(d, i, 100.0 * mt_damped_ratio(d, i)));
+        mt_json_put_number(w, "decay_per_s", decided_value(d, i, 0.0 - d->re[i]));
         mt_json_put_number(w, "residual", d->residual[i]);
         mt_json_close(w);
     }

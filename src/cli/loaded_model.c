@@ -12,8 +12,8 @@
 #include "model/setting.h"
 #include "model/values.h"
 
-static mt_status unknown(const char *what, const char *name, const char *const *names, int n,
-                         mt_err *err)
+static mt_status refuse_unknown_name(const char *what, const char *name,
+                                     const char *const *names, int n, mt_err *err)
 {
     const char *const nearest = mt_text_nearest(name, names, n);
     return nearest == NULL ? mt_fail(err, MT_E_USAGE, "unknown %s \"%s\"", what, name)
@@ -35,7 +35,7 @@ static mt_status find_configuration(mt_loaded_model *s, const char *name, mt_err
     for (int i = 0; i < n; i++) {
         names[i] = s->model->configurations[i].name.s;
     }
-    return unknown("configuration", name, names, n, err);
+    return refuse_unknown_name("configuration", name, names, n, err);
 }
 
 static mt_status take_settings(const mt_args *args, mt_loaded_model *s, mt_err *err)
@@ -51,8 +51,8 @@ static mt_status take_settings(const mt_args *args, mt_loaded_model *s, mt_err *
     return rc == MT_OK ? rc : mt_err_in(err, rc, "--set");
 }
 
-static mt_status choose(const mt_args *args, const char *configuration, mt_loaded_model *s,
-                        mt_err *err)
+static mt_status apply_model_options(const mt_args *args, const char *configuration,
+                                     mt_loaded_model *s, mt_err *err)
 {
     const size_t np = (size_t)s->model->n_parameters;
     const int nc = s->model->n_configurations;
@@ -101,7 +101,7 @@ int mt_loaded_model_load(const mt_args *args, const char *path, const char *conf
     if (code != MT_EXIT_DONE) {
         return code;
     }
-    rc = choose(args, configuration, out, &err);
+    rc = apply_model_options(args, configuration, out, &err);
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
 }
 

@@ -48,7 +48,7 @@ static double complex extreme_of(const mt_extreme *e)
     return e->infinite ? nan("") : (cabs(e->h) > e->error ? e->h : 0.0);
 }
 
-static const char *kind_of(const mt_extreme *e)
+static const char *extreme_kind_name(const mt_extreme *e)
 {
     return e->infinite        ? "resonance"
            : e->peak          ? "peak"
@@ -56,7 +56,7 @@ static const char *kind_of(const mt_extreme *e)
                               : "minimum";
 }
 
-static void unit_of(const mt_response_view *v, int pair, char unit[HEADING_TEXT])
+static void write_pair_unit(const mt_response_view *v, int pair, char unit[HEADING_TEXT])
 {
     (void)mt_snprintf(unit, HEADING_TEXT, "%s per %s", mt_response_output_of(v, pair)->unit,
                       mt_response_input_of(v, pair)->unit);
@@ -90,10 +90,10 @@ static void print_extremes(const mt_response_view *v, mt_text *out)
     for (int e = 0; e < v->curve->n_extremes; e++) {
         const mt_extreme *const x = &v->curve->extremes[e];
         char unit[HEADING_TEXT];
-        unit_of(v, x->pair, unit);
+        write_pair_unit(v, x->pair, unit);
         mt_table_text(&t, mt_response_input_of(v, x->pair)->name);
         mt_table_text(&t, mt_response_output_of(v, x->pair)->name);
-        mt_table_text(&t, kind_of(x));
+        mt_table_text(&t, extreme_kind_name(x));
         mt_table_number(&t, x->w / TWO_PI, HZ_DIGITS);
         mt_table_number(&t, magnitude(extreme_of(x)), DIGITS);
         mt_table_text(&t, unit);
@@ -115,7 +115,7 @@ static void print_grid(const mt_response_view *v, mt_text *out)
     for (int p = 0; p < pairs_of(v); p++) {
         char heading[HEADING_TEXT];
         char unit[HEADING_TEXT];
-        unit_of(v, p, unit);
+        write_pair_unit(v, p, unit);
         (void)mt_snprintf(heading, sizeof heading, "%s%s%s [%s]",
                           mt_response_output_of(v, p)->name, v->r->ports.n_in > 1 ? " by " : "",
                           v->r->ports.n_in > 1 ? mt_response_input_of(v, p)->name : "", unit);
@@ -248,7 +248,7 @@ static void json_extreme(const mt_response_view *v, int e, mt_json_writer *w)
 {
     const mt_extreme *const x = &v->curve->extremes[e];
     mt_json_open(w, NULL, '{');
-    mt_json_put_string(w, "kind", kind_of(x));
+    mt_json_put_string(w, "kind", extreme_kind_name(x));
     mt_json_put_number(w, "frequency_hz", x->w / TWO_PI);
     mt_json_put_number(w, "magnitude", magnitude(extreme_of(x)));
     mt_json_put_number(w, "phase_deg", mt_phase_deg(extreme_of(x)));
@@ -319,7 +319,7 @@ static void json_poles(const mt_response_view *v, int pair, mt_json_writer *w)
 static void json_pair(const mt_response_view *v, int pair, mt_json_writer *w)
 {
     char unit[HEADING_TEXT];
-    unit_of(v, pair, unit);
+    write_pair_unit(v, pair, unit);
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "input", mt_response_input_of(v, pair)->name);
     mt_json_put_string(w, "output", mt_response_output_of(v, pair)->name);
@@ -397,7 +397,7 @@ void mt_response_csv_rows(const mt_response_view *v, mt_table *t)
 {
     for (int p = 0; p < pairs_of(v); p++) {
         char unit[HEADING_TEXT];
-        unit_of(v, p, unit);
+        write_pair_unit(v, p, unit);
         for (int i = 0; i < v->curve->n; i++) {
             const double complex h = value_at(v, p, i);
             const bool has = isfinite(cabs(h));

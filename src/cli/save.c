@@ -305,7 +305,7 @@ static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
     return MT_OK;
 }
 
-static mt_status begin(const mt_args *args, mt_result *result, saving *s)
+static mt_status write_folder_texts(const mt_args *args, mt_result *result, saving *s)
 {
     s->folder = mt_save_folder(args, s->study_path);
     return s->folder == NULL ? mt_fail_memory(&s->err) : write_texts(args, result, s);
@@ -336,7 +336,7 @@ int mt_save(const mt_args *args, const char *study_path, mt_result *result, cons
 {
     saving s = {.study_path = study_path, .scene = scene};
     mt_text told = {.s = NULL};
-    mt_status rc = begin(args, result, &s);
+    mt_status rc = write_folder_texts(args, result, &s);
     rc = rc == MT_OK ? write_timing(args, result, seconds, &s) : rc;
     mt_text_addf(&told, "%s: %.3g s, ", study_path, seconds);
     mt_report_work_counters(&result->run, &told);
@@ -357,7 +357,7 @@ int mt_save_again(const mt_args *args, const char *result_path, mt_result *resul
                           s.study_path);
         return MT_EXIT_INPUT;
     }
-    mt_status rc = begin(args, result, &s);
+    mt_status rc = write_folder_texts(args, result, &s);
     if (rc == MT_OK) {
         rc = mt_result_read_timing(result_path, s.sha256, &s.texts[MT_RESULT_FILE_TIMING],
                                    &s.err);

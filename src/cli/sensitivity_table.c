@@ -64,7 +64,7 @@ typedef struct question {
     double *at;
 } question;
 
-static mt_status ask(mt_sensitivity_table *v, question *q, mt_err *err)
+static mt_status list_question_inputs(mt_sensitivity_table *v, question *q, mt_err *err)
 {
     const mt_loaded_model *const s = v->s;
     const size_t room = (size_t)s->n_inputs + (size_t)q->n;
@@ -146,7 +146,7 @@ static mt_status analyse(mt_sensitivity_table *v, int n, const int *entry, int w
 {
     question q = {.wanted = wanted, .n = n, .entry = entry};
     bool done = false;
-    MT_TRY(ask(v, &q, err));
+    MT_TRY(list_question_inputs(v, &q, err));
     MT_TRY(answer_by_lowest(v, &q, &done, err));
     return done ? MT_OK : answer_by_all(v, &q, err);
 }

@@ -66,7 +66,7 @@ static mt_status at_sensors(mt_analysis *a, int modes, mt_arena *mem, mt_shapes 
 }
 
 /* Size of component k of column i, an angle times the model's length. */
-static double size_of(const mt_shapes *s, int k, int i)
+static double component_size(const mt_shapes *s, int k, int i)
 {
     return fabs(s->value[k + ((ptrdiff_t)i * s->n)]) * (s->turns[k] ? s->length_m : 1.0);
 }
@@ -78,7 +78,7 @@ static void clean(const mt_system *sys, int modes, const double *phi, const mt_s
         const double *const x = phi + ((ptrdiff_t)i * sys->nq);
         double most = 0.0;
         for (int k = 0; k < s->n; k++) {
-            most = fmax(most, size_of(s, k, i));
+            most = fmax(most, component_size(s, k, i));
         }
         for (int k = 0; k < 6 * sys->n_bodies; k++) {
             const int dof = sys->bodies[k / 6].dof[k % 6];
@@ -87,7 +87,7 @@ static void clean(const mt_system *sys, int modes, const double *phi, const mt_s
         }
         s->largest[i] = most;
         for (int k = 0; k < s->n; k++) {
-            if (size_of(s, k, i) <= ROUNDING * most) {
+            if (component_size(s, k, i) <= ROUNDING * most) {
                 s->value[k + ((ptrdiff_t)i * s->n)] = 0.0;
             }
         }
@@ -96,7 +96,7 @@ static void clean(const mt_system *sys, int modes, const double *phi, const mt_s
 
 double mt_shapes_shown(const mt_shapes *shapes, int k, int i)
 {
-    return size_of(shapes, k, i) <= UNSEEN * shapes->largest[i]
+    return component_size(shapes, k, i) <= UNSEEN * shapes->largest[i]
                ? 0.0
                : shapes->value[k + ((ptrdiff_t)i * shapes->n)];
 }

@@ -29,8 +29,8 @@ const mt_shipped_kind mt_shipped_profiles = {.command = "profile",
                                              .heading = "what it is"};
 
 /* The file's name, in name[size]; false: it is none of them. */
-static bool name_of(const mt_shipped_kind *kind, const mt_shipped *file, char *name,
-                    size_t size)
+static bool shipped_file_name(const mt_shipped_kind *kind, const mt_shipped *file, char *name,
+                              size_t size)
 {
     const size_t before = strlen(kind->folder);
     const size_t behind = strlen(kind->ending);
@@ -44,7 +44,7 @@ static bool name_of(const mt_shipped_kind *kind, const mt_shipped *file, char *n
 }
 
 /* The first sentence of a member of the root; nothing where it has none. */
-static void say(const mt_shipped *file, const char *member, mt_text *out)
+static void add_first_sentence(const mt_shipped *file, const char *member, mt_text *out)
 {
     mt_json *doc = NULL;
     if (mt_json_parse(file->bytes, file->size, &doc, NULL) != MT_OK) {
@@ -84,7 +84,7 @@ void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out)
     const char *between = "";
     for (int i = 0; i < n; i++) {
         char name[MT_SHIPPED_NAME];
-        if (name_of(kind, &files[i], name, sizeof name)) {
+        if (shipped_file_name(kind, &files[i], name, sizeof name)) {
             mt_text_addf(out, "%s%s", between, name);
             between = " ";
         }
@@ -102,8 +102,8 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
     for (int i = 0; i < n; i++) {
         char name[MT_SHIPPED_NAME];
         mt_text said = {.s = NULL};
-        if (name_of(kind, &files[i], name, sizeof name)) {
-            say(&files[i], kind->says, &said);
+        if (shipped_file_name(kind, &files[i], name, sizeof name)) {
+            add_first_sentence(&files[i], kind->says, &said);
             mt_table_text(&t, name);
             mt_table_text(&t, said.s);
         }
@@ -130,7 +130,7 @@ mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
     int count = 0;
     const mt_shipped *const files = mt_shipped_all(&count);
     for (int i = 0; i < count && n < MT_SHIPPED_MOST; i++) {
-        if (!name_of(kind, &files[i], text[n], MT_SHIPPED_NAME)) {
+        if (!shipped_file_name(kind, &files[i], text[n], MT_SHIPPED_NAME)) {
             continue;
         }
         if (strcmp(text[n], name) == 0) {
@@ -149,7 +149,8 @@ mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
 }
 
 /* Fails where another file is at the path; *same: true where it has the same bytes. */
-static mt_status look(const char *path, const mt_shipped *file, bool *same, mt_err *err)
+static mt_status compare_existing_file(const char *path, const mt_shipped *file, bool *same,
+                                       mt_err *err)
 {
     mt_file there = {.bytes = NULL};
     *same = false;
@@ -192,7 +193,8 @@ mt_status mt_shipped_write(const char *folder, const mt_shipped_copy *copies, in
     for (int i = 0; i < n && rc == MT_OK; i++) {
         mt_text path = {.s = NULL};
         mt_text_addf(&path, "%s/%s", folder, copies[i].name);
-        rc = path.failed ? mt_fail_memory(err) : look(path.s, copies[i].file, &same[i], err);
+        rc = path.failed ? mt_fail_memory(err)
+                         : compare_existing_file(path.s, copies[i].file, &same[i], err);
         mt_text_free(&path);
     }
     for (int i = 0; i < n && rc == MT_OK; i++) {

@@ -25,7 +25,7 @@ static double seen(const mt_sim_view *v, int output, int sample)
     return of[o->what][o->gauge + ((ptrdiff_t)sample * v->r->n_gauges)];
 }
 
-static const char *unit_of(const mt_sim_output *o)
+static const char *motion_output_unit(const mt_sim_output *o)
 {
     static const char *const units[2][3] = {{"m", "m/s", "m/s^2"}, {"rad", "rad/s", "rad/s^2"}};
     return units[o->angle ? 1 : 0][o->what];
@@ -40,14 +40,14 @@ static void member_of(const mt_sim_view *v, const mt_sim_output *o, char text[HE
                       units[o->angle ? 1 : 0][o->what]);
 }
 
-static void columns(const mt_sim_view *v, bool csv, mt_table *t)
+static void make_motion_columns(const mt_sim_view *v, bool csv, mt_table *t)
 {
     char heading[HEADING];
     char member[HEADING];
     mt_table_column(t, "time [s]", "time_s", MT_ALIGN_POINT);
     for (int k = 0; k < v->request->n_outputs; k++) {
         const mt_sim_output *const o = &v->request->outputs[k];
-        (void)mt_snprintf(heading, sizeof heading, "%s [%s]", o->port, unit_of(o));
+        (void)mt_snprintf(heading, sizeof heading, "%s [%s]", o->port, motion_output_unit(o));
         member_of(v, o, member);
         mt_table_column(t, heading, member, MT_ALIGN_POINT);
     }
@@ -74,7 +74,7 @@ static void row(const mt_sim_view *v, int i, bool csv, mt_table *t)
 void mt_simulate_csv(const mt_sim_view *v, mt_text *out)
 {
     mt_table t = mt_table_default();
-    columns(v, true, &t);
+    make_motion_columns(v, true, &t);
     for (int i = 0; i < v->r->n; i++) {
         row(v, i, true, &t);
     }
@@ -167,7 +167,7 @@ void mt_simulate_print(const mt_sim_view *v, mt_text *out)
     const mt_sim_result *const r = v->r;
     mt_table t = mt_table_default();
     const int every = ((r->n - 1) / (LINES_MOST - 1)) + ((r->n - 1) % (LINES_MOST - 1) != 0);
-    columns(v, false, &t);
+    make_motion_columns(v, false, &t);
     for (int i = 0; i < r->n; i++) {
         if (every == 0 || i % every == 0 || i + 1 == r->n) {
             row(v, i, false, &t);
@@ -210,7 +210,7 @@ static void json_outputs(const mt_sim_view *v, mt_json_writer *w)
         const mt_sim_output *const o = &v->request->outputs[k];
         mt_json_open(w, NULL, '{');
         mt_json_put_string(w, "port", o->port);
-        mt_json_put_string(w, "unit", unit_of(o));
+        mt_json_put_string(w, "unit", motion_output_unit(o));
         mt_json_open_flat(w, "values", '[');
         for (int i = 0; i < v->r->n; i++) {
             mt_json_put_number(w, NULL, seen(v, k, i));

@@ -22,19 +22,19 @@ typedef struct port {
     int joint; /* MOVE */
 } port;
 
-static const char *name_of(mt_option_id option)
+static const char *option_name(mt_option_id option)
 {
     return mt_options[option].name;
 }
 
 /* "NAME=REST": the name into mem, what follows. */
-static mt_status split(const mt_repeat *r, mt_arena *mem, const char **name, const char **rest,
-                       mt_err *err)
+static mt_status split_name_and_rest(const mt_repeat *r, mt_arena *mem, const char **name,
+                                     const char **rest, mt_err *err)
 {
     const char *const equals = strchr(r->value, '=');
     if (equals == NULL || equals == r->value || equals[1] == '\0') {
-        return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not %s", name_of(r->option), r->value,
-                       mt_options[r->option].value);
+        return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not %s", option_name(r->option),
+                       r->value, mt_options[r->option].value);
     }
     *name = mt_arena_strndup(mem, r->value, (size_t)(equals - r->value));
     *rest = equals + 1;
@@ -69,7 +69,7 @@ mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_aren
         if (!is_input(args->repeats[i].option)) {
             continue;
         }
-        MT_TRY(split(&args->repeats[i], mem, &joint, &rest, err));
+        MT_TRY(split_name_and_rest(&args->repeats[i], mem, &joint, &rest, err));
         if (!is_joint(model, joint)) {
             continue;
         }
@@ -77,7 +77,7 @@ mt_status mt_sim_moved_joint(const mt_args *args, const mt_model *model, mt_aren
             return mt_fail(err, MT_E_USAGE,
                            "--%s: one joint can be moved, \"%s\" already is, \"%s\" would be "
                            "the second",
-                           name_of(args->repeats[i].option), *name, joint);
+                           option_name(args->repeats[i].option), *name, joint);
         }
         *name = joint;
     }
@@ -95,9 +95,9 @@ mt_status mt_sim_start_of(const mt_args *args, mt_loaded_model *s, const char *j
         if (args->repeats[i].option != MT_OPT_START) {
             continue;
         }
-        MT_TRY(split(&args->repeats[i], &s->mem, &name, &rest, err));
+        MT_TRY(split_name_and_rest(&args->repeats[i], &s->mem, &name, &rest, err));
         if (strcmp(name, joint) == 0) {
-            MT_TRY(mt_loaded_model_number(s, name_of(MT_OPT_START),
+            MT_TRY(mt_loaded_model_number(s, option_name(MT_OPT_START),
                                           mt_loaded_model_joint_unit(s->model, name), rest,
                                           strlen(rest), value, err));
             *given = true;
@@ -126,14 +126,14 @@ static mt_status no_such_port(const mt_system *sys, mt_option_id option, const c
     }
     const char *const nearest = mt_text_nearest(name, names, n);
     return mt_fail(err, MT_E_USAGE, "--%s: there is no %s \"%s\" in this configuration%s%s%s",
-                   name_of(option), channels ? "sensor's direction and no joint" : "joint",
+                   option_name(option), channels ? "sensor's direction and no joint" : "joint",
                    name, nearest == NULL ? "" : "; did you mean \"",
                    nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
 }
 
 /* A joint with a coordinate. */
-static mt_status find_joint(const mt_system *sys, mt_option_id option, const char *name,
-                            mt_arena *mem, int *out, mt_err *err)
+static mt_status find_coordinate_joint(const mt_system *sys, mt_option_id option,
+                                       const char *name, mt_arena *mem, int *out, mt_err *err)
 {
     *out = mt_system_find_joint(sys, name);
     if (*out < 0) {
@@ -142,7 +142,7 @@ static mt_status find_joint(const mt_system *sys, mt_option_id option, const cha
     return sys->joints[*out].coordinate >= 0
                ? MT_OK
                : mt_fail(err, MT_E_USAGE, "--%s: joint \"%s\" (%s) has no coordinate",
-                         name_of(option), name, mt_joint_type_name(sys->joints[*out].type));
+                         option_name(option), name, mt_joint_type_name(sys->joints[*out].type));
 }
 
 static mt_status find_port(const mt_system *sys, mt_option_id option, const char *name,
@@ -155,7 +155,7 @@ static mt_status find_port(const mt_system *sys, mt_option_id option, const char
     if (strncmp(name, "base.", strlen("base.")) == 0) {
         mt_port ground;
         MT_TRY(mt_err_in(err, mt_port_input(sys, name, mem, &ground, err), "--%s",
-                         name_of(option)));
+                         option_name(option)));
         *out = (port){.push = MT_SIM_BASE, .at = ground.index, .slope = 2 - ground.motion};
         return MT_OK;
     }
@@ -199,7 +199,8 @@ static mt_status read_expression(mt_loaded_model *s, const char *text, mt_signal
 }
 
 /* The unit of amplitudes at a port in the model; NULL: SI. */
-static const mt_unit *unit_of(const mt_loaded_model *s, const mt_system *sys, const port *p)
+static const mt_unit *shown_amplitude_unit(const mt_loaded_model *s, const mt_system *sys,
+                                           const port *p)
 {
     switch (p->push) {
     case MT_SIM_FORCE:
@@ -220,12 +221,12 @@ static mt_status read_numbers(mt_loaded_model *s, const mt_repeat *r, const mt_u
     for (size_t k = 0;; k++) {
         const char *const end = separators[k] == '\0' ? NULL : strchr(text, separators[k]);
         if (end == NULL && separators[k] != '\0') {
-            return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not %s", name_of(r->option),
+            return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not %s", option_name(r->option),
                            r->value, mt_options[r->option].value);
         }
         const size_t length = end == NULL ? strlen(text) : (size_t)(end - text);
-        MT_TRY(mt_loaded_model_number(s, name_of(r->option), k == 0 ? unit : NULL, text, length,
-                                      &out[k], err));
+        MT_TRY(mt_loaded_model_number(s, option_name(r->option), k == 0 ? unit : NULL, text,
+                                      length, &out[k], err));
         if (end == NULL) {
             return MT_OK;
         }
@@ -308,15 +309,16 @@ static mt_status read_input(mt_loaded_model *s, const mt_args *args, const mt_sy
     port p = {.push = MT_SIM_FORCE};
     mt_signal *const signal = mt_arena_alloc(&s->mem, 1, sizeof *signal);
     MT_TRY(mt_arena_check(&s->mem, err));
-    MT_TRY(split(r, &s->mem, &name, &rest, err));
+    MT_TRY(split_name_and_rest(r, &s->mem, &name, &rest, err));
     MT_TRY(find_port(sys, r->option, name, &s->mem, &p, err));
     if (r->option == MT_OPT_SINE) {
-        MT_TRY(read_sine(s, r, unit_of(s, sys, &p), rest, signal, err));
+        MT_TRY(read_sine(s, r, shown_amplitude_unit(s, sys, &p), rest, signal, err));
         const double hz = signal->sines[0].hz;
         const bool first = out->opt.n_inputs == 0;
         out->steady_hz = first || out->steady_hz == hz ? hz : 0.0;
     } else if (r->option == MT_OPT_CHIRP) {
-        MT_TRY(read_sweep(s, r, unit_of(s, sys, &p), rest, out->opt.duration_s, signal, err));
+        MT_TRY(read_sweep(s, r, shown_amplitude_unit(s, sys, &p), rest, out->opt.duration_s,
+                          signal, err));
     } else if (r->option == MT_OPT_RANDOM) {
         MT_TRY(read_random(s, args, r, rest, signal, err));
     } else {
@@ -339,7 +341,7 @@ static mt_status find_gauge(const mt_system *sys, const char *name, mt_sim_reque
         if (g.joint < 0) {
             return no_such_port(sys, MT_OPT_SEEN, name, false, true, mem, err);
         }
-        MT_TRY(find_joint(sys, MT_OPT_SEEN, name, mem, &g.joint, err));
+        MT_TRY(find_coordinate_joint(sys, MT_OPT_SEEN, name, mem, &g.joint, err));
     }
     for (*at = 0; *at < out->opt.n_gauges; ++*at) {
         if (gauges[*at].channel == g.channel && gauges[*at].joint == g.joint) {
@@ -402,9 +404,9 @@ static mt_status read_joint(mt_loaded_model *s, const mt_system *sys, const mt_r
 {
     const char *name = "";
     const char *rest = "";
-    MT_TRY(split(r, &s->mem, &name, &rest, err));
-    MT_TRY(find_joint(sys, r->option, name, &s->mem, &out->joint, err));
-    return mt_loaded_model_number(s, name_of(r->option),
+    MT_TRY(split_name_and_rest(r, &s->mem, &name, &rest, err));
+    MT_TRY(find_coordinate_joint(sys, r->option, name, &s->mem, &out->joint, err));
+    return mt_loaded_model_number(s, option_name(r->option),
                                   mt_loaded_model_joint_unit(s->model, name), rest,
                                   strlen(rest), &out->value, err);
 }

@@ -83,7 +83,7 @@ static double dot(const double a[3], const double b[3])
 }
 
 /* Where a point of a body is, moved by the mode. */
-static void move(const svg *p, int body, const double x[3], double out[3])
+static void move_body_point(const svg *p, int body, const double x[3], double out[3])
 {
     memcpy(out, x, 3 * sizeof *out);
     if (p->motion == NULL) {
@@ -98,20 +98,20 @@ static void move(const svg *p, int body, const double x[3], double out[3])
 }
 
 /* Pixels of a point of a body. */
-static void project(const svg *p, int body, const double x[3], double out[2])
+static void project_body_point(const svg *p, int body, const double x[3], double out[2])
 {
     double at[3];
-    move(p, body, x, at);
+    move_body_point(p, body, x, at);
     out[0] =
         (0.5 * WIDTH) + (p->scale * (dot(at, p->right) - (0.5 * (p->low[0] + p->high[0]))));
     out[1] = (0.5 * (HEIGHT + TITLE)) -
              (p->scale * (dot(at, p->up) - (0.5 * (p->low[1] + p->high[1]))));
 }
 
-static void include(svg *p, int body, const double x[3])
+static void include_in_picture_box(svg *p, int body, const double x[3])
 {
     double at[3];
-    move(p, body, x, at);
+    move_body_point(p, body, x, at);
     const double place[2] = {dot(at, p->right), dot(at, p->up)};
     for (int k = 0; k < 2; k++) {
         p->low[k] = fmin(p->low[k], place[k]);
@@ -122,8 +122,8 @@ static void include(svg *p, int body, const double x[3])
 static void include_springs(svg *p, int n, const mt_scene_spring *springs)
 {
     for (int i = 0; i < n; i++) {
-        include(p, springs[i].body[0], springs[i].end[0]);
-        include(p, springs[i].body[1], springs[i].end[1]);
+        include_in_picture_box(p, springs[i].body[0], springs[i].end[0]);
+        include_in_picture_box(p, springs[i].body[1], springs[i].end[1]);
     }
 }
 
@@ -132,23 +132,23 @@ static void include_all(svg *p)
     const mt_scene_view *const v = p->view;
     for (int i = 1; i < v->n_bodies; i++) {
         const mt_scene_body *const b = &v->bodies[i];
-        include(p, i, b->at);
+        include_in_picture_box(p, i, b->at);
         for (int k = 0; k < 6 && b->ellipsoid != NULL; k++) {
             const double r = b->ellipsoid->radii[k / 2] * (k % 2 == 0 ? 1.0 : -1.0);
             const double *const a = b->ellipsoid->axes[k / 2];
             const double end[3] = {b->at[0] + (r * a[0]), b->at[1] + (r * a[1]),
                                    b->at[2] + (r * a[2])};
-            include(p, i, end);
+            include_in_picture_box(p, i, end);
         }
     }
     for (int i = 0; i < v->n_lines; i++) {
-        include(p, v->lines[i].body, v->lines[i].from);
-        include(p, v->lines[i].body, v->lines[i].to);
+        include_in_picture_box(p, v->lines[i].body, v->lines[i].from);
+        include_in_picture_box(p, v->lines[i].body, v->lines[i].to);
     }
     for (int i = 0; i < v->n_joints; i++) {
-        include(p, v->joints[i].body[1], v->joints[i].at);
+        include_in_picture_box(p, v->joints[i].body[1], v->joints[i].at);
         if (v->joints[i].rod) {
-            include(p, v->joints[i].body[0], v->joints[i].end[0]);
+            include_in_picture_box(p, v->joints[i].body[0], v->joints[i].end[0]);
         }
     }
     include_springs(p, v->n_springs, v->springs);
@@ -215,7 +215,7 @@ static void put_ellipsoid(const svg *p, int body, const char *colour)
     const mt_scene_body *const b = &p->view->bodies[body];
     double at[2];
     double s[3] = {0.0, 0.0, 0.0}; /* xx, xy, yy, y downwards */
-    project(p, body, b->at, at);
+    project_body_point(p, body, b->at, at);
     for (int i = 0; i < 3; i++) {
         const double r = p->scale * b->ellipsoid->radii[i];
         const double x = r * dot(b->ellipsoid->axes[i], p->right);
@@ -247,8 +247,8 @@ static void put_bodies(const svg *p, const char *colour, double width)
     for (int i = 0; i < v->n_lines; i++) {
         double a[2];
         double b[2];
-        project(p, v->lines[i].body, v->lines[i].from, a);
-        project(p, v->lines[i].body, v->lines[i].to, b);
+        project_body_point(p, v->lines[i].body, v->lines[i].from, a);
+        project_body_point(p, v->lines[i].body, v->lines[i].to, b);
         put_line(p, a, b, colour, width);
     }
 }
@@ -297,8 +297,8 @@ static void put_spring(const svg *p, const mt_scene_spring *s, const char *colou
 {
     double a[2];
     double b[2];
-    project(p, s->body[0], s->end[0], a);
-    project(p, s->body[1], s->end[1], b);
+    project_body_point(p, s->body[0], s->end[0], a);
+    project_body_point(p, s->body[1], s->end[1], b);
     if (strcmp(s->type, "link") == 0) {
         return;
     }
@@ -335,7 +335,7 @@ static void put_polygon(const svg *p, int n, const double at[2], double phase)
 static void put_joint(svg *p, const mt_scene_joint *j)
 {
     double at[2];
-    project(p, j->body[1], j->at, at);
+    project_body_point(p, j->body[1], j->at, at);
     if (strcmp(j->type, "revolute") == 0) {
         put_circle(p, at, SYMBOL, "#ffffff");
     } else if (strcmp(j->type, "prismatic") == 0 || strcmp(j->type, "cylindrical") == 0) {
@@ -362,7 +362,7 @@ static void put_names(svg *p)
     for (int i = 1; i < v->n_bodies; i++) {
         const mt_scene_body *const b = &v->bodies[i];
         double at[2];
-        project(p, i, b->at, at);
+        project_body_point(p, i, b->at, at);
         if (b->kind == MT_SCENE_BODY) {
             put_circle(p, at, 2.5, REST);
             at[0] += 2 * SYMBOL;
@@ -374,8 +374,8 @@ static void put_names(svg *p)
         const mt_scene_spring *const s = &v->springs[i];
         double a[2];
         double b[2];
-        project(p, s->body[0], s->end[0], a);
-        project(p, s->body[1], s->end[1], b);
+        project_body_point(p, s->body[0], s->end[0], a);
+        project_body_point(p, s->body[1], s->end[1], b);
         const double at[2] = {(0.5 * (a[0] + b[0])) + (2 * SYMBOL),
                               (0.5 * (a[1] + b[1])) + (2 * SYMBOL)};
         put_name(p, at, s->name, strcmp(s->type, "link") == 0 ? REST : SPRING);
@@ -411,8 +411,8 @@ static void put_still(const svg *p, const char *colour, const char *springs, dou
         if (j->rod) {
             double a[2];
             double b[2];
-            project(p, j->body[0], j->end[0], a);
-            project(p, j->body[1], j->end[1], b);
+            project_body_point(p, j->body[0], j->end[0], a);
+            project_body_point(p, j->body[1], j->end[1], b);
             put_line(p, a, b, colour, width);
         }
     }

@@ -22,31 +22,32 @@ static const mt_system_joint *driven(const mt_sweep_view *v)
     return &v->sys->joints[v->sys->drive_joint];
 }
 
-static const char *unit_of(bool angle)
+static const char *drive_si_unit(bool angle)
 {
     return angle ? "rad" : "m";
 }
 
 /* The unit in which its coordinates are shown: the model's; NULL: SI. */
-static const mt_unit *shown_in(const mt_sweep_view *v, bool angle)
+static const mt_unit *shown_drive_unit(const mt_sweep_view *v, bool angle)
 {
     return mt_model_shown(v->sys->model, angle ? MT_ANGLE : MT_LENGTH);
 }
 
 static const char *shown_name(const mt_sweep_view *v, bool angle)
 {
-    return mt_unit_name(shown_in(v, angle), unit_of(angle));
+    return mt_unit_name(shown_drive_unit(v, angle), drive_si_unit(angle));
 }
 
-static double shown(const mt_sweep_view *v, bool angle, double x)
+static double shown_drive_position(const mt_sweep_view *v, bool angle, double x)
 {
-    return mt_unit_from_si(shown_in(v, angle), tidy(x));
+    return mt_unit_from_si(shown_drive_unit(v, angle), tidy(x));
 }
 
 /* A joint's motion per that of the driven one, in these units. */
 static double shown_ratio(const mt_sweep_view *v, bool angle, double ratio)
 {
-    return shown(v, angle, mt_unit_to_si(shown_in(v, driven(v)->angle), tidy(ratio)));
+    return shown_drive_position(
+        v, angle, mt_unit_to_si(shown_drive_unit(v, driven(v)->angle), tidy(ratio)));
 }
 
 /* True where the holding force acts along an angle. */
@@ -99,11 +100,12 @@ static void text_columns(const mt_sweep_view *v, mt_table *t)
 static void text_row(const mt_sweep_view *v, int point, mt_table *t)
 {
     const mt_sweep_point *const p = &v->sweep.points[point];
-    mt_table_number(t, mt_unit_from_si(shown_in(v, driven(v)->angle), p->drive), DIGITS);
+    mt_table_number(t, mt_unit_from_si(shown_drive_unit(v, driven(v)->angle), p->drive),
+                    DIGITS);
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const bool angle = v->sys->joints[i].angle;
-            mt_table_number(t, shown(v, angle, p->coordinate[i]), DIGITS);
+            mt_table_number(t, shown_drive_position(v, angle, p->coordinate[i]), DIGITS);
             mt_table_number(t, shown_ratio(v, angle, p->ratio[i]), DIGITS);
         }
     }
@@ -168,7 +170,7 @@ static void write_dead_centre(const mt_sweep_view *v, mt_text *out)
         mt_text_addf(out,
                      "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
                      "joints %s depend on each other.\n",
-                     mt_unit_from_si(shown_in(v, driven(v)->angle), nearest->drive),
+                     mt_unit_from_si(shown_drive_unit(v, driven(v)->angle), nearest->drive),
                      shown_name(v, driven(v)->angle), nearest->near->distance,
                      nearest->near->joints.text);
     }
@@ -260,12 +262,12 @@ void mt_sweep_csv_columns(const mt_sweep_view *v, mt_table *t)
 {
     char s[HEADING];
     mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
-    (void)mt_snprintf(s, sizeof s, "position_%s", unit_of(driven(v)->angle));
+    (void)mt_snprintf(s, sizeof s, "position_%s", drive_si_unit(driven(v)->angle));
     mt_table_column(t, s, s, MT_ALIGN_POINT);
     for (int i = 0; i < v->sys->n_joints; i++) {
         if (told(v, i)) {
             const mt_system_joint *const joint = &v->sys->joints[i];
-            (void)mt_snprintf(s, sizeof s, "%s_%s", joint->name, unit_of(joint->angle));
+            (void)mt_snprintf(s, sizeof s, "%s_%s", joint->name, drive_si_unit(joint->angle));
             mt_table_column(t, s, s, MT_ALIGN_POINT);
             (void)mt_snprintf(s, sizeof s, "%s_ratio", joint->name);
             mt_table_column(t, s, s, MT_ALIGN_POINT);

@@ -115,7 +115,7 @@ static bool write_out(const char *bytes, size_t length)
     return true;
 }
 
-static bool put(FILE *to, const char *s, size_t n)
+static bool write_stream(FILE *to, const char *s, size_t n)
 {
     return to == stdout ? write_out(s, n) : fwrite(s, 1, n, to) == n;
 }
@@ -127,13 +127,13 @@ static bool show(FILE *to, const char *s, size_t n, bool lines)
     bool ok = true;
     while (ok && n > 0) {
         const size_t run = mt_visible_run(s, n, lines);
-        ok = run == 0 || put(to, s, run);
+        ok = run == 0 || write_stream(to, s, run);
         s += run;
         n -= run;
         if (ok && n > 0) {
             char escape[MT_VISIBLE_SIZE];
             const size_t used = mt_visible_escape(s, n, escape);
-            ok = put(to, escape, strlen(escape));
+            ok = write_stream(to, escape, strlen(escape));
             s += used;
             n -= used;
         }
@@ -200,7 +200,7 @@ static void line(const char *fmt, va_list args)
 }
 
 MT_PRINTF(3, 0)
-static void say(const char *kind, const char *colour, const char *fmt, va_list args)
+static void print_message(const char *kind, const char *colour, const char *fmt, va_list args)
 {
     const bool coloured = takes_colour(STDERR_FILENO);
     (void)fprintf(stderr, "modetune: %s%s:%s ", coloured ? colour : "", kind,
@@ -212,7 +212,7 @@ void mt_terminal_error(const char *fmt, ...)
 {
     va_list args;
     va_start(args, fmt);
-    say("error", RED, fmt, args);
+    print_message("error", RED, fmt, args);
     va_end(args);
 }
 
@@ -220,7 +220,7 @@ void mt_terminal_warning(const char *fmt, ...)
 {
     va_list args;
     va_start(args, fmt);
-    say("warning", YELLOW, fmt, args);
+    print_message("warning", YELLOW, fmt, args);
     va_end(args);
 }
 
@@ -323,7 +323,7 @@ static void wipe_at_once(void)
 
 /* Signal handlers; they call only async-signal-safe functions. SA_RESETHAND: a signal raised in
  * them gets the system's action after they return. */
-static void note(int number)
+static void note_stop_signal(int number)
 {
     long long none = 0;
     if (!atomic_compare_exchange_strong(&stop_ns, &none, now_ns())) {
@@ -372,7 +372,7 @@ void mt_terminal_ignore_signals(void)
 
 void mt_terminal_hold_signals(void)
 {
-    set_actions(note);
+    set_actions(note_stop_signal);
 }
 
 void mt_terminal_release_signals(void)

@@ -17,7 +17,7 @@ static double in_g(const mt_vibrated *v, double value)
     return v->is_acceleration ? value / MT_STANDARD_GRAVITY : nan("");
 }
 
-static const char *unit_of(const mt_vibrated *v)
+static const char *vibrated_unit(const mt_vibrated *v)
 {
     return v->is_acceleration ? "m/s^2" : v->unit;
 }
@@ -54,7 +54,7 @@ void mt_vibrated_row(mt_table *t, const mt_vibrated *v)
     mt_table_number(t, random ? r->rms_bound : none, BOUND_DIGITS);
     mt_table_number(t, tones ? r->sine : none, DIGITS);
     mt_table_number(t, r->peak, DIGITS);
-    mt_table_text(t, unit_of(v));
+    mt_table_text(t, vibrated_unit(v));
     mt_table_text(t, end_of(r));
 }
 
@@ -85,7 +85,7 @@ void mt_vibrated_tone_row(mt_table *t, const mt_vibrated *v, int tone)
     mt_table_number(t, in_g(v, value), DIGITS);
     mt_table_number(t, value, DIGITS);
     mt_table_number(t, p->excess, BOUND_DIGITS);
-    mt_table_text(t, unit_of(v));
+    mt_table_text(t, vibrated_unit(v));
     mt_table_text(t, where(p));
 }
 
@@ -93,7 +93,7 @@ void mt_vibrated_json(mt_json_writer *w, const mt_vibrated *v)
 {
     const mt_vibration_response *const r = v->response;
     mt_json_put_string(w, "end", mt_forced_end_name(r->end));
-    mt_json_put_string(w, "unit", unit_of(v));
+    mt_json_put_string(w, "unit", vibrated_unit(v));
     mt_json_put_number(w, "rms", r->rms);
     mt_json_put_number(w, "rms_error_at_most", r->rms_bound);
     mt_json_put_number(w, "sine", r->sine);

@@ -94,8 +94,8 @@ static double limit_left(double now)
     return most > 0.0 ? fmax(0.0, most - (now - it.begun_s)) : nan("");
 }
 
-static void add(char text[TEXT], int *n, const char *fmt, ...) MT_PRINTF(3, 4);
-static void add(char text[TEXT], int *n, const char *fmt, ...)
+static void add_status_text(char text[TEXT], int *n, const char *fmt, ...) MT_PRINTF(3, 4);
+static void add_status_text(char text[TEXT], int *n, const char *fmt, ...)
 {
     va_list args;
     va_start(args, fmt);
@@ -114,41 +114,43 @@ static void words(const mt_progress_view *v, double now, char text[TEXT])
     int n = 0;
     text[0] = '\0';
     if (it.args->n_operands > 1) {
-        add(text, &n, "%s (%d of %d): ", mt_text_base_name(it.args->operands[it.operand]),
-            it.operand + 1, it.args->n_operands);
+        add_status_text(text, &n,
+                        "%s (%d of %d): ", mt_text_base_name(it.args->operands[it.operand]),
+                        it.operand + 1, it.args->n_operands);
     }
-    add(text, &n, "%s", v->phase);
+    add_status_text(text, &n, "%s", v->phase);
     if (v->total > 0) {
-        add(text, &n, ": %ld of %ld %s", v->done, v->total, v->unit);
+        add_status_text(text, &n, ": %ld of %ld %s", v->done, v->total, v->unit);
     } else if (v->unit != NULL && v->done > 0) {
-        add(text, &n, ": %ld %s", v->done, v->unit);
+        add_status_text(text, &n, ": %ld %s", v->done, v->unit);
     } else if (v->unit != NULL) {
-        add(text, &n, ": %s", v->unit);
+        add_status_text(text, &n, ": %s", v->unit);
     }
     if (isfinite(v->share)) {
-        add(text, &n, ", %.0f %%", floor(PER_CENT * v->share));
+        add_status_text(text, &n, ", %.0f %%", floor(PER_CENT * v->share));
     }
     if (v->what != NULL) {
-        add(text, &n, ", best %s %.4g", v->what, v->best);
+        add_status_text(text, &n, ", best %s %.4g", v->what, v->best);
     }
     if (v->impossible) {
-        add(text, &n, ", no design meets all goals (proven): searching for the nearest");
+        add_status_text(text, &n,
+                        ", no design meets all goals (proven): searching for the nearest");
     }
     if (isfinite(step)) {
-        add(text, &n, ", about %s left of this step", duration(step, time));
+        add_status_text(text, &n, ", about %s left of this step", duration(step, time));
     }
     if (isfinite(limit)) {
-        add(text, &n, ", %s left of --time", duration(limit, time));
+        add_status_text(text, &n, ", %s left of --time", duration(limit, time));
     }
-    add(text, &n, ", %s", duration(now - it.begun_s, time));
+    add_status_text(text, &n, ", %s", duration(now - it.begun_s, time));
     if (v->evaluations > 0) {
-        add(text, &n, ", %ld designs evaluated", v->evaluations);
+        add_status_text(text, &n, ", %ld designs evaluated", v->evaluations);
     }
     if (v->solutions > 0) {
-        add(text, &n, ", %ld modal solutions", v->solutions);
+        add_status_text(text, &n, ", %ld modal solutions", v->solutions);
     }
     if (v->boxes > 0) {
-        add(text, &n, ", %ld boxes", v->boxes);
+        add_status_text(text, &n, ", %ld boxes", v->boxes);
     }
 }
 
@@ -206,7 +208,7 @@ static void put_json(const mt_progress_view *v, const char *state, double now)
 }
 
 /* Read the progress once, and report it where it is time. */
-static void look(void)
+static void report_progress(void)
 {
     const mt_progress_view v = mt_progress_read(&it.progress);
     const double now = mt_terminal_seconds();
@@ -246,7 +248,7 @@ static bool turn(void *unused)
     (void)unused;
     const bool goes_on = poll(&over, 1, LOOK_MS) == 0;
     if (goes_on) {
-        look();
+        report_progress();
     }
     return goes_on;
 }
@@ -294,7 +296,7 @@ mt_progress *mt_watch_begin(const mt_args *args, int i, const char *phase)
     it.progress.clock = mt_terminal_cpu_seconds;
     mt_progress_phase(&it.progress, phase, false);
     if (it.reader == READER_PROGRAM) {
-        look();
+        report_progress();
     }
     it.has_ticker = start();
     return &it.progress;

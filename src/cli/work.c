@@ -140,8 +140,8 @@ int mt_work_begin(const mt_args *args, const char *study_path, const mt_study *s
 }
 
 /* Report the use of the records read, and the state of the part where one was requested. */
-static void tell(const mt_args *args, const char *study_path, bool complete, bool part,
-                 const mt_journal *j)
+static void report_journal_use(const mt_args *args, const char *study_path, bool complete,
+                               bool part, const mt_journal *j)
 {
     const mt_journal_counts n = mt_journal_count(j);
     const bool quiet = args->given[MT_OPT_QUIET];
@@ -169,7 +169,7 @@ int mt_work_end(const mt_args *args, const char *study_path, int code, bool comp
         mt_journal_begin(j);
     }
     const mt_status rc = mt_journal_end(j, complete && !part, &err);
-    tell(args, study_path, complete, done, j);
+    report_journal_use(args, study_path, complete, done, j);
     if (rc != MT_OK && part) {
         return mt_exit_worse(code, mt_cli_failed(rc, &err));
     }

@@ -205,8 +205,8 @@ static mt_status write_reach(const mt_requirement *d, const char *configuration,
                  d->mode, r->low_hz, r->high_hz);
 }
 
-static mt_status reach(const mt_problem *p, const mt_proof *proof, int limit, mt_arena *mem,
-                       mt_result *result, bool *infeasible, mt_err *err)
+static mt_status describe_reach(const mt_problem *p, const mt_proof *proof, int limit,
+                                mt_arena *mem, mt_result *result, bool *infeasible, mt_err *err)
 {
     mt_certify_reach r = {0};
     const mt_requirement *const d = &p->requirements[proof->limit_requirement[limit]];
@@ -259,7 +259,7 @@ mt_status mt_describe_limit_certificates(const mt_problem *p, long boxes, mt_are
     /* one budget for all questions: each limit alone, and all of them together */
     proof.question.max_work = proof.left / (1.0 + (double)proof.question.n_limits);
     for (int i = 0; rc == MT_OK && proof.possible && i < proof.question.n_limits; i++) {
-        rc = reach(p, &proof, i, mem, result, infeasible, err);
+        rc = describe_reach(p, &proof, i, mem, result, infeasible, err);
     }
     if (rc == MT_OK && proof.possible && !*infeasible && proof.question.n_limits > 0) {
         rc = jointly(&proof, boxes, mem, result, infeasible, err);

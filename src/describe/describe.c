@@ -115,8 +115,8 @@ static mt_status describe_objectives(const mt_workspace *fresh, double motion_ma
 }
 
 /* Warn where the fresh objective does not agree with the one that the search ended with. */
-static mt_status compare(const mt_workspace *fresh, const mt_design *design,
-                         double motion_margin, mt_result *result, mt_err *err)
+static mt_status check_fresh_objective(const mt_workspace *fresh, const mt_design *design,
+                                       double motion_margin, mt_result *result, mt_err *err)
 {
     const int k = design->stage;
     const bool bands = mt_objective_is(fresh->c->aims[k].type, MT_BANDS);
@@ -140,8 +140,8 @@ static mt_status compare(const mt_workspace *fresh, const mt_design *design,
 
 /* Warn of a design at which a fresh analysis disagrees; it does not count as meeting any goal,
  * see describe_verify.c. */
-static mt_status warning(const mt_design *design, mt_result *result, mt_recommendation *rec,
-                         mt_err *err)
+static mt_status warn_disagreement(const mt_design *design, mt_result *result,
+                                   mt_recommendation *rec, mt_err *err)
 {
     if (rec->disagreement == NULL) {
         return MT_OK;
@@ -164,9 +164,9 @@ static void grade_fit(const mt_problem *p, const mt_design *design, mt_recommend
     }
 }
 
-static mt_status describe(mt_workspace *fresh, const mt_design *design,
-                          const mt_recommendation *baseline, mt_result *result,
-                          mt_recommendation *rec, mt_err *err)
+static mt_status describe_design(mt_workspace *fresh, const mt_design *design,
+                                 const mt_recommendation *baseline, mt_result *result,
+                                 mt_recommendation *rec, mt_err *err)
 {
     double motion_margin = HUGE_VAL;
     *rec = mt_recommendation_default();
@@ -176,7 +176,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     MT_TRY(mt_describe_between(fresh, design, result, rec, err));
     MT_TRY(describe_parameters(fresh->p, fresh->x, design->t, result, rec, err));
     MT_TRY(mt_describe_frequencies(fresh, design, baseline, result, rec, err));
-    MT_TRY(warning(design, result, rec, err));
+    MT_TRY(warn_disagreement(design, result, rec, err));
     MT_TRY(mt_describe_clearances(fresh, result, rec, err));
     MT_TRY(describe_objectives(fresh, motion_margin, baseline, result, rec, err));
     if (fresh->c->tolerance_box != NULL) {
@@ -198,7 +198,7 @@ static mt_status describe(mt_workspace *fresh, const mt_design *design,
     if (design->cut) {
         return MT_OK;
     }
-    return compare(fresh, design, motion_margin, result, err);
+    return check_fresh_objective(fresh, design, motion_margin, result, err);
 }
 
 mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
@@ -209,7 +209,7 @@ mt_status mt_describe_design(const mt_problem *p, const mt_design *design,
     MT_TRY(mt_workspace_new(p, &fresh, err));
     mt_work_counters_note(p->run->work, MT_WORK_DESIGNS, ANALYSES);
     mt_problem_note_modal(p, ANALYSES * mt_subproblem_solutions(&p->whole));
-    mt_status rc = describe(fresh, design, baseline, result, rec, err);
+    mt_status rc = describe_design(fresh, design, baseline, result, rec, err);
     rc = rc == MT_OK ? mt_describe_slopes(fresh, design, result, rec, err) : rc;
     mt_workspace_delete(fresh);
     return rc;

@@ -150,8 +150,8 @@ static tightest find_tightest(const mt_workspace *fresh, int view, const mt_band
     return t;
 }
 
-static mt_status judge(mt_workspace *fresh, int goal, int configuration, mt_result *result,
-                       mt_result_goal *out, mt_err *err)
+static mt_status describe_avoid_goal(mt_workspace *fresh, int goal, int configuration,
+                                     mt_result *result, mt_result_goal *out, mt_err *err)
 {
     const mt_goal *const g = &fresh->p->study->goals[goal];
     const int at = mt_problem_configuration(fresh->p, configuration);
@@ -195,8 +195,8 @@ mt_status mt_describe_avoid_goals(mt_workspace *fresh, mt_result *result,
     for (int i = 0; i < fresh->p->study->n_goals; i++) {
         const mt_goal *const g = &fresh->p->study->goals[i];
         for (int k = 0; g->avoid != NULL && k < g->n_configurations; k++) {
-            MT_TRY(
-                judge(fresh, i, g->configurations[k], result, &rec->goals[rec->n_goals], err));
+            MT_TRY(describe_avoid_goal(fresh, i, g->configurations[k], result,
+                                       &rec->goals[rec->n_goals], err));
             rec->n_goals++;
         }
     }

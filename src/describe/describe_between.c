@@ -88,9 +88,9 @@ static const char *text_of(const mt_study *study, const mt_drive_positions *f,
     return mt_arena_printf(mem, "%s; %s", worst, verdict_text(m, r));
 }
 
-static mt_status put(const mt_workspace *fresh, const mt_requirement *d,
-                     const mt_limit_drive_path *m, mt_arena *mem, mt_result_between *out,
-                     mt_err *err)
+static mt_status describe_limit_between(const mt_workspace *fresh, const mt_requirement *d,
+                                        const mt_limit_drive_path *m, mt_arena *mem,
+                                        mt_result_between *out, mt_err *err)
 {
     const mt_goal *const g = d->goal;
     const mt_drive_positions *const f =
@@ -147,7 +147,7 @@ mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_r
                    : MT_OK);
         if (m.end != MT_MOTION_NONE) {
             mt_result_between *const row = &rec->between[rec->n_between++];
-            MT_TRY(put(fresh, d, &m, &result->mem, row, err));
+            MT_TRY(describe_limit_between(fresh, d, &m, &result->mem, row, err));
             MT_TRY(d->row_in >= 0 ? warn(design, row, result, rec, err) : MT_OK);
         }
     }

@@ -155,8 +155,8 @@ static mt_status trace(mt_analysis *a, const mt_result_curve *asked, const mt_vi
 }
 
 /* Describe a curve, or the reason for none. */
-static mt_status describe(const mt_workspace *fresh, const mt_result_curve *asked,
-                          mt_arena *mem, mt_design_curve *out, mt_err *err)
+static mt_status describe_curve(const mt_workspace *fresh, const mt_result_curve *asked,
+                                mt_arena *mem, mt_design_curve *out, mt_err *err)
 {
     const mt_problem *const p = fresh->p;
     const mt_model *const model = p->study->model;
@@ -182,7 +182,7 @@ mt_status mt_describe_curves(const mt_workspace *fresh, mt_result *result,
     for (int i = 0; i < result->n_curves; i++) {
         mt_design_curve *const out = &rec->curves[rec->n_curves++];
         *out = (mt_design_curve){.trouble = NULL};
-        MT_TRY(describe(fresh, &result->curves[i], &result->mem, out, err));
+        MT_TRY(describe_curve(fresh, &result->curves[i], &result->mem, out, err));
         out->pointer = result->curves[i].pointer;
         out->configuration = result->curves[i].configuration;
     }

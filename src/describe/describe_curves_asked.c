@@ -16,8 +16,8 @@ static const double TWO_PI = 6.283185307179586477;
 enum { MOST_MEASURED = 400 };
 
 /* True where both have the same ports of the same configuration and the same profile. */
-static bool is_same(const mt_result_curve *a, const mt_result_curve *b,
-                    const mt_response_limit *s)
+static bool is_same_curve(const mt_result_curve *a, const mt_result_curve *b,
+                          const mt_response_limit *s)
 {
     const char *const of = a->profile == NULL ? NULL : a->profile->file;
     const char *const by = s->profile_name.s;
@@ -26,11 +26,11 @@ static bool is_same(const mt_result_curve *a, const mt_result_curve *b,
            (by == NULL || (of != NULL && strcmp(of, by) == 0));
 }
 
-static mt_result_curve *find(const mt_result *result, const mt_result_curve *like,
-                             const mt_response_limit *s)
+static mt_result_curve *find_curve(const mt_result *result, const mt_result_curve *like,
+                                   const mt_response_limit *s)
 {
     for (int i = 0; i < result->n_curves; i++) {
-        if (is_same(&result->curves[i], like, s)) {
+        if (is_same_curve(&result->curves[i], like, s)) {
             return &result->curves[i];
         }
     }
@@ -170,7 +170,7 @@ static mt_status add_goal(const mt_problem *p, int goal, int configuration, mt_r
                            .configuration = study->model->configurations[configuration].name.s,
                            .description = g->description};
     MT_TRY(put_ports(p, configuration, g->response_limit, mem, &own, err));
-    mt_result_curve *to = find(result, &own, g->response_limit);
+    mt_result_curve *to = find_curve(result, &own, g->response_limit);
     const mt_fit *const fit = fit_of(p, goal, configuration);
     if (to == NULL) {
         choose_band(g->response_limit, &own);

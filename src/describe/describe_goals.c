@@ -138,8 +138,8 @@ static mt_status solve_views(mt_workspace *fresh, mt_err *why, mt_err *err)
 }
 
 /* Warn that the mode of the goal is not identified: the goal is not met, for any value. */
-static mt_status warning(const mt_workspace *fresh, const mt_requirement *d, mt_result *result,
-                         mt_result_goal *g, mt_err *err)
+static mt_status warn_unidentified(const mt_workspace *fresh, const mt_requirement *d,
+                                   mt_result *result, mt_result_goal *g, mt_err *err)
 {
     const char *const why =
         mt_describe_identity(&fresh->views[d->view], d->named, &result->mem);
@@ -186,8 +186,9 @@ static void write_line(const mt_workspace *fresh, const mt_requirement *d, mt_re
     }
 }
 
-static mt_status judge(mt_workspace *fresh, const mt_requirement *d, mt_nlp_values *v,
-                       mt_result *result, mt_result_goal *g, mt_err *why, mt_err *err)
+static mt_status describe_requirement(mt_workspace *fresh, const mt_requirement *d,
+                                      mt_nlp_values *v, mt_result *result, mt_result_goal *g,
+                                      mt_err *why, mt_err *err)
 {
     mt_err own = {0};
     double violation = nan("");
@@ -225,7 +226,7 @@ static mt_status judge(mt_workspace *fresh, const mt_requirement *d, mt_nlp_valu
     MT_TRY(mt_arena_check(&result->mem, err));
     return !mt_requirement_is_modal(d) || mt_describe_is_told(&fresh->views[d->view], d)
                ? MT_OK
-               : warning(fresh, d, result, g, err);
+               : warn_unidentified(fresh, d, result, g, err);
 }
 
 /* Write the length at which angles count as arcs, where sensors of a MAC or a shape mix
@@ -282,7 +283,8 @@ mt_status mt_describe_goals(mt_workspace *fresh, const mt_design *design, mt_res
     MT_TRY(mt_workspace_place(fresh, design->t, false, err));
     MT_TRY(solve_views(fresh, &why, err));
     for (int i = 0; i < fresh->p->n_requirements; i++) {
-        MT_TRY(judge(fresh, &fresh->p->requirements[i], &v, result, &rec->goals[i], &why, err));
+        MT_TRY(describe_requirement(fresh, &fresh->p->requirements[i], &v, result,
+                                    &rec->goals[i], &why, err));
         MT_TRY(write_length(&fresh->p->requirements[i], design, result, err));
         MT_TRY(warn_data(fresh, &fresh->p->requirements[i], design, result, err));
         rec->n_goals++;

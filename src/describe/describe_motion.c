@@ -43,7 +43,7 @@ static mt_dimension dimension_of(const mt_drive_positions *f)
 }
 
 /* The unit in which its positions are shown; NULL: SI. */
-static const mt_unit *shown_in(const described *d)
+static const mt_unit *shown_position_unit(const described *d)
 {
     return mt_study_shown(d->fresh->p->study, dimension_of(d->drive_positions));
 }
@@ -104,7 +104,7 @@ static void find_crossing(described *d, const int *below)
 
 /* Find whether the named positions keep their bands with one number of modes below each. If so
  * the motion is followed. */
-static mt_status examine(described *d, mt_err *err)
+static mt_status examine_named_positions(described *d, mt_err *err)
 {
     mt_workspace *const fresh = d->fresh;
     const int drive_positions = (int)(d->drive_positions - fresh->p->families);
@@ -159,7 +159,7 @@ static const char *nearest_text(const described *d, const char *range)
 {
     const mt_drive_path *const m = &d->motion;
     mt_arena *const mem = &d->result->mem;
-    const mt_unit *const shown = shown_in(d);
+    const mt_unit *const shown = shown_position_unit(d);
     const double at = mt_unit_from_si(shown, m->at);
     const char *const unit = mt_unit_name(shown, si_of(d));
     const char *const side = m->above ? "above" : "below";
@@ -266,8 +266,8 @@ static mt_status put_row(const described *d, const char *range, double from, dou
     row->pointer = mt_arena_printf(mem, "/goals/%d", d->goal_index);
     row->drive = mt_arena_strdup(mem, d->drive_positions->joint);
     row->unit = si_of(d);
-    row->display_unit = mt_unit_name(shown_in(d), NULL);
-    row->display_factor = mt_unit_display(shown_in(d));
+    row->display_unit = mt_unit_name(shown_position_unit(d), NULL);
+    row->display_factor = mt_unit_display(shown_position_unit(d));
     row->from = from;
     row->to = to;
     row->grade = d->followed ? mt_drive_path_grade(d->motion.end) : "not followed";
@@ -295,7 +295,7 @@ static mt_status describe_drive_positions(mt_workspace *fresh, const mt_drive_po
     double from = HUGE_VAL;
     double to = -HUGE_VAL;
     d.motion.percent = nan("");
-    MT_TRY(examine(&d, err));
+    MT_TRY(examine_named_positions(&d, err));
     *room = fmin(*room, d.room);
     for (int k = 0; k < f->n; k++) {
         from = fmin(from, mt_drive_positions_position(fresh->views[f->view[k]].analysis));
@@ -304,7 +304,7 @@ static mt_status describe_drive_positions(mt_workspace *fresh, const mt_drive_po
     if (d.followed && d.motion.end == MT_MOTION_NONE) {
         return MT_OK; /* no band is asked for on both sides of a motion */
     }
-    const mt_unit *const shown = shown_in(&d);
+    const mt_unit *const shown = shown_position_unit(&d);
     const char *const range = mt_arena_printf(
         &result->mem, "%s from %.6g to %.6g %s", f->joint, mt_unit_from_si(shown, from),
         mt_unit_from_si(shown, to), mt_unit_name(shown, si_of(&d)));

@@ -126,7 +126,7 @@ static mt_status compute_mode(judge *j, const mt_published *pub, double *value, 
 }
 
 /* The unit in which numbers of a parameter or a quantity are shown; NULL: unchanged. */
-static const mt_unit *shown_in(const mt_problem *p, const mt_published *pub)
+static const mt_unit *shown_published_unit(const mt_problem *p, const mt_published *pub)
 {
     return pub->kind == MT_PUBLISHED_PARAMETER ? mt_study_unit(p->study, pub->parameter)
            : pub->kind == MT_PUBLISHED_QUANTITY
@@ -142,9 +142,10 @@ static const char *label_of(const mt_problem *p, const mt_published *pub, mt_are
     }
     switch (pub->kind) {
     case MT_PUBLISHED_PARAMETER:
-        return shown_in(p, pub) == NULL ? pub->parameter_name.s
-                                        : mt_arena_printf(mem, "%s [%s]", pub->parameter_name.s,
-                                                          mt_unit_name(shown_in(p, pub), ""));
+        return shown_published_unit(p, pub) == NULL
+                   ? pub->parameter_name.s
+                   : mt_arena_printf(mem, "%s [%s]", pub->parameter_name.s,
+                                     mt_unit_name(shown_published_unit(p, pub), ""));
     case MT_PUBLISHED_QUANTITY: {
         const mt_unit *const other = mt_study_requirement_unit(p->study, &pub->quantity);
         return other == NULL ? pub->quantity_text
@@ -222,9 +223,9 @@ static mt_status judge_one(judge *j, int i, mt_result_published *out, mt_err *er
     out->role = mt_role_name(pub->role);
     out->kind = mt_published_kind_name(pub->kind);
     out->source = pub->source;
-    out->display_unit = mt_unit_name(shown_in(j->p, pub), NULL);
-    out->display_factor = mt_unit_display(shown_in(j->p, pub));
-    out->requirement = requirement_of(pub, shown_in(j->p, pub), mem);
+    out->display_unit = mt_unit_name(shown_published_unit(j->p, pub), NULL);
+    out->display_factor = mt_unit_display(shown_published_unit(j->p, pub));
+    out->requirement = requirement_of(pub, shown_published_unit(j->p, pub), mem);
     MT_TRY(mt_arena_check(mem, err));
     if (pub->kind == MT_PUBLISHED_STATUS) {
         out->published_text = pub->status;

@@ -361,7 +361,7 @@ static const char *stage_text(const mt_objective_stage *a)
                                              : "objective";
 }
 
-static const char *best_of(const mt_objective_stage *a)
+static const char *optimum_word(const mt_objective_stage *a)
 {
     return mt_objective_is(a->type, MT_MAXIMISED) ? "greatest" : "least";
 }
@@ -376,7 +376,8 @@ static void write_kind_rank(mt_sentences *s, const char *first)
             s,
             "It ranks %d of the %d mode placements that were found to meet all goals, of "
             "%.0f in all, by %s %s (%s).",
-            s->rec->rank, g->n_solutions, g->n_possible, best_of(&s->p->aims[0]), first, sure);
+            s->rec->rank, g->n_solutions, g->n_possible, optimum_word(&s->p->aims[0]), first,
+            sure);
     } else if (g->n_solutions == 1) {
         mt_add_sentence(s,
                         "It is the only one of %.0f mode placements that meets all goals (%s).",
@@ -386,7 +387,8 @@ static void write_kind_rank(mt_sentences *s, const char *first)
             s,
             "It ranks %d of the %d mode placements that meet all goals, of %.0f in all, by "
             "%s %s (%s).",
-            s->rec->rank, g->n_solutions, g->n_possible, best_of(&s->p->aims[0]), first, sure);
+            s->rec->rank, g->n_solutions, g->n_possible, optimum_word(&s->p->aims[0]), first,
+            sure);
     }
 }
 
@@ -400,7 +402,7 @@ static void write_only(mt_sentences *s, const mt_nlp_result *search, const char 
             s,
             "It is the only local optimum, by %s %s, that %d start%s found (sampled, not "
             "proven).",
-            best_of(&s->p->aims[0]), first, search->starts, many);
+            optimum_word(&s->p->aims[0]), first, search->starts, many);
     } else {
         mt_add_sentence(s, "It is the only design that %d start%s found (sampled, not proven).",
                         search->starts, many);
@@ -452,7 +454,8 @@ static void write_rank(mt_sentences *s, const mt_nlp_result *search)
     }
     if (s->design->discrete != NULL) {
         mt_arena *const mem = &s->result->mem;
-        const char *const by = mt_arena_printf(mem, "%s %s", best_of(&s->p->aims[0]), first);
+        const char *const by =
+            mt_arena_printf(mem, "%s %s", optimum_word(&s->p->aims[0]), first);
         mt_add_sentence(
             s, "%s", mt_describe_rank_text(s->design->discrete, search, s->rec->rank, by, mem));
         return;
@@ -476,7 +479,7 @@ static void write_rank(mt_sentences *s, const mt_nlp_result *search)
     } else {
         mt_add_sentence(s, "It ranks %d of %d distinct designs found from %d starts, by %s %s.",
                         s->rec->rank, search->n_solutions, search->starts,
-                        best_of(&s->p->aims[0]), first);
+                        optimum_word(&s->p->aims[0]), first);
     }
     if (s->design->found->continuum && !search->compromise) {
         mt_add_sentence(
@@ -487,7 +490,7 @@ static void write_rank(mt_sentences *s, const mt_nlp_result *search)
     }
     for (int k = 1; k <= s->design->stage; k++) {
         mt_add_sentence(s, "With the %s %s held, it has the %s %s near it.",
-                        best_of(&s->p->aims[0]), first, best_of(&s->p->aims[k]),
+                        optimum_word(&s->p->aims[0]), first, optimum_word(&s->p->aims[k]),
                         stage_text(&s->p->aims[k]));
     }
     if (s->rec->singular) {

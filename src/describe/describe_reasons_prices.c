@@ -50,7 +50,7 @@ static const char *worth(mt_sentences *s, double df)
 
 /* Text of the gain from a relaxation of a requirement, and of its size; slope: df by the
  * logarithm of the requirement. */
-static const char *price(mt_sentences *s, double slope, const char **part)
+static const char *relaxation_gain_text(mt_sentences *s, double slope, const char **part)
 {
     const char *text = NULL;
     for (int i = 0; i < N_PARTS && text == NULL; i++) {
@@ -101,7 +101,7 @@ static void say_requirements(mt_sentences *s)
         mt_sentence_of(s, "cost", g->pointer);
         for (int k = 0; k < d->n_in && found->mult_in != NULL; k++) {
             const double mult = found->mult_in[d->row_in + k];
-            const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
+            const char *const saved = mult > 0.0 ? relaxation_gain_text(s, mult, &part) : NULL;
             if (saved != NULL) {
                 mt_add_sentence(s, "Relaxing goal %s (%s) by %s would %s %s.", g->pointer,
                                 g->text, part, win(s), saved);
@@ -109,7 +109,7 @@ static void say_requirements(mt_sentences *s)
         }
         const double slope =
             d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
-        const char *const cost = price(s, fabs(slope), &part);
+        const char *const cost = relaxation_gain_text(s, fabs(slope), &part);
         if (cost != NULL) {
             mt_add_sentence(s, "A target %s %s in goal %s (%s) would %s %s.", part,
                             slope > 0.0 ? "lower" : "higher", g->pointer, g->text, win(s),
@@ -131,7 +131,7 @@ static void write_edges(mt_sentences *s)
         const mt_avoidance *const c = &s->p->avoidances[row.avoidance];
         const double mult = found->mult_in[s->p->whole.first_band_row + i];
         const char *part = NULL;
-        const char *const saved = mult > 0.0 ? price(s, mult, &part) : NULL;
+        const char *const saved = mult > 0.0 ? relaxation_gain_text(s, mult, &part) : NULL;
         if (saved != NULL) {
             mt_add_sentence(
                 s, "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.",
@@ -150,7 +150,7 @@ static void write_between(mt_sentences *s)
         const mt_mode_placement_held *const h = &s->design->held[i];
         const mt_drive_positions *const f = &s->p->families[h->drive_positions];
         const char *part = NULL;
-        const char *const saved = price(s, h->multiplier, &part);
+        const char *const saved = relaxation_gain_text(s, h->multiplier, &part);
         const char *const where =
             saved == NULL ? NULL
                           : mt_describe_position(s->p->study, f, h->position, &s->result->mem);
@@ -174,7 +174,7 @@ static void write_limits_between(mt_sentences *s)
             &s->p->families[mt_drive_positions_of(s->p, d->view)];
         const char *part = NULL;
         const char *const saved =
-            h->t == s->design->found->t ? price(s, h->multiplier, &part) : NULL;
+            h->t == s->design->found->t ? relaxation_gain_text(s, h->multiplier, &part) : NULL;
         const char *const where =
             saved == NULL ? NULL
                           : mt_describe_position(s->p->study, f, h->position, &s->result->mem);

@@ -70,8 +70,8 @@ static const char *design_text(const mt_problem *p, const double *x, mt_arena *m
     return text;
 }
 
-static mt_status describe(const mt_problem *p, const mt_move *m, mt_arena *mem,
-                          mt_relaxation *out, mt_err *err)
+static mt_status describe_move(const mt_problem *p, const mt_move *m, mt_arena *mem,
+                               mt_relaxation *out, mt_err *err)
 {
     *out = (mt_relaxation){.from = m->from, .to = m->to, .display_factor = nan("")};
     out->change_percent =
@@ -111,7 +111,7 @@ mt_status mt_describe_relaxations(const mt_problem *p, const mt_moves *moves, mt
     result->relaxations = mt_arena_alloc(&result->mem, (size_t)n, sizeof *result->relaxations);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < n; i++) {
-        MT_TRY(describe(p, &moves->items[i], &result->mem, &result->relaxations[i], err));
+        MT_TRY(describe_move(p, &moves->items[i], &result->mem, &result->relaxations[i], err));
         result->n_relaxations = i + 1;
     }
     return MT_OK;

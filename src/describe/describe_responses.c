@@ -112,8 +112,8 @@ static const char *text_of(const mt_goal *g, const mt_result_response *r, mt_are
 }
 
 /* Fill a response. A failure leaves it without a value: the text of the goal has the reason. */
-static mt_status look(mt_workspace *fresh, const mt_requirement *d, mt_arena *mem,
-                      mt_result_response *out, mt_err *err)
+static mt_status describe_response(mt_workspace *fresh, const mt_requirement *d, mt_arena *mem,
+                                   mt_result_response *out, mt_err *err)
 {
     const mt_goal *const g = d->goal;
     mt_forced_response_value v = {.finite = false};
@@ -150,8 +150,8 @@ mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recom
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < p->n_requirements; i++) {
         if (p->requirements[i].ops->look != NULL) {
-            MT_TRY(look(fresh, &p->requirements[i], &result->mem,
-                        &rec->responses[rec->n_responses++], err));
+            MT_TRY(describe_response(fresh, &p->requirements[i], &result->mem,
+                                     &rec->responses[rec->n_responses++], err));
         }
     }
     return MT_OK;

@@ -7,7 +7,7 @@
 #include "problem/goal.h"
 #include "problem/requirement.h"
 
-static bool same(const char *a, const char *b)
+static bool is_same_name(const char *a, const char *b)
 {
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
@@ -17,8 +17,8 @@ static double *of_frequency(const mt_recommendation *rec, const mt_result_goal *
 {
     for (int i = 0; i < rec->n_frequencies; i++) {
         const mt_result_frequency *const f = &rec->frequencies[i];
-        const bool mode = g->name != NULL ? same(f->name, g->name) : f->mode == g->mode;
-        if (mode && same(f->configuration, g->configuration)) {
+        const bool mode = g->name != NULL ? is_same_name(f->name, g->name) : f->mode == g->mode;
+        if (mode && is_same_name(f->configuration, g->configuration)) {
             return f->repeated ? NULL : f->sensitivity;
         }
     }

@@ -50,7 +50,7 @@ typedef struct verdict {
     double percent;
 } verdict;
 
-static verdict judge(const mt_requirement *d, const mt_tolerance_range *r)
+static verdict find_worst_side(const mt_requirement *d, const mt_tolerance_range *r)
 {
     const double target = d->equals;
     const bool equal = MT_HAS(target);
@@ -88,7 +88,7 @@ mt_status mt_describe_worst(mt_workspace *fresh, const mt_requirement *d, mt_res
     if (r == NULL) {
         return MT_OK;
     }
-    const verdict v = judge(d, r);
+    const verdict v = find_worst_side(d, r);
     if (d->row_eq < 0) {
         *violation =
             v.violation > *violation || !MT_HAS(v.violation) ? v.violation : *violation;

@@ -63,7 +63,7 @@ static int character(const parser *p, size_t at)
     return n;
 }
 
-static int shown(size_t length)
+static int shown_length(size_t length)
 {
     return length < SHOWN ? (int)length : SHOWN;
 }
@@ -98,7 +98,7 @@ static mt_status expected(parser *p, const char *what)
         n++;
     }
     return mt_fail(p->err, MT_E_INPUT, "at character %d: \"%.*s\" where %s is expected", where,
-                   shown(n), from, what);
+                   shown_length(n), from, what);
 }
 
 static mt_status emit(parser *p, mt_op op, int param, double value)
@@ -263,11 +263,11 @@ static mt_status bad_number(parser *p, size_t from, const char *what)
         end++;
     }
     return mt_fail(p->err, MT_E_INPUT, "at character %d: \"%.*s\" %s", character(p, from),
-                   shown(end - from), p->text + from, what);
+                   shown_length(end - from), p->text + from, what);
 }
 
 /* True where a name of `length` bytes is known. */
-static bool is_known(const parser *p, const char *name, size_t length)
+static bool is_known_name(const parser *p, const char *name, size_t length)
 {
     double value = 0.0;
     mt_kind kind = MT_KIND_NUMBER;
@@ -284,13 +284,14 @@ static mt_status product_meant(parser *p, size_t from)
     while (is_name_part(p->text[end])) {
         end++;
     }
-    if (!is_name_start(p->text[p->at]) || !is_known(p, p->text + p->at, end - p->at)) {
+    if (!is_name_start(p->text[p->at]) || !is_known_name(p, p->text + p->at, end - p->at)) {
         return bad_number(p, from, "is not a number; a product needs \"*\"");
     }
     return mt_fail(p->err, MT_E_INPUT,
                    "at character %d: \"%.*s\" is not a number; did you mean \"%.*s*%.*s\"?",
-                   character(p, from), shown(end - from), p->text + from, shown(p->at - from),
-                   p->text + from, shown(end - p->at), p->text + p->at);
+                   character(p, from), shown_length(end - from), p->text + from,
+                   shown_length(p->at - from), p->text + from, shown_length(end - p->at),
+                   p->text + p->at);
 }
 
 /*
@@ -435,7 +436,7 @@ static mt_status left_over(parser *p)
     if (apart && mt_unit_meant(number, digits, left, length, meant, sizeof meant)) {
         return mt_fail(p->err, MT_E_INPUT,
                        "at character %d: \"%.*s\" is not part of a number; did you mean %s?",
-                       character(p, p->at), shown(length), left, meant);
+                       character(p, p->at), shown_length(length), left, meant);
     }
     size_t more = 1;
     while (left[0] == ',' && is_digit(left[more])) {
@@ -446,14 +447,16 @@ static mt_status left_over(parser *p)
         return mt_fail(p->err, MT_E_INPUT,
                        "at character %d: \",\" where an operator or the end is expected; did "
                        "you mean \"%.*s.%.*s\"?",
-                       character(p, p->at), (int)digits, number, shown(more - 1), left + 1);
+                       character(p, p->at), (int)digits, number, shown_length(more - 1),
+                       left + 1);
     }
-    if (apart && is_name_start(left[0]) && is_known(p, left, length)) {
+    if (apart && is_name_start(left[0]) && is_known_name(p, left, length)) {
         return mt_fail(
             p->err, MT_E_INPUT,
             "at character %d: \"%.*s\" where an operator or the end is expected; did "
             "you mean \"%.*s*%.*s\"?",
-            character(p, p->at), shown(length), left, (int)digits, number, shown(length), left);
+            character(p, p->at), shown_length(length), left, (int)digits, number,
+            shown_length(length), left);
     }
     return expected(p, "an operator or the end");
 }

@@ -195,7 +195,7 @@ static double far_up(double x)
 }
 
 /* [lo, hi] widened, but not beyond [least, most]. */
-static mt_interval widen(double lo, double hi, double least, double most)
+static mt_interval widen_within(double lo, double hi, double least, double most)
 {
     const double wide_lo = -far_up(-lo);
     const double wide_hi = far_up(hi);
@@ -207,7 +207,7 @@ static mt_interval widen(double lo, double hi, double least, double most)
 
 static mt_interval increasing(double (*f)(double), mt_interval a, double least, double most)
 {
-    return widen(f(a.lo), f(a.hi), least, most);
+    return widen_within(f(a.lo), f(a.hi), least, most);
 }
 
 static mt_interval logarithm(double (*f)(double), mt_interval a)
@@ -239,7 +239,7 @@ static mt_interval wave(double (*f)(double), mt_interval a, double crest)
     const double last = f(a.hi);
     const double lo = has_point(a, crest + 0.5, 2.0 * PI) ? -1.0 : fmin(first, last);
     const double hi = has_point(a, crest, 2.0 * PI) ? 1.0 : fmax(first, last);
-    return widen(lo, hi, -1.0, 1.0);
+    return widen_within(lo, hi, -1.0, 1.0);
 }
 
 static mt_interval op_tan(mt_interval a)
@@ -264,14 +264,14 @@ static mt_interval integer_power(mt_interval a, double n)
     if (fmod(n, 2.0) == 0.0) {
         const double at_mig = pow(mig(a), n);
         const double at_mag = pow(mag(a), n);
-        return widen(fmin(at_mig, at_mag), fmax(at_mig, at_mag), 0.0, HUGE_VAL);
+        return widen_within(fmin(at_mig, at_mag), fmax(at_mig, at_mag), 0.0, HUGE_VAL);
     }
     /* odd: n > 0 increases everywhere, n < 0 decreases on either side of 0; the sign is that of
      * a */
     const double at_lo = pow(a.lo, n);
     const double at_hi = pow(a.hi, n);
-    return widen(fmin(at_lo, at_hi), fmax(at_lo, at_hi), a.lo >= 0.0 ? 0.0 : -HUGE_VAL,
-                 a.hi <= 0.0 ? 0.0 : HUGE_VAL);
+    return widen_within(fmin(at_lo, at_hi), fmax(at_lo, at_hi), a.lo >= 0.0 ? 0.0 : -HUGE_VAL,
+                        a.hi <= 0.0 ? 0.0 : HUGE_VAL);
 }
 
 /* a^b. For a > 0 it is monotone in a at fixed b, and in b at fixed a: the bounds are at the
@@ -288,8 +288,8 @@ static mt_interval op_pow(mt_interval a, mt_interval b)
     const double lh = pow(a.lo, b.hi);
     const double hl = pow(a.hi, b.lo);
     const double hh = pow(a.hi, b.hi);
-    return widen(fmin(fmin(ll, lh), fmin(hl, hh)), fmax(fmax(ll, lh), fmax(hl, hh)), 0.0,
-                 HUGE_VAL);
+    return widen_within(fmin(fmin(ll, lh), fmin(hl, hh)), fmax(fmax(ll, lh), fmax(hl, hh)), 0.0,
+                        HUGE_VAL);
 }
 
 /* The angle of the points (x, y) of a rectangle: the bounds are at corners, unless it touches
@@ -297,14 +297,14 @@ static mt_interval op_pow(mt_interval a, mt_interval b)
 static mt_interval op_atan2(mt_interval y, mt_interval x)
 {
     if (x.lo <= 0.0 && mt_interval_has(y, 0.0)) {
-        return widen(-PI, PI, -HUGE_VAL, HUGE_VAL);
+        return widen_within(-PI, PI, -HUGE_VAL, HUGE_VAL);
     }
     const double ll = atan2(y.lo, x.lo);
     const double lh = atan2(y.lo, x.hi);
     const double hl = atan2(y.hi, x.lo);
     const double hh = atan2(y.hi, x.hi);
-    return widen(fmin(fmin(ll, lh), fmin(hl, hh)), fmax(fmax(ll, lh), fmax(hl, hh)), -HUGE_VAL,
-                 HUGE_VAL);
+    return widen_within(fmin(fmin(ll, lh), fmin(hl, hh)), fmax(fmax(ll, lh), fmax(hl, hh)),
+                        -HUGE_VAL, HUGE_VAL);
 }
 
 mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
@@ -331,13 +331,14 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
     case MT_OP_ASIN:
         return within_one(a) ? increasing(asin, a, -HUGE_VAL, HUGE_VAL) : mt_interval_all();
     case MT_OP_ACOS:
-        return within_one(a) ? widen(acos(a.hi), acos(a.lo), 0.0, HUGE_VAL) : mt_interval_all();
+        return within_one(a) ? widen_within(acos(a.hi), acos(a.lo), 0.0, HUGE_VAL)
+                             : mt_interval_all();
     case MT_OP_ATAN:
         return increasing(atan, a, -HUGE_VAL, HUGE_VAL);
     case MT_OP_SINH:
         return increasing(sinh, a, -HUGE_VAL, HUGE_VAL);
     case MT_OP_COSH:
-        return widen(cosh(mig(a)), cosh(mag(a)), 1.0, HUGE_VAL);
+        return widen_within(cosh(mig(a)), cosh(mag(a)), 1.0, HUGE_VAL);
     case MT_OP_TANH:
         return increasing(tanh, a, -1.0, 1.0);
     case MT_OP_ABS:
@@ -359,7 +360,7 @@ mt_interval mt_interval_op(mt_op op, mt_interval a, mt_interval b)
     case MT_OP_MAX:
         return mt_interval_of(fmax(a.lo, b.lo), fmax(a.hi, b.hi));
     case MT_OP_HYPOT:
-        return widen(hypot(mig(a), mig(b)), hypot(mag(a), mag(b)), 0.0, HUGE_VAL);
+        return widen_within(hypot(mig(a), mig(b)), hypot(mag(a), mag(b)), 0.0, HUGE_VAL);
     case MT_OP_CONST:
     case MT_OP_PARAM:
     case MT_OP_COUNT:

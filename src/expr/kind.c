@@ -154,7 +154,7 @@ static part unary(mt_op op, const part *a)
     return made(MT_KIND_NUMBER, value, false, nan(""));
 }
 
-static part product(mt_op op, const part *a, const part *b)
+static part product_or_quotient(mt_op op, const part *a, const part *b)
 {
     const part *const of = is_number(b->kind) ? a : b;
     const bool keeps = of == a || (op == MT_OP_MUL && is_number(a->kind));
@@ -179,7 +179,7 @@ static part binary(mt_op op, const part *a, const part *b)
     case RULE_SUM:
         return sum(op, a, b);
     case RULE_PRODUCT:
-        return product(op, a, b);
+        return product_or_quotient(op, a, b);
     case RULE_POWER:
         return power(op, a, b);
     case RULE_NUMBER:

@@ -76,7 +76,7 @@ static powers raised(const powers *a, double exponent)
     return p;
 }
 
-static powers product(const powers *a, const powers *b, int sign)
+static powers product_of_powers(const powers *a, const powers *b, int sign)
 {
     const bool both = a->known && b->known;
     powers p = {.known = both || (a->number && b->literal) || (a->literal && b->number),
@@ -128,9 +128,9 @@ static powers binary(mt_op op, const powers *a, const powers *b)
     case MT_OP_HYPOT:
         return sum(a, b);
     case MT_OP_MUL:
-        return product(a, b, 1);
+        return product_of_powers(a, b, 1);
     case MT_OP_DIV:
-        return product(a, b, -1);
+        return product_of_powers(a, b, -1);
     case MT_OP_POW:
         return raised(a, b->value);
     default:
@@ -155,8 +155,8 @@ static powers leaf(const mt_code *c, mt_measures_lookup lookup, const void *cont
 }
 
 /* The whole expression, in stack[0]; false: none that was parsed. */
-static bool walk(const mt_expr *e, mt_measures_lookup lookup, const void *context,
-                 powers *stack)
+static bool measure_expression(const mt_expr *e, mt_measures_lookup lookup, const void *context,
+                               powers *stack)
 {
     int n = 0;
     for (int i = 0; i < e->length; i++) {
@@ -181,7 +181,7 @@ bool mt_expr_measures(const mt_expr *e, mt_measures_lookup lookup, const void *c
 {
     powers stack[MT_EXPR_MAX_CODE];
     *out = (mt_unit_worth){.factor = 1.0};
-    if (!walk(e, lookup, context, stack) || !stack[0].known || stack[0].number) {
+    if (!measure_expression(e, lookup, context, stack) || !stack[0].known || stack[0].number) {
         return false;
     }
     bool any = e->length == 1; /* a multiple of a ratio may be a multiple of anything */

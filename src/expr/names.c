@@ -50,7 +50,7 @@ enum {
     N_FUNCTIONS = MT_COUNT(function_ops),
 };
 
-static bool same(const char *name, size_t length, const char *reserved)
+static bool is_reserved_word(const char *name, size_t length, const char *reserved)
 {
     return strlen(reserved) == length && memcmp(name, reserved, length) == 0;
 }
@@ -58,7 +58,7 @@ static bool same(const char *name, size_t length, const char *reserved)
 bool mt_expr_find_function(const char *name, size_t length, mt_op *op)
 {
     for (int i = 0; i < N_FUNCTIONS; i++) {
-        if (same(name, length, reserved_names[i])) {
+        if (is_reserved_word(name, length, reserved_names[i])) {
             *op = function_ops[i];
             return true;
         }
@@ -70,7 +70,7 @@ bool mt_expr_find_constant(const char *name, size_t length, double *value, mt_ki
 {
     static const double pi = 3.14159265358979323846;
     for (int i = N_FUNCTIONS; i < N_NAMES; i++) {
-        if (same(name, length, reserved_names[i])) {
+        if (is_reserved_word(name, length, reserved_names[i])) {
             const char *const of = constant_units[i - N_FUNCTIONS];
             const mt_unit *const unit = of == NULL ? NULL : mt_unit_find(of);
             *value = unit == NULL ? pi : mt_unit_factor(unit);

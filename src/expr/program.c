@@ -209,7 +209,7 @@ mt_node mt_program_div(mt_program *p, mt_node a, mt_node b)
 }
 
 /* The least span that holds both. */
-static mt_program_span join(mt_program_span a, mt_program_span b)
+static mt_program_span span_of_both(mt_program_span a, mt_program_span b)
 {
     if (a.first == a.end || b.first == b.end) {
         return a.first == a.end ? b : a;
@@ -238,7 +238,7 @@ static void collect_inputs(mt_program *p, int i)
         for (int w = 0; w < p->words; w++) {
             set[w] |= from[w];
         }
-        p->span[i] = join(p->span[i], p->span[operands[k]]);
+        p->span[i] = span_of_both(p->span[i], p->span[operands[k]]);
         p->active[i] = p->active[i] || p->active[operands[k]];
     }
 }

@@ -41,7 +41,7 @@ static const char *const other_words[][2] = {
     {"in", "inch"},    {"inches", "inch"},   {"feet", "ft"},
     {"foot", "ft"},    {"millimetre", "mm"}, {"RPM", "rpm"}};
 
-static bool same(const char *word, size_t n_word, const char *s)
+static bool is_unit_word(const char *word, size_t n_word, const char *s)
 {
     return strlen(s) == n_word && memcmp(s, word, n_word) == 0;
 }
@@ -52,12 +52,12 @@ static const char *constant_of(const char *word, size_t n_word)
     int n = 0;
     const mt_unit *const units = mt_units(&n);
     for (int i = 0; i < n; i++) {
-        if (units[i].constant != NULL && same(word, n_word, units[i].constant)) {
+        if (units[i].constant != NULL && is_unit_word(word, n_word, units[i].constant)) {
             return units[i].constant;
         }
     }
     for (int i = 0; i < MT_COUNT(other_words); i++) {
-        if (same(word, n_word, other_words[i][0])) {
+        if (is_unit_word(word, n_word, other_words[i][0])) {
             return other_words[i][1];
         }
     }
@@ -72,13 +72,13 @@ bool mt_unit_meant(const char *number, size_t n_number, const char *word, size_t
         (void)mt_snprintf(out, size, "\"%.*s*%s\"", (int)n_number, number, constant);
         return true;
     }
-    if (same(word, n_word, "%") || same(word, n_word, "percent")) {
+    if (is_unit_word(word, n_word, "%") || is_unit_word(word, n_word, "percent")) {
         (void)mt_snprintf(out, size, "\"%.*s/100\"", (int)n_number, number);
         return true;
     }
     for (int i = 0; i < MT_COUNT(words); i++) {
         const unit_word *const w = &words[i];
-        if (same(word, n_word, w->word)) {
+        if (is_unit_word(word, n_word, w->word)) {
             (void)mt_snprintf(out, size, "\"%.*s%s%s\" (expressions are in SI units, here %s)",
                               (int)n_number, number, w->factor[0] == '\0' ? "" : "*", w->factor,
                               w->si);

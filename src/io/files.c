@@ -40,7 +40,7 @@ char *mt_files_normal(const char *path)
 }
 
 /* The text that is given for the path; NULL: none, or *rc. */
-static const char *find(const mt_files *files, const char *path, mt_status *rc)
+static const char *find_given_text(const mt_files *files, const char *path, mt_status *rc)
 {
     const char *found = NULL;
     *rc = MT_OK;
@@ -66,7 +66,7 @@ mt_status mt_files_read(const mt_files *files, const char *path, const char *roo
                         mt_file *out, mt_err *err)
 {
     mt_status rc = MT_OK;
-    const char *const text = find(files, path, &rc);
+    const char *const text = find_given_text(files, path, &rc);
     *out = (mt_file){0};
     if (rc != MT_OK) {
         return mt_fail_memory(err);
@@ -94,14 +94,14 @@ mt_status mt_files_read(const mt_files *files, const char *path, const char *roo
 mt_status mt_files_give(const mt_files *files, const char *path, bool *out, mt_err *err)
 {
     mt_status rc = MT_OK;
-    *out = find(files, path, &rc) != NULL;
+    *out = find_given_text(files, path, &rc) != NULL;
     return rc == MT_OK ? rc : mt_fail_memory(err);
 }
 
 bool mt_files_lack(const mt_files *files, const char *path)
 {
     mt_status rc = MT_OK;
-    if (find(files, path, &rc) != NULL || rc != MT_OK) {
+    if (find_given_text(files, path, &rc) != NULL || rc != MT_OK) {
         return false;
     }
     return (files != NULL && files->only) || mt_file_absent(path);

@@ -97,7 +97,7 @@ static mt_status take_away(const replacement *r, const char *name)
     return unlinkat(r->fd, name, 0) == 0 || errno == ENOENT ? MT_OK : failed(r, name);
 }
 
-static mt_status move(const replacement *r, const char *from, const char *to)
+static mt_status rename_in_folder(const replacement *r, const char *from, const char *to)
 {
     return renameat(r->fd, from, r->fd, to) == 0 ? MT_OK : failed(r, to);
 }
@@ -211,11 +211,11 @@ static mt_status exchange(const replacement *r)
         const mt_folder_file *const f = &r->files[i];
         MT_TRY(put_aside(r, f));
         if (f->bytes != NULL) {
-            MT_TRY(move(r, marked(NEW, f).s, f->name));
+            MT_TRY(rename_in_folder(r, marked(NEW, f).s, f->name));
         }
     }
     MT_TRY(flush_folder(r));
-    const mt_status rc = move(r, marked(NEW, last).s, last->name);
+    const mt_status rc = rename_in_folder(r, marked(NEW, last).s, last->name);
     bool undecided = true;
     /* a network may fail to tell that it was done */
     return rc == MT_OK || is_there(r, marked(NEW, last).s, &undecided) != MT_OK || undecided
@@ -235,7 +235,7 @@ static mt_status undo(const replacement *r)
         MT_TRY(is_there(r, old.s, &was_there));
         MT_TRY(is_there(r, none.s, &was_none));
         if (was_there) {
-            MT_TRY(move(r, old.s, f->name));
+            MT_TRY(rename_in_folder(r, old.s, f->name));
         } else if (was_none) {
             MT_TRY(take_away(r, f->name));
         }

@@ -288,7 +288,7 @@ static int lock_folder(mt_journal *j, bool makes)
 }
 
 /* Open the file at the path, under the folder's lock, to continue it. */
-static mt_journal_place go_on(mt_journal *j)
+static mt_journal_place continue_journal(mt_journal *j)
 {
     const int fd = mt_file_create(MT_FILE_HERE, j->path, true);
     if (fd < 0 && errno == ENOENT) {
@@ -376,7 +376,7 @@ mt_status mt_journal_write_to(mt_journal *j, const char *path, bool adds,
     j->path = copy.s;
     const int lock = lock_folder(j, false);
     if (lock >= 0) {
-        *place = adds ? go_on(j) : put_aside(j);
+        *place = adds ? continue_journal(j) : put_aside(j);
     } else if (j->err.code != MT_OK) {
         *place = MT_JOURNAL_FAILED;
     }
@@ -394,7 +394,7 @@ static int by_key(const void *a, const void *b)
 }
 
 /* Sort records by key, each once; a key with two different records has none. */
-static void sort(mt_journal *j)
+static void sort_records(mt_journal *j)
 {
     int kept = 0;
     if (j->n > 0) {
@@ -420,7 +420,7 @@ static void sort(mt_journal *j)
     j->sorted = true;
 }
 
-static const uint64_t *find(void *context, const char *key, size_t *n)
+static const uint64_t *find_record_words(void *context, const char *key, size_t *n)
 {
     mt_journal *const j = context;
     const record wanted = {.key = key};
@@ -496,7 +496,7 @@ static void open_file(mt_journal *j)
     j->begun = j->fd >= 0;
 }
 
-static void put(void *context, const char *key, const uint64_t *words, size_t n)
+static void write_record(void *context, const char *key, const uint64_t *words, size_t n)
 {
     static const char digits[] = "0123456789abcdef";
     mt_journal *const j = context;
@@ -541,10 +541,10 @@ static void put(void *context, const char *key, const uint64_t *words, size_t n)
 mt_checkpoint_store *mt_journal_checkpoint_store(mt_journal *j, int part, int parts)
 {
     if (!j->sorted) {
-        sort(j);
+        sort_records(j);
     }
-    j->store.find = find;
-    j->store.put = put;
+    j->store.find = find_record_words;
+    j->store.put = write_record;
     j->store.context = j;
     j->store.part = part;
     j->store.parts = parts;

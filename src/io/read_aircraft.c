@@ -122,7 +122,7 @@ static void read_rotor(mt_reader *r, mt_addr value, mt_aircraft_rotor *out)
     }
 }
 
-static void read_one(mt_reader *r, mt_addr value, mt_aircraft_list *list)
+static void read_aircraft_item(mt_reader *r, mt_addr value, mt_aircraft_list *list)
 {
     mt_addr found[AIRCRAFT_KEY_COUNT];
     if (!mt_reader_object(r, value, &AIRCRAFT_TABLE, found)) {
@@ -144,7 +144,7 @@ static void read_one(mt_reader *r, mt_addr value, mt_aircraft_list *list)
     list->n += a->name.s != NULL ? 1 : 0;
 }
 
-static void read_root(mt_reader *r, mt_aircraft_list *list)
+static void read_aircraft_root(mt_reader *r, mt_aircraft_list *list)
 {
     mt_addr found[ROOT_KEY_COUNT];
     if (!mt_reader_format(r, "modetune-aircraft/1", "catalogue of aircraft") ||
@@ -156,14 +156,15 @@ static void read_root(mt_reader *r, mt_aircraft_list *list)
     list->items = mt_reader_room(r, &items, sizeof *list->items);
     while (mt_items_next(&items)) {
         if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
-            read_one(r, items.at, list);
+            read_aircraft_item(r, items.at, list);
         }
     }
 }
 
-static mt_status read_text(const char *path, const mt_file *file, const mt_io_options *opt,
-                           mt_arena *mem, mt_aircraft_list *out, mt_diagnostics *messages,
-                           mt_err *err)
+static mt_status read_aircraft_text(const char *path, const mt_file *file,
+                                    const mt_io_options *opt, mt_arena *mem,
+                                    mt_aircraft_list *out, mt_diagnostics *messages,
+                                    mt_err *err)
 {
     mt_json *doc = NULL;
     mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
@@ -172,7 +173,7 @@ static mt_status read_text(const char *path, const mt_file *file, const mt_io_op
     }
     mt_reader r = {.doc = doc, .diags = mt_json_diags(doc), .mem = mem};
     if (rc == MT_OK) {
-        read_root(&r, out);
+        read_aircraft_root(&r, out);
     }
     rc = mt_reader_status(&r, path, err);
     if (opt != NULL && opt->structural != NULL) {
@@ -196,7 +197,7 @@ mt_status mt_aircraft_load(const char *path, const mt_io_options *opt, mt_arena 
     mt_status rc = mt_files_read(opt == NULL ? NULL : &opt->files, path,
                                  opt == NULL ? NULL : opt->root, limit, &file, err);
     if (rc == MT_OK) {
-        rc = read_text(path, &file, opt, mem, out, messages, err);
+        rc = read_aircraft_text(path, &file, opt, mem, out, messages, err);
     }
     if (rc == MT_OK) {
         out->sha256 = mt_arena_strdup(mem, file.sha256);

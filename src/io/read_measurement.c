@@ -141,7 +141,7 @@ static bool is_universal(const char *s)
 }
 
 /* Any file; err is m's. */
-static mt_status read_text(void *context, mt_err *err)
+static mt_status read_measurement_text(void *context, mt_err *err)
 {
     mt_measuring *const m = context;
     m->err = err;
@@ -176,7 +176,7 @@ mt_status mt_measurement_load(const char *path, const mt_io_options *opt, mt_are
                           .out = out,
                           .messages = messages};
         memcpy(sha256, file.sha256, sizeof file.sha256);
-        rc = mt_locale_plain(read_text, &m, err);
+        rc = mt_locale_plain(read_measurement_text, &m, err);
         rc = rc == MT_OK ? mt_arena_check(mem, err) : rc;
         out->read = rc == MT_OK;
         if (messages != NULL && messages->lines.failed) {

@@ -238,7 +238,7 @@ static mt_status read_names(table *t)
 }
 
 /* A number in a field; a comma is a point where it does not separate. */
-static mt_status number(const table *t, int column, double *out)
+static mt_status read_field_number(const table *t, int column, double *out)
 {
     const field *const f = &t->fields[t->column[column]];
     char *const comma = t->separator == ',' ? NULL : strchr(f->text, ',');
@@ -260,9 +260,9 @@ static mt_status read_line(const table *t, mt_measured_line *out)
     double a = 0.0;
     double b = 0.0;
     *out = (mt_measured_line){.coherence = nan(""), .line = t->fields[0].line};
-    MT_TRY(number(t, FREQUENCY, &out->frequency_hz));
-    MT_TRY(number(t, t->re, &a));
-    MT_TRY(number(t, t->im, &b));
+    MT_TRY(read_field_number(t, FREQUENCY, &out->frequency_hz));
+    MT_TRY(read_field_number(t, t->re, &a));
+    MT_TRY(read_field_number(t, t->im, &b));
     const bool polar = t->re == MAGNITUDE;
     out->re = polar ? a * cos(b * RADIANS_PER_DEG) : a;
     out->im = polar ? a * sin(b * RADIANS_PER_DEG) : b;
@@ -274,7 +274,7 @@ static mt_status read_line(const table *t, mt_measured_line *out)
     if (t->column[COHERENCE] < 0) {
         return MT_OK;
     }
-    MT_TRY(number(t, COHERENCE, &out->coherence));
+    MT_TRY(read_field_number(t, COHERENCE, &out->coherence));
     const field *const f = &t->fields[t->column[COHERENCE]];
     return out->coherence >= 0.0 && out->coherence <= 1.0
                ? MT_OK
@@ -288,7 +288,7 @@ static const char *label(const table *t, int column)
     return *s == '\0' ? NULL : s;
 }
 
-static int compare(const char *a, const char *b)
+static int compare_optional_texts(const char *a, const char *b)
 {
     return strcmp(a == NULL ? "" : a, b == NULL ? "" : b);
 }
@@ -298,13 +298,14 @@ static int compare_labels(const void *context, const void *key, int i)
 {
     const mt_measured_response *const r = &((const mt_measuring *)context)->out->responses[i];
     const table *const t = key;
-    int order = compare(label(t, OUTPUT), r->output);
-    order = order != 0 ? order : compare(label(t, INPUT), r->input);
-    order = order != 0 ? order : compare(label(t, CONFIGURATION), r->configuration);
-    return order != 0 ? order : compare(label(t, UNIT), r->unit);
+    int order = compare_optional_texts(label(t, OUTPUT), r->output);
+    order = order != 0 ? order : compare_optional_texts(label(t, INPUT), r->input);
+    order =
+        order != 0 ? order : compare_optional_texts(label(t, CONFIGURATION), r->configuration);
+    return order != 0 ? order : compare_optional_texts(label(t, UNIT), r->unit);
 }
 
-static const char *keep(const table *t, int column)
+static const char *copy_label(const table *t, int column)
 {
     const char *const s = label(t, column);
     return s == NULL ? NULL : mt_arena_strdup(t->m->mem, s);
@@ -333,10 +334,10 @@ static mt_status response_of(table *t, mt_measured_response **out)
     *out = mt_sorted_add(&t->responses, m->mem, compare_labels, m, t) ? mt_measuring_response(m)
                                                                       : NULL;
     if (*out != NULL) {
-        (*out)->configuration = keep(t, CONFIGURATION);
-        (*out)->input = keep(t, INPUT);
-        (*out)->output = keep(t, OUTPUT);
-        (*out)->unit = keep(t, UNIT);
+        (*out)->configuration = copy_label(t, CONFIGURATION);
+        (*out)->input = copy_label(t, INPUT);
+        (*out)->output = copy_label(t, OUTPUT);
+        (*out)->unit = copy_label(t, UNIT);
     }
     return mt_arena_check(m->mem, m->err);
 }

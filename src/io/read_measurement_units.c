@@ -118,8 +118,8 @@ static void guess(const mt_measured_labels *l, const quantity **top, const quant
 }
 
 /* Set the factor to unknown because of this unit of the file. */
-static void refuse(mt_measuring *m, mt_measured_response *r, const char *label,
-                   const char *against)
+static void set_unknown_unit(mt_measuring *m, mt_measured_response *r, const char *label,
+                             const char *against)
 {
     r->si = nan("");
     r->foreign = mt_arena_strdup(m->mem, label);
@@ -144,7 +144,8 @@ static double factor_of_labels(mt_measuring *m, const mt_measured_labels *l,
     const bool has_top = !is_none(l->numerator_unit);
     const bool has_bottom = !is_none(l->denominator_unit);
     if (has_bottom && !is_unit_of(l->denominator_unit, bottom, NULL, &down)) {
-        refuse(m, r, l->denominator_unit, is_unit(l->denominator_unit) ? bottom->text : NULL);
+        set_unknown_unit(m, r, l->denominator_unit,
+                         is_unit(l->denominator_unit) ? bottom->text : NULL);
         return nan("");
     }
     if (!has_top || is_unit_of(l->numerator_unit, top, NULL, &up)) {
@@ -153,7 +154,7 @@ static double factor_of_labels(mt_measuring *m, const mt_measured_labels *l,
     if (is_unit_of(l->numerator_unit, top, bottom, &up)) {
         return up;
     }
-    refuse(m, r, l->numerator_unit, is_unit(l->numerator_unit) ? top->text : NULL);
+    set_unknown_unit(m, r, l->numerator_unit, is_unit(l->numerator_unit) ? top->text : NULL);
     return nan("");
 }
 
@@ -179,7 +180,7 @@ void mt_measuring_units(mt_measuring *m, const mt_measured_labels *l, mt_measure
         const bool metric = !named || (l->length == 1.0 && l->force == 1.0);
         r->si = metric ? r->si : nan("");
         if (labelled) {
-            refuse(m, r, first, NULL);
+            set_unknown_unit(m, r, first, NULL);
         }
         return;
     }
@@ -188,7 +189,7 @@ void mt_measuring_units(mt_measuring *m, const mt_measured_labels *l, mt_measure
     const double label = labelled ? factor_of_labels(m, l, top, bottom, r) : file;
     const bool known = isfinite(label);
     if (named && known && is_gravity(label / file)) {
-        refuse(m, r, first, "other units by dataset 164");
+        set_unknown_unit(m, r, first, "other units by dataset 164");
     } else if (named && r->against == NULL) {
         r->si = file;
     } else {

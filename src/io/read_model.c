@@ -213,7 +213,7 @@ static void read_bodies(mt_model_reader *mr, mt_addr list)
 
 /* Everything behind the format. Points and parameters come first: positions and expressions
  * refer to them. */
-static void read_root(mt_model_reader *mr, const mt_addr *at)
+static void read_model_root(mt_model_reader *mr, const mt_addr *at)
 {
     mt_model *const m = mr->m;
     m->name = mt_reader_text(&mr->r, at[MODEL_NAME]);
@@ -371,7 +371,7 @@ static mt_status from_json(mt_json *doc, const char *file, int n, const mt_setti
     mt_addr at[MODEL_COUNT];
     if (mt_reader_format(&mr.r, "modetune-model/1", "model file") &&
         mt_reader_object(&mr.r, MT_JSON_ROOT, &mt_model_keys, at)) {
-        read_root(&mr, at);
+        read_model_root(&mr, at);
         set(&mr, n, settings);
         (void)mt_model_resolve(m, mr.r.diags, NULL); /* the arenas remember a shortage */
         write_settings(&mr);

@@ -102,7 +102,8 @@ void mt_read_joints(mt_model_reader *mr, mt_addr list)
     }
 }
 
-static void refuse(mt_model_reader *mr, mt_addr value, const mt_spring *s, const char *member)
+static void report_missing_member(mt_model_reader *mr, mt_addr value, const mt_spring *s,
+                                  const char *member)
 {
     if (value != MT_NO_ADDR) {
         mt_diag_error(mr->r.diags, value, "%s %s %s has no \"%s\"",
@@ -159,9 +160,9 @@ static void read_coefficients(mt_model_reader *mr, const mt_addr *at, mt_spring 
     }
     const row *const own = &rows[torsion ? 1 : 0];
     const int other = torsion ? SPRING_FORCE : SPRING_TORQUE;
-    refuse(mr, at[other], s, keys[other].name);
+    report_missing_member(mr, at[other], s, keys[other].name);
     if (s->type == MT_SPRING_BAR) {
-        refuse(mr, own->addr, s, keys[SPRING_FORCE].name);
+        report_missing_member(mr, own->addr, s, keys[SPRING_FORCE].name);
     } else if (own->addr != MT_NO_ADDR &&
                mt_json_type_of(mr->r.doc, own->addr) == MT_JSON_ARRAY) {
         mt_diag_error(mr->r.diags, own->addr, "must be one number: only a bushing has several");
@@ -220,8 +221,8 @@ static void read_preload(mt_model_reader *mr, const mt_addr *at, mt_spring *s)
     const mt_num torque = mt_read_num(mr, at[SPRING_PRELOAD_N_M]);
     s->preload = torsion ? torque : force;
     if (s->type != MT_SPRING_TYPE_COUNT) {
-        refuse(mr, at[torsion ? SPRING_PRELOAD_N : SPRING_PRELOAD_N_M], s,
-               torsion ? "preload_n" : "preload_n_m");
+        report_missing_member(mr, at[torsion ? SPRING_PRELOAD_N : SPRING_PRELOAD_N_M], s,
+                              torsion ? "preload_n" : "preload_n_m");
     }
 }
 

@@ -251,7 +251,7 @@ static void read_parts(mt_reader *r, const mt_addr *found, mt_vibration *v)
     }
 }
 
-static void read_root(mt_read_profile *p)
+static void read_profile_root(mt_read_profile *p)
 {
     static const char *const axes[] = {"x", "y", "z"};
     mt_reader *const r = &p->r;
@@ -278,8 +278,8 @@ static void read_root(mt_read_profile *p)
 }
 
 /* The document's problems come before those of its catalogue. */
-static mt_status read_text(mt_read_profile *p, const mt_file *file, mt_diagnostics *messages,
-                           mt_err *err)
+static mt_status read_profile_text(mt_read_profile *p, const mt_file *file,
+                                   mt_diagnostics *messages, mt_err *err)
 {
     mt_json *doc = NULL;
     mt_diagnostics others = {.count = 0};
@@ -292,7 +292,7 @@ static mt_status read_text(mt_read_profile *p, const mt_file *file, mt_diagnosti
     p->r = (mt_reader){.doc = doc, .diags = mt_json_diags(doc), .mem = &p->v->mem};
     p->others = &others;
     if (rc == MT_OK) {
-        read_root(p);
+        read_profile_root(p);
     }
     rc = mt_reader_status(&p->r, p->v->path, err);
     /* a shortage, or a disk that fails, counts whatever else is wrong */
@@ -344,7 +344,7 @@ static mt_status load_from(const char *path, const char *within, const mt_io_opt
     if (rc != MT_OK) {
         goto done;
     }
-    rc = read_text(&p, &file, messages, err);
+    rc = read_profile_text(&p, &file, messages, err);
 done:
     mt_file_free(&file);
     free(root);

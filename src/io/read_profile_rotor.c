@@ -119,8 +119,8 @@ static bool needs_catalogue(const mt_vibration *v)
     return false;
 }
 
-static void load(mt_read_profile *p, mt_addr place, const char *name, const char *file,
-                 const mt_io_options *opt)
+static void load_profile_aircraft(mt_read_profile *p, mt_addr place, const char *name,
+                                  const char *file, const mt_io_options *opt)
 {
     mt_vibration *const v = p->v;
     mt_err why = {.code = MT_OK};
@@ -153,9 +153,10 @@ void mt_read_profile_aircraft(mt_read_profile *p, mt_addr value)
     } else if (file != NULL && !named && mt_files_lack(&p->files.files, file)) {
         mt_file_text text;
         const mt_io_options own = mt_aircraft_own(&text);
-        load(p, MT_JSON_ROOT, mt_aircraft_own_name, mt_aircraft_own_name, &own);
+        load_profile_aircraft(p, MT_JSON_ROOT, mt_aircraft_own_name, mt_aircraft_own_name,
+                              &own);
     } else if (file != NULL) {
-        load(p, named ? value : MT_JSON_ROOT, name, file, &p->files);
+        load_profile_aircraft(p, named ? value : MT_JSON_ROOT, name, file, &p->files);
     }
     free(file);
 }

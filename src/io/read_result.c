@@ -399,7 +399,7 @@ bool mt_result_check_format(mt_reader *r)
     return true;
 }
 
-static void read_root(result_reader *s)
+static void read_result_root(result_reader *s)
 {
     if (!mt_result_check_format(&s->r)) {
         return;
@@ -420,8 +420,8 @@ static void read_root(result_reader *s)
     }
 }
 
-static mt_status read_text(result_reader *s, const char *path, const mt_file *file,
-                           mt_diagnostics *messages, mt_err *err)
+static mt_status read_result_text(result_reader *s, const char *path, const mt_file *file,
+                                  mt_diagnostics *messages, mt_err *err)
 {
     mt_json *doc = NULL;
     mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
@@ -432,7 +432,7 @@ static mt_status read_text(result_reader *s, const char *path, const mt_file *fi
     s->r.diags = mt_json_diags(doc);
     s->r.mem = &s->result->mem;
     if (rc == MT_OK) {
-        read_root(s);
+        read_result_root(s);
     }
     rc = mt_reader_status(&s->r, path, err);
     if (messages != NULL) {
@@ -463,7 +463,7 @@ static mt_status load_alone(const char *path, const mt_io_options *opt, mt_resul
     }
     if (rc == MT_OK) {
         memcpy(sha256, file.sha256, MT_SHA256_TEXT);
-        rc = read_text(&s, path, &file, messages, err);
+        rc = read_result_text(&s, path, &file, messages, err);
     }
     mt_file_free(&file);
     if (rc != MT_OK) {

@@ -241,7 +241,8 @@ static void note_settings(mt_study_reader *s)
 }
 
 /* A number of the search, overridden or as in the study; `none`: neither. */
-static long ask(mt_study_reader *s, const char *name, long said, long asked, long none)
+static long override_search_number(mt_study_reader *s, const char *name, long said, long asked,
+                                   long none)
 {
     if (asked == none) {
         return said;
@@ -258,12 +259,15 @@ static void ask_search(mt_study_reader *s)
     const mt_overrides *const asked = s->files.asked;
     mt_search *const search = &s->study->search;
     if (asked != NULL) {
-        search->seed = (unsigned long)ask(s, "seed", (long)search->seed, asked->seed, -1);
-        search->starts = (int)ask(s, "starts", search->starts, asked->starts, 0);
-        search->max_evaluations =
-            ask(s, "max_evaluations", search->max_evaluations, asked->max_evaluations, 0);
-        search->max_modal_solutions = ask(s, "max_modal_solutions", search->max_modal_solutions,
-                                          asked->max_modal_solutions, 0);
+        search->seed = (unsigned long)override_search_number(s, "seed", (long)search->seed,
+                                                             asked->seed, -1);
+        search->starts =
+            (int)override_search_number(s, "starts", search->starts, asked->starts, 0);
+        search->max_evaluations = override_search_number(
+            s, "max_evaluations", search->max_evaluations, asked->max_evaluations, 0);
+        search->max_modal_solutions =
+            override_search_number(s, "max_modal_solutions", search->max_modal_solutions,
+                                   asked->max_modal_solutions, 0);
         if (MT_HAS(asked->proof_s)) {
             note_asked(s, &(mt_requested_number){.kind = "search",
                                                  .name = "proof_s",
@@ -360,7 +364,7 @@ static void note_places(mt_study_reader *s)
     }
 }
 
-static void read_root(mt_study_reader *s)
+static void read_study_root(mt_study_reader *s)
 {
     mt_study *const study = s->study;
     mt_study_object o;
@@ -398,7 +402,7 @@ static void read_root(mt_study_reader *s)
 static mt_status read_document(mt_study_reader *s, mt_err *err)
 {
     mt_study *const study = s->study;
-    read_root(s);
+    read_study_root(s);
     if (study->name == NULL) { /* "beam" of "studies/beam.json" */
         const char *const file = mt_text_base_name(study->path);
         const char *const dot = strrchr(file, '.');
@@ -425,8 +429,8 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
 
 /* Parse and read the study's text; the document's diagnostics go to messages, before those of
  * the models. */
-static mt_status read_text(mt_study_reader *s, const mt_file *file, mt_diagnostics *messages,
-                           mt_err *err)
+static mt_status read_study_text(mt_study_reader *s, const mt_file *file,
+                                 mt_diagnostics *messages, mt_err *err)
 {
     mt_json *doc = NULL;
     mt_diagnostics model_messages = {.count = 0};
@@ -487,7 +491,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
         goto done;
     }
     mt_read_study_note_input(&s, mt_text_base_name(path), file.sha256);
-    rc = read_text(&s, &file, messages, err);
+    rc = read_study_text(&s, &file, messages, err);
 done:
     mt_file_free(&file);
     free(root);

@@ -30,14 +30,14 @@ static mt_addr found(const reading *g, mt_goal_slot slot)
     return at < 0 ? MT_NO_ADDR : g->o.found[at];
 }
 
-static bool has(const reading *g, mt_goal_slot slot)
+static bool has_goal_member(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
     return at >= 0 && mt_read_study_has(g->s, &g->o, at);
 }
 
 /* Address of the member; that of the goal where it is absent. */
-static mt_addr place(const reading *g, mt_goal_slot slot)
+static mt_addr goal_member_addr(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
     return at < 0 ? g->o.addr : mt_read_study_place(g->s, &g->o, at);
@@ -52,11 +52,11 @@ static void one_of(const reading *g, mt_goal_slot first, int n)
 static void read_configurations(const reading *g)
 {
     mt_study_reader *const s = g->s;
-    const bool one = has(g, MT_SLOT_CONFIGURATION);
+    const bool one = has_goal_member(g, MT_SLOT_CONFIGURATION);
     const mt_addr list = found(g, MT_SLOT_CONFIGURATIONS);
     g->goal->configurations_addr =
-        place(g, one ? MT_SLOT_CONFIGURATION : MT_SLOT_CONFIGURATIONS);
-    if (one && has(g, MT_SLOT_CONFIGURATIONS)) {
+        goal_member_addr(g, one ? MT_SLOT_CONFIGURATION : MT_SLOT_CONFIGURATIONS);
+    if (one && has_goal_member(g, MT_SLOT_CONFIGURATIONS)) {
         one_of(g, MT_SLOT_CONFIGURATION, 2);
         return;
     }
@@ -77,11 +77,11 @@ static void read_reference(const reading *g)
 {
     const int at = mt_goal_member_at(g->kind, MT_SLOT_REFERENCE);
     g->goal->reference_name = mt_reader_ref(&g->s->r, found(g, MT_SLOT_REFERENCE));
-    g->goal->reference_name.addr = place(g, MT_SLOT_REFERENCE);
+    g->goal->reference_name.addr = goal_member_addr(g, MT_SLOT_REFERENCE);
     g->goal->reference_mode = mt_read_study_index(g->s, found(g, MT_SLOT_REFERENCE_MODE));
-    if (has(g, MT_SLOT_REFERENCE_MODE) && !has(g, MT_SLOT_REFERENCE) &&
+    if (has_goal_member(g, MT_SLOT_REFERENCE_MODE) && !has_goal_member(g, MT_SLOT_REFERENCE) &&
         !g->kind->members[at].required) {
-        mt_diag_structure(g->s->r.diags, place(g, MT_SLOT_REFERENCE_MODE),
+        mt_diag_structure(g->s->r.diags, goal_member_addr(g, MT_SLOT_REFERENCE_MODE),
                           "\"reference_mode\" goes with \"reference\"");
     }
 }
@@ -104,7 +104,7 @@ static mt_items one_or_several(const reading *g, mt_goal_slot one, mt_goal_slot 
                                const char *what)
 {
     const mt_addr list = found(g, several);
-    if (has(g, one) && has(g, several)) {
+    if (has_goal_member(g, one) && has_goal_member(g, several)) {
         one_of(g, one, 2);
     }
     return list == MT_NO_ADDR ? mt_reader_one_or_items(&g->s->r, found(g, one))
@@ -150,14 +150,14 @@ static void read_avoid(const reading *g)
     *avoid = mt_avoid_default(g->goal->addr);
     g->goal->avoid = avoid;
     for (int i = 0; i < MT_COUNT(makes); i++) {
-        any = any || has(g, makes[i]);
+        any = any || has_goal_member(g, makes[i]);
     }
     if (!any) {
         one_of(g, MT_SLOT_BANDS, MT_COUNT(makes));
     }
-    avoid->bands_addr = place(g, MT_SLOT_BANDS);
-    avoid->margin_addr = place(g, MT_SLOT_MARGIN);
-    avoid->up_to_addr = place(g, MT_SLOT_UP_TO);
+    avoid->bands_addr = goal_member_addr(g, MT_SLOT_BANDS);
+    avoid->margin_addr = goal_member_addr(g, MT_SLOT_MARGIN);
+    avoid->up_to_addr = goal_member_addr(g, MT_SLOT_UP_TO);
     read_bands(s, found(g, MT_SLOT_BANDS), &avoid->source);
     read_rotors(g, &avoid->source);
     read_machines(g, &avoid->source);

@@ -19,7 +19,7 @@ enum { MEASUREMENT_KEYS(MT_STUDY_KEY_ENUM) MEASUREMENT_KEY_COUNT };
 static const mt_key KEYS[] = {MEASUREMENT_KEYS(MT_STUDY_KEY)};
 const mt_key_table mt_study_measurement_keys = {"measurement", KEYS, MEASUREMENT_KEY_COUNT};
 
-static void load(mt_study_reader *s, mt_measurement *m)
+static void load_measurement(mt_study_reader *s, mt_measurement *m)
 {
     char sha256[MT_SHA256_TEXT];
     mt_err why = {.code = MT_OK};
@@ -67,7 +67,7 @@ static void read_measurement(mt_study_reader *s, mt_addr value, mt_measurement *
     m->reference_name = read_freedom(s, o.found[MEASUREMENT_REFERENCE]);
     m->factor = mt_read_study_member(s, &o, MEASUREMENT_FACTOR, &m->factor_addr);
     if (m->path.s != NULL) {
-        load(s, m);
+        load_measurement(s, m);
     }
 }
 

@@ -68,7 +68,7 @@ int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first
     return which;
 }
 
-static double number_of(mt_study_reader *s, mt_addr value)
+static double read_expr_number(mt_study_reader *s, mt_addr value)
 {
     if (value == MT_NO_ADDR || !mt_reader_type(&s->r, value, MT_KEY_NUMBER)) {
         return nan("");
@@ -95,7 +95,7 @@ static double number_of(mt_study_reader *s, mt_addr value)
 
 double mt_read_study_number(mt_study_reader *s, mt_addr value)
 {
-    const double number = number_of(s, value);
+    const double number = read_expr_number(s, value);
     mt_reader_check_range(&s->r, value, value, number);
     return number;
 }
@@ -120,7 +120,7 @@ bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, doubl
         return false;
     }
     for (int i = 0; i < 2; i++) {
-        out[i] = number_of(s, ends[i]);
+        out[i] = read_expr_number(s, ends[i]);
         mt_reader_check_range(&s->r, member, ends[i], out[i]);
     }
     return true;

@@ -28,7 +28,7 @@ static mt_addr found(const reading *g, mt_goal_slot slot)
 }
 
 /* Address of the member; that of the goal where it is absent. */
-static mt_addr place(const reading *g, mt_goal_slot slot)
+static mt_addr limit_member_addr(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
     return at < 0 ? g->o->addr : mt_read_study_place(g->s, g->o, at);
@@ -37,7 +37,7 @@ static mt_addr place(const reading *g, mt_goal_slot slot)
 static mt_name name_at(const reading *g, mt_goal_slot slot)
 {
     mt_name name = mt_reader_ref(&g->s->r, found(g, slot));
-    name.addr = place(g, slot);
+    name.addr = limit_member_addr(g, slot);
     return name;
 }
 
@@ -139,7 +139,7 @@ static mt_vibration *load_from(mt_study_reader *s, mt_name name, const char *pat
     return v;
 }
 
-static mt_vibration *load(mt_study_reader *s, mt_name name)
+static mt_vibration *load_limit_profile(mt_study_reader *s, mt_name name)
 {
     char *const joined = mt_file_join(s->study->path, name.s);
     mt_vibration *v = NULL;
@@ -181,7 +181,8 @@ const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name)
         return NULL;
     }
     study->profiles = all;
-    all[study->n_profiles] = (mt_study_profile){.name = name, .profile = load(s, name)};
+    all[study->n_profiles] =
+        (mt_study_profile){.name = name, .profile = load_limit_profile(s, name)};
     return all[study->n_profiles++].profile;
 }
 
@@ -190,8 +191,8 @@ static void read_frequencies(const reading *g, mt_response_limit *response_limit
 {
     const int band = mt_goal_member_at(g->kind, MT_SLOT_BAND);
     double edges[2];
-    response_limit->band_addr = place(g, MT_SLOT_BAND);
-    response_limit->at_addr = place(g, MT_SLOT_AT);
+    response_limit->band_addr = limit_member_addr(g, MT_SLOT_BAND);
+    response_limit->at_addr = limit_member_addr(g, MT_SLOT_AT);
     (void)mt_read_study_one_of(g->s, g->o, band, 2);
     if (found(g, MT_SLOT_AT) != MT_NO_ADDR) {
         response_limit->lower_hz = mt_read_study_number(g->s, found(g, MT_SLOT_AT));
@@ -211,7 +212,7 @@ static void read_profile(const reading *g, mt_response_limit *response_limit)
                                        MT_RESPONSE_LIMIT_QUANTITIES - MT_RESPONSE_LIMIT_RMS);
     response_limit->quantity =
         (mt_response_limit_quantity)(MT_RESPONSE_LIMIT_RMS + (which == MT_ABSENT ? 0 : which));
-    response_limit->quantity_addr = place(g, MT_SLOT_QUANTITY);
+    response_limit->quantity_addr = limit_member_addr(g, MT_SLOT_QUANTITY);
     response_limit->profile_name = name_at(g, MT_SLOT_PROFILE);
     response_limit->profile = mt_read_study_profile(g->s, response_limit->profile_name);
 }

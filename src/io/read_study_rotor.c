@@ -152,7 +152,8 @@ static bool needs_catalogue(const mt_study *study)
     return false;
 }
 
-static void load(mt_study_reader *s, mt_name path, const char *file, const mt_io_options *opt)
+static void load_study_aircraft(mt_study_reader *s, mt_name path, const char *file,
+                                const mt_io_options *opt)
 {
     mt_study *const study = s->study;
     mt_err why = {.code = MT_OK};
@@ -188,7 +189,7 @@ static void load_own(mt_study_reader *s)
     mt_file_text text;
     const mt_io_options opt = mt_aircraft_own(&text);
     const mt_name path = {.s = mt_aircraft_own_name, .addr = s->study->model_path.addr};
-    load(s, path, mt_aircraft_own_name, &opt);
+    load_study_aircraft(s, path, mt_aircraft_own_name, &opt);
 }
 
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
@@ -204,7 +205,7 @@ void mt_read_study_aircraft(mt_study_reader *s, mt_addr value)
     } else if (file != NULL && !named && mt_files_lack(&s->files.files, file)) {
         load_own(s);
     } else if (file != NULL) {
-        load(s, path, file, &s->files);
+        load_study_aircraft(s, path, file, &s->files);
     }
     free(file);
 }

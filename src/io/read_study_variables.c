@@ -37,7 +37,7 @@ typedef struct rule {
     double upper;
 } rule;
 
-static int expand(const rule *r, int most, double *values)
+static int list_catalogue_values(const rule *r, int most, double *values)
 {
     return r->series != MT_ABSENT
                ? mt_catalogue_series(r->series, r->lower, r->upper, most, values)
@@ -59,7 +59,7 @@ static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule
         mt_diag_error(diags, o->found[CATALOGUE_UPPER], "upper (%g) is below lower (%g)",
                       r->upper, r->lower);
     } else {
-        const int n = expand(r, 0, NULL);
+        const int n = list_catalogue_values(r, 0, NULL);
         if (n == 0 || n > MT_MAX_CATALOGUE) {
             mt_diag_error(diags, o->addr,
                           n == 0 ? "no value lies from %g to %g"
@@ -71,7 +71,7 @@ static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule
         if (v->catalogue == NULL) {
             return;
         }
-        v->n_catalogue = expand(r, n, v->catalogue);
+        v->n_catalogue = list_catalogue_values(r, n, v->catalogue);
         for (int i = 0; i < n; i++) {
             v->catalogue[i] = mt_unit_to_si(unit, v->catalogue[i]);
         }

@@ -166,7 +166,7 @@ static const char *text_member(const search *s, int side, mt_addr object, const 
     return told(s, side, member(s, side, object, name)).text;
 }
 
-static scales measure(const search *s, const mt_addr v[SIDES])
+static scales find_largest_sizes(const search *s, const mt_addr v[SIDES])
 {
     scales all = {0.0, 0.0};
     for (int side = 0; side < SIDES && s->tol.relative > 0.0; side++) {
@@ -209,7 +209,8 @@ static bool same_number(const search *s, const step *at, const scales *all, doub
     return a == b || fabs(a - b) <= fmax(s->tol.relative * scale, s->tol.absolute);
 }
 
-static bool same(const search *s, const step *at, const scales *all, const mt_addr v[SIDES])
+static bool is_same_value(const search *s, const step *at, const scales *all,
+                          const mt_addr v[SIDES])
 {
     const mt_reported a = told(s, A, v[A]);
     const mt_reported b = told(s, B, v[B]);
@@ -274,7 +275,7 @@ static const char MADE_BY[] = "made by";
 
 /* The part of a result that a value belongs to, as a text that lives as long as the path, and
  * the number of steps to it. */
-static const char *part_of(int n, const step *const *way, int *from)
+static const char *find_result_part(int n, const step *const *way, int *from)
 {
     const char *const name = way[0]->name == NULL ? "" : way[0]->name;
     *from = 1;
@@ -296,7 +297,8 @@ static const char *part_of(int n, const step *const *way, int *from)
 }
 
 /* "%" of "change_percent"; else the unit member next to it, where there is one. */
-static const char *unit_of(const search *s, const char *name, const mt_addr object[SIDES])
+static const char *difference_unit(const search *s, const char *name,
+                                   const mt_addr object[SIDES])
 {
     if (ends_with(name, "percent")) {
         return "%";
@@ -311,7 +313,8 @@ static const char *unit_of(const search *s, const char *name, const mt_addr obje
     return unit != NULL ? unit : text_member(s, B, object[B], "unit");
 }
 
-static void note(search *s, const step *at, const mt_addr object[SIDES], const mt_addr v[SIDES])
+static void add_difference(search *s, const step *at, const mt_addr object[SIDES],
+                           const mt_addr v[SIDES])
 {
     mt_result_diff *const out = s->out;
     const step *way[MT_JSON_MAX_DEPTH + 1];
@@ -325,7 +328,7 @@ static void note(search *s, const step *at, const mt_addr object[SIDES], const m
     }
     out->items = items;
     mt_difference *const d = &items[out->n++];
-    const char *const part = part_of(n, way, &from);
+    const char *const part = find_result_part(n, way, &from);
     d->part = mt_arena_strdup(&out->mem, part);
     mt_text what = {.s = NULL};
     for (int i = from; i < labels; i++) {
@@ -338,7 +341,7 @@ static void note(search *s, const step *at, const mt_addr object[SIDES], const m
     d->what = kept(&out->mem, &what);
     d->member = mt_arena_strdup(&out->mem, at->name == NULL ? "" : at->name);
     d->derived = d->derived || is_among(at->name, DERIVED, MT_COUNT(DERIVED));
-    const char *const unit = unit_of(s, at->name, object);
+    const char *const unit = difference_unit(s, at->name, object);
     d->unit = unit == NULL || unit[0] == '\0' ? NULL : unit;
     d->provenance = strcmp(part, MADE_BY) == 0;
     out->of_answer += d->provenance ? 0 : 1;
@@ -428,7 +431,7 @@ static entry *entries_of(search *s, int side, mt_addr value, const char *list, i
 }
 
 /* Both sides merged; what the second has alone comes last. */
-static int merge(const entry *const e[SIDES], const int n[SIDES], pair *out)
+static int merge_entries(const entry *const e[SIDES], const int n[SIDES], pair *out)
 {
     int a = 0;
     int b = 0;
@@ -471,22 +474,22 @@ static const char *label_of(search *s, const char *list, const pair *p)
     return kept(&s->scratch, &t);
 }
 
-static void compare(search *s, const step *at, const mt_addr v[SIDES]);
+static void compare_members(search *s, const step *at, const mt_addr v[SIDES]);
 
 static void compare_one(search *s, const step *next, const mt_addr v[SIDES],
                         const mt_addr inner[SIDES], const scales *all)
 {
     const mt_json_type type = type_of(s, A, inner[A]);
     const bool holds = type == MT_JSON_OBJECT || type == MT_JSON_ARRAY;
-    if (!same(s, next, all, inner)) {
-        note(s, next, v, inner);
+    if (!is_same_value(s, next, all, inner)) {
+        add_difference(s, next, v, inner);
     } else if (holds) {
-        compare(s, next, inner);
+        compare_members(s, next, inner);
     }
 }
 
 /* v: two objects, or two lists */
-static void compare(search *s, const step *at, const mt_addr v[SIDES])
+static void compare_members(search *s, const step *at, const mt_addr v[SIDES])
 {
     const mt_arena_mark mark = mt_arena_get_mark(&s->scratch);
     const bool is_list = type_of(s, A, v[A]) == MT_JSON_ARRAY;
@@ -496,8 +499,8 @@ static void compare(search *s, const step *at, const mt_addr v[SIDES])
                                    entries_of(s, B, v[B], list, &n[B])};
     pair *const pairs = mt_arena_alloc(&s->scratch, (size_t)n[A] + (size_t)n[B], sizeof *pairs);
     const bool short_of_memory = e[A] == NULL || e[B] == NULL || pairs == NULL;
-    const int count = short_of_memory ? 0 : merge(e, n, pairs);
-    const scales all = measure(s, v);
+    const int count = short_of_memory ? 0 : merge_entries(e, n, pairs);
+    const scales all = find_largest_sizes(s, v);
     for (int i = 0; i < count; i++) {
         const pair *const p = &pairs[i];
         const int side = p->value[A] == MT_NO_ADDR ? B : A;
@@ -518,8 +521,8 @@ static void compare(search *s, const step *at, const mt_addr v[SIDES])
     mt_arena_rewind(&s->scratch, mark);
 }
 
-static mt_status read_one(const char *path, const char *root, search *s, int side,
-                          mt_diagnostics *messages, mt_err *err)
+static mt_status read_result_side(const char *path, const char *root, search *s, int side,
+                                  mt_diagnostics *messages, mt_err *err)
 {
     mt_file file = {.bytes = NULL};
     mt_json *doc = NULL;
@@ -552,12 +555,12 @@ mt_status mt_result_diff_find(const char *const paths[2], mt_diff_tolerance tol,
     rc = rc == MT_OK ? mt_arena_init(&out->mem, 0, err) : rc;
     if (rc == MT_OK) { /* both are told what is wrong with them */
         mt_err second = {.code = MT_OK};
-        rc = read_one(paths[A], root, &s, A, messages, err);
-        const mt_status other = read_one(paths[B], root, &s, B, messages, &second);
+        rc = read_result_side(paths[A], root, &s, A, messages, err);
+        const mt_status other = read_result_side(paths[B], root, &s, B, messages, &second);
         rc = rc == MT_OK && other != MT_OK ? mt_fail(err, other, "%s", second.text) : rc;
     }
     if (rc == MT_OK) {
-        compare(&s, NULL, roots);
+        compare_members(&s, NULL, roots);
         rc = mt_arena_check(&s.scratch, err);
     }
     rc = rc == MT_OK ? mt_arena_check(&out->mem, err) : rc;

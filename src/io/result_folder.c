@@ -110,8 +110,8 @@ mt_status mt_result_read_timing(const char *path, const char *sha256, mt_text *o
 
 /* The file of that name beside the result; `sha256` is its own digest, or the result's for
  * timing.json. */
-static mt_status look_at(const char *path, const char *name, const char *sha256,
-                         part_state *state, mt_err *err)
+static mt_status check_part_file(const char *path, const char *name, const char *sha256,
+                                 part_state *state, mt_err *err)
 {
     char *const part = mt_file_join(path, name);
     mt_file file = {.bytes = NULL};
@@ -140,7 +140,8 @@ static mt_status look_at(const char *path, const char *name, const char *sha256,
     return rc;
 }
 
-static mt_status refuse(const char *path, const char *name, bool unfinished, mt_err *err)
+static mt_status refuse_foreign_part(const char *path, const char *name, bool unfinished,
+                                     mt_err *err)
 {
     if (unfinished) {
         return mt_fail(err, MT_E_INPUT,
@@ -183,18 +184,19 @@ mt_status mt_result_check_folder(const char *path, const char *sha256, const mt_
     part_state state = PART_MISSING;
     for (int i = 0; i < result->run.n_outputs; i++) {
         const char *const name = result->run.outputs[i].file;
-        MT_TRY(look_at(path, name, result->run.outputs[i].sha256, &state, err));
+        MT_TRY(check_part_file(path, name, result->run.outputs[i].sha256, &state, err));
         if (state == PART_FOREIGN || (state == PART_MISSING && unfinished)) {
-            return refuse(path, name, unfinished, err);
+            return refuse_foreign_part(path, name, unfinished, err);
         }
     }
     for (int i = 0; i < MT_RESULT_FILE_COUNT;
          i++) { /* also what a result without it stands by */
         const char *const name = mt_result_file_name((mt_result_file)i);
         if (i != MT_RESULT_FILE_RESULT && named_digest(result, name) == NULL) {
-            MT_TRY(look_at(path, name, i == MT_RESULT_FILE_TIMING ? sha256 : "", &state, err));
+            MT_TRY(check_part_file(path, name, i == MT_RESULT_FILE_TIMING ? sha256 : "", &state,
+                                   err));
             if (state == PART_FOREIGN) {
-                return refuse(path, name, unfinished, err);
+                return refuse_foreign_part(path, name, unfinished, err);
             }
         }
     }

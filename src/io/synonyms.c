@@ -120,7 +120,7 @@ static bool plain(const char *word, char *out)
 }
 
 /* True where the word is among the words, as a whole. */
-static bool has(const char *words, const char *word)
+static bool has_word(const char *words, const char *word)
 {
     const size_t n = strlen(word);
     for (const char *at = strstr(words, word); at != NULL; at = strstr(at + 1, word)) {
@@ -146,7 +146,7 @@ static bool shorten(char *word)
     return false;
 }
 
-static const char *find(const char *said, const char *const *names, int n)
+static const char *find_meant_name(const char *said, const char *const *names, int n)
 {
     for (int i = 0; i < n; i++) {
         char name[WORD_MOST];
@@ -154,7 +154,7 @@ static const char *find(const char *said, const char *const *names, int n)
             return names[i];
         }
         for (int k = 0; k < MT_COUNT(table); k++) {
-            if (strcmp(table[k].name, names[i]) == 0 && has(table[k].words, said)) {
+            if (strcmp(table[k].name, names[i]) == 0 && has_word(table[k].words, said)) {
                 return names[i];
             }
         }
@@ -168,6 +168,6 @@ const char *mt_synonym(const char *word, const char *const *names, int n)
     if (!plain(word, said)) {
         return NULL;
     }
-    const char *const found = find(said, names, n);
-    return found == NULL && shorten(said) ? find(said, names, n) : found;
+    const char *const found = find_meant_name(said, names, n);
+    return found == NULL && shorten(said) ? find_meant_name(said, names, n) : found;
 }

@@ -118,7 +118,7 @@ static bool is_delimiter(const line *l)
     return end == i + 2 && l->s[i] == '-' && l->s[i + 1] == '1';
 }
 
-static void count(walk *w, long dataset, long kind, long number)
+static void count_dataset(walk *w, long dataset, long kind, long number)
 {
     int found = MT_COUNT(contents) - 1;
     for (int i = MT_COUNT(contents) - 1; i >= 0; i--) {
@@ -152,7 +152,7 @@ static void read_dataset(walk *w, const line *number)
         }
     }
     const bool node = dataset == 15 || dataset == 781 || dataset == 2411;
-    count(w, dataset, kind, !node ? 1 : dataset == 15 ? lines : lines / 2);
+    count_dataset(w, dataset, kind, !node ? 1 : dataset == 15 ? lines : lines / 2);
 }
 
 static walk walk_of(const char *text, size_t length)

@@ -15,8 +15,8 @@
 
 static const double TWO_PI = 6.283185307179586477;
 
-static mt_status unknown(const char *what, const char *name, int n, const char *const *names,
-                         mt_err *err)
+static mt_status refuse_missing_name(const char *what, const char *name, int n,
+                                     const char *const *names, mt_err *err)
 {
     const char *const nearest = mt_text_nearest(name, names, n);
     return nearest == NULL
@@ -64,7 +64,7 @@ static mt_status find_configuration(const mt_model *model, const char *name, mt_
         return MT_E_MEMORY;
     }
     return name == NULL ? ask_which(n, names, mem, err)
-                        : unknown("configuration", name, n, names, err);
+                        : refuse_missing_name("configuration", name, n, names, err);
 }
 
 static mt_status find_inputs(mt_mechanism *m, const mt_model *model, const char *const *inputs,
@@ -85,7 +85,8 @@ static mt_status find_inputs(mt_mechanism *m, const mt_model *model, const char 
         if (m->inputs[i] == MT_ABSENT) {
             const char **const names =
                 names_of(model, n, mt_model_parameter_name, &m->scratch, err);
-            return names == NULL ? MT_E_MEMORY : unknown("parameter", inputs[i], n, names, err);
+            return names == NULL ? MT_E_MEMORY
+                                 : refuse_missing_name("parameter", inputs[i], n, names, err);
         }
         for (int k = 0; k < i; k++) {
             if (m->inputs[k] == m->inputs[i]) {
@@ -97,8 +98,9 @@ static mt_status find_inputs(mt_mechanism *m, const mt_model *model, const char 
     return MT_OK;
 }
 
-static mt_status make(mt_mechanism *m, const mt_model *model, const char *configuration,
-                      const char *const *inputs, mt_err *err)
+static mt_status init_mechanism(mt_mechanism *m, const mt_model *model,
+                                const char *configuration, const char *const *inputs,
+                                mt_err *err)
 {
     int which = 0;
     MT_TRY(mt_arena_init(&m->mem, 0, err));
@@ -127,7 +129,7 @@ mt_status mt_mechanism_new(const mt_model *model, const char *configuration, int
         return mt_fail_memory(err);
     }
     m->n_inputs = n_inputs;
-    const mt_status rc = make(m, model, configuration, inputs, err);
+    const mt_status rc = init_mechanism(m, model, configuration, inputs, err);
     if (rc != MT_OK) {
         mt_mechanism_delete(m);
         return rc;
@@ -146,7 +148,7 @@ void mt_mechanism_delete(mt_mechanism *mechanism)
     }
 }
 
-static mt_status solve(mt_mechanism *m, mt_err *err)
+static mt_status solve_modes(mt_mechanism *m, mt_err *err)
 {
     mt_analysis_options opt = mt_analysis_options_default();
     opt.check = false;
@@ -177,7 +179,7 @@ mt_status mt_mechanism_evaluate(mt_mechanism *mechanism, const double *values, m
     for (int i = 0; i < mechanism->n_inputs; i++) {
         mechanism->at[i] = values[i];
     }
-    return solve(mechanism, err);
+    return solve_modes(mechanism, err);
 }
 
 double mt_mechanism_value(const mt_mechanism *mechanism, const char *parameter)
@@ -346,7 +348,7 @@ mt_status mt_mechanism_sensitivities(mt_mechanism *mechanism, int modes, double 
     }
     if (!mechanism->has_none && !mechanism->a->with_gradient) {
         mechanism->slopes = true;
-        MT_TRY(solve(mechanism, err));
+        MT_TRY(solve_modes(mechanism, err));
     }
     mt_arena_clear(&mechanism->scratch);
     MT_TRY(positions_of(mechanism, modes, __func__, &mechanism->scratch, &at, err));
@@ -395,7 +397,7 @@ static mt_response_request request_of(const mt_ports *ports)
 }
 
 /* Both parts of n numbers; NaN of what has no value. */
-static void store(ptrdiff_t n, const double complex *h, double *re, double *im)
+static void store_complex_parts(ptrdiff_t n, const double complex *h, double *re, double *im)
 {
     for (ptrdiff_t i = 0; i < n; i++) {
         const bool has = isfinite(creal(h[i])) && isfinite(cimag(h[i]));
@@ -414,7 +416,7 @@ static mt_status respond(mt_response *r, int n, const double *hz, double *re, do
         double *const own = error == NULL ? NULL : error + (i * pairs);
         const mt_sample at = {.h = h, .error = own};
         MT_TRY(mt_transfer_at(r->chosen, TWO_PI * hz[i], &at, &r->mem, err));
-        store(pairs, h, re + (i * pairs), im + (i * pairs));
+        store_complex_parts(pairs, h, re + (i * pairs), im + (i * pairs));
         for (ptrdiff_t k = 0; k < pairs && own != NULL; k++) {
             own[k] = isfinite(own[k]) ? own[k] : nan("");
         }
@@ -457,7 +459,7 @@ mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *
     MT_TRY(check_hz(hz, __func__, err));
     if (!mechanism->a->with_gradient) {
         mechanism->slopes = true;
-        MT_TRY(solve(mechanism, err));
+        MT_TRY(solve_modes(mechanism, err));
     }
     mt_response r = {.a = NULL};
     const mt_response_request request = request_of(ports);
@@ -469,7 +471,7 @@ mt_status mt_mechanism_response_slopes(mt_mechanism *mechanism, const mt_ports *
         rc = mt_arena_check(&r.mem, err);
         rc = rc == MT_OK ? mt_response_slopes_at(&r, TWO_PI * hz, dh, err) : rc;
         if (rc == MT_OK) {
-            store(size, dh, re, im);
+            store_complex_parts(size, dh, re, im);
         }
     }
     mt_response_free(&r);

@@ -49,7 +49,8 @@ static mt_status check_options(const mt_motion_options *o, mt_err *err)
 }
 
 /* A joint with a coordinate. */
-static mt_status find_joint(const mt_system *sys, const char *name, int *out, mt_err *err)
+static mt_status find_movable_joint(const mt_system *sys, const char *name, int *out,
+                                    mt_err *err)
 {
     *out = name == NULL ? -1 : mt_system_find_joint(sys, name);
     return *out >= 0 && sys->joints[*out].coordinate >= 0
@@ -67,7 +68,7 @@ static mt_status find_joints(work *k, int n, const mt_motion_joint *from, mt_sim
         if (!isfinite(from[i].value)) {
             return mt_fail(err, MT_E_USAGE, "the value of a joint is not finite");
         }
-        MT_TRY(find_joint(k->sys, from[i].joint, &(*out)[i].joint, err));
+        MT_TRY(find_movable_joint(k->sys, from[i].joint, &(*out)[i].joint, err));
         (*out)[i].value = from[i].value;
     }
     return MT_OK;
@@ -87,7 +88,7 @@ static mt_status find_outputs(work *k, int n, const char *const *names, mt_err *
         MT_TRY(mt_port_split(names[i], false, &k->mem, &name, &port, err));
         k->gauges[i] = (mt_gauge){.channel = mt_system_find_channel(k->sys, name), .joint = -1};
         if (k->gauges[i].channel < 0) {
-            MT_TRY(find_joint(k->sys, name, &k->gauges[i].joint, err));
+            MT_TRY(find_movable_joint(k->sys, name, &k->gauges[i].joint, err));
         }
         k->motion[i] = port.motion;
     }
@@ -133,7 +134,7 @@ static mt_status add_vibration(work *k, mt_sim_input *inputs, mt_err *err)
     return MT_OK;
 }
 
-static mt_status make(work *k, int n_outputs, const char *const *outputs, mt_err *err)
+static mt_status prepare_motion(work *k, int n_outputs, const char *const *outputs, mt_err *err)
 {
     const mt_vibration *const v = k->own.vibration;
     const size_t room =
@@ -186,10 +187,11 @@ static mt_status hand_out(const work *k, int room, double *values, mt_motion_tol
     return MT_OK;
 }
 
-static mt_status move(work *k, int n_outputs, const char *const *outputs, mt_err *err)
+static mt_status simulate_outputs(work *k, int n_outputs, const char *const *outputs,
+                                  mt_err *err)
 {
     MT_TRY(check_options(&k->own, err));
-    MT_TRY(make(k, n_outputs, outputs, err));
+    MT_TRY(prepare_motion(k, n_outputs, outputs, err));
     MT_TRY(mt_simulate(k->lin, &k->start, &k->opt, &k->mem, &k->result, err));
     return k->result.stop == MT_SIM_DONE
                ? MT_OK
@@ -210,7 +212,7 @@ mt_status mt_mechanism_motion(mt_mechanism *mechanism, const mt_motion_options *
         return mt_fail(err, MT_E_USAGE, "mt_mechanism_motion: %s",
                        n_outputs < 1 ? "there is no output" : "the last evaluation has failed");
     }
-    mt_status rc = move(&k, n_outputs, outputs, err);
+    mt_status rc = simulate_outputs(&k, n_outputs, outputs, err);
     rc = rc == MT_OK ? hand_out(&k, room, values, told, err) : rc;
     mt_arena_free(&k.mem);
     return mt_err_in(err, rc, "mt_mechanism_motion");

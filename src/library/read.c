@@ -51,8 +51,8 @@ static mt_status check_asked(const mt_read_options *opt, mt_err *err)
 }
 
 /* Convert the options of the library to internal ones; empties the diagnostics. */
-static mt_status take(const char *function, const mt_read_options *opt, request *out,
-                      mt_err *err)
+static mt_status take_read_options(const char *function, const mt_read_options *opt,
+                                   request *out, mt_err *err)
 {
     mt_read_options *const own = &out->own;
     MT_TRY(mt_options_take(function, opt, sizeof *own, own, err));
@@ -79,7 +79,7 @@ mt_status mt_model_read(const char *path, const mt_read_options *opt, mt_model *
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
-    MT_TRY(take(__func__, opt, &asked, err));
+    MT_TRY(take_read_options(__func__, opt, &asked, err));
     return mt_model_load(path, &asked.io, out, asked.own.diagnostics, err);
 }
 
@@ -90,7 +90,7 @@ mt_status mt_vibration_read(const char *path, const mt_read_options *opt, mt_vib
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
-    MT_TRY(take(__func__, opt, &asked, err));
+    MT_TRY(take_read_options(__func__, opt, &asked, err));
     return mt_vibration_load(path, &asked.io, out, asked.own.diagnostics, err);
 }
 
@@ -101,7 +101,7 @@ mt_status mt_study_read(const char *path, const mt_read_options *opt, mt_study *
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
-    MT_TRY(take(__func__, opt, &asked, err));
+    MT_TRY(take_read_options(__func__, opt, &asked, err));
     return mt_study_load(path, &asked.io, out, asked.own.diagnostics, err);
 }
 
@@ -112,7 +112,7 @@ mt_status mt_result_read(const char *path, const mt_read_options *opt, mt_result
     MT_NOT_NULL(out, err);
     *out = NULL;
     MT_NOT_NULL(path, err);
-    MT_TRY(take(__func__, opt, &asked, err));
+    MT_TRY(take_read_options(__func__, opt, &asked, err));
     return mt_result_load(path, &asked.io, out, asked.own.diagnostics, err);
 }
 
@@ -127,7 +127,7 @@ mt_status mt_result_model(const mt_result *result, const char *path, const mt_re
     *out = NULL;
     MT_NOT_NULL(result, err);
     MT_NOT_NULL(path, err);
-    MT_TRY(take(__func__, opt, &asked, err));
+    MT_TRY(take_read_options(__func__, opt, &asked, err));
     mt_status rc = mt_result_find_model(path, result, asked.own.root, &file, &found, &why);
     if (rc == MT_OK) {
         rc = mt_model_load(found, &asked.io, out, asked.own.diagnostics, &why);
@@ -216,7 +216,7 @@ mt_status mt_solve_json(const char *study, const mt_read_options *read,
     MT_NOT_NULL(result, err);
     *result = NULL;
     MT_NOT_NULL(study, err);
-    MT_TRY(take(__func__, read, &asked, err));
+    MT_TRY(take_read_options(__func__, read, &asked, err));
     mt_file_text *const files = with_study(study, &asked.own, err);
     if (files == NULL) {
         return MT_E_MEMORY;

@@ -22,8 +22,8 @@ mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_query *
 }
 
 /* A parameter of the model by its name in the result, with a value that is one. */
-static mt_status take(const mt_model *model, const char *name, double value, int *inputs,
-                      double *at, int *n, mt_err *err)
+static mt_status take_named_value(const mt_model *model, const char *name, double value,
+                                  int *inputs, double *at, int *n, mt_err *err)
 {
     const int p = mt_model_find_parameter(model, name);
     if (p == MT_ABSENT) {
@@ -94,8 +94,8 @@ static mt_status admit(source *s, const mt_scene_query *ask, mt_err *err)
 
 /* Set the overrides of the study, then the variables at this design; `original`: at their
  * original values. */
-static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_scene_query *ask,
-                      mt_err *err)
+static mt_status fill_design_query(source *s, const mt_recommendation *r, bool original,
+                                   mt_scene_query *ask, mt_err *err)
 {
     const mt_model *const model = s->model;
     const mt_result_run *const run = &s->result->run;
@@ -111,8 +111,8 @@ static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_s
                             .shown = inputs};
     for (int i = 0; i < r->n_parameters; i++) {
         const mt_result_parameter *const p = &r->parameters[i];
-        MT_TRY(take(model, p->name, original ? p->original : p->recommended, inputs, at,
-                    &ask->n_inputs, err));
+        MT_TRY(take_named_value(model, p->name, original ? p->original : p->recommended, inputs,
+                                at, &ask->n_inputs, err));
     }
     ask->n_shown = ask->n_inputs;
     bool set = false;
@@ -120,7 +120,7 @@ static mt_status fill(source *s, const mt_recommendation *r, bool original, mt_s
         const mt_result_override *const v = &run->overrides[i];
         if (strcmp(v->kind, "parameter") == 0) {
             set = true;
-            MT_TRY(take(model, v->name, v->value, inputs, at, &ask->n_inputs, err));
+            MT_TRY(take_named_value(model, v->name, v->value, inputs, at, &ask->n_inputs, err));
         }
     }
     MT_TRY(admit(s, ask, err));
@@ -142,10 +142,10 @@ mt_status mt_scene_designs(const mt_model *model, const mt_result *result, int n
     *asks = mt_arena_alloc(mem, (size_t)count + 1, sizeof **asks);
     MT_TRY(mt_arena_check(mem, err));
     const mt_recommendation *const first = count > 0 ? &result->recommendations[0] : &none;
-    MT_TRY(fill(&s, first, true, *asks, err));
+    MT_TRY(fill_design_query(&s, first, true, *asks, err));
     for (*n = 1; *n <= count; (*n)++) {
         mt_scene_query *const ask = *asks + *n;
-        MT_TRY(fill(&s, &result->recommendations[*n - 1], false, ask, err));
+        MT_TRY(fill_design_query(&s, &result->recommendations[*n - 1], false, ask, err));
         ask->label = count == 1 ? "recommended"
                                 : mt_arena_printf(mem, "recommended, rank %d", ask->rank);
     }
@@ -205,8 +205,8 @@ static void find_travel(const mt_model *model, const mt_result *result, int n,
     }
 }
 
-static mt_status look(const mt_model *model, const mt_result *result, int threads,
-                      mt_arena *mem, mt_scene **out, mt_err *err)
+static mt_status make_result_scene(const mt_model *model, const mt_result *result, int threads,
+                                   mt_arena *mem, mt_scene **out, mt_err *err)
 {
     const int all = model->n_configurations;
     int *const configurations = mt_arena_int(mem, (size_t)all);
@@ -237,7 +237,7 @@ mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, int
         return MT_OK;
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
-    mt_status rc = look(model, result, threads, &mem, &scene, &why);
+    mt_status rc = make_result_scene(model, result, threads, &mem, &scene, &why);
     if (rc == MT_OK && scene->size > 0.0) {
         rc = mt_scene_write(scene, json, &why);
     }

@@ -59,7 +59,7 @@ static double lowest_score(int m, int n, const double *score)
 }
 
 /* The unfinished column that is nearest, or -1. */
-static int nearest(const matching *g)
+static int nearest_open_column(const matching *g)
 {
     int best = -1;
     for (int j = 0; j < g->columns; j++) {
@@ -83,7 +83,7 @@ static void relax(matching *g, int row, int via, double so_far)
     }
 }
 
-static void add_row(matching *g, int row)
+static void match_row(matching *g, int row)
 {
     for (int j = 0; j < g->columns; j++) {
         g->distance[j] = HUGE_VAL;
@@ -91,11 +91,11 @@ static void add_row(matching *g, int row)
         g->done[j] = false;
     }
     relax(g, row, -1, 0.0);
-    int end = nearest(g);
+    int end = nearest_open_column(g);
     while (end >= 0 && g->row_of[end] >= 0) {
         g->done[end] = true;
         relax(g, g->row_of[end], end, g->distance[end]);
-        end = nearest(g);
+        end = nearest_open_column(g);
     }
     if (end < 0) {
         return; /* cannot happen: there are at least as many columns as rows */
@@ -129,7 +129,7 @@ static mt_status assign(matching *g, int m, int *pair, mt_arena *scratch, mt_err
         g->row_of[j] = -1;
     }
     for (int i = 0; i < g->rows; i++) {
-        add_row(g, i);
+        match_row(g, i);
     }
     for (int i = 0; i < m; i++) {
         pair[i] = -1;

@@ -14,7 +14,7 @@
 #define LIBRARY "libcholmod.so." TEXT(CHOLMOD_MAIN_VERSION)
 
 /* POSIX gives a function's address as a pointer to an object, which ISO C does not convert. */
-static bool find(void *library, const char *name, void *function)
+static bool find_library_symbol(void *library, const char *name, void *function)
 {
     void *const address = dlsym(library, name);
     memcpy(function, (const void *)&address, sizeof address);
@@ -36,11 +36,11 @@ static mt_status failed(mt_err *err)
 mt_status mt_cholmod_load(mt_cholmod *cholmod, mt_err *err)
 {
     void *const library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    if (library == NULL || !find(library, "cholmod_start", &cholmod->start) ||
-        !find(library, "cholmod_analyze", &cholmod->analyze) ||
-        !find(library, "cholmod_analyze_p", &cholmod->analyze_p) ||
-        !find(library, "cholmod_free_factor", &cholmod->free_factor) ||
-        !find(library, "cholmod_finish", &cholmod->finish)) {
+    if (library == NULL || !find_library_symbol(library, "cholmod_start", &cholmod->start) ||
+        !find_library_symbol(library, "cholmod_analyze", &cholmod->analyze) ||
+        !find_library_symbol(library, "cholmod_analyze_p", &cholmod->analyze_p) ||
+        !find_library_symbol(library, "cholmod_free_factor", &cholmod->free_factor) ||
+        !find_library_symbol(library, "cholmod_finish", &cholmod->finish)) {
         return failed(err);
     }
     return MT_OK;

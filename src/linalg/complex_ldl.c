@@ -33,7 +33,7 @@ static mt_status work_of(mt_arena *scratch, double query, double minimum, double
     return MT_OK;
 }
 
-static double size_of(double complex z)
+static double complex_size(double complex z)
 {
     return fabs(creal(z)) + fabs(cimag(z));
 }
@@ -44,7 +44,7 @@ static double complex *entry(ptrdiff_t n, double complex *a, ptrdiff_t i, ptrdif
     return i >= j ? &a[i + (j * n)] : &a[j + (i * n)];
 }
 
-static void swap(double complex *x, double complex *y)
+static void swap_entries(double complex *x, double complex *y)
 {
     const double complex z = *x;
     *x = *y;
@@ -52,11 +52,11 @@ static void swap(double complex *x, double complex *y)
 }
 
 /* Column of the largest off-diagonal entry in row i, from column k on. */
-static ptrdiff_t largest(ptrdiff_t n, double complex *a, ptrdiff_t i, ptrdiff_t k)
+static ptrdiff_t largest_in_row(ptrdiff_t n, double complex *a, ptrdiff_t i, ptrdiff_t k)
 {
     ptrdiff_t best = i == k ? k + 1 : k;
     for (ptrdiff_t j = best + 1; j < n; j++) {
-        if (j != i && size_of(*entry(n, a, i, j)) > size_of(*entry(n, a, i, best))) {
+        if (j != i && complex_size(*entry(n, a, i, j)) > complex_size(*entry(n, a, i, best))) {
             best = j;
         }
     }
@@ -64,23 +64,23 @@ static ptrdiff_t largest(ptrdiff_t n, double complex *a, ptrdiff_t i, ptrdiff_t 
 }
 
 /* The row that becomes the pivot of step k, or with *pair the second row of it. */
-static ptrdiff_t choose(ptrdiff_t n, double complex *a, ptrdiff_t k, bool *pair)
+static ptrdiff_t choose_pivot_row(ptrdiff_t n, double complex *a, ptrdiff_t k, bool *pair)
 {
     *pair = false;
     if (k == n - 1) {
         return k;
     }
-    const ptrdiff_t row = largest(n, a, k, k);
-    const double own = size_of(a[k + (k * n)]);
-    const double column = size_of(*entry(n, a, row, k));
+    const ptrdiff_t row = largest_in_row(n, a, k, k);
+    const double own = complex_size(a[k + (k * n)]);
+    const double column = complex_size(*entry(n, a, row, k));
     if (own >= GROWTH * column) {
         return k;
     }
-    const double other = size_of(*entry(n, a, row, largest(n, a, row, k)));
+    const double other = complex_size(*entry(n, a, row, largest_in_row(n, a, row, k)));
     if (own >= GROWTH * column * (column / other)) {
         return k;
     }
-    *pair = size_of(a[row + (row * n)]) < GROWTH * other;
+    *pair = complex_size(a[row + (row * n)]) < GROWTH * other;
     return row;
 }
 
@@ -89,10 +89,10 @@ static ptrdiff_t choose(ptrdiff_t n, double complex *a, ptrdiff_t k, bool *pair)
 static void interchange(ptrdiff_t n, double complex *a, ptrdiff_t k, ptrdiff_t to,
                         ptrdiff_t from)
 {
-    swap(&a[to + (to * n)], &a[from + (from * n)]);
+    swap_entries(&a[to + (to * n)], &a[from + (from * n)]);
     for (ptrdiff_t i = k; i < n; i++) {
         if (i != to && i != from) {
-            swap(entry(n, a, i, to), entry(n, a, i, from));
+            swap_entries(entry(n, a, i, to), entry(n, a, i, from));
         }
     }
 }
@@ -144,7 +144,7 @@ static void factor_small(mt_complex_ldl *f)
     double complex *const a = f->a;
     for (ptrdiff_t k = 0; k < n;) {
         bool pair = false;
-        const ptrdiff_t row = choose(n, a, k, &pair);
+        const ptrdiff_t row = choose_pivot_row(n, a, k, &pair);
         const ptrdiff_t to = k + (pair ? 1 : 0);
         if (row != to) {
             interchange(n, a, k, to, row);
@@ -173,8 +173,8 @@ static void subtract(ptrdiff_t n, const double complex *a, ptrdiff_t k, ptrdiff_
 }
 
 /* Column k of L below row `from`, times b. */
-static double complex product(ptrdiff_t n, const double complex *a, ptrdiff_t k, ptrdiff_t from,
-                              const double complex *b)
+static double complex column_product(ptrdiff_t n, const double complex *a, ptrdiff_t k,
+                                     ptrdiff_t from, const double complex *b)
 {
     double complex sum = 0.0;
     for (ptrdiff_t i = from; i < n; i++) {
@@ -189,11 +189,11 @@ static void solve_small(const mt_complex_ldl *f, double complex *b)
     const double complex *const a = f->a;
     for (ptrdiff_t k = 0; k < n; k++) {
         if (f->pivot[k] > 0) {
-            swap(&b[k], &b[f->pivot[k] - 1]);
+            swap_entries(&b[k], &b[f->pivot[k] - 1]);
             subtract(n, a, k, k + 1, b[k], b);
             b[k] = mt_times(f->inverse[k], b[k]);
         } else {
-            swap(&b[k + 1], &b[-f->pivot[k] - 1]);
+            swap_entries(&b[k + 1], &b[-f->pivot[k] - 1]);
             subtract(n, a, k, k + 2, b[k], b);
             subtract(n, a, k + 1, k + 2, b[k + 1], b);
             solve_pair(n, a, k, &b[k], &b[k + 1]);
@@ -201,12 +201,12 @@ static void solve_small(const mt_complex_ldl *f, double complex *b)
         }
     }
     for (ptrdiff_t k = n - 1; k >= 0; k--) {
-        b[k] -= product(n, a, k, k + 1, b);
+        b[k] -= column_product(n, a, k, k + 1, b);
         if (f->pivot[k] > 0) {
-            swap(&b[k], &b[f->pivot[k] - 1]);
+            swap_entries(&b[k], &b[f->pivot[k] - 1]);
         } else {
-            b[k - 1] -= product(n, a, k - 1, k + 1, b);
-            swap(&b[k], &b[-f->pivot[k] - 1]);
+            b[k - 1] -= column_product(n, a, k - 1, k + 1, b);
+            swap_entries(&b[k], &b[-f->pivot[k] - 1]);
             k--;
         }
     }
@@ -218,7 +218,7 @@ double mt_complex_norm(int n, double complex *a)
     for (ptrdiff_t i = 0; i < n; i++) {
         double sum = 0.0;
         for (ptrdiff_t j = 0; j < n; j++) {
-            sum += size_of(*entry(n, a, i, j));
+            sum += complex_size(*entry(n, a, i, j));
         }
         most = fmax(most, sum);
     }

@@ -113,7 +113,7 @@ static void turn_both_sides(int n, int ld, double *restrict b, const double *res
 }
 
 /* u of reflection i stays in column i. */
-static void reduce(reduced *t, double *h)
+static void reduce_to_tridiagonal(reduced *t, double *h)
 {
     const int n = t->n;
     h[0] = 0.0;
@@ -155,7 +155,7 @@ static void accumulate(reduced *t, const double *h)
 }
 
 /* sqrt(x^2 + y^2), also where squares underflow. */
-static double length_of(double x, double y)
+static double safe_hypot(double x, double y)
 {
     static const double LEAST = 1e-280; /* from here on squares have all of their digits */
     const double square = x * x + y * y;
@@ -167,7 +167,7 @@ static double length_of(double x, double y)
     return most * sqrt(1.0 + ratio * ratio);
 }
 
-static void rotate(int n, double c, double s, double *restrict low, double *restrict high)
+static void rotate_pair(int n, double c, double s, double *restrict low, double *restrict high)
 {
     for (int k = 0; k < n; k++) {
         const double x = low[k];
@@ -193,7 +193,7 @@ static int block_end(const reduced *t, int l)
 }
 
 /* One QL step on the rows l to m of T, and the same rotations of Q's columns. */
-static void step(reduced *t, int l, int m, bool vectors)
+static void ql_step(reduced *t, int l, int m, bool vectors)
 {
     double *const d = t->d;
     double *const e = t->e;
@@ -207,7 +207,7 @@ static void step(reduced *t, int l, int m, bool vectors)
     for (; i >= l; i--) {
         const double f = s * e[i];
         const double b = c * e[i];
-        r = length_of(f, g);
+        r = safe_hypot(f, g);
         if (i + 1 < m) {
             e[i + 1] = r;
         }
@@ -222,7 +222,8 @@ static void step(reduced *t, int l, int m, bool vectors)
         d[i + 1] = g + p;
         g = c * v - b;
         if (vectors) {
-            rotate(t->n, c, s, t->q + (ptrdiff_t)i * t->n, t->q + (ptrdiff_t)(i + 1) * t->n);
+            rotate_pair(t->n, c, s, t->q + (ptrdiff_t)i * t->n,
+                        t->q + (ptrdiff_t)(i + 1) * t->n);
         }
     }
     if (i >= l) {
@@ -244,7 +245,7 @@ static bool diagonalise(reduced *t, bool vectors)
             if (m < t->n - 1) {
                 t->e[m] = 0.0;
             }
-            step(t, l, m, vectors);
+            ql_step(t, l, m, vectors);
         }
     }
     return true;
@@ -258,7 +259,7 @@ bool mt_eig_small(int n, double *a, double *w, bool vectors)
     int rank[MOST];
     t.n = n;
     take_sorted(&t, a, place);
-    reduce(&t, h);
+    reduce_to_tridiagonal(&t, h);
     if (vectors) {
         accumulate(&t, h);
     }

@@ -34,7 +34,7 @@ static double norm_of(int n, const double *a)
     return most;
 }
 
-static void add(size_t n2, double factor, const double *x, double *y)
+static void add_scaled_matrix(size_t n2, double factor, const double *x, double *y)
 {
     for (size_t i = 0; i < n2; i++) {
         y[i] += factor * x[i];
@@ -46,7 +46,7 @@ static void sum_integral(int n, const double *b, double h, double *p[2], double 
 {
     const size_t n2 = (size_t)n * (size_t)n;
     double factor = h;
-    add(n2, factor, p[0], out);
+    add_scaled_matrix(n2, factor, p[0], out);
     for (int k = 1; k <= TERMS; k++) {
         /* P is symmetric: B^T P + P B = X + X^T, X = P B */
         mt_gemm(false, false, n, n, n, 1.0, p[0], n, b, n, 0.0, p[1], n);
@@ -56,7 +56,7 @@ static void sum_integral(int n, const double *b, double h, double *p[2], double 
             }
         }
         factor /= k + 1;
-        add(n2, factor, p[0], out);
+        add_scaled_matrix(n2, factor, p[0], out);
     }
 }
 
@@ -70,7 +70,7 @@ static void sum_exponential(int n, const double *b, double *term[2], double *out
         double *const swap = term[0];
         term[0] = term[1];
         term[1] = swap;
-        add(n2, 1.0, term[0], out);
+        add_scaled_matrix(n2, 1.0, term[0], out);
     }
 }
 

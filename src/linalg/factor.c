@@ -156,7 +156,7 @@ static bool eliminate_square(int n, double *l, ptrdiff_t ld, double *d)
 
 /* For each panel: subtract the contributions of the earlier columns of the block, factor its
  * square, then compute the rows below, B := B L^-T D^-1. */
-static bool eliminate(const making *m, int s)
+static bool eliminate_supernode(const making *m, int s)
 {
     const mt_factor_pattern *const p = m->p;
     const int ld = p->row_at[s + 1] - p->row_at[s];
@@ -188,7 +188,7 @@ static bool eliminate(const making *m, int s)
 }
 
 /* For each pivot |d_i| + sum |l_ik|^2 |d_k|: the sum of the magnitudes of its terms. */
-static void judge(const making *m)
+static void sum_pivot_terms(const making *m)
 {
     const mt_factor_pattern *const p = m->p;
     mt_factor *const f = m->f;
@@ -245,12 +245,12 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_low
             wait_for(&m, k);
             k = next;
         }
-        regular = eliminate(&m, s);
+        regular = eliminate_supernode(&m, s);
         m.used[s] = p->first[s + 1] - p->first[s];
         wait_for(&m, s);
     }
     if (regular) {
-        judge(&m);
+        sum_pivot_terms(&m);
     }
     mt_arena_rewind(mem, mark);
     return regular ? MT_OK : mt_fail(err, MT_E_DOMAIN, "a pivot is 0 or not finite");
@@ -259,8 +259,9 @@ mt_status mt_factor_make(mt_factor *f, const mt_lower *h, double c, const mt_low
 /* C := A op B + beta C with A rows x columns, count columns of the others; by itself one is
  * read faster as a vector. */
 /* NOLINTNEXTLINE(readability-function-size): the argument list is BLAS's */
-static void multiply(bool trans, int rows, int columns, double alpha, const double *a, int ld,
-                     int count, const double *b, int ldb, double beta, double *c, int ldc)
+static void multiply_columns(bool trans, int rows, int columns, double alpha, const double *a,
+                             int ld, int count, const double *b, int ldb, double beta,
+                             double *c, int ldc)
 {
     if (count == 1) {
         mt_gemv(trans, rows, columns, alpha, a, ld, b, beta, c);
@@ -308,14 +309,15 @@ static void turn_own(bool trans, int columns, const double *l, int ld, int count
         const double *const own = l + first + ((ptrdiff_t)first * ld);
         double *const at = x + first;
         if (trans) {
-            multiply(true, others, here, -1.0, own + here, ld, count, at + here, n, 1.0, at, n);
+            multiply_columns(true, others, here, -1.0, own + here, ld, count, at + here, n, 1.0,
+                             at, n);
         }
         for (int c = 0; c < count; c++) {
             turn_triangle(trans, here, own, ld, at + ((ptrdiff_t)c * n));
         }
         if (!trans) {
-            multiply(false, others, here, -1.0, own + here, ld, count, at, n, 1.0, at + here,
-                     n);
+            multiply_columns(false, others, here, -1.0, own + here, ld, count, at, n, 1.0,
+                             at + here, n);
         }
     }
 }
@@ -332,8 +334,8 @@ static void solve_ordered(const mt_factor *f, int count, double *y)
         const double *const l = f->l + p->at[s];
         double *const own = y + p->first[s];
         turn_own(false, columns, l, ld, count, own, p->n);
-        multiply(false, below, columns, 1.0, l + columns, ld, count, own, p->n, 0.0, f->work,
-                 below);
+        multiply_columns(false, below, columns, 1.0, l + columns, ld, count, own, p->n, 0.0,
+                         f->work, below);
         for (int c = 0; c < count; c++) {
             for (int i = 0; i < below; i++) {
                 y[rows[i] + ((ptrdiff_t)c * p->n)] -= f->work[i + ((ptrdiff_t)c * below)];
@@ -357,8 +359,8 @@ static void solve_ordered(const mt_factor *f, int count, double *y)
                 f->work[i + ((ptrdiff_t)c * below)] = y[rows[i] + ((ptrdiff_t)c * p->n)];
             }
         }
-        multiply(true, below, columns, -1.0, l + columns, ld, count, f->work, below, 1.0, own,
-                 p->n);
+        multiply_columns(true, below, columns, -1.0, l + columns, ld, count, f->work, below,
+                         1.0, own, p->n);
         turn_own(true, columns, l, ld, count, own, p->n);
     }
 }

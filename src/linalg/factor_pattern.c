@@ -88,8 +88,8 @@ static int meet(const mt_lower *h, const int *part, int first, int end, int *met
 
 /* Pattern of h by parts: an entry where two parts couple. Rows of a column are unsorted.
  * first[n_parts + 1]: rows of the parts. */
-static mt_status join(const mt_lower *h, const int *part, int n_parts, const int *first,
-                      mt_arena *mem, mt_lower *out, mt_err *err)
+static mt_status join_parts(const mt_lower *h, const int *part, int n_parts, const int *first,
+                            mt_arena *mem, mt_lower *out, mt_err *err)
 {
     int *const met = mt_arena_int(mem, (size_t)n_parts);
     *out = (mt_lower){.n = n_parts, .start = mt_arena_int(mem, (size_t)n_parts + 1)};
@@ -120,7 +120,7 @@ static mt_status order_parts(const mt_lower *h, const int *part, const mt_cholmo
     for (int i = 0; i < n_parts; i++) {
         first[i + 1] += first[i];
     }
-    MT_TRY(join(h, part, n_parts, first, mem, &joined, err));
+    MT_TRY(join_parts(h, part, n_parts, first, mem, &joined, err));
     cholmod_sparse a = places(n_parts, joined.start, joined.row);
     a.sorted = 0;
     c->supernodal = CHOLMOD_SIMPLICIAL;

@@ -51,14 +51,15 @@ typedef struct tally {
     double most;
 } tally;
 
-static void add(tally *t, double e)
+static void count_eigenvalue(tally *t, double e)
 {
     t->count[e < 0.0 ? 0 : (e > 0.0 ? 2 : 1)]++;
     t->least = fmin(t->least, fabs(e));
     t->most = fmax(t->most, fabs(e));
 }
 
-static mt_status factor(int n, double *c, lapack_int *ipiv, mt_arena *scratch, mt_err *err)
+static mt_status factor_symmetric(int n, double *c, lapack_int *ipiv, mt_arena *scratch,
+                                  mt_err *err)
 {
     double query = 0.0;
     lapack_int info = LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', n, c, n, ipiv, &query, -1);
@@ -79,13 +80,13 @@ static tally count_blocks(int n, const double *c, const lapack_int *ipiv)
     for (int i = 0; i < n; i++) {
         const double *const d = c + i + (ptrdiff_t)i * n;
         if (ipiv[i] > 0 || i + 1 == n) {
-            add(&t, d[0]);
+            count_eigenvalue(&t, d[0]);
             continue;
         }
         double e[2];
         eig2(d[0], d[1], d[n + 1], e);
-        add(&t, e[0]);
-        add(&t, e[1]);
+        count_eigenvalue(&t, e[0]);
+        count_eigenvalue(&t, e[1]);
         i++;
     }
     return t;
@@ -102,7 +103,7 @@ static mt_status inertia(int n, const double *a, const double *b, double shift, 
     if (!mt_lower_finite(n, c)) {
         return mt_lapack_not_finite("dsytrf", err);
     }
-    MT_TRY(factor(n, c, ipiv, scratch, err));
+    MT_TRY(factor_symmetric(n, c, ipiv, scratch, err));
     *t = count_blocks(n, c, ipiv);
     return MT_OK;
 }

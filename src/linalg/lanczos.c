@@ -50,7 +50,7 @@ static double *column(const iteration *it, int j)
 }
 
 /* M w; w itself where M is the identity. */
-static const double *weigh(const iteration *it, const double *w)
+static const double *times_metric(const iteration *it, const double *w)
 {
     if (it->mw == NULL) {
         return w;
@@ -62,7 +62,7 @@ static const double *weigh(const iteration *it, const double *w)
 static double norm(const iteration *it, const double *w)
 {
     return it->mw == NULL ? mt_norm2(it->p->n, w)
-                          : sqrt(fmax(mt_dot(it->p->n, w, weigh(it, w)), 0.0));
+                          : sqrt(fmax(mt_dot(it->p->n, w, times_metric(it, w)), 0.0));
 }
 
 /* w := w - V V^T M w for the first j columns of V, locked vectors included; adds the
@@ -71,7 +71,7 @@ static void orthogonalise(const iteration *it, int j, double *w, double *h)
 {
     const int n = it->p->n;
     double *const c = it->coefficient;
-    const double *const mw = weigh(it, w);
+    const double *const mw = times_metric(it, w);
     if (it->p->n_locked > 0) {
         mt_gemv(true, n, it->p->n_locked, 1.0, it->p->locked, n, mw, 0.0, c);
         mt_gemv(false, n, it->p->n_locked, -1.0, it->p->locked, n, c, 1.0, w);
@@ -164,7 +164,7 @@ static double next_part(const iteration *it, int c, int k)
 }
 
 /* Residual of the k-th largest: |B^T q|. */
-static double residual(const iteration *it, int k)
+static double residual_of_value(const iteration *it, int k)
 {
     double size = 0.0;
     for (int c = 0; c < it->width; c++) {
@@ -178,7 +178,7 @@ static int count_found(const iteration *it)
     const double unit = DBL_EPSILON * it->theta[it->j - 1];
     int k = 0;
     while (k < it->j && k < it->p->wanted &&
-           residual(it, k) <=
+           residual_of_value(it, k) <=
                fmax(LEAST * unit, fmin(FOUND * it->theta[it->j - 1 - k], ROUNDING * unit))) {
         k++;
     }
@@ -186,7 +186,7 @@ static int count_found(const iteration *it)
 }
 
 /* V := V Q for the `keep` largest. */
-static void rotate(iteration *it, int keep)
+static void rotate_basis(iteration *it, int keep)
 {
     const ptrdiff_t j = it->j;
     mt_turn_columns(it->p->n, it->j, keep, it->q + ((j - 1) * j), -j, it->v, it->row);
@@ -202,7 +202,7 @@ static void restart(iteration *it, int keep)
             rows[k + ((ptrdiff_t)c * it->most)] = next_part(it, c, k);
         }
     }
-    rotate(it, keep);
+    rotate_basis(it, keep);
     memmove(column(it, keep), column(it, it->j),
             (size_t)it->p->n * (size_t)it->width * sizeof *it->v);
     memset(it->h, 0, most * most * sizeof *it->h);
@@ -255,7 +255,7 @@ static mt_status extend(iteration *it, mt_err *err)
     return kept == 0 && all < room ? fresh(it, all, 1, err) : MT_OK;
 }
 
-static mt_status init(iteration *it, mt_err *err)
+static mt_status init_iteration(iteration *it, mt_err *err)
 {
     const mt_lanczos *const p = it->p;
     const int room = p->n - p->n_locked;
@@ -288,7 +288,7 @@ static bool is_time(const iteration *it, int before)
            (before < it->p->wanted || over / STEP > (before - it->p->wanted) / STEP);
 }
 
-static mt_status iterate(iteration *it, int *found, mt_err *err)
+static mt_status iterate_lanczos(iteration *it, int *found, mt_err *err)
 {
     const mt_lanczos *const p = it->p;
     int restarts = 0;
@@ -320,7 +320,7 @@ static mt_status iterate(iteration *it, int *found, mt_err *err)
     while (*found > 0 && !(it->theta[it->j - *found] > none)) {
         --*found;
     }
-    rotate(it, *found);
+    rotate_basis(it, *found);
     return MT_OK;
 }
 
@@ -330,8 +330,8 @@ mt_status mt_lanczos_largest(const mt_lanczos *problem, mt_arena *mem, double *x
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     iteration it = {.p = problem, .mem = mem};
     *found = 0;
-    MT_TRY(init(&it, err));
-    MT_TRY(iterate(&it, found, err));
+    MT_TRY(init_iteration(&it, err));
+    MT_TRY(iterate_lanczos(&it, found, err));
     memcpy(x, it.v, (size_t)problem->n * (size_t)*found * sizeof *x);
     mt_arena_rewind(mem, mark);
     return MT_OK;

@@ -88,7 +88,7 @@ static double larger(double most, double x)
 }
 
 /* Largest |entry| of a column but the diagonal; *where: among whole rows, -1: none. */
-static double largest(const front *w, int c, int *where)
+static double largest_off_diagonal(const front *w, int c, int *where)
 {
     const double *const f = column(w, c);
     double most = 0.0;
@@ -107,7 +107,7 @@ static double largest(const front *w, int c, int *where)
 
 /* Columns of L of the pivot (c, r) into w->l, r < 0: of order one; returns their largest entry,
  * infinite where the pivot is singular. */
-static double multiply(const front *w, int c, int r, double d[3])
+static double compute_pivot_columns(const front *w, int c, int r, double d[3])
 {
     const double *const x = column(w, c);
     double most = 0.0;
@@ -138,7 +138,8 @@ static double multiply(const front *w, int c, int r, double d[3])
     return most;
 }
 
-static void keep(const front *w, int c, int r, const double d[3], mt_arena *mem, mt_ldl *out)
+static void append_pivot(const front *w, int c, int r, const double d[3], mt_arena *mem,
+                         mt_ldl *out)
 {
     mt_ldl_pivot *const p = &out->pivot[out->n_pivots++];
     const int columns = r < 0 ? 1 : 2;
@@ -166,12 +167,13 @@ static void keep(const front *w, int c, int r, const double d[3], mt_arena *mem,
     }
 }
 
-/* Subtract the pivot's contribution, computed by multiply, from the front. */
-static void eliminate(front *w, int c, int r, const double d[3], mt_arena *mem, mt_ldl *out)
+/* Subtract the pivot's contribution, computed by compute_pivot_columns, from the front. */
+static void eliminate_pivot(front *w, int c, int r, const double d[3], mt_arena *mem,
+                            mt_ldl *out)
 {
     const double *const x = column(w, c);
     const double *const y = r < 0 ? NULL : column(w, r);
-    keep(w, c, r, d, mem, out);
+    append_pivot(w, c, r, d, mem, out);
     for (int j = 0; j < w->n; j++) {
         double *const f = column(w, j);
         if (j == c || j == r) {
@@ -196,17 +198,18 @@ static bool try_pivot(front *w, int c, double tol, mt_arena *mem, mt_ldl *out)
 {
     double d[3] = {0.0, 0.0, 0.0};
     int r = -1;
-    const double most = largest(w, c, &r);
+    const double most = largest_off_diagonal(w, c, &r);
     const double own = fabs(column(w, c)[c]);
     if (own > tol && own >= THRESHOLD * most) {
-        (void)multiply(w, c, -1, d);
-        eliminate(w, c, -1, d, mem, out);
+        (void)compute_pivot_columns(w, c, -1, d);
+        eliminate_pivot(w, c, -1, d, mem, out);
         return true;
     }
-    if (r < 0 || !(fabs(column(w, c)[r]) > tol) || !(multiply(w, c, r, d) * THRESHOLD <= 1.0)) {
+    if (r < 0 || !(fabs(column(w, c)[r]) > tol) ||
+        !(compute_pivot_columns(w, c, r, d) * THRESHOLD <= 1.0)) {
         return false;
     }
-    eliminate(w, c, r, d, mem, out);
+    eliminate_pivot(w, c, r, d, mem, out);
     return true;
 }
 
@@ -220,7 +223,7 @@ static void try_all(front *w, double tol, mt_arena *mem, mt_ldl *out)
 }
 
 /* Eliminate the last front, by its largest entries. */
-static void finish(front *w, double tol, mt_arena *mem, mt_ldl *out)
+static void eliminate_last_front(front *w, double tol, mt_arena *mem, mt_ldl *out)
 {
     for (;;) {
         double d[3] = {0.0, 0.0, 0.0};
@@ -246,8 +249,8 @@ static void finish(front *w, double tol, mt_arena *mem, mt_ldl *out)
         const bool one = diagonal >= ALPHA * off;
         const int c = one ? at[2] : at[0];
         const int r = one ? -1 : at[1];
-        (void)multiply(w, c, r, d);
-        eliminate(w, c, r, d, mem, out);
+        (void)compute_pivot_columns(w, c, r, d);
+        eliminate_pivot(w, c, r, d, mem, out);
     }
 }
 
@@ -289,7 +292,7 @@ mt_status mt_ldl_factor(const mt_envelope *p, const double *value, double tol, i
         }
         MT_TRY(mt_arena_check(mem, err));
     }
-    finish(&w, tol, mem, out);
+    eliminate_last_front(&w, tol, mem, out);
     MT_TRY(mt_arena_check(mem, err));
     out->whole = true;
     out->n_rest = w.n;

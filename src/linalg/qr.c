@@ -6,14 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-static int least(int m, int n)
+static int lesser_of(int m, int n)
 {
     return m < n ? m : n;
 }
 
 static void decide_rank(double tol, mt_qr *f)
 {
-    const int r = least(f->m, f->n);
+    const int r = lesser_of(f->m, f->n);
     const double first = r > 0 ? fabs(f->qr[0]) : 0.0;
     f->rank = 0;
     f->kept = 1.0;
@@ -29,13 +29,13 @@ static void decide_rank(double tol, mt_qr *f)
     }
 }
 
-static mt_status factor(mt_qr *f, mt_arena *scratch, mt_err *err)
+static mt_status factor_pivoted(mt_qr *f, mt_arena *scratch, mt_err *err)
 {
     lapack_int *const jpvt = mt_arena_alloc(scratch, (size_t)f->n, sizeof *jpvt);
     MT_TRY(mt_arena_check(scratch, err));
     double query = 0.0;
     lapack_int info = 0;
-    if (least(f->m, f->n) > MT_LAPACK_UNBLOCKED) {
+    if (lesser_of(f->m, f->n) > MT_LAPACK_UNBLOCKED) {
         info = LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, f->m, f->n, f->qr, f->m, jpvt, f->tau,
                                    &query, -1);
     }
@@ -59,7 +59,7 @@ mt_status mt_qr_factor(int m, int n, const double *a, int lda, double tol, mt_ar
     *out = (mt_qr){.m = m, .n = n};
     out->perm = mt_arena_int(mem, (size_t)n);
     out->qr = mt_arena_f64(mem, (size_t)m, (size_t)n);
-    out->tau = mt_arena_f64(mem, (size_t)least(m, n), 1);
+    out->tau = mt_arena_f64(mem, (size_t)lesser_of(m, n), 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int j = 0; j < n; j++) {
         out->perm[j] = j;
@@ -73,7 +73,7 @@ mt_status mt_qr_factor(int m, int n, const double *a, int lda, double tol, mt_ar
     }
     if (m > 0 && n > 0) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
-        const mt_status rc = factor(out, mem, err);
+        const mt_status rc = factor_pivoted(out, mem, err);
         mt_arena_rewind(mem, mark);
         if (rc != MT_OK) {
             return rc;
@@ -92,7 +92,7 @@ enum { FEW_COLUMNS = 8 };
  * the diagonal of column i). */
 static void reflect(const mt_qr *f, bool trans, double *x)
 {
-    const int k = least(f->m, f->n);
+    const int k = lesser_of(f->m, f->n);
     for (int step = 0; step < k; step++) {
         const int i = trans ? step : k - 1 - step;
         const double *const v = f->qr + ((ptrdiff_t)i * f->m);
@@ -111,7 +111,7 @@ static void reflect(const mt_qr *f, bool trans, double *x)
 static mt_status apply_q(const mt_qr *f, char trans, int nrhs, double *x, mt_arena *scratch,
                          mt_err *err)
 {
-    const int k = least(f->m, f->n);
+    const int k = lesser_of(f->m, f->n);
     double query = 0.0;
     lapack_int info = LAPACKE_dormqr_work(LAPACK_COL_MAJOR, 'L', trans, f->m, nrhs, k, f->qr,
                                           f->m, f->tau, x, f->m, &query, -1);

@@ -257,8 +257,8 @@ static mt_status constrain(const mt_data *d, mt_absolute *o, const groups *g, mt
 }
 
 /* The unit of each state, and the total mass, from the motion along x. */
-static mt_status measure(mt_absolute *o, const groups *g, mt_arena *mem, mt_arena *scratch,
-                         mt_err *err)
+static mt_status set_state_units(mt_absolute *o, const groups *g, mt_arena *mem,
+                                 mt_arena *scratch, mt_err *err)
 {
     const mt_system *const sys = o->sys;
     double *const along = mt_arena_f64(scratch, (size_t)o->n, 1);
@@ -329,8 +329,8 @@ mt_status mt_absolute_shift(const mt_absolute *o, const double *inputs, int axis
     return MT_OK;
 }
 
-static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_arena *scratch,
-                      bool *is, char *why, mt_err *err)
+static mt_status make_absolute(mt_absolute *o, const double *inputs, mt_arena *mem,
+                               mt_arena *scratch, bool *is, char *why, mt_err *err)
 {
     const mt_system *const sys = o->sys;
     mt_data data;
@@ -359,7 +359,7 @@ static mt_status make(mt_absolute *o, const double *inputs, mt_arena *mem, mt_ar
                           err));
         MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
         MT_TRY(squares_of(&data, o, &g, MT_TERM_MASS, &list[MT_TERM_MASS], mem, &o->m, err));
-        MT_TRY(measure(o, &g, mem, scratch, err));
+        MT_TRY(set_state_units(o, &g, mem, scratch, err));
     }
     return mt_interrupt_check(sys->run->interrupt, err);
 }
@@ -373,7 +373,7 @@ mt_status mt_absolute_new(const mt_system *sys, const double *inputs, const mt_s
     *is = false;
     why[0] = '\0';
     mt_status rc = mt_arena_init(&scratch, 0, err);
-    rc = rc == MT_OK ? make(out, inputs, mem, &scratch, is, why, err) : rc;
+    rc = rc == MT_OK ? make_absolute(out, inputs, mem, &scratch, is, why, err) : rc;
     mt_arena_free(&scratch);
     return rc;
 }

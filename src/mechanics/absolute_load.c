@@ -197,7 +197,7 @@ static void add_entries(work *w, double open, const patch *p)
 }
 
 /* Largest entry of the forces on a side, in units. */
-static double largest(const work *w, const patch *p, int side)
+static double largest_force(const work *w, const patch *p, int side)
 {
     double most = 0.0;
     for (int k = 6 * side; k < 6 + (6 * side); k++) {
@@ -209,7 +209,8 @@ static double largest(const work *w, const patch *p, int side)
 }
 
 /* A force that is known to within `noise`. */
-static void add(work *w, const int body[2], double c, double noise, const mt_jet *jet, patch *p)
+static void add_uncertain_force(work *w, const int body[2], double c, double noise,
+                                const mt_jet *jet, patch *p)
 {
     const double size = fmax(fabs(c), noise);
     make_patch(w, body, c, jet, p);
@@ -222,7 +223,7 @@ static void add(work *w, const int body[2], double c, double noise, const mt_jet
     for (int k = 0; k < L && w->list == NULL; k++) {
         if (p->place[k] >= 0) {
             w->g[p->place[k]] += p->g[k];
-            w->push[p->place[k]] += largest(w, p, k / 6);
+            w->push[p->place[k]] += largest_force(w, p, k / 6);
         }
     }
 }
@@ -235,12 +236,12 @@ static bool add_force(void *context, const int body[2], double c, double noise,
     if (mt_absolute_together(w->o, body, 2)) {
         return true;
     }
-    add(w, body, c, noise, jet, &p);
+    add_uncertain_force(w, body, c, noise, jet, &p);
     if (noise > 0.0 && w->list == NULL) {
         make_patch(w, body, noise, jet, &p);
         for (int k = 0; k < L; k++) {
             if (p.place[k] >= 0) {
-                w->round[p.place[k]] += largest(w, &p, k / 6);
+                w->round[p.place[k]] += largest_force(w, &p, k / 6);
             }
         }
     }
@@ -264,7 +265,7 @@ static void add_constraints(work *w, const double *mu, const double *open)
             patch p;
             mt_measure_eval(&measure, mt_pose_of(w->at.pose, def->body[0]),
                             mt_pose_of(w->at.pose, def->body[1]), true, NULL, &jet);
-            add(w, def->body, factor * mu[j], fabs(factor) * open[j], &jet, &p);
+            add_uncertain_force(w, def->body, factor * mu[j], fabs(factor) * open[j], &jet, &p);
         }
         j++;
     }
@@ -325,7 +326,7 @@ static bool add_gradient(void *context, const int body[2], double c, double nois
  * forces themselves: Newton's step that was not taken leads to the balance. A second step
  * estimates the error of the first.
  */
-static mt_status balance(work *w, mt_arena *scratch, mt_err *err)
+static mt_status find_motion_to_balance(work *w, mt_arena *scratch, mt_err *err)
 {
     const mt_system *const sys = w->o->sys;
     const mt_stage *const stage = &w->o->settled->equilibrium;
@@ -358,7 +359,7 @@ static mt_status open_at(work *w, const double *inputs, mt_arena *scratch, mt_er
     w->push = mt_arena_f64(scratch, (size_t)w->o->n, 1);
     w->round = mt_arena_f64(scratch, (size_t)w->o->n, 1);
     MT_TRY(mt_absolute_stand(w->o->sys, settled, inputs, &w->data, &w->at, scratch, err));
-    return settled == NULL ? MT_OK : balance(w, scratch, err);
+    return settled == NULL ? MT_OK : find_motion_to_balance(w, scratch, err);
 }
 
 /* Add the forces of loads and springs. */

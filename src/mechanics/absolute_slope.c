@@ -45,8 +45,8 @@ typedef struct work {
 
 /* phi[nq] := the motion of the bodies' groups; without `whole` only the part of the given
  * arms. */
-static void expand(const mt_absolute *o, const double *x, const double *arm, bool whole,
-                   double *phi)
+static void expand_mode(const mt_absolute *o, const double *x, const double *arm, bool whole,
+                        double *phi)
 {
     const mt_system *const sys = o->sys;
     memset(phi, 0, (size_t)sys->nq * sizeof *phi);
@@ -75,7 +75,7 @@ static void expand(const mt_absolute *o, const double *x, const double *arm, boo
 
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi)
 {
-    expand(o, x, o->arm, true, phi);
+    expand_mode(o, x, o->arm, true, phi);
 }
 
 void mt_absolute_push(const mt_absolute *o, const double *force, double *f)
@@ -133,7 +133,7 @@ mt_status mt_absolute_sense(const mt_system *sys, const mt_state *settled, const
 }
 
 /* s and s' of each row of a term and each mode. */
-static void project(work *w, const mt_term *t, const mt_cx *rows)
+static void project_term_rows(work *w, const mt_term *t, const mt_cx *rows)
 {
     const mt_system *const sys = w->o->sys;
     for (int a = 0; a < w->modes->n; a++) {
@@ -153,7 +153,7 @@ static void project(work *w, const mt_term *t, const mt_cx *rows)
 }
 
 /* form += sign times that of (c f f^T)', or of (c (f g^T + g f^T)/2)'. */
-static void add_term(work *w, const mt_term *t, double c, double dc, double sign)
+static void add_form_derivative(work *w, const mt_term *t, double c, double dc, double sign)
 {
     for (int k = 0; k < w->modes->n_pairs; k++) {
         const double *const a = w->s + ((ptrdiff_t)2 * MOST_ROWS * w->modes->pair[k][0]);
@@ -184,19 +184,19 @@ static void add_terms(work *w, mt_term_kind kind)
             continue;
         }
         mt_term_rows(&w->data, kind, t, w->at.pose, rows);
-        project(w, t, rows);
+        project_term_rows(w, t, rows);
         if (kind == MT_TERM_STIFFNESS) {
-            add_term(w, t, c, dc, 1.0);
+            add_form_derivative(w, t, c, dc, 1.0);
         } else { /* one lambda for both of a pair */
             for (int k = 0; k < w->modes->n * 2 * MOST_ROWS; k++) {
                 w->s[k] *= sqrt(w->modes->lambda[k / (2 * MOST_ROWS)]);
             }
-            add_term(w, t, c, dc, -1.0);
+            add_form_derivative(w, t, c, dc, -1.0);
         }
     }
 }
 
-static double along(const mt_sparse_row *row, const double *phi)
+static double row_dot_motion(const mt_sparse_row *row, const double *phi)
 {
     double sum = 0.0;
     for (int k = 0; k < row->n; k++) {
@@ -216,8 +216,8 @@ static void add_constraints(work *w)
             continue;
         }
         for (int a = 0; a < m->n; a++) {
-            w->s[a] =
-                along(&w->da[i], w->phi + (nq * a)) + along(&w->a[i], w->moved + (nq * a));
+            w->s[a] = row_dot_motion(&w->da[i], w->phi + (nq * a)) +
+                      row_dot_motion(&w->a[i], w->moved + (nq * a));
         }
         for (int k = 0; k < m->n_pairs; k++) {
             const int a = m->pair[k][0];
@@ -257,7 +257,7 @@ static bool stays_closed(const work *w)
     return true;
 }
 
-static void refuse(const work *w, char *why, const char *text)
+static void refuse_parameter(const work *w, char *why, const char *text)
 {
     const mt_system *const sys = w->o->sys;
     (void)mt_snprintf(why, MT_ABSOLUTE_WHY, "by parameter \"%s\" %s",
@@ -281,12 +281,12 @@ static void turn_to(work *w, int p)
         }
     }
     for (int a = 0; a < w->modes->n; a++) {
-        expand(o, w->modes->x + ((ptrdiff_t)o->n * a), w->arm, false,
-               w->moved + ((ptrdiff_t)o->sys->nq * a));
+        expand_mode(o, w->modes->x + ((ptrdiff_t)o->n * a), w->arm, false,
+                    w->moved + ((ptrdiff_t)o->sys->nq * a));
     }
 }
 
-static mt_status init(work *w, const double *inputs, mt_arena *mem, mt_err *err)
+static mt_status init_slopes(work *w, const double *inputs, mt_arena *mem, mt_err *err)
 {
     const mt_system *const sys = w->o->sys;
     const size_t nq = (size_t)sys->nq;
@@ -332,7 +332,7 @@ mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
         return MT_OK;
     }
     memset(slope, 0, (size_t)modes->n_pairs * (size_t)sys->n_inputs * sizeof *slope);
-    MT_TRY(init(&w, inputs, scratch, err));
+    MT_TRY(init_slopes(&w, inputs, scratch, err));
     for (int p = 0; p < sys->n_inputs && why[0] == '\0'; p++) {
         MT_TRY(mt_interrupt_check(sys->run->interrupt, err));
         w.form = slope + ((ptrdiff_t)modes->n_pairs * p);
@@ -347,9 +347,10 @@ mt_status mt_absolute_slopes(const mt_absolute *o, const double *inputs,
         }
         equations(&w, true);
         if (!stays_closed(&w)) {
-            refuse(&w, why, "a joint opens that is closed in the reference position");
+            refuse_parameter(&w, why, "a joint opens that is closed in the reference position");
         } else if (modes->dependent) {
-            refuse(&w, why, "equations of joints that follow from others may cease to do so");
+            refuse_parameter(&w, why,
+                             "equations of joints that follow from others may cease to do so");
         }
         add_constraints(&w);
     }

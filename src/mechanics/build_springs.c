@@ -8,7 +8,7 @@ typedef struct ends {
     mt_node at[2][3];
 } ends;
 
-static void add_spring(mt_builder *b, const mt_spring_def *def)
+static void append_spring_def(mt_builder *b, const mt_spring_def *def)
 {
     mt_system *const sys = b->sys;
     mt_spring_def *const springs = mt_arena_grow(&sys->mem, sys->springs, sys->n_springs,
@@ -135,7 +135,7 @@ static mt_status build_torsion(mt_builder *b, const mt_spring *spring)
         spring_default(b, spring, measure, mt_build_num_or(b, spring->stiffness, b->zero));
     def.free = mt_build_num(b, spring->free_angle);
     def.preload = mt_build_num(b, spring->preload);
-    add_spring(b, &def);
+    append_spring_def(b, &def);
     return MT_OK;
 }
 
@@ -156,7 +156,7 @@ static mt_status build_axial(mt_builder *b, const mt_spring *spring)
         spring_default(b, spring, measure, mt_build_num_or(b, spring->stiffness, b->zero));
     def.free = mt_build_num(b, spring->free_length);
     def.preload = mt_build_num(b, spring->preload);
-    add_spring(b, &def);
+    append_spring_def(b, &def);
     return MT_OK;
 }
 
@@ -196,7 +196,7 @@ static mt_status build_bar(mt_builder *b, const mt_spring *spring)
     mt_spring_def def =
         spring_default(b, spring, axial_measure(b, &e), mt_program_div(p, ea, length));
     def.preload = mt_build_num(b, spring->preload);
-    add_spring(b, &def);
+    append_spring_def(b, &def);
     mt_build_rod(b, e.body, e.arm, mass, item);
     return MT_OK;
 }
@@ -224,7 +224,7 @@ static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
         if (spring->matrix == NULL && diagonal != MT_ABSENT) {
             const mt_spring_def one =
                 spring_default(b, spring, measure[k], mt_build_num(b, diagonal));
-            add_spring(b, &one);
+            append_spring_def(b, &one);
         }
     }
     for (int i = 0; i < 6 && spring->matrix != NULL; i++) {
@@ -239,7 +239,7 @@ static mt_status build_bushing(mt_builder *b, const mt_spring *spring)
             }
             mt_spring_def one = spring_default(b, spring, measure[i], k);
             one.measure[1] = measure[j];
-            add_spring(b, &one);
+            append_spring_def(b, &one);
         }
     }
     return MT_OK;

@@ -30,7 +30,7 @@ typedef struct group {
     int rank;
 } group;
 
-static const char *name_of(const mt_linear *lin, int term)
+static const char *spring_name(const mt_linear *lin, int term)
 {
     return lin->sys->springs[lin->list[MT_TERM_STIFFNESS].terms[term].source].name;
 }
@@ -39,7 +39,7 @@ int mt_couplings_end(const mt_linear *lin, int first)
 {
     const int n = lin->list[MT_TERM_STIFFNESS].n_terms;
     int end = first + 1;
-    while (end < n && name_of(lin, end) == name_of(lin, first)) {
+    while (end < n && spring_name(lin, end) == spring_name(lin, first)) {
         end++;
     }
     return end;
@@ -65,7 +65,7 @@ void mt_couplings_find(const mt_linear *lin, mt_coupling *coupling)
 }
 
 /* Place of a measure in the group; -1 where there are too many. */
-static int place(group *g, int measure, int row)
+static int measure_in_group(group *g, int measure, int row)
 {
     for (int a = 0; a < g->n; a++) {
         if (g->measure[a] == measure) {
@@ -80,14 +80,14 @@ static int place(group *g, int measure, int row)
     return g->n++;
 }
 
-static bool gather(const mt_linear *lin, int first, int end, group *g)
+static bool gather_coupled_springs(const mt_linear *lin, int first, int end, group *g)
 {
     const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
     for (int i = first; i < end; i++) {
         const mt_term *const t = &list->terms[i];
         const int *const measure = lin->sys->springs[t->source].measure;
-        const int a = place(g, measure[0], t->first);
-        const int b = t->pair ? place(g, measure[1], t->first + 1) : a;
+        const int a = measure_in_group(g, measure[0], t->first);
+        const int b = t->pair ? measure_in_group(g, measure[1], t->first + 1) : a;
         if (a < 0 || b < 0) {
             return false;
         }
@@ -149,7 +149,7 @@ static void take_pivot(group *g, int at, bool *used)
 }
 
 /* False where the remaining matrix is not positive definite. */
-static bool factor(group *g)
+static bool factor_coupling(group *g)
 {
     const double tol = PIVOT_ULPS * DBL_EPSILON;
     bool used[ORDER] = {false};
@@ -192,7 +192,7 @@ static void write(mt_linear *lin, const group *g, int first_row, int end_row)
 }
 
 /* The rows as the measures have them. */
-static void restore(mt_linear *lin, int first_row, int end_row)
+static void restore_measure_rows(mt_linear *lin, int first_row, int end_row)
 {
     const ptrdiff_t rows = lin->list[MT_TERM_STIFFNESS].n_rows;
     for (ptrdiff_t r = first_row; r < end_row; r++) {
@@ -209,8 +209,8 @@ bool mt_couplings_square(mt_linear *lin, int first, int end)
     const int first_row = terms[first].first;
     const int end_row = terms[end - 1].first + terms[end - 1].count;
     group g = {0};
-    if (!gather(lin, first, end, &g) || !scale(&g) || !factor(&g)) {
-        restore(lin, first_row, end_row);
+    if (!gather_coupled_springs(lin, first, end, &g) || !scale(&g) || !factor_coupling(&g)) {
+        restore_measure_rows(lin, first_row, end_row);
         return false;
     }
     write(lin, &g, first_row, end_row);

@@ -7,7 +7,7 @@
 
 #include "mechanics/motion.h"
 
-static mt_status evaluate(mt_linear *lin, const double *dq, mt_motion *o, mt_err *err)
+static mt_status evaluate_displaced(mt_linear *lin, const double *dq, mt_motion *o, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
     mt_placement at;
@@ -27,7 +27,7 @@ mt_status mt_displaced_eval(mt_linear *lin, const double *dq, double *m, double 
 {
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     mt_motion o;
-    MT_TRY(evaluate(lin, dq, &o, err));
+    MT_TRY(evaluate_displaced(lin, dq, &o, err));
     const size_t nq = (size_t)o.nq;
     memcpy(m, o.mass, nq * nq * sizeof *m);
     memcpy(q, o.force, nq * sizeof *q);

@@ -271,7 +271,7 @@ static double step_end(const walk *w, double step)
     return last ? w->goal : w->at->drive + copysign(step, way);
 }
 
-static void take(walk *w, const mt_pose *poses, double to)
+static void take_drive_position(walk *w, const mt_pose *poses, double to)
 {
     memcpy(w->at->pose, poses, (size_t)w->sys->n_bodies * sizeof *poses);
     mt_data_turns(w->data, w->at);
@@ -296,7 +296,7 @@ static void note_turned(walk *w, double to)
  * first step that passed is taken. */
 static void go_straight(walk *w)
 {
-    take(w, w->beyond.pose, w->beyond.to);
+    take_drive_position(w, w->beyond.pose, w->beyond.to);
 }
 
 /* After a step whose correction was this part of it. */
@@ -348,7 +348,7 @@ static mt_status advance(walk *w, double *h, mt_err *err)
         *h = good ? fmax(2.0, w->growth) * step : 0.0;
         step = good ? step : 0.5 * step;
         if (good) {
-            take(w, w->trial, to);
+            take_drive_position(w, w->trial, to);
         }
     }
     *h = fmin(*h, fmin(w->growth * DRIVE_STEP, DRIVE_STEP_MOST) * w->unit);
@@ -377,7 +377,7 @@ static int fastest_joint(const walk *w, double *ratio)
     return best;
 }
 
-static mt_status refuse(walk *w, mt_err *err)
+static mt_status refuse_drive_position(walk *w, mt_err *err)
 {
     const mt_system *const sys = w->sys;
     const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
@@ -486,7 +486,9 @@ mt_status mt_drive_solve(const mt_data *data, bool brief, mt_placement *at, int 
         MT_TRY(advance(&w, &h, err));
     }
     *iterations += w.iterations;
-    return at->drive == w.goal ? MT_OK : h > 0.0 ? refuse_steps(&w, err) : refuse(&w, err);
+    return at->drive == w.goal ? MT_OK
+           : h > 0.0           ? refuse_steps(&w, err)
+                               : refuse_drive_position(&w, err);
 }
 
 mt_status mt_drive_motion(const mt_data *data, mt_placement *at, double *rate, double *size,

@@ -93,8 +93,8 @@ typedef struct sums {
 } sums;
 
 /* c a b. */
-static void add_product(double c, const elongation *a, const elongation *b, bool moves,
-                        sums *out)
+static void add_energy_product(double c, const elongation *a, const elongation *b, bool moves,
+                               sums *out)
 {
     out->energy += c * a->s * b->s;
     out->noise += fabs(c) * ((fabs(a->s) * b->terms) + (fabs(b->s) * a->terms));
@@ -116,7 +116,8 @@ static inline void add_square(double c, const elongation *a, bool moves, sums *o
 
 /* Add a term; true where its energy exceeds the rounding of its row's terms taken without
  * signs. */
-static bool add_term(const worker *k, int kind, const mt_term *t, const double *phi, sums *out)
+static bool add_term_energy(const worker *k, int kind, const mt_term *t, const double *phi,
+                            sums *out)
 {
     const mt_linear *const lin = k->lin;
     const double c = lin->value[t->coefficient];
@@ -136,7 +137,7 @@ static bool add_term(const worker *k, int kind, const mt_term *t, const double *
         }
     }
     if (t->pair) {
-        add_product(c, &p[0], &p[1], moves, out);
+        add_energy_product(c, &p[0], &p[1], moves, out);
     }
     return moves;
 }
@@ -155,7 +156,7 @@ static void sum_terms(const worker *k, int kind, const double *phi, sums *all, b
         bool couples = false;
         for (; i < list->n_terms && item_of(lin, kind, &list->terms[i]) == item; i++) {
             couples = couples || list->terms[i].pair;
-            moves = add_term(k, kind, &list->terms[i], phi, &s) || moves;
+            moves = add_term_energy(k, kind, &list->terms[i], phi, &s) || moves;
         }
         all->energy += s.energy;
         all->noise += s.noise;
@@ -164,8 +165,8 @@ static void sum_terms(const worker *k, int kind, const double *phi, sums *all, b
     }
 }
 
-static mt_status one(const worker *k, int col, const double *y, const mt_energies *out,
-                     mt_err *err)
+static mt_status energies_of_mode(const worker *k, int col, const double *y,
+                                  const mt_energies *out, mt_err *err)
 {
     const mt_linear *const lin = k->lin;
     const int nq = lin->sys->nq;
@@ -226,7 +227,7 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     if (rc == MT_OK) {
         mt_linear_expand(lin, cols, y, k.phi);
         for (int c = 0; c < cols && rc == MT_OK; c++) {
-            rc = one(&k, c, y + ((ptrdiff_t)c * lin->n), out, err);
+            rc = energies_of_mode(&k, c, y + ((ptrdiff_t)c * lin->n), out, err);
         }
     }
     mt_arena_rewind(&lin->scratch, mark);

@@ -60,7 +60,7 @@ mt_status mt_equilibrium_rounding_new(mt_linear *lin, mt_equilibrium_rounding **
 }
 
 /* What a motion of the states is to a piece, 0 where it has none. */
-static inline void take(const mt_piece *p, const double *way, double *local)
+static inline void local_motion(const mt_piece *p, const double *way, double *local)
 {
     for (int k = 0; k < MT_LOCAL; k++) {
         local[k] = p->dof[k] >= 0 ? way[p->dof[k]] : 0.0;
@@ -68,11 +68,11 @@ static inline void take(const mt_piece *p, const double *way, double *local)
 }
 
 /* g . way. */
-static double along(const mt_piece *p, const double *way)
+static double work_of_piece(const mt_piece *p, const double *way)
 {
     double local[MT_LOCAL];
     double sum = 0.0;
-    take(p, way, local);
+    local_motion(p, way, local);
     for (int k = 0; k < MT_LOCAL; k++) {
         sum += p->g[k] * local[k];
     }
@@ -86,7 +86,7 @@ static double bend(const mt_piece *p, const double *phi, double *out)
     double way[MT_LOCAL];
     double bent[MT_LOCAL] = {0.0};
     double energy = 0.0;
-    take(p, phi, way);
+    local_motion(p, phi, way);
     for (int c = 0; c < MT_LOCAL; c++) {
         const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * c);
         if (way[c] != 0.0) {
@@ -102,7 +102,7 @@ static double bend(const mt_piece *p, const double *phi, double *out)
     return energy;
 }
 
-static void add(const mt_piece *p, double c, const double *local, double *to)
+static void add_to_states(const mt_piece *p, double c, const double *local, double *to)
 {
     for (int k = 0; k < MT_LOCAL && c != 0.0; k++) {
         if (p->dof[k] >= 0) {
@@ -124,7 +124,7 @@ static mt_status joint_forces(mt_equilibrium_rounding *r, double lambda, const d
         const mt_piece *const p = &lin->pieces[i];
         double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
         r->energy[i] = bend(p, phi, bent);
-        add(p, lin->kg != NULL ? p->force : 0.0, bent, r->pull);
+        add_to_states(p, lin->kg != NULL ? p->force : 0.0, bent, r->pull);
     }
     return solver->sparse
                ? mt_saddle_solve(&solver->saddle, r->pull, NULL, NULL, r->mu, &lin->scratch,
@@ -133,7 +133,7 @@ static mt_status joint_forces(mt_equilibrium_rounding *r, double lambda, const d
 }
 
 /* Compute pull and across; returns the coefficient of the trimmed spring's force. */
-static double load(mt_equilibrium_rounding *r, const double *phi)
+static double sum_piece_forces(mt_equilibrium_rounding *r, const double *phi)
 {
     const mt_linear *const lin = r->lin;
     double trim = 0.0;
@@ -145,15 +145,15 @@ static double load(mt_equilibrium_rounding *r, const double *phi)
         const double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
         if (p->equation >= 0) {
             r->across[p->equation] += p->factor * r->energy[i];
-            add(p, p->equation < lin->m ? -2.0 * p->factor * r->mu[p->equation] : 0.0, bent,
-                r->pull);
+            add_to_states(p, p->equation < lin->m ? -2.0 * p->factor * r->mu[p->equation] : 0.0,
+                          bent, r->pull);
             continue;
         }
-        add(p, 2.0 * p->stiffness * along(other, phi), bent, r->pull);
+        add_to_states(p, 2.0 * p->stiffness * work_of_piece(other, phi), bent, r->pull);
         if (p->trimmed) {
             trim += r->energy[i];
         } else {
-            add(other, p->stiffness * r->energy[i], other->g, r->pull);
+            add_to_states(other, p->stiffness * r->energy[i], other->g, r->pull);
         }
     }
     return trim;
@@ -166,12 +166,12 @@ mt_status mt_equilibrium_rounding_of(mt_equilibrium_rounding *r, double lambda,
     const mt_system *const sys = lin->sys;
     double sum = 0.0;
     MT_TRY(joint_forces(r, lambda, phi, err));
-    const double trim = load(r, phi);
+    const double trim = sum_piece_forces(r, phi);
     MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, r->pull, r->across, trim, r->x, r->y,
                              &lin->scratch, err));
     for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
-        const double way = fabs(r->energy[i] - along(p, r->x));
+        const double way = fabs(r->energy[i] - work_of_piece(p, r->x));
         if (p->equation < 0 && !p->trimmed) {
             sum += way *
                    ((fabs(p->stiffness) * p[p->partner].roundness) + (DBL_EPSILON * p->size));

@@ -27,7 +27,7 @@ typedef struct work {
     double *s;  /* [rank] sums of the rows of E_d */
 } work;
 
-static mt_status claim(mt_follow *f, work *w, mt_arena *mem, mt_err *err)
+static mt_status claim_followers(mt_follow *f, work *w, mt_arena *mem, mt_err *err)
 {
     const size_t rank = (size_t)w->rank;
     f->x = mt_arena_f64(mem, (size_t)w->n, rank);
@@ -139,7 +139,7 @@ mt_status mt_follow_find(mt_follow *f, mt_arena *mem, bool *holds, mt_err *err)
 {
     work w = {.rank = f->rank, .n = f->nq - f->rank};
     *holds = false;
-    MT_TRY(claim(f, &w, mem, err));
+    MT_TRY(claim_followers(f, &w, mem, err));
     const mt_status rc = invert(f, &w, mem, err);
     if (rc == MT_E_SINGULAR) {
         return MT_OK;

@@ -163,7 +163,7 @@ static void take_row(search *s)
 }
 
 /* axis . x over the rotations x (stride apart) of a candidate's body. */
-static double along(const search *s, int c, const double *x, ptrdiff_t stride)
+static double rotation_about_axis(const search *s, int c, const double *x, ptrdiff_t stride)
 {
     const int *const dof = s->lin->sys->bodies[s->list[c].body].dof;
     double sum = 0.0;
@@ -179,7 +179,7 @@ static void take_joints(search *s)
     const double arc = 1.0 / lin->sys->length_m;
     for (int i = 0; i < lin->m; i++) {
         for (int c = 0; c < s->n; c++) {
-            s->row[c] = arc * lin->e.dr[i] * along(s, c, lin->a + i, lin->m);
+            s->row[c] = arc * lin->e.dr[i] * rotation_about_axis(s, c, lin->a + i, lin->m);
         }
         take_row(s);
     }
@@ -235,7 +235,7 @@ static mt_status take_load(search *s, mt_err *err)
     for (int z = 0; z < e->n && most > 0.0; z++) {
         mt_gemv(false, (int)nq, (int)nq, 1.0, lin->kg, (int)nq, e->z + (z * nq), 0.0, kz);
         for (int c = 0; c < s->n; c++) {
-            s->row[c] = along(s, c, kz, 1) / (lin->sys->length_m * most);
+            s->row[c] = rotation_about_axis(s, c, kz, 1) / (lin->sys->length_m * most);
         }
         take_row(s);
     }
@@ -277,7 +277,8 @@ static void keep_column(double *z, ptrdiff_t nq, ptrdiff_t from, ptrdiff_t to)
  * column of Z that has part in one is as good without it. The columns with the largest parts
  * go; the others stay as they are, and with them the entries of K_r and M_r.
  */
-static mt_status leave_out(mt_linear *lin, int spins, const double *phi, mt_err *err)
+static mt_status leave_out_spin_columns(mt_linear *lin, int spins, const double *phi,
+                                        mt_err *err)
 {
     mt_elimination *const e = &lin->e;
     mt_qr qr;
@@ -339,7 +340,7 @@ static mt_status decide(search *s, mt_err *err)
             spins++;
         }
     }
-    return spins == 0 ? MT_OK : leave_out(lin, spins, phi, err);
+    return spins == 0 ? MT_OK : leave_out_spin_columns(lin, spins, phi, err);
 }
 
 mt_status mt_free_spin_remove(mt_linear *lin, mt_err *err)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Room for one more system and n more geometries. */
-static bool claim(mt_geometries *pool, int n)
+static bool grow_geometry_pool(mt_geometries *pool, int n)
 {
     mt_linear **const systems =
         realloc((void *)pool->systems, ((size_t)pool->n + 1) * sizeof(mt_linear *));
@@ -45,7 +45,7 @@ mt_status mt_geometry_open(mt_linear *lin, mt_err *err)
     const size_t n = (size_t)lin->sys->n_inputs;
     mt_geometries *const pool = calloc(1, sizeof *pool);
     mt_geometry *const g = calloc(1, sizeof *g + (n * sizeof g->at[0]));
-    if (pool == NULL || g == NULL || !claim(pool, 1) ||
+    if (pool == NULL || g == NULL || !grow_geometry_pool(pool, 1) ||
         mt_arena_init(&g->mem, 0, err) != MT_OK) {
         if (pool != NULL) {
             dissolve(pool);
@@ -171,7 +171,7 @@ mt_status mt_geometry_join(mt_linear *lin, mt_linear *with, mt_err *err)
 {
     mt_geometries *const own = lin->pool;
     assert(own->n == 1);
-    if (!claim(with->pool, own->n_all)) {
+    if (!grow_geometry_pool(with->pool, own->n_all)) {
         return mt_fail_memory(err);
     }
     for (int i = 0; i < own->n_all; i++) {

@@ -61,7 +61,7 @@ mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_ar
 }
 
 /* The wanted part of a number: its value or its derivative. */
-static double part_of(const mt_lagrangian *l, mt_cx z)
+static double value_or_derivative(const mt_lagrangian *l, mt_cx z)
 {
     return l->slope ? cx_derivative(z) : creal(z);
 }
@@ -72,7 +72,7 @@ static void add_gradient(const mt_system *sys, const int body[2], const mt_relat
 {
     double part[MT_RELATIVE];
     for (int k = 0; k < MT_RELATIVE; k++) {
-        part[k] = part_of(l, cx_mul(scale, jet->g[k]));
+        part[k] = value_or_derivative(l, cx_mul(scale, jet->g[k]));
     }
     for (int k = 0; k < MT_LOCAL; k++) {
         const int dof = mt_local_dof(sys, body, k);
@@ -153,9 +153,9 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
 
 /* Returns the spring's force. The elongation `way` of the remaining step is added separately,
  * because it would be lost to rounding in a large stretch that the preload almost cancels. */
-static mt_cx add_spring(const mt_data *d, int i, mt_cx stretch, double way,
-                        const mt_relative_jet *jet, mt_curvature curvature,
-                        mt_curvature_sum *sum, mt_lagrangian *out)
+static mt_cx add_spring_force(const mt_data *d, int i, mt_cx stretch, double way,
+                              const mt_relative_jet *jet, mt_curvature curvature,
+                              mt_curvature_sum *sum, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
@@ -259,7 +259,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
             force[1] = 0.5 * cx_mul(k, stretch[0]);
             add_coupling(sys, first->body, k, stretch, jet, curvature, &sum, out);
         } else {
-            force[0] = add_spring(d, i, stretch[0], way[0], jet, curvature, &sum, out);
+            force[0] = add_spring_force(d, i, stretch[0], way[0], jet, curvature, &sum, out);
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
             note_spring(d, i, side, at->pose, &jet[side], creal(force[side]), out);
@@ -374,9 +374,10 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
         const int *const dof = sys->bodies[i].dof;
         for (int k = 0; k < 3; k++) {
             if (dof[k] >= 0) {
-                out->g[dof[k]] += part_of(out, poses[i].x[k] - drawn[i].x[k]);
+                out->g[dof[k]] += value_or_derivative(out, poses[i].x[k] - drawn[i].x[k]);
                 if (hessian) {
-                    mt_curvature_add_entry(out, sys->nq, dof[k], dof[k], part_of(out, 1.0));
+                    mt_curvature_add_entry(out, sys->nq, dof[k], dof[k],
+                                           value_or_derivative(out, 1.0));
                 }
             }
             /* -l^2/2 tr(R0^T R) */
@@ -451,8 +452,9 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_
                 if (dof < 0) {
                     continue;
                 }
-                const double a = mt_relative_sign(k) *
-                                 part_of(out, cx_mul(factor, jet.g[mt_relative_of(k)]));
+                const double a =
+                    mt_relative_sign(k) *
+                    value_or_derivative(out, cx_mul(factor, jet.g[mt_relative_of(k)]));
                 if (out->a != NULL) {
                     out->a[i + ((ptrdiff_t)dof * m)] += a;
                 }
@@ -461,7 +463,7 @@ static void add_constraints(const mt_data *d, const mt_placement *at, int m, mt_
                 }
             }
         }
-        out->c[i] = part_of(out, value - mt_constraint_turns(d, i, creal(value)));
+        out->c[i] = value_or_derivative(out, value - mt_constraint_turns(d, i, creal(value)));
     }
 }
 

@@ -108,7 +108,7 @@ static bool graph_init(graph *g, const mt_system *sys, mt_arena *mem)
 }
 
 /* Bodies within reach of `from`, breadth first, into turn[at..]; returns where they end. */
-static int walk(graph *g, int from, int at, int number)
+static int number_connected_bodies(graph *g, int from, int at, int number)
 {
     int end = at;
     g->turn[end++] = from;
@@ -134,9 +134,9 @@ static void walk_all(graph *g)
     for (int b = 0; b < g->n; b++) {
         if (g->met[b] == 0) {
             const int at = end;
-            end = walk(g, b, at, ++number);
-            end = walk(g, g->turn[end - 1], at, ++number);
-            end = walk(g, g->turn[end - 1], at, ++number);
+            end = number_connected_bodies(g, b, at, ++number);
+            end = number_connected_bodies(g, g->turn[end - 1], at, ++number);
+            end = number_connected_bodies(g, g->turn[end - 1], at, ++number);
         }
     }
 }
@@ -209,7 +209,7 @@ static void find_envelope(const mt_system *sys, mt_layout *o)
 }
 
 /* Set the positions of rows, and the cost of a factorisation. closed[n]: zeroed. */
-static void measure(mt_layout *o, int *closed)
+static void measure_envelope(mt_layout *o, int *closed)
 {
     mt_envelope *const e = &o->envelope;
     int open = 0;
@@ -264,7 +264,7 @@ const mt_layout *mt_layout_new(const mt_system *sys, mt_arena *mem)
     }
     give_places(sys, &g, first, next, o);
     find_envelope(sys, o);
-    measure(o, closed);
+    measure_envelope(o, closed);
     mt_arena_rewind(mem, mark);
     return o;
 }

@@ -25,7 +25,7 @@ void mt_linear_delete(mt_linear *lin)
     }
 }
 
-static mt_status init(mt_linear *lin, const mt_system *sys, mt_err *err)
+static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
 {
     const size_t count = (size_t)sys->program.count;
     lin->sys = sys;
@@ -60,7 +60,7 @@ mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err)
     if (lin == NULL) {
         return mt_fail_memory(err);
     }
-    const mt_status rc = init(lin, sys, err);
+    const mt_status rc = init_linear(lin, sys, err);
     if (rc != MT_OK) {
         mt_linear_delete(lin);
         return rc;
@@ -308,7 +308,7 @@ static void keep_last(mt_linear *lin)
     }
 }
 
-static mt_status place(mt_linear *lin, mt_err *err)
+static mt_status find_position_and_rows(mt_linear *lin, mt_err *err)
 {
     MT_TRY(find_position(lin, err));
     MT_TRY(constrain(lin, err));
@@ -318,7 +318,7 @@ static mt_status place(mt_linear *lin, mt_err *err)
     return mt_interrupt_check(lin->sys->run->interrupt, err);
 }
 
-static mt_status reduce(mt_linear *lin, mt_err *err)
+static mt_status reduce_matrices(mt_linear *lin, mt_err *err)
 {
     lin->stages.valid[MT_STAGE_STIFFNESS] = false;
     lin->stages.valid[MT_STAGE_MASS] = false;
@@ -393,7 +393,7 @@ static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
         mt_stages_shared(st, MT_STAGE_GEOMETRY, inputs);
         return MT_OK;
     }
-    MT_TRY(place(lin, err));
+    MT_TRY(find_position_and_rows(lin, err));
     mt_geometry_made(lin, inputs);
     mt_stages_done(st, MT_STAGE_GEOMETRY, inputs);
     return MT_OK;
@@ -440,7 +440,7 @@ mt_status mt_linear_update(mt_linear *lin, const double *inputs, bool with_gradi
     MT_TRY(run_program(lin, inputs, with_gradient, err));
     MT_TRY(run_geometry(lin, inputs, err));
     if (mt_stages_begin(st, MT_STAGE_REDUCTION, reduces_with(lin), inputs)) {
-        MT_TRY(reduce(lin, err));
+        MT_TRY(reduce_matrices(lin, err));
         mt_stages_done(st, MT_STAGE_REDUCTION, inputs);
     }
     if (mt_stages_begin(st, MT_STAGE_STIFFNESS, st->stiffness, inputs)) {

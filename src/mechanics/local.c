@@ -64,7 +64,7 @@ typedef struct work {
     int *n_found; /* [rank] how many */
 } work;
 
-static mt_status claim(work *w, mt_arena *mem, mt_err *err)
+static mt_status claim_elimination_work(work *w, mt_arena *mem, mt_err *err)
 {
     const size_t rank = (size_t)w->rank;
     const size_t nq = (size_t)w->nq;
@@ -84,7 +84,7 @@ static mt_status claim(work *w, mt_arena *mem, mt_err *err)
 }
 
 /* mass[nq]: diagonal of M; weights in the elimination's coordinates. */
-static void weigh(work *w, const mt_elimination *e, const double *mass)
+static void weigh_columns(work *w, const mt_elimination *e, const double *mass)
 {
     double most = 0.0;
     for (int j = 0; j < w->nq; j++) {
@@ -97,7 +97,7 @@ static void weigh(work *w, const mt_elimination *e, const double *mass)
 }
 
 /* The best pivot of equation i. */
-static void look(work *w, int i)
+static void find_best_pivot(work *w, int i)
 {
     const double *const g = w->g + ((ptrdiff_t)i * w->nq);
     double most = 0.0;
@@ -127,7 +127,8 @@ static void open_columns(work *w)
     }
 }
 
-static void load(work *w, const mt_elimination *e, const double *a, double extent)
+static void load_scaled_equations(work *w, const mt_elimination *e, const double *a,
+                                  double extent)
 {
     w->entry = 0.0;
     open_columns(w);
@@ -148,7 +149,7 @@ static void load(work *w, const mt_elimination *e, const double *a, double exten
             }
         }
         w->pivot[i] = -1;
-        look(w, i);
+        find_best_pivot(w, i);
     }
     w->most = w->entry;
 }
@@ -211,7 +212,7 @@ static int next_equation(const work *w)
 
 /* Forward elimination; false where an equation has nothing left that is more than rounding, or
  * errors have grown. */
-static bool eliminate(work *w)
+static bool eliminate_forward(work *w)
 {
     const ptrdiff_t nq = w->nq;
     for (int step = 0; step < w->rank && !is_grown(w); step++) {
@@ -239,11 +240,11 @@ static bool eliminate(work *w)
             if (x != 0.0) {
                 subtract(w, n, w->list, factor, error, row, i);
             }
-            look(w, i);
+            find_best_pivot(w, i);
         }
         for (int i = 0; i < w->rank; i++) { /* a pivot in sight is taken */
             if (w->pivot[i] < 0 && w->best[i] == column) {
-                look(w, i);
+                find_best_pivot(w, i);
             }
         }
     }
@@ -282,7 +283,7 @@ static void substitute(work *w)
 }
 
 /* z := [-X; I], error: bounds. */
-static void fill(const work *w, mt_elimination *e, double *error)
+static void fill_null_basis(const work *w, mt_elimination *e, double *error)
 {
     const ptrdiff_t nq = w->nq;
     int c = 0;
@@ -306,7 +307,7 @@ static void fill(const work *w, mt_elimination *e, double *error)
     }
 }
 
-/* As fill, from X and its error bounds: an entry within its bound is set to 0. */
+/* As fill_null_basis, from X and its error bounds: an entry within its bound is set to 0. */
 static void fill_found(const mt_follow *f, mt_elimination *e, double *error)
 {
     const ptrdiff_t nq = f->nq;
@@ -339,12 +340,12 @@ static mt_status choose_and_find(work *w, const double *a, double extent, mt_are
 {
     mt_follow f = {.rank = w->rank, .nq = w->nq, .g = w->g, .e = w->e, .follows = w->follows};
     memset(w->follows, 0, (size_t)w->nq * sizeof *w->follows);
-    load(w, e, a, extent);
+    load_scaled_equations(w, e, a, extent);
     memset(w->e, 0, (size_t)w->rank * (size_t)w->nq * sizeof *w->e);
     w->carried = false;
-    *found = eliminate(w);
+    *found = eliminate_forward(w);
     if (*found) {
-        load(w, e, a, extent);
+        load_scaled_equations(w, e, a, extent);
         MT_TRY(mt_follow_find(&f, mem, found, err));
     }
     if (*found) {
@@ -371,15 +372,15 @@ mt_status mt_eliminate_local(const double *a, const double *mass, double extent,
     work w = {.rank = e->qr.rank, .nq = e->nq, .carried = true};
     bool found = false;
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    MT_TRY(claim(&w, mem, err));
-    weigh(&w, e, mass);
-    load(&w, e, a, extent);
-    if (eliminate(&w)) {
+    MT_TRY(claim_elimination_work(&w, mem, err));
+    weigh_columns(&w, e, mass);
+    load_scaled_equations(&w, e, a, extent);
+    if (eliminate_forward(&w)) {
         substitute(&w);
         found = !is_grown(&w);
     }
     if (found) {
-        fill(&w, e, error);
+        fill_null_basis(&w, e, error);
     } else if (is_grown(&w)) {
         MT_TRY(choose_and_find(&w, a, extent, mem, e, error, &found, err));
     }

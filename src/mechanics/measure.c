@@ -354,8 +354,8 @@ static bool turn(const mt_pose *pose, const mt_cx *v, mt_cx w[3])
 }
 
 /* d = x_b - x_a, s and t; true where they have no derivative. */
-static bool reach(const mt_measure_data *m, const mt_pose *a, const mt_pose *b, mt_cx d[3],
-                  mt_cx s[3], mt_cx t[3])
+static bool set_measure_vectors(const mt_measure_data *m, const mt_pose *a, const mt_pose *b,
+                                mt_cx d[3], mt_cx s[3], mt_cx t[3])
 {
     for (int i = 0; i < 3; i++) {
         d[i] = b->x[i] - a->x[i];
@@ -393,7 +393,7 @@ static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose 
     switch (m->kind) {
     case MT_MEASURE_PLANE:
         real = turn(a, m->dir[0], e);
-        real = reach(m, a, b, d, s, t) && real;
+        real = set_measure_vectors(m, a, b, d, s, t) && real;
         mt_relative_clear(out, second, MT_SPAN_ALL, real);
         add_plane(out, e, s, t, d);
         break;
@@ -404,7 +404,7 @@ static void plain_jet(const mt_measure_data *m, const mt_pose *a, const mt_pose 
         add_dot(out, 1.0, e, f);
         break;
     case MT_MEASURE_DISTANCE:
-        real = reach(m, a, b, d, s, t);
+        real = set_measure_vectors(m, a, b, d, s, t);
         mt_relative_distance(s, t, d, second, real, out);
         break;
     case MT_MEASURE_ANGLE:

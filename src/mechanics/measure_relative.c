@@ -130,8 +130,8 @@ static void add_real_row(const second_form *f, int i, const mt_relative_list *l,
     }
 }
 
-static void add_row(const second_form *f, int i, const mt_relative_list *l, int entries,
-                    mt_cx *row)
+static void add_second_form_row(const second_form *f, int i, const mt_relative_list *l,
+                                int entries, mt_cx *row)
 {
     const mt_cx *const p = f->p->h + mt_relative_row(i);
     const mt_cx *const q = f->q->h + mt_relative_row(i);
@@ -150,7 +150,7 @@ static void add_second(const second_form *f, mt_relative_jet *out)
         if (out->real) {
             add_real_row(f, l->at[n], l, n + 1, row);
         } else {
-            add_row(f, l->at[n], l, n + 1, row);
+            add_second_form_row(f, l->at[n], l, n + 1, row);
         }
     }
 }

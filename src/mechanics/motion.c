@@ -69,7 +69,7 @@ static void add_local(const mt_system *sys, const int body[2], const double own[
     }
 }
 
-static double along(const mt_cx *row, const double v[MT_LOCAL])
+static double row_times_motion(const mt_cx *row, const double v[MT_LOCAL])
 {
     double s = 0.0;
     for (int k = 0; k < MT_LOCAL; k++) {
@@ -97,8 +97,8 @@ static int products_of(const mt_term *t)
 static void add_times(double weight, const mt_cx *f, const mt_cx *g, const double v[MT_LOCAL],
                       double out[MT_LOCAL])
 {
-    const double sf = 0.5 * weight * along(f, v);
-    const double sg = 0.5 * weight * along(g, v);
+    const double sf = 0.5 * weight * row_times_motion(f, v);
+    const double sg = 0.5 * weight * row_times_motion(g, v);
     for (int k = 0; k < MT_LOCAL; k++) {
         out[k] += (creal(f[k]) * sg) + (creal(g[k]) * sf);
     }
@@ -109,8 +109,8 @@ static void add_slope_times(double weight, const mt_cx *f, const mt_cx *g,
                             const double v[MT_LOCAL], double out[MT_LOCAL])
 {
     const double half = 0.5 * weight;
-    const double sf = half * along(f, v);
-    const double sg = half * along(g, v);
+    const double sf = half * row_times_motion(f, v);
+    const double sg = half * row_times_motion(g, v);
     const double df = half * slope_along(f, v);
     const double dg = half * slope_along(g, v);
     for (int k = 0; k < MT_LOCAL; k++) {
@@ -120,8 +120,8 @@ static void add_slope_times(double weight, const mt_cx *f, const mt_cx *g,
 }
 
 /* matrix += weight (f g^T + g f^T)/2. */
-static void add_product(const mt_system *sys, const mt_term *t, double weight, const mt_cx *f,
-                        const mt_cx *g, double *matrix)
+static void add_symmetric_product(const mt_system *sys, const mt_term *t, double weight,
+                                  const mt_cx *f, const mt_cx *g, double *matrix)
 {
     int own[MT_LOCAL] = {0}; /* where one of them is not 0 */
     int dof[MT_LOCAL] = {0};
@@ -173,7 +173,7 @@ static void add_kinetic_slope(mt_motion *o, const mt_placement *at, const mt_ter
         o->probe[body] = at->pose[body];
         for (int r = 0; r < products_of(t); r++) {
             const mt_cx *const f = o->rows[1] + ((ptrdiff_t)r * MT_LOCAL);
-            out[k] += weight * along(f, v) * slope_along(f, v);
+            out[k] += weight * row_times_motion(f, v) * slope_along(f, v);
         }
     }
 }
@@ -195,7 +195,7 @@ static void add_inertia(mt_motion *o, const mt_placement *at, const mt_term *t,
     for (int r = 0; r < products_of(t); r++) {
         const mt_cx *const f = o->rows[0] + ((ptrdiff_t)r * MT_LOCAL);
         const mt_cx *const g = t->pair ? f + MT_LOCAL : f;
-        add_product(sys, t, weight, f, g, o->mass);
+        add_symmetric_product(sys, t, weight, f, g, o->mass);
         add_times(weight, f, g, v, p);
         if (moves) {
             add_slope_times(weight, f, g, v, change);
@@ -319,7 +319,7 @@ void mt_motion_stiffness(mt_motion *o, const mt_placement *at, double *k)
         mt_term_rows(&o->lin->data, MT_TERM_STIFFNESS, t, at->pose, o->rows[0]);
         for (int r = 0; r < products_of(t); r++) {
             const mt_cx *const f = o->rows[0] + ((ptrdiff_t)r * MT_LOCAL);
-            add_product(o->lin->sys, t, weight, f, t->pair ? f + MT_LOCAL : f, k);
+            add_symmetric_product(o->lin->sys, t, weight, f, t->pair ? f + MT_LOCAL : f, k);
         }
     }
 }
@@ -352,8 +352,8 @@ static double point_at(const mt_linear *lin, const mt_channel_def *c, const mt_p
 }
 
 /* out->row and drift from a row over local freedoms. */
-static void spread(const mt_system *sys, const int body[2], const mt_cx *row, const double *v,
-                   mt_gauge_motion *out)
+static void spread_row(const mt_system *sys, const int body[2], const mt_cx *row,
+                       const double *v, mt_gauge_motion *out)
 {
     memset(out->row, 0, (size_t)sys->nq * sizeof *out->row);
     out->drift = 0.0;
@@ -375,7 +375,7 @@ void mt_motion_gauge(mt_motion *o, const mt_placement *at, const double *v, mt_g
         const mt_channel_def *const c = &sys->channels[gauge.channel];
         mt_term_rows(&lin->data, MT_TERM_CHANNEL,
                      &lin->list[MT_TERM_CHANNEL].terms[gauge.channel], o->tangent, o->rows[0]);
-        spread(sys, c->body, o->rows[0], v, out);
+        spread_row(sys, c->body, o->rows[0], v, out);
         out->value = c->kind == MT_CHANNEL_POINT
                          ? point_at(lin, c, at->pose) - point_at(lin, c, lin->position.at.pose)
                          : nan("");
@@ -385,7 +385,7 @@ void mt_motion_gauge(mt_motion *o, const mt_placement *at, const double *v, mt_g
     const mt_placement moving = {.pose = o->tangent, .turn = at->turn, .drive = at->drive};
     mt_jet jet;
     mt_data_eval(&lin->data, def, &moving, false, NULL, &jet);
-    spread(sys, def->body, jet.g, v, out);
+    spread_row(sys, def->body, jet.g, v, out);
     out->value = creal(jet.value) -
                  creal(mt_data_value(&lin->data, def, &lin->position.reference, NULL));
 }

@@ -57,8 +57,8 @@ static mt_status keep_step(const mt_newton_work *w, const mt_newton_solver *solv
 }
 
 /* tau: of the trimmed spring, before the last step. */
-static mt_status keep(mt_newton_work *w, const mt_newton_solver *solver, double tau,
-                      mt_arena *mem, mt_stage *stage, mt_err *err)
+static mt_status keep_solution(mt_newton_work *w, const mt_newton_solver *solver, double tau,
+                               mt_arena *mem, mt_stage *stage, mt_err *err)
 {
     MT_TRY(keep_step(w, solver, w->tau - tau, mem, &stage->left, err));
     w->tau = tau;
@@ -166,7 +166,8 @@ static void stay_at_rest(mt_newton_work *w, const mt_newton_solver *solver)
 }
 
 /* Take the computed step and update the multipliers. */
-static void move(mt_newton_work *w, mt_placement *at, const mt_newton_solver *solver)
+static void move_by_newton_step(mt_newton_work *w, mt_placement *at,
+                                const mt_newton_solver *solver)
 {
     w->followed = solver->sparse && !w->p->sparse && w->moved <= FOLLOWS;
     mt_newton_take_step(w, at, MT_STEP_LIMIT);
@@ -174,8 +175,8 @@ static void move(mt_newton_work *w, mt_placement *at, const mt_newton_solver *so
 }
 
 /* Plain Newton from the present position; *done: converged. */
-static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
-                         bool *done, mt_err *err)
+static mt_status iterate_newton(mt_newton_work *w, mt_placement *at, mt_arena *mem,
+                                mt_stage *stage, bool *done, mt_err *err)
 {
     double previous = HUGE_VAL;
     double unbalanced = HUGE_VAL;
@@ -204,12 +205,12 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
                 continue;
             }
             previous = w->moved;
-            move(w, at, &solver);
+            move_by_newton_step(w, at, &solver);
             continue;
         }
         const bool rest = rests(w, previous);
         if (rest && balanced(w)) {
-            const mt_status rc = keep(w, &solver, tau, mem, stage, err);
+            const mt_status rc = keep_solution(w, &solver, tau, mem, stage, err);
             *done = rc == MT_OK;
             return rc;
         }
@@ -223,7 +224,7 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
         }                 /* else the force of the trimmed spring is still settling */
         previous = w->moved;
         unbalanced = w->residual;
-        move(w, at, &solver);
+        move_by_newton_step(w, at, &solver);
         if (dense == (w->h != NULL)) { /* else there is room for dense matrices from here on */
             mt_arena_rewind(mem, mark);
         }
@@ -239,7 +240,7 @@ static mt_status iterate(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_
 static mt_status attempt(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_stage *stage,
                          bool *done, mt_err *err)
 {
-    const mt_status rc = iterate(w, at, mem, stage, done, err);
+    const mt_status rc = iterate_newton(w, at, mem, stage, done, err);
     return rc == MT_E_DOMAIN || rc == MT_E_NO_CONVERGENCE ? MT_OK : rc;
 }
 
@@ -278,8 +279,8 @@ static mt_status say_open(const mt_newton_work *w, const mt_elimination *e, mt_a
 }
 
 /* at: where the search ended; closed, where the stage began closed. */
-static mt_status refuse(mt_newton_work *w, const mt_placement *at, bool closed, mt_arena *mem,
-                        const mt_stage *stage, mt_err *err)
+static mt_status refuse_not_converged(mt_newton_work *w, const mt_placement *at, bool closed,
+                                      mt_arena *mem, const mt_stage *stage, mt_err *err)
 {
     mt_elimination e;
     mt_newton_solver solver;
@@ -310,8 +311,9 @@ typedef struct ending {
 
 /* end->saddle: the stationary point last evaluated is, with the drive held, a saddle from which
  * the way from the start leads down. That direction is stored in w->step. */
-static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_placement *at,
-                       const mt_stage *stage, ending *end, mt_arena *mem, mt_err *err)
+static mt_status check_for_saddle(mt_newton_work *w, const mt_placement *start,
+                                  const mt_placement *at, const mt_stage *stage, ending *end,
+                                  mt_arena *mem, mt_err *err)
 {
     mt_elimination held;
     mt_newton_solver solver = stage->solver;
@@ -340,8 +342,8 @@ static mt_status judge(mt_newton_work *w, const mt_placement *start, const mt_pl
     return mt_newton_falls(w, e, way, &end->saddle, mem, err);
 }
 
-static mt_status note(const mt_newton_work *w, const mt_placement *at, mt_placement *out,
-                      mt_arena *mem, mt_err *err)
+static mt_status copy_placement(const mt_newton_work *w, const mt_placement *at,
+                                mt_placement *out, mt_arena *mem, mt_err *err)
 {
     MT_TRY(mt_placement_init(out, w->sys, mem, err));
     mt_placement_copy(w->sys, at, out);
@@ -349,8 +351,9 @@ static mt_status note(const mt_newton_work *w, const mt_placement *at, mt_placem
 }
 
 /* Descend from `at`, and leave every saddle on the way. */
-static mt_status settle(mt_newton_work *w, const mt_placement *start, mt_placement *at,
-                        mt_arena *mem, mt_stage *stage, ending *end, mt_err *err)
+static mt_status descend_to_minimum(mt_newton_work *w, const mt_placement *start,
+                                    mt_placement *at, mt_arena *mem, mt_stage *stage,
+                                    ending *end, mt_err *err)
 {
     bool on = true;
     mt_placement low;
@@ -359,7 +362,7 @@ static mt_status settle(mt_newton_work *w, const mt_placement *start, mt_placeme
         MT_TRY(mt_newton_descend(w, at, mem, err));
         mt_placement_copy(w->sys, at, &low);
         MT_TRY(attempt(w, at, mem, stage, &end->done, err));
-        MT_TRY(judge(w, start, at, stage, end, mem, err));
+        MT_TRY(check_for_saddle(w, start, at, stage, end, mem, err));
         on = end->saddle;
         if (on) {
             MT_TRY(mt_newton_leave_saddle(w, at, &on, mem, err));
@@ -379,7 +382,7 @@ static mt_status lock_first(const mt_newton_work *w, mt_placement *at, mt_arena 
     mt_stage other = {.iterations = stage->iterations};
     mt_placement before;
     locked.trim = false;
-    MT_TRY(note(w, at, &before, mem, err));
+    MT_TRY(copy_placement(w, at, &before, mem, err));
     const mt_status rc = mt_newton_solve(&locked, at, mem, &other, NULL);
     stage->iterations = other.iterations;
     if (rc != MT_OK) {
@@ -390,10 +393,11 @@ static mt_status lock_first(const mt_newton_work *w, mt_placement *at, mt_arena 
 
 /* After plain Newton of a physical stage ended as `end`: accept its result, or descend from the
  * start. */
-static mt_status go_on(mt_newton_work *w, const mt_placement *start, mt_placement *at,
-                       mt_arena *mem, mt_stage *stage, ending *end, mt_err *err)
+static mt_status accept_or_descend(mt_newton_work *w, const mt_placement *start,
+                                   mt_placement *at, mt_arena *mem, mt_stage *stage,
+                                   ending *end, mt_err *err)
 {
-    MT_TRY(judge(w, start, at, stage, end, mem, err));
+    MT_TRY(check_for_saddle(w, start, at, stage, end, mem, err));
     const double rounding = ENERGY_ROUNDING * (fabs(end->before) + fabs(end->energy));
     const bool uphill = !w->p->trim && end->done && end->energy > end->before + rounding;
     const bool settled = !end->saddle && !uphill;
@@ -404,7 +408,7 @@ static mt_status go_on(mt_newton_work *w, const mt_placement *start, mt_placemen
     const mt_stage first_stage = *stage;
     const bool found = end->done;
     mt_placement first;
-    MT_TRY(note(w, at, &first, mem, err));
+    MT_TRY(copy_placement(w, at, &first, mem, err));
     w->watch = false;
     mt_placement_copy(w->sys, start, at);
     w->tau = 0.0;
@@ -412,7 +416,7 @@ static mt_status go_on(mt_newton_work *w, const mt_placement *start, mt_placemen
         MT_TRY(lock_first(w, at, mem, stage, err));
         MT_TRY(attempt(w, at, mem, stage, &end->done, err));
     } else {
-        MT_TRY(settle(w, start, at, mem, stage, end, err));
+        MT_TRY(descend_to_minimum(w, start, at, mem, stage, end, err));
     }
     if (found && !end->done) { /* nothing lower holds it: the saddle stands, told as unstable */
         end->done = true;
@@ -429,16 +433,16 @@ mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt
     ending end = {.done = false};
     mt_placement start;
     MT_TRY(mt_newton_work_init(&w, problem, mem, err));
-    MT_TRY(note(&w, at, &start, mem, err));
+    MT_TRY(copy_placement(&w, at, &start, mem, err));
     const bool closed = mt_newton_gap_at(&w, at) <= MT_STEP_DONE;
     end.before = mt_energy_value(problem->data, at, 0.0);
     w.watch = problem->energy == MT_ENERGY_PHYSICAL && !problem->trim;
     MT_TRY(attempt(&w, at, mem, stage, &end.done, err));
     if (problem->energy == MT_ENERGY_PHYSICAL) {
-        MT_TRY(go_on(&w, &start, at, mem, stage, &end, err));
+        MT_TRY(accept_or_descend(&w, &start, at, mem, stage, &end, err));
     }
     stage->factors += w.factors;
-    return end.done ? MT_OK : refuse(&w, at, closed, mem, stage, err);
+    return end.done ? MT_OK : refuse_not_converged(&w, at, closed, mem, stage, err);
 }
 
 mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at, mt_arena *mem,

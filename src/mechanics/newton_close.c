@@ -19,8 +19,8 @@ static const double CONTRACTION = 0.1;
 static const double NO_GAP = 8.0;
 
 /* Evaluate w->c and the Jacobian for a step. */
-static mt_status evaluate(mt_newton_work *w, const mt_placement *at, bool dense, mt_arena *mem,
-                          mt_err *err)
+static mt_status evaluate_constraints(mt_newton_work *w, const mt_placement *at, bool dense,
+                                      mt_arena *mem, mt_err *err)
 {
     if (dense) {
         MT_TRY(mt_newton_dense(w, mem, err));
@@ -59,7 +59,7 @@ mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_pl
     bool dense = w.least == NULL;
     w.turn = mt_arena_f64(mem, (size_t)problem->m, 1);
     MT_TRY(mt_arena_check(mem, err));
-    MT_TRY(evaluate(&w, at, dense, mem, err));
+    MT_TRY(evaluate_constraints(&w, at, dense, mem, err));
     for (int it = 0; it < CLOSE_LIMIT; it++) {
         const double gap = mt_newton_gap_of(&w);
         const bool shrinks = gap <= CONTRACTION * before;
@@ -74,7 +74,7 @@ mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_pl
         mt_arena_rewind(mem, mark);
         if (!sure) {
             dense = true;
-            MT_TRY(evaluate(&w, at, dense, mem, err));
+            MT_TRY(evaluate_constraints(&w, at, dense, mem, err));
             MT_TRY(step_back(&w, dense, mem, &sure, err));
         }
         ++*iterations;
@@ -83,7 +83,7 @@ mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_pl
             return MT_OK;
         }
         mt_newton_take_step(&w, at, MT_STEP_LIMIT);
-        MT_TRY(evaluate(&w, at, dense, mem, err));
+        MT_TRY(evaluate_constraints(&w, at, dense, mem, err));
         before = gap;
     }
     return MT_OK;

@@ -15,7 +15,8 @@ enum { DESCENT_LIMIT = 400, HALVINGS = 30, RESTORE_LIMIT = 20 };
 static const double OUT = 0.1;
 
 /* Back to the constraints by least-norm steps. */
-static mt_status restore(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_err *err)
+static mt_status restore_constraints(mt_newton_work *w, mt_placement *at, mt_arena *mem,
+                                     mt_err *err)
 {
     for (int it = 0; it < RESTORE_LIMIT; it++) {
         const mt_arena_mark mark = mt_arena_get_mark(mem);
@@ -80,7 +81,7 @@ static mt_status search_line(mt_newton_work *w, mt_placement *at, double *energy
         memcpy(w->step, direction, nq * sizeof *direction);
         w->moved = full;
         mt_newton_take_step(w, at, length);
-        const mt_status rc = restore(w, at, mem, NULL);
+        const mt_status rc = restore_constraints(w, at, mem, NULL);
         if (rc == MT_OK) {
             const double now = mt_energy_value(w->p->data, at, w->tau);
             *lower = now < *energy;
@@ -123,7 +124,7 @@ mt_status mt_newton_leave_saddle(mt_newton_work *w, mt_placement *at, bool *lowe
 mt_status mt_newton_descend(mt_newton_work *w, mt_placement *at, mt_arena *mem, mt_err *err)
 {
     MT_TRY(mt_newton_dense(w, mem, err));
-    MT_TRY(restore(w, at, mem, err));
+    MT_TRY(restore_constraints(w, at, mem, err));
     double energy = mt_energy_value(w->p->data, at, w->tau);
     bool lower = true;
     for (int it = 0; it < DESCENT_LIMIT && lower; it++) {

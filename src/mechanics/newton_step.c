@@ -93,7 +93,7 @@ double mt_newton_gap_at(mt_newton_work *w, const mt_placement *at)
 }
 
 /* Set the scales of residuals: the anchor's own unit is a displacement of one model length. */
-static void weigh(mt_newton_work *w, const mt_lagrangian *l, double unbalanced)
+static void set_residual_scales(mt_newton_work *w, const mt_lagrangian *l, double unbalanced)
 {
     const bool anchor = w->p->energy == MT_ENERGY_ANCHOR;
     const double force = anchor ? w->sys->length_m : l->force_scale;
@@ -127,8 +127,8 @@ static int rows(const mt_newton_work *w)
 }
 
 /* Elimination of those rows. */
-static mt_status eliminate(const mt_newton_work *w, mt_arena *mem, mt_elimination *e,
-                           mt_err *err)
+static mt_status eliminate_rows(const mt_newton_work *w, mt_arena *mem, mt_elimination *e,
+                                mt_err *err)
 {
     const int m = rows(w);
     if (m == w->p->m) {
@@ -350,15 +350,15 @@ static void find_unbalanced(const mt_newton_work *w, double *out)
 }
 
 /* Multipliers, then gradient, Hessian and residual with them. */
-static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *mem,
-                         mt_elimination *e, mt_err *err)
+static mt_status evaluate_with_multipliers(mt_newton_work *w, const mt_placement *at,
+                                           mt_arena *mem, mt_elimination *e, mt_err *err)
 {
     memset(w->lambda, 0, (size_t)w->p->m * sizeof *w->lambda);
     w->l.trim_force = w->tau;
     w->l.trim_force_derivative = 0.0;
     mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, at, w->p->m, NULL,
                        w->elastic ? MT_CURVATURE_ELASTIC : MT_CURVATURE_FULL, &w->l);
-    MT_TRY(eliminate(w, mem, e, err));
+    MT_TRY(eliminate_rows(w, mem, e, err));
     for (int j = 0; j < w->sys->nq; j++) {
         w->v[j] = -w->g[j];
     }
@@ -369,7 +369,7 @@ static mt_status balance(mt_newton_work *w, const mt_placement *at, mt_arena *me
     }
     find_unbalanced(w, w->v);
     mt_eliminate_project(e, w->v, w->reduced);
-    weigh(w, &w->l, mt_max_abs(e->n, w->reduced));
+    set_residual_scales(w, &w->l, mt_max_abs(e->n, w->reduced));
     return MT_OK;
 }
 
@@ -427,7 +427,7 @@ static mt_status find_multipliers(mt_newton_work *w, bool first, mt_arena *mem, 
     for (int i = 0; i < m; i++) {
         w->lambda[i] = -w->lambda[i];
     }
-    weigh(w, &w->sparse, unbalanced(w, &least));
+    set_residual_scales(w, &w->sparse, unbalanced(w, &least));
     return MT_OK;
 }
 
@@ -466,7 +466,7 @@ mt_status mt_newton_linearise_sparse(mt_newton_work *w, const mt_placement *at, 
         return MT_OK;
     }
     if (followed) { /* (not of soft ones, which are scaled otherwise) */
-        weigh(w, &w->sparse, unbalanced(w, &solver->saddle));
+        set_residual_scales(w, &w->sparse, unbalanced(w, &solver->saddle));
     }
     for (int j = 0; j < nq; j++) {
         w->reduced[j] = -w->reduced[j];
@@ -528,7 +528,7 @@ mt_status mt_newton_linearise(mt_newton_work *w, const mt_placement *at, mt_aren
     *solver = (mt_newton_solver){.sparse = false};
     MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
     w->factors += 2;
-    MT_TRY(balance(w, at, mem, e, err));
+    MT_TRY(evaluate_with_multipliers(w, at, mem, e, err));
     MT_TRY(mt_newton_invert(w, e, mem, &solver->inverse, err));
     double *const minus_c = mt_arena_f64(mem, (size_t)w->p->m, 1);
     double *const hv = mt_arena_f64(mem, (size_t)nq, 1);

@@ -43,7 +43,7 @@ static mt_status close_loops(mt_state *p, const mt_data *data, mt_arena *mem, mt
     return mt_newton_solve(&problem, &p->reference, mem, &p->closure, err);
 }
 
-static mt_status balance(mt_state *p, const mt_data *data, mt_arena *mem, mt_err *err)
+static mt_status find_equilibrium(mt_state *p, const mt_data *data, mt_arena *mem, mt_err *err)
 {
     const mt_newton_problem problem = {.data = data,
                                        .energy = MT_ENERGY_PHYSICAL,
@@ -73,7 +73,7 @@ static mt_status anchor_loose_freedoms(mt_state *p, const mt_data *data, bool *a
     mt_placement_copy(p->sys, &p->driven, &other.at);
     mt_status rc = mt_newton_solve(&problem, &other.at, mem, &other.anchored, NULL);
     if (rc == MT_OK) {
-        rc = balance(&other, data, mem, NULL);
+        rc = find_equilibrium(&other, data, mem, NULL);
     }
     *anchored = rc == MT_OK;
     if (rc == MT_OK) {
@@ -192,7 +192,7 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
     mt_placement_copy(p->sys, from, &p->driven);
     MT_TRY(mt_drive_solve(data, brief, &p->driven, &p->iterations, mem, err));
     mt_placement_copy(p->sys, &p->driven, &p->at);
-    const mt_status rc = balance(p, data, mem, err);
+    const mt_status rc = find_equilibrium(p, data, mem, err);
     if (rc != MT_OK) {
         return rc == MT_E_EQUILIBRIUM && p->sys->trim ? explain_trim(p, data, rc, mem, err)
                                                       : rc;
@@ -296,7 +296,7 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
         MT_TRY(way == MT_POSITION_EXACT ? drive(out, data, from, false, &anchored, mem, err)
                                         : drive_from(out, data, from, mem, err));
     } else if (sys->loaded) {
-        MT_TRY(balance(out, data, mem, err));
+        MT_TRY(find_equilibrium(out, data, mem, err));
     }
     out->iterations += out->closure.iterations + out->anchored.iterations;
     out->iterations += out->equilibrium.iterations;

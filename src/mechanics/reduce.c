@@ -108,7 +108,7 @@ static mt_status row_errors(mt_linear *lin, int kind, double extent, mt_err *err
 }
 
 /* out[n] = Z^T row, error[n] its bound. */
-static void project(const mt_linear *lin, int kind, size_t row, double *out, double *error)
+static void project_row(const mt_linear *lin, int kind, size_t row, double *out, double *error)
 {
     const mt_rows *const rows = &lin->full[kind];
     const ptrdiff_t nq = lin->sys->nq;
@@ -139,7 +139,7 @@ static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
         double *const out = lin->reduced[kind] + (i * n);
         double *const bound = error + (kept ? i * n : 0);
         memset(bound, 0, n * sizeof *bound);
-        project(lin, kind, i, out, bound);
+        project_row(lin, kind, i, out, bound);
         for (size_t c = 0; c < n; c++) {
             out[c] = fabs(out[c]) <= bound[c] ? 0.0 : out[c];
         }

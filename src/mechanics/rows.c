@@ -29,7 +29,7 @@ static int inertia_rows(const mt_system *sys, const mt_inertia_def *def)
     return 0;
 }
 
-static void push(mt_term_list *list, const mt_program *p, mt_term term)
+static void append_term(mt_term_list *list, const mt_program *p, mt_term term)
 {
     term.first = list->n_rows;
     term.varies =
@@ -84,24 +84,24 @@ mt_status mt_terms_new(const mt_system *sys, mt_arena *mem, mt_term_list *lists,
         const mt_spring_def *const s = &sys->springs[i];
         const mt_measure_def *const m = &sys->measures[s->measure[0]];
         const bool pair = s->measure[0] != s->measure[1];
-        push(&lists[s->damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS], p,
-             (mt_term){.coefficient = s->stiffness,
-                       .loss = s->damper ? MT_NO_NODE : s->loss,
-                       .count = pair ? 2 : 1,
-                       .pair = pair,
-                       .body = {m->body[0], m->body[1]},
-                       .source = i});
+        append_term(&lists[s->damper ? MT_TERM_DAMPING : MT_TERM_STIFFNESS], p,
+                    (mt_term){.coefficient = s->stiffness,
+                              .loss = s->damper ? MT_NO_NODE : s->loss,
+                              .count = pair ? 2 : 1,
+                              .pair = pair,
+                              .body = {m->body[0], m->body[1]},
+                              .source = i});
     }
     for (int i = 0; i < sys->n_inertias; i++) {
-        push(&lists[MT_TERM_MASS], p, mt_term_of_inertia(sys, i));
+        append_term(&lists[MT_TERM_MASS], p, mt_term_of_inertia(sys, i));
     }
     for (int i = 0; i < sys->n_channels; i++) {
-        push(&lists[MT_TERM_CHANNEL], p,
-             (mt_term){.coefficient = MT_NO_NODE,
-                       .loss = MT_NO_NODE,
-                       .count = 1,
-                       .body = {sys->channels[i].body[0], sys->channels[i].body[1]},
-                       .source = i});
+        append_term(&lists[MT_TERM_CHANNEL], p,
+                    (mt_term){.coefficient = MT_NO_NODE,
+                              .loss = MT_NO_NODE,
+                              .count = 1,
+                              .body = {sys->channels[i].body[0], sys->channels[i].body[1]},
+                              .source = i});
     }
     return MT_OK;
 }

@@ -120,7 +120,7 @@ static mt_status decompose(near *v, mt_arena *mem, mt_err *err)
 }
 
 /* y without its parts along v_0 .. v_(level-1). */
-static void leave_out(const near *v, int level, double *y)
+static void remove_first_directions(const near *v, int level, double *y)
 {
     for (int i = 0; i < level; i++) {
         double part = 0.0;
@@ -175,11 +175,11 @@ static mt_status curvature(near *v, int i, int level, mt_arena *mem, mt_err *err
         for (int c = 0; c < v->n; c++) {
             g[c] = draw(&state);
         }
-        leave_out(v, level, g);
+        remove_first_directions(v, level, g);
         mt_gemv(false, e->nq, v->n, 1.0, v->z, e->nq, g, 0.0, phi);
         v->sum[i] = unit * curve(v, i, phi, push);
         mt_gemv(true, e->nq, v->n, unit, v->z, e->nq, push, 0.0, g);
-        leave_out(v, level, g);
+        remove_first_directions(v, level, g);
         squares += mt_dot(v->n, g, g);
     }
     v->h[i] = sqrt(squares / PROBES);
@@ -212,8 +212,9 @@ static mt_status curvatures(near *v, mt_arena *mem, mt_err *err)
 }
 
 /* Equations whose relative diagonal entry of R is below `look`. */
-static mt_status look_at(const mt_data *d, const mt_placement *at, const mt_elimination *e,
-                         double look, near *v, mt_arena *mem, mt_err *err)
+static mt_status find_near_dependent(const mt_data *d, const mt_placement *at,
+                                     const mt_elimination *e, double look, near *v,
+                                     mt_arena *mem, mt_err *err)
 {
     const int most = e->m < e->nq ? e->m : e->nq;
     const double first = most > 0 ? fabs(e->qr.qr[0]) : 0.0;
@@ -246,7 +247,8 @@ static mt_status look_at(const mt_data *d, const mt_placement *at, const mt_elim
     return curvatures(v, mem, err);
 }
 
-static mt_status say(const near *v, const double *w, mt_arena *mem, mt_err *err)
+static mt_status refuse_dependent_joints(const near *v, const double *w, mt_arena *mem,
+                                         mt_err *err)
 {
     mt_joint_names names;
     MT_TRY(mt_name_joints(v->d->sys, v->e->m, w, mem, &names, err));
@@ -259,7 +261,7 @@ static mt_status say(const near *v, const double *w, mt_arena *mem, mt_err *err)
 }
 
 /* Largest motion of a body in a displacement [model lengths, rad]. */
-static double size_of(const mt_system *sys, const double *dq)
+static double largest_displacement(const mt_system *sys, const double *dq)
 {
     double most = 0.0;
     for (int b = 0; b < sys->n_bodies; b++) {
@@ -285,7 +287,7 @@ static mt_status close(const near *v, walk *w, bool *closed, mt_arena *mem, mt_e
 {
     const mt_elimination *const e = v->e;
     const mt_system *const sys = v->d->sys;
-    const double limit = 2.0 * size_of(sys, w->dq);
+    const double limit = 2.0 * largest_displacement(sys, w->dq);
     *closed = false;
     for (int it = 0; it < CHORDS && !*closed; it++) {
         mt_placement_copy(sys, v->at, &w->at);
@@ -303,7 +305,7 @@ static mt_status close(const near *v, walk *w, bool *closed, mt_arena *mem, mt_e
         if (!*closed) {
             MT_TRY(mt_eliminate_particular(e, w->c, w->back, mem, err));
             mt_axpy(e->nq, 1.0, w->back, w->dq);
-            if (!(size_of(sys, w->dq) <= limit)) {
+            if (!(largest_displacement(sys, w->dq) <= limit)) {
                 return MT_OK;
             }
         }
@@ -327,7 +329,7 @@ static mt_status find_open(const near *v, const mt_elimination *e, uint64_t *sta
         y[i] = draw(state);
     }
     mt_eliminate_expand(e, y, direction);
-    const double size = size_of(sys, direction);
+    const double size = largest_displacement(sys, direction);
     for (int half = 0; half < HALVINGS && !closed && size > 0.0; half++) {
         for (int j = 0; j < e->nq; j++) {
             w->dq[j] = length / size * direction[j];
@@ -369,21 +371,21 @@ static mt_status walk_away(const near *v, mt_arena *mem, mt_err *err)
         return MT_OK;
     }
     MT_TRY(mt_eliminate_left_null(e, open, null, mem, err));
-    return say(v, null, mem, err);
+    return refuse_dependent_joints(v, null, mem, err);
 }
 
-static mt_status judge(const mt_data *d, const mt_placement *at, const mt_elimination *e,
-                       mt_arena *mem, mt_err *err)
+static mt_status check_dead_centre(const mt_data *d, const mt_placement *at,
+                                   const mt_elimination *e, mt_arena *mem, mt_err *err)
 {
     near v;
     int worst = -1;
-    MT_TRY(look_at(d, at, e, LOOK, &v, mem, err));
+    MT_TRY(find_near_dependent(d, at, e, LOOK, &v, mem, err));
     for (int i = 0; i < v.k; i++) {
         const bool here = is_curved(&v, i) && v.s[i] * v.s[i] <= SAME * v.unit * v.h[i];
         worst = here && (worst < 0 || v.h[i] > v.h[worst]) ? i : worst;
     }
     if (worst >= 0) {
-        return say(&v, v.w + ((ptrdiff_t)worst * e->m), mem, err);
+        return refuse_dependent_joints(&v, v.w + ((ptrdiff_t)worst * e->m), mem, err);
     }
     return v.k > 0 && e->qr.rank < e->m && e->n > 0 ? walk_away(&v, mem, err) : MT_OK;
 }
@@ -392,7 +394,7 @@ mt_status mt_singular_refuse(const mt_data *d, const mt_placement *at, const mt_
                              mt_arena *scratch, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = judge(d, at, e, scratch, err);
+    const mt_status rc = check_dead_centre(d, at, e, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }
@@ -404,7 +406,7 @@ mt_status mt_singular_nearness(const mt_data *d, const mt_placement *at,
     near v;
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     *out = (mt_nearness){.independence = 1.0, .distance = HUGE_VAL};
-    MT_TRY(look_at(d, at, e, LOOK_NEAR, &v, scratch, err));
+    MT_TRY(find_near_dependent(d, at, e, LOOK_NEAR, &v, scratch, err));
     for (int i = 0; i < v.k; i++) {
         const double distance = i < v.kept && is_curved(&v, i) ? v.s[i] / v.h[i] : HUGE_VAL;
         if (distance <= MT_NEAR_DISTANCE && distance < out->distance) {

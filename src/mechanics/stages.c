@@ -90,7 +90,7 @@ bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set, const
     return true;
 }
 
-static void note(mt_stages *s, mt_stage_id stage, const double *inputs)
+static void mark_stage_valid(mt_stages *s, mt_stage_id stage, const double *inputs)
 {
     for (int i = 0; i < s->n_inputs; i++) {
         s->at[stage][i] = inputs[i];
@@ -100,13 +100,13 @@ static void note(mt_stages *s, mt_stage_id stage, const double *inputs)
 
 void mt_stages_shared(mt_stages *s, mt_stage_id stage, const double *inputs)
 {
-    note(s, stage, inputs);
+    mark_stage_valid(s, stage, inputs);
     s->counts.shared[stage]++;
 }
 
 void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs)
 {
-    note(s, stage, inputs);
+    mark_stage_valid(s, stage, inputs);
     s->counts.done[stage]++;
     s->counts.seconds[stage] += mt_profile_now(s->profile) - s->started_s;
 }

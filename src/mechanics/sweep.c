@@ -86,7 +86,7 @@ static mt_status solve_point(const sweeper *s, int i, mt_err *err)
 
 /* Points first, first + step, ... up to the end of the list; where one cannot be reached the
  * ones behind it cannot either. */
-static mt_status walk(const sweeper *s, int first, int step, mt_err *err)
+static mt_status solve_points_outward(const sweeper *s, int first, int step, mt_err *err)
 {
     const char *limit = NULL;
     for (int i = first; i >= 0 && i < s->out->n_points; i += step) {
@@ -138,10 +138,10 @@ mt_status mt_sweep_run(mt_linear *lin, const double *inputs, int n, const double
         return MT_OK;
     }
     mt_linear_follow(lin, true);
-    mt_status rc = walk(&s, nearest, 1, err);
+    mt_status rc = solve_points_outward(&s, nearest, 1, err);
     mt_linear_follow(lin, true); /* and from the reference position the other way */
     if (rc == MT_OK && nearest > 0) {
-        rc = walk(&s, nearest - 1, -1, err);
+        rc = solve_points_outward(&s, nearest - 1, -1, err);
     }
     mt_linear_follow(lin, false);
     return rc;

@@ -30,7 +30,7 @@ static mt_status reserve(mt_system *sys, mt_err *err)
     return mt_arena_check(&sys->mem, err);
 }
 
-static mt_status prepare(mt_builder *b, mt_system *sys, mt_err *err)
+static mt_status init_builder(mt_builder *b, mt_system *sys, mt_err *err)
 {
     const mt_model *const model = sys->model;
     b->sys = sys;
@@ -123,7 +123,7 @@ static mt_status choose_helpers(mt_system *sys, const double *v, mt_err *err)
 
 /* Choices that need numbers: helper axes, the model length, and the checks of arms of point
  * masses. */
-static mt_status settle(mt_system *sys, const double *at, mt_err *err)
+static mt_status settle_by_numbers(mt_system *sys, const double *at, mt_err *err)
 {
     mt_node bad = MT_NO_NODE;
     const mt_arena_mark mark = mt_arena_get_mark(&sys->mem);
@@ -185,14 +185,14 @@ static mt_status build(mt_system *sys, const mt_system_drive *drive, const doubl
     MT_TRY(mt_program_init(&sys->program, sys->n_inputs, &sys->mem, err));
     MT_TRY(mt_emit_parameters(sys->model, sys->configuration, is_input, &sys->program,
                               sys->parameters, &sys->mem, err));
-    MT_TRY(prepare(&b, sys, err));
+    MT_TRY(init_builder(&b, sys, err));
     const mt_status rc = build_parts(&b, at);
     MT_TRY(mt_arena_check(&sys->mem, err)); /* whatever else the shortage led to */
     MT_TRY(rc);
     MT_TRY(mt_program_finish(&sys->program, err));
     mt_build_inputs(sys);
     MT_TRY(mt_arena_check(&sys->mem, err));
-    return settle(sys, at, err);
+    return settle_by_numbers(sys, at, err);
 }
 
 mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err)

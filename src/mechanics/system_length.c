@@ -13,12 +13,12 @@
 
 #include "mechanics/system.h"
 
-static double length_of(const mt_vec_def *def, const double *v)
+static double vector_length(const mt_vec_def *def, const double *v)
 {
     return hypot(hypot(v[def->node[0]], v[def->node[1]]), v[def->node[2]]);
 }
 
-static double number(const double *v, mt_node node)
+static double value_or_zero(const double *v, mt_node node)
 {
     return node == MT_NO_NODE ? 0.0 : v[node];
 }
@@ -41,14 +41,14 @@ static double diagonal(const mt_system *sys, const double *v)
 }
 
 /* Longest arm from a centre. */
-static double reach(const mt_system *sys, const double *v)
+static double longest_arm(const mt_system *sys, const double *v)
 {
     double most = 0.0;
     for (int i = 0; i < sys->n_measures; i++) {
         const mt_measure_def *const m = &sys->measures[i];
         for (int side = 0; side < 2; side++) {
             if (m->point[side] >= 0 && m->body[side] != MT_GROUND) {
-                most = fmax(most, length_of(&sys->vecs[m->point[side]], v));
+                most = fmax(most, vector_length(&sys->vecs[m->point[side]], v));
             }
         }
     }
@@ -91,7 +91,7 @@ static double gyration(const mt_system *sys, const double *v)
     double inertia = 0.0;
     for (int i = 0; i < sys->n_inertias; i++) {
         const mt_inertia_def *const def = &sys->inertias[i];
-        const double size = number(v, def->coefficient);
+        const double size = value_or_zero(v, def->coefficient);
         mass = def->kind == MT_INERTIA_TRANSLATION ? fmax(mass, size) : mass;
         inertia = def->kind == MT_INERTIA_ROTATION ? fmax(inertia, size) : inertia;
     }
@@ -105,14 +105,14 @@ static double deflection(const mt_system *sys, const double *v)
     for (int i = 0; i < sys->n_loads; i++) {
         double sum = 0.0;
         for (int k = 0; k < 3 && sys->loads[i].measure < 0; k++) {
-            sum = hypot(sum, number(v, sys->loads[i].force[k]));
+            sum = hypot(sum, value_or_zero(v, sys->loads[i].force[k]));
         }
         force = fmax(force, sum);
     }
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         if (is_between_points(&sys->measures[s->measure[0]]) && !s->damper) {
-            stiffness = fmax(stiffness, fabs(number(v, s->stiffness)));
+            stiffness = fmax(stiffness, fabs(value_or_zero(v, s->stiffness)));
         }
     }
     return stiffness > 0.0 ? force / stiffness : 0.0;
@@ -121,7 +121,7 @@ static double deflection(const mt_system *sys, const double *v)
 double mt_system_length(const mt_system *sys, const double *v)
 {
     double (*const of[])(const mt_system *, const double *) = {span, gyration, deflection};
-    double length = fmax(diagonal(sys, v), reach(sys, v));
+    double length = fmax(diagonal(sys, v), longest_arm(sys, v));
     for (size_t i = 0; i < sizeof of / sizeof of[0] && !(length > 0.0); i++) {
         length = of[i](sys, v);
     }

@@ -48,7 +48,8 @@ typedef struct problem {
     const double *b;
 } problem;
 
-static mt_status check(const char *function, const problem *p, const double *xdd, mt_err *err)
+static mt_status check_arguments(const char *function, const problem *p, const double *xdd,
+                                 mt_err *err)
 {
     if (p->n < 1 || p->m < 0) {
         return mt_fail(err, MT_E_USAGE, "%s: %d coordinates, %d constraints", function, p->n,
@@ -135,7 +136,7 @@ mt_status mt_udwadia_kalaba(int n, int m, const double *mass, const double *q, c
 {
     const problem p = {n, m, mass, q, a, b};
     mt_arena mem = {0};
-    MT_TRY(check(__func__, &p, xdd, err));
+    MT_TRY(check_arguments(__func__, &p, xdd, err));
     mt_status rc = mt_arena_init(&mem, 0, err);
     if (rc == MT_OK) {
         rc = kalaba(&p, xdd, &mem, err);
@@ -149,7 +150,7 @@ mt_status mt_udwadia_phohomsiri(int n, int m, const double *mass, const double *
 {
     const problem p = {n, m, mass, q, a, b};
     mt_arena mem = {0};
-    MT_TRY(check(__func__, &p, xdd, err));
+    MT_TRY(check_arguments(__func__, &p, xdd, err));
     mt_status rc = mt_arena_init(&mem, 0, err);
     if (rc == MT_OK) {
         rc = phohomsiri(&p, xdd, &mem, err);

@@ -33,8 +33,9 @@ static mt_status springs(const mt_sparse_problem *of, mt_arena *mem, mt_squares 
     return MT_OK;
 }
 
-static mt_status balance(const mt_sparse_problem *of, const double *f, double *mu, double *open,
-                         bool *found, mt_arena *mem, mt_err *err)
+static mt_status find_balancing_multipliers(const mt_sparse_problem *of, const double *f,
+                                            double *mu, double *open, bool *found,
+                                            mt_arena *mem, mt_err *err)
 {
     const int rows = of->a.n_rows;
     mt_sparse_problem p = {.n = of->n,
@@ -75,7 +76,7 @@ mt_status mt_modal_balance(const mt_sparse_problem *p, const double *f, double *
     mt_arena work = {.first = NULL};
     *found = false;
     mt_status rc = mt_arena_init(&work, 0, err);
-    rc = rc == MT_OK ? balance(p, f, mu, open, found, &work, err) : rc;
+    rc = rc == MT_OK ? find_balancing_multipliers(p, f, mu, open, found, &work, err) : rc;
     mt_arena_free(&work);
     return rc;
 }

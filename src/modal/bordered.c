@@ -76,8 +76,8 @@ static void fill_rhs(const bordered *b, const mt_directions *dir)
     }
 }
 
-static mt_status solve(const mt_pencil *p, bordered *b, const mt_directions *dir,
-                       mt_arena *scratch, mt_err *err)
+static mt_status solve_bordered_system(const mt_pencil *p, bordered *b,
+                                       const mt_directions *dir, mt_arena *scratch, mt_err *err)
 {
     const size_t n = (size_t)p->n;
     b->d = mt_arena_f64(scratch, n, 1);
@@ -106,7 +106,7 @@ mt_status mt_modal_dvector(const mt_pencil *p, double lambda, const double *y,
 {
     bordered b = {.n = p->n, .lambda = lambda, .y = y};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = solve(p, &b, dir, scratch, err);
+    const mt_status rc = solve_bordered_system(p, &b, dir, scratch, err);
     for (int k = 0; k < dir->np; k++) {
         const ptrdiff_t at = (ptrdiff_t)k * (p->n + 1);
         for (int i = 0; i < p->n; i++) {

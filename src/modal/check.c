@@ -40,7 +40,7 @@ typedef struct checker {
     double m_norm;
 } checker;
 
-static double residual(const checker *c, const mt_modes *modes, int i)
+static double residual_of_mode(const checker *c, const mt_modes *modes, int i)
 {
     const ptrdiff_t at = (ptrdiff_t)i * c->n;
     const double lambda = modes->lambda[i];
@@ -95,7 +95,7 @@ mt_status mt_modal_check(const double *k, const mt_mass_factor *mass, mt_arena *
         mt_symm(n, modes->shaped, mass->m, modes->y, c.my);
     }
     for (int i = 0; i < modes->shaped; i++) {
-        modes->residual[i] = residual(&c, modes, i);
+        modes->residual[i] = residual_of_mode(&c, modes, i);
     }
     orthogonality(&c, gram, modes);
     return MT_OK;

@@ -28,7 +28,7 @@ static int first_rigid(const mt_modes *modes, int n_rigid)
     return first;
 }
 
-static mt_mode_kind kind_of(double lambda, double noise, bool strained, bool decide)
+static mt_mode_kind kind_of_mode(double lambda, double noise, bool strained, bool decide)
 {
     if (lambda < -noise) {
         return MT_MODE_UNSTABLE;
@@ -55,7 +55,7 @@ double mt_modal_classify(mt_modes *modes, int n_rigid, const double *noise,
         const bool moves = strained != NULL && strained[i];
         const bool given = !decide && i >= first && i < first + rigid;
         const mt_mode_kind kind =
-            given ? MT_MODE_RIGID_BODY : kind_of(modes->lambda[i], zero, moves, decide);
+            given ? MT_MODE_RIGID_BODY : kind_of_mode(modes->lambda[i], zero, moves, decide);
         modes->kind[i] = kind;
         modes->n_rigid += kind == MT_MODE_RIGID_BODY ? 1 : 0;
         if (given) {

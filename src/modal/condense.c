@@ -31,7 +31,7 @@ typedef struct parts {
     double *work;    /* z x r */
 } parts;
 
-static mt_status claim(parts *p, mt_arena *scratch, mt_err *err)
+static mt_status claim_parts(parts *p, mt_arena *scratch, mt_err *err)
 {
     const size_t n = (size_t)p->n;
     const size_t z = (size_t)p->z;
@@ -127,7 +127,7 @@ mt_status mt_modal_condense(const double *k, const mt_mass_factor *mass, mt_aren
 {
     const int n = mass->n;
     parts p = {.n = n, .r = mass->rank, .z = n - mass->rank, .t = mass->t};
-    MT_TRY(claim(&p, scratch, err));
+    MT_TRY(claim_parts(&p, scratch, err));
     const double *const t0 = p.t + (ptrdiff_t)p.r * n;
     for (int j = 0; j < p.z; j++) {
         const double terms = stiffness_terms(n, k, t0 + (ptrdiff_t)j * n);

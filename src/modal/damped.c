@@ -126,7 +126,7 @@ static mt_status massless(mt_damped_parts *s, mt_err *err)
     return mt_damped_sandwich(s, s->p->k, zd, s->b, zd, s->b, s->kd, err);
 }
 
-static mt_status prepare(mt_damped_parts *s, mt_err *err)
+static mt_status prepare_states(mt_damped_parts *s, mt_err *err)
 {
     const mt_modes *const m = s->p->modes;
     const size_t n = (size_t)s->n;
@@ -157,7 +157,7 @@ static mt_status prepare(mt_damped_parts *s, mt_err *err)
 }
 
 /* The matrix of the states, order x order. */
-static void assemble(const mt_damped_parts *s, double *a)
+static void assemble_states(const mt_damped_parts *s, double *a)
 {
     const ptrdiff_t order = s->order;
     const int first = s->order - s->zd;
@@ -216,8 +216,8 @@ void mt_damped_scale(int n, double *y_re, double *y_im)
 
 /* One eigenvector in the caller's coordinates, s y (velocities): Y v + B s b_D; part 0 real, 1
  * imaginary, of states u + i w. */
-static void shape(const mt_damped_parts *s, const double *u, const double *w, double re,
-                  double im, double *y_re, double *y_im)
+static void write_eigenvector(const mt_damped_parts *s, const double *u, const double *w,
+                              double re, double im, double *y_re, double *y_im)
 {
     const int first = s->order - s->zd;
     for (int j = 0; j < s->r; j++) {
@@ -276,7 +276,7 @@ mt_status mt_damped_claim(mt_damped_modes *out, int n, int count, mt_arena *mem,
     return mt_arena_check(mem, err);
 }
 
-static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *err)
+static mt_status solve_damped_modes(const mt_damped_parts *s, mt_damped_modes *out, mt_err *err)
 {
     const size_t order = (size_t)s->order;
     const int rigid = s->p->modes->n_rigid;
@@ -286,7 +286,7 @@ static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *e
     double *const wi = mt_arena_f64(s->mem, order, 1);
     int *const perm = mt_arena_int(s->mem, order);
     MT_TRY(mt_arena_check(s->mem, err));
-    assemble(s, a);
+    assemble_states(s, a);
     const double noise = s->tol * mt_max_abs((ptrdiff_t)(order * order), a);
     MT_TRY(mt_eig_general(s->order, a, wr, wi, vr, s->mem, err));
     const int roots = order_roots(wr, wi, s->order, perm);
@@ -301,8 +301,9 @@ static mt_status solve(const mt_damped_parts *s, mt_damped_modes *out, mt_err *e
         out->re[to] = wr[at];
         out->im[to] = wi[at];
         out->kind[to] = mt_damped_kind_of(wr[at], wi[at], noise);
-        shape(s, u, wi[at] > 0.0 ? u + s->order : NULL, wr[at], wi[at],
-              out->y_re + ((ptrdiff_t)to * s->n), out->y_im + ((ptrdiff_t)to * s->n));
+        write_eigenvector(s, u, wi[at] > 0.0 ? u + s->order : NULL, wr[at], wi[at],
+                          out->y_re + ((ptrdiff_t)to * s->n),
+                          out->y_im + ((ptrdiff_t)to * s->n));
     }
     return MT_OK;
 }
@@ -360,8 +361,9 @@ mt_status mt_modal_damped(const mt_damped_problem *p, mt_arena *mem, mt_damped_m
     if (p->modes->shaped < p->modes->all) {
         return mt_fail(err, MT_E_USAGE, "damped modes need the undamped shapes");
     }
-    MT_TRY(prepare(&s, err));
-    MT_TRY(p->h == NULL ? solve(&s, out, err) : mt_damped_structural(&s, out, err));
+    MT_TRY(prepare_states(&s, err));
+    MT_TRY(p->h == NULL ? solve_damped_modes(&s, out, err)
+                        : mt_damped_structural(&s, out, err));
     MT_TRY(mt_damped_check(p, out, mem, err));
     return settle_kinds(p, out, mem, err);
 }

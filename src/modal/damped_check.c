@@ -30,8 +30,8 @@ static double scaled_norm(int n, const double *a, const double *d)
 }
 
 /* f += alpha A x, A lower; NULL: identity. */
-static void add_product(int n, double alpha, const double *a, const double *x, double *work,
-                        double *f)
+static void add_lower_product(int n, double alpha, const double *a, const double *x,
+                              double *work, double *f)
 {
     if (a == NULL) {
         mt_axpy(n, alpha, x, f);
@@ -51,8 +51,8 @@ typedef struct checker {
     double *work;
 } checker;
 
-static double residual(const checker *c, const mt_damped_modes *out, int i, double re,
-                       double im)
+static double residual_of_damped(const checker *c, const mt_damped_modes *out, int i, double re,
+                                 double im)
 {
     const int n = c->p->n;
     const double factor[4][2] = {
@@ -66,10 +66,10 @@ static double residual(const checker *c, const mt_damped_modes *out, int i, doub
         c->f[1][j] = 0.0;
     }
     for (int k = 0; k < c->n_matrices; k++) {
-        add_product(n, factor[k][0], c->matrix[k], y[0], c->work, c->f[0]);
-        add_product(n, -factor[k][1], c->matrix[k], y[1], c->work, c->f[0]);
-        add_product(n, factor[k][0], c->matrix[k], y[1], c->work, c->f[1]);
-        add_product(n, factor[k][1], c->matrix[k], y[0], c->work, c->f[1]);
+        add_lower_product(n, factor[k][0], c->matrix[k], y[0], c->work, c->f[0]);
+        add_lower_product(n, -factor[k][1], c->matrix[k], y[1], c->work, c->f[0]);
+        add_lower_product(n, factor[k][0], c->matrix[k], y[1], c->work, c->f[1]);
+        add_lower_product(n, factor[k][1], c->matrix[k], y[0], c->work, c->f[1]);
     }
     for (int j = 0; j < n; j++) {
         force = hypot(force, c->d[j] * hypot(c->f[0][j], c->f[1][j]));
@@ -90,7 +90,7 @@ static double complex form(const checker *c, const double *a, const double *re,
     double part[3];
     for (int k = 0; k < 3; k++) { /* re re, re im, im im */
         memset(f, 0, (size_t)n * sizeof *f);
-        add_product(n, 1.0, a, k == 0 ? re : im, c->work, f);
+        add_lower_product(n, 1.0, a, k == 0 ? re : im, c->work, f);
         part[k] = mt_dot(n, k == 2 ? im : re, f);
     }
     return mt_complex(part[0] - part[2], 2.0 * part[1]);
@@ -112,11 +112,11 @@ static double complex nearest_root(double complex a, double complex b, double co
     return cabs(s1 - s) <= cabs(s2 - s) ? s1 : s2;
 }
 
-static void refine(const checker *c, mt_damped_modes *out, int i)
+static void refine_eigenvalue(const checker *c, mt_damped_modes *out, int i)
 {
     const ptrdiff_t at = (ptrdiff_t)i * c->p->n;
     double complex part[4] = {0.0};
-    out->residual[i] = residual(c, out, i, out->re[i], out->im[i]);
+    out->residual[i] = residual_of_damped(c, out, i, out->re[i], out->im[i]);
     for (int k = 0; k < c->n_matrices; k++) {
         part[k] = form(c, c->matrix[k], out->y_re + at, out->y_im + at);
     }
@@ -124,7 +124,7 @@ static void refine(const checker *c, mt_damped_modes *out, int i)
         nearest_root(part[2], part[1], part[0] + (mt_complex(0.0, 1.0) * part[3]),
                      mt_complex(out->re[i], out->im[i]));
     const double im = out->im[i] > 0.0 ? cimag(s) : 0.0; /* a real root stays real */
-    const double better = residual(c, out, i, creal(s), im);
+    const double better = residual_of_damped(c, out, i, creal(s), im);
     if (better < out->residual[i] && !(im < 0.0)) {
         out->re[i] = creal(s);
         out->im[i] = im;
@@ -155,7 +155,7 @@ mt_status mt_damped_check(const mt_damped_problem *p, mt_damped_modes *out, mt_a
     }
     for (int i = 0; i < out->count; i++) {
         if (out->kind[i] != MT_DAMPED_RIGID_BODY) {
-            refine(&c, out, i);
+            refine_eigenvalue(&c, out, i);
         }
     }
     return MT_OK;

@@ -41,7 +41,7 @@ static mt_status shapes(const mt_damped_parts *s, double **out, mt_err *err)
 }
 
 /* W by the real system [K -H; H K] [Re W; Im W] = [H_Uw; 0]. */
-static mt_status follow(structural *c, const double *huw, mt_err *err)
+static mt_status solve_massless_directions(structural *c, const double *huw, mt_err *err)
 {
     const mt_damped_parts *const s = c->s;
     const ptrdiff_t u = s->zu;
@@ -92,7 +92,7 @@ static mt_status stiffness(structural *c, mt_err *err)
     MT_TRY(mt_damped_sandwich(s, s->p->h, c->nw, yb, c->nw, yb, h, err));
     if (u > 0) {
         MT_TRY(mt_damped_sandwich(s, s->p->h, s->zu, s->t, c->nw, yb, huw, err));
-        MT_TRY(follow(c, huw, err));
+        MT_TRY(solve_massless_directions(c, huw, err));
     }
     for (ptrdiff_t j = 0; j < nw; j++) {
         for (ptrdiff_t i = 0; i < nw; i++) {
@@ -130,7 +130,8 @@ static void count_states(structural *c)
 }
 
 /* Rates caused by the force f[nw] of a unit state: b' = -mu^-1 f_D, v' = -f_a - C_aD b'. */
-static void put(const structural *c, const double complex *f, double complex *column)
+static void write_rates_column(const structural *c, const double complex *f,
+                               double complex *column)
 {
     const mt_damped_parts *const s = c->s;
     const int first = c->order - s->zd;
@@ -149,7 +150,7 @@ static void put(const structural *c, const double complex *f, double complex *co
 }
 
 /* The matrix of the states, order x order; f[nw] is work. */
-static void assemble(const structural *c, double complex *f, double complex *a)
+static void assemble_structural(const structural *c, double complex *f, double complex *a)
 {
     const mt_damped_parts *const s = c->s;
     const ptrdiff_t order = c->order;
@@ -163,24 +164,24 @@ static void assemble(const structural *c, double complex *f, double complex *a)
             for (int d = 0; d < s->zd; d++) {
                 f[s->r + d] = s->cda[d + (j * s->zd)];
             }
-            put(c, f, a + (c->v_of[j] * order));
+            write_rates_column(c, f, a + (c->v_of[j] * order));
         }
         if (c->x_of[j] >= 0) {
             for (ptrdiff_t i = 0; i < nw; i++) {
                 f[i] = c->g[i + (j * nw)] / c->scale[j];
             }
-            put(c, f, a + (c->x_of[j] * order));
+            write_rates_column(c, f, a + (c->x_of[j] * order));
             a[c->x_of[j] + (c->v_of[j] * order)] = c->scale[j];
         }
     }
     for (ptrdiff_t d = 0; d < s->zd; d++) {
-        put(c, c->g + ((s->r + d) * nw), a + ((first + d) * order));
+        write_rates_column(c, c->g + ((s->r + d) * nw), a + ((first + d) * order));
     }
 }
 
 /* y += z times column j of the n x ... matrix. */
-static void add_column(int n, double complex z, const double *matrix, int j, double *y_re,
-                       double *y_im)
+static void add_scaled_column(int n, double complex z, const double *matrix, int j,
+                              double *y_re, double *y_im)
 {
     mt_axpy(n, creal(z), matrix + ((ptrdiff_t)j * n), y_re);
     mt_axpy(n, cimag(z), matrix + ((ptrdiff_t)j * n), y_im);
@@ -188,18 +189,18 @@ static void add_column(int n, double complex z, const double *matrix, int j, dou
 
 /* One eigenvector in the caller's coordinates, root y (velocities): Y v + root (B b + T_U b_U),
  * root b_U = -i W (v, root b). */
-static void shape(const structural *c, const double complex *state, double complex root,
-                  double *y_re, double *y_im)
+static void write_structural_vector(const structural *c, const double complex *state,
+                                    double complex root, double *y_re, double *y_im)
 {
     const mt_damped_parts *const s = c->s;
     const int first = c->order - s->zd;
     for (int j = 0; j < s->r; j++) {
         if (c->v_of[j] >= 0) {
-            add_column(s->n, state[c->v_of[j]], s->y, j, y_re, y_im);
+            add_scaled_column(s->n, state[c->v_of[j]], s->y, j, y_re, y_im);
         }
     }
     for (int d = 0; d < s->zd; d++) {
-        add_column(s->n, root * state[first + d], s->b, d, y_re, y_im);
+        add_scaled_column(s->n, root * state[first + d], s->b, d, y_re, y_im);
     }
     for (int k = 0; k < s->zu; k++) {
         double complex own = 0.0;
@@ -209,7 +210,7 @@ static void shape(const structural *c, const double complex *state, double compl
         for (int d = 0; d < s->zd; d++) {
             own += c->w[k + ((ptrdiff_t)(s->r + d) * s->zu)] * root * state[first + d];
         }
-        add_column(s->n, mt_complex(0.0, -1.0) * own, s->t, k, y_re, y_im);
+        add_scaled_column(s->n, mt_complex(0.0, -1.0) * own, s->t, k, y_re, y_im);
     }
     mt_damped_scale(s->n, y_re, y_im);
 }
@@ -231,7 +232,7 @@ static int order_roots(const double complex *w, int order, double noise, int *pe
     return count;
 }
 
-static mt_status solve(const structural *c, mt_damped_modes *out, mt_err *err)
+static mt_status solve_structural_modes(const structural *c, mt_damped_modes *out, mt_err *err)
 {
     const mt_damped_parts *const s = c->s;
     const size_t order = (size_t)c->order;
@@ -243,7 +244,7 @@ static mt_status solve(const structural *c, mt_damped_modes *out, mt_err *err)
     double complex *const f = mt_arena_alloc(s->mem, (size_t)c->nw, size);
     int *const perm = mt_arena_int(s->mem, order);
     MT_TRY(mt_arena_check(s->mem, err));
-    assemble(c, f, a);
+    assemble_structural(c, f, a);
     const double noise = s->tol * mt_max_abs(2 * (ptrdiff_t)(order * order), (double *)a);
     MT_TRY(mt_eig_complex(c->order, a, w, vr, s->mem, err));
     for (int j = 0; j < s->r; j++) {
@@ -260,8 +261,8 @@ static mt_status solve(const structural *c, mt_damped_modes *out, mt_err *err)
         out->re[to] = creal(root);
         out->im[to] = cimag(root) > noise ? cimag(root) : 0.0;
         out->kind[to] = mt_damped_kind_of(out->re[to], out->im[to], noise);
-        shape(c, vr + ((size_t)perm[i] * order), root, out->y_re + (to * s->n),
-              out->y_im + (to * s->n));
+        write_structural_vector(c, vr + ((size_t)perm[i] * order), root,
+                                out->y_re + (to * s->n), out->y_im + (to * s->n));
     }
     return MT_OK;
 }
@@ -278,5 +279,5 @@ mt_status mt_damped_structural(const mt_damped_parts *s, mt_damped_modes *out, m
     MT_TRY(mt_arena_check(s->mem, err));
     MT_TRY(stiffness(&c, err));
     count_states(&c);
-    return solve(&c, out, err);
+    return solve_structural_modes(&c, out, err);
 }

@@ -18,8 +18,8 @@
 #include "linalg/dense.h"
 
 /* f := dky - lambda dmy, entries count. */
-static void load(ptrdiff_t count, double lambda, const double *dky, const double *dmy,
-                 double *f)
+static void mode_derivative_force(ptrdiff_t count, double lambda, const double *dky,
+                                  const double *dmy, double *f)
 {
     for (ptrdiff_t i = 0; i < count; i++) {
         f[i] = dky[i] - (dmy == NULL ? 0.0 : lambda * dmy[i]);
@@ -44,7 +44,7 @@ mt_status mt_modal_dcluster(const mt_modes *modes, int first, int r, const doubl
     for (int i = 0; i < r; i++) {
         mean += modes->lambda[first + i] / r;
     }
-    load((ptrdiff_t)n * r, mean, dky, dmy, f);
+    mode_derivative_force((ptrdiff_t)n * r, mean, dky, dmy, f);
     mt_gemm(true, false, r, r, n, 1.0, modes->y + (ptrdiff_t)first * n, n, f, n, 0.0, out, r);
     for (int j = 0; j < r; j++) {
         for (int i = j + 1; i < r; i++) {
@@ -108,7 +108,7 @@ mt_status mt_modal_dvector_by_modes(const mt_modes *modes, int i, const mt_direc
     double *const a = mt_arena_f64(scratch, (size_t)n, (size_t)dir->np);
     const mt_status rc = mt_arena_check(scratch, err);
     if (rc == MT_OK) {
-        load(entries, modes->lambda[i], dir->dky, dir->dmy, f);
+        mode_derivative_force(entries, modes->lambda[i], dir->dky, dir->dmy, f);
         mt_gemm(true, false, n, dir->np, n, 1.0, modes->y, n, f, n, 0.0, a, n);
         combine(modes, i, dir, a, dy, dlambda);
     }

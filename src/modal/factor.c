@@ -9,8 +9,8 @@
  *
  * C may be rank deficient (rigid-body modes; more springs than freedoms). Its null space does
  * not depend on D, so it is split off first: rows of C are scaled to unit norm (the norms join
- * D; rows that are known less well are made shorter, see weigh), C^T P = Q R with column
- * pivoting has Q = [Q1 Q2], Q2 the null space. Then
+ * D; rows that are known less well are made shorter, see shorten_noisy_rows), C^T P = Q R with
+ * column pivoting has Q = [Q1 Q2], Q2 the null space. Then
  *     D C Q1 = D P R^T   (rows of R^T put into C's order)
  * is of full column rank, and every row of R^T keeps its own relative error. Where D spreads
  * far that is not enough: springs beyond the number of freedoms hold each other, and what is
@@ -95,7 +95,7 @@ static mt_status normalise(const mt_stiffness_factor *b, const mt_mass_factor *m
 
 /* Rows are shortened until the noise of none exceeds that of the best: then one tolerance
  * decides the rank, and precise rows are chosen before noisy ones. D takes it back. */
-static void weigh(graded *g, const double *rho)
+static void shorten_noisy_rows(graded *g, const double *rho)
 {
     double best = HUGE_VAL;
     for (int j = 0; j < g->rows; j++) {
@@ -146,8 +146,8 @@ static mt_status sort_coordinates(graded *g, mt_arena *scratch, mt_err *err)
     return MT_OK;
 }
 
-static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mass, graded *g,
-                         mt_arena *scratch, mt_err *err)
+static mt_status prepare_graded(const mt_stiffness_factor *b, const mt_mass_factor *mass,
+                                graded *g, mt_arena *scratch, mt_err *err)
 {
     const size_t rows = (size_t)b->rows;
     const size_t n = (size_t)g->n;
@@ -161,7 +161,7 @@ static mt_status prepare(const mt_stiffness_factor *b, const mt_mass_factor *mas
     }
     transform(b, mass, bt, g->ct);
     MT_TRY(normalise(b, mass, g, rho, err));
-    weigh(g, rho);
+    shorten_noisy_rows(g, rho);
     MT_TRY(sort_coordinates(g, scratch, err));
     return mt_qr_factor(g->n, g->rows, g->ct, g->n, g->tol, scratch, &g->qr, err);
 }
@@ -308,7 +308,7 @@ mt_status mt_modal_by_factor(const mt_stiffness_factor *factor, const mt_mass_fa
 {
     graded g = {.n = mass->n, .interrupt = factor->interrupt};
     MT_TRY(mt_interrupt_check(g.interrupt, err));
-    MT_TRY(prepare(factor, mass, &g, scratch, err));
+    MT_TRY(prepare_graded(factor, mass, &g, scratch, err));
     MT_TRY(mt_interrupt_check(g.interrupt, err));
     MT_TRY(singular_values(&g, scratch, err));
     MT_TRY(mt_interrupt_check(g.interrupt, err));

@@ -46,7 +46,7 @@ static void swap_places(int a, int b, int *place)
 /* x (n x columns) := L below the diagonal, U above it, for `rank` steps; fewer where the work
  * is interrupted. most[columns]: where the largest entry of each column that is left stands,
  * looked up while the column is in the cache. */
-static void eliminate(const mt_graded *g, int *column, ptrdiff_t *most)
+static void eliminate_columns(const mt_graded *g, int *column, ptrdiff_t *most)
 {
     const int n = g->n;
     const int columns = g->rows;
@@ -103,7 +103,7 @@ static void sort_rows(int rows, int r, double *y, double *size)
 }
 
 /* w (r x r) := R2 P2^T P1 R1^T, with L P1 = Q1 R1; at[r]: work. */
-static void product(int r, const mt_qr *l, const mt_qr *y, int *at, double *w)
+static void product_of_factors(int r, const mt_qr *l, const mt_qr *y, int *at, double *w)
 {
     for (int b = 0; b < r; b++) {
         at[l->perm[b]] = b;
@@ -131,7 +131,7 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err)
     for (int j = 0; j < rows; j++) {
         column[j] = j;
     }
-    eliminate(g, column, most);
+    eliminate_columns(g, column, most);
     MT_TRY(mt_interrupt_check(g->interrupt, err));
     for (ptrdiff_t k = 0; k < g->rank; k++) {
         l[k + k * n] = 1.0;
@@ -145,6 +145,6 @@ mt_status mt_modal_graded(mt_graded *g, mt_arena *mem, mt_err *err)
     sort_rows(g->rows, g->rank, y, size);
     MT_TRY(mt_qr_factor(g->n, g->rank, l, g->n, 0.0, mem, &g->q, err));
     MT_TRY(mt_qr_factor(g->rows, g->rank, y, g->rows, 0.0, mem, &yq, err));
-    product(g->rank, &g->q, &yq, column, g->w);
+    product_of_factors(g->rank, &g->q, &yq, column, g->w);
     return MT_OK;
 }

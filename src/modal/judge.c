@@ -113,7 +113,7 @@ static double quotients(const mt_modes *modes, const mt_mode_energies *e, int fi
     return noise + most + mixed + shape * shape * modes->scale;
 }
 
-static void swap(double *a, double *b)
+static void swap_numbers(double *a, double *b)
 {
     const double keep = *a;
     *a = *b;
@@ -122,7 +122,7 @@ static void swap(double *a, double *b)
 
 /* Quotients of neighbours may pass each other, and so may a mode that becomes a rigid body's,
  * at 0, and one before it that is undecided. */
-static void sort(mt_modes *modes, bool *strained)
+static void sort_modes(mt_modes *modes, bool *strained)
 {
     for (int i = 1; i < modes->count; i++) {
         for (int k = i; k > 0 && modes->lambda[k] < modes->lambda[k - 1]; k--) {
@@ -132,15 +132,15 @@ static void sort(mt_modes *modes, bool *strained)
             const mt_mode_kind kind = modes->kind[k];
             modes->kind[k] = modes->kind[k - 1];
             modes->kind[k - 1] = kind;
-            swap(&modes->lambda[k], &modes->lambda[k - 1]);
-            swap(&modes->error[k], &modes->error[k - 1]);
+            swap_numbers(&modes->lambda[k], &modes->lambda[k - 1]);
+            swap_numbers(&modes->error[k], &modes->error[k - 1]);
             if (modes->residual != NULL && k < modes->shaped) {
-                swap(&modes->residual[k], &modes->residual[k - 1]);
-                swap(&modes->orthogonality[k], &modes->orthogonality[k - 1]);
+                swap_numbers(&modes->residual[k], &modes->residual[k - 1]);
+                swap_numbers(&modes->orthogonality[k], &modes->orthogonality[k - 1]);
             }
             for (int j = 0; j < modes->n && k < modes->shaped; j++) {
                 double *const at = modes->y + j + (ptrdiff_t)k * modes->n;
-                swap(at, at - modes->n);
+                swap_numbers(at, at - modes->n);
             }
         }
     }
@@ -151,10 +151,10 @@ int mt_modal_doubtful(const mt_modes *modes)
     int count = 0;
     const bool exact = modes->from_factor && modes->error_bound == 0.0;
     for (int i = 0; i < modes->count; i++) {
-        const bool warning = modes->kind[i] == MT_MODE_FLEXIBLE
-                                 ? !(modes->error[i] < FINE * fabs(modes->lambda[i]))
-                                 : !exact;
-        count = warning ? i + 1 : count;
+        const bool rough = modes->kind[i] == MT_MODE_FLEXIBLE
+                               ? !(modes->error[i] < FINE * fabs(modes->lambda[i]))
+                               : !exact;
+        count = rough ? i + 1 : count;
     }
     return count;
 }
@@ -204,7 +204,7 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
     for (int i = e->count; i < modes->count; i++) {
         e->strained[i] = true;
     }
-    sort(modes, e->strained);
+    sort_modes(modes, e->strained);
     for (int i = 0; i < modes->count; i++) {
         e->mass[i] = fabs(modes->lambda[i]);
     }
@@ -220,6 +220,6 @@ void mt_modal_judge(mt_mode_energies *e, int n_rigid, mt_modes *modes)
         modes->n_held += rigid && e->mass[i] > MT_MODAL_HELD * modes->error[i] ? 1 : 0;
     }
     modes->n_held = exact ? held : modes->n_held;
-    sort(modes, e->strained);
+    sort_modes(modes, e->strained);
     mt_modal_find_clusters(modes);
 }

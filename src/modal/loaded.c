@@ -40,7 +40,7 @@ typedef struct loaded {
     double pivot; /* least of A */
 } loaded;
 
-static mt_status claim(loaded *l, mt_arena *scratch, mt_err *err)
+static mt_status claim_loaded(loaded *l, mt_arena *scratch, mt_err *err)
 {
     const size_t n = (size_t)l->n;
     l->h = mt_arena_f64(scratch, n, n);
@@ -52,7 +52,8 @@ static mt_status claim(loaded *l, mt_arena *scratch, mt_err *err)
 }
 
 /* h := W + D; f is work. */
-static mt_status project(const double *g, const mt_modes *modes, loaded *l, mt_err *err)
+static mt_status project_load_stiffness(const double *g, const mt_modes *modes, loaded *l,
+                                        mt_err *err)
 {
     const int n = l->n;
     if (!mt_lower_finite(n, g)) {
@@ -109,8 +110,8 @@ mt_status mt_modal_add_load(const double *g, const mt_mass_factor *mass, mt_aren
     const int n = mass->n;
     const double tolerance = mt_modal_tolerance(n);
     loaded l = {.n = n};
-    MT_TRY(claim(&l, scratch, err));
-    MT_TRY(project(g, out, &l, err));
+    MT_TRY(claim_loaded(&l, scratch, err));
+    MT_TRY(project_load_stiffness(g, out, &l, err));
     if (l.size == 0.0) {
         return MT_OK;
     }

@@ -55,7 +55,7 @@ static void swap_columns(const finding *f, double *of, int i, int j)
 }
 
 /* M x. */
-static const double *weigh(const finding *f, const double *x)
+static const double *times_mass(const finding *f, const double *x)
 {
     if (f->mx == NULL) {
         return x;
@@ -67,10 +67,10 @@ static const double *weigh(const finding *f, const double *x)
 /* x^T M y. */
 static double inner(const finding *f, const double *x, const double *y)
 {
-    return mt_dot(f->p->n, weigh(f, x), y);
+    return mt_dot(f->p->n, times_mass(f, x), y);
 }
 
-static void swap(const finding *f, int i, int j)
+static void swap_vectors(const finding *f, int i, int j)
 {
     const double theta = f->theta[i];
     const double rho = f->rho[i];
@@ -109,7 +109,7 @@ static mt_status grow(finding *f, int n, mt_arena *mem, mt_err *err)
 }
 
 /* Quotient and residual of vector i. */
-static void measure(finding *f, int i)
+static void set_quotient(finding *f, int i)
 {
     const mt_lowest_problem *const p = f->p;
     const double *const x = column(f, f->x, i);
@@ -133,19 +133,19 @@ static void measure(finding *f, int i)
 }
 
 /* Compute the images and quotients of `count` vectors from the first on. */
-static mt_status look_at(finding *f, int first, int count, mt_err *err)
+static mt_status compute_quotients(finding *f, int first, int count, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
     MT_TRY(p->refine(p->context, count, column(f, f->x, first), column(f, f->ax, first),
                      f->own + first, err));
     for (int i = first; i < first + count; i++) {
-        measure(f, i);
+        set_quotient(f, i);
     }
     return MT_OK;
 }
 
 /* Search `more` modes in the complement of those found. */
-static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *err)
+static mt_status search_complement(finding *f, int more, int round, mt_arena *mem, mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
     const int room = (p->most < f->most ? p->most : f->most) - f->n;
@@ -162,10 +162,10 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
     int got = 0;
     MT_TRY(mt_lanczos_largest(&lanczos, mem, column(f, f->x, f->n), &got, err));
     f->exhausted = got < wanted || f->n + got == p->most;
-    MT_TRY(look_at(f, f->n, got, err));
+    MT_TRY(compute_quotients(f, f->n, got, err));
     for (int i = f->n; i < f->n + got; i++) {
         for (int at = i; at > 0 && f->theta[at] > f->theta[at - 1]; at--) {
-            swap(f, at, at - 1);
+            swap_vectors(f, at, at - 1);
         }
     }
     f->n += got;
@@ -174,7 +174,7 @@ static mt_status search(finding *f, int more, int round, mt_arena *mem, mt_err *
 
 /* Number of modes to count behind: at least the wanted ones, with the widest gap; -1: no
  * gap. */
-static int split(const finding *f)
+static int find_widest_gap(const finding *f)
 {
     const int wanted = f->p->count + f->n_free;
     const int least = f->n < wanted ? f->n : wanted;
@@ -208,13 +208,14 @@ static mt_status count_behind(const finding *f, int j, double *tau, int *below, 
 
 /* Search until the count confirms that no mode below *tau is missing; *upto: number of modes
  * found below. */
-static mt_status find(finding *f, mt_arena *mem, double *tau, int *upto, mt_err *err)
+static mt_status find_counted_modes(finding *f, mt_arena *mem, double *tau, int *upto,
+                                    mt_err *err)
 {
     const mt_lowest_problem *const p = f->p;
     int more = f->most;
     for (int round = 0; round < ROUNDS && p->most > 0; round++) {
-        MT_TRY(search(f, more, round, mem, err));
-        const int j = split(f);
+        MT_TRY(search_complement(f, more, round, mem, err));
+        const int j = find_widest_gap(f);
         more = f->n > MORE ? f->n : MORE; /* no end of equal ones is in sight */
         if (j > 0) {
             int below = 0;
@@ -286,7 +287,7 @@ static double lambda_error(const finding *f, int i, int upto, double tau)
 }
 
 /* Rigid-body modes come first: those that are known, then those that were found. */
-static void fill(const finding *f, int upto, double tau, mt_lowest_modes *out)
+static void write_found_modes(const finding *f, int upto, double tau, mt_lowest_modes *out)
 {
     const mt_lowest_problem *const p = f->p;
     mt_modes *const m = &out->modes;
@@ -337,7 +338,7 @@ static void purify(const finding *f, int n, double *x)
     for (int i = 0; i < n; i++) {
         double *const to = column(f, x, i);
         memcpy(to, column(f, f->ax, i), (size_t)f->p->n * sizeof *to);
-        const double *const weighed = weigh(f, to);
+        const double *const weighed = times_mass(f, to);
         for (int j = 0; j < i; j++) {
             const double *const softer = column(f, x, j);
             mt_axpy(f->p->n, -mt_dot(f->p->n, weighed, softer), softer, to);
@@ -361,14 +362,14 @@ static bool rough(const finding *f, int n)
 /* Replace all vectors found by Ritz vectors, and compute the first n again. Residuals of the
  * others come from the method's vectors without mass, in which rounding is as large as they
  * are. */
-static mt_status settle(finding *f, int n, mt_arena *scratch, mt_err *err)
+static mt_status replace_by_ritz_vectors(finding *f, int n, mt_arena *scratch, mt_err *err)
 {
     const ptrdiff_t found = f->n;
     double *const h = mt_arena_f64(scratch, (size_t)found, (size_t)found);
     double *const theta = mt_arena_f64(scratch, (size_t)found, 1);
     MT_TRY(mt_arena_check(scratch, err));
     for (ptrdiff_t i = 0; i < found; i++) {
-        const double *const weighed = weigh(f, column(f, f->ax, (int)i));
+        const double *const weighed = times_mass(f, column(f, f->ax, (int)i));
         for (ptrdiff_t k = 0; k <= i; k++) { /* the smaller image: its rounding is smaller */
             h[i + (found * k)] = mt_dot(f->p->n, weighed, column(f, f->x, (int)k));
         }
@@ -381,7 +382,7 @@ static mt_status settle(finding *f, int n, mt_arena *scratch, mt_err *err)
     mt_turn_columns(f->p->n, f->n, f->n, h, found, f->x, theta);
     mt_turn_columns(f->p->n, f->n, f->n, h, found, f->ax, theta);
     f->n_free = 0;
-    return look_at(f, 0, n, err);
+    return compute_quotients(f, 0, n, err);
 }
 
 static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena *mem,
@@ -396,10 +397,10 @@ static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena 
         f.difference = mt_arena_f64(scratch, (size_t)p->n, 1);
     }
     MT_TRY(grow(&f, f.most, scratch, err));
-    MT_TRY(find(&f, scratch, &out->tau, &upto, err));
+    MT_TRY(find_counted_modes(&f, scratch, &out->tau, &upto, err));
     const int few = whole(&f, upto);
     if (p->shapes && rough(&f, few)) {
-        MT_TRY(settle(&f, few, scratch, err));
+        MT_TRY(replace_by_ritz_vectors(&f, few, scratch, err));
     }
     const size_t n = (size_t)few;
     const size_t most = n + (size_t)p->n_rigid;
@@ -414,7 +415,7 @@ static mt_status answer(const mt_lowest_problem *p, mt_arena *scratch, mt_arena 
     out->below = p->n_rigid + upto;
     m->all = p->n_rigid + p->most;
     MT_TRY(mt_arena_check(mem, err));
-    fill(&f, upto, out->tau + p->shift, out);
+    write_found_modes(&f, upto, out->tau + p->shift, out);
     if (p->shapes && p->metric != NULL) {
         purify(&f, few, out->x);
     }

@@ -17,8 +17,8 @@ mt_modal_options mt_modal_options_default(void)
     return (mt_modal_options){.n_rigid = -1, .vectors = true, .accuracy = 0.0, .check = true};
 }
 
-static mt_status claim(const mt_mass_factor *mass, const mt_modal_options *opt, mt_arena *mem,
-                       mt_modes *out, mt_err *err)
+static mt_status claim_modes(const mt_mass_factor *mass, const mt_modal_options *opt,
+                             mt_arena *mem, mt_modes *out, mt_err *err)
 {
     const int count = mass->rank;
     const size_t c = (size_t)count;
@@ -119,9 +119,9 @@ static bool is_part(const mt_mass_factor *mass, const mt_modal_options *opt)
            least <= mass->rank / MT_MODAL_PART;
 }
 
-/* Number of lowest modes that contain all of a part; warning_list: and all modes that may be
+/* Number of lowest modes that contain all of a part; maybe_zero: and all modes that may be
  * 0. */
-static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_list)
+static int end_of(const mt_modes *out, const mt_modal_part *part, bool maybe_zero)
 {
     const bool all = part->first <= 0 && !(part->up_to > 0.0);
     int seen = 0;
@@ -132,14 +132,14 @@ static int end_of(const mt_modes *out, const mt_modal_part *part, bool warning_l
         const bool asked =
             seen <= part->first || (part->up_to > 0.0 && out->lambda[i] <= part->up_to);
         const bool repeated = i > 0 && end == i && out->cluster[i] == out->cluster[i - 1];
-        const bool warning = warning_list && out->lambda[i] <= out->error[i];
-        end = all || !flexible || asked || repeated || warning ? i + 1 : end;
+        const bool zero = maybe_zero && out->lambda[i] <= out->error[i];
+        end = all || !flexible || asked || repeated || zero ? i + 1 : end;
     }
     return end;
 }
 
 /* Drop modes and shapes that are not wanted. */
-static void keep(mt_modes *out, const mt_modal_options *opt)
+static void drop_unwanted_modes(mt_modes *out, const mt_modal_options *opt)
 {
     out->count = end_of(out, &opt->modes, false);
     out->shaped = opt->vectors ? end_of(out, &opt->shapes, true) : 0;
@@ -161,7 +161,7 @@ static mt_status compute(const double *k, const mt_mass_factor *mass,
     }
     judge_held(out, opt, rigid_most, null_count);
     mt_modal_find_clusters(out);
-    keep(out, opt);
+    drop_unwanted_modes(out, opt);
     if (later.n > 0 && !out->from_factor) {
         MT_TRY(mt_modal_plain_lowest(k, mass, &later, scratch, out, err));
     }
@@ -176,7 +176,7 @@ mt_status mt_modal_solve(const double *k, const mt_mass_factor *mass,
                          mt_arena *mem, mt_modes *out, mt_err *err)
 {
     const mt_modal_options used = opt == NULL ? mt_modal_options_default() : *opt;
-    MT_TRY(claim(mass, &used, mem, out, err));
+    MT_TRY(claim_modes(mass, &used, mem, out, err));
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     const mt_status rc = compute(k, mass, factor, &used, mem, out, err);
     mt_arena_rewind(mem, mark);

@@ -45,7 +45,8 @@ static const double RIGID = 1e3;
 /* Of everything else in a quotient. */
 static const double OTHER_ULPS = 64.0;
 
-static mt_status apply(void *context, int count, const double *x, double *y, mt_err *err)
+static mt_status apply_inverse_iteration(void *context, int count, const double *x, double *y,
+                                         mt_err *err)
 {
     mt_sparse *const s = context;
     const ptrdiff_t n = s->p->n;
@@ -99,7 +100,8 @@ double mt_sparse_load_noise(const mt_sparse *s, const double *x)
 }
 
 /* The quotient of y, whose constraints' forces are mu. */
-static void weigh(const mt_sparse *s, const double *y, const double *mu, mt_lowest_quotient *q)
+static void quotient_of_vector(const mt_sparse *s, const double *y, const double *mu,
+                               mt_lowest_quotient *q)
 {
     const mt_sparse_problem *const p = s->p;
     double k_noise = 0.0;
@@ -129,8 +131,8 @@ static int some(int first, int count)
     return count - first < MT_SPARSE_COLUMNS ? count - first : MT_SPARSE_COLUMNS;
 }
 
-static mt_status refine(void *context, int count, const double *x, double *y,
-                        mt_lowest_quotient *q, mt_err *err)
+static mt_status refine_vectors(void *context, int count, const double *x, double *y,
+                                mt_lowest_quotient *q, mt_err *err)
 {
     mt_sparse *const s = context;
     const ptrdiff_t n = s->p->n;
@@ -143,7 +145,7 @@ static mt_status refine(void *context, int count, const double *x, double *y,
         }
         MT_TRY(mt_sparse_solve(s, here, s->f, MT_SPARSE_SOLVED, to, err));
         for (int c = 0; c < here; c++) {
-            weigh(s, to + (n * c), s->mu + (rows * c), q + first + c);
+            quotient_of_vector(s, to + (n * c), s->mu + (rows * c), q + first + c);
         }
     }
     return MT_OK;
@@ -151,7 +153,8 @@ static mt_status refine(void *context, int count, const double *x, double *y,
 
 /* Every count is a bound from above: a chain of many bodies has modes of its constraints' own
  * flexibility, which are gone where these are stiffer. */
-static mt_status below(void *context, double tau, int known, int *n, bool *certain, mt_err *err)
+static mt_status count_modes_below(void *context, double tau, int known, int *n, bool *certain,
+                                   mt_err *err)
 {
     mt_sparse *const s = context;
     double least = 0.0;
@@ -183,7 +186,7 @@ static double highest(const mt_sparse *s)
 }
 
 /* H, with a shift where K alone may be singular. */
-static mt_status hold(mt_sparse *s, bool *held, char *why, mt_err *err)
+static mt_status factor_stiffness(mt_sparse *s, bool *held, char *why, mt_err *err)
 {
     double shift = FIRST_SHIFT * highest(s);
     *held = s->stiffest > 0.0;
@@ -216,8 +219,8 @@ static double lowest_lambda(const mt_modes *m)
     return lowest < HUGE_VAL ? lowest : 0.0;
 }
 
-static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *stable,
-                      mt_err *err)
+static mt_status find_sparse_modes(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out,
+                                   bool *stable, mt_err *err)
 {
     const mt_sparse_problem *const p = s->p;
     for (int round = 0;; round++) {
@@ -228,10 +231,10 @@ static mt_status find(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *s
                                            .block = BLOCK,
                                            .shift = s->shift,
                                            .shapes = p->shapes,
-                                           .apply = apply,
+                                           .apply = apply_inverse_iteration,
                                            .metric = mt_sparse_metric,
-                                           .refine = refine,
-                                           .below = below,
+                                           .refine = refine_vectors,
+                                           .below = count_modes_below,
                                            .context = s};
         s->refined = p->a.n_rows > 0 || s->least < WELL;
         MT_TRY(mt_modal_lowest(&problem, mem, out, err));
@@ -271,8 +274,8 @@ static void clear_of_softer(mt_sparse *s, int i, const double *x, const double *
 /* One more step of inverse iteration, (K + s M) Y + A^T N = M X, and among the vibration modes
  * the Ritz vectors: of X^T M Y, X being orthonormal. x := y, mu := nu, both over the size of
  * y. */
-static mt_status shape(mt_sparse *s, mt_arena *mem, const mt_lowest_modes *out, double **mu,
-                       mt_err *err)
+static mt_status refine_shapes(mt_sparse *s, mt_arena *mem, const mt_lowest_modes *out,
+                               double **mu, mt_err *err)
 {
     const int n = s->p->n;
     const int rows = s->p->a.n_rows;
@@ -348,15 +351,15 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
         mt_arena_clear(&work);
         s = mt_sparse_try(p, i, &work);
         rc = mt_sparse_prepare(&s, err);
-        rc = rc == MT_OK ? hold(&s, answered, why, err) : rc;
+        rc = rc == MT_OK ? factor_stiffness(&s, answered, why, err) : rc;
         more = !*answered && s.stiffest > 0.0;
     }
     if (rc == MT_OK && *answered) {
-        rc = find(&s, mem, out, answered, err);
+        rc = find_sparse_modes(&s, mem, out, answered, err);
         if (!*answered) {
             (void)mt_snprintf(why, MT_SPARSE_WHY, "the mechanism is unstable");
         }
-        rc = rc == MT_OK && *answered && p->shapes ? shape(&s, mem, out, mu, err) : rc;
+        rc = rc == MT_OK && *answered && p->shapes ? refine_shapes(&s, mem, out, mu, err) : rc;
     }
     mt_arena_free(&work);
     return rc;

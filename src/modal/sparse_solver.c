@@ -21,7 +21,7 @@ struct mt_sparse_solver {
 };
 
 /* The factor with a shift, from the least stiffness of constraints on. */
-static mt_status factor(mt_sparse_solver *o, double shift, bool *sound, mt_err *err)
+static mt_status factor_with_shift(mt_sparse_solver *o, double shift, bool *sound, mt_err *err)
 {
     const int tries = mt_sparse_tries(&o->p);
     *sound = false;
@@ -46,10 +46,10 @@ mt_status mt_sparse_solver_new(const mt_sparse_problem *p, bool held, double lam
     MT_TRY(mt_arena_check(mem, err));
     *o = (mt_sparse_solver){.p = *p, .mem = mem};
     if (held) {
-        MT_TRY(factor(o, 0.0, &sound, err));
+        MT_TRY(factor_with_shift(o, 0.0, &sound, err));
     }
     if (!sound) {
-        MT_TRY(factor(o, lambda, &sound, err));
+        MT_TRY(factor_with_shift(o, lambda, &sound, err));
     }
     *out = sound ? o : NULL;
     return MT_OK;

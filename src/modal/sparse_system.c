@@ -40,12 +40,12 @@ static mt_status column_init(column *c, int n, mt_arena *mem, mt_err *err)
     return mt_arena_check(mem, err);
 }
 
-static void begin(column *c)
+static void clear_column(column *c)
 {
     c->n = 0;
 }
 
-static void add(column *c, int i, int j, double value)
+static void add_to_column(column *c, int i, int j, double value)
 {
     if (c->mark[i] != j + 1) {
         c->mark[i] = j + 1;
@@ -64,7 +64,7 @@ static void add_squares(column *c, const mt_rows *rows, const double *weight,
         for (int q = rows->start[r]; q < rows->start[r + 1]; q++) {
             const int i = rows->index[q];
             if (i >= j) {
-                add(c, i, j, part * rows->value[q]);
+                add_to_column(c, i, j, part * rows->value[q]);
             }
         }
     }
@@ -80,8 +80,8 @@ typedef struct sums {
 
 static void sum_mass(const sums *from, int j, column *c)
 {
-    begin(c);
-    add(c, j, j, 0.0);
+    clear_column(c);
+    add_to_column(c, j, j, 0.0);
     add_squares(c, &from->s->p->m.row, from->s->p->m.c, &from->m, j, 1.0);
 }
 
@@ -91,14 +91,14 @@ static void sum_stiffness(const sums *from, int j, column *c)
     const mt_sparse *const s = from->s;
     const mt_sparse_problem *const p = s->p;
     const mt_lower *const g = p->g;
-    begin(c);
+    clear_column(c);
     for (int q = s->m.start[j]; q < s->m.start[j + 1]; q++) {
-        add(c, s->m.row[q], j, 0.0);
+        add_to_column(c, s->m.row[q], j, 0.0);
     }
     add_squares(c, &p->k.row, p->k.c, &from->k, j, 1.0);
     add_squares(c, &p->a, s->gamma, &s->by_state, j, from->part);
     for (int q = g != NULL ? g->start[j] : 0; g != NULL && q < g->start[j + 1]; q++) {
-        add(c, g->row[q], j, g->value[q]);
+        add_to_column(c, g->row[q], j, g->value[q]);
     }
 }
 
@@ -110,8 +110,8 @@ static int ascending(const void *a, const void *b)
 }
 
 /* Column by column, once for the pattern. */
-static mt_status assemble(const sums *from, void (*sum)(const sums *, int, column *), column *c,
-                          mt_lower *out, mt_err *err)
+static mt_status assemble_lower(const sums *from, void (*sum)(const sums *, int, column *),
+                                column *c, mt_lower *out, mt_err *err)
 {
     const int n = from->s->p->n;
     mt_arena *const mem = from->s->mem;
@@ -152,8 +152,8 @@ static mt_status assemble_both(mt_sparse *s, mt_arena *scratch, mt_err *err)
     mt_rows_transpose(&p->k.row, p->n, scratch, &from.k);
     mt_rows_transpose(&p->m.row, p->n, scratch, &from.m);
     MT_TRY(column_init(&c, p->n, scratch, err));
-    MT_TRY(assemble(&from, sum_mass, &c, &s->m, err));
-    return assemble(&from, sum_stiffness, &c, &s->k, err);
+    MT_TRY(assemble_lower(&from, sum_mass, &c, &s->m, err));
+    return assemble_lower(&from, sum_stiffness, &c, &s->k, err);
 }
 
 /* y := M x. */
@@ -282,8 +282,8 @@ mt_status mt_sparse_solve(mt_sparse *s, int count, const double *f, double close
 }
 
 /* *regular: no pivot is 0. */
-static mt_status make(mt_sparse *s, const mt_lower *h, double c, const mt_lower *m,
-                      bool *regular, mt_err *err)
+static mt_status make_factor(mt_sparse *s, const mt_lower *h, double c, const mt_lower *m,
+                             bool *regular, mt_err *err)
 {
     const mt_status rc = mt_factor_make(&s->factor, h, c, m, s->mem, NULL);
     s->holds = false;
@@ -294,7 +294,7 @@ static mt_status make(mt_sparse *s, const mt_lower *h, double c, const mt_lower 
 mt_status mt_sparse_hold(mt_sparse *s, mt_err *err)
 {
     if (!s->holds) {
-        MT_TRY(make(s, &s->k, s->shift, &s->m, &s->holds, err));
+        MT_TRY(make_factor(s, &s->k, s->shift, &s->m, &s->holds, err));
     }
     return MT_OK;
 }
@@ -327,7 +327,7 @@ mt_status mt_sparse_inertia(mt_sparse *s, double part, double c, int *negative, 
     bool regular = false;
     mt_status rc = part == 1.0 ? MT_OK : mt_arena_init(&scratch, 0, err);
     rc = rc == MT_OK && part != 1.0 ? stiffen(s, part, &scratch, &h, err) : rc;
-    rc = rc == MT_OK ? make(s, &h, c, &s->m, &regular, err) : rc;
+    rc = rc == MT_OK ? make_factor(s, &h, c, &s->m, &regular, err) : rc;
     mt_arena_free(&scratch);
     MT_TRY(rc);
     *negative = s->factor.negative;
@@ -339,7 +339,7 @@ mt_status mt_sparse_factor(mt_sparse *s, double shift, bool *sound, mt_err *err)
 {
     bool regular = false;
     s->shift = shift;
-    MT_TRY(make(s, &s->k, shift, &s->m, &regular, err));
+    MT_TRY(make_factor(s, &s->k, shift, &s->m, &regular, err));
     s->holds = true;
     s->least = s->factor.least;
     *sound = regular && s->factor.negative == 0 && s->least > REGULAR;
@@ -405,7 +405,7 @@ static mt_status square_constraints(mt_sparse *s, mt_arena *scratch, mt_lower *h
     double *const sum = mt_arena_f64(scratch, (size_t)p->n, 1);
     MT_TRY(column_init(&c, p->n, scratch, err));
     for (int j = 0; j < p->n; j++) {
-        begin(&c);
+        clear_column(&c);
         add_squares(&c, &p->a, s->gamma, &s->by_state, j, 1.0);
         for (int q = h->start[j]; q < h->start[j + 1]; q++) {
             const int i = h->row[q];
@@ -425,7 +425,7 @@ static mt_status square_constraints(mt_sparse *s, mt_arena *scratch, mt_lower *h
  * roundings of the norm, so that c need be no more than these. The joints of a chain of n
  * bodies are 1/n from dependent, their square some 2/n^2.
  */
-static mt_status rank(mt_sparse *s, mt_arena *scratch, mt_err *err)
+static mt_status rank_of_constraints(mt_sparse *s, mt_arena *scratch, mt_err *err)
 {
     mt_lower h;
     double norm = 0.0;
@@ -438,7 +438,7 @@ static mt_status rank(mt_sparse *s, mt_arena *scratch, mt_err *err)
         for (int j = 0; j < h.n; j++) { /* the diagonal comes first */
             h.value[h.start[j]] -= c - was;
         }
-        MT_TRY(make(s, &h, 0.0, NULL, &regular, err));
+        MT_TRY(make_factor(s, &h, 0.0, NULL, &regular, err));
         s->freedoms = s->factor.negative;
         certain = (regular && s->factor.least > MT_SPARSE_CERTAIN) || !(c < DEPENDENT);
         was = c;
@@ -455,7 +455,7 @@ mt_status mt_sparse_freedoms(mt_sparse *s, mt_err *err)
         return MT_OK;
     }
     mt_status rc = mt_arena_init(&scratch, 0, err);
-    rc = rc == MT_OK ? rank(s, &scratch, err) : rc;
+    rc = rc == MT_OK ? rank_of_constraints(s, &scratch, err) : rc;
     mt_arena_free(&scratch);
     return rc;
 }

@@ -18,7 +18,7 @@
 /* rad: more than one turn from the reference position is degrees, or a motor's shaft. */
 static const double ONE_TURN = 6.283185307179586;
 
-static double value_of(const mt_lint *j, mt_num num)
+static double value_of_number(const mt_lint *j, mt_num num)
 {
     return num == MT_ABSENT ? nan("") : j->value[num];
 }
@@ -39,8 +39,8 @@ mt_warning *mt_lint_addr(mt_lint *j, mt_warning *warning, mt_addr addr, const ch
     return warning;
 }
 
-static void place(mt_lint *j, mt_warning *warning, const mt_item *item, mt_num num,
-                  const char *member)
+static void locate_item_member(mt_lint *j, mt_warning *warning, const mt_item *item, mt_num num,
+                               const char *member)
 {
     const char *const pointer =
         mt_arena_printf(j->out->mem, "/%s/%d/%s", item->list, item->index, member);
@@ -50,10 +50,11 @@ static void place(mt_lint *j, mt_warning *warning, const mt_item *item, mt_num n
 static void fault(mt_lint *j, const mt_item *item, mt_num num, const char *member,
                   const char *why)
 {
-    place(j,
-          mt_warning_add(j->out, MT_LEVEL_FAULT, "value", "%s \"%s\": %s (%g) %s", item->what,
-                         item->name, member, j->value[num], why == NULL ? "" : why),
-          item, num, member);
+    locate_item_member(j,
+                       mt_warning_add(j->out, MT_LEVEL_FAULT, "value", "%s \"%s\": %s (%g) %s",
+                                      item->what, item->name, member, j->value[num],
+                                      why == NULL ? "" : why),
+                       item, num, member);
 }
 
 /* A gear that passes nothing on. */
@@ -67,7 +68,7 @@ static void nonzero(mt_lint *j, const mt_item *item, mt_num num, const char *mem
 }
 
 /* By the row that the member's table names. Returns false where it is impossible. */
-static bool number(mt_lint *j, const mt_item *item, mt_num num, const char *member)
+static bool lint_item_number(mt_lint *j, const mt_item *item, mt_num num, const char *member)
 {
     if (num == MT_ABSENT) {
         return true;
@@ -80,10 +81,11 @@ static bool number(mt_lint *j, const mt_item *item, mt_num num, const char *memb
     }
     const char *const doubted = mt_possible_doubted(p, v);
     if (doubted != NULL) {
-        place(j,
-              mt_warning_add(j->out, MT_LEVEL_WARNING, p->warning, "%s \"%s\": %s (%g) is %s",
-                             item->what, item->name, member, v, doubted),
-              item, num, member);
+        locate_item_member(j,
+                           mt_warning_add(j->out, MT_LEVEL_WARNING, p->warning,
+                                          "%s \"%s\": %s (%g) is %s", item->what, item->name,
+                                          member, v, doubted),
+                           item, num, member);
     }
     return true;
 }
@@ -97,7 +99,8 @@ static void inertia(mt_lint *j, const mt_item *item, const mt_body *b)
     bool possible = true;
     for (int k = 0; k < (plane ? 1 : 3); k++) {
         possible =
-            number(j, item, b->inertia[k], plane ? "inertia_kg_m2" : members[k]) && possible;
+            lint_item_number(j, item, b->inertia[k], plane ? "inertia_kg_m2" : members[k]) &&
+            possible;
     }
     for (int k = 0; k < 6 && !plane; k++) {
         v[k] = b->inertia[k] == MT_ABSENT ? 0.0 : j->value[b->inertia[k]];
@@ -118,7 +121,7 @@ static void lint_bodies(mt_lint *j)
         const mt_body *const b = &j->model->bodies[i];
         const mt_item item = {"body", "bodies", i, b->name.s};
         if (mt_model_present(&b->in, j->configuration)) {
-            (void)number(j, &item, b->mass, "mass_kg");
+            (void)lint_item_number(j, &item, b->mass, "mass_kg");
             if (!b->point_mass) {
                 inertia(j, &item, b);
             }
@@ -132,7 +135,7 @@ static void listed(mt_lint *j, const mt_item *item, int n, const mt_num *list,
     for (int k = 0; k < n; k++) {
         char entry[64]; /* a list of one may be written as a number */
         (void)mt_snprintf(entry, sizeof entry, n > 1 ? "%s/%d" : "%s", member, k);
-        (void)number(j, item, list[k], entry);
+        (void)lint_item_number(j, item, list[k], entry);
     }
 }
 
@@ -140,27 +143,27 @@ static void lint_section(mt_lint *j, const mt_item *item, const mt_section *s)
 {
     const bool tube = s->shape == MT_SECTION_TUBE;
     const char *const outer = tube ? "section/outer_diameter_m" : "section/diameter_m";
-    (void)number(j, item, s->width, "section/width_m");
-    (void)number(j, item, s->height, "section/height_m");
-    (void)number(j, item, s->diameter, outer);
-    (void)number(j, item, s->inner_diameter, "section/inner_diameter_m");
-    if (tube && value_of(j, s->inner_diameter) >= value_of(j, s->diameter)) {
+    (void)lint_item_number(j, item, s->width, "section/width_m");
+    (void)lint_item_number(j, item, s->height, "section/height_m");
+    (void)lint_item_number(j, item, s->diameter, outer);
+    (void)lint_item_number(j, item, s->inner_diameter, "section/inner_diameter_m");
+    if (tube && value_of_number(j, s->inner_diameter) >= value_of_number(j, s->diameter)) {
         fault(j, item, s->inner_diameter, "section/inner_diameter_m",
               mt_arena_printf(j->out->mem,
                               "must be below outer_diameter_m (%g): the wall has no thickness",
-                              value_of(j, s->diameter)));
+                              value_of_number(j, s->diameter)));
     }
-    (void)number(j, item, s->area, "section/area_m2");
-    (void)number(j, item, s->second_moment, "section/second_moment_m4");
-    (void)number(j, item, s->second_moment_other, "section/second_moment_other_m4");
-    (void)number(j, item, s->torsion_constant, "section/torsion_constant_m4");
+    (void)lint_item_number(j, item, s->area, "section/area_m2");
+    (void)lint_item_number(j, item, s->second_moment, "section/second_moment_m4");
+    (void)lint_item_number(j, item, s->second_moment_other, "section/second_moment_other_m4");
+    (void)lint_item_number(j, item, s->torsion_constant, "section/torsion_constant_m4");
 }
 
 static void lint_shear(mt_lint *j, const mt_item *item, const mt_shear *s)
 {
-    (void)number(j, item, s->coefficient, "shear/coefficient");
-    (void)number(j, item, s->coefficient_other, "shear/coefficient_other");
-    (void)number(j, item, s->poissons_ratio, "shear/poissons_ratio");
+    (void)lint_item_number(j, item, s->coefficient, "shear/coefficient");
+    (void)lint_item_number(j, item, s->coefficient_other, "shear/coefficient_other");
+    (void)lint_item_number(j, item, s->poissons_ratio, "shear/poissons_ratio");
 }
 
 static void lint_links(mt_lint *j)
@@ -171,18 +174,18 @@ static void lint_links(mt_lint *j)
         if (!mt_model_present(&l->in, j->configuration)) {
             continue;
         }
-        (void)number(j, &item, l->mass, "mass_kg");
-        (void)number(j, &item, l->density, "density_kg_per_m3");
-        (void)number(j, &item, l->youngs_modulus, "youngs_modulus_pa");
-        (void)number(j, &item, l->shear_modulus, "shear_modulus_pa");
+        (void)lint_item_number(j, &item, l->mass, "mass_kg");
+        (void)lint_item_number(j, &item, l->density, "density_kg_per_m3");
+        (void)lint_item_number(j, &item, l->youngs_modulus, "youngs_modulus_pa");
+        (void)lint_item_number(j, &item, l->shear_modulus, "shear_modulus_pa");
         lint_section(j, &item, &l->section);
         lint_shear(j, &item, &l->shear);
         listed(j, &item, l->n_stiffness, l->stiffness, "stiffness_n_m_per_rad");
         listed(j, &item, l->n_element_length, l->element_length, "element_length_m");
         listed(j, &item, l->n_element_mass, l->element_mass, "element_mass_kg");
         listed(j, &item, l->n_element_inertia, l->element_inertia, "element_inertia_kg_m2");
-        (void)number(j, &item, l->radius_of_gyration, "radius_of_gyration_m");
-        (void)number(j, &item, l->loss_factor, "loss_factor");
+        (void)lint_item_number(j, &item, l->radius_of_gyration, "radius_of_gyration_m");
+        (void)lint_item_number(j, &item, l->loss_factor, "loss_factor");
     }
 }
 
@@ -199,11 +202,11 @@ static void lint_springs(mt_lint *j)
         if (!mt_model_present(&s->in, j->configuration)) {
             continue;
         }
-        (void)number(j, &item, s->youngs_modulus, "youngs_modulus_pa");
-        (void)number(j, &item, s->area, "area_m2"); /* 0: a bar that may be added */
-        (void)number(j, &item, s->density, "density_kg_per_m3");
-        (void)number(j, &item, s->free_length, "free_length_m");
-        (void)number(j, &item, s->loss_factor, "loss_factor");
+        (void)lint_item_number(j, &item, s->youngs_modulus, "youngs_modulus_pa");
+        (void)lint_item_number(j, &item, s->area, "area_m2"); /* 0: a bar that may be added */
+        (void)lint_item_number(j, &item, s->density, "density_kg_per_m3");
+        (void)lint_item_number(j, &item, s->free_length, "free_length_m");
+        (void)lint_item_number(j, &item, s->loss_factor, "loss_factor");
     }
 }
 
@@ -212,7 +215,7 @@ static void lint_sensors(mt_lint *j)
     for (int i = 0; i < j->model->n_sensors; i++) {
         const mt_sensor *const s = &j->model->sensors[i];
         const mt_item item = {"sensor", "sensors", i, s->name.s};
-        (void)number(j, &item, s->fraction, "fraction");
+        (void)lint_item_number(j, &item, s->fraction, "fraction");
     }
 }
 
@@ -222,8 +225,8 @@ static void lint_joints(mt_lint *j)
         const mt_joint *const joint = &j->model->joints[i];
         const mt_item item = {"joint", "joints", i, joint->name.s};
         if (mt_model_present(&joint->in, j->configuration)) {
-            (void)number(j, &item, joint->length, "length_m");
-            (void)number(j, &item, joint->mass, "mass_kg");
+            (void)lint_item_number(j, &item, joint->length, "length_m");
+            (void)lint_item_number(j, &item, joint->mass, "mass_kg");
             nonzero(j, &item, joint->ratio, "ratio");
             nonzero(j, &item, joint->ratio_m_per_rad, "ratio_m_per_rad");
         }
@@ -242,7 +245,7 @@ const char *mt_lint_drive_pointer(const mt_lint *j, const char *member)
 static void lint_drive(mt_lint *j)
 {
     const mt_configuration *const c = &j->model->configurations[j->configuration];
-    const double v = c->drive.given ? value_of(j, c->drive.position) : 0.0;
+    const double v = c->drive.given ? value_of_number(j, c->drive.position) : 0.0;
     if (!c->drive.position_is_angle || !(fabs(v) > ONE_TURN)) {
         return;
     }

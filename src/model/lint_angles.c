@@ -26,7 +26,7 @@ typedef struct part {
 } part;
 
 /* The number that gives a parameter its value here. */
-static mt_num number_of(const mt_lint *j, int parameter)
+static mt_num number_of_parameter(const mt_lint *j, int parameter)
 {
     const mt_configuration *const c = &j->model->configurations[j->configuration];
     for (int i = 0; i < c->n_overrides; i++) {
@@ -41,7 +41,7 @@ static part leaf(const mt_lint *j, const mt_code *c)
 {
     if (c->op == MT_OP_PARAM) {
         const mt_kind kind = mt_model_kind(j->model, c->param);
-        const mt_num num = number_of(j, c->param);
+        const mt_num num = number_of_parameter(j, c->param);
         const double v = num == MT_ABSENT ? nan("") : j->value[num];
         const bool unit = kind == MT_KIND_ANGLE || kind == MT_KIND_PI;
         return (part){v, unit ? 0.0 : v, unit, c->param};
@@ -105,10 +105,10 @@ static bool is_said(const mt_lint *j, mt_addr addr)
     return false;
 }
 
-static void say(mt_lint *j, mt_num num, const part *angle, const char *function)
+static void warn_of_degrees(mt_lint *j, mt_num num, const part *angle, const char *function)
 {
     const bool named = angle->parameter != MT_ABSENT;
-    const mt_num given = named ? number_of(j, angle->parameter) : num;
+    const mt_num given = named ? number_of_parameter(j, angle->parameter) : num;
     const double own = named ? j->value[given] : nan("");
     const bool whole = fabs(own) > WHOLE_TURN && !(fabs(own - angle->bare) > 0.0);
     const mt_addr addr = j->model->nums[whole ? given : num].addr;
@@ -164,7 +164,7 @@ static void lint_number(mt_lint *j, mt_num num, part *stack)
             return;
         }
         if (function != NULL && fabs(stack[n - 1].bare) > WHOLE_TURN) {
-            say(j, num, &stack[n - 1], function);
+            warn_of_degrees(j, num, &stack[n - 1], function);
             return;
         }
         if (operands == 1) {

@@ -37,8 +37,8 @@ static const char *escaped(mt_arena *mem, const char *entry)
     return text;
 }
 
-static void say(mt_lint *j, mt_num num, const place *at, mt_warning_level level,
-                const char *why)
+static void report_damping(mt_lint *j, mt_num num, const place *at, mt_warning_level level,
+                           const char *why)
 {
     mt_arena *const mem = j->out->mem;
     const mt_configuration *const owner = owner_of(j);
@@ -69,9 +69,10 @@ static void coefficient(mt_lint *j, mt_num num, const place *at)
     const double v = j->value[num];
     const char *const doubted = mt_possible_doubted(p, v);
     if (!mt_possible_is(p, v)) {
-        say(j, num, at, MT_LEVEL_FAULT, p->impossible);
+        report_damping(j, num, at, MT_LEVEL_FAULT, p->impossible);
     } else if (doubted != NULL) {
-        say(j, num, at, MT_LEVEL_WARNING, mt_arena_printf(j->out->mem, "is %s", doubted));
+        report_damping(j, num, at, MT_LEVEL_WARNING,
+                       mt_arena_printf(j->out->mem, "is %s", doubted));
     }
 }
 

@@ -80,7 +80,7 @@ static mt_addr addr_of(const mt_position *p)
     return p->addr;
 }
 
-static void include(const mt_lint *j, box *b, const mt_position *p)
+static void include_position(const mt_lint *j, box *b, const mt_position *p)
 {
     double x[3];
     if (!mt_lint_position(j, p, x)) {
@@ -100,7 +100,7 @@ static void include_sides(const mt_lint *j, box *boxes, const mt_attach bodies[2
     for (int side = 0; side < 2 && n_at > 0; side++) {
         const mt_attach *const a = &bodies[side];
         if (a->name.s != NULL && a->kind == MT_ATTACH_BODY && a->index >= 0) {
-            include(j, &boxes[a->index], &at[n_at == 2 ? side : 0]);
+            include_position(j, &boxes[a->index], &at[n_at == 2 ? side : 0]);
         }
     }
 }
@@ -113,20 +113,20 @@ static box box_without(const mt_lint *j, const mt_joint *joint, const mt_spring 
     box all = {.n = 0};
     for (int i = 0; i < m->n_bodies; i++) {
         if (mt_model_present(&m->bodies[i].in, j->configuration)) {
-            include(j, &all, &m->bodies[i].centre);
+            include_position(j, &all, &m->bodies[i].centre);
         }
     }
     for (int i = 0; i < m->n_links; i++) {
         if (mt_model_present(&m->links[i].in, j->configuration)) {
-            include(j, &all, &m->links[i].from);
-            include(j, &all, &m->links[i].to);
+            include_position(j, &all, &m->links[i].from);
+            include_position(j, &all, &m->links[i].to);
         }
     }
     for (int i = 0; i < m->n_joints; i++) {
         const mt_joint *const at = &m->joints[i];
         for (int k = 0; at != joint && k < at->n_at; k++) {
             if (mt_model_present(&at->in, j->configuration)) {
-                include(j, &all, &at->at[k]);
+                include_position(j, &all, &at->at[k]);
             }
         }
     }
@@ -134,19 +134,19 @@ static box box_without(const mt_lint *j, const mt_joint *joint, const mt_spring 
         const mt_spring *const at = &m->springs[i];
         for (int k = 0; at != spring && k < at->n_at; k++) {
             if (mt_model_present(&at->in, j->configuration)) {
-                include(j, &all, &at->at[k]);
+                include_position(j, &all, &at->at[k]);
             }
         }
     }
     return all;
 }
 
-static double size_of(const box *b)
+static double size_of_box(const box *b)
 {
     return b->n == 0 ? 0.0 : distance(b->low, b->high);
 }
 
-static void along(const double from[3], const double to[3], double part, double out[3])
+static void point_between(const double from[3], const double to[3], double part, double out[3])
 {
     for (int k = 0; k < 3; k++) {
         out[k] = from[k] + (part * (to[k] - from[k]));
@@ -178,9 +178,10 @@ static segment segment_of(const mt_lint *j, const mt_attach *a)
     const bool node = a->kind == MT_ATTACH_LINK_NODE;
     const int first = node ? a->element : a->part;
     s.whole = distance(from, to);
-    along(from, to, part_of_whole(j, l, first, s.whole), s.a);
-    along(from, to,
-          part_of_whole(j, l, first + (node || l->kind == MT_LINK_BEAM ? 0 : 1), s.whole), s.b);
+    point_between(from, to, part_of_whole(j, l, first, s.whole), s.a);
+    point_between(
+        from, to,
+        part_of_whole(j, l, first + (node || l->kind == MT_LINK_BEAM ? 0 : 1), s.whole), s.b);
     return s;
 }
 
@@ -194,7 +195,7 @@ static double distance_to(const segment *s, const double x[3])
         dd += d * d;
         dx += d * (x[k] - s->a[k]);
     }
-    along(s->a, s->b, dd > 0.0 ? fmin(fmax(dx / dd, 0.0), 1.0) : 0.0, nearest);
+    point_between(s->a, s->b, dd > 0.0 ? fmin(fmax(dx / dd, 0.0), 1.0) : 0.0, nearest);
     return distance(nearest, x);
 }
 
@@ -293,7 +294,7 @@ static void lint_side(mt_lint *j, const holder *h, int side)
     if (a->kind == MT_ATTACH_BODY) {
         const box others = box_without(j, h->joint, h->spring);
         const double off = distance_to_body(j, a->index, h->joint, h->spring, x);
-        const double size = size_of(&others);
+        const double size = size_of_box(&others);
         if (size > 0.0 && off > DOUBTED_OFF_BODY * size && isfinite(off)) {
             say_off(
                 j, h, side, MT_LEVEL_WARNING, off,
@@ -443,7 +444,7 @@ static box *boxes_of_bodies(const mt_lint *j)
     const mt_model *const m = j->model;
     box *const boxes = mt_arena_alloc(j->out->mem, (size_t)m->n_bodies, sizeof *boxes);
     for (int i = 0; i < m->n_bodies && boxes != NULL; i++) {
-        include(j, &boxes[i], &m->bodies[i].centre);
+        include_position(j, &boxes[i], &m->bodies[i].centre);
     }
     for (int i = 0; i < m->n_joints && boxes != NULL; i++) {
         const mt_joint *const o = &m->joints[i];
@@ -460,7 +461,7 @@ static box *boxes_of_bodies(const mt_lint *j)
     for (int i = 0; i < m->n_sensors && boxes != NULL; i++) {
         const mt_sensor *const o = &m->sensors[i];
         if (o->on_kind == MT_ATTACH_BODY && o->on >= 0 && o->at.given) {
-            include(j, &boxes[o->on], &o->at);
+            include_position(j, &boxes[o->on], &o->at);
         }
     }
     return boxes;
@@ -539,7 +540,7 @@ void mt_lint_geometry(mt_lint *j)
 {
     const mt_model *const m = j->model;
     const box all = box_without(j, NULL, NULL);
-    const double size = size_of(&all);
+    const double size = size_of_box(&all);
     const int first = j->out->n;
     int dampers = 0;
     for (int i = 0; i < m->n_joints; i++) {
@@ -572,7 +573,7 @@ void mt_lint_geometry(mt_lint *j)
     for (int i = 0; i < m->n_bodies && own != NULL; i++) {
         if (mt_model_present(&m->bodies[i].in, j->configuration)) {
             const mt_item item = {"body", "bodies", i, m->bodies[i].name.s};
-            lint_gyration(j, &item, &m->bodies[i], size_of(&own[i]), size);
+            lint_gyration(j, &item, &m->bodies[i], size_of_box(&own[i]), size);
         }
     }
     for (int i = 0; i < m->n_links; i++) {

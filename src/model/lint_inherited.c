@@ -5,7 +5,8 @@
 
 #include <stddef.h>
 
-static void say(mt_lint *j, mt_addr addr, const char *member, const char *text)
+static void warn_of_dropped_member(mt_lint *j, mt_addr addr, const char *member,
+                                   const char *text)
 {
     (void)mt_lint_addr(
         j, mt_warning_add(j->out, MT_LEVEL_WARNING, "dropped", "%s", text == NULL ? "" : text),
@@ -19,7 +20,8 @@ static void say(mt_lint *j, mt_addr addr, const char *member, const char *text)
 static void lint_hold(mt_lint *j, const mt_drive *own, const mt_drive *other)
 {
     if (own->given && !own->inherited && other->given && other->trim && !own->hold_given) {
-        say(j, own->addr, "drive",
+        warn_of_dropped_member(
+            j, own->addr, "drive",
             mt_arena_printf(j->out->mem,
                             "drops the inherited \"hold\", which trims \"%s\": this drive "
                             "locks \"%s\"; write \"hold\": \"lock\" if that is meant",
@@ -48,7 +50,8 @@ static void lint_damping(mt_lint *j, const mt_damping *own, const mt_damping *ot
         }
     }
     if (dropped != NULL) {
-        say(j, own->addr, "damping",
+        warn_of_dropped_member(
+            j, own->addr, "damping",
             mt_arena_printf(j->out->mem,
                             "drops the inherited %s: a configuration's own damping takes the "
                             "place of all that it would inherit",

@@ -177,7 +177,7 @@ static bool needs_drawn_length(const mt_lint *j, const mt_spring *s)
            s->free_length == MT_ABSENT;
 }
 
-static double length_of(const mt_lint *j, const mt_num axis[3], double x[3])
+static double direction_of_axis(const mt_lint *j, const mt_num axis[3], double x[3])
 {
     double largest = 0.0;
     for (int k = 0; k < AXES; k++) {
@@ -207,8 +207,8 @@ static void lint_axes(mt_lint *j, const mt_item *item, const mt_joint *joint)
     static const char NO_LENGTH[] = "has length 0 and no direction";
     double a[AXES];
     double b[AXES];
-    const double first = joint->has_axis ? length_of(j, joint->axis, a) : 1.0;
-    const double second = joint->has_axis_b ? length_of(j, joint->axis_b, b) : 1.0;
+    const double first = joint->has_axis ? direction_of_axis(j, joint->axis, a) : 1.0;
+    const double second = joint->has_axis_b ? direction_of_axis(j, joint->axis_b, b) : 1.0;
     if (first == 0.0) {
         fault_axis(j, item, joint->axis, joint->name.addr, "axis", NO_LENGTH);
     }
@@ -241,7 +241,7 @@ static void lint_hinge_axis(mt_lint *j, int i, const mt_link *l)
     if (!l->has_hinge_axis || j->model->dimension == 2) {
         return;
     }
-    if (length_of(j, l->hinge_axis, axis) == 0.0) {
+    if (direction_of_axis(j, l->hinge_axis, axis) == 0.0) {
         fault_axis(j, &item, l->hinge_axis, l->name.addr, "hinge_axis",
                    "has length 0 and no direction");
         return;

@@ -70,7 +70,7 @@ int mt_model_lookup(const void *model, const char *name, size_t length)
     return MT_ABSENT;
 }
 
-static int find(const mt_names *table, const char *name)
+static int find_name(const mt_names *table, const char *name)
 {
     bool found = false;
     return name == NULL ? MT_ABSENT : mt_names_find(table, name, strlen(name), &found);
@@ -78,17 +78,17 @@ static int find(const mt_names *table, const char *name)
 
 int mt_model_find_parameter(const mt_model *model, const char *name)
 {
-    return find(&model->tables->parameters, name);
+    return find_name(&model->tables->parameters, name);
 }
 
 int mt_model_find_configuration(const mt_model *model, const char *name)
 {
-    return find(&model->tables->configurations, name);
+    return find_name(&model->tables->configurations, name);
 }
 
 int mt_model_find_mode(const mt_model *model, const char *name)
 {
-    return find(&model->tables->modes, name);
+    return find_name(&model->tables->modes, name);
 }
 
 /* Bodies and links share a table, where link i has the value -1 - i. `found` tells absent (-1)
@@ -102,17 +102,17 @@ int mt_model_find_link(const mt_model *model, const char *name)
 
 int mt_model_find_joint(const mt_model *model, const char *name)
 {
-    return find(&model->tables->joints, name);
+    return find_name(&model->tables->joints, name);
 }
 
 int mt_model_find_spring(const mt_model *model, const char *name)
 {
-    return find(&model->tables->springs, name);
+    return find_name(&model->tables->springs, name);
 }
 
 int mt_model_find_sensor(const mt_model *model, const char *name)
 {
-    return find(&model->tables->sensors, name);
+    return find_name(&model->tables->sensors, name);
 }
 
 bool mt_model_locate(const mt_model *model, mt_addr addr, int *line, int *column)
@@ -218,7 +218,7 @@ mt_kind mt_model_kind(const void *model, int parameter)
     return ((const mt_model *)model)->parameters[parameter].kind;
 }
 
-static mt_kind kind_of(const mt_model *m, const mt_parameter *p)
+static mt_kind kind_of_parameter(const mt_model *m, const mt_parameter *p)
 {
     const mt_unit *const si = mt_parameter_si(p);
     if (si != NULL) {
@@ -249,7 +249,7 @@ void mt_model_find_kinds(mt_model *model)
         changed = false;
         for (int k = 0; k < model->n_parameters; k++) {
             const int i = pass % 2 == 0 ? k : model->n_parameters - 1 - k;
-            const mt_kind kind = kind_of(model, &model->parameters[i]);
+            const mt_kind kind = kind_of_parameter(model, &model->parameters[i]);
             changed = changed || kind != model->parameters[i].kind;
             model->parameters[i].kind = kind;
         }

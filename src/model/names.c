@@ -9,7 +9,7 @@ typedef struct part {
     size_t length;
 } part;
 
-static int compare(const void *context, const void *key, int i)
+static int compare_with_name(const void *context, const void *key, int i)
 {
     const mt_names *const t = context;
     const part *const name = key;
@@ -20,7 +20,7 @@ static int compare(const void *context, const void *key, int i)
 void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool *taken)
 {
     const part key = {name, strlen(name)};
-    *taken = mt_sorted_find(&t->order, compare, t, &key) >= 0;
+    *taken = mt_sorted_find(&t->order, compare_with_name, t, &key) >= 0;
     if (*taken) {
         return;
     }
@@ -29,7 +29,7 @@ void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool 
         return;
     }
     t->items = items;
-    if (mt_sorted_add(&t->order, mem, compare, t, &key)) {
+    if (mt_sorted_add(&t->order, mem, compare_with_name, t, &key)) {
         t->items[t->count++] = (mt_named){name, value};
     }
 }
@@ -37,7 +37,7 @@ void mt_names_add(mt_names *t, mt_arena *mem, const char *name, int value, bool 
 int mt_names_find(const mt_names *t, const char *name, size_t length, bool *found)
 {
     const part key = {name, length};
-    const int i = mt_sorted_find(&t->order, compare, t, &key);
+    const int i = mt_sorted_find(&t->order, compare_with_name, t, &key);
     *found = i >= 0;
     return *found ? t->items[i].value : MT_ABSENT;
 }

@@ -112,7 +112,7 @@ static int next_operand(const search *s)
     return MT_ABSENT;
 }
 
-static void push(search *s, int parameter)
+static void push_parameter(search *s, int parameter)
 {
     s->state[parameter] = ON_PATH;
     s->stack[s->depth] = parameter;
@@ -124,7 +124,7 @@ static void push(search *s, int parameter)
 static bool circle_from(search *s, int parameter)
 {
     s->depth = 0;
-    push(s, parameter);
+    push_parameter(s, parameter);
     while (s->depth > 0) {
         const int operand = next_operand(s);
         if (operand == MT_ABSENT) {
@@ -133,7 +133,7 @@ static bool circle_from(search *s, int parameter)
             note_cycle(s, operand);
             return true;
         } else if (s->state[operand] == UNSEEN) {
-            push(s, operand);
+            push_parameter(s, operand);
         }
     }
     return false;
@@ -158,7 +158,7 @@ static bool circles(search *s)
     return any;
 }
 
-static void apply(const mt_model *m, const mt_configuration *c, mt_num *value)
+static void values_with_overrides(const mt_model *m, const mt_configuration *c, mt_num *value)
 {
     for (int i = 0; i < m->n_parameters; i++) {
         value[i] = m->parameters[i].value;
@@ -182,14 +182,14 @@ void mt_resolve_cycles(mt_resolve *f)
     if (mt_arena_failed(&m->mem)) {
         return;
     }
-    apply(m, NULL, s.value);
+    values_with_overrides(m, NULL, s.value);
     if (circles(&s)) {
         return; /* configurations would repeat it */
     }
     for (int c = 0; c < m->n_configurations; c++) {
         if (m->configurations[c].n_overrides > 0) {
             s.configuration = m->configurations[c].name.s;
-            apply(m, &m->configurations[c], s.value);
+            values_with_overrides(m, &m->configurations[c], s.value);
             (void)circles(&s);
         }
     }

@@ -21,7 +21,7 @@ static bool is_told(const mt_warning_list *list, int n, const mt_warning *d)
 }
 
 /* Report a warning, with the configuration where an override caused it. */
-static void tell(mt_resolve *f, const mt_warning *d, const mt_configuration *c)
+static void report_warning(mt_resolve *f, const mt_warning *d, const mt_configuration *c)
 {
     const bool own = c->n_overrides > 0;
     const char *const in = own ? " in configuration \"" : "";
@@ -55,7 +55,7 @@ void mt_resolve_values(mt_resolve *f)
             }
             for (int i = first; i < list.n && ok; i++) {
                 if (!is_told(&list, i, &list.items[i])) {
-                    tell(f, &list.items[i], &m->configurations[c]);
+                    report_warning(f, &list.items[i], &m->configurations[c]);
                 }
             }
         }

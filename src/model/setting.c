@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "model/values.h"
 
-static mt_status unknown(const mt_typing *r, const char *name, mt_err *err)
+static mt_status refuse_unknown_parameter(const mt_typing *r, const char *name, mt_err *err)
 {
     const char *const nearest = mt_text_nearest(name, r->names, r->model->n_parameters);
     return nearest == NULL
@@ -53,8 +53,8 @@ mt_status mt_typing_new(const mt_model *model, const double *values, mt_arena *m
 }
 
 /* The n settings before this one are read. */
-static mt_status read_one(const mt_typing *r, const char *text, int n, mt_setting *all,
-                          mt_err *err)
+static mt_status read_setting(const mt_typing *r, const char *text, int n, mt_setting *all,
+                              mt_err *err)
 {
     const char *const equals = strchr(text, '=');
     if (equals == NULL || equals == text) {
@@ -64,7 +64,7 @@ static mt_status read_one(const mt_typing *r, const char *text, int n, mt_settin
     MT_TRY(mt_arena_check(r->mem, err));
     const int parameter = mt_model_find_parameter(r->model, name);
     if (parameter == MT_ABSENT) {
-        return unknown(r, name, err);
+        return refuse_unknown_parameter(r, name, err);
     }
     for (int i = 0; i < n; i++) {
         if (all[i].parameter == parameter) {
@@ -90,7 +90,7 @@ mt_status mt_model_read_settings(const mt_model *model, const double *original, 
     *out = mt_arena_alloc(mem, (size_t)n, sizeof **out);
     MT_TRY(mt_typing_new(model, original, mem, &r, err));
     for (int i = 0; i < n; i++) {
-        MT_TRY(read_one(&r, texts[i], i, *out, err));
+        MT_TRY(read_setting(&r, texts[i], i, *out, err));
     }
     return MT_OK;
 }

@@ -88,9 +88,9 @@ mt_status mt_emit_parameters(const mt_model *model, int configuration, const int
 
 /* A program with the parameters of a configuration (MT_ABSENT: of the file), some of them
  * inputs; nodes[n_parameters]. */
-static mt_status begin(const mt_model *model, int configuration, int n_inputs,
-                       const int *inputs, mt_arena *mem, mt_program *program, mt_node **nodes,
-                       mt_err *err)
+static mt_status begin_parameter_program(const mt_model *model, int configuration, int n_inputs,
+                                         const int *inputs, mt_arena *mem, mt_program *program,
+                                         mt_node **nodes, mt_err *err)
 {
     const size_t n = (size_t)model->n_parameters;
     int *const is_input = mt_arena_int(mem, n);
@@ -113,7 +113,8 @@ mt_status mt_numbers_new(const mt_model *model, int configuration, int n_inputs,
     mt_node *parameters = NULL;
     mt_program *const program = &out->program;
     *out = (mt_numbers){.n = n, .nodes = mt_arena_int(mem, (size_t)n)};
-    MT_TRY(begin(model, configuration, n_inputs, inputs, mem, program, &parameters, err));
+    MT_TRY(begin_parameter_program(model, configuration, n_inputs, inputs, mem, program,
+                                   &parameters, err));
     for (int i = 0; i < n; i++) {
         out->nodes[i] = mt_program_expr(program, &numbers[i].expr, parameters, numbers[i].addr);
     }
@@ -188,8 +189,8 @@ static mt_status evaluate_parameters(const mt_model *model, const setting *set, 
 {
     mt_node *nodes = NULL;
     mt_program program;
-    MT_TRY(begin(model, set->configuration, set->n_inputs, set->inputs, mem, &program, &nodes,
-                 err));
+    MT_TRY(begin_parameter_program(model, set->configuration, set->n_inputs, set->inputs, mem,
+                                   &program, &nodes, err));
     MT_TRY(mt_program_finish(&program, err));
     double *const all = mt_arena_f64(mem, (size_t)program.count, 1);
     MT_TRY(mt_arena_check(mem, err));

@@ -11,8 +11,9 @@
 static const double UNSURE_ULPS = 16.0;
 
 /* Vibration modes below hz. */
-static mt_status below(const mt_linear *lin, int n_rigid, double hz, mt_arena *scratch,
-                       int *modes, bool *sure, mt_err *err)
+static mt_status count_vibration_modes_below(const mt_linear *lin, int n_rigid, double hz,
+                                             mt_arena *scratch, int *modes, bool *sure,
+                                             mt_err *err)
 {
     const mt_reduced r = mt_linear_reduced(lin);
     int count[3];
@@ -32,9 +33,10 @@ mt_status mt_certify_count(const mt_linear *lin, int n_rigid, double lower_hz, d
 {
     int under = 0;
     *out = (mt_band_count){.sure = true};
-    MT_TRY(below(lin, n_rigid, lower_hz * (1.0 + tolerance), scratch, &out->below, &out->sure,
-                 err));
-    MT_TRY(below(lin, n_rigid, upper_hz * (1.0 - tolerance), scratch, &under, &out->sure, err));
+    MT_TRY(count_vibration_modes_below(lin, n_rigid, lower_hz * (1.0 + tolerance), scratch,
+                                       &out->below, &out->sure, err));
+    MT_TRY(count_vibration_modes_below(lin, n_rigid, upper_hz * (1.0 - tolerance), scratch,
+                                       &under, &out->sure, err));
     out->inside = under > out->below ? under - out->below : 0;
     return MT_OK;
 }

@@ -181,7 +181,8 @@ static void say_lost(const mt_enclosure *e, bool unstable, char *reason)
 }
 
 /* Modes of (K low, M low) show an instability; and they are the basis where M is singular. */
-static mt_status choose(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
+static mt_status choose_mass_basis(mt_enclosure *e, basis *b, bool *ok, char *reason,
+                                   mt_err *err)
 {
     mt_mass_factor mass;
     mt_modes modes;
@@ -321,7 +322,7 @@ static bool all_squares(const mt_linear *lin)
  */
 static const double ROUNDING_ULPS = 16.0;
 
-static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
+static mt_status reduce_to_basis(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_err *err)
 {
     const mt_linear *const lin = b->lin;
     for (int i = 0; i < e->n_pieces; i++) { /* masses, until make_parts fills them */
@@ -331,7 +332,7 @@ static mt_status reduce(mt_enclosure *e, basis *b, bool *ok, char *reason, mt_er
     }
     MT_TRY(low_matrix(e, lin, MT_STIFFNESS, &e->scratch, &b->k_low, err));
     MT_TRY(low_matrix(e, lin, MT_MASS, &e->scratch, &b->m_low, err));
-    MT_TRY(choose(e, b, ok, reason, err));
+    MT_TRY(choose_mass_basis(e, b, ok, reason, err));
     if (!*ok) {
         return MT_OK;
     }
@@ -363,7 +364,7 @@ mt_status mt_enclosure_reduce(mt_enclosure *e, const mt_linear *lin, bool *ok, c
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     basis b = {.lin = lin, .n = mt_linear_freedoms(lin)};
     *ok = true;
-    const mt_status rc = reduce(e, &b, ok, reason, err);
+    const mt_status rc = reduce_to_basis(e, &b, ok, reason, err);
     mt_arena_rewind(&e->scratch, mark);
     return rc;
 }

@@ -63,7 +63,7 @@ static mt_side other(mt_side side)
 }
 
 /* Both matrices of a corner of the current box. */
-static void assemble(mt_enclosure *e, mt_side side)
+static void assemble_corner(mt_enclosure *e, mt_side side)
 {
     if (!e->assembled[side]) {
         add_parts(e, MT_STIFFNESS, side);
@@ -228,7 +228,7 @@ static int count_below(mt_enclosure *e, mt_side side, double sigma, double room)
     const double g = (double)(e->n + 2) * DBL_EPSILON;
     double growth = 0.0;
     e->counts++;
-    assemble(e, side);
+    assemble_corner(e, side);
     shifted(e, k, m, sigma, e->work);
     e->operations += COPY * (double)e->n * (double)e->n;
     const int negative = negative_pivots(e->n, e->work, &growth, &e->operations);
@@ -278,7 +278,7 @@ static mt_status solve_corner(mt_enclosure *e, mt_side side, mt_modes *modes, mt
 {
     mt_mass_factor mass;
     *modes = (mt_modes){0};
-    assemble(e, side);
+    assemble_corner(e, side);
     MT_TRY(e->mass_varies ? mt_modal_factor_mass(e->n, e->at[MT_MASS][other(side)], &e->scratch,
                                                  &mass, err)
                           : mt_modal_identity_mass(e->n, &e->scratch, &mass, err));

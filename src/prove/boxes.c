@@ -20,7 +20,7 @@ static bool depends(const mt_certify *c, int i, bool loose_only, const bool *bou
     return any;
 }
 
-static mt_status claim(mt_boxes *b, mt_arena *mem, mt_err *err)
+static mt_status alloc_box_stack(mt_boxes *b, mt_arena *mem, mt_err *err)
 {
     const size_t n = (size_t)b->n;
     const size_t most = (size_t)b->capacity;
@@ -47,7 +47,7 @@ mt_status mt_boxes_init(mt_boxes *b, const mt_certify *c, bool loose_only, int n
                     .n_known = n_known,
                     .n_catalogue = loose_only ? NULL : c->n_catalogue,
                     .catalogue = c->catalogue};
-    MT_TRY(claim(b, mem, err));
+    MT_TRY(alloc_box_stack(b, mem, err));
     const mt_arena_mark mark = mt_arena_get_mark(mem);
     bool *const bound = mt_arena_alloc(mem, (size_t)c->n, sizeof *bound);
     bool *const one = mt_arena_alloc(mem, (size_t)c->n, sizeof *one);
@@ -151,7 +151,7 @@ bool mt_boxes_pop(mt_boxes *b)
     return true;
 }
 
-static void push(mt_boxes *b, int split, bool upper_half)
+static void push_half(mt_boxes *b, int split, bool upper_half)
 {
     const size_t n = (size_t)b->n;
     const size_t at = (size_t)b->count * n;
@@ -182,8 +182,8 @@ bool mt_boxes_split(mt_boxes *b)
     if (widest < 0 || b->count + 2 > b->capacity) {
         return false;
     }
-    push(b, widest, true);
-    push(b, widest, false);
+    push_half(b, widest, true);
+    push_half(b, widest, false);
     return true;
 }
 

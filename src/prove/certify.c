@@ -60,7 +60,7 @@ typedef struct search {
     mt_certify_search *out;
 } search;
 
-static mt_status claim(search *s, mt_arena *work)
+static mt_status alloc_search_arrays(search *s, mt_arena *work)
 {
     const mt_certify *const c = s->c;
     /* never of length 0: memcpy and memcmp want pointers */
@@ -130,7 +130,7 @@ static int place_of(const search *s, const int *tuple, bool *there)
     return low;
 }
 
-static bool is_known(const search *s, const int *tuple)
+static bool is_known_tuple(const search *s, const int *tuple)
 {
     bool there = false;
     (void)place_of(s, tuple, &there);
@@ -160,7 +160,7 @@ static int same_of(const search *s, int i)
 }
 
 /* Set band i to its least value that is consistent with the earlier bands; false: none. */
-static bool place(search *s, int i)
+static bool set_least_count(search *s, int i)
 {
     const int same = same_of(s, i);
     const int before = s->previous[i] < 0 ? 0 : s->tuple[s->previous[i]];
@@ -171,11 +171,11 @@ static bool place(search *s, int i)
 
 /* The first consistent assignment that keeps the bands before `from`, or follows them in
  * lexicographic order: bands as low as they go. */
-static bool fill(search *s, int from)
+static bool first_placement(search *s, int from)
 {
     int i = from;
     while (i >= 0 && i < s->c->n_bands) {
-        if (place(s, i)) {
+        if (set_least_count(s, i)) {
             i++;
             continue;
         }
@@ -200,7 +200,7 @@ static bool next(search *s)
         return false;
     }
     s->tuple[i]++;
-    return fill(s, i + 1);
+    return first_placement(s, i + 1);
 }
 
 static void raise_to(int *low, int other, bool *changed)
@@ -243,11 +243,11 @@ static bool narrow(search *s)
 }
 
 /* Number of unknown placements of the box: 0, 1 (stored in single), or 2 for more. */
-static int unknown(search *s)
+static int count_unknown_placements(search *s)
 {
     int count = 0;
-    for (bool more = fill(s, 0); more && count < 2; more = next(s)) {
-        if (!is_known(s, s->tuple)) {
+    for (bool more = first_placement(s, 0); more && count < 2; more = next(s)) {
+        if (!is_known_tuple(s, s->tuple)) {
             copy(s, s->single, s->tuple);
             count++;
         }
@@ -311,7 +311,7 @@ static bool below_cap(const mt_certify *c, const double *lo, const double *hi)
 
 /* Number of placements left in the box: unknown ones (0, 1, 2 for more). Where nothing is known
  * of the box, all are left. */
-static int examine(search *s)
+static int count_placements_left(search *s)
 {
     const mt_certify *const c = s->c;
     const mt_boxes *const b = &s->boxes;
@@ -325,7 +325,7 @@ static int examine(search *s)
             s->least[i] = s->only == NULL ? 0 : s->only[i];
             s->most[i] = s->only == NULL ? c->views[c->bands[i].view]->n_modes : s->only[i];
         }
-        return narrow(s) ? unknown(s) : 0;
+        return narrow(s) ? count_unknown_placements(s) : 0;
     }
     mt_edges_use(&s->edges, s->boxes.now_known);
     for (int i = 0; i < c->n_limits && possible; i++) {
@@ -334,7 +334,7 @@ static int examine(search *s)
     for (int i = 0; i < c->n_bands && possible; i++) {
         possible = band_possible(s, i);
     }
-    return possible && narrow(s) ? unknown(s) : 0;
+    return possible && narrow(s) ? count_unknown_placements(s) : 0;
 }
 
 static bool same_counts(const search *s, const int *tuple)
@@ -398,7 +398,7 @@ static bool witnessed(search *s)
     const mt_boxes *const b = &s->boxes;
     return below_cap(s->c, b->middle, b->middle) && bounds_met(s, b->middle, b->middle, true) &&
            mt_certify_set(s->c, b->middle, b->middle) && limits_met(s) && bands_met(s) &&
-           same_counts(s, s->single) && !is_known(s, s->single);
+           same_counts(s, s->single) && !is_known_tuple(s, s->single);
 }
 
 static mt_status note_found(search *s)
@@ -424,9 +424,9 @@ static mt_status note_open(search *s)
 {
     mt_certify_search *const out = s->out;
     out->proven = false;
-    for (bool more = fill(s, 0); more && !out->more; more = next(s)) {
-        if (is_known(s, s->tuple) || mt_certify_index_of(out->open, out->n_open, s->tuple,
-                                                         s->c->n_bands) < out->n_open) {
+    for (bool more = first_placement(s, 0); more && !out->more; more = next(s)) {
+        if (is_known_tuple(s, s->tuple) || mt_certify_index_of(out->open, out->n_open, s->tuple,
+                                                               s->c->n_bands) < out->n_open) {
             continue;
         }
         out->more = out->n_open == MT_CERTIFY_OPEN_MOST; /* there is one more */
@@ -448,7 +448,7 @@ static void drop_found(search *s)
     const ptrdiff_t n = s->c->n_bands;
     int kept = 0;
     for (int i = 0; i < out->n_open; i++) {
-        if (!is_known(s, out->open + (i * n))) {
+        if (!is_known_tuple(s, out->open + (i * n))) {
             memmove(out->open + (kept * n), out->open + (i * n), (size_t)n * sizeof(int));
             kept++;
         }
@@ -479,18 +479,18 @@ static bool spent(const search *s)
 
 /* Mark a box of this number of bisections as decided, and report the decided share of all
  * designs. */
-static void settle(search *s, int depth)
+static void mark_box_decided(search *s, int depth)
 {
     s->decided += ldexp(1.0, -depth);
     mt_progress_share(s->c->progress, s->told, s->decided);
 }
 
 /* One box: settle it, or halve it, or leave it open. *deeper: a deeper pass may settle it. */
-static mt_status visit(search *s, bool *deeper)
+static mt_status decide_box(search *s, bool *deeper)
 {
     mt_certify_search *const out = s->out;
     out->stopped = out->stopped || mt_interrupted(s->c->interrupt);
-    const int left = examine(s);
+    const int left = count_placements_left(s);
     int depth = 0;
     for (int i = 0; i < s->boxes.n; i++) {
         depth += s->boxes.now_depth[i];
@@ -498,14 +498,14 @@ static mt_status visit(search *s, bool *deeper)
     out->boxes++;
     mt_progress_boxed(s->c->progress);
     if (left == 0) {
-        settle(s, depth);
+        mark_box_decided(s, depth);
         return MT_OK;
     }
     const bool cut = depth >= s->limit;
     if ((left == 1 || cut) && witnessed(s)) {
         MT_TRY(note_found(s));
-        if (unknown(s) == 0) {
-            settle(s, depth);
+        if (count_unknown_placements(s) == 0) {
+            mark_box_decided(s, depth);
             return MT_OK;
         }
     }
@@ -523,7 +523,7 @@ static bool satisfied(const search *s)
     return (s->only != NULL || s->c->any) && s->out->n_found > 0;
 }
 
-static mt_status run(search *s)
+static mt_status deepen_until_decided(search *s)
 {
     mt_certify_search *const out = s->out;
     bool deeper = true;
@@ -536,7 +536,7 @@ static mt_status run(search *s)
         s->decided = 0.0;
         mt_boxes_start(&s->boxes, s->c->lower, s->c->upper, s->edges.root);
         while (mt_boxes_pop(&s->boxes) && !satisfied(s)) {
-            MT_TRY(visit(s, &deeper));
+            MT_TRY(decide_box(s, &deeper));
         }
         if (!out->proven) {
             drop_found(s);
@@ -552,13 +552,13 @@ static mt_status search_all(const mt_certify *c, int n_known, const int *known, 
 {
     search s = {.c = c, .only = only, .mem = mem, .err = err, .out = out};
     *out = (mt_certify_search){0};
-    MT_TRY(claim(&s, work));
+    MT_TRY(alloc_search_arrays(&s, work));
     for (int i = 0; i < n_known; i++) {
         MT_TRY(note_known(&s, known + ((ptrdiff_t)i * c->n_bands)));
     }
     s.before = operations(&s);
     s.told = mt_progress_begin(c->progress, "designs decided", 0);
-    const mt_status rc = run(&s);
+    const mt_status rc = deepen_until_decided(&s);
     out->work = operations(&s) - s.before;
     mt_progress_end(c->progress, s.told);
     return rc;

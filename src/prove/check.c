@@ -6,7 +6,7 @@
 #include "base/format.h"
 #include "prove/shaping.h"
 
-static bool refuse(char *reason, const char *what, const char *name, const char *does)
+static bool write_refusal(char *reason, const char *what, const char *name, const char *does)
 {
     (void)mt_snprintf(reason, MT_REASON_SIZE, "%s \"%s\" %s", what, name, does);
     return false;
@@ -20,12 +20,12 @@ static bool loads_refused(const mt_system *sys, char *reason)
     for (int i = 0; i < sys->n_springs && sys->n_loads == 0; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         if (!s->damper && (s->free != MT_NO_NODE || s->preload != MT_NO_NODE)) {
-            return refuse(reason, "spring", s->name, "is preloaded");
+            return write_refusal(reason, "spring", s->name, "is preloaded");
         }
     }
     for (int i = 0; i < sys->n_loads; i++) {
         if (sys->loads[i].name != NULL) {
-            return refuse(reason, "load", sys->loads[i].name, "acts on the mechanism");
+            return write_refusal(reason, "load", sys->loads[i].name, "acts on the mechanism");
         }
     }
     (void)mt_snprintf(reason, MT_REASON_SIZE, "gravity loads the mechanism");
@@ -60,8 +60,9 @@ bool mt_enclosure_admits(const mt_analysis *a, const double *lower, const double
     for (int i = 0; i < sys->n_inputs; i++) {
         const bool fixed = lower[i] == upper[i] && stands_at(a, i, lower[i]);
         if (frozen[i] && !fixed) {
-            return refuse(reason, "parameter", sys->model->parameters[sys->inputs[i]].name.s,
-                          "shapes the geometry");
+            return write_refusal(reason, "parameter",
+                                 sys->model->parameters[sys->inputs[i]].name.s,
+                                 "shapes the geometry");
         }
     }
     return true;

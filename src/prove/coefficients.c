@@ -138,7 +138,7 @@ static int widest_input(const mt_enclosure *e, const mt_enclosure_coefficient *c
 
 /* c->least, c->most over the bounds, by sub-boxes where one box does not show that they are
  * positive and finite. */
-static mt_status refine(mt_enclosure *e, int i, mt_err *err)
+static mt_status refine_coefficient_range(mt_enclosure *e, int i, mt_err *err)
 {
     mt_enclosure_coefficient *const c = &e->coefficients[i];
     const size_t n = (size_t)e->n_inputs;
@@ -192,7 +192,7 @@ static mt_status check_positive(mt_enclosure *e, bool *ok, char *reason, mt_err 
     for (int i = 0; i < e->n_coefficients && *ok; i++) {
         mt_enclosure_coefficient *const c = &e->coefficients[i];
         if (c->dependent && !(c->least >= 0.0 && isfinite(c->most))) {
-            MT_TRY(refine(e, i, err));
+            MT_TRY(refine_coefficient_range(e, i, err));
         }
         const bool either = c->required != MT_SIGN_POSITIVE;
         *ok = (either ? isfinite(c->least) : c->least >= 0.0) && isfinite(c->most);

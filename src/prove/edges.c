@@ -3,7 +3,7 @@
 
 #include "prove/box.h"
 
-static void add(mt_edges *d, int view, double hz, mt_side asked)
+static void add_band_edge(mt_edges *d, int view, double hz, mt_side asked)
 {
     const int k = d->n++;
     d->edges[k] = (mt_edge){view, mt_enclosure_lambda(hz), asked};
@@ -21,13 +21,13 @@ mt_status mt_edges_init(mt_edges *d, const mt_certify *c, mt_arena *mem, mt_err 
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < c->n_bands; i++) {
         const mt_certify_band *const b = &c->bands[i];
-        add(d, b->view, b->lower_hz * (1.0 + b->tolerance), MT_LOW);
-        add(d, b->view, b->upper_hz * (1.0 - b->tolerance), MT_HIGH);
+        add_band_edge(d, b->view, b->lower_hz * (1.0 + b->tolerance), MT_LOW);
+        add_band_edge(d, b->view, b->upper_hz * (1.0 - b->tolerance), MT_HIGH);
     }
     for (int i = 0; i < c->n_limits; i++) {
         const mt_certify_limit *const l = &c->limits[i];
-        add(d, l->view, l->at_most_hz * (1.0 + l->tolerance), MT_LOW);
-        add(d, l->view, l->at_least_hz * (1.0 - l->tolerance), MT_HIGH);
+        add_band_edge(d, l->view, l->at_most_hz * (1.0 + l->tolerance), MT_LOW);
+        add_band_edge(d, l->view, l->at_least_hz * (1.0 - l->tolerance), MT_HIGH);
     }
     for (int k = 0; k < d->n; k++) {
         /* no vibration mode lies below 0 Hz */
@@ -54,7 +54,7 @@ void mt_edges_use(mt_edges *d, int *now)
 }
 
 /* Count at one corner. */
-static void count(mt_edges *d, int edge, mt_side side)
+static void count_at_corner(mt_edges *d, int edge, mt_side side)
 {
     const mt_edge *const g = &d->edges[edge];
     mt_enclosure *const e = d->c->views[g->view];
@@ -77,9 +77,9 @@ int mt_edges_count(mt_edges *d, int edge)
     const mt_side asked = d->edges[edge].asked;
     int *const known = &d->now[asked == MT_LOW ? d->n + edge : edge];
     const int before = *known;
-    count(d, edge, asked);
+    count_at_corner(d, edge, asked);
     if (*known == before) { /* halving no longer helps: the other side tells if all is known */
-        count(d, edge, asked == MT_LOW ? MT_HIGH : MT_LOW);
+        count_at_corner(d, edge, asked == MT_LOW ? MT_HIGH : MT_LOW);
     }
     return *known;
 }

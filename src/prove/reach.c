@@ -33,8 +33,8 @@ static bool is_missed(const mt_certify_limit *l, double low_hz, double high_hz)
            low_hz > l->at_most_hz * (1.0 + l->tolerance);
 }
 
-static mt_status reach(const mt_certify *c, int limit, mt_arena *scratch, mt_certify_reach *out,
-                       mt_err *err)
+static mt_status find_reachable_range(const mt_certify *c, int limit, mt_arena *scratch,
+                                      mt_certify_reach *out, mt_err *err)
 {
     const mt_certify_limit *const l = &c->limits[limit];
     mt_certify one = *c;
@@ -63,7 +63,7 @@ mt_status mt_certify_reach_of(const mt_certify *c, int limit, mt_arena *scratch,
                               mt_certify_reach *out, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = reach(c, limit, scratch, out, err);
+    const mt_status rc = find_reachable_range(c, limit, scratch, out, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

@@ -157,7 +157,8 @@ static bool grow(const mt_linear *lin, mt_matrix m, block *b)
 
 /* The terms of the block; false where there are too many, or none that could be its
  * reference. */
-static bool gather(const mt_linear *lin, mt_matrix m, const mt_enclosure *e, block *b)
+static bool gather_block_terms(const mt_linear *lin, mt_matrix m, const mt_enclosure *e,
+                               block *b)
 {
     const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     b->reference = -1;
@@ -222,7 +223,7 @@ static mt_status semidefinite(const mt_linear *lin, mt_matrix m, const block *b,
     return MT_OK;
 }
 
-static const char *name_of(const mt_linear *lin, mt_matrix m, int term)
+static const char *term_name(const mt_linear *lin, mt_matrix m, int term)
 {
     const mt_system *const sys = mt_linear_system(lin);
     const int source = mt_linear_terms(lin, KINDS[m])->terms[term].source;
@@ -240,7 +241,7 @@ static int add_coefficient(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
         }
     }
     e->sources[e->n_coefficients] = source;
-    e->coefficients[e->n_coefficients].name = name_of(lin, m, term);
+    e->coefficients[e->n_coefficients].name = term_name(lin, m, term);
     e->coefficients[e->n_coefficients].mass = m == MT_MASS;
     e->coefficients[e->n_coefficients].required = sign;
     return e->n_coefficients++;
@@ -255,7 +256,7 @@ static void add_piece(mt_enclosure *e, mt_matrix m, int term, int coefficient,
 }
 
 /* The sum and the difference of its two rows. */
-static void split(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term)
+static void split_coupled_term(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term)
 {
     const double *const a =
         mt_linear_row(lin, KINDS[m], mt_linear_terms(lin, KINDS[m])->terms[term].first);
@@ -267,7 +268,7 @@ static void split(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term)
               s);
     add_piece(e, m, term, add_coefficient(e, lin, m, term, MT_SIGN_ANY), MT_FORM_SUM, s);
     if (e->coupled == NULL) {
-        e->coupled = name_of(lin, m, term);
+        e->coupled = term_name(lin, m, term);
         e->coupled_mass = m == MT_MASS;
     }
 }
@@ -280,12 +281,12 @@ static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
     block b = {.factor = monomial_of(&mt_linear_system(lin)->program, node),
                .n = 2,
                .key = {key_of(lin, m, term, 0), key_of(lin, m, term, 1)}};
-    bool whole = b.factor.known && grow(lin, m, &b) && gather(lin, m, e, &b);
+    bool whole = b.factor.known && grow(lin, m, &b) && gather_block_terms(lin, m, e, &b);
     if (whole) {
         MT_TRY(semidefinite(lin, m, &b, &e->scratch, &whole, err));
     }
     if (!whole) {
-        split(e, lin, m, term);
+        split_coupled_term(e, lin, m, term);
         return MT_OK;
     }
     const int c = add_coefficient(e, lin, m, b.term[b.reference], MT_SIGN_POSITIVE);
@@ -297,7 +298,7 @@ static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
     return MT_OK;
 }
 
-static mt_status claim(mt_enclosure *e, const mt_linear *lin, mt_err *err)
+static mt_status alloc_term_arrays(mt_enclosure *e, const mt_linear *lin, mt_err *err)
 {
     const size_t n[MT_MATRICES] = {(size_t)mt_linear_terms(lin, MT_TERM_STIFFNESS)->n_terms,
                                    (size_t)mt_linear_terms(lin, MT_TERM_MASS)->n_terms};
@@ -335,7 +336,7 @@ static mt_status list_matrix(mt_enclosure *e, const mt_linear *lin, mt_matrix m,
 
 mt_status mt_enclosure_list_terms(mt_enclosure *e, const mt_linear *lin, mt_err *err)
 {
-    MT_TRY(claim(e, lin, err));
+    MT_TRY(alloc_term_arrays(e, lin, err));
     MT_TRY(list_matrix(e, lin, MT_STIFFNESS, err));
     return list_matrix(e, lin, MT_MASS, err);
 }

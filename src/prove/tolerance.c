@@ -153,7 +153,7 @@ static bool holds(tolerance *t, double percent, int alone)
 }
 
 /* known: a percentage that is proven already. */
-static mt_tolerance search(tolerance *t, int alone, double known)
+static mt_tolerance bisect_tolerance(tolerance *t, int alone, double known)
 {
     mt_tolerance out = {.percent = t->q->most_percent, .end = MT_TOLERANCE_MOST};
     if (known >= t->q->most_percent || holds(t, t->q->most_percent, alone)) {
@@ -184,8 +184,9 @@ static mt_tolerance search(tolerance *t, int alone, double known)
     return out;
 }
 
-static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_arena *scratch,
-                     mt_tolerance *all, mt_tolerance *each, mt_err *err)
+static mt_status find_tolerances(const mt_certify *c, const mt_tolerance_question *q,
+                                 mt_arena *scratch, mt_tolerance *all, mt_tolerance *each,
+                                 mt_err *err)
 {
     tolerance t = {.c = c, .q = q, .open = -1, .before = operations(c)};
     t.edges = mt_arena_alloc(scratch, 2 * ((size_t)c->n_bands + (size_t)c->n_limits) + 1,
@@ -203,9 +204,9 @@ static mt_status run(const mt_certify *c, const mt_tolerance_question *q, mt_are
             mt_enclosure_note_held(c->views[v]);
         }
     }
-    *all = search(&t, -1, 0.0);
+    *all = bisect_tolerance(&t, -1, 0.0);
     for (int i = 0; i < c->n && each != NULL; i++) {
-        each[i] = search(&t, i, all->percent); /* its box lies in that of all */
+        each[i] = bisect_tolerance(&t, i, all->percent); /* its box lies in that of all */
     }
     return MT_OK;
 }
@@ -215,7 +216,7 @@ mt_status mt_certify_tolerance(const mt_certify *c, const mt_tolerance_question 
                                mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = run(c, q, scratch, all, each, err);
+    const mt_status rc = find_tolerances(c, q, scratch, all, each, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

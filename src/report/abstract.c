@@ -42,7 +42,7 @@ static void close_item(mt_text *out)
 }
 
 /* Size of a change for sorting: a change from 0, which has no percentage, is the largest. */
-static double size_of(const mt_result_parameter *p)
+static double change_size(const mt_result_parameter *p)
 {
     const bool moved = p->recommended < p->original || p->recommended > p->original;
     return isfinite(p->change_percent) ? fabs(p->change_percent) : moved ? HUGE_VAL : 0.0;
@@ -70,10 +70,10 @@ static int next_largest(const mt_recommendation *r, int last)
 {
     int found = -1;
     for (int i = 0; i < r->n_parameters; i++) {
-        const double size = size_of(&r->parameters[i]);
-        const double before = last < 0 ? HUGE_VAL : size_of(&r->parameters[last]);
+        const double size = change_size(&r->parameters[i]);
+        const double before = last < 0 ? HUGE_VAL : change_size(&r->parameters[last]);
         const bool behind = size < before || (size == before && i > last);
-        if (size > 0.0 && behind && (found < 0 || size > size_of(&r->parameters[found]))) {
+        if (size > 0.0 && behind && (found < 0 || size > change_size(&r->parameters[found]))) {
             found = i;
         }
     }
@@ -84,7 +84,7 @@ static void add_changes(const mt_recommendation *r, mt_text *out)
 {
     int changed = 0;
     for (int i = 0; i < r->n_parameters; i++) {
-        changed += size_of(&r->parameters[i]) > 0.0 ? 1 : 0;
+        changed += change_size(&r->parameters[i]) > 0.0 ? 1 : 0;
     }
     int told = 0;
     for (int i = next_largest(r, -1); i >= 0 && told < LISTED; i = next_largest(r, i)) {

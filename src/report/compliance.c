@@ -37,7 +37,7 @@ typedef struct row {
     bool good;
 } row;
 
-static void put(sheet *s, const row *r)
+static void add_requirement_row(sheet *s, const row *r)
 {
     mt_table_text(&s->t, r->requirement);
     mt_table_text(&s->t, r->limit);
@@ -209,7 +209,7 @@ static void put_band(sheet *s, const mt_result_mode_placement *band, bool clear,
                    .margin = margin_text(s, PERCENT * is.room),
                    .verdict = kept ? "met" : "not met",
                    .good = kept};
-    put(s, &r);
+    add_requirement_row(s, &r);
 }
 
 /* The shown band of a configuration with the least margin; NULL: none. */
@@ -288,7 +288,7 @@ static bool put_motion(sheet *s, const mt_result_goal *g, int which)
         .margin = margin_text(s, PERCENT * room_of(band, m->hz)),
         .verdict = verdict_of(g),
         .good = is_good(g)};
-    put(s, &r);
+    add_requirement_row(s, &r);
     return true;
 }
 
@@ -296,7 +296,7 @@ static bool put_motion(sheet *s, const mt_result_goal *g, int which)
  * Numbers
  */
 
-static const char *unit_of(const mt_result_goal *g)
+static const char *goal_unit(const mt_result_goal *g)
 {
     return g->display_unit != NULL ? g->display_unit : g->unit != NULL ? g->unit : "";
 }
@@ -304,7 +304,7 @@ static const char *unit_of(const mt_result_goal *g)
 static const char *value_text(sheet *s, const mt_result_goal *g, double value)
 {
     char number[MT_NUMBER_TEXT];
-    const char *const unit = unit_of(g);
+    const char *const unit = goal_unit(g);
     return isnan(value)
                ? NULL
                : mt_arena_printf(&s->t.mem, "%s%s%s",
@@ -317,7 +317,7 @@ static const char *value_text(sheet *s, const mt_result_goal *g, double value)
 static const char *limit_text(sheet *s, const mt_result_goal *g)
 {
     mt_arena *const mem = &s->t.mem;
-    const char *const unit = unit_of(g);
+    const char *const unit = goal_unit(g);
     const char *const gap = unit[0] != '\0' ? " " : "";
     const double low = mt_result_shown(g->at_least, g->display_factor);
     const double high = mt_result_shown(g->at_most, g->display_factor);
@@ -344,7 +344,7 @@ static const char *limit_text(sheet *s, const mt_result_goal *g)
 }
 
 /* A difference relative to a number; NaN for 0. */
-static double part_of(double way, double of)
+static double relative_difference(double way, double of)
 {
     return of < 0.0 || of > 0.0 ? way / fabs(of) : nan("");
 }
@@ -354,12 +354,12 @@ static const char *number_margin(sheet *s, const mt_result_goal *g, double value
 {
     if (!isnan(g->target)) {
         char number[MT_NUMBER_TEXT];
-        const double off = PERCENT * fabs(part_of(value - g->target, g->target));
+        const double off = PERCENT * fabs(relative_difference(value - g->target, g->target));
         (void)mt_report_number(mt_without_noise(off, MT_PERCENT_NOISE), PERCENT_DIGITS, number);
         return isnan(off) ? NULL : mt_arena_printf(&s->t.mem, "off by %s %%", number);
     }
-    const double above = part_of(value - g->at_least, g->at_least);
-    const double below = part_of(g->at_most - value, g->at_most);
+    const double above = relative_difference(value - g->at_least, g->at_least);
+    const double below = relative_difference(g->at_most - value, g->at_most);
     const double room = isnan(above) || below < above ? below : above;
     return margin_text(s, PERCENT * room);
 }
@@ -375,7 +375,7 @@ static void put_number(sheet *s, const mt_result_goal *g, const mt_result_goal *
                    .margin = number_margin(s, g, judged),
                    .verdict = verdict_of(g),
                    .good = is_good(g)};
-    put(s, &r);
+    add_requirement_row(s, &r);
 }
 
 /* The limited quantity of a goal without its configuration. */
@@ -407,7 +407,7 @@ static void put_between(sheet *s, const mt_result_between *b)
                               : number_margin(s, g, b->value),
                 .verdict = b->holds ? "kept (sampled)" : "exceeded",
                 .good = b->holds};
-            put(s, &r);
+            add_requirement_row(s, &r);
             return;
         }
     }

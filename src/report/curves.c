@@ -16,7 +16,7 @@ static const mt_design_curve *at(const mt_recommendation *r, int k)
 }
 
 /* The common length of the lists; files may differ. */
-static int length_of(const mt_curve_points *c)
+static int curve_point_count(const mt_curve_points *c)
 {
     const int n = c->n_hz < c->n_magnitude ? c->n_hz : c->n_magnitude;
     return n < c->n_phase ? n : c->n_phase;
@@ -39,7 +39,7 @@ static void name_cells(mt_table *t, const mt_result_curve *of)
 static void add_curve(mt_table *t, const mt_result_curve *of, int rank,
                       const mt_design_curve *r)
 {
-    for (int i = 0; r != NULL && i < length_of(&r->drawn); i++) {
+    for (int i = 0; r != NULL && i < curve_point_count(&r->drawn); i++) {
         mt_table_integer(t, rank);
         name_cells(t, of);
         mt_table_rounded(t, r->drawn.hz[i], MT_CURVE_HZ_DIGITS);

@@ -168,7 +168,7 @@ static bool is_worth(const packing *p, const node *v)
 }
 
 /* Give parts that occur twice an index, in the order of the document. */
-static void count(packing *p)
+static void index_repeated_parts(packing *p)
 {
     for (int i = 0; i < p->n;) {
         const node *const v = &p->nodes[i];
@@ -287,7 +287,7 @@ void mt_dedupe_json(const char *json, mt_text *out)
             mt_text_add(out, json);
             mt_text_add(out, "]");
         } else if (mt_arena_check(&p.mem, NULL) == MT_OK) {
-            count(&p);
+            index_repeated_parts(&p);
             write_tables(&p);
             p.next = 0;
             (void)write_value(&p, 0);

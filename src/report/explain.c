@@ -22,7 +22,7 @@ typedef struct moved {
 } moved;
 
 /* Change of the value for 1 % more of variable k. */
-static double move(const mt_recommendation *r, const moved *m, int k)
+static double value_change_per_percent(const mt_recommendation *r, const moved *m, int k)
 {
     return m->slopes[k] * PERCENT * fabs(r->parameters[k].recommended);
 }
@@ -33,9 +33,10 @@ static int next_mover(const mt_recommendation *r, const moved *g, const bool *ta
 {
     int best = -1;
     for (int k = 0; k < r->n_parameters; k++) {
-        const double own = fabs(move(r, g, k));
+        const double own = fabs(value_change_per_percent(r, g, k));
         if (!taken[k] && own > 0.0 && !(own <= MT_SLOPE_NOISE * fabs(g->value)) &&
-            isfinite(own) && (best < 0 || mt_exceeds(own, fabs(move(r, g, best))))) {
+            isfinite(own) &&
+            (best < 0 || mt_exceeds(own, fabs(value_change_per_percent(r, g, best))))) {
             best = k;
         }
     }
@@ -59,14 +60,15 @@ static void add_room(const mt_result_parameter *p, mt_text *out)
         mt_report_number(fmax(p->upper - p->recommended, 0.0) / size, SHORT_DIGITS, number));
 }
 
-static void add_row(mt_table *t, const mt_recommendation *r, const moved *g, int k)
+static void add_slope_row(mt_table *t, const mt_recommendation *r, const moved *g, int k)
 {
     const mt_result_parameter *const p = &r->parameters[k];
     mt_text room = {.s = NULL};
     add_room(p, &room);
     mt_table_text(t, g->text);
     mt_table_text(t, p->name);
-    mt_table_change_shown(t, move(r, g, k), g->display_factor, SHORT_DIGITS);
+    mt_table_change_shown(t, value_change_per_percent(r, g, k), g->display_factor,
+                          SHORT_DIGITS);
     mt_table_unit(t, g->unit != NULL && g->unit[0] != '\0' ? g->unit : NULL, g->display_unit);
     mt_table_shown(t, p->recommended, p->display_factor, VALUE_DIGITS);
     mt_table_unit(t, p->unit, p->display_unit);
@@ -88,25 +90,26 @@ static void add_moved(mt_table *t, const mt_recommendation *r, const moved *g)
     }
     for (int k = next_mover(r, g, taken); k >= 0; k = next_mover(r, g, taken)) {
         taken[k] = true;
-        add_row(t, r, g, k);
+        add_slope_row(t, r, g, k);
     }
 }
 
-static bool same(const char *a, const char *b)
+static bool is_same_name(const char *a, const char *b)
 {
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
 /* The mode of the least clearance relative to its margin, the first of equal ones. NULL:
  * none. */
-static const mt_result_clearance *nearest(const mt_recommendation *r, const char *configuration)
+static const mt_result_clearance *find_tightest_clearance(const mt_recommendation *r,
+                                                          const char *configuration)
 {
     const mt_result_clearance *best = NULL;
     double least = HUGE_VAL;
     for (int i = 0; i < r->n_clearances; i++) {
         const mt_result_clearance *const c = &r->clearances[i];
         const double room = mt_without_noise(c->percent - c->margin_percent, MT_PERCENT_NOISE);
-        if (same(c->configuration, configuration) && isfinite(room) &&
+        if (is_same_name(c->configuration, configuration) && isfinite(room) &&
             mt_exceeds(least, room)) {
             best = c;
             least = room;
@@ -117,11 +120,11 @@ static const mt_result_clearance *nearest(const mt_recommendation *r, const char
 
 static void add_nearest(mt_table *t, const mt_recommendation *r, const mt_result_goal *g)
 {
-    const mt_result_clearance *const c = nearest(r, g->configuration);
+    const mt_result_clearance *const c = find_tightest_clearance(r, g->configuration);
     for (int i = 0; c != NULL && i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
-        if (f->mode == c->mode && same(f->configuration, c->configuration) && !f->repeated &&
-            f->sensitivity != NULL) {
+        if (f->mode == c->mode && is_same_name(f->configuration, c->configuration) &&
+            !f->repeated && f->sensitivity != NULL) {
             const char *const text = mt_arena_printf(
                 &t->mem, "%s mode %d, %s %s", c->configuration, c->mode, c->side, c->band);
             const moved m = {text, "Hz", NULL, nan(""), f->recommended_hz, f->sensitivity};

@@ -19,7 +19,7 @@ typedef struct ruler {
     mt_text *out;
 } ruler;
 
-static void widen(double *top, double hz)
+static void raise_top_frequency(double *top, double hz)
 {
     *top = isfinite(hz) && hz > *top ? hz : *top;
 }
@@ -30,12 +30,12 @@ static double highest_mode(const mt_recommendation *r)
     double bands = 0.0;
     double top = 0.0;
     for (int i = 0; i < r->n_placements; i++) {
-        widen(&bands, r->placements[i].margin_upper_hz);
+        raise_top_frequency(&bands, r->placements[i].margin_upper_hz);
     }
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
-        widen(&top, f->original_hz <= bands ? f->original_hz : 0.0);
-        widen(&top, f->recommended_hz <= bands ? f->recommended_hz : 0.0);
+        raise_top_frequency(&top, f->original_hz <= bands ? f->original_hz : 0.0);
+        raise_top_frequency(&top, f->recommended_hz <= bands ? f->recommended_hz : 0.0);
     }
     return top;
 }
@@ -49,8 +49,8 @@ static void widen_asked(double *top, const mt_recommendation *r)
         const mt_result_frequency *const f = &r->frequencies[i];
         const bool asked =
             isfinite(f->target_hz) || isfinite(f->at_least_hz) || isfinite(f->at_most_hz);
-        widen(top, asked && f->original_hz <= near ? f->original_hz : 0.0);
-        widen(top, asked && f->recommended_hz <= near ? f->recommended_hz : 0.0);
+        raise_top_frequency(top, asked && f->original_hz <= near ? f->original_hz : 0.0);
+        raise_top_frequency(top, asked && f->recommended_hz <= near ? f->recommended_hz : 0.0);
     }
 }
 
@@ -59,15 +59,15 @@ static double highest(const mt_recommendation *r)
 {
     double top = highest_mode(r);
     for (int i = 0; i < r->n_frequencies; i++) {
-        widen(&top, r->frequencies[i].target_hz);
-        widen(&top, r->frequencies[i].at_least_hz);
-        widen(&top, r->frequencies[i].at_most_hz);
+        raise_top_frequency(&top, r->frequencies[i].target_hz);
+        raise_top_frequency(&top, r->frequencies[i].at_least_hz);
+        raise_top_frequency(&top, r->frequencies[i].at_most_hz);
     }
     widen_asked(&top, r);
     const double near = top > 0.0 ? NEAR * top : HUGE_VAL;
     for (int i = 0; i < r->n_placements; i++) {
         if (r->placements[i].margin_lower_hz <= near) {
-            widen(&top, fmin(r->placements[i].margin_upper_hz, near));
+            raise_top_frequency(&top, fmin(r->placements[i].margin_upper_hz, near));
         }
     }
     return top;
@@ -75,18 +75,18 @@ static double highest(const mt_recommendation *r)
 
 /* The column of a frequency; one in the middle of two columns, but for rounding, gets the right
  * one. */
-static int place(const ruler *u, double hz)
+static int frequency_column(const ruler *u, double hz)
 {
     return (int)floor((hz / u->top * (u->length - 1)) + 0.5 + MT_TIE);
 }
 
 /* Put a mark on the line where it is in range and no mark of higher priority is there. */
-static void mark(ruler *u, char *line, double hz, char sign, const char *over)
+static void mark_frequency(ruler *u, char *line, double hz, char sign, const char *over)
 {
     if (!(hz >= 0.0) || hz > u->top) {
         return;
     }
-    char *const at = &line[place(u, hz)];
+    char *const at = &line[frequency_column(u, hz)];
     if (strchr(over, *at) != NULL) {
         *at = sign;
         u->has[(unsigned char)sign] = true;
@@ -98,14 +98,14 @@ static void shade(ruler *u, char *line, double from, double to, char sign)
     if (!(from <= to) || to < 0.0 || from > u->top) {
         return;
     }
-    const int last = place(u, fmin(to, u->top));
-    for (int i = place(u, fmax(from, 0.0)); i <= last; i++) {
+    const int last = frequency_column(u, fmin(to, u->top));
+    for (int i = frequency_column(u, fmax(from, 0.0)); i <= last; i++) {
         line[i] = sign;
         u->has[(unsigned char)sign] = true;
     }
 }
 
-static bool same(const char *a, const char *b)
+static bool is_same_name(const char *a, const char *b)
 {
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
@@ -113,13 +113,13 @@ static bool same(const char *a, const char *b)
 static void draw_bands(ruler *u, const mt_recommendation *r, const char *of, char *line)
 {
     for (int i = 0; i < r->n_placements; i++) {
-        if (same(r->placements[i].configuration, of)) {
+        if (is_same_name(r->placements[i].configuration, of)) {
             shade(u, line, r->placements[i].margin_lower_hz, r->placements[i].margin_upper_hz,
                   '-');
         }
     }
     for (int i = 0; i < r->n_placements; i++) {
-        if (same(r->placements[i].configuration, of)) {
+        if (is_same_name(r->placements[i].configuration, of)) {
             shade(u, line, r->placements[i].lower_hz, r->placements[i].upper_hz, '#');
         }
     }
@@ -132,30 +132,30 @@ static int draw_modes(ruler *u, const mt_recommendation *r, const char *of, char
     int beyond = 0;
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
-        if (same(f->configuration, of)) {
-            mark(u, line, f->at_least_hz, '[', " -#");
-            mark(u, line, f->at_most_hz, ']', " -#");
-            mark(u, line, f->target_hz, '|', " -#[]");
+        if (is_same_name(f->configuration, of)) {
+            mark_frequency(u, line, f->at_least_hz, '[', " -#");
+            mark_frequency(u, line, f->at_most_hz, ']', " -#");
+            mark_frequency(u, line, f->target_hz, '|', " -#[]");
         }
     }
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
-        if (same(f->configuration, of) && r->rank > 0) {
-            mark(u, line, f->original_hz, 'o', " -#[]|");
+        if (is_same_name(f->configuration, of) && r->rank > 0) {
+            mark_frequency(u, line, f->original_hz, 'o', " -#[]|");
         }
     }
     for (int i = 0; i < r->n_frequencies; i++) {
         const mt_result_frequency *const f = &r->frequencies[i];
-        if (same(f->configuration, of)) {
+        if (is_same_name(f->configuration, of)) {
             beyond += f->recommended_hz > u->top ? 1 : 0;
             const char sign = (char)(f->mode < 10 ? digits[f->mode] : '+');
-            mark(u, line, f->recommended_hz, sign, " -#[]|o");
+            mark_frequency(u, line, f->recommended_hz, sign, " -#[]|o");
         }
     }
     return beyond;
 }
 
-static void add_line(ruler *u, const mt_recommendation *r, const char *of)
+static void add_ruler_line(ruler *u, const mt_recommendation *r, const char *of)
 {
     char line[ROOM];
     const char *const name = of == NULL ? "" : of;
@@ -195,7 +195,7 @@ static void add_scale(const ruler *u)
     for (int k = 0; k * step <= u->top; k++) {
         (void)mt_snprintf(number, sizeof number, "%.6g", k * step);
         const int length = (int)strlen(number);
-        const int at = place(u, k * step);
+        const int at = frequency_column(u, k * step);
         if (at >= end && at + length < ROOM) {
             memcpy(line + at, number, (size_t)length);
             end = at + length + 1;
@@ -226,7 +226,7 @@ static void add_legend(const ruler *u)
 static bool is_first(const mt_recommendation *r, int i)
 {
     for (int k = 0; k < i; k++) {
-        if (same(r->frequencies[k].configuration, r->frequencies[i].configuration)) {
+        if (is_same_name(r->frequencies[k].configuration, r->frequencies[i].configuration)) {
             return false;
         }
     }
@@ -250,7 +250,7 @@ void mt_report_ruler(const mt_recommendation *r, int width, mt_text *out)
     }
     for (int i = 0; i < r->n_frequencies; i++) {
         if (is_first(r, i)) {
-            add_line(&u, r, r->frequencies[i].configuration);
+            add_ruler_line(&u, r, r->frequencies[i].configuration);
         }
     }
     add_scale(&u);

@@ -58,19 +58,19 @@ static void add_paragraph(const mt_summary_writer *to, const char *indent, mt_te
     mt_text_free(line);
 }
 
-static void add_line(const mt_summary_writer *to, mt_text *line)
+static void add_indented_paragraph(const mt_summary_writer *to, mt_text *line)
 {
     add_paragraph(to, "  ", line);
 }
 
 /* True where the section was computed. A section that a stopped run left out says so. */
-static bool is_known(const mt_summary_writer *to, const char *title, const void *items)
+static bool is_section_known(const mt_summary_writer *to, const char *title, const void *items)
 {
     if (items == NULL) {
         mt_text line = {0};
         mt_text_add(&line, "not computed: the run was stopped before");
         add_heading(to, title);
-        add_line(to, &line);
+        add_indented_paragraph(to, &line);
     }
     return items != NULL;
 }
@@ -256,7 +256,7 @@ static void write_parameters(const mt_summary_writer *to, const mt_recommendatio
     for (int i = 0; i < r->n_parameters; i++) {
         mt_text line = {0};
         if (mt_report_measure(&r->parameters[i], &line)) {
-            add_line(to, &line);
+            add_indented_paragraph(to, &line);
         }
     }
 }
@@ -339,7 +339,7 @@ void mt_write_uncertainty(const mt_summary_writer *to, const mt_result *result)
         "Not identifiable: directions along which the goals hardly change";
     static const char weight_sensitivity[] =
         "Sensitivity to the weights (the scatter of repeated tests may be many times larger)";
-    if (is_known(to, unidentifiable, result->unidentifiable) &&
+    if (is_section_known(to, unidentifiable, result->unidentifiable) &&
         open_list(to, unidentifiable, result->n_unidentifiable)) {
         for (int i = 0; i < result->n_unidentifiable; i++) {
             const mt_unidentifiable_direction *const u = &result->unidentifiable[i];
@@ -355,7 +355,7 @@ void mt_write_uncertainty(const mt_summary_writer *to, const mt_result *result)
         }
         close_list(to);
     }
-    if (is_known(to, weight_sensitivity, result->weight_sensitivity)) {
+    if (is_section_known(to, weight_sensitivity, result->weight_sensitivity)) {
         add_table(to, mt_report_weight_sensitivity(result), weight_sensitivity);
     }
 }
@@ -363,7 +363,7 @@ void mt_write_uncertainty(const mt_summary_writer *to, const mt_result *result)
 static void write_certificates(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "What is proven";
-    if (is_known(to, title, result->certificates) &&
+    if (is_section_known(to, title, result->certificates) &&
         open_list(to, title, result->n_certificates)) {
         for (int i = 0; i < result->n_certificates; i++) {
             const mt_certificate *const c = &result->certificates[i];
@@ -378,7 +378,7 @@ static void write_trade(const mt_summary_writer *to, const mt_result *result)
     static const char title[] = "Trade study: the best design of each point";
     for (int i = 0; i < result->run.n_incomplete && result->trade == NULL; i++) {
         if (strcmp(result->run.incomplete[i], "trade") == 0) {
-            (void)is_known(to, title, result->trade);
+            (void)is_section_known(to, title, result->trade);
         }
     }
     if (result->trade != NULL) {
@@ -445,7 +445,7 @@ void mt_report_work_counters(const mt_result_run *run, mt_text *out)
 static void write_relaxations(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "What would make it feasible, one change at a time";
-    if (is_known(to, title, result->relaxations) &&
+    if (is_section_known(to, title, result->relaxations) &&
         open_list(to, title, result->n_relaxations)) {
         for (int i = 0; i < result->n_relaxations; i++) {
             add_item(to, "", result->relaxations[i].text);
@@ -457,7 +457,7 @@ static void write_relaxations(const mt_summary_writer *to, const mt_result *resu
 static void write_published(const mt_summary_writer *to, const mt_result *result)
 {
     static const char title[] = "Published against computed";
-    if (is_known(to, title, result->published)) {
+    if (is_section_known(to, title, result->published)) {
         add_table(to, mt_report_published(result), title);
     }
 }

@@ -24,7 +24,7 @@ static int larger(int a, int b)
     return a > b ? a : b;
 }
 
-static layout measure(const mt_table *t, int column)
+static layout measure_column(const mt_table *t, int column)
 {
     layout l = {0, 0};
     int after = 0;
@@ -185,7 +185,7 @@ void mt_table_print(const mt_table *t, int indent, int width, mt_text *out)
     } else if (n > 0) {
         int m = 0;
         for (int c = 0; c < t->n_columns; c++) {
-            l[c] = measure(t, c);
+            l[c] = measure_column(t, c);
             if (c == 0 || !is_empty(t, c)) {
                 kept[m++] = c;
             }

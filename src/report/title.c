@@ -14,7 +14,7 @@ enum {
     VALUE_DIGITS = 6
 };
 
-static void add_term(const char *term, mt_text *out)
+static void open_definition(const char *term, mt_text *out)
 {
     mt_text_addf(out, "<dt>%s</dt><dd>", term);
 }
@@ -22,7 +22,7 @@ static void add_term(const char *term, mt_text *out)
 static void add_text(const char *term, const char *text, mt_text *out)
 {
     if (text != NULL && text[0] != '\0') {
-        add_term(term, out);
+        open_definition(term, out);
         mt_html_escape(text, out);
         mt_text_add(out, "</dd>\n");
     }
@@ -35,7 +35,7 @@ static void add_model(const mt_result *result, mt_text *out)
     if (m->file == NULL) {
         return;
     }
-    add_term("Model", out);
+    open_definition("Model", out);
     mt_html_escape(m->name != NULL ? m->name : m->file, out);
     mt_text_add(out, m->name != NULL ? " (" : "");
     mt_html_escape(m->name != NULL ? m->file : "", out);
@@ -77,7 +77,7 @@ static void add_assumptions(const mt_result *result, mt_text *out)
     if (n == 0) {
         return;
     }
-    add_term("Assumed", out);
+    open_definition("Assumed", out);
     if (n > INLINE) {
         mt_text_addf(out, "<details><summary>%d parameters of the model</summary>\n", n);
     }

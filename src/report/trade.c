@@ -100,7 +100,7 @@ static const mt_recommendation *any_design(const mt_trade_result *trade)
     return NULL;
 }
 
-static void columns(mt_table *t, const mt_result *result)
+static void add_vary_columns(mt_table *t, const mt_result *result)
 {
     for (int i = 0; i < result->trade->n_vary; i++) {
         const mt_trade_vary *const v = &result->trade->vary[i];
@@ -127,7 +127,7 @@ static mt_table points(const mt_result *result, bool all)
     mt_table t = mt_table_default();
     if (result->trade != NULL) {
         mt_trade_selection s = mt_trade_select(result->trade);
-        columns(&t, result);
+        add_vary_columns(&t, result);
         for (int i = 0; i < result->trade->n_points; i++) {
             if (mt_trade_is_selected(&s, i) || all) {
                 point_row(&t, result, &result->trade->points[i]);

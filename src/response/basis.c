@@ -125,7 +125,7 @@ static mt_status turn_rigid(parts *s, const mt_modes *m, mt_err *err)
     return MT_OK;
 }
 
-static mt_status split(parts *s, const mt_basis_problem *p, mt_err *err)
+static mt_status split_coordinates(parts *s, const mt_basis_problem *p, mt_err *err)
 {
     const size_t n = (size_t)s->n;
     const mt_modes *const m = p->modes;
@@ -143,7 +143,7 @@ static mt_status split(parts *s, const mt_basis_problem *p, mt_err *err)
 }
 
 /* Eliminates the following coordinates: factor of G_UU, W. */
-static mt_status eliminate(parts *s, const mt_modes *m, mt_err *err)
+static mt_status eliminate_following(parts *s, const mt_modes *m, mt_err *err)
 {
     const ptrdiff_t u = s->u;
     const ptrdiff_t stay = s->stay;
@@ -182,8 +182,8 @@ static mt_status eliminate(parts *s, const mt_modes *m, mt_err *err)
     return MT_OK;
 }
 
-/* Stiffness of the kept coordinates, after `eliminate`; W is G_UX on entry, and is solved for
- * here. */
+/* Stiffness of the kept coordinates, after `eliminate_following`; W is G_UX on entry, and is
+ * solved for here. */
 static mt_status stiffness(parts *s, const mt_modes *m, double complex *g, mt_err *err)
 {
     const ptrdiff_t stay = s->stay;
@@ -359,7 +359,7 @@ static mt_status matrices(parts *s, const mt_modes *m, mt_basis *b, mt_err *err)
     b->lambda = mt_arena_f64(s->mem, (size_t)s->r, 1);
     MT_TRY(mt_arena_check(s->mem, err));
     memcpy(b->lambda, m->lambda, (size_t)s->r * sizeof *b->lambda);
-    MT_TRY(eliminate(s, m, err));
+    MT_TRY(eliminate_following(s, m, err));
     MT_TRY(stiffness(s, m, b->g, err));
     if (b->c != NULL) {
         MT_TRY(sandwich(s, s->f->c, s->stay, s->x, s->stay, s->x, b->c, err));
@@ -388,10 +388,11 @@ static mt_status matrices(parts *s, const mt_modes *m, mt_basis *b, mt_err *err)
     return MT_OK;
 }
 
-static mt_status make(parts *s, const mt_basis_problem *p, mt_basis *b, mt_err *err)
+static mt_status make_transfer_basis(parts *s, const mt_basis_problem *p, mt_basis *b,
+                                     mt_err *err)
 {
     const mt_forced *const f = p->f;
-    MT_TRY(split(s, p, err));
+    MT_TRY(split_coordinates(s, p, err));
     b->t = (mt_transfer){.n = s->stay, .n_in = f->n_in, .n_out = f->n_out};
     MT_TRY(matrices(s, p->modes, b, err));
     mt_transfer given = {.n = 0};
@@ -424,7 +425,7 @@ mt_status mt_basis_make(const mt_basis_problem *p, mt_arena *mem, mt_basis *out,
                       .lowest_left = keep < m->all ? m->lambda[keep] : HUGE_VAL};
     MT_TRY(mt_arena_init(&scratch, 0, err));
     parts s = {.f = p->f, .mem = mem, .scratch = &scratch, .n = p->f->n, .r = keep};
-    const mt_status rc = make(&s, p, out, err);
+    const mt_status rc = make_transfer_basis(&s, p, out, err);
     mt_arena_free(&scratch);
     return rc;
 }

@@ -131,7 +131,7 @@ static mt_status add_pole(trace *c, double complex s, mt_err *err)
     return MT_OK;
 }
 
-static bool is_known(const mt_sample *s, ptrdiff_t pair)
+static bool is_known_response(const mt_sample *s, ptrdiff_t pair)
 {
     const double size = cabs(s->h[pair]);
     return isfinite(size) && size > s->error[pair];
@@ -152,7 +152,7 @@ static bool is_bent(const trace *c, const point *a, const point *b)
 {
     const double l = c->opt->log ? log(b->w / a->w) : b->w - a->w;
     for (ptrdiff_t p = 0; p < c->pairs; p++) {
-        if (!is_known(&a->at, p) || !is_known(&b->at, p)) {
+        if (!is_known_response(&a->at, p) || !is_known_response(&b->at, p)) {
             continue;
         }
         const double ga = slope_of(&a->at, p) * (c->opt->log ? a->w : 1.0);
@@ -180,7 +180,7 @@ static mt_status halve(trace *c, mt_err *err)
     return MT_OK;
 }
 
-static mt_status refine(trace *c, mt_err *err)
+static mt_status refine_curve(trace *c, mt_err *err)
 {
     int had = 0;
     for (int pass = 0; pass < PASSES && c->n > had && c->n < MT_CURVE_MOST; pass++) {
@@ -235,7 +235,7 @@ static mt_status polish(trace *c, ptrdiff_t pair, double ends[2], double rise[2]
     return MT_OK;
 }
 
-static mt_status note(trace *c, const mt_extreme *e, mt_err *err)
+static mt_status append_extreme(trace *c, const mt_extreme *e, mt_err *err)
 {
     c->extremes = mt_arena_grow(c->mem, c->extremes, c->n_extremes, &c->extreme_room,
                                 sizeof *c->extremes);
@@ -256,7 +256,7 @@ static bool is_zero(const mt_extreme *e, const point *a, const point *b, double 
 static mt_status extreme(trace *c, const point *a, const point *b, ptrdiff_t pair, mt_err *err)
 {
     const bool at_pole = is_infinite(&a->at, pair) || is_infinite(&b->at, pair);
-    if (at_pole || (!is_known(&a->at, pair) && !is_known(&b->at, pair))) {
+    if (at_pole || (!is_known_response(&a->at, pair) && !is_known_response(&b->at, pair))) {
         return MT_OK;
     }
     double rise[2] = {rise_of(&a->at, pair), rise_of(&b->at, pair)};
@@ -268,7 +268,7 @@ static mt_status extreme(trace *c, const point *a, const point *b, ptrdiff_t pai
     if (e.peak && pole > 0.0) {
         e.infinite = true;
         e.w = pole;
-        return note(c, &e, err);
+        return append_extreme(c, &e, err);
     }
     const size_t pairs = (size_t)c->pairs;
     const mt_arena_mark mark = mt_arena_get_mark(c->mem);
@@ -282,7 +282,7 @@ static mt_status extreme(trace *c, const point *a, const point *b, ptrdiff_t pai
     e.error = at.error[pair];
     e.antiresonance = !e.peak && is_zero(&e, a, b, at.dh[pair]);
     mt_arena_rewind(c->mem, mark);
-    return note(c, &e, err);
+    return append_extreme(c, &e, err);
 }
 
 static int by_extreme(const void *a, const void *b)
@@ -300,7 +300,7 @@ static mt_status extremes_of(trace *c, ptrdiff_t pair, int n, mt_err *err)
         const mt_extreme own = {
             .pair = (int)pair, .peak = true, .infinite = true, .w = c->points[i].w};
         if (is_infinite(&c->points[i].at, pair)) {
-            MT_TRY(note(c, &own, err));
+            MT_TRY(append_extreme(c, &own, err));
         }
         if (i + 1 < n) {
             MT_TRY(extreme(c, &c->points[i], &c->points[i + 1], pair, err));
@@ -360,7 +360,7 @@ mt_status mt_curve_trace(const mt_transfer *t, const mt_curve_options *opt, mt_a
     }
     tidy(&c);
     if (!opt->grid) {
-        MT_TRY(refine(&c, err));
+        MT_TRY(refine_curve(&c, err));
     }
     MT_TRY(find_extremes(&c, err));
     return hand_out(&c, out, err);

@@ -32,7 +32,7 @@ typedef struct thinning {
     bool *keep;
 } thinning;
 
-static span judge(const thinning *t, int a, int b)
+static span find_worst_point(const thinning *t, int a, int b)
 {
     span s = {.a = a, .b = b, .worst = -1, .off = DRAWN};
     const double l = t->x[b] - t->x[a];
@@ -100,8 +100,8 @@ static void divide(thinning *t, int n_spans, span *spans, int most)
             return;
         }
         t->keep[s.worst] = true;
-        spans[which] = judge(t, s.a, s.worst);
-        spans[n_spans++] = judge(t, s.worst, s.b);
+        spans[which] = find_worst_point(t, s.a, s.worst);
+        spans[n_spans++] = find_worst_point(t, s.worst, s.b);
     }
 }
 
@@ -123,7 +123,7 @@ mt_status mt_curve_thin(const mt_curve *c, int pair, int pairs, int most, mt_are
     int n_spans = 0;
     for (int k = 1, last = 0; k < t.n; k++) {
         if (t.keep[k]) {
-            spans[n_spans++] = judge(&t, last, k);
+            spans[n_spans++] = find_worst_point(&t, last, k);
             last = k;
         }
     }

@@ -35,21 +35,21 @@ static void clear_of(const work *k, int n, double *x)
 }
 
 /* In the norm of H. */
-static double size_of(const work *k, const double *x)
+static double dual_norm(const work *k, const double *x)
 {
     const double *const dual = mt_lowest_dual(k->l, x, k->dual);
     return dual == x ? mt_norm2(k->n_x, x) : sqrt(fmax(mt_dot(k->n_x, x, dual), 0.0));
 }
 
 /* Adds x (overwritten) and its image to the coordinates. */
-static mt_status take(work *k, double *x, mt_err *err)
+static mt_status admit_vector(work *k, double *x, mt_err *err)
 {
-    const double was = size_of(k, x);
+    const double was = dual_norm(k, x);
     double size = was;
     for (int round = 0; round < 2 && size > 0.0; round++) {
         clear_of(k, k->size, x);
         MT_TRY(round == 0 ? mt_lowest_admit(k->l, x, err) : MT_OK);
-        size = size_of(k, x);
+        size = dual_norm(k, x);
     }
     if (!(size > DEPENDENT * was)) {
         return MT_OK;
@@ -75,18 +75,18 @@ static mt_status add_shapes(work *k, force *f, mt_err *err)
     memcpy(x, f->push.x, (size_t)k->n_x * sizeof *x);
     clear_of(k, k->kept, x);
     clear_of(k, k->kept, x);
-    f->left = (mt_left_part){.size = size_of(k, x),
-                             .open = size_of(k, x),
+    f->left = (mt_left_part){.size = dual_norm(k, x),
+                             .open = dual_norm(k, x),
                              .noise = f->push.noise,
                              .loose = f->push.loose};
     while (f->left.order < MOST_SHAPES &&
            pow(m, f->left.order) * f->left.open > NEGLIGIBLE * f->push.size) {
         memcpy(copy, x, (size_t)k->n_x * sizeof *copy);
-        MT_TRY(take(k, copy, err));
+        MT_TRY(admit_vector(k, copy, err));
         MT_TRY(mt_lowest_mass(k->l, x, next, err));
         memcpy(x, next, (size_t)k->n_x * sizeof *x);
         clear_of(k, k->kept, x);
-        f->left.open = size_of(k, x);
+        f->left.open = dual_norm(k, x);
         f->left.order++;
     }
     mt_arena_rewind(k->scratch, mark);
@@ -148,7 +148,7 @@ static mt_status make_basis(work *k, mt_err *err)
     MT_TRY(mt_arena_check(k->scratch, err));
     for (int i = 0; i < k->kept; i++) {
         memcpy(copy, mt_lowest_mode(k->l, i), n_x * sizeof *copy);
-        MT_TRY(take(k, copy, err));
+        MT_TRY(admit_vector(k, copy, err));
     }
     for (int i = 0; i < k->ports->n_in; i++) {
         MT_TRY(add_shapes(k, &k->in[i], err));
@@ -172,7 +172,7 @@ static mt_status make_basis(work *k, mt_err *err)
 }
 
 /* f->in_all, of rigid-body modes first. */
-static mt_status reduce(const work *k, force *f, mt_err *err)
+static mt_status reduce_force(const work *k, force *f, mt_err *err)
 {
     const int n = k->size;
     f->in_all = mt_arena_f64(k->scratch, (size_t)k->free + (size_t)n, 1);
@@ -302,7 +302,7 @@ static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
     return MT_OK;
 }
 
-static mt_status fill(work *k, mt_err *err)
+static mt_status fill_reduced_problem(work *k, mt_err *err)
 {
     const int n = k->out->modes.n;
     const size_t bytes = (size_t)n * sizeof(double);
@@ -421,18 +421,18 @@ static mt_status note_left(work *k, double lambda, mt_err *err)
 static mt_status reduce_all(const work *k, mt_err *err)
 {
     for (int i = 0; i < k->ports->n_in; i++) {
-        MT_TRY(reduce(k, &k->in[i], err));
+        MT_TRY(reduce_force(k, &k->in[i], err));
     }
     for (int o = 0; o < k->ports->n_out; o++) {
-        MT_TRY(reduce(k, &k->outs[o], err));
+        MT_TRY(reduce_force(k, &k->outs[o], err));
     }
     for (int s = 0; s < k->n_sides; s++) {
-        MT_TRY(reduce(k, &k->sides[s].f, err));
+        MT_TRY(reduce_force(k, &k->sides[s].f, err));
     }
     return MT_OK;
 }
 
-static mt_status make(work *k, bool *is, mt_err *err)
+static mt_status make_reduced_problem(work *k, bool *is, mt_err *err)
 {
     const mt_system *const sys = k->l->sys;
     double lambda = 0.0;
@@ -453,7 +453,7 @@ static mt_status make(work *k, bool *is, mt_err *err)
     }
     MT_TRY(reduce_all(k, err));
     MT_TRY(damp(k, err));
-    MT_TRY(fill(k, err));
+    MT_TRY(fill_reduced_problem(k, err));
     return note_left(k, lambda, err);
 }
 
@@ -480,7 +480,7 @@ mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_ar
               .free = mt_lowest_free(l),
               .to = to,
               .shift = mt_lowest_shift(l)};
-    const mt_status rc = make(&k, is, err);
+    const mt_status rc = make_reduced_problem(&k, is, err);
     mt_arena_free(&scratch);
     return rc;
 }

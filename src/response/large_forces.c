@@ -34,7 +34,7 @@ static mt_status new_force(const work *k, force *f, mt_err *err)
 }
 
 /* k->states += factor times a row over the freedoms of a term's bodies. */
-static void add_row(work *k, const mt_term *t, const mt_cx *row, double factor)
+static void add_term_row(work *k, const mt_term *t, const mt_cx *row, double factor)
 {
     for (int i = 0; i < MT_LOCAL; i++) {
         const int q = mt_local_dof(k->l->sys, t->body, i);
@@ -55,7 +55,7 @@ void mt_large_sensor_row(mt_large_work *k, int channel)
     mt_cx row[MT_LOCAL];
     mt_term_rows(&k->d, MT_TERM_CHANNEL, t, k->at.pose, row);
     clear(k);
-    add_row(k, t, row, 1.0);
+    add_term_row(k, t, row, 1.0);
 }
 
 static mt_status open_inputs(work *k, mt_err *err)
@@ -97,8 +97,8 @@ static void force_row(work *k, const mt_port *port, bool *one, double *loss)
         if (*one) {
             *loss = lost;
             mt_term_rows(&k->d, kind, t, k->at.pose, rows);
-            add_row(k, t, rows + ((ptrdiff_t)(part[i].row - t->first) * MT_LOCAL),
-                    part[i].share * mt_large_value(k, t->coefficient));
+            add_term_row(k, t, rows + ((ptrdiff_t)(part[i].row - t->first) * MT_LOCAL),
+                         part[i].share * mt_large_value(k, t->coefficient));
         }
     }
 }
@@ -138,7 +138,7 @@ static mt_status add_side(work *k, const mt_term *t, const mt_cx *row, double da
     *s = (side){.damping = damping, .structural = structural, .partner = k->n_sides + partner};
     MT_TRY(new_force(k, &s->f, err));
     clear(k);
-    add_row(k, t, row, 1.0);
+    add_term_row(k, t, row, 1.0);
     MT_TRY(mt_lowest_force(k->l, k->states, &s->f.push, err));
     k->n_sides++;
     return MT_OK;

@@ -62,8 +62,8 @@ static mt_status place_states(mt_poles *k, mt_err *err)
 
 /* Adds `scale` times the row of coordinate i of the state matrix, of M q'' + C q' + G q = 0
  * without the part of the rates of b, to row `to`. */
-static void add_row(const mt_poles *k, ptrdiff_t i, double complex scale, ptrdiff_t to,
-                    double complex *a)
+static void add_states_row(const mt_poles *k, ptrdiff_t i, double complex scale, ptrdiff_t to,
+                           double complex *a)
 {
     for (int e = 0; e < k->n_coupled; e++) {
         const ptrdiff_t j = k->coupled[e];
@@ -79,23 +79,24 @@ static void add_row(const mt_poles *k, ptrdiff_t i, double complex scale, ptrdif
     }
 }
 
-static void assemble(const mt_poles *k, double complex *a)
+static void assemble_states_matrix(const mt_poles *k, double complex *a)
 {
     for (int e = 0; e < k->n_coupled; e++) {
         const ptrdiff_t j = k->coupled[e];
         const ptrdiff_t v = k->v_of[j];
         if (j >= k->b->n_modes) {
-            add_row(k, j, -1.0 / mt_poles_damping(k, j, j), v, a);
+            add_states_row(k, j, -1.0 / mt_poles_damping(k, j, j), v, a);
             continue;
         }
         if (k->x_of[j] >= 0) {
             a[k->x_of[j] + (v * k->order)] = k->omega[j];
         }
-        add_row(k, j, -1.0, v, a);
+        add_states_row(k, j, -1.0, v, a);
         for (int d = 0; d < k->n_coupled; d++) {
             const ptrdiff_t b = k->coupled[d];
             if (b >= k->b->n_modes) {
-                add_row(k, b, mt_poles_damping(k, j, b) / mt_poles_damping(k, b, b), v, a);
+                add_states_row(k, b, mt_poles_damping(k, j, b) / mt_poles_damping(k, b, b), v,
+                               a);
             }
         }
     }
@@ -111,7 +112,7 @@ static mt_status eigenpairs(const mt_poles *k, double complex *w, double complex
     double *const vr = mt_arena_f64(k->mem, n, n);
     double *const wr = mt_arena_f64(k->mem, n, 2);
     MT_TRY(mt_arena_check(k->mem, err));
-    assemble(k, a);
+    assemble_states_matrix(k, a);
     bool real = true;
     for (size_t i = 0; i < n * n; i++) {
         real = real && cimag(a[i]) == 0.0;
@@ -296,7 +297,7 @@ static size_t most_of(const mt_poles *k)
 
 /* Room for poles, and which coordinates are tied to others: the first n_coupled, the others
  * behind them. */
-static mt_status begin(mt_poles *k, mt_err *err)
+static mt_status begin_poles(mt_poles *k, mt_err *err)
 {
     int alone_at = (int)k->n;
     k->coupled = mt_arena_int(k->mem, (size_t)k->n);
@@ -312,10 +313,10 @@ static mt_status begin(mt_poles *k, mt_err *err)
     return MT_OK;
 }
 
-static mt_status find(mt_poles *k, mt_pole_sum *out, mt_err *err)
+static mt_status find_pole_sum(mt_poles *k, mt_pole_sum *out, mt_err *err)
 {
     const size_t pairs = (size_t)k->pairs;
-    MT_TRY(begin(k, err));
+    MT_TRY(begin_poles(k, err));
     k->residue = mt_arena_alloc(k->mem, most_of(k) * pairs, sizeof *k->residue);
     k->d = mt_arena_alloc(k->mem, 3 * pairs, sizeof *k->d);
     MT_TRY(mt_arena_check(k->mem, err));
@@ -340,14 +341,14 @@ mt_status mt_response_poles(const mt_basis *basis, mt_arena *mem, mt_pole_sum *o
                   .mem = mem,
                   .n = basis->t.n,
                   .pairs = (ptrdiff_t)basis->t.n_in * basis->t.n_out};
-    return find(&k, out, err);
+    return find_pole_sum(&k, out, err);
 }
 
 mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
                                 double complex **s, mt_err *err)
 {
     mt_poles k = {.b = basis, .mem = mem, .n = basis->t.n};
-    MT_TRY(begin(&k, err));
+    MT_TRY(begin_poles(&k, err));
     for (ptrdiff_t a = k.n - 1; a >= k.n_coupled; a--) {
         const ptrdiff_t j = k.coupled[a];
         const double complex g = basis->g[j + (j * k.n)];

@@ -62,8 +62,8 @@ static void fill_column(const mt_poles *k, double complex *e, int m, ptrdiff_t c
 }
 
 /* sigma_p E beta_q of one pair. */
-static double complex between(const mt_poles *k, int p, int q, ptrdiff_t at,
-                              const double complex *e)
+static double complex sigma_e_beta_of_pair(const mt_poles *k, int p, int q, ptrdiff_t at,
+                                           const double complex *e)
 {
     const mt_transfer *const t = &k->b->t;
     const ptrdiff_t o = at % t->n_out;
@@ -96,7 +96,8 @@ mt_status mt_poles_add_polynomials(mt_poles *k, mt_err *err)
         const int q = at / MT_FORCED_POWERS;
         for (int m = 0; m < p + q && t->sigma[p] != NULL && t->beta[q] != NULL; m++) {
             for (ptrdiff_t pair = 0; pair < k->pairs; pair++) {
-                const double complex add = between(k, p, q, pair, e + ((p + q - m - 1) * size));
+                const double complex add =
+                    sigma_e_beta_of_pair(k, p, q, pair, e + ((p + q - m - 1) * size));
                 if (m >= 3 && add != 0.0) {
                     return mt_poles_refuse("the response grows with the cube of the frequency",
                                            err);

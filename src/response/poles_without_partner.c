@@ -39,7 +39,7 @@ static void numerator(const mt_poles *k, ptrdiff_t j, ptrdiff_t o, ptrdiff_t i,
     }
 }
 
-static double complex value_of(const double complex *poly, double complex s)
+static double complex polynomial_value(const double complex *poly, double complex s)
 {
     double complex sum = 0.0;
     for (int m = DEGREES - 1; m >= 0; m--) {
@@ -134,7 +134,7 @@ mt_status mt_poles_without_partner(mt_poles *k, ptrdiff_t j, mt_err *err)
         numerator(k, j, at % n_out, at / n_out, p);
         for (int r = 0; r < 2; r++) {
             k->residue[at + ((k->count + r) * k->pairs)] =
-                value_of(p, s[r]) / (s[r] - s[1 - r]);
+                polynomial_value(p, s[r]) / (s[r] - s[1 - r]);
         }
         double complex q[3] = {0.0, 0.0, p[4]};
         q[1] = p[3] - (c * q[2]);

@@ -45,8 +45,8 @@ mt_status mt_port_split(const char *text, bool relative_too, mt_arena *mem, cons
 }
 
 /* The names of all ports of a kind, for "did you mean". */
-static mt_status unknown(const mt_system *sys, const char *text, bool input, mt_arena *mem,
-                         mt_err *err)
+static mt_status refuse_unknown_port(const mt_system *sys, const char *text, bool input,
+                                     mt_arena *mem, mt_err *err)
 {
     const size_t most =
         (size_t)sys->n_channels + (size_t)sys->n_springs + (3 * (size_t)sys->n_joints) + 3;
@@ -106,7 +106,7 @@ mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, m
         return mt_arena_check(mem, err);
     }
     if (channel < 0) {
-        return unknown(sys, name, true, mem, err);
+        return refuse_unknown_port(sys, name, true, mem, err);
     }
     if (strchr(text, ':') != NULL) {
         return mt_fail(err, MT_E_USAGE, "\"%s\": the input at a sensor is its force", text);
@@ -176,7 +176,7 @@ static mt_status find_spring(const mt_system *sys, const char *name, mt_arena *m
         count = out->axis < 0 ? 0 : count_forces(sys, own, damper, &out->index);
     }
     if (count == 0) {
-        return unknown(sys, name, false, mem, err);
+        return refuse_unknown_port(sys, name, false, mem, err);
     }
     if (count > 1 && out->axis < 0) {
         return mt_fail(err, MT_E_USAGE,
@@ -194,20 +194,20 @@ static mt_status find_spring(const mt_system *sys, const char *name, mt_arena *m
 }
 
 /* "joint.NAME.x". */
-static mt_status find_joint(const mt_system *sys, const char *name, mt_arena *mem, mt_port *out,
-                            mt_err *err)
+static mt_status find_joint_port(const mt_system *sys, const char *name, mt_arena *mem,
+                                 mt_port *out, mt_err *err)
 {
     const char *const own = name + strlen(JOINT);
     const char *const dot = strrchr(own, '.');
     const int axis = dot == NULL ? -1 : axis_of(sys, dot + 1);
     if (axis < 0) {
-        return unknown(sys, name, false, mem, err);
+        return refuse_unknown_port(sys, name, false, mem, err);
     }
     const char *const joint = mt_arena_strndup(mem, own, (size_t)(dot - own));
     MT_TRY(mt_arena_check(mem, err));
     const int index = mt_system_find_joint(sys, joint);
     if (index < 0) {
-        return unknown(sys, name, false, mem, err);
+        return refuse_unknown_port(sys, name, false, mem, err);
     }
     *out = (mt_port){.kind = MT_PORT_JOINT,
                      .index = index,
@@ -233,11 +233,11 @@ mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, 
     const bool spring = begins(name, WITH_FORCE[0]);
     const bool damper = begins(name, WITH_FORCE[1]);
     if (!spring && !damper && !begins(name, JOINT)) {
-        return unknown(sys, name, false, mem, err);
+        return refuse_unknown_port(sys, name, false, mem, err);
     }
     if (strchr(text, ':') != NULL) {
         return mt_fail(err, MT_E_USAGE, "\"%s\": a force has no motion", text);
     }
     return spring || damper ? find_spring(sys, name, mem, damper, out, err)
-                            : find_joint(sys, name, mem, out, err);
+                            : find_joint_port(sys, name, mem, out, err);
 }

@@ -154,7 +154,7 @@ static mt_status add_motion(build *k, int o, mt_err *err)
     return port->relative ? MT_OK : add_ground(k, o, row, err);
 }
 
-static mt_status add_spring(build *k, int o, mt_err *err)
+static mt_status add_spring_output(build *k, int o, mt_err *err)
 {
     const mt_port *const port = &k->out[o];
     const bool damper = port->kind == MT_PORT_DAMPER;
@@ -178,7 +178,7 @@ static mt_status add_spring(build *k, int o, mt_err *err)
 }
 
 /* Row of output o in *s: += Z^T of w. */
-static mt_status project(build *k, int o, double **s, const double *w, mt_err *err)
+static mt_status add_projected_row(build *k, int o, double **s, const double *w, mt_err *err)
 {
     double *const row = mt_arena_f64(k->mem, (size_t)k->n, 1);
     double *const to = ensure(k, s, k->n, k->n_out);
@@ -207,10 +207,10 @@ static mt_status resist(build *k, int o, const mt_joint_force *force, mt_err *er
     if (force->geometric != NULL) {
         mt_axpy(k->nq, -1.0, force->geometric, kv);
     }
-    MT_TRY(project(k, o, &k->s[0], kv, err));
-    MT_TRY(project(k, o, &k->s[1], cv, err));
-    MT_TRY(project(k, o, &k->s[2], mv, err));
-    MT_TRY(project(k, o, &k->s_im, hv, err));
+    MT_TRY(add_projected_row(k, o, &k->s[0], kv, err));
+    MT_TRY(add_projected_row(k, o, &k->s[1], cv, err));
+    MT_TRY(add_projected_row(k, o, &k->s[2], mv, err));
+    MT_TRY(add_projected_row(k, o, &k->s_im, hv, err));
     mt_linear_project(k->a->lin, mv, reduced);
     return mt_analysis_ratio_force(k->a, reduced, k->s[1] + ((ptrdiff_t)o * k->n), err);
 }
@@ -245,7 +245,7 @@ static mt_status add_output(build *k, int o, mt_err *err)
         return add_motion(k, o, err);
     case MT_PORT_SPRING:
     case MT_PORT_DAMPER:
-        return add_spring(k, o, err);
+        return add_spring_output(k, o, err);
     case MT_PORT_JOINT:
         return add_joint(k, o, err);
     case MT_PORT_BASE:
@@ -269,7 +269,7 @@ static mt_status admit(const mt_modes *m, mt_err *err)
     return MT_OK;
 }
 
-static mt_status fill(build *k, mt_err *err)
+static mt_status fill_problem(build *k, mt_err *err)
 {
     k->b_full = mt_arena_f64(k->mem, (size_t)k->nq, (size_t)k->n_in);
     k->power = mt_arena_int(k->mem, (size_t)k->n_in);
@@ -300,7 +300,7 @@ mt_status mt_response_problem(mt_analysis *a, const mt_port_set *ports, mt_arena
                .out = ports->out,
                .ways = ways};
     MT_TRY(admit(&a->modes, err));
-    MT_TRY(fill(&k, err));
+    MT_TRY(fill_problem(&k, err));
     *f = (mt_forced){.n = r.n,
                      .k = r.k,
                      .m = r.m,

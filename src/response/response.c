@@ -47,8 +47,8 @@ static mt_status find_growing(mt_response *r, mt_err *err)
 }
 
 /* Everything derived from the matrices. */
-static mt_status finish(mt_response *out, const mt_basis_problem *problem, bool direct,
-                        mt_err *err)
+static mt_status finish_response(mt_response *out, const mt_basis_problem *problem, bool direct,
+                                 mt_err *err)
 {
     MT_TRY(mt_basis_make(problem, &out->mem, &out->basis, err));
     MT_TRY(mt_response_pole_list(&out->basis, &out->mem, &out->n_poles, &out->poles, err));
@@ -67,7 +67,7 @@ mt_status mt_response_open(mt_analysis *a, const mt_response_request *request, m
     MT_TRY(mt_response_problem(a, &out->ports, &out->mem, &out->f, &out->ways, err));
     const mt_basis_problem problem = {
         .f = &out->f, .mass = &a->mass, .modes = &a->modes, .keep = request->modes};
-    return finish(out, &problem, request->direct, err);
+    return finish_response(out, &problem, request->direct, err);
 }
 
 mt_status mt_response_open_large(mt_lowest *l, const mt_response_request *request, double to,
@@ -86,7 +86,7 @@ mt_status mt_response_open_large(mt_lowest *l, const mt_response_request *reques
     out->shapes = large.shapes;
     const mt_mass_factor mass = {.n = large.f.n, .rank = large.f.n};
     const mt_basis_problem problem = {.f = &out->f, .mass = &mass, .modes = &large.modes};
-    MT_TRY(finish(out, &problem, false, err));
+    MT_TRY(finish_response(out, &problem, false, err));
     return mt_large_left(&large, &out->basis, &out->mem, err);
 }
 
@@ -113,7 +113,7 @@ mt_status mt_response_curve(mt_response *r, const mt_curve_options *opt, mt_curv
     return mt_curve_trace(r->chosen, &own, &r->mem, out, err);
 }
 
-static int nearest(const mt_pole_sum *sum, double complex s)
+static int nearest_pole(const mt_pole_sum *sum, double complex s)
 {
     int best = -1;
     for (int k = 0; k < sum->n; k++) {
@@ -127,7 +127,7 @@ mt_status mt_response_sums(mt_response *r, mt_pole_sum *out, mt_err *err)
     MT_TRY(mt_response_poles(&r->basis, &r->mem, out, err));
     for (int p = 0; p < r->ports.n_in * r->ports.n_out; p++) {
         out[p].judged = true;
-        out[p].growing = r->growing < 0 ? -1 : nearest(&out[p], r->poles[r->growing]);
+        out[p].growing = r->growing < 0 ? -1 : nearest_pole(&out[p], r->poles[r->growing]);
     }
     return MT_OK;
 }

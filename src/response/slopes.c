@@ -76,7 +76,7 @@ void mt_slope_matrices(const mt_analysis *a, mt_slope_factor *d)
     d[MT_MATRIX_MASS] = (mt_slope_factor){{0.0, alpha, 1.0}};
 }
 
-static double complex value_of(const work *k, mt_slope_factor f)
+static double complex factor_value(const work *k, mt_slope_factor f)
 {
     return f.c[0] + (f.c[1] * k->power[1]) + (f.c[2] * k->power[2]);
 }
@@ -86,7 +86,7 @@ static void factors_of(work *k)
     mt_slope_factor d[MATRICES];
     mt_slope_matrices(k->p->a, d);
     for (int m = 0; m < MATRICES; m++) {
-        k->factor[m] = value_of(k, d[m]);
+        k->factor[m] = factor_value(k, d[m]);
     }
 }
 
@@ -115,7 +115,7 @@ static mt_status subtract_d(work *k, const pair *x, pair *to, mt_err *err)
 }
 
 /* Joint forces: A^T forces ~ w. */
-static mt_status balance(work *k, const pair *w, pair *forces, mt_err *err)
+static mt_status solve_joint_forces(work *k, const pair *w, pair *forces, mt_err *err)
 {
     for (int part = 0; part < 2; part++) {
         MT_TRY(mt_linear_multipliers(k->lin, w->part[part], forces->part[part], err));
@@ -124,7 +124,7 @@ static mt_status balance(work *k, const pair *w, pair *forces, mt_err *err)
 }
 
 /* states := Z x. */
-static mt_status expand(work *k, const double complex *x, pair *states, mt_err *err)
+static mt_status expand_to_states(work *k, const double complex *x, pair *states, mt_err *err)
 {
     const int n = mt_linear_freedoms(k->lin);
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
@@ -206,7 +206,7 @@ static mt_status close_side(work *k, side *s, pair *w, mt_err *err)
 {
     MT_TRY(subtract_d(k, &s->states, w, err));
     if (k->ratio.r == 0) {
-        return balance(k, w, &s->forces, err);
+        return solve_joint_forces(k, w, &s->forces, err);
     }
     MT_TRY(open_ratios(k, s, err));
     double *const product = mt_arena_f64(k->mem, (size_t)k->nq, 1);
@@ -216,7 +216,7 @@ static mt_status close_side(work *k, side *s, pair *w, mt_err *err)
         mt_linear_states_product(k->lin, MT_MATRIX_MASS, 1.0, s->turned.part[i], product);
         add_real(k->nq, -k->power[1] * mt_complex(1 - i, i), product, w);
     }
-    return balance(k, w, &s->forces, err);
+    return solve_joint_forces(k, w, &s->forces, err);
 }
 
 static mt_status open_input(work *k, int i, const double complex *x, mt_err *err)
@@ -227,7 +227,7 @@ static mt_status open_input(work *k, int i, const double complex *x, mt_err *err
     pair w = new_pair(k->mem, k->nq);
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(expand(k, x, &s->states, err));
+    MT_TRY(expand_to_states(k, x, &s->states, err));
     mt_slope_push(k->lin, port, k->shift, f);
     add_real(k->nq, k->power[mt_response_power(port)], f, &w);
     return close_side(k, s, &w, err);
@@ -286,7 +286,7 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
     pair w = new_pair(k->mem, k->nq);
     double *const sigma = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
-    MT_TRY(expand(k, y, &s->states, err));
+    MT_TRY(expand_to_states(k, y, &s->states, err));
     if (port->kind == MT_PORT_JOINT) {
         mt_axpy(k->nq, -1.0, k->p->ways->joint[o].v, s->states.part[0]);
         if (k->p->ways->joint[o].geometric != NULL) {
@@ -298,7 +298,7 @@ static mt_status open_output(work *k, int o, const double complex *y, mt_err *er
         for (int i = 0; i < n; i++) {
             memset(sigma, 0, (size_t)k->nq * sizeof *sigma);
             mt_linear_row_add(k->lin, part[i].kind, part[i].row, 1.0, sigma);
-            add_real(k->nq, value_of(k, part[i].factor), sigma, &w);
+            add_real(k->nq, factor_value(k, part[i].factor), sigma, &w);
         }
     }
     return close_side(k, s, &w, err);
@@ -375,7 +375,8 @@ static mt_status ratios(work *k, int p, int o, int i, double complex *out, mt_er
 }
 
 /* e . dD q. */
-static mt_status between(work *k, int p, int o, int i, double complex *out, mt_err *err)
+static mt_status slope_between_states(work *k, int p, int o, int i, double complex *out,
+                                      mt_err *err)
 {
     const mt_damping_def *const d = &k->p->a->sys->damping;
     const pair *const e = &k->out[o].states;
@@ -439,10 +440,11 @@ static double complex output_slope(const work *k, int p, int o, const side *in)
     double complex sum = 0.0;
     for (int i = 0; i < n; i++) {
         const mt_slope_part *const own = &part[i];
-        sum += (value_of(k, own->factor) * row_slope(k, p, own->kind, own->row, &in->states)) +
-               (value_of(k, mt_slope_turn(k->p->a, p, own)) *
-                mt_complex(mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[0]),
-                           mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[1])));
+        sum +=
+            (factor_value(k, own->factor) * row_slope(k, p, own->kind, own->row, &in->states)) +
+            (factor_value(k, mt_slope_turn(k->p->a, p, own)) *
+             mt_complex(mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[0]),
+                        mt_linear_row_dot(k->lin, own->kind, own->row, in->states.part[1])));
     }
     return sum;
 }
@@ -456,7 +458,7 @@ static mt_status slope(work *k, int p, int o, int i, double complex *out, mt_err
     const pair moved_in = jacobian(k, p, &in->states);
     MT_TRY(mt_arena_check(k->mem, err));
     double complex turned = 0.0;
-    MT_TRY(between(k, p, o, i, &turned, err));
+    MT_TRY(slope_between_states(k, p, o, i, &turned, err));
     *out = output_slope(k, p, o, in) + force_slope(k, p, i, &side_out->states) - turned -
            dot(k->m, &moved_out, &in->forces) - dot(k->m, &side_out->forces, &moved_in);
     mt_arena_rewind(k->mem, mark);
@@ -529,7 +531,7 @@ static mt_status slopes_by(work *k, int p, double complex *dh, mt_err *err)
     return MT_OK;
 }
 
-static mt_status slopes(work *k, double complex *dh, mt_err *err)
+static mt_status response_slopes(work *k, double complex *dh, mt_err *err)
 {
     const ptrdiff_t pairs = (ptrdiff_t)k->p->basis->f->n_in * k->p->basis->f->n_out;
     const int n_inputs = k->p->a->sys->n_inputs;
@@ -562,7 +564,7 @@ mt_status mt_response_slopes(const mt_slope_problem *p, double w, double complex
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     MT_TRY(mt_slope_admit(p, err));
     factors_of(&k);
-    const mt_status rc = slopes(&k, dh, err);
+    const mt_status rc = response_slopes(&k, dh, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

@@ -55,7 +55,7 @@ typedef struct work {
     double *half;        /* nq x ny */
 } work;
 
-static double part_of(mt_slope_factor f, int c)
+static double part_of_factor(mt_slope_factor f, int c)
 {
     return c == 0 ? creal(f.c[0]) : c == 1 ? cimag(f.c[0]) : creal(f.c[c - 1]);
 }
@@ -83,7 +83,7 @@ static mt_status make_e(work *k, mt_err *err)
 }
 
 /* F and G of what pushes: f, and sigma or what stands in a joint. */
-static mt_status push(work *k, mt_err *err)
+static mt_status set_load_multipliers(work *k, mt_err *err)
 {
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     double *const balanced = mt_arena_f64(k->mem, (size_t)k->m, 1);
@@ -106,7 +106,7 @@ static mt_status push(work *k, mt_err *err)
         mt_linear_row_add(k->lin, part[i].kind, part[i].row, 1.0, f);
         MT_TRY(multipliers(k, 1, f, balanced, err));
         for (int c = 0; c < PARTS; c++) {
-            mt_axpy(k->m, part_of(part[i].factor, c), balanced, k->g[c] + last);
+            mt_axpy(k->m, part_of_factor(part[i].factor, c), balanced, k->g[c] + last);
         }
     }
     return MT_OK;
@@ -116,8 +116,8 @@ static mt_status push(work *k, mt_err *err)
 static void pull(work *k, const double *carried, mt_slope_factor factor)
 {
     for (int c = 0; c < PARTS; c++) {
-        mt_axpy(k->m * k->n, -part_of(factor, c), carried, k->f[c]);
-        mt_axpy(k->m * k->ny, -part_of(factor, c), carried, k->g[c]);
+        mt_axpy(k->m * k->n, -part_of_factor(factor, c), carried, k->f[c]);
+        mt_axpy(k->m * k->ny, -part_of_factor(factor, c), carried, k->g[c]);
     }
 }
 
@@ -189,7 +189,7 @@ static mt_status open_work(work *k, mt_err *err)
         MT_TRY(mt_analysis_ratio_modes(k->p->a, &k->ratio, err));
     }
     MT_TRY(make_e(k, err));
-    MT_TRY(push(k, err));
+    MT_TRY(set_load_multipliers(k, err));
     MT_TRY(pull_matrices(k, err));
     return k->ratio.r > 0 ? pull_ratios(k, err) : MT_OK;
 }
@@ -215,7 +215,7 @@ static bool matrix_slope(work *k, int p, mt_matrix j, const double *x)
 }
 
 /* -e . dD q, without modal ratios. */
-static void between(work *k, int p, double *const t[PARTS])
+static void add_matrix_forms(work *k, int p, double *const t[PARTS])
 {
     const mt_damping_def *const d = &k->p->a->sys->damping;
     const double mass = mt_slope_node(k->p->a, p, d->mass);
@@ -223,8 +223,8 @@ static void between(work *k, int p, double *const t[PARTS])
     for (int j = 0; j < MATRICES; j++) {
         const bool moves = matrix_slope(k, p, (mt_matrix)j, k->e);
         for (int c = 0; c < PARTS && moves; c++) {
-            if (part_of(k->d[j], c) != 0.0) {
-                add_to(k, k->nq, k->n, -part_of(k->d[j], c), k->e, k->half, t[c]);
+            if (part_of_factor(k->d[j], c) != 0.0) {
+                add_to(k, k->nq, k->n, -part_of_factor(k->d[j], c), k->e, k->half, t[c]);
             }
         }
     }
@@ -290,7 +290,7 @@ static mt_status output_row(work *k, int p, double *const t[PARTS], mt_err *err)
             const double way = mt_linear_row_dot(k->lin, part[i].kind, part[i].row, z);
             for (int c = 0; c < PARTS; c++) {
                 t[c][last + (j * k->ny)] +=
-                    (part_of(part[i].factor, c) * own) + (part_of(turn, c) * way);
+                    (part_of_factor(part[i].factor, c) * own) + (part_of_factor(turn, c) * way);
             }
         }
     }
@@ -321,7 +321,7 @@ static mt_status forms_by(work *k, int p, double *const t[PARTS], mt_err *err)
         add_to(k, k->m, k->ny, -1.0, k->moved, k->f[c], t[c]);
         add_to(k, k->m, k->n, -1.0, k->g[c], k->moved, t[c]);
     }
-    between(k, p, t);
+    add_matrix_forms(k, p, t);
     if (k->ratio.r > 0) {
         MT_TRY(ratios(k, p, t[OF_S], err));
     }
@@ -360,7 +360,7 @@ static mt_status keep_used(const work *k, const double *t, mt_arena *mem, mt_slo
     return MT_OK;
 }
 
-static mt_status make(work *k, mt_arena *mem, mt_slope_forms *f, mt_err *err)
+static mt_status make_slope_forms(work *k, mt_arena *mem, mt_slope_forms *f, mt_err *err)
 {
     const size_t inputs = (size_t)k->p->a->sys->n_inputs;
     const size_t square = (size_t)k->ny * (size_t)k->ny;
@@ -406,7 +406,7 @@ mt_status mt_slope_forms_make(const mt_slope_problem *p, int out, int in, int fr
               .ny = n + 1,
               .nq = p->a->sys->nq,
               .m = mt_linear_equations(p->a->lin)};
-    const mt_status rc = make(&k, mem, f, err);
+    const mt_status rc = make_slope_forms(&k, mem, f, err);
     mt_arena_free(&scratch);
     return rc;
 }

@@ -155,7 +155,7 @@ static void motion_with(const work *k, mt_slope_factor f, double *part, double *
 }
 
 /* to (ny x n) := G_j. */
-static void weigh(const work *k, mt_slope_factor f, double *to)
+static void weigh_by_factor(const work *k, mt_slope_factor f, double *to)
 {
     const int size = k->ny * k->n;
     memset(to, 0, (size_t)size * sizeof *to);
@@ -193,7 +193,7 @@ static void push_output(const work *k, mt_slope_factor factor, const double *sig
 }
 
 /* f (W s^k y')^T and sigma (W factor x)^T. */
-static mt_status push(work *k, const balance *b, mt_err *err)
+static mt_status add_weighted_loads(work *k, const balance *b, mt_err *err)
 {
     double *const f = mt_arena_f64(k->mem, (size_t)k->nq, 2);
     double *const sigma = f + k->nq;
@@ -231,7 +231,7 @@ static void add_matrix(work *k, int j, mt_slope_factor factor, const balance *b)
         mt_linear_states_product(k->lin, (mt_matrix)j, 1.0, k->e + (c * nq),
                                  b->product + (c * nq));
     }
-    weigh(k, factor, b->g);
+    weigh_by_factor(k, factor, b->g);
     mt_gemm(false, true, nq, ny, n, -1.0, b->product, nq, b->g, ny, 1.0, b->in, nq);
     mt_gemm(false, false, nq, n, ny, -1.0, b->product, nq, b->g, ny, 1.0, b->out, nq);
     mt_gemm(false, false, nq, n, ny, 1.0, k->e, nq, b->g, ny, 0.0, b->half, nq);
@@ -334,7 +334,7 @@ static mt_status carry(work *k, const balance *b, mt_err *err)
     return MT_OK;
 }
 
-static mt_status gather(work *k, mt_err *err)
+static mt_status gather_weighted_products(work *k, mt_err *err)
 {
     const size_t nq = (size_t)k->nq;
     const size_t n = (size_t)k->n;
@@ -349,7 +349,7 @@ static mt_status gather(work *k, mt_err *err)
     k->lambda = mt_arena_f64(k->mem, (size_t)k->m, nq);
     MT_TRY(mt_arena_check(k->mem, err));
     MT_TRY(make_e(k, err));
-    MT_TRY(push(k, &b, err));
+    MT_TRY(add_weighted_loads(k, &b, err));
     mt_slope_factor d[MATRICES];
     mt_slope_matrices(k->p->a, d);
     for (int j = 0; j < MATRICES; j++) {
@@ -365,7 +365,7 @@ static mt_status gather(work *k, mt_err *err)
 }
 
 /* sum W e . dD q. */
-static mt_status between(work *k, int p, double *out, mt_err *err)
+static mt_status weighted_matrix_slope(work *k, int p, double *out, mt_err *err)
 {
     const mt_damping_def *const d = &k->p->a->sys->damping;
     double sum = (mt_slope_node(k->p->a, p, d->mass) * k->of_mass) +
@@ -435,7 +435,7 @@ static mt_status slopes_of_all(work *k, double *slope, mt_err *err)
         double between_of = nan("");
         double output = 0.0;
         if (!why.opens && !why.blocks) {
-            MT_TRY(between(k, p, &between_of, err));
+            MT_TRY(weighted_matrix_slope(k, p, &between_of, err));
         }
         if (k->out->kind == MT_PORT_JOINT) {
             MT_TRY(joint_slope(k, p, part, motion, &output, err));
@@ -467,7 +467,7 @@ static mt_status weighted(work *k, double *slope, mt_err *err)
         }
         return MT_OK;
     }
-    MT_TRY(gather(k, err));
+    MT_TRY(gather_weighted_products(k, err));
     return slopes_of_all(k, slope, err);
 }
 

@@ -35,7 +35,8 @@ mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *me
 }
 
 /* Both parts of numbers that are complex, apart. */
-static void spread(ptrdiff_t n, const double complex *z, double *const to[2], ptrdiff_t at)
+static void split_complex(ptrdiff_t n, const double complex *z, double *const to[2],
+                          ptrdiff_t at)
 {
     for (ptrdiff_t j = 0; j < n; j++) {
         to[0][at + j] = creal(z[j]);
@@ -44,8 +45,8 @@ static void spread(ptrdiff_t n, const double complex *z, double *const to[2], pt
 }
 
 /* u := sum_p s^p given_p - W q. */
-static void follow(const mt_basis *b, double w, const double complex *const *given, int column,
-                   const double complex *q, double complex *u)
+static void follow_coordinates(const mt_basis *b, double w, const double complex *const *given,
+                               int column, const double complex *q, double complex *u)
 {
     const ptrdiff_t n = b->n_follow;
     double complex power = 1.0;
@@ -63,7 +64,7 @@ static void follow(const mt_basis *b, double w, const double complex *const *giv
     }
 }
 
-/* to[n] := X q + U u, u given as by `follow`. */
+/* to[n] := X q + U u, u given as by `follow_coordinates`. */
 static void back_one(const mt_basis *b, const double complex *q, const double complex *u,
                      double complex *to)
 {
@@ -92,11 +93,11 @@ mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double 
     MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(mt_transfer_solve(&b->t, w, q, a, NULL, singular, scratch, err));
     for (int i = 0; i < b->t.n_in && !*singular; i++) {
-        follow(b, w, b->follow_b, i, q + (i * n), u);
+        follow_coordinates(b, w, b->follow_b, i, q + (i * n), u);
         back_one(b, q + (i * n), u, x + ((ptrdiff_t)i * b->f->n));
     }
     for (int o = 0; o < b->t.n_out && !*singular; o++) {
-        follow(b, w, b->follow_s, o, a + (o * n), u);
+        follow_coordinates(b, w, b->follow_s, o, a + (o * n), u);
         back_one(b, a + (o * n), u, y + ((ptrdiff_t)o * b->f->n));
     }
     mt_arena_rewind(scratch, mark);
@@ -115,9 +116,9 @@ mt_status mt_solutions_one(const mt_solutions *s, double w, double complex *x,
     double complex *const a = q + b->t.n;
     MT_TRY(mt_transfer_solve(&s->one, w, q, a, h, singular, scratch, err));
     if (!*singular) {
-        follow(b, w, b->follow_b, s->in, q, u);
+        follow_coordinates(b, w, b->follow_b, s->in, q, u);
         back_one(b, q, u, x);
-        follow(b, w, b->follow_s, s->out, a, u);
+        follow_coordinates(b, w, b->follow_s, s->out, a, u);
         back_one(b, a, u, y);
     }
     mt_arena_rewind(scratch, mark);
@@ -153,8 +154,9 @@ static void back(const mt_solutions *s, int count, const side *from, double *con
     }
 }
 
-static mt_status solve(const mt_solutions *s, int count, const double *w, const mt_solved *out,
-                       bool *singular, mt_arena *mem, mt_err *err)
+static mt_status solve_at_frequencies(const mt_solutions *s, int count, const double *w,
+                                      const mt_solved *out, bool *singular, mt_arena *mem,
+                                      mt_err *err)
 {
     const ptrdiff_t n = s->one.n;
     const ptrdiff_t more = s->basis->n_follow;
@@ -168,12 +170,12 @@ static mt_status solve(const mt_solutions *s, int count, const double *w, const 
         if (*singular) {
             return MT_OK;
         }
-        spread(n, q, x.q, i * n);
-        spread(n, a, y.q, i * n);
-        follow(s->basis, w[i], s->basis->follow_b, s->in, q, q + n);
-        follow(s->basis, w[i], s->basis->follow_s, s->out, a, a + n);
-        spread(more, q + n, x.u, i * more);
-        spread(more, a + n, y.u, i * more);
+        split_complex(n, q, x.q, i * n);
+        split_complex(n, a, y.q, i * n);
+        follow_coordinates(s->basis, w[i], s->basis->follow_b, s->in, q, q + n);
+        follow_coordinates(s->basis, w[i], s->basis->follow_s, s->out, a, a + n);
+        split_complex(more, q + n, x.u, i * more);
+        split_complex(more, a + n, y.u, i * more);
     }
     back(s, count, &x, out->x);
     back(s, count, &y, out->y);
@@ -185,7 +187,7 @@ mt_status mt_solutions_at(const mt_solutions *s, int count, const double *w,
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     *singular = false;
-    const mt_status rc = solve(s, count, w, out, singular, scratch, err);
+    const mt_status rc = solve_at_frequencies(s, count, w, out, singular, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }

@@ -73,7 +73,7 @@ static double complex entry_slope(const work *k, ptrdiff_t at)
     return (-2.0 * k->w * t->m[at]) + mt_complex(0.0, t->c == NULL ? 0.0 : t->c[at]);
 }
 
-static mt_status factor(work *k, mt_arena *mem, mt_err *err)
+static mt_status factor_dynamic_stiffness(work *k, mt_arena *mem, mt_err *err)
 {
     const ptrdiff_t n = k->t->n;
     k->d = mt_arena_alloc(mem, (size_t)n * (k->t->diagonal ? 1 : (size_t)n), sizeof *k->d);
@@ -107,8 +107,8 @@ static mt_status factor(work *k, mt_arena *mem, mt_err *err)
 }
 
 /* r := b - D x, n x cols. */
-static void residual(const work *k, int cols, const double complex *b, const double complex *x,
-                     double complex *r)
+static void residual_of_solution(const work *k, int cols, const double complex *b,
+                                 const double complex *x, double complex *r)
 {
     const ptrdiff_t n = k->t->n;
     memcpy(r, b, (size_t)n * (size_t)cols * sizeof *r);
@@ -137,7 +137,8 @@ static mt_status back(const work *k, int cols, const double complex *b, double c
 }
 
 /* b := D^-1 b, n x cols; resonant coordinates are left at 0. */
-static mt_status solve(const work *k, int cols, double complex *b, mt_arena *mem, mt_err *err)
+static mt_status solve_dynamic_stiffness(const work *k, int cols, double complex *b,
+                                         mt_arena *mem, mt_err *err)
 {
     const ptrdiff_t n = k->t->n;
     const size_t size = (size_t)n * (size_t)cols;
@@ -152,7 +153,7 @@ static mt_status solve(const work *k, int cols, double complex *b, mt_arena *mem
     double complex *const r = mt_arena_alloc(mem, size, sizeof *r);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(back(k, cols, b, x, err));
-    residual(k, cols, b, x, r);
+    residual_of_solution(k, cols, b, x, r);
     MT_TRY(back(k, cols, r, r, err));
     for (size_t at = 0; at < size; at++) {
         b[at] = x[at] + r[at];
@@ -199,10 +200,10 @@ static mt_status solutions(work *k, bool slope, bool adjoint, mt_arena *mem, mt_
     k->a = adjoint ? mt_arena_alloc(mem, (size_t)n * (size_t)n_out, sizeof *k->a) : NULL;
     MT_TRY(mt_arena_check(mem, err));
     sum_powers(n * n_in, k->power, k->t->beta, k->q);
-    MT_TRY(solve(k, n_in, k->q, mem, err));
+    MT_TRY(solve_dynamic_stiffness(k, n_in, k->q, mem, err));
     if (slope) {
         slope_side(k, k->dq);
-        MT_TRY(solve(k, n_in, k->dq, mem, err));
+        MT_TRY(solve_dynamic_stiffness(k, n_in, k->dq, mem, err));
     }
     for (int p = 0; p < MT_FORCED_POWERS && adjoint; p++) {
         for (ptrdiff_t j = 0; j < n && k->t->sigma[p] != NULL; j++) {
@@ -211,7 +212,7 @@ static mt_status solutions(work *k, bool slope, bool adjoint, mt_arena *mem, mt_
             }
         }
     }
-    return adjoint ? solve(k, n_out, k->a, mem, err) : MT_OK;
+    return adjoint ? solve_dynamic_stiffness(k, n_out, k->a, mem, err) : MT_OK;
 }
 
 /* y := sigma q, one column. Written out: half of sigma is usually 0, and C's complex product
@@ -433,12 +434,12 @@ static void all_infinite(const mt_transfer *t, const mt_sample *out)
     }
 }
 
-static mt_status sample(const mt_transfer *t, double w, const mt_sample *out, mt_arena *scratch,
-                        mt_err *err)
+static mt_status sample_transfer(const mt_transfer *t, double w, const mt_sample *out,
+                                 mt_arena *scratch, mt_err *err)
 {
     work k = {.t = t, .w = w};
     set_powers(&k);
-    MT_TRY(factor(&k, scratch, err));
+    MT_TRY(factor_dynamic_stiffness(&k, scratch, err));
     if (k.factor.singular) {
         all_infinite(t, out);
         return MT_OK;
@@ -456,7 +457,7 @@ mt_status mt_transfer_at(const mt_transfer *t, double w, const mt_sample *out,
                          mt_arena *scratch, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
-    const mt_status rc = sample(t, w, out, scratch, err);
+    const mt_status rc = sample_transfer(t, w, out, scratch, err);
     mt_arena_rewind(scratch, mark);
     return rc;
 }
@@ -470,7 +471,7 @@ mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     value.h = h;
     set_powers(&k);
-    MT_TRY(factor(&k, scratch, err));
+    MT_TRY(factor_dynamic_stiffness(&k, scratch, err));
     *singular = k.factor.singular || k.any_resonant;
     if (k.factor.singular && h != NULL) {
         all_infinite(t, &value);
@@ -501,7 +502,8 @@ double complex *mt_transfer_rest(mt_transfer *t, int power, mt_arena *mem)
 }
 
 /* Real numbers (and imaginary parts, or NULL), as complex ones; NULL where there are none. */
-static const double complex *widen(size_t n, const double *re, const double *im, mt_arena *mem)
+static const double complex *complex_of_parts(size_t n, const double *re, const double *im,
+                                              mt_arena *mem)
 {
     double complex *const out =
         re == NULL && im == NULL ? NULL : mt_arena_alloc(mem, n, sizeof *out);
@@ -532,16 +534,17 @@ mt_status mt_transfer_direct(const mt_forced *f, mt_arena *mem, mt_transfer *out
     const size_t n = (size_t)f->n;
     const size_t pairs = (size_t)f->n_in * (size_t)f->n_out;
     *out = (mt_transfer){.n = f->n, .n_in = f->n_in, .n_out = f->n_out, .m = f->m, .c = f->c};
-    out->g = widen(n * n, f->k, f->h, mem);
+    out->g = complex_of_parts(n * n, f->k, f->h, mem);
     for (int p = 0; p < MT_FORCED_POWERS; p++) {
         const double *const s_im = p == 0 ? f->s_im : NULL;
-        out->beta[p] = widen(n * (size_t)f->n_in, f->b[p], NULL, mem);
+        out->beta[p] = complex_of_parts(n * (size_t)f->n_in, f->b[p], NULL, mem);
         out->sigma[p] = transposed(f->n, f->n_out, f->s[p], s_im, mem);
         out->real[p] = s_im == NULL;
-        out->rest[p - MT_REST_LOWEST] = widen(pairs, f->d[p], p == 0 ? f->d_im : NULL, mem);
+        out->rest[p - MT_REST_LOWEST] =
+            complex_of_parts(pairs, f->d[p], p == 0 ? f->d_im : NULL, mem);
     }
     for (int p = 0; p < 2; p++) {
-        out->rest[-1 - p - MT_REST_LOWEST] = widen(pairs, f->e[p], NULL, mem);
+        out->rest[-1 - p - MT_REST_LOWEST] = complex_of_parts(pairs, f->e[p], NULL, mem);
     }
     return mt_arena_check(mem, err);
 }

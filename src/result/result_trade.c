@@ -8,7 +8,7 @@ static bool counts(const mt_trade_selection *s, int k)
     return (!s->front || p->pareto) && (!s->found || p->best.n_parameters > 0);
 }
 
-static int count(const mt_trade_result *trade, bool front, bool found)
+static int count_points(const mt_trade_result *trade, bool front, bool found)
 {
     const mt_trade_selection s = {.trade = trade, .front = front, .found = found};
     int n = 0;
@@ -24,9 +24,9 @@ mt_trade_selection mt_trade_select(const mt_trade_result *trade)
     if (trade->n_points <= MT_TRADE_WHOLE) {
         return s;
     }
-    s.found = count(trade, false, true) > 0;
-    s.front = count(trade, true, s.found) > 0;
-    s.each = (count(trade, s.front, s.found) + MT_TRADE_WHOLE - 1) / MT_TRADE_WHOLE;
+    s.found = count_points(trade, false, true) > 0;
+    s.front = count_points(trade, true, s.found) > 0;
+    s.each = (count_points(trade, s.front, s.found) + MT_TRADE_WHOLE - 1) / MT_TRADE_WHOLE;
     return s;
 }
 

@@ -33,7 +33,7 @@ static void add_masses(const mt_scene_frame *f, mt_scene_body *bodies)
     }
 }
 
-static double number_of(const mt_scene_frame *f, mt_num num)
+static double number_or_zero(const mt_scene_frame *f, mt_num num)
 {
     return num == MT_ABSENT ? 0.0 : f->number[num];
 }
@@ -71,7 +71,7 @@ static mt_status ellipsoid(const mt_scene_frame *f, const mt_body *b, mt_scene_b
     double most = 0.0;
     const bool plane = f->sys->dimension == 2;
     for (int k = 0; k < 6; k++) {
-        inertia[k] = plane && k > 0 ? 0.0 : number_of(f, b->inertia[k]);
+        inertia[k] = plane && k > 0 ? 0.0 : number_or_zero(f, b->inertia[k]);
         most = fmax(most, k < 3 ? inertia[k] : 0.0);
     }
     if (b->point_mass || !(out->mass > 0.0) || !(most > 0.0)) {

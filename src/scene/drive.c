@@ -160,8 +160,8 @@ static double nearest_of(int n, const double *positions)
 
 /* positions[n], those of w->out, and the system that is driven through them.
  * at[n_inputs + 1]. */
-static mt_status prepare(walk *w, const range *r, const mt_system_drive *drive,
-                         double *positions, double *at, mt_err *err)
+static mt_status prepare_positions(walk *w, const range *r, const mt_system_drive *drive,
+                                   double *positions, double *at, mt_err *err)
 {
     const mt_scene_frame *const f = w->f;
     const mt_scene_query *const ask = f->ask;
@@ -255,7 +255,7 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
     bool shared = false;
     mt_sweep found;
     MT_TRY(mt_arena_check(f->work, err));
-    MT_TRY(prepare(w, r, &drive, positions, at, err));
+    MT_TRY(prepare_positions(w, r, &drive, positions, at, err));
     MT_TRY(share(w, &shared, err));
     if (shared) {
         return MT_OK;
@@ -281,7 +281,7 @@ static mt_status sweep(walk *w, const range *r, mt_err *err)
 }
 
 /* Keep the positions that the next configuration may share. */
-static void keep(walk *w)
+static void keep_followed_positions(walk *w)
 {
     mt_scene_followed *const followed = w->f->followed;
     mt_system_delete(followed->sys);
@@ -338,7 +338,7 @@ mt_status mt_scene_follow(mt_scene_way *way, mt_err *err)
     mt_analysis_delete(w.a);
     mt_linear_delete(w.lin);
     if (rc == MT_OK) {
-        keep(&w);
+        keep_followed_positions(&w);
     }
     mt_system_delete(w.sys);
     if (rc == MT_OK) {

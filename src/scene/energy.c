@@ -54,8 +54,8 @@ mt_status mt_scene_energy_new(const mt_scene_frame *f, mt_scene_energy **out, mt
 }
 
 /* f . phi by the freedoms of either body of a term: part[2]; returns their sum. */
-static double product(const mt_system *sys, const mt_term *t, const double *row,
-                      const double *phi, double part[2])
+static double row_mode_product(const mt_system *sys, const mt_term *t, const double *row,
+                               const double *phi, double part[2])
 {
     part[0] = 0.0;
     part[1] = 0.0;
@@ -78,8 +78,8 @@ static double term_energy(const mt_scene_energy *e, mt_term_kind kind, const mt_
     of[0] = 0.0;
     of[1] = 0.0;
     if (t->pair) {
-        const double sa = product(sys, t, rows, phi, a);
-        const double sb = product(sys, t, rows + MT_LOCAL, phi, b);
+        const double sa = row_mode_product(sys, t, rows, phi, a);
+        const double sb = row_mode_product(sys, t, rows + MT_LOCAL, phi, b);
         for (int side = 0; side < 2; side++) {
             of[side] = 0.5 * c * ((sa * b[side]) + (sb * a[side]));
         }
@@ -87,7 +87,7 @@ static double term_energy(const mt_scene_energy *e, mt_term_kind kind, const mt_
     }
     double sum = 0.0;
     for (int r = 0; r < t->count; r++) {
-        const double s = product(sys, t, rows + ((ptrdiff_t)r * MT_LOCAL), phi, a);
+        const double s = row_mode_product(sys, t, rows + ((ptrdiff_t)r * MT_LOCAL), phi, a);
         sum += c * s * s;
         of[0] += c * s * a[0];
         of[1] += c * s * a[1];

@@ -58,7 +58,8 @@ static void joint_of_bodies(const mt_scene_frame *f, const mt_joint *joint, mt_s
 }
 
 /* Joint of the view that stands in the model under this index; NULL: none. */
-static const mt_scene_joint *find_joint(const mt_scene_view *v, const int *joint_of, int index)
+static const mt_scene_joint *find_view_joint(const mt_scene_view *v, const int *joint_of,
+                                             int index)
 {
     return joint_of[index] >= 0 ? &v->joints[joint_of[index]] : NULL;
 }
@@ -68,7 +69,7 @@ static void joint_of_joints(const mt_scene_view *v, const int *joint_of, const m
                             mt_scene_joint *out)
 {
     for (int side = 0; side < 2; side++) {
-        const mt_scene_joint *const one = find_joint(v, joint_of, joint->gear_joint[side]);
+        const mt_scene_joint *const one = find_view_joint(v, joint_of, joint->gear_joint[side]);
         if (one != NULL) {
             out->body[side] = one->body[1];
             memcpy(out->end[side], one->at, sizeof one->at);

@@ -46,7 +46,7 @@ typedef struct holds {
     double high[3];
 } holds;
 
-static void include(holds *h, const double x[3])
+static void include_in_hold_box(holds *h, const double x[3])
 {
     for (int k = 0; k < 3; k++) {
         h->low[k] = fmin(h->low[k], x[k]);
@@ -54,7 +54,7 @@ static void include(holds *h, const double x[3])
     }
 }
 
-static void add(holds *h, int body, int joint, int point, const double at[3])
+static void add_hold(holds *h, int body, int joint, int point, const double at[3])
 {
     hold *const grown = mt_arena_grow(h->f->work, h->items, h->n, &h->capacity, sizeof *grown);
     if (grown == NULL) {
@@ -68,7 +68,7 @@ static void add(holds *h, int body, int joint, int point, const double at[3])
         h->items[h->last[body]].next = h->n;
     }
     h->last[body] = h->n++;
-    include(h, at);
+    include_in_hold_box(h, at);
 }
 
 /* A position of the model on a body of the system. */
@@ -78,7 +78,7 @@ static void add_position(holds *h, int body, int joint, const mt_position *p)
     double at[3];
     mt_scene_drawn(h->f, p, drawn);
     mt_scene_place(h->f, body, drawn, at);
-    add(h, body + 1, joint, p->point, at);
+    add_hold(h, body + 1, joint, p->point, at);
 }
 
 static void add_pairs(holds *h)
@@ -156,12 +156,13 @@ static void link_line(const mt_scene_frame *f, int body, double from[3], double 
     mt_scene_place(f, b, drawn[1], to);
 }
 
-static double size_of(const holds *h)
+static double hold_box_size(const holds *h)
 {
     return mt_distance_points(h->low, h->high);
 }
 
-static void add_line(mt_scene_view *v, int *capacity, mt_arena *mem, const mt_scene_line *line)
+static void add_view_line(mt_scene_view *v, int *capacity, mt_arena *mem,
+                          const mt_scene_line *line)
 {
     mt_scene_line *const grown =
         mt_arena_grow(mem, v->lines, v->n_lines, capacity, sizeof *grown);
@@ -185,12 +186,12 @@ static void lines_of(const holds *h, int body, int *capacity)
 {
     mt_scene_view *const v = h->f->view;
     const bool link = v->bodies[body].kind == MT_SCENE_LINK;
-    const double same = SAME * size_of(h);
+    const double same = SAME * hold_box_size(h);
     const int first = v->n_lines;
     mt_scene_line own = {.body = body};
     if (link) {
         link_line(h->f, body, own.from, own.to);
-        add_line(v, capacity, h->f->mem, &own);
+        add_view_line(v, capacity, h->f->mem, &own);
     }
     for (int i = h->first[body]; i >= 0 && v->n_lines - first < MOST_LINES;
          i = h->items[i].next) {
@@ -202,7 +203,7 @@ static void lines_of(const holds *h, int body, int *capacity)
             off = mt_distance_segment(own.from, own.to, line.to, line.from);
         }
         if (off > same && !has_line(v, first, line.to, same)) {
-            add_line(v, capacity, h->f->mem, &line);
+            add_view_line(v, capacity, h->f->mem, &line);
         }
     }
 }
@@ -228,14 +229,14 @@ static double rest_of(const holds *h, int joint)
     holds rest = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
                   .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     for (int i = 1; i < v->n_bodies; i++) {
-        include(&rest, v->bodies[i].at);
+        include_in_hold_box(&rest, v->bodies[i].at);
     }
     for (int i = 0; i < h->n; i++) {
         if (h->items[i].joint != joint) {
-            include(&rest, h->items[i].at);
+            include_in_hold_box(&rest, h->items[i].at);
         }
     }
-    return size_of(&rest);
+    return hold_box_size(&rest);
 }
 
 static double distance_to_body(const holds *h, int body, int joint, const double at[3])
@@ -258,7 +259,7 @@ static double distance_to_body(const holds *h, int body, int joint, const double
     return outside > FAR_RADII * greatest ? fmin(outside, lines) : 0.0;
 }
 
-static void judge(const holds *h, const hold *it)
+static void note_joint_distance(const holds *h, const hold *it)
 {
     mt_scene_view *const v = h->f->view;
     mt_scene_joint *const joint = &v->joints[it->joint];
@@ -280,7 +281,7 @@ static void judge(const holds *h, const hold *it)
     /* rounded, so that configurations of one shape have one distance */
     const double step = ldexp(1.0, ilogb(fmax(off, DBL_MIN)) - DISTANCE_BITS);
     off = step * rint(off / step);
-    if (off > SAME * size_of(h) && off > joint->distance) {
+    if (off > SAME * hold_box_size(h) && off > joint->distance) {
         joint->distance = off;
         joint->far = it->body;
     }
@@ -303,9 +304,9 @@ static void name_points(const holds *h)
                 continue;
             }
             const int last = seen[it->point];
-            if (last > 0 &&
-                (mt_distance_points(v->points[last - 1].at, it->at) <= SAME * size_of(h) ||
-                 v->points[last - 1].body == it->body)) {
+            if (last > 0 && (mt_distance_points(v->points[last - 1].at, it->at) <=
+                                 SAME * hold_box_size(h) ||
+                             v->points[last - 1].body == it->body)) {
                 continue;
             }
             mt_scene_point *const grown =
@@ -336,7 +337,7 @@ mt_status mt_scene_lines(mt_scene_frame *f, mt_err *err)
     for (int i = 0; i < v->n_bodies; i++) {
         h.first[i] = -1;
         if (i > 0) {
-            include(&h, v->bodies[i].at);
+            include_in_hold_box(&h, v->bodies[i].at);
         }
     }
     add_pairs(&h);
@@ -347,7 +348,7 @@ mt_status mt_scene_lines(mt_scene_frame *f, mt_err *err)
     }
     for (int i = 0; i < h.n; i++) {
         if (h.items[i].joint >= 0) {
-            judge(&h, &h.items[i]);
+            note_joint_distance(&h, &h.items[i]);
         }
     }
     name_points(&h);

@@ -32,7 +32,7 @@ static double ends_moved(const mt_scene_view *v, const double *motion, const int
 
 /* The largest displacement of what is drawn; where none moves, a turn counts by the size of
  * its ellipsoid, or by itself. */
-static double largest(const mt_scene_view *v, const double *motion)
+static double largest_drawn_motion(const mt_scene_view *v, const double *motion)
 {
     double most = 0.0;
     double turn = 0.0;
@@ -71,7 +71,7 @@ static void fill_motion(const mt_scene_frame *f, const double *phi, double *moti
             motion[(6 * ((ptrdiff_t)b + 1)) + k] = dof >= 0 ? phi[dof] : 0.0;
         }
     }
-    const double most = largest(v, motion);
+    const double most = largest_drawn_motion(v, motion);
     for (ptrdiff_t i = 0; i < n; i++) {
         motion[i] = most > 0.0 && isfinite(most) ? motion[i] / most : 0.0;
     }
@@ -100,7 +100,7 @@ static const char *note_of(mt_mode_kind kind)
     return "unstable";
 }
 
-static const char *name_of(const mt_scene_frame *f, int index)
+static const char *find_mode_name(const mt_scene_frame *f, int index)
 {
     for (int i = 0; i < f->ask->n_names; i++) {
         const mt_scene_name *const n = &f->ask->names[i];
@@ -124,7 +124,7 @@ static mt_status fill_mode(mt_scene_frame *f, const mt_modes *modes, int i, cons
     out->index = indexed ? mt_modal_index(modes, i) : 0;
     out->hz = mt_modal_hz(modes, i);
     out->note = note_of(modes->kind[i]);
-    out->name = name_of(f, out->index);
+    out->name = find_mode_name(f, out->index);
     fill_motion(f, phi, out->motion);
     mt_scene_energy_of(energy, modes->lambda[i], phi, out->spring_share, out->body_share);
     for (int k = 0; k < v->n_springs && modes->kind[i] == MT_MODE_RIGID_BODY; k++) {

@@ -113,7 +113,7 @@ static mt_status analyse(const mt_scene_frame *f, mt_err *err)
     return mt_analysis_new_of(&def, MT_SCENE_MODES, &known->by, err);
 }
 
-static mt_status look(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
+static mt_status analyse_frame(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
 {
     const mt_scene_query *const a = f->ask;
     const double bodies = mt_lowest_bodies(f->model, f->configuration);
@@ -157,7 +157,7 @@ static mt_status view_new(mt_scene_frame *f, mt_scene_room *left, mt_err *err)
         return mt_arena_check(f->mem, err);
     }
     left->items -= items;
-    mt_status rc = look(f, left, &why);
+    mt_status rc = analyse_frame(f, left, &why);
     if (rc == MT_OK) {
         return mt_arena_check(f->mem, err);
     }
@@ -282,7 +282,7 @@ static mt_status follow_design(void *context, int worker, int task, mt_task_path
     return rc == MT_OK ? mt_arena_check(&q->ways_mem[task], err) : rc;
 }
 
-static void include(double low[3], double high[3], const double x[3])
+static void include_in_scene_box(double low[3], double high[3], const double x[3])
 {
     for (int k = 0; k < 3; k++) {
         low[k] = fmin(low[k], x[k]);
@@ -293,29 +293,29 @@ static void include(double low[3], double high[3], const double x[3])
 static void include_view(const mt_scene_view *v, double low[3], double high[3])
 {
     for (int i = 1; i < v->n_bodies; i++) {
-        include(low, high, v->bodies[i].at);
+        include_in_scene_box(low, high, v->bodies[i].at);
     }
     for (int i = 0; i < v->n_lines; i++) {
-        include(low, high, v->lines[i].from);
-        include(low, high, v->lines[i].to);
+        include_in_scene_box(low, high, v->lines[i].from);
+        include_in_scene_box(low, high, v->lines[i].to);
     }
     for (int i = 0; i < v->n_joints; i++) {
-        include(low, high, v->joints[i].at);
+        include_in_scene_box(low, high, v->joints[i].at);
     }
     for (int i = 0; i < v->n_sensors; i++) {
-        include(low, high, v->sensors[i].at);
+        include_in_scene_box(low, high, v->sensors[i].at);
     }
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < v->n_springs; i++) {
-            include(low, high, v->springs[i].end[side]);
+            include_in_scene_box(low, high, v->springs[i].end[side]);
         }
         for (int i = 0; i < v->n_dampers; i++) {
-            include(low, high, v->dampers[i].end[side]);
+            include_in_scene_box(low, high, v->dampers[i].end[side]);
         }
     }
 }
 
-static double size_of(const mt_scene *scene)
+static double scene_size(const mt_scene *scene)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
     double high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -391,8 +391,8 @@ static mt_status find_gravity(const question *q, const mt_scene_query *ask, mt_s
     return MT_OK;
 }
 
-static mt_status fill(mt_scene *scene, question *q, int n_designs,
-                      const mt_scene_query *designs, mt_err *err)
+static mt_status fill_scene(mt_scene *scene, question *q, int n_designs,
+                            const mt_scene_query *designs, mt_err *err)
 {
     MT_TRY(mt_arena_init(&scene->mem, 0, err));
     MT_TRY(mt_arena_init(&q->work, 0, err));
@@ -414,7 +414,7 @@ static mt_status fill(mt_scene *scene, question *q, int n_designs,
     }
     const mt_tasks tasks = {n_designs, follow_design, NULL, q, "designs"};
     MT_TRY(mt_workers_run(q->extent->threads > 1 ? q->extent->threads : 1, NULL, &tasks, err));
-    scene->size = size_of(scene);
+    scene->size = scene_size(scene);
     mt_arena_clear(&q->work);
     if (n_designs > 0) {
         MT_TRY(find_gravity(q, &designs[0], scene, &q->work, err));
@@ -433,7 +433,7 @@ mt_status mt_scene_new(const mt_model *model, int n_designs, const mt_scene_quer
     if (scene == NULL) {
         return mt_fail_memory(err);
     }
-    const mt_status rc = fill(scene, &q, n_designs, designs, err);
+    const mt_status rc = fill_scene(scene, &q, n_designs, designs, err);
     for (int i = 0; i < extent->n_configurations && q.known != NULL; i++) {
         mt_analysis_delete(q.known[i].by);
     }

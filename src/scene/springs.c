@@ -65,7 +65,7 @@ static void on_hinge(const mt_scene_frame *f, int link, int hinge, mt_scene_spri
 /* Springs of the system from `first` on that are those of this spring of the model: they stand
  * in its order (mechanics/build_springs.c), each with its very name. They become `index` of the
  * view. Returns how many. */
-static int take(mt_scene_frame *f, int first, const char *name, int index)
+static int assign_view_spring(mt_scene_frame *f, int first, const char *name, int index)
 {
     int n = 0;
     for (; first + n < f->sys->n_springs && f->sys->springs[first + n].name == name; n++) {
@@ -84,7 +84,7 @@ static int springs_of_link(const mt_scene_frame *f, const mt_link *l)
     return l->elements * (f->sys->dimension == 2 ? STRAINS_2D : STRAINS_3D);
 }
 
-static void fill(const mt_scene_frame *f, const mt_spring *s, mt_scene_spring *out)
+static void fill_view_spring(const mt_scene_frame *f, const mt_spring *s, mt_scene_spring *out)
 {
     *out = spring_default(f->mem, s->name.s, mt_spring_type_name(s->type));
     if (s->joint != MT_ABSENT) {
@@ -141,8 +141,8 @@ mt_status mt_scene_springs(mt_scene_frame *f, mt_err *err)
         }
         mt_scene_spring *const out =
             s->damper ? &v->dampers[v->n_dampers++] : &v->springs[v->n_springs++];
-        const int n = take(f, at, s->name.s, s->damper ? -1 : v->n_springs - 1);
-        fill(f, s, out);
+        const int n = assign_view_spring(f, at, s->name.s, s->damper ? -1 : v->n_springs - 1);
+        fill_view_spring(f, s, out);
         out->stiffness = n == 1 ? f->value[f->sys->springs[at].stiffness] : nan("");
         at += n;
     }

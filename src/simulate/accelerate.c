@@ -96,8 +96,8 @@ static double size_of_terms(const mt_elimination *e, const double *f)
     return most;
 }
 
-static mt_status solve(const mt_system *sys, const mt_gauss *g, double *x, double *lambda,
-                       int *rank, mt_arena *mem, mt_err *err)
+static mt_status solve_accelerations(const mt_system *sys, const mt_gauss *g, double *x,
+                                     double *lambda, int *rank, mt_arena *mem, mt_err *err)
 {
     const int nq = sys->nq;
     mt_elimination e;
@@ -134,7 +134,7 @@ mt_status mt_gauss_solve(const mt_system *sys, const mt_gauss *g, double *x, dou
                          int *rank, mt_arena *mem, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(mem);
-    const mt_status rc = solve(sys, g, x, lambda, rank, mem, err);
+    const mt_status rc = solve_accelerations(sys, g, x, lambda, rank, mem, err);
     mt_arena_rewind(mem, mark);
     return rc;
 }

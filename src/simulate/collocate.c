@@ -73,7 +73,7 @@ struct mt_collocation {
 };
 
 /* Modes of the springs at s->base. */
-static mt_status begin(mt_sim *s, mt_collocation *q, mt_err *err)
+static mt_status begin_collocation(mt_sim *s, mt_collocation *q, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     const int nq = q->nq;
@@ -158,7 +158,7 @@ mt_status mt_collocation_new(mt_sim *s, mt_err *err)
         q->of[i].x = nan("");
     }
     mt_filon_weigh(&q->rule, 0.0, &q->zero);
-    MT_TRY(begin(s, q, err));
+    MT_TRY(begin_collocation(s, q, err));
     s->collocation = is_stiff(s, q) ? q : NULL;
     return MT_OK;
 }
@@ -302,7 +302,7 @@ static double integrate(const mt_collocation *q, int k, double h)
 }
 
 /* N at point i, from the states there; *err as of the accelerations. */
-static mt_status evaluate(mt_sim *s, mt_collocation *q, int i, double t, mt_err *err)
+static mt_status evaluate_point(mt_sim *s, mt_collocation *q, int i, double t, mt_err *err)
 {
     const ptrdiff_t nq = q->nq;
     double *const u = q->work;
@@ -368,7 +368,7 @@ static void state_at(const mt_collocation *q, double h, int i, bool moves, doubl
 
 /* Compute the states at all points from N; returns the largest change relative to the allowed
  * error. */
-static double settle(mt_sim *s, mt_collocation *q, double h)
+static double update_point_states(mt_sim *s, mt_collocation *q, double h)
 {
     const ptrdiff_t nq = q->nq;
     double most = 0.0;
@@ -396,7 +396,7 @@ static double settle(mt_sim *s, mt_collocation *q, double h)
 }
 
 /* s->y and s->error at the end. */
-static void finish(mt_sim *s, mt_collocation *q, double h)
+static void finish_collocation(mt_sim *s, mt_collocation *q, double h)
 {
     const ptrdiff_t nq = q->nq;
     const ptrdiff_t end = DEGREE * nq;
@@ -449,7 +449,7 @@ mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err)
     mt_collocation *const q = s->collocation;
     const ptrdiff_t nq = q->nq;
     if (!q->begun) {
-        MT_TRY(begin(s, q, err));
+        MT_TRY(begin_collocation(s, q, err));
     }
     for (int k = 0; k < q->n; k++) {
         mt_filon_weigh(&q->rule, q->w[k] * h, &q->of[k]);
@@ -459,19 +459,19 @@ mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err)
         memcpy(q->v + (i * nq), s->begin + nq, (size_t)nq * sizeof *q->v);
     }
     mt_gemv(false, q->n, q->nq, 1.0, q->p, q->n, q->v, 0.0, q->e0);
-    MT_TRY(evaluate(s, q, 0, t, err));
+    MT_TRY(evaluate_point(s, q, 0, t, err));
     for (int i = 1; i < POINTS; i++) {
         memcpy(q->n1 + (i * nq), q->n1, (size_t)nq * sizeof *q->n1);
         memcpy(q->n2 + (i * nq), q->n2, (size_t)nq * sizeof *q->n2);
     }
     double last = HUGE_VAL;
     s->stalls = false;
-    (void)settle(s, q, h);
+    (void)update_point_states(s, q, h);
     for (int round = 0;; round++) {
         for (int i = 1; i < POINTS; i++) {
-            MT_TRY(evaluate(s, q, i, t + (q->rule.point[i] * h), err));
+            MT_TRY(evaluate_point(s, q, i, t + (q->rule.point[i] * h), err));
         }
-        const double moved = settle(s, q, h);
+        const double moved = update_point_states(s, q, h);
         /* what is left: as much less again */
         if (moved <= STANDS || (round > 0 && moved * (moved / last) <= STANDS)) {
             break;
@@ -482,6 +482,6 @@ mt_status mt_collocate(mt_sim *s, double t, double h, mt_err *err)
         }
         last = moved;
     }
-    finish(s, q, h);
+    finish_collocation(s, q, h);
     return MT_OK;
 }

@@ -78,7 +78,7 @@ static bool add_form(mt_form *out, double factor, const mt_form *f)
 }
 
 /* out = a b. */
-static bool multiply(const mt_form *a, const mt_form *b, mt_form *out)
+static bool multiply_forms(const mt_form *a, const mt_form *b, mt_form *out)
 {
     bool good = a->degree + b->degree <= MT_FORM_DEGREE && (a->n == 0 || b->degree <= 0) &&
                 (b->n == 0 || a->degree <= 0);
@@ -136,7 +136,7 @@ static bool power(const mt_form *a, const mt_form *b, mt_form *out)
     *out = constant(1.0);
     for (int i = 0; i < (int)exponent; i++) {
         const mt_form so_far = *out;
-        if (!multiply(&so_far, a, out)) {
+        if (!multiply_forms(&so_far, a, out)) {
             return false;
         }
     }
@@ -211,8 +211,8 @@ static bool next_root(const mt_form *d, double t, double *root)
 }
 
 /* The form of min (sign -1) or max (1) of two forms just after t; a sign of 0: |a - b|. */
-static bool choose(int sign, const mt_form *a, const mt_form *b, double t, double *until,
-                   mt_form *out)
+static bool form_of_min_or_max(int sign, const mt_form *a, const mt_form *b, double t,
+                               double *until, mt_form *out)
 {
     mt_form d = *a;
     double root = HUGE_VAL;
@@ -244,7 +244,7 @@ static bool operate(mt_op op, const mt_form *a, const mt_form *b, double t, doub
         *out = *a;
         return add_form(out, op == MT_OP_ADD ? 1.0 : -1.0, b);
     case MT_OP_MUL:
-        return multiply(a, b, out);
+        return multiply_forms(a, b, out);
     case MT_OP_DIV:
         *out = none;
         return is_constant(b) && b->degree == 0 && add_form(out, 1.0 / b->c[0], a);
@@ -254,10 +254,10 @@ static bool operate(mt_op op, const mt_form *a, const mt_form *b, double t, doub
     case MT_OP_COS:
         return wave_of(op == MT_OP_SIN, a, out);
     case MT_OP_ABS:
-        return choose(0, a, &none, t, until, out);
+        return form_of_min_or_max(0, a, &none, t, until, out);
     case MT_OP_MIN:
     case MT_OP_MAX:
-        return choose(op == MT_OP_MAX ? 1 : -1, a, b, t, until, out);
+        return form_of_min_or_max(op == MT_OP_MAX ? 1 : -1, a, b, t, until, out);
     default:
         return false;
     }

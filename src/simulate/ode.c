@@ -20,7 +20,7 @@ struct mt_ode {
     mt_err *err;
 };
 
-static int evaluate(double t, const double y[], double out[], void *context)
+static int evaluate_slope(double t, const double y[], double out[], void *context)
 {
     mt_ode *const ode = context;
     ode->rc = ode->slope(ode->context, t, y, out, ode->err);
@@ -39,7 +39,7 @@ mt_status mt_ode_new(int n, mt_ode_slope slope, void *context, mt_ode **out, mt_
     ode->context = context;
     ode->before = calloc((size_t)n, sizeof *ode->before);
     ode->step = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, (size_t)n);
-    ode->system = (gsl_odeiv2_system){evaluate, NULL, (size_t)n, ode};
+    ode->system = (gsl_odeiv2_system){evaluate_slope, NULL, (size_t)n, ode};
     if (ode->before == NULL || ode->step == NULL) {
         mt_ode_delete(ode);
         return mt_fail_memory(err);

@@ -23,7 +23,7 @@ static const double ROUNDING = 64.0 * DBL_EPSILON;
 /* A start is one of the linear motion to this part of its size and the model's length. */
 static const double STARTS = 1e-12;
 
-static mt_status allocate(mt_oscillators *o, mt_arena *mem, mt_err *err)
+static mt_status allocate_oscillators(mt_oscillators *o, mt_arena *mem, mt_err *err)
 {
     const size_t nq = (size_t)o->nq;
     const size_t n = (size_t)o->n;
@@ -174,7 +174,7 @@ mt_status mt_oscillators_make(mt_linear *lin, const mt_sim_options *opt, mt_aren
     if (!*linear) {
         return MT_OK;
     }
-    MT_TRY(allocate(out, mem, err));
+    MT_TRY(allocate_oscillators(out, mem, err));
     mt_linear_expand(lin, out->n, out->y, out->phi);
     mt_placement_copy(out->sys, &mt_linear_position(lin)->at, &out->at);
     mt_motion_eval(&out->motion, &out->at, out->work[0]);
@@ -185,7 +185,7 @@ mt_status mt_oscillators_make(mt_linear *lin, const mt_sim_options *opt, mt_aren
 }
 
 /* out[n] = phi^T M q; returns true where phi out is q. */
-static bool project(mt_oscillators *o, const double *q, double scale, double *out)
+static bool project_on_modes(mt_oscillators *o, const double *q, double scale, double *out)
 {
     double *const mq = o->work[1];
     mt_gemv(false, o->nq, o->nq, 1.0, o->motion.mass, o->nq, q, 0.0, mq);
@@ -205,8 +205,8 @@ mt_status mt_oscillators_start(mt_oscillators *o, const mt_sim_start *start, dou
     memset(way, 0, (size_t)o->nq * sizeof *way);
     mt_motion_eval(&o->motion, &o->at, way);
     mt_poses_increment(o->sys, rest->pose, start->at.pose, way);
-    *linear = project(o, way, o->sys->length_m, e);
-    *linear = project(o, start->v, 0.0, rate) && *linear;
+    *linear = project_on_modes(o, way, o->sys->length_m, e);
+    *linear = project_on_modes(o, start->v, 0.0, rate) && *linear;
     /* whole turns are no part of the way */
     mt_oscillators_position(o, e, rate, &o->at, way);
     for (int i = 0; i < o->sys->n_measures; i++) {

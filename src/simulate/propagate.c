@@ -30,7 +30,7 @@ enum { TURN_HALVINGS = 30 };
 /* Pieces of an input beyond which it is integrated like any other. */
 enum { PIECES_MOST = 20000 };
 
-static mt_status allocate(mt_propagation *r, mt_err *err)
+static mt_status allocate_propagation(mt_propagation *r, mt_err *err)
 {
     const size_t n = (size_t)r->n;
     const size_t most = (2 * n) + ((size_t)r->opt->n_inputs *
@@ -174,7 +174,7 @@ static void note_check(mt_propagation *r)
 }
 
 /* Store a sample at r->t, where the inputs are set. */
-static void sample(mt_propagation *r)
+static void store_sample(mt_propagation *r)
 {
     mt_sim_result *const out = r->out;
     const ptrdiff_t i = out->n;
@@ -221,7 +221,7 @@ static mt_status go_by(mt_propagation *r, const mt_exponential *e, double length
 }
 
 /* Step to `until`, or to the end of the piece. */
-static mt_status go_on(mt_propagation *r, double until, mt_err *err)
+static mt_status step_to(mt_propagation *r, double until, mt_err *err)
 {
     const double end = fmin(until, r->until);
     const double length = end - r->t;
@@ -267,12 +267,12 @@ static mt_status go_until(mt_propagation *r, double until, mt_err *err)
         if (!r->known || r->coarse) {
             return MT_OK;
         }
-        MT_TRY(go_on(r, until, err));
+        MT_TRY(step_to(r, until, err));
     }
     return MT_OK;
 }
 
-static mt_status go(mt_propagation *r, mt_err *err)
+static mt_status sample_to_end(mt_propagation *r, mt_err *err)
 {
     const mt_sim_options *const opt = r->opt;
     const double step = ldexp(opt->sample_s, -r->halvings);
@@ -290,13 +290,13 @@ static mt_status go(mt_propagation *r, mt_err *err)
         }
         MT_TRY(mt_propagation_set(r, r->t, r->t < opt->duration_s ? step : -step, err));
         r->known = keeps_lengths(r, opt->sample_s);
-        sample(r);
+        store_sample(r);
     }
     return MT_OK;
 }
 
 /* Run from the start with 2^halvings parts per step. */
-static mt_status run(mt_propagation *r, const mt_sim_start *start, mt_err *err)
+static mt_status run_propagation(mt_propagation *r, const mt_sim_start *start, mt_err *err)
 {
     mt_sim_result *const out = r->out;
     double *const e = r->begin;
@@ -332,12 +332,12 @@ static mt_status run(mt_propagation *r, const mt_sim_start *start, mt_err *err)
     }
     r->known = keeps_lengths(r, r->opt->sample_s);
     note_energy(r);
-    sample(r);
-    return go(r, err);
+    store_sample(r);
+    return sample_to_end(r, err);
 }
 
 /* True where the motion satisfies the full equations. */
-static mt_status check(mt_propagation *r, mt_err *err)
+static mt_status check_full_equations(mt_propagation *r, mt_err *err)
 {
     const int n = r->n;
     mt_oscillators_fit fit = {.independent = true};
@@ -398,20 +398,20 @@ static mt_status propagate(mt_propagation *r, const mt_sim_start *start, mt_err 
         return MT_OK;
     }
     r->n = r->o.n;
-    MT_TRY(allocate(r, err));
+    MT_TRY(allocate_propagation(r, err));
     find_steps(r);
     const int most = r->halvings + FIT_HALVINGS;
-    MT_TRY(run(r, start, err));
+    MT_TRY(run_propagation(r, start, err));
     while (r->coarse && r->known && r->halvings < most) {
         r->halvings++;
         r->a = NULL;
-        MT_TRY(run(r, start, err));
+        MT_TRY(run_propagation(r, start, err));
     }
     r->known = r->known && !r->coarse;
     if (!r->known) {
         return MT_OK;
     }
-    MT_TRY(check(r, err));
+    MT_TRY(check_full_equations(r, err));
     r->out->method = MT_SIM_EXACT;
     for (int i = 0; i < r->opt->n_inputs; i++) {
         r->out->method = r->input[i].fitted ? MT_SIM_FITTED : r->out->method;

@@ -55,7 +55,7 @@ mt_status mt_propagation_forms(mt_propagation *r, bool *changed, mt_err *err)
 }
 
 /* Add a column: input i acts with s times its state. */
-static void add_column(mt_propagation *r, int i, int state, double scale)
+static void add_input_column(mt_propagation *r, int i, int state, double scale)
 {
     const double *const b = r->o.input + ((ptrdiff_t)i * r->n);
     for (int j = 0; j < r->n; j++) {
@@ -77,13 +77,13 @@ void mt_propagation_couple(mt_propagation *r, int i, double h)
     int at = s->first;
     for (int k = 0; k <= s->degree; k++, at++) {
         if (k == 0) {
-            add_column(r, i, at, s->scale);
+            add_input_column(r, i, at, s->scale);
         } else {
             mt_propagation_add(r, at - 1, at, 1.0 / h);
         }
     }
     for (int k = 0; k < s->form.n; k++, at += 2) {
-        add_column(r, i, at, s->scale);
+        add_input_column(r, i, at, s->scale);
         mt_propagation_add(r, at, at + 1, s->form.wave[k].w);
         mt_propagation_add(r, at + 1, at, -s->form.wave[k].w);
     }

@@ -61,7 +61,7 @@ mt_ring mt_ring_read(const mt_turnings *t)
 }
 
 /* Columns 1, sin and cos of each harmonic. */
-static void fill(int rows, const double *t, double w, double *a)
+static void fill_harmonic_columns(int rows, const double *t, double w, double *a)
 {
     for (ptrdiff_t i = 0; i < rows; i++) {
         a[i] = 1.0;
@@ -72,7 +72,8 @@ static void fill(int rows, const double *t, double w, double *a)
     }
 }
 
-static void tell(int rows, const double *a, const double *b, const double *x, mt_steady *out)
+static void write_steady_state(int rows, const double *a, const double *b, const double *x,
+                               mt_steady *out)
 {
     double largest = 0.0;
     out->mean = x[0];
@@ -118,7 +119,7 @@ static mt_status fit(const mt_samples *s, double hz, bool *done, mt_arena *mem, 
     double *const by = mt_arena_f64(mem, (size_t)columns, 1);
     mt_qr qr;
     MT_TRY(mt_arena_check(mem, err));
-    fill(s->n, s->t, 2.0 * PI * hz, a);
+    fill_harmonic_columns(s->n, s->t, 2.0 * PI * hz, a);
     for (ptrdiff_t i = 0; i < s->n; i++) {
         b[i] = s->x[i * s->stride];
     }
@@ -126,7 +127,7 @@ static mt_status fit(const mt_samples *s, double hz, bool *done, mt_arena *mem, 
     *done = qr.rank == columns;
     if (*done) {
         MT_TRY(mt_qr_solve(&qr, 1, b, by, mem, err));
-        tell(s->n, a, b, by, out);
+        write_steady_state(s->n, a, b, by, out);
     }
     return MT_OK;
 }

@@ -191,7 +191,7 @@ static void note_energy(run *r)
 }
 
 /* Store a sample at the beginning of a step, at t. */
-static mt_status sample(run *r, double t, mt_err *err)
+static mt_status store_gauge_sample(run *r, double t, mt_err *err)
 {
     mt_sim_result *const out = r->out;
     const ptrdiff_t i = out->n;
@@ -291,8 +291,8 @@ static double change_of(const run *r, double ratio, bool taken)
 }
 
 /* Accept the step from *t in s->y; h becomes the first length of the next step. */
-static mt_status take(run *r, double *t, double until, double length, double ratio, double *h,
-                      mt_err *err)
+static mt_status accept_step(run *r, double *t, double until, double length, double ratio,
+                             double *h, mt_err *err)
 {
     mt_sim *const s = &r->s;
     const double next = length * change_of(r, ratio, true);
@@ -318,7 +318,7 @@ static mt_status after_failure(run *r, mt_status rc, const mt_err *failed, mt_er
 }
 
 /* Make one step towards `until` of about *h; *h becomes the length of the next one. */
-static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
+static mt_status step_towards(run *r, double *t, double until, double *h, mt_err *err)
 {
     mt_sim *const s = &r->s;
     const bool fixed = s->opt->step_s > 0.0;
@@ -341,18 +341,18 @@ static mt_status step(run *r, double *t, double until, double *h, mt_err *err)
         }
         const double ratio = fmax(error_ratio(s, length), LEAST_RATIO);
         if (ratio <= 1.0 || fixed) {
-            return take(r, t, until, length, ratio, h, err);
+            return accept_step(r, t, until, length, ratio, h, err);
         }
         *h = length * change_of(r, ratio, false);
         r->out->rejected++;
     }
 }
 
-static mt_status go(run *r, double *t, mt_err *err)
+static mt_status simulate_to_end(run *r, double *t, mt_err *err)
 {
     const mt_sim_options *const opt = r->s.opt;
     double h = FIRST_STEP * fmin(opt->sample_s, opt->duration_s);
-    MT_TRY(sample(r, 0.0, err));
+    MT_TRY(store_gauge_sample(r, 0.0, err));
     while (r->out->n < r->room && *t < opt->duration_s) {
         const double next = r->out->n * opt->sample_s;
         const double until =
@@ -362,11 +362,11 @@ static mt_status go(run *r, double *t, mt_err *err)
                 r->out->stop = MT_SIM_INTERRUPTED;
                 return MT_OK;
             }
-            MT_TRY(step(r, t, until, &h, err));
+            MT_TRY(step_towards(r, t, until, &h, err));
             note_energy(r);
             note_speeds(&r->s);
         }
-        MT_TRY(sample(r, *t, err));
+        MT_TRY(store_gauge_sample(r, *t, err));
     }
     return MT_OK;
 }
@@ -393,8 +393,8 @@ static mt_status only_dampers(const mt_system *sys, mt_err *err)
                          what);
 }
 
-static mt_status begin(run *r, mt_linear *lin, const mt_sim_start *start,
-                       const mt_sim_options *opt, mt_arena *mem, mt_err *err)
+static mt_status begin_run(run *r, mt_linear *lin, const mt_sim_start *start,
+                           const mt_sim_options *opt, mt_arena *mem, mt_err *err)
 {
     MT_TRY(mt_sim_init(&r->s, lin, start, opt, mem, err));
     MT_TRY(measure_rest(r, err));
@@ -411,9 +411,9 @@ static mt_status integrate(run *r, mt_linear *lin, const mt_sim_start *start,
 {
     mt_sim_result *const out = r->out;
     double t = 0.0;
-    mt_status rc = begin(r, lin, start, opt, mem, err);
+    mt_status rc = begin_run(r, lin, start, opt, mem, err);
     if (rc == MT_OK) {
-        rc = go(r, &t, err);
+        rc = simulate_to_end(r, &t, err);
     }
     if (rc == MT_OK && opt->end != NULL) {
         mt_placement_copy(r->s.sys, &r->s.base, &opt->end->at);

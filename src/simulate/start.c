@@ -190,8 +190,8 @@ static mt_status refuse_walk(const augmented *g, const mt_sim_joint *joint, doub
 }
 
 /* Move the joints from their values at `at` in proportion. */
-static mt_status walk(augmented *g, int n, const mt_sim_joint *joints, mt_placement *at,
-                      mt_arena *mem, mt_err *err)
+static mt_status move_joints_in_strides(augmented *g, int n, const mt_sim_joint *joints,
+                                        mt_placement *at, mt_arena *mem, mt_err *err)
 {
     mt_sim_joint *const from = mt_arena_alloc(mem, (size_t)n, sizeof *from);
     mt_sim_joint *const to = mt_arena_alloc(mem, (size_t)n, sizeof *to);
@@ -275,8 +275,9 @@ mt_status mt_start_joints(mt_linear *lin, int n, const mt_sim_joint *joints, mt_
     MT_TRY(mt_placement_init(&drawn, sys, mem, err));
     mt_placement_copy(sys, sys->driven ? &p->driven : &p->reference, &drawn);
     const bool settled = mt_poses_distance(sys, drawn.pose, start->at.pose) > 0.0;
-    MT_TRY(walk(&g, n, joints, &drawn, mem, err));
-    const mt_status rc = settled ? walk(&g, n, joints, &start->at, mem, NULL) : MT_E_ASSEMBLY;
+    MT_TRY(move_joints_in_strides(&g, n, joints, &drawn, mem, err));
+    const mt_status rc =
+        settled ? move_joints_in_strides(&g, n, joints, &start->at, mem, NULL) : MT_E_ASSEMBLY;
     if (rc == MT_E_MEMORY) {
         return mt_fail_memory(err);
     }

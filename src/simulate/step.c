@@ -111,7 +111,8 @@ static mt_status pushed(mt_sim *s, double t, const double *v, mt_err *err)
 }
 
 /* s->at: the base moved by u, the drive where it is at t; drive[3]: moved. */
-static mt_status place(mt_sim *s, double t, const double *u, double drive[3], mt_err *err)
+static mt_status move_placement(mt_sim *s, double t, const double *u, double drive[3],
+                                mt_err *err)
 {
     MT_TRY(moved(s, t, drive, err));
     mt_placement_copy(s->sys, &s->base, &s->at);
@@ -147,7 +148,7 @@ mt_status mt_sim_rates(mt_sim *s, double t, const double *u, const double *v, do
                        double *rows, mt_err *err)
 {
     double drive[3];
-    MT_TRY(place(s, t, u, drive, err));
+    MT_TRY(move_placement(s, t, u, drive, err));
     MT_TRY(accelerate(s, t, v, drive, out, out + s->nq, err));
     if (rows != NULL) {
         memcpy(rows, s->push, (size_t)s->nq * sizeof *rows);
@@ -289,7 +290,7 @@ mt_status mt_sim_accept(mt_sim *s, double t, mt_err *err)
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
     double drive[3];
     memcpy(s->begin, s->y, (size_t)s->n * sizeof *s->begin);
-    MT_TRY(place(s, t, s->y, drive, err));
+    MT_TRY(move_placement(s, t, s->y, drive, err));
     MT_TRY(close_joints(s, s->begin + s->nq, drive, err));
     mt_arena_rewind(s->mem, mark);
     straighten(s->sys, s->at.pose);
@@ -349,7 +350,7 @@ void mt_sim_gauge_ahead(mt_sim *s, int gauge, double out[3])
     read_gauge(s, gauge, s->y, s->probe + s->nq, out);
 }
 
-static mt_status allocate(mt_sim *s, mt_err *err)
+static mt_status allocate_step_work(mt_sim *s, mt_err *err)
 {
     const size_t nq = (size_t)s->nq;
     const size_t m = (size_t)s->m;
@@ -381,7 +382,7 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
     s->free_way = HUGE_VAL;
     s->m = mt_linear_equations(lin);
     s->n = (2 * s->nq) + 1 + opt->n_gauges;
-    MT_TRY(allocate(s, err));
+    MT_TRY(allocate_step_work(s, err));
     for (int b = 0; b < sys->n_bodies; b++) {
         for (int k = 0; k < 6; k++) {
             if (sys->bodies[b].dof[k] >= 0) {

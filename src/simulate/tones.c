@@ -103,15 +103,24 @@ static mt_status find_poles(record *r, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
+/* Sample at which the column of pole p has the size 1: the last one where it grows, as a record
+ * of rounding may say, else the first. Its size at the first one then may underflow, but no
+ * entry overflows. */
+static int unit_sample(const record *r, int p)
+{
+    return r->re[p] * r->n > 1.0 ? r->n - 1 : 0;
+}
+
 /* Columns of the least squares: z^i, of a pair its real and imaginary part. dgeev has pairs
  * next to each other, the positive one first. */
-static void fill(const record *r, double *a)
+static void fill_pole_columns(const record *r, double *a)
 {
     for (int p = 0; p < r->poles; p++) {
         const bool second = p > 0 && r->im[p] < 0.0;
         double *const column = a + ((ptrdiff_t)p * r->n);
+        const int unit = unit_sample(r, p);
         for (int i = 0; i < r->n; i++) {
-            const double size = exp(r->re[p] * i);
+            const double size = exp(r->re[p] * (i - unit));
             column[i] = size * (second ? -sin(r->im[p - 1] * i) : cos(r->im[p] * i));
         }
     }
@@ -130,17 +139,19 @@ static void add_tone(mt_tones *out, mt_tone tone)
     out->tone[at] = tone;
 }
 
-static void tell(const record *r, double dt, const double *a, const double *c, mt_tones *out)
+static void write_tones(const record *r, double dt, const double *a, const double *c,
+                        mt_tones *out)
 {
     double mean = 0.0;
     double largest = 0.0;
     for (int p = 0; p < r->poles; p++) {
+        const double first = exp(-r->re[p] * unit_sample(r, p)); /* size at the first sample */
         if (fabs(r->im[p]) <= STILL) {
-            mean += c[p];
+            mean += first * c[p];
         } else if (r->im[p] > 0.0 && p + 1 < r->poles) {
             add_tone(out, (mt_tone){.hz = r->im[p] / (2.0 * PI * dt),
                                     .damping = -r->re[p] / hypot(r->re[p], r->im[p]),
-                                    .amplitude = hypot(c[p], c[p + 1]),
+                                    .amplitude = first * hypot(c[p], c[p + 1]),
                                     .phase = atan2(c[p + 1], c[p])});
         }
     }
@@ -166,10 +177,10 @@ static mt_status read_record(record *r, double dt, mt_arena *mem, mt_tones *out,
     double *const a = mt_arena_f64(mem, (size_t)r->n, (size_t)r->poles);
     double *const c = mt_arena_f64(mem, (size_t)r->poles, 1);
     MT_TRY(mt_arena_check(mem, err));
-    fill(r, a);
+    fill_pole_columns(r, a);
     MT_TRY(mt_qr_factor(r->n, r->poles, a, r->n, DEPENDENT, mem, &qr, err));
     MT_TRY(mt_qr_solve(&qr, 1, r->x, c, mem, err));
-    tell(r, dt, a, c, out);
+    write_tones(r, dt, a, c, out);
     return MT_OK;
 }
 

@@ -166,7 +166,7 @@ static const char *label_of(parts *p, int first, int last)
 }
 
 /* One band from the parts first..last. */
-static mt_band merge(parts *p, int first, int last)
+static mt_band merge_parts(parts *p, int first, int last)
 {
     mt_band band = p->items[first].band;
     for (int i = first + 1; i <= last; i++) {
@@ -219,7 +219,7 @@ static mt_status merge_all(parts *p, double up_to_hz, mt_bands *out, mt_err *err
         while (last + 1 < p->n && p->items[last + 1].band.lower_hz <= upper) {
             upper = fmax(upper, p->items[++last].band.upper_hz);
         }
-        mt_band band = merge(p, first, last);
+        mt_band band = merge_parts(p, first, last);
         cut_off(&band, up_to_hz);
         out->items[out->n++] = band;
         if (last > first) {

@@ -48,7 +48,7 @@ static int digits(int per_decade, int i)
 }
 
 /* digits * 10^(decade - 2): one rounding, as powers of ten up to 22 are exact. */
-static double value_of(int hundredths, int decade)
+static double decimal_value(int hundredths, int decade)
 {
     const int exponent = decade - 2;
     return exponent >= 0 ? (double)hundredths * pow(10.0, (double)exponent)
@@ -65,11 +65,11 @@ int mt_catalogue_series(int which, double lower, double upper, int most, double 
     const double least = lower * (1.0 - BOUND_SLACK);
     const double greatest = upper * (1.0 + BOUND_SLACK);
     for (int decade = (int)floor(log10(lower)) - 1; n <= MT_MAX_CATALOGUE; decade++) {
-        if (value_of(digits(per_decade, 0), decade) > greatest) {
+        if (decimal_value(digits(per_decade, 0), decade) > greatest) {
             break;
         }
         for (int i = 0; i < per_decade && n <= MT_MAX_CATALOGUE; i++) {
-            const double value = value_of(digits(per_decade, i), decade);
+            const double value = decimal_value(digits(per_decade, i), decade);
             if (value < least || value > greatest) {
                 continue;
             }

@@ -107,7 +107,7 @@ static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_mac
 
 /* True where the rotor's speed is known. A catalogue that could not be read (noted) leaves
  * rotors without a speed. */
-static bool is_known(const mt_bands_source *source)
+static bool has_rotor_speeds(const mt_bands_source *source)
 {
     for (int i = 0; i < source->n_rotors; i++) {
         if (!MT_HAS(source->rotors[i].speed_hz)) {
@@ -190,7 +190,7 @@ void mt_study_check_avoid(mt_study_check *c, mt_goal *goal)
         }
         check_machine(c, avoid, machine);
     }
-    if (c->diags->errors == 0 && is_known(&avoid->source)) {
+    if (c->diags->errors == 0 && has_rotor_speeds(&avoid->source)) {
         make_bands(c, goal);
         warn_spins(c, goal);
     }

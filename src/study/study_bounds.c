@@ -64,7 +64,7 @@ static mt_status compile_limits(corners *k)
 }
 
 /* ... and the numbers of every configuration that counts. */
-static mt_status compile(corners *k)
+static mt_status compile_corner_numbers(corners *k)
 {
     const mt_model *const m = k->c->model;
     MT_TRY(compile_limits(k));
@@ -92,7 +92,7 @@ static bool is_allowed(corners *k)
 }
 
 /* Note all problems of the design x in every configuration that counts. */
-static void judge(corners *k, mt_warning_list *out)
+static void lint_corner(corners *k, mt_warning_list *out)
 {
     const mt_model *const m = k->c->model;
     for (int c = 0; c < m->n_configurations && k->rc == MT_OK; c++) {
@@ -123,7 +123,7 @@ static void one_variable(corners *k, int i, bool upper)
     mt_warning_list list = mt_warning_list_default(&k->mem);
     k->x[i] = upper ? v->upper : v->lower;
     if (is_allowed(k)) {
-        judge(k, &list);
+        lint_corner(k, &list);
     }
     for (int d = 0; d < list.n; d++) {
         if (list.items[d].level == MT_LEVEL_FAULT &&
@@ -139,14 +139,14 @@ static void one_variable(corners *k, int i, bool upper)
 }
 
 /* Reset variables that the fault does not need to their original values. */
-static void reduce(corners *k, mt_addr addr)
+static void reset_unneeded_variables(corners *k, mt_addr addr)
 {
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
         mt_warning_list list = mt_warning_list_default(&k->mem);
         const double had = k->x[i];
         k->x[i] = k->c->study->variables[i].original;
         if (is_allowed(k)) {
-            judge(k, &list);
+            lint_corner(k, &list);
         }
         k->x[i] = fault_at(&list, addr) != NULL ? k->x[i] : had;
     }
@@ -157,7 +157,7 @@ static void report_corner(corners *k, const mt_warning *fault)
     const mt_study *const s = k->c->study;
     const char *where = "";
     mt_addr addr = MT_NO_ADDR;
-    reduce(k, fault->addr);
+    reset_unneeded_variables(k, fault->addr);
     for (int i = 0; i < k->n && where != NULL; i++) {
         const mt_variable *const v = &s->variables[i];
         if (k->x[i] != v->original) {
@@ -196,7 +196,7 @@ static void one_corner(corners *k, unsigned which)
     mt_warning_list list = mt_warning_list_default(&k->mem);
     go_to_corner(k, which);
     if (is_allowed(k)) {
-        judge(k, &list);
+        lint_corner(k, &list);
     }
     for (int d = 0; d < list.n && k->rc == MT_OK && mt_diag_has_room(k->c->diags); d++) {
         if (list.items[d].level == MT_LEVEL_FAULT &&
@@ -232,7 +232,7 @@ static void look_at_all(corners *k)
         k->inputs[i] = s->variables[i].parameter;
         k->x[i] = s->variables[i].original;
     }
-    k->rc = compile(k);
+    k->rc = compile_corner_numbers(k);
     for (int i = 0; i < k->n && k->rc == MT_OK; i++) {
         one_variable(k, i, false);
         one_variable(k, i, true);

@@ -21,8 +21,8 @@ static const char *joined(mt_study_check *c, const char *const *names, int n)
 
 /* Note an unknown name, with the nearest of the n records of `size` bytes, or with all where
  * none is near and there are few. Every such record begins with its mt_name. */
-static void unknown(mt_study_check *c, mt_name name, const char *what, const void *records,
-                    int n, size_t size)
+static void report_unknown_name(mt_study_check *c, mt_name name, const char *what,
+                                const void *records, int n, size_t size)
 {
     const bool may = mt_diag_may_suggest(c->diags);
     const mt_arena_mark mark = mt_arena_get_mark(&c->study->mem);
@@ -55,7 +55,8 @@ int mt_check_parameter(mt_study_check *c, mt_name name)
     }
     const int found = mt_model_find_parameter(m, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "parameter", m->parameters, m->n_parameters, sizeof *m->parameters);
+        report_unknown_name(c, name, "parameter", m->parameters, m->n_parameters,
+                            sizeof *m->parameters);
     }
     return found;
 }
@@ -78,8 +79,8 @@ int mt_check_configuration(mt_study_check *c, const mt_model *model, mt_name nam
     }
     const int found = mt_model_find_configuration(model, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "configuration", model->configurations, model->n_configurations,
-                sizeof *model->configurations);
+        report_unknown_name(c, name, "configuration", model->configurations,
+                            model->n_configurations, sizeof *model->configurations);
     }
     return found;
 }
@@ -92,7 +93,8 @@ int mt_check_reference(mt_study_check *c, mt_name name)
     }
     const int found = mt_study_find_reference(s, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "reference", s->references, s->n_references, sizeof *s->references);
+        report_unknown_name(c, name, "reference", s->references, s->n_references,
+                            sizeof *s->references);
     }
     return found;
 }
@@ -105,8 +107,8 @@ int mt_check_measurement(mt_study_check *c, mt_name name)
     }
     const int found = mt_study_find_measurement(s, name.s);
     if (found == MT_ABSENT) {
-        unknown(c, name, "measurement", s->measurements, s->n_measurements,
-                sizeof *s->measurements);
+        report_unknown_name(c, name, "measurement", s->measurements, s->n_measurements,
+                            sizeof *s->measurements);
     }
     return found;
 }
@@ -119,7 +121,7 @@ const mt_aircraft *mt_check_aircraft(mt_study_check *c, mt_name name)
     }
     const mt_aircraft *const found = mt_aircraft_find(list, name.s);
     if (found == NULL && list->n > 0) {
-        unknown(c, name, "aircraft", list->items, list->n, sizeof *list->items);
+        report_unknown_name(c, name, "aircraft", list->items, list->n, sizeof *list->items);
     }
     return found;
 }
@@ -156,7 +158,7 @@ int mt_check_mode(mt_study_check *c, mt_mode_ref *mode)
     }
     mode->named = mt_model_find_mode(m, mode->mode_name.s);
     if (mode->named == MT_ABSENT) {
-        unknown(c, mode->mode_name, "mode", m->modes, m->n_modes, sizeof *m->modes);
+        report_unknown_name(c, mode->mode_name, "mode", m->modes, m->n_modes, sizeof *m->modes);
         return 0;
     }
     return m->modes[mode->named].index;

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static void widen(mt_count_box *box, int at, double x)
+static void widen_box_bounds(mt_count_box *box, int at, double x)
 {
     if (isfinite(x)) {
         box->lower[at] = fmin(box->lower[at], x);
@@ -13,7 +13,7 @@ static void widen(mt_count_box *box, int at, double x)
 }
 
 /* Index of a parameter in the box, added where missing. */
-static int place(mt_count_box *box, const mt_study *s, int parameter)
+static int box_parameter_index(mt_count_box *box, const mt_study *s, int parameter)
 {
     for (int i = 0; i < box->n; i++) {
         if (box->parameter[i] == parameter) {
@@ -30,12 +30,12 @@ static int place(mt_count_box *box, const mt_study *s, int parameter)
 
 static void add_variable(mt_count_box *box, const mt_study *s, const mt_variable *v)
 {
-    const int at = place(box, s, v->parameter);
+    const int at = box_parameter_index(box, s, v->parameter);
     const double part = MT_HAS(v->tolerance_percent) ? v->tolerance_percent / 100.0 : 0.0;
     const double ends[2] = {v->lower, v->upper};
     for (int k = 0; k < 2; k++) {
-        widen(box, at, ends[k] * (1.0 - part));
-        widen(box, at, ends[k] * (1.0 + part));
+        widen_box_bounds(box, at, ends[k] * (1.0 - part));
+        widen_box_bounds(box, at, ends[k] * (1.0 + part));
     }
 }
 
@@ -63,7 +63,7 @@ void mt_study_fill_counted(mt_study_check *c)
                               : v->kind == MT_VARY_PARAMETER ? v->parameter
                                                              : MT_ABSENT;
         for (int i = 0; i < v->n_values && parameter != MT_ABSENT; i++) {
-            widen(box, place(box, s, parameter), v->values[i]);
+            widen_box_bounds(box, box_parameter_index(box, s, parameter), v->values[i]);
         }
     }
 }

@@ -47,7 +47,7 @@ static mt_addr choice_of(const mt_measurement *m)
 }
 
 /* Keep only the selected response of a measurement. */
-static void choose(mt_study_check *c, mt_measurement *m)
+static void keep_selected_response(mt_study_check *c, mt_measurement *m)
 {
     const bool table = m->n_responses > 0 && m->responses[0].dataset == 0;
     const bool asked =
@@ -120,7 +120,7 @@ void mt_study_check_measurements(mt_study_check *c)
             continue;
         }
         const int before = c->diags->errors;
-        choose(c, m);
+        keep_selected_response(c, m);
         bool known = c->diags->errors == before;
         for (int k = 0; k < m->n_responses && known; k++) {
             known = scale(c, m, &m->responses[k]);

@@ -48,7 +48,7 @@ static void check_objective(mt_study_check *c, int which)
 }
 
 /* The objective that has these properties. */
-static const mt_objective *find(const mt_study *s, unsigned properties)
+static const mt_objective *find_objective(const mt_study *s, unsigned properties)
 {
     for (int i = 0; i < s->n_objectives; i++) {
         if (mt_objective_is(s->objectives[i].type, properties)) {
@@ -62,7 +62,7 @@ static const mt_objective *find(const mt_study *s, unsigned properties)
 static void check_misfit(mt_study_check *c)
 {
     const mt_study *const s = c->study;
-    const mt_objective *const misfit = find(s, MT_RESIDUALS);
+    const mt_objective *const misfit = find_objective(s, MT_RESIDUALS);
     bool weighted = false;
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const goal = &s->goals[i];
@@ -100,7 +100,7 @@ static void check_weight_sensitivity(mt_study_check *c)
 static void check_vibration(mt_study_check *c)
 {
     const mt_study *const s = c->study;
-    const mt_objective *const vibration = find(s, MT_SHAKES);
+    const mt_objective *const vibration = find_objective(s, MT_SHAKES);
     if (vibration != NULL && vibration != s->objectives) {
         mt_diag_error(c->diags, vibration->addr,
                       "the vibration is the first objective, or none");
@@ -120,7 +120,7 @@ void mt_study_check_objectives(mt_study_check *c)
     check_misfit(c);
     check_weight_sensitivity(c);
     check_vibration(c);
-    const mt_objective *const clearance = find(s, MT_BANDS);
+    const mt_objective *const clearance = find_objective(s, MT_BANDS);
     if (clearance != NULL && !mt_study_has_bands(s)) {
         mt_diag_error(c->diags, clearance->addr,
                       "the clearance needs a goal of type \"avoid\"");

@@ -13,7 +13,8 @@
 
 /* Names configuration c's variables that break a redundancy; each variable once over all
  * configurations. */
-static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *err)
+static mt_status report_broken_redundancies(mt_study_check *c, mt_linear *lin, bool *told,
+                                            mt_err *err)
 {
     const mt_study *const s = c->study;
     for (int i = 0; i < s->n_variables; i++) {
@@ -46,8 +47,8 @@ static mt_status judge(mt_study_check *c, mt_linear *lin, bool *told, mt_err *er
 
 /* Check one configuration for redundancies. Failures are ignored: they occur again, with their
  * reason, when the study is solved. */
-static mt_status look_at(mt_study_check *c, int configuration, const int *inputs,
-                         const double *at, bool *told, mt_err *err)
+static mt_status check_configuration(mt_study_check *c, int configuration, const int *inputs,
+                                     const double *at, bool *told, mt_err *err)
 {
     mt_system *sys = NULL;
     mt_linear *lin = NULL;
@@ -58,7 +59,7 @@ static mt_status look_at(mt_study_check *c, int configuration, const int *inputs
         rc = rc == MT_OK ? mt_linear_update(lin, at, false, err) : rc;
         if (rc == MT_OK && mt_linear_redundant(lin) > 0) {
             rc = mt_linear_update(lin, at, true, err);
-            rc = rc == MT_OK ? judge(c, lin, told, err) : rc;
+            rc = rc == MT_OK ? report_broken_redundancies(c, lin, told, err) : rc;
         }
     }
     mt_linear_delete(lin);
@@ -66,7 +67,7 @@ static mt_status look_at(mt_study_check *c, int configuration, const int *inputs
     return rc;
 }
 
-static mt_status look(mt_study_check *c, mt_arena *mem)
+static mt_status check_redundancies(mt_study_check *c, mt_arena *mem)
 {
     const mt_study *const s = c->study;
     const size_t n = (size_t)s->n_variables;
@@ -80,7 +81,8 @@ static mt_status look(mt_study_check *c, mt_arena *mem)
         at[i] = s->variables[i].original;
     }
     for (int i = 0; i < c->model->n_configurations; i++) {
-        if (mt_study_asks(s, i) && look_at(c, i, inputs, at, told, NULL) == MT_E_MEMORY) {
+        if (mt_study_asks(s, i) &&
+            check_configuration(c, i, inputs, at, told, NULL) == MT_E_MEMORY) {
             return MT_E_MEMORY;
         }
     }
@@ -90,7 +92,7 @@ static mt_status look(mt_study_check *c, mt_arena *mem)
 void mt_study_check_redundant(mt_study_check *c)
 {
     mt_arena mem = {0};
-    if (c->study->n_variables > 0 && look(c, &mem) == MT_E_MEMORY) {
+    if (c->study->n_variables > 0 && check_redundancies(c, &mem) == MT_E_MEMORY) {
         mt_arena_fail(&c->study->mem);
     }
     mt_arena_free(&mem);

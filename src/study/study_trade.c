@@ -185,7 +185,7 @@ static void check_vary(mt_study_check *c, mt_vary *v)
     }
 }
 
-static bool same(const mt_vary *a, const mt_vary *b)
+static bool is_same_vary(const mt_vary *a, const mt_vary *b)
 {
     return a->kind == b->kind && a->variable == b->variable && a->upper == b->upper &&
            a->parameter == b->parameter && a->goal == b->goal && a->slot == b->slot;
@@ -246,7 +246,7 @@ void mt_study_check_trade(mt_study_check *c)
         check_vary(c, &trade->vary[i]);
         points *= (double)trade->vary[i].n_values;
     }
-    if (trade->n_vary == 2 && same(&trade->vary[0], &trade->vary[1])) {
+    if (trade->n_vary == 2 && is_same_vary(&trade->vary[0], &trade->vary[1])) {
         mt_diag_error(c->diags, trade->vary[1].addr, "both vary the same");
     }
     if (points > (double)MT_MAX_TRADE_POINTS) {

@@ -72,7 +72,7 @@ static bool check_order(mt_diags *d, const mt_vibration_random *r)
 }
 
 /* The level at the other end of a segment with a slope. */
-static double follow(double level, double from_hz, double to_hz, double slope_db)
+static double level_at_segment_end(double level, double from_hz, double to_hz, double slope_db)
 {
     return level *
            pow(10.0, slope_db * mt_psd_log_ratio(from_hz, to_hz) / (log(2.0) * DB_PER_DECADE));
@@ -92,12 +92,12 @@ static bool follow_slopes(mt_diags *d, mt_vibration_random *r)
     }
     for (int i = first - 1; i >= 0; i--) {
         mt_vibration_point *const p = &r->points[i];
-        p->level = follow(p[1].level, p[1].hz, p->hz, p->slope_db);
+        p->level = level_at_segment_end(p[1].level, p[1].hz, p->hz, p->slope_db);
     }
     for (int i = first + 1; i < r->n_points; i++) {
         mt_vibration_point *const p = &r->points[i];
         if (p->slope_db == p->slope_db) {
-            p->level = follow(p[-1].level, p[-1].hz, p->hz, p->slope_db);
+            p->level = level_at_segment_end(p[-1].level, p[-1].hz, p->hz, p->slope_db);
         }
     }
     for (int i = 0; i < r->n_points; i++) {
@@ -172,7 +172,7 @@ static bool is_said(const mt_vibration *v, const char *text)
 }
 
 /* Add a mark to the profile, and a warning. */
-static void mark(marking *m, mt_addr addr, const char *text)
+static void add_profile_mark(marking *m, mt_addr addr, const char *text)
 {
     mt_vibration *const v = m->v;
     if (text == NULL || is_said(v, text)) {
@@ -320,16 +320,18 @@ static void mark_source(marking *m, const mt_vibration_source *s)
                                      : NULL;
     const int n = a == NULL ? 0 : mt_rotor_warnings(&s->rotor, a, warning_list);
     for (int i = 0; i < n; i++) {
-        mark(m, s->rotor.aircraft.addr,
-             mt_arena_printf(&v->mem, "%s: the %s (%s) is unconfirmed (source needed: %s)",
-                             s->rotor.aircraft.s, warning_list[i].what,
-                             warning_list[i].value->text, warning_list[i].value->source));
+        add_profile_mark(
+            m, s->rotor.aircraft.addr,
+            mt_arena_printf(&v->mem, "%s: the %s (%s) is unconfirmed (source needed: %s)",
+                            s->rotor.aircraft.s, warning_list[i].what,
+                            warning_list[i].value->text, warning_list[i].value->source));
     }
     const char *const name = name_source(v, s);
     if (s->origin.origin == MT_ORIGIN_ASSUMED && name != NULL) {
-        mark(m, s->addr,
-             mt_arena_printf(&v->mem, "the level of %s is assumed (%s)", name,
-                             s->origin.source == NULL ? "no source" : s->origin.source));
+        add_profile_mark(
+            m, s->addr,
+            mt_arena_printf(&v->mem, "the level of %s is assumed (%s)", name,
+                            s->origin.source == NULL ? "no source" : s->origin.source));
     }
 }
 
@@ -339,10 +341,11 @@ static void make_marks(mt_vibration *v, mt_diags *diags)
     for (int i = 0; i < v->n_random; i++) {
         const mt_vibration_random *const r = &v->random[i];
         if (r->origin.origin == MT_ORIGIN_ASSUMED) {
-            mark(&m, r->addr,
-                 mt_arena_printf(&v->mem, "the density from %.6g to %.6g Hz is assumed (%s)",
-                                 r->psd.hz[0], r->psd.hz[r->psd.n - 1],
-                                 r->origin.source == NULL ? "no source" : r->origin.source));
+            add_profile_mark(
+                &m, r->addr,
+                mt_arena_printf(&v->mem, "the density from %.6g to %.6g Hz is assumed (%s)",
+                                r->psd.hz[0], r->psd.hz[r->psd.n - 1],
+                                r->origin.source == NULL ? "no source" : r->origin.source));
         }
     }
     for (int i = 0; i < v->n_sources; i++) {

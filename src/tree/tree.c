@@ -47,7 +47,7 @@ static bool acts(const order *o, int spring)
            (o->value[s->stiffness] != 0.0 || s->free != MT_NO_NODE || s->preload != MT_NO_NODE);
 }
 
-static void collect(order *o)
+static void collect_ties(order *o)
 {
     const mt_system *const sys = o->sys;
     for (int i = 0; i < sys->n_constraints; i++) {
@@ -104,7 +104,7 @@ static void tell_loop(const order *o, const tie *e, char *why)
 
 /* Visit all bodies connected to body b (MT_GROUND: the ground); false where a connection closes
  * a loop. */
-static bool visit(order *o, mt_tree *t, int b, char *why)
+static bool visit_connected(order *o, mt_tree *t, int b, char *why)
 {
     const int at = b == MT_GROUND ? o->sys->n_bodies : b;
     for (int i = o->first[at]; i < o->first[at + 1]; i++) {
@@ -129,12 +129,12 @@ static bool visit(order *o, mt_tree *t, int b, char *why)
 static bool find_order(order *o, mt_tree *t, char *why)
 {
     int done = 0;
-    if (!visit(o, t, MT_GROUND, why)) {
+    if (!visit_connected(o, t, MT_GROUND, why)) {
         return false;
     }
     for (int root = 0; root < o->sys->n_bodies || done < t->n;) {
         if (done < t->n) {
-            if (!visit(o, t, t->body[done++], why)) {
+            if (!visit_connected(o, t, t->body[done++], why)) {
                 return false;
             }
         } else if (o->place[root++] < 0) {
@@ -191,7 +191,7 @@ static mt_status order_bodies(mt_tree_maker *m, mt_arena *mem, mt_arena *scratch
     MT_TRY(mt_arena_check(scratch, err));
     MT_TRY(mt_arena_check(mem, err));
     memset(o.place, 0xFF, nb * sizeof *o.place); /* -1 */
-    collect(&o);
+    collect_ties(&o);
     sort_ties(&o);
     *is_tree = find_order(&o, t, m->why);
     if (*is_tree) {
@@ -267,7 +267,7 @@ static mt_status make_edges(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_e
     t->mass = mt_arena_f64(mem, n * s, s);
     t->basis = mt_arena_f64(mem, s, (size_t)t->sys->nq);
     t->length = mt_arena_f64(mem, n, 1);
-    t->warning = mt_arena_f64(mem, n, 1);
+    t->condition = mt_arena_f64(mem, n, 1);
     t->lost = mt_arena_f64(mem, (size_t)t->sys->nq, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < t->n && *is_tree; i++) {
@@ -327,8 +327,8 @@ static mt_status choose_coordinates(mt_tree_maker *m, mt_arena *mem, bool *is_tr
     return rc;
 }
 
-static mt_status make(mt_tree_maker *m, const double *inputs, mt_arena *mem, mt_arena *scratch,
-                      bool *is_tree, mt_err *err)
+static mt_status make_tree(mt_tree_maker *m, const double *inputs, mt_arena *mem,
+                           mt_arena *scratch, bool *is_tree, mt_err *err)
 {
     const mt_system *const sys = m->t->sys;
     double *const value = mt_arena_f64(scratch, (size_t)sys->program.count, 1);
@@ -376,7 +376,7 @@ mt_status mt_tree_new(const mt_system *sys, const double *inputs, mt_arena *mem,
     MT_TRY(mt_arena_check(mem, err));
     *t = (mt_tree){.sys = sys, .s = sys->dimension == 2 ? 3 : MT_TREE_MOTION};
     mt_status rc = mt_arena_init(&scratch, 0, err);
-    rc = rc == MT_OK ? make(&m, inputs, mem, &scratch, &is_tree, err) : rc;
+    rc = rc == MT_OK ? make_tree(&m, inputs, mem, &scratch, &is_tree, err) : rc;
     mt_arena_free(&scratch);
     *out = rc == MT_OK && is_tree ? t : NULL;
     return rc;

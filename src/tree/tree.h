@@ -46,7 +46,7 @@ typedef struct mt_tree {
     double *length; /* [n] of its edge: scales rotations to translations [m] */
     /* [n] greatest rotation of a column of its edge by rounding, relative to the column's size,
      * in roundings: 1 over the distance of its equations from dependent ones */
-    double *warning;
+    double *condition;
     double *lost;   /* by y: the same for the energy of each coordinate, from cancellation */
     double *mass;   /* s x s of each body */
     double *shared; /* s x s: v_before^T shared v_i; NULL: no mass is shared */

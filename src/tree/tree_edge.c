@@ -40,8 +40,8 @@ typedef struct edge {
 
 /* Add a measure's gradient as a row of the edge; false where it is not a measure of two bodies'
  * relative position. */
-static bool add_row(const mt_tree_maker *m, int i, const mt_measure_def *def, double weight,
-                    edge *e)
+static bool add_gradient_row(const mt_tree_maker *m, int i, const mt_measure_def *def,
+                             double weight, edge *e)
 {
     const mt_tree *const t = m->t;
     const mt_measure_data measure = mt_data_measure(&m->data, def);
@@ -83,7 +83,7 @@ static bool add_row(const mt_tree_maker *m, int i, const mt_measure_def *def, do
 }
 
 /* The length that scales rotations to translations. */
-static double length_of(const mt_tree *t, const edge *e)
+static double rotation_length(const mt_tree *t, const edge *e)
 {
     double half[2] = {0.0, 0.0};
     for (int r = 0; r < e->n; r++) {
@@ -145,7 +145,7 @@ static int longest_row(int s, const edge *e, int rank, double *length)
 
 /* Bring row `best` to the place `rank`, and reflect it, and those behind it, onto axis `rank`
  * along u[s]. */
-static void eliminate(int s, int rank, int best, double length, edge *e, double *u)
+static void reflect_row_onto_axis(int s, int rank, int best, double length, edge *e, double *u)
 {
     double *const a = e->row + ((ptrdiff_t)s * rank);
     double *const b = e->row + ((ptrdiff_t)s * best);
@@ -184,7 +184,7 @@ static bool null_space(int s, edge *e, double *null, int *d, double *least)
             return false;
         }
         *least = fmin(*least, length);
-        eliminate(s, rank, best, length, e, u + ((ptrdiff_t)s * rank));
+        reflect_row_onto_axis(s, rank, best, length, e, u + ((ptrdiff_t)s * rank));
     }
     *d = s - rank;
     for (int c = 0; c < *d; c++) {
@@ -226,7 +226,7 @@ static double column_dot(int n, const double *b, int p, int q)
     return sum;
 }
 
-static void rotate(int n, int stride, double c, double s, int p, int q, double *x)
+static void rotate_two_columns(int n, int stride, double c, double s, int p, int q, double *x)
 {
     for (int r = 0; r < n; r++) {
         const double xp = x[r + (p * stride)];
@@ -253,15 +253,15 @@ static void jacobi(const mt_tree *t, int n, int d, double *b, double *null)
                 const double zeta = (beta - alpha) / (2.0 * gamma);
                 const double tangent = copysign(1.0, zeta) / (fabs(zeta) + hypot(1.0, zeta));
                 const double c = 1.0 / hypot(1.0, tangent);
-                rotate(n, ROWS, c, c * tangent, p, q, b);
-                rotate(t->s, t->s, c, c * tangent, p, q, null);
+                rotate_two_columns(n, ROWS, c, c * tangent, p, q, b);
+                rotate_two_columns(t->s, t->s, c, c * tangent, p, q, null);
                 changed = true;
             }
         }
     }
 }
 
-static bool collect(mt_tree_maker *m, int i, bool springs, edge *e)
+static bool collect_edge_rows(mt_tree_maker *m, int i, bool springs, edge *e)
 {
     const mt_tree *const t = m->t;
     const mt_system *const sys = t->sys;
@@ -280,7 +280,7 @@ static bool collect(mt_tree_maker *m, int i, bool springs, edge *e)
                               (int)ROWS, sys->bodies[m->t->body[i]].name);
             return false;
         }
-        if (!add_row(m, i, &sys->measures[measure], weight, e)) {
+        if (!add_gradient_row(m, i, &sys->measures[measure], weight, e)) {
             (void)mt_snprintf(m->why, MT_TREE_WHY, "%s \"%s\" holds a point mass by its turn",
                               springs ? "spring" : "joint", name);
             return false;
@@ -345,10 +345,10 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_
     double b[ROWS * MOST];
     double least = 1.0;
     int d = 0;
-    if (!collect(m, i, false, &joints) || !collect(m, i, true, &springs)) {
+    if (!collect_edge_rows(m, i, false, &joints) || !collect_edge_rows(m, i, true, &springs)) {
         return false;
     }
-    const double length = length_of(t, joints.n > 0 ? &joints : &springs);
+    const double length = rotation_length(t, joints.n > 0 ? &joints : &springs);
     scale_rows(t, length, &joints);
     scale_rows(t, length, &springs);
     for (int k = 0; k < t->s && t->point[i]; k++) {
@@ -369,7 +369,7 @@ bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_
         jacobi(t, springs.n, d, b, null);
     }
     t->length[i] = length;
-    t->warning[i] = 1.0 / least;
+    t->condition[i] = 1.0 / least;
     if (!clear || !sort_columns(t, &springs, d, b, null, basis, n_y, t->lost + t->y_at[i])) {
         (void)mt_snprintf(m->why, MT_TREE_WHY, "what holds \"%s\" nearly fails to hold it",
                           t->sys->bodies[t->body[i]].name);

@@ -28,7 +28,7 @@ typedef struct loading {
     double *g; /* s x n: G */
 } loading;
 
-static double along(const mt_tree *t, const mt_cx *local, int side, int k)
+static double local_component(const mt_tree *t, const mt_cx *local, int side, int k)
 {
     return creal(local[(6 * side) + mt_tree_freedom(t, k)]);
 }
@@ -52,10 +52,10 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
             const int col = k / t->s;
             if (is_free(t, body[side], row) && is_free(t, body[side], col)) {
                 t->geometric_stiffness[k + (square * at)] +=
-                    c * along(t,
-                              jet->h + ((ptrdiff_t)MT_LOCAL *
-                                        ((6 * side) + mt_tree_freedom(t, col))),
-                              side, row);
+                    c * local_component(t,
+                                        jet->h + ((ptrdiff_t)MT_LOCAL *
+                                                  ((6 * side) + mt_tree_freedom(t, col))),
+                                        side, row);
             }
         }
     }
@@ -72,10 +72,10 @@ static bool add_curvature(const mt_tree_maker *m, const int body[2], double c,
         const int col = k / t->s;
         if (is_free(t, body[first], row) && is_free(t, body[1 - first], col)) {
             t->geometric_stiffness_shared[k + (square * at)] +=
-                c * along(t,
-                          jet->h + ((ptrdiff_t)MT_LOCAL *
-                                    ((6 * (1 - first)) + mt_tree_freedom(t, col))),
-                          first, row);
+                c * local_component(t,
+                                    jet->h + ((ptrdiff_t)MT_LOCAL *
+                                              ((6 * (1 - first)) + mt_tree_freedom(t, col))),
+                                    first, row);
         }
     }
     return true;
@@ -92,7 +92,7 @@ static bool add_force(void *context, const int body[2], double c, double noise,
         const int at = body[side] == MT_GROUND ? -1 : t->place[body[side]];
         for (int k = 0; k < t->s && at >= 0; k++) {
             if (is_free(t, body[side], k)) {
-                const double f = c * along(t, jet->g, side, k);
+                const double f = c * local_component(t, jet->g, side, k);
                 l->g[k + ((ptrdiff_t)t->s * at)] += f;
                 l->m->t->force[at] +=
                     fabs(f) / (mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0);
@@ -177,7 +177,7 @@ void mt_tree_multipliers(const mt_tree *t, const mt_tree_held *h, const double *
 
 /* Multipliers of the joints of edge i that balance G_i: adds their curvature, and adds G_i to
  * the parent's G. */
-static mt_status hold(const loading *l, int i, mt_err *err)
+static mt_status balance_edge_joints(const loading *l, int i, mt_err *err)
 {
     const mt_tree_maker *const m = l->m;
     const mt_tree *const t = m->t;
@@ -195,7 +195,8 @@ static mt_status hold(const loading *l, int i, mt_err *err)
         mt_measure_eval(&measure, mt_pose_of(m->pose, def->body[0]),
                         mt_pose_of(m->pose, def->body[1]), true, NULL, &jet[c]);
         for (int r = 0; r < t->s; r++) {
-            row[r + (c * t->s)] = is_free(t, t->body[i], r) ? along(t, jet[c].g, side, r) : 0.0;
+            row[r + (c * t->s)] =
+                is_free(t, t->body[i], r) ? local_component(t, jet[c].g, side, r) : 0.0;
         }
     }
     MT_TRY(mt_tree_hold(t, c, row, &held, err));
@@ -233,7 +234,7 @@ mt_status mt_tree_loads(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err *
     for (int i = t->n - 1; i >= 0 && *is_tree; i--) {
         *is_tree = is_at_rest(&l, i);
         if (*is_tree) {
-            MT_TRY(hold(&l, i, err));
+            MT_TRY(balance_edge_joints(&l, i, err));
         }
     }
     return MT_OK;

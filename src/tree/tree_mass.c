@@ -23,7 +23,7 @@ static void add_block(const mt_tree *t, double c, const mt_cx *a, int u, const m
 }
 
 /* Set rotations of point masses to 0: they are not freedoms. */
-static void leave_out(const mt_system *sys, const mt_term *term, mt_cx *rows)
+static void clear_point_mass_rotations(const mt_system *sys, const mt_term *term, mt_cx *rows)
 {
     for (int r = 0; r < term->count; r++) {
         for (int k = 0; k < MT_LOCAL; k++) {
@@ -35,7 +35,7 @@ static void leave_out(const mt_system *sys, const mt_term *term, mt_cx *rows)
     }
 }
 
-static void add_term(mt_tree_maker *m, const mt_term *term, double c, const mt_cx *rows)
+static void add_mass_term(mt_tree_maker *m, const mt_term *term, double c, const mt_cx *rows)
 {
     mt_tree *const t = m->t;
     const ptrdiff_t square = (ptrdiff_t)t->s * t->s;
@@ -84,8 +84,8 @@ mt_status mt_tree_masses(mt_tree_maker *m, mt_arena *mem, bool *is_tree, mt_err 
         }
         if (c != 0.0) {
             mt_term_rows(&m->data, MT_TERM_MASS, &term, m->pose, rows);
-            leave_out(sys, &term, rows);
-            add_term(m, &term, c, rows);
+            clear_point_mass_rotations(sys, &term, rows);
+            add_mass_term(m, &term, c, rows);
         }
     }
     return MT_OK;

@@ -73,8 +73,8 @@ static inline void add_product_of(int s, const double *a, bool transposed, const
 }
 
 /* f += A v, or A^T v, s x s: each order a loop of its own, which is half of all work here. */
-static inline void add_product(int s, const double *a, bool transposed, const double *v,
-                               double *f)
+static inline void add_matrix_vector(int s, const double *a, bool transposed, const double *v,
+                                     double *f)
 {
     if (s == 3) {
         add_product_of(3, a, transposed, v, f);
@@ -107,7 +107,7 @@ void mt_tree_motion(const mt_tree *t, const double *x, const double *r, double *
             own[k] = 0.0;
         }
         if (other != NULL && t->transport != NULL) {
-            add_product(s, t->transport + (square * i), false, other, own);
+            add_matrix_vector(s, t->transport + (square * i), false, other, own);
         } else if (other != NULL) {
             mt_tree_carry(t, i, other, own);
         }
@@ -146,7 +146,7 @@ static inline void hand_back(const mt_tree *t, int i, double *f, double *x, doub
         }
     }
     if (p >= 0 && t->transport != NULL) {
-        add_product(s, t->transport + ((ptrdiff_t)s * s * i), true, own, other);
+        add_matrix_vector(s, t->transport + ((ptrdiff_t)s * s * i), true, own, other);
     } else if (p >= 0) {
         mt_tree_carry_back(t, i, own, other);
     }
@@ -162,10 +162,11 @@ void mt_tree_momentum(const mt_tree *t, const double *v, double *f, double *x, d
         const int p = t->before[i];
         double *const own = f + ((ptrdiff_t)s * i);
         double *const other = p < 0 ? NULL : f + ((ptrdiff_t)s * p);
-        add_product(s, t->mass + (square * i), false, v + ((ptrdiff_t)s * i), own);
+        add_matrix_vector(s, t->mass + (square * i), false, v + ((ptrdiff_t)s * i), own);
         if (t->shared != NULL && p >= 0) {
-            add_product(s, t->shared + (square * i), true, v + ((ptrdiff_t)s * p), own);
-            add_product(s, t->shared + (square * i), false, v + ((ptrdiff_t)s * i), other);
+            add_matrix_vector(s, t->shared + (square * i), true, v + ((ptrdiff_t)s * p), own);
+            add_matrix_vector(s, t->shared + (square * i), false, v + ((ptrdiff_t)s * i),
+                              other);
         }
         hand_back(t, i, f, x, rigid ? r : NULL);
     }
@@ -236,14 +237,14 @@ void mt_tree_transport(const mt_tree *t, double lambda, const double *v, double 
         double *const own = f + ((ptrdiff_t)s * i);
         double h[SQUARE];
         block(t, t->mass, t->geometric_stiffness, lambda, i, h);
-        add_product(s, h, false, shape, own);
+        add_matrix_vector(s, h, false, shape, own);
         if (p < 0) {
             continue;
         }
         if (t->shared != NULL || t->geometric_stiffness_shared != NULL) {
             block(t, t->shared, t->geometric_stiffness_shared, lambda, i, h);
-            add_product(s, h, true, v + ((ptrdiff_t)s * p), own);
-            add_product(s, h, false, shape, f + ((ptrdiff_t)s * p));
+            add_matrix_vector(s, h, true, v + ((ptrdiff_t)s * p), own);
+            add_matrix_vector(s, h, false, shape, f + ((ptrdiff_t)s * p));
         }
         mt_tree_carry_back(t, i, own, f + ((ptrdiff_t)s * p));
     }
@@ -271,8 +272,8 @@ static void carry_matrix(const mt_tree *t, int i, double *x)
 }
 
 /* out (m x n) := op(A) B, A of inner size k. */
-static void product(bool transposed, int m, int n, int k, const double *a, const double *b,
-                    double *out)
+static void small_matrix_product(bool transposed, int m, int n, int k, const double *a,
+                                 const double *b, double *out)
 {
     for (int c = 0; c < n; c++) {
         for (int r = 0; r < m; r++) {
@@ -371,8 +372,8 @@ static double load_of(const mt_tree *t, int i, int k)
 
 /* Eliminate body i, whose H is complete, and add the Schur complement to its parent. sizes:
  * sums of magnitudes of the terms of each H (NULL: not wanted). */
-static void eliminate(const mt_tree *t, int i, double tau, double *h, double *sizes, int *below,
-                      double *least, eliminated *e)
+static void eliminate_body(const mt_tree *t, int i, double tau, double *h, double *sizes,
+                           int *below, double *least, eliminated *e)
 {
     const int s = t->s;
     const ptrdiff_t square = (ptrdiff_t)s * s;
@@ -383,8 +384,8 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, double *si
     double hb[SQUARE];
     double size[MOST];
     e->d = d;
-    product(false, s, d, s, own, basis, hb);
-    product(true, d, d, s, basis, hb, e->delta);
+    small_matrix_product(false, s, d, s, own, basis, hb);
+    small_matrix_product(true, d, d, s, basis, hb, e->delta);
     for (int k = 0; k < d; k++) {
         size[k] = fmax(fabs(e->delta[k + (k * d)]), k < n_y ? 1.0 : load_of(t, i, k));
         e->delta[k + (k * d)] += k < n_y ? 1.0 : 0.0;
@@ -396,13 +397,13 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, double *si
     double g[SQUARE] = {0.0}; /* H X + C^T */
     double add[SQUARE] = {0.0};
     carry_matrix(t, i, e->x);
-    product(false, s, s, s, own, e->x, g);
-    product(true, s, s, s, e->x, g, add);
+    small_matrix_product(false, s, s, s, own, e->x, g);
+    small_matrix_product(true, s, s, s, e->x, g, add);
     if (t->shared != NULL || t->geometric_stiffness_shared != NULL) {
         double c[SQUARE] = {0.0};
         double cx[SQUARE] = {0.0};
         block(t, t->shared, t->geometric_stiffness_shared, tau, i, c);
-        product(false, s, s, s, c, e->x, cx);
+        small_matrix_product(false, s, s, s, c, e->x, cx);
         for (int k = 0; k < s; k++) {
             for (int l = 0; l < s; l++) {
                 g[k + (l * s)] += c[l + (k * s)];
@@ -410,7 +411,7 @@ static void eliminate(const mt_tree *t, int i, double tau, double *h, double *si
             }
         }
     }
-    product(true, d, s, s, basis, g, e->w);
+    small_matrix_product(true, d, s, s, basis, g, e->w);
     forward(d, s, e->delta, e->w);
     const ptrdiff_t other = square * t->before[i];
     hand_on(s, e, add, h + other, sizes == NULL ? NULL : sizes + other);
@@ -437,7 +438,7 @@ mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *be
     double least = 1.0;
     *below = 0;
     for (int i = t->n - 1; i >= 0; i--) {
-        eliminate(t, i, tau, h, NULL, below, &least, &e);
+        eliminate_body(t, i, tau, h, NULL, below, &least, &e);
     }
     *certain = least > DOUBTFUL;
     mt_arena_rewind(scratch, mark);
@@ -448,7 +449,7 @@ mt_status mt_tree_count(const mt_tree *t, double tau, mt_arena *scratch, int *be
  * K is the sum of x^T x, x = D^1/2 (L^T z + D^-1 w v_before): so
  *     z = L^-T (D^-1/2 x - D^-1 w v_before),    N' = B L^-T D^-1/2,    X' = X - B L^-T D^-1 w.
  */
-static void keep(mt_tree *t, int i, const eliminated *e)
+static void store_eliminated_body(mt_tree *t, int i, const eliminated *e)
 {
     const int s = t->s;
     const int d = e->d;
@@ -494,10 +495,10 @@ mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *
     for (int i = t->n - 1; i >= 0 && *positive; i--) {
         eliminated e = {.d = 0};
         double least = 1.0;
-        eliminate(t, i, 0.0, h, t->settled, &below, &least, &e);
+        eliminate_body(t, i, 0.0, h, t->settled, &below, &least, &e);
         *positive = least > DOUBTFUL && below == 0;
         if (*positive) {
-            keep(t, i, &e);
+            store_eliminated_body(t, i, &e);
         }
     }
     return MT_OK;

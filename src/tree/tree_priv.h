@@ -39,7 +39,7 @@ static inline int mt_tree_first(const mt_tree *t, int i)
 }
 
 /* Basis of the edge of body i into basis[s x s]: *n_y columns N F, then *n_free_dofs columns N
- * R; sets its length, warning and lost. False, with the reason in why: not a tree. */
+ * R; sets its length, condition and lost. False, with the reason in why: not a tree. */
 bool mt_tree_edge(mt_tree_maker *m, int i, double *basis, int *n_y, int *n_free_dofs);
 /* Set the masses of all bodies; *is_tree false: not a tree, with the reason in why. Fails:
  * MT_E_MEMORY. */

@@ -45,8 +45,8 @@ static void add_transport(const mt_tree *t, int i, const double *p, double *v)
 }
 
 /* Column c of the edge times z: sizes of its entries, and of the whole, in lengths. */
-static void add_column(const mt_tree *t, int i, const double *column, double z, double *terms,
-                       double *whole)
+static void add_column_size(const mt_tree *t, int i, const double *column, double z,
+                            double *terms, double *whole)
 {
     double square = 0.0;
     for (int k = 0; k < t->s; k++) {
@@ -66,12 +66,12 @@ static double error_of(const mt_tree *t, int i, const double *x, const double *r
     const double *column = mt_tree_basis(t, i);
     double terms[MOST] = {0.0};
     double whole = 0.0;
-    double turned = COLUMN_ULPS * t->warning[i];
+    double turned = COLUMN_ULPS * t->condition[i];
     for (int c = mt_tree_first(t, i); c < mt_tree_first(t, i + 1); c++, column += t->s) {
-        add_column(t, i, column, x[c], terms, &whole);
+        add_column_size(t, i, column, x[c], terms, &whole);
     }
     for (int c = t->free_dof_at[i]; c < t->free_dof_at[i + 1] && t->scaled == NULL; c++) {
-        add_column(t, i, column, r == NULL ? 0.0 : r[c], terms, &whole);
+        add_column_size(t, i, column, r == NULL ? 0.0 : r[c], terms, &whole);
         column += t->s;
     }
     if (other != NULL) {

@@ -318,7 +318,7 @@ static void coefficients(mt_tree_slope *w)
 }
 
 /* Joint forces of mode a at edge i: A^T mu = -(P + sum of k s f). */
-static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
+static mt_status joint_forces_of_mode(mt_tree_slope *w, int i, mt_err *err)
 {
     const mt_tree *const t = w->t;
     const mt_system *const sys = w->sys;
@@ -364,8 +364,8 @@ static mt_status hold(mt_tree_slope *w, int i, mt_err *err)
 
 /* slope += f' . w of a measure of edge i times the force that it transmits, of[list a +
  * which]. */
-static void add_row(mt_tree_slope *w, int i, const mt_measure_def *def, const double *of,
-                    ptrdiff_t list)
+static void add_row_slope(mt_tree_slope *w, int i, const mt_measure_def *def, const double *of,
+                          ptrdiff_t list)
 {
     double row[MOST];
     double drow[MOST];
@@ -491,12 +491,12 @@ static void add_shape(mt_tree_slope *w)
     for (int i = 0; i < t->n; i++) {
         add_arm(w, i);
         for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k]) {
-            add_row(w, i, &sys->measures[sys->constraints[k].measure[0]], w->mu + k,
-                    sys->n_constraints);
+            add_row_slope(w, i, &sys->measures[sys->constraints[k].measure[0]], w->mu + k,
+                          sys->n_constraints);
         }
         for (int q = t->first_spring[i]; q >= 0; q = t->next_spring[q]) {
-            add_row(w, i, &sys->measures[sys->springs[q].measure[0]], w->force + q,
-                    sys->n_springs);
+            add_row_slope(w, i, &sys->measures[sys->springs[q].measure[0]], w->force + q,
+                          sys->n_springs);
         }
     }
     for (int i = 0; i < sys->n_inertias; i++) {
@@ -504,7 +504,7 @@ static void add_shape(mt_tree_slope *w)
     }
 }
 
-static mt_status init(mt_tree_slope *w, const double *inputs, mt_err *err)
+static mt_status init_tree_slope(mt_tree_slope *w, const double *inputs, mt_err *err)
 {
     const mt_system *const sys = w->sys;
     const size_t motions = (size_t)w->t->n * (size_t)w->t->s;
@@ -552,7 +552,7 @@ static mt_status carry_out(mt_tree_slope *w, mt_err *err)
     }
     coefficients(w);
     for (int i = 0; i < t->n && shaped; i++) {
-        MT_TRY(hold(w, i, err));
+        MT_TRY(joint_forces_of_mode(w, i, err));
     }
     for (int p = 0; p < w->sys->n_inputs && shaped; p++) {
         MT_TRY(mt_interrupt_check(w->sys->run->interrupt, err));
@@ -579,7 +579,7 @@ mt_status mt_tree_slopes(const mt_tree *t, const double *inputs, const mt_tree_m
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     why[0] = '\0';
     memset(slope, 0, (size_t)modes->n_pairs * (size_t)t->sys->n_inputs * sizeof *slope);
-    MT_TRY(init(&w, inputs, err));
+    MT_TRY(init_tree_slope(&w, inputs, err));
     MT_TRY(carry_out(&w, err));
     mt_arena_rewind(scratch, mark);
     return MT_OK;

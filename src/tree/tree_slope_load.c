@@ -76,7 +76,7 @@ static void add_force(const along *l, const int body[2], mt_cx c, const mt_jet *
     add_form(l->w, creal(c), l->w->energy);
 }
 
-static void add_spring(const along *l, const mt_spring_def *s)
+static void add_spring_slope(const along *l, const mt_spring_def *s)
 {
     const mt_data *const d = &l->w->data;
     const mt_measure_def *const def = &l->w->sys->measures[s->measure[0]];
@@ -169,7 +169,7 @@ static void hand_on(const along *l, int i)
 }
 
 /* Derivative of the forces that the joints of edge i hold. False: not in equilibrium. */
-static mt_status balance(const along *l, int i, bool *rests, mt_err *err)
+static mt_status joint_force_slope(const along *l, int i, bool *rests, mt_err *err)
 {
     mt_tree_slope *const w = l->w;
     const mt_tree *const t = w->t;
@@ -219,10 +219,10 @@ mt_status mt_tree_slope_loads(mt_tree_slope *w, mt_err *err)
         add_load(&l, &w->sys->loads[i]);
     }
     for (int i = 0; i < w->sys->n_springs; i++) {
-        add_spring(&l, &w->sys->springs[i]);
+        add_spring_slope(&l, &w->sys->springs[i]);
     }
     for (int i = t->n - 1; i >= 0 && rests; i--) {
-        MT_TRY(balance(&l, i, &rests, err));
+        MT_TRY(joint_force_slope(&l, i, &rests, err));
     }
     mt_arena_rewind(w->scratch, mark);
     return MT_OK;

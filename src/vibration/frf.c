@@ -41,7 +41,7 @@ static bool is_conjugate(double complex a, double complex b)
     return creal(a) == creal(b) && cimag(a) == -cimag(b);
 }
 
-static void add(mt_frf *h, const mt_pole_sum *sum, int k)
+static void append_pole(mt_frf *h, const mt_pole_sum *sum, int k)
 {
     h->re[h->n] = cimag(sum->s[k]);
     h->im[h->n] = -creal(sum->s[k]);
@@ -58,8 +58,8 @@ static void add_pair(mt_frf *h, const mt_pole_sum *sum, int k, int other)
     h->slope[h->n_pairs] = 2.0 * creal(r);
     h->constant[h->n_pairs] = 2.0 * (a + b);
     h->size[h->n_pairs++] = 2.0 * (fabs(a) + fabs(b));
-    add(h, sum, k);
-    add(h, sum, other);
+    append_pole(h, sum, k);
+    append_pole(h, sum, other);
 }
 
 /* The pole above `k` that is its conjugate, with the conjugate residue; -1: none. */
@@ -93,7 +93,7 @@ static void sort_in(mt_frf *h, const mt_pole_sum *sum, bool *used)
     }
     for (int k = 0; k < sum->n; k++) {
         if (!used[k]) {
-            add(h, sum, k);
+            append_pole(h, sum, k);
         }
     }
 }

@@ -78,7 +78,7 @@ void mt_panels_begin(mt_panels *p, const mt_frf *h, double lower, double upper, 
 }
 
 /* Put the half that follows on the empty stack; false: there is none. */
-static bool go_on(mt_panels *p)
+static bool push_next_half(mt_panels *p)
 {
     if (!p->right) {
         if (!(p->next < p->upper)) {
@@ -96,7 +96,7 @@ static bool go_on(mt_panels *p)
 
 bool mt_panels_next(mt_panels *p, mt_panel *out)
 {
-    while (p->depth > 0 || go_on(p)) {
+    while (p->depth > 0 || push_next_half(p)) {
         const mt_panel panel = p->stack[--p->depth];
         if (is_smooth(p, &panel)) {
             *out = panel;

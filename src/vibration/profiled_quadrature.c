@@ -174,7 +174,7 @@ static mt_status find_tone(work *k, int i, mt_err *err)
     return MT_OK;
 }
 
-static mt_status make(work *k, mt_err *err)
+static mt_status make_quadrature_work(work *k, mt_err *err)
 {
     mt_arena *const mem = &k->r->mem;
     const size_t pairs = (size_t)k->out->n_pairs;
@@ -208,7 +208,7 @@ static mt_status make(work *k, mt_err *err)
 mt_status mt_profiled_quadrature(mt_response *r, mt_profiled *out, mt_err *err)
 {
     work k = {.r = r, .out = out};
-    MT_TRY(make(&k, err));
+    MT_TRY(make_quadrature_work(&k, err));
     MT_TRY(find_rms(&k, err));
     for (int i = 0; i < out->v->n_tones; i++) {
         MT_TRY(find_tone(&k, i, err));

@@ -34,7 +34,7 @@ typedef struct search {
 } search;
 
 /* F, F' and F''. */
-static void slopes(const mt_frf *h, mt_near w, double *f)
+static void squared_gain_jet(const mt_frf *h, mt_near w, double *f)
 {
     double complex jet[3];
     mt_frf_jet(h, w, jet);
@@ -52,7 +52,7 @@ typedef struct series {
     double size[ORDER + 1];
 } series;
 
-static void expand(const mt_frf *h, const mt_panel *p, mt_near centre, series *s)
+static void expand_about(const mt_frf *h, const mt_panel *p, mt_near centre, series *s)
 {
     const double omega = centre.anchor + centre.t;
     const double most = p->anchor + p->b;
@@ -100,7 +100,7 @@ static double bound(const mt_frf *h, const mt_panel *p, mt_near centre, double *
     double rounding = 0.0; /* in units in the last place */
     double power = 1.0;    /* of half */
     series s;
-    expand(h, p, centre, &s);
+    expand_about(h, p, centre, &s);
     for (int k = 0; k <= ORDER; k++) {
         double most = 0.0;
         for (int i = 0; i <= k; i++) {
@@ -138,7 +138,7 @@ static void climb(search *s)
     double t = s->at.t;
     for (int step = 0; step < NEWTON_STEPS && low < high; step++) {
         double f[3];
-        slopes(s->h, (mt_near){in.anchor, t}, f);
+        squared_gain_jet(s->h, (mt_near){in.anchor, t}, f);
         low = f[1] > 0.0 ? t : low;
         high = f[1] > 0.0 ? high : t;
         const double newton = f[2] < 0.0 ? t - (f[1] / f[2]) : HUGE_VAL;
@@ -153,12 +153,12 @@ static void climb(search *s)
 
 /* Refine the place of the maximum, which F alone gives to half the digits: last steps of
  * Newton's method, while F does not decrease. */
-static void settle(search *s)
+static void refine_maximum(search *s)
 {
     static const double same = 1.0 - (16.0 * DBL_EPSILON);
     for (int step = 0; step < LAST_STEPS; step++) {
         double f[3];
-        slopes(s->h, s->at, f);
+        squared_gain_jet(s->h, s->at, f);
         if (!(f[2] < 0.0)) {
             break;
         }
@@ -177,7 +177,7 @@ static mt_near centre_of(const mt_panel *p)
 }
 
 /* Find a first best point from the ends and centres of the panels. */
-static void look(search *s)
+static void find_first_maximum(search *s)
 {
     mt_panels walk;
     mt_panel p;
@@ -244,10 +244,10 @@ mt_sine_peak mt_sine_peak_find(const mt_frf *h, double lower, double upper)
     const mt_panel all = {lower, 0.0, upper - lower};
     consider(&s, &all, (mt_near){lower, 0.0});
     if (upper > lower) {
-        look(&s);
+        find_first_maximum(&s);
         climb(&s);
         prove(&s);
-        settle(&s);
+        refine_maximum(&s);
     } else {
         s.proven = s.f;
     }

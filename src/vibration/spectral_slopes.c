@@ -22,7 +22,7 @@ typedef struct nodes {
 } nodes;
 
 /* False where there is no derivative. */
-static bool begin(nodes *n, const mt_spectral *r, const mt_psd *input)
+static bool begin_nodes(nodes *n, const mt_spectral *r, const mt_psd *input)
 {
     const mt_spectral_answer a = mt_spectral_rms(r, input, MT_SPECTRAL_BEST);
     *n = (nodes){.r = r, .input = input, .rms = a.rms, .segment = -1, .i = MT_GAUSS_NODES};
@@ -67,7 +67,7 @@ mt_status mt_spectral_slope_nodes(const mt_spectral *r, const mt_psd *input, mt_
     node at;
     int room = 0;
     *out = (mt_spectral_nodes){.n = 0};
-    if (!begin(&walk, r, input)) {
+    if (!begin_nodes(&walk, r, input)) {
         return MT_OK;
     }
     const nodes again = walk;
@@ -98,7 +98,7 @@ void mt_spectral_slopes(const mt_spectral *r, const mt_psd *input, double comple
     for (int j = 0; j < MT_COUNT(h->c); j++) {
         by_d[j] = 0.0;
     }
-    if (!begin(&walk, r, input)) {
+    if (!begin_nodes(&walk, r, input)) {
         return;
     }
     while (next(&walk, &at)) {

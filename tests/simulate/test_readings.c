@@ -67,6 +67,30 @@ static void simulate__tones_are_found_beside_each_other(mt_test *t)
     mt_arena_free(&mem);
 }
 
+/* A pole that grows over the record, as one of rounding may, has powers beyond what a number
+ * holds: they are told by their end. */
+static void simulate__a_record_of_any_growth_is_read(mt_test *t)
+{
+    mt_arena mem = {0};
+    REQUIRE(t, mt_arena_init(&mem, 0, NULL) == MT_OK);
+    for (int growth = 1; growth <= 4; growth++) {
+        double x[SAMPLES];
+        mt_tones tones;
+        mt_err err = {.text = ""};
+        mt_test_row(t, "growth %d", growth);
+        for (int i = 0; i < SAMPLES; i++) {
+            x[i] = exp(growth * (i + 1.0 - SAMPLES)) * cos(0.4 * i);
+        }
+        CHECK_INT(t, mt_tones_read(SAMPLES, 0.005, x, 1, &mem, &tones, &err), MT_OK);
+        CHECK(t, tones.residual < 1e-6);
+        for (int k = 0; k < tones.n; k++) {
+            CHECK(t, isfinite(tones.tone[k].hz) && isfinite(tones.tone[k].damping));
+            CHECK(t, tones.tone[k].amplitude >= 0.0 && tones.tone[k].amplitude < 1e-100);
+        }
+    }
+    mt_arena_free(&mem);
+}
+
 static void simulate__a_ring_down_is_read_from_its_turnings(mt_test *t)
 {
     const double hz = 3.0;
@@ -119,5 +143,6 @@ static void simulate__steady_motion_is_read_with_its_harmonics(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(simulate__tones_are_found_beside_each_other),
+             MT_TEST(simulate__a_record_of_any_growth_is_read),
              MT_TEST(simulate__a_ring_down_is_read_from_its_turnings),
              MT_TEST(simulate__steady_motion_is_read_with_its_harmonics))

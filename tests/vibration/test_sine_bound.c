@@ -94,7 +94,7 @@ static void search__ends_where_only_rounding_is_left(mt_test *t)
         mt_test_row(t, "damped %d", damped);
         REQUIRE(t, mt_frf_init(&h, &sum, &mem, NULL) == MT_OK);
         search s = {.h = &h, .lower = 1.0, .upper = 8.0, .f = -1.0, .left = MOST_INTERVALS};
-        look(&s);
+        find_first_maximum(&s);
         climb(&s);
         prove(&s);
         CHECK(t, s.left > MOST_INTERVALS / 20 * 19);
