@@ -53,7 +53,7 @@ int mt_compare(double a, double b, double equal);
  * each by mt_compare. */
 bool mt_merit_before(const mt_merit *a, const mt_merit *b, double equal);
 
-/* Total change of the design t[n] from the original, 1/2 sum w_j (t_j - origin_j)^2; weight
+/* Half of the squared total change of the design t[n], 1/2 sum w_j (t_j - origin_j)^2; weight
  * NULL: 1 each. */
 double mt_change(int n, const double *origin, const double *weight, const double *t);
 /* Tie-break of two equally good designs: true where s[n] precedes t[n], by total change, then

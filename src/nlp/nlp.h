@@ -84,8 +84,8 @@ typedef struct mt_nlp_options {
     int agree;
     long max_evals;    /* over all starts, never exceeded; 0: 2000 * the first starts */
     int max_solutions; /* number of distinct solutions kept; 0: 16 */
-    /* f is the total change: unidentifiable directions are sought without it (where n_res
-     * is 0) */
+    /* f is half of the squared total change: unidentifiable directions are sought without it
+     * (where n_res is 0) */
     bool least_change;
     /* infeasible ends are not wanted: those far from feasible are abandoned instead of being
      * brought to the least sum of squares */
@@ -131,8 +131,8 @@ typedef struct mt_nlp_solution {
 
 typedef struct mt_nlp_result {
     /* feasible ones only, by f; or else compromises, by squares, equal ones by f. Ties in both
-     * are ordered by the total change from the origin, 1/2 sum w_j (t_j - origin_j)^2, then by
-     * the first coordinate that differs, smaller first (equal: to MT_EQUAL_FOUND, merit.h) */
+     * are ordered by the total change, sqrt(sum w_j (t_j - origin_j)^2), then by the first
+     * coordinate that differs, smaller first (equal: to MT_EQUAL_FOUND, merit.h) */
     int n_solutions;
     mt_nlp_solution *solutions;
     /* none is feasible: the solutions minimise the sum of squares of the violations relative to

@@ -115,8 +115,8 @@ mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_
 /* Parameter values x[n] of coordinates t[n]; bounds, catalogue values and original values are
  * reproduced exactly. */
 void mt_subproblem_x(const mt_subproblem *c, const double *t, double *x);
-/* Total change of the design t[n], 1/2 sum w_i (t_i - t_i(original))^2; breaks ties of
- * designs. */
+/* Half of the squared total change of the design t[n], 1/2 sum w_i (t_i - t_i(original))^2;
+ * breaks ties of designs. */
 double mt_subproblem_change(const mt_subproblem *c, const double *t);
 /* Modal solutions per evaluation: one for each configuration and each tolerance corner in
  * it. */

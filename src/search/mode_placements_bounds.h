@@ -6,7 +6,7 @@
 
 /*
  * Lower bounds of the total change that a mode placement needs. Of the coordinates of a design
- * whose total change is at most 1/2 c^2,
+ * whose total change is at most c,
  *
  *     u_i = sqrt(w_i) (t_i - t_i(original)),   sum u_i^2 <= c^2,
  *

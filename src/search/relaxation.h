@@ -42,7 +42,7 @@ typedef struct mt_move {
     double from;
     double to;
     double size;   /* |s|, which ranks moves */
-    double change; /* total change of x */
+    double change; /* half of the squared total change of x */
     double *x;     /* [n] design of least change that meets everything after the move */
     int order;     /* position in the order of the study */
 } mt_move;
