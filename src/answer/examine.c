@@ -185,7 +185,7 @@ static void warn_target(mt_warning_list *out, const mt_goal *goal, mt_goal_slot 
     }
 }
 
-/* Goals ask for modes of a position that does not hold: said with them. */
+/* Adds to the warning of an unstable position that goals name it. */
 static void add_goals(const mt_study *s, int c, mt_warning_list *of_model, int first)
 {
     const char *const name = s->model->configurations[c].name.s;
@@ -201,8 +201,8 @@ static void add_goals(const mt_study *s, int c, mt_warning_list *of_model, int f
     }
 }
 
-/* The numbers of a reference's model, where it is another one: what it gives as a target is as
- * doubtful as they are. */
+/* Warnings about a reference's own model: a target taken from it is as uncertain as its
+ * numbers. */
 static mt_status examine_reference(const mt_study *s, const mt_reference *r,
                                    mt_warning_list *out, mt_err *err)
 {
@@ -229,7 +229,7 @@ static mt_status examine_reference(const mt_study *s, const mt_reference *r,
     return rc;
 }
 
-/* What a measured reference asks of a goal's mode [Hz]; NaN: nothing. */
+/* Frequency of a measured reference for a goal's mode [Hz]; NaN: none. */
 static double measured_hz(const mt_study *s, const mt_goal *goal)
 {
     const mt_reference *const r =
@@ -283,7 +283,7 @@ static void warn_reference(const mt_study *s, int reference, const double *ratio
     }
 }
 
-/* ratio[n_goals]: of what references ask for to what the model has, as far as they are seen. */
+/* ratio[n_goals]: reference frequency over the model's, where known. */
 static mt_status examine_configuration(const mt_study *s, const mt_run *run, int c,
                                        double *ratio, mt_warning_list *of_study,
                                        mt_warning_list *of_model, mt_err *err)
@@ -320,8 +320,8 @@ static mt_status examine_configuration(const mt_study *s, const mt_run *run, int
     return rc;
 }
 
-/* How many configurations the study asks about, and what looking at them takes: with bands once
- * for every bound, too. */
+/* Number of configurations that the study names, and the work of analysing them, with bands
+ * once more for every bound. */
 static int count_asked(const mt_study *study, double *work)
 {
     int asked = 0;

@@ -7,16 +7,16 @@
 #include "study/study.h"
 
 /**
- * What is to be said of a study at its original design, before it is answered: its own numbers
- * (study->warning_list), every configuration that a goal names, targets far from the original
- * frequencies, bands that no mode comes near. Names of files are those that the study knows (no
+ * Notes and warnings about a study at its original design, before it is answered: its own
+ * numbers (study->warning_list), every configuration that a goal names, targets far from the
+ * original frequencies, bands that no mode comes near. File names are those in the study (no
  * folders). One analysis per configuration, and 2 n + 3 where bands are to be avoided; none,
- * and a note that tells, where that would take more than most_work (as mt_warnings_work
- * counts). Fails: as mt_analysis_new.
+ * and a note, where that would take more than most_work (counted by mt_warnings_work). Fails:
+ * as mt_analysis_new.
  */
 mt_status mt_study_examine(const mt_study *study, const mt_run *run, double most_work,
                            mt_warning_list *out, mt_err *err);
-/* Whether looking at what it asks about takes more. */
+/* True where these analyses take more than most_work. */
 bool mt_study_takes_more(const mt_study *study, double most_work);
 
 #endif

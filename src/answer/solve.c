@@ -16,7 +16,7 @@
 #include "base/workers.h"
 #include "describe/describe.h"
 
-/* Whether the study asks for what this phase writes. */
+/* True where the study requests what this phase writes. */
 static bool is_asked(const mt_answer *a, mt_phase which)
 {
     switch (which) {
@@ -38,8 +38,8 @@ static bool is_asked(const mt_answer *a, mt_phase which)
     return true;
 }
 
-/* True where the phase would speak of what is not known: of a search that was cut, or of a
- * recommendation that it did not find. */
+/* True where the phase lacks its input: a search that was cut, or a recommendation that was not
+ * found. */
 static bool is_groundless(const mt_answer *a, mt_phase which)
 {
     const mt_interrupt *const i = a->interrupt;
@@ -67,8 +67,8 @@ static const char *values_text(const mt_problem *p, const double *x, mt_arena *m
     return text;
 }
 
-/* The values of designs that there was no time to analyse anew: hours of search may be in
- * them. */
+/* The values of designs that were not re-checked before the time ran out: hours of search may
+ * be in them. */
 static mt_status report_undescribed(const mt_answer *a, mt_err *err)
 {
     mt_result *const r = a->result;
@@ -90,7 +90,7 @@ static mt_status report_undescribed(const mt_answer *a, mt_err *err)
     return mt_arena_check(&r->mem, err);
 }
 
-/* What a phase leaves where it was cut. */
+/* Result of a phase that was cut. */
 static mt_status leave(mt_answer *a, mt_phase which, mt_err *err)
 {
     mt_result_take_back(a->result, &a->mark);
@@ -171,7 +171,7 @@ long mt_question_left(const mt_question *q)
     return other < left ? other : left;
 }
 
-/* The budget of the study as it is asked; one of modal solutions in evaluations. */
+/* The study's budget; one of modal solutions in evaluations. */
 static void set_budget(mt_question *q)
 {
     mt_search *const s = &q->p->whole.search;
@@ -185,7 +185,7 @@ static void set_budget(mt_question *q)
     s->max_positions = positions_of(s->max_evaluations);
 }
 
-/* The original design is needed for whatever there is to tell. */
+/* Analyses the original design, which every part of the answer needs. */
 static mt_status end_at_once(const mt_question *q, mt_status rc, const mt_err *own, mt_err *err)
 {
     if (mt_interrupt_is_cut(&q->interrupt, MT_PHASE_BASELINE) && !mt_is_final(rc)) {
@@ -315,8 +315,8 @@ static mt_status report_cut_lists(mt_answer *a, mt_err *err)
     return mt_arena_check(&r->mem, err);
 }
 
-/* A part of the work: the lists of tasks that wait for none of what other parts do. What they
- * leave is in the ledger; the answer, of what is known, is cut. */
+/* A run for a part of the work: the tasks that need no result of other parts. Their results are
+ * in the store; the answer, of what is known, is cut. */
 static mt_status conduct_part(mt_answer *a, mt_err *err)
 {
     static const mt_phase lists[] = {MT_PHASE_SEARCH, MT_PHASE_TRADE};

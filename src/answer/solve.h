@@ -6,19 +6,19 @@
 #include "base/workers.h"
 #include "study/study.h"
 
-/* Is called before a proof that may take long, with the answer so far (status "interrupted"):
- * it may be kept in case that the whole one never comes. */
+/* Called before a proof that may take long, with the answer so far (status "interrupted"),
+ * which the caller may keep in case the run is killed. */
 typedef struct mt_incumbent_callback {
     mt_status (*tell)(void *context, mt_result *so_far, mt_err *err);
     void *context;
 } mt_incumbent_callback;
 
 /*
- * mt_study_solve within a run (NULL: none). run->tasks: the place of its tasks, whose store has
- * what earlier runs of the same question have left and keeps what this one does. The result is
- * the same whatever the store knows. Where the store asks for a part of the work (parts > 0)
- * there is no answer: the tasks are in the store, and *out has what is known without them.
- * incumbent may be NULL. Fails also: as incumbent->tell.
+ * mt_study_solve within a run (NULL: none). run->tasks: the path of its tasks; their store
+ * holds what earlier runs of the same study completed and receives what this one completes. The
+ * result does not depend on the store's content. Where the store selects a part of the work
+ * (parts > 0) there is no answer: the tasks are in the store, and *out has what is known
+ * without them. incumbent may be NULL. Fails also: as incumbent->tell.
  */
 mt_status mt_study_solve_with(const mt_study *study, const mt_solve_options *opt,
                               const mt_run *run, const mt_incumbent_callback *incumbent,

@@ -10,7 +10,8 @@
 
 #include "describe/describe.h"
 
-/* Whether x is within the bounds of variable v and, if it has one, a value of its catalogue. */
+/* True where x is within the bounds of variable v and, where it has a catalogue, one of its
+ * values. */
 static bool is_allowed(const mt_variable *v, double x)
 {
     bool listed = v->n_catalogue == 0;

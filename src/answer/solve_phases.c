@@ -33,15 +33,15 @@ mt_status mt_answer_baseline(mt_answer *a, mt_err *err)
     return mt_describe_baseline_reasons(p, result, err);
 }
 
-/* Where the budget is one of modal solutions, what those of the original design count as. */
+/* With a budget in modal solutions: evaluations that those of the original design count as. */
 static long original(const mt_answer *a)
 {
     const long solved = mt_work_counters_in(a->spent, MT_PHASE_BASELINE, MT_WORK_MODAL);
     return mt_subproblem_worth(&a->asked, solved);
 }
 
-/* Evaluations to describe one design: mt_describe_design, and its motions. What its tolerances
- * take is known from the original design. */
+/* Evaluations for describing one design: mt_describe_design, and following its drives. Those
+ * for its tolerances are known from the original design. */
 static long description(const mt_answer *a)
 {
     const long most = 2 + mt_drive_path_most(&a->asked);
@@ -75,7 +75,7 @@ static void allow_search(mt_answer *a)
     a->asked.search.judged_as = mt_tolerance_is_sampled(&a->asked) ? original(a) : 0;
 }
 
-/* Solutions of the search over gap assignments in the form of any other search. */
+/* Solutions of the search over mode placements in the form of any other search. */
 mt_status mt_answer_take_placements(mt_answer *a, mt_err *err)
 {
     const mt_mode_placement_result *const g = &a->placements;
@@ -107,8 +107,8 @@ static mt_status search_placements(mt_answer *a, mt_err *err)
     return mt_answer_take_placements(a, err);
 }
 
-/* What little work shows to be impossible is told before the search, to who watches: so that
- * nothing of the answer, nor of its price, depends on that. */
+/* Reports as progress that a short proof shows the study infeasible, before the search; the
+ * answer and its cost do not depend on it. */
 static mt_status report_infeasible(mt_answer *a, mt_err *err)
 {
     mt_progress *const progress = a->p->run->progress;
@@ -160,7 +160,7 @@ static bool is_cut(const mt_answer *a, mt_phase which)
     return mt_interrupt_is_cut(a->interrupt, (int)which);
 }
 
-/* Solution i, described: rec, whose texts and lists lie in `into`, as its warnings do. */
+/* Describes solution i: rec, with texts and lists in `into`, as its warnings. */
 static mt_status describe(const mt_answer *a, int i, mt_result *into, mt_recommendation *rec,
                           mt_err *err)
 {
@@ -230,7 +230,7 @@ static mt_status describe_other(void *context, int worker, int task, mt_task_pat
     return MT_OK;
 }
 
-/* The result has it as if it had been described there. */
+/* Adds a description to the result as if it had been made there. */
 static mt_status take_other(mt_answer *a, const part *p, mt_err *err)
 {
     mt_result *const result = a->result;
@@ -340,7 +340,7 @@ mt_status mt_answer_certify(mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-/* What would let a design exist, where none was found. */
+/* Relaxations, where no design was found. */
 mt_status mt_answer_relaxation(mt_answer *a, mt_err *err)
 {
     mt_moves moves = {0};

@@ -11,7 +11,7 @@
 #include "describe/certificates.h"
 #include "describe/describe.h"
 
-/* Isolated designs that no start met are to be expected where some were met once only. */
+/* Warns that further isolated designs are likely where some were met only once. */
 static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
 {
     const mt_nlp_result *const f = &a->found;
@@ -32,7 +32,7 @@ static mt_status warn_of_missing(const mt_answer *a, mt_err *err)
         mt_search_budget(&a->p->whole.search));
 }
 
-/* What the engineer should know of the search besides its answers. */
+/* Warnings about the search. */
 mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
 {
     for (int i = 0; i < a->study->n_warnings; i++) {
@@ -78,7 +78,7 @@ mt_status mt_answer_warn(const mt_answer *a, mt_err *err)
     return MT_OK;
 }
 
-/* True where a named mode that cannot be told is all that is wrong. */
+/* True where the only fault is a named mode that cannot be identified. */
 static bool is_doubtful(const mt_recommendation *best)
 {
     bool doubtful = false;
@@ -131,7 +131,7 @@ static double shown_misfit(double f)
     return mt_without_noise(sqrt(2.0 * f), MT_RATIO_NOISE);
 }
 
-/* There are goals besides limits that are but a scale. */
+/* True where there are goals besides limits that only scale an objective. */
 static bool has_goals(const mt_recommendation *r)
 {
     for (int i = 0; i < r->n_goals; i++) {
@@ -142,7 +142,8 @@ static bool has_goals(const mt_recommendation *r)
     return false;
 }
 
-/* Limits that are the scale of the objective "vibration": who keeps all of them. */
+/* Sentence about limits that scale the objective "vibration": which designs keep all of
+ * them. */
 static const char *scale_text(const mt_answer *a, mt_arena *mem)
 {
     static const double WHOLE = 100.0; /* percent of a limit */
@@ -286,7 +287,7 @@ static const char *others_text(const mt_answer *a, mt_arena *mem)
                                     n - 1, first, last);
 }
 
-/* "; c at its lower bound": the data ask for more than the model may be. */
+/* Text such as "; c at its lower bound": the data would need a value beyond the bound. */
 static const char *bounds_text(const mt_recommendation *best, mt_arena *mem)
 {
     const char *text = "";
@@ -413,7 +414,8 @@ static mt_result_status status_of(const mt_answer *a, const mt_recommendation *b
                                                               : MT_RESULT_COMPROMISE;
 }
 
-/* A posture that settles far from the drawing is said first. */
+/* Puts the warning of an equilibrium far from the reference position before the status
+ * sentence. */
 static void report_posture(mt_result *result)
 {
     for (int i = 0; i < result->n_facts && result->status_text != NULL; i++) {

@@ -66,7 +66,7 @@ static const mt_result *answer_of(const point *p)
     return p->again != NULL ? p->again : p->first;
 }
 
-/* What the values of a parameter, a bound or a goal are shown in; NULL: SI. */
+/* Unit in which the values of a parameter, a bound or a goal are shown; NULL: SI. */
 static const mt_unit *shown_in(const mt_study *study, const mt_vary *v)
 {
     if (v->kind == MT_VARY_PARAMETER) {
@@ -100,7 +100,7 @@ static const char *point_text(const trade *t, int k, mt_arena *mem)
     return second == NULL ? NULL : mt_arena_printf(mem, "%s, %s", first, second);
 }
 
-/* What happened at point k; that it was interrupted the interrupt knows. */
+/* Status of point k: MT_OK where it was interrupted, else the error with the point's name. */
 static mt_status told(const trade *t, int k, mt_status rc, mt_err *err)
 {
     if (rc == MT_OK || rc == MT_E_INTERRUPTED) {
@@ -143,7 +143,7 @@ static mt_status answer(point *p, const double *hint, const mt_task_path *own, m
     return mt_question_answer(p->q, &opt, own, NULL, out, err);
 }
 
-/* What its question has cost so far, added or (sign -1) taken off. */
+/* Adds (sign 1) or subtracts (sign -1) the work of the point's question. */
 static void note_work_counters(point *p, int sign)
 {
     if (p->q != NULL) {
@@ -200,8 +200,8 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
     return MT_OK;
 }
 
-/* Whether a is the better answer of one point, by more than searches leave open. The first
- * objective's score decides among designs that meet all goals. */
+/* True where a is the better answer of one point, by more than searches differ. Among feasible
+ * designs the first objective decides. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
 {
     const mt_recommendation *const x = best_of(a);
@@ -222,7 +222,7 @@ static bool better(const mt_study *study, const mt_result *a, const mt_result *b
                            MT_EQUAL_FOUND);
 }
 
-/* The same within rounding as a design that was tried before it. */
+/* True where a design equals an earlier one within rounding. */
 static bool is_tried(const point *p, int n, const double *const tried[WAYS], const double *x)
 {
     static const double ROUNDING = 1e-10;
@@ -303,7 +303,7 @@ static mt_status solve_warm(void *context, int worker, int task, mt_task_path *o
     return told(t, k, rc, err);
 }
 
-/* What the front, the neighbours and the result want of an answer. */
+/* Writes or reads the part of an answer that the front, the neighbours and the result use. */
 static void serialize_answer(const trade *t, mt_result *r, mt_serializer *serializer)
 {
     const int n = t->study->n_variables;
@@ -324,7 +324,7 @@ static void serialize_answer(const trade *t, mt_result *r, mt_serializer *serial
     }
 }
 
-/* An answer that there need not be. */
+/* Writes or reads an answer, which may be NULL. */
 static void serialize_result(const trade *t, mt_result **r, mt_serializer *serializer)
 {
     bool there = *r != NULL;
@@ -337,7 +337,7 @@ static void serialize_result(const trade *t, mt_result **r, mt_serializer *seria
     }
 }
 
-/* Either pass: its answer, and what the point has cost so far. */
+/* Writes or reads one pass of a point: its answer, and the point's work so far. */
 static void serialize_point(const trade *t, int task, bool warm, mt_serializer *serializer)
 {
     point *const p = &t->points[t->from + task];
@@ -432,7 +432,7 @@ static mt_status begin(trade *t, mt_err *err)
     return describe_what(t, t->kept, t->out, err);
 }
 
-/* What the neighbours of points [from, to) may start from. */
+/* Stores the best designs of points [from, to) as starts for their neighbours. */
 static mt_status note_near(trade *t, int from, int to, mt_err *err)
 {
     for (int k = from; k < to; k++) {
@@ -444,8 +444,8 @@ static mt_status note_near(trade *t, int from, int to, mt_err *err)
     return MT_OK;
 }
 
-/* The answer of the next point, which is not changed any more: the result takes over what it
- * needs of it, with what the point before says as well. */
+/* Takes the final answer of the next point into the result, with warnings about the point
+ * before. */
 static mt_status report_point(trade *t, const char *unanswered, mt_err *err)
 {
     const int k = t->told;
@@ -502,8 +502,8 @@ static mt_status describe(trade *t, mt_result *result, mt_err *err)
     return mt_trade_front(t->study, t->best, &result->baseline, t->kept, t->out, err);
 }
 
-/* All points, and once more each whose neighbours are known: what is left to other parts of the
- * work is not. */
+/* Answers all points, then again each whose neighbours are known, except for other parts of the
+ * work. */
 static mt_status solve_all(trade *t, int threads, const mt_task_path *task_path, mt_err *err)
 {
     mt_task_path first = mt_task_path_enter(task_path, "first");

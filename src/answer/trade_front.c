@@ -84,8 +84,9 @@ static bool ties(const pair *p, const pair *q)
            mt_compare(a[1], b[1], MT_EQUAL_JUDGED) == 0;
 }
 
-/* The points that no other one beats in both. What searches leave open is no order: of two that
- * tie a third may beat one alone, which is on the front then, too. */
+/* Marks the points that no other dominates in both objectives. Values within search accuracy
+ * are equal, which is not transitive: of two equal points a third may dominate one alone; that
+ * one is then on the front too. */
 static void mark(int n, const pair *front, mt_trade_point *points)
 {
     for (int k = 0; k < n; k++) {

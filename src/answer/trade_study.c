@@ -15,7 +15,7 @@ static void *copied(mt_arena *mem, const void *items, int n, size_t size)
     return copy;
 }
 
-/* A model whose parameter has another value; variables start from what follows from it. */
+/* A model with another value of a parameter; variables start from the values that follow. */
 static mt_status put_parameter(mt_study *s, int parameter, double value, mt_arena *mem,
                                mt_err *err)
 {

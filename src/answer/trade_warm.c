@@ -35,7 +35,7 @@ static mt_status objective_at(mt_workspace *w, const double *t, mt_arena *mem, d
     return MT_OK;
 }
 
-/* The kind of design that t is. */
+/* Opens the subproblem with the mode placement of t. */
 static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_subproblem *out,
                           mt_err *err)
 {

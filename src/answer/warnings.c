@@ -160,7 +160,7 @@ static bool is_tied(const tied *t, const char *name)
     return false;
 }
 
-/* Those of one set that t has not. Room for all was made. */
+/* Appends the members of one set that t lacks; t has enough memory. */
 static void tie(tied *t, int equations, int n, const char *const *name)
 {
     t->equations += equations;
@@ -171,7 +171,7 @@ static void tie(tied *t, int equations, int n, const char *const *name)
     }
 }
 
-/* One more set, and all that it shares a joint with, become one. */
+/* Adds a set and joins it with all sets that share a joint with it. */
 static void add_set(tied *list, int n, const mt_joint_names *set)
 {
     tied *const own = &list[n];
@@ -188,8 +188,8 @@ static void add_set(tied *list, int n, const mt_joint_names *set)
     }
 }
 
-/* Which of the equations between the same joints are the redundant ones is of no use: sets with
- * a joint in common are told together. */
+/* Which of the equations between the same joints are redundant is arbitrary: sets with a common
+ * joint are reported together. */
 static mt_status say_redundant(const mt_analysis *a, mt_warning_list *out, mt_err *err)
 {
     const int n = mt_linear_redundant(a->lin);
@@ -292,7 +292,7 @@ static void say_free_spin(const mt_linear *lin, mt_warning_list *out)
     }
 }
 
-/* A damping ratio of a mode that there is not, given by the number `at`. */
+/* Warns of a damping ratio, given by the number `at`, of a mode that does not exist. */
 static void fault_ratio(const mt_model *m, mt_num at, const char *text, mt_warning_list *out)
 {
     int line = 0;
@@ -389,8 +389,8 @@ static void warn_spring(const mt_model *m, int i, mt_warning_list *out)
     }
 }
 
-/* Springs and dampers whose every direction the joints forbid. A driven joint that is locked
- * forbids its own, which is what it is for. */
+/* Springs and dampers whose directions are all blocked by joints. A driven joint that is locked
+ * blocks its own by design. */
 static void warn_springs(const mt_linear *lin, mt_warning_list *out)
 {
     static const mt_term_kind kinds[] = {MT_TERM_STIFFNESS, MT_TERM_DAMPING};
@@ -500,7 +500,8 @@ bool mt_warnings_settles_far(const mt_warning *d)
     return strcmp(d->kind, "settles") == 0 && d->size > 0.0;
 }
 
-/* Into `out`; what is there already, of another configuration, belongs to no single one. */
+/* Adds to `out`; an entry that another configuration already has becomes one without a
+ * configuration. */
 static void merge(mt_warning_list *out, const mt_warning *d)
 {
     for (int i = 0; i < out->n; i++) {

@@ -176,8 +176,8 @@ static mt_status set_up(spins *s, const mt_analysis *a, mt_arena *mem, mt_err *e
     return MT_OK;
 }
 
-/* y of the first motion that is orthogonal to all spins, which are columns of s->spin. Modes
- * are orthonormal by mass, and so is what is orthogonal in terms of them. */
+/* y of the first motion orthogonal to all spins, the columns of s->spin. Modes are orthonormal
+ * in the mass metric, so orthogonality holds for their coefficients. */
 static mt_status find_other(const spins *s, const mt_analysis *a, int rods, double *y,
                             mt_arena *mem, mt_err *err)
 {

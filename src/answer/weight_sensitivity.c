@@ -77,8 +77,8 @@ static void scale_weight(const mt_problem *p, double *weight, int goal, double f
     }
 }
 
-/* Solve again with one weight changed, from the best design, which is also what undetermined
- * directions are kept at. */
+/* Solves again with one weight changed, from the best design, at which unidentifiable
+ * directions are kept. */
 static mt_status solve(const weight_sensitivity *s, mt_workspace *w, search *a, mt_arena *mem,
                        mt_err *err)
 {
@@ -121,7 +121,7 @@ static mt_status run_search(void *context, int worker, int task, mt_task_path *o
     return rc;
 }
 
-/* What a search says of the spread. */
+/* Result of one search for the weight sensitivity. */
 static mt_status take(const weight_sensitivity *s, const search *a, mt_err *err)
 {
     if (!a->found) {
@@ -168,7 +168,7 @@ static mt_status search_all(weight_sensitivity *s, int n_workers, long *evaluati
     return MT_OK;
 }
 
-/* The searches that there are: each weighted goal on either side. */
+/* The searches: each weighted goal on either side. */
 static mt_status list_searches(weight_sensitivity *s, mt_arena *mem, mt_err *err)
 {
     const mt_study *const study = s->p->study;

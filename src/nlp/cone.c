@@ -61,7 +61,7 @@ static void add_atom(columns *w, int block, int r_most, const double *v)
     add_column(w, false, block);
 }
 
-/* Least squares over the columns that take part: y in their places, z the residual. */
+/* Least squares over the passive columns: y in their places, z the residual. */
 static mt_status solve(columns *w, double *z, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
@@ -88,7 +88,8 @@ static mt_status solve(columns *w, double *z, mt_err *err)
     return MT_OK;
 }
 
-/* From x towards y as far as the signs allow; what comes to 0 leaves. True: all the way. */
+/* Steps from x towards y as far as the signs allow; columns that reach 0 leave. True: the full
+ * step. */
 static bool go(columns *w)
 {
     double part = 1;
@@ -109,7 +110,7 @@ static bool go(columns *w)
     return all;
 }
 
-/* The column that helps most; -1: none does. */
+/* The column that reduces |z| most; -1: none does. */
 static int helper(const columns *w, const double *z)
 {
     double most = HELPS * w->size;
@@ -140,7 +141,7 @@ static mt_status least_squares(columns *w, double *z, mt_err *err)
     return MT_OK;
 }
 
-/* Add, for every block, the atom that helps most. True: there was one. */
+/* Adds, for every block, the atom that reduces |z| most. *added: there was one. */
 static mt_status add_atoms(columns *w, int r_most, const double *z, bool *added, mt_err *err)
 {
     *added = false;

@@ -7,15 +7,15 @@
 #include "base/arena.h"
 
 /*
- * Whether a point is stationary where eigenvalues repeat. For minimise f under rows c_i (>= 0,
- * or = 0) and symmetric matrices B_b(t) that must stay positive semidefinite, all of them
- * active at t, stationarity is
+ * Stationarity of a point where eigenvalues repeat. For minimise f under rows c_i (>= 0, or =
+ * 0) and symmetric matrices B_b(t) that must stay positive semidefinite, all of them active at
+ * t, stationarity is
  *
  *     grad f = sum_i x_i grad c_i + sum_b <U_b, dB_b>,   x_i >= 0 (free for an equality),
  *         U_b positive semidefinite.
  *
- * z, the residual of least norm, is 0 there; else -z lowers f and, to first order, violates
- * nothing.
+ * z, the residual of least norm, is 0 at a stationary point; otherwise -z lowers f and, to
+ * first order, violates no constraint.
  */
 typedef struct mt_cone_block {
     int r;           /* order */
@@ -37,9 +37,9 @@ typedef struct mt_cone {
 } mt_cone;
 
 /*
- * Fill the outputs. Method: non-negative least squares (Lawson and Hanson 1974); the U are made
- * of atoms v v^T, and where some v^T (sum_j z_j dB_j) v is positive the v of the greatest is
- * added, until there is none. Fails: MT_E_MEMORY, linear algebra.
+ * Computes the outputs. Method: non-negative least squares (Lawson and Hanson 1974); the U are
+ * sums of atoms v v^T, and while some v^T (sum_j z_j dB_j) v is positive, the v of the largest
+ * is added. Fails: MT_E_MEMORY, as linear algebra.
  */
 mt_status mt_cone_residual(mt_cone *c, mt_arena *scratch, mt_err *err);
 

@@ -188,7 +188,7 @@ static bool point_finite(const mt_nlp_engine *e, const mt_nlp_point *p, bool wit
             all_finite(q->n_next * n, p->dnext));
 }
 
-/* What follows from the values: objective of a misfit, violation, squares. */
+/* Quantities that follow from the values: objective of a misfit, violation, squares. */
 static void derive(const mt_nlp_engine *e, mt_nlp_point *p, bool with_gradient)
 {
     const mt_nlp *const q = e->nlp;
@@ -220,7 +220,7 @@ static void shift(const mt_nlp_engine *e, mt_nlp_point *p)
     }
 }
 
-/* Whether this status of the callback ends the search. */
+/* True where this status of the callback ends the search. */
 static bool is_final(mt_nlp_engine *e, mt_status rc, const mt_err *here)
 {
     if (rc == MT_E_INTERRUPTED) {

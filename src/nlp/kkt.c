@@ -195,7 +195,7 @@ static double relative_kkt(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp
     return scale > 0 ? sqrt(z) / scale : 0;
 }
 
-/* |gradient of the aim| over the variables that are not held; g[n] is scratch. */
+/* |gradient of the stage's function| over the variables that are not held; g[n] is work. */
 static double gradient_norm(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_stage stage,
                             double *g)
 {

@@ -60,15 +60,15 @@ const mt_nlp_point *mt_nlp_local_stand(const mt_nlp_local *s)
                : s->p;
 }
 
-/* Where compromises are of no use, an end that is far from feasible is. */
+/* True where compromises are not wanted and the end is far from feasible. */
 static bool is_given_up(const mt_nlp_engine *e, const mt_nlp_local *s)
 {
     return e->opt.no_compromise && !(s->p->violation <= WORTH) &&
            !(s->last->violation <= WORTH);
 }
 
-/* SLSQP from p, close where Newton's method has been tried; an end far from feasible is
- * restored, if it can be. */
+/* SLSQP from p, to close tolerances where Newton's method has failed; an end far from feasible
+ * is restored where possible. */
 static void descend(mt_nlp_engine *e, bool close, mt_nlp_local *s)
 {
     mt_nlp_slsqp(e, s->n_rows, s->rows, close, s->p, s->last);
@@ -80,8 +80,8 @@ static void descend(mt_nlp_engine *e, bool close, mt_nlp_local *s)
     }
 }
 
-/* Newton from where SLSQP came to rest, if that serves better than from the best it met; what
- * is infeasible still is restored first. */
+/* Newton from the end of SLSQP, or from the best point met where that is better; an infeasible
+ * point is restored first. */
 static void newton(mt_nlp_engine *e, mt_nlp_local *s, double *saddle)
 {
     mt_nlp_point *const p = s->p;
@@ -123,7 +123,7 @@ static bool step_off(mt_nlp_engine *e, const double *saddle, mt_nlp_point *p)
     return moved;
 }
 
-/* Whether rows change places at p, on their limit. */
+/* True where rows swap at p, on their limit. */
 static bool is_crossing(const mt_nlp_engine *e, const mt_nlp_point *p)
 {
     for (int i = 0; i < e->nlp->n_next; i++) {
@@ -135,7 +135,7 @@ static bool is_crossing(const mt_nlp_engine *e, const mt_nlp_point *p)
     return false;
 }
 
-/* From where SLSQP ended: Newton, and SLSQP again while that is no minimum; never for the
+/* From the end of SLSQP: Newton, and SLSQP again while that is no minimum; never makes p
  * worse. */
 static void finish_minimum(mt_nlp_engine *e, mt_nlp_local *s)
 {
@@ -173,7 +173,8 @@ void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s)
     finish_minimum(e, s);
 }
 
-/* Equalities settle everything: roots. Where they turn out dependent, the objective decides. */
+/* Roots of equalities that leave no freedom; where these are dependent, the objective
+ * decides. */
 static void find_root(mt_nlp_engine *e, mt_nlp_local *s)
 {
     mt_nlp_near_null_directions w;

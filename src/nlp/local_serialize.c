@@ -9,8 +9,8 @@
 
 #include "nlp/local.h"
 
-/* The numbers that a design alone does not give, and those that tell whether it gives the
- * others again. */
+/* Writes or reads the values that do not follow from the design alone, and those that check the
+ * others. */
 static void serialize_point(const mt_nlp_engine *e, mt_nlp_point *p, mt_serializer *serializer)
 {
     mt_serializer_numbers(serializer, (size_t)e->n, p->t);
@@ -22,7 +22,7 @@ static void serialize_point(const mt_nlp_engine *e, mt_nlp_point *p, mt_serializ
     mt_serializer_flag(serializer, &p->isolated);
 }
 
-/* Everything else at the design of p; false where its numbers come out otherwise. */
+/* Evaluates everything else at the design of p; false where the values differ. */
 static bool evaluate_again(mt_nlp_engine *e, mt_nlp_point *p, mt_nlp_point *at)
 {
     const bool same = mt_nlp_evaluate(e, p->t, true, at) && at->f == p->f &&

@@ -64,7 +64,7 @@ typedef struct lsq {
     int *index; /* [n] */
 } lsq;
 
-/* R and J of the aim at p; inequalities that hold count as zero rows. */
+/* R and J of the stage at p; satisfied inequalities are zero rows. */
 static void linearise(lsq *w, const mt_nlp_point *p)
 {
     const mt_nlp *const q = w->e->nlp;
@@ -111,8 +111,8 @@ static double choose_free(lsq *w, const mt_nlp_point *p)
     return largest;
 }
 
-/* True where R, which is no root and has gained `less`, stands upright on the columns of all
- * free variables. least: no column counts as shorter. */
+/* True where R, which is no root and was reduced by `less`, is orthogonal to the columns of all
+ * free variables. least: smallest length that a column counts with. */
 static bool is_least(const lsq *w, const mt_nlp_point *p, double less, double least)
 {
     bool upright = w->stage == MT_NLP_SQUARES && p->violation > NO_ROOT &&
@@ -126,7 +126,7 @@ static bool is_least(const lsq *w, const mt_nlp_point *p, double less, double le
     return upright;
 }
 
-/* Solve for the step of the free variables, the others' steps in s standing. */
+/* Solves for the step of the free variables with the others' steps in s given. */
 static bool solve_free(lsq *w, double mu)
 {
     const int m = w->m;
@@ -206,7 +206,7 @@ static double try_step(lsq *w, const mt_nlp_point *p, mt_nlp_point *trial)
     return model > 0 ? actual / model : -1;
 }
 
-/* After a step of such a gain. */
+/* mu after a step with this gain ratio. */
 static double next_mu(double mu, double gain)
 {
     return fmax(MU_LEAST, gain > GAIN_GOOD ? mu / 100 : (gain > 0.25 ? mu / 4 : mu * 2));

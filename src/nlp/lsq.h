@@ -4,8 +4,7 @@
 
 #include "nlp/engine.h"
 
-/* Bounded Levenberg-Marquardt from *p on residuals or violations; *p is where it
- * ends. */
+/* Bounded Levenberg-Marquardt on residuals or violations, from *p; *p becomes the end. */
 void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p);
 
 #endif

@@ -62,7 +62,7 @@ static double *right_vectors(mt_nlp_engine *e, const mt_nlp_point *p, const mt_n
     return mt_nlp_ok(e, mt_svd(m, nf, c, s, u, vt, mem, e->err)) ? vt : NULL;
 }
 
-/* Step along v and return to the constraints. */
+/* Steps along v and returns to the constraints. */
 static void probe(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_active *a, double *v,
                   mt_nlp_near_null_directions *w)
 {

@@ -4,8 +4,8 @@
 
 #include "nlp/engine.h"
 
-/* Singularity of the active constraints at p. free_direction: there are further feasible points
- * along a weak direction (a curve of solutions); rows/n_rows: independent equalities. */
+/* Singularity of the active constraints at p. curve: further feasible points lie along a weak
+ * direction (a curve of solutions); rows: independent equalities. */
 typedef struct mt_nlp_near_null_directions {
     bool singular;
     bool curve;

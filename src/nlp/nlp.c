@@ -33,7 +33,7 @@ enum { STARTS_ASKED = 2 };
 /* So many times the first starts are made at most to meet every root twice. */
 enum { ROOT_ROUNDS = 12 };
 
-/* Values at the start t, or half way to the origin, and so on. */
+/* Evaluates the start t; where it has no value, half way to the origin, and so on. */
 static bool begin(mt_nlp_engine *e, double *t, mt_nlp_point *p)
 {
     for (int k = 0; k <= HALVINGS && !e->ended; k++) {
@@ -121,8 +121,8 @@ static mt_status run_task(void *context, int worker, int k, mt_task_path *own, m
     return MT_OK;
 }
 
-/* Add up what the tasks used, beside what was used before, and how they ended; the first
- * failure in order counts. */
+/* Adds up the evaluations of the tasks and of before, and their stops; the first failure in
+ * order is returned. */
 static void collect(mt_nlp_engine *e, const start_job *job, long before)
 {
     e->evals = before;
@@ -150,7 +150,7 @@ static job_slot *new_slots(int n, mt_arena *mem)
     return slots;
 }
 
-/* As if the tasks had been done one after the other. */
+/* Steps as if the tasks had run one after the other. */
 static void note_steps(const start_job *job, long before)
 {
     for (int k = 0; k < job->n; k++) {
@@ -159,7 +159,7 @@ static void note_steps(const start_job *job, long before)
     }
 }
 
-/* What a task leaves: what it used, and where its local search stands. */
+/* Writes or reads a task: its evaluations and the state of its local search. */
 static void serialize_task(void *context, int k, mt_serializer *serializer)
 {
     start_job *const job = context;
@@ -189,7 +189,7 @@ static void serialize_task(void *context, int k, mt_serializer *serializer)
     *slot = got;
 }
 
-/* Tasks [from, to). The first values are nothing to be kept; searches are. */
+/* Runs tasks [from, to). First values are not stored; searches are. */
 static void run_part(mt_nlp_engine *e, start_job *job, job_task task, int from, int to,
                      long before)
 {
@@ -215,8 +215,8 @@ static void run_job(mt_nlp_engine *e, start_job *job, job_task task, long before
     run_part(e, job, task, 0, job->n, before);
 }
 
-/* Whether it is proven that nothing is feasible: asked where none of the first `n` searches met
- * it. */
+/* True where no feasible point exists, by the caller's proof, which runs where none of the
+ * first `n` searches found one. */
 static bool is_impossible(mt_nlp_engine *e, const start_job *job, int n)
 {
     bool none = e->fatal == MT_OK && e->stop == MT_STOP_DONE;
@@ -231,8 +231,8 @@ static bool is_impossible(mt_nlp_engine *e, const start_job *job, int n)
     return mt_nlp_ok(e, e->opt.prove_none(e->opt.prove_context, &none, e->err)) && none;
 }
 
-/* The approaches of all; where it is proven meanwhile that nothing is feasible, of the first
- * ones alone. Returns how many. */
+/* Approaches from all starts; where it is proven that no feasible point exists, from the first
+ * ones alone. Returns their number. */
 static int approach_all(mt_nlp_engine *e, start_job *job, long before)
 {
     const bool asks = e->opt.prove_none != NULL && e->opt.starts > STARTS_EACH;
@@ -250,8 +250,8 @@ static int approach_all(mt_nlp_engine *e, start_job *job, long before)
     return n;
 }
 
-/* The approach from starts all->starts .. all->starts + n - 1; their ends are added to the
- * list. The scale of the objective is that of the first ones. */
+/* Approaches from starts all->starts ... all->starts + n - 1, and appends their ends. The scale
+ * of the objective comes from the first ones. */
 static bool add_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int n, mt_steps *steps)
 {
     mt_arena *const mem = &e->scratch;
@@ -334,8 +334,7 @@ static void finish_pool(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *s
     }
 }
 
-/* The starts asked for, `first` of them, or less where these are enough. False: no more of
- * them. */
+/* The first starts, or fewer where these are enough. False: no further ones. */
 static bool make_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, int first, mt_steps *steps)
 {
     bool more = true;
@@ -379,7 +378,7 @@ static void all_starts(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *st
     out->starts = all->starts - e->opt.skip;
 }
 
-/* All ends are one design. */
+/* True where all ends are one design. */
 static bool are_one(const mt_nlp_engine *e, const mt_nlp_solution_pool *all)
 {
     bool one = all->count > 0;
@@ -389,8 +388,8 @@ static bool are_one(const mt_nlp_engine *e, const mt_nlp_solution_pool *all)
     return one;
 }
 
-/* Where nothing is feasible, and the first starts did not all end at one compromise: the rest
- * of the starts. */
+/* The other starts, where nothing is feasible and the first did not all end at one
+ * compromise. */
 static void make_rest(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_steps *steps,
                       mt_arena *mem, mt_nlp_result *out)
 {

@@ -246,7 +246,7 @@ static double take_step(polish *w)
     return size;
 }
 
-/* The objective may rise where p profits from the tolerances: by the multipliers times them. */
+/* Allowed rise of the objective, since p may use the tolerances: multipliers times these. */
 static double rise_allowed(const polish *w, const mt_nlp_point *p)
 {
     double rise = F_ROUNDING * fabs(p->f);
@@ -282,7 +282,8 @@ static void keep(polish *w)
     }
 }
 
-/* Where Z^T H Z has a negative eigenvalue: its eigenvector, largest entry positive. */
+/* saddle: eigenvector of a negative eigenvalue of Z^T H Z, largest entry positive; false:
+ * none. */
 static bool find_saddle(const polish *w, double *saddle)
 {
     const int n = w->e->n;
@@ -334,9 +335,9 @@ static void curvature(polish *w)
 }
 
 /*
- * Directions that nothing holds at cur: those without curvature among the ones that the active
- * constraints leave, and one for each inequality or bound that is met without being needed (its
- * multiplier is 0: a minimum beside it is as good). -1: no curvature is known.
+ * Number of directions that nothing holds at cur: those without curvature among the ones that
+ * the active constraints leave, and one for each active inequality or bound with multiplier 0
+ * (a neighbouring minimum is as good). -1: curvature unknown.
  */
 static int loose_directions(const polish *w)
 {
@@ -369,8 +370,8 @@ static int loose_directions(const polish *w)
     return n;
 }
 
-/* Squares of violations rise from cur into every direction that the bounds leave: by their
- * curvature, or by their slope at a bound. */
+/* True where the squares of violations increase from cur in every direction within the bounds:
+ * by their curvature, or by their slope at a bound. */
 static bool is_isolated(const polish *w)
 {
     const mt_nlp_active *const a = &w->a;

@@ -67,7 +67,7 @@ static void no_multipliers(const mt_nlp_engine *e, mt_nlp_solution *out)
     }
 }
 
-/* The part of the residual z that does not lie along undetermined directions; z is used up. */
+/* Part of the residual z orthogonal to the unidentifiable directions; z is overwritten. */
 static double determined_part(const mt_nlp_engine *e, const mt_nlp_result *all,
                               mt_nlp_active *a)
 {

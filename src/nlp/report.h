@@ -4,8 +4,9 @@
 
 #include "nlp/engine.h"
 
-/* Fill the record of a solution from a point (copies; no evaluation). Along the undetermined
- * directions of `all` nothing was sought: the residual is that of the others. */
+/* Fill the record of a solution from a point (copies; no evaluation). kkt excludes the part of
+ * the residual along the unidentifiable directions of `all`, which were not searched. False:
+ * memory or linear algebra, as mt_nlp_ok. */
 bool mt_nlp_report(mt_nlp_engine *e, const mt_nlp_point *p, const mt_nlp_result *all,
                    mt_arena *mem, mt_nlp_solution *out);
 

@@ -118,9 +118,9 @@ static void inequalities(unsigned int m, double *c, unsigned int n, const double
     }
 }
 
-/* What its verdicts mean to us. Where it came to rest, or gave up in its own arithmetic
- * (NLOPT_ROUNDOFF_LIMITED: a singular subproblem; NLOPT_FAILURE: linearised constraints that
- * contradict each other), the best point it has shown counts, which is judged elsewhere. */
+/* Status for NLopt's result. Where it stopped, or gave up in its own arithmetic
+ * (NLOPT_ROUNDOFF_LIMITED: a singular subproblem; NLOPT_FAILURE: contradicting linearised
+ * constraints), the best point met is used, which is verified elsewhere. */
 static mt_status status_of(nlopt_result verdict)
 {
     switch (verdict) {
@@ -205,7 +205,7 @@ static bool run_once(slsqp *w, double radius)
     return !w->failed && !w->e->ended;
 }
 
-/* Whether the run stopped at the box and not at the bounds of the problem. */
+/* True where the run stopped at the box and not at the bounds of the problem. */
 static bool at_box(const slsqp *w)
 {
     const mt_nlp *const q = w->e->nlp;

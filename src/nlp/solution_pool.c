@@ -76,7 +76,7 @@ int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *once)
     return roots;
 }
 
-/* Largest difference of two designs, beside what lies along the directions; d[n] is scratch. */
+/* Largest difference of two designs orthogonal to the directions; d[n] is work. */
 static double apart(int n, const double *a, const double *b, const mt_nlp_result *directions,
                     double *d)
 {
@@ -90,7 +90,8 @@ static double apart(int n, const double *a, const double *b, const mt_nlp_result
     return mt_max_abs(n, d);
 }
 
-/* True where Newton from b, which is not polished, would end where it does, or did, from a. */
+/* True where Newton from b, which is not polished, is expected to end at the same point as from
+ * a. */
 static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_local *b,
                   const mt_nlp_result *directions, double *d)
 {
@@ -104,7 +105,7 @@ static bool alike(const mt_nlp_engine *e, const mt_nlp_local *a, const mt_nlp_lo
            (a->polished && apart(e->n, pa->t, b->from, directions, d) <= MT_SAME_DESIGN);
 }
 
-/* So many feasible ends, and the places that they are in. */
+/* Number of feasible ends; *places: number of distinct ones. */
 static int count_places(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *places)
 {
     static const mt_nlp_result none = {.n_unidentifiable = 0};
@@ -147,7 +148,8 @@ bool mt_nlp_came_to_rest(const mt_nlp_local *s)
     return s->polished && s->p->kkt <= STATIONARY;
 }
 
-/* An end at one that came to rest, or where Newton was tried in vain, is no end of its own. */
+/* True where the end is at one that converged, or where Newton failed repeatedly: it does not
+ * count as another end. */
 static bool is_known(const mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_nlp_local *one,
                      const mt_nlp_result *directions, double *d)
 {

@@ -5,33 +5,34 @@
 #include "nlp/local.h"
 
 typedef struct mt_nlp_solution_pool {
-    mt_nlp_local *at; /* [count], and room for those of mt_nlp_solution_pool_grow */
+    mt_nlp_local *at; /* [count], with the capacity of mt_nlp_solution_pool_grow */
     int count;
     int starts;                   /* made so far */
-    const mt_nlp_point *directed; /* where the undetermined directions were sought */
+    const mt_nlp_point *directed; /* where the unidentifiable directions were computed */
 } mt_nlp_solution_pool;
 
-/* Room for n ends more. */
+/* Add capacity for n more ends. */
 void mt_nlp_solution_pool_grow(mt_nlp_engine *e, mt_nlp_solution_pool *all, int n);
-/* Isolated roots, *once: those that one start only ended at; 0 where the problem has none, or a
- * curve of solutions. */
+/* Number of isolated roots; *once: those that one start only ended at. 0 where the problem has
+ * none, or a curve of solutions. */
 int mt_nlp_roots(mt_nlp_engine *e, const mt_nlp_solution_pool *all, int *once);
 /*
- * True where the ends so far leave little hope of another one. Of n feasible ends in w places
- * the number of places is expected to be w (n - 1)/(n - w - 2), each a priori as likely as any
- * number of them (Boender and Rinnooy Kan, Math. Prog. 37, 1987, eq. 9): by less than half a
- * place more than w. One place takes eight of its ends, two take seventeen.
+ * True where a further end is unlikely. From n feasible ends in w places the expected number of
+ * places is w (n - 1)/(n - w - 2), with a uniform prior of that number (Boender and Rinnooy
+ * Kan, Math. Prog. 37, 1987, eq. 9); true where this is less than w + 1/2. One place needs
+ * eight ends, two need seventeen.
  */
 bool mt_nlp_solution_pool_settled(mt_nlp_engine *e, const mt_nlp_solution_pool *all);
 /* True where all starts so far lead to one feasible design. */
 bool mt_nlp_solution_pool_agree(mt_nlp_engine *e, const mt_nlp_solution_pool *all);
-/* Ends to polish next, chosen[all->count]: of those that are near each other one; ends that lie
- * at one that is polished are dropped. Returns how many. */
+/* Ends to polish next, chosen[all->count], one of each neighbourhood; ends at one that is
+ * already polished are dropped. Returns their number. */
 int mt_nlp_solution_pool_choose(mt_nlp_engine *e, mt_nlp_solution_pool *all,
                                 const mt_nlp_result *directions, mt_nlp_local **chosen);
-/* Whether Newton came to rest there. */
+/* True where Newton's method converged there. */
 bool mt_nlp_came_to_rest(const mt_nlp_local *s);
-/* Ends nearer than this are one; then, whether the problem asks for isolated roots. */
+/* Distance below which two ends are one. mt_nlp_seeks_roots: true where the problem asks for
+ * isolated roots. */
 double mt_nlp_same_distance(const mt_nlp_engine *e);
 bool mt_nlp_seeks_roots(const mt_nlp_engine *e);
 

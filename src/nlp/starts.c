@@ -31,7 +31,7 @@ static double next_uniform(uint64_t *state)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/* The sequence of so many dimensions at its start; one without a type where there is none. */
+/* The sequence of d dimensions at its start; without a type where there is none. */
 static gsl_qrng sequence(int d, mt_arena *mem)
 {
     gsl_qrng q = {.dimension = (unsigned)d};

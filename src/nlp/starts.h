@@ -5,10 +5,10 @@
 #include "nlp/nlp.h"
 
 /*
- * Where local searches from `starts` starts begin: t column-major n x starts in mem. Start 0 is
- * the origin within the bounds, the next the hint where there is one, the others fill the
- * bounds evenly, however many they are; seed 0 and 1: the sequence as it is. NULL where memory
- * is out.
+ * Starting points of `starts` local searches: t, column-major n x starts, in mem. Start 0 is
+ * the origin clamped to the bounds, the next the hint where given; the others fill the bounds
+ * evenly for any number of starts. seed 0 and 1: the sequence without a shift. NULL: out of
+ * memory.
  */
 double *mt_nlp_starts(const mt_nlp *nlp, unsigned long seed, int starts, mt_arena *mem);
 

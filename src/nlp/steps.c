@@ -11,7 +11,7 @@ mt_steps mt_steps_new(int most, mt_arena *mem)
     return (mt_steps){.most = most, .at = mt_arena_alloc(mem, (size_t)most, sizeof(mt_step))};
 }
 
-/* Where tolerances are used or not it is the same. */
+/* True where a ranks before b; use of the tolerances makes no difference. */
 static bool is_before(const mt_step *a, const mt_step *b)
 {
     const mt_merit x = {mt_is_held(a->violation), a->squares, 1, &a->f};
@@ -24,7 +24,7 @@ static bool is_alike(const mt_step *a, const mt_step *b)
     return a->stage == b->stage && a->round == b->round;
 }
 
-/* The last one of its stage and round; NULL: there is none. */
+/* The last step of its stage and round; NULL: none. */
 static const mt_step *last_of(const mt_steps *steps, const mt_step *step)
 {
     for (int i = steps->n - 1; i >= 0; i--) {
@@ -35,8 +35,8 @@ static const mt_step *last_of(const mt_steps *steps, const mt_step *step)
     return NULL;
 }
 
-/* Every other one of those between the first and the last of their kind; of kinds, of which
- * there may be many, the oldest where nothing lies between. */
+/* Drops every other step between the first and the last of each stage and round; where none
+ * lies between, the oldest. */
 static void thin(mt_steps *steps)
 {
     mt_step *const at = steps->at;

@@ -100,7 +100,7 @@ static double row_slope(const crossing *x, const mt_nlp_point *p, int i, int j)
     return i < q->n_eq + q->n_in ? mt_nlp_row_slope(x->e, p, i, j) : p->df[j];
 }
 
-/* The objective counts where there are no residuals and it is not the change itself. */
+/* Includes the objective where there are no residuals and it is not the total change. */
 static void weigh_objective(crossing *x, const mt_nlp_point *p)
 {
     const mt_nlp *const q = x->e->nlp;
@@ -149,7 +149,7 @@ static bool has_room(const mt_nlp_engine *e, const double *t, const double *d)
     return s[1] - s[0] > ROOM_LEAST * longest_way(e, d);
 }
 
-/* t := base moved inside, so that d has its room either way. */
+/* t := base moved inside the bounds until d has its room either way. */
 static void make_room(const mt_nlp_engine *e, const double *base, const double *d, double *t)
 {
     const double longest = longest_way(e, d);
@@ -183,7 +183,7 @@ static double effect(crossing *x, const double *d)
     return most;
 }
 
-/* Make d orthonormal to those found; false where little of it is new. */
+/* Makes d orthonormal to those found; false where little of it remains. */
 static bool make_new(const mt_nlp_engine *e, const mt_nlp_result *out, double *d)
 {
     const double before = mt_norm2(e->n, d);
@@ -276,10 +276,10 @@ static int single_variables(crossing *x, const mt_nlp_point *p, mt_nlp_result *o
 }
 
 /*
- * Of singular vectors whose values are rounding only the space V V^T that they span is known,
- * not they themselves. Its basis is taken from it alone, by Cholesky's method with pivots: the
- * variable that lies in the space most (the first of equal ones), its projection, and the same
- * of what is left. v: m columns of k, orthonormal; afterwards that basis. w[k], g[m]: work.
+ * Basis of the space V V^T of singular vectors whose values are rounding: only the space is
+ * determined, not the vectors. Method: pivoted Cholesky: the variable with the largest part in
+ * the space (the first of equal ones), its projection, and the same for the remainder. v: m
+ * columns of k, orthonormal; on return that basis. w[k], g[m]: work.
  */
 static void choose_basis(int k, int m, double *v, double *w, double *g, double *basis)
 {
@@ -400,7 +400,7 @@ void mt_nlp_drop_roomless(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_
     out->n_unidentifiable = kept;
 }
 
-/* Whether variable j is one of the directions by itself. */
+/* True where variable j alone is one of the directions. */
 static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
 {
     for (int k = 0; k < u->n_unidentifiable; k++) {
@@ -411,10 +411,9 @@ static bool is_single(const mt_nlp_engine *e, const mt_nlp_result *u, int j)
     return false;
 }
 
-/* True where a point is as good as before. Nothing may be paid for an undetermined direction:
- * not the requirements, not the objective beyond what counts as unchanged, not that the point
- * is a local solution. A compromise may be farther from the requirements by the tolerances
- * together: that much the directions may do by what they are. */
+/* True where a point is as good as before: requirements met, the objective unchanged within
+ * tolerance, still a local solution. A compromise may be worse by the sum of the tolerances,
+ * which is what the directions may change by definition. */
 static bool as_good(const mt_nlp_engine *e, const mt_nlp_point *after,
                     const mt_nlp_point *before)
 {
@@ -453,8 +452,8 @@ static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_
     return moves;
 }
 
-/* The effects, each below a tolerance, may add up: meet the requirements exactly again, at
- * least objective, the single variables standing still. */
+/* Effects below a tolerance may add up: meets the requirements exactly again, at least
+ * objective, with the single variables fixed. */
 static void restore(mt_nlp_engine *e, const mt_nlp_result *u, bool feasible, mt_nlp_point *p)
 {
     /* a root: no freedom to minimise in */

@@ -6,9 +6,10 @@
 
 bool mt_nlp_unidentifiable(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
                            mt_nlp_result *out);
-/* Forget those along which p, the solution that they are told of, has no room. */
+/* Remove directions along which the bounds leave p, the reported solution, no way to move. */
 void mt_nlp_drop_roomless(const mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out);
-/* Put p back to the origin along the undetermined directions, where that costs nothing. */
+/* Move p to the origin along the unidentifiable directions where requirements, objective and
+ * stationarity stay as good. */
 void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *unidentifiable, mt_nlp_point *p);
 
 #endif

@@ -52,8 +52,8 @@ static void swap(mt_nlp_solution_pool *all, int i, int k)
 }
 
 /*
- * How many roots no start ended at, from f1 that one start met and f2 that two met, by Chao
- * (1984) in the form that does not divide by zero: f1 (f1 - 1) / (2 (f2 + 1)), a lower bound of
+ * Number of roots that no start found, from f1 found by one start and f2 found by two (Chao
+ * 1984, in the form that does not divide by zero): f1 (f1 - 1) / (2 (f2 + 1)), a lower bound of
  * the expectation.
  */
 static void count_roots(const mt_nlp_engine *e, const mt_nlp_solution_pool *all,
@@ -84,9 +84,8 @@ static int compare_ranked(const void *a, const void *b)
                                                : (x->at > y->at) - (x->at < y->at);
 }
 
-/* The best first; what is equal keeps the order of the starts. Of a search that was ended, in
- * which thousands of starts may have values and no more, the best: nobody waits for the rest.
- */
+/* Sorts, best first; ties keep the order of the starts. Of a search that was ended, where
+ * thousands of starts may only have values, the best are kept. */
 static void rank(mt_nlp_engine *e, mt_nlp_solution_pool *all)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
@@ -122,7 +121,7 @@ static void rank_equals(mt_nlp_solution_pool *all)
     }
 }
 
-/* True where a is as good as b, as far as a search tells. */
+/* True where a and b are equally good to the accuracy of a search. */
 static bool is_equal(const mt_nlp_point *a, const mt_nlp_point *b)
 {
     const bool feasible = mt_nlp_feasible(a);
@@ -130,8 +129,7 @@ static bool is_equal(const mt_nlp_point *a, const mt_nlp_point *b)
            (feasible || fabs(a->squares - b->squares) <= EQUAL_SQUARES * b->squares);
 }
 
-/* Ranked and merged: what is as good as the first of it is in an order that rounding has no
- * part in. */
+/* Ranked and merged: orders ties of the first by a rule that rounding does not affect. */
 static void order_equals(const mt_nlp_engine *e, mt_nlp_solution_pool *all)
 {
     for (int first = 0, end = 0; first < all->count; first = end) {
@@ -192,9 +190,9 @@ static void merge(const mt_nlp_engine *e, mt_nlp_solution_pool *all)
 }
 
 /*
- * Many designs may be equally far from the requirements (which is not so next to one where
- * squares rise on all sides): then the one of least objective is wanted. With the constraints
- * moved to what the compromise reaches, that is a feasible problem.
+ * Many designs may be equally far from the requirements (except where squares increase on all
+ * sides): the one of least objective is wanted. With the constraints shifted to the values at
+ * the compromise, that is a feasible problem.
  */
 static void settle(mt_nlp_engine *e, mt_nlp_point *p)
 {
@@ -293,7 +291,7 @@ static void put_idle_back(mt_nlp_engine *e, mt_nlp_point *p)
     mt_arena_rewind(&e->scratch, mark);
 }
 
-/* A double root; of two roots that were merged the Jacobian changes its sign in between. */
+/* True for a double root; between two merged roots the Jacobian changes its sign. */
 static bool is_singular(mt_nlp_engine *e, const mt_nlp_point *p, bool merged)
 {
     const bool roots = e->nlp->n_eq >= e->n_free && e->n_free > 0;

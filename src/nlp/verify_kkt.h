@@ -4,7 +4,7 @@
 
 #include "nlp/solution_pool.h"
 
-/* The ends as a ranked result in mem. */
+/* Ranks, merges and verifies the ends: *out in mem (nlp.h). */
 void mt_nlp_verify_kkt(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_arena *mem,
                        mt_nlp_result *out);
 

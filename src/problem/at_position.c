@@ -5,7 +5,8 @@
 
 #include "problem/requirement.h"
 
-/* The view's mechanism at the cut's position, asked and shaken as the view is. */
+/* The configuration's mechanism at the cut's position, with the configuration's queries and
+ * port pairs. */
 static mt_configuration_problem view_of(const mt_problem *p, const mt_cut *cut,
                                         const mt_configuration_problem *like)
 {

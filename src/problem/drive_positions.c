@@ -49,7 +49,7 @@ static bool is_text(const char *a, const char *b)
     return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
 }
 
-/* The same is shaken, and the same looked at. */
+/* True where both have the same input and the same output. */
 static bool same_response_limit(const mt_response_limit *a, const mt_response_limit *b)
 {
     if (a == NULL || b == NULL) {
@@ -71,8 +71,8 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
             is_text(a->shape.reference, b->shape.reference) && a->shape.mode == b->shape.mode);
 }
 
-/* A number with a limit, and two of its values in one family: what lies between them is asked
- * for as well. A target, and what has a weight, is of the positions that are named. */
+/* True where a value is limited in at least two positions of one drive, so that the limit also
+ * applies between them. A target, and a weighted goal, applies at the named positions only. */
 static bool is_limited(const mt_problem *p, const mt_requirement *d)
 {
     const bool limits = d->ops->value != NULL && d->row_res < 0 && !MT_HAS(d->equals);
@@ -107,7 +107,7 @@ static void find_limited(mt_problem *p)
     }
 }
 
-/* What drives the family: from a view that has a drive. */
+/* Sets the drive's joint and spring from a configuration that has the drive. */
 static void name_drive(const mt_problem *p, mt_drive_positions *f)
 {
     f->fixed = true;
@@ -123,8 +123,8 @@ static void name_drive(const mt_problem *p, mt_drive_positions *f)
     }
 }
 
-/* Views that are the same mechanism as `first`, which is in no family yet. A view without a
- * drive belongs to the family of the first driven one that it is like. */
+/* Collects the configurations that are the same mechanism as `first`, which has no drive yet. A
+ * configuration without a drive joins the first driven one that it equals. */
 static mt_status gather(mt_problem *p, int first, mt_drive_positions *f, mt_err *err)
 {
     f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
@@ -143,7 +143,7 @@ static mt_status gather(mt_problem *p, int first, mt_drive_positions *f, mt_err 
 
 static mt_status tie(mt_problem *p, mt_err *err);
 
-/* A view of the family's mechanism, counted as its positions are. */
+/* An analysis of the drive's mechanism with the mode count of its positions. */
 static mt_configuration_problem view_of(const mt_problem *p, const mt_drive_positions *f)
 {
     const mt_configuration_problem *const like = &p->views[f->view[0]];
@@ -151,8 +151,8 @@ static mt_configuration_problem view_of(const mt_problem *p, const mt_drive_posi
         .configuration = f->configuration, .n_rigid = like->n_rigid, .n_most = like->n_most};
 }
 
-/* The mechanism whose positions are followed; that it does not exist is told where it is asked
- * for. */
+/* Makes the mechanism that is followed between positions; where that fails, the reason is kept
+ * in `why` and reported on use. */
 static mt_status set_moving(mt_problem *p, mt_drive_positions *f, mt_err *err)
 {
     const mt_system_drive drive = {.joint = f->joint, .spring = f->spring};
@@ -295,7 +295,7 @@ static const mt_modes *modes_of(const mt_workspace *w, const mt_avoidance *c)
     return &w->views[c->view].analysis->modes;
 }
 
-/* The least room of all bands tied to `tie` with k modes below. */
+/* Least margin of all bands tied to `tie` with k modes below. */
 static double tie_margin_with(const mt_workspace *w, int tie, int k, bool *stable, int *most)
 {
     const mt_problem *const p = w->p;
@@ -365,7 +365,7 @@ double mt_ties_margin(const mt_workspace *w, int *below)
     return least;
 }
 
-/* Add a band unless one that is there holds it; those that it holds go. */
+/* Adds a band unless a listed one contains it; listed ones that it contains are removed. */
 static void put(mt_band_along_path *list, int *n, const mt_band_along_path *fresh)
 {
     int kept = 0;
@@ -422,7 +422,7 @@ static const mt_avoidance *clear_of(const mt_problem *p, int view)
     return NULL;
 }
 
-/* Pairs of tied bands: what intersect may put down at most. */
+/* Number of pairs of tied bands: the largest number that intersect writes. */
 static size_t count_tied(const mt_problem *p)
 {
     size_t n = 0;

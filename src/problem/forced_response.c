@@ -23,7 +23,7 @@ void mt_forced_response_close(mt_configuration_work *view)
     }
 }
 
-/* Place of the goal's pair in the view's list, where it is added if it is not there. */
+/* Index of the goal's port pair in the configuration's list; added where missing. */
 static int place_of(mt_configuration_problem *view, const mt_response_limit *s)
 {
     for (int i = 0; i < view->n_pairs; i++) {

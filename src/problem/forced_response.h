@@ -6,72 +6,71 @@
 #include "response/response.h"
 #include "vibration/respond.h"
 
-/* Below this part of what is asked for ln q goes on as a tangent (goal_frequency.h): a response
- * that is 0 has a value. */
+/* Below this fraction of the limit, ln q is continued by its tangent (goal_frequency.h), so
+ * that a response of 0 has a value. */
 #define MT_FORCED_RESPONSE_FLOOR 1e-9
 
-/* What shakes, and what is looked at, as ports are called. */
+/* Names of the ports: input and output. */
 typedef struct mt_forced_response_pair {
     const char *input;
     const char *output;
 } mt_forced_response_pair;
 
 /*
- * Forced vibration of a view from one port to another, made once for each solve of it, when a
- * goal first asks. The response is a sum over poles, and its largest value over a band is
- * proven by branch and bound (vibration/sine.h). Where there is no sum of simple poles
- * (mt_response_poles), a curve that follows its shape is traced instead (response/curve.h):
- * sampled.
+ * Forced vibration of a configuration from one port to another, computed once per solve on
+ * first use. The response is a sum over poles, and its largest value over a band is proven by
+ * branch and bound (vibration/sine.h). Where no sum of simple poles exists (mt_response_poles),
+ * an adaptive curve is traced instead (response/curve.h): sampled.
  */
 typedef struct mt_forced_response {
-    bool open;   /* of the last solve */
-    bool summed; /* sum, frf; else responses are sampled */
+    bool open;   /* computed for the last solve */
+    bool summed; /* sum and frf are set; else responses are sampled */
     mt_response r;
     mt_pole_sum sum;
     mt_frf frf;
 } mt_forced_response;
 
-/* |H|, the largest over a range. */
+/* Largest |H| over a range. */
 typedef struct mt_forced_response_peak {
     mt_sine_peak at;
-    double by_omega; /* d|H|/dw there */
+    double by_omega; /* d|H|/dw at that frequency */
     bool proven;
 } mt_forced_response_peak;
 
-/* What a goal finds at a design. */
+/* Value of a forced-vibration goal at a design. */
 typedef struct mt_forced_response_value {
-    mt_forced_end end; /* numbers are NaN where it is not MT_FORCED_FINITE */
+    mt_forced_end end; /* numbers are NaN unless MT_FORCED_FINITE */
     bool finite;
     const char *end_name;
     double value;
-    double error; /* of it, at most; NaN: not known */
-    double omega; /* where |H| is the largest [rad/s]; NaN: not known */
-    bool at_edge; /* of the range that it was looked for in */
+    double error; /* bound of the value's error; NaN: not known */
+    double omega; /* frequency of the largest |H| [rad/s]; NaN: not known */
+    bool at_edge; /* omega is an end of the searched range */
     double lower_hz;
     double upper_hz;
-    bool proven; /* no frequency has more; else sampled */
+    bool proven; /* no frequency has a larger value; else sampled */
 } mt_forced_response_value;
 
-/* The ports as a mechanism has them; at: where a file says them. Fails: MT_E_INPUT, which
- * begins with that, MT_E_MEMORY. */
+/* Finds the ports in a mechanism; at: address in the file, which begins the text of MT_E_INPUT.
+ * Fails: MT_E_INPUT, MT_E_MEMORY. */
 mt_status mt_forced_response_ports_at(const mt_system *sys, const mt_response_limit *s,
                                       const char *at, mt_arena *mem, mt_port *in, mt_port *out,
                                       mt_err *err);
-/* Those of the requirement, of its view's mechanism. */
+/* Ports of the requirement in its configuration's mechanism. */
 mt_status mt_forced_response_ports(mt_problem *p, const mt_requirement *d, mt_port *in,
                                    mt_port *out, mt_err *err);
-/* Look up the requirement's ports in its view, and try them there. Fails: MT_E_INPUT, which
- * begins with the address, MT_E_MEMORY. */
+/* Finds the requirement's ports in its configuration and checks them with a trial evaluation.
+ * Fails: MT_E_INPUT, whose text begins with the address, MT_E_MEMORY. */
 mt_status mt_forced_response_compile(mt_problem *p, mt_requirement *d, mt_err *err);
-/* The largest response of the requirement's ports from lower to upper [rad/s], which may be
+/* Largest response of the requirement's ports for lower <= w <= upper [rad/s], which may be
  * equal. Fails: as mt_response_open. */
 mt_status mt_forced_response_find(mt_workspace *w, const mt_requirement *d, double lower,
                                   double upper, mt_forced_response_peak *out, mt_err *err);
-/* What the requirement's profile does, lists until the next solve; *proven: as
+/* Response to the requirement's profile; lists valid until the next solve; *proven: as
  * mt_forced_response_peak. */
 mt_status mt_forced_response_respond(mt_workspace *w, const mt_requirement *d,
                                      mt_vibration_response *out, bool *proven, mt_err *err);
-/* by_rms d rms + by_sine d sine of it as nodes. */
+/* out: by_rms d(rms) + by_sine d(sine) of that response as weighted frequencies. */
 mt_status mt_forced_response_nodes(mt_workspace *w, const mt_requirement *d,
                                    const mt_vibration_response *r, double by_rms,
                                    double by_sine, mt_spectral_nodes *out, mt_err *err);
@@ -80,25 +79,26 @@ mt_status mt_forced_response_slope(mt_workspace *w, const mt_requirement *d,
                                    const mt_spectral_nodes *nodes, double factor, double *out,
                                    mt_err *err);
 /*
- * No number is finite where nothing damps a resonance that is shaken. A search is led away from
- * that by the way that the undamped poles have to go: w->beyond is the least ln of a pole's
- * distance from an end of [lower, upper], added to what any finite number is off by, and slope
- * (unless NULL) its slope, with that of the damping that a variable would bring.
+ * Guides a search away from designs with an undamped resonance that is excited, whose value is
+ * infinite. Sets w->beyond, the excess over a finite value: a constant plus the least ln(w /
+ * lower) or ln(upper / w) of the undamped poles in [lower, upper], and slope (unless NULL), its
+ * derivative plus the effect of the damping that a variable would add.
  */
 mt_status mt_forced_response_lead(mt_workspace *w, const mt_requirement *d, double lower,
                                   double upper, double *slope, mt_err *err);
-/* The requirement's number, with all that is known of it. */
+/* The requirement's value with its details. */
 mt_status mt_forced_response_find_peak(mt_workspace *w, const mt_requirement *d,
                                        mt_forced_response_value *out, mt_err *err);
-/* The same of another analysis of the view's mechanism, solved with all shapes: another
- * position of its drive. */
+/* The same at another position of the drive: another analysis of the mechanism, solved with all
+ * shapes. */
 mt_status mt_forced_response_find_peak_at(mt_workspace *w, const mt_requirement *d,
                                           mt_analysis *a, mt_forced_response_value *out,
                                           mt_err *err);
-/* slope of q to that of ln q as rows take it (MT_MEASURE_RATIO), in place. */
+/* Converts the slope of q to that of ln q as in rows (MT_MEASURE_RATIO), in place. */
 void mt_forced_response_to_ln(const mt_workspace *w, const mt_requirement *d, double q,
                               double *slope);
-/* The view has been solved anew, or goes. */
+/* Discards the responses of the last solve: the configuration was solved again, or is
+ * deleted. */
 void mt_forced_response_close(mt_configuration_work *view);
 
 #endif

@@ -17,8 +17,8 @@ static const double SAME = 1e-9;
 
 static const double TWO_PI = 6.283185307179586476925;
 
-/* The slope of the damping ratio that variables would bring the mode at omega; nothing where it
- * has none. */
+/* Adds the slope of the damping ratio of the mode at omega with the variables, where it has
+ * none. */
 static mt_status add_damping(mt_workspace *w, mt_analysis *a, double omega, double *slope,
                              mt_err *err)
 {

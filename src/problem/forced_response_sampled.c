@@ -82,7 +82,8 @@ mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_pe
     return take(r, out, by_omega, err);
 }
 
-/* Nodes of one random part, behind n that are there (NULL: counted alone): g in `weight`. */
+/* Appends the nodes of one random part to the n present (NULL: counts them only): g in
+ * `weight`. */
 static int add_nodes(const mt_curve *curve, const mt_psd *g, mt_spectral_nodes *to, int n)
 {
     int i = 0;

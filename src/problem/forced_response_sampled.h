@@ -6,11 +6,11 @@
 #include "vibration/respond.h"
 
 /*
- * Forced vibration without a sum over poles, of the only output of an open problem to its only
- * input: curves that follow the shape (response/curve.h), and quadrature. All of it is in
- * r->mem. Of the largest value nobody knows a bound: its excess is NaN.
+ * Forced vibration without a sum over poles, of the only output of an open problem for its only
+ * input: adaptive curves (response/curve.h) and quadrature. Memory is r->mem. The largest value
+ * has no bound: its excess is NaN.
  */
-/* The largest |H| from lower to upper [rad/s], which may be equal, and d|H|/dw there. */
+/* Largest |H| for lower <= w <= upper [rad/s], which may be equal, and d|H|/dw there. */
 mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_peak *out,
                           double *by_omega, mt_err *err);
 mt_status mt_sampled_respond(mt_response *r, const mt_vibration *v, mt_vibration_response *out,

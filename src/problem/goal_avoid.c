@@ -108,7 +108,7 @@ typedef struct lists {
     int *below;
 } lists;
 
-/* One more view with its bands, behind all others. */
+/* Appends a configuration with its bands. */
 static mt_status add_cut(mt_subproblem *c, const mt_cut *cut, lists *l, mt_arena *mem,
                          mt_err *err)
 {

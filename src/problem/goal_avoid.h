@@ -5,41 +5,41 @@
 #include "problem/drive_positions.h"
 
 /*
- * Bands that modes keep clear of: those of all goals "avoid" that name a configuration, united.
+ * Bands to be avoided in a configuration: the union over all goals "avoid" that name it.
  */
-/* The bands of each view. After the requirements. */
+/* Collects the bands of each configuration. After the requirements. */
 mt_status mt_avoidances_compile(mt_problem *p, mt_err *err);
-/* Views, bands and assignment of a case (mt_subproblem_lay_out), and its rows of
- * `in` behind those of the requirements. */
+/* Configurations, bands and mode placement of a subproblem (mt_subproblem_lay_out), and its
+ * rows of `in` after those of the requirements. */
 mt_status mt_avoidance_lay_out(mt_subproblem *c, const int *below, int n_cuts,
                                const mt_cut *cuts, mt_arena *mem, mt_err *err);
-/* Fill the rows of all bands, after their views have been solved. */
+/* Fills the rows of all bands after their configurations have been solved. */
 mt_status mt_avoidance_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
                             mt_err *err);
 /* mt_bands_find (mode_band_pairs.h) of its bands; NaN where the configuration is unstable. */
 double mt_avoidance_find_modes(const mt_avoidance *c, const mt_modes *modes, int *below);
-/* The mode and the edge that row `row` (0: the first of the bands, behind those of the
- * requirements) of a search with an assignment below[n_bands] holds; false: there is no such
- * row. */
+/* The mode and the edge of row `row` (0: the first after those of the requirements) of a search
+ * with the mode placement below[n_bands]; false: no such row. */
 typedef struct mt_avoidance_row {
     int avoidance;
-    int band; /* of its list */
+    int band; /* of the goal's list */
     int mode; /* vibration index */
     bool above;
 } mt_avoidance_row;
 bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row,
                          mt_avoidance_row *out);
 int mt_avoidance_row_count(const mt_subproblem *c, const int *below);
-/* mt_avoidance_find_modes after the view has been solved, with tolerances over them: what the
- * objective "clearance" makes greatest. */
+/* mt_avoidance_find_modes after the configuration has been solved, over the tolerances where
+ * there are any: the value that the objective "clearance" maximises. */
 double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c);
-/* The least of all clears; infinite without bands, NaN where one of them has none. */
+/* The least over all avoidance goals; infinite without bands, NaN where a configuration is
+ * unstable. */
 double mt_avoidances_margin(const mt_workspace *w);
-/* Add to the shapes that are asked of a view (nothing else: those of its rows alone) those of
- * the modes that rows of its bands look at, and of all up to the highest band: there a
- * frequency counts to its last digit. */
+/* Adds to the shapes requested of a configuration (empty: those of its rows alone) those of the
+ * modes that rows of its bands use, and of all modes up to the highest band, whose frequencies
+ * are wanted to the last digit. */
 void mt_avoidances_query(const mt_subproblem *c, int view, mt_modal_part *shapes);
-/* Vibration modes of a view, which has been solved, up to the first above its highest band; 0
+/* Number of vibration modes of a solved configuration up to the first above its highest band; 0
  * without bands. */
 int mt_avoidances_reach(const mt_workspace *w, int view);
 

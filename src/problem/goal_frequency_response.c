@@ -66,7 +66,7 @@ static mt_status none_found(const mt_problem *p, const mt_requirement *d, int fo
         mt_configuration_name(p, &p->views[d->view]), mt_measured_list_text(m, mem));
 }
 
-/* The one response of the file that is of these ports. */
+/* The response of the file with these ports. */
 static mt_status find_measured(mt_problem *p, const mt_requirement *d, mt_fit *fit, mt_err *err)
 {
     const mt_measurement *const m =
@@ -84,7 +84,7 @@ static mt_status find_measured(mt_problem *p, const mt_requirement *d, mt_fit *f
     return found == 1 ? MT_OK : none_found(p, d, found, &p->mem, err);
 }
 
-/* Units are held against each other where the file says them. */
+/* Compares units where the file gives them. */
 static mt_status check_unit(mt_problem *p, const mt_requirement *d, const mt_fit *fit,
                             mt_err *err)
 {
@@ -199,7 +199,7 @@ static mt_status prepare(mt_analysis *a, const mt_fit *fit, forced *out, mt_err 
     return mt_basis_make(&problem, &a->mem, &out->basis, err);
 }
 
-/* The measured file's name is said with its line, which is where the trouble is seen. */
+/* Names the measured file and its line, where the fault is. */
 static mt_status no_value(const mt_workspace *w, const mt_requirement *d, int i,
                           const char *what, mt_err *err)
 {
@@ -228,7 +228,7 @@ static mt_status line(mt_workspace *w, const mt_requirement *d, int i, double co
     return MT_OK;
 }
 
-/* Their slopes, of those of h: dh / h, by hand since h and dh are finite. */
+/* Slopes of the residuals, from those of h: dh / h, written out since h and dh are finite. */
 static mt_status line_slopes(mt_workspace *w, const mt_requirement *d, int i, double complex h,
                              const double complex *dh, mt_err *err)
 {

@@ -7,9 +7,9 @@
 #include "problem/workspace.h"
 #include "response/response.h"
 
-/* A measured response that a model's is compared with: the lines within the goal's band. */
+/* A measured response to be fitted: the lines within the goal's band. */
 typedef struct mt_fit {
-    mt_port_set ports; /* one input, one output, of the view's system */
+    mt_port_set ports; /* one input and one output, of the configuration's system */
     const mt_measured_response *measured;
     int n;
     double *w;         /* [n] [rad/s] */
@@ -17,22 +17,22 @@ typedef struct mt_fit {
     double *level;     /* [n] ln |h| */
     double *phase;     /* [n] arg h [rad] */
     double *share;     /* [n] of the goal's weight; sum 1 */
-    int *line;         /* [n] of the file */
+    int *line;         /* [n] line in the file */
 } mt_fit;
 
-/* True where it is such a requirement; then its line of the greatest residual at the last
- * evaluation: its frequency [Hz], and ln(H/H_measured) there. NaN where it has no value. */
+/* For a requirement with a fit (else false): frequency [Hz] of the line with the largest
+ * residual at the last evaluation, and ln(H/H_measured) there. NaN where it has no value. */
 bool mt_fit_worst(const mt_workspace *w, const mt_requirement *d, double *hz,
                   double complex *off);
 
-/* By how much [rad] the measured phase rises through its highest peak, and the peak's frequency
- * [Hz], where it rises: of a damped mechanism it falls, so that the data look conjugated. 0:
- * it falls, or there is no peak that lines resolve. */
+/* Rise of the measured phase through its highest peak [rad], and the peak's frequency [Hz]. The
+ * phase of a damped mechanism falls, so a rise means that the data are probably conjugated. 0:
+ * it falls, or no peak is resolved by lines. */
 double mt_fit_rise(const mt_requirement *d, double *hz);
 
-/* True where the squares of the phases' residuals at the last evaluation would be less than
- * half if the measured response had the other sign. Lines between a peak and the model's speak
- * against it, at both signs. */
+/* True where the sum of squares of the phase residuals at the last evaluation would be less
+ * than half with the opposite sign of the measured response. Lines between a measured peak and
+ * the model's disagree with either sign. */
 bool mt_fit_is_reversed(const mt_workspace *w, const mt_requirement *d);
 
 #endif

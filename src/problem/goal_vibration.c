@@ -28,7 +28,7 @@ static double number(const mt_response_limit *s, const mt_vibration_response *r)
                                                    : r->peak;
 }
 
-/* From where to where the parts that count shake [Hz]. */
+/* Frequency range of the parts of the profile that count [Hz]. */
 static void range_of(const mt_response_limit *s, double hz[2])
 {
     mt_vibration_range(s->profile, by_rms(s) > 0.0, by_sine(s) > 0.0, hz);
@@ -64,7 +64,7 @@ static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double
     return MT_OK;
 }
 
-/* The tone that shakes most. */
+/* The tone with the largest response. */
 static int worst_tone(const mt_response_limit *s, const mt_vibration_response *r)
 {
     int best = 0;

@@ -27,7 +27,7 @@ bool mt_mode_band_pairs_next(mt_mode_band_pair *p)
     return true;
 }
 
-/* Of a mode that has to lie below the band: of one from 0 Hz none can. */
+/* Margin of a mode required below the band; no mode can be below one from 0 Hz. */
 static double margin_below(const mt_band *band, double hz)
 {
     return band->lower_hz > 0.0 ? mt_log_ratio(band->lower_hz, hz) : -HUGE_VAL;

@@ -22,7 +22,7 @@ typedef struct mt_mode_order {
     int mode; /* vibration index */
 } mt_mode_order;
 
-/* Rows that follow from row `row`, behind n that are there, unless list is NULL; their
+/* Appends the rows implied by row `row` to the n present, unless list is NULL; returns their
  * number. */
 static int add(const mt_subproblem *c, const mt_mode_order *what, int row, mt_mode_order *list,
                int *next_of, int n)
@@ -44,7 +44,7 @@ static int add(const mt_subproblem *c, const mt_mode_order *what, int row, mt_mo
     return more;
 }
 
-/* All of them into list and next_of, unless NULL; their number. */
+/* Writes all such rows to list and next_of, unless NULL; returns their number. */
 static int list_all(const mt_subproblem *c, mt_mode_order *list, int *next_of)
 {
     const mt_problem *const p = c->p;

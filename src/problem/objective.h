@@ -4,37 +4,39 @@
 
 #include "problem/workspace.h"
 
-/* What a change df of an objective's value is worth at a design. */
+/* A change df of an objective's value at a design, to be expressed in words. */
 typedef struct mt_price {
     double df;
-    double change; /* of the design */
-    double score;  /* of the design, by the first objective */
+    double change; /* total change of the design */
+    double score;  /* first objective of the design */
     bool first;    /* the objective is the first one */
 } mt_price;
 
 /*
- * The operations of a kind of objective, one file for each kind (objective_<kind>.c); what
- * files and results call it, and its properties, stand in study/objective_kinds.h. The search
- * makes its value f least.
+ * The operations of a kind of objective, one file for each kind (objective_<kind>.c); its names
+ * in files and results, and its properties, are in study/objective_kinds.h. The search
+ * minimises its value f.
  */
 typedef struct mt_objective_ops {
-    /* Nodes and items that f is made of; nodes[parameters of the model] of p->program. NULL:
-     * there are none. */
+    /* Finds the nodes and items of f; nodes[parameters of the model] of p->program. NULL:
+     * none. */
     mt_status (*compile)(mt_problem *p, mt_objective_stage *a, const mt_node *nodes,
                          mt_err *err);
-    /* f at the last evaluation, and its gradient[n_t], zero before, unless NULL. NULL: 0. */
+    /* f at the last evaluation, and its gradient[n_t] (zeroed by the caller) unless NULL. NULL:
+     * f is 0. */
     double (*value)(const mt_workspace *w, const mt_objective_stage *a, double *gradient);
-    /* At most any f over a box of inputs; low, high: room for
-     * the nodes of any program of p. NULL: not known. */
+    /* Lower bound of f over a box of inputs; low, high: work, as long as the largest program of
+     * p. NULL: not known. */
     double (*least)(const mt_problem *p, const mt_objective_stage *a, const double *lo,
                     const double *hi, double *low, double *high);
-    /* What results show of f. NULL: f, or the root of twice f where f is half a square. */
+    /* Value shown in results. NULL: f, or sqrt(2 f) where f is half a square. */
     double (*shown)(double f);
-    /* "0.12 kg". NULL: further than the slope at the design tells, or out of memory. The
-     * member NULL: slopes tell nothing of f. */
+    /* df in words, such as "0.12 kg". Returns NULL where df is too large for the slope at the
+     * design, or out of memory. The member NULL: slopes say nothing about f. */
     const char *(*price)(const mt_price *q, mt_arena *mem);
-    /* df is that of 1 % of a requirement: "moving it by 1 % takes ..." where the variables
-     * hardly move it. NULL: they do, or out of memory. The member NULL: slopes do not tell. */
+    /* df for 1 % of a requirement: "moving it by 1 % takes ..." where the variables hardly move
+     * it. Returns NULL where they do, or out of memory. The member NULL: slopes say nothing
+     * about that. */
     const char *(*hardly)(const mt_price *q, mt_arena *mem);
 } mt_objective_ops;
 
@@ -43,20 +45,21 @@ MT_OBJECTIVE_LIST(MT_OBJECTIVE_OPS)
 #undef MT_OBJECTIVE_OPS
 const mt_objective_ops *mt_objective_ops_of(mt_objective_type type);
 
-/* f of objective k at the last evaluation over its size, gradient[n_t] (may be NULL)
- * likewise: all that searches and ranks see. */
+/* f / size of objective k at the last evaluation, and its gradient[n_t] (may be NULL): the
+ * values that searches and rankings use. */
 double mt_objective_stage_value(const mt_workspace *w, int k, double *gradient);
-/* A value f of an objective, a half square as its root: differences of these are told. */
+/* f of an objective, or sqrt(2 f) where f is half a square: differences of this are
+ * reported. */
 double mt_objective_stage_root(const mt_objective_stage *a, double f);
-/* What results show of it. */
+/* Value of f shown in results. */
 double mt_objective_stage_shown(const mt_objective_stage *a, double f);
-/* Hold objective k of c (mt_subproblem_for_stages) at f, as well as it can be told from f, from
- * the next stage on; a misfit at the residuals of w's last evaluation. */
+/* Holds objective k of c (mt_subproblem_for_stages) at f, within its rounding, from the next
+ * stage on; a misfit at the residuals of w's last evaluation. */
 void mt_objective_stage_hold(mt_subproblem *c, const mt_workspace *w, int k, double f);
-/* The rows of the objectives that are held. */
+/* Fills the rows of the held objectives. */
 void mt_objective_stage_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out);
 
-/* Sums of n terms and the logarithms in them are rounded by less than this many times n eps. */
+/* Rounding of sums of n terms and of their logarithms is below this many times n eps. */
 #define MT_OBJECTIVE_ULPS 16.0
 
 #endif

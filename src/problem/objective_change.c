@@ -21,8 +21,8 @@ static double value(const mt_workspace *w, const mt_objective_stage *a, double *
     return f;
 }
 
-/* How far a box is from the original in coordinate i, less what its two logarithms or
- * quotients are rounded by: next to the original their difference has few digits. */
+/* Distance of a box from the original in coordinate i, less the rounding of its two logarithms
+ * or quotients: near the original their difference has few digits. */
 static double apart(const mt_problem *p, int i, double lo, double hi)
 {
     const double origin = p->whole.origin_t[i];

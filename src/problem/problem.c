@@ -91,7 +91,7 @@ static double proof_work(const mt_search *s)
     return MT_HAS(s->proof_s) ? s->proof_s * MT_CERTIFY_WORK_PER_S : MT_CERTIFY_WORK;
 }
 
-/* The study as it is asked. */
+/* The whole study as a subproblem. */
 static mt_status init_whole(mt_problem *p, mt_err *err)
 {
     const size_t n = (size_t)p->n + 1;

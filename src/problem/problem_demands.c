@@ -48,7 +48,7 @@ mt_status mt_problem_analyse(const mt_problem *p, int configuration, const doubl
     return MT_OK;
 }
 
-/* With the view's count; *out is a, which goes where that fails. */
+/* Sets the configuration's mode count; *out is a, which is deleted on failure. */
 static mt_status count_as(const mt_configuration_problem *view, mt_analysis *a, const double *x,
                           mt_analysis **out, mt_err *err)
 {
@@ -84,9 +84,9 @@ mt_status mt_configuration_drive(const mt_problem *p, const mt_configuration_pro
     return count_as(view, a, at, out, err);
 }
 
-/* Shape of each named mode of the configuration at the original design; of those that are
- * there. The model names a mode by its index at its own design: vibrations of 0 Hz, which only
- * the study counts, have none there. */
+/* Shape of each named mode of the configuration that exists at the original design. The model
+ * names a mode by its index at its own design, where vibrations of 0 Hz, which only the study
+ * counts, have no index. */
 static mt_status name_modes(mt_problem *p, mt_configuration_problem *view, mt_err *err)
 {
     const mt_model *const model = p->study->model;
@@ -142,7 +142,7 @@ static const char *instability(const mt_configuration_problem *view)
                                     : "";
 }
 
-/* Resolve a mode given by name: its place in the view's list. */
+/* Finds a mode by name: its index in the configuration's list. */
 static mt_status resolve_name(const mt_problem *p, const mt_configuration_problem *view,
                               mt_requirement *d, mt_err *err)
 {
@@ -168,8 +168,8 @@ static mt_status resolve_name(const mt_problem *p, const mt_configuration_proble
                    mt_analysis_configuration(view->original), instability(view));
 }
 
-/* An index must be there at some design; where the original one is unstable nothing has an
- * index, and it is enough that there are as many freedoms. */
+/* A mode index must exist at some design; where the original design is unstable no mode has an
+ * index, and enough degrees of freedom suffice. */
 static mt_status resolve_index(const mt_configuration_problem *view, const mt_requirement *d,
                                mt_err *err)
 {
@@ -244,10 +244,9 @@ static mt_status add_requirement(mt_problem *p, int goal_index, int configuratio
     return MT_OK;
 }
 
-/* All modes where bands are kept clear, since whatever lies in one counts, but the shapes of
- * those alone that rows look at (mt_configuration_solve adds those of the bands); and all
- * shapes where shapes are compared or followed: shares of a shape and its derivatives are sums
- * over all. */
+/* All modes where bands apply, since any may be in one, but only the shapes that rows use
+ * (mt_configuration_solve adds those of the bands); all shapes where shapes are compared or
+ * tracked: shares of a shape and its derivatives are sums over all modes. */
 static void ask_view(const mt_problem *p, int index)
 {
     mt_configuration_problem *const view = &p->views[index];
@@ -276,7 +275,7 @@ void mt_problem_query(mt_problem *p)
     }
 }
 
-/* Demands and views of goal i. */
+/* Requirements and configurations of goal i. */
 static mt_status add_goal(mt_problem *p, int i, mt_err *err)
 {
     const mt_goal *const g = &p->study->goals[i];

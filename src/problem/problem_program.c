@@ -5,8 +5,8 @@
 #include "model/values.h"
 #include "problem/objective.h"
 
-/* What node moves by with the variables, each by 1 in t, at the original design; where it does
- * not move its own value, and 1 where that is 0, too. No unit is in it but the node's own. */
+/* Change of a node with the variables, each by 1 in t, at the original design; its own value
+ * where it does not change, and 1 where that is 0 too. The result has the node's unit alone. */
 static double size_of(const mt_problem *p, mt_node node, const double *value,
                       const double *grad)
 {
@@ -36,8 +36,8 @@ static double next_power(double size)
     return ldexp(1.0, ilogb(size));
 }
 
-/* Sizes that make the search know no units. A value that there is not at the original design
- * leaves 1. */
+/* Sizes that make the search independent of units. A value that does not exist at the original
+ * design leaves 1. */
 static mt_status set_sizes(mt_problem *p, mt_err *err)
 {
     const size_t count = (size_t)p->program.count;

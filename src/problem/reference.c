@@ -35,7 +35,7 @@ static mt_status normalise(const mt_reference *r, const mt_system *sys, double l
     return MT_OK;
 }
 
-/* NULL, with the error told, where the list has no such mode. */
+/* Returns NULL, with the error set, where the list has no such mode. */
 static const mt_measured_mode *measured_mode(const mt_reference *r, int mode, mt_err *err)
 {
     if (mode > r->n_modes) {
@@ -84,8 +84,7 @@ void mt_reference_cache_free(mt_reference_cache *cache)
     *cache = (mt_reference_cache){0};
 }
 
-/* The reference's own analysis, made when first asked for, and the position of its mode
- * there. */
+/* The reference's own analysis, made on first use, and the position of its mode. */
 static mt_status computed_mode(mt_reference_cache *cache, int reference, int mode,
                                mt_analysis **out, int *pos, mt_err *err)
 {

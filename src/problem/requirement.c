@@ -54,7 +54,7 @@ double mt_requirement_unit(const mt_requirement *d, double asked)
     return none ? d->size : mt_measure_unit(d->measure, asked);
 }
 
-/* What q is off by from a limit, and what its slope is multiplied by. */
+/* Deviation of q from a limit, and the factor of its slope. */
 static double off(const mt_workspace *w, const mt_requirement *d, double q, double limit,
                   double *factor)
 {
@@ -67,7 +67,7 @@ static double off(const mt_workspace *w, const mt_requirement *d, double q, doub
                                           : (q - limit) / unit;
 }
 
-/* Number k of at most so many: its row beside an upper limit. */
+/* Writes part k of a goal with an upper limit to its row. */
 static void store_most(mt_workspace *w, const mt_requirement *d, int k, double q,
                        const double *slope, mt_nlp_values *out)
 {

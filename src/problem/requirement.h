@@ -6,30 +6,31 @@
 
 struct mt_forced_response_value;
 
-/* True where it limits the frequency of a mode by its index. Those are sorted: what holds for
- * one holds for all beyond it. */
+/* True where d limits the frequency of a mode by its index. Frequencies ascend: a limit on one
+ * holds for all beyond it. */
 bool mt_requirement_is_frequency(const mt_requirement *d);
-/* Whether the last coordinate is that of the objective "vibration", and given. */
+/* True where the last coordinate is that of the objective "vibration" and has been given a
+ * value. */
 bool mt_forced_response_given(const mt_workspace *w);
-/* Whether it speaks of a mode, by index or name. */
+/* True where d is about a mode, by index or name. */
 bool mt_requirement_is_modal(const mt_requirement *d);
-/* Values (and gradients, unless NULL where out holds none) of one requirement after its view
- * has been solved; rows as numbered. *value (may be NULL): the number that is held (infinite of
- * a mode at infinity), or the distance that its residuals amount to. */
+/* Values (and gradients, where out has arrays for them) of one requirement in its rows, after
+ * its configuration has been solved. *value (may be NULL): the limited value (infinite for a
+ * mode at infinity), or the norm of its residuals. */
 mt_status mt_requirement_eval(mt_workspace *w, const mt_requirement *d, bool with_gradient,
                               mt_nlp_values *out, double *value, mt_err *err);
-/* The number at another analysis of its view's mechanism, another position of its drive, solved
- * with the shapes that the view asks for: of a forced vibration all that is known of it, of any
- * other goal the value alone (infinite of a mode at infinity). Fails: MT_E_DOMAIN where there
- * is no such mode, as the goal's value. */
+/* The value at another position of the drive: another analysis of the mechanism, solved with
+ * the shapes that the configuration needs. For a forced vibration with its details, otherwise
+ * the value alone (infinite for a mode at infinity). Fails: MT_E_DOMAIN where there is no such
+ * mode, as the goal's value. */
 mt_status mt_requirement_find_peak(mt_workspace *w, const mt_requirement *d, mt_analysis *a,
                                    struct mt_forced_response_value *out, mt_err *err);
-/* What a difference from the number `asked` is divided by. */
+/* Divisor of a difference from the required value `asked`. */
 double mt_requirement_unit(const mt_requirement *d, double asked);
-/* What q exceeds the limit by that it is nearest to, or misses most, as the kind measures it:
- * above 0 it is missed. */
+/* Excess of q over the nearest or most violated limit, by the kind's measure; positive:
+ * violated. */
 double mt_requirement_over(const mt_requirement *d, double q);
-/* The weight that a requirement has in the case; NaN: it is a constraint. */
+/* Weight of a requirement in the subproblem; NaN: a constraint. */
 double mt_requirement_weight(const mt_workspace *w, const mt_requirement *d);
 
 #endif

@@ -43,7 +43,7 @@ void mt_subproblem_bound(mt_subproblem *c, int i, double lower, double upper)
 /* Of rows of the objective "vibration": what it is told within. */
 static const double SOFT_TOLERANCE = 1e-7;
 
-/* Tolerances of all rows; those of corners and of what is held follow. */
+/* Tolerances of all rows; those of corners and held objectives follow. */
 static mt_status init_tolerances(mt_subproblem *c, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
@@ -74,8 +74,8 @@ static mt_status init_tolerances(mt_subproblem *c, mt_arena *mem, mt_err *err)
     return MT_OK;
 }
 
-/* Behind the rows of bands those of the objective "vibration", and its coordinate: any ratio of
- * e^-49 to e^50. */
+/* Appends the rows of the objective "vibration" to those of the bands, and its coordinate: any
+ * ratio of e^-49 to e^50. */
 static void lay_out_soft(mt_subproblem *c)
 {
     const int n = c->p->n;
@@ -129,7 +129,7 @@ mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_
     return MT_OK;
 }
 
-/* The catalogue's value whose coordinate is t, to the last bit; false where there is none. */
+/* The catalogue value whose coordinate is exactly t; false where there is none. */
 static bool catalogue_value(const mt_problem *p, int i, double t, double *x)
 {
     const mt_variable *const v = &p->study->variables[i];
@@ -181,7 +181,7 @@ int mt_subproblem_rows_res(const mt_subproblem *c)
     return mt_objective_is(c->aims[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;
 }
 
-/* Whether a misfit is among the objectives before the present one. */
+/* True where a misfit is among the objectives before the present one. */
 static bool misfit_held(const mt_subproblem *c)
 {
     for (int k = 0; k < c->stage; k++) {

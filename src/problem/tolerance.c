@@ -37,7 +37,7 @@ bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d)
     return any_tolerance(p) && MT_HAS(d->equals) && d->goal->tolerance_addr != d->goal->addr;
 }
 
-/* The bounds, wider by the tolerances. */
+/* Bounds widened by the tolerances. */
 static void widen(const mt_subproblem *c)
 {
     for (int i = 0; i < c->p->n; i++) {
@@ -53,7 +53,7 @@ double mt_tolerance_factor(const mt_subproblem *c, int i, int side)
     return 1.0 + (sign * (double)side * mt_tolerance_of_variable(c->p, i));
 }
 
-/* Whether the j-th of n variables of unknown sign is high in combination c. */
+/* True where the j-th of n variables of unknown sign is high in combination c. */
 static bool is_high(int c, int j, int n)
 {
     if (n <= COMBINED_MOST) {
@@ -83,8 +83,8 @@ static mt_status make_corner(const mt_subproblem *c, const int *signs, int sides
     return MT_OK;
 }
 
-/* The corners that signs[n] leave, without analyses; at least the design itself, where a range
- * has no other rows. */
+/* Corners by signs[n], without analyses; at least the nominal design, where a range has no
+ * other rows. */
 static mt_status make_corners(const mt_subproblem *c, const int *signs, bool ranged,
                               mt_arena *mem, mt_tolerance_corners *out, mt_err *err)
 {
@@ -108,8 +108,8 @@ static mt_status make_corners(const mt_subproblem *c, const int *signs, bool ran
     return MT_OK;
 }
 
-/* Bounds on both sides of 0 turn the ends of a relative tolerance over: no sign then says which
- * end is the soft one. */
+/* Effect of raising variable i; MT_UNKNOWN for bounds on both sides of 0, where the ends of a
+ * relative tolerance swap. */
 static int sign_of(const mt_subproblem *c, int i, bool rises, bool falls)
 {
     const bool turns = c->lower[i] < 0.0 && c->upper[i] > 0.0;
@@ -166,7 +166,7 @@ static mt_status check_requirement(const mt_requirement *d, mt_err *err)
                                  d->goal_index, d->goal->mode.mode_name.s);
 }
 
-/* Whether a search can go on from a design that misses a corner. */
+/* True where a search can continue from a design that violates a corner. */
 static bool goes_on(const mt_problem *p)
 {
     bool any = false;
@@ -185,7 +185,8 @@ static bool any_unknown(const mt_problem *p, const int *signs)
     return any;
 }
 
-/* Corners of one view. Those of a cut (a position of a drive) are judged by nobody later. */
+/* Corners of one configuration. Those of a cut (a position of a drive) are not verified
+ * later. */
 static mt_status init_view(mt_subproblem *c, int view, mt_arena *mem, mt_err *err)
 {
     const mt_problem *const p = c->p;
@@ -199,8 +200,8 @@ static mt_status init_view(mt_subproblem *c, int view, mt_arena *mem, mt_err *er
     return set->n > 0 ? MT_OK : make_corners(c, signs, has_range(p, view), mem, set, err);
 }
 
-/* Corners of the views that constraints or bands look at; those of the problem's own may be
- * known. */
+/* Corners of the configurations that constraints or bands use; those of the problem's own may
+ * be known. */
 static mt_status init_views(mt_subproblem *c, const mt_problem_tolerance_box *known,
                             mt_arena *mem, mt_err *err)
 {
@@ -316,8 +317,7 @@ static void list_all(mt_subproblem *c, mt_tolerance_row *rows)
     }
 }
 
-/* Number the rows, once to count them and once to keep them, and make room for their
- * tolerances. */
+/* Numbers the rows, first to count and then to store them, with memory for their tolerances. */
 static mt_status init_rows(mt_subproblem *c, mt_arena *mem, mt_err *err)
 {
     mt_problem_tolerance_box *const r = c->tolerance_box;

@@ -29,14 +29,14 @@ static const mt_tolerance_corners *set_of(const mt_subproblem *c, int view, int 
     return view >= 0 ? &c->tolerance_box->views[view] : &c->tolerance_box->limits[requirement];
 }
 
-/* Views of cuts of a motion are judged at their corners alone. */
+/* Configurations of cuts along a drive are evaluated at their corners only. */
 static bool is_judged(const mt_subproblem *c, const mt_tolerance_row *row)
 {
     const int view = mt_tolerance_row_configuration(c, row);
     return view < c->p->n_views && !set_of(c, view, row->requirement)->exact;
 }
 
-/* Whether two rows hold one number on one side, at two corners. */
+/* True where two rows limit one value on one side, at two corners. */
 static bool is_same(const mt_tolerance_row *a, const mt_tolerance_row *b)
 {
     return a->requirement == b->requirement && a->side == b->side &&
@@ -64,7 +64,7 @@ static bool same_factor(int n, const double *a, const double *b)
     return true;
 }
 
-/* One more corner where the number of a row is worst, unless it is one already. */
+/* Adds the corner where the value of a row is worst, unless it is one already. */
 static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, const double *at,
                          mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
 {
@@ -104,7 +104,7 @@ static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, con
     return MT_OK;
 }
 
-/* The number that a row limits, over the tolerances; NULL: it is not there. */
+/* Range over the tolerances of the value that a row limits; NULL: not available. */
 static const mt_tolerance_range *range_of(const mt_subproblem *c, const mt_ranges *ranges,
                                           const mt_tolerance_row *row)
 {
@@ -148,7 +148,8 @@ static void begin_judging(mt_tolerance_cuts *cuts)
     cuts->band_margin = HUGE_VAL;
 }
 
-/* leave: [n_views of the problem] views whose rows keep far from their limits; NULL: none. */
+/* leave: [n_views of the problem] configurations whose rows are far from their limits; NULL:
+ * none. */
 static mt_status lower(mt_workspace *w, mt_nlp_values *v, const bool *leave, mt_arena *mem,
                        mt_tolerance_cuts *cuts, mt_err *err)
 {
@@ -201,8 +202,8 @@ static double largest_tolerance(const mt_problem *p)
     return most;
 }
 
-/* A row of a mode at the corner that its slopes name, solved with an analysis of a corner.
- * *far: it keeps its limit by much there. */
+/* Evaluates a row of a mode at the corner given by its slopes, with an analysis of a corner.
+ * *far: its limit holds there by a wide margin. */
 static mt_status verify_first(mt_workspace *w, const mt_tolerance_row *row, double *x,
                               mt_arena *mem, mt_tolerance_cuts *cuts, bool *far, mt_err *err)
 {
@@ -239,8 +240,8 @@ static mt_status verify_first(mt_workspace *w, const mt_tolerance_row *row, doub
     return MT_OK;
 }
 
-/* All rows of modes that are held at samples. far: [n_views of the problem] of a view, all of
- * them keep their limits by much. */
+/* All rows of modes evaluated at sampled corners. far: [n_views of the problem] all rows of a
+ * configuration hold by a wide margin. */
 static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_cuts *cuts,
                                   bool *far, mt_err *err)
 {

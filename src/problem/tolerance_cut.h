@@ -6,48 +6,49 @@
 #include "problem/tolerance.h"
 
 /*
- * A design over its own tolerances, where the corners that a search holds are samples
- * (tolerance.h): where something within them is worse, that point is one more corner. In the
- * same proportion it lies within the tolerances of every design, and all have to keep it: a
- * cutting plane of the search.
+ * Verification of a design over its own tolerances where the corners in the search are samples
+ * (tolerance.h). A point worse than the corners becomes a further corner: in the same
+ * proportion it is within the tolerances of every design, so all designs must satisfy it. It is
+ * a cutting plane of the search.
  */
 typedef struct mt_tolerance_cut {
-    int view;        /* whose corner it is; -1: of a limit, that of */
-    int requirement; /* this */
+    int view;        /* configuration of the corner; -1: of the limit of */
+    int requirement; /* this requirement */
     bool may[MT_TOLERANCE_SIDES];
     const double *factor; /* [n] */
 } mt_tolerance_cut;
 
-/* Grown by who judges. */
+/* List of cuts, extended by verification. */
 typedef struct mt_tolerance_cuts {
     int n;
     int room;
     mt_tolerance_cut *items;
-    /* of the last design judged */
+    /* of the last design verified */
     int added;
-    mt_missed missed; /* by the worst within its tolerances, of what is held at samples alone */
-    double band_margin; /* least of the bands; HUGE_VAL: none is held so */
-    long solutions;     /* modal, beside its evaluation */
+    /* violations at the worst points within its tolerances, of sampled limits only */
+    mt_missed missed;
+    double band_margin; /* least margin of the bands; HUGE_VAL: none is sampled */
+    long solutions;     /* modal solutions besides its evaluation */
 } mt_tolerance_cuts;
 
-/* Whether anything that the case holds is judged at samples. */
+/* True where a limit of the subproblem is evaluated at sampled corners. */
 bool mt_tolerance_is_sampled(const mt_subproblem *c);
 /*
- * Judge the design at t[c->n_t], and add what is worse there than the corners of the case and
- * the cuts so far: cuts->added of them; lists in mem. w: set to the case. Where the corner that
- * its slopes name misses a row, that is enough to go on with; what meets a goal there is judged
- * over all of its tolerances, but for views whose limits are far from there. Cost: an analysis
- * for each mode that is limited, then as mt_tolerance_ranges. Fails: MT_E_MEMORY,
+ * Verifies the design t[c->n_t] and adds points worse than the subproblem's corners and the
+ * cuts so far: cuts->added of them; lists in mem. w: set to the subproblem. Where the corner by
+ * the slopes violates a row, that is enough to continue the search; a goal that holds there is
+ * verified over all of its tolerances, except in configurations far from their limits. Cost: an
+ * analysis for each limited mode, then as mt_tolerance_ranges. Fails: MT_E_MEMORY,
  * MT_E_INTERNAL, MT_E_INTERRUPTED, as an evaluation.
  */
 mt_status mt_tolerance_verify(mt_workspace *w, const double *t, mt_arena *mem,
                               mt_tolerance_cuts *cuts, mt_err *err);
-/* The same of the design that w was evaluated at, whose rows at samples become those of the
- * worst within: v->in is lowered. Nothing where nothing is sampled. */
+/* The same for the design that w was evaluated at; lowers its sampled rows v->in to those of
+ * the worst points. No effect where nothing is sampled. */
 mt_status mt_tolerance_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
                              mt_tolerance_cuts *cuts, mt_err *err);
-/* The corners of a case with the cuts beside them, for mt_subproblem_lay_out of a copy of it
- * (as its `robust`), in mem. Fails: MT_E_MEMORY. */
+/* *out: corners of a subproblem and the cuts, in mem, as the tolerance_box of a copy of it
+ * before mt_subproblem_lay_out. Fails: MT_E_MEMORY. */
 mt_status mt_tolerance_add_cuts(const mt_subproblem *c, const mt_tolerance_cuts *cuts,
                                 mt_arena *mem, mt_problem_tolerance_box **out, mt_err *err);
 

@@ -42,7 +42,7 @@ typedef struct quantity {
     double z; /* least clearance that is asked for */
 } quantity;
 
-/* ln(f / edge_hz) at the corner, its slopes over t into robust->slope. */
+/* ln(f / edge_hz) at the corner, with its slopes over t in tolerance_box->slope. */
 static mt_status frequency(mt_workspace *w, int view, const mt_tolerance_row *row, int mode,
                            double edge_hz, bool with_gradient, double *value, mt_err *err)
 {
@@ -88,7 +88,7 @@ static mt_status expression(mt_workspace *w, const mt_tolerance_corner *c, mt_no
     return MT_OK;
 }
 
-/* The limit that a row keeps, of a target with its tolerance. */
+/* Limit of a row; of a target with its tolerance. */
 static double limit_of(const mt_problem *p, const mt_tolerance_row *row)
 {
     const mt_requirement *const d = &p->requirements[row->requirement];
@@ -185,8 +185,8 @@ mt_status mt_tolerance_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *
     return MT_OK;
 }
 
-/* Lowest and highest frequency of vibration mode k of a view: its range where that is known,
- * else of the design itself and its corners; false: there is no such mode. */
+/* Lowest and highest frequency of vibration mode k of a configuration: its range where known,
+ * else over the nominal design and its corners; false: no such mode. */
 static bool span_of(const mt_workspace *w, int view, int k, double *low, double *high)
 {
     const int n_corners = w->c->tolerance_box->views[view].n;

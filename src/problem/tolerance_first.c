@@ -14,7 +14,7 @@
 
 #include "problem/tolerance.h"
 
-/* The corner becomes one of the set; where it is there already its sides are added to it. */
+/* Adds the corner to the set; where it is already there, only its sides are added. */
 static void add_corner(const mt_tolerance_corner *corner, int n, mt_tolerance_corners *out)
 {
     for (int k = 0; k < out->n; k++) {
@@ -45,8 +45,8 @@ static mt_status make_first(const mt_subproblem *c, const int *signs, const doub
     return MT_OK;
 }
 
-/* Sides on which goals limit mode `mode` of a view: of bands either, below their upper edges
- * and one beyond. */
+/* Sides on which goals limit mode `mode` of a configuration: bands on both sides, for modes
+ * below their upper edges and one above. */
 static void find_sides(const mt_subproblem *c, int view, int mode, double hz_before,
                        bool *sides)
 {
@@ -81,7 +81,8 @@ static mt_status add_sides(const mt_subproblem *c, const int *signs, const doubl
     return MT_OK;
 }
 
-/* A row that nobody thought of is held somewhere all the same. */
+/* Gives a side that no corner has to the first corner, so that every row is evaluated at
+ * one. */
 static void hold_somewhere(mt_tolerance_corners *out)
 {
     for (int side = 0; side < MT_TOLERANCE_SIDES && out->n > 0; side++) {

@@ -43,8 +43,8 @@ static mt_status make_box(mt_workspace *w, mt_arena *mem, mt_ranges *out, box *b
     return MT_OK;
 }
 
-/* The corners of the lowest and the highest value by what raising each input does; false: one
- * of them does both. */
+/* The corners of the lowest and the highest value, from the effect of raising each input;
+ * false: an input has both effects. */
 static bool find_corners(const box *b)
 {
     const double *const x = b->w->x;
@@ -123,7 +123,8 @@ static mt_status slope_modes(void *context, int k, double *slope, mt_err *err)
                     : mt_fail(err, MT_E_DOMAIN, "no such mode");
 }
 
-/* What a row limits is searched closely, anything else as `others` says: [modes][side]. */
+/* Accuracy of the descent: full for values that a row limits, `others` for the rest:
+ * [modes][side]. */
 static void choose_descents(const mt_workspace *w, int view, int modes,
                             mt_tolerance_descent others,
                             mt_tolerance_descent (*descents)[MT_TOLERANCE_SIDES])
@@ -258,7 +259,7 @@ static mt_status range_numbers(const box *b, mt_err *err)
     return MT_OK;
 }
 
-/* Of each view; 0: nobody looks at it. */
+/* Number of modes wanted of each configuration; 0: not used. */
 static void count_modes(const mt_workspace *w, int *modes)
 {
     const mt_problem *const p = w->p;
@@ -277,7 +278,7 @@ static void count_modes(const mt_workspace *w, int *modes)
     }
 }
 
-/* Whether a row that is held at samples limits a mode of the view. */
+/* True where a row evaluated at sampled corners limits a mode of the configuration. */
 static bool is_sampled_view(const mt_subproblem *c, int view)
 {
     bool any = false;

@@ -45,7 +45,7 @@ mt_status mt_tolerance_range_init(int n, mt_arena *mem, mt_tolerance_range *out,
 }
 
 /* What does not exist somewhere is the least and the greatest there is. */
-/* Compare value[m] at x with what is known: out[m]. */
+/* Updates out[m] with value[m] at x. */
 static void note(const mt_tolerance_probe *q, const double *x, const double *value,
                  mt_tolerance_range *out)
 {
@@ -176,8 +176,8 @@ static mt_status search_line(sampler *s, int k, mt_tolerance_side side, mt_err *
     return visit_between(s, 1.0, err);
 }
 
-/* *changes: whether number k changes along input i, through the point that it is best at, by
- * more than rounding. Its ends say so where its slope is nothing. */
+/* *changes: value k changes along input i, through its best point, by more than rounding;
+ * tested at the ends of i where its slope is 0. */
 static mt_status changes_along(sampler *s, int k, int i, double value, bool *changes,
                                mt_err *err)
 {
@@ -237,8 +237,8 @@ static mt_status step(sampler *s, int k, mt_tolerance_side side, mt_err *err)
     return s->out[k].value[side] == before ? search_line(s, k, side, err) : MT_OK;
 }
 
-/* Some of the same points in boxes about the best of number k, each half as wide as the one
- * before: over ridges, where frequencies meet, no slope and no axis leads on. */
+/* Sample points in boxes about the best point of value k, each half as wide as the one before:
+ * this crosses ridges, where frequencies meet and neither slopes nor axes lead on. */
 static mt_status step_around(sampler *s, int k, mt_tolerance_side side, mt_err *err)
 {
     const mt_tolerance_probe *const q = s->q;
@@ -290,8 +290,8 @@ static mt_status repeat(sampler *s, move step_of, int k, mt_tolerance_side side,
     return MT_OK;
 }
 
-/* True where another number has been looked at about the corner where number k is best. All are
- * noted wherever one is. */
+/* True where another value's search has sampled around the corner where value k is best: all
+ * values are recorded at every sample. */
 static bool is_explored(const sampler *s, const double *at)
 {
     const size_t n = (size_t)s->q->n;

@@ -99,7 +99,7 @@ mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
     return MT_OK;
 }
 
-/* Places for n views, those that are there with what they have. */
+/* Grows the list to n configurations, keeping existing ones. */
 static mt_status make_room(mt_workspace *w, int n, mt_err *err)
 {
     if (n <= w->n_views) {
@@ -115,7 +115,7 @@ static mt_status make_room(mt_workspace *w, int n, mt_err *err)
     return MT_OK;
 }
 
-/* Views of one geometry make it once. */
+/* Configurations with the same geometry share it. */
 static mt_status share_view(mt_workspace *w, const mt_configuration_work *view, mt_err *err)
 {
     bool shared = false;
@@ -128,7 +128,7 @@ static mt_status share_view(mt_workspace *w, const mt_configuration_work *view, 
     return MT_OK;
 }
 
-/* An analysis of the view, unless it is there already. */
+/* Makes the configuration's analysis where missing. */
 static mt_status open_view(mt_workspace *w, mt_configuration_work *view,
                            const mt_configuration_problem *of, mt_err *err)
 {
@@ -290,15 +290,14 @@ static void say_progress(const mt_workspace *w)
     }
 }
 
-/* Values that are known; what is judged over tolerances or positions of a drive later may not
- * hold. */
+/* True where a feasible value is verified later over tolerances or positions of a drive, and
+ * may still fail. */
 static bool judged_later(const mt_workspace *w)
 {
     return mt_drive_positions_any(w->p) || mt_tolerance_is_sampled(w->c);
 }
 
-/* True where somebody wants to know of a design that meets all goals, and can be told its
- * value. */
+/* True where progress of feasible designs is reported and the value can be. */
 static bool is_wanted(const mt_workspace *w)
 {
     const mt_subproblem *const c = w->c;

@@ -72,8 +72,8 @@ static mt_status sandwich(parts *s, const double *b, int ra, const double *a, in
     return MT_OK;
 }
 
-/* Directions without mass: undamped ones to the end of `follow`, damped ones to that of x, each
- * scaled to |k| = 1, c of the latter diagonal. */
+/* Directions without mass: appends undamped ones to `follow`, damped ones to x, each scaled to
+ * |k| = 1, with c of the latter diagonal. */
 static mt_status split_massless(parts *s, int z, const double *t0, mt_err *err)
 {
     const ptrdiff_t n = s->n;
@@ -98,8 +98,8 @@ static mt_status split_massless(parts *s, int z, const double *t0, mt_err *err)
     return MT_OK;
 }
 
-/* Rigid-body modes are repeated, any basis of them does: that one in which their own damping is
- * diagonal tells those that nothing damps. */
+/* Rigid-body modes are repeated and have no unique basis: in the one that makes their own
+ * damping diagonal, undamped ones are visible. */
 static mt_status turn_rigid(parts *s, const mt_modes *m, mt_err *err)
 {
     const ptrdiff_t n = s->n;
@@ -142,7 +142,7 @@ static mt_status split_coordinates(parts *s, const mt_basis_problem *p, mt_err *
                   : split_massless(s, z, p->mass->t + ((ptrdiff_t)p->mass->rank * s->n), err);
 }
 
-/* What follows, eliminated: factor of G_UU, W. */
+/* Eliminates the following coordinates: factor of G_UU, W. */
 static mt_status eliminate_following(parts *s, const mt_modes *m, mt_err *err)
 {
     const ptrdiff_t u = s->u;
@@ -182,8 +182,8 @@ static mt_status eliminate_following(parts *s, const mt_modes *m, mt_err *err)
     return MT_OK;
 }
 
-/* The stiffness of what stays, after `eliminate_following`; W is what it was before, G_UX, and
- * is solved for here. */
+/* Stiffness of the kept coordinates, after `eliminate_following`; W is G_UX on entry, and is
+ * solved for here. */
 static mt_status stiffness(parts *s, const mt_modes *m, double complex *g, mt_err *err)
 {
     const ptrdiff_t stay = s->stay;
@@ -276,7 +276,7 @@ static bool is_real(size_t n, const double complex *x)
     return real;
 }
 
-/* What follows of the adjoints of S_p, whose U^T S_p^T are su. */
+/* follow_s of the adjoints of S_p; su: U^T S_p^T. */
 static mt_status follow_adjoint(parts *s, int p, const double complex *su, mt_basis *b,
                                 mt_err *err)
 {
@@ -288,7 +288,7 @@ static mt_status follow_adjoint(parts *s, int p, const double complex *su, mt_ba
     return mt_complex_solve(&s->factor, s->f->n_out, solved, err);
 }
 
-/* Inputs, outputs and the rest. */
+/* beta, sigma and rest of the transfer. */
 static mt_status channels(parts *s, mt_basis *b, mt_err *err)
 {
     mt_transfer *const t = &b->t;

@@ -166,7 +166,7 @@ static bool is_bent(const trace *c, const point *a, const point *b)
     return false;
 }
 
-/* Halve every interval that asks for it, once. */
+/* Halves once every interval that needs it. */
 static mt_status halve(trace *c, mt_err *err)
 {
     const int had = c->n;
@@ -209,8 +209,8 @@ static double infinite_between(const trace *c, double a, double b)
     return 0.0;
 }
 
-/* Root of rise_of between a and b, where it has the values fa and fb of opposite signs:
- * regula falsi that halves a side that stays (Illinois), and the middle where that is slow. */
+/* Root of rise_of between a and b, with values fa and fb of opposite signs: regula falsi that
+ * halves the value of an end that stays (Illinois), bisection where that is slow. */
 static mt_status polish(trace *c, ptrdiff_t pair, double ends[2], double rise[2], mt_sample *at,
                         double *w, mt_err *err)
 {

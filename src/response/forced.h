@@ -3,13 +3,14 @@
 #define RESPONSE_FORCED_H
 
 /*
- * Forced vibration about an equilibrium, as matrices; motions e^{i w t}, s = i w, w > 0:
+ * Matrices of forced vibration about an equilibrium; motions e^{i w t}, s = i w, w > 0:
  *     (s^2 M + s C + K + i H) x = [B_0 + s B_1 + s^2 B_2] u,
  *     y = [S_0 + s S_1 + s^2 S_2] x + [D_0 + s D_1 + s^2 D_2 + E_1/s + E_2/s^2] u.
  * K, M, C (viscous damping) and H (structural damping: loss factor times stiffness) are real
- * symmetric, n x n, column-major, both triangles. The powers of s are derivatives in time: an
- * acceleration is S_2, a ground that moves by u instead of accelerating by u has its force in
- * B_2. E: a place that moves with the ground, where u is the ground's acceleration or velocity.
+ * symmetric, n x n, column-major, both triangles. Powers of s are time derivatives: an output
+ * acceleration uses S_2, a prescribed ground displacement u acts through B_2 (an acceleration
+ * through B_0). E: motion in space of a point on the ground, where u is the ground's
+ * acceleration or velocity.
  */
 enum { MT_FORCED_POWERS = 3 };
 

@@ -41,7 +41,7 @@ static double dual_norm(const work *k, const double *x)
     return dual == x ? mt_norm2(k->n_x, x) : sqrt(fmax(mt_dot(k->n_x, x, dual), 0.0));
 }
 
-/* Takes x, which is overwritten, in: with its image. */
+/* Adds x (overwritten) and its image to the coordinates. */
 static mt_status admit_vector(work *k, double *x, mt_err *err)
 {
     const double was = dual_norm(k, x);
@@ -63,7 +63,7 @@ static mt_status admit_vector(work *k, double *x, mt_err *err)
     return MT_OK;
 }
 
-/* The shapes of one force beside the modes. */
+/* Adds the shapes of one force. */
 static mt_status add_shapes(work *k, force *f, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(k->scratch);
@@ -111,8 +111,8 @@ static bool keep_modes(work *k, double *lambda)
     return k->kept > 0 ? true : mt_large_refuse(k, "it has no vibration modes");
 }
 
-/* Motions that cancel leave the coordinates not quite orthonormal: a bound of the norm of
- * X^T H X - I, which is what a solution in them is off by, as a part of its force. */
+/* Cancellation leaves the coordinates not quite orthonormal: returns a bound of the norm of X^T
+ * H X - I, the relative error of a solution in them, as a part of its force. */
 static mt_status find_skew(work *k, double *skew, mt_err *err)
 {
     double *const dual = mt_arena_f64(k->scratch, (size_t)k->n_x, 1);
@@ -277,7 +277,7 @@ static double *ensure(const work *k, double **m, int rows, int cols)
     return *m;
 }
 
-/* A place in space moves along with the ground. */
+/* Adds the ground motion to a sensor's motion in space. */
 static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
 {
     const mt_port *const out = &k->ports->out[o];
@@ -348,7 +348,7 @@ static mt_status fill_reduced_problem(work *k, mt_err *err)
     return MT_OK;
 }
 
-/* The greatest ratio that modes left out have. */
+/* Largest damping ratio of the modes left out. */
 static double ratio_left(const work *k)
 {
     const mt_damping_def *const d = &k->l->sys->damping;

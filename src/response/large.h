@@ -6,22 +6,24 @@
 
 /*
  * The forced problem of a large mechanism in few coordinates: its rigid-body modes, its lowest
- * modes, and of every force that comes in, is seen or damps locally the shapes g, A g, A^2 g
- * ... of what those modes leave of it (lowest_forced.h), which is what a series in w^2 has.
- * (Modal synthesis with static correction of all orders: Krylov's space; Galerkin's error in
- * it is no more than the series'.)
+ * modes, and for each input, output and local damper with force shape g the shapes g, A g, A^2
+ * g ... of the part of g that these modes leave (lowest_forced.h), the terms of a series in
+ * w^2. (Modal synthesis with static correction of all orders: a Krylov space; Galerkin's error
+ * in it is at most that of the series.)
  */
 typedef struct mt_large {
     mt_forced f;       /* of unit mass, K diagonal */
-    mt_modes modes;    /* all of that: themselves */
-    int shapes;        /* coordinates beside the modes */
-    mt_left_out *left; /* row: by the problem's coordinates */
+    mt_modes modes;    /* all modes of f: unit vectors */
+    int shapes;        /* coordinates besides the modes */
+    mt_left_out *left; /* its rows are in the coordinates of f */
 } mt_large;
 
-/* Up to frequency `to`; as mt_response_open_large. Results in mem. */
+/* Builds *out for frequencies up to `to` [rad/s]; arguments and failures as
+ * mt_response_open_large. Results in mem. */
 mt_status mt_large_make(mt_lowest *l, const mt_port_set *ports, double to, mt_arena *mem,
                         mt_large *out, bool *is, char why[MT_LARGE_WHY], mt_err *err);
-/* Has the transfer of a basis of it (with all modes) count what is left out. */
+/* Makes the transfer of a basis of large->f (with all modes) bound the error of what is left
+ * out. */
 mt_status mt_large_left(const mt_large *large, mt_basis *basis, mt_arena *mem, mt_err *err);
 
 #endif

@@ -130,7 +130,7 @@ static mt_status open_outputs(work *k, bool *is, mt_err *err)
     return MT_OK;
 }
 
-/* One row that damps. */
+/* Adds one damping row. */
 static mt_status add_side(work *k, const mt_term *t, const mt_cx *row, double damping,
                           double structural, int partner, mt_err *err)
 {

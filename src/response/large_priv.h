@@ -6,13 +6,13 @@
 #include "mechanics/rows.h"
 #include "response/large.h"
 
-/* What large.c and large_forces.c share. */
+/* Shared by large.c and large_forces.c. */
 
-/* A force: what it does to the bodies, by coordinates. */
+/* A generalised force on the bodies, and its projections. */
 typedef struct mt_large_force {
     mt_lowest_push push;
-    double loss;    /* of a spring's force: 1 + i loss times this */
-    double *in_all; /* [n] by the coordinates of the problem */
+    double loss;    /* loss factor of a spring's force: the force times 1 + i loss */
+    double *in_all; /* [n] in the coordinates of the problem */
     mt_left_part left;
 } mt_large_force;
 
@@ -20,7 +20,7 @@ typedef struct mt_large_side {
     mt_large_force f;
     double damping;
     double structural;
-    int partner; /* the side that it is multiplied with; itself */
+    int partner; /* the side paired with this one; may be itself */
 } mt_large_side;
 
 typedef struct mt_large_work {
@@ -37,15 +37,15 @@ typedef struct mt_large_work {
     int free;
     int kept;     /* vibration modes */
     int size;     /* columns of x */
-    int most;     /* room for them */
+    int most;     /* capacity of x, columns */
     double *x;    /* n_x x most, orthonormal */
-    double *ax;   /* H A of each: x^T A x in the norm of H is x^T ax */
+    double *ax;   /* H A times each column: x^T A x in the norm of H is x^T ax */
     double *dual; /* [n_x] work */
     double to;
     double shift;
     double alpha;
     double beta;
-    double loss; /* of all springs alike */
+    double loss; /* common to all springs */
     mt_large_force *in;
     mt_large_force *outs;
     mt_large_side *sides;
@@ -55,16 +55,15 @@ typedef struct mt_large_work {
     double *z;
 } mt_large_work;
 
-/* Why there is no such way; false. */
+/* Sets the reason of a refusal; returns false. */
 bool mt_large_refuse(mt_large_work *k, const char *why);
-/* Value of a number that may not be there: then 0. */
+/* Value of a node; 0 where there is none. */
 double mt_large_value(const mt_large_work *k, mt_node node);
-/* The power of s of an output. */
+/* Power of s of an output. */
 int mt_large_power(const mt_port *out);
-/* Row of a sensor's direction, in k->states. */
+/* Writes the row of a sensor's direction into k->states. */
 void mt_large_sensor_row(mt_large_work *k, int channel);
-/* The forces of all inputs, outputs and of what damps locally. *is false: refused. Fails:
- * MT_E_MEMORY. */
+/* Forces of all inputs, outputs and local dampers. *is false: refused. Fails: MT_E_MEMORY. */
 mt_status mt_large_forces(mt_large_work *k, bool *is, mt_err *err);
 
 #endif

@@ -29,7 +29,7 @@ static const double AGREEMENT = 1e-9;
 static const double SHARP = 1e-6;
 static const double BESIDE = 1e-3;
 
-/* Whether coordinates i and j are tied to each other. */
+/* True where coordinates i and j are coupled. */
 static bool is_tied(const mt_poles *k, ptrdiff_t i, ptrdiff_t j)
 {
     return mt_poles_damping(k, i, j) != 0.0 || k->b->g[i + (j * k->n)] != 0.0 ||
@@ -41,7 +41,7 @@ static bool is_rigid(const mt_poles *k, ptrdiff_t j)
     return j < k->b->n_modes && k->omega[j] == 0.0;
 }
 
-/* Places of the states of the coupled coordinates. */
+/* Indices of the states of the coupled coordinates. */
 static mt_status place_states(mt_poles *k, mt_err *err)
 {
     k->x_of = mt_arena_int(k->mem, (size_t)k->n);
@@ -60,8 +60,8 @@ static mt_status place_states(mt_poles *k, mt_err *err)
     return MT_OK;
 }
 
-/* Row of the states' matrix that belongs to coordinate i, of M q'' + C q' + G q = 0 without
- * what the rates of b add: add `scale` times it to row `to`. */
+/* Adds `scale` times the row of coordinate i of the state matrix, of M q'' + C q' + G q = 0
+ * without the part of the rates of b, to row `to`. */
 static void add_states_row(const mt_poles *k, ptrdiff_t i, double complex scale, ptrdiff_t to,
                            double complex *a)
 {
@@ -262,7 +262,7 @@ static void hand_out(const mt_poles *k, int first, mt_pole_sum *out, double comp
     }
 }
 
-/* Refuses a sum that is not what direct solves say, at the frequencies of all poles. */
+/* Refuses a sum that deviates from direct solves at the frequencies of all poles. */
 static mt_status verify(const mt_poles *k, const mt_pole_sum *sum, mt_err *err)
 {
     const mt_sample got = {.h = mt_arena_alloc(k->mem, (size_t)k->pairs, sizeof *got.h)};
@@ -289,7 +289,7 @@ static mt_status verify(const mt_poles *k, const mt_pole_sum *sum, mt_err *err)
     return agree ? MT_OK : mt_poles_refuse("damping turns two modes into nearly one", err);
 }
 
-/* Poles that there are at most. */
+/* Largest number of poles. */
 static size_t most_of(const mt_poles *k)
 {
     return (2 * (size_t)k->n) + 2;

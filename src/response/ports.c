@@ -119,7 +119,8 @@ mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, m
     return MT_OK;
 }
 
-/* How many forces a spring (or damper) of this name has; *first: the first of them. */
+/* Number of force components of the spring (or damper) of this name; *first: the first of
+ * them. */
 static int count_forces(const mt_system *sys, const char *own, bool damper, int *first)
 {
     int count = 0;

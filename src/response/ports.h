@@ -5,18 +5,18 @@
 #include "mechanics/system.h"
 
 /*
- * What a vibration is caused by (inputs) and seen in (outputs), by name:
+ * Inputs and outputs of a forced vibration, by name:
  *     inputs   grip.x             force along the direction of a sensor (grip.rx: moment)
  *              base.x[:MOTION]    motion of the ground along a global axis, by default its
  *                                 acceleration
  *     outputs  grip.x[:MOTION]    motion of a sensor, by default its displacement; in space, or
- *                                 as seen from the ground (MOTION relative_acceleration, ...)
- *              spring.NAME        force or torque in a spring, with what its loss factor takes;
- *              damper.NAME        in a damper; positive where it pulls
+ *                                 relative to the ground (MOTION relative_acceleration, ...)
+ *              spring.NAME        force or torque in a spring, loss factor included; positive
+ *              damper.NAME        in tension; the same of a damper
  *              spring.NAME.x      component of a bushing's force (moment: .rx, in the plane
- *                                 .r): what its stiffness makes of the motion of the second end
- *                                 against the first, along axes that the first carries; of
- *                                 dampers, too
+ *                                 .r): its stiffness times the motion of the second end
+ *                                 relative to the first, along axes fixed to the first; the
+ *                                 same of a damper
  *              joint.NAME.x       force of the joint's first body on its second, at the joint
  *     MOTION   displacement, velocity, acceleration.
  */
@@ -30,16 +30,18 @@ typedef enum mt_port_kind {
 
 typedef struct mt_port {
     mt_port_kind kind;
-    int index;     /* channel, axis of the ground, spring, joint, of the system */
-    int axis;      /* of a joint's force; component of a bushing's (3 ... 5: moments), or -1 */
-    int motion;    /* derivative in time: 0 displacement, 1 velocity, 2 acceleration */
-    bool relative; /* of a sensor, to the ground */
-    bool turns;    /* an angle, or a torque */
-    const char *name; /* in full: "grip.x:acceleration" */
+    /* index in the system of the channel, ground axis, spring, damper or joint */
+    int index;
+    /* axis of a joint's force; component of a bushing's (3 ... 5: moments), or -1 */
+    int axis;
+    int motion;       /* derivative in time: 0 displacement, 1 velocity, 2 acceleration */
+    bool relative;    /* of a sensor: relative to the ground */
+    bool turns;       /* rotational: an angle or a torque */
+    const char *name; /* full name, such as "grip.x:acceleration" */
     const char *unit; /* "m/s^2" */
 } mt_port;
 
-/* Those of one response. */
+/* The ports of one response. */
 typedef struct mt_port_set {
     int n_in;
     int n_out;
@@ -47,12 +49,12 @@ typedef struct mt_port_set {
     mt_port *out; /* [n_out] */
 } mt_port_set;
 
-/* The name before the colon, in mem, and what motion stands behind it, where one does: out's
- * motion, and with relative_too what "relative_" says. Fails: MT_E_USAGE, MT_E_MEMORY. */
+/* Splits NAME:MOTION: the name, in mem, and out's motion where given; with relative_too also
+ * out's `relative`, from the prefix "relative_". Fails: MT_E_USAGE, MT_E_MEMORY. */
 mt_status mt_port_split(const char *text, bool relative_too, mt_arena *mem, const char **name,
                         mt_port *out, mt_err *err);
-/* Read one; the name is in mem. Fails: MT_E_USAGE (there is none of this name, with the nearest
- * one that there is; one that has no single force), MT_E_MEMORY. */
+/* Port by its name; port->name is in mem. Fails: MT_E_USAGE (an unknown name, with the nearest
+ * known one; an element without a single force), MT_E_MEMORY. */
 mt_status mt_port_input(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,
                         mt_err *err);
 mt_status mt_port_output(const mt_system *sys, const char *text, mt_arena *mem, mt_port *out,

@@ -43,7 +43,7 @@ static double *ensure(build *k, double **x, int rows, int columns)
     return *x;
 }
 
-/* What damps, of the last solve; either NULL: 0. */
+/* Damping matrices of the last solve; either NULL: 0. */
 static mt_status damping_of(mt_analysis *a, mt_arena *mem, double **c, double **h, mt_err *err)
 {
     const size_t n = (size_t)mt_linear_freedoms(a->lin);
@@ -125,7 +125,7 @@ static mt_status add_input(build *k, int i, mt_err *err)
     return MT_OK;
 }
 
-/* What moves with the ground besides, of a sensor's motion in space. */
+/* Ground motion in a sensor's motion in space. */
 static mt_status add_ground(build *k, int o, int row, mt_err *err)
 {
     for (int i = 0; i < k->n_in; i++) {
@@ -254,7 +254,7 @@ static mt_status add_output(build *k, int o, mt_err *err)
     return mt_fail(err, MT_E_INTERNAL, "the ground is not an output");
 }
 
-/* About a position that does not hold nothing vibrates. */
+/* Refuses a position that is not a stable equilibrium. */
 static mt_status admit(const mt_modes *m, mt_err *err)
 {
     if (m->n_unstable > 0) {

@@ -34,7 +34,7 @@ static mt_status read_ports(mt_response *r, const mt_response_request *q, mt_err
     return MT_OK;
 }
 
-/* The position holds: mt_response_problem refuses one that does not. */
+/* The position is an equilibrium: mt_response_problem refuses others. */
 static mt_status find_growing(mt_response *r, mt_err *err)
 {
     bool passive = true;
@@ -46,7 +46,7 @@ static mt_status find_growing(mt_response *r, mt_err *err)
     return MT_OK;
 }
 
-/* All that follows from the matrices. */
+/* Everything derived from the matrices. */
 static mt_status finish_response(mt_response *out, const mt_basis_problem *problem, bool direct,
                                  mt_err *err)
 {

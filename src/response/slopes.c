@@ -114,7 +114,7 @@ static mt_status subtract_d(work *k, const pair *x, pair *to, mt_err *err)
     return MT_OK;
 }
 
-/* What the joints carry: A^T forces ~ w. */
+/* Joint forces: A^T forces ~ w. */
 static mt_status solve_joint_forces(work *k, const pair *w, pair *forces, mt_err *err)
 {
     for (int part = 0; part < 2; part++) {
@@ -201,7 +201,7 @@ static mt_status open_ratios(work *k, side *s, mt_err *err)
     return MT_OK;
 }
 
-/* l or m, with w what there is besides D. */
+/* Completes l or m; w: its part other than D. */
 static mt_status close_side(work *k, side *s, pair *w, mt_err *err)
 {
     MT_TRY(subtract_d(k, &s->states, w, err));

@@ -329,7 +329,8 @@ static mt_status forms_by(work *k, int p, double *const t[PARTS], mt_err *err)
     return output_row(k, p, t, err);
 }
 
-/* Of t (n_inputs times ny x ny x PARTS, the parts last) what is not 0 for every input. */
+/* Keeps the entries of t (n_inputs times ny x ny x PARTS, the parts last) that are nonzero for
+ * some input. */
 static mt_status keep_used(const work *k, const double *t, mt_arena *mem, mt_slope_forms *f,
                            mt_err *err)
 {
@@ -495,7 +496,7 @@ static mt_status batch_at(const mt_slope_forms *f, const batch *b, int count, co
     return MT_OK;
 }
 
-/* Without the forms: all pairs of the problem, of which one is asked for. */
+/* Without the forms: derivatives of all pairs of the problem, of which one is used. */
 static mt_status single_at(const mt_slope_forms *f, double w, double complex *h,
                            double complex *dh, mt_arena *scratch, mt_err *err)
 {

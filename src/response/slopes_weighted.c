@@ -252,7 +252,7 @@ static mt_status multipliers(work *k, int cols, const double *w, double *to, mt_
     return MT_OK;
 }
 
-/* psi of all columns of E, nq x ny, and what they are in the modes. */
+/* psi of all columns of E, nq x ny, and its modal coefficients. */
 static mt_status turned(work *k, const double *mass_e, double *psi, mt_err *err)
 {
     const int n = k->n;
@@ -394,7 +394,7 @@ static double force_slope(const work *k, int p, double *part, double *e)
                : -mt_linear_between_slope(k->lin, p, MT_MATRIX_MASS, e, k->shift);
 }
 
-/* The same of a joint's force, what stands in it and turns included. */
+/* The same for a joint's force, with its own coefficients and turns. */
 static mt_status joint_slope(work *k, int p, double *part, double *motion, double *out,
                              mt_err *err)
 {
@@ -408,7 +408,7 @@ static mt_status joint_slope(work *k, int p, double *part, double *motion, doubl
     return MT_OK;
 }
 
-/* sum W (d(sigma) . q - d(t) . l), of what is no joint's force. */
+/* sum W (d(sigma) . q - d(t) . l), for an output other than a joint's force. */
 static double output_slope(const work *k, int p, double *room, double *motion)
 {
     mt_slope_part part[MT_FORCE_PARTS];

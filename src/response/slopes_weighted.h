@@ -4,7 +4,7 @@
 
 #include "response/slopes.h"
 
-/* A sum over frequencies of one response, weighted. */
+/* A weighted sum over frequencies of one response. */
 typedef struct mt_slope_weights {
     int out;
     int in;
@@ -14,8 +14,8 @@ typedef struct mt_slope_weights {
 } mt_slope_weights;
 
 /**
- * slope[n_inputs] = Re sum_i weight_i dH_{out, in}(w_i)/d(input), what the sum over
- * mt_response_slopes is, for all frequencies with one contraction of the derivatives.
+ * slope[n_inputs] = Re sum_i weight_i dH_{out, in}(w_i)/d(input), equal to the weighted sum of
+ * mt_response_slopes, with one contraction of the derivatives for all frequencies.
  * O(frequencies n^2) (n^3 where damping couples modes), and once O(n^3 + entries of the terms
  * n_inputs). Fails as mt_response_slopes, MT_E_INTERRUPTED.
  */

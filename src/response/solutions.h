@@ -5,12 +5,12 @@
 #include "response/basis.h"
 
 /*
- * Of one input and one output, solutions x = D^-1 B u and their adjoints y = D^-1 S^T at many
+ * Solutions x = D^-1 B u and adjoints y = D^-1 S^T of one input and one output at many
  * frequencies, in the coordinates of the problem.
  */
 typedef struct mt_solutions {
     const mt_basis *basis; /* not owned */
-    mt_transfer one;       /* that pair alone */
+    mt_transfer one;       /* the transfer of that pair alone */
     int in;
     int out;
 } mt_solutions;
@@ -21,19 +21,19 @@ typedef struct mt_solved {
     double *y[2];
 } mt_solved;
 
-/* At w, for all inputs and outputs: x (n x n_in) and y (n x n_out). *singular: there are none.
- * Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+/* Solutions at w [rad/s] for all inputs and outputs: x (n x n_in) and y (n x n_out). *singular:
+ * D is singular, x and y are not set. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_basis_solve(const mt_basis *b, double w, double complex *x, double complex *y,
                          bool *singular, mt_arena *scratch, mt_err *err);
 /* Results in mem; refers to the basis. Fails: MT_E_MEMORY. */
 mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *mem,
                             mt_solutions *s, mt_err *err);
 /* At w: x[n], y[n], and the value h of the response, infinite where it has none (transfer.h).
- * *singular: there are no x and y. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+ * *singular: x and y are not set. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_solutions_one(const mt_solutions *s, double w, double complex *x,
                            double complex *y, double complex *h, bool *singular,
                            mt_arena *scratch, mt_err *err);
-/* At w[count]. *singular: there are none at one of them. O(n^2) for each where damping is
+/* At w[count]. *singular: D is singular at one of them. O(n^2) for each where damping is
  * diagonal. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_solutions_at(const mt_solutions *s, int count, const double *w,
                           const mt_solved *out, bool *singular, mt_arena *scratch, mt_err *err);

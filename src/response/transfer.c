@@ -121,7 +121,7 @@ static void residual_of_solution(const work *k, int cols, const double complex *
     }
 }
 
-/* x := the factor's solution of D x = b; in place where they are one. */
+/* x := solution of D x = b by the factor; x and b may be the same array. */
 static mt_status back(const work *k, int cols, const double complex *b, double complex *x,
                       mt_err *err)
 {
@@ -136,7 +136,7 @@ static mt_status back(const work *k, int cols, const double complex *b, double c
     return MT_OK;
 }
 
-/* b := D^-1 b, n x cols. What resonates is left at 0. */
+/* b := D^-1 b, n x cols; resonant coordinates are left at 0. */
 static mt_status solve_dynamic_stiffness(const work *k, int cols, double complex *b,
                                          mt_arena *mem, mt_err *err)
 {
@@ -173,7 +173,7 @@ static void sum_powers(ptrdiff_t n, const double complex *factor_p,
     }
 }
 
-/* x := D' q - beta' with its sign turned: what D q' is. */
+/* x := beta' - D' q, which equals D q'. */
 static void slope_side(const work *k, double complex *x)
 {
     const ptrdiff_t n = k->t->n;
@@ -215,8 +215,8 @@ static mt_status solutions(work *k, bool slope, bool adjoint, mt_arena *mem, mt_
     return adjoint ? solve_dynamic_stiffness(k, n_out, k->a, mem, err) : MT_OK;
 }
 
-/* y := sigma q, a column of it. By hand: half of it is 0 most often, and C's own products of
- * complex numbers ask whether any is infinite. */
+/* y := sigma q, one column. Written out: half of sigma is usually 0, and C's complex product
+ * tests for infinities. */
 static void sense(const mt_transfer *t, int p, const double complex *q, double complex *y)
 {
     const ptrdiff_t n_out = t->n_out;
@@ -315,7 +315,7 @@ static double error_of(const work *k, ptrdiff_t o, ptrdiff_t i)
     return (ROUNDINGS * DBL_EPSILON * sum) + (left * right);
 }
 
-/* |A^p g| m^p, or |g| where whole, of a force and of what damps along its motion x. */
+/* |A^p g| m^p (|g| where whole) of a force and of the local damping along its motion x. */
 static double left_of(const work *k, const mt_left_part *own, double power,
                       const double complex *x, double m, bool whole)
 {
@@ -334,7 +334,7 @@ static double left_of(const work *k, const mt_left_part *own, double power,
     return sum;
 }
 
-/* The rounding of one force, which x meets. */
+/* Rounding error of one force times x. */
 static double noise_of(const work *k, const mt_left_part *own, double power,
                        const double complex *x)
 {
@@ -346,7 +346,7 @@ static double noise_of(const work *k, const mt_left_part *own, double power,
     return pow(k->w, power) * sum;
 }
 
-/* What is left out may be worth so much. */
+/* Error bound of what is left out (mt_left_out). */
 static double left_error(const work *k, ptrdiff_t o, ptrdiff_t i)
 {
     const mt_left_out *const l = k->t->left;
@@ -404,7 +404,7 @@ static void set_infinite(const mt_sample *out, ptrdiff_t at)
     }
 }
 
-/* Entries that a resonant coordinate has a part in. */
+/* Marks the entries in which a resonant coordinate takes part. */
 static void mark_resonant(const work *k, const mt_sample *out)
 {
     const ptrdiff_t n = k->t->n;
@@ -426,7 +426,7 @@ static void mark_resonant(const work *k, const mt_sample *out)
     }
 }
 
-/* Nothing has a value. */
+/* Marks all entries as without a value. */
 static void all_infinite(const mt_transfer *t, const mt_sample *out)
 {
     for (ptrdiff_t at = 0; at < (ptrdiff_t)t->n_in * t->n_out; at++) {

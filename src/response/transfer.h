@@ -10,29 +10,30 @@
 #include "response/forced.h"
 
 /*
- * What is solved at each frequency, in whatever coordinates q (those of the problem: direct; of
- * its modes: basis.h):
+ * The system solved at each frequency, in coordinates q (of the problem: direct; of its modes:
+ * basis.h):
  *     D(s) q = beta(s) u,   D = s^2 m + s c + g,   y = sigma(s) q + rest(s) u,   s = i w.
  * g, c, m are diagonal (vectors), or symmetric with both triangles.
  */
 enum { MT_REST_LOWEST = -2, MT_REST_HIGHEST = 4, MT_REST_POWERS = 7 };
 
-/* A force or a motion that a reduced problem has in few coordinates: the rest of it, g, is of
- * modes above `lambda` (mt_left_out), in which H = K + shift M is the identity and M is A. */
+/* A force or a motion that a reduced problem represents in few coordinates. The remainder g is
+ * in modes above `lambda` (mt_left_out), in coordinates where H = K + shift M is the identity
+ * and M is A. */
 typedef struct mt_left_part {
-    int order;    /* p: (A^j g, j < p) are among the coordinates */
+    int order;    /* p: A^j g, j < p, are among the coordinates */
     double size;  /* |g| */
     double open;  /* |A^p g| [s^2p] */
-    double noise; /* rounding of what the modes have of it, in coordinates where H is 1 */
-    double loose; /* of what its rigid-body modes have */
+    double noise; /* rounding of its part in the vibration modes, in coordinates where H is 1 */
+    double loose; /* rounding of its part in the rigid-body modes */
 } mt_left_part;
 
-/* What a reduced problem leaves out. Of forces f and outputs s, with m = w sqrt(w^2 + a^2),
- * more by the shift, and q = 1 - m/(lambda + shift), Galerkin's error is at most
+/* What a reduced problem leaves out. For a force f and an output s, with m = w sqrt(w^2 + a^2)
+ * plus the shift's part, and q = 1 - m/(lambda + shift), Galerkin's error is at most
  *     c |A^p f| |A^r s| m^(p + r) / q,
- * c from how damping turns D = (1 + i t) H - (w^2 + shift (1 + i t) - i w a) M; damping ratios
- * of what is left out, which coordinates show as those of other modes, are worth at most
- * 4 zeta (w / sqrt(lambda)) |f| |s| / q^2. What damps locally is a force there, too. */
+ * c from the effect of damping on D = (1 + i t) H - (w^2 + shift (1 + i t) - i w a) M. Damping
+ * ratios of the modes left out, replaced by those of other modes, add at most 4 zeta (w /
+ * sqrt(lambda)) |f| |s| / q^2. Local damping counts as a force. */
 typedef struct mt_left_out {
     double lambda; /* [rad^2/s^2] */
     double shift;  /* [rad^2/s^2] */
@@ -44,11 +45,11 @@ typedef struct mt_left_out {
     const mt_left_part *out; /* [n_out] */
     int n_side;
     const mt_left_part *side; /* [n_side] */
-    const double *row;        /* n x n_side: motion along each, by coordinate */
+    const double *row;        /* n x n_side: motion along each side, by coordinate */
     const double *damping;    /* [n_side] */
     const double *structural; /* [n_side] */
-    const double *root;       /* [n] of H's diagonal; 0: of a rigid-body mode */
-    const double *in_power;   /* [n_in] of w */
+    const double *root;       /* [n] root of H's diagonal; 0: a rigid-body mode */
+    const double *in_power;   /* [n_in] power of w */
     const double *out_power;  /* [n_out] */
 } mt_left_out;
 
@@ -60,42 +61,43 @@ typedef struct mt_transfer {
     const double *m;         /* n x n, or [n] */
     const double *c;         /* the same; NULL: 0 */
     const double complex *g; /* n x n, or [n] */
-    /* [n] bounds of the errors of the eigenvalues that coordinates are modes of [rad^2/s^2];
-     * NULL: those of rounding entries of D */
+    /* [n] error bounds of the eigenvalues, where coordinates are modes [rad^2/s^2]; NULL:
+     * rounding of the entries of D */
     const double *error;
     const mt_left_out *left;                       /* NULL: nothing */
     const double complex *beta[MT_FORCED_POWERS];  /* n x n_in; NULL: 0 */
     const double complex *sigma[MT_FORCED_POWERS]; /* n_out x n; NULL: 0 */
     bool real[MT_FORCED_POWERS];                   /* sigma[p] has no imaginary part */
-    /* n_out x n_in, of power p at p - MT_REST_LOWEST; NULL: 0 */
+    /* n_out x n_in, coefficient of s^p at p - MT_REST_LOWEST; NULL: 0 */
     const double complex *rest[MT_REST_POWERS];
 } mt_transfer;
 
-/* At one frequency, n_out x n_in each. */
+/* Response at one frequency, n_out x n_in each. */
 typedef struct mt_sample {
-    /* an infinite real part: there is no value, since a motion that nothing damps resonates */
+    /* infinite real part: no value, an undamped motion resonates */
     double complex *h;
-    double complex *dh; /* derivative with respect to w [per rad/s]; NULL: not asked for */
-    /* NULL: not asked for. |error of h| <= this, to first order: what rounding makes of D (or
-     * of its eigenpairs), and of the sums that follow. Infinite where h is. */
+    double complex *dh; /* derivative with respect to w [per rad/s]; NULL: not wanted */
+    /* NULL: not wanted. |error of h| <= this, to first order: rounding of D (or its eigenpairs)
+     * and of the sums that follow. Infinite where h is. */
     double *error;
 } mt_sample;
 
-/* The problem itself, as it stands: a factor of D(s) per frequency. Refers to f's matrices. */
+/* The transfer in the problem's own coordinates: one factorisation of D(s) per frequency.
+ * Refers to f's matrices. */
 mt_status mt_transfer_direct(const mt_forced *f, mt_arena *mem, mt_transfer *out, mt_err *err);
 
-/* At w > 0 [rad/s]. O(n (n_in + n_out n_in)) where all is diagonal, else O(n^3). No heap after
- * the first call. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
+/* Response at w > 0 [rad/s]. O(n (n_in + n_out n_in)) where all is diagonal, else O(n^3). No
+ * heap after the first call. Fails: MT_E_DOMAIN, MT_E_MEMORY. */
 mt_status mt_transfer_at(const mt_transfer *t, double w, const mt_sample *out,
                          mt_arena *scratch, mt_err *err);
-/* The solutions themselves, at w: q (n x n_in), and the adjoint a (n x n_out), D a = sigma^T;
- * *singular: D is, and there are none. h (NULL: not asked for): the value, as
- * mt_transfer_at. */
+/* Solutions at w: q (n x n_in), and the adjoint a (n x n_out), D a = sigma^T; *singular: D is
+ * singular, and neither is set. h (NULL: not wanted): the value, as mt_transfer_at. */
 mt_status mt_transfer_solve(const mt_transfer *t, double w, double complex *q,
                             double complex *a, double complex *h, bool *singular,
                             mt_arena *scratch, mt_err *err);
 
-/* rest[power] as an array of one's own, for who fills it. */
+/* Makes rest[power] a writable copy in mem (zeros where it was NULL) and returns it; NULL: out
+ * of memory. */
 double complex *mt_transfer_rest(mt_transfer *t, int power, mt_arena *mem);
 
 #endif

@@ -60,7 +60,7 @@ void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c)
     c->least = change;
 }
 
-/* All of them, the last variable fastest. */
+/* All combinations, the last variable fastest. */
 static mt_status list_all(const mt_catalogue_search *d, int n, mt_combination **out,
                           mt_err *err)
 {
@@ -77,8 +77,8 @@ static mt_status list_all(const mt_catalogue_search *d, int n, mt_combination **
     return MT_OK;
 }
 
-/* By the change that cannot be avoided, then in the order of the list (pick lies in one array
- * in that order). */
+/* Orders by unavoidable change, then by the order of the list (pick is in one array in that
+ * order). */
 static int by_change(const void *a, const void *b)
 {
     const mt_combination *const x = a;
@@ -114,8 +114,8 @@ static mt_status rank(mt_catalogue_search *d, mt_combination *const *list, int n
     return MT_OK;
 }
 
-/* True where no combination from `next` on can rank among the best: all of them change more
- * than the last of these. */
+/* True where no combination from `next` on can rank among the best: each has a larger
+ * unavoidable change than the last of these. */
 static bool settled(const mt_catalogue_search *d, const mt_combination *next, int most,
                     mt_combination *const *best, int n_best)
 {
@@ -123,8 +123,8 @@ static bool settled(const mt_catalogue_search *d, const mt_combination *next, in
            best[most - 1]->feasible && next->least > best[most - 1]->f[0];
 }
 
-/* Of the next n combinations so many as the budget has evaluations for, beside those that judge
- * what might rank; *share: of each, 0: no limit. */
+/* Number of the next n combinations that the budget allows, besides the verification of those
+ * that might rank; *share: evaluations for each, 0: no limit. */
 static int affordable(const mt_catalogue_search *d, int n, long *share)
 {
     const long most = d->c->search.max_evaluations;
@@ -146,7 +146,7 @@ typedef struct ranking {
     mt_combination **best; /* [most] */
 } ranking;
 
-/* All n of them, all[n]. */
+/* Pointers to all n combinations: all[n]. */
 static mt_status enumerate(mt_catalogue_search *d, int n, ranking *r,
                            mt_catalogue_search_report *report, mt_combination ***all,
                            mt_err *err)
@@ -232,7 +232,8 @@ static mt_status collect(const mt_catalogue_search *d, const ranking *r, mt_nlp_
     return MT_OK;
 }
 
-/* Where none keeps its limits between the positions, those that keep them at these stand. */
+/* Where none satisfies its limits between the positions, those that satisfy them at the named
+ * ones count as feasible. */
 static bool take_broken(const ranking *r, mt_combination *const *all, int n)
 {
     bool any = false;

@@ -7,76 +7,77 @@
 #include "result/result.h"
 
 /*
- * Search with catalogues. A combination is one value from every catalogue; the other variables,
- * where there are any, are searched continuously for each combination (a search like any other,
- * over gap assignments where there are bands).
+ * Search with catalogues. A combination is one value from every catalogue; remaining variables
+ * are searched continuously for each combination (an ordinary search, over mode placements
+ * where there are bands).
  *
- * Few combinations are enumerated, all of them, in the order of the change that they cannot do
- * without; with the objective "change" the enumeration ends where no later one can rank among
- * those that are kept. Beyond MT_CATALOGUE_SEARCH_MOST combinations
- * (MT_CATALOGUE_SEARCH_MOST_MIXED where continuous variables remain) the search is a heuristic:
- * the relaxed problem (every catalogue as the interval that it spans), roundings of its
- * designs, then steps to neighbouring values while these help. Where continuous variables
- * remain branch and bound follows (catalogue_search_branch.c): combinations are excluded, many
- * at once, or searched, until none is left or its effort is spent (not for objectives that
- * boxes do not bound). What neither settles, a proof does where the modes can be enclosed
- * (catalogue_search_prove.c): which gap assignments some combination has, that none meets all
- * goals, that none is better than the best found.
+ * Few combinations are all enumerated, by ascending unavoidable change; with the objective
+ * "change" the enumeration ends where no later one can rank among those kept. Beyond
+ * MT_CATALOGUE_SEARCH_MOST combinations (MT_CATALOGUE_SEARCH_MOST_MIXED where continuous
+ * variables remain) the search is a heuristic: the relaxed problem (every catalogue as the
+ * interval that it spans), roundings of its designs, then steps to neighbouring values while
+ * these improve. Where continuous variables remain, branch and bound follows
+ * (catalogue_search_branch.c): it excludes combinations, many at once, or searches them, until
+ * none is left or its budget is spent (not for objectives that boxes do not bound). What
+ * remains open is left to a proof where the modes can be enclosed (catalogue_search_prove.c):
+ * which mode placements some combination has, that no combination meets all goals, that none is
+ * better than the best found.
  */
 enum { MT_CATALOGUE_SEARCH_MOST = 200000, MT_CATALOGUE_SEARCH_MOST_MIXED = 400 };
 
 typedef struct mt_catalogue_search_report {
     bool mixed;    /* continuous variables remain */
-    bool all;      /* every combination was judged, or shown not to rank */
-    bool branched; /* by branch and bound (catalogue_search_branch.c) */
-    /* several positions of one drive: only combinations that might rank were followed between
+    bool all;      /* every combination was evaluated, or shown not to rank */
+    bool branched; /* branch and bound ran (catalogue_search_branch.c) */
+    /* a drive has several positions: only combinations that might rank were followed between
      * them */
     bool driven;
     int judged;
-    double combinations; /* how many there are */
-    double open;         /* of these it has neither excluded nor searched */
-    /* by what share of the best one's objective one of these may be less, at most, by bounds of
-     * the objective alone; NaN: not known */
+    double combinations; /* total number */
+    double open;         /* of these, neither excluded nor searched */
+    /* largest share of the best objective by which an open combination may improve it, by
+     * bounds of the objective alone; NaN: not known */
     double open_within;
-    int followed; /* of the feasible ones */
-    bool broken;  /* none of these keeps its limits between the positions */
-    int feasible; /* of those judged: combinations with a design that meets all goals */
+    int followed; /* feasible combinations followed */
+    bool broken;  /* none of those followed keeps its limits between the positions */
+    int feasible; /* of those evaluated: combinations with a design that meets all goals */
     /* branch and bound with proofs alone (catalogue_search_prove.c) */
-    bool asked;        /* it was tried */
-    bool settled;      /* every gap assignment but n_kinds is proven impossible */
-    bool complete;     /* no goal was left out of the question */
-    bool cut;          /* its budget ended before it was known whether one is better */
-    int n_kinds;       /* assignments that a combination has */
-    double n_possible; /* monotone assignments there are; 1 without bands */
-    /* proven: no design's objective is less by more than this share of the best one's; NaN: not
-     * proven */
+    bool asked;        /* it ran */
+    bool settled;      /* every mode placement but n_kinds is proven infeasible */
+    bool complete;     /* the proof covers every goal */
+    bool cut;          /* its budget ended before a better one was excluded */
+    int n_kinds;       /* mode placements that some combination has */
+    double n_possible; /* number of monotone mode placements; 1 without bands */
+    /* proven: no design improves the best objective by more than this share; NaN: not proven */
     double best_within;
     long boxes;
-    const char *reason; /* why there is no proof; NULL */
+    const char *reason; /* why there is no proof, or NULL */
 } mt_catalogue_search_report;
 
-/* One combination judged. */
+/* One combination and its evaluation. */
 typedef struct mt_combination {
-    int *pick; /* [n_listed] index in each catalogue */
-    double *t; /* [n + 1] the design; its coordinates of catalogues are those of pick */
-    double *f; /* [n_aims] objectives there */
+    int *pick;          /* [n_listed] index in each catalogue */
+    double *t;          /* [n + 1] the design; coordinates of catalogues are those of pick */
+    double *f;          /* [n_aims] objectives there */
     const double *from; /* [n + 1] a design t to start from; NULL: none */
-    double least;       /* half of the squared change that pick alone makes */
+    double least;       /* half of the squared change due to pick alone */
     mt_missed missed;
     double kkt;
     bool judged;
     bool feasible;
     bool singular;
-    bool flat; /* one of equal designs, as the search found it */
-    /* from position to position of its drives and over its tolerances, and judged by that */
+    bool flat; /* one of several equally good designs, as the search left it */
+    /* evaluated between the positions of its drives and over its tolerances */
     bool followed;
-    bool broken; /* it misses a limit between the positions alone: feasible, where all do */
+    /* it misses a limit only between the positions; counts as feasible where all others do
+     * too */
+    bool broken;
     long evals;
     int starts;
     mt_stop stop;
 } mt_combination;
 
-/* A search under way: what its files share. */
+/* State of the search, shared by its files. */
 typedef struct mt_catalogue_search {
     mt_workspace *const *workers; /* [n_workers] */
     int n_workers;
@@ -91,69 +92,71 @@ typedef struct mt_catalogue_search {
     long evals;
     int starts;
     mt_stop stop;
-    mt_steps steps; /* from combination to combination */
+    mt_steps steps; /* improvements over the combinations */
 } mt_catalogue_search;
 
 bool mt_study_has_catalogues(const mt_study *study);
 /*
- * workers[n_workers] as for mt_search_designs. Designs by the objectives in order (equal to 12
- * digits: in the order of the combinations), each combination once; else, where none is
- * feasible, by the squares of the violations. out->solutions belong to stage 0. Deterministic
- * for any number of workers. Results in mem. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INPUT.
+ * Search over all combinations; workers[n_workers] as for mt_search_designs. Designs by the
+ * objectives in order (equal to 12 digits: in the order of the combinations), each combination
+ * once; without a feasible one, by the squares of the violations. out->solutions belong to
+ * stage 0. Deterministic for any number of workers. Results in mem. Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL, MT_E_INPUT.
  */
 mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                                     mt_nlp_result *out, mt_catalogue_search_report *report,
                                     mt_err *err);
 
-/* catalogue_search_judge.c: judge list[n], on workers; at most budget evaluations for each
- * where it is mixed (0: no limit). Adds to the search's counters. */
+/* catalogue_search_judge.c: evaluate list[n], on workers, with at most `budget` evaluations for
+ * each where mixed (0: no limit). Adds to the search's counters. */
 mt_status mt_catalogue_search_verify(mt_catalogue_search *d, int n, mt_combination *list,
                                      long budget, mt_err *err);
-/* catalogue_search_judge.c: of best[n] those with equal designs beside them are searched once
- * more, and become the nearest to the original of these. Of each combination any one served
- * until here: to seek the nearest takes longer than to find one. Where it is mixed. */
+/* catalogue_search_judge.c: search those of best[n] that are flat once more for the design
+ * nearest to the original; before, any of the equally good designs was enough and takes less
+ * time. Only where mixed. */
 mt_status mt_catalogue_search_settle(mt_catalogue_search *d, int n, mt_combination *const *best,
                                      mt_err *err);
-/* catalogue_search_undetermined.c: directions that the goals do not settle at the best
- * combination, into out: single catalogues any of whose values does, and those of the
- * continuous variables with the catalogues as they are. Searches that combination once more
- * where it is mixed. */
+/* catalogue_search_undetermined.c: unidentifiable directions at the best combination, into out:
+ * single catalogues of which any value serves, and directions of the continuous variables with
+ * the catalogues fixed. Searches that combination once more where mixed. */
 mt_status mt_catalogue_search_unidentifiable(mt_catalogue_search *d, const mt_combination *best,
                                              mt_nlp_result *out, mt_err *err);
-/* catalogue_search_judge.c: search the continuous variables of c once more, for those
- * directions (nothing of c is changed); memory of out->undetermined is mem's. */
+/* catalogue_search_judge.c: search the continuous variables of c once more for their
+ * unidentifiable directions (c is unchanged); out->unidentifiable in mem. */
 mt_status mt_catalogue_search_directions(mt_catalogue_search *d, const mt_combination *c,
                                          mt_arena *mem, mt_nlp_result *out, mt_err *err);
-/* Judge a feasible combination over the range of motion (motion.h, drive_path_limit.h) and over
- * its tolerances (problem/tolerance_cut.h), once; nothing where it is mixed (its own search has
- * done so). It may be feasible no more. */
+/* Evaluate a feasible combination over the range of motion (drive_path.h, drive_path_limit.h)
+ * and over its tolerances (problem/tolerance_cut.h), once; no effect where mixed (its own
+ * search includes this). It may become infeasible. */
 mt_status mt_catalogue_search_follow(mt_catalogue_search *d, mt_combination *c, mt_err *err);
-/* Evaluations that this takes at most, of one combination; 0: nothing, or there is no limit. */
+/* Largest number of evaluations of mt_catalogue_search_follow for one combination; 0: none, or
+ * no limit. */
 long mt_catalogue_search_verdict(const mt_catalogue_search *d);
-/* True where a is ahead of b. Feasible ones first, by the objectives; the others by squares. */
+/* True where a ranks before b: feasible ones first, by the objectives; infeasible ones by
+ * squares. */
 bool mt_catalogue_search_before(const mt_catalogue_search *d, const mt_combination *a,
                                 const mt_combination *b);
-/* Room for n combinations. */
+/* Allocates n combinations in the search's memory. */
 mt_status mt_catalogue_search_alloc(const mt_catalogue_search *d, int n, mt_combination **out,
                                     mt_err *err);
-/* The whole case with the bounds of its catalogues closed on the values x[n], laid out. w: set
- * to it. Fails as mt_subproblem_lay_out. */
+/* The whole subproblem with the bounds of its catalogues fixed at the values x[n], laid out; w
+ * is set to it. Fails: as mt_subproblem_lay_out. */
 mt_status mt_catalogue_search_close(const mt_subproblem *whole, const double *x,
                                     mt_workspace *w, mt_arena *mem, mt_subproblem *out,
                                     mt_err *err);
-/* Coordinates and unavoidable change of c from its pick. */
+/* Sets the coordinates and the unavoidable change of c from its pick. */
 void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c);
-/* catalogue_search_prove.c: what branch and bound can settle, into the report; combinations
- * that it finds join (*all)[*n], judged. */
+/* catalogue_search_prove.c: results of branch and bound with proofs, into the report;
+ * combinations that it finds are appended to (*all)[*n], evaluated. */
 mt_status mt_catalogue_search_prove(mt_catalogue_search *d, mt_combination ***all, int *n,
                                     mt_catalogue_search_report *report, mt_err *err);
-/* catalogue_search_branch.c: search or exclude all combinations, as far as the effort goes:
- * beside continuous variables, after the heuristic. (*all)[*n] are the combinations judged so
- * far; those that are searched join them. Into the report: branched, open, all. Cost: at most
- * 1000 searches, and certificates up to the budget of a proof. */
+/* catalogue_search_branch.c: search or exclude all combinations within the budget, where
+ * continuous variables remain, after the heuristic. Combinations searched are appended to
+ * (*all)[*n], those evaluated so far. Sets branched, open and all of the report. Cost: at most
+ * 1000 searches, and proofs up to their budget. */
 mt_status mt_catalogue_search_branch(mt_catalogue_search *d, mt_combination ***all, int *n,
                                      mt_catalogue_search_report *report, mt_err *err);
-/* The heuristic (catalogue_search_near.c). (*list)[*n]: the combinations that it evaluated. */
+/* The heuristic (catalogue_search_near.c). (*list)[*n]: the combinations evaluated. */
 mt_status mt_catalogue_search_near(mt_catalogue_search *d, mt_combination ***list, int *n,
                                    mt_err *err);
 

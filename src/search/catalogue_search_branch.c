@@ -170,8 +170,8 @@ static void serialize_look(void *context, int task, mt_serializer *serializer)
     }
 }
 
-/* Find whether there is a certificate for the geometry of a combination that has been judged;
- * then there is for others. */
+/* Tests whether a proof is possible for the geometry of an evaluated combination; it is then
+ * possible for others too. */
 static mt_status probe(branching *v, mt_err *err)
 {
     const mt_catalogue_search *const d = v->d;
@@ -226,7 +226,7 @@ static void end(const branching *v)
     }
 }
 
-/* One more box, its ranges those of b but for catalogue k (-1: all are b's). */
+/* Adds a box with the ranges of b except for catalogue k (-1: all are b's). */
 static mt_status push(branching *v, const box *b, int k, int first, int last, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -262,8 +262,8 @@ static mt_status push_all(branching *v, mt_err *err)
     return push(v, &whole, -1, 0, 0, err);
 }
 
-/* Both halves of a box, at the catalogue of which it has the greatest share: among those that
- * shape the geometry, if there are certificates to be had. */
+/* Halves a box at the catalogue of which it has the greatest share; at those that shape the
+ * geometry first, where proofs are possible. */
 static mt_status halve(branching *v, const box *b, mt_err *err)
 {
     const mt_catalogue_search *const d = v->d;
@@ -298,7 +298,7 @@ static const mt_combination *best_of(const branching *v)
     return best;
 }
 
-/* The combination of these values among those that are known; NULL: it is not. */
+/* The known combination with these values; NULL: none. */
 static mt_combination *known(const branching *v, const int *pick)
 {
     const size_t size = (size_t)v->d->n_listed * sizeof *pick;
@@ -310,8 +310,8 @@ static mt_combination *known(const branching *v, const int *pick)
     return NULL;
 }
 
-/* Designs of the first objective below this are asked for: better than the best one by more
- * than searches differ, or as good where other objectives follow. Infinite: no best one. */
+/* Bound of the first objective for wanted designs: better than the best one by more than
+ * searches differ, or equal where other objectives follow. Infinite without a best one. */
 static double cap_of(const branching *v)
 {
     const mt_combination *const best = best_of(v);
@@ -332,7 +332,7 @@ static int by_bound(const void *a, const void *b)
     return x->number < y->number ? 1 : -1;
 }
 
-/* The boxes of the next round; those that cannot be better leave the list with it. */
+/* Selects the boxes of the next round, and drops those that cannot be better. */
 static void take(branching *v, double cap)
 {
     int kept = 0;
@@ -351,8 +351,8 @@ static void take(branching *v, double cap)
     }
 }
 
-/* To be searched next, where that has not been done; from x (NULL: from nowhere), where it has
- * been done, too. */
+/* Adds the combination to those searched next, unless it was searched; from the design x (NULL:
+ * no start) in any case. */
 static mt_status propose(branching *v, const int *pick, const double *x, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -391,7 +391,7 @@ static void pick_of(const mt_catalogue_search *d, const box *b, const double *x,
     }
 }
 
-/* What follows from the looks: boxes are gone, halved, or searched. */
+/* Applies the results of a round: boxes are excluded, halved, or searched. */
 static mt_status follow_up(branching *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -417,7 +417,7 @@ static mt_status follow_up(branching *v, mt_err *err)
     return MT_OK;
 }
 
-/* A combination that was searched joins the others, or takes the place of itself. */
+/* Adds a searched combination to the others, or replaces its earlier record. */
 static mt_status join(branching *v, mt_combination *c, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -459,7 +459,7 @@ static mt_status search_fresh(branching *v, mt_err *err)
     return MT_OK;
 }
 
-/* One round; boxes whose combination has not been searched stay open. */
+/* One round; boxes whose combination was not searched stay open. */
 static mt_status round_of(branching *v, double cap, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -492,7 +492,7 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
     return MT_OK;
 }
 
-/* Before a round: how much is left to look at, and how much better that may be. */
+/* Progress before a round: what remains open, and by how much it may be better. */
 static void note_open(const branching *v, mt_catalogue_search_report *report)
 {
     const mt_combination *const best = best_of(v);

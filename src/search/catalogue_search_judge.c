@@ -68,8 +68,7 @@ bool mt_catalogue_search_before(const mt_catalogue_search *d, const mt_combinati
     return mt_merit_before(&x, &y, MT_EQUAL_JUDGED);
 }
 
-/* Bands, each mode against each of them; the objective "clearance" is the least room left,
- * negative. */
+/* Margins of all modes to all bands; the objective "clearance" is minus the least of them. */
 static void verify_bands(const mt_workspace *w, mt_combination *c)
 {
     double room = HUGE_VAL;
@@ -121,7 +120,7 @@ static mt_status verify_design(const mt_catalogue_search *d, int worker, mt_comb
     return MT_OK;
 }
 
-/* Motions of the design at c, whose views have been solved with w. */
+/* Follows the drives of design c, whose configurations have been solved with w. */
 static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_err *err)
 {
     int *const below = mt_arena_int(mem, (size_t)w->c->n_bands);
@@ -161,7 +160,7 @@ static mt_status verify_positions(mt_catalogue_search *d, mt_combination *c, mt_
     return MT_OK;
 }
 
-/* A combination is judged over more than the positions that are named. */
+/* True where a combination is verified beyond the named positions. */
 static bool is_followed(const mt_catalogue_search *d)
 {
     return !d->mixed && (mt_drive_positions_any(d->p) || mt_tolerance_is_sampled(d->c) ||
@@ -262,7 +261,7 @@ mt_status mt_catalogue_search_close(const mt_subproblem *whole, const double *x,
     return mt_subproblem_lay_out(out, NULL, 0, NULL, w, mem, err);
 }
 
-/* The case in which c's values are searched; w is set to it. */
+/* The subproblem with c's catalogue values; w is set to it. */
 static mt_status close_on(const mt_catalogue_search *d, const mt_combination *c, long budget,
                           mt_workspace *w, mt_arena *mem, mt_subproblem *out, mt_err *err)
 {
@@ -284,7 +283,8 @@ static mt_status close_on(const mt_catalogue_search *d, const mt_combination *c,
     return MT_OK;
 }
 
-/* The case of a combination whose design is known: from there, to the nearest of equal ones. */
+/* The subproblem of a combination with a known design: from there, to the nearest of equally
+ * good ones. */
 static void search_again(mt_subproblem *closed, const double *known)
 {
     closed->hint = known;
@@ -395,7 +395,8 @@ static mt_status verify_mixed(void *context, int worker, int task, mt_task_path 
     return rc;
 }
 
-/* What is known of a combination that is a design. */
+/* Writes or reads the evaluated combinations of a task, where there are no continuous
+ * variables. */
 static void serialize_designs(void *context, int task, mt_serializer *serializer)
 {
     const judging *const j = context;

@@ -86,8 +86,8 @@ static mt_status judge(walk *w, mt_err *err)
     return MT_OK;
 }
 
-/* Index of the last value whose coordinate is at most t (0 where none is), and where t lies
- * between it and the next, 0 to 1. */
+/* Index of the last value whose coordinate is at most t (0 where none is), and the position of
+ * t between it and the next, 0 to 1. */
 static int bracket(const mt_catalogue_search *d, int k, double t, double *part)
 {
     const int i = d->variable[k];

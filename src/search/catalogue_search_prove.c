@@ -78,7 +78,7 @@ static mt_status best_of(const prover *v, const mt_combination **out, mt_err *er
     return MT_OK;
 }
 
-/* The combination of x, which joins the list where it is not in it. */
+/* The combination of x; appended to the list where it is not in it. */
 static mt_status combination_at(prover *v, const double *x, mt_combination **out, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -108,8 +108,8 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
     return MT_OK;
 }
 
-/* Judge the combination of a design that meets the question: on its own, or searched from
- * there. */
+/* Evaluates the combination of a design that the proof found: alone, or searched from that
+ * design. */
 static mt_status judge(prover *v, const double *x, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -149,7 +149,7 @@ static mt_status proof_of(prover *v, int geometry, mt_proof **out, mt_err *err)
     return MT_OK;
 }
 
-/* Kinds that one geometry has and none before it had. */
+/* Mode placements that one geometry has and none before it had. */
 static mt_status note_kinds(prover *v, const mt_certify_search *found, mt_err *err)
 {
     const int m = v->d->p->n_bands;
@@ -168,7 +168,7 @@ static mt_status note_kinds(prover *v, const mt_certify_search *found, mt_err *e
     return MT_OK;
 }
 
-/* Ask each geometry with its share of `most`, and judge what is found. */
+/* Runs the proof of each geometry with its share of `most`, and evaluates the designs found. */
 static mt_status ask(prover *v, outcome *out, mt_err *err)
 {
     double most = fmin(PART * v->d->c->proof_work, v->left);
@@ -207,8 +207,8 @@ static double cap_of(const mt_problem *p, double f, double share)
     return squares ? f * (1.0 - share) * (1.0 - share) : f - (share * fabs(f));
 }
 
-/* Prove the best to be the best, but for a share of its objective; a better one that is found
- * takes its place. */
+/* Proves that the best is within a share of its objective of the optimum; a better design that
+ * is found replaces it. */
 static mt_status improve(prover *v, double share, mt_err *err)
 {
     for (int round = 0; round < ROUNDS; round++) {
@@ -260,7 +260,7 @@ static mt_status prove(prover *v, mt_err *err)
     return MT_OK;
 }
 
-/* Why the question as a whole cannot be asked. */
+/* Reason why the whole question cannot be proven. */
 static mt_status give_reason(const prover *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
@@ -271,8 +271,8 @@ static mt_status give_reason(const prover *v, mt_err *err)
     return rc == MT_OK ? mt_arena_check(d->mem, err) : rc;
 }
 
-/* One question for each geometry, if they are not too many: 0 geometries, and the reason, where
- * there is no proof. */
+/* One proof for each geometry, where these are not too many; 0 geometries, and the reason,
+ * where no proof is possible. */
 static mt_status begin(prover *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;

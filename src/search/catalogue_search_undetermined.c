@@ -74,8 +74,8 @@ static double size_of(const crossing *x, int row)
     return stage ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
 }
 
-/* Greatest change of any row, in tolerances, over all values of variable i; infinite where an
- * assignment changes or a value is lost. */
+/* Greatest change of any row, in tolerances, over all values of variable i; infinite where a
+ * mode placement changes or a value does not exist. */
 static double effect_of(crossing *x, int i)
 {
     const mt_problem *const p = x->d->p;

@@ -128,8 +128,8 @@ static double base_margin(const edge *e, double room)
     return room + (e->sign * (e->log_hz - e->log_base_hz));
 }
 
-/* True where `room` at a position is less than the least so far. Of equal ones (both ends of a
- * travel that is alike on either side) the lower position is meant, then the first edge. */
+/* True where `room` at a position is less than the least so far. Of equal margins (both ends of
+ * a symmetric travel) the lower position counts, then the first edge. */
 static bool is_less(double room, double at, double least, double least_at)
 {
     const bool equal = fabs(room - least) <= EQUAL_ROOM;
@@ -191,8 +191,8 @@ static mt_status measure(walk *w, sample *s, mt_err *err)
     return MT_OK;
 }
 
-/* Look at one more position; its place in the samples is w->n - 1. What is 0 but for rounding
- * of the way there, is 0: far nearer than positions come to each other. */
+/* Adds a sample; its index is w->n - 1. A value of 0 within the rounding of its path is set to
+ * 0: far closer than samples come to each other. */
 static mt_status look(walk *w, double position, int next, mt_err *err)
 {
     const double travel = fabs(w->samples[1].at - w->samples[0].at);
@@ -319,7 +319,7 @@ static mt_status refine(walk *w, mt_err *err)
     return MT_OK;
 }
 
-/* Edges beside the bands: the mode below and the mode above each. */
+/* Edges of the bands with their modes: the mode below and the mode above each band. */
 static mt_status list_edges(walk *w, const int *below, const mt_band_along_path *bands, int n,
                             mt_err *err)
 {

@@ -5,80 +5,80 @@
 #include "problem/drive_positions.h"
 
 /*
- * A design over the range of motion: the modes beside the bands are followed from each named
- * position of a family to the next, by samples. Their slopes d f / d position are exact and
- * choose the step: between two neighbouring positions no mode moves further than a tenth of
- * what it is away from the band (of what the slopes at both ends say, and as it turned out), or
- * than 1e-4 of itself where it stands nearly on an edge; where the cubic through values and
- * slopes comes nearer than all positions so far, one more position is looked at there. That is
- * no proof: a mode that is at rest at all positions may move between them.
+ * A design over the range of motion of a drive: the modes beside the bands are followed by
+ * samples between consecutive named positions. Exact slopes df/d(position) choose the step:
+ * between two neighbouring samples no mode moves (by the slopes at both ends, and in fact) by
+ * more than a tenth of its distance from the band, or 1e-4 of itself where it is nearly on an
+ * edge; where the cubic through values and slopes comes nearer than all samples so far, one
+ * more sample is taken there. This is no proof: a mode that is at rest at all samples may move
+ * between them.
  */
 typedef enum mt_drive_path_end {
-    MT_MOTION_WHOLE,    /* as said above */
-    MT_MOTION_CAPPED,   /* the greatest number of positions was not enough for that */
-    MT_MOTION_BROKEN,   /* some positions cannot be reached or have no modes: `why` */
-    MT_MOTION_UNSTABLE, /* at some positions */
-    MT_MOTION_NONE      /* no frequency is forbidden between the positions */
+    MT_MOTION_WHOLE,    /* sampled as above */
+    MT_MOTION_CAPPED,   /* the maximum number of positions was too small for that */
+    MT_MOTION_BROKEN,   /* some positions cannot be reached or have no modes: see `why` */
+    MT_MOTION_UNSTABLE, /* unstable at some positions */
+    MT_MOTION_NONE      /* no band applies between the positions */
 } mt_drive_path_end;
 
-/* How results grade what was looked at so: "sampled", "sampled coarsely", "incomplete",
- * "unstable". */
+/* Grade of the path in results: "sampled", "sampled coarsely", "incomplete", "unstable". */
 const char *mt_drive_path_grade(mt_drive_path_end end);
 
 typedef struct mt_drive_path {
     mt_drive_path_end end;
-    const char *why; /* of the first position that is broken or unstable; NULL */
+    const char *why; /* of the first broken or unstable position; NULL: none */
     double broken_at;
     double from; /* first and last named position [rad, m] */
     double to;
-    int positions; /* that were looked at */
-    /* least ln of the ratio between an edge with its margin and the mode that the assignment
-     * keeps on that side; negative: it crosses the edge. HUGE_VAL: no mode beside a band */
+    int positions; /* number of samples */
+    /* least log margin: ln of the ratio between an edge with its margin and the mode that the
+     * placement keeps on that side; negative: the mode crosses the edge. HUGE_VAL: no mode
+     * beside a band */
     double room;
-    double tolerance; /* of the band there */
-    /* clearance there from the band without its margin, as a ratio less 1 [%]; negative: beyond
-     * it */
+    double tolerance; /* of that band */
+    /* clearance there from the band without its margin [%]; negative: inside the band */
     double percent;
-    double margin_percent; /* asked for at that edge */
+    double margin_percent; /* required at that edge */
     double at;
     double hz;
     int mode; /* 0: none */
     bool above;
     int tie;
     mt_band band;
-    int n_ways; /* pieces of the motion between neighbouring positions */
-    /* [n_ways] where each has its least room, strictly between its ends; NaN: it does not */
+    int n_ways; /* intervals between consecutive named positions */
+    /* [n_ways] position of the least margin strictly inside each interval; NaN: it is at an
+     * end */
     double *way_at;
     double *way_margin;
 } mt_drive_path;
 
 /*
- * below[n_bands]: the assignment (tied bands agree). After the views have been solved at the
- * design ws->x. out's lists and texts in mem. Cost: some ten to some hundred eigensolves.
- * Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
+ * Follow the design ws->x, at which the configurations have been solved, with the mode
+ * placement below[n_bands] (tied bands agree). out's lists and texts in mem. Cost: some ten to
+ * some hundred eigensolves. Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_INTERRUPTED.
  */
 mt_status mt_drive_path_follow(mt_workspace *ws, int drive_positions, const int *below,
                                mt_arena *mem, mt_drive_path *out, mt_err *err);
 
-/* The worker's own analysis of the family's moving mechanism, ws->driven[family]. Fails:
+/* Opens the worker's own analysis of the drive's mechanism, ws->driven[drive_positions]. Fails:
  * MT_E_DOMAIN where there is none, as mt_analysis_new. */
 mt_status mt_drive_path_open(mt_workspace *ws, int drive_positions, mt_err *err);
-/* d ln f / d position of the mode at pos of a driven analysis, solved with gradient; NaN where
- * it repeats, or has 0 Hz. Fails: as mt_linear_products. */
+/* rate: d ln f / d position of the mode at pos of a driven analysis, solved with gradient; NaN
+ * for a repeated mode or 0 Hz. Fails: as mt_linear_products. */
 mt_status mt_drive_path_rate(mt_analysis *a, int pos, double *rate, mt_err *err);
-/* Those that differ, ascending; their number. */
+/* list: the distinct positions, ascending. Returns their number. */
 int mt_drive_path_distinct(int n_positions, const double *positions, double unit, double *list);
-/* Most positions of each of n ways. */
+/* Maximum number of samples in each of n intervals. */
 int mt_drive_path_of_band(const mt_subproblem *c, int n);
-/* Intervals of a way at first. */
+/* Initial number of subintervals of an interval of length `way`. */
 int mt_drive_path_pieces(double way, double unit, int most);
 
-/* Evaluations that it takes at most to follow a design over all motions; 0: there are none, or
- * there is no limit. */
+/* Maximum number of evaluations for following a design over all drives; 0: no drives, or no
+ * limit. */
 long mt_drive_path_most(const mt_subproblem *c);
 
-/* *kept: all families keep their bands over the motion, within their tolerance, and are stable.
- * *positions grows. As above. */
+/* *kept: over all drives the design stays outside its bands, within their tolerance, and is
+ * stable. *positions is increased by the number of samples. Fails: as mt_drive_path_follow. */
 mt_status mt_drive_path_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,
                              long *positions, mt_err *err);
 

@@ -64,7 +64,7 @@ static int count_below(const mt_modes *modes, double hz)
     return n;
 }
 
-/* Modes within the range of a forced vibration and some beside it. */
+/* Modes within the range of a forced vibration, and a few next to it. */
 static void choose_modes(const mt_modes *modes, const edges *e, mt_guards *g)
 {
     double low = HUGE_VAL;

@@ -6,53 +6,52 @@
 #include "problem/requirement.h"
 
 /*
- * What shows, at two positions of a drive, that a number may be another one between them:
- * frequencies of modes c = ln f beside those where the number has its steps (the ends of a
- * goal's range, a limit, the mode next in order), with dc/ds, and how the mechanism lies
- * (mechanics/directions.h). The number alone does not show it: a response is flat on both sides
- * of a resonance that comes and goes.
+ * Signs, at two positions of a drive, that a goal's value may differ between them: c = ln f of
+ * modes relative to the frequencies where the value has its steps (the ends of a goal's range,
+ * a limit, the mode next in order), with dc/ds, and the directions of the mechanism
+ * (mechanics/directions.h). The value alone is not enough: a response is flat on both sides of
+ * a resonance that passes through its range.
  */
 typedef struct mt_guard {
     int mode;        /* index */
-    int beside;      /* the mode that it is compared with; 0: log_edge */
+    int beside;      /* index of the mode it is compared with; 0: log_edge */
     double log_edge; /* ln of a frequency */
 } mt_guard;
 
 typedef struct mt_guards {
     int n;
     mt_guard *items;
-    int first; /* indices of the modes that they name; first > last: none */
+    int first; /* range of mode indices used; first > last: none */
     int last;
     const mt_system *sys;
     double *log_hz; /* [last - first + 1] work */
     double *rate;
 } mt_guards;
 
-/* At one position. */
+/* Values at one position. */
 typedef struct mt_guard_sample {
-    /* [n] ln f over what it is compared with; infinite: there is no such mode */
+    /* [n] ln of f over the frequency it is compared with; infinite: no such mode */
     double *avoidance;
-    double *rate; /* [n] its slope over the position; NaN: not known */
+    double *rate; /* [n] derivative with respect to the position; NaN: not known */
     double *directions;
 } mt_guard_sample;
 
-/* Those of a requirement, by the modes that the analysis has where it was solved. Fails:
- * MT_E_MEMORY. */
+/* Guards of a requirement, for the modes of the solved analysis. Fails: MT_E_MEMORY. */
 mt_status mt_guards_init(const mt_requirement *d, const mt_analysis *a, mt_arena *mem,
                          mt_guards *out, mt_err *err);
-/* Modes that a goal asks for, and those that its guards compare them with. */
+/* Adds to opt the modes that a goal and its guards need. */
 void mt_guards_query(const mt_requirement *d, mt_analysis_options *opt);
-/* After a solve with gradient. Fails: MT_E_MEMORY, as mt_drive_path_rate. */
+/* Reads the guards after a solve with gradient. Fails: MT_E_MEMORY, as mt_drive_path_rate. */
 mt_status mt_guards_read(const mt_guards *g, mt_analysis *a, mt_arena *mem,
                          mt_guard_sample *out, mt_err *err);
-/* True where two positions, h apart, are too far from each other: a body or the line of a
- * spring turns by more than a third of a radian, a length changes by as much of itself, or a
- * mode moves, by the slopes at both or as it turned out, by more than a fourth of its distance
- * from what it is compared with (of a fiftieth, where it is nearer). */
+/* True where two positions, h apart, need another between them: a body or the line of a spring
+ * turns by more than a third of a radian, a length changes by more than a third of itself, or a
+ * mode moves, by the slopes at both or in fact, by more than a fourth of its distance from what
+ * it is compared with (of 1/50 where it is nearer). */
 bool mt_guards_keep_distance(const mt_guards *g, const mt_guard_sample *a,
                              const mt_guard_sample *b, double h);
-/* The middle one of three positions, before and after apart, is another than the cubics through
- * values and slopes of its neighbours have it. */
+/* True where a value at the middle of three positions, `before` and `after` from its
+ * neighbours, deviates from the cubic through their values and slopes. */
 bool mt_guards_astray(const mt_guards *g, const mt_guard_sample *a, double before,
                       const mt_guard_sample *middle, double after, const mt_guard_sample *b);
 

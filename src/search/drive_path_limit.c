@@ -73,7 +73,7 @@ static mt_status note_break(walk *w, double at, mt_drive_path_end end, const cha
     return mt_arena_check(w->mem, err);
 }
 
-/* What shows that the number may be another one beside this position. */
+/* Signs that the value may differ next to this position. */
 static mt_status guard(walk *w, sample *s, mt_err *err)
 {
     if (!w->has_guards) {
@@ -85,7 +85,7 @@ static mt_status guard(walk *w, sample *s, mt_err *err)
     return MT_OK;
 }
 
-/* What the goal finds at a position; v->value NaN: nothing. */
+/* Value of the goal at a position; v->value NaN: none. */
 static mt_status find(walk *w, sample *s, mt_forced_response_value *v, mt_err *err)
 {
     mt_analysis_options opt = mt_configuration_queries(w->ws, &w->ws->views[w->d->view], false);
@@ -133,7 +133,7 @@ static bool is_astray(const walk *w, const sample *s)
            mt_guards_astray(&w->guards, &a->guard, before, &s->guard, after, &b->guard);
 }
 
-/* What sample i makes known of itself and its neighbours. */
+/* Updates the estimates of sample i and its neighbours. */
 static void verify_neighbours(walk *w, int i)
 {
     for (int k = i > 0 ? i - 1 : 0; k <= i && k + 1 < w->n; k++) {
@@ -144,7 +144,7 @@ static void verify_neighbours(walk *w, int i)
     }
 }
 
-/* One more position, which becomes sample i of the way. */
+/* Inserts a position as sample i of the interval. */
 static mt_status look(walk *w, int i, double at, bool given, mt_err *err)
 {
     mt_limit_drive_path *const out = w->out;
@@ -180,7 +180,7 @@ static double slope_after(const walk *w, int i)
     return (s[1].off - s[0].off) / (s[1].at - s[0].at);
 }
 
-/* How high e may be within the interval after sample i. */
+/* Upper estimate of e within the interval after sample i. */
 static double height(const walk *w, int i)
 {
     const sample *const a = &w->samples[i];
@@ -204,7 +204,7 @@ static double height(const walk *w, int i)
     return top + (BEYOND * (a->off + (left * x) - top));
 }
 
-/* e may be anything between sample i and the next. */
+/* True where e may be arbitrary between sample i and the next. */
 static bool is_open(const walk *w, int i)
 {
     const sample *const a = &w->samples[i];
@@ -214,7 +214,7 @@ static bool is_open(const walk *w, int i)
            (a->apart || a->astray || b->astray || fabs(b->off - a->off) > STEEP);
 }
 
-/* It may be higher than all so far. */
+/* True where it may exceed the largest value so far. */
 static bool is_high(const walk *w, int i)
 {
     const sample *const a = &w->samples[i];
@@ -222,8 +222,7 @@ static bool is_high(const walk *w, int i)
     return good && a[1].at - a[0].at > w->shortest && height(w, i) > w->out->off + CLOSER;
 }
 
-/* The interval that is halved next, the longest of those that are open, else the highest; -1:
- * none needs it. */
+/* The interval to halve next: the longest open one, else the highest; -1: none. */
 static int choose(const walk *w)
 {
     int best = -1;

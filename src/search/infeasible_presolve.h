@@ -6,21 +6,21 @@
 
 typedef struct mt_infeasible_presolve_question {
     const mt_subproblem *c;
-    int but;      /* a requirement that is left out; -1: none */
-    bool bands;   /* those of the case are asked about, too */
-    bool counted; /* its multiplications are noted in what the answer spent */
-    double most;  /* work of branch and bound; 0: a little */
-    /* of branch and bound where it proves it, as it is where that need not be asked; NULL */
+    int but;      /* a requirement left out; -1: none */
+    bool bands;   /* include the bands of the subproblem */
+    bool counted; /* count its multiplications in the answer's work */
+    double most;  /* work of branch and bound; 0: a small default */
+    /* boxes of branch and bound where those gave the proof; NULL: not wanted */
     long *boxes;
 } mt_infeasible_presolve_question;
 
 /**
- * Whether no design within the bounds of a case meets its limits, targets and bands, as far as
- * little work can say, before a search of thousands is paid for: the frequencies at the soft
- * and the stiff corner of its enclosures (two eigensolves for each configuration with limits),
- * then some boxes of branch and bound. True is proven; false says nothing (a box that cannot be
- * enclosed, no proof asked for). Tolerances of variables are left out: a design meets the
- * limits itself. Fails: MT_E_MEMORY, numerical failures of LAPACK.
+ * *out: proven that no design within the bounds of a subproblem meets its limits, targets and
+ * bands; a cheap test before a search of thousands of evaluations. Method: frequencies at the
+ * soft and the stiff corner of its enclosures (two eigensolves for each configuration with
+ * limits), then a few boxes of branch and bound. False proves nothing (a box that cannot be
+ * enclosed, no proof requested). Tolerances of variables are ignored: the nominal design meets
+ * the limits. Fails: MT_E_MEMORY, numerical failures of LAPACK.
  */
 mt_status mt_infeasible_presolve(const mt_infeasible_presolve_question *q, mt_arena *mem,
                                  bool *out, mt_err *err);

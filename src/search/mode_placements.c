@@ -23,7 +23,7 @@ enum { LISTED_MOST = 512 };
 static const double BOUND_WORK = 5e7;
 static const double BOUND_SHARE = 0.1; /* of the proof's budget */
 
-/* One design for each assignment: its best. Its other local optima come after (see rank). */
+/* One design for each placement, its best; its other local optima follow (see rank). */
 static mt_status keep_solutions(const mt_problem *p, const mt_mode_placement_job *j,
                                 mt_arena *mem, mt_mode_placement_result *out, mt_err *err)
 {
@@ -67,8 +67,8 @@ static mt_status keep_unidentifiable(const mt_problem *p, const mt_mode_placemen
     return MT_OK;
 }
 
-/* As if the candidates had been searched one after the other. What a later objective came to
- * says something next to the others as they are there, so of the best candidate alone. */
+/* Steps in the order of the candidates. A later objective is comparable only between the best
+ * designs, so its steps come from the best candidate alone. */
 static mt_status keep_steps(const mt_mode_placement_job *j, mt_arena *mem,
                             mt_mode_placement_result *out, mt_err *err)
 {
@@ -118,8 +118,8 @@ static mt_status collect(const mt_problem *p, const mt_mode_placement_job *j, mt
     return MT_OK;
 }
 
-/* Where the proof's budget ended but left a list of open assignments, and the search met them
- * all, nothing is open any more. */
+/* Where the proof's budget ended with a list of open placements and the search met all of them,
+ * nothing is open. */
 static bool is_settled(const mt_mode_placement_job *j)
 {
     bool met = j->candidates->all;
@@ -129,7 +129,7 @@ static bool is_settled(const mt_mode_placement_job *j)
     return met;
 }
 
-/* Of a part of what is left. */
+/* Shares 1/part of the remaining evaluations among the candidates. */
 static void share_out(mt_mode_placement_job *j, long spent, int part)
 {
     const long left = (j->c->search.max_evaluations - spent) / part;
@@ -150,8 +150,8 @@ static void free_slots(const mt_mode_placement_job *j)
     }
 }
 
-/* Assignments that were met first and are not listed (the proof ended before it came to them)
- * come after those that are. */
+/* Placements that were met first and are not listed (the proof ended before them) are
+ * appended. */
 static mt_status list_met(const mt_mode_placement_job *first, mt_mode_placement_candidates *c,
                           mt_arena *mem, mt_err *err)
 {
@@ -211,7 +211,7 @@ static mt_status search_rest(const mt_mode_placement_job *first, mt_mode_placeme
     return MT_OK;
 }
 
-/* What was found before the proof, for who asks for it. */
+/* Passes what was found before the proof to the callback. */
 static mt_status report_incumbent(const mt_mode_placement_job *first,
                                   const mt_mode_placement_incumbent *incumbent, mt_arena *mem,
                                   const mt_mode_placement_result *out, mt_err *err)
@@ -233,7 +233,7 @@ static mt_status report_incumbent(const mt_mode_placement_job *first,
     return incumbent->tell(incumbent->context, &now, err);
 }
 
-/* What the proof says of the whole, into out. */
+/* Copies the proof's statements about the whole to out. */
 static void note_proof(const mt_mode_placement_candidates *all, mt_mode_placement_result *out)
 {
     out->n_candidates = all->n;
@@ -243,8 +243,8 @@ static void note_proof(const mt_mode_placement_candidates *all, mt_mode_placemen
     out->boxes = all->boxes;
 }
 
-/* The list is full, or the work interrupted: what the candidates that were searched came to,
- * and what the proof says of them and of the rest. */
+/* End with a full list or an interrupt: results of the searched candidates, and the proof's
+ * statements about these and all others. */
 static mt_status end_full(mt_mode_placement_job *first, double last, double rest, mt_arena *mem,
                           const mt_mode_placement_candidates *all,
                           mt_mode_placement_result *out, mt_err *err)
@@ -259,9 +259,8 @@ static mt_status end_full(mt_mode_placement_job *first, double last, double rest
     return collect(first->p, first, mem, out, err);
 }
 
-/* Candidates in the order of their least changes: those that the proof found, where it is
- * settled, else all that the bounds allow, with the designs that `begin` knows. *rest: the
- * least that the others take. */
+/* Candidates by ascending lower bound: those of the proof where it settled, else all that the
+ * bounds allow, with the designs known to `begin`. *rest: lower bound of all others. */
 static mt_status order(const mt_mode_placement_job *first,
                        const mt_mode_placement_bounds *bounds,
                        const mt_mode_placement_candidates *all,
@@ -281,8 +280,8 @@ static mt_status order(const mt_mode_placement_job *first,
     return MT_OK;
 }
 
-/* The list has room: what was met so far has a search of its own before the proof, from its
- * design, as all the others that the proof leaves have after it. */
+/* Where the list is not full: each placement met so far is searched before the proof, from its
+ * design, and those the proof leaves after it. */
 static mt_status keep_met(mt_mode_placement_job *first, mt_mode_placement_candidates *begin,
                           mt_arena *mem, mt_err *err)
 {
@@ -311,8 +310,7 @@ static mt_status keep_met(mt_mode_placement_job *first, mt_mode_placement_candid
     return MT_OK;
 }
 
-/* Designs before proofs: what little work meets is searched, then the proof says what else
- * there is to search. */
+/* Designs before proofs: search what little work meets, then what the proof adds. */
 static mt_status search_and_prove(mt_mode_placement_job *first, mt_mode_placement_job *j,
                                   int n_workers, const mt_mode_placement_incumbent *incumbent,
                                   mt_proof *proof, mt_arena *mem, mt_mode_placement_result *out,

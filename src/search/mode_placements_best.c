@@ -23,13 +23,13 @@ enum { STARTS_TOGETHER = 72, STARTS_LEAST = 3, STARTS_LISTED = 24 };
  * in its assignment: the change is a root of it. */
 static const double NEAR_LAST = 1.5;
 
-/* The first objective of what is met. */
+/* First objective of a feasible slot. */
 static double first_of(const mt_mode_placement_slot *s)
 {
     return s->aims != NULL ? s->aims[0] : s->found.solutions[0].f;
 }
 
-/* How many of those that are met have at most this much of it. */
+/* Number of feasible slots with at most this first objective. */
 static int count_up_to(const mt_mode_placement_job *j, double most)
 {
     int n = 0;
@@ -39,7 +39,7 @@ static int count_up_to(const mt_mode_placement_job *j, double most)
     return n;
 }
 
-/* The `asked` least of it; HUGE_VAL where fewer are met. */
+/* The `asked`-th smallest first objective; HUGE_VAL where fewer are feasible. */
 static double last_of(const mt_mode_placement_job *j, int asked)
 {
     double last = HUGE_VAL;
@@ -66,8 +66,7 @@ static int distance(const int *a, const int *b, int n)
     return sum;
 }
 
-/* The design of the nearest other candidate that is met, the least of those that are as near;
- * NULL: none. */
+/* The design of the nearest feasible candidate, of equally near ones the least; NULL: none. */
 static const double *nearest(const mt_mode_placement_job *j, int k)
 {
     const int m = j->p->n_bands;
@@ -88,7 +87,7 @@ static const double *nearest(const mt_mode_placement_job *j, int k)
     return best < 0 ? NULL : j->slots[best].found.solutions[0].t;
 }
 
-/* Whether the later search of the same candidate is the better one. */
+/* True where the later search of the same candidate is the better one. */
 static bool is_better(const mt_mode_placement_job *j, const mt_mode_placement_slot *later,
                       const mt_mode_placement_slot *before)
 {
@@ -179,7 +178,7 @@ static mt_status search_again(mt_mode_placement_job *j, again *a, int starts, in
     return rc;
 }
 
-/* Those that may be listed, met or not, with so many starts. */
+/* Searches the candidates that may be listed, feasible or not, with that many starts. */
 static mt_status search_listed(mt_mode_placement_job *j, bool met, double last, int n_workers,
                                mt_arena *mem, mt_err *err)
 {

@@ -104,14 +104,14 @@ static bool keeps_limits(const mt_proof *proof, const ranges *r)
     return kept;
 }
 
-/* The level of band i with so many modes below it, in a box. */
+/* Level of band i with that many modes below it, in a box. */
 static int *entry(const mt_mode_placement_bounds *b, int box, int band, int below)
 {
     const ptrdiff_t row = b->most + 1;
     return &b->level[(((ptrdiff_t)box * b->c->p->n_bands + band) * row) + below];
 }
 
-/* What is possible for the first time in this box, at level k. */
+/* Records what first becomes possible in this box, at level k. */
 static void note_level(const mt_proof *proof, const ranges *r, int box, int k,
                        mt_mode_placement_bounds *b)
 {
@@ -216,7 +216,7 @@ static int level_of(const mt_mode_placement_bounds *b, int box, int band, int be
     return below > b->most ? b->n_levels : *entry(b, box, b->c->p->tie[band], below);
 }
 
-/* The level of the first n bands of an assignment. */
+/* Level of the first n bands of a placement. */
 static int level_of_first(const mt_mode_placement_bounds *b, const int *below, int n)
 {
     int least = b->n_levels;

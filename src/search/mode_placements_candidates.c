@@ -121,7 +121,7 @@ static void insert(const mt_problem *p, sampled *list, int *n, const int *below,
     memcpy(list[at].below, below, (size_t)p->n_bands * sizeof *below);
 }
 
-/* Whether clear i is tied to an earlier one. */
+/* True where avoidance goal i is tied to an earlier one. */
 static bool tied_before(const mt_problem *p, int i)
 {
     for (int b = 0; b < p->avoidances[i].bands.n; b++) {
@@ -132,7 +132,7 @@ static bool tied_before(const mt_problem *p, int i)
     return false;
 }
 
-/* Bands of clear i and of those tied to it, each set of tied ones once. */
+/* Bands of avoidance goal i and of those tied to it, each set of tied bands once. */
 static int count_ties(const mt_problem *p, int i)
 {
     const int drive_positions = mt_drive_positions_of(p, p->avoidances[i].view);
@@ -162,8 +162,7 @@ double mt_mode_placement_count_possible(const mt_problem *p)
     return round(all);
 }
 
-/* Keep the `most` assignments of least violation, in their order; what is not kept is not
- * needed again. */
+/* Keeps the `most` placements of least violation, in order; the others are not needed again. */
 static int keep_nearest(const sampled *list, int n, int most, bool *kept)
 {
     int count = 0;
@@ -179,8 +178,8 @@ static int keep_nearest(const sampled *list, int n, int most, bool *kept)
     return count;
 }
 
-/* A sample whose numbers differ between two positions of one drive is no kind of design; the
- * kinds next to it have the least and the greatest of them everywhere. */
+/* A sample whose counts differ between two positions of one drive is no placement; the
+ * neighbouring placements have the least and the greatest of these counts throughout. */
 static void insert_agreeing(const mt_workspace *w, sampled *list, int *n, const int *below,
                             double violation, int *work)
 {
@@ -202,7 +201,7 @@ static int least_of(int a, long b)
     return b < a ? (int)b : a;
 }
 
-/* The rows of those that are kept, and where their searches start. */
+/* Rows of the placements kept, and the starts of their searches. */
 static mt_status keep(const mt_problem *p, const sampled *list, const bool *kept, mt_arena *mem,
                       mt_mode_placement_candidates *out, mt_err *err)
 {
@@ -224,7 +223,7 @@ static mt_status keep(const mt_problem *p, const sampled *list, const bool *kept
     return MT_OK;
 }
 
-/* True where all that was met, but for what slices found, was met often. */
+/* True where every placement met, except those of sampled geometries, was met often. */
 static bool all_met_often(const sampled *list, int n)
 {
     bool often = n > 0;
@@ -234,9 +233,9 @@ static bool all_met_often(const sampled *list, int n)
     return often;
 }
 
-/* The assignments of n designs spread over the bounds, and those of slices, at most `most` of
- * them. Where the study says how often it may be evaluated, half of that is for samples, and
- * the other half for the searches of those nearest. */
+/* Placements of n designs spread over the bounds, and those of sampled geometries, at most
+ * `most`. Under a budget of evaluations half of it is for samples and half for the searches of
+ * the nearest. */
 static mt_status sample(mt_workspace *w, int n, int most, long spent,
                         const mt_sampled_bounds *sampled_bounds, mt_arena *mem,
                         mt_mode_placement_candidates *out, mt_err *err)
@@ -287,8 +286,8 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent,
     return keep(p, list, kept, mem, out, err);
 }
 
-/* What branch and bound found feasible, each with a design, and what it left open when its
- * budget ended. */
+/* Placements that branch and bound found feasible, each with a design, and those left open when
+ * its budget ended. */
 static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found, mt_arena *mem,
                              mt_mode_placement_candidates *out, mt_err *err)
 {
@@ -327,7 +326,7 @@ static mt_status keep_proven(const mt_problem *p, const mt_certify_search *found
     return mt_arena_check(mem, err);
 }
 
-/* What the proof says with so much work. */
+/* Result of the proof with this much work. */
 static mt_status prove(const mt_workspace *w, mt_proof *proof, double work, mt_arena *mem,
                        mt_mode_placement_candidates *out, mt_err *err)
 {

@@ -19,8 +19,7 @@
 /* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
 enum { CUT_ROUNDS = 12, CUTS_MOST = 32, CUT_STARTS = 6 };
 
-/* The caller's design where it is of this kind, else the one that the candidate comes with;
- * NULL: none. */
+/* The caller's design where it has this placement, else the candidate's own; NULL: none. */
 static const double *hint_of(const mt_mode_placement_job *j, int k)
 {
     const size_t size = (size_t)j->p->n_bands * sizeof(int);
@@ -56,8 +55,8 @@ static mt_status search_in_order(mt_workspace *w, mt_mode_placement_slot *s, mt_
     return MT_OK;
 }
 
-/* Where the motion of a family comes nearer than `room`, one more cut for each way between two
- * positions: *added of them. */
+/* Adds one cut for each interval of a drive in which the margin is below `room`: *added of
+ * them. */
 static mt_status add_cuts(mt_mode_placement_slot *s, const mt_problem *p, int drive_positions,
                           const mt_drive_path *m, double room, int *added, mt_err *err)
 {
@@ -104,8 +103,8 @@ static mt_status follow_best(mt_mode_placement_slot *s, mt_workspace *w, bool la
     return MT_OK;
 }
 
-/* What is asked of a search is z within the tolerance of a band, and that differs from kind to
- * kind: the best design is ranked by what it has. */
+/* A search finds z within the tolerance of a band, which differs between placements: the best
+ * design is ranked by its actual clearance. */
 static void report_clearance(mt_mode_placement_slot *s, double room, int n_aims)
 {
     if (n_aims == 1) {

@@ -41,9 +41,8 @@ mt_status mt_proof_shaping(const mt_subproblem *c, mt_arena *mem, bool **shapes,
     return MT_OK;
 }
 
-/* The view of the geometry that the question is about, where its bounds leave no other than one
- * beside the original; NULL: the original's. *ok is false, with the reason, where there is no
- * such mechanism. */
+/* The configuration with the geometry of the question, where its bounds allow only one other
+ * than the original; NULL: the original's. *ok false, with the reason: no such mechanism. */
 static mt_status shape(const mt_proof *proof, const mt_problem *p, int view, mt_arena *mem,
                        mt_analysis **out, bool *ok, char *why, mt_err *err)
 {

@@ -165,9 +165,9 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, ans
     return MT_OK;
 }
 
-/* Keep the design t of a move of that size where it is the least so far, and a workspace made
- * anew confirms it. *again: the move is not enough for what is worst within the tolerances, and
- * there is a cut that says so. */
+/* Keeps the design t of a move of that size where it precedes the one found and a new workspace
+ * confirms it. *again: the move does not suffice for the worst within the tolerances, and a cut
+ * was added. */
 static mt_status keep(const mt_subproblem *c, mt_move *m, double size, const double *t,
                       answer *a, bool *again, mt_err *err)
 {
@@ -222,8 +222,7 @@ static mt_nlp nlp_of(relaxed *r, mt_subproblem *c, const double *near, double *h
     return nlp;
 }
 
-/* Evaluations that are left to the move, without its confirmations', and their places' along a
- * motion. */
+/* Evaluations left for the move, without those of its confirmations and of following drives. */
 static long left_of(const job *j, const mt_subproblem *c, const task_result *out,
                     const answer *a)
 {
@@ -245,9 +244,8 @@ static mt_status solve(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options 
     return mt_pass_final(own, &why, err);
 }
 
-/* The search for the least change with the move that was found, which ends in *to; NULL: none
- * was found, or there is nothing left for it. one: all searches ended at it, so that the slack
- * leaves designs about it alone. */
+/* Searches the least total change with the move found; *to: its end, NULL: none found or no
+ * budget. one: all searches ended at one design, so the slack allows only designs around it. */
 static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, bool one,
                         long left, task_result *out, const double **to, mt_err *err)
 {
@@ -282,7 +280,7 @@ static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, boo
     return MT_OK;
 }
 
-/* Once in case c, to which w is set. */
+/* One search in subproblem c, to which w is set. */
 static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt_move *m,
                              task_result *out, answer *a, bool *again, mt_err *err)
 {
@@ -322,7 +320,8 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     return MT_HAS(a->value) || *again ? MT_OK : keep(c, m, size, s->t, a, again, err);
 }
 
-/* In case c, to which w is set; afterwards to that with cuts. */
+/* Search in subproblem c, to which w is set; afterwards in that with cuts, to which w is then
+ * set. */
 static mt_status search_in(const job *j, mt_subproblem *c, mt_workspace *w, mt_move *m,
                            const double *near, task_result *out, mt_err *err)
 {
@@ -343,10 +342,10 @@ static mt_status search_in(const job *j, mt_subproblem *c, mt_workspace *w, mt_m
     return rc;
 }
 
-/* With bands: in each of the assignments that samples come nearest to, but those whose known
- * miss the move cannot help. (A bound that no miss stands at may still open a way to others:
- * of 56 random studies with an answer five have it by such a bound.) Samples within the study's
- * own bounds are the same for all moves. */
+/* With bands: search in each placement that samples come nearest to, except where the move
+ * cannot help the known miss. (A bound at which no miss stands may still open a way: in five of
+ * 56 random studies with an answer it does.) Samples within the study's own bounds are the same
+ * for all moves. */
 static mt_status search_placements(const job *j, const mt_subproblem *plain, mt_workspace *w,
                                    int move, task_result *out, mt_err *err)
 {
@@ -372,9 +371,8 @@ static mt_status search_placements(const job *j, const mt_subproblem *plain, mt_
     return rc;
 }
 
-/* Whether little work proves that no such move makes a design possible, in its case c. A bound
- * is moved for a design beyond it: only what is between the old bound and the new one is asked
- * about. */
+/* True where a short proof shows that no such move makes a design feasible, in its subproblem
+ * c. For a bound only the range between the old and the new one is examined. */
 static mt_status is_useless(const job *j, const mt_subproblem *c, const mt_move *m,
                             mt_arena *mem, bool *useless, mt_err *err)
 {
@@ -419,7 +417,7 @@ static mt_status search_move(void *context, int worker, int k, mt_task_path *own
     return rc;
 }
 
-/* With bands: what is known before any move is tried. */
+/* With bands: the nearest misses, found before any move is tried. */
 static mt_status look_around(job *j, const mt_mode_placement_result *placements, mt_arena *mem,
                              mt_moves *out, mt_err *err)
 {

@@ -7,24 +7,26 @@
 #include "search/mode_placements.h"
 
 /*
- * Where no design meets all goals: which single number of the question, moved by how little and
- * everything else as it is, would let one exist. A move is a bound of a continuous variable, an
- * edge of a band (with its margin), or the target or limit of a goal. For each of them
+ * Relaxations where no design meets all goals: each single number of the study whose change
+ * alone makes a design feasible, and the least such change. A move is a bound of a continuous
+ * variable, an edge of a band (with its margin), or the target or limit of a goal. Each is
+ * solved as
  *     minimise s  subject to
  *         all bounds and rows of the study, those of the moved number relaxed by s,
- * s being the logarithm of the move (its part of the limit, where that has no logarithm), by
- * local searches from several starts; with bands in the gap assignments that come nearest, for
- * bounds and for what the miss that the search found there presses against (relaxation_near.c).
- * What is found is a design, so a move that is reported suffices for certain; that a smaller
- * one would not is sampled.
- *     Many designs may do with the same move, so the design that is reported answers another
- * question: of all that meet the study's rows with the number moved by the least s (and 1e-7
- * more, less than rows are kept to) that of least change,
+ * s being the logarithm of the move (relative to the limit where that has no logarithm), by
+ * local searches from several starts; with bands in the nearest mode placements, for bounds and
+ * for the rows that are active at the miss found there (relaxation_near.c). A reported move
+ * comes with a design, so it certainly suffices; that a smaller one does not is sampled, not
+ * proven.
+ *
+ * The reported design is the one of least total change among those that meet the study's rows
+ * with the number moved by the least s (plus 1e-7, less than the tolerance of rows),
  *     minimise 1/2 sum w_i (t_i - t_i(original))^2.
- *     Ties are not left to rounding: sizes that differ by less than MT_EQUAL_FOUND are equal.
- * Of equal moves of one number the design of less change counts, then the first in the order of
- * assignments or combinations; equal moves of several numbers are listed in the order of the
- * question: bounds, edges of bands, goals, each as the study lists them, lower before upper.
+ *
+ * Sizes that differ by less than MT_EQUAL_FOUND are equal. Ties of one number are ordered by
+ * the total change of the design, then by the order of placements or combinations; ties of
+ * several numbers by the order of the study: bounds, edges of bands, goals, each as listed,
+ * lower before upper.
  */
 typedef enum mt_move_kind { MT_MOVE_BOUND, MT_MOVE_EDGE, MT_MOVE_GOAL } mt_move_kind;
 
@@ -33,49 +35,51 @@ typedef struct mt_move {
     bool upper;      /* bound, edge: the upper one; goal: at_most */
     int variable;    /* bound */
     int avoidance;   /* edge */
-    int band;        /* edge: of the clear's list */
+    int band;        /* edge: index in the avoidance goal's list */
     int requirement; /* goal */
     bool target;     /* goal: an equality */
     bool found;
     double from;
     double to;
-    double size;   /* |s|: by which moves are ranked */
-    double change; /* f of x */
-    double *x;     /* [n] the design of least change that meets everything after the move */
-    int order;     /* its place in the question */
+    double size;   /* |s|, which ranks moves */
+    double change; /* half of the squared total change of x */
+    double *x;     /* [n] design of least change that meets everything after the move */
+    int order;     /* position in the order of the study */
 } mt_move;
 
 typedef struct mt_moves {
-    int n; /* found, least first */
+    int n; /* found, smallest first */
     mt_move *items;
     long evals;
     int starts;
-    bool short_of_budget; /* the study's budget leaves too little: none was tried */
-    bool stopped;         /* interrupted: not all moves were tried */
+    bool short_of_budget; /* the study's budget is too small: none was tried */
+    bool stopped;         /* interrupted: some moves were not tried */
 } mt_moves;
 
 /**
- * @param[in] workers [n_workers] set to one case without an assignment, in which no catalogue
- *   is open; set to it again
- *                      afterwards
- * @param[in]  search  what the search found (a compromise to start from, where it has one) and
- *                     spent of the study's budget
- * @param[in]  gaps    the same with the gap assignments, or NULL
- * @param[out] out lists in mem Every move reported has been confirmed by a new workspace at its
- *   design. Deterministic for any number of workers. Cost: some 1000 evaluations for each move,
- *   of which a third at most is for its design.
- *   Fails: MT_E_MEMORY, MT_E_INTERNAL.
+ * Tries all moves.
+ * @param[in]  workers     [n_workers] set to one subproblem without a placement and with all
+ *   catalogues fixed; set to it again afterwards
+ * @param[in]  search      result of the search (starts from its compromise, where it has one)
+ *   and evaluations used of the study's budget
+ * @param[in]  placements  its mode placements, or NULL
+ * @param[out] out         lists in mem
+ * Every reported move is confirmed by a new workspace at its design. Deterministic for any
+ * number of workers. Cost: some 1000 evaluations for each move, at most a third of them for its
+ * design. Fails: MT_E_MEMORY, MT_E_INTERNAL.
  */
 mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
                               const mt_nlp_result *search,
                               const mt_mode_placement_result *placements, mt_arena *mem,
                               mt_moves *out, mt_err *err);
 
-/* relaxation_near.c: what misses one gap assignment by the least, as far as that is known. */
+/* relaxation_near.c: the design that misses one mode placement by the least, as far as
+ * known. */
 typedef struct mt_near_miss {
     const int *below;
     const double *t;
-    bool *presses; /* [moves] against its number: else its move changes nothing there */
+    /* [moves] the move's row is active at t; where not, the move changes nothing there */
+    bool *presses;
 } mt_near_miss;
 
 typedef struct mt_near_misses {
@@ -84,48 +88,48 @@ typedef struct mt_near_misses {
     mt_near_miss *items;
 } mt_near_misses;
 
-/* w: set to a case without an assignment. gaps may be NULL: then there are none. One evaluation
- * each. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
+/* Nearest misses; w: set to a subproblem without a placement. placements may be NULL: none. One
+ * evaluation each. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_relaxation_misses(mt_workspace *w, const mt_mode_placement_result *placements,
                                const mt_moves *moves, mt_arena *mem, mt_near_misses *out,
                                mt_err *err);
-/* NULL: none is known in this assignment. */
+/* The miss of placement below[n_bands]; NULL: none is known. */
 const mt_near_miss *mt_relaxation_miss(const mt_near_misses *misses, const int *below);
 
-/* relaxation_discrete.c: the same for a study with catalogues. Without continuous variables all
- * combinations are looked at (short_of_budget where those are too many). */
+/* relaxation_discrete.c: mt_relaxation_solve for a study with catalogues. Without continuous
+ * variables all combinations are evaluated (short_of_budget where these are too many). */
 mt_status mt_relaxation_discrete(mt_workspace *const *workers, int n_workers,
                                  const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
                                  mt_err *err);
 
-/* relaxation_moves.c: all moves that the study offers, none tried yet. Fails: MT_E_MEMORY. */
+/* relaxation_moves.c: all possible moves of the study, none tried yet. Fails: MT_E_MEMORY. */
 mt_status mt_relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_moves *out,
                               mt_err *err);
-/* The case in which the move's bound is moved away, and the objective is the change; w is set
- * to it. Nothing is laid out, and false in *useful, where there is no room to move. */
+/* The subproblem in which the move's bound is removed and the objective is the total change; w
+ * is set to it. *useful false, and nothing laid out: no possible move. */
 mt_status mt_relaxation_subproblem(const mt_subproblem *from, const mt_move *m, mt_workspace *w,
                                    mt_arena *mem, mt_subproblem *out, bool *useful,
                                    mt_err *err);
-/* The value that the move's number must have for the rows of w, just evaluated into v, to hold;
- * NaN where other rows do not. */
+/* The value of the move's number at which the rows of w, just evaluated into v, hold; NaN where
+ * other rows do not hold. */
 double mt_relaxation_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v);
-/* A move by more than a factor of ten (ln 10), or than 2.3 times the limit itself where it has
- * no logarithm, is no help. */
+/* Largest useful move: a factor of ten (ln 10), or 2.3 times the limit itself where it has no
+ * logarithm. */
 static const double MT_RELAXATION_MOST = 2.302585092994046;
-/* By how much that is a move, |s|; NaN where it is none, is in the wrong direction, or is too
- * far to be of help. */
+/* |s| of the move to `to`; NaN where it is none, is in the wrong direction, or exceeds
+ * MT_RELAXATION_MOST. */
 double mt_relaxation_size(const mt_problem *p, const mt_move *m, double to);
-/* True where a move of this size, with a design of this change, is less than what was found for
- * m: by its size or, where sizes are equal, by its change. */
+/* True where a move of this size and total change precedes the one found for m: by size or,
+ * where sizes are equal, by total change. */
 bool mt_relaxation_is_less(const mt_move *m, double size, double change);
-/* Into m, what is less: the move to `to` with the design x[n]. */
+/* Stores the move to `to` with the design x[n] in m where it precedes the one found. */
 void mt_relaxation_keep(mt_move *m, double size, double change, double to, const double *x,
                         int n);
-/* Found moves of `from` into `to`, which lists all, where they are less; n: variables. */
+/* Merges found moves of `from` into `to`, which lists all, where they precede; n: variables. */
 void mt_relaxation_merge(mt_moves *to, const mt_moves *from, int n);
-/* Found ones only, least first, equal ones in the order of the question. */
+/* Keeps found moves only, smallest first, ties in the order of the study. */
 void mt_relaxation_rank(mt_moves *moves);
-/* Whether this row of `in` (of the equalities, where eq) is the move's. */
+/* True where this row of `in` (of the equalities, where eq) is the move's. */
 bool mt_relaxation_is_row(const mt_subproblem *c, const mt_move *m, bool eq, int row);
 
 #endif

@@ -37,8 +37,8 @@ static void set_combination(const mt_problem *p, int k, double *t)
     }
 }
 
-/* How far the edge of a band has to give way for the modes inside it: the frequency that it
- * must let through; 0 where none is inside. NaN: unstable, or undecided. */
+/* Frequency to which the edge of a band must move for the modes inside it to be outside; 0
+ * where none is inside. NaN: unstable, or undecided. */
 static double let_through(const mt_band *band, const mt_modes *modes, bool upper)
 {
     double hz = mt_modal_indexed(modes) ? 0.0 : nan("");

@@ -84,8 +84,8 @@ mt_status mt_relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_moves *o
     return MT_OK;
 }
 
-/* A bound moves by a factor of ten at most, or by the range where it has no sign to keep; a
- * bound of 0 stays, since what is beyond it is another thing. */
+/* A bound moves by a factor of ten at most, or by the range where its sign may change; a bound
+ * of 0 stays, since values beyond it have another meaning. */
 static double far_bound(const mt_subproblem *c, int i, bool upper)
 {
     static const double FACTOR = 10.0;
@@ -160,7 +160,7 @@ static mt_goal_measure measure_of(const mt_problem *p, const mt_move *m)
 
 /* Where the number must be for a row of value `row` (relaxed: what is missing is made up for)
  * to be 0. */
-/* What a difference from the number that is moved is divided by. */
+/* Divisor of a difference from the moved number. */
 static double unit_of(const mt_problem *p, const mt_move *m)
 {
     return m->kind == MT_MOVE_GOAL
@@ -245,7 +245,7 @@ void mt_relaxation_merge(mt_moves *to, const mt_moves *from, int n)
     }
 }
 
-/* Whether a comes before b: by size, or where both count as equal by the question. */
+/* True where a precedes b: by size, equal sizes in the order of the study. */
 static bool is_before(const mt_move *a, const mt_move *b, bool equal)
 {
     return equal ? a->order < b->order : a->size < b->size;

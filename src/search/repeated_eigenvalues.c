@@ -13,7 +13,7 @@ static const double SAME_LIMIT = 1e-9;
  * symmetry. */
 static const double INDEPENDENT = 1e-6;
 
-/* Whether both ask the same of modes of one analysis. */
+/* True where both are the same limit on modes of one analysis. */
 static bool alike(const mt_repeated_eigenvalues_side *a, const mt_repeated_eigenvalues_side *b)
 {
     return a->analysis == b->analysis && a->moves == b->moves &&
@@ -36,7 +36,7 @@ static bool known(const mt_repeated_eigenvalues *m, const mt_repeated_eigenvalue
     return false;
 }
 
-/* True where there is a block for the same modes, from the other side; that then stands for
+/* True where a block with the same modes exists from the other side; it is then used for
  * both. */
 static bool joined(mt_repeated_eigenvalues *m, const mt_repeated_eigenvalues_side *s, int index,
                    int r)
@@ -200,8 +200,8 @@ static mt_status block_matrices(mt_repeated_eigenvalues *m, mt_repeated_eigenval
     return MT_OK;
 }
 
-/* b and g of every block at the problem's last evaluation, which had gradients; turn: in the
- * basis of t0, else in that of the modes. */
+/* b and g of every block at the problem's last evaluation, which had gradients. turn: in the
+ * basis of t0; else in that of the modes. */
 static mt_status matrices(mt_repeated_eigenvalues *m, bool turn, mt_err *err)
 {
     for (int b = 0; b < m->n_blocks; b++) {
@@ -210,8 +210,8 @@ static mt_status matrices(mt_repeated_eigenvalues *m, bool turn, mt_err *err)
     return MT_OK;
 }
 
-/* Entries of B whose slopes are independent, by pivoted QR; off the diagonal times sqrt 2, so
- * that a turned basis changes nothing. */
+/* Entries of B with independent slopes, by pivoted QR; off-diagonal ones times sqrt 2, so that
+ * the result does not depend on the basis. */
 static mt_status choose_entries(mt_repeated_eigenvalues *m, mt_repeated_eigenvalues_block *b,
                                 mt_arena *mem, mt_err *err)
 {

@@ -12,7 +12,7 @@ enum { SAMPLED_BOUNDS_PER_SHAPE = 16, SAMPLED_BOUNDS_MOST = 32 };
 /* Multiplications of one: tens of milliseconds. */
 static const double SLICE_WORK = 5e7;
 
-/* What one slice found that was not known joins the list. */
+/* Adds the new placements of one sampled geometry to the list. */
 static mt_status note(const mt_problem *p, const mt_certify_search *slice, mt_arena *mem,
                       mt_sampled_bounds *out, mt_err *err)
 {

@@ -5,23 +5,24 @@
 #include "problem/workspace.h"
 
 /*
- * Where variables shape the geometry, nothing encloses modes over them; where these are held,
- * the others can be enclosed (prove/enclosure.h). A slice holds them at a sample: which gap
- * assignments the others can have there, with the limits, is proven, and each comes with a
- * design. Kinds of design that are narrow in the other variables are found so that samples of
- * all of them miss; between slices nothing is known.
+ * Mode placements at sampled geometries. Modes cannot be enclosed over variables that shape the
+ * geometry, but with these fixed they can over the others (prove/enclosure.h). At each sample
+ * of the former, the placements that the others allow, with the limits, are proven, each with a
+ * design. This finds placements that are feasible only in a narrow range of the other
+ * variables, which samples over all variables miss. Nothing is known between the samples.
  */
 typedef struct mt_sampled_bounds {
-    int n;         /* so many samples of the geometry; 0: no variable shapes it, or all is in
-                    * the way of an enclosure besides */
-    int n_settled; /* of them: all assignments that are not listed are proven infeasible */
+    /* samples of the geometry; 0: no variable shapes it, or enclosures are not possible for
+     * another reason */
+    int n;
+    int n_settled; /* samples at which every unlisted placement is proven infeasible */
     int n_found;
     int *found; /* [n_found x n_bands] */
-    double *at; /* [n_found x n] coordinates t of a design that has it */
+    double *at; /* [n_found x n] design t with that placement */
 } mt_sampled_bounds;
 
-/* Of w's case, with its proof_work at most. Results in mem. Fails: MT_E_MEMORY, MT_E_INTERNAL,
- * numerical failures of LAPACK. */
+/* Search w's subproblem with its proof_work at most. Results in mem. Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL, numerical failures of LAPACK. */
 mt_status mt_sampled_bounds_search(mt_workspace *w, mt_arena *mem, mt_sampled_bounds *out,
                                    mt_err *err);
 

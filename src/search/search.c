@@ -161,7 +161,7 @@ bool mt_search_same(int n, const double *a, const double *b)
     return most <= MT_SAME_DESIGN;
 }
 
-/* Behind a design that is shown to be a local optimum those that are not are ends of failed
+/* Drops solutions not shown to be local optima that rank behind one that is: ends of failed
  * searches. */
 static void drop_failed(mt_nlp_result *out)
 {
@@ -175,7 +175,7 @@ static void drop_failed(mt_nlp_result *out)
     out->n_solutions = kept;
 }
 
-/* Of two flat optima that are as good the one of less change counts. */
+/* Of two equally good flat optima the one of less total change ranks first. */
 static bool is_nearer(const stages *s, const mt_nlp_solution *a, const mt_nlp_solution *b)
 {
     return a->feasible && a->flat && b->flat && mt_search_nearer(s->first, a->t, b->t);

@@ -49,7 +49,8 @@ typedef struct continua {
     mt_err err;
 } continua;
 
-/* The objectives at t, half squares as roots; false where it has none, or misses a goal. */
+/* The objectives at t, half squares as roots; false where they have no value or a goal is not
+ * met. */
 static bool measure(continua *c, const double *t, double *aims)
 {
     mt_workspace *const ws = c->ws;
@@ -167,7 +168,7 @@ static bool restore_near(continua *c, double aside)
     return near;
 }
 
-/* True where all that is between solutions i and k is as good as they are. */
+/* True where all designs between solutions i and k are as good as they are. */
 static bool connected(continua *c, int i, int k)
 {
     const double *const a = c->out->solutions[i].t;
@@ -194,8 +195,8 @@ bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t)
     return mt_is_nearer(c->p->n, c->origin_t, c->change_weight, s, t);
 }
 
-/* One record for both, at the place of the better: it is that of the nearer to the original,
- * unless directions are told of the better, or the nearer is no local solution. */
+/* Joins `other` into solution `into`. The record is that of the one nearer to the original,
+ * unless unidentifiable directions belong to `into` or the nearer one is no local solution. */
 static void join(const continua *c, int into, const mt_nlp_solution *other)
 {
     mt_nlp_result *const out = c->out;
@@ -211,8 +212,8 @@ static void join(const continua *c, int into, const mt_nlp_solution *other)
     s->continuum = true;
 }
 
-/* group[i]: the first solution of i's continuum, i itself where it is alone. All pairs are
- * compared, so that it does not matter which of a continuum is kept. */
+/* group[i]: the first solution of i's continuum; i itself where it is alone. All pairs are
+ * compared, so the result does not depend on which one is kept. */
 static void find_groups(continua *c, int *group)
 {
     for (int i = 0; i < c->out->n_solutions; i++) {
@@ -230,8 +231,8 @@ static void find_groups(continua *c, int *group)
     }
 }
 
-/* Ranked: what belongs to a better one goes into it. group: afterwards its place in the list,
- * as -1 - place, for each first. */
+/* Ranked: joins each solution into the better one of its group. group: on return the place of
+ * each group's first in the list, as -1 - place. */
 static void join_all(const continua *c, int *group)
 {
     mt_nlp_result *const out = c->out;

@@ -58,10 +58,9 @@ typedef struct nearest {
     bool clusters; /* a design is judged by repeated modes, too, where it only stands */
 } nearest;
 
-/* True where there is a change to be made least that is no objective already, with objectives
- * that can be held. A coordinate of the search has its objective, which elsewhere is looked up
- * afterwards; of a misfit only exact fits are moved, what else it leaves open is told as
- * undetermined. */
+/* True where a total change can be minimised that is not an objective already, with objectives
+ * that can be held. Not for the objective of a further coordinate; for a misfit only exact fits
+ * are moved: other free directions are reported as unidentifiable. */
 static bool applies(const mt_subproblem *c)
 {
     for (int k = 0; k < c->n_aims; k++) {
@@ -76,7 +75,7 @@ static bool applies(const mt_subproblem *c)
     return c->n_aims > 0;
 }
 
-/* The case with the change behind its objectives. */
+/* The subproblem with the total change after its objectives. */
 static mt_status add_change(nearest *n, mt_err *err)
 {
     const size_t n_aims = (size_t)n->first->n_aims;
@@ -115,8 +114,8 @@ static void hold(nearest *n, int stage)
     mt_workspace_back(n->ws, c);
 }
 
-/* One objective from a design with those before it held: *end, NULL where it finds none. With
- * one evaluation: that design itself, with its multipliers. */
+/* Minimises one objective from a design with those before it held: *end, NULL where none is
+ * found. With one evaluation: that design itself, with its multipliers. */
 static mt_status minimise(nearest *n, int stage, long most, const double *from,
                           mt_nlp_solution **end, mt_err *err)
 {
@@ -167,7 +166,7 @@ static bool is_better(const nearest *n, const mt_nlp_solution *end, const mt_nlp
            mt_compare(mt_subproblem_change(n->first, end->t), most, MT_EQUAL_FOUND) <= 0;
 }
 
-/* The design of least change next to the optimum of s, from `from`: *end, where it is one. */
+/* The design of least total change near the optimum s, from `from`: *end, where it is one. */
 static mt_status settle(nearest *n, const double *from, const mt_nlp_solution *s,
                         mt_nlp_solution **end, mt_err *err)
 {
@@ -198,8 +197,8 @@ static void keep_idle(int m, int n, int row, const double *slopes, bool *idle)
     }
 }
 
-/* idle[n_t]: the variables that neither the objectives at s feel nor the rows that hold it, as
- * far as they are free; *n_idle of them. */
+/* idle[n_t]: free variables that affect neither the objectives at s nor its active rows;
+ * *n_idle: their number. */
 static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int *n_idle,
                            mt_err *err)
 {
@@ -241,7 +240,7 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
     return MT_OK;
 }
 
-/* The bounds of the question closed on t, but for what is open. */
+/* The bounds of the subproblem fixed at t, except for the open variables. */
 static mt_status close_rest(nearest *n, const double *t, const bool *open, mt_err *err)
 {
     mt_subproblem *const c = &n->held;
@@ -263,9 +262,9 @@ static mt_status close_rest(nearest *n, const double *t, const bool *open, mt_er
     return MT_OK;
 }
 
-/* True where nothing is loose at s but what is idle: the objective's own search with that
- * closed, which begins at s, ends there and knows its curvature. What is idle is moved away
- * from the original, as modes may meet where it stands, and there rows have none. */
+/* *held: only idle variables are free at s. Tested by the objective's own search with those
+ * fixed, which begins and ends at s and knows its curvature. Idle variables are moved away from
+ * the original, where modes may meet and rows have no slopes. */
 static mt_status is_rest_held(nearest *n, const mt_nlp_solution *s, const bool *idle,
                               bool *held, mt_err *err)
 {
@@ -290,8 +289,8 @@ static mt_status is_rest_held(nearest *n, const mt_nlp_solution *s, const bool *
     return rc;
 }
 
-/* Whether a design keeps what s keeps, but for a part of the tolerances that is no violation
- * where designs are compared; its last objective is that of s. */
+/* True where a design satisfies what s satisfies, within the part of the tolerances that
+ * comparisons of designs allow, and its last objective is that of s. */
 static mt_status keeps(nearest *n, const double *t, double f, mt_nlp_values *v, bool *kept,
                        mt_err *err)
 {
@@ -308,8 +307,8 @@ static mt_status keeps(nearest *n, const double *t, double f, mt_nlp_values *v, 
     return mt_pass_final(rc, &own, err);
 }
 
-/* t, which is s, comes along t_j to the original value, or as near to it as the rows let it: by
- * halving, as where modes meet these have no slopes. */
+/* Moves t (initially s) along t_j to the original value, or as near as the rows allow, by
+ * halving: rows have no slopes where modes meet. */
 static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
 {
     const mt_subproblem *const c = n->first;
@@ -333,7 +332,7 @@ static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
     return MT_OK;
 }
 
-/* Where all that is loose at s are single variables: along these alone. */
+/* Where only single variables are free at s: moves along these alone. */
 static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solution **end,
                             mt_err *err)
 {
@@ -381,7 +380,7 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
     return rc;
 }
 
-/* The design `end` instead of s, which is known as what s was found as. */
+/* Replaces the design of s by `end`, keeping how s was found. */
 static void put_nearer(mt_nlp_solution *s, const mt_nlp_solution *end)
 {
     const mt_nlp_solution old = *s;
@@ -435,7 +434,7 @@ static bool is_exact(const mt_nlp_solution *s)
     return s->feasible && s->f <= 0.5 * EXACT * EXACT;
 }
 
-/* Exact fit s: the one of least change beside it that is exact, too. */
+/* For an exact fit s: the exact fit of least total change near it. */
 static mt_status move_fit(nearest *n, mt_nlp_solution *s, mt_err *err)
 {
     mt_nlp_solution *near = NULL;

@@ -15,7 +15,8 @@ enum { CUTS_MOST = 32 };
 /* Positions nearer than this part of the range are one. */
 static const double SAME = 1e-7;
 
-/* Of the objective "vibration" limits are a scale, and asked for where they are given. */
+/* True where the limit is verified between positions; limits that scale the objective
+ * "vibration" are not. */
 static bool is_asked(const mt_problem *p, int requirement)
 {
     return p->requirements[requirement].row_in >= 0 &&

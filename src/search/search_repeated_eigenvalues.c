@@ -48,7 +48,7 @@ typedef struct refine {
     mt_stop stop;
 } refine;
 
-/* Whether `more` evaluations would be too many. */
+/* True where `more` evaluations would exceed the budget. */
 static bool spent(const refine *w, long more)
 {
     return w->evals + more > w->most;
@@ -115,8 +115,8 @@ static bool take_better(const refine *w, const double *t, double f, mt_nlp_solut
     return better;
 }
 
-/* The smooth problem of the clusters near t, unless they are those of `before` (may be NULL),
- * from t as well; they are told in m. */
+/* Solves the smooth problem of the clusters near t, from t, unless they are those of `before`
+ * (may be NULL); m: the clusters. */
 static mt_status keep_together(refine *w, double near, const mt_repeated_eigenvalues *before,
                                mt_repeated_eigenvalues *m, double *t, double *f, bool *found,
                                mt_err *err)
@@ -173,9 +173,9 @@ static int balance_rows(const mt_repeated_eigenvalues *m, const double *t, doubl
     return k;
 }
 
-/* Multipliers of the balance into the record. Of modes held together only the one that the
- * others follow has its own: all may give way with it, which saves the trace of U; where
- * several are asked for they have none. */
+/* Writes the multipliers of the balance. Of modes held together only the defining one has a
+ * multiplier, the trace of U: all can be relaxed with it; where several rows limit them they
+ * have none. */
 static void put_multipliers(const mt_repeated_eigenvalues *m, const mt_cone *c,
                             const int *which, mt_nlp_solution *s)
 {
@@ -238,8 +238,7 @@ static mt_status cone_blocks(const mt_repeated_eigenvalues *m, mt_arena *mem,
     return mt_arena_check(mem, err);
 }
 
-/* Stationarity at t as a statement about clusters: *kkt, z[n], and the multipliers (s may be
- * NULL). */
+/* Stationarity at t in terms of clusters: *kkt, z[n], and the multipliers (s may be NULL). */
 static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nlp_solution *s,
                        mt_err *err)
 {
@@ -395,8 +394,8 @@ static bool before(const mt_subproblem *c, const mt_nlp_solution *a, const mt_nl
     return mt_search_nearer(c, a->t, b->t);
 }
 
-/* By objective; what is one counts once, and an end that is not shown to be optimal does not
- * stand behind a better design. */
+/* Ranks by objective, joins duplicates, and drops ends not shown to be optimal behind a better
+ * design. */
 static void rank(const mt_workspace *ws, mt_nlp_result *out)
 {
     int kept = 0;

@@ -75,7 +75,7 @@ static bool lacks(const rounds *r, long evals)
     return most > 0 && most - r->out->evals < evals;
 }
 
-/* Judge solution i over what there is to judge it over. */
+/* Verifies solution i over its tolerances and positions. */
 static mt_status judge(rounds *r, int i, bool last, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
@@ -98,7 +98,7 @@ static mt_status judge(rounds *r, int i, bool last, mt_err *err)
     return MT_OK;
 }
 
-/* Judge what is open; *any: whether any of it is open still. */
+/* Verifies open solutions; *any: some are still open. */
 static mt_status verify_open(rounds *r, bool last, bool *any, mt_err *err)
 {
     *any = false;
@@ -119,7 +119,7 @@ static mt_status verify_open(rounds *r, bool last, bool *any, mt_err *err)
     return MT_OK;
 }
 
-/* What the limits between positions cost the solution, which was searched with them. */
+/* Multipliers of the limits between positions for a solution that was searched with them. */
 static mt_status note_prices(rounds *r, const mt_nlp_solution *s, mt_err *err)
 {
     const mt_subproblem *const c = r->ws->c;
@@ -143,14 +143,14 @@ static mt_status note_prices(rounds *r, const mt_nlp_solution *s, mt_err *err)
     return MT_OK;
 }
 
-/* What the budget leaves to a search with the cuts; 0: there is none. */
+/* Evaluations left for a search with the cuts; 0: none. */
 static long left_for(const rounds *r, const mt_subproblem *held)
 {
     const long most = r->c->search.max_evaluations;
     return most <= 0 ? 0 : mt_subproblem_afford(held, most - r->out->evals - r->judgement);
 }
 
-/* Solution i from where it is, in the case with the cuts, which the workspace is set to. */
+/* Searches from solution i in the subproblem with the cuts, to which the workspace is set. */
 static mt_status go_on(rounds *r, int i, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
@@ -175,7 +175,7 @@ static mt_status go_on(rounds *r, int i, mt_err *err)
     return note_prices(r, s, err);
 }
 
-/* Nothing goes on when the budget is spent, or who asked wants no more. */
+/* True where the budget is spent or a stop was requested. */
 static bool is_used_up(rounds *r)
 {
     const bool spent = lacks(r, 1 + r->judgement);
@@ -183,7 +183,7 @@ static bool is_used_up(rounds *r)
     return spent || r->out->stop == MT_STOP_USER;
 }
 
-/* The case with the cuts so far, which the workspace is set to. */
+/* The subproblem with the cuts so far, to which the workspace is set. */
 static mt_status hold_cuts(rounds *r, mt_subproblem *held, mt_err *err)
 {
     MT_TRY(mt_subproblem_copy(r->c, r->mem, held, err));
@@ -194,7 +194,7 @@ static mt_status hold_cuts(rounds *r, mt_subproblem *held, mt_err *err)
                                  r->mem, err);
 }
 
-/* All that is open once more, with the cuts so far. */
+/* Searches again from all open solutions, with the cuts so far. */
 static mt_status search_again(rounds *r, mt_err *err)
 {
     const mt_subproblem *const c = r->c;
@@ -225,7 +225,7 @@ static mt_status open_all(rounds *r, mt_err *err)
     return MT_OK;
 }
 
-/* Judge, and search on with the cuts, until nothing is open. *cut: there are some. */
+/* Verifies, and searches again with the cuts, until nothing is open. *cut: cuts were added. */
 static mt_status go_round(rounds *r, bool *cut, mt_err *err)
 {
     bool any = true;
@@ -248,7 +248,7 @@ static bool any_feasible(const rounds *r)
     return any;
 }
 
-/* Designs of one more search join those that there are; those that met nothing go. */
+/* Adds the designs of a further search; those that meet nothing are dropped. */
 static mt_status join(rounds *r, const mt_nlp_result *more, mt_err *err)
 {
     mt_nlp_result *const out = r->out;
@@ -276,10 +276,9 @@ static mt_status join(rounds *r, const mt_nlp_result *more, mt_err *err)
     return MT_OK;
 }
 
-/* The designs of the first search are optima of less than is asked for: with the cuts there may
- * be others that no way from them leads to, one on each side of what the cuts left. So the
- * search begins at a few of its starts once more; at all of them where it has nothing. *found:
- * there are designs to be judged. */
+/* The first search ignores the cuts: with them there may be other designs, not connected to its
+ * own, such as one on each side of the excluded range. So the search is repeated from a few of
+ * its starts; from all where it has no design. *found: there are designs to verify. */
 static mt_status start_again(rounds *r, bool *found, mt_err *err)
 {
     const mt_subproblem *const c = r->c;
@@ -307,8 +306,8 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
     return join(r, &next, err);
 }
 
-/* Those that do not keep their limits between the positions are none where others do; where
- * none does they stand as what they are at the positions that are given. */
+/* Drops designs that violate limits between the positions where others do not; where all do,
+ * they count by their values at the named positions. */
 static void drop_broken(rounds *r)
 {
     mt_nlp_result *const out = r->out;
@@ -328,7 +327,7 @@ static void drop_broken(rounds *r)
     out->n_solutions = n;
 }
 
-/* Where some design meets everything those that do not are none. */
+/* Drops designs that violate something where another meets everything. */
 static mt_status sort_out(rounds *r, mt_err *err)
 {
     mt_nlp_result *const out = r->out;
@@ -360,7 +359,7 @@ static mt_status sort_out(rounds *r, mt_err *err)
     return MT_OK;
 }
 
-/* The designs, by what a budget has left beside their judgement. */
+/* The designs, within what the budget leaves besides their verification. */
 static mt_status search_first(const rounds *r, mt_workspace *const *workers, int n_workers,
                               mt_err *why, mt_err *err)
 {
