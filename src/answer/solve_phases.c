@@ -353,7 +353,7 @@ mt_status mt_answer_relaxation(mt_answer *a, mt_err *err)
     }
     MT_TRY(
         mt_study_has_catalogues(a->study)
-            ? mt_relaxation_discrete(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
+            ? mt_relaxation_catalogue(a->workers, a->n_workers, &a->found, &a->mem, &moves, err)
             : mt_relaxation_solve(a->workers, a->n_workers, &a->found,
                                   a->p->n_avoidances > 0 ? &a->placements : NULL, &a->mem,
                                   &moves, err));

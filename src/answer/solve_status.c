@@ -224,7 +224,7 @@ static const char *solved_text(const mt_answer *a, const char *warning, mt_arena
                                         n, warning);
     }
     const char *const many = n == 1 ? " meets" : "s meet";
-    if (!mt_objective_is(a->p->aims[0].type, MT_RESIDUALS)) {
+    if (!mt_objective_is(a->p->stages[0].type, MT_RESIDUALS)) {
         return mt_arena_printf(mem, "Solved: %d distinct design%s all goals.%s", n, many,
                                warning);
     }
@@ -385,7 +385,7 @@ static const char *status_text(const mt_answer *a, const mt_recommendation *best
         return NULL;
     }
     if (best->feasible && a->placements.n_solutions == 0 &&
-        mt_objective_is(a->p->aims[0].type, MT_SHAKES)) {
+        mt_objective_is(a->p->stages[0].type, MT_SHAKES)) {
         return least_text(a, best, warning, mem);
     }
     if (best->feasible) {

@@ -29,7 +29,7 @@ static mt_status objective_at(mt_workspace *w, const double *t, mt_arena *mem, d
     MT_TRY(mt_subproblem_values_init(c, mem, &v, err));
     MT_TRY(mt_workspace_eval(w, t, false, &v, err));
     *f = mt_objective_stage_value(w, 0, NULL);
-    if (mt_objective_is(c->aims[0].type, MT_BANDS)) {
+    if (mt_objective_is(c->stages[0].type, MT_BANDS)) {
         *f = -mt_avoidances_margin(w);
     }
     return MT_OK;

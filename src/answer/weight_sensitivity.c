@@ -188,7 +188,8 @@ static mt_status list_searches(weight_sensitivity *s, mt_arena *mem, mt_err *err
 bool mt_weight_sensitivity_is_asked(const mt_problem *p)
 {
     return MT_HAS(p->study->weight_sensitivity.factor) &&
-           mt_objective_is(p->aims[0].type, MT_RESIDUALS) && !mt_study_has_catalogues(p->study);
+           mt_objective_is(p->stages[0].type, MT_RESIDUALS) &&
+           !mt_study_has_catalogues(p->study);
 }
 
 mt_status mt_weight_sensitivity_solve(mt_workspace *const *workers, int n_workers,

@@ -80,10 +80,10 @@ static mt_status describe_parameters(const mt_problem *p, const double *x, const
  * is found among the modes. */
 static double stage_value(const mt_workspace *fresh, int k, double motion_margin)
 {
-    if (mt_objective_is(fresh->c->aims[k].type, MT_SHAKES)) {
+    if (mt_objective_is(fresh->c->stages[k].type, MT_SHAKES)) {
         return fresh->worst;
     }
-    if (!mt_objective_is(fresh->c->aims[k].type, MT_BANDS)) {
+    if (!mt_objective_is(fresh->c->stages[k].type, MT_BANDS)) {
         return mt_objective_stage_value(fresh, k, NULL);
     }
     const double room = mt_avoidances_margin(fresh);
@@ -98,8 +98,8 @@ static mt_status describe_objectives(const mt_workspace *fresh, double motion_ma
     rec->objectives = mt_arena_alloc(&result->mem, (size_t)n, sizeof *rec->objectives);
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int k = 0; k < n; k++) {
-        const double shown =
-            mt_objective_stage_shown(&fresh->c->aims[k], stage_value(fresh, k, motion_margin));
+        const double shown = mt_objective_stage_shown(&fresh->c->stages[k],
+                                                      stage_value(fresh, k, motion_margin));
         const double value = isfinite(shown) ? shown : nan("");
         rec->objectives[rec->n_objectives++] = (mt_design_objective){
             .text = result->objectives[k].text,
@@ -119,10 +119,10 @@ static mt_status check_fresh_objective(const mt_workspace *fresh, const mt_desig
                                        double motion_margin, mt_result *result, mt_err *err)
 {
     const int k = design->stage;
-    const bool bands = mt_objective_is(fresh->c->aims[k].type, MT_BANDS);
+    const bool bands = mt_objective_is(fresh->c->stages[k].type, MT_BANDS);
     const double f =
-        mt_objective_stage_root(&fresh->c->aims[k], stage_value(fresh, k, motion_margin));
-    const double had = mt_objective_stage_root(&fresh->c->aims[k], design->found->f);
+        mt_objective_stage_root(&fresh->c->stages[k], stage_value(fresh, k, motion_margin));
+    const double had = mt_objective_stage_root(&fresh->c->stages[k], design->found->f);
     const bool searched_within = bands && fresh->c->tolerance_box != NULL &&
                                  !mt_ranges_proven(mt_tolerance_known(fresh));
     /* a clearance that is missed is that of the kind searched */
@@ -134,8 +134,8 @@ static mt_status check_fresh_objective(const mt_workspace *fresh, const mt_desig
     return mt_describe_warn(result, err,
                             "recommendation %d: the search ended with an objective of %.12g, "
                             "recomputed it is %.12g",
-                            design->rank, had * fresh->c->aims[k].size,
-                            f * fresh->c->aims[k].size);
+                            design->rank, had * fresh->c->stages[k].size,
+                            f * fresh->c->stages[k].size);
 }
 
 /* Warn of a design at which a fresh analysis disagrees; it does not count as meeting any goal,

@@ -25,13 +25,14 @@ mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, i
     MT_TRY(mt_arena_check(&result->mem, err));
     for (int i = 0; i < steps.n; i++) {
         const mt_step *const s = &steps.at[i];
-        const bool none = p->n_aims == 0;
+        const bool none = p->n_stages == 0;
         run->history[run->n_history++] = (mt_result_step){
             .objective = s->stage + 1,
             .round = s->round + 1,
             .evaluations = s->evals,
-            .value = none ? nan("")
-                          : finite_or_none(mt_objective_stage_shown(&p->aims[s->stage], s->f)),
+            .value = none
+                         ? nan("")
+                         : finite_or_none(mt_objective_stage_shown(&p->stages[s->stage], s->f)),
             .violation = finite_or_none(s->violation),
             .feasible = mt_is_held(s->violation),
         };

@@ -376,7 +376,7 @@ static void write_kind_rank(mt_sentences *s, const char *first)
             s,
             "It ranks %d of the %d mode placements that were found to meet all goals, of "
             "%.0f in all, by %s %s (%s).",
-            s->rec->rank, g->n_solutions, g->n_possible, optimum_word(&s->p->aims[0]), first,
+            s->rec->rank, g->n_solutions, g->n_possible, optimum_word(&s->p->stages[0]), first,
             sure);
     } else if (g->n_solutions == 1) {
         mt_add_sentence(s,
@@ -387,7 +387,7 @@ static void write_kind_rank(mt_sentences *s, const char *first)
             s,
             "It ranks %d of the %d mode placements that meet all goals, of %.0f in all, by "
             "%s %s (%s).",
-            s->rec->rank, g->n_solutions, g->n_possible, optimum_word(&s->p->aims[0]), first,
+            s->rec->rank, g->n_solutions, g->n_possible, optimum_word(&s->p->stages[0]), first,
             sure);
     }
 }
@@ -402,7 +402,7 @@ static void write_only(mt_sentences *s, const mt_nlp_result *search, const char 
             s,
             "It is the only local optimum, by %s %s, that %d start%s found (sampled, not "
             "proven).",
-            optimum_word(&s->p->aims[0]), first, search->starts, many);
+            optimum_word(&s->p->stages[0]), first, search->starts, many);
     } else {
         mt_add_sentence(s, "It is the only design that %d start%s found (sampled, not proven).",
                         search->starts, many);
@@ -444,7 +444,7 @@ static void write_minimum(mt_sentences *s, const mt_nlp_result *search)
 
 static void write_rank(mt_sentences *s, const mt_nlp_result *search)
 {
-    const char *const first = stage_text(&s->p->aims[0]);
+    const char *const first = stage_text(&s->p->stages[0]);
     mt_sentence_of(s, "rank", NULL);
     if (s->design->unsearched) {
         mt_add_sentence(
@@ -455,7 +455,7 @@ static void write_rank(mt_sentences *s, const mt_nlp_result *search)
     if (s->design->discrete != NULL) {
         mt_arena *const mem = &s->result->mem;
         const char *const by =
-            mt_arena_printf(mem, "%s %s", optimum_word(&s->p->aims[0]), first);
+            mt_arena_printf(mem, "%s %s", optimum_word(&s->p->stages[0]), first);
         mt_add_sentence(
             s, "%s", mt_describe_rank_text(s->design->discrete, search, s->rec->rank, by, mem));
         return;
@@ -479,7 +479,7 @@ static void write_rank(mt_sentences *s, const mt_nlp_result *search)
     } else {
         mt_add_sentence(s, "It ranks %d of %d distinct designs found from %d starts, by %s %s.",
                         s->rec->rank, search->n_solutions, search->starts,
-                        optimum_word(&s->p->aims[0]), first);
+                        optimum_word(&s->p->stages[0]), first);
     }
     if (s->design->found->continuum && !search->compromise) {
         mt_add_sentence(
@@ -490,8 +490,8 @@ static void write_rank(mt_sentences *s, const mt_nlp_result *search)
     }
     for (int k = 1; k <= s->design->stage; k++) {
         mt_add_sentence(s, "With the %s %s held, it has the %s %s near it.",
-                        optimum_word(&s->p->aims[0]), first, optimum_word(&s->p->aims[k]),
-                        stage_text(&s->p->aims[k]));
+                        optimum_word(&s->p->stages[0]), first, optimum_word(&s->p->stages[k]),
+                        stage_text(&s->p->stages[k]));
     }
     if (s->rec->singular) {
         mt_add_sentence(

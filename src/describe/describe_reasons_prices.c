@@ -24,7 +24,7 @@ enum { N_PARTS = sizeof parts / sizeof *parts };
 
 static mt_price price_of(const mt_sentences *s, double df)
 {
-    return (mt_price){.df = df * s->p->aims[s->design->stage].size,
+    return (mt_price){.df = df * s->p->stages[s->design->stage].size,
                       .change = s->rec->change,
                       .score = s->rec->score,
                       .first = s->design->stage == 0};
@@ -33,7 +33,7 @@ static mt_price price_of(const mt_sentences *s, double df)
 /* True where the design has multipliers: slopes of an objective at its optimum. */
 static bool has_prices(const mt_sentences *s)
 {
-    const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
+    const mt_objective_ops *const ops = s->p->stages[s->design->stage].ops;
     return ops->price != NULL && s->rec->feasible && mt_describe_is_optimum(s->rec);
 }
 
@@ -41,7 +41,7 @@ static bool has_prices(const mt_sentences *s)
  * beyond the validity of a slope, not known, or out of memory. */
 static const char *worth(mt_sentences *s, double df)
 {
-    const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
+    const mt_objective_ops *const ops = s->p->stages[s->design->stage].ops;
     const mt_price q = price_of(s, df);
     const bool noise =
         !(fabs(df) > 0.0) || (q.first && fabs(q.df) <= MT_RATIO_NOISE * fabs(q.score));
@@ -64,7 +64,7 @@ static const char *relaxation_gain_text(mt_sentences *s, double slope, const cha
 
 static const char *win(const mt_sentences *s)
 {
-    const mt_objective_type type = s->p->aims[s->design->stage].type;
+    const mt_objective_type type = s->p->stages[s->design->stage].type;
     return mt_objective_is(type, MT_MAXIMISED) ? "raise" : "reduce";
 }
 
@@ -73,7 +73,7 @@ static const char *win(const mt_sentences *s)
 static void write_hardly(mt_sentences *s, const mt_requirement *d, const mt_result_goal *g,
                          double slope)
 {
-    const mt_objective_ops *const ops = s->p->aims[s->design->stage].ops;
+    const mt_objective_ops *const ops = s->p->stages[s->design->stage].ops;
     const mt_price q = price_of(s, fabs(slope) / PERCENT);
     const char *const why =
         has_prices(s) && ops->hardly != NULL ? ops->hardly(&q, &s->result->mem) : NULL;

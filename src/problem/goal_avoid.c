@@ -184,7 +184,7 @@ mt_status mt_avoidance_lay_out(mt_subproblem *c, const int *below, int n_cuts,
     const mt_problem *const p = c->p;
     const bool any = below != NULL && p->n_bands > 0;
     lists l = {.tie = p->tie};
-    c->clearance = any && mt_objective_is(c->aims[0].type, MT_BANDS);
+    c->clearance = any && mt_objective_is(c->stages[0].type, MT_BANDS);
     c->n_t = p->n + (c->clearance ? 1 : 0);
     c->n_views = p->n_views;
     c->views = p->views;

@@ -26,7 +26,7 @@ const mt_objective_ops mt_objective_none = {.value = NULL};
 
 double mt_objective_stage_value(const mt_workspace *w, int k, double *gradient)
 {
-    const mt_objective_stage *const a = &w->c->aims[k];
+    const mt_objective_stage *const a = &w->c->stages[k];
     for (int i = 0; i < w->c->n_t && gradient != NULL; i++) {
         gradient[i] = 0.0;
     }
@@ -52,7 +52,7 @@ static int held_row(const mt_subproblem *c, int k)
 {
     int row = c->n_in;
     for (int i = 0; i < k; i++) {
-        row += mt_objective_is(c->aims[i].type, MT_RESIDUALS) ? 0 : 1;
+        row += mt_objective_is(c->stages[i].type, MT_RESIDUALS) ? 0 : 1;
     }
     return row;
 }
@@ -61,14 +61,14 @@ void mt_objective_stage_hold(mt_subproblem *c, const mt_workspace *w, int k, dou
 {
     mt_held *const held = &c->held[k];
     const double root = sqrt(2.0 * fmax(f, 0.0));
-    if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
+    if (mt_objective_is(c->stages[k].type, MT_RESIDUALS)) {
         for (int i = 0; i < c->p->n_res; i++) {
             c->r_held[i] = w->r[i];
             c->eq_tol[c->p->n_eq + i] = HELD_ROOT * fmax(root, 1.0);
         }
         return;
     }
-    if (mt_objective_is(c->aims[k].type, MT_HALF_SQUARE)) {
+    if (mt_objective_is(c->stages[k].type, MT_HALF_SQUARE)) {
         const double most = root + (HELD_ROOT * fmax(root, 1.0));
         held->limit = 0.5 * most * most;
         held->unit = held->limit;
@@ -99,7 +99,7 @@ void mt_objective_stage_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_va
     const ptrdiff_t rows = mt_subproblem_rows_in(c);
     for (int k = 0; k < c->stage; k++) {
         const mt_held *const held = &c->held[k];
-        if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
+        if (mt_objective_is(c->stages[k].type, MT_RESIDUALS)) {
             hold_misfit(w, with_gradient, out);
             continue;
         }

@@ -105,8 +105,8 @@ static mt_status init_whole(mt_problem *p, mt_err *err)
                          .upper_t = mt_arena_f64(&p->mem, n, 1),
                          .origin_t = mt_arena_f64(&p->mem, n, 1),
                          .change_weight = change_weight,
-                         .n_aims = p->n_aims,
-                         .aims = p->aims,
+                         .n_stages = p->n_stages,
+                         .stages = p->stages,
                          .weight = weight,
                          .search = p->study->search,
                          .proof_work = proof_work(&p->study->search)};

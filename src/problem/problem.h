@@ -24,7 +24,7 @@
  * = x / scale. The total change is
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Files: problem.c (creation, coordinates), problem_demands.c (goals to requirements),
+ * Files: problem.c (creation, coordinates), problem_requirements.c (goals to requirements),
  * problem_program.c (expressions and objectives); goal_*.c and objective_*.c are the kinds,
  * drive_positions.c ties the positions of one drive.
  */
@@ -150,8 +150,8 @@ typedef struct mt_problem {
     /* nodes of it that the search needs; those of published quantities follow */
     int n_searched;
     mt_node *published; /* [study->n_published] */
-    int n_aims;         /* at least one */
-    mt_objective_stage *aims;
+    int n_stages;       /* at least one */
+    mt_objective_stage *stages;
     mt_subproblem whole; /* the whole study: all bounds, no mode placement */
 } mt_problem;
 
@@ -203,7 +203,7 @@ int mt_configuration_vibrations(const mt_configuration_problem *view);
 /* Name of the configuration. */
 const char *mt_configuration_name(const mt_problem *p, const mt_configuration_problem *view);
 
-/* problem_demands.c: configurations, requirements and their rows. */
+/* problem_requirements.c: configurations, requirements and their rows. */
 mt_status mt_problem_init_requirements(mt_problem *p, mt_err *err);
 /* problem_responses.c: checks the ports of responses. Fails: MT_E_INPUT, naming the unknown
  * port. */

@@ -52,8 +52,8 @@ static mt_status set_sizes(mt_problem *p, mt_err *err)
         mt_requirement *const d = &p->requirements[i];
         d->size = d->node != MT_NO_NODE ? size_of(p, d->node, value, grad) : d->size;
     }
-    for (int i = 0; i < p->n_aims; i++) {
-        mt_objective_stage *const a = &p->aims[i];
+    for (int i = 0; i < p->n_stages; i++) {
+        mt_objective_stage *const a = &p->stages[i];
         const double size = a->n_mass > 0                    ? size_of_mass(p, a)
                             : known && a->node != MT_NO_NODE ? size_of(p, a->node, value, grad)
                                                              : 1.0;
@@ -70,13 +70,13 @@ mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
     int *const is_input = mt_arena_int(&p->mem, n_parameters);
     mt_node *const nodes = mt_arena_alloc(&p->mem, n_parameters, sizeof *nodes);
     p->published = mt_arena_alloc(&p->mem, (size_t)s->n_published, sizeof *p->published);
-    p->n_aims = s->n_objectives > 0 ? s->n_objectives : 1;
-    p->aims = mt_arena_alloc(&p->mem, (size_t)p->n_aims, sizeof *p->aims);
+    p->n_stages = s->n_objectives > 0 ? s->n_objectives : 1;
+    p->stages = mt_arena_alloc(&p->mem, (size_t)p->n_stages, sizeof *p->stages);
     MT_TRY(mt_arena_check(&p->mem, err));
-    for (int i = 0; i < p->n_aims; i++) {
+    for (int i = 0; i < p->n_stages; i++) {
         const mt_objective *const o = s->n_objectives > 0 ? &s->objectives[i] : NULL;
         const mt_objective_type type = o != NULL ? o->type : MT_OBJECTIVE_NONE;
-        p->aims[i] = (mt_objective_stage){
+        p->stages[i] = (mt_objective_stage){
             .type = type, .ops = mt_objective_ops_of(type), .objective = o, .node = MT_NO_NODE};
     }
     for (size_t i = 0; i < n_parameters; i++) {
@@ -93,8 +93,8 @@ mt_status mt_problem_init_program(mt_problem *p, mt_err *err)
             d->node = mt_program_expr(&p->program, &d->goal->expression, nodes, d->goal->addr);
         }
     }
-    for (int i = 0; i < p->n_aims; i++) {
-        mt_objective_stage *const a = &p->aims[i];
+    for (int i = 0; i < p->n_stages; i++) {
+        mt_objective_stage *const a = &p->stages[i];
         if (a->ops->compile != NULL) {
             MT_TRY(a->ops->compile(p, a, nodes, err));
         }

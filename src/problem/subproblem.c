@@ -49,7 +49,7 @@ static mt_status init_tolerances(mt_subproblem *c, mt_arena *mem, mt_err *err)
     const mt_problem *const p = c->p;
     mt_avoidance_row at;
     c->eq_tol = mt_arena_f64(mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
-    c->in_tol = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
+    c->in_tol = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_stages, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < p->n_requirements; i++) {
         const mt_requirement *const d = &p->requirements[i];
@@ -79,7 +79,7 @@ static mt_status init_tolerances(mt_subproblem *c, mt_arena *mem, mt_err *err)
 static void lay_out_soft(mt_subproblem *c)
 {
     const int n = c->p->n;
-    c->forced_response = mt_objective_is(c->aims[0].type, MT_SHAKES);
+    c->forced_response = mt_objective_is(c->stages[0].type, MT_SHAKES);
     c->first_soft_row = c->n_in;
     if (c->forced_response) {
         c->n_in += c->p->n_soft;
@@ -117,9 +117,9 @@ mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_
                                    mt_err *err)
 {
     const size_t n_eq = (size_t)from->p->n_eq + (size_t)from->p->n_res;
-    const size_t n_in = (size_t)from->n_in + (size_t)from->n_aims;
+    const size_t n_in = (size_t)from->n_in + (size_t)from->n_stages;
     *out = *from;
-    out->held = mt_arena_alloc(mem, (size_t)from->n_aims, sizeof *out->held);
+    out->held = mt_arena_alloc(mem, (size_t)from->n_stages, sizeof *out->held);
     out->r_held = mt_arena_f64(mem, (size_t)from->p->n_res, 1);
     out->eq_tol = mt_arena_f64(mem, n_eq, 1);
     out->in_tol = mt_arena_f64(mem, n_in, 1);
@@ -178,14 +178,14 @@ double mt_subproblem_change(const mt_subproblem *c, const double *t)
 
 int mt_subproblem_rows_res(const mt_subproblem *c)
 {
-    return mt_objective_is(c->aims[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;
+    return mt_objective_is(c->stages[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;
 }
 
 /* True where a misfit is among the objectives before the present one. */
 static bool misfit_held(const mt_subproblem *c)
 {
     for (int k = 0; k < c->stage; k++) {
-        if (mt_objective_is(c->aims[k].type, MT_RESIDUALS)) {
+        if (mt_objective_is(c->stages[k].type, MT_RESIDUALS)) {
             return true;
         }
     }

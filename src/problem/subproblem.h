@@ -39,18 +39,18 @@ typedef struct mt_subproblem {
     double *origin_t; /* [n + 1] outside the bounds where the original design is */
     /* [n + 1] weights of the coordinates in the total change; 0: not counted */
     const double *change_weight;
-    const struct mt_objective_stage *aims; /* [n_aims] */
-    mt_held *held;                         /* [n_aims] those before `stage`; NULL at stage 0 */
-    double *r_held;                        /* [n_res] residuals at which a misfit is held */
-    const double *weight;                  /* [n_requirements] NaN: a constraint */
-    const int *below;                      /* [n_bands] the mode placement; NULL: none */
+    const struct mt_objective_stage *stages; /* [n_stages] */
+    mt_held *held;        /* [n_stages] those before `stage`; NULL at stage 0 */
+    double *r_held;       /* [n_res] residuals at which a misfit is held */
+    const double *weight; /* [n_requirements] NaN: a constraint */
+    const int *below;     /* [n_bands] the mode placement; NULL: none */
     /* [n_views] configurations: the problem's, then those of cuts */
     const struct mt_configuration_problem *views;
     /* [n_avoidances] the problem's, then those of cuts */
     const struct mt_avoidance *avoidances;
     const int *tie; /* [n_bands] */
     double *eq_tol; /* [n_eq + n_res] */
-    double *in_tol; /* [n_in + n_aims] */
+    double *in_tol; /* [n_in + n_stages] */
     /* variables with a tolerance (tolerance.h); NULL: none */
     struct mt_problem_tolerance_box *tolerance_box;
     /* [n_at_position] limits at cuts (at_position.h); their rows are the last before held
@@ -69,8 +69,8 @@ typedef struct mt_subproblem {
     bool best_alone; /* only the best design is wanted */
     bool as_found;   /* any of equally good designs will do: the nearest is not searched */
     int n_t;         /* n, or n + 1 */
-    int n_aims;
-    int stage; /* index in aims */
+    int n_stages;
+    int stage; /* index in stages */
     int n_views;
     int n_avoidances;
     int n_bands;

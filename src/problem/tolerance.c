@@ -324,7 +324,7 @@ static mt_status init_rows(mt_subproblem *c, mt_arena *mem, mt_err *err)
     const int before = c->n_in;
     list_all(c, NULL);
     r->rows = mt_arena_alloc(mem, (size_t)r->n_rows, sizeof *r->rows);
-    double *const tolerances = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_aims, 1);
+    double *const tolerances = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_stages, 1);
     MT_TRY(mt_arena_check(mem, err));
     if (before > 0) {
         memcpy(tolerances, c->in_tol, (size_t)before * sizeof *tolerances);

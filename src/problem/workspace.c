@@ -301,13 +301,13 @@ static bool judged_later(const mt_workspace *w)
 static bool is_wanted(const mt_workspace *w)
 {
     const mt_subproblem *const c = w->c;
-    return mt_progress_seeks(w->p->run->progress) && c->n_aims > 0 &&
-           c->aims[0].ops->value != NULL;
+    return mt_progress_seeks(w->p->run->progress) && c->n_stages > 0 &&
+           c->stages[0].ops->value != NULL;
 }
 
 static void report_found(const mt_workspace *w, double f)
 {
-    const mt_objective_stage *const objective_stage = &w->c->aims[0];
+    const mt_objective_stage *const objective_stage = &w->c->stages[0];
     mt_progress_found(w->p->run->progress, mt_objective_kind_of(objective_stage->type)->name, f,
                       mt_objective_stage_shown(objective_stage, f));
 }

@@ -119,7 +119,7 @@ static mt_status rank(mt_catalogue_search *d, mt_combination *const *list, int n
 static bool settled(const mt_catalogue_search *d, const mt_combination *next, int most,
                     mt_combination *const *best, int n_best)
 {
-    return d->p->aims[0].type == MT_OBJECTIVE_CHANGE && n_best == most &&
+    return d->p->stages[0].type == MT_OBJECTIVE_CHANGE && n_best == most &&
            best[most - 1]->feasible && next->least > best[most - 1]->f[0];
 }
 

@@ -58,7 +58,7 @@ typedef struct mt_catalogue_search_report {
 typedef struct mt_combination {
     int *pick;          /* [n_listed] index in each catalogue */
     double *t;          /* [n + 1] the design; coordinates of catalogues are those of pick */
-    double *f;          /* [n_aims] objectives there */
+    double *f;          /* [n_stages] objectives there */
     const double *from; /* [n + 1] a design t to start from; NULL: none */
     double least;       /* half of the squared change due to pick alone */
     mt_missed missed;
@@ -107,21 +107,21 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
                                     mt_nlp_result *out, mt_catalogue_search_report *report,
                                     mt_err *err);
 
-/* catalogue_search_judge.c: evaluate list[n], on workers, with at most `budget` evaluations for
- * each where mixed (0: no limit). Adds to the search's counters. */
+/* catalogue_search_verify.c: evaluate list[n], on workers, with at most `budget` evaluations
+ * for each where mixed (0: no limit). Adds to the search's counters. */
 mt_status mt_catalogue_search_verify(mt_catalogue_search *d, int n, mt_combination *list,
                                      long budget, mt_err *err);
-/* catalogue_search_judge.c: search those of best[n] that are flat once more for the design
+/* catalogue_search_verify.c: search those of best[n] that are flat once more for the design
  * nearest to the original; before, any of the equally good designs was enough and takes less
  * time. Only where mixed. */
 mt_status mt_catalogue_search_settle(mt_catalogue_search *d, int n, mt_combination *const *best,
                                      mt_err *err);
-/* catalogue_search_undetermined.c: unidentifiable directions at the best combination, into out:
- * single catalogues of which any value serves, and directions of the continuous variables with
- * the catalogues fixed. Searches that combination once more where mixed. */
+/* catalogue_search_unidentifiable.c: unidentifiable directions at the best combination, into
+ * out: single catalogues of which any value serves, and directions of the continuous variables
+ * with the catalogues fixed. Searches that combination once more where mixed. */
 mt_status mt_catalogue_search_unidentifiable(mt_catalogue_search *d, const mt_combination *best,
                                              mt_nlp_result *out, mt_err *err);
-/* catalogue_search_judge.c: search the continuous variables of c once more for their
+/* catalogue_search_verify.c: search the continuous variables of c once more for their
  * unidentifiable directions (c is unchanged); out->unidentifiable in mem. */
 mt_status mt_catalogue_search_directions(mt_catalogue_search *d, const mt_combination *c,
                                          mt_arena *mem, mt_nlp_result *out, mt_err *err);

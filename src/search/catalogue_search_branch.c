@@ -319,7 +319,7 @@ static double cap_of(const branching *v)
         return HUGE_VAL;
     }
     const double f = best->f[0];
-    return v->d->p->n_aims > 1 ? f + (EQUAL * fabs(f)) : f - (MT_EQUAL_FOUND * fabs(f));
+    return v->d->p->n_stages > 1 ? f + (EQUAL * fabs(f)) : f - (MT_EQUAL_FOUND * fabs(f));
 }
 
 static int by_bound(const void *a, const void *b)
@@ -506,7 +506,7 @@ static void note_open(const branching *v, mt_catalogue_search_report *report)
     report->open_within = nan("");
     if (best != NULL && best->f[0] > 0.0 && report->open > 0.0) {
         /* half the square of the change */
-        const bool squares = mt_objective_is(v->d->p->aims[0].type, MT_HALF_SQUARE);
+        const bool squares = mt_objective_is(v->d->p->stages[0].type, MT_HALF_SQUARE);
         const double share = fmax(least, 0.0) / best->f[0];
         report->open_within = 1.0 - (squares ? sqrt(share) : share);
     }

@@ -24,7 +24,7 @@ enum {
 };
 /* What one question may take of the budget of all. */
 static const double PART = 0.2;
-/* Objectives that differ by less are equal: as they are ranked (catalogue_search_judge.c), and
+/* Objectives that differ by less are equal: as they are ranked (catalogue_search_verify.c), and
  * more than intervals lose. */
 static const double EQUAL = 1e-9;
 /* With continuous variables what is proven is that no design is better by more than this, or
@@ -203,7 +203,7 @@ static mt_status ask(prover *v, outcome *out, mt_err *err)
 static double cap_of(const mt_problem *p, double f, double share)
 {
     /* f is half the square of the change */
-    const bool squares = mt_objective_is(p->aims[0].type, MT_HALF_SQUARE);
+    const bool squares = mt_objective_is(p->stages[0].type, MT_HALF_SQUARE);
     return squares ? f * (1.0 - share) * (1.0 - share) : f - (share * fabs(f));
 }
 

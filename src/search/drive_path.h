@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SEARCH_MOTION_H
-#define SEARCH_MOTION_H
+#ifndef SEARCH_DRIVE_PATH_H
+#define SEARCH_DRIVE_PATH_H
 
 #include "problem/drive_positions.h"
 

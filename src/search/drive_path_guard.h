@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SEARCH_MOTION_GUARD_H
-#define SEARCH_MOTION_GUARD_H
+#ifndef SEARCH_DRIVE_PATH_GUARD_H
+#define SEARCH_DRIVE_PATH_GUARD_H
 
 #include "mechanics/directions.h"
 #include "problem/requirement.h"

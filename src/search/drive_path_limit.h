@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SEARCH_MOTION_LIMIT_H
-#define SEARCH_MOTION_LIMIT_H
+#ifndef SEARCH_DRIVE_PATH_LIMIT_H
+#define SEARCH_DRIVE_PATH_LIMIT_H
 
 #include "problem/forced_response.h"
 #include "search/drive_path.h"

@@ -43,8 +43,8 @@ static mt_status keep_solutions(const mt_problem *p, const mt_mode_placement_job
                 .held = j->slots[k].held.held,
                 .n_held = j->slots[k].held.n_held,
                 .candidate = k,
-                .aims = j->slots[k].aims,
-                .n_aims = j->slots[k].aims == NULL ? 0 : j->c->n_aims};
+                .stages = j->slots[k].stages,
+                .n_stages = j->slots[k].stages == NULL ? 0 : j->c->n_stages};
         }
     }
     return MT_OK;
@@ -106,8 +106,8 @@ static mt_status collect(const mt_problem *p, const mt_mode_placement_job *j, mt
         MT_TRY(mt_mode_placement_copy(j->c, out->solutions[i].below, out->solutions[i].found,
                                       mem, &out->solutions[i].found, err));
         MT_TRY(mt_mode_placement_copy_held(mem, &out->solutions[i], err));
-        out->solutions[i].aims = NULL; /* the slots' memory goes */
-        out->stage = out->solutions[i].n_aims > 0 ? j->c->n_aims - 1 : 0;
+        out->solutions[i].stages = NULL; /* the slots' memory goes */
+        out->stage = out->solutions[i].n_stages > 0 ? j->c->n_stages - 1 : 0;
     }
     for (int k = 0; k < j->candidates->n; k++) {
         const mt_nlp_result *const found = &j->slots[k].found;
@@ -403,7 +403,7 @@ mt_status mt_mode_placements_solve(mt_workspace *const *workers, int n_workers,
     j.options.starts = c->search.starts > 0 ? c->search.starts : STARTS_PER_CANDIDATE + p->n;
     j.options.settles = c->search.starts <= 0;
     j.options.max_solutions = SOLUTIONS_PER_CANDIDATE;
-    j.options.least_change = c->aims[0].type == MT_OBJECTIVE_CHANGE;
+    j.options.least_change = c->stages[0].type == MT_OBJECTIVE_CHANGE;
     if (c->hint != NULL) {
         int *const below = mt_arena_int(mem, (size_t)p->n_bands);
         double violation = 0.0;

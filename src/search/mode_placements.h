@@ -31,8 +31,8 @@ typedef struct mt_mode_placement_solution {
     const int *below; /* [n_bands] its mode placement */
     const mt_mode_placement_held *held;
     int n_held;
-    const double *aims; /* [n_aims] its objectives, during ranking */
-    int n_aims;
+    const double *stages; /* [n_stages] its objectives, during ranking */
+    int n_stages;
     int candidate;
 } mt_mode_placement_solution;
 

@@ -26,7 +26,7 @@ static const double NEAR_LAST = 1.5;
 /* First objective of a feasible slot. */
 static double first_of(const mt_mode_placement_slot *s)
 {
-    return s->aims != NULL ? s->aims[0] : s->found.solutions[0].f;
+    return s->stages != NULL ? s->stages[0] : s->found.solutions[0].f;
 }
 
 /* Number of feasible slots with at most this first objective. */
@@ -96,9 +96,9 @@ static bool is_better(const mt_mode_placement_job *j, const mt_mode_placement_sl
     }
     const mt_nlp_solution *const a = &later->found.solutions[0];
     const mt_nlp_solution *const b = &before->found.solutions[0];
-    const double *const x = later->aims != NULL ? later->aims : &a->f;
-    const double *const y = before->aims != NULL ? before->aims : &b->f;
-    const int n = later->aims != NULL && before->aims != NULL ? j->c->n_aims : 1;
+    const double *const x = later->stages != NULL ? later->stages : &a->f;
+    const double *const y = before->stages != NULL ? before->stages : &b->f;
+    const int n = later->stages != NULL && before->stages != NULL ? j->c->n_stages : 1;
     const mt_merit first = {a->feasible, a->squares, n, x};
     const mt_merit second = {b->feasible, b->squares, n, y};
     return mt_merit_before(&first, &second, MT_EQUAL_FOUND);

@@ -180,7 +180,7 @@ mt_status mt_mode_placement_bounds_make(const mt_subproblem *c, const mt_proof *
     double cost = 0.0;
     *out = (mt_mode_placement_bounds){.c = c};
     *known = false;
-    if (!proof->possible || c->aims[0].type != MT_OBJECTIVE_CHANGE || !(whole > 0.0)) {
+    if (!proof->possible || c->stages[0].type != MT_OBJECTIVE_CHANGE || !(whole > 0.0)) {
         return MT_OK;
     }
     for (int v = 0; v < proof->question.n_views; v++) {

@@ -11,7 +11,7 @@
 
 long mt_mode_placement_verdict(const mt_subproblem *c)
 {
-    return (c->n_aims > 1 ? 1 : 0) + (mt_search_has_positions(c) ? 1 : 0) +
+    return (c->n_stages > 1 ? 1 : 0) + (mt_search_has_positions(c) ? 1 : 0) +
            (c->clearance || mt_drive_positions_any(c->p) ? 1 : 0) +
            (mt_tolerance_is_sampled(c) ? 1 + c->search.judged_as : 0) + mt_drive_path_most(c);
 }

@@ -13,8 +13,8 @@ typedef struct mt_mode_placement_slot {
     mt_nlp_result found;
     int n_t;
     mt_mode_placement_solution held; /* limits active at the best solution between positions */
-    /* [n_aims] of the best solution; NULL without one or with a single objective */
-    double *aims;
+    /* [n_stages] of the best solution; NULL without one or with a single objective */
+    double *stages;
     mt_status rc;
     long evals; /* of all rounds */
     long begun; /* evaluations before the last round, whose steps count */

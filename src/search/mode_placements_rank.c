@@ -7,8 +7,8 @@
 static bool better(const mt_subproblem *c, const mt_mode_placement_solution *a,
                    const mt_mode_placement_solution *b)
 {
-    const mt_merit x = {a->found->feasible, a->found->squares, a->n_aims, a->aims};
-    const mt_merit y = {b->found->feasible, b->found->squares, b->n_aims, b->aims};
+    const mt_merit x = {a->found->feasible, a->found->squares, a->n_stages, a->stages};
+    const mt_merit y = {b->found->feasible, b->found->squares, b->n_stages, b->stages};
     if (mt_merit_before(&x, &y, MT_EQUAL_FOUND) || mt_merit_before(&y, &x, MT_EQUAL_FOUND)) {
         return mt_merit_before(&x, &y, MT_EQUAL_FOUND);
     }

@@ -43,15 +43,15 @@ static mt_status search_in_order(mt_workspace *w, mt_mode_placement_slot *s, mt_
         return MT_OK;
     }
     /* all of them at the best solution, by which the candidates are ranked */
-    s->aims = mt_arena_f64(&s->mem, (size_t)w->c->n_aims, 1);
+    s->stages = mt_arena_f64(&s->mem, (size_t)w->c->n_stages, 1);
     MT_TRY(mt_arena_check(&s->mem, err));
     MT_TRY(mt_subproblem_values_init(w->c, &s->mem, &v, err));
     MT_TRY(mt_workspace_eval(w, s->found.solutions[0].t, false, &v, err));
     s->evals++;
-    for (int k = 0; k < w->c->n_aims; k++) {
-        s->aims[k] = mt_objective_stage_value(w, k, NULL);
+    for (int k = 0; k < w->c->n_stages; k++) {
+        s->stages[k] = mt_objective_stage_value(w, k, NULL);
     }
-    s->found.solutions[0].f = s->aims[w->c->n_aims - 1];
+    s->found.solutions[0].f = s->stages[w->c->n_stages - 1];
     return MT_OK;
 }
 
@@ -105,12 +105,12 @@ static mt_status follow_best(mt_mode_placement_slot *s, mt_workspace *w, bool la
 
 /* A search finds z within the tolerance of a band, which differs between placements: the best
  * design is ranked by its actual clearance. */
-static void report_clearance(mt_mode_placement_slot *s, double room, int n_aims)
+static void report_clearance(mt_mode_placement_slot *s, double room, int n_stages)
 {
-    if (n_aims == 1) {
+    if (n_stages == 1) {
         s->found.solutions[0].f = -room;
-    } else if (s->aims != NULL) {
-        s->aims[0] = -room;
+    } else if (s->stages != NULL) {
+        s->stages[0] = -room;
     }
 }
 
@@ -145,7 +145,7 @@ static mt_status verify_best(mt_mode_placement_slot *s, mt_workspace *w, bool la
         room = fmin(room, s->corners.band_margin);
     }
     if (best->feasible && w->c->clearance && isfinite(room)) {
-        report_clearance(s, room, w->c->n_aims);
+        report_clearance(s, room, w->c->n_stages);
     }
     *again = added > 0 || worse;
     return MT_OK;
@@ -194,16 +194,16 @@ static mt_status search_round(const mt_mode_placement_job *j, mt_workspace *w,
     }
     c.hint = from != NULL ? hint : NULL;
     const mt_nlp nlp = mt_workspace_nlp(w);
-    mt_status rc = c.n_aims > 1
+    mt_status rc = c.n_stages > 1
                        ? search_in_order(w, s, why)
                        : mt_workspace_solve(w, &nlp, &options, &s->mem, &s->found, why);
-    if (rc == MT_OK && c.n_aims == 1) {
+    if (rc == MT_OK && c.n_stages == 1) {
         rc = mt_search_repeated_eigenvalues(w, options.max_evals, &s->mem, &s->found, why);
     }
     if (rc == MT_OK) {
         mt_mode_placement_verify_clearance(&c, &s->found);
     }
-    if (rc == MT_OK && c.n_aims == 1) {
+    if (rc == MT_OK && c.n_stages == 1) {
         rc = mt_search_nearest(w, options.max_evals, NULL, NULL, &s->mem, &s->found, why);
     }
     s->begun = s->evals;
@@ -256,7 +256,7 @@ mt_status mt_mode_placement_search_candidate(void *context, int worker, int k,
     w->task_path = before;
     mt_workspace_back(w, j->c); /* the candidate's case goes, and its cuts */
     if (mt_mode_placement_is_met(s)) {
-        mt_workspace_judged(w, s->aims != NULL ? s->aims[0] : s->found.solutions[0].f);
+        mt_workspace_judged(w, s->stages != NULL ? s->stages[0] : s->found.solutions[0].f);
     }
     for (int i = 0; i < s->n_cuts; i++) {
         mt_cut_free(&s->cuts[i]);

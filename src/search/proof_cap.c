@@ -8,7 +8,7 @@
 static double least(void *context, const double *lo, const double *hi)
 {
     const mt_proof_cap *const c = context;
-    const mt_objective_stage *const a = &c->p->aims[0];
+    const mt_objective_stage *const a = &c->p->stages[0];
     return c->known ? a->ops->least(c->p, a, lo, hi, c->low, c->high) / a->size : -HUGE_VAL;
 }
 
@@ -18,7 +18,7 @@ mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem,
     const int system = p->n_views > 0 ? p->views[0].original->sys->program.count : 0;
     const size_t count = (size_t)(own > system ? own : system);
     *c = (mt_proof_cap){.p = p,
-                        .known = p->aims[0].ops->least != NULL,
+                        .known = p->stages[0].ops->least != NULL,
                         .low = mt_arena_f64(mem, count, 1),
                         .high = mt_arena_f64(mem, count, 1),
                         .cap = {.least = least, .context = c}};

@@ -96,11 +96,11 @@ mt_status mt_relaxation_misses(mt_workspace *w, const mt_mode_placement_result *
 /* The miss of placement below[n_bands]; NULL: none is known. */
 const mt_near_miss *mt_relaxation_miss(const mt_near_misses *misses, const int *below);
 
-/* relaxation_discrete.c: mt_relaxation_solve for a study with catalogues. Without continuous
+/* relaxation_catalogue.c: mt_relaxation_solve for a study with catalogues. Without continuous
  * variables all combinations are evaluated (short_of_budget where these are too many). */
-mt_status mt_relaxation_discrete(mt_workspace *const *workers, int n_workers,
-                                 const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
-                                 mt_err *err);
+mt_status mt_relaxation_catalogue(mt_workspace *const *workers, int n_workers,
+                                  const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
+                                  mt_err *err);
 
 /* relaxation_moves.c: all possible moves of the study, none tried yet. Fails: MT_E_MEMORY. */
 mt_status mt_relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_moves *out,

@@ -106,8 +106,8 @@ mt_status mt_relaxation_subproblem(const mt_subproblem *from, const mt_move *m, 
                                               .node = MT_NO_NODE};
     *useful = true;
     MT_TRY(mt_subproblem_copy(from, mem, out, err));
-    out->n_aims = 1;
-    out->aims = &CHANGE;
+    out->n_stages = 1;
+    out->stages = &CHANGE;
     if (m->kind == MT_MOVE_BOUND) {
         const int i = m->variable;
         const double to = far_bound(from, i, m->upper);

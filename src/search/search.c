@@ -26,7 +26,7 @@ static mt_nlp_options options_of(const mt_subproblem *c)
     opt.seed = c->search.seed;
     opt.starts = c->search.starts > 0 ? c->search.starts : c->starts;
     opt.max_evals = c->search.max_evaluations;
-    opt.least_change = c->aims[c->stage].type == MT_OBJECTIVE_CHANGE;
+    opt.least_change = c->stages[c->stage].type == MT_OBJECTIVE_CHANGE;
     return opt;
 }
 
@@ -85,12 +85,12 @@ typedef struct stages {
     mt_subproblem later; /* with the objectives before its stage held */
     mt_arena *mem;
     mt_nlp_result *out;
-    double *f;     /* n_aims values of each solution, at its present design */
-    double *limit; /* n_aims values of each, at the end of the objective's own stage */
+    double *f;     /* n_stages values of each solution, at its present design */
+    double *limit; /* n_stages values of each, at the end of the objective's own stage */
 } stages;
 
-/* Objectives of one design, where nothing is held yet: f[n_aims]. */
-static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *err)
+/* Objectives of one design, where nothing is held yet: f[n_stages]. */
+static mt_status stage_values_at(const stages *s, const double *t, double *f, mt_err *err)
 {
     mt_nlp_values v;
     const mt_arena_mark mark = mt_arena_get_mark(s->mem);
@@ -98,7 +98,7 @@ static mt_status aims_at(const stages *s, const double *t, double *f, mt_err *er
     mt_status rc = mt_subproblem_values_init(s->first, s->mem, &v, err);
     s->out->evals++;
     rc = rc == MT_OK ? mt_workspace_eval(s->ws, t, false, &v, err) : rc;
-    for (int k = 0; k < s->first->n_aims && rc == MT_OK; k++) {
+    for (int k = 0; k < s->first->n_stages && rc == MT_OK; k++) {
         f[k] = mt_objective_stage_value(s->ws, k, NULL);
     }
     mt_arena_rewind(s->mem, mark);
@@ -110,8 +110,8 @@ static mt_status refine(stages *s, int i, mt_err *err)
 {
     mt_subproblem *const c = &s->later;
     mt_nlp_solution *const old = &s->out->solutions[i];
-    double *const f = s->f + ((ptrdiff_t)i * c->n_aims);
-    double *const limit = s->limit + ((ptrdiff_t)i * c->n_aims);
+    double *const f = s->f + ((ptrdiff_t)i * c->n_stages);
+    double *const limit = s->limit + ((ptrdiff_t)i * c->n_stages);
     mt_nlp_result next = {0};
     const long most = s->first->search.max_evaluations;
     const long left = most - s->out->evals - 2; /* its objectives before and behind it */
@@ -120,7 +120,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
         s->out->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
     }
-    MT_TRY(aims_at(s, old->t, f, err)); /* the residuals that a misfit is held at */
+    MT_TRY(stage_values_at(s, old->t, f, err)); /* the residuals that a misfit is held at */
     limit[c->stage - 1] = f[c->stage - 1];
     for (int k = 0; k < c->stage; k++) {
         mt_objective_stage_hold(c, s->ws, k, limit[k]);
@@ -149,7 +149,7 @@ static mt_status refine(stages *s, int i, mt_err *err)
         s->out->unidentifiable = next.unidentifiable;
         s->out->unidentifiable_effect = next.unidentifiable_effect;
     }
-    return aims_at(s, old->t, f, err);
+    return stage_values_at(s, old->t, f, err);
 }
 
 bool mt_search_same(int n, const double *a, const double *b)
@@ -200,20 +200,20 @@ static bool is_twin(const stages *s, int kept, const mt_nlp_solution *one)
 /* Drop what has become one, then rank (insertion, stable). */
 static void rank(stages *s)
 {
-    const int n_aims = s->first->n_aims;
+    const int n_stages = s->first->n_stages;
     int kept = 0;
     for (int i = 0; i < s->out->n_solutions; i++) {
         mt_nlp_solution *const all = s->out->solutions;
         const mt_nlp_solution one = all[i];
-        double *const f = s->f + ((ptrdiff_t)i * n_aims);
+        double *const f = s->f + ((ptrdiff_t)i * n_stages);
         if (is_twin(s, kept, &one)) {
             continue;
         }
         int at = kept++;
-        const mt_merit own = {one.feasible, one.squares, n_aims, f};
+        const mt_merit own = {one.feasible, one.squares, n_stages, f};
         for (; at > 0; at--) {
-            const double *const g = s->f + ((ptrdiff_t)(at - 1) * n_aims);
-            const mt_merit other = {all[at - 1].feasible, all[at - 1].squares, n_aims, g};
+            const double *const g = s->f + ((ptrdiff_t)(at - 1) * n_stages);
+            const mt_merit other = {all[at - 1].feasible, all[at - 1].squares, n_stages, g};
             const bool before = mt_merit_before(&own, &other, MT_EQUAL_FOUND);
             if (!before && (mt_merit_before(&other, &own, MT_EQUAL_FOUND) ||
                             !is_nearer(s, &one, &all[at - 1]))) {
@@ -223,12 +223,12 @@ static void rank(stages *s)
         }
         all[at] = one;
         /* the values move along: rotate f[at..] by one row */
-        double *const base = s->f + ((ptrdiff_t)at * n_aims);
-        for (double *row = f; row > base; row -= n_aims) {
-            for (int k = 0; k < n_aims; k++) {
+        double *const base = s->f + ((ptrdiff_t)at * n_stages);
+        for (double *row = f; row > base; row -= n_stages) {
+            for (int k = 0; k < n_stages; k++) {
                 const double swap = row[k];
-                row[k] = row[k - n_aims];
-                row[k - n_aims] = swap;
+                row[k] = row[k - n_stages];
+                row[k - n_stages] = swap;
             }
         }
     }
@@ -239,15 +239,15 @@ static void rank(stages *s)
 static mt_status later_stages(stages *s, int *stage, mt_err *err)
 {
     mt_nlp_result *const out = s->out;
-    const int n_aims = s->first->n_aims;
+    const int n_stages = s->first->n_stages;
     MT_TRY(mt_subproblem_for_stages(s->first, s->mem, &s->later, err));
-    s->f = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
-    s->limit = mt_arena_f64(s->mem, (size_t)n_aims, (size_t)out->n_solutions);
+    s->f = mt_arena_f64(s->mem, (size_t)n_stages, (size_t)out->n_solutions);
+    s->limit = mt_arena_f64(s->mem, (size_t)n_stages, (size_t)out->n_solutions);
     MT_TRY(mt_arena_check(s->mem, err));
     for (int i = 0; i < out->n_solutions; i++) {
-        MT_TRY(aims_at(s, out->solutions[i].t, s->f + ((ptrdiff_t)i * n_aims), err));
+        MT_TRY(stage_values_at(s, out->solutions[i].t, s->f + ((ptrdiff_t)i * n_stages), err));
     }
-    for (int k = 1; k < n_aims && out->stop == MT_STOP_DONE; k++) {
+    for (int k = 1; k < n_stages && out->stop == MT_STOP_DONE; k++) {
         s->later.stage = k;
         for (int i = 0; i < out->n_solutions && out->stop == MT_STOP_DONE; i++) {
             MT_TRY(refine(s, i, err));
@@ -260,7 +260,7 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
     /* solutions that a stage has not reached keep the value of an earlier one: say so by one
      * measure for all */
     for (int i = 0; i < out->n_solutions; i++) {
-        out->solutions[i].f = s->f[((ptrdiff_t)i * n_aims) + *stage];
+        out->solutions[i].f = s->f[((ptrdiff_t)i * n_stages) + *stage];
     }
     rank(s);
     return MT_OK;
@@ -269,13 +269,13 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
 mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_result *out,
                          mt_err *err)
 {
-    const size_t n_aims = (size_t)ws->c->n_aims;
+    const size_t n_stages = (size_t)ws->c->n_stages;
     stages s = {.ws = ws, .first = ws->c, .mem = mem, .out = out};
-    s.f = mt_arena_f64(mem, n_aims, (size_t)out->n_solutions);
+    s.f = mt_arena_f64(mem, n_stages, (size_t)out->n_solutions);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < out->n_solutions; i++) {
-        double *const f = s.f + ((size_t)i * n_aims);
-        MT_TRY(aims_at(&s, out->solutions[i].t, f, err));
+        double *const f = s.f + ((size_t)i * n_stages);
+        MT_TRY(stage_values_at(&s, out->solutions[i].t, f, err));
         out->solutions[i].f = f[stage];
     }
     rank(&s);
@@ -300,10 +300,11 @@ static mt_status search(mt_workspace *const *workers, int n_workers, const doubl
     }
     MT_TRY(mt_search_repeated_eigenvalues(ws, c->search.max_evaluations, mem, out, err));
     const long most = c->search.max_evaluations;
-    if (c->n_aims == 1 || out->compromise || out->n_solutions == 0 ||
+    if (c->n_stages == 1 || out->compromise || out->n_solutions == 0 ||
         out->stop != MT_STOP_DONE) {
         MT_TRY(mt_search_join_continua(ws, mem, out, err));
-        return c->n_aims == 1 ? mt_search_nearest(ws, most, NULL, NULL, mem, out, err) : MT_OK;
+        return c->n_stages == 1 ? mt_search_nearest(ws, most, NULL, NULL, mem, out, err)
+                                : MT_OK;
     }
     if (most > 0 && most - out->evals < out->n_solutions) { /* nothing for their objectives */
         out->stop = MT_STOP_MAX_EVALS;

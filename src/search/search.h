@@ -93,7 +93,7 @@ bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t);
  * then again with the last objective held more closely, so that every printed digit of its
  * value stays. Solutions stay unchanged where they are not flat, where no such design is found,
  * and where the total change or a misfit is among the objectives. out->evals may grow to `most`
- * (0: no limit). f (NULL with one objective): n_aims objectives of each solution, updated;
+ * (0: no limit). f (NULL with one objective): n_stages objectives of each solution, updated;
  * limit: the values at which those before the last are held, in the same layout. With one
  * objective the solutions are ranked afterwards, and identical ones are joined. Fails:
  * MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE.

@@ -40,10 +40,10 @@ typedef struct continua {
     mt_workspace *ws;
     mt_nlp_result *out;
     mt_nlp_values v;
-    double *aims; /* n_aims of each solution */
-    double *at;   /* [n_aims] between two of them */
-    double *t;    /* [n_t] */
-    bool fits;    /* residuals alone, fewer than variables */
+    double *stages; /* n_stages of each solution */
+    double *at;     /* [n_stages] between two of them */
+    double *t;      /* [n_t] */
+    bool fits;      /* residuals alone, fewer than variables */
     mt_arena *mem;
     mt_status rc; /* what ends the comparison */
     mt_err err;
@@ -51,7 +51,7 @@ typedef struct continua {
 
 /* The objectives at t, half squares as roots; false where they have no value or a goal is not
  * met. */
-static bool measure(continua *c, const double *t, double *aims)
+static bool measure(continua *c, const double *t, double *stages)
 {
     mt_workspace *const ws = c->ws;
     const long most = ws->c->search.max_evaluations;
@@ -68,18 +68,18 @@ static bool measure(continua *c, const double *t, double *aims)
             mt_missed_of(ws->p->n_eq, c->v.eq, k->eq_tol, k->n_in, c->v.in, k->in_tol);
         good = mt_is_met(m.violation, 1.0);
     }
-    for (int k = 0; k < ws->c->n_aims && good; k++) {
-        aims[k] =
-            mt_objective_stage_root(&ws->c->aims[k], mt_objective_stage_value(ws, k, NULL));
-        good = isfinite(aims[k]);
+    for (int k = 0; k < ws->c->n_stages && good; k++) {
+        stages[k] =
+            mt_objective_stage_root(&ws->c->stages[k], mt_objective_stage_value(ws, k, NULL));
+        good = isfinite(stages[k]);
     }
     return good;
 }
 
 static bool equal(const mt_workspace *ws, const double *a, const double *b)
 {
-    for (int k = 0; k < ws->c->n_aims; k++) {
-        const bool unit = mt_objective_is(ws->c->aims[k].type, MT_AMOUNT);
+    for (int k = 0; k < ws->c->n_stages; k++) {
+        const bool unit = mt_objective_is(ws->c->stages[k].type, MT_AMOUNT);
         const double size = fmax(fabs(a[k]), fabs(b[k]));
         if (!(fabs(a[k] - b[k]) <= EQUAL * (unit ? size : fmax(size, 1.0)))) {
             return false;
@@ -173,9 +173,9 @@ static bool connected(continua *c, int i, int k)
 {
     const double *const a = c->out->solutions[i].t;
     const double *const b = c->out->solutions[k].t;
-    const double *const aims = c->aims + ((ptrdiff_t)i * c->ws->c->n_aims);
-    bool one = equal(c->ws, aims, c->aims + ((ptrdiff_t)k * c->ws->c->n_aims));
-    const bool curved = c->fits && aims[0] <= EQUAL;
+    const double *const stages = c->stages + ((ptrdiff_t)i * c->ws->c->n_stages);
+    bool one = equal(c->ws, stages, c->stages + ((ptrdiff_t)k * c->ws->c->n_stages));
+    const bool curved = c->fits && stages[0] <= EQUAL;
     double chord = 0.0;
     for (int j = 0; j < c->ws->c->n_t; j++) {
         chord = hypot(chord, b[j] - a[j]);
@@ -185,7 +185,7 @@ static bool connected(continua *c, int i, int k)
             c->t[j] = a[j] + ((b[j] - a[j]) * m / (BETWEEN + 1));
         }
         one = (!curved || restore_near(c, ASIDE * chord)) && measure(c, c->t, c->at) &&
-              equal(c->ws, aims, c->at);
+              equal(c->ws, stages, c->at);
     }
     return one;
 }
@@ -265,22 +265,22 @@ mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result
                                   mt_err *err)
 {
     continua c = {.ws = ws, .out = out, .mem = mem};
-    c.fits = ws->c->n_aims == 1 && mt_objective_is(ws->c->aims[0].type, MT_RESIDUALS) &&
+    c.fits = ws->c->n_stages == 1 && mt_objective_is(ws->c->stages[0].type, MT_RESIDUALS) &&
              ws->p->n_eq == 0 && ws->p->n_res < ws->c->n_t;
     const int n = out->n_solutions;
     if (out->compromise || n < 2 || out->stop == MT_STOP_USER) {
         return MT_OK;
     }
-    c.aims = mt_arena_f64(mem, (size_t)ws->c->n_aims, (size_t)n);
-    c.at = mt_arena_f64(mem, (size_t)ws->c->n_aims, 1);
+    c.stages = mt_arena_f64(mem, (size_t)ws->c->n_stages, (size_t)n);
+    c.at = mt_arena_f64(mem, (size_t)ws->c->n_stages, 1);
     c.t = mt_arena_f64(mem, (size_t)ws->c->n_t, 1);
     int *const group = mt_arena_int(mem, (size_t)n);
     MT_TRY(mt_arena_check(mem, err));
     mt_status rc = mt_subproblem_values_init(ws->c, mem, &c.v, err);
     for (int i = 0; i < n && rc == MT_OK; i++) {
-        double *const aims = c.aims + ((ptrdiff_t)i * ws->c->n_aims);
-        if (!measure(&c, out->solutions[i].t, aims)) {
-            aims[0] = nan(""); /* equal to nothing */
+        double *const stages = c.stages + ((ptrdiff_t)i * ws->c->n_stages);
+        if (!measure(&c, out->solutions[i].t, stages)) {
+            stages[0] = nan(""); /* equal to nothing */
         }
     }
     if (rc == MT_OK) {

@@ -53,7 +53,7 @@ typedef struct nearest {
     mt_arena *mem;
     mt_nlp_result *out;
     long most;
-    double *at;    /* [n_aims] what the objectives are held at */
+    double *at;    /* [n_stages] what the objectives are held at */
     double close;  /* the last of them within this; 0: as any other one */
     bool clusters; /* a design is judged by repeated modes, too, where it only stands */
 } nearest;
@@ -63,8 +63,8 @@ typedef struct nearest {
  * are moved: other free directions are reported as unidentifiable. */
 static bool applies(const mt_subproblem *c)
 {
-    for (int k = 0; k < c->n_aims; k++) {
-        const mt_objective_stage *const a = &c->aims[k];
+    for (int k = 0; k < c->n_stages; k++) {
+        const mt_objective_stage *const a = &c->stages[k];
         if (a->type == MT_OBJECTIVE_CHANGE || a->ops->value == NULL ||
             mt_objective_is(a->type, MT_RESIDUALS) ||
             (mt_objective_is(a->type, MT_BANDS) && !c->clearance) ||
@@ -72,24 +72,24 @@ static bool applies(const mt_subproblem *c)
             return false;
         }
     }
-    return c->n_aims > 0;
+    return c->n_stages > 0;
 }
 
 /* The subproblem with the total change after its objectives. */
 static mt_status add_change(nearest *n, mt_err *err)
 {
-    const size_t n_aims = (size_t)n->first->n_aims;
+    const size_t n_stages = (size_t)n->first->n_stages;
     mt_subproblem with = *n->first;
-    mt_objective_stage *const aims = mt_arena_alloc(n->mem, n_aims + 1, sizeof *aims);
-    n->at = mt_arena_f64(n->mem, n_aims, 1);
+    mt_objective_stage *const stages = mt_arena_alloc(n->mem, n_stages + 1, sizeof *stages);
+    n->at = mt_arena_f64(n->mem, n_stages, 1);
     MT_TRY(mt_arena_check(n->mem, err));
-    memcpy(aims, n->first->aims, n_aims * sizeof *aims);
-    aims[n_aims] = (mt_objective_stage){.type = MT_OBJECTIVE_CHANGE,
-                                        .ops = &mt_objective_change,
-                                        .size = 1.0,
-                                        .node = MT_NO_NODE};
-    with.aims = aims;
-    with.n_aims++;
+    memcpy(stages, n->first->stages, n_stages * sizeof *stages);
+    stages[n_stages] = (mt_objective_stage){.type = MT_OBJECTIVE_CHANGE,
+                                            .ops = &mt_objective_change,
+                                            .size = 1.0,
+                                            .node = MT_NO_NODE};
+    with.stages = stages;
+    with.n_stages++;
     return mt_subproblem_for_stages(&with, n->mem, &n->held, err);
 }
 
@@ -106,7 +106,7 @@ static void hold(nearest *n, int stage)
     c->stage = stage;
     for (int k = 0; k < stage; k++) {
         mt_objective_stage_hold(c, n->ws, k, n->at[k]);
-        if (n->close > 0.0 && k + 1 == n->first->n_aims) {
+        if (n->close > 0.0 && k + 1 == n->first->n_stages) {
             c->held[k].limit = n->at[k] + (n->close * c->held[k].unit);
             c->in_tol[c->n_in + k] = CLOSE_TOLERANCE * n->close;
         }
@@ -133,7 +133,7 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
     opt.seed = c->search.seed;
     opt.starts = 1;
     opt.max_evals = budget;
-    opt.least_change = c->aims[stage].type == MT_OBJECTIVE_CHANGE;
+    opt.least_change = c->stages[stage].type == MT_OBJECTIVE_CHANGE;
     mt_nlp nlp = mt_workspace_nlp(n->ws);
     nlp.origin = from;
     nlp.hint = NULL;
@@ -170,15 +170,15 @@ static bool is_better(const nearest *n, const mt_nlp_solution *end, const mt_nlp
 static mt_status settle(nearest *n, const double *from, const mt_nlp_solution *s,
                         mt_nlp_solution **end, mt_err *err)
 {
-    const int n_aims = n->first->n_aims;
+    const int n_stages = n->first->n_stages;
     mt_nlp_solution *at = NULL;
     *end = NULL;
-    MT_TRY(minimise(n, n_aims, EVALUATIONS, from, &at, err));
+    MT_TRY(minimise(n, n_stages, EVALUATIONS, from, &at, err));
     if (at != NULL) {
-        MT_TRY(minimise(n, n_aims - 1, 1, at->t, end, err));
+        MT_TRY(minimise(n, n_stages - 1, 1, at->t, end, err));
     }
     if (at != NULL && *end != NULL && !is_better(n, *end, s)) {
-        MT_TRY(minimise(n, n_aims - 1, EVALUATIONS, at->t, end, err));
+        MT_TRY(minimise(n, n_stages - 1, EVALUATIONS, at->t, end, err));
     }
     *end = *end != NULL && is_better(n, *end, s) ? *end : NULL;
     return MT_OK;
@@ -215,7 +215,7 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
     for (int j = 0; j < c->n_t; j++) {
         idle[j] = c->n_t == c->p->n && c->lower_t[j] < c->upper_t[j];
     }
-    for (int k = 0; k < c->n_aims; k++) {
+    for (int k = 0; k < c->n_stages; k++) {
         (void)mt_objective_stage_value(w, k, slope);
         keep_idle(1, c->n_t, 0, slope, idle);
     }
@@ -282,7 +282,7 @@ static mt_status is_rest_held(nearest *n, const mt_nlp_solution *s, const bool *
         t[j] = idle[j] ? fmin(fmax(s->t[j] + way, lower), upper) : s->t[j];
     }
     MT_TRY(close_rest(n, t, rest, err));
-    const mt_status rc = minimise(n, n->first->n_aims - 1, EVALUATIONS, t, &end, err);
+    const mt_status rc = minimise(n, n->first->n_stages - 1, EVALUATIONS, t, &end, err);
     n->held = whole;
     *held = rc == MT_OK && end != NULL && end->feasible && end->kkt <= SHOWN &&
             end->n_loose == 0 && mt_search_same((int)n_t, end->t, t);
@@ -336,7 +336,7 @@ static mt_status approach(nearest *n, int j, double f, double *t, mt_err *err)
 static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solution **end,
                             mt_err *err)
 {
-    const int n_aims = n->first->n_aims;
+    const int n_stages = n->first->n_stages;
     const int n_t = n->first->n_t;
     const mt_subproblem whole = n->held;
     mt_nlp_solution *at = NULL;
@@ -364,7 +364,7 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
         MT_TRY(approach(n, j, s->f, t, err));
     } else {
         MT_TRY(close_rest(n, s->t, idle, err));
-        const mt_status rc = minimise(n, n_aims, EVALUATIONS, s->t, &at, err);
+        const mt_status rc = minimise(n, n_stages, EVALUATIONS, s->t, &at, err);
         n->held = whole;
         MT_TRY(rc);
         if (at == NULL) {
@@ -374,7 +374,7 @@ static mt_status along_idle(nearest *n, const mt_nlp_solution *s, mt_nlp_solutio
     }
     n->close = CLOSE[0];
     n->clusters = true; /* where one more mode has come to the limit */
-    const mt_status rc = minimise(n, n_aims - 1, 1, t, end, err);
+    const mt_status rc = minimise(n, n_stages - 1, 1, t, end, err);
     n->clusters = false;
     *end = *end != NULL && is_better(n, *end, s) ? *end : NULL;
     return rc;
@@ -395,17 +395,17 @@ static void put_nearer(mt_nlp_solution *s, const mt_nlp_solution *end)
 static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solution *s,
                       mt_err *err)
 {
-    const int n_aims = n->first->n_aims;
+    const int n_stages = n->first->n_stages;
     mt_nlp_solution *near = NULL;
     mt_nlp_solution *end = NULL;
-    for (int k = 0; k < n_aims; k++) {
-        n->at[k] = k + 1 < n_aims && limit != NULL ? limit[k] : f[k];
+    for (int k = 0; k < n_stages; k++) {
+        n->at[k] = k + 1 < n_stages && limit != NULL ? limit[k] : f[k];
     }
     n->close = 0.0;
     MT_TRY(along_idle(n, s, &end, err));
     n->close = 0.0;
     if (end == NULL) {
-        MT_TRY(minimise(n, n_aims, EVALUATIONS, s->t, &near, err));
+        MT_TRY(minimise(n, n_stages, EVALUATIONS, s->t, &near, err));
     }
     for (int k = 0; k < MT_COUNT(CLOSE) && near != NULL && end == NULL; k++) {
         n->close = CLOSE[k];
@@ -418,14 +418,14 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
     put_nearer(s, end);
     s->continuum = s->continuum || (n->first->below == NULL && moved);
     s->flat = true;
-    f[n_aims - 1] = s->f;
+    f[n_stages - 1] = s->f;
     return MT_OK;
 }
 
 /* The residuals are met exactly by more than one design: fewer than variables. */
 static bool is_open_fit(const mt_subproblem *c)
 {
-    return c->n_aims == 1 && mt_objective_is(c->aims[0].type, MT_RESIDUALS) &&
+    return c->n_stages == 1 && mt_objective_is(c->stages[0].type, MT_RESIDUALS) &&
            c->p->n_eq == 0 && c->p->n_res < c->n_t;
 }
 
@@ -516,7 +516,7 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
                             mt_arena *mem, mt_nlp_result *out, mt_err *err)
 {
     nearest n = {.ws = ws, .first = ws->c, .mem = mem, .out = out, .most = most};
-    const int n_aims = n.first->n_aims;
+    const int n_stages = n.first->n_stages;
     const bool fits = is_open_fit(n.first);
     bool any = false;
     for (int i = 0; i < out->n_solutions; i++) {
@@ -531,7 +531,7 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
     mt_status rc = MT_OK;
     for (int i = 0; i < out->n_solutions && n.out->stop == MT_STOP_DONE && rc == MT_OK; i++) {
         mt_nlp_solution *const s = &out->solutions[i];
-        const ptrdiff_t row = (ptrdiff_t)i * n_aims;
+        const ptrdiff_t row = (ptrdiff_t)i * n_stages;
         double own = s->f;
         if (fits && is_exact(s)) {
             rc = move_fit(&n, s, err);
@@ -541,7 +541,7 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
         }
     }
     mt_workspace_back(ws, n.first);
-    if (n_aims == 1) {
+    if (n_stages == 1) {
         sort(n.first, out);
         merge(n.first, out);
     }

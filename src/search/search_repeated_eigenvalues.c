@@ -427,7 +427,7 @@ mt_status mt_search_repeated_eigenvalues(mt_workspace *ws, long most, mt_arena *
     refine w = {.ws = ws, .mem = mem, .evals = out->evals, .stop = MT_STOP_DONE};
     bool any = false;
     const bool smooth = out->compromise || out->stop == MT_STOP_USER ||
-                        mt_objective_is(ws->c->aims[ws->c->stage].type, MT_RESIDUALS);
+                        mt_objective_is(ws->c->stages[ws->c->stage].type, MT_RESIDUALS);
     w.most = most > 0 ? most : out->evals + (long)ROUNDS * SOLVE_EVALUATIONS * 8;
     for (int i = 0; i < out->n_solutions && !smooth; i++) {
         if (out->solutions[i].kkt > STATIONARY && out->solutions[i].feasible) {

@@ -75,7 +75,7 @@ static void end(rig *g)
 
 static double least_of(const rig *g, const double *lo, const double *hi)
 {
-    return g->cap.cap.least(g->cap.cap.context, lo, hi) * g->p->aims[0].size;
+    return g->cap.cap.least(g->cap.cap.context, lo, hi) * g->p->stages[0].size;
 }
 
 /* The coordinate in which changes count. */

@@ -151,11 +151,11 @@ static void callback__has_exact_gradients(mt_test *t)
         CHECK_INT(t, s.p->n_eq, 3);
         CHECK_INT(t, s.p->n_in, 6);
         CHECK_INT(t, s.p->n_res, 9);
-        CHECK_INT(t, s.p->n_aims, 4);
+        CHECK_INT(t, s.p->n_stages, 4);
         mt_subproblem later;
         CHECK_INT(t, mt_subproblem_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
-        for (int k = 0; k < s.p->n_aims; k++) {
+        for (int k = 0; k < s.p->n_stages; k++) {
             later.stage = k;
             check_stage(t, s.w, at, &s.mem);
             mt_objective_stage_hold(&later, s.w, k,
@@ -290,7 +290,7 @@ static void shaken_objective__has_an_exact_gradient(mt_test *t)
         CHECK_INT(t, s.p->n_soft, s.p->requirements[1].n_parts + 1);
         CHECK_INT(t, mt_subproblem_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
-        for (int k = 0; k < s.p->n_aims; k++) {
+        for (int k = 0; k < s.p->n_stages; k++) {
             later.stage = k;
             check_stage(t, s.w, at, &s.mem);
             mt_objective_stage_hold(&later, s.w, k,

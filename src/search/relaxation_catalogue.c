@@ -199,9 +199,9 @@ static mt_status relaxation_near(mt_workspace *const *workers, int n_workers,
     return rc;
 }
 
-mt_status mt_relaxation_discrete(mt_workspace *const *workers, int n_workers,
-                                 const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
-                                 mt_err *err)
+mt_status mt_relaxation_catalogue(mt_workspace *const *workers, int n_workers,
+                                  const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
+                                  mt_err *err)
 {
     const mt_problem *const p = workers[0]->p;
     const long most = workers[0]->c->search.max_evaluations;

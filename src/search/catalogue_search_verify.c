@@ -41,18 +41,18 @@ mt_status mt_catalogue_search_alloc(const mt_catalogue_search *d, int n, mt_comb
                                     mt_err *err)
 {
     const size_t n_t = (size_t)d->p->n + 1;
-    const size_t n_aims = (size_t)d->p->n_aims;
+    const size_t n_stages = (size_t)d->p->n_stages;
     const size_t n_pick = (size_t)d->n_listed;
     mt_combination *const list = mt_arena_alloc(d->mem, (size_t)n, sizeof *list);
     int *const pick = mt_arena_int(d->mem, (size_t)n * n_pick);
     double *const t = mt_arena_f64(d->mem, n_t, (size_t)n);
-    double *const f = mt_arena_f64(d->mem, n_aims, (size_t)n);
+    double *const f = mt_arena_f64(d->mem, n_stages, (size_t)n);
     *out = list;
     MT_TRY(mt_arena_check(d->mem, err));
     for (int i = 0; i < n; i++) {
         list[i] = (mt_combination){.pick = pick + ((size_t)i * n_pick),
                                    .t = t + ((size_t)i * n_t),
-                                   .f = f + ((size_t)i * n_aims),
+                                   .f = f + ((size_t)i * n_stages),
                                    .missed = {nan(""), HUGE_VAL},
                                    .kkt = nan("")};
     }
@@ -62,7 +62,7 @@ mt_status mt_catalogue_search_alloc(const mt_catalogue_search *d, int n, mt_comb
 bool mt_catalogue_search_before(const mt_catalogue_search *d, const mt_combination *a,
                                 const mt_combination *b)
 {
-    const int n = d->p->n_aims;
+    const int n = d->p->n_stages;
     const mt_merit x = {a->feasible, a->missed.squares, n, a->f};
     const mt_merit y = {b->feasible, b->missed.squares, n, b->f};
     return mt_merit_before(&x, &y, MT_EQUAL_JUDGED);
@@ -90,8 +90,8 @@ static void verify_bands(const mt_workspace *w, mt_combination *c)
         mt_miss(&c->missed, mt_short_of(tied), w->c->avoidances[0].tolerance);
         room = tied;
     }
-    for (int k = 0; k < w->c->n_aims; k++) {
-        if (mt_objective_is(w->c->aims[k].type, MT_BANDS)) {
+    for (int k = 0; k < w->c->n_stages; k++) {
+        if (mt_objective_is(w->c->stages[k].type, MT_BANDS)) {
             c->f[k] = -room;
         }
     }
@@ -111,7 +111,7 @@ static mt_status verify_design(const mt_catalogue_search *d, int worker, mt_comb
         return mt_pass_final(rc, &own, err);
     }
     c->judged = true;
-    for (int k = 0; k < w->c->n_aims; k++) {
+    for (int k = 0; k < w->c->n_stages; k++) {
         c->f[k] = mt_objective_stage_value(w, k, NULL);
     }
     c->missed = mt_missed_of(w->p->n_eq, v->eq, w->c->eq_tol, w->c->n_in, v->in, w->c->in_tol);
@@ -139,8 +139,8 @@ static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_er
         }
         room = fmin(room, m.room);
     }
-    for (int k = 0; k < w->c->n_aims; k++) {
-        if (mt_objective_is(w->c->aims[k].type, MT_BANDS)) {
+    for (int k = 0; k < w->c->n_stages; k++) {
+        if (mt_objective_is(w->c->stages[k].type, MT_BANDS)) {
             c->f[k] = fmax(c->f[k], -room);
         }
     }
@@ -180,8 +180,8 @@ static mt_status verify_tolerances(mt_workspace *w, mt_combination *c, mt_arena 
         c->missed.violation = c->missed.violation > more ? c->missed.violation : more;
         c->feasible = false;
     }
-    for (int k = 0; k < w->c->n_aims; k++) {
-        if (mt_objective_is(w->c->aims[k].type, MT_BANDS)) {
+    for (int k = 0; k < w->c->n_stages; k++) {
+        if (mt_objective_is(w->c->stages[k].type, MT_BANDS)) {
             c->f[k] = fmax(c->f[k], -cuts.band_margin);
         }
     }
@@ -300,8 +300,8 @@ static mt_status evaluate_aims(mt_workspace *w, const mt_nlp_solution *s, bool p
     MT_TRY(mt_subproblem_values_init(w->c, mem, &v, err));
     MT_TRY(mt_workspace_eval(w, c->t, false, &v, err));
     c->evals++;
-    for (int k = 0; k < w->c->n_aims; k++) {
-        const bool clearance = mt_objective_is(w->c->aims[k].type, MT_BANDS);
+    for (int k = 0; k < w->c->n_stages; k++) {
+        const bool clearance = mt_objective_is(w->c->stages[k].type, MT_BANDS);
         c->f[k] =
             k == 0 && placements && clearance ? s->f : mt_objective_stage_value(w, k, NULL);
     }
@@ -403,7 +403,7 @@ static void serialize_designs(void *context, int task, mt_serializer *serializer
     const int end = (task + 1) * PER_TASK < j->n ? (task + 1) * PER_TASK : j->n;
     for (int i = task * PER_TASK; i < end; i++) {
         mt_combination *const c = &j->list[i];
-        mt_serializer_numbers(serializer, (size_t)j->d->p->n_aims, c->f);
+        mt_serializer_numbers(serializer, (size_t)j->d->p->n_stages, c->f);
         mt_serializer_numbers(serializer, 1, &c->missed.violation);
         mt_serializer_numbers(serializer, 1, &c->missed.squares);
         mt_serializer_long(serializer, &c->evals, 0, 1);
@@ -415,7 +415,7 @@ static void serialize_designs(void *context, int task, mt_serializer *serializer
     for (int i = task * PER_TASK;
          i < end && serializer->reads && !mt_serializer_is_read(serializer); i++) {
         mt_combination *const c = &j->list[i]; /* as if nothing had been read */
-        memset(c->f, 0, (size_t)j->d->p->n_aims * sizeof *c->f);
+        memset(c->f, 0, (size_t)j->d->p->n_stages * sizeof *c->f);
         c->missed = (mt_missed){nan(""), HUGE_VAL};
         c->evals = 0;
         c->judged = false;
@@ -460,8 +460,8 @@ mt_status mt_catalogue_search_verify(mt_catalogue_search *d, int n, mt_combinati
 static bool is_worse(const mt_catalogue_search *d, const mt_combination *again,
                      const mt_combination *before)
 {
-    const mt_merit x = {before->feasible, before->missed.squares, d->p->n_aims, before->f};
-    const mt_merit y = {again->feasible, again->missed.squares, d->p->n_aims, again->f};
+    const mt_merit x = {before->feasible, before->missed.squares, d->p->n_stages, before->f};
+    const mt_merit y = {again->feasible, again->missed.squares, d->p->n_stages, again->f};
     return !again->judged || !again->feasible || mt_merit_before(&x, &y, MT_EQUAL_FOUND);
 }
 

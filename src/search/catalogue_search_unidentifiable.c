@@ -50,8 +50,8 @@ static bool measure(crossing *x, double *rows, int *below)
     for (int i = 0; i < w->p->n_res && known; i++) {
         rows[n++] = w->r[i] / VALUE_TOL;
     }
-    for (int k = 0; k < w->c->n_aims && known; k++) {
-        const mt_objective_type type = w->c->aims[k].type;
+    for (int k = 0; k < w->c->n_stages && known; k++) {
+        const mt_objective_type type = w->c->stages[k].type;
         const bool counts =
             mt_objective_is(type, MT_AMOUNT) || mt_objective_is(type, MT_SHAKES);
         rows[n++] = counts ? mt_objective_stage_value(w, k, NULL) / VALUE_TOL : 0.0;
@@ -70,7 +70,7 @@ static double size_of(const crossing *x, int row)
 {
     const mt_problem *const p = x->d->p;
     const int first = p->n_eq + x->d->c->n_in + p->n_res;
-    const bool stage = row >= first && row < first + p->n_aims;
+    const bool stage = row >= first && row < first + p->n_stages;
     return stage ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
 }
 
@@ -148,7 +148,7 @@ mt_status mt_catalogue_search_unidentifiable(mt_catalogue_search *d, const mt_co
     }
     mt_nlp_result continuous = {0};
     const mt_problem *const p = d->p;
-    x.rows = p->n_eq + d->c->n_in + p->n_res + p->n_aims + p->n_avoidances;
+    x.rows = p->n_eq + d->c->n_in + p->n_res + p->n_stages + p->n_avoidances;
     x.at = mt_arena_f64(d->mem, (size_t)x.rows, 1);
     x.now = mt_arena_f64(d->mem, (size_t)x.rows, 1);
     x.below = mt_arena_int(d->mem, 2 * (size_t)p->n_bands + 1);
