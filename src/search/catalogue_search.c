@@ -26,7 +26,7 @@ bool mt_study_has_catalogues(const mt_study *study)
     return false;
 }
 
-static mt_status begin(mt_catalogue_search *d, mt_err *err)
+static mt_status list_catalogue_variables(mt_catalogue_search *d, mt_err *err)
 {
     const mt_problem *const p = d->p;
     d->variable = mt_arena_int(d->mem, (size_t)p->n);
@@ -91,8 +91,9 @@ static int by_change(const void *a, const void *b)
 
 /* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep
  * their order. What would be among them is followed over its motion first. */
-static mt_status rank(mt_catalogue_search *d, mt_combination *const *list, int n, int most,
-                      mt_combination **best, int *n_best, mt_err *err)
+static mt_status rank_best_combinations(mt_catalogue_search *d, mt_combination *const *list,
+                                        int n, int most, mt_combination **best, int *n_best,
+                                        mt_err *err)
 {
     for (int i = 0; i < n; i++) {
         if (*n_best < most || mt_catalogue_search_before(d, list[i], best[*n_best - 1])) {
@@ -171,7 +172,7 @@ static mt_status enumerate(mt_catalogue_search *d, int n, ranking *r,
             break;
         }
         MT_TRY(mt_catalogue_search_verify(d, now, list + first, share, err));
-        MT_TRY(rank(d, *all + first, now, r->most, r->best, &r->n, err));
+        MT_TRY(rank_best_combinations(d, *all + first, now, r->most, r->best, &r->n, err));
         if (now < size) {
             d->stop = d->stop == MT_STOP_USER ? MT_STOP_USER : MT_STOP_MAX_EVALS;
             break;
@@ -261,7 +262,7 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
                              .p = workers[0]->p,
                              .c = workers[0]->c,
                              .mem = mem};
-    MT_TRY(begin(&d, err));
+    MT_TRY(list_catalogue_variables(&d, err));
     const int asked = d.p->study->recommendations;
     ranking r = {.most = asked > KEPT ? asked : KEPT};
     r.best = mt_arena_alloc(mem, (size_t)r.most, sizeof(mt_combination *));
@@ -292,11 +293,11 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
         return mt_fail_memory(err);
     }
     r.n = 0;
-    MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
+    MT_TRY(rank_best_combinations(&d, all, n_all, r.most, r.best, &r.n, err));
     report->broken = take_broken(&r, all, n_all);
     if (report->broken) {
         r.n = 0;
-        MT_TRY(rank(&d, all, n_all, r.most, r.best, &r.n, err));
+        MT_TRY(rank_best_combinations(&d, all, n_all, r.most, r.best, &r.n, err));
     }
     MT_TRY(mt_catalogue_search_settle(&d, r.n < asked ? r.n : asked, r.best, err));
     for (int i = 0; i < n_all; i++) {

@@ -199,7 +199,7 @@ static mt_status probe(branching *v, mt_err *err)
     return MT_OK;
 }
 
-static mt_status begin(branching *v, mt_err *err)
+static mt_status start_branching(branching *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
     const size_t n_workers = (size_t)d->n_workers;
@@ -285,7 +285,7 @@ static mt_status halve(branching *v, const box *b, mt_err *err)
     return push(v, b, widest, middle + 1, b->last[widest], err);
 }
 
-static const mt_combination *best_of(const branching *v)
+static const mt_combination *best_branched_combination(const branching *v)
 {
     const mt_combination *best = NULL;
     for (int i = 0; i < v->n; i++) {
@@ -314,7 +314,7 @@ static mt_combination *known(const branching *v, const int *pick)
  * searches differ, or equal where other objectives follow. Infinite without a best one. */
 static double cap_of(const branching *v)
 {
-    const mt_combination *const best = best_of(v);
+    const mt_combination *const best = best_branched_combination(v);
     if (best == NULL) {
         return HUGE_VAL;
     }
@@ -333,7 +333,7 @@ static int by_bound(const void *a, const void *b)
 }
 
 /* Selects the boxes of the next round, and drops those that cannot be better. */
-static void take(branching *v, double cap)
+static void select_boxes(branching *v, double cap)
 {
     int kept = 0;
     for (int i = 0; i < v->n_open; i++) {
@@ -418,7 +418,7 @@ static mt_status follow_up(branching *v, mt_err *err)
 }
 
 /* Adds a searched combination to the others, or replaces its earlier record. */
-static mt_status join(branching *v, mt_combination *c, mt_err *err)
+static mt_status add_searched_combination(branching *v, mt_combination *c, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
     mt_combination *const before = known(v, c->pick);
@@ -451,7 +451,7 @@ static mt_status search_fresh(branching *v, mt_err *err)
         MT_TRY(mt_catalogue_search_verify(d, n, v->fresh, most > 0 ? left / n : 0, err));
     }
     for (int i = 0; i < n; i++) {
-        MT_TRY(join(v, &v->fresh[i], err));
+        MT_TRY(add_searched_combination(v, &v->fresh[i], err));
     }
     if (n < v->n_fresh && d->stop != MT_STOP_USER) {
         d->stop = MT_STOP_MAX_EVALS;
@@ -495,7 +495,7 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
 /* Progress before a round: what remains open, and by how much it may be better. */
 static void note_open(const branching *v, mt_catalogue_search_report *report)
 {
-    const mt_combination *const best = best_of(v);
+    const mt_combination *const best = best_branched_combination(v);
     double least = HUGE_VAL;
     report->open = 0.0;
     for (int i = 0; i < v->n_open + v->n_now; i++) {
@@ -524,20 +524,20 @@ static mt_status run(branching *v, mt_catalogue_search_report *report, mt_err *e
     const mt_catalogue_search *const d = v->d;
     const int before = v->n;
     long looked = 0;
-    MT_TRY(begin(v, err));
+    MT_TRY(start_branching(v, err));
     if (!v->caps[0].known) {
         return MT_OK; /* no combination can be told from a better one */
     }
     report->branched = true;
     MT_TRY(push_all(v, err));
     double cap = cap_of(v);
-    take(v, cap);
+    select_boxes(v, cap);
     note_open(v, report);
     while (goes_on(v, v->n - before, looked)) {
         looked += v->n_now;
         MT_TRY(round_of(v, cap, err));
         cap = cap_of(v);
-        take(v, cap);
+        select_boxes(v, cap);
         note_open(v, report);
     }
     report->all = report->open == 0.0 && d->stop == MT_STOP_DONE;

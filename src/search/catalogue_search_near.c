@@ -48,7 +48,7 @@ static bool known(const walk *w, const int *pick)
     return false;
 }
 
-static mt_status make_room(walk *w, int room, mt_err *err)
+static mt_status allocate_neighbours(walk *w, int room, mt_err *err)
 {
     w->n_fresh = 0;
     w->room = room < VISITED_MOST - w->n ? room : VISITED_MOST - w->n;
@@ -65,7 +65,7 @@ static void propose(walk *w, const int *pick)
 }
 
 /* The budget is checked before each round and shared out evenly. */
-static mt_status judge(walk *w, mt_err *err)
+static mt_status verify_proposed_neighbours(walk *w, mt_err *err)
 {
     mt_catalogue_search *const d = w->d;
     const long most = d->c->search.max_evaluations;
@@ -172,13 +172,13 @@ static mt_status round_relaxed(walk *w, mt_err *err)
     d->evals += bands ? placements.evals : plain.evals;
     d->starts += bands ? placements.starts : plain.starts;
     d->stop = bands ? placements.stop : plain.stop;
-    MT_TRY(make_room(w, (n + 1) * ways, err));
+    MT_TRY(allocate_neighbours(w, (n + 1) * ways, err));
     for (int i = 0; i < n; i++) {
         MT_TRY(propose_roundings(
             w, bands ? placements.solutions[i].found->t : plain.solutions[i].t, err));
     }
     MT_TRY(propose_roundings(w, d->c->origin_t, err));
-    return judge(w, err);
+    return verify_proposed_neighbours(w, err);
 }
 
 /* Step variable k of pick; false at an end of its catalogue. */
@@ -210,7 +210,7 @@ static void propose_neighbours(walk *w, const mt_combination *c, int *pick)
     }
 }
 
-static const mt_combination *best_of(const walk *w)
+static const mt_combination *best_visited_combination(const walk *w)
 {
     const mt_combination *best = NULL;
     for (int i = 0; i < w->n; i++) {
@@ -235,14 +235,14 @@ mt_status mt_catalogue_search_near(mt_catalogue_search *d, mt_combination ***lis
     MT_TRY(round_relaxed(&w, err));
     const mt_combination *centre = NULL;
     for (int k = 0; k < rounds && d->stop == MT_STOP_DONE; k++) {
-        const mt_combination *const best = best_of(&w);
+        const mt_combination *const best = best_visited_combination(&w);
         if (best == NULL || best == centre) {
             break;
         }
         centre = best;
-        MT_TRY(make_room(&w, 2 * size * size, err));
+        MT_TRY(allocate_neighbours(&w, 2 * size * size, err));
         propose_neighbours(&w, centre, pick);
-        MT_TRY(judge(&w, err));
+        MT_TRY(verify_proposed_neighbours(&w, err));
     }
     *list = w.all;
     *n = w.n;

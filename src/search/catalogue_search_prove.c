@@ -58,7 +58,7 @@ typedef struct prover {
 } prover;
 
 /* The best so far, over its range of motion too; NULL: none is feasible. */
-static mt_status best_of(const prover *v, const mt_combination **out, mt_err *err)
+static mt_status find_best_combination(const prover *v, const mt_combination **out, mt_err *err)
 {
     mt_combination *best = NULL;
     do {
@@ -110,7 +110,7 @@ static mt_status combination_at(prover *v, const double *x, mt_combination **out
 
 /* Evaluates the combination of a design that the proof found: alone, or searched from that
  * design. */
-static mt_status judge(prover *v, const double *x, mt_err *err)
+static mt_status evaluate_proof_design(prover *v, const double *x, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
     mt_combination *c = NULL;
@@ -192,7 +192,7 @@ static mt_status ask(prover *v, outcome *out, mt_err *err)
         v->report->boxes += found.boxes;
         MT_TRY(note_kinds(v, &found, err));
         for (int k = 0; k < found.n_found && v->d->stop != MT_STOP_USER; k++) {
-            MT_TRY(judge(v, found.at + ((ptrdiff_t)k * v->d->p->n), err));
+            MT_TRY(evaluate_proof_design(v, found.at + ((ptrdiff_t)k * v->d->p->n), err));
         }
     }
     out->proven = out->proven && !out->stopped;
@@ -213,7 +213,7 @@ static mt_status improve(prover *v, double share, mt_err *err)
 {
     for (int round = 0; round < ROUNDS; round++) {
         const mt_combination *best = NULL;
-        MT_TRY(best_of(v, &best, err));
+        MT_TRY(find_best_combination(v, &best, err));
         if (best == NULL) { /* interrupted on the way from position to position */
             return MT_OK;
         }
@@ -227,7 +227,7 @@ static mt_status improve(prover *v, double share, mt_err *err)
             return MT_OK;
         }
         v->report->cut = v->report->cut || (!found.proven && !found.stopped);
-        MT_TRY(best_of(v, &best, err));
+        MT_TRY(find_best_combination(v, &best, err));
         if (best == NULL || !(best->f[0] < f) || v->d->stop == MT_STOP_USER) {
             return MT_OK;
         }
@@ -246,7 +246,7 @@ static mt_status prove(prover *v, mt_err *err)
     MT_TRY(ask(v, &found, err));
     report->n_kinds = v->n_kinds;
     const mt_combination *best = NULL;
-    MT_TRY(best_of(v, &best, err));
+    MT_TRY(find_best_combination(v, &best, err));
     report->complete = v->covers && !mt_drive_positions_any(d->p);
     report->n_possible = mt_mode_placement_count_possible(d->p);
     report->settled = found.proven && (found.n_found > 0 || best == NULL);
@@ -273,7 +273,7 @@ static mt_status give_reason(const prover *v, mt_err *err)
 
 /* One proof for each geometry, where these are not too many; 0 geometries, and the reason,
  * where no proof is possible. */
-static mt_status begin(prover *v, mt_err *err)
+static mt_status start_geometry_proofs(prover *v, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
     mt_proof *first = NULL;
@@ -294,7 +294,7 @@ mt_status mt_catalogue_search_prove(mt_catalogue_search *d, mt_combination ***al
 {
     prover v = {.d = d, .report = report, .all = *all, .n = *n, .capacity = *n};
     report->asked = true;
-    mt_status rc = begin(&v, err);
+    mt_status rc = start_geometry_proofs(&v, err);
     if (rc == MT_OK && v.n_geometries > 0) {
         rc = prove(&v, err);
     }

@@ -193,7 +193,7 @@ static mt_status measure(walk *w, sample *s, mt_err *err)
 
 /* Adds a sample; its index is w->n - 1. A value of 0 within the rounding of its path is set to
  * 0: far closer than samples come to each other. */
-static mt_status look(walk *w, double position, int next, mt_err *err)
+static mt_status add_path_sample(walk *w, double position, int next, mt_err *err)
 {
     const double travel = fabs(w->samples[1].at - w->samples[0].at);
     const double at = mt_without_noise(position, MT_RATIO_NOISE * travel);
@@ -313,7 +313,7 @@ static mt_status refine(walk *w, mt_err *err)
             w->out->end = w->out->end == MT_MOTION_WHOLE ? MT_MOTION_CAPPED : w->out->end;
             return MT_OK;
         }
-        MT_TRY(look(w, at, next, err));
+        MT_TRY(add_path_sample(w, at, next, err));
         w->samples[i].next = w->n - 1;
     }
     return MT_OK;
@@ -357,13 +357,13 @@ static mt_status spread(walk *w, double left, double right, mt_err *err)
     MT_TRY(mt_arena_check(w->mem, err));
     w->samples[1].at = right; /* both ends are known before the first is looked at */
     w->samples[0].at = left;
-    MT_TRY(look(w, left, pieces > 1 ? 2 : 1, err));
-    MT_TRY(look(w, right, -1, err));
+    MT_TRY(add_path_sample(w, left, pieces > 1 ? 2 : 1, err));
+    MT_TRY(add_path_sample(w, right, -1, err));
     for (int i = 1; i < pieces; i++) {
         const double u = (double)i / (double)pieces;
         const double at = ((1.0 - u) * left) + (u * right);
         const bool zero = fabs(at) <= SAME * w->unit; /* the drawing itself */
-        MT_TRY(look(w, zero ? 0.0 : at, i + 1 < pieces ? w->n + 1 : 1, err));
+        MT_TRY(add_path_sample(w, zero ? 0.0 : at, i + 1 < pieces ? w->n + 1 : 1, err));
     }
     return MT_OK;
 }

@@ -145,7 +145,7 @@ static void verify_neighbours(walk *w, int i)
 }
 
 /* Inserts a position as sample i of the interval. */
-static mt_status look(walk *w, int i, double at, bool given, mt_err *err)
+static mt_status insert_position_sample(walk *w, int i, double at, bool given, mt_err *err)
 {
     mt_limit_drive_path *const out = w->out;
     mt_forced_response_value v;
@@ -251,7 +251,7 @@ static mt_status refine(walk *w, mt_err *err)
             return MT_OK;
         }
         const sample *const a = &w->samples[best];
-        MT_TRY(look(w, best + 1, 0.5 * (a[0].at + a[1].at), false, err));
+        MT_TRY(insert_position_sample(w, best + 1, 0.5 * (a[0].at + a[1].at), false, err));
     }
     return MT_OK;
 }
@@ -277,7 +277,7 @@ static mt_status polish(walk *w, mt_err *err)
         if (!(fabs(at - s->at) > near) || !(at > s[-1].at + near) || !(at < s[1].at - near)) {
             return MT_OK;
         }
-        MT_TRY(look(w, at > s->at ? i + 1 : i, at, false, err));
+        MT_TRY(insert_position_sample(w, at > s->at ? i + 1 : i, at, false, err));
     }
     return MT_OK;
 }
@@ -291,7 +291,7 @@ static mt_status follow_way(walk *w, double left, double right, mt_err *err)
         const double u = (double)i / (double)pieces;
         const bool given = i == 0 || i == pieces;
         const double at = i == pieces ? right : ((1.0 - u) * left) + (u * right);
-        MT_TRY(look(w, i, at, given, err));
+        MT_TRY(insert_position_sample(w, i, at, given, err));
     }
     MT_TRY(refine(w, err));
     return polish(w, err);

@@ -21,8 +21,8 @@ static void leave_out(mt_proof *proof, int requirement)
     c->n_bounds = requirement >= 0 ? 0 : c->n_bounds;
 }
 
-static mt_status judge(const mt_infeasible_presolve_question *q, mt_proof *proof, mt_arena *mem,
-                       bool *out, mt_err *err)
+static mt_status prove_infeasible(const mt_infeasible_presolve_question *q, mt_proof *proof,
+                                  mt_arena *mem, bool *out, mt_err *err)
 {
     const mt_certify *const c = &proof->question;
     mt_certify_search found = {0};
@@ -49,7 +49,7 @@ mt_status mt_infeasible_presolve(const mt_infeasible_presolve_question *q, mt_ar
         proof.question.n_bands = q->bands ? proof.question.n_bands : 0;
         proof.question.progress = NULL; /* not the answer's own */
         proof.spent = q->counted ? proof.spent : NULL;
-        rc = judge(q, &proof, mem, out, err);
+        rc = prove_infeasible(q, &proof, mem, out, err);
     }
     mt_proof_free(&proof);
     return rc;

@@ -105,8 +105,9 @@ static bool is_better(const mt_mode_placement_job *j, const mt_mode_placement_sl
 }
 
 /* Of two searches of one candidate the better one, with the work of both. */
-static void merge(const mt_mode_placement_job *j, mt_mode_placement_slot *kept,
-                  mt_mode_placement_slot *later)
+static void merge_candidate_searches(const mt_mode_placement_job *j,
+                                     mt_mode_placement_slot *kept,
+                                     mt_mode_placement_slot *later)
 {
     const long evals = kept->evals + later->evals;
     const int starts = kept->starts + later->starts;
@@ -141,7 +142,7 @@ static mt_status claim(const mt_mode_placement_job *j, mt_arena *mem, again *a, 
 }
 
 /* Candidate k, from `at` (NULL: from nowhere in particular). */
-static void add(const mt_mode_placement_job *j, int k, const double *at, again *a)
+static void add_candidate(const mt_mode_placement_job *j, int k, const double *at, again *a)
 {
     const size_t m = (size_t)j->p->n_bands;
     const size_t n = (size_t)j->p->n;
@@ -171,7 +172,7 @@ static mt_status search_again(mt_mode_placement_job *j, again *a, int starts, in
     const mt_status rc = a->n > 0 ? run(&later, a->n, n_workers, err) : MT_OK;
     for (int i = 0; i < a->n; i++) {
         if (rc == MT_OK) {
-            merge(j, &j->slots[a->place[i]], &later.slots[i]);
+            merge_candidate_searches(j, &j->slots[a->place[i]], &later.slots[i]);
         }
         mt_arena_free(&later.slots[i].mem);
     }
@@ -188,7 +189,7 @@ static mt_status search_listed(mt_mode_placement_job *j, bool met, double last, 
         const mt_mode_placement_slot *const s = &j->slots[k];
         if (j->candidates->least[k] <= last && mt_mode_placement_is_met(s) == met &&
             (!met || first_of(s) <= NEAR_LAST * last)) {
-            add(j, k, nearest(j, k), &a);
+            add_candidate(j, k, nearest(j, k), &a);
         }
     }
     a.skip = 1;
@@ -242,7 +243,7 @@ mt_status mt_mode_placement_search_known(mt_mode_placement_job *j, int n_workers
         const int *const own = j->candidates->below + ((ptrdiff_t)k * m);
         const int at = mt_certify_index_of(known->below, known->n_proven, own, m);
         if (!mt_mode_placement_is_met(&j->slots[k]) && at < known->n_proven) {
-            add(j, k, known->at + ((ptrdiff_t)at * j->p->n), &a);
+            add_candidate(j, k, known->at + ((ptrdiff_t)at * j->p->n), &a);
         }
     }
     return search_again(j, &a, j->options.starts, n_workers, mem, err);

@@ -63,8 +63,8 @@ typedef struct ranges {
     double **high;
 } ranges;
 
-static mt_status look(const mt_proof *proof, const double *lo, const double *hi, ranges *r,
-                      mt_err *err)
+static mt_status find_enclosed_ranges(const mt_proof *proof, const double *lo, const double *hi,
+                                      ranges *r, mt_err *err)
 {
     r->known = true;
     for (int v = 0; v < proof->question.n_views && r->known; v++) {
@@ -161,7 +161,7 @@ static mt_status find_levels(const mt_proof *proof, double whole, mt_arena *mem,
         for (int box = 0; box < b->n_boxes; box++) {
             const int wide = b->n_boxes > 1 ? box : -1;
             const bool some = set_box(b->c, last ? 2.0 * whole : change, wide, t, lo, hi);
-            MT_TRY(some ? look(proof, lo, hi, &r, err) : MT_OK);
+            MT_TRY(some ? find_enclosed_ranges(proof, lo, hi, &r, err) : MT_OK);
             if (some) {
                 note_level(proof, &r, box, k, b);
             }

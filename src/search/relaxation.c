@@ -246,8 +246,9 @@ static mt_status solve(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options 
 
 /* Searches the least total change with the move found; *to: its end, NULL: none found or no
  * budget. one: all searches ended at one design, so the slack allows only designs around it. */
-static mt_status settle(mt_nlp nlp, mt_nlp_options opt, const double *found, bool one,
-                        long left, task_result *out, const double **to, mt_err *err)
+static mt_status search_least_change(mt_nlp nlp, mt_nlp_options opt, const double *found,
+                                     bool one, long left, task_result *out, const double **to,
+                                     mt_err *err)
 {
     relaxed *const r = nlp.context;
     const int k = r->move->kind == MT_MOVE_BOUND ? r->move->variable : nlp.n - 1;
@@ -315,7 +316,7 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     const double *least = NULL;
     a->value = nan("");
     const bool one = found.starts == AGREE && s->hits == AGREE;
-    MT_TRY(settle(nlp, opt, s->t, one, left_of(j, c, out, a), out, &least, err));
+    MT_TRY(search_least_change(nlp, opt, s->t, one, left_of(j, c, out, a), out, &least, err));
     MT_TRY(least != NULL ? keep(c, m, size, least, a, again, err) : MT_OK);
     return MT_HAS(a->value) || *again ? MT_OK : keep(c, m, size, s->t, a, again, err);
 }

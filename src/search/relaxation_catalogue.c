@@ -95,7 +95,7 @@ static double needed(const mt_workspace *w, const mt_move *m, const mt_nlp_value
     return f > 0.0 ? f : nan("");
 }
 
-static void look(const mt_workspace *w, const mt_nlp_values *v, mt_moves *moves)
+static void record_needed_moves(const mt_workspace *w, const mt_nlp_values *v, mt_moves *moves)
 {
     const double change = mt_subproblem_change(w->c, w->t);
     for (int k = 0; k < moves->n; k++) {
@@ -125,7 +125,7 @@ static mt_status look_at_some(void *context, int worker, int task, mt_task_path 
         }
         e->stopped[task] = rc == MT_E_INTERRUPTED;
         if (rc == MT_OK) {
-            look(w, v, &e->tasks[task]);
+            record_needed_moves(w, v, &e->tasks[task]);
         }
     }
     return MT_OK;

@@ -10,7 +10,7 @@
 #include "problem/tolerance.h"
 #include "search/relaxation.h"
 
-static void add(mt_moves *out, mt_move move)
+static void append_move(mt_moves *out, mt_move move)
 {
     out->items[out->n++] = move;
 }
@@ -27,17 +27,17 @@ static void add_goal_moves(const mt_problem *p, mt_moves *out)
         if (d->row_eq >= 0) {
             m.target = true;
             m.from = d->equals;
-            add(out, m);
+            append_move(out, m);
             continue;
         }
         if (MT_HAS(g->at_least)) {
             m.from = g->at_least;
-            add(out, m);
+            append_move(out, m);
         }
         if (MT_HAS(g->at_most)) {
             m.upper = true;
             m.from = g->at_most;
-            add(out, m);
+            append_move(out, m);
         }
     }
 }
@@ -50,11 +50,11 @@ static void add_edge_moves(const mt_problem *p, mt_moves *out)
             mt_move m = {
                 .kind = MT_MOVE_EDGE, .avoidance = i, .band = b, .from = band->lower_hz};
             if (band->lower_hz > 0.0) {
-                add(out, m);
+                append_move(out, m);
             }
             m.upper = true;
             m.from = band->upper_hz;
-            add(out, m);
+            append_move(out, m);
         }
     }
 }
@@ -68,10 +68,10 @@ mt_status mt_relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_moves *o
     for (int i = 0; i < p->n; i++) {
         const bool open = p->study->variables[i].n_catalogue == 0;
         for (int side = 0; side < 2 && open; side++) {
-            add(out, (mt_move){.kind = MT_MOVE_BOUND,
-                               .variable = i,
-                               .upper = side == 1,
-                               .from = side == 1 ? c->upper[i] : c->lower[i]});
+            append_move(out, (mt_move){.kind = MT_MOVE_BOUND,
+                                       .variable = i,
+                                       .upper = side == 1,
+                                       .from = side == 1 ? c->upper[i] : c->lower[i]});
         }
     }
     add_edge_moves(p, out);

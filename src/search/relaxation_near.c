@@ -40,8 +40,9 @@ static bool presses(const mt_subproblem *c, const mt_move *m, const double *t,
 }
 
 /* At one miss; all moves are worth it where nothing can be said. */
-static mt_status look(mt_workspace *w, const mt_mode_placement_solution *s,
-                      const mt_moves *moves, mt_arena *mem, mt_near_miss *out, mt_err *err)
+static mt_status find_pressing_moves(mt_workspace *w, const mt_mode_placement_solution *s,
+                                     const mt_moves *moves, mt_arena *mem, mt_near_miss *out,
+                                     mt_err *err)
 {
     const mt_subproblem *const plain = w->c;
     mt_subproblem c;
@@ -74,7 +75,8 @@ mt_status mt_relaxation_misses(mt_workspace *w, const mt_mode_placement_result *
     out->items = mt_arena_alloc(mem, (size_t)placements->n_solutions, sizeof *out->items);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < placements->n_solutions; i++) {
-        MT_TRY(look(w, &placements->solutions[i], moves, mem, &out->items[out->n], err));
+        MT_TRY(find_pressing_moves(w, &placements->solutions[i], moves, mem,
+                                   &out->items[out->n], err));
         out->n++;
     }
     return MT_OK;

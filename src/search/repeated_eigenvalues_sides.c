@@ -15,7 +15,7 @@ typedef struct listing {
 } listing;
 
 /* Vibration mode `mode` of the analysis; nothing where there is none, or no limit. */
-static void add(listing *l, const mt_repeated_eigenvalues_side *what, int mode)
+static void add_mode_side(listing *l, const mt_repeated_eigenvalues_side *what, int mode)
 {
     mt_repeated_eigenvalues_side s = *what;
     if (s.analysis->modes.n_unstable == 0 && s.limit_hz > 0.0) {
@@ -41,12 +41,12 @@ static void add_requirement(listing *l, const mt_requirement *d)
         const int in = d->row_in + (k == 1 && MT_HAS(g->at_least) ? 1 : 0);
         if (d->row_in >= 0 && MT_HAS(s.limit_hz) && !mt_tolerance_at_corner(ws->c, in)) {
             s.row = n_eq + in;
-            add(l, &s, d->mode);
+            add_mode_side(l, &s, d->mode);
         }
         if (d->row_eq >= 0 && MT_HAS(d->equals)) {
             s.limit_hz = d->equals;
             s.row = d->row_eq;
-            add(l, &s, d->mode);
+            add_mode_side(l, &s, d->mode);
         }
     }
 }
@@ -67,7 +67,7 @@ static void add_bands(listing *l)
                                                 .moves = ws->c->clearance,
                                                 .row = mt_subproblem_rows_eq(ws->c) + in};
         if (!mt_tolerance_at_corner(ws->c, in)) {
-            add(l, &s, at.mode);
+            add_mode_side(l, &s, at.mode);
         }
     }
 }
@@ -87,7 +87,7 @@ static void add_corners(listing *l)
                 .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
                 .moves = row->requirement < 0 && ws->c->clearance,
                 .row = mt_subproblem_rows_eq(ws->c) + row->row};
-            add(l, &s, mt_tolerance_row_mode(ws->c, row));
+            add_mode_side(l, &s, mt_tolerance_row_mode(ws->c, row));
         }
     }
 }

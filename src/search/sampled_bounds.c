@@ -61,8 +61,9 @@ static mt_status ask(const mt_subproblem *c, mt_arena *mem, mt_sampled_bounds *o
     return rc;
 }
 
-static mt_status search(const mt_workspace *w, const bool *shapes, const double *t,
-                        mt_arena *mem, mt_sampled_bounds *out, mt_err *err)
+static mt_status prove_sampled_shapes(const mt_workspace *w, const bool *shapes,
+                                      const double *t, mt_arena *mem, mt_sampled_bounds *out,
+                                      mt_err *err)
 {
     const mt_problem *const p = w->p;
     mt_subproblem c;
@@ -103,5 +104,5 @@ mt_status mt_sampled_bounds_search(mt_workspace *w, mt_arena *mem, mt_sampled_bo
                                                                 : SAMPLED_BOUNDS_MOST;
     const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, out->n, mem);
     MT_TRY(mt_arena_check(mem, err));
-    return search(w, shapes, t, mem, out, err);
+    return prove_sampled_shapes(w, shapes, t, mem, out, err);
 }

@@ -198,7 +198,7 @@ static bool is_twin(const stages *s, int kept, const mt_nlp_solution *one)
 }
 
 /* Drop what has become one, then rank (insertion, stable). */
-static void rank(stages *s)
+static void rank_without_duplicates(stages *s)
 {
     const int n_stages = s->first->n_stages;
     int kept = 0;
@@ -262,7 +262,7 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
     for (int i = 0; i < out->n_solutions; i++) {
         out->solutions[i].f = s->f[((ptrdiff_t)i * n_stages) + *stage];
     }
-    rank(s);
+    rank_without_duplicates(s);
     return MT_OK;
 }
 
@@ -278,12 +278,13 @@ mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_resu
         MT_TRY(stage_values_at(&s, out->solutions[i].t, f, err));
         out->solutions[i].f = f[stage];
     }
-    rank(&s);
+    rank_without_duplicates(&s);
     return MT_OK;
 }
 
-static mt_status search(mt_workspace *const *workers, int n_workers, const double *from,
-                        mt_arena *mem, mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
+static mt_status search_stages(mt_workspace *const *workers, int n_workers, const double *from,
+                               mt_arena *mem, mt_nlp_result *out, int *stage, mt_err *why,
+                               mt_err *err)
 {
     mt_workspace *const ws = workers[0];
     const mt_subproblem *const c = ws->c;
@@ -323,12 +324,12 @@ static mt_status search(mt_workspace *const *workers, int n_workers, const doubl
 mt_status mt_search_designs(mt_workspace *const *workers, int n_workers, mt_arena *mem,
                             mt_nlp_result *out, int *stage, mt_err *why, mt_err *err)
 {
-    return search(workers, n_workers, NULL, mem, out, stage, why, err);
+    return search_stages(workers, n_workers, NULL, mem, out, stage, why, err);
 }
 
 mt_status mt_search_from(mt_workspace *ws, const double *from, mt_arena *mem,
                          mt_nlp_result *out, int *stage, mt_err *err)
 {
     mt_err why = {.code = MT_OK};
-    return search(&ws, 1, from, mem, out, stage, &why, err);
+    return search_stages(&ws, 1, from, mem, out, stage, &why, err);
 }

@@ -197,7 +197,7 @@ bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t)
 
 /* Joins `other` into solution `into`. The record is that of the one nearer to the original,
  * unless unidentifiable directions belong to `into` or the nearer one is no local solution. */
-static void join(const continua *c, int into, const mt_nlp_solution *other)
+static void join_solutions(const continua *c, int into, const mt_nlp_solution *other)
 {
     mt_nlp_result *const out = c->out;
     mt_nlp_solution *const s = &out->solutions[into];
@@ -239,7 +239,7 @@ static void join_all(const continua *c, int *group)
     int kept = 0;
     for (int i = 0; i < out->n_solutions; i++) {
         if (group[i] < i) {
-            join(c, -1 - group[group[i]], &out->solutions[i]);
+            join_solutions(c, -1 - group[group[i]], &out->solutions[i]);
             continue;
         }
         out->solutions[kept] = out->solutions[i];

@@ -167,8 +167,8 @@ static bool is_better(const nearest *n, const mt_nlp_solution *end, const mt_nlp
 }
 
 /* The design of least total change near the optimum s, from `from`: *end, where it is one. */
-static mt_status settle(nearest *n, const double *from, const mt_nlp_solution *s,
-                        mt_nlp_solution **end, mt_err *err)
+static mt_status find_nearest_design(nearest *n, const double *from, const mt_nlp_solution *s,
+                                     mt_nlp_solution **end, mt_err *err)
 {
     const int n_stages = n->first->n_stages;
     mt_nlp_solution *at = NULL;
@@ -409,7 +409,7 @@ static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solutio
     }
     for (int k = 0; k < MT_COUNT(CLOSE) && near != NULL && end == NULL; k++) {
         n->close = CLOSE[k];
-        MT_TRY(settle(n, near->t, s, &end, err));
+        MT_TRY(find_nearest_design(n, near->t, s, &end, err));
     }
     if (end == NULL) {
         return MT_OK; /* it stands as it is */
@@ -484,7 +484,7 @@ static void sort(const mt_subproblem *c, mt_nlp_result *out)
 }
 
 /* Those that have become one count once. */
-static void merge(const mt_subproblem *c, mt_nlp_result *out)
+static void merge_duplicate_solutions(const mt_subproblem *c, mt_nlp_result *out)
 {
     int kept = 0;
     for (int i = 0; i < out->n_solutions; i++) {
@@ -543,7 +543,7 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
     mt_workspace_back(ws, n.first);
     if (n_stages == 1) {
         sort(n.first, out);
-        merge(n.first, out);
+        merge_duplicate_solutions(n.first, out);
     }
     return rc;
 }

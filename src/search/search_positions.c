@@ -44,8 +44,9 @@ static bool is_known(const mt_at_position_cuts *cuts, int requirement, double at
     return false;
 }
 
-static mt_status add(const mt_problem *p, int requirement, const mt_limit_drive_path *m,
-                     mt_at_position_cuts *cuts, mt_err *err)
+static mt_status add_position_cuts(const mt_problem *p, int requirement,
+                                   const mt_limit_drive_path *m, mt_at_position_cuts *cuts,
+                                   mt_err *err)
 {
     const int drive_positions = mt_drive_positions_of(p, p->requirements[requirement].view);
     const double near = SAME * (m->to - m->from);
@@ -89,7 +90,7 @@ mt_status mt_search_verify_positions(mt_workspace *w, const double *t, bool last
         }
         cuts->holds =
             cuts->holds && m.why == NULL && mt_is_met(m.off, w->p->requirements[i].tolerance);
-        MT_TRY(last ? MT_OK : add(w->p, i, &m, cuts, err));
+        MT_TRY(last ? MT_OK : add_position_cuts(w->p, i, &m, cuts, err));
     }
     return MT_OK;
 }

@@ -239,8 +239,8 @@ static mt_status cone_blocks(const mt_repeated_eigenvalues *m, mt_arena *mem,
 }
 
 /* Stationarity at t in terms of clusters: *kkt, z[n], and the multipliers (s may be NULL). */
-static mt_status judge(refine *w, const double *t, double *kkt, double *z, mt_nlp_solution *s,
-                       mt_err *err)
+static mt_status evaluate_cluster_kkt(refine *w, const double *t, double *kkt, double *z,
+                                      mt_nlp_solution *s, mt_err *err)
 {
     mt_workspace *const ws = w->ws;
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
@@ -300,14 +300,14 @@ static mt_status step_down(refine *w, const double *z, mt_nlp_solution *s, bool 
 }
 
 /* The same design exactly, if that is nearer to a stationary one: into s, kkt, z. */
-static mt_status settle(refine *w, const double *t, double f, double *kkt, double *z,
-                        mt_nlp_solution *s, mt_err *err)
+static mt_status evaluate_exact_clusters(refine *w, const double *t, double f, double *kkt,
+                                         double *z, mt_nlp_solution *s, mt_err *err)
 {
     const size_t n = (size_t)w->ws->c->n_t;
     double *const z_after = mt_arena_f64(w->mem, n, 1);
     double after = *kkt;
     MT_TRY(mt_arena_check(w->mem, err));
-    MT_TRY(judge(w, t, &after, z_after, NULL, err));
+    MT_TRY(evaluate_cluster_kkt(w, t, &after, z_after, NULL, err));
     if (after < *kkt) {
         memcpy(s->t, t, n * sizeof *t);
         memcpy(z, z_after, n * sizeof *z);
@@ -340,7 +340,7 @@ static mt_status hold_clusters(refine *w, double *kkt, double *z, mt_nlp_solutio
     }
     for (int k = 0; k < MT_COUNT(NEAR) && !*better && *kkt > STATIONARY; k++) {
         if (found[k] && f[k] < f_from + TOLERANCES_BUY * fabs(f_from) && !spent(w, RESERVED)) {
-            MT_TRY(settle(w, t + ((size_t)k * n), f[k], kkt, z, s, err));
+            MT_TRY(evaluate_exact_clusters(w, t + ((size_t)k * n), f[k], kkt, z, s, err));
         }
     }
     mt_arena_rewind(w->mem, mark);
@@ -360,7 +360,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
     for (int round = 0; round < ROUNDS && w->stop == MT_STOP_DONE && !spent(w, RESERVED);
          round++) {
         bool better = false;
-        MT_TRY(judge(w, s->t, &kkt, z, NULL, err));
+        MT_TRY(evaluate_cluster_kkt(w, s->t, &kkt, z, NULL, err));
         if (kkt <= STATIONARY) {
             break;
         }
@@ -372,7 +372,7 @@ static mt_status refine_one(refine *w, mt_nlp_solution *s, mt_err *err)
             break;
         }
     }
-    MT_TRY(judge(w, s->t, &kkt, z, s, err));
+    MT_TRY(evaluate_cluster_kkt(w, s->t, &kkt, z, s, err));
     s->kkt = kkt;
     s->flat = false; /* where modes repeat the curvature of rows says nothing */
     for (int j = 0; j < ws->c->n_t; j++) {
@@ -396,7 +396,7 @@ static bool before(const mt_subproblem *c, const mt_nlp_solution *a, const mt_nl
 
 /* Ranks by objective, joins duplicates, and drops ends not shown to be optimal behind a better
  * design. */
-static void rank(const mt_workspace *ws, mt_nlp_result *out)
+static void rank_and_join_ends(const mt_workspace *ws, mt_nlp_result *out)
 {
     int kept = 0;
     for (int i = 1; i < out->n_solutions; i++) {
@@ -440,7 +440,7 @@ mt_status mt_search_repeated_eigenvalues(mt_workspace *ws, long most, mt_arena *
     }
     out->evals = w.evals;
     if (any) {
-        rank(ws, out);
+        rank_and_join_ends(ws, out);
     }
     return MT_OK;
 }

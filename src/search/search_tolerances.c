@@ -76,7 +76,7 @@ static bool lacks(const rounds *r, long evals)
 }
 
 /* Verifies solution i over its tolerances and positions. */
-static mt_status judge(rounds *r, int i, bool last, mt_err *err)
+static mt_status verify_solution(rounds *r, int i, bool last, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
     r->open[i] = false;
@@ -104,7 +104,7 @@ static mt_status verify_open(rounds *r, bool last, bool *any, mt_err *err)
     *any = false;
     for (int i = 0; i < r->out->n_solutions; i++) {
         if (r->open[i]) {
-            MT_TRY(judge(r, i, last, err));
+            MT_TRY(verify_solution(r, i, last, err));
         }
         const mt_nlp_solution *const s = &r->out->solutions[i];
         const bool holds = s->feasible && !r->open[i];
@@ -249,7 +249,7 @@ static bool any_feasible(const rounds *r)
 }
 
 /* Adds the designs of a further search; those that meet nothing are dropped. */
-static mt_status join(rounds *r, const mt_nlp_result *more, mt_err *err)
+static mt_status add_searched_designs(rounds *r, const mt_nlp_result *more, mt_err *err)
 {
     mt_nlp_result *const out = r->out;
     const bool any = any_feasible(r);
@@ -303,7 +303,7 @@ static mt_status start_again(rounds *r, bool *found, mt_err *err)
         return MT_OK;
     }
     *found = true;
-    return join(r, &next, err);
+    return add_searched_designs(r, &next, err);
 }
 
 /* Drops designs that violate limits between the positions where others do not; where all do,
