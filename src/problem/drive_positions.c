@@ -229,7 +229,7 @@ static bool overlap(const mt_band *a, const mt_band *b)
            fmax(a->lower_hz, b->lower_hz) < fmin(a->upper_hz, b->upper_hz);
 }
 
-static void join(mt_problem *p, int a, int b)
+static void join_tied_bands(mt_problem *p, int a, int b)
 {
     const int low = p->tie[a] < p->tie[b] ? p->tie[a] : p->tie[b];
     const int high = p->tie[a] < p->tie[b] ? p->tie[b] : p->tie[a];
@@ -243,7 +243,7 @@ static void tie_avoidances(mt_problem *p, const mt_avoidance *a, const mt_avoida
     for (int i = 0; i < a->bands.n; i++) {
         for (int k = 0; k < b->bands.n; k++) {
             if (overlap(&a->bands.items[i], &b->bands.items[k])) {
-                join(p, a->first + i, b->first + k);
+                join_tied_bands(p, a->first + i, b->first + k);
             }
         }
     }
@@ -366,7 +366,8 @@ double mt_ties_margin(const mt_workspace *w, int *below)
 }
 
 /* Adds a band unless a listed one contains it; listed ones that it contains are removed. */
-static void put(mt_band_along_path *list, int *n, const mt_band_along_path *fresh)
+static void add_band_unless_contained(mt_band_along_path *list, int *n,
+                                      const mt_band_along_path *fresh)
 {
     int kept = 0;
     for (int i = 0; i < *n; i++) {
@@ -407,7 +408,7 @@ static void intersect(const mt_problem *p, const mt_avoidance *a, const mt_avoid
                          .upper_hz = fmin(x->upper_hz, y->upper_hz),
                          .label = x->label},
                 .tolerance = fmin(a->tolerance, b->tolerance)};
-            put(list, n, &fresh);
+            add_band_unless_contained(list, n, &fresh);
         }
     }
 }

@@ -18,7 +18,8 @@ static const double WEIGHT[NODES] = {0.3478548451374538574, 0.652145154862546142
                                      0.6521451548625461426, 0.3478548451374538574};
 
 /* The value at its omega, with all that belongs to it. */
-static mt_status take(mt_response *r, mt_sine_peak *out, double *by_omega, mt_err *err)
+static mt_status evaluate_sine_peak(mt_response *r, mt_sine_peak *out, double *by_omega,
+                                    mt_err *err)
 {
     double complex h = 0.0;
     double complex dh = 0.0;
@@ -79,7 +80,7 @@ mt_status mt_sampled_find(mt_response *r, double lower, double upper, mt_sine_pe
         }
     }
     out->at_edge = lower < upper && (out->omega == lower || out->omega == upper);
-    return take(r, out, by_omega, err);
+    return evaluate_sine_peak(r, out, by_omega, err);
 }
 
 /* Appends the nodes of one random part to the n present (NULL: counts them only): g in
@@ -142,7 +143,7 @@ mt_status mt_sampled_respond(mt_response *r, const mt_vibration *v, mt_vibration
     *out = profiled.answers[0];
     for (int i = 0; i < out->n_tones && out->end == MT_FORCED_FINITE; i++) {
         double ignored = 0.0;
-        MT_TRY(take(r, &out->tones[i], &ignored, err)); /* its direction */
+        MT_TRY(evaluate_sine_peak(r, &out->tones[i], &ignored, err)); /* its direction */
     }
     return MT_OK;
 }

@@ -26,8 +26,8 @@ static mt_status find(mt_workspace *w, const mt_requirement *d, int pos, int *at
                               mt_analysis_configuration(a));
 }
 
-static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
-                       double *slope, mt_err *err)
+static mt_status evaluate_damping(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                                  double *slope, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_damped_modes *damped = NULL;
@@ -55,7 +55,7 @@ static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double
     return MT_OK;
 }
 
-static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
+static const char *damping_subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     (void)d;
     return mt_arena_printf(mem, "%s: damping ratio", what);
@@ -63,7 +63,7 @@ static const char *subject(const mt_requirement *d, const char *what, mt_arena *
 
 const mt_goal_ops mt_goal_damping = {.quantity = MT_QUANTITY_OTHER,
                                      .needs_vectors = true,
-                                     .value = value,
-                                     .subject = subject,
+                                     .value = evaluate_damping,
+                                     .subject = damping_subject,
                                      .number = "damping ratio",
                                      .equals = "at"};

@@ -85,7 +85,7 @@ static mt_status dln_named(mt_workspace *w, const mt_requirement *d, int pos, do
 }
 
 /* The reference's frequency is the target. */
-static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
+static mt_status compile_frequency(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     const mt_goal *const g = d->goal;
     if (g->reference_name.s != NULL) {
@@ -97,8 +97,8 @@ static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
     return MT_OK;
 }
 
-static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
-                       double *slope, mt_err *err)
+static mt_status evaluate_frequency(mt_workspace *w, const mt_requirement *d, int pos,
+                                    double *q, double *slope, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     *q = pos < 0 ? HUGE_VAL : mt_modal_hz(&a->modes, pos);
@@ -110,7 +110,7 @@ static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double
 }
 
 const mt_goal_ops mt_goal_frequency = {.quantity = MT_QUANTITY_FREQUENCY,
-                                       .compile = compile,
-                                       .value = value,
+                                       .compile = compile_frequency,
+                                       .value = evaluate_frequency,
                                        .number = "frequency",
                                        .equals = "at"};

@@ -170,7 +170,7 @@ static mt_status take_lines(mt_problem *p, const mt_requirement *d, mt_fit *fit,
     return MT_OK;
 }
 
-static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
+static mt_status compile_frequency_response(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     mt_fit *const fit = mt_arena_alloc(&p->mem, 1, sizeof *fit);
     mt_port *const ports = mt_arena_alloc(&p->mem, 2, sizeof *ports);
@@ -362,7 +362,8 @@ bool mt_fit_is_reversed(const mt_workspace *w, const mt_requirement *d)
     return 2.0 * reversed < as_is;
 }
 
-static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
+static const char *frequency_response_subject(const mt_requirement *d, const char *what,
+                                              mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s %s by %s as measured in \"%s\" (%d lines, %.6g to %.6g Hz)",
                            what, d->fit->ports.out->name, d->fit->ports.in->name,
@@ -372,7 +373,7 @@ static const char *subject(const mt_requirement *d, const char *what, mt_arena *
 
 const mt_goal_ops mt_goal_frequency_response = {.quantity = MT_QUANTITY_OTHER,
                                                 .needs_vectors = true,
-                                                .compile = compile,
+                                                .compile = compile_frequency_response,
                                                 .residuals = residuals,
-                                                .subject = subject,
+                                                .subject = frequency_response_subject,
                                                 .equals = "at"};

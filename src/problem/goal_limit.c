@@ -2,8 +2,8 @@
 /* "limit": an expression of parameters; q = its value. */
 #include "problem/goal.h"
 
-static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
-                       double *slope, mt_err *err)
+static mt_status evaluate_limit(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                                double *slope, mt_err *err)
 {
     (void)pos;
     (void)err;
@@ -15,4 +15,4 @@ static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double
 }
 
 const mt_goal_ops mt_goal_limit = {
-    .quantity = MT_QUANTITY_EXPRESSION, .value = value, .equals = "equal to"};
+    .quantity = MT_QUANTITY_EXPRESSION, .value = evaluate_limit, .equals = "equal to"};

@@ -2,8 +2,8 @@
 /* "mac": q = MAC of the mode's shape at the sensors with that of a reference. */
 #include "problem/goal.h"
 
-static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
-                       double *slope, mt_err *err)
+static mt_status evaluate_mac(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                              double *slope, mt_err *err)
 {
     const int ns = d->shape.ns;
     double norm = 0.0;
@@ -17,7 +17,7 @@ static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double
     return MT_OK;
 }
 
-static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
+static const char *mac_subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s: MAC with mode %d of \"%s\"", what, d->shape.mode,
                            d->shape.reference);
@@ -26,7 +26,7 @@ static const char *subject(const mt_requirement *d, const char *what, mt_arena *
 const mt_goal_ops mt_goal_mac = {.quantity = MT_QUANTITY_OTHER,
                                  .needs_vectors = true,
                                  .compile = mt_goal_compile_shape,
-                                 .value = value,
-                                 .subject = subject,
+                                 .value = evaluate_mac,
+                                 .subject = mac_subject,
                                  .number = "MAC",
                                  .equals = "at"};

@@ -42,7 +42,7 @@ static int below(const mt_modes *modes, double hz)
     return n;
 }
 
-static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
+static mt_status compile_response(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     MT_TRY(mt_forced_response_compile(p, d, err));
     if (d->goal->response_limit->lower_hz == d->goal->response_limit->upper_hz) {
@@ -92,9 +92,9 @@ static mt_status add_end(mt_workspace *w, mt_analysis *a, int i, double by, doub
 
 /* The number that the peak is, and its slope; end: the mode below the end that it lies on; 0:
  * it lies on none. */
-static mt_status take(mt_workspace *w, const mt_requirement *d,
-                      const mt_forced_response_peak *peak, int end, double *q, double *slope,
-                      mt_err *err)
+static mt_status evaluate_peak(mt_workspace *w, const mt_requirement *d,
+                               const mt_forced_response_peak *peak, int end, double *q,
+                               double *slope, mt_err *err)
 {
     double omega = peak->at.omega;
     double complex weight = peak->at.direction;
@@ -139,11 +139,11 @@ static mt_status part(mt_workspace *w, const mt_requirement *d, int k, double *q
                     : peak.at.omega == from ? under
                     : peak.at.omega == to   ? over
                                             : 0;
-    return take(w, d, &peak, end, q, slope, err);
+    return evaluate_peak(w, d, &peak, end, q, slope, err);
 }
 
-static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
-                       double *slope, mt_err *err)
+static mt_status evaluate_response(mt_workspace *w, const mt_requirement *d, int pos, double *q,
+                                   double *slope, mt_err *err)
 {
     mt_forced_response_peak peak;
     (void)pos;
@@ -152,11 +152,11 @@ static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double
         *q = HUGE_VAL;
         return mt_forced_response_lead(w, d, lower_of(d), upper_of(d), slope, err);
     }
-    return take(w, d, &peak, 0, q, slope, err);
+    return evaluate_peak(w, d, &peak, 0, q, slope, err);
 }
 
-static mt_status look(mt_workspace *w, const mt_requirement *d, mt_forced_response_value *out,
-                      mt_err *err)
+static mt_status find_response_peak(mt_workspace *w, const mt_requirement *d,
+                                    mt_forced_response_value *out, mt_err *err)
 {
     mt_forced_response_peak peak;
     MT_TRY(mt_forced_response_find(w, d, lower_of(d), upper_of(d), &peak, err));
@@ -173,7 +173,7 @@ static mt_status look(mt_workspace *w, const mt_requirement *d, mt_forced_respon
     return MT_OK;
 }
 
-static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
+static const char *response_subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     const mt_response_limit *const s = d->goal->response_limit;
     return s->lower_hz == s->upper_hz
@@ -185,9 +185,9 @@ static const char *subject(const mt_requirement *d, const char *what, mt_arena *
 
 const mt_goal_ops mt_goal_response = {.quantity = MT_QUANTITY_OTHER,
                                       .needs_vectors = true,
-                                      .compile = compile,
-                                      .value = value,
+                                      .compile = compile_response,
+                                      .value = evaluate_response,
                                       .part = part,
-                                      .look = look,
-                                      .subject = subject,
+                                      .look = find_response_peak,
+                                      .subject = response_subject,
                                       .equals = "at"};

@@ -16,7 +16,7 @@ int mt_goal_reference_mode(const mt_problem *p, const mt_requirement *d)
     return g->reference_mode > 0 ? g->reference_mode : own;
 }
 
-static mt_status compile(mt_problem *p, mt_requirement *d, mt_err *err)
+static mt_status compile_shape(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     MT_TRY(mt_goal_compile_shape(p, d, err));
     d->n_res = d->shape.ns;
@@ -76,7 +76,7 @@ static mt_status residuals(mt_workspace *w, const mt_requirement *d, int pos,
     return MT_OK;
 }
 
-static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
+static const char *shape_subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     return mt_arena_printf(mem, "%s shaped as mode %d of \"%s\"", what, d->shape.mode,
                            d->shape.reference);
@@ -84,7 +84,7 @@ static const char *subject(const mt_requirement *d, const char *what, mt_arena *
 
 const mt_goal_ops mt_goal_shape = {.quantity = MT_QUANTITY_OTHER,
                                    .needs_vectors = true,
-                                   .compile = compile,
+                                   .compile = compile_shape,
                                    .residuals = residuals,
-                                   .subject = subject,
+                                   .subject = shape_subject,
                                    .equals = "at"};

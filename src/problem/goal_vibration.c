@@ -39,8 +39,8 @@ static bool is_finite(const mt_response_limit *s, const mt_vibration_response *r
     return isfinite(number(s, r));
 }
 
-static mt_status value(mt_workspace *w, const mt_requirement *d, int pos, double *q,
-                       double *slope, mt_err *err)
+static mt_status evaluate_vibration(mt_workspace *w, const mt_requirement *d, int pos,
+                                    double *q, double *slope, mt_err *err)
 {
     const mt_response_limit *const s = d->goal->response_limit;
     bool proven = false;
@@ -92,8 +92,8 @@ static void look_at_tones(const mt_response_limit *s, const mt_vibration_respons
     }
 }
 
-static mt_status look(mt_workspace *w, const mt_requirement *d, mt_forced_response_value *out,
-                      mt_err *err)
+static mt_status find_vibration_peak(mt_workspace *w, const mt_requirement *d,
+                                     mt_forced_response_value *out, mt_err *err)
 {
     const mt_response_limit *const s = d->goal->response_limit;
     bool proven = false;
@@ -122,7 +122,7 @@ static mt_status look(mt_workspace *w, const mt_requirement *d, mt_forced_respon
     return MT_OK;
 }
 
-static const char *subject(const mt_requirement *d, const char *what, mt_arena *mem)
+static const char *vibration_subject(const mt_requirement *d, const char *what, mt_arena *mem)
 {
     static const char *const words[MT_RESPONSE_LIMIT_QUANTITIES] = {"response", "RMS", "tones",
                                                                     "peak"};
@@ -135,7 +135,7 @@ static const char *subject(const mt_requirement *d, const char *what, mt_arena *
 const mt_goal_ops mt_goal_vibration = {.quantity = MT_QUANTITY_OTHER,
                                        .needs_vectors = true,
                                        .compile = mt_forced_response_compile,
-                                       .value = value,
-                                       .look = look,
-                                       .subject = subject,
+                                       .value = evaluate_vibration,
+                                       .look = find_vibration_peak,
+                                       .subject = vibration_subject,
                                        .equals = "at"};

@@ -24,8 +24,8 @@ typedef struct mt_mode_order {
 
 /* Appends the rows implied by row `row` to the n present, unless list is NULL; returns their
  * number. */
-static int add(const mt_subproblem *c, const mt_mode_order *what, int row, mt_mode_order *list,
-               int *next_of, int n)
+static int add_implied_orders(const mt_subproblem *c, const mt_mode_order *what, int row,
+                              mt_mode_order *list, int *next_of, int n)
 {
     const int most = mt_configuration_vibrations(&c->views[what->view]);
     const int step = what->sign > 0.0 ? 1 : -1;
@@ -60,7 +60,9 @@ static int list_all(const mt_subproblem *c, mt_mode_order *list, int *next_of)
                                         .sign = k == 0 ? 1.0 : -1.0,
                                         .mode = d->mode};
             if (MT_HAS(what.limit_hz)) {
-                n += mt_tolerance_at_corner(c, row) ? 0 : add(c, &what, row, list, next_of, n);
+                n += mt_tolerance_at_corner(c, row)
+                         ? 0
+                         : add_implied_orders(c, &what, row, list, next_of, n);
                 row++;
             }
         }
@@ -74,7 +76,7 @@ static int list_all(const mt_subproblem *c, mt_mode_order *list, int *next_of)
                                         .limit_hz = mt_tolerance_limit_hz(c, row),
                                         .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
                                         .mode = p->requirements[row->requirement].mode};
-            n += add(c, &what, row->row, list, next_of, n);
+            n += add_implied_orders(c, &what, row->row, list, next_of, n);
         }
     }
     return n;

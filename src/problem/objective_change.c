@@ -6,7 +6,8 @@
 
 #include "problem/objective.h"
 
-static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
+static double evaluate_change(const mt_workspace *w, const mt_objective_stage *a,
+                              double *gradient)
 {
     double f = 0.0;
     (void)a;
@@ -50,7 +51,7 @@ static double least(
 }
 
 /* dc = df / c, within a sixth of c - sqrt(c^2 - 2 df) up to a quarter of c^2. */
-static const char *price(const mt_price *q, mt_arena *mem)
+static const char *change_price(const mt_price *q, mt_arena *mem)
 {
     return !(q->change > 0.0) || fabs(q->df) > 0.25 * q->change * q->change
                ? NULL
@@ -69,4 +70,4 @@ static const char *hardly(const mt_price *q, mt_arena *mem)
 }
 
 const mt_objective_ops mt_objective_change = {
-    .value = value, .least = least, .price = price, .hardly = hardly};
+    .value = evaluate_change, .least = least, .price = change_price, .hardly = hardly};

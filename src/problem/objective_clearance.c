@@ -10,7 +10,8 @@
 
 static const double PERCENT = 100.0;
 
-static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
+static double evaluate_clearance(const mt_workspace *w, const mt_objective_stage *a,
+                                 double *gradient)
 {
     (void)a;
     if (w->c->clearance && gradient != NULL) {
@@ -24,11 +25,11 @@ static double shown(double f)
     return PERCENT * expm1(-f);
 }
 
-static const char *price(const mt_price *q, mt_arena *mem)
+static const char *clearance_price(const mt_price *q, mt_arena *mem)
 {
     return mt_arena_printf(mem, "the least clearance by %.3g percentage points",
                            (PERCENT + q->score) * q->df);
 }
 
 const mt_objective_ops mt_objective_clearance = {
-    .value = value, .shown = shown, .price = price};
+    .value = evaluate_clearance, .shown = shown, .price = clearance_price};

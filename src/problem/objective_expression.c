@@ -2,8 +2,8 @@
 /* An expression of parameters: f = its value. */
 #include "problem/objective.h"
 
-static mt_status compile(mt_problem *p, mt_objective_stage *a, const mt_node *nodes,
-                         mt_err *err)
+static mt_status compile_expression_objective(mt_problem *p, mt_objective_stage *a,
+                                              const mt_node *nodes, mt_err *err)
 {
     (void)err;
     a->node =
@@ -11,7 +11,8 @@ static mt_status compile(mt_problem *p, mt_objective_stage *a, const mt_node *no
     return MT_OK; /* the program tells when it is finished */
 }
 
-static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
+static double evaluate_expression_objective(const mt_workspace *w, const mt_objective_stage *a,
+                                            double *gradient)
 {
     for (int i = 0; i < w->p->n && gradient != NULL; i++) {
         gradient[i] = mt_workspace_dx_dt(w, i) * w->grad[((ptrdiff_t)a->node * w->p->n) + i];
@@ -26,10 +27,12 @@ static double least(const mt_problem *p, const mt_objective_stage *a, const doub
     return low[a->node];
 }
 
-static const char *price(const mt_price *q, mt_arena *mem)
+static const char *expression_price(const mt_price *q, mt_arena *mem)
 {
     return mt_arena_printf(mem, "the objective by %.3g", q->df);
 }
 
-const mt_objective_ops mt_objective_expression = {
-    .compile = compile, .value = value, .least = least, .price = price};
+const mt_objective_ops mt_objective_expression = {.compile = compile_expression_objective,
+                                                  .value = evaluate_expression_objective,
+                                                  .least = least,
+                                                  .price = expression_price};

@@ -17,8 +17,8 @@ static bool counted(const mt_objective *o, const char *name)
     return o->of.count == 0;
 }
 
-static mt_status compile(mt_problem *p, mt_objective_stage *a, const mt_node *nodes,
-                         mt_err *err)
+static mt_status compile_mass_objective(mt_problem *p, mt_objective_stage *a,
+                                        const mt_node *nodes, mt_err *err)
 {
     int view = 0;
     (void)nodes;
@@ -42,7 +42,8 @@ static mt_status compile(mt_problem *p, mt_objective_stage *a, const mt_node *no
     return MT_OK;
 }
 
-static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
+static double evaluate_mass(const mt_workspace *w, const mt_objective_stage *a,
+                            double *gradient)
 {
     const mt_linear *const lin = w->views[0].analysis->lin;
     double f = 0.0;
@@ -66,7 +67,7 @@ static double least(const mt_problem *p, const mt_objective_stage *a, const doub
     return f - (MT_OBJECTIVE_ULPS * (double)a->n_mass * DBL_EPSILON * fabs(f));
 }
 
-static const char *price(const mt_price *q, mt_arena *mem)
+static const char *mass_price(const mt_price *q, mt_arena *mem)
 {
     return q->first && fabs(q->df) > q->score
                ? NULL
@@ -80,5 +81,8 @@ static const char *hardly(const mt_price *q, mt_arena *mem)
                : mt_arena_printf(mem, "1 %% of it is worth more than the whole mass");
 }
 
-const mt_objective_ops mt_objective_mass = {
-    .compile = compile, .value = value, .least = least, .price = price, .hardly = hardly};
+const mt_objective_ops mt_objective_mass = {.compile = compile_mass_objective,
+                                            .value = evaluate_mass,
+                                            .least = least,
+                                            .price = mass_price,
+                                            .hardly = hardly};

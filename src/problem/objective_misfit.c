@@ -2,7 +2,8 @@
 /* "misfit": f = 1/2 |r|^2 of the weighted goals' residuals, df/dt = dr^T r. */
 #include "problem/objective.h"
 
-static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
+static double evaluate_misfit(const mt_workspace *w, const mt_objective_stage *a,
+                              double *gradient)
 {
     (void)a;
     for (int i = 0; i < w->p->n && gradient != NULL; i++) {
@@ -11,4 +12,4 @@ static double value(const mt_workspace *w, const mt_objective_stage *a, double *
     return 0.5 * mt_dot(w->p->n_res, w->r, w->r);
 }
 
-const mt_objective_ops mt_objective_misfit = {.value = value};
+const mt_objective_ops mt_objective_misfit = {.value = evaluate_misfit};

@@ -12,7 +12,8 @@
 
 static const double PERCENT = 100.0;
 
-static double value(const mt_workspace *w, const mt_objective_stage *a, double *gradient)
+static double evaluate_worst_vibration(const mt_workspace *w, const mt_objective_stage *a,
+                                       double *gradient)
 {
     (void)a;
     if (gradient != NULL && w->c->forced_response) {
@@ -26,11 +27,11 @@ static double shown(double f)
     return PERCENT * exp(f);
 }
 
-static const char *price(const mt_price *q, mt_arena *mem)
+static const char *vibration_price(const mt_price *q, mt_arena *mem)
 {
     return mt_arena_printf(mem, "the largest part of a limit by %.3g percentage points",
                            q->score * q->df);
 }
 
 const mt_objective_ops mt_objective_vibration = {
-    .value = value, .shown = shown, .price = price};
+    .value = evaluate_worst_vibration, .shown = shown, .price = vibration_price};

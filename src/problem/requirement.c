@@ -30,8 +30,8 @@ double mt_requirement_weight(const mt_workspace *w, const mt_requirement *d)
     return w->c->weight[d - w->p->requirements];
 }
 
-static void put(const mt_workspace *w, double *matrix, int rows, int row, double factor,
-                const double *gradient)
+static void write_gradient_row(const mt_workspace *w, double *matrix, int rows, int row,
+                               double factor, const double *gradient)
 {
     const int n = w->p->n;
     if (gradient != NULL && w->c->n_t > n && matrix != w->dr) {
@@ -76,7 +76,7 @@ static void store_most(mt_workspace *w, const mt_requirement *d, int k, double q
     const double over = off(w, d, q, d->goal->at_most, &factor);
     if (d->row_soft < 0) {
         out->in[d->row_in + k] = -over;
-        put(w, out->din, rows, d->row_in + k, -factor, slope);
+        write_gradient_row(w, out->din, rows, d->row_in + k, -factor, slope);
         return;
     }
     w->worst = over <= w->worst ? w->worst : over;
@@ -84,7 +84,7 @@ static void store_most(mt_workspace *w, const mt_requirement *d, int k, double q
         const int row = w->c->first_soft_row + d->row_soft + k;
         out->in[row] =
             mt_forced_response_given(w) ? w->t[w->p->n] - MT_FORCED_RESPONSE_SHIFT - over : 0.0;
-        put(w, out->din, rows, row, -factor, slope);
+        write_gradient_row(w, out->din, rows, row, -factor, slope);
         if (slope != NULL) {
             out->din[row + ((ptrdiff_t)w->p->n * rows)] = 1.0;
         }
@@ -100,12 +100,12 @@ static void store(mt_workspace *w, const mt_requirement *d, double q, const doub
     if (d->row_res >= 0) {
         const double weight = sqrt(mt_requirement_weight(w, d));
         w->r[d->row_res] = weight * target;
-        put(w, w->dr, w->p->n_res, d->row_res, weight * factor, slope);
+        write_gradient_row(w, w->dr, w->p->n_res, d->row_res, weight * factor, slope);
         return;
     }
     if (d->row_eq >= 0) {
         out->eq[d->row_eq] = target;
-        put(w, out->deq, mt_subproblem_rows_eq(w->c), d->row_eq, factor, slope);
+        write_gradient_row(w, out->deq, mt_subproblem_rows_eq(w->c), d->row_eq, factor, slope);
         return;
     }
     if (d->row_soft < 0 && d->row_in < 0) {
@@ -114,7 +114,7 @@ static void store(mt_workspace *w, const mt_requirement *d, double q, const doub
     const bool least = MT_HAS(d->goal->at_least);
     if (least) {
         out->in[d->row_in] = off(w, d, q, d->goal->at_least, &factor);
-        put(w, out->din, mt_subproblem_rows_in(w->c), d->row_in, factor, slope);
+        write_gradient_row(w, out->din, mt_subproblem_rows_in(w->c), d->row_in, factor, slope);
     }
     if (MT_HAS(d->goal->at_most)) {
         store_most(w, d, least ? 1 : 0, q, slope, out);

@@ -113,8 +113,9 @@ static const mt_tolerance_range *range_of(const mt_subproblem *c, const mt_range
     return view >= 0 ? mt_ranges_hz(ranges, view, mode) : &ranges->number[row->requirement];
 }
 
-static mt_status judge(const mt_workspace *w, const mt_ranges *ranges, mt_nlp_values *v,
-                       mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
+static mt_status verify_tolerance_rows(const mt_workspace *w, const mt_ranges *ranges,
+                                       mt_nlp_values *v, mt_arena *mem, mt_tolerance_cuts *cuts,
+                                       mt_err *err)
 {
     const mt_subproblem *const c = w->c;
     const mt_tolerance_row *before = NULL;
@@ -163,7 +164,7 @@ static mt_status lower(mt_workspace *w, mt_nlp_values *v, const bool *leave, mt_
     mt_status rc = mt_tolerance_ranges_of_rows(w, leave, &own, &ranges, err);
     /* what is cut off has no value at some sample: nothing is known */
     rc = rc == MT_OK ? mt_interrupt_check(w->p->run->interrupt, err) : rc;
-    rc = rc == MT_OK ? judge(w, &ranges, v, mem, cuts, err) : rc;
+    rc = rc == MT_OK ? verify_tolerance_rows(w, &ranges, v, mem, cuts, err) : rc;
     cuts->solutions += ranges.solutions;
     mt_arena_free(&own);
     return rc;

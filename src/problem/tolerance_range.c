@@ -60,8 +60,8 @@ static bool find_corners(const box *b)
 }
 
 /* Values at the two corners, which are the range. */
-static mt_status settle(const mt_tolerance_probe *q, const box *b, double *value,
-                        mt_tolerance_range *out, mt_err *err)
+static mt_status evaluate_corners(const mt_tolerance_probe *q, const box *b, double *value,
+                                  mt_tolerance_range *out, mt_err *err)
 {
     for (int side = 0; side < MT_TOLERANCE_SIDES; side++) {
         const double *const x = side == MT_LOWEST ? b->soft : b->stiff;
@@ -85,7 +85,7 @@ static mt_status range_of(const box *b, mt_tolerance_probe *q, bool proven,
     for (int k = 0; k < q->m; k++) {
         MT_TRY(mt_tolerance_range_init(b->w->p->n, b->mem, &out[k], err));
     }
-    return proven && find_corners(b) ? settle(q, b, value, out, err)
+    return proven && find_corners(b) ? evaluate_corners(q, b, value, out, err)
                                      : mt_tolerance_sample(q, b->mem, out, err);
 }
 
