@@ -34,7 +34,7 @@ enum { STARTS_ASKED = 2 };
 enum { ROOT_ROUNDS = 12 };
 
 /* Evaluates the start t; where it has no value, half way to the origin, and so on. */
-static bool begin(mt_nlp_engine *e, double *t, mt_nlp_point *p)
+static bool evaluate_start(mt_nlp_engine *e, double *t, mt_nlp_point *p)
 {
     for (int k = 0; k <= HALVINGS && !e->ended; k++) {
         if (mt_nlp_evaluate(e, t, true, p)) {
@@ -102,7 +102,7 @@ static mt_status run_task(void *context, int worker, int k, mt_task_path *own, m
     e.df_scale = all->df_scale;
     e.impossible = all->impossible;
     if (job->task == BEGIN) {
-        s->begun = begin(&e, job->t + (ptrdiff_t)k * e.n, s->p);
+        s->begun = evaluate_start(&e, job->t + (ptrdiff_t)k * e.n, s->p);
     } else if (s->begun && e.n_free > 0) {
         (job->task == APPROACH ? mt_nlp_local_approach : mt_nlp_local_finish)(&e, s);
     }

@@ -228,7 +228,7 @@ static double failed_step(const slsqp *w)
     return step;
 }
 
-static void search(slsqp *w)
+static void search_with_restarts(slsqp *w)
 {
     double radius = HUGE_VAL;
     for (int k = 0; k < RESTARTS && !w->e->ended; k++) {
@@ -278,7 +278,7 @@ void mt_nlp_slsqp(mt_nlp_engine *e, int n_rows, const int *rows, bool close, mt_
         mt_nlp_point_copy(e, w.cur, p);
         mt_nlp_point_copy(e, w.best, p);
         if (w.n > n_rows) {
-            search(&w);
+            search_with_restarts(&w);
         }
         mt_nlp_point_copy(e, p, w.best);
         mt_nlp_point_copy(e, last, w.cur);

@@ -57,7 +57,7 @@ static void thin(mt_steps *steps)
     steps->n = kept;
 }
 
-static void put(mt_steps *steps, const mt_step *step)
+static void append_step(mt_steps *steps, const mt_step *step)
 {
     if (steps->at == NULL) {
         return;
@@ -72,7 +72,7 @@ void mt_steps_add(mt_steps *steps, const mt_step *step)
 {
     const mt_step *const last = steps->at == NULL ? NULL : last_of(steps, step);
     if (last == NULL || is_before(step, last)) {
-        put(steps, step);
+        append_step(steps, step);
     }
 }
 
@@ -100,7 +100,7 @@ void mt_steps_settle(mt_steps *steps, const mt_step *end)
     if (last != NULL && is_before(last, &one)) {
         one.round++;
     }
-    put(steps, &one);
+    append_step(steps, &one);
 }
 
 void mt_steps_serialize(mt_steps *steps, mt_serializer *serializer)

@@ -150,7 +150,8 @@ static bool has_room(const mt_nlp_engine *e, const double *t, const double *d)
 }
 
 /* t := base moved inside the bounds until d has its room either way. */
-static void make_room(const mt_nlp_engine *e, const double *base, const double *d, double *t)
+static void move_inside_bounds(const mt_nlp_engine *e, const double *base, const double *d,
+                               double *t)
 {
     const double longest = longest_way(e, d);
     for (int j = 0; j < e->n; j++) {
@@ -229,7 +230,7 @@ static void confirm(crossing *x, const mt_nlp_point *solution, mt_nlp_result *ou
         if (k == 0) {
             memcpy(x->t, x->base, (size_t)e->n * sizeof *x->t);
         } else {
-            make_room(e, x->base, d, x->t);
+            move_inside_bounds(e, x->base, d, x->t);
         }
         if (mt_nlp_evaluate(e, x->t, false, x->from)) {
             most = fmax(most, effect(x, d));

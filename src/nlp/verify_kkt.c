@@ -86,7 +86,7 @@ static int compare_ranked(const void *a, const void *b)
 
 /* Sorts, best first; ties keep the order of the starts. Of a search that was ended, where
  * thousands of starts may only have values, the best are kept. */
-static void rank(mt_nlp_engine *e, mt_nlp_solution_pool *all)
+static void rank_points(mt_nlp_engine *e, mt_nlp_solution_pool *all)
 {
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
     ranked *const list = mt_arena_alloc(&e->scratch, (size_t)all->count, sizeof *list);
@@ -167,7 +167,7 @@ static void drop_useless(mt_nlp_solution_pool *all)
 }
 
 /* Merge equal ends into the better one. Ranked. */
-static void merge(const mt_nlp_engine *e, mt_nlp_solution_pool *all)
+static void merge_equal_ends(const mt_nlp_engine *e, mt_nlp_solution_pool *all)
 {
     const double same = mt_nlp_same_distance(e);
     int kept = 0;
@@ -194,7 +194,7 @@ static void merge(const mt_nlp_engine *e, mt_nlp_solution_pool *all)
  * sides): the one of least objective is wanted. With the constraints shifted to the values at
  * the compromise, that is a feasible problem.
  */
-static void settle(mt_nlp_engine *e, mt_nlp_point *p)
+static void lower_objective_at_compromise(mt_nlp_engine *e, mt_nlp_point *p)
 {
     const mt_nlp *const q = e->nlp;
     mt_arena *const mem = &e->scratch;
@@ -319,7 +319,7 @@ static int single_directions(const mt_nlp_engine *e, const mt_nlp_result *out)
 void mt_nlp_verify_kkt(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_arena *mem,
                        mt_nlp_result *out)
 {
-    rank(e, all);
+    rank_points(e, all);
     drop_useless(all);
     out->compromise = all->count > 0 && !mt_nlp_feasible(all->at[0].p);
     const bool unused = out->compromise && e->opt.no_compromise;
@@ -330,18 +330,18 @@ void mt_nlp_verify_kkt(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_arena *me
     for (int i = 0; i < all->count && out->n_unidentifiable > 0; i++) {
         mt_nlp_pull_back(e, out, all->at[i].p);
     }
-    rank(e, all);
-    merge(e, all);
+    rank_points(e, all);
+    merge_equal_ends(e, all);
     if (out->compromise && !unused && e->n_free > 0) {
         const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
         for (int i = 0; i < all->count && !e->ended; i++) {
             if (!all->at[i].p->isolated) {
-                settle(e, all->at[i].p);
+                lower_objective_at_compromise(e, all->at[i].p);
             }
             mt_arena_rewind(&e->scratch, mark);
         }
-        rank(e, all);
-        merge(e, all);
+        rank_points(e, all);
+        merge_equal_ends(e, all);
         rank_equals(all);
     }
     if (!e->ended) {
