@@ -35,7 +35,7 @@ typedef struct reach {
     double room;
 } reach;
 
-static void look(reach *r, const mt_modes *modes)
+static void count_modes_around_bands(reach *r, const mt_modes *modes)
 {
     const mt_bands *const bands = &r->goal->avoid->bands;
     int *const below = r->above + bands->n;
@@ -104,7 +104,7 @@ static mt_status look_around(const mt_study *s, const mt_run *run, int c, reach 
         set_design(s, k, x);
         const mt_status solved = mt_analysis_solve(a, x, &opt, &ignored);
         if (solved == MT_OK) {
-            look(r, &a->modes);
+            count_modes_around_bands(r, &a->modes);
         }
         rc = mt_pass_final(solved, &ignored, err);
     }

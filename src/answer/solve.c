@@ -276,7 +276,8 @@ static mt_status take_hint(mt_answer *a, const double *hint, mt_err *err)
 }
 
 /* Workers, and the original design, without which there is nothing to tell. */
-static mt_status begin(mt_answer *a, const mt_solve_options *opt, mt_err *err)
+static mt_status start_workers_and_baseline(mt_answer *a, const mt_solve_options *opt,
+                                            mt_err *err)
 {
     mt_err own = {.code = MT_OK};
     mt_interrupt_enter(a->interrupt, MT_PHASE_BASELINE, true);
@@ -414,7 +415,7 @@ mt_status mt_question_answer(mt_question *q, const mt_solve_options *opt,
     *out = NULL;
     mt_status rc = mt_arena_init(&a.mem, 0, err);
     rc = rc == MT_OK ? mt_result_new(&a.result, err) : rc;
-    rc = rc == MT_OK ? begin(&a, opt, err) : rc;
+    rc = rc == MT_OK ? start_workers_and_baseline(&a, opt, err) : rc;
     rc = rc == MT_OK ? conduct(&a, err) : rc;
     for (int i = 0; i < a.n_workers; i++) {
         mt_workspace_delete(a.workers[i]);

@@ -125,7 +125,7 @@ static mt_status report_infeasible(mt_answer *a, mt_err *err)
     return mt_pass_final(rc, &own, err);
 }
 
-static mt_status search(mt_answer *a, mt_err *err)
+static mt_status search_by_study_kind(mt_answer *a, mt_err *err)
 {
     if (mt_study_has_catalogues(a->study)) {
         return mt_catalogue_search_solve(a->workers, a->n_workers, &a->mem, &a->found,
@@ -151,7 +151,7 @@ mt_status mt_answer_search(mt_answer *a, mt_err *err)
         return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
     }
     MT_TRY(report_infeasible(a, err));
-    MT_TRY(search(a, err));
+    MT_TRY(search_by_study_kind(a, err));
     return mt_describe_history(a->p, &a->found, a->stage, a->result, err);
 }
 

@@ -56,7 +56,7 @@ static bool stopped(const trade *t)
     return mt_interrupted(t->run->interrupt);
 }
 
-static const mt_recommendation *best_of(const mt_result *r)
+static const mt_recommendation *best_recommendation(const mt_result *r)
 {
     return r != NULL && r->n_recommendations > 0 ? &r->recommendations[0] : NULL;
 }
@@ -204,8 +204,8 @@ static mt_status values_of(const mt_recommendation *r, mt_arena *mem, const doub
  * designs the first objective decides. */
 static bool better(const mt_study *study, const mt_result *a, const mt_result *b)
 {
-    const mt_recommendation *const x = best_of(a);
-    const mt_recommendation *const y = best_of(b);
+    const mt_recommendation *const x = best_recommendation(a);
+    const mt_recommendation *const y = best_recommendation(b);
     if (x == NULL || y == NULL) {
         return y == NULL && x != NULL;
     }
@@ -242,7 +242,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
                                 mt_arena *mem, mt_err *err)
 {
     point *const p = &t->points[k];
-    const mt_recommendation *const best = best_of(p->first);
+    const mt_recommendation *const best = best_recommendation(p->first);
     const double *best_x = NULL;
     const double *tried[WAYS] = {NULL};
     MT_TRY(values_of(best != NULL && best->feasible ? best : NULL, mem, &best_x, err));
@@ -266,7 +266,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
         if (better(p->q->study, fresh, answer_of(p))) {
             mt_result_delete(p->again);
             p->again = fresh;
-            MT_TRY(values_of(best_of(fresh), mem, &best_x, err));
+            MT_TRY(values_of(best_recommendation(fresh), mem, &best_x, err));
         } else {
             mt_result_delete(fresh);
         }
@@ -406,7 +406,7 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     return MT_OK;
 }
 
-static mt_status begin(trade *t, mt_err *err)
+static mt_status allocate_trade_points(trade *t, mt_err *err)
 {
     const mt_trade *const asked = &t->study->trade;
     t->n = 1;
@@ -436,7 +436,7 @@ static mt_status begin(trade *t, mt_err *err)
 static mt_status note_near(trade *t, int from, int to, mt_err *err)
 {
     for (int k = from; k < to; k++) {
-        const mt_recommendation *const r = best_of(t->points[k].first);
+        const mt_recommendation *const r = best_recommendation(t->points[k].first);
         if (r != NULL && r->feasible) {
             MT_TRY(values_of(r, t->mem, &t->points[k].near, err));
         }
@@ -464,10 +464,11 @@ static mt_status report_point(trade *t, const char *unanswered, mt_err *err)
                              .best = mt_recommendation_default()};
     MT_TRY(mt_arena_check(t->kept, err));
     memcpy(told->values, p->values, sizeof p->values);
-    if (best_of(r) != NULL) {
+    if (best_recommendation(r) != NULL) {
         t->best[k] = &told->best;
-        MT_TRY(mt_recommendation_copy(best_of(r), before != NULL ? &before->best : NULL,
-                                      t->kept, &told->best, err));
+        MT_TRY(mt_recommendation_copy(best_recommendation(r),
+                                      before != NULL ? &before->best : NULL, t->kept,
+                                      &told->best, err));
     }
     mt_result_delete(p->first);
     mt_result_delete(p->again);
@@ -547,7 +548,7 @@ mt_status mt_trade_solve(const mt_study *study, const mt_run *run, int threads,
     MT_TRY(mt_arena_init(&mem, 0, err));
     t.mem = &mem;
     t.kept = &result->mem;
-    mt_status rc = begin(&t, err);
+    mt_status rc = allocate_trade_points(&t, err);
     rc = rc == MT_OK ? solve_all(&t, threads, task_path, err) : rc;
     rc = rc == MT_OK ? describe(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {

@@ -35,7 +35,8 @@ static mt_status put_parameter(mt_study *s, int parameter, double value, mt_aren
     return MT_OK;
 }
 
-static mt_status put(mt_study *s, const mt_vary *v, double value, mt_arena *mem, mt_err *err)
+static mt_status set_varied_number(mt_study *s, const mt_vary *v, double value, mt_arena *mem,
+                                   mt_err *err)
 {
     switch (v->kind) {
     case MT_VARY_BOUND: {
@@ -76,7 +77,7 @@ mt_status mt_trade_study(const mt_study *study, const double *values, mt_arena *
     out->goals = copied(mem, study->goals, study->n_goals, sizeof *study->goals);
     MT_TRY(mt_arena_check(mem, err));
     for (int k = 0; k < study->trade.n_vary; k++) {
-        MT_TRY(put(out, &study->trade.vary[k], values[k], mem, err));
+        MT_TRY(set_varied_number(out, &study->trade.vary[k], values[k], mem, err));
     }
     return MT_OK;
 }

@@ -502,7 +502,7 @@ bool mt_warnings_settles_far(const mt_warning *d)
 
 /* Adds to `out`; an entry that another configuration already has becomes one without a
  * configuration. */
-static void merge(mt_warning_list *out, const mt_warning *d)
+static void merge_configuration_warning(mt_warning_list *out, const mt_warning *d)
 {
     for (int i = 0; i < out->n; i++) {
         mt_warning *const other = &out->items[i];
@@ -567,13 +567,13 @@ static mt_status add_known(const known *k, int n_inputs, const int *inputs, cons
     /* another posture than the drawn one before all else */
     for (int i = 0; i < list.n && rc == MT_OK; i++) {
         if (mt_warnings_settles_far(&list.items[i])) {
-            merge(out, &list.items[i]);
+            merge_configuration_warning(out, &list.items[i]);
         }
     }
     for (int level = MT_LEVEL_WARNING; rc == MT_OK && level >= MT_LEVEL_NOTE; level--) {
         for (int i = 0; i < list.n; i++) {
             if ((int)list.items[i].level == level && !mt_warnings_settles_far(&list.items[i])) {
-                merge(out, &list.items[i]);
+                merge_configuration_warning(out, &list.items[i]);
             }
         }
     }

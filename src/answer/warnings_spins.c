@@ -42,7 +42,7 @@ static double entry(const spins *s, const double *q, int body, int k)
     return dof < 0 ? 0.0 : q[dof];
 }
 
-static void join(spins *s, int a, int b)
+static void join_spin_parts(spins *s, int a, int b)
 {
     const int one = a < 0 ? MT_GROUND : s->part[a];
     const int other = b < 0 ? MT_GROUND : s->part[b];
@@ -62,13 +62,13 @@ static void find_parts(spins *s)
     for (int i = 0; i < s->sys->n_joints; i++) {
         const mt_system_joint *const joint = &s->sys->joints[i];
         if (joint->type != MT_JOINT_SPHERICAL && joint->type != MT_JOINT_DISTANCE) {
-            join(s, joint->body[0], joint->body[1]);
+            join_spin_parts(s, joint->body[0], joint->body[1]);
         }
     }
     for (int i = 0; i < s->sys->n_measures; i++) {
         const mt_measure_def *const m = &s->sys->measures[i];
         if (m->kind == MT_MEASURE_BEAM) {
-            join(s, m->body[0], m->body[1]);
+            join_spin_parts(s, m->body[0], m->body[1]);
         }
     }
 }

@@ -122,7 +122,7 @@ static mt_status run_search(void *context, int worker, int task, mt_task_path *o
 }
 
 /* Result of one search for the weight sensitivity. */
-static mt_status take(const weight_sensitivity *s, const search *a, mt_err *err)
+static mt_status record_weight_search(const weight_sensitivity *s, const search *a, mt_err *err)
 {
     if (!a->found) {
         return mt_describe_warn(s->result, err,
@@ -157,7 +157,7 @@ static mt_status search_all(weight_sensitivity *s, int n_workers, long *evaluati
     }
     MT_TRY(rc);
     for (int i = 0; i < s->n; i++) {
-        MT_TRY(take(s, &s->searches[i], err));
+        MT_TRY(record_weight_search(s, &s->searches[i], err));
     }
     for (int i = 0; i < s->result->n_weight_sensitivity; i++) {
         mt_result_weight_sensitivity *const r = &s->result->weight_sensitivity[i];
