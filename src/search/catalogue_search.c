@@ -218,8 +218,8 @@ static mt_status to_solution(const mt_catalogue_search *d, const mt_combination 
     return MT_OK;
 }
 
-static mt_status collect(const mt_catalogue_search *d, const ranking *r, mt_nlp_result *out,
-                         mt_err *err)
+static mt_status collect_combinations(const mt_catalogue_search *d, const ranking *r,
+                                      mt_nlp_result *out, mt_err *err)
 {
     *out = (mt_nlp_result){
         .evals = d->evals, .starts = d->starts, .stop = d->stop, .steps = d->steps};
@@ -306,7 +306,7 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
         report->followed += all[i]->followed && all[i]->feasible ? 1 : 0;
     }
     report->driven = (mt_drive_positions_any(d.p) || mt_search_has_positions(d.c)) && !d.mixed;
-    MT_TRY(collect(&d, &r, out, err));
+    MT_TRY(collect_combinations(&d, &r, out, err));
     const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;
     return known ? unless_interrupted(
                        &d, mt_catalogue_search_unidentifiable(&d, r.best[0], out, err))

@@ -135,7 +135,8 @@ static mt_status certify(const branching *v, int worker, const box *b, look *out
     return MT_OK;
 }
 
-static mt_status examine(void *context, int worker, int task, mt_task_path *own, mt_err *err)
+static mt_status examine_box(void *context, int worker, int task, mt_task_path *own,
+                             mt_err *err)
 {
     (void)own;
     branching *const v = context;
@@ -227,7 +228,7 @@ static void end(const branching *v)
 }
 
 /* Adds a box with the ranges of b except for catalogue k (-1: all are b's). */
-static mt_status push(branching *v, const box *b, int k, int first, int last, mt_err *err)
+static mt_status push_box(branching *v, const box *b, int k, int first, int last, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
     const size_t n = (size_t)d->n_listed;
@@ -259,7 +260,7 @@ static mt_status push_all(branching *v, mt_err *err)
     for (int k = 0; k < d->n_listed; k++) {
         whole.last[k] = d->p->study->variables[d->variable[k]].n_catalogue - 1;
     }
-    return push(v, &whole, -1, 0, 0, err);
+    return push_box(v, &whole, -1, 0, 0, err);
 }
 
 /* Halves a box at the catalogue of which it has the greatest share; at those that shape the
@@ -281,8 +282,8 @@ static mt_status halve(branching *v, const box *b, mt_err *err)
         }
     }
     const int middle = b->first[widest] + ((b->last[widest] - b->first[widest]) / 2);
-    MT_TRY(push(v, b, widest, b->first[widest], middle, err));
-    return push(v, b, widest, middle + 1, b->last[widest], err);
+    MT_TRY(push_box(v, b, widest, b->first[widest], middle, err));
+    return push_box(v, b, widest, middle + 1, b->last[widest], err);
 }
 
 static const mt_combination *best_branched_combination(const branching *v)
@@ -299,7 +300,7 @@ static const mt_combination *best_branched_combination(const branching *v)
 }
 
 /* The known combination with these values; NULL: none. */
-static mt_combination *known(const branching *v, const int *pick)
+static mt_combination *find_known_combination(const branching *v, const int *pick)
 {
     const size_t size = (size_t)v->d->n_listed * sizeof *pick;
     for (int i = 0; i < v->n; i++) {
@@ -357,7 +358,7 @@ static mt_status propose(branching *v, const int *pick, const double *x, mt_err 
 {
     mt_catalogue_search *const d = v->d;
     const size_t size = (size_t)d->n_listed * sizeof *pick;
-    const mt_combination *const before = known(v, pick);
+    const mt_combination *const before = find_known_combination(v, pick);
     bool there = before != NULL && before->judged && x == NULL;
     for (int i = 0; i < v->n_fresh; i++) {
         there = there || memcmp(v->fresh[i].pick, pick, size) == 0;
@@ -421,7 +422,7 @@ static mt_status follow_up(branching *v, mt_err *err)
 static mt_status add_searched_combination(branching *v, mt_combination *c, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
-    mt_combination *const before = known(v, c->pick);
+    mt_combination *const before = find_known_combination(v, c->pick);
     if (before != NULL) {
         const bool better =
             c->judged && (!before->judged || mt_catalogue_search_before(d, c, before));
@@ -463,7 +464,7 @@ static mt_status search_fresh(branching *v, mt_err *err)
 static mt_status round_of(branching *v, double cap, mt_err *err)
 {
     mt_catalogue_search *const d = v->d;
-    const mt_tasks tasks = {v->n_now, examine, serialize_look, v, "boxes of combinations"};
+    const mt_tasks tasks = {v->n_now, examine_box, serialize_look, v, "boxes of combinations"};
     v->cap = cap;
     for (int i = 0; i < d->n_workers; i++) {
         v->caps[i].cap.below = cap;
@@ -484,9 +485,9 @@ static mt_status round_of(branching *v, double cap, mt_err *err)
         if (b->combinations > 1.0 || v->looks[i].excluded) {
             continue;
         }
-        const mt_combination *const c = known(v, b->first);
+        const mt_combination *const c = find_known_combination(v, b->first);
         if (c == NULL || !c->judged) {
-            MT_TRY(push(v, b, -1, 0, 0, err));
+            MT_TRY(push_box(v, b, -1, 0, 0, err));
         }
     }
     return MT_OK;
@@ -519,7 +520,8 @@ static bool goes_on(const branching *v, int searched, long looked)
            looked < LOOKED_MOST;
 }
 
-static mt_status run(branching *v, mt_catalogue_search_report *report, mt_err *err)
+static mt_status branch_over_boxes(branching *v, mt_catalogue_search_report *report,
+                                   mt_err *err)
 {
     const mt_catalogue_search *const d = v->d;
     const int before = v->n;
@@ -548,7 +550,7 @@ mt_status mt_catalogue_search_branch(mt_catalogue_search *d, mt_combination ***a
                                      mt_catalogue_search_report *report, mt_err *err)
 {
     branching v = {.d = d, .all = *all, .n = *n, .n_capacity = *n};
-    const mt_status rc = run(&v, report, err);
+    const mt_status rc = branch_over_boxes(&v, report, err);
     end(&v);
     *all = v.all;
     *n = v.n;

@@ -32,7 +32,7 @@ typedef struct walk {
     int room;
 } walk;
 
-static bool known(const walk *w, const int *pick)
+static bool is_visited(const walk *w, const int *pick)
 {
     const size_t size = (size_t)w->d->n_listed * sizeof *pick;
     for (int i = 0; i < w->n; i++) {
@@ -57,7 +57,7 @@ static mt_status allocate_neighbours(walk *w, int room, mt_err *err)
 
 static void propose(walk *w, const int *pick)
 {
-    if (w->n_fresh < w->room && !known(w, pick)) {
+    if (w->n_fresh < w->room && !is_visited(w, pick)) {
         mt_combination *const c = &w->fresh[w->n_fresh++];
         memcpy(c->pick, pick, (size_t)w->d->n_listed * sizeof *pick);
         mt_catalogue_search_set(w->d, c);
@@ -182,7 +182,7 @@ static mt_status round_relaxed(walk *w, mt_err *err)
 }
 
 /* Step variable k of pick; false at an end of its catalogue. */
-static bool step(const walk *w, int k, int by, int *pick)
+static bool step_catalogue_value(const walk *w, int k, int by, int *pick)
 {
     const int last = w->d->p->study->variables[w->d->variable[k]].n_catalogue - 1;
     pick[k] += by;
@@ -196,13 +196,13 @@ static void propose_neighbours(walk *w, const mt_combination *c, int *pick)
     const bool pairs = !w->d->mixed && n <= PAIRS_OF_AT_MOST;
     for (int way = 0; way < 2 * n; way++) {
         memcpy(pick, c->pick, size);
-        if (!step(w, way / 2, way % 2 == 0 ? -1 : 1, pick)) {
+        if (!step_catalogue_value(w, way / 2, way % 2 == 0 ? -1 : 1, pick)) {
             continue;
         }
         propose(w, pick);
         for (int other = 0; other < way - (way % 2) && pairs; other++) {
             const int before = pick[other / 2];
-            if (step(w, other / 2, other % 2 == 0 ? -1 : 1, pick)) {
+            if (step_catalogue_value(w, other / 2, other % 2 == 0 ? -1 : 1, pick)) {
                 propose(w, pick);
             }
             pick[other / 2] = before;

@@ -80,7 +80,8 @@ static bool is_of(const mt_catalogue_search_proofs *s, int slot, const double *l
     return true;
 }
 
-static mt_status make(mt_catalogue_search_proofs *s, int slot, const double *lower, mt_err *err)
+static mt_status make_geometry_proof(mt_catalogue_search_proofs *s, int slot,
+                                     const double *lower, mt_err *err)
 {
     mt_subproblem held;
     mt_proof *const proof = &s->proof[slot];
@@ -117,7 +118,7 @@ mt_status mt_catalogue_search_proof_of(mt_catalogue_search_proofs *s, const doub
     }
     if (slot == kept) {
         slot = s->n % MT_CATALOGUE_SEARCH_PROOFS_KEPT;
-        MT_TRY(make(s, slot, lower, err));
+        MT_TRY(make_geometry_proof(s, slot, lower, err));
         s->n++;
     }
     if (s->proof[slot].possible) {

@@ -169,7 +169,7 @@ static mt_status note_kinds(prover *v, const mt_certify_search *found, mt_err *e
 }
 
 /* Runs the proof of each geometry with its share of `most`, and evaluates the designs found. */
-static mt_status ask(prover *v, outcome *out, mt_err *err)
+static mt_status run_geometry_proofs(prover *v, outcome *out, mt_err *err)
 {
     double most = fmin(PART * v->d->c->proof_work, v->left);
     *out = (outcome){.proven = true};
@@ -221,7 +221,7 @@ static mt_status improve(prover *v, double share, mt_err *err)
         outcome found = {0};
         v->cap.cap.below = cap_of(v->d->p, f, share);
         v->capped = true;
-        MT_TRY(ask(v, &found, err));
+        MT_TRY(run_geometry_proofs(v, &found, err));
         if (found.proven && found.n_found == 0) {
             v->report->best_within = share;
             return MT_OK;
@@ -243,7 +243,7 @@ static mt_status prove(prover *v, mt_err *err)
     v->left = d->c->proof_work;
     v->covers = true;
     MT_TRY(mt_proof_cap_init(&v->cap, d->p, d->mem, err));
-    MT_TRY(ask(v, &found, err));
+    MT_TRY(run_geometry_proofs(v, &found, err));
     report->n_kinds = v->n_kinds;
     const mt_combination *best = NULL;
     MT_TRY(find_best_combination(v, &best, err));

@@ -30,7 +30,7 @@ typedef struct crossing {
 } crossing;
 
 /* Rows divided by their tolerances at x->t; false where a goal has no value. */
-static bool measure(crossing *x, double *rows, int *below)
+static bool evaluate_crossing_rows(crossing *x, double *rows, int *below)
 {
     mt_workspace *const w = x->d->workers[0];
     int n = 0;
@@ -84,7 +84,7 @@ static double effect_of(crossing *x, int i)
     double most = 0.0;
     for (int k = 0; k < v->n_catalogue && most < 1.0; k++) {
         x->t[i] = mt_problem_t(p, i, v->catalogue[k]);
-        if (!measure(x, x->now, x->below + p->n_bands) ||
+        if (!evaluate_crossing_rows(x, x->now, x->below + p->n_bands) ||
             memcmp(x->below, x->below + p->n_bands, (size_t)p->n_bands * sizeof(int)) != 0) {
             most = HUGE_VAL;
         }
@@ -105,7 +105,7 @@ static mt_status cross(crossing *x, const mt_nlp_result *continuous, mt_nlp_resu
     out->unidentifiable = mt_arena_f64(x->d->mem, n, room);
     out->unidentifiable_effect = mt_arena_f64(x->d->mem, room, 1);
     MT_TRY(mt_arena_check(x->d->mem, err));
-    const bool known = measure(x, x->at, x->below);
+    const bool known = evaluate_crossing_rows(x, x->at, x->below);
     for (int k = 0; k < x->d->n_listed && known; k++) {
         const int i = x->d->variable[k];
         const double effect =

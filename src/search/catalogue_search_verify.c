@@ -121,7 +121,8 @@ static mt_status verify_design(const mt_catalogue_search *d, int worker, mt_comb
 }
 
 /* Follows the drives of design c, whose configurations have been solved with w. */
-static mt_status follow(mt_workspace *w, mt_combination *c, mt_arena *mem, mt_err *err)
+static mt_status follow_combination_drives(mt_workspace *w, mt_combination *c, mt_arena *mem,
+                                           mt_err *err)
 {
     int *const below = mt_arena_int(mem, (size_t)w->c->n_bands);
     MT_TRY(mt_arena_check(mem, err));
@@ -214,7 +215,9 @@ mt_status mt_catalogue_search_follow(mt_catalogue_search *d, mt_combination *c, 
     c->followed = true;
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = mt_workspace_eval(w, c->t, false, &d->values[0], &own);
-    rc = rc == MT_OK && mt_drive_positions_any(w->p) ? follow(w, c, &mem, &own) : rc;
+    rc = rc == MT_OK && mt_drive_positions_any(w->p)
+             ? follow_combination_drives(w, c, &mem, &own)
+             : rc;
     rc = rc == MT_OK && sampled ? verify_tolerances(w, c, &mem, &own) : rc;
     const bool over_positions = c->feasible && d->n_broken < BROKEN_MOST;
     rc = rc == MT_OK && over_positions && mt_search_has_positions(w->c)

@@ -174,7 +174,7 @@ static mt_status note_break(walk *w, double at, mt_drive_path_end end, const cha
     return mt_arena_check(w->mem, err);
 }
 
-static mt_status measure(walk *w, sample *s, mt_err *err)
+static mt_status measure_edge_margins(walk *w, sample *s, mt_err *err)
 {
     for (int i = 0; i < w->n_edges; i++) {
         const edge *const e = &w->edges[i];
@@ -220,7 +220,7 @@ static mt_status add_path_sample(walk *w, double position, int next, mt_err *err
         return note_break(w, at, MT_MOTION_BROKEN, "rounding hides whether it is stable there",
                           err);
     }
-    rc = rc == MT_OK ? measure(w, s, &why) : rc;
+    rc = rc == MT_OK ? measure_edge_margins(w, s, &why) : rc;
     if (rc != MT_OK) {
         return ends(rc) ? mt_fail(err, rc, "%s", why.text)
                         : note_break(w, at, MT_MOTION_BROKEN, why.text, err);
@@ -298,7 +298,7 @@ static bool needs_more(const walk *w, int i, double *at)
     return found;
 }
 
-static mt_status refine(walk *w, mt_err *err)
+static mt_status refine_path_samples(walk *w, mt_err *err)
 {
     int i = 0;
     while (w->samples[i].next >= 0) {
@@ -349,7 +349,7 @@ int mt_drive_path_pieces(double way, double unit, int most)
 }
 
 /* The first positions of a way, evenly spread. */
-static mt_status spread(walk *w, double left, double right, mt_err *err)
+static mt_status place_first_positions(walk *w, double left, double right, mt_err *err)
 {
     const int pieces = mt_drive_path_pieces(right - left, w->unit, w->most);
     w->n = 0;
@@ -412,7 +412,8 @@ long mt_drive_path_most(const mt_subproblem *c)
     return sum;
 }
 
-static mt_status follow(walk *w, const mt_drive_positions *f, const int *below, mt_err *err)
+static mt_status follow_drive_path(walk *w, const mt_drive_positions *f, const int *below,
+                                   mt_err *err)
 {
     double *const list = mt_arena_f64(w->mem, (size_t)f->n, 1);
     double *const positions = mt_arena_f64(w->mem, (size_t)f->n, 1);
@@ -442,8 +443,8 @@ static mt_status follow(walk *w, const mt_drive_positions *f, const int *below, 
         }
         out->end = out->end == MT_MOTION_NONE ? MT_MOTION_WHOLE : out->end;
         MT_TRY(list_edges(w, below, bands.items, bands.n, err));
-        MT_TRY(spread(w, list[i], list[i + 1], err));
-        MT_TRY(refine(w, err));
+        MT_TRY(place_first_positions(w, list[i], list[i + 1], err));
+        MT_TRY(refine_path_samples(w, err));
     }
     return MT_OK;
 }
@@ -473,7 +474,7 @@ mt_status mt_drive_path_follow(mt_workspace *ws, int drive_positions, const int 
     w.inputs = mt_arena_f64(mem, (size_t)ws->p->n + 1, 1);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(w.inputs, ws->x, (size_t)ws->p->n * sizeof *w.inputs);
-    return follow(&w, f, below, err);
+    return follow_drive_path(&w, f, below, err);
 }
 
 mt_status mt_drive_path_kept(mt_workspace *ws, const int *below, mt_arena *mem, bool *kept,

@@ -86,7 +86,8 @@ static mt_status guard(walk *w, sample *s, mt_err *err)
 }
 
 /* Value of the goal at a position; v->value NaN: none. */
-static mt_status find(walk *w, sample *s, mt_forced_response_value *v, mt_err *err)
+static mt_status evaluate_goal_at_position(walk *w, sample *s, mt_forced_response_value *v,
+                                           mt_err *err)
 {
     mt_analysis_options opt = mt_configuration_queries(w->ws, &w->ws->views[w->d->view], false);
     mt_err why = {.code = MT_OK};
@@ -150,7 +151,7 @@ static mt_status insert_position_sample(walk *w, int i, double at, bool given, m
     mt_limit_drive_path *const out = w->out;
     mt_forced_response_value v;
     sample fresh = {.at = at};
-    MT_TRY(find(w, &fresh, &v, err));
+    MT_TRY(evaluate_goal_at_position(w, &fresh, &v, err));
     const double off = off_of(w->d, &v);
     fresh.off = off;
     memmove(&w->samples[i + 1], &w->samples[i], (size_t)(w->n - i) * sizeof *w->samples);
@@ -223,7 +224,7 @@ static bool is_high(const walk *w, int i)
 }
 
 /* The interval to halve next: the longest open one, else the highest; -1: none. */
-static int choose(const walk *w)
+static int choose_interval(const walk *w)
 {
     int best = -1;
     double most = 0.0;
@@ -243,9 +244,9 @@ static int choose(const walk *w)
     return best;
 }
 
-static mt_status refine(walk *w, mt_err *err)
+static mt_status halve_open_intervals(walk *w, mt_err *err)
 {
-    for (int best = choose(w); best >= 0; best = choose(w)) {
+    for (int best = choose_interval(w); best >= 0; best = choose_interval(w)) {
         if (w->n >= w->most) {
             w->out->end = w->out->end == MT_MOTION_WHOLE ? MT_MOTION_CAPPED : w->out->end;
             return MT_OK;
@@ -293,12 +294,13 @@ static mt_status follow_way(walk *w, double left, double right, mt_err *err)
         const double at = i == pieces ? right : ((1.0 - u) * left) + (u * right);
         MT_TRY(insert_position_sample(w, i, at, given, err));
     }
-    MT_TRY(refine(w, err));
+    MT_TRY(halve_open_intervals(w, err));
     return polish(w, err);
 }
 
 /* Distinct positions of the goal's configurations in the family, and what samples need. */
-static mt_status prepare(walk *w, int drive_positions, double **list, int *n, mt_err *err)
+static mt_status list_goal_positions(walk *w, int drive_positions, double **list, int *n,
+                                     mt_err *err)
 {
     mt_limit_drive_path *const out = w->out;
     const mt_problem *const p = w->ws->p;
@@ -344,7 +346,7 @@ mt_status mt_drive_path_limit(mt_workspace *ws, const mt_requirement *d, mt_aren
                               .broken_at = nan(""),
                               .worst = {.value = nan(""), .error = nan(""), .omega = nan("")}};
     walk w = {.ws = ws, .d = d, .mem = mem, .out = out};
-    MT_TRY(prepare(&w, drive_positions, &list, &n, err));
+    MT_TRY(list_goal_positions(&w, drive_positions, &list, &n, err));
     if (n < 2) {
         out->end = MT_MOTION_NONE;
         return MT_OK;

@@ -8,7 +8,7 @@
 static const double LITTLE = 1e6;
 
 /* A limit on an expression is not known by its requirement: where one is left out, all are. */
-static void leave_out(mt_proof *proof, int requirement)
+static void leave_out_requirement(mt_proof *proof, int requirement)
 {
     mt_certify *const c = &proof->question;
     int n = 0;
@@ -45,7 +45,7 @@ mt_status mt_infeasible_presolve(const mt_infeasible_presolve_question *q, mt_ar
     *out = false;
     mt_status rc = mt_proof_init(&proof, q->c, mem, err);
     if (rc == MT_OK && proof.possible) {
-        leave_out(&proof, q->but);
+        leave_out_requirement(&proof, q->but);
         proof.question.n_bands = q->bands ? proof.question.n_bands : 0;
         proof.question.progress = NULL; /* not the answer's own */
         proof.spent = q->counted ? proof.spent : NULL;

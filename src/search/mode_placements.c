@@ -93,8 +93,9 @@ static mt_status keep_steps(const mt_mode_placement_job *j, mt_arena *mem,
     return MT_OK;
 }
 
-static mt_status collect(const mt_problem *p, const mt_mode_placement_job *j, mt_arena *mem,
-                         mt_mode_placement_result *out, mt_err *err)
+static mt_status collect_placement_result(const mt_problem *p, const mt_mode_placement_job *j,
+                                          mt_arena *mem, mt_mode_placement_result *out,
+                                          mt_err *err)
 {
     MT_TRY(keep_solutions(p, j, mem, out, err));
     mt_mode_placement_rank(j->c, out);
@@ -206,7 +207,7 @@ static mt_status search_rest(const mt_mode_placement_job *first, mt_mode_placeme
     const mt_tasks tasks = {j->candidates->n, mt_mode_placement_search_candidate, NULL, j,
                             "mode placements"};
     MT_TRY(mt_workers_run(n_workers, j->workers[0]->task_path, &tasks, err));
-    MT_TRY(collect(j->p, j, mem, out, err));
+    MT_TRY(collect_placement_result(j->p, j, mem, out, err));
     out->proven = out->proven || is_settled(j);
     return MT_OK;
 }
@@ -229,7 +230,7 @@ static mt_status report_incumbent(const mt_mode_placement_job *first,
     now.n_possible = first->candidates->possible;
     now.reason = "not begun";
     now.evals = first->candidates->evals;
-    MT_TRY(collect(first->p, first, mem, &now, err));
+    MT_TRY(collect_placement_result(first->p, first, mem, &now, err));
     return incumbent->tell(incumbent->context, &now, err);
 }
 
@@ -256,7 +257,7 @@ static mt_status end_full(mt_mode_placement_job *first, double last, double rest
     out->rest = first->searched < c->n ? fmin(c->least[first->searched], rest) : rest;
     out->bounded = out->rest >= last;
     out->ended = true;
-    return collect(first->p, first, mem, out, err);
+    return collect_placement_result(first->p, first, mem, out, err);
 }
 
 /* Candidates by ascending lower bound: those of the proof where it settled, else all that the

@@ -51,7 +51,7 @@ static double last_of(const mt_mode_placement_job *j, int asked)
     return last;
 }
 
-static mt_status run(mt_mode_placement_job *j, int n, int n_workers, mt_err *err)
+static mt_status search_candidates(mt_mode_placement_job *j, int n, int n_workers, mt_err *err)
 {
     const mt_tasks tasks = {n, mt_mode_placement_search_candidate, NULL, j, "mode placements"};
     return mt_workers_run(n_workers, j->workers[0]->task_path, &tasks, err);
@@ -132,7 +132,8 @@ typedef struct again {
     mt_mode_placement_candidates rows;
 } again;
 
-static mt_status claim(const mt_mode_placement_job *j, mt_arena *mem, again *a, mt_err *err)
+static mt_status allocate_repeated_searches(const mt_mode_placement_job *j, mt_arena *mem,
+                                            again *a, mt_err *err)
 {
     const size_t n = (size_t)j->searched;
     *a = (again){.place = mt_arena_int(mem, n)};
@@ -169,7 +170,7 @@ static mt_status search_again(mt_mode_placement_job *j, again *a, int starts, in
     later.few = later.options.starts < j->options.starts;
     later.slots = mt_arena_alloc(mem, (size_t)a->n, sizeof *later.slots);
     MT_TRY(mt_arena_check(mem, err));
-    const mt_status rc = a->n > 0 ? run(&later, a->n, n_workers, err) : MT_OK;
+    const mt_status rc = a->n > 0 ? search_candidates(&later, a->n, n_workers, err) : MT_OK;
     for (int i = 0; i < a->n; i++) {
         if (rc == MT_OK) {
             merge_candidate_searches(j, &j->slots[a->place[i]], &later.slots[i]);
@@ -184,7 +185,7 @@ static mt_status search_listed(mt_mode_placement_job *j, bool met, double last, 
                                mt_arena *mem, mt_err *err)
 {
     again a;
-    MT_TRY(claim(j, mem, &a, err));
+    MT_TRY(allocate_repeated_searches(j, mem, &a, err));
     for (int k = 0; k < j->searched; k++) {
         const mt_mode_placement_slot *const s = &j->slots[k];
         if (j->candidates->least[k] <= last && mt_mode_placement_is_met(s) == met &&
@@ -216,7 +217,7 @@ mt_status mt_mode_placement_search_best(mt_mode_placement_job *j, int n_workers,
            j->candidates->least[j->searched] <= *last) {
         const int left = n - j->searched;
         j->from = j->searched;
-        rc = run(j, left < BATCH ? left : BATCH, n_workers, err);
+        rc = search_candidates(j, left < BATCH ? left : BATCH, n_workers, err);
         j->searched += left < BATCH ? left : BATCH;
         *last = last_of(j, asked);
     }
@@ -238,7 +239,7 @@ mt_status mt_mode_placement_search_known(mt_mode_placement_job *j, int n_workers
 {
     const int m = j->p->n_bands;
     again a;
-    MT_TRY(claim(j, mem, &a, err));
+    MT_TRY(allocate_repeated_searches(j, mem, &a, err));
     for (int k = 0; k < j->searched; k++) {
         const int *const own = j->candidates->below + ((ptrdiff_t)k * m);
         const int at = mt_certify_index_of(known->below, known->n_proven, own, m);

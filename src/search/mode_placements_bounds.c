@@ -313,7 +313,7 @@ static void walk_from(walk *w, int band) /* NOLINT(misc-no-recursion): as deep a
     }
 }
 
-static bool count(walk *w, int cap)
+static bool count_placements(walk *w, int cap)
 {
     w->cap = cap;
     w->n = 0;
@@ -387,7 +387,7 @@ mt_status mt_mode_placement_bounds_list(const mt_mode_placement_bounds *b, int m
     *out = (mt_mode_placement_candidates){.n = 0};
     MT_TRY(mt_arena_check(mem, err));
     int cap = b->n_levels - 1;
-    while (cap >= 0 && !count(&w, cap)) {
+    while (cap >= 0 && !count_placements(&w, cap)) {
         cap--;
     }
     *rest = cap + 1 < b->n_levels ? b->least[cap + 1] : HUGE_VAL;
@@ -397,7 +397,7 @@ mt_status mt_mode_placement_bounds_list(const mt_mode_placement_bounds *b, int m
     w.list = mt_arena_int(mem, (size_t)w.n * row);
     MT_TRY(mt_arena_check(mem, err));
     w.most = w.n;
-    (void)count(&w, cap);
+    (void)count_placements(&w, cap);
     out->n = w.n;
     out->below = w.list;
     return mt_mode_placement_bounds_sort(b, out, mem, err);

@@ -202,8 +202,8 @@ static int least_of(int a, long b)
 }
 
 /* Rows of the placements kept, and the starts of their searches. */
-static mt_status keep(const mt_problem *p, const sampled *list, const bool *kept, mt_arena *mem,
-                      mt_mode_placement_candidates *out, mt_err *err)
+static mt_status keep_placements(const mt_problem *p, const sampled *list, const bool *kept,
+                                 mt_arena *mem, mt_mode_placement_candidates *out, mt_err *err)
 {
     const size_t row = (size_t)p->n_bands;
     const size_t n = (size_t)p->n;
@@ -236,9 +236,9 @@ static bool all_met_often(const sampled *list, int n)
 /* Placements of n designs spread over the bounds, and those of sampled geometries, at most
  * `most`. Under a budget of evaluations half of it is for samples and half for the searches of
  * the nearest. */
-static mt_status sample(mt_workspace *w, int n, int most, long spent,
-                        const mt_sampled_bounds *sampled_bounds, mt_arena *mem,
-                        mt_mode_placement_candidates *out, mt_err *err)
+static mt_status sample_placements(mt_workspace *w, int n, int most, long spent,
+                                   const mt_sampled_bounds *sampled_bounds, mt_arena *mem,
+                                   mt_mode_placement_candidates *out, mt_err *err)
 {
     const mt_problem *const p = w->p;
     const long most_evals = w->c->search.max_evaluations;
@@ -283,7 +283,7 @@ static mt_status sample(mt_workspace *w, int n, int most, long spent,
     bool kept[CANDIDATES_MOST] = {false};
     const int n_found = out->n;
     out->n = keep_nearest(list, n_found, most, kept);
-    return keep(p, list, kept, mem, out, err);
+    return keep_placements(p, list, kept, mem, out, err);
 }
 
 /* Placements that branch and bound found feasible, each with a design, and those left open when
@@ -353,8 +353,9 @@ mt_status mt_mode_placement_candidates_first(mt_workspace *w, mt_proof *proof, b
     }
     *first = *all;
     first->n = all->n_proven;
-    return first->n > 0 ? MT_OK
-                        : sample(w, SAMPLES_FIRST, 1, 0, &no_sampled_bounds, mem, first, err);
+    return first->n > 0
+               ? MT_OK
+               : sample_placements(w, SAMPLES_FIRST, 1, 0, &no_sampled_bounds, mem, first, err);
 }
 
 mt_status mt_mode_placement_candidates_settle(mt_workspace *w, mt_proof *proof, mt_arena *mem,
@@ -399,8 +400,8 @@ mt_status mt_mode_placement_candidates_find(mt_workspace *w, mt_proof *proof, lo
                               "%s; at %d of %d samples of the geometry, held fixed, "
                               "all other placements are proven infeasible",
                               proof->reason, sampled_bounds.n_settled, sampled_bounds.n);
-    return sample(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST, spent,
-                  &sampled_bounds, mem, out, err);
+    return sample_placements(w, wanted < SAMPLES_MOST ? wanted : SAMPLES_MOST, CANDIDATES_MOST,
+                             spent, &sampled_bounds, mem, out, err);
 }
 
 mt_status mt_mode_placement_candidates_near(mt_workspace *w, int most, long spent,
@@ -408,5 +409,6 @@ mt_status mt_mode_placement_candidates_near(mt_workspace *w, int most, long spen
                                             mt_err *err)
 {
     *out = (mt_mode_placement_candidates){.possible = mt_mode_placement_count_possible(w->p)};
-    return sample(w, MT_GAP_SAMPLES_NEAR, most, spent, &no_sampled_bounds, mem, out, err);
+    return sample_placements(w, MT_GAP_SAMPLES_NEAR, most, spent, &no_sampled_bounds, mem, out,
+                             err);
 }

@@ -43,8 +43,9 @@ mt_status mt_proof_shaping(const mt_subproblem *c, mt_arena *mem, bool **shapes,
 
 /* The configuration with the geometry of the question, where its bounds allow only one other
  * than the original; NULL: the original's. *ok false, with the reason: no such mechanism. */
-static mt_status shape(const mt_proof *proof, const mt_problem *p, int view, mt_arena *mem,
-                       mt_analysis **out, bool *ok, char *why, mt_err *err)
+static mt_status make_question_configuration(const mt_proof *proof, const mt_problem *p,
+                                             int view, mt_arena *mem, mt_analysis **out,
+                                             bool *ok, char *why, mt_err *err)
 {
     const size_t n = (size_t)p->n;
     const mt_analysis *const original = p->views[view].original;
@@ -75,7 +76,7 @@ static mt_status enclose_view(mt_proof *proof, const mt_problem *p, int view, mt
 {
     mt_analysis *own = NULL;
     bool ok = false;
-    MT_TRY(shape(proof, p, view, mem, &own, &ok, why, err));
+    MT_TRY(make_question_configuration(proof, p, view, mem, &own, &ok, why, err));
     const mt_analysis *const a = own != NULL ? own : p->views[view].original;
     const mt_status rc =
         ok ? mt_enclosure_new(a, proof->lower, proof->upper, &proof->views[view], why, err)

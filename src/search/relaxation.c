@@ -116,8 +116,8 @@ static void relaxation_rows(const relaxed *r, double s, bool with_gradient, mt_n
     }
 }
 
-static mt_status evaluate(void *context, const double *t, bool with_gradient,
-                          mt_nlp_values *out, mt_err *err)
+static mt_status evaluate_relaxed(void *context, const double *t, bool with_gradient,
+                                  mt_nlp_values *out, mt_err *err)
 {
     const relaxed *const r = context;
     MT_TRY(mt_workspace_eval_uncounted(r->w, t, with_gradient, out, err));
@@ -168,8 +168,8 @@ static mt_status confirm(mt_workspace *w, const mt_move *m, const double *t, ans
 /* Keeps the design t of a move of that size where it precedes the one found and a new workspace
  * confirms it. *again: the move does not suffice for the worst within the tolerances, and a cut
  * was added. */
-static mt_status keep(const mt_subproblem *c, mt_move *m, double size, const double *t,
-                      answer *a, bool *again, mt_err *err)
+static mt_status keep_confirmed_move(const mt_subproblem *c, mt_move *m, double size,
+                                     const double *t, answer *a, bool *again, mt_err *err)
 {
     mt_workspace *fresh = NULL;
     const double change = mt_subproblem_change(c, t);
@@ -201,7 +201,7 @@ static mt_nlp nlp_of(relaxed *r, mt_subproblem *c, const double *near, double *h
     const mt_move *const m = r->move;
     const int n = c->p->n;
     mt_nlp nlp = mt_workspace_nlp(r->w);
-    nlp.eval = evaluate;
+    nlp.eval = evaluate_relaxed;
     nlp.n_next = 0; /* they follow from rows that may be moved */
     nlp.context = r;
     nlp.hint = NULL;
@@ -230,8 +230,8 @@ static long left_of(const job *j, const mt_subproblem *c, const task_result *out
 }
 
 /* nlp and opt: of the search for how far. */
-static mt_status solve(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options *opt,
-                       task_result *out, mt_nlp_result *found, mt_err *err)
+static mt_status solve_move_size(mt_workspace *w, const mt_nlp *nlp, const mt_nlp_options *opt,
+                                 task_result *out, mt_nlp_result *found, mt_err *err)
 {
     mt_err why = {0};
     const mt_status own = mt_workspace_solve(w, nlp, opt, &out->mem, found, &why);
@@ -276,7 +276,7 @@ static mt_status search_least_change(mt_nlp nlp, mt_nlp_options opt, const doubl
     opt.max_evals =
         left < (long)STARTS_CHANGE * EVALUATIONS ? left : (long)STARTS_CHANGE * EVALUATIONS;
     r->settled = true;
-    MT_TRY(solve(r->w, &nlp, &opt, out, &least, err));
+    MT_TRY(solve_move_size(r->w, &nlp, &opt, out, &least, err));
     *to = least.n_solutions > 0 && least.solutions[0].feasible ? least.solutions[0].t : NULL;
     return MT_OK;
 }
@@ -304,7 +304,7 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     double *const hint = mt_arena_f64(&out->mem, (size_t)c->p->n + 1, 1);
     MT_TRY(mt_arena_check(&out->mem, err));
     const mt_nlp nlp = nlp_of(&r, c, a->near, hint);
-    MT_TRY(solve(w, &nlp, &opt, out, &found, err));
+    MT_TRY(solve_move_size(w, &nlp, &opt, out, &found, err));
     if (found.n_solutions == 0) {
         return MT_OK;
     }
@@ -317,8 +317,9 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     a->value = nan("");
     const bool one = found.starts == AGREE && s->hits == AGREE;
     MT_TRY(search_least_change(nlp, opt, s->t, one, left_of(j, c, out, a), out, &least, err));
-    MT_TRY(least != NULL ? keep(c, m, size, least, a, again, err) : MT_OK);
-    return MT_HAS(a->value) || *again ? MT_OK : keep(c, m, size, s->t, a, again, err);
+    MT_TRY(least != NULL ? keep_confirmed_move(c, m, size, least, a, again, err) : MT_OK);
+    return MT_HAS(a->value) || *again ? MT_OK
+                                      : keep_confirmed_move(c, m, size, s->t, a, again, err);
 }
 
 /* Search in subproblem c, to which w is set; afterwards in that with cuts, to which w is then

@@ -25,7 +25,8 @@ static bool vibrates(const mt_modes *modes, int pos)
     return pos >= 0 && pos < modes->shaped && modes->kind[pos] == MT_MODE_FLEXIBLE;
 }
 
-static bool known(const mt_repeated_eigenvalues *m, const mt_repeated_eigenvalues_side *s)
+static bool has_block_for(const mt_repeated_eigenvalues *m,
+                          const mt_repeated_eigenvalues_side *s)
 {
     for (int b = 0; b < m->n_blocks; b++) {
         const mt_repeated_eigenvalues_block *const k = &m->blocks[b];
@@ -99,7 +100,7 @@ static mt_status find_blocks(mt_repeated_eigenvalues *m,
 {
     for (int i = 0; i < n; i++) {
         mt_repeated_eigenvalues_side first = sides[i];
-        if (known(m, &first)) {
+        if (has_block_for(m, &first)) {
             continue;
         }
         for (int k = 0; k < n; k++) {
@@ -335,8 +336,8 @@ static void own_rows(const mt_repeated_eigenvalues *m, mt_nlp_values *out)
     }
 }
 
-static mt_status evaluate(void *context, const double *t, bool with_gradient,
-                          mt_nlp_values *out, mt_err *err)
+static mt_status evaluate_blocks(void *context, const double *t, bool with_gradient,
+                                 mt_nlp_values *out, mt_err *err)
 {
     mt_repeated_eigenvalues *const m = context;
     mt_workspace *const ws = m->ws;
@@ -367,7 +368,7 @@ mt_nlp mt_repeated_eigenvalues_nlp(mt_repeated_eigenvalues *m)
     mt_nlp nlp = mt_workspace_nlp(m->ws);
     nlp.n_eq = m->n_kept + m->n_rows;
     nlp.eq_tol = m->eq_tol;
-    nlp.eval = evaluate;
+    nlp.eval = evaluate_blocks;
     nlp.n_next = 0;
     nlp.context = m;
     nlp.hint = NULL;

@@ -13,8 +13,8 @@ enum { SAMPLED_BOUNDS_PER_SHAPE = 16, SAMPLED_BOUNDS_MOST = 32 };
 static const double SLICE_WORK = 5e7;
 
 /* Adds the new placements of one sampled geometry to the list. */
-static mt_status note(const mt_problem *p, const mt_certify_search *slice, mt_arena *mem,
-                      mt_sampled_bounds *out, mt_err *err)
+static mt_status add_sampled_placements(const mt_problem *p, const mt_certify_search *slice,
+                                        mt_arena *mem, mt_sampled_bounds *out, mt_err *err)
 {
     const size_t row = (size_t)p->n_bands;
     const size_t had = (size_t)out->n_found;
@@ -43,8 +43,8 @@ static mt_status note(const mt_problem *p, const mt_certify_search *slice, mt_ar
 }
 
 /* *possible: the others can be enclosed there. */
-static mt_status ask(const mt_subproblem *c, mt_arena *mem, mt_sampled_bounds *out,
-                     bool *possible, mt_err *err)
+static mt_status prove_sampled_geometry(const mt_subproblem *c, mt_arena *mem,
+                                        mt_sampled_bounds *out, bool *possible, mt_err *err)
 {
     mt_proof proof;
     mt_certify_search found = {0};
@@ -54,7 +54,7 @@ static mt_status ask(const mt_subproblem *c, mt_arena *mem, mt_sampled_bounds *o
         proof.question.max_work = c->proof_work;
         rc =
             mt_certify_assignments(&proof.question, out->n_found, out->found, mem, &found, err);
-        rc = rc == MT_OK ? note(c->p, &found, mem, out, err) : rc;
+        rc = rc == MT_OK ? add_sampled_placements(c->p, &found, mem, out, err) : rc;
         out->n_settled += rc == MT_OK && found.proven ? 1 : 0;
     }
     mt_proof_free(&proof);
@@ -79,7 +79,7 @@ static mt_status prove_sampled_shapes(const mt_workspace *w, const bool *shapes,
                 mt_subproblem_bound(&c, i, x[i], x[i]);
             }
         }
-        MT_TRY(ask(&c, mem, out, &possible, err));
+        MT_TRY(prove_sampled_geometry(&c, mem, out, &possible, err));
         if (k == 0 && !possible) { /* the original geometry: more is in the way */
             out->n = 0;
         }

@@ -106,7 +106,7 @@ static mt_status stage_values_at(const stages *s, const double *t, double *f, mt
 }
 
 /* Improve solution i in the present stage. */
-static mt_status refine(stages *s, int i, mt_err *err)
+static mt_status improve_solution(stages *s, int i, mt_err *err)
 {
     mt_subproblem *const c = &s->later;
     mt_nlp_solution *const old = &s->out->solutions[i];
@@ -250,7 +250,7 @@ static mt_status later_stages(stages *s, int *stage, mt_err *err)
     for (int k = 1; k < n_stages && out->stop == MT_STOP_DONE; k++) {
         s->later.stage = k;
         for (int i = 0; i < out->n_solutions && out->stop == MT_STOP_DONE; i++) {
-            MT_TRY(refine(s, i, err));
+            MT_TRY(improve_solution(s, i, err));
         }
         *stage = k;
     }

@@ -51,7 +51,7 @@ typedef struct continua {
 
 /* The objectives at t, half squares as roots; false where they have no value or a goal is not
  * met. */
-static bool measure(continua *c, const double *t, double *stages)
+static bool evaluate_objectives(continua *c, const double *t, double *stages)
 {
     mt_workspace *const ws = c->ws;
     const long most = ws->c->search.max_evaluations;
@@ -110,7 +110,7 @@ static mt_status shortest_step(continua *c, int n_free, const int *free, double 
 
 /* Bring c->t back to an exact fit, which bounds that it meets hold it at; false where that does
  * not come about. */
-static bool restore(continua *c)
+static bool restore_exact_fit(continua *c)
 {
     const mt_subproblem *const k = c->ws->c;
     const long most = k->search.max_evaluations;
@@ -160,7 +160,7 @@ static bool restore_near(continua *c, double aside)
     bool near = c->rc == MT_OK;
     if (near) {
         memcpy(from, c->t, (size_t)n * sizeof *from);
-        near = restore(c);
+        near = restore_exact_fit(c);
         mt_axpy(n, -1.0, c->t, from);
         near = near && mt_norm2(n, from) <= aside;
     }
@@ -184,8 +184,8 @@ static bool connected(continua *c, int i, int k)
         for (int j = 0; j < c->ws->c->n_t; j++) {
             c->t[j] = a[j] + ((b[j] - a[j]) * m / (BETWEEN + 1));
         }
-        one = (!curved || restore_near(c, ASIDE * chord)) && measure(c, c->t, c->at) &&
-              equal(c->ws, stages, c->at);
+        one = (!curved || restore_near(c, ASIDE * chord)) &&
+              evaluate_objectives(c, c->t, c->at) && equal(c->ws, stages, c->at);
     }
     return one;
 }
@@ -248,7 +248,7 @@ static void join_all(const continua *c, int *group)
     out->n_solutions = kept;
 }
 
-static void count(mt_nlp_result *out, int before)
+static void count_solutions(mt_nlp_result *out, int before)
 {
     if (out->n_solutions == before) {
         return;
@@ -279,7 +279,7 @@ mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result
     mt_status rc = mt_subproblem_values_init(ws->c, mem, &c.v, err);
     for (int i = 0; i < n && rc == MT_OK; i++) {
         double *const stages = c.stages + ((ptrdiff_t)i * ws->c->n_stages);
-        if (!measure(&c, out->solutions[i].t, stages)) {
+        if (!evaluate_objectives(&c, out->solutions[i].t, stages)) {
             stages[0] = nan(""); /* equal to nothing */
         }
     }
@@ -291,7 +291,7 @@ mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result
     }
     if (rc == MT_OK) {
         join_all(&c, group);
-        count(out, n);
+        count_solutions(out, n);
     }
     return rc;
 }

@@ -100,7 +100,7 @@ static bool lacks(const nearest *n, long evals)
 }
 
 /* The objectives before `stage` are held, and the workspace is set to that. */
-static void hold(nearest *n, int stage)
+static void hold_earlier_objectives(nearest *n, int stage)
 {
     mt_subproblem *const c = &n->held;
     c->stage = stage;
@@ -128,7 +128,7 @@ static mt_status minimise(nearest *n, int stage, long most, const double *from,
         n->out->stop = MT_STOP_MAX_EVALS;
         return MT_OK;
     }
-    hold(n, stage);
+    hold_earlier_objectives(n, stage);
     mt_nlp_options opt = mt_nlp_options_default();
     opt.seed = c->search.seed;
     opt.starts = 1;
@@ -392,8 +392,8 @@ static void put_nearer(mt_nlp_solution *s, const mt_nlp_solution *end)
 }
 
 /* Solution s; f: its objectives. */
-static mt_status move(nearest *n, double *f, const double *limit, mt_nlp_solution *s,
-                      mt_err *err)
+static mt_status move_to_nearest(nearest *n, double *f, const double *limit, mt_nlp_solution *s,
+                                 mt_err *err)
 {
     const int n_stages = n->first->n_stages;
     mt_nlp_solution *near = NULL;
@@ -536,8 +536,8 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
         if (fits && is_exact(s)) {
             rc = move_fit(&n, s, err);
         } else if (!fits && s->flat && s->feasible && s->kkt <= SHOWN) {
-            rc = move(&n, f != NULL ? f + row : &own, limit != NULL ? limit + row : NULL, s,
-                      err);
+            rc = move_to_nearest(&n, f != NULL ? f + row : &own,
+                                 limit != NULL ? limit + row : NULL, s, err);
         }
     }
     mt_workspace_back(ws, n.first);

@@ -33,7 +33,8 @@ bool mt_search_has_positions(const mt_subproblem *c)
     return false;
 }
 
-static bool is_known(const mt_at_position_cuts *cuts, int requirement, double at, double near)
+static bool is_known_cut(const mt_at_position_cuts *cuts, int requirement, double at,
+                         double near)
 {
     for (int i = 0; i < cuts->n; i++) {
         if (cuts->items[i].requirement == requirement &&
@@ -53,7 +54,7 @@ static mt_status add_position_cuts(const mt_problem *p, int requirement,
     for (int i = 0; i < m->n_ways && p->families[drive_positions].fixed; i++) {
         if (mt_is_met(m->way_off[i], p->requirements[requirement].tolerance) ||
             !MT_HAS(m->way_at[i]) || cuts->n == CUTS_MOST ||
-            is_known(cuts, requirement, m->way_at[i], near)) {
+            is_known_cut(cuts, requirement, m->way_at[i], near)) {
             continue;
         }
         mt_cut *const cut = &cuts->items[cuts->n];

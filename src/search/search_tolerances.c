@@ -151,7 +151,7 @@ static long left_for(const rounds *r, const mt_subproblem *held)
 }
 
 /* Searches from solution i in the subproblem with the cuts, to which the workspace is set. */
-static mt_status go_on(rounds *r, int i, mt_err *err)
+static mt_status continue_with_cuts(rounds *r, int i, mt_err *err)
 {
     mt_nlp_solution *const s = &r->out->solutions[i];
     mt_nlp_result next = {0};
@@ -204,7 +204,7 @@ static mt_status search_again(rounds *r, mt_err *err)
     for (int i = 0; i < r->out->n_solutions && rc == MT_OK; i++) {
         if (r->open[i] && !is_used_up(r)) {
             held.search.max_evaluations = left_for(r, &held);
-            rc = go_on(r, i, err);
+            rc = continue_with_cuts(r, i, err);
         }
     }
     mt_workspace_back(r->ws, c);
