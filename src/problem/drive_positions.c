@@ -125,7 +125,8 @@ static void name_drive(const mt_problem *p, mt_drive_positions *f)
 
 /* Collects the configurations that are the same mechanism as `first`, which has no drive yet. A
  * configuration without a drive joins the first driven one that it equals. */
-static mt_status gather(mt_problem *p, int first, mt_drive_positions *f, mt_err *err)
+static mt_status collect_same_mechanisms(mt_problem *p, int first, mt_drive_positions *f,
+                                         mt_err *err)
 {
     f->view = mt_arena_int(&p->mem, (size_t)p->n_views);
     MT_TRY(mt_arena_check(&p->mem, err));
@@ -206,7 +207,7 @@ mt_status mt_families_init(mt_problem *p, mt_err *err)
         if (!system_of(p, i)->driven || mt_drive_positions_of(p, i) >= 0) {
             continue;
         }
-        MT_TRY(gather(p, i, &f, err));
+        MT_TRY(collect_same_mechanisms(p, i, &f, err));
         if (f.n > 1) {
             name_drive(p, &f);
             p->families[p->n_families++] = f;

@@ -10,7 +10,8 @@
 #include "analysis/damping.h"
 #include "problem/goal.h"
 
-static mt_status find(mt_workspace *w, const mt_requirement *d, int pos, int *at, mt_err *err)
+static mt_status find_damped_mode(mt_workspace *w, const mt_requirement *d, int pos, int *at,
+                                  mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_damped_modes *damped = NULL;
@@ -33,7 +34,7 @@ static mt_status evaluate_damping(mt_workspace *w, const mt_requirement *d, int 
     const mt_damped_modes *damped = NULL;
     bool repeated = false;
     int at = -1;
-    MT_TRY(find(w, d, pos, &at, err));
+    MT_TRY(find_damped_mode(w, d, pos, &at, err));
     MT_TRY(mt_analysis_damped(a, &damped, err));
     *q = mt_damped_ratio(damped, at);
     if (slope == NULL) {

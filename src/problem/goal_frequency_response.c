@@ -32,7 +32,7 @@ static const double TWO_PI = 6.283185307179586477;
  * weight would make less of. */
 static const double NOISE_FLOOR = 0.01;
 
-static bool same(const char *has, const char *asked)
+static bool is_unset_or_equal(const char *has, const char *asked)
 {
     return has == NULL || strcmp(has, asked) == 0;
 }
@@ -75,7 +75,7 @@ static mt_status find_measured(mt_problem *p, const mt_requirement *d, mt_fit *f
     int found = 0;
     for (int i = 0; i < m->n_responses; i++) {
         const mt_measured_response *const r = &m->responses[i];
-        if (same(r->configuration, mt_configuration_name(p, &p->views[d->view])) &&
+        if (is_unset_or_equal(r->configuration, mt_configuration_name(p, &p->views[d->view])) &&
             is_port(sys, r->input, fit->ports.in, true) &&
             is_port(sys, r->output, fit->ports.out, false)) {
             fit->measured = found++ == 0 ? r : fit->measured;
@@ -192,7 +192,8 @@ typedef struct forced {
     mt_basis basis;
 } forced;
 
-static mt_status prepare(mt_analysis *a, const mt_fit *fit, forced *out, mt_err *err)
+static mt_status prepare_forced_response(mt_analysis *a, const mt_fit *fit, forced *out,
+                                         mt_err *err)
 {
     MT_TRY(mt_response_problem(a, &fit->ports, &a->mem, &out->f, &out->ways, err));
     const mt_basis_problem problem = {.f = &out->f, .mass = &a->mass, .modes = &a->modes};
@@ -261,7 +262,8 @@ static mt_status values(mt_workspace *w, const mt_requirement *d, const forced *
     return MT_OK;
 }
 
-static mt_status slopes(mt_workspace *w, const mt_requirement *d, const forced *f, mt_err *err)
+static mt_status evaluate_response_slopes(mt_workspace *w, const mt_requirement *d,
+                                          const forced *f, mt_err *err)
 {
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_fit *const fit = d->fit;
@@ -288,9 +290,9 @@ static mt_status residuals(mt_workspace *w, const mt_requirement *d, int pos,
     mt_analysis *const a = w->views[d->view].analysis;
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
     forced f = {.f = {.n = 0}};
-    mt_status rc = prepare(a, d->fit, &f, err);
+    mt_status rc = prepare_forced_response(a, d->fit, &f, err);
     if (rc == MT_OK) {
-        rc = with_gradient ? slopes(w, d, &f, err) : values(w, d, &f, err);
+        rc = with_gradient ? evaluate_response_slopes(w, d, &f, err) : values(w, d, &f, err);
     }
     mt_arena_rewind(&a->mem, mark);
     return rc;

@@ -21,7 +21,7 @@ static double by_sine(const mt_response_limit *s)
     return s->quantity == MT_RESPONSE_LIMIT_RMS ? 0.0 : 1.0;
 }
 
-static double number(const mt_response_limit *s, const mt_vibration_response *r)
+static double limited_quantity(const mt_response_limit *s, const mt_vibration_response *r)
 {
     return s->quantity == MT_RESPONSE_LIMIT_RMS    ? r->rms
            : s->quantity == MT_RESPONSE_LIMIT_SINE ? r->sine
@@ -36,7 +36,7 @@ static void range_of(const mt_response_limit *s, double hz[2])
 
 static bool is_finite(const mt_response_limit *s, const mt_vibration_response *r)
 {
-    return isfinite(number(s, r));
+    return isfinite(limited_quantity(s, r));
 }
 
 static mt_status evaluate_vibration(mt_workspace *w, const mt_requirement *d, int pos,
@@ -48,7 +48,7 @@ static mt_status evaluate_vibration(mt_workspace *w, const mt_requirement *d, in
     mt_spectral_nodes nodes = {.n = 0};
     (void)pos;
     MT_TRY(mt_forced_response_respond(w, d, &r, &proven, err));
-    *q = number(s, &r);
+    *q = limited_quantity(s, &r);
     if (!is_finite(s, &r)) {
         double hz[2];
         range_of(s, hz);
@@ -110,7 +110,7 @@ static mt_status find_vibration_peak(mt_workspace *w, const mt_requirement *d,
         return MT_OK;
     }
     out->end = MT_FORCED_FINITE;
-    out->value = number(s, &r);
+    out->value = limited_quantity(s, &r);
     out->error = by_rms(s) > 0.0 ? by_rms(s) * r.rms_bound : 0.0;
     look_at_tones(s, &r, out);
     if (s->quantity != MT_RESPONSE_LIMIT_SINE) {

@@ -16,7 +16,8 @@ static mt_status check_forced_response(const mt_study_response *r, const mt_port
                          index, r->response_limit.input.s);
 }
 
-static mt_status check(const mt_problem *p, int index, mt_arena *mem, mt_err *err)
+static mt_status check_response_ports(const mt_problem *p, int index, mt_arena *mem,
+                                      mt_err *err)
 {
     const mt_study_response *const r = &p->study->responses[index];
     mt_port in = {.name = NULL};
@@ -40,7 +41,7 @@ mt_status mt_problem_check_responses(const mt_problem *p, mt_err *err)
     mt_status rc = mt_arena_init(&mem, 0, err);
     const int n = p->study->examined ? 0 : p->study->n_responses;
     for (int i = 0; i < n && rc == MT_OK; i++) {
-        rc = check(p, i, &mem, err);
+        rc = check_response_ports(p, i, &mem, err);
     }
     mt_arena_free(&mem);
     return rc;

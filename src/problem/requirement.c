@@ -92,8 +92,8 @@ static void store_most(mt_workspace *w, const mt_requirement *d, int k, double q
 }
 
 /* Rows of a number: slope NULL where none is wanted. */
-static void store(mt_workspace *w, const mt_requirement *d, double q, const double *slope,
-                  mt_nlp_values *out)
+static void write_requirement_rows(mt_workspace *w, const mt_requirement *d, double q,
+                                   const double *slope, mt_nlp_values *out)
 {
     double factor = 1.0;
     const double target = off(w, d, q, d->equals, &factor);
@@ -180,7 +180,7 @@ mt_status mt_requirement_eval(mt_workspace *w, const mt_requirement *d, bool wit
         MT_TRY(store_parts(w, d, with_gradient, out, &q, err));
     } else {
         MT_TRY(d->ops->value(w, d, pos, &q, slope, err));
-        store(w, d, q, slope, out);
+        write_requirement_rows(w, d, q, slope, out);
     }
     if (value != NULL) {
         *value = q;

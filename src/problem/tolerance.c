@@ -38,7 +38,7 @@ bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d)
 }
 
 /* Bounds widened by the tolerances. */
-static void widen(const mt_subproblem *c)
+static void widen_tolerance_bounds(const mt_subproblem *c)
 {
     for (int i = 0; i < c->p->n; i++) {
         const double tolerance = mt_tolerance_of_variable(c->p, i);
@@ -358,7 +358,7 @@ mt_status mt_tolerance_init(mt_subproblem *c, const mt_problem_tolerance_box *kn
         .upper = mt_arena_f64(mem, n, 1)};
     MT_TRY(mt_arena_check(mem, err));
     c->tolerance_box = r;
-    widen(c);
+    widen_tolerance_bounds(c);
     MT_TRY(init_views(c, known, mem, err));
     MT_TRY(known != NULL ? MT_OK : init_limits(c, mem, err));
     return init_rows(c, mem, err);

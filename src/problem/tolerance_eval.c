@@ -10,7 +10,7 @@
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
 
-static void move(const mt_workspace *w, const double *factor)
+static void scale_design(const mt_workspace *w, const double *factor)
 {
     for (int i = 0; i < w->p->n; i++) {
         w->tolerance_box->x[i] = w->x[i] * factor[i];
@@ -25,7 +25,7 @@ mt_status mt_tolerance_solve(mt_workspace *w, bool with_gradient, mt_err *err)
             mt_configuration_queries(w, &w->views[i], with_gradient);
         for (int k = 0; k < set->n; k++) {
             mt_analysis *const a = w->views[i].corners[k];
-            move(w, set->corners[k].factor);
+            scale_design(w, set->corners[k].factor);
             MT_TRY(mt_err_in(err, mt_analysis_solve(a, w->tolerance_box->x, &opt, err),
                              "configuration \"%s\" at a corner of the tolerances",
                              mt_analysis_configuration(a)));
@@ -73,7 +73,7 @@ static mt_status expression(mt_workspace *w, const mt_tolerance_corner *c, mt_no
     mt_tolerance_work *const r = w->tolerance_box;
     mt_node bad = MT_NO_NODE;
     mt_err own = {0};
-    move(w, c->factor);
+    scale_design(w, c->factor);
     const mt_status rc =
         with_gradient ? mt_program_gradient(&p->program, r->x, r->value, r->grad, &bad, &own)
                       : mt_program_eval(&p->program, r->x, r->value, &bad, &own);

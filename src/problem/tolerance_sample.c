@@ -46,8 +46,8 @@ mt_status mt_tolerance_range_init(int n, mt_arena *mem, mt_tolerance_range *out,
 
 /* What does not exist somewhere is the least and the greatest there is. */
 /* Updates out[m] with value[m] at x. */
-static void note(const mt_tolerance_probe *q, const double *x, const double *value,
-                 mt_tolerance_range *out)
+static void update_ranges(const mt_tolerance_probe *q, const double *x, const double *value,
+                          mt_tolerance_range *out)
 {
     for (int k = 0; k < q->m; k++) {
         for (int side = 0; side < MT_TOLERANCE_SIDES; side++) {
@@ -81,7 +81,7 @@ typedef struct sampler {
 } sampler;
 
 /* Values at x, noted; NaN where there are none. */
-static mt_status visit(sampler *s, const double *x, bool with_gradient, mt_err *err)
+static mt_status evaluate_sample(sampler *s, const double *x, bool with_gradient, mt_err *err)
 {
     mt_err own = {0};
     const mt_status rc = s->q->eval(s->q->context, x, with_gradient, s->value, &own);
@@ -91,7 +91,7 @@ static mt_status visit(sampler *s, const double *x, bool with_gradient, mt_err *
     for (int k = 0; k < s->q->m && rc != MT_OK; k++) {
         s->value[k] = nan("");
     }
-    note(s->q, x, s->value, s->out);
+    update_ranges(s->q, x, s->value, s->out);
     return MT_OK;
 }
 
@@ -113,13 +113,13 @@ static mt_status visit_corners(sampler *s, mt_err *err)
             s->x[i] = high ? s->q->hi[i] : s->q->lo[i];
             j += is_free(s->q, i) ? 1 : 0;
         }
-        MT_TRY(visit(s, s->x, false, err));
+        MT_TRY(evaluate_sample(s, s->x, false, err));
     }
     return MT_OK;
 }
 
 /* Points as those that searches start from. */
-static mt_status spread(sampler *s, mt_arena *mem, mt_err *err)
+static mt_status place_sample_points(sampler *s, mt_arena *mem, mt_err *err)
 {
     const mt_tolerance_probe *const q = s->q;
     const int wanted = SPREAD_PER_INPUT * s->n_free;
@@ -135,7 +135,7 @@ static mt_status spread(sampler *s, mt_arena *mem, mt_err *err)
 static mt_status visit_spread(sampler *s, mt_err *err)
 {
     for (int c = 0; c < s->n_spread; c++) {
-        MT_TRY(visit(s, s->spread + ((ptrdiff_t)c * s->q->n), false, err));
+        MT_TRY(evaluate_sample(s, s->spread + ((ptrdiff_t)c * s->q->n), false, err));
     }
     return MT_OK;
 }
@@ -145,7 +145,7 @@ static mt_status visit_between(sampler *s, double part, mt_err *err)
     for (int i = 0; i < s->q->n; i++) {
         s->x[i] = part < 1.0 ? s->from[i] + (part * (s->to[i] - s->from[i])) : s->to[i];
     }
-    return visit(s, s->x, false, err);
+    return evaluate_sample(s, s->x, false, err);
 }
 
 /* Golden section between from and to, and both. */
@@ -186,7 +186,7 @@ static mt_status changes_along(sampler *s, int k, int i, double value, bool *cha
     for (int end = 0; end < 2; end++) {
         memcpy(s->x, s->from, (size_t)q->n * sizeof *s->x);
         s->x[i] = end == 0 ? q->lo[i] : q->hi[i];
-        MT_TRY(visit(s, s->x, false, err));
+        MT_TRY(evaluate_sample(s, s->x, false, err));
         *changes = *changes || !(fabs(s->value[k] - value) <= GAIN * fabs(value));
     }
     return MT_OK;
@@ -199,14 +199,14 @@ static double across(const sampler *s, int i)
 }
 
 /* One step from where number k is best so far. */
-static mt_status step(sampler *s, int k, mt_tolerance_side side, mt_err *err)
+static mt_status step_to_extreme(sampler *s, int k, mt_tolerance_side side, mt_err *err)
 {
     const mt_tolerance_probe *const q = s->q;
     const double before = s->out[k].value[side];
     bool flat = false;
     s->at_corner = false;
     memcpy(s->from, s->out[k].at[side], (size_t)q->n * sizeof *s->from);
-    MT_TRY(visit(s, s->from, true, err));
+    MT_TRY(evaluate_sample(s, s->from, true, err));
     if (!MT_HAS(s->value[k])) {
         return MT_OK;
     }
@@ -233,7 +233,7 @@ static mt_status step(sampler *s, int k, mt_tolerance_side side, mt_err *err)
         s->at_corner = !flat;
         return MT_OK;
     }
-    MT_TRY(visit(s, s->to, false, err));
+    MT_TRY(evaluate_sample(s, s->to, false, err));
     return s->out[k].value[side] == before ? search_line(s, k, side, err) : MT_OK;
 }
 
@@ -253,7 +253,7 @@ static mt_status step_around(sampler *s, int k, mt_tolerance_side side, mt_err *
                 const double x = s->from[i] + (part * (to[i] - s->from[i]));
                 s->x[i] = fmin(fmax(x, q->lo[i]), q->hi[i]);
             }
-            MT_TRY(visit(s, s->x, false, err));
+            MT_TRY(evaluate_sample(s, s->x, false, err));
         }
     }
     return MT_OK;
@@ -318,7 +318,7 @@ static mt_status descend(sampler *s, int k, mt_tolerance_side side, mt_err *err)
     double gain = HUGE_VAL;
     for (int turn = 0; turn < s->rounds && gain > GAIN * fabs(*best); turn++) {
         const double before = *best;
-        MT_TRY(repeat(s, step, k, side, err));
+        MT_TRY(repeat(s, step_to_extreme, k, side, err));
         if (s->at_corner && is_explored(s, at)) {
             return MT_OK;
         }
@@ -348,7 +348,7 @@ mt_status mt_tolerance_sample(const mt_tolerance_probe *q, mt_arena *mem,
     for (int i = 0; i < q->n; i++) {
         s.n_free += is_free(q, i) ? 1 : 0;
     }
-    MT_TRY(spread(&s, mem, err));
+    MT_TRY(place_sample_points(&s, mem, err));
     MT_TRY(visit_corners(&s, err));
     MT_TRY(visit_spread(&s, err));
     for (int i = 0; i < MT_TOLERANCE_SIDES * n_descend; i++) {

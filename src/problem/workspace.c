@@ -51,7 +51,7 @@ void mt_workspace_delete(mt_workspace *w)
     }
 }
 
-static mt_status claim(mt_workspace *w, mt_err *err)
+static mt_status allocate_workspace_arrays(mt_workspace *w, mt_err *err)
 {
     const mt_problem *const p = w->p;
     const size_t n = (size_t)p->n;
@@ -89,7 +89,7 @@ mt_status mt_workspace_new(const mt_problem *p, mt_workspace **out, mt_err *err)
     w->p = p;
     w->accuracy = MT_MODAL_ACCURACY;
     mt_status rc = mt_arena_init(&w->mem, 0, err);
-    rc = rc == MT_OK ? claim(w, err) : rc;
+    rc = rc == MT_OK ? allocate_workspace_arrays(w, err) : rc;
     rc = rc == MT_OK ? mt_workspace_use(w, &p->whole, err) : rc;
     if (rc != MT_OK) {
         mt_workspace_delete(w);

@@ -33,8 +33,8 @@ static mt_status solve_at(void *context, double s, mt_analysis **out, mt_err *er
     return mt_analysis_solve(w->view->scout, w->x, &opt, err);
 }
 
-static mt_status follow(const mt_workspace *ws, mt_configuration_work *view, mt_arena *mem,
-                        mt_err *err)
+static mt_status track_modes(const mt_workspace *ws, mt_configuration_work *view, mt_arena *mem,
+                             mt_err *err)
 {
     const mt_problem *const p = ws->p;
     way w = {.w = ws,
@@ -62,7 +62,7 @@ mt_status mt_configuration_track(mt_workspace *w, mt_configuration_work *view, m
         return MT_OK;
     }
     const mt_arena_mark mark = mt_arena_get_mark(&w->mem);
-    const mt_status rc = follow(w, view, &w->mem, err);
+    const mt_status rc = track_modes(w, view, &w->mem, err);
     mt_arena_rewind(&w->mem, mark);
     view->tracked = rc == MT_OK;
     return rc;
