@@ -62,7 +62,7 @@ static void add_atom(columns *w, int block, int r_most, const double *v)
 }
 
 /* Least squares over the passive columns: y in their places, z the residual. */
-static mt_status solve(columns *w, double *z, mt_err *err)
+static mt_status solve_passive_columns(columns *w, double *z, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(w->mem);
     int k = 0;
@@ -90,7 +90,7 @@ static mt_status solve(columns *w, double *z, mt_err *err)
 
 /* Steps from x towards y as far as the signs allow; columns that reach 0 leave. True: the full
  * step. */
-static bool go(columns *w)
+static bool advance_within_signs(columns *w)
 {
     double part = 1;
     for (int i = 0; i < w->count; i++) {
@@ -128,8 +128,8 @@ static int helper(const columns *w, const double *z)
 static mt_status least_squares(columns *w, double *z, mt_err *err)
 {
     for (int step = 0; step < STEPS_MOST; step++) {
-        MT_TRY(solve(w, z, err));
-        if (!go(w)) {
+        MT_TRY(solve_passive_columns(w, z, err));
+        if (!advance_within_signs(w)) {
             continue;
         }
         const int next = helper(w, z);
@@ -168,7 +168,7 @@ static mt_status add_atoms(columns *w, int r_most, const double *z, bool *added,
     return MT_OK;
 }
 
-static void store(const columns *w, int r_most, mt_cone *c)
+static void store_multipliers(const columns *w, int r_most, mt_cone *c)
 {
     double scale = w->size;
     for (int b = 0; b < c->n_blocks; b++) {
@@ -236,6 +236,6 @@ mt_status mt_cone_residual(mt_cone *c, mt_arena *scratch, mt_err *err)
             MT_TRY(add_atoms(&w, r_most, c->z, &more, err));
         }
     }
-    store(&w, r_most, c);
+    store_multipliers(&w, r_most, c);
     return MT_OK;
 }

@@ -234,7 +234,7 @@ static bool is_final(mt_nlp_engine *e, mt_status rc, const mt_err *here)
     return false;
 }
 
-static void refuse(mt_nlp_engine *e, mt_status rc, const mt_err *here)
+static void record_first_refusal(mt_nlp_engine *e, mt_status rc, const mt_err *here)
 {
     if (e->refused != MT_OK) {
         return;
@@ -280,7 +280,7 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
     const mt_status rc = e->nlp->eval(e->nlp->context, p->t, with_gradient, &v, &here);
     if (rc != MT_OK) {
         if (!is_final(e, rc, &here)) {
-            refuse(e, rc, &here);
+            record_first_refusal(e, rc, &here);
         }
         return false;
     }
@@ -291,7 +291,7 @@ bool mt_nlp_evaluate(mt_nlp_engine *e, const double *t, bool with_gradient, mt_n
     derive(e, p, with_gradient);
     if (!point_finite(e, p, with_gradient)) {
         (void)mt_fail(&here, MT_E_DOMAIN, "search: a value is not finite");
-        refuse(e, MT_E_DOMAIN, &here);
+        record_first_refusal(e, MT_E_DOMAIN, &here);
         return false;
     }
     if (e->steps != NULL && e->eq_shift == NULL) { /* else it is another question */

@@ -212,7 +212,7 @@ static double next_mu(double mu, double gain)
     return fmax(MU_LEAST, gain > GAIN_GOOD ? mu / 100 : (gain > 0.25 ? mu / 4 : mu * 2));
 }
 
-static void iterate(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
+static void iterate_least_squares(lsq *w, mt_nlp_point *p, mt_nlp_point *a, mt_nlp_point *b)
 {
     mt_nlp_point *cur = a;
     mt_nlp_point *trial = b;
@@ -275,7 +275,7 @@ void mt_nlp_least_squares(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p)
     mt_nlp_point *const a = mt_nlp_point_new(e, mem);
     mt_nlp_point *const b = mt_nlp_point_new(e, mem);
     if (rows > 0 && e->n > 0 && mt_nlp_has_room(e, mem)) {
-        iterate(&w, p, a, b);
+        iterate_least_squares(&w, p, a, b);
     }
     mt_arena_rewind(mem, mark);
 }

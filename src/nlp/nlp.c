@@ -123,7 +123,7 @@ static mt_status run_task(void *context, int worker, int k, mt_task_path *own, m
 
 /* Adds up the evaluations of the tasks and of before, and their stops; the first failure in
  * order is returned. */
-static void collect(mt_nlp_engine *e, const start_job *job, long before)
+static void sum_evaluations(mt_nlp_engine *e, const start_job *job, long before)
 {
     e->evals = before;
     for (int k = 0; k < job->n; k++) {
@@ -204,7 +204,7 @@ static void run_part(mt_nlp_engine *e, start_job *job, job_task task, int from, 
     mt_err own = {.code = MT_OK};
     const mt_status rc = mt_workers_run(e->nlp->n_workers, first ? NULL : place, &tasks, &own);
     mt_progress_end(job->progress, job->told);
-    collect(e, job, before); /* a task's own failure before "left to other parts" */
+    sum_evaluations(e, job, before); /* a task's own failure before "left to other parts" */
     if (rc != MT_OK && e->fatal == MT_OK) {
         (void)mt_nlp_ok(e, mt_fail(e->err, rc, "%s", own.text));
     }

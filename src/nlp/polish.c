@@ -259,7 +259,7 @@ static double rise_allowed(const polish *w, const mt_nlp_point *p)
 
 /* Keep cur as the best where it is: feasible (or the aim has no constraints), not above the
  * limit, and nearer to a KKT point or, equally near, to the constraints. */
-static void keep(polish *w)
+static void keep_if_better(polish *w)
 {
     mt_nlp_point *const p = w->cur;
     const mt_nlp_point *const b = w->best;
@@ -400,7 +400,7 @@ static bool newton_step(polish *w, double *size, double *saddle)
     if (!mt_nlp_active_set(e, w->cur, w->stage, &e->scratch, &w->a)) {
         return false;
     }
-    keep(w);
+    keep_if_better(w);
     const double c = w->stage == MT_NLP_OBJECTIVE ? w->cur->violation : 0;
     const bool done = w->a.kkt <= KKT_DONE && c <= VIOLATION_DONE;
     if (e->ended || (done && saddle == NULL) || !normal_step(w)) {
@@ -433,7 +433,7 @@ static bool newton_step(polish *w, double *size, double *saddle)
     return *size > STEP_LEAST && mt_nlp_evaluate(e, w->t, true, w->trial);
 }
 
-static void iterate(polish *w, double *saddle)
+static void run_newton_iterations(polish *w, double *saddle)
 {
     mt_arena *const mem = &w->e->scratch;
     double size = HUGE_VAL;
@@ -474,7 +474,7 @@ void mt_nlp_polish(mt_nlp_engine *e, mt_nlp_stage stage, mt_nlp_point *p, double
         p->kkt = w.a.kkt;
         mt_nlp_point_copy(e, w.cur, p);
         mt_nlp_point_copy(e, w.best, p);
-        iterate(&w, saddle);
+        run_newton_iterations(&w, saddle);
         w.best->n_loose = w.n_loose >= 0 ? w.n_loose : p->n_loose;
         w.best->isolated = w.isolated && w.best->kkt <= STATIONARY;
         mt_nlp_point_copy(e, p, w.best);

@@ -55,7 +55,7 @@ typedef struct slsqp {
 } slsqp;
 
 /* Bring cur to x. On failure cur stays the last finite point and the run is told to stop. */
-static void visit(slsqp *w, const double *x)
+static void evaluate_at(slsqp *w, const double *x)
 {
     mt_nlp_engine *const e = w->e;
     bool same = true;
@@ -81,7 +81,7 @@ static void visit(slsqp *w, const double *x)
 static double objective(unsigned int n, const double *x, double *grad, void *data)
 {
     slsqp *const w = data;
-    visit(w, x);
+    evaluate_at(w, x);
     for (unsigned int i = 0; grad != NULL && i < n; i++) {
         grad[i] = w->cur->df[w->free[i]];
     }
@@ -92,7 +92,7 @@ static void equalities(unsigned int m, double *c, unsigned int n, const double *
                        void *data)
 {
     slsqp *const w = data;
-    visit(w, x);
+    evaluate_at(w, x);
     for (unsigned int i = 0; i < m; i++) {
         const int row = w->rows[i];
         c[i] = w->cur->eq[row];
@@ -108,7 +108,7 @@ static void inequalities(unsigned int m, double *c, unsigned int n, const double
                          double *grad, void *data)
 {
     slsqp *const w = data;
-    visit(w, x);
+    evaluate_at(w, x);
     for (unsigned int i = 0; i < m; i++) {
         const int row = w->e->nlp->n_eq + (int)i;
         c[i] = -mt_nlp_row_value(w->e, w->cur, row);
@@ -134,7 +134,7 @@ static mt_status status_of(nlopt_result verdict)
     case NLOPT_XTOL_REACHED:
     case NLOPT_MAXEVAL_REACHED:
     case NLOPT_MAXTIME_REACHED:
-    case NLOPT_FORCED_STOP: /* by visit() */
+    case NLOPT_FORCED_STOP: /* by evaluate_at() */
     case NLOPT_ROUNDOFF_LIMITED:
     case NLOPT_FAILURE:
     case NLOPT_NUM_RESULTS:

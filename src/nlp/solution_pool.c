@@ -150,8 +150,8 @@ bool mt_nlp_came_to_rest(const mt_nlp_local *s)
 
 /* True where the end is at one that converged, or where Newton failed repeatedly: it does not
  * count as another end. */
-static bool is_known(const mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_nlp_local *one,
-                     const mt_nlp_result *directions, double *d)
+static bool is_known_end(const mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_nlp_local *one,
+                         const mt_nlp_result *directions, double *d)
 {
     int tries = 0;
     for (int k = 0; k < all->count && !one->polished; k++) {
@@ -178,7 +178,8 @@ int mt_nlp_solution_pool_choose(mt_nlp_engine *e, mt_nlp_solution_pool *all,
         return 0;
     }
     for (int i = 0; i < all->count; i++) {
-        all->at[i].hits = is_known(e, all, &all->at[i], directions, d) ? 0 : all->at[i].hits;
+        all->at[i].hits =
+            is_known_end(e, all, &all->at[i], directions, d) ? 0 : all->at[i].hits;
     }
     for (int i = 0; i < all->count; i++) {
         if (all->at[i].hits > 0) {

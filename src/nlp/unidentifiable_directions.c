@@ -349,7 +349,7 @@ static mt_status combinations(crossing *x, const mt_nlp_point *p, mt_nlp_result 
     return MT_OK;
 }
 
-static bool find(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out)
+static bool find_directions(mt_nlp_engine *e, const mt_nlp_point *p, mt_nlp_result *out)
 {
     mt_arena *const mem = &e->scratch;
     crossing x = {.e = e};
@@ -382,7 +382,7 @@ bool mt_nlp_unidentifiable(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *me
         return true;
     }
     const mt_arena_mark mark = mt_arena_get_mark(&e->scratch);
-    const bool ok = find(e, p, out);
+    const bool ok = find_directions(e, p, out);
     mt_arena_rewind(&e->scratch, mark);
     return ok;
 }
@@ -455,7 +455,8 @@ static bool pulled(const mt_nlp_engine *e, const mt_nlp_result *u, const mt_nlp_
 
 /* Effects below a tolerance may add up: meets the requirements exactly again, at least
  * objective, with the single variables fixed. */
-static void restore(mt_nlp_engine *e, const mt_nlp_result *u, bool feasible, mt_nlp_point *p)
+static void restore_requirements(mt_nlp_engine *e, const mt_nlp_result *u, bool feasible,
+                                 mt_nlp_point *p)
 {
     /* a root: no freedom to minimise in */
     const bool isolated = feasible && !(p->kkt < HUGE_VAL);
@@ -486,7 +487,7 @@ void mt_nlp_pull_back(mt_nlp_engine *e, const mt_nlp_result *unidentifiable, mt_
     if (mt_nlp_has_room(e, &e->scratch) && pulled(e, unidentifiable, p, off, t) &&
         mt_nlp_evaluate(e, t, true, to)) {
         to->kkt = p->kkt;
-        restore(e, unidentifiable, mt_nlp_feasible(p), to);
+        restore_requirements(e, unidentifiable, mt_nlp_feasible(p), to);
         to->n_loose = p->n_loose; /* with these directions among them */
         if (as_good(e, to, p)) {
             mt_nlp_point_copy(e, p, to);
