@@ -161,8 +161,8 @@ static bool is_cut(const mt_answer *a, mt_phase which)
 }
 
 /* Describes solution i: rec, with texts and lists in `into`, as its warnings. */
-static mt_status describe(const mt_answer *a, int i, mt_result *into, mt_recommendation *rec,
-                          mt_err *err)
+static mt_status describe_recommendation(const mt_answer *a, int i, mt_result *into,
+                                         mt_recommendation *rec, mt_err *err)
 {
     const bool discrete = mt_study_has_catalogues(a->study) && !a->unsearched;
     const bool kinds = a->placements.n_solutions > 0;
@@ -187,7 +187,7 @@ static mt_status recommend_first(mt_answer *a, mt_err *err)
 {
     mt_result *const result = a->result;
     a->mark = mt_result_get_mark(result);
-    MT_TRY(describe(a, 0, result, &result->recommendations[0], err));
+    MT_TRY(describe_recommendation(a, 0, result, &result->recommendations[0], err));
     result->n_recommendations += is_cut(a, MT_PHASE_RECOMMENDATIONS) ? 0 : 1;
     return MT_OK;
 }
@@ -224,7 +224,7 @@ static mt_status describe_other(void *context, int worker, int task, mt_task_pat
     p->into->n_curves = result->n_curves;
     p->into->unidentifiable = result->unidentifiable;
     p->into->n_unidentifiable = result->n_unidentifiable;
-    MT_TRY(describe(o->a, 1 + task, p->into, &p->rec, err));
+    MT_TRY(describe_recommendation(o->a, 1 + task, p->into, &p->rec, err));
     p->whole = !is_cut(o->a, MT_PHASE_RECOMMENDATIONS);
     mt_progress_done(o->progress, o->told);
     return MT_OK;

@@ -67,7 +67,7 @@ static const mt_result *answer_of(const point *p)
 }
 
 /* Unit in which the values of a parameter, a bound or a goal are shown; NULL: SI. */
-static const mt_unit *shown_in(const mt_study *study, const mt_vary *v)
+static const mt_unit *unit_of_varied(const mt_study *study, const mt_vary *v)
 {
     if (v->kind == MT_VARY_PARAMETER) {
         return mt_study_unit(study, v->parameter);
@@ -84,7 +84,7 @@ static const mt_unit *shown_in(const mt_study *study, const mt_vary *v)
 static const char *value_text(const trade *t, int k, int i, mt_arena *mem)
 {
     const mt_vary *const v = &t->study->trade.vary[i];
-    const mt_unit *const shown = shown_in(t->study, v);
+    const mt_unit *const shown = unit_of_varied(t->study, v);
     return mt_arena_printf(mem, "%s = %.6g%s%s", v->text,
                            mt_unit_from_si(shown, t->points[k].values[i]),
                            shown == NULL ? "" : " ", mt_unit_name(shown, ""));
@@ -115,7 +115,7 @@ static mt_status told(const trade *t, int k, mt_status rc, mt_err *err)
 }
 
 /* The study of point k, compiled. */
-static mt_status ask(const trade *t, point *p, mt_err *err)
+static mt_status compile_trade_point(const trade *t, point *p, mt_err *err)
 {
     static const mt_solve_options opt = {.size = sizeof opt};
     MT_TRY(mt_arena_init(&p->mem, 0, err));
@@ -164,7 +164,7 @@ static mt_status solve_cold(void *context, int worker, int task, mt_task_path *o
     if (stopped(t)) {
         return MT_OK;
     }
-    mt_status rc = ask(t, p, err);
+    mt_status rc = compile_trade_point(t, p, err);
     rc = rc == MT_OK ? answer(p, NULL, own, &p->first, err) : rc;
     note_work_counters(p, 1);
     if (rc != MT_OK || !t->warm) {
@@ -287,7 +287,7 @@ static mt_status solve_warm(void *context, int worker, int task, mt_task_path *o
     }
     MT_TRY(mt_arena_init(&mem, 0, err));
     const bool known = p->q == NULL; /* its record was read */
-    mt_status rc = known ? ask(t, p, err) : MT_OK;
+    mt_status rc = known ? compile_trade_point(t, p, err) : MT_OK;
     if (known && rc == MT_OK) { /* a budget is of both passes */
         mt_work_counters_note(&p->q->spent, MT_WORK_DESIGNS, p->evaluations);
         mt_work_counters_note(&p->q->spent, MT_WORK_MULTIPLICATIONS, p->multiplications);
@@ -392,7 +392,7 @@ static mt_status describe_what(const trade *t, mt_arena *mem, mt_trade_result *o
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < asked->n_vary; i++) {
         const char *const unit = unit_of(t->study, &asked->vary[i]);
-        const mt_unit *const shown = shown_in(t->study, &asked->vary[i]);
+        const mt_unit *const shown = unit_of_varied(t->study, &asked->vary[i]);
         out->vary[i] = (mt_trade_vary){.text = mt_arena_strdup(mem, asked->vary[i].text),
                                        .pointer = mt_arena_printf(mem, "/trade/vary/%d", i),
                                        .unit = unit == NULL ? NULL : mt_arena_strdup(mem, unit),
@@ -490,7 +490,7 @@ static mt_status report_points(trade *t, int to, mt_err *err)
     return MT_OK;
 }
 
-static mt_status describe(trade *t, mt_result *result, mt_err *err)
+static mt_status report_trade(trade *t, mt_result *result, mt_err *err)
 {
     MT_TRY(report_points(t, t->n, err));
     for (int k = 0; k < t->n; k++) {
@@ -550,7 +550,7 @@ mt_status mt_trade_solve(const mt_study *study, const mt_run *run, int threads,
     t.kept = &result->mem;
     mt_status rc = allocate_trade_points(&t, err);
     rc = rc == MT_OK ? solve_all(&t, threads, task_path, err) : rc;
-    rc = rc == MT_OK ? describe(&t, result, err) : rc;
+    rc = rc == MT_OK ? report_trade(&t, result, err) : rc;
     for (int k = 0; k < t.n && t.points != NULL; k++) {
         forget(&t.points[k]);
         mt_result_delete(t.points[k].first);

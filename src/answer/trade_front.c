@@ -87,7 +87,7 @@ static bool ties(const pair *p, const pair *q)
 /* Marks the points that no other dominates in both objectives. Values within search accuracy
  * are equal, which is not transitive: of two equal points a third may dominate one alone; that
  * one is then on the front too. */
-static void mark(int n, const pair *front, mt_trade_point *points)
+static void mark_pareto_points(int n, const pair *front, mt_trade_point *points)
 {
     for (int k = 0; k < n; k++) {
         bool beaten = !MT_HAS(front[k].f[0]) || !MT_HAS(front[k].f[1]);
@@ -162,7 +162,7 @@ mt_status mt_trade_front(const mt_study *study, const mt_recommendation *const *
         }
     }
     if (asked->n_objectives == 2) {
-        mark(out->n_points, front, out->points);
+        mark_pareto_points(out->n_points, front, out->points);
     }
     return MT_OK;
 }

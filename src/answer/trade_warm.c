@@ -54,8 +54,8 @@ static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_su
     return mt_subproblem_in_placement(&p->whole, below, 0, NULL, w, mem, out, err);
 }
 
-static mt_status compare(mt_workspace *w, const double *x, const double *best_x, mt_arena *mem,
-                         bool *better, long most, mt_err *err)
+static mt_status compare_designs(mt_workspace *w, const double *x, const double *best_x,
+                                 mt_arena *mem, bool *better, long most, mt_err *err)
 {
     const mt_problem *const p = w->p;
     double *const t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
@@ -95,7 +95,7 @@ mt_status mt_trade_improves(mt_workspace *w, const double *x, const double *best
     mt_err why = {0};
     *better = false;
     MT_TRY(mt_arena_init(&mem, 0, err));
-    const mt_status rc = compare(w, x, best_x, &mem, better, most, &why);
+    const mt_status rc = compare_designs(w, x, best_x, &mem, better, most, &why);
     mt_arena_free(&mem);
     /* a start without a value is no better start, and no failure */
     return mt_pass_final(rc, &why, err);

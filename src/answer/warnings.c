@@ -524,8 +524,9 @@ typedef struct known {
     const mt_lowest *l;
 } known;
 
-static mt_status gather(const known *k, int n_inputs, const int *inputs, const double *at,
-                        mt_warning_list *list, mt_err *err)
+static mt_status list_configuration_warnings(const known *k, int n_inputs, const int *inputs,
+                                             const double *at, mt_warning_list *list,
+                                             mt_err *err)
 {
     const mt_model *const m = k->sys->model;
     const int c = k->sys->configuration;
@@ -563,7 +564,7 @@ static mt_status add_known(const known *k, int n_inputs, const int *inputs, cons
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_warning_list list = mt_warning_list_default(&mem);
-    const mt_status rc = gather(k, n_inputs, inputs, at, &list, err);
+    const mt_status rc = list_configuration_warnings(k, n_inputs, inputs, at, &list, err);
     /* another posture than the drawn one before all else */
     for (int i = 0; i < list.n && rc == MT_OK; i++) {
         if (mt_warnings_settles_far(&list.items[i])) {

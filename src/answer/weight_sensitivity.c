@@ -79,8 +79,8 @@ static void scale_weight(const mt_problem *p, double *weight, int goal, double f
 
 /* Solves again with one weight changed, from the best design, at which unidentifiable
  * directions are kept. */
-static mt_status solve(const weight_sensitivity *s, mt_workspace *w, search *a, mt_arena *mem,
-                       mt_err *err)
+static mt_status solve_with_changed_weight(const weight_sensitivity *s, mt_workspace *w,
+                                           search *a, mt_arena *mem, mt_err *err)
 {
     const size_t n = (size_t)s->p->n_requirements;
     double *const weight = mt_arena_f64(mem, n, 1);
@@ -115,7 +115,7 @@ static mt_status run_search(void *context, int worker, int task, mt_task_path *o
     mt_arena mem;
     MT_TRY(mt_arena_init(&mem, 0, err));
     w->task_path = own;
-    const mt_status rc = solve(s, w, &s->searches[task], &mem, err);
+    const mt_status rc = solve_with_changed_weight(s, w, &s->searches[task], &mem, err);
     w->task_path = before;
     mt_arena_free(&mem);
     return rc;
