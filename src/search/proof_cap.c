@@ -5,7 +5,7 @@
 #include "problem/objective.h"
 #include "search/proof.h"
 
-static double least(void *context, const double *lo, const double *hi)
+static double least_cap_value(void *context, const double *lo, const double *hi)
 {
     const mt_proof_cap *const c = context;
     const mt_objective_stage *const a = &c->p->stages[0];
@@ -21,6 +21,6 @@ mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem,
                         .known = p->stages[0].ops->least != NULL,
                         .low = mt_arena_f64(mem, count, 1),
                         .high = mt_arena_f64(mem, count, 1),
-                        .cap = {.least = least, .context = c}};
+                        .cap = {.least = least_cap_value, .context = c}};
     return mt_arena_check(mem, err);
 }
