@@ -241,12 +241,12 @@ class Rules:
         return {"change": lambda: self.change(start), "misfit": lambda: self.misfit(truth), "k1 + 3*k2": lambda: truth.k1 + 3 * truth.k2}[text]()
 
     def slope(self, f, design, name):
-        """By central differences of fourth order; 0 where they are no more than rounding of the four values."""
+        """By central differences of fourth order; 0 where they are no more than rounding of the four values, of which an eigenproblem leaves some units."""
         x = next(p["recommended"] for p in design["parameters"] if p["name"] == name)
         h = 1e-3 * x
         near, far = ([f(self.at(design, **{name: x + n * h})) for n in (i, -i)] for i in (1, 2))
         sum_ = 8 * (near[0] - near[1]) - (far[0] - far[1])
-        return 0.0 if abs(sum_) <= 18 * EPS * max(map(abs, near + far)) else sum_ / (12 * h)
+        return 0.0 if abs(sum_) <= 18 * 4 * EPS * max(map(abs, near + far)) else sum_ / (12 * h)
 
     # of a design
     def design_change(self, d):
