@@ -208,8 +208,7 @@ mt_status mt_question_init(mt_question *q, const mt_study *study, const mt_run *
     q->run = (mt_run){.interrupt = &q->interrupt,
                       .progress = whole->progress,
                       .work = &q->spent,
-                      .profile = whole->profile,
-                      .tasks = whole->tasks};
+                      .profile = whole->profile};
     const mt_status rc = mt_problem_new(study, &q->run, &q->p, &own);
     if (rc == MT_OK) {
         set_budget(q);

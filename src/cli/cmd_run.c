@@ -27,7 +27,6 @@ typedef struct job {
     double seconds;
     mt_profile counts; /* --profile */
     mt_profile *profile;
-    mt_run run;                  /* of the answer */
     bool stops;                  /* a signal ends the search, not the program */
     char sha256[MT_SHA256_TEXT]; /* of result.json, "" as long as it is not written */
     mt_err err;
@@ -102,7 +101,6 @@ static int answer(job *j)
     opt.progress = j->stops && j->args->given[MT_OPT_TIME] ? leave_time : NULL;
     opt.progress_context = j;
     j->profile = mt_cli_profile(j->args, &j->counts);
-    j->run.profile = j->profile;
     mt_task_path tasks = {.store = NULL};
     if (j->args->command != MT_CMD_COMPARE) {
         const int begun = mt_work_begin(j->args, j->path, j->study, &j->journal);
@@ -118,14 +116,13 @@ static int answer(job *j)
         mt_terminal_hold_signals();
         mt_terminal_limit(j->args->time_s);
     }
-    j->run.progress = mt_watch_begin(j->args, j->operand, "baseline");
-    j->run.tasks = &tasks;
-    rc =
-        mt_study_solve_with(j->study, &opt, &j->run, kept ? &early : NULL, &j->result, &j->err);
+    const mt_run run = {.progress = mt_watch_begin(j->args, j->operand, "baseline"),
+                        .profile = j->profile,
+                        .tasks = &tasks};
+    rc = mt_study_solve_with(j->study, &opt, &run, kept ? &early : NULL, &j->result, &j->err);
     j->seconds = mt_terminal_seconds() - j->start;
     j->stopped = mt_terminal_stop_request(NULL) != MT_STOP_REQUEST_NONE;
     mt_terminal_limit(0.0);
-    j->run = (mt_run){.interrupt = NULL};
     mt_watch_end(rc == MT_OK && !is_cut(j->result));
     const bool late = is_late(j) && (rc == MT_E_INTERRUPTED || j->args->part > 0 ||
                                      (rc == MT_OK && is_cut(j->result)));

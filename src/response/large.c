@@ -136,6 +136,14 @@ static mt_status find_skew(work *k, double *skew, mt_err *err)
     return MT_OK;
 }
 
+/* Force i of all: inputs, then outputs, then what damps locally. */
+static force *nth_force(const work *k, int i)
+{
+    const int o = i - k->ports->n_in;
+    const int s = o - k->ports->n_out;
+    return o < 0 ? &k->in[i] : s < 0 ? &k->outs[o] : &k->sides[s].f;
+}
+
 static mt_status make_basis(work *k, mt_err *err)
 {
     const int forces = k->ports->n_in + k->ports->n_out + k->n_sides;
@@ -150,22 +158,13 @@ static mt_status make_basis(work *k, mt_err *err)
         memcpy(copy, mt_lowest_mode(k->l, i), n_x * sizeof *copy);
         MT_TRY(admit_vector(k, copy, err));
     }
-    for (int i = 0; i < k->ports->n_in; i++) {
-        MT_TRY(add_shapes(k, &k->in[i], err));
-    }
-    for (int o = 0; o < k->ports->n_out; o++) {
-        MT_TRY(add_shapes(k, &k->outs[o], err));
-    }
-    for (int s = 0; s < k->n_sides; s++) {
-        MT_TRY(add_shapes(k, &k->sides[s].f, err));
+    for (int i = 0; i < forces; i++) {
+        MT_TRY(add_shapes(k, nth_force(k, i), err));
     }
     double skew = 0.0;
     MT_TRY(find_skew(k, &skew, err));
     for (int i = 0; i < forces; i++) {
-        force *const f = i < k->ports->n_in ? &k->in[i]
-                         : i < k->ports->n_in + k->ports->n_out
-                             ? &k->outs[i - k->ports->n_in]
-                             : &k->sides[i - k->ports->n_in - k->ports->n_out].f;
+        force *const f = nth_force(k, i);
         f->left.noise += skew * f->push.size;
     }
     return MT_OK;

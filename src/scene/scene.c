@@ -78,10 +78,9 @@ static mt_status by_lowest(mt_scene_frame *f, mt_lowest *l, mt_err *err)
 /* The drawing alone, of what cannot be analysed. Failing that, nothing. */
 static mt_status as_drawn(mt_scene_frame *f, mt_err *err)
 {
-    const mt_scene_query *const a = f->ask;
+    const mt_system_def def = mt_scene_system(f, NULL, f->ask->at);
     mt_system *sys = NULL;
-    mt_status rc =
-        mt_system_new(f->model, f->configuration, a->n_inputs, a->inputs, a->at, &sys, err);
+    mt_status rc = mt_system_new_of(&def, &sys, err);
     f->sys = sys;
     rc = rc == MT_OK ? mt_scene_frame_new(f, err) : rc;
     rc = rc == MT_OK ? draw(f, err) : rc;

@@ -107,11 +107,7 @@ static mt_lowest *lowest_of(mt_test *t, const char *text, int count, mt_model **
     mt_lowest *l = NULL;
     *model = mech_parse(t, text);
     if (*model != NULL && !CHECK_INT(t,
-                                     mt_lowest_new(&(mt_system_def){.model = *model,
-                                                                    .configuration = 0,
-                                                                    .n_inputs = 0,
-                                                                    .inputs = NULL,
-                                                                    .at = NULL},
+                                     mt_lowest_new(&(mt_system_def){.model = *model},
                                                    (mt_lowest_want){.count = count}, &l, &err),
                                      MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);

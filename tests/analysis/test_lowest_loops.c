@@ -293,12 +293,10 @@ static mt_lowest *lowest_at(mt_test *t, const mt_model *model, const double *at)
     mt_lowest *l = NULL;
     const mt_lowest_want want = {.count = COUNT, .shapes = true};
     if (!CHECK_INT(t,
-                   mt_lowest_new(&(mt_system_def){.model = model,
-                                                  .configuration = 0,
-                                                  .n_inputs = INPUTS,
-                                                  .inputs = PARAMETER,
-                                                  .at = at},
-                                 want, &l, &err),
+                   mt_lowest_new(
+                       &(mt_system_def){
+                           .model = model, .n_inputs = INPUTS, .inputs = PARAMETER, .at = at},
+                       want, &l, &err),
                    MT_OK)) {
         (void)fprintf(stderr, "%s\n", err.text);
     }

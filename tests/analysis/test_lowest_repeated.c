@@ -44,11 +44,7 @@ static void lowest__tells_all_of_a_repeated_mode_that_it_ends_with(mt_test *t)
         mt_test_row(t, "%d modes", count);
         if (mech_must(t, mech_parse(t, text), NULL, "k", &m) &&
             CHECK_INT(t,
-                      mt_lowest_new(&(mt_system_def){.model = m.model,
-                                                     .configuration = 0,
-                                                     .n_inputs = 0,
-                                                     .inputs = NULL,
-                                                     .at = NULL},
+                      mt_lowest_new(&(mt_system_def){.model = m.model},
                                     (mt_lowest_want){.count = count}, &l, &err),
                       MT_OK) &&
             CHECK(t, l->way != MT_LOWEST_NONE)) {

@@ -486,7 +486,6 @@ static void check_trees(mt_test *t, kind what, int least)
         }
         CHECK_INT(t,
                   mt_lowest_new(&(mt_system_def){.model = dense.model,
-                                                 .configuration = 0,
                                                  .n_inputs = INPUTS,
                                                  .inputs = input,
                                                  .at = dense.at},

@@ -131,13 +131,9 @@ static void use_sweep(const mt_model *m, int c, mt_arena *mem)
         return;
     }
     const mt_system_drive drive = {.joint = m->joints[0].name.s};
-    mt_status rc = mt_system_new_of(&(mt_system_def){.model = m,
-                                                     .configuration = c,
-                                                     .drive = &drive,
-                                                     .n_inputs = 0,
-                                                     .inputs = NULL,
-                                                     .at = &positions[1]},
-                                    &sys, &err);
+    mt_status rc = mt_system_new_of(
+        &(mt_system_def){.model = m, .configuration = c, .drive = &drive, .at = &positions[1]},
+        &sys, &err);
     rc = rc == MT_OK ? mt_linear_new(sys, &lin, &err) : rc;
     rc = rc == MT_OK ? mt_sweep_run(lin, &positions[1], MT_COUNT(positions), positions, NULL,
                                     mem, &sweep, &err)

@@ -46,13 +46,9 @@ static bool run_sweep(mt_test *t, mt_model *model, const char *configuration,
     }
     const int c = configuration == NULL ? 0 : mt_model_find_configuration(model, configuration);
     mt_sweep_range(range[0], range[1], n, positions);
-    r->rc = mt_system_new_of(&(mt_system_def){.model = model,
-                                              .configuration = c,
-                                              .drive = drive,
-                                              .n_inputs = 0,
-                                              .inputs = NULL,
-                                              .at = input},
-                             &r->sys, &r->err);
+    r->rc = mt_system_new_of(
+        &(mt_system_def){.model = model, .configuration = c, .drive = drive, .at = input},
+        &r->sys, &r->err);
     if (r->rc == MT_OK) {
         r->rc = mt_linear_new(r->sys, &r->lin, &r->err);
     }
@@ -435,13 +431,9 @@ static void sweep__meets_the_configuration_that_drives_the_same(mt_test *t)
         mt_test_row(t, "%s", configurations[k]);
         const int c = mt_model_find_configuration(model, configurations[k]);
         if (CHECK(t, mt_analysis_new(model, c, 0, NULL, at, &own, &err) == MT_OK) &&
-            CHECK(t, mt_analysis_new_of(&(mt_system_def){.model = model,
-                                                         .configuration = 0,
-                                                         .drive = &drives[k],
-                                                         .n_inputs = 0,
-                                                         .inputs = NULL,
-                                                         .at = at},
-                                        0, &outside, &err) == MT_OK)) {
+            CHECK(t, mt_analysis_new_of(
+                         &(mt_system_def){.model = model, .drive = &drives[k], .at = at}, 0,
+                         &outside, &err) == MT_OK)) {
             CHECK_INT(t, outside->modes.count, own->modes.count);
             for (int i = 0; i < own->modes.count; i++) {
                 CHECK_NEAR(t, outside->modes.lambda[i], own->modes.lambda[i], TOL);
@@ -525,12 +517,7 @@ static void sweep__failing_allocations_are_errors(mt_test *t)
         mt_alloc_fail_after(nth);
         r.rc = mt_arena_init(&r.mem, 0, &r.err);
         if (r.rc == MT_OK) {
-            r.rc = mt_system_new_of(&(mt_system_def){.model = model,
-                                                     .configuration = 0,
-                                                     .drive = &drive,
-                                                     .n_inputs = 0,
-                                                     .inputs = NULL,
-                                                     .at = at},
+            r.rc = mt_system_new_of(&(mt_system_def){.model = model, .drive = &drive, .at = at},
                                     &r.sys, &r.err);
         }
         if (r.rc == MT_OK) {

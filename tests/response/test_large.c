@@ -305,13 +305,7 @@ static void try_tree(mt_test *t, tree *r, char *text)
     bool ok = mech_must(t, mech_parse(t, text), "c", "", &m) &&
               CHECK_INT(t, mt_analysis_solve(m.a, m.at, &opt, &m.err), MT_OK) &&
               CHECK_INT(t, mt_response_open(m.a, &request, &all, &m.err), MT_OK) &&
-              CHECK_INT(t,
-                        mt_lowest_new(&(mt_system_def){.model = m.model,
-                                                       .configuration = 0,
-                                                       .n_inputs = 0,
-                                                       .inputs = NULL,
-                                                       .at = NULL},
-                                      want, &l, &m.err),
+              CHECK_INT(t, mt_lowest_new(&(mt_system_def){.model = m.model}, want, &l, &m.err),
                         MT_OK) &&
               CHECK_INT(t, l->way, r->looped ? MT_LOWEST_SPARSE : MT_LOWEST_TREE);
     const double to = ok ? 0.5 * sqrt(l->found.tau) : nan("");

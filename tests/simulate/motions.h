@@ -85,14 +85,11 @@ static inline bool motion_open_driven(mt_test *t, mt_model *model, const char *c
     *m = (motion){.opt = mt_sim_options_default(), .mech.model = model};
     const int c = configuration == NULL ? 0 : mt_model_find_configuration(model, configuration);
     mt_status rc = mt_arena_init(&m->mem, 0, &m->err);
-    rc = rc == MT_OK ? mt_system_new_of(&(mt_system_def){.model = model,
-                                                         .configuration = c,
-                                                         .drive = &drive,
-                                                         .n_inputs = 0,
-                                                         .inputs = NULL,
-                                                         .at = NULL},
-                                        &m->own_sys, &m->err)
-                     : rc;
+    rc = rc == MT_OK
+             ? mt_system_new_of(
+                   &(mt_system_def){.model = model, .configuration = c, .drive = &drive},
+                   &m->own_sys, &m->err)
+             : rc;
     rc = rc == MT_OK ? mt_linear_new(m->own_sys, &m->own_lin, &m->err) : rc;
     rc = rc == MT_OK ? mt_linear_update(m->own_lin, NULL, false, &m->err) : rc;
     m->lin = m->own_lin;
