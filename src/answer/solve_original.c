@@ -25,7 +25,7 @@ bool mt_answer_original_is_best(const mt_answer *a)
 {
     const mt_problem *const p = a->p;
     const mt_recommendation *const original = &a->result->baseline;
-    if (!a->searched || p->n_eq > 0 || p->stages[0].type != MT_OBJECTIVE_CHANGE ||
+    if (!a->searched || p->whole.rows.eq.n > 0 || p->stages[0].type != MT_OBJECTIVE_CHANGE ||
         !original->feasible || original->disagreement != NULL ||
         !mt_describe_keeps_between(original)) {
         return false;

@@ -336,7 +336,7 @@ mt_status mt_answer_certify(mt_answer *a, mt_err *err)
     a->impossible = a->infeasible;
     /* exact targets are answered by the nearest design, also where it is proven that they
      * cannot be met */
-    a->infeasible = a->infeasible && a->p->n_eq == 0;
+    a->infeasible = a->infeasible && a->p->whole.rows.eq.n == 0;
     return MT_OK;
 }
 

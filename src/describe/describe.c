@@ -107,8 +107,8 @@ static mt_status describe_objectives(const mt_workspace *fresh, double motion_ma
             .original = baseline == NULL ? value : baseline->objectives[k].original,
             .recommended = value};
     }
-    if (fresh->p->n_res > 0) {
-        rec->misfit = mt_norm2(fresh->p->n_res, fresh->r);
+    if (fresh->c->rows.res.n > 0) {
+        rec->misfit = mt_norm2(fresh->c->rows.res.n, fresh->r);
     }
     rec->score = n > 0 && rec->feasible ? rec->objectives[0].recommended : nan("");
     return MT_OK;

@@ -148,7 +148,7 @@ mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_r
         if (m.end != MT_MOTION_NONE) {
             mt_result_between *const row = &rec->between[rec->n_between++];
             MT_TRY(describe_limit_between(fresh, d, &m, &result->mem, row, err));
-            MT_TRY(d->row_in >= 0 ? warn(design, row, result, rec, err) : MT_OK);
+            MT_TRY(d->role == MT_ROLE_LIMIT ? warn(design, row, result, rec, err) : MT_OK);
         }
     }
     return MT_OK;

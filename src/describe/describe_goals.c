@@ -85,18 +85,19 @@ static double greater(double a, double b)
 static double requirement_violation(const mt_workspace *fresh, const mt_requirement *d,
                                     const mt_nlp_values *v, double own_worst)
 {
+    const int row = mt_requirement_row(fresh->c, d);
     double worst = 0.0;
-    if (d->row_res >= 0) {
-        return mt_norm2(d->n_res, fresh->r + d->row_res) / sqrt(d->goal->weight);
+    if (d->role == MT_ROLE_RESIDUAL) {
+        return mt_norm2(d->n_rows, fresh->r + row) / sqrt(d->goal->weight);
     }
-    if (d->row_eq >= 0) {
-        return fabs(v->eq[d->row_eq]);
+    if (d->role == MT_ROLE_TARGET) {
+        return fabs(v->eq[row]);
     }
-    if (d->row_soft >= 0) {
+    if (d->role == MT_ROLE_VIBRATION) {
         return fmax(own_worst, 0.0); /* of this requirement alone */
     }
-    for (int k = 0; k < d->n_in; k++) {
-        worst = greater(worst, -v->in[d->row_in + k]);
+    for (int k = 0; k < d->n_rows; k++) {
+        worst = greater(worst, -v->in[row + k]);
     }
     return worst;
 }
@@ -196,6 +197,8 @@ static mt_status describe_requirement(mt_workspace *fresh, const mt_requirement 
     *g = mt_result_goal_default();
     write_what(fresh->p, d, g);
     const double others = fresh->worst;
+    const bool residual = d->role == MT_ROLE_RESIDUAL;
+    const bool vibration = d->role == MT_ROLE_VIBRATION;
     fresh->worst = -HUGE_VAL;
     const mt_status rc = mt_requirement_eval(fresh, d, false, v, &g->value, &own);
     if (mt_is_final(rc)) {
@@ -203,7 +206,7 @@ static mt_status describe_requirement(mt_workspace *fresh, const mt_requirement 
     }
     if (rc == MT_OK) {
         const double own_worst = fresh->worst;
-        const bool none = d->row_soft >= 0 && !isfinite(g->value); /* a resonance undamped */
+        const bool none = vibration && !isfinite(g->value); /* a resonance undamped */
         fresh->worst = none || isnan(others) ? nan("") : fmax(others, own_worst);
         violation = requirement_violation(fresh, d, v, own_worst);
         g->value = isfinite(g->value) ? g->value : nan(""); /* a mode at infinity has none */
@@ -212,13 +215,14 @@ static mt_status describe_requirement(mt_workspace *fresh, const mt_requirement 
         MT_TRY(mt_describe_worst(fresh, d, result, g, &violation, &percent, err));
     } else {
         g->value = nan("");
-        fresh->worst = d->row_soft >= 0 ? nan("") : others;
+        fresh->worst = vibration ? nan("") : others;
         *why = why->code == MT_OK ? own : *why;
-        for (int i = 0; i < d->n_res && d->row_res >= 0; i++) {
-            fresh->r[d->row_res + i] = nan(""); /* nor is the misfit known */
+        for (int i = 0; i < d->n_rows && residual; i++) {
+            /* nor is the misfit known */
+            fresh->r[mt_requirement_row(fresh->c, d) + i] = nan("");
         }
     }
-    g->weighted = d->row_res >= 0 || d->row_soft >= 0;
+    g->weighted = residual || vibration;
     name_goal(fresh->p, d, &result->mem, g);
     g->pointer = mt_arena_printf(&result->mem, "/goals/%d", d->goal_index);
     g->violation_percent = percent;

@@ -339,7 +339,7 @@ static void write_misfit(mt_sentences *s)
     double sum = 0.0;
     for (int i = 0; i < s->p->n_requirements; i++) {
         const mt_result_goal *const g = &s->rec->goals[i];
-        if (s->p->requirements[i].row_res >= 0) {
+        if (s->p->requirements[i].role == MT_ROLE_RESIDUAL) {
             weighted++;
             sum += s->p->requirements[i].goal->weight * g->violation_percent *
                    g->violation_percent;

@@ -97,18 +97,20 @@ static void say_requirements(mt_sentences *s)
     for (int i = 0; i < s->p->n_requirements; i++) {
         const mt_requirement *const d = &s->p->requirements[i];
         const mt_result_goal *const g = &s->rec->goals[i];
+        const int row = mt_requirement_row(&s->p->whole, d);
+        const bool target = d->role == MT_ROLE_TARGET && found->mult_eq != NULL;
+        const int n_limits = d->role == MT_ROLE_LIMIT ? d->n_rows : 0;
         const char *part = NULL;
         mt_sentence_of(s, "cost", g->pointer);
-        for (int k = 0; k < d->n_in && found->mult_in != NULL; k++) {
-            const double mult = found->mult_in[d->row_in + k];
+        for (int k = 0; k < n_limits && found->mult_in != NULL; k++) {
+            const double mult = found->mult_in[row + k];
             const char *const saved = mult > 0.0 ? relaxation_gain_text(s, mult, &part) : NULL;
             if (saved != NULL) {
                 mt_add_sentence(s, "Relaxing goal %s (%s) by %s would %s %s.", g->pointer,
                                 g->text, part, win(s), saved);
             }
         }
-        const double slope =
-            d->row_eq >= 0 && found->mult_eq != NULL ? found->mult_eq[d->row_eq] : nan("");
+        const double slope = target ? found->mult_eq[row] : nan("");
         const char *const cost = relaxation_gain_text(s, fabs(slope), &part);
         if (cost != NULL) {
             mt_add_sentence(s, "A target %s %s in goal %s (%s) would %s %s.", part,
@@ -123,19 +125,19 @@ static void say_requirements(mt_sentences *s)
 static void write_edges(mt_sentences *s)
 {
     const mt_nlp_solution *const found = s->design->found;
-    mt_avoidance_row row;
+    mt_row row;
     mt_sentence_of(s, "cost", NULL);
     for (int i = 0; s->design->below != NULL && found->mult_in != NULL &&
                     mt_avoidance_row_at(&s->p->whole, s->design->below, i, &row);
          i++) {
         const mt_avoidance *const c = &s->p->avoidances[row.avoidance];
-        const double mult = found->mult_in[s->p->whole.first_band_row + i];
+        const double mult = found->mult_in[s->p->whole.rows.of_kind[MT_ROW_BAND].first + i];
         const char *part = NULL;
         const char *const saved = mult > 0.0 ? relaxation_gain_text(s, mult, &part) : NULL;
         if (saved != NULL) {
             mt_add_sentence(
                 s, "Relaxing the %s edge of %s, which holds %s mode %d, by %s would %s %s.",
-                row.above ? "upper" : "lower", c->bands.items[row.band].label,
+                row.sense == MT_AT_LEAST ? "upper" : "lower", c->bands.items[row.band].label,
                 mt_configuration_name(s->p, &s->p->views[c->view]), row.mode, part, win(s),
                 saved);
         }

@@ -133,9 +133,9 @@ static bool worth_a_box(const mt_problem *p)
     bool limits = false;
     for (int i = 0; i < p->n_requirements; i++) {
         const mt_requirement *const d = &p->requirements[i];
-        limits = limits || (mt_requirement_is_frequency(d) && d->n_in > 0);
+        limits = limits || (mt_requirement_is_frequency(d) && d->role == MT_ROLE_LIMIT);
     }
-    return p->n > 0 && p->n_eq == 0 && (p->n_bands > 0 || limits);
+    return p->n > 0 && p->whole.rows.eq.n == 0 && (p->n_bands > 0 || limits);
 }
 
 mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,

@@ -79,17 +79,16 @@ mt_status mt_describe_worst(mt_workspace *fresh, const mt_requirement *d, mt_res
                             mt_result_goal *g, double *violation, double *percent, mt_err *err)
 {
     const mt_ranges *const known = mt_tolerance_known(fresh);
-    if (known == NULL || d->row_res >= 0) {
+    if (known == NULL || d->role == MT_ROLE_RESIDUAL) {
         return MT_OK; /* without tolerances, or the design itself could not be evaluated */
     }
-    const mt_tolerance_range *const r = d->view >= 0
-                                            ? mt_ranges_hz(known, d->view, d->mode)
-                                            : &known->number[d - fresh->p->requirements];
+    const mt_tolerance_range *const r =
+        d->view >= 0 ? mt_ranges_hz(known, d->view, d->mode) : &known->number[d->index];
     if (r == NULL) {
         return MT_OK;
     }
     const verdict v = find_worst_side(d, r);
-    if (d->row_eq < 0) {
+    if (d->role != MT_ROLE_TARGET) {
         *violation =
             v.violation > *violation || !MT_HAS(v.violation) ? v.violation : *violation;
         *percent = v.percent > *percent || !MT_HAS(v.percent) ? v.percent : *percent;

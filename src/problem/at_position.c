@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "problem/requirement.h"
-
 /* The configuration's mechanism at the cut's position, with the configuration's queries and
  * port pairs. */
 static mt_configuration_problem view_of(const mt_problem *p, const mt_cut *cut,
@@ -20,46 +18,33 @@ static mt_configuration_problem view_of(const mt_problem *p, const mt_cut *cut,
                                       .pairs = like->pairs};
 }
 
-mt_status mt_at_position_lay_out(mt_subproblem *c, int n_cuts, const mt_cut *cuts,
-                                 mt_arena *mem, mt_err *err)
+mt_status mt_at_position_add(mt_subproblem *c, int n_cuts, const mt_cut *cuts, mt_arena *mem,
+                             mt_err *err)
 {
     const mt_problem *const p = c->p;
     const int n_before = c->n_views;
-    c->n_at_position = 0;
-    c->at_position = NULL;
     if (n_cuts == 0) {
         return MT_OK;
     }
+    const size_t n_own = (size_t)p->n_requirements;
     const size_t n_views = (size_t)n_before + (size_t)n_cuts;
     mt_configuration_problem *const views = mt_arena_alloc(mem, n_views, sizeof *views);
-    mt_requirement *const at_position =
-        mt_arena_alloc(mem, (size_t)n_cuts, sizeof *at_position);
+    mt_requirement *const all = mt_arena_alloc(mem, n_own + (size_t)n_cuts, sizeof *all);
     MT_TRY(mt_arena_check(mem, err));
     memcpy(views, c->views, (size_t)n_before * sizeof *views);
+    memcpy(all, p->requirements, n_own * sizeof *all);
     for (int i = 0; i < n_cuts; i++) {
         if (cuts[i].requirement < 0) {
             continue;
         }
         const mt_requirement *const d = &p->requirements[cuts[i].requirement];
-        mt_requirement *const here = &at_position[c->n_at_position++];
+        mt_requirement *const here = &all[c->n_requirements];
         views[c->n_views] = view_of(p, &cuts[i], &p->views[d->view]);
         *here = *d;
+        here->index = c->n_requirements++;
         here->view = c->n_views++;
-        here->row_in = c->n_in;
-        c->n_in += d->n_in;
     }
     c->views = views;
-    c->at_position = at_position;
-    return MT_OK;
-}
-
-mt_status mt_at_position_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                              mt_err *err)
-{
-    for (int i = 0; i < w->c->n_at_position; i++) {
-        const mt_requirement *const d = &w->c->at_position[i];
-        MT_TRY(mt_err_in(err, mt_requirement_eval(w, d, with_gradient, out, NULL, err),
-                         "/goals/%d", d->goal_index));
-    }
+    c->requirements = all;
     return MT_OK;
 }

@@ -4,14 +4,10 @@
 
 #include "problem/drive_positions.h"
 
-/* Limits at positions of a drive that the study does not name: each cut adds a configuration
- * and its requirement, whose rows in `in` follow all others, so that those keep their numbers.
- * Called by mt_subproblem_lay_out after the bands; cuts of bands are ignored here. Fails:
- * MT_E_MEMORY. */
-mt_status mt_at_position_lay_out(mt_subproblem *c, int n_cuts, const mt_cut *cuts,
-                                 mt_arena *mem, mt_err *err);
-/* Fills these rows after the configurations have been solved. Fails: as mt_requirement_eval. */
-mt_status mt_at_position_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                              mt_err *err);
+/* Limits at positions of a drive that the study does not name: each cut that has one adds a
+ * configuration and its requirement to those of the subproblem. Called by mt_subproblem_lay_out
+ * after the bands; cuts of bands are ignored here. Fails: MT_E_MEMORY. */
+mt_status mt_at_position_add(mt_subproblem *c, int n_cuts, const mt_cut *cuts, mt_arena *mem,
+                             mt_err *err);
 
 #endif

@@ -64,8 +64,8 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
 {
     return a->goal_index == b->goal_index ||
            (a->ops == b->ops && a->mode == b->mode && a->named < 0 && b->named < 0 &&
-            a->row_res < 0 && b->row_res < 0 && is_equal(a->equals, b->equals) &&
-            is_equal(a->goal->at_least, b->goal->at_least) &&
+            a->role != MT_ROLE_RESIDUAL && b->role != MT_ROLE_RESIDUAL &&
+            is_equal(a->equals, b->equals) && is_equal(a->goal->at_least, b->goal->at_least) &&
             is_equal(a->goal->at_most, b->goal->at_most) &&
             same_response_limit(a->goal->response_limit, b->goal->response_limit) &&
             is_text(a->shape.reference, b->shape.reference) && a->shape.mode == b->shape.mode);
@@ -75,7 +75,8 @@ bool mt_drive_positions_same_limit(const mt_requirement *a, const mt_requirement
  * applies between them. A target, and a weighted goal, applies at the named positions only. */
 static bool is_limited(const mt_problem *p, const mt_requirement *d)
 {
-    const bool limits = d->ops->value != NULL && d->row_res < 0 && !MT_HAS(d->equals);
+    const bool limits =
+        d->ops->value != NULL && d->role != MT_ROLE_RESIDUAL && !MT_HAS(d->equals);
     const int drive_positions = limits && d->view >= 0 ? mt_drive_positions_of(p, d->view) : -1;
     for (int i = 0; i < p->n_requirements && drive_positions >= 0; i++) {
         const mt_requirement *const other = &p->requirements[i];

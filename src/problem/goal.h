@@ -31,7 +31,7 @@ typedef struct mt_goal_ops {
     /* Of a forced vibration: q with its details (forced_response.h). NULL: another kind. */
     mt_status (*look)(mt_workspace *w, const mt_requirement *d,
                       struct mt_forced_response_value *out, mt_err *err);
-    /* Of a goal without a single value: residuals from w->r[d->row_res] on, and their
+    /* Of a goal without a single value: residuals from w->r[mt_requirement_row] on, and their
      * slopes. */
     mt_status (*residuals)(mt_workspace *w, const mt_requirement *d, int pos,
                            bool with_gradient, mt_err *err);

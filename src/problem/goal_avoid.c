@@ -178,34 +178,30 @@ static mt_status add_cuts(mt_subproblem *c, int n_cuts, const mt_cut *cuts, list
     return MT_OK;
 }
 
-mt_status mt_avoidance_lay_out(mt_subproblem *c, const int *below, int n_cuts,
-                               const mt_cut *cuts, mt_arena *mem, mt_err *err)
+/* Configurations, bands and mode placement of the subproblem, with those at cuts. */
+static mt_status place_modes(const mt_row_layout *l, mt_err *err)
 {
+    mt_subproblem *const c = l->c;
     const mt_problem *const p = c->p;
-    const bool any = below != NULL && p->n_bands > 0;
-    lists l = {.tie = p->tie};
+    const bool any = l->below != NULL && p->n_bands > 0;
+    lists own = {.tie = p->tie};
     c->clearance = any && mt_objective_is(c->stages[0].type, MT_BANDS);
-    c->n_t = p->n + (c->clearance ? 1 : 0);
-    c->n_views = p->n_views;
-    c->views = p->views;
     c->n_avoidances = p->n_avoidances;
     c->avoidances = p->avoidances;
     c->n_bands = p->n_bands;
     c->tie = p->tie;
     c->below = NULL;
-    c->n_in = p->n_in;
-    c->first_band_row = p->n_in;
     if (!any) {
         return MT_OK;
     }
-    l.below = mt_arena_int(mem, (size_t)p->n_bands);
-    MT_TRY(mt_arena_check(mem, err));
-    memcpy(l.below, below, (size_t)p->n_bands * sizeof *below);
-    MT_TRY(n_cuts > 0 ? add_cuts(c, n_cuts, cuts, &l, mem, err) : MT_OK);
-    c->tie = l.tie;
-    c->below = l.below;
-    c->n_in += mt_avoidance_row_count(c, c->below);
+    own.below = mt_arena_int(l->mem, (size_t)p->n_bands);
+    MT_TRY(mt_arena_check(l->mem, err));
+    memcpy(own.below, l->below, (size_t)p->n_bands * sizeof *own.below);
+    MT_TRY(l->n_cuts > 0 ? add_cuts(c, l->n_cuts, l->cuts, &own, l->mem, err) : MT_OK);
+    c->tie = own.tie;
+    c->below = own.below;
     if (c->clearance) {
+        c->n_t = p->n + 1;
         c->lower_t[p->n] = CLEARANCE_LOWER;
         c->upper_t[p->n] = CLEARANCE_UPPER;
         c->origin_t[p->n] = 0.0;
@@ -213,59 +209,59 @@ mt_status mt_avoidance_lay_out(mt_subproblem *c, const int *below, int n_cuts,
     return MT_OK;
 }
 
-/* Rows of one band from *row on: below then above, nearest mode first. One row:
- * in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
-static mt_status put_band(mt_workspace *w, const mt_avoidance *c, int b, int *row,
-                          bool with_gradient, mt_nlp_values *out, mt_err *err)
+static mt_status lay_out_bands(const mt_row_layout *l, mt_err *err)
 {
-    const mt_configuration_work *const view = &w->views[c->view];
-    mt_analysis *const a = view->analysis;
-    const mt_band *const band = &c->bands.items[b];
-    const int n = w->p->n;
-    const double z = w->c->clearance ? w->t[n] : 0.0;
-    const ptrdiff_t rows = mt_subproblem_rows_in(w->c);
-    const int below = w->c->below[c->first + b];
-    const int under = rows_below(c, below);
-    const int count = under + rows_above(c, below, mt_configuration_vibrations(view->of));
-    for (int k = 0; k < count; k++, (*row)++) {
-        const bool above = k >= under;
-        const int index = above ? below + 1 + k - under : below - k; /* vibration mode */
-        const double edge_hz = above ? band->upper_hz : band->lower_hz;
-        const double sign = above ? 1.0 : -1.0;
-        const int pos = mt_modal_flexible(&a->modes, index);
-        const double floor = MT_FREQUENCY_FLOOR * edge_hz;
-        if ((pos < 0 && !mt_analysis_is_infinite(a, index)) || !(edge_hz > 0.0)) {
-            return mt_fail(err, MT_E_DOMAIN,
-                           "configuration \"%s\" has no vibration mode %d here",
-                           mt_analysis_configuration(a), index);
-        }
-        out->in[*row] = (sign * mt_problem_ln_ratio(&a->modes, pos, edge_hz, floor)) - z;
-        if (!with_gradient) {
-            continue;
-        }
-        MT_TRY(mt_problem_dln_frequency(w, a, pos, floor, w->dshape, err));
-        for (int i = 0; i < n; i++) {
-            out->din[*row + (i * rows)] = sign * w->dshape[i];
-        }
-        if (w->c->n_t > n) {
-            out->din[*row + (n * rows)] = w->c->clearance ? -1.0 : 0.0;
-        }
+    mt_subproblem *const c = l->c;
+    mt_row row;
+    MT_TRY(place_modes(l, err));
+    for (int k = 0; c->below != NULL && mt_avoidance_row_at(c, c->below, k, &row); k++) {
+        MT_TRY(mt_rows_append(&c->rows.in, &row, l->mem, err));
     }
     return MT_OK;
 }
 
-mt_status mt_avoidance_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                            mt_err *err)
+/* One row: in = sign ln(f / edge) - z, sign -1 for a mode below the band. */
+static mt_status eval_band(mt_workspace *w, int at, bool with_gradient, mt_nlp_values *out,
+                           mt_err *err)
 {
-    const mt_subproblem *const c = w->c;
-    int row = c->first_band_row;
-    for (int i = 0; i < c->n_avoidances && c->below != NULL; i++) {
-        for (int b = 0; b < c->avoidances[i].bands.n; b++) {
-            MT_TRY(put_band(w, &c->avoidances[i], b, &row, with_gradient, out, err));
-        }
+    const mt_row *const row = &w->c->rows.in.rows[at];
+    mt_analysis *const a = w->views[row->view].analysis;
+    const int n = w->p->n;
+    const double z = w->c->clearance ? w->t[n] : 0.0;
+    const ptrdiff_t rows = w->c->rows.in.n;
+    const double sign = mt_row_sign(row);
+    const int pos = mt_modal_flexible(&a->modes, row->mode);
+    const double floor = MT_FREQUENCY_FLOOR * row->limit;
+    if ((pos < 0 && !mt_analysis_is_infinite(a, row->mode)) || !(row->limit > 0.0)) {
+        return mt_fail(err, MT_E_DOMAIN, "configuration \"%s\" has no vibration mode %d here",
+                       mt_analysis_configuration(a), row->mode);
+    }
+    out->in[at] = (sign * mt_problem_ln_ratio(&a->modes, pos, row->limit, floor)) - z;
+    if (!with_gradient) {
+        return MT_OK;
+    }
+    MT_TRY(mt_problem_dln_frequency(w, a, pos, floor, w->dshape, err));
+    for (int i = 0; i < n; i++) {
+        out->din[at + (i * rows)] = sign * w->dshape[i];
+    }
+    if (w->c->n_t > n) {
+        out->din[at + (n * rows)] = w->c->clearance ? -1.0 : 0.0;
     }
     return MT_OK;
 }
+
+static mt_status eval_bands(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
+                            mt_err *err)
+{
+    const mt_row_span span = w->c->rows.of_kind[MT_ROW_BAND];
+    for (int k = 0; k < span.n; k++) {
+        const bool own = w->c->rows.in.rows[span.first + k].kind == MT_ROW_BAND;
+        MT_TRY(own ? eval_band(w, span.first + k, with_gradient, out, err) : MT_OK);
+    }
+    return MT_OK;
+}
+
+const mt_row_ops mt_rows_bands = {.lay_out = lay_out_bands, .eval = eval_bands};
 
 double mt_avoidance_find_modes(const mt_avoidance *c, const mt_modes *modes, int *below)
 {
@@ -273,18 +269,23 @@ double mt_avoidance_find_modes(const mt_avoidance *c, const mt_modes *modes, int
     return mt_modal_indexed(modes) ? room : nan("");
 }
 
-int mt_avoidance_row_count(const mt_subproblem *c, const int *below)
+/* Row `left` of one band: modes below it, nearest first, then those above. */
+static mt_row row_of_band(const mt_subproblem *c, int i, int b, int k, int under, int left)
 {
-    mt_avoidance_row ignored;
-    int n = 0;
-    while (mt_avoidance_row_at(c, below, n, &ignored)) {
-        n++;
-    }
-    return n;
+    const mt_avoidance *const avoidance = &c->avoidances[i];
+    const mt_band *const band = &avoidance->bands.items[b];
+    const bool above = left >= under;
+    mt_row row = mt_row_init(MT_ROW_BAND, above ? MT_AT_LEAST : MT_AT_MOST);
+    row.avoidance = i;
+    row.band = b;
+    row.view = avoidance->view;
+    row.mode = above ? k + 1 + left - under : k - left;
+    row.limit = above ? band->upper_hz : band->lower_hz;
+    row.tolerance = avoidance->tolerance;
+    return row;
 }
 
-bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row,
-                         mt_avoidance_row *out)
+bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row, mt_row *out)
 {
     int left = row;
     for (int i = 0; i < c->n_avoidances; i++) {
@@ -295,10 +296,7 @@ bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row,
             const int under = rows_below(avoidance, k);
             const int rows = under + rows_above(avoidance, k, flexible);
             if (left < rows) {
-                const bool above = left >= under;
-                const int mode = above ? k + 1 + left - under : k - left;
-                *out =
-                    (mt_avoidance_row){.avoidance = i, .band = b, .mode = mode, .above = above};
+                *out = row_of_band(c, i, b, k, under, left);
                 return true;
             }
             left -= rows;

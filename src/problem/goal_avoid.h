@@ -9,26 +9,11 @@
  */
 /* Collects the bands of each configuration. After the requirements. */
 mt_status mt_avoidances_compile(mt_problem *p, mt_err *err);
-/* Configurations, bands and mode placement of a subproblem (mt_subproblem_lay_out), and its
- * rows of `in` after those of the requirements. */
-mt_status mt_avoidance_lay_out(mt_subproblem *c, const int *below, int n_cuts,
-                               const mt_cut *cuts, mt_arena *mem, mt_err *err);
-/* Fills the rows of all bands after their configurations have been solved. */
-mt_status mt_avoidance_eval(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                            mt_err *err);
 /* mt_bands_find (mode_band_pairs.h) of its bands; NaN where the configuration is unstable. */
 double mt_avoidance_find_modes(const mt_avoidance *c, const mt_modes *modes, int *below);
-/* The mode and the edge of row `row` (0: the first after those of the requirements) of a search
- * with the mode placement below[n_bands]; false: no such row. */
-typedef struct mt_avoidance_row {
-    int avoidance;
-    int band; /* of the goal's list */
-    int mode; /* vibration index */
-    bool above;
-} mt_avoidance_row;
-bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row,
-                         mt_avoidance_row *out);
-int mt_avoidance_row_count(const mt_subproblem *c, const int *below);
+/* Row `row` of the bands (0: their first) of a search with the mode placement
+ * below[n_bands]; false: no such row. */
+bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row, mt_row *out);
 /* mt_avoidance_find_modes after the configuration has been solved, over the tolerances where
  * there are any: the value that the objective "clearance" maximises. */
 double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c);

@@ -181,7 +181,7 @@ static mt_status compile_frequency_response(mt_problem *p, mt_requirement *d, mt
     MT_TRY(find_measured(p, d, fit, err));
     MT_TRY(check_unit(p, d, fit, err));
     MT_TRY(take_lines(p, d, fit, err));
-    d->n_res = 2 * fit->n;
+    d->n_rows = 2 * fit->n;
     return MT_OK;
 }
 
@@ -216,7 +216,7 @@ static mt_status line(mt_workspace *w, const mt_requirement *d, int i, double co
                       mt_err *err)
 {
     const double weight = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
-    double *const r = w->r + d->row_res + (2 * (ptrdiff_t)i);
+    double *const r = w->r + mt_requirement_row(w->c, d) + (2 * (ptrdiff_t)i);
     const double size = hypot(creal(h), cimag(h));
     if (!isfinite(size)) {
         return no_value(w, d, i, "nothing damps the resonance", err);
@@ -239,8 +239,8 @@ static mt_status line_slopes(mt_workspace *w, const mt_requirement *d, int i, do
         const double dx_dt = weight * mt_workspace_dx_dt(w, k);
         const double re = (creal(dh[k]) * creal(inverse)) - (cimag(dh[k]) * cimag(inverse));
         const double im = (creal(dh[k]) * cimag(inverse)) + (cimag(dh[k]) * creal(inverse));
-        double *const dr =
-            w->dr + d->row_res + (2 * (ptrdiff_t)i) + ((ptrdiff_t)k * w->p->n_res);
+        double *const dr = w->dr + mt_requirement_row(w->c, d) + (2 * (ptrdiff_t)i) +
+                           ((ptrdiff_t)k * w->c->rows.res.n);
         if (!isfinite(re) || !isfinite(im)) {
             return no_value(w, d, i, "the response has no slope", err);
         }
@@ -309,7 +309,7 @@ bool mt_fit_worst(const mt_workspace *w, const mt_requirement *d, double *hz,
     double worst = -1.0;
     for (int i = 0; i < d->fit->n; i++) {
         const double scale = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
-        const double *const r = w->r + d->row_res + (2 * (ptrdiff_t)i);
+        const double *const r = w->r + mt_requirement_row(w->c, d) + (2 * (ptrdiff_t)i);
         const double size = scale > 0.0 ? hypot(r[0], r[1]) / scale : 0.0;
         if (size > worst) {
             worst = size;
@@ -355,7 +355,7 @@ bool mt_fit_is_reversed(const mt_workspace *w, const mt_requirement *d)
     double reversed = 0.0;
     for (int i = 0; d->fit != NULL && i < d->fit->n; i++) {
         const double scale = sqrt(mt_requirement_weight(w, d) * d->fit->share[i]);
-        const double off = w->r[d->row_res + (2 * (ptrdiff_t)i) + 1];
+        const double off = w->r[mt_requirement_row(w->c, d) + (2 * (ptrdiff_t)i) + 1];
         const double other =
             scale > 0.0 ? scale * remainder((off / scale) + (0.5 * TWO_PI), TWO_PI) : 0.0;
         as_is += off * off;

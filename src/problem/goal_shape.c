@@ -19,7 +19,7 @@ int mt_goal_reference_mode(const mt_problem *p, const mt_requirement *d)
 static mt_status compile_shape(mt_problem *p, mt_requirement *d, mt_err *err)
 {
     MT_TRY(mt_goal_compile_shape(p, d, err));
-    d->n_res = d->shape.ns;
+    d->n_rows = d->shape.ns;
     return MT_OK;
 }
 
@@ -62,14 +62,14 @@ static mt_status residuals(mt_workspace *w, const mt_requirement *d, int pos,
     const double sign = mt_dot(ns, u, d->shape.shape) < 0.0 ? -1.0 : 1.0;
     for (int i = 0; i < ns; i++) {
         u[i] /= norm;
-        w->r[d->row_res + i] = weight * ((sign * u[i]) - d->shape.shape[i]);
+        w->r[mt_requirement_row(w->c, d) + i] = weight * ((sign * u[i]) - d->shape.shape[i]);
     }
     for (int k = 0; k < w->p->n && with_gradient; k++) {
         const double *const ds = w->dshape + ((ptrdiff_t)k * ns);
         const double along = mt_dot(ns, u, ds);
         const double factor = weight * sign * mt_workspace_dx_dt(w, k) / norm;
         for (int i = 0; i < ns; i++) {
-            w->dr[d->row_res + i + ((ptrdiff_t)k * w->p->n_res)] =
+            w->dr[mt_requirement_row(w->c, d) + i + ((ptrdiff_t)k * w->c->rows.res.n)] =
                 factor * (ds[i] - (along * u[i]));
         }
     }

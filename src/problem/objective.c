@@ -47,68 +47,90 @@ double mt_objective_stage_shown(const mt_objective_stage *a, double f)
     return a->ops->shown != NULL ? a->ops->shown(f) : mt_objective_stage_root(a, f * a->size);
 }
 
-/* Row of `in` that holds objective k: a misfit among those before it has none. */
-static int held_row(const mt_subproblem *c, int k)
-{
-    int row = c->n_in;
-    for (int i = 0; i < k; i++) {
-        row += mt_objective_is(c->stages[i].type, MT_RESIDUALS) ? 0 : 1;
-    }
-    return row;
-}
-
-void mt_objective_stage_hold(mt_subproblem *c, const mt_workspace *w, int k, double f)
+/* Appends the rows that hold an objective; a misfit is held at the residuals of w. */
+static void hold(mt_subproblem *c, const mt_workspace *w, int k, double f)
 {
     mt_held *const held = &c->held[k];
     const double root = sqrt(2.0 * fmax(f, 0.0));
-    if (mt_objective_is(c->stages[k].type, MT_RESIDUALS)) {
-        for (int i = 0; i < c->p->n_res; i++) {
-            c->r_held[i] = w->r[i];
-            c->eq_tol[c->p->n_eq + i] = HELD_ROOT * fmax(root, 1.0);
-        }
-        return;
-    }
-    if (mt_objective_is(c->stages[k].type, MT_HALF_SQUARE)) {
+    const bool misfit = mt_objective_is(c->stages[k].type, MT_RESIDUALS);
+    mt_row_block *const block = misfit ? &c->rows.eq : &c->rows.in;
+    mt_row row = mt_row_init(MT_ROW_HELD, misfit ? MT_EQUAL : MT_AT_MOST);
+    row.objective = k;
+    if (misfit) {
+        row.tolerance = HELD_ROOT * fmax(root, 1.0);
+    } else if (mt_objective_is(c->stages[k].type, MT_HALF_SQUARE)) {
         const double most = root + (HELD_ROOT * fmax(root, 1.0));
         held->limit = 0.5 * most * most;
         held->unit = held->limit;
+        row.tolerance = HELD_TOLERANCE * (held->limit - f) / held->unit;
     } else {
         held->unit = fmax(fabs(f), 1.0);
         held->limit = f + (HELD * held->unit);
+        row.tolerance = HELD_TOLERANCE * (held->limit - f) / held->unit;
     }
-    c->in_tol[held_row(c, k)] = HELD_TOLERANCE * (held->limit - f) / held->unit;
-}
-
-/* r - r_held = 0 */
-static void hold_misfit(const mt_workspace *w, bool with_gradient, mt_nlp_values *out)
-{
-    const mt_problem *const p = w->p;
-    const ptrdiff_t rows = mt_subproblem_rows_eq(w->c);
-    for (int i = 0; i < p->n_res; i++) {
-        const ptrdiff_t row = p->n_eq + i;
-        out->eq[row] = w->r[i] - w->c->r_held[i];
-        for (int j = 0; j < w->c->n_t && with_gradient; j++) {
-            out->deq[row + (j * rows)] = j < p->n ? w->dr[i + ((ptrdiff_t)j * p->n_res)] : 0.0;
+    for (int i = 0; i < (misfit ? c->rows.res.n : 1); i++) {
+        row.part = i;
+        if (misfit) {
+            c->r_held[i] = w->r[i];
         }
+        block->tol[block->n] = row.tolerance;
+        block->rows[block->n++] = row;
     }
 }
 
-void mt_objective_stage_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out)
+static void drop_held(mt_row_block *block)
+{
+    while (block->n > 0 && block->rows[block->n - 1].kind == MT_ROW_HELD) {
+        block->n--;
+    }
+}
+
+void mt_objectives_hold(mt_subproblem *c, const mt_workspace *w, int stage, const double *f)
+{
+    drop_held(&c->rows.eq);
+    drop_held(&c->rows.in);
+    c->stage = stage;
+    for (int k = 0; k < stage; k++) {
+        hold(c, w, k, f[k]);
+    }
+}
+
+static void eval_held_residual(const mt_workspace *w, int at, bool with_gradient,
+                               mt_nlp_values *out)
+{
+    const mt_row_table *const rows = &w->c->rows;
+    const int i = rows->eq.rows[at].part;
+    out->eq[at] = w->r[i] - w->c->r_held[i];
+    for (int j = 0; j < w->c->n_t && with_gradient; j++) {
+        out->deq[at + ((ptrdiff_t)j * rows->eq.n)] =
+            j < w->p->n ? w->dr[i + ((ptrdiff_t)j * rows->res.n)] : 0.0;
+    }
+}
+
+static void eval_held_value(mt_workspace *w, int at, bool with_gradient, mt_nlp_values *out)
 {
     const mt_subproblem *const c = w->c;
-    const ptrdiff_t rows = mt_subproblem_rows_in(c);
-    for (int k = 0; k < c->stage; k++) {
-        const mt_held *const held = &c->held[k];
-        if (mt_objective_is(c->stages[k].type, MT_RESIDUALS)) {
-            hold_misfit(w, with_gradient, out);
-            continue;
-        }
-        const ptrdiff_t row = held_row(c, k);
-        out->in[row] =
-            (held->limit - mt_objective_stage_value(w, k, with_gradient ? w->work : NULL)) /
-            held->unit;
-        for (int j = 0; j < c->n_t && with_gradient; j++) {
-            out->din[row + (j * rows)] = -w->work[j] / held->unit;
-        }
+    const int k = c->rows.in.rows[at].objective;
+    const mt_held *const held = &c->held[k];
+    out->in[at] =
+        (held->limit - mt_objective_stage_value(w, k, with_gradient ? w->work : NULL)) /
+        held->unit;
+    for (int j = 0; j < c->n_t && with_gradient; j++) {
+        out->din[at + ((ptrdiff_t)j * c->rows.in.n)] = -w->work[j] / held->unit;
     }
 }
+
+static mt_status eval_held(mt_workspace *w, bool with_gradient, mt_nlp_values *out, mt_err *err)
+{
+    const mt_row_table *const rows = &w->c->rows;
+    (void)err;
+    for (int i = rows->eq.n - 1; i >= 0 && rows->eq.rows[i].kind == MT_ROW_HELD; i--) {
+        eval_held_residual(w, i, with_gradient, out);
+    }
+    for (int i = rows->in.n - 1; i >= 0 && rows->in.rows[i].kind == MT_ROW_HELD; i--) {
+        eval_held_value(w, i, with_gradient, out);
+    }
+    return MT_OK;
+}
+
+const mt_row_ops mt_rows_held = {.eval = eval_held}; /* mt_objectives_hold appends them */

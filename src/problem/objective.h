@@ -53,11 +53,9 @@ double mt_objective_stage_value(const mt_workspace *w, int k, double *gradient);
 double mt_objective_stage_root(const mt_objective_stage *a, double f);
 /* Value of f shown in results. */
 double mt_objective_stage_shown(const mt_objective_stage *a, double f);
-/* Holds objective k of c (mt_subproblem_for_stages) at f, within its rounding, from the next
- * stage on; a misfit at the residuals of w's last evaluation. */
-void mt_objective_stage_hold(mt_subproblem *c, const mt_workspace *w, int k, double f);
-/* Fills the rows of the held objectives. */
-void mt_objective_stage_hold_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out);
+/* Sets c (of mt_subproblem_for_stages) to a stage: the objectives k before it are held at f[k],
+ * within its rounding; a misfit at the residuals of w's last evaluation. */
+void mt_objectives_hold(mt_subproblem *c, const mt_workspace *w, int stage, const double *f);
 
 /* Rounding of sums of n terms and of their logarithms is below this many times n eps. */
 #define MT_OBJECTIVE_ULPS 16.0

@@ -7,9 +7,9 @@ static double evaluate_misfit(const mt_workspace *w, const mt_objective_stage *a
 {
     (void)a;
     for (int i = 0; i < w->p->n && gradient != NULL; i++) {
-        gradient[i] = mt_dot(w->p->n_res, w->dr + ((ptrdiff_t)i * w->p->n_res), w->r);
+        gradient[i] = mt_dot(w->c->rows.res.n, w->dr + ((ptrdiff_t)i * w->c->rows.res.n), w->r);
     }
-    return 0.5 * mt_dot(w->p->n_res, w->r, w->r);
+    return 0.5 * mt_dot(w->c->rows.res.n, w->r, w->r);
 }
 
 const mt_objective_ops mt_objective_misfit = {.value = evaluate_misfit};

@@ -58,7 +58,19 @@ typedef enum mt_quantity {
     MT_QUANTITY_OTHER
 } mt_quantity;
 
+/* What the rows of a requirement are. */
+typedef enum mt_requirement_role {
+    MT_ROLE_LIMIT,  /* inequalities, one for each limit or part */
+    MT_ROLE_TARGET, /* an equality */
+    MT_ROLE_RANGE,  /* a target with a range over the tolerances (tolerance.h): corners alone */
+    MT_ROLE_RESIDUAL, /* residuals of the misfit */
+    MT_ROLE_VIBRATION /* inequalities of the objective "vibration"; it limits nothing else */
+} mt_requirement_role;
+
 typedef struct mt_requirement {
+    int index; /* in the subproblem's list */
+    mt_requirement_role role;
+    int n_rows;                    /* in the block of its role; 0 of a range */
     const struct mt_goal_ops *ops; /* of its kind (goal.h), as the next two */
     mt_quantity quantity;
     mt_goal_measure measure;
@@ -74,15 +86,6 @@ typedef struct mt_requirement {
     mt_reference_shape shape; /* shape, mac; frequency: without the shape */
     struct mt_fit *fit;       /* frequency_response (goal_frequency_response.h); else NULL */
     double equals;            /* target, from the goal or its reference; NaN: limits only */
-    /* the target is a range over the tolerances of the variables (tolerance.h) */
-    bool ranged;
-    int row_eq;   /* row in eq; -1: none */
-    int row_in;   /* first row in `in`; -1: none */
-    int n_in;     /* rows there: 2 with at_least and at_most; or n_parts */
-    int row_soft; /* first row of the objective "vibration" that it is part of; -1: none */
-    int n_soft;   /* number of these; where nonzero it limits nothing else */
-    int row_res;  /* first residual; -1: none */
-    int n_res;    /* number of residuals */
     /* floor of its value, in its unit: below it the logarithm is continued by a tangent */
     double floor_hz;
     double tolerance; /* relative */
@@ -141,10 +144,6 @@ typedef struct mt_problem {
     mt_drive_positions *families;
     /* [n_bands] first band of its set of tied bands (drive_positions.h) */
     int *tie;
-    int n_eq;
-    int n_in; /* of the requirements alone; a subproblem has more */
-    int n_soft;
-    int n_res;
     double weights;     /* sum of the weights of requirements that are residuals */
     mt_program program; /* expressions: limits, objectives, published quantities */
     /* nodes of it that the search needs; those of published quantities follow */
@@ -171,6 +170,11 @@ mt_system_def mt_problem_system(const mt_problem *p, int configuration, const do
 void mt_problem_note_modal(const mt_problem *p, long n);
 /* Compiles the study and discards the result, as a check. Fails: as mt_problem_new. */
 mt_status mt_problem_try(const mt_study *study, mt_err *err);
+/* First row of a requirement in the block of its role. */
+static inline int mt_requirement_row(const mt_subproblem *c, const mt_requirement *d)
+{
+    return c->rows.of[d->index].first;
+}
 /* Coordinate of value x of variable i. */
 double mt_problem_t(const mt_problem *p, int i, double x);
 /* Value of variable i at coordinate t, clamped to the bounds; exact to rounding. */

@@ -182,28 +182,27 @@ static mt_status resolve_index(const mt_configuration_problem *view, const mt_re
                    d->goal_index, mt_analysis_configuration(view->original), d->mode, most);
 }
 
-static void number_rows(mt_problem *p, mt_requirement *d)
+static void set_role(mt_problem *p, mt_requirement *d)
 {
     const mt_goal *const g = d->goal;
+    const int parts = d->n_parts > 0 ? d->n_parts : 1;
+    const int limits = (MT_HAS(g->at_least) ? 1 : 0) + (MT_HAS(g->at_most) ? 1 : 0);
     d->tolerance = mt_goal_tolerance(g);
     if (MT_HAS(g->weight)) {
-        d->row_res = p->n_res;
-        d->n_res = d->ops->value == NULL ? d->n_res : 1;
-        p->n_res += d->n_res;
+        d->role = MT_ROLE_RESIDUAL;
+        d->n_rows = d->ops->value == NULL ? d->n_rows : 1;
         p->weights += g->weight;
     } else if (mt_study_is_scale(p->study, g)) {
-        d->row_soft = p->n_soft;
-        d->n_soft = d->n_parts > 0 ? d->n_parts : 1;
-        p->n_soft += d->n_soft;
+        d->role = MT_ROLE_VIBRATION;
+        d->n_rows = parts;
     } else if (mt_tolerance_is_range(p, d)) {
-        d->ranged = true; /* its rows are those of the corners */
+        d->role = MT_ROLE_RANGE;
     } else if (MT_HAS(d->equals)) {
-        d->row_eq = p->n_eq++;
+        d->role = MT_ROLE_TARGET;
+        d->n_rows = 1;
     } else {
-        d->row_in = p->n_in;
-        d->n_in = d->n_parts > 0 ? d->n_parts
-                                 : (MT_HAS(g->at_least) ? 1 : 0) + (MT_HAS(g->at_most) ? 1 : 0);
-        p->n_in += d->n_in;
+        d->role = MT_ROLE_LIMIT;
+        d->n_rows = d->n_parts > 0 ? parts : limits;
     }
 }
 
@@ -211,7 +210,8 @@ static mt_status add_requirement(mt_problem *p, int goal_index, int configuratio
 {
     const mt_goal *const g = &p->study->goals[goal_index];
     mt_requirement *const d = &p->requirements[p->n_requirements];
-    *d = (mt_requirement){.ops = mt_goal_ops_of(g->type),
+    *d = (mt_requirement){.index = p->n_requirements,
+                          .ops = mt_goal_ops_of(g->type),
                           .quantity = mt_goal_ops_of(g->type)->quantity,
                           .measure = mt_goal_kind_of(g->type)->measure,
                           .goal = g,
@@ -220,10 +220,6 @@ static mt_status add_requirement(mt_problem *p, int goal_index, int configuratio
                           .mode = g->mode.index,
                           .named = -1,
                           .node = MT_NO_NODE,
-                          .row_eq = -1,
-                          .row_in = -1,
-                          .row_soft = -1,
-                          .row_res = -1,
                           .equals = g->equals,
                           .size = 1.0};
     if (configuration != MT_ABSENT) {
@@ -239,7 +235,7 @@ static mt_status add_requirement(mt_problem *p, int goal_index, int configuratio
         const bool placed = rc != MT_OK && err->text[0] == '/'; /* at a member of the goal */
         MT_TRY(placed ? rc : mt_err_in(err, rc, "/goals/%d", goal_index));
     }
-    number_rows(p, d);
+    set_role(p, d);
     p->n_requirements++;
     return MT_OK;
 }

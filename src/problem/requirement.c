@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "analysis/count.h"
+#include "problem/at_position.h"
 #include "problem/forced_response.h"
 #include "problem/goal.h"
 #include "problem/goal_frequency.h"
@@ -27,7 +28,7 @@ bool mt_requirement_is_modal(const mt_requirement *d)
 
 double mt_requirement_weight(const mt_workspace *w, const mt_requirement *d)
 {
-    return w->c->weight[d - w->p->requirements];
+    return w->c->weight[d->index];
 }
 
 static void write_gradient_row(const mt_workspace *w, double *matrix, int rows, int row,
@@ -67,57 +68,46 @@ static double off(const mt_workspace *w, const mt_requirement *d, double q, doub
                                           : (q - limit) / unit;
 }
 
-/* Writes part k of a goal with an upper limit to its row. */
-static void store_most(mt_workspace *w, const mt_requirement *d, int k, double q,
-                       const double *slope, mt_nlp_values *out)
+/* Writes the excess of one part of a goal of the objective "vibration": the last coordinate
+ * exceeds all of them. */
+static void store_vibration(mt_workspace *w, const mt_requirement *d, int row, double q,
+                            const double *slope, mt_nlp_values *out)
 {
     double factor = 1.0;
-    const int rows = mt_subproblem_rows_in(w->c);
+    const int rows = w->c->rows.in.n;
     const double over = off(w, d, q, d->goal->at_most, &factor);
-    if (d->row_soft < 0) {
-        out->in[d->row_in + k] = -over;
-        write_gradient_row(w, out->din, rows, d->row_in + k, -factor, slope);
+    w->worst = over <= w->worst ? w->worst : over;
+    if (!w->c->forced_response) {
         return;
     }
-    w->worst = over <= w->worst ? w->worst : over;
-    if (w->c->forced_response) {
-        const int row = w->c->first_soft_row + d->row_soft + k;
-        out->in[row] =
-            mt_forced_response_given(w) ? w->t[w->p->n] - MT_FORCED_RESPONSE_SHIFT - over : 0.0;
-        write_gradient_row(w, out->din, rows, row, -factor, slope);
-        if (slope != NULL) {
-            out->din[row + ((ptrdiff_t)w->p->n * rows)] = 1.0;
-        }
+    out->in[row] =
+        mt_forced_response_given(w) ? w->t[w->p->n] - MT_FORCED_RESPONSE_SHIFT - over : 0.0;
+    write_gradient_row(w, out->din, rows, row, -factor, slope);
+    if (slope != NULL) {
+        out->din[row + ((ptrdiff_t)w->p->n * rows)] = 1.0;
     }
 }
 
-/* Rows of a number: slope NULL where none is wanted. */
-static void write_requirement_rows(mt_workspace *w, const mt_requirement *d, double q,
-                                   const double *slope, mt_nlp_values *out)
+/* Writes row k of a requirement for the value q: slope NULL where none is wanted. */
+static void store_row(mt_workspace *w, const mt_requirement *d, int k, double q,
+                      const double *slope, mt_nlp_values *out)
 {
+    const mt_row_table *const rows = &w->c->rows;
+    const int at = mt_requirement_row(w->c, d) + k;
     double factor = 1.0;
-    const double target = off(w, d, q, d->equals, &factor);
-    if (d->row_res >= 0) {
+    if (d->role == MT_ROLE_RESIDUAL) {
         const double weight = sqrt(mt_requirement_weight(w, d));
-        w->r[d->row_res] = weight * target;
-        write_gradient_row(w, w->dr, w->p->n_res, d->row_res, weight * factor, slope);
-        return;
-    }
-    if (d->row_eq >= 0) {
-        out->eq[d->row_eq] = target;
-        write_gradient_row(w, out->deq, mt_subproblem_rows_eq(w->c), d->row_eq, factor, slope);
-        return;
-    }
-    if (d->row_soft < 0 && d->row_in < 0) {
-        return; /* a range over tolerances */
-    }
-    const bool least = MT_HAS(d->goal->at_least);
-    if (least) {
-        out->in[d->row_in] = off(w, d, q, d->goal->at_least, &factor);
-        write_gradient_row(w, out->din, mt_subproblem_rows_in(w->c), d->row_in, factor, slope);
-    }
-    if (MT_HAS(d->goal->at_most)) {
-        store_most(w, d, least ? 1 : 0, q, slope, out);
+        w->r[at] = weight * off(w, d, q, rows->res.rows[at].limit, &factor);
+        write_gradient_row(w, w->dr, rows->res.n, at, weight * factor, slope);
+    } else if (d->role == MT_ROLE_TARGET) {
+        out->eq[at] = off(w, d, q, rows->eq.rows[at].limit, &factor);
+        write_gradient_row(w, out->deq, rows->eq.n, at, factor, slope);
+    } else if (d->role == MT_ROLE_VIBRATION) {
+        store_vibration(w, d, at, q, slope, out);
+    } else {
+        const double sign = mt_row_sign(&rows->in.rows[at]);
+        out->in[at] = sign * off(w, d, q, rows->in.rows[at].limit, &factor);
+        write_gradient_row(w, out->din, rows->in.n, at, sign * factor, slope);
     }
 }
 
@@ -160,7 +150,7 @@ static mt_status store_parts(mt_workspace *w, const mt_requirement *d, bool with
     for (int k = 0; k < d->n_parts; k++) {
         double q = nan("");
         MT_TRY(d->ops->part(w, d, k, &q, slope, err));
-        store_most(w, d, k, q, slope, out);
+        store_row(w, d, k, q, slope, out);
         *value = q <= *value ? *value : q;
     }
     return MT_OK;
@@ -175,12 +165,15 @@ mt_status mt_requirement_eval(mt_workspace *w, const mt_requirement *d, bool wit
     MT_TRY(find_mode(w, d, &pos, err));
     if (d->ops->value == NULL) {
         MT_TRY(d->ops->residuals(w, d, pos, with_gradient, err));
-        q = mt_norm2(d->n_res, w->r + d->row_res) / sqrt(mt_requirement_weight(w, d));
+        q = mt_norm2(d->n_rows, w->r + mt_requirement_row(w->c, d)) /
+            sqrt(mt_requirement_weight(w, d));
     } else if (d->n_parts > 0) {
         MT_TRY(store_parts(w, d, with_gradient, out, &q, err));
     } else {
         MT_TRY(d->ops->value(w, d, pos, &q, slope, err));
-        write_requirement_rows(w, d, q, slope, out);
+        for (int k = 0; k < d->n_rows; k++) {
+            store_row(w, d, k, q, slope, out);
+        }
     }
     if (value != NULL) {
         *value = q;
@@ -229,3 +222,108 @@ double mt_requirement_over(const mt_requirement *d, double q)
     worst = MT_HAS(g->at_most) ? over_limit(d, q, g->at_most) : worst;
     return MT_HAS(g->at_least) ? fmax(worst, -over_limit(d, q, g->at_least)) : worst;
 }
+
+/* Appends the n rows of a requirement to a block: its limits in their order, or its parts. */
+static mt_status append_rows(const mt_row_layout *l, mt_row_kind kind, const mt_requirement *d,
+                             double tolerance, mt_row_block *block, mt_err *err)
+{
+    const bool equal = d->role == MT_ROLE_RESIDUAL || d->role == MT_ROLE_TARGET;
+    const bool both = d->n_parts == 0 && MT_HAS(d->goal->at_least);
+    l->c->rows.of[d->index] = (mt_row_span){.first = block->n, .n = d->n_rows};
+    for (int k = 0; k < d->n_rows; k++) {
+        const bool least = both && k == 0;
+        mt_row row = mt_row_init(kind, equal ? MT_EQUAL : least ? MT_AT_LEAST : MT_AT_MOST);
+        row.requirement = d->index;
+        row.part = d->n_parts > 0 || d->ops->value == NULL ? k : 0;
+        row.view = d->view;
+        row.mode = d->mode;
+        row.limit = equal ? d->equals : least ? d->goal->at_least : d->goal->at_most;
+        row.tolerance = tolerance;
+        MT_TRY(mt_rows_append(block, &row, l->mem, err));
+    }
+    return MT_OK;
+}
+
+static mt_status lay_out_goals(const mt_row_layout *l, mt_err *err)
+{
+    mt_subproblem *const c = l->c;
+    const size_t most = (size_t)c->p->n_requirements + (size_t)l->n_cuts;
+    c->rows.of = mt_arena_alloc(l->mem, most, sizeof *c->rows.of);
+    MT_TRY(mt_arena_check(l->mem, err));
+    for (int i = 0; i < c->p->n_requirements; i++) {
+        const mt_requirement *const d = &c->p->requirements[i];
+        mt_row_block *const block = d->role == MT_ROLE_RESIDUAL ? &c->rows.res
+                                    : d->role == MT_ROLE_TARGET ? &c->rows.eq
+                                                                : &c->rows.in;
+        MT_TRY(d->role == MT_ROLE_VIBRATION
+                   ? MT_OK
+                   : append_rows(l, MT_ROW_GOAL, d, d->tolerance, block, err));
+    }
+    return MT_OK;
+}
+
+static mt_status eval_each(mt_workspace *w, int first, int end, bool with_gradient,
+                           mt_nlp_values *out, mt_err *err)
+{
+    for (int i = first; i < end; i++) {
+        const mt_requirement *const d = &w->c->requirements[i];
+        MT_TRY(mt_err_in(err, mt_requirement_eval(w, d, with_gradient, out, NULL, err),
+                         "/goals/%d", d->goal_index));
+    }
+    return MT_OK;
+}
+
+static mt_status eval_goals(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
+                            mt_err *err)
+{
+    return eval_each(w, 0, w->p->n_requirements, with_gradient, out, err);
+}
+
+const mt_row_ops mt_rows_goals = {.lay_out = lay_out_goals, .eval = eval_goals};
+
+/* Of rows of the objective "vibration": what it is told within. */
+static const double VIBRATION_TOLERANCE = 1e-7;
+
+/* The rows of the objective "vibration", and its coordinate: any ratio of e^-49 to e^50. */
+static mt_status lay_out_vibration(const mt_row_layout *l, mt_err *err)
+{
+    mt_subproblem *const c = l->c;
+    const int n = c->p->n;
+    c->forced_response = mt_objective_is(c->stages[0].type, MT_SHAKES);
+    if (!c->forced_response) {
+        return MT_OK;
+    }
+    c->n_t = n + 1;
+    c->lower_t[n] = 1.0;
+    c->upper_t[n] = 2.0 * MT_FORCED_RESPONSE_SHIFT;
+    c->origin_t[n] = MT_FORCED_RESPONSE_SHIFT;
+    for (int i = 0; i < c->p->n_requirements; i++) {
+        const mt_requirement *const d = &c->p->requirements[i];
+        MT_TRY(
+            d->role != MT_ROLE_VIBRATION
+                ? MT_OK
+                : append_rows(l, MT_ROW_VIBRATION, d, VIBRATION_TOLERANCE, &c->rows.in, err));
+    }
+    return MT_OK;
+}
+
+const mt_row_ops mt_rows_vibration = {.lay_out = lay_out_vibration}; /* eval_goals fills them */
+
+static mt_status lay_out_positions(const mt_row_layout *l, mt_err *err)
+{
+    mt_subproblem *const c = l->c;
+    MT_TRY(mt_at_position_add(c, l->n_cuts, l->cuts, l->mem, err));
+    for (int i = c->p->n_requirements; i < c->n_requirements; i++) {
+        const mt_requirement *const d = &c->requirements[i];
+        MT_TRY(append_rows(l, MT_ROW_POSITION, d, d->tolerance, &c->rows.in, err));
+    }
+    return MT_OK;
+}
+
+static mt_status eval_positions(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
+                                mt_err *err)
+{
+    return eval_each(w, w->p->n_requirements, w->c->n_requirements, with_gradient, out, err);
+}
+
+const mt_row_ops mt_rows_positions = {.lay_out = lay_out_positions, .eval = eval_positions};

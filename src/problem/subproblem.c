@@ -5,10 +5,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
-#include "problem/at_position.h"
 #include "problem/drive_positions.h"
-#include "problem/goal_avoid.h"
-#include "problem/mode_order.h"
 #include "problem/tolerance.h"
 
 mt_status mt_subproblem_copy(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
@@ -40,69 +37,47 @@ void mt_subproblem_bound(mt_subproblem *c, int i, double lower, double upper)
     c->tolerance_box = NULL; /* its corners are those of all bounds */
 }
 
-/* Of rows of the objective "vibration": what it is told within. */
-static const double SOFT_TOLERANCE = 1e-7;
-
-/* Tolerances of all rows; those of corners and held objectives follow. */
-static mt_status init_tolerances(mt_subproblem *c, mt_arena *mem, mt_err *err)
-{
-    const mt_problem *const p = c->p;
-    mt_avoidance_row at;
-    c->eq_tol = mt_arena_f64(mem, (size_t)p->n_eq + (size_t)p->n_res, 1);
-    c->in_tol = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_stages, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < p->n_requirements; i++) {
-        const mt_requirement *const d = &p->requirements[i];
-        if (d->row_eq >= 0) {
-            c->eq_tol[d->row_eq] = d->tolerance;
-        }
-        for (int k = 0; k < d->n_in; k++) {
-            c->in_tol[d->row_in + k] = d->tolerance;
-        }
-        for (int k = 0; k < d->n_soft && c->forced_response; k++) {
-            c->in_tol[c->first_soft_row + d->row_soft + k] = SOFT_TOLERANCE;
-        }
-    }
-    for (int i = 0; i < c->n_at_position; i++) {
-        for (int k = 0; k < c->at_position[i].n_in; k++) {
-            c->in_tol[c->at_position[i].row_in + k] = c->at_position[i].tolerance;
-        }
-    }
-    for (int k = 0; c->below != NULL && mt_avoidance_row_at(c, c->below, k, &at); k++) {
-        c->in_tol[c->first_band_row + k] = c->avoidances[at.avoidance].tolerance;
-    }
-    return MT_OK;
-}
-
-/* Appends the rows of the objective "vibration" to those of the bands, and its coordinate: any
- * ratio of e^-49 to e^50. */
-static void lay_out_soft(mt_subproblem *c)
-{
-    const int n = c->p->n;
-    c->forced_response = mt_objective_is(c->stages[0].type, MT_SHAKES);
-    c->first_soft_row = c->n_in;
-    if (c->forced_response) {
-        c->n_in += c->p->n_soft;
-        c->n_t = n + 1;
-        c->lower_t[n] = 1.0;
-        c->upper_t[n] = 2.0 * MT_FORCED_RESPONSE_SHIFT;
-        c->origin_t[n] = MT_FORCED_RESPONSE_SHIFT;
-    }
-}
+#define OPS(id, name) &mt_rows_##name,
+static const mt_row_ops *const OPERATIONS[] = {MT_ROW_KIND_LIST(OPS)};
 
 mt_status mt_subproblem_lay_out(mt_subproblem *c, const int *below, int n_cuts,
                                 const mt_cut *cuts, mt_workspace *w, mt_arena *mem, mt_err *err)
 {
-    const mt_problem_tolerance_box *const known = c->tolerance_box;
+    const mt_problem *const p = c->p;
+    const mt_row_layout l = {.c = c,
+                             .below = below,
+                             .n_cuts = n_cuts,
+                             .cuts = cuts,
+                             .known = c->tolerance_box,
+                             .mem = mem};
     c->tolerance_box = NULL;
-    c->n_next = 0;
-    MT_TRY(mt_avoidance_lay_out(c, below, n_cuts, cuts, mem, err));
-    lay_out_soft(c);
-    MT_TRY(mt_at_position_lay_out(c, n_cuts, cuts, mem, err));
-    MT_TRY(init_tolerances(c, mem, err));
-    MT_TRY(mt_tolerance_init(c, known, mem, err));
-    MT_TRY(mt_mode_order_init(c, mem, err));
+    c->n_t = p->n;
+    c->n_views = p->n_views;
+    c->views = p->views;
+    c->n_requirements = p->n_requirements;
+    c->requirements = p->requirements;
+    c->rows = (mt_row_table){.next_of = NULL};
+    for (int k = 0; k < MT_ROW_KINDS; k++) {
+        const int first = c->rows.in.n;
+        c->rows.of_kind[k].first = first;
+        MT_TRY(OPERATIONS[k]->lay_out != NULL ? OPERATIONS[k]->lay_out(&l, err) : MT_OK);
+        c->rows.of_kind[k].n = c->rows.in.n - first;
+    }
+    mt_row_block *const blocks[] = {&c->rows.res, &c->rows.eq, &c->rows.in, &c->rows.next};
+    for (size_t k = 0; k < MT_COUNT(blocks); k++) {
+        MT_TRY(mt_rows_finish(blocks[k], 0, mem, err));
+    }
     return w != NULL ? mt_workspace_use(w, c, err) : MT_OK;
+}
+
+mt_status mt_subproblem_eval_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
+                                  mt_err *err)
+{
+    for (int k = 0; k < MT_ROW_KINDS; k++) {
+        MT_TRY(OPERATIONS[k]->eval != NULL ? OPERATIONS[k]->eval(w, with_gradient, out, err)
+                                           : MT_OK);
+    }
+    return MT_OK;
 }
 
 mt_status mt_subproblem_in_placement(const mt_subproblem *from, const int *below, int n_cuts,
@@ -116,17 +91,12 @@ mt_status mt_subproblem_in_placement(const mt_subproblem *from, const int *below
 mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
                                    mt_err *err)
 {
-    const size_t n_eq = (size_t)from->p->n_eq + (size_t)from->p->n_res;
-    const size_t n_in = (size_t)from->n_in + (size_t)from->n_stages;
     *out = *from;
     out->held = mt_arena_alloc(mem, (size_t)from->n_stages, sizeof *out->held);
-    out->r_held = mt_arena_f64(mem, (size_t)from->p->n_res, 1);
-    out->eq_tol = mt_arena_f64(mem, n_eq, 1);
-    out->in_tol = mt_arena_f64(mem, n_in, 1);
+    out->r_held = mt_arena_f64(mem, (size_t)from->rows.res.n, 1);
     MT_TRY(mt_arena_check(mem, err));
-    memcpy(out->eq_tol, from->eq_tol, n_eq * sizeof *out->eq_tol);
-    memcpy(out->in_tol, from->in_tol, (size_t)from->n_in * sizeof *out->in_tol);
-    return MT_OK;
+    MT_TRY(mt_rows_finish(&out->rows.eq, from->rows.res.n, mem, err));
+    return mt_rows_finish(&out->rows.in, from->n_stages, mem, err);
 }
 
 /* The catalogue value whose coordinate is exactly t; false where there is none. */
@@ -178,28 +148,13 @@ double mt_subproblem_change(const mt_subproblem *c, const double *t)
 
 int mt_subproblem_rows_res(const mt_subproblem *c)
 {
-    return mt_objective_is(c->stages[c->stage].type, MT_RESIDUALS) ? c->p->n_res : 0;
+    return mt_objective_is(c->stages[c->stage].type, MT_RESIDUALS) ? c->rows.res.n : 0;
 }
 
-/* True where a misfit is among the objectives before the present one. */
-static bool misfit_held(const mt_subproblem *c)
+mt_missed mt_subproblem_missed(const mt_subproblem *c, const mt_nlp_values *v)
 {
-    for (int k = 0; k < c->stage; k++) {
-        if (mt_objective_is(c->stages[k].type, MT_RESIDUALS)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-int mt_subproblem_rows_in(const mt_subproblem *c)
-{
-    return c->n_in + c->stage - (misfit_held(c) ? 1 : 0);
-}
-
-int mt_subproblem_rows_eq(const mt_subproblem *c)
-{
-    return c->p->n_eq + (misfit_held(c) ? c->p->n_res : 0);
+    return mt_missed_of(c->rows.eq.n, v->eq, c->rows.eq.tol, c->rows.in.n, v->in,
+                        c->rows.in.tol);
 }
 
 mt_status mt_subproblem_values_init(const mt_subproblem *c, mt_arena *mem, mt_nlp_values *out,
@@ -207,8 +162,8 @@ mt_status mt_subproblem_values_init(const mt_subproblem *c, mt_arena *mem, mt_nl
 {
     const size_t n = (size_t)c->n_t;
     const size_t n_res = (size_t)mt_subproblem_rows_res(c);
-    const size_t n_eq = (size_t)mt_subproblem_rows_eq(c);
-    const size_t n_in = (size_t)mt_subproblem_rows_in(c);
+    const size_t n_eq = (size_t)c->rows.eq.n;
+    const size_t n_in = (size_t)c->rows.in.n;
     *out = (mt_nlp_values){
         .f = 0.0,
         .df = mt_arena_f64(mem, n, 1),

@@ -3,7 +3,8 @@
 #define PROBLEM_SUBPROBLEM_H
 
 #include "analysis/analysis.h"
-#include "nlp/nlp.h"
+#include "nlp/merit.h"
+#include "problem/rows.h"
 #include "study/study.h"
 
 /*
@@ -15,13 +16,9 @@
  *     (limit_j - f_j) / unit_j >= 0,
  * but a misfit by one equality for each residual, r - r_held = 0: at an exact fit the slope of
  * |r|^2 vanishes, and an inequality would have no effect.
- *
- * Rows: those of the requirements as the problem numbers them, in `in` followed by those of the
- * bands (goal_avoid.c), of tolerance corners (tolerance.h), of held objectives.
+
  */
 struct mt_problem;
-struct mt_workspace;
-struct mt_cut;
 struct mt_requirement;
 
 /* A held objective. */
@@ -48,18 +45,12 @@ typedef struct mt_subproblem {
     const struct mt_configuration_problem *views;
     /* [n_avoidances] the problem's, then those of cuts */
     const struct mt_avoidance *avoidances;
-    const int *tie; /* [n_bands] */
-    double *eq_tol; /* [n_eq + n_res] */
-    double *in_tol; /* [n_in + n_stages] */
+    const int *tie;    /* [n_bands] */
+    mt_row_table rows; /* of the present stage */
     /* variables with a tolerance (tolerance.h); NULL: none */
     struct mt_problem_tolerance_box *tolerance_box;
-    /* [n_at_position] limits at cuts (at_position.h); their rows are the last before held
-     * objectives */
-    const struct mt_requirement *at_position;
-    int n_at_position;
-    /* [n_next] rows implied by those of limits (mode_order.h); next_of: the implying row */
-    const struct mt_mode_order *next;
-    const int *next_of;
+    /* [n_requirements] the problem's, then those at cuts (at_position.h) */
+    const struct mt_requirement *requirements;
     const double *hint; /* [n + 1] a further start; NULL: none */
     mt_search search;   /* the study's, with a part of its budget */
     /* approximate multiplications of each proof (prove/certify.h); 0: no proofs */
@@ -74,17 +65,12 @@ typedef struct mt_subproblem {
     int n_views;
     int n_avoidances;
     int n_bands;
-    int first_band_row; /* first row of the bands in `in` */
-    int n_in;           /* rows before held objectives */
-    /* last of these rows, at sampled tolerance corners */
-    int n_corner_rows;
-    int n_next;
+    int n_requirements;
     /* t has a further entry, the least clearance ln(...), which is maximised */
     bool clearance;
     /* t has a further entry, MT_FORCED_RESPONSE_SHIFT + the largest ln(value / limit) of the
      * goals in the objective "vibration"; 0: not given, computed from the goals */
     bool forced_response;
-    int first_soft_row; /* first row of these goals in `in` */
 } mt_subproblem;
 
 #define MT_FORCED_RESPONSE_SHIFT 50.0
@@ -108,10 +94,14 @@ mt_status mt_subproblem_lay_out(mt_subproblem *c, const int *below, int n_cuts,
 mt_status mt_subproblem_in_placement(const mt_subproblem *from, const int *below, int n_cuts,
                                      const struct mt_cut *cuts, struct mt_workspace *w,
                                      mt_arena *mem, mt_subproblem *out, mt_err *err);
-/* `from` with memory for held objectives (mt_objective_stage_hold), for later stages. Fails:
+/* `from` with memory for held objectives (mt_objectives_hold), for later stages. Fails:
  * MT_E_MEMORY. */
 mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
                                    mt_err *err);
+/* Fills the rows of all kinds after configurations and corners have been solved. Fails: as the
+ * kinds' operations. */
+mt_status mt_subproblem_eval_rows(struct mt_workspace *w, bool with_gradient,
+                                  mt_nlp_values *out, mt_err *err);
 /* Parameter values x[n] of coordinates t[n]; bounds, catalogue values and original values are
  * reproduced exactly. */
 void mt_subproblem_x(const mt_subproblem *c, const double *t, double *x);
@@ -131,12 +121,10 @@ long mt_subproblem_solutions(const mt_subproblem *c);
 long mt_subproblem_worth(const mt_subproblem *c, long n);
 long mt_subproblem_counted(const mt_subproblem *c, long evals);
 long mt_subproblem_afford(const mt_subproblem *c, long evals);
-/* Number of rows of `in` (of `eq`) and of its derivative in the present stage: goals, then held
- * objectives. */
-int mt_subproblem_rows_in(const mt_subproblem *c);
-int mt_subproblem_rows_eq(const mt_subproblem *c);
 /* Number of residuals of the present stage. */
 int mt_subproblem_rows_res(const mt_subproblem *c);
+/* Violations of the rows of the present stage. */
+mt_missed mt_subproblem_missed(const mt_subproblem *c, const mt_nlp_values *v);
 /* Allocates the arrays of out for the present stage in mem. */
 mt_status mt_subproblem_values_init(const mt_subproblem *c, mt_arena *mem, mt_nlp_values *out,
                                     mt_err *err);

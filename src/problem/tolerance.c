@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "problem/goal_avoid.h"
+#include "problem/requirement.h"
 #include "prove/enclosure.h"
 
 /* All combinations of so many variables whose sign is not known; of more: all low, all high,
@@ -142,14 +142,15 @@ static bool has_range(const mt_problem *p, int view)
 {
     bool any = false;
     for (int i = 0; i < p->n_requirements; i++) {
-        any = any || (p->requirements[i].view == view && p->requirements[i].ranged);
+        any = any ||
+              (p->requirements[i].view == view && p->requirements[i].role == MT_ROLE_RANGE);
     }
     return any;
 }
 
 static mt_status check_requirement(const mt_requirement *d, mt_err *err)
 {
-    if (d->row_res >= 0) {
+    if (d->role == MT_ROLE_RESIDUAL) {
         return MT_OK;
     }
     if (d->quantity == MT_QUANTITY_OTHER) {
@@ -212,7 +213,7 @@ static mt_status init_views(mt_subproblem *c, const mt_problem_tolerance_box *kn
         const mt_requirement *const d = &p->requirements[i];
         if (d->view >= 0) {
             MT_TRY(check_requirement(d, err));
-            const bool held = d->row_in >= 0 || d->ranged;
+            const bool held = d->role == MT_ROLE_LIMIT || d->role == MT_ROLE_RANGE;
             wanted[d->view] = wanted[d->view] || held;
         }
     }
@@ -245,7 +246,7 @@ static mt_status init_limits(mt_subproblem *c, mt_arena *mem, mt_err *err)
                                  lo, hi, dlo, dhi);
     for (int k = 0; k < p->n_requirements; k++) {
         const mt_requirement *const d = &p->requirements[k];
-        const bool held = d->row_in >= 0 || d->ranged;
+        const bool held = d->role == MT_ROLE_LIMIT || d->role == MT_ROLE_RANGE;
         if (d->quantity != MT_QUANTITY_EXPRESSION || !held) {
             continue;
         }
@@ -253,7 +254,8 @@ static mt_status init_limits(mt_subproblem *c, mt_arena *mem, mt_err *err)
         for (int i = 0; i < p->n; i++) {
             signs[i] = sign_of(c, i, dhi[row + (size_t)i] > 0.0, dlo[row + (size_t)i] < 0.0);
         }
-        MT_TRY(make_corners(c, signs, d->ranged, mem, &c->tolerance_box->limits[k], err));
+        MT_TRY(make_corners(c, signs, d->role == MT_ROLE_RANGE, mem,
+                            &c->tolerance_box->limits[k], err));
     }
     return MT_OK;
 }
@@ -261,108 +263,103 @@ static mt_status init_limits(mt_subproblem *c, mt_arena *mem, mt_err *err)
 /* Rows of one limit at all corners of its side. The worst corner takes the place of the
  * design's own row `own`; where the corners are samples, or there is no such row (-1), they
  * come on top. */
-static void list_rows(mt_subproblem *c, const mt_tolerance_corners *set,
-                      const mt_tolerance_row *what, int own, mt_tolerance_row *rows)
+static mt_status append_corners(const mt_row_layout *l, const mt_tolerance_corners *set,
+                                const mt_row *what, int own, mt_err *err)
 {
-    mt_problem_tolerance_box *const r = c->tolerance_box;
+    mt_row_block *const in = &l->c->rows.in;
+    mt_row row = *what;
+    row.kind = MT_ROW_CORNER;
     for (int k = 0; k < set->n; k++) {
-        if (!set->corners[k].may[what->side]) {
-            continue;
-        }
-        if (rows != NULL) {
-            rows[r->n_rows] = *what;
-            rows[r->n_rows].corner = k;
-            rows[r->n_rows].row = set->exact && own >= 0 ? own : c->n_in;
-        }
-        c->n_in += set->exact && own >= 0 ? 0 : 1;
-        r->n_rows++;
-    }
-}
-
-static void list_requirement(mt_subproblem *c, int requirement, mt_tolerance_row *rows)
-{
-    const mt_requirement *const d = &c->p->requirements[requirement];
-    const mt_tolerance_corners *const set = d->view >= 0
-                                                ? &c->tolerance_box->views[d->view]
-                                                : &c->tolerance_box->limits[requirement];
-    const bool target = d->ranged;
-    const bool asked[MT_TOLERANCE_SIDES] = {MT_HAS(d->goal->at_least),
-                                            MT_HAS(d->goal->at_most)};
-    int own = d->row_in;
-    for (int side = 0; side < MT_TOLERANCE_SIDES; side++) {
-        if (target || (d->row_in >= 0 && asked[side])) {
-            const mt_tolerance_row what = {.requirement = requirement,
-                                           .side = (mt_tolerance_side)side,
-                                           .tolerance = target ? ROW_TOLERANCE : d->tolerance};
-            list_rows(c, set, &what, target ? -1 : own++, rows);
+        row.corner = k;
+        if (set->corners[k].may[what->sense] && set->exact && own >= 0) {
+            in->rows[own] = row;
+        } else if (set->corners[k].may[what->sense]) {
+            MT_TRY(mt_rows_append(in, &row, l->mem, err));
         }
     }
-}
-
-static void list_all(mt_subproblem *c, mt_tolerance_row *rows)
-{
-    mt_avoidance_row at;
-    c->tolerance_box->n_rows = 0;
-    for (int i = 0; i < c->p->n_requirements; i++) {
-        list_requirement(c, i, rows);
-    }
-    for (int k = 0; c->below != NULL && mt_avoidance_row_at(c, c->below, k, &at); k++) {
-        const mt_avoidance *const avoidance = &c->avoidances[at.avoidance];
-        const mt_tolerance_row what = {.requirement = -1,
-                                       .at = at,
-                                       .side = at.above ? MT_LOWEST : MT_HIGHEST,
-                                       .tolerance = avoidance->tolerance};
-        list_rows(c, &c->tolerance_box->views[avoidance->view], &what, c->first_band_row + k,
-                  rows);
-    }
-}
-
-/* Numbers the rows, first to count and then to store them, with memory for their tolerances. */
-static mt_status init_rows(mt_subproblem *c, mt_arena *mem, mt_err *err)
-{
-    mt_problem_tolerance_box *const r = c->tolerance_box;
-    const int before = c->n_in;
-    list_all(c, NULL);
-    r->rows = mt_arena_alloc(mem, (size_t)r->n_rows, sizeof *r->rows);
-    double *const tolerances = mt_arena_f64(mem, (size_t)c->n_in + (size_t)c->n_stages, 1);
-    MT_TRY(mt_arena_check(mem, err));
-    if (before > 0) {
-        memcpy(tolerances, c->in_tol, (size_t)before * sizeof *tolerances);
-    }
-    c->n_in = before;
-    list_all(c, r->rows);
-    for (int i = 0; i < r->n_rows; i++) {
-        tolerances[r->rows[i].row] = r->rows[i].tolerance;
-    }
-    c->in_tol = tolerances;
-    c->n_corner_rows = c->n_in - before;
     return MT_OK;
 }
 
-mt_status mt_tolerance_init(mt_subproblem *c, const mt_problem_tolerance_box *known,
-                            mt_arena *mem, mt_err *err)
+/* Limit of a target's range, whose tolerance is the goal's. */
+static double range_limit(const mt_requirement *d, mt_row_sense sense)
 {
+    const double give = sense == MT_AT_LEAST ? -d->tolerance : d->tolerance;
+    return d->measure == MT_MEASURE_RATIO
+               ? d->equals * (1.0 + give)
+               : d->equals + (give * mt_requirement_unit(d, d->equals));
+}
+
+static mt_status append_range(const mt_row_layout *l, const mt_requirement *d,
+                              const mt_tolerance_corners *set, mt_err *err)
+{
+    for (int side = 0; side < MT_TOLERANCE_SIDES; side++) {
+        mt_row row = mt_row_init(MT_ROW_CORNER, (mt_row_sense)side);
+        row.requirement = d->index;
+        row.view = d->view;
+        row.mode = d->mode;
+        row.limit = range_limit(d, row.sense);
+        row.tolerance = ROW_TOLERANCE;
+        MT_TRY(append_corners(l, set, &row, -1, err));
+    }
+    return MT_OK;
+}
+
+static mt_status append_requirement(const mt_row_layout *l, const mt_requirement *d,
+                                    mt_err *err)
+{
+    const mt_subproblem *const c = l->c;
+    const mt_tolerance_corners *const set = mt_tolerance_corners_of(c, d->view, d->index);
+    const int first = mt_requirement_row(c, d);
+    if (d->role == MT_ROLE_RANGE) {
+        return append_range(l, d, set, err);
+    }
+    for (int k = 0; d->role == MT_ROLE_LIMIT && k < d->n_rows; k++) {
+        const mt_row row = c->rows.in.rows[first + k];
+        MT_TRY(append_corners(l, set, &row, first + k, err));
+    }
+    return MT_OK;
+}
+
+static mt_status append_rows(const mt_row_layout *l, mt_err *err)
+{
+    const mt_subproblem *const c = l->c;
+    const mt_row_span bands = c->rows.of_kind[MT_ROW_BAND];
+    for (int i = 0; i < c->p->n_requirements; i++) {
+        MT_TRY(append_requirement(l, &c->p->requirements[i], err));
+    }
+    for (int k = bands.first; k < bands.first + bands.n; k++) {
+        const mt_row row = c->rows.in.rows[k];
+        MT_TRY(append_corners(l, &c->tolerance_box->views[row.view], &row, k, err));
+    }
+    return MT_OK;
+}
+
+/* Makes c->tolerance_box and its rows, where a variable has a tolerance. */
+static mt_status lay_out_corners(const mt_row_layout *l, mt_err *err)
+{
+    mt_subproblem *const c = l->c;
     const size_t n = (size_t)c->p->n;
-    c->n_corner_rows = 0;
     if (!any_tolerance(c->p)) {
         return MT_OK;
     }
-    mt_problem_tolerance_box *const r = mt_arena_alloc(mem, 1, sizeof *r);
-    MT_TRY(mt_arena_check(mem, err));
+    mt_problem_tolerance_box *const r = mt_arena_alloc(l->mem, 1, sizeof *r);
+    MT_TRY(mt_arena_check(l->mem, err));
     *r = (mt_problem_tolerance_box){
-        .views = mt_arena_alloc(mem, (size_t)c->n_views, sizeof *r->views),
-        .limits = known != NULL
-                      ? known->limits
-                      : mt_arena_alloc(mem, (size_t)c->p->n_requirements, sizeof *r->limits),
-        .lower = mt_arena_f64(mem, n, 1),
-        .upper = mt_arena_f64(mem, n, 1)};
-    MT_TRY(mt_arena_check(mem, err));
+        .views = mt_arena_alloc(l->mem, (size_t)c->n_views, sizeof *r->views),
+        .limits = l->known != NULL
+                      ? l->known->limits
+                      : mt_arena_alloc(l->mem, (size_t)c->p->n_requirements, sizeof *r->limits),
+        .lower = mt_arena_f64(l->mem, n, 1),
+        .upper = mt_arena_f64(l->mem, n, 1)};
+    MT_TRY(mt_arena_check(l->mem, err));
     c->tolerance_box = r;
     widen_tolerance_bounds(c);
-    MT_TRY(init_views(c, known, mem, err));
-    MT_TRY(known != NULL ? MT_OK : init_limits(c, mem, err));
-    return init_rows(c, mem, err);
+    MT_TRY(init_views(c, l->known, l->mem, err));
+    MT_TRY(l->known != NULL ? MT_OK : init_limits(c, l->mem, err));
+    return append_rows(l, err);
 }
+
+const mt_row_ops mt_rows_corners = {.lay_out = lay_out_corners, .eval = mt_tolerance_rows};
 
 mt_status mt_tolerance_work_init(mt_workspace *w, mt_err *err)
 {
@@ -379,16 +376,4 @@ mt_status mt_tolerance_work_init(mt_workspace *w, mt_err *err)
                              .grad = mt_arena_f64(&w->mem, count, n)};
     w->tolerance_box = r;
     return mt_arena_check(&w->mem, err);
-}
-
-const mt_tolerance_row *mt_tolerance_corner_row(const mt_subproblem *c, int row)
-{
-    const int first = c->n_in - c->n_corner_rows;
-    for (int k = 0; c->tolerance_box != NULL && row >= first && k < c->tolerance_box->n_rows;
-         k++) {
-        if (c->tolerance_box->rows[k].row == row) {
-            return &c->tolerance_box->rows[k];
-        }
-    }
-    return NULL;
 }

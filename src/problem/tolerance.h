@@ -33,7 +33,12 @@
  * target (or "equals") is met by the nominal design; with its own "tolerance_percent" it is a
  * range that must hold over the tolerances.
  */
-typedef enum mt_tolerance_side { MT_LOWEST, MT_HIGHEST, MT_TOLERANCE_SIDES } mt_tolerance_side;
+/* A row MT_AT_LEAST is about the lowest value, a row MT_AT_MOST about the highest. */
+typedef enum mt_tolerance_side {
+    MT_LOWEST = MT_AT_LEAST,
+    MT_HIGHEST = MT_AT_MOST,
+    MT_TOLERANCE_SIDES
+} mt_tolerance_side;
 
 typedef struct mt_tolerance_corner {
     double *factor; /* [n] inputs at the corner / inputs of the design */
@@ -49,16 +54,6 @@ typedef struct mt_tolerance_corners {
     mt_tolerance_corner *corners;
 } mt_tolerance_corners;
 
-/* A row of `in` that is evaluated at a corner. */
-typedef struct mt_tolerance_row {
-    int row;
-    int requirement; /* -1: a band */
-    mt_avoidance_row at;
-    mt_tolerance_side side;
-    int corner;
-    double tolerance;
-} mt_tolerance_row;
-
 /* Range of a value over the tolerances of one design: value[MT_LOWEST] <= value <=
  * value[MT_HIGHEST], NaN where it does not exist somewhere; at[side]: [n] inputs where it is
  * reached. */
@@ -68,13 +63,11 @@ typedef struct mt_tolerance_range {
     double *at[MT_TOLERANCE_SIDES];
 } mt_tolerance_range;
 
-/* Corners of a subproblem and their rows. */
+/* Corners of a subproblem. */
 typedef struct mt_problem_tolerance_box {
     mt_tolerance_corners *views;  /* [n_views of the subproblem] */
     mt_tolerance_corners *limits; /* [n_requirements] */
-    int n_rows;
-    mt_tolerance_row *rows;
-    double *lower; /* [n] bounds, widened by the tolerances */
+    double *lower;                /* [n] bounds, widened by the tolerances */
     double *upper;
 } mt_problem_tolerance_box;
 
@@ -111,42 +104,27 @@ mt_status mt_tolerance_first(const mt_subproblem *c, int view, const int *signs,
 double mt_tolerance_factor(const mt_subproblem *c, int i, int side);
 /* Effect of raising a variable. */
 enum { MT_FALLS = -1, MT_NOTHING, MT_RISES, MT_UNKNOWN };
-/* Makes c->tolerance_box (NULL where no variable has a tolerance), in mem; adds its rows to
- * `in` after those of the bands. known: corners for the same bounds, of another mode placement;
- * NULL: none. Fails: MT_E_INPUT where a goal cannot be evaluated over tolerances, with the
- * reason; MT_E_MEMORY, numerical failures. */
-mt_status mt_tolerance_init(mt_subproblem *c, const mt_problem_tolerance_box *known,
-                            mt_arena *mem, mt_err *err);
 /* Makes w->tolerance_box; NULL where no variable has a tolerance. */
 mt_status mt_tolerance_work_init(mt_workspace *w, mt_err *err);
 /* Half the width of variable i's tolerance, relative to its value. */
 double mt_tolerance_of_variable(const mt_problem *p, int i);
 /* True where a target (or "equals") is a range over the tolerances. For use before rows are
- * numbered; afterwards see requirement->ranged. */
+ * numbered; afterwards see requirement->role. */
 bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d);
 /* tolerance_eval.c: solves the modes at all corners of the design w->x. No effect without
  * tolerances, as the functions below. */
 mt_status mt_tolerance_solve(mt_workspace *w, bool with_gradient, mt_err *err);
-/* Fills the rows of all corners, some of which replace rows of the nominal design. After
- * mt_tolerance_solve and those rows. */
+/* Fills the rows of all corners. After mt_tolerance_solve. */
 mt_status mt_tolerance_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
                             mt_err *err);
-/* The corner of a row of `in` that is additional to those of the nominal design; NULL: another
- * row. */
-const mt_tolerance_row *mt_tolerance_corner_row(const mt_subproblem *c, int row);
-/* True where row i of `in` is evaluated at a corner (instead of the nominal design, or in
- * addition). */
-bool mt_tolerance_at_corner(const mt_subproblem *c, int i);
-/* Limit [Hz] of a row on a frequency, for a band without the clearance; NaN: a limit on an
- * expression. */
-double mt_tolerance_limit_hz(const mt_subproblem *c, const mt_tolerance_row *row);
-/* Configuration (-1: of an expression) and mode that a row limits. */
-int mt_tolerance_row_configuration(const mt_subproblem *c, const mt_tolerance_row *row);
-int mt_tolerance_row_mode(const mt_subproblem *c, const mt_tolerance_row *row);
+/* The corners of a configuration; of view -1: of the limit that this requirement is. */
+const mt_tolerance_corners *mt_tolerance_corners_of(const mt_subproblem *c, int view,
+                                                    int requirement);
+/* The next row of `in` from `from` on that is evaluated at a corner; -1: none. */
+int mt_tolerance_next_row(const mt_subproblem *c, int from);
 /* Margin of the row for the value `value`: relative, for frequencies logarithmic; negative:
  * violated. Without the clearance. */
-double mt_tolerance_row_margin(const mt_subproblem *c, const mt_tolerance_row *row,
-                               double value);
+double mt_tolerance_row_margin(const mt_subproblem *c, const mt_row *row, double value);
 /* mt_avoidance_margin over all corners, or over the ranges where known; modes correspond by
  * index. */
 double mt_tolerance_margin(const mt_workspace *w, const mt_avoidance *c);

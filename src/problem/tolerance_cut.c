@@ -13,41 +13,24 @@ static const double SAME_FACTOR = 1e-12;
  * are not looked for before the design is described. */
 static const double FAR = 2.0;
 
-int mt_tolerance_row_configuration(const mt_subproblem *c, const mt_tolerance_row *row)
-{
-    return row->requirement >= 0 ? c->p->requirements[row->requirement].view
-                                 : c->avoidances[row->at.avoidance].view;
-}
-
-int mt_tolerance_row_mode(const mt_subproblem *c, const mt_tolerance_row *row)
-{
-    return row->requirement >= 0 ? c->p->requirements[row->requirement].mode : row->at.mode;
-}
-
-static const mt_tolerance_corners *set_of(const mt_subproblem *c, int view, int requirement)
-{
-    return view >= 0 ? &c->tolerance_box->views[view] : &c->tolerance_box->limits[requirement];
-}
-
 /* Configurations of cuts along a drive are evaluated at their corners only. */
-static bool is_judged(const mt_subproblem *c, const mt_tolerance_row *row)
+static bool is_judged(const mt_subproblem *c, const mt_row *row)
 {
-    const int view = mt_tolerance_row_configuration(c, row);
-    return view < c->p->n_views && !set_of(c, view, row->requirement)->exact;
+    return row->view < c->p->n_views &&
+           !mt_tolerance_corners_of(c, row->view, row->requirement)->exact;
 }
 
 /* True where two rows limit one value on one side, at two corners. */
-static bool is_same(const mt_tolerance_row *a, const mt_tolerance_row *b)
+static bool is_same(const mt_row *a, const mt_row *b)
 {
-    return a->requirement == b->requirement && a->side == b->side &&
-           (a->requirement >= 0 || (a->at.avoidance == b->at.avoidance &&
-                                    a->at.band == b->at.band && a->at.mode == b->at.mode));
+    return a->requirement == b->requirement && a->sense == b->sense &&
+           a->avoidance == b->avoidance && a->band == b->band && a->mode == b->mode;
 }
 
 bool mt_tolerance_is_sampled(const mt_subproblem *c)
 {
-    for (int k = 0; c->tolerance_box != NULL && k < c->tolerance_box->n_rows; k++) {
-        if (is_judged(c, &c->tolerance_box->rows[k])) {
+    for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
+        if (is_judged(c, &c->rows.in.rows[k])) {
             return true;
         }
     }
@@ -65,13 +48,13 @@ static bool same_factor(int n, const double *a, const double *b)
 }
 
 /* Adds the corner where the value of a row is worst, unless it is one already. */
-static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, const double *at,
+static mt_status add_cut(const mt_workspace *w, const mt_row *row, const double *at,
                          mt_arena *mem, mt_tolerance_cuts *cuts, mt_err *err)
 {
     const mt_subproblem *const c = w->c;
     const int n = c->p->n;
-    const int view = mt_tolerance_row_configuration(c, row);
-    const mt_tolerance_corners *const set = set_of(c, view, row->requirement);
+    const int view = row->view;
+    const mt_tolerance_corners *const set = mt_tolerance_corners_of(c, view, row->requirement);
     double *const factor = mt_arena_f64(mem, (size_t)n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < n; i++) {
@@ -79,7 +62,7 @@ static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, con
     }
     for (int k = 0; k < set->n; k++) {
         const mt_tolerance_corner *const known = &set->corners[k];
-        if (known->may[row->side] && same_factor(n, known->factor, factor)) {
+        if (known->may[row->sense] && same_factor(n, known->factor, factor)) {
             return MT_OK;
         }
     }
@@ -88,8 +71,8 @@ static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, con
         const bool own =
             known->view == view && (view >= 0 || known->requirement == row->requirement);
         if (own && same_factor(n, known->factor, factor)) {
-            cuts->added += known->may[row->side] ? 0 : 1;
-            known->may[row->side] = true;
+            cuts->added += known->may[row->sense] ? 0 : 1;
+            known->may[row->sense] = true;
             return MT_OK;
         }
     }
@@ -99,18 +82,16 @@ static mt_status add_cut(const mt_workspace *w, const mt_tolerance_row *row, con
     cuts->items = grown;
     grown[cuts->n] =
         (mt_tolerance_cut){.view = view, .requirement = row->requirement, .factor = factor};
-    grown[cuts->n++].may[row->side] = true;
+    grown[cuts->n++].may[row->sense] = true;
     cuts->added++;
     return MT_OK;
 }
 
 /* Range over the tolerances of the value that a row limits; NULL: not available. */
-static const mt_tolerance_range *range_of(const mt_subproblem *c, const mt_ranges *ranges,
-                                          const mt_tolerance_row *row)
+static const mt_tolerance_range *range_of(const mt_ranges *ranges, const mt_row *row)
 {
-    const int view = mt_tolerance_row_configuration(c, row);
-    const int mode = mt_tolerance_row_mode(c, row);
-    return view >= 0 ? mt_ranges_hz(ranges, view, mode) : &ranges->number[row->requirement];
+    return row->view >= 0 ? mt_ranges_hz(ranges, row->view, row->mode)
+                          : &ranges->number[row->requirement];
 }
 
 static mt_status verify_tolerance_rows(const mt_workspace *w, const mt_ranges *ranges,
@@ -118,25 +99,25 @@ static mt_status verify_tolerance_rows(const mt_workspace *w, const mt_ranges *r
                                        mt_err *err)
 {
     const mt_subproblem *const c = w->c;
-    const mt_tolerance_row *before = NULL;
-    for (int k = 0; k < c->tolerance_box->n_rows; k++) {
-        const mt_tolerance_row *const row = &c->tolerance_box->rows[k];
+    const mt_row *before = NULL;
+    for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
+        const mt_row *const row = &c->rows.in.rows[k];
         const bool again = before != NULL && is_same(before, row);
         before = row;
         const mt_tolerance_range *const range =
-            again || !is_judged(c, row) ? NULL : range_of(c, ranges, row);
+            again || !is_judged(c, row) ? NULL : range_of(ranges, row);
         if (range == NULL) {
             continue;
         }
-        const double room = mt_tolerance_row_margin(c, row, range->value[row->side]);
+        const double room = mt_tolerance_row_margin(c, row, range->value[row->sense]);
         const double wanted = row->requirement < 0 && c->clearance ? w->t[c->p->n] : 0.0;
         mt_miss(&cuts->missed, mt_short_of(room), row->tolerance);
         cuts->band_margin =
             row->requirement < 0 ? fmin(cuts->band_margin, room) : cuts->band_margin;
-        v->in[row->row] = fmin(v->in[row->row], room - wanted);
+        v->in[k] = fmin(v->in[k], room - wanted);
         /* where it has no value no row leads on */
         if (room - wanted < -row->tolerance) {
-            MT_TRY(add_cut(w, row, range->at[row->side], mem, cuts, err));
+            MT_TRY(add_cut(w, row, range->at[row->sense], mem, cuts, err));
         }
     }
     return MT_OK;
@@ -178,9 +159,9 @@ mt_status mt_tolerance_lower(mt_workspace *w, mt_nlp_values *v, mt_arena *mem,
 
 /* x[n] := the corner that is worst to first order for the mode of a row at the design that w
  * was evaluated at with slopes; false: it has none. */
-static bool name_worst(mt_workspace *w, const mt_tolerance_row *row, int mode, double *x)
+static bool name_worst(mt_workspace *w, const mt_row *row, int mode, double *x)
 {
-    mt_analysis *const a = w->views[mt_tolerance_row_configuration(w->c, row)].analysis;
+    mt_analysis *const a = w->views[row->view].analysis;
     const int pos = mt_modal_flexible(&a->modes, mode);
     mt_err own = {.code = MT_OK};
     if (pos < 0 || mt_analysis_dlambda_raw(a, pos, w->tolerance_box->slope, &own) != MT_OK) {
@@ -188,7 +169,7 @@ static bool name_worst(mt_workspace *w, const mt_tolerance_row *row, int mode, d
     }
     for (int i = 0; i < w->p->n; i++) {
         const double half = mt_tolerance_of_variable(w->p, i) * fabs(w->x[i]);
-        const bool low = (w->tolerance_box->slope[i] > 0.0) == (row->side == MT_LOWEST);
+        const bool low = (w->tolerance_box->slope[i] > 0.0) == (row->sense == MT_AT_LEAST);
         x[i] = w->x[i] + (low ? -half : half);
     }
     return true;
@@ -205,12 +186,12 @@ static double largest_tolerance(const mt_problem *p)
 
 /* Evaluates a row of a mode at the corner given by its slopes, with an analysis of a corner.
  * *far: its limit holds there by a wide margin. */
-static mt_status verify_first(mt_workspace *w, const mt_tolerance_row *row, double *x,
-                              mt_arena *mem, mt_tolerance_cuts *cuts, bool *far, mt_err *err)
+static mt_status verify_first(mt_workspace *w, const mt_row *row, double *x, mt_arena *mem,
+                              mt_tolerance_cuts *cuts, bool *far, mt_err *err)
 {
     const mt_subproblem *const c = w->c;
-    const int mode = mt_tolerance_row_mode(c, row);
-    const mt_configuration_work *const view = &w->views[mt_tolerance_row_configuration(c, row)];
+    const int mode = row->mode;
+    const mt_configuration_work *const view = &w->views[row->view];
     const mt_analysis_options opt = mt_configuration_queries(w, view, false);
     mt_analysis *const a = view->corners[0];
     mt_err own = {.code = MT_OK};
@@ -247,15 +228,15 @@ static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_c
                                   bool *far, mt_err *err)
 {
     const mt_subproblem *const c = w->c;
-    const mt_tolerance_row *before = NULL;
+    const mt_row *before = NULL;
     double *const x = mt_arena_f64(mem, (size_t)c->p->n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (int i = 0; i < c->p->n_views; i++) {
         far[i] = true;
     }
-    for (int k = 0; k < c->tolerance_box->n_rows; k++) {
-        const mt_tolerance_row *const row = &c->tolerance_box->rows[k];
-        const int view = mt_tolerance_row_configuration(c, row);
+    for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
+        const mt_row *const row = &c->rows.in.rows[k];
+        const int view = row->view;
         const bool again = before != NULL && is_same(before, row);
         bool own = false;
         before = row;
@@ -289,7 +270,7 @@ static mt_status extend(const mt_subproblem *c, const mt_tolerance_cuts *cuts, i
                         int requirement, mt_arena *mem, mt_tolerance_corners *out, mt_err *err)
 {
     const size_t n = (size_t)c->p->n;
-    const mt_tolerance_corners *const set = set_of(c, view, requirement);
+    const mt_tolerance_corners *const set = mt_tolerance_corners_of(c, view, requirement);
     *out = *set;
     out->corners = mt_arena_alloc(mem, (size_t)set->n + (size_t)cuts->n, sizeof *out->corners);
     MT_TRY(mt_arena_check(mem, err));

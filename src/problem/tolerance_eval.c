@@ -42,21 +42,22 @@ typedef struct quantity {
     double z; /* least clearance that is asked for */
 } quantity;
 
-/* ln(f / edge_hz) at the corner, with its slopes over t in tolerance_box->slope. */
-static mt_status frequency(mt_workspace *w, int view, const mt_tolerance_row *row, int mode,
-                           double edge_hz, bool with_gradient, double *value, mt_err *err)
+/* ln(f / limit) at the corner, with its slopes over t in tolerance_box->slope. */
+static mt_status frequency(mt_workspace *w, const mt_row *row, bool with_gradient,
+                           double *value, mt_err *err)
 {
-    mt_analysis *const a = w->views[view].corners[row->corner];
-    const double *const factor = w->c->tolerance_box->views[view].corners[row->corner].factor;
-    const int pos = mt_modal_flexible(&a->modes, mode);
-    const double floor_hz = MT_FREQUENCY_FLOOR * edge_hz;
-    if (pos < 0 && !mt_analysis_is_infinite(a, mode)) {
+    mt_analysis *const a = w->views[row->view].corners[row->corner];
+    const double *const factor =
+        w->c->tolerance_box->views[row->view].corners[row->corner].factor;
+    const int pos = mt_modal_flexible(&a->modes, row->mode);
+    const double floor_hz = MT_FREQUENCY_FLOOR * row->limit;
+    if (pos < 0 && !mt_analysis_is_infinite(a, row->mode)) {
         return mt_fail(err, MT_E_DOMAIN,
                        "configuration \"%s\" has no vibration mode %d at a corner of the "
                        "tolerances",
-                       mt_analysis_configuration(a), mode);
+                       mt_analysis_configuration(a), row->mode);
     }
-    *value = mt_problem_ln_ratio(&a->modes, pos, edge_hz, floor_hz);
+    *value = mt_problem_ln_ratio(&a->modes, pos, row->limit, floor_hz);
     if (with_gradient) {
         MT_TRY(mt_problem_dln_frequency(w, a, pos, floor_hz, w->tolerance_box->slope, err));
         for (int i = 0; i < w->p->n; i++) {
@@ -88,98 +89,64 @@ static mt_status expression(mt_workspace *w, const mt_tolerance_corner *c, mt_no
     return MT_OK;
 }
 
-/* Limit of a row; of a target with its tolerance. */
-static double limit_of(const mt_problem *p, const mt_tolerance_row *row)
+const mt_tolerance_corners *mt_tolerance_corners_of(const mt_subproblem *c, int view,
+                                                    int requirement)
 {
-    const mt_requirement *const d = &p->requirements[row->requirement];
-    const bool low = row->side == MT_LOWEST;
-    const double give = low ? -d->tolerance : d->tolerance;
-    if (!d->ranged) {
-        return low ? d->goal->at_least : d->goal->at_most;
-    }
-    return d->measure == MT_MEASURE_RATIO
-               ? d->equals * (1.0 + give)
-               : d->equals + (give * mt_requirement_unit(d, d->equals));
+    return view >= 0 ? &c->tolerance_box->views[view] : &c->tolerance_box->limits[requirement];
 }
 
-static double edge_of(const mt_subproblem *c, const mt_tolerance_row *row)
+int mt_tolerance_next_row(const mt_subproblem *c, int from)
 {
-    const mt_band *const band = &c->avoidances[row->at.avoidance].bands.items[row->at.band];
-    return row->at.above ? band->upper_hz : band->lower_hz;
-}
-
-bool mt_tolerance_at_corner(const mt_subproblem *c, int i)
-{
-    for (int k = 0; c->tolerance_box != NULL && k < c->tolerance_box->n_rows; k++) {
-        if (c->tolerance_box->rows[k].row == i) {
-            return true;
+    for (int i = from; i < c->rows.in.n; i++) {
+        if (c->rows.in.rows[i].corner >= 0) {
+            return i;
         }
     }
-    return false;
+    return -1;
 }
 
-double mt_tolerance_limit_hz(const mt_subproblem *c, const mt_tolerance_row *row)
+double mt_tolerance_row_margin(const mt_subproblem *c, const mt_row *row, double value)
 {
-    if (row->requirement < 0) {
-        return edge_of(c, row);
+    const double sign = mt_row_sign(row);
+    if (row->view >= 0) {
+        return sign * -mt_log_ratio(row->limit, value);
     }
-    return c->p->requirements[row->requirement].view >= 0 ? limit_of(c->p, row) : nan("");
+    return sign * (value - row->limit) /
+           mt_requirement_unit(&c->requirements[row->requirement], row->limit);
 }
 
-double mt_tolerance_row_margin(const mt_subproblem *c, const mt_tolerance_row *row,
-                               double value)
+static mt_status value_at_corner(mt_workspace *w, const mt_row *row, bool with_gradient,
+                                 quantity *q, mt_err *err)
 {
-    const double sign = row->side == MT_LOWEST ? 1.0 : -1.0;
-    const double limit_hz = mt_tolerance_limit_hz(c, row);
-    if (MT_HAS(limit_hz)) {
-        return sign * -mt_log_ratio(limit_hz, value);
+    if (row->view >= 0) {
+        q->z = row->avoidance >= 0 && w->c->clearance ? w->t[w->p->n] : 0.0;
+        return frequency(w, row, with_gradient, &q->value, err);
     }
-    const double limit = limit_of(c->p, row);
-    return sign * (value - limit) /
-           mt_requirement_unit(&c->p->requirements[row->requirement], limit);
-}
-
-static mt_status requirement_value(mt_workspace *w, const mt_tolerance_row *row,
-                                   bool with_gradient, quantity *q, mt_err *err)
-{
-    const mt_requirement *const d = &w->p->requirements[row->requirement];
-    const double limit = limit_of(w->p, row);
-    if (d->view >= 0) {
-        return frequency(w, d->view, row, d->mode, limit, with_gradient, &q->value, err);
-    }
-    const double unit = mt_requirement_unit(d, limit);
-    q->edge = limit / unit;
-    return expression(w, &w->c->tolerance_box->limits[row->requirement].corners[row->corner],
-                      d->node, unit, with_gradient, &q->value, err);
-}
-
-static mt_status band_value(mt_workspace *w, const mt_tolerance_row *row, bool with_gradient,
-                            quantity *q, mt_err *err)
-{
-    const mt_avoidance *const avoidance = &w->c->avoidances[row->at.avoidance];
-    q->z = w->c->clearance ? w->t[w->p->n] : 0.0;
-    return frequency(w, avoidance->view, row, row->at.mode, edge_of(w->c, row), with_gradient,
-                     &q->value, err);
+    const mt_requirement *const d = &w->c->requirements[row->requirement];
+    const mt_tolerance_corners *const set = &w->c->tolerance_box->limits[row->requirement];
+    const double unit = mt_requirement_unit(d, row->limit);
+    q->edge = row->limit / unit;
+    return expression(w, &set->corners[row->corner], d->node, unit, with_gradient, &q->value,
+                      err);
 }
 
 mt_status mt_tolerance_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
                             mt_err *err)
 {
-    const mt_problem_tolerance_box *const r = w->c->tolerance_box;
-    const ptrdiff_t rows = mt_subproblem_rows_in(w->c);
+    const ptrdiff_t rows = w->c->rows.in.n;
     const int n = w->p->n;
-    for (int k = 0; r != NULL && k < r->n_rows; k++) {
-        const mt_tolerance_row *const row = &r->rows[k];
-        const double sign = row->side == MT_LOWEST ? 1.0 : -1.0;
+    for (int at = mt_tolerance_next_row(w->c, 0); at >= 0;
+         at = mt_tolerance_next_row(w->c, at + 1)) {
+        const mt_row *const row = &w->c->rows.in.rows[at];
+        const double sign = mt_row_sign(row);
         quantity q = {.z = 0.0};
-        MT_TRY(row->requirement >= 0 ? requirement_value(w, row, with_gradient, &q, err)
-                                     : band_value(w, row, with_gradient, &q, err));
-        out->in[row->row] = (sign * (q.value - q.edge)) - q.z;
+        MT_TRY(value_at_corner(w, row, with_gradient, &q, err));
+        out->in[at] = (sign * (q.value - q.edge)) - q.z;
         for (int i = 0; i < n && with_gradient; i++) {
-            out->din[row->row + (i * rows)] = sign * w->tolerance_box->slope[i];
+            out->din[at + (i * rows)] = sign * w->tolerance_box->slope[i];
         }
         if (with_gradient && w->c->n_t > n) {
-            out->din[row->row + (n * rows)] = row->requirement >= 0 ? 0.0 : -1.0;
+            out->din[at + (n * rows)] = row->avoidance < 0 ? 0.0 : -1.0;
         }
     }
     return MT_OK;

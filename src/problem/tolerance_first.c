@@ -52,9 +52,10 @@ static void find_sides(const mt_subproblem *c, int view, int mode, double hz_bef
 {
     for (int i = 0; i < c->p->n_requirements; i++) {
         const mt_requirement *const d = &c->p->requirements[i];
-        if (d->view == view && d->mode == mode && (d->row_in >= 0 || d->ranged)) {
-            sides[MT_LOWEST] = sides[MT_LOWEST] || d->ranged || MT_HAS(d->goal->at_least);
-            sides[MT_HIGHEST] = sides[MT_HIGHEST] || d->ranged || MT_HAS(d->goal->at_most);
+        const bool ranged = d->role == MT_ROLE_RANGE;
+        if (d->view == view && d->mode == mode && (ranged || d->role == MT_ROLE_LIMIT)) {
+            sides[MT_LOWEST] = sides[MT_LOWEST] || ranged || MT_HAS(d->goal->at_least);
+            sides[MT_HIGHEST] = sides[MT_HIGHEST] || ranged || MT_HAS(d->goal->at_most);
         }
     }
     for (int i = 0; i < c->n_avoidances; i++) {

@@ -137,11 +137,10 @@ static void choose_descents(const mt_workspace *w, int view, int modes,
         descents[i / MT_TOLERANCE_SIDES][i % MT_TOLERANCE_SIDES] =
             reached ? MT_DESCENT_FINE : others;
     }
-    for (int k = 0; k < c->tolerance_box->n_rows; k++) {
-        const mt_tolerance_row *const row = &c->tolerance_box->rows[k];
-        const int mode = mt_tolerance_row_mode(c, row);
-        if (mt_tolerance_row_configuration(c, row) == view && mode >= 1 && mode <= modes) {
-            descents[mode - 1][row->side] = MT_DESCENT_FINE;
+    for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
+        const mt_row *const row = &c->rows.in.rows[k];
+        if (row->view == view && row->mode >= 1 && row->mode <= modes) {
+            descents[row->mode - 1][row->sense] = MT_DESCENT_FINE;
         }
     }
 }
@@ -282,8 +281,10 @@ static void count_modes(const mt_workspace *w, int *modes)
 static bool is_sampled_view(const mt_subproblem *c, int view)
 {
     bool any = false;
-    for (int k = 0; k < c->tolerance_box->n_rows && !c->tolerance_box->views[view].exact; k++) {
-        any = any || view == mt_tolerance_row_configuration(c, &c->tolerance_box->rows[k]);
+    const bool exact = c->tolerance_box->views[view].exact;
+    for (int k = mt_tolerance_next_row(c, 0); k >= 0 && !exact;
+         k = mt_tolerance_next_row(c, k + 1)) {
+        any = any || view == c->rows.in.rows[k].view;
     }
     return any;
 }

@@ -12,11 +12,9 @@
 #include "base/progress.h"
 #include "base/work_counters.h"
 #include "nlp/merit.h"
-#include "problem/at_position.h"
 #include "problem/drive_positions.h"
 #include "problem/forced_response.h"
 #include "problem/goal_avoid.h"
-#include "problem/mode_order.h"
 #include "problem/objective.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
@@ -56,7 +54,7 @@ static mt_status allocate_workspace_arrays(mt_workspace *w, mt_err *err)
     const mt_problem *const p = w->p;
     const size_t n = (size_t)p->n;
     const size_t count = (size_t)p->program.count;
-    const size_t n_res = (size_t)p->n_res;
+    const size_t n_res = (size_t)p->whole.rows.res.n;
     size_t ns = 1; /* rows of slopes: of a shape, or of anything else */
     for (int i = 0; i < p->n_requirements; i++) {
         const size_t own = (size_t)p->requirements[i].shape.ns;
@@ -200,12 +198,12 @@ mt_nlp mt_workspace_nlp(mt_workspace *w)
                         .origin = c->origin_t,
                         .change_weight = c->change_weight,
                         .n_res = mt_subproblem_rows_res(c),
-                        .n_eq = mt_subproblem_rows_eq(c),
-                        .n_in = mt_subproblem_rows_in(c),
-                        .eq_tol = c->eq_tol,
-                        .in_tol = c->in_tol,
-                        .n_next = c->n_next,
-                        .next_of = c->next_of,
+                        .n_eq = c->rows.eq.n,
+                        .n_in = c->rows.in.n,
+                        .eq_tol = c->rows.eq.tol,
+                        .in_tol = c->rows.in.tol,
+                        .n_next = c->rows.next.n,
+                        .next_of = c->rows.next_of,
                         .eval = mt_workspace_eval_uncounted,
                         .context = w,
                         .task_path = w->task_path};
@@ -327,8 +325,7 @@ static void say_found(const mt_workspace *w, const mt_nlp_values *v)
     if (!is_wanted(w) || judged_later(w)) {
         return;
     }
-    const mt_missed missed = mt_missed_of(mt_subproblem_rows_eq(c), v->eq, c->eq_tol,
-                                          mt_subproblem_rows_in(c), v->in, c->in_tol);
+    const mt_missed missed = mt_subproblem_missed(c, v);
     if (mt_is_met(missed.violation, 1.0)) {
         report_found(w, mt_objective_stage_value(w, 0, NULL));
     }
@@ -371,23 +368,15 @@ mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_
         MT_TRY(mt_configuration_solve(w, &w->views[i], with_gradient, err));
     }
     MT_TRY(mt_tolerance_solve(w, with_gradient, err));
-    for (int i = 0; i < p->n_requirements; i++) {
-        MT_TRY(mt_err_in(
-            err, mt_requirement_eval(w, &p->requirements[i], with_gradient, out, NULL, err),
-            "/goals/%d", p->requirements[i].goal_index));
-    }
-    MT_TRY(mt_at_position_eval(w, with_gradient, out, err));
-    MT_TRY(mt_avoidance_eval(w, with_gradient, out, err));
-    MT_TRY(mt_tolerance_rows(w, with_gradient, out, err));
-    MT_TRY(mt_mode_order_eval(w, with_gradient, out, err));
+    MT_TRY(mt_subproblem_eval_rows(w, with_gradient, out, err));
     if (mt_subproblem_rows_res(w->c) > 0) {
-        memcpy(out->r, w->r, (size_t)p->n_res * sizeof *w->r);
+        const size_t n_res = (size_t)w->c->rows.res.n;
+        memcpy(out->r, w->r, n_res * sizeof *w->r);
         if (with_gradient) {
-            memcpy(out->dr, w->dr, (size_t)p->n_res * (size_t)p->n * sizeof *w->dr);
+            memcpy(out->dr, w->dr, n_res * (size_t)p->n * sizeof *w->dr);
         }
     }
     out->f = mt_objective_stage_value(w, w->c->stage, with_gradient ? out->df : NULL);
-    mt_objective_stage_hold_rows(w, with_gradient, out);
     say_found(w, out);
     return MT_OK;
 }

@@ -48,7 +48,7 @@ typedef struct mt_workspace {
     /* where variables have tolerances (tolerance.h); else NULL */
     struct mt_tolerance_work *tolerance_box;
     double beyond; /* of a goal whose value is infinite: excess over a finite value (ln) */
-    double worst; /* largest ln(value / limit) of requirements with row_soft; -infinite: none */
+    double worst;  /* largest ln(value / limit) of goals in "vibration"; -infinite: none */
     /* accuracy of the modes (mt_modal_options); MT_MODAL_ACCURACY by default */
     double accuracy;
     long evaluations;

@@ -197,14 +197,14 @@ static mt_status to_solution(const mt_catalogue_search *d, const mt_combination 
                              .singular = c->singular,
                              .kkt = c->kkt,
                              .bound = mt_arena_int(d->mem, n),
-                             .mult_eq = mt_arena_f64(d->mem, (size_t)p->n_eq, 1),
-                             .mult_in = mt_arena_f64(d->mem, (size_t)d->c->n_in + 1, 1),
+                             .mult_eq = mt_arena_f64(d->mem, (size_t)d->c->rows.eq.n, 1),
+                             .mult_in = mt_arena_f64(d->mem, (size_t)d->c->rows.in.n + 1, 1),
                              .mult_bound = mt_arena_f64(d->mem, n, 1)};
     MT_TRY(mt_arena_check(d->mem, err));
-    for (int i = 0; i < p->n_eq; i++) {
+    for (int i = 0; i < d->c->rows.eq.n; i++) {
         out->mult_eq[i] = nan("");
     }
-    for (int i = 0; i < d->c->n_in; i++) {
+    for (int i = 0; i < d->c->rows.in.n; i++) {
         out->mult_in[i] = nan("");
     }
     for (int i = 0; i < p->n; i++) {

@@ -41,13 +41,13 @@ static bool evaluate_crossing_rows(crossing *x, double *rows, int *below)
     bool known = rc == MT_OK;
     x->rc = mt_is_final(rc) ? rc : MT_OK;
     x->d->evals++;
-    for (int i = 0; i < w->p->n_eq && known; i++) {
-        rows[n++] = x->v.eq[i] / w->c->eq_tol[i];
+    for (int i = 0; i < w->c->rows.eq.n && known; i++) {
+        rows[n++] = x->v.eq[i] / w->c->rows.eq.tol[i];
     }
-    for (int i = 0; i < w->c->n_in && known; i++) {
-        rows[n++] = x->v.in[i] / w->c->in_tol[i];
+    for (int i = 0; i < w->c->rows.in.n && known; i++) {
+        rows[n++] = x->v.in[i] / w->c->rows.in.tol[i];
     }
-    for (int i = 0; i < w->p->n_res && known; i++) {
+    for (int i = 0; i < w->c->rows.res.n && known; i++) {
         rows[n++] = w->r[i] / VALUE_TOL;
     }
     for (int k = 0; k < w->c->n_stages && known; k++) {
@@ -69,7 +69,7 @@ static bool evaluate_crossing_rows(crossing *x, double *rows, int *below)
 static double size_of(const crossing *x, int row)
 {
     const mt_problem *const p = x->d->p;
-    const int first = p->n_eq + x->d->c->n_in + p->n_res;
+    const int first = x->d->c->rows.eq.n + x->d->c->rows.in.n + x->d->c->rows.res.n;
     const bool stage = row >= first && row < first + p->n_stages;
     return stage ? fmax(fabs(x->at[row]) * VALUE_TOL, VALUE_TOL) : 1.0;
 }
@@ -148,7 +148,8 @@ mt_status mt_catalogue_search_unidentifiable(mt_catalogue_search *d, const mt_co
     }
     mt_nlp_result continuous = {0};
     const mt_problem *const p = d->p;
-    x.rows = p->n_eq + d->c->n_in + p->n_res + p->n_stages + p->n_avoidances;
+    x.rows =
+        d->c->rows.eq.n + d->c->rows.in.n + d->c->rows.res.n + p->n_stages + p->n_avoidances;
     x.at = mt_arena_f64(d->mem, (size_t)x.rows, 1);
     x.now = mt_arena_f64(d->mem, (size_t)x.rows, 1);
     x.below = mt_arena_int(d->mem, 2 * (size_t)p->n_bands + 1);

@@ -114,7 +114,7 @@ static mt_status verify_design(const mt_catalogue_search *d, int worker, mt_comb
     for (int k = 0; k < w->c->n_stages; k++) {
         c->f[k] = mt_objective_stage_value(w, k, NULL);
     }
-    c->missed = mt_missed_of(w->p->n_eq, v->eq, w->c->eq_tol, w->c->n_in, v->in, w->c->in_tol);
+    c->missed = mt_subproblem_missed(w->c, v);
     verify_bands(w, c);
     c->feasible = mt_is_held(c->missed.violation);
     return MT_OK;

@@ -9,8 +9,12 @@ mt_status mt_mode_placement_copy(const mt_subproblem *c, const int *below,
                                  const mt_nlp_solution **out, mt_err *err)
 {
     const mt_problem *const p = c->p;
-    const size_t n_eq = (size_t)p->n_eq;
-    const size_t n_in = (size_t)c->n_in + (size_t)mt_avoidance_row_count(c, below);
+    const size_t n_eq = (size_t)c->rows.eq.n;
+    size_t n_in = (size_t)c->rows.in.n;
+    mt_row row;
+    for (int i = 0; mt_avoidance_row_at(c, below, i, &row); i++) {
+        n_in++;
+    }
     const size_t n = (size_t)p->n + 1;
     mt_nlp_solution *const s = mt_arena_alloc(mem, 1, sizeof *s);
     double *const t = mt_arena_f64(mem, n, 1);
@@ -53,24 +57,23 @@ mt_status mt_mode_placement_hold(const mt_subproblem *c, const mt_cut *cuts,
                                  const mt_nlp_solution *s, mt_arena *mem,
                                  mt_mode_placement_solution *out, mt_err *err)
 {
-    const int n = mt_avoidance_row_count(c, c->below);
-    mt_mode_placement_held *const held = mt_arena_alloc(mem, (size_t)n, sizeof *held);
-    mt_avoidance_row row;
+    const mt_row_span bands = c->rows.of_kind[MT_ROW_BAND];
+    mt_mode_placement_held *const held = mt_arena_alloc(mem, (size_t)bands.n, sizeof *held);
     MT_TRY(mt_arena_check(mem, err));
     out->held = held;
     out->n_held = 0;
-    for (int i = 0; i < n && s->mult_in != NULL && mt_avoidance_row_at(c, c->below, i, &row);
-         i++) {
+    for (int i = bands.first; i < bands.first + bands.n && s->mult_in != NULL; i++) {
+        const mt_row *const row = &c->rows.in.rows[i];
         /* cuts come behind the problem's own */
-        const int k = row.avoidance - c->p->n_avoidances;
-        const double multiplier = s->mult_in[c->first_band_row + i];
+        const int k = row->avoidance - c->p->n_avoidances;
+        const double multiplier = s->mult_in[i];
         if (k >= 0 && multiplier > 0.0) {
             held[out->n_held++] = (mt_mode_placement_held){
                 .drive_positions = cuts[k].drive_positions,
                 .position = cuts[k].position,
-                .mode = row.mode,
-                .above = row.above,
-                .band = c->avoidances[row.avoidance].bands.items[row.band].label,
+                .mode = row->mode,
+                .above = row->sense == MT_AT_LEAST,
+                .band = c->avoidances[row->avoidance].bands.items[row->band].label,
                 .multiplier = multiplier};
         }
     }

@@ -140,7 +140,7 @@ static void list_limits(mt_proof *proof, const mt_problem *p)
         /* the interval that the requirement keeps its number in */
         const double least = MT_HAS(d->equals) ? d->equals : d->goal->at_least;
         const double most = MT_HAS(d->equals) ? d->equals : d->goal->at_most;
-        if (d->row_res >= 0) {
+        if (d->role == MT_ROLE_RESIDUAL) {
             continue;
         }
         if (mt_requirement_is_frequency(d)) {

@@ -83,10 +83,10 @@ static void beyond_bound(const relaxed *r, const double *t, bool with_gradient,
 
 static void relaxation_rows(const relaxed *r, double s, bool with_gradient, mt_nlp_values *out)
 {
-    const mt_subproblem *const c = r->w->c;
-    const ptrdiff_t n = c->p->n;
-    const int n_in = c->n_in;
-    const int n_eq = c->p->n_eq;
+    const mt_row_table *const rows = &r->w->c->rows;
+    const ptrdiff_t n = r->w->p->n;
+    const int n_in = rows->in.n;
+    const int n_eq = rows->eq.n;
     if (!r->settled) {
         out->f = 0.5 * s * s;
     }
@@ -99,7 +99,7 @@ static void relaxation_rows(const relaxed *r, double s, bool with_gradient, mt_n
         memset(out->deq + (n * n_eq), 0, (size_t)n_eq * sizeof *out->deq);
     }
     for (int i = 0; i < n_in; i++) {
-        if (mt_relaxation_is_row(c, r->move, false, i)) {
+        if (mt_relaxation_is_row(r->move, &rows->in.rows[i])) {
             out->in[i] += s;
             if (with_gradient) {
                 out->din[i + (n * n_in)] = 1.0;
@@ -107,7 +107,7 @@ static void relaxation_rows(const relaxed *r, double s, bool with_gradient, mt_n
         }
     }
     for (int i = 0; i < n_eq; i++) {
-        if (mt_relaxation_is_row(c, r->move, true, i)) {
+        if (mt_relaxation_is_row(r->move, &rows->eq.rows[i])) {
             out->eq[i] -= s;
             if (with_gradient) {
                 out->deq[i + (n * n_eq)] = -1.0;

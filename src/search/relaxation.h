@@ -130,6 +130,6 @@ void mt_relaxation_merge(mt_moves *to, const mt_moves *from, int n);
 /* Keeps found moves only, smallest first, ties in the order of the study. */
 void mt_relaxation_rank(mt_moves *moves);
 /* True where this row of `in` (of the equalities, where eq) is the move's. */
-bool mt_relaxation_is_row(const mt_subproblem *c, const mt_move *m, bool eq, int row);
+bool mt_relaxation_is_row(const mt_move *m, const mt_row *row);
 
 #endif

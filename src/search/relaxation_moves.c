@@ -21,10 +21,10 @@ static void add_goal_moves(const mt_problem *p, mt_moves *out)
         const mt_requirement *const d = &p->requirements[i];
         const mt_goal *const g = d->goal;
         mt_move m = {.kind = MT_MOVE_GOAL, .requirement = i};
-        if (d->row_eq < 0 && d->row_in < 0) { /* no constraint */
+        if (d->role != MT_ROLE_LIMIT && d->role != MT_ROLE_TARGET) { /* no constraint */
             continue;
         }
-        if (d->row_eq >= 0) {
+        if (d->role == MT_ROLE_TARGET) {
             m.target = true;
             m.from = d->equals;
             append_move(out, m);
@@ -118,38 +118,15 @@ mt_status mt_relaxation_subproblem(const mt_subproblem *from, const mt_move *m, 
     return *useful ? mt_subproblem_lay_out(out, NULL, 0, NULL, w, mem, err) : MT_OK;
 }
 
-/* A row on top of the design's own, at a corner of the tolerances. */
-static bool is_corner_row(const mt_move *m, const mt_tolerance_row *row)
+/* Modes above a band are held by its upper edge. */
+bool mt_relaxation_is_row(const mt_move *m, const mt_row *row)
 {
     if (m->kind == MT_MOVE_GOAL) {
-        return !m->target && row->requirement == m->requirement &&
-               (row->side == MT_HIGHEST) == m->upper;
+        const mt_row_sense sense = m->target ? MT_EQUAL : m->upper ? MT_AT_MOST : MT_AT_LEAST;
+        return row->requirement == m->requirement && row->sense == sense;
     }
-    return m->kind == MT_MOVE_EDGE && row->requirement < 0 &&
-           row->at.avoidance == m->avoidance && row->at.band == m->band &&
-           row->at.above == m->upper;
-}
-
-bool mt_relaxation_is_row(const mt_subproblem *c, const mt_move *m, bool eq, int row)
-{
-    mt_avoidance_row at;
-    const mt_tolerance_row *const corner = eq ? NULL : mt_tolerance_corner_row(c, row);
-    if (corner != NULL) {
-        return is_corner_row(m, corner);
-    }
-    if (m->kind == MT_MOVE_GOAL) {
-        const mt_requirement *const d = &c->p->requirements[m->requirement];
-        const int second = m->upper && MT_HAS(d->goal->at_least) ? 1 : 0;
-        const int n = d->n_parts > 0 ? d->n_parts : 1;
-        return m->target ? eq && row == d->row_eq
-                         : !eq && row >= d->row_in + second && row < d->row_in + second + n;
-    }
-    if (m->kind != MT_MOVE_EDGE || eq || c->below == NULL || row < c->first_band_row ||
-        !mt_avoidance_row_at(c, c->below, row - c->first_band_row, &at)) {
-        return false;
-    }
-    /* modes above a band are held by its upper edge */
-    return at.avoidance == m->avoidance && at.band == m->band && at.above == m->upper;
+    return m->kind == MT_MOVE_EDGE && row->avoidance == m->avoidance && row->band == m->band &&
+           (row->sense == MT_AT_LEAST) == m->upper;
 }
 
 /* How the number that moves is measured: edges of bands as frequencies are. */
@@ -180,19 +157,19 @@ static double moved(const mt_problem *p, const mt_move *m, double row)
 
 double mt_relaxation_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v)
 {
-    const mt_subproblem *const c = w->c;
+    const mt_row_table *const rows = &w->c->rows;
     double worst = m->target ? 0.0 : HUGE_VAL;
-    for (int i = 0; i < w->p->n_eq; i++) {
-        if (mt_relaxation_is_row(c, m, true, i)) {
+    for (int i = 0; i < rows->eq.n; i++) {
+        if (mt_relaxation_is_row(m, &rows->eq.rows[i])) {
             worst = v->eq[i];
-        } else if (!mt_is_met(fabs(v->eq[i]), c->eq_tol[i])) {
+        } else if (!mt_is_met(fabs(v->eq[i]), rows->eq.tol[i])) {
             return nan("");
         }
     }
-    for (int i = 0; i < c->n_in; i++) {
-        if (mt_relaxation_is_row(c, m, false, i)) {
+    for (int i = 0; i < rows->in.n; i++) {
+        if (mt_relaxation_is_row(m, &rows->in.rows[i])) {
             worst = fmin(worst, v->in[i]);
-        } else if (!mt_is_met(-v->in[i], c->in_tol[i])) {
+        } else if (!mt_is_met(-v->in[i], rows->in.tol[i])) {
             return nan("");
         }
     }

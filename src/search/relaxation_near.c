@@ -16,13 +16,13 @@ static const double SLACK = 1e-3;
 
 static bool presses_row(const mt_subproblem *c, const mt_move *m, const mt_nlp_values *v)
 {
-    for (int i = 0; i < c->p->n_eq; i++) {
-        if (mt_relaxation_is_row(c, m, true, i)) {
+    for (int i = 0; i < c->rows.eq.n; i++) {
+        if (mt_relaxation_is_row(m, &c->rows.eq.rows[i])) {
             return true;
         }
     }
-    for (int i = 0; i < c->n_in; i++) {
-        if (mt_relaxation_is_row(c, m, false, i) && !(v->in[i] > SLACK)) {
+    for (int i = 0; i < c->rows.in.n; i++) {
+        if (mt_relaxation_is_row(m, &c->rows.in.rows[i]) && !(v->in[i] > SLACK)) {
             return true;
         }
     }

@@ -245,7 +245,7 @@ static mt_status choose_entries(mt_repeated_eigenvalues *m, mt_repeated_eigenval
 static mt_status number_rows(mt_repeated_eigenvalues *m, mt_arena *mem, mt_err *err)
 {
     const mt_workspace *const ws = m->ws;
-    const int n_eq = mt_subproblem_rows_eq(ws->c);
+    const int n_eq = ws->c->rows.eq.n;
     double least = 1.0;
     for (int i = 0; i < n_eq; i++) {
         m->n_kept += m->replaced[i] ? 0 : 1;
@@ -257,14 +257,14 @@ static mt_status number_rows(mt_repeated_eigenvalues *m, mt_arena *mem, mt_err *
     }
     m->eq_tol = mt_arena_f64(mem, (size_t)m->n_kept + (size_t)m->n_rows, 1);
     MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < mt_subproblem_rows_in(ws->c); i++) {
-        least = fmin(least, ws->c->in_tol[i]);
+    for (int i = 0; i < ws->c->rows.in.n; i++) {
+        least = fmin(least, ws->c->rows.in.tol[i]);
     }
     int kept = 0;
     for (int i = 0; i < n_eq; i++) {
-        least = fmin(least, ws->c->eq_tol[i]);
+        least = fmin(least, ws->c->rows.eq.tol[i]);
         if (!m->replaced[i]) {
-            m->eq_tol[kept++] = ws->c->eq_tol[i];
+            m->eq_tol[kept++] = ws->c->rows.eq.tol[i];
         }
     }
     for (int i = 0; i < m->n_rows; i++) {
@@ -283,9 +283,8 @@ mt_status mt_repeated_eigenvalues_find(mt_workspace *ws, const double *t, double
     MT_TRY(mt_workspace_eval(ws, t, true, &out->values, err));
     MT_TRY(mt_repeated_eigenvalues_sides(ws, mem, &sides, &n, err));
     out->blocks = mt_arena_alloc(mem, (size_t)n, sizeof *out->blocks);
-    out->replaced = mt_arena_alloc(
-        mem, (size_t)mt_subproblem_rows_eq(ws->c) + (size_t)mt_subproblem_rows_in(ws->c),
-        sizeof *out->replaced);
+    out->replaced = mt_arena_alloc(mem, (size_t)ws->c->rows.eq.n + (size_t)ws->c->rows.in.n,
+                                   sizeof *out->replaced);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(find_blocks(out, sides, n, near, mem, err));
     find_rows(out, sides, n);
@@ -312,8 +311,8 @@ static void own_rows(const mt_repeated_eigenvalues *m, mt_nlp_values *out)
 {
     const mt_workspace *const ws = m->ws;
     const mt_nlp_values *const v = &m->values;
-    const int n_eq = mt_subproblem_rows_eq(ws->c);
-    const int n_in = mt_subproblem_rows_in(ws->c);
+    const int n_eq = ws->c->rows.eq.n;
+    const int n_in = ws->c->rows.in.n;
     const int rows = m->n_kept + m->n_rows;
     int kept = 0;
     for (int i = 0; i < n_in; i++) {

@@ -3,7 +3,6 @@
  * and of both at corners of the tolerances. */
 #include <math.h>
 
-#include "problem/goal_avoid.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
 #include "search/repeated_eigenvalues.h"
@@ -26,68 +25,39 @@ static void add_mode_side(listing *l, const mt_repeated_eigenvalues_side *what, 
     }
 }
 
-static void add_requirement(listing *l, const mt_requirement *d)
+/* The analysis that a row is evaluated with. */
+static mt_repeated_eigenvalues_side side_of(const mt_workspace *ws, const mt_row *row, int at)
 {
-    const mt_workspace *const ws = l->ws;
-    const mt_goal *const g = d->goal;
-    const int n_eq = mt_subproblem_rows_eq(ws->c);
-    if (!mt_requirement_is_frequency(d)) {
-        return;
+    const mt_configuration_work *const view = &ws->views[row->view];
+    mt_repeated_eigenvalues_side s = {.analysis = view->analysis,
+                                      .limit_hz = row->limit,
+                                      .sign = mt_row_sign(row),
+                                      .moves = row->avoidance >= 0 && ws->c->clearance,
+                                      .row = at};
+    if (row->corner >= 0) {
+        s.analysis = view->corners[row->corner];
+        s.factor = ws->c->tolerance_box->views[row->view].corners[row->corner].factor;
     }
-    for (int k = 0; k < 2; k++) {
-        mt_repeated_eigenvalues_side s = {.analysis = ws->views[d->view].analysis,
-                                          .limit_hz = k == 0 ? g->at_least : g->at_most,
-                                          .sign = k == 0 ? 1.0 : -1.0};
-        const int in = d->row_in + (k == 1 && MT_HAS(g->at_least) ? 1 : 0);
-        if (d->row_in >= 0 && MT_HAS(s.limit_hz) && !mt_tolerance_at_corner(ws->c, in)) {
-            s.row = n_eq + in;
-            add_mode_side(l, &s, d->mode);
-        }
-        if (d->row_eq >= 0 && MT_HAS(d->equals)) {
-            s.limit_hz = d->equals;
-            s.row = d->row_eq;
-            add_mode_side(l, &s, d->mode);
-        }
-    }
+    return s;
 }
 
-static void add_bands(listing *l)
+/* True where a row limits the frequency of a mode by its index. */
+static bool limits_mode(const mt_subproblem *c, const mt_row *row)
 {
-    const mt_workspace *const ws = l->ws;
-    mt_avoidance_row at;
-    for (int k = 0; ws->c->below != NULL && mt_avoidance_row_at(ws->c, ws->c->below, k, &at);
-         k++) {
-        const mt_avoidance *const c = &ws->c->avoidances[at.avoidance];
-        const mt_band *const band = &c->bands.items[at.band];
-        const int in = ws->c->first_band_row + k;
-        const mt_repeated_eigenvalues_side s = {.analysis = ws->views[c->view].analysis,
-                                                .limit_hz =
-                                                    at.above ? band->upper_hz : band->lower_hz,
-                                                .sign = at.above ? 1.0 : -1.0,
-                                                .moves = ws->c->clearance,
-                                                .row = mt_subproblem_rows_eq(ws->c) + in};
-        if (!mt_tolerance_at_corner(ws->c, in)) {
-            add_mode_side(l, &s, at.mode);
-        }
-    }
+    return row->avoidance >= 0 ||
+           (row->requirement >= 0 && row->kind != MT_ROW_POSITION &&
+            mt_requirement_is_frequency(&c->requirements[row->requirement]));
 }
 
-static void add_corners(listing *l)
+/* A target is a limit on both sides. */
+static void add_row(listing *l, const mt_row *row, int at)
 {
-    const mt_workspace *const ws = l->ws;
-    for (int k = 0; ws->c->tolerance_box != NULL && k < ws->c->tolerance_box->n_rows; k++) {
-        const mt_tolerance_row *const row = &ws->c->tolerance_box->rows[k];
-        const int view = mt_tolerance_row_configuration(ws->c, row);
-        if (view >= 0) {
-            const mt_tolerance_corners *const set = &ws->c->tolerance_box->views[view];
-            const mt_repeated_eigenvalues_side s = {
-                .analysis = ws->views[view].corners[row->corner],
-                .factor = set->corners[row->corner].factor,
-                .limit_hz = mt_tolerance_limit_hz(ws->c, row),
-                .sign = row->side == MT_LOWEST ? 1.0 : -1.0,
-                .moves = row->requirement < 0 && ws->c->clearance,
-                .row = mt_subproblem_rows_eq(ws->c) + row->row};
-            add_mode_side(l, &s, mt_tolerance_row_mode(ws->c, row));
+    if (limits_mode(l->ws->c, row)) {
+        mt_repeated_eigenvalues_side s = side_of(l->ws, row, at);
+        add_mode_side(l, &s, row->mode);
+        if (row->sense == MT_EQUAL) {
+            s.sign = -s.sign;
+            add_mode_side(l, &s, row->mode);
         }
     }
 }
@@ -95,16 +65,16 @@ static void add_corners(listing *l)
 mt_status mt_repeated_eigenvalues_sides(mt_workspace *ws, mt_arena *mem,
                                         mt_repeated_eigenvalues_side **out, int *n, mt_err *err)
 {
-    const size_t corners =
-        ws->c->tolerance_box != NULL ? (size_t)ws->c->tolerance_box->n_rows : 0;
-    const size_t most = 4 * (size_t)ws->p->n_requirements + (size_t)ws->c->n_in + corners;
+    const mt_row_table *const rows = &ws->c->rows;
+    const size_t most = (2 * (size_t)rows->eq.n) + (size_t)rows->in.n;
     listing l = {.ws = ws, .items = mt_arena_alloc(mem, most, sizeof *l.items)};
     MT_TRY(mt_arena_check(mem, err));
-    for (int i = 0; i < ws->p->n_requirements; i++) {
-        add_requirement(&l, &ws->p->requirements[i]);
+    for (int i = 0; i < rows->eq.n; i++) {
+        add_row(&l, &rows->eq.rows[i], i);
     }
-    add_bands(&l);
-    add_corners(&l);
+    for (int i = 0; i < rows->in.n; i++) {
+        add_row(&l, &rows->in.rows[i], rows->eq.n + i);
+    }
     *out = l.items;
     *n = l.n;
     return MT_OK;

@@ -67,7 +67,7 @@ static mt_status first_stage(mt_workspace *const *workers, int n_workers, const 
         opt.prove_context = &asked;
     }
     /* roots are all met twice, whatever they cost */
-    opt.settles = c->search.settles && c->p->n_eq < c->p->n;
+    opt.settles = c->search.settles && c->rows.eq.n < c->p->n;
     if (from != NULL) {
         opt.starts = 1;
         nlp.origin = from;
@@ -122,9 +122,7 @@ static mt_status improve_solution(stages *s, int i, mt_err *err)
     }
     MT_TRY(stage_values_at(s, old->t, f, err)); /* the residuals that a misfit is held at */
     limit[c->stage - 1] = f[c->stage - 1];
-    for (int k = 0; k < c->stage; k++) {
-        mt_objective_stage_hold(c, s->ws, k, limit[k]);
-    }
+    mt_objectives_hold(c, s->ws, c->stage, limit);
     mt_workspace_back(s->ws, c);
     mt_nlp_options opt = options_of(c);
     mt_nlp nlp = mt_workspace_nlp(s->ws);

@@ -10,7 +10,7 @@ struct mt_cut;
 /*
  * Search a problem for designs: the first objective from many starts (mt_nlp_solve); then, for
  * every design found, the next objective from there with the earlier ones held
- * (mt_objective_stage_hold), and so on; where that leaves a continuum, the least total change
+ * (mt_objectives_hold), and so on; where that leaves a continuum, the least total change
  * (mt_search_nearest). Identical designs are reported once, in the order of the objectives. A
  * compromise, a spent budget or an interruption ends the list: see out->stop; *stage is the
  * objective that the solutions' f belongs to. Unidentifiable directions are those at the best
@@ -88,7 +88,7 @@ bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t);
  * search_nearest.c: of equally good designs the one of least total change. A flat solution
  * (mt_nlp_solution) is where its search happened to end; from there
  *
- *     minimise the total change   with all objectives held (mt_objective_stage_hold),
+ *     minimise the total change   with all objectives held (mt_objectives_hold),
  *
  * then again with the last objective held more closely, so that every printed digit of its
  * value stays. Solutions stay unchanged where they are not flat, where no such design is found,

@@ -63,9 +63,7 @@ static bool evaluate_objectives(continua *c, const double *t, double *stages)
     bool good = rc == MT_OK;
     c->rc = mt_is_final(rc) ? rc : MT_OK;
     if (good) {
-        const mt_subproblem *const k = ws->c;
-        const mt_missed m =
-            mt_missed_of(ws->p->n_eq, c->v.eq, k->eq_tol, k->n_in, c->v.in, k->in_tol);
+        const mt_missed m = mt_subproblem_missed(ws->c, &c->v);
         good = mt_is_met(m.violation, 1.0);
     }
     for (int k = 0; k < ws->c->n_stages && good; k++) {
@@ -93,7 +91,7 @@ static bool equal(const mt_workspace *ws, const double *a, const double *b)
 static mt_status shortest_step(continua *c, int n_free, const int *free, double *step,
                                mt_err *err)
 {
-    const int m = c->ws->p->n_res;
+    const int m = c->ws->c->rows.res.n;
     mt_qr qr;
     double *const jt = mt_arena_f64(c->mem, (size_t)n_free, (size_t)m);
     double *const r = mt_arena_f64(c->mem, (size_t)m, 1);
@@ -124,12 +122,12 @@ static bool restore_exact_fit(continua *c)
         n_free += k->lower_t[j] < k->upper_t[j] ? 1 : 0;
     }
     for (int i = 0; i < STEPS && c->rc == MT_OK; i++) {
-        if ((most > 0 && c->out->evals >= most) || n_free < c->ws->p->n_res) {
+        if ((most > 0 && c->out->evals >= most) || n_free < c->ws->c->rows.res.n) {
             return false;
         }
         c->out->evals++;
         mt_status rc = mt_workspace_eval(c->ws, c->t, true, &c->v, &c->err);
-        if (rc == MT_OK && mt_max_abs(c->ws->p->n_res, c->v.r) <= RESIDUAL) {
+        if (rc == MT_OK && mt_max_abs(c->ws->c->rows.res.n, c->v.r) <= RESIDUAL) {
             return true;
         }
         rc = rc == MT_OK ? shortest_step(c, n_free, free, step, &c->err) : rc;
@@ -266,7 +264,7 @@ mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result
 {
     continua c = {.ws = ws, .out = out, .mem = mem};
     c.fits = ws->c->n_stages == 1 && mt_objective_is(ws->c->stages[0].type, MT_RESIDUALS) &&
-             ws->p->n_eq == 0 && ws->p->n_res < ws->c->n_t;
+             ws->c->rows.eq.n == 0 && ws->c->rows.res.n < ws->c->n_t;
     const int n = out->n_solutions;
     if (out->compromise || n < 2 || out->stop == MT_STOP_USER) {
         return MT_OK;

@@ -103,13 +103,11 @@ static bool lacks(const nearest *n, long evals)
 static void hold_earlier_objectives(nearest *n, int stage)
 {
     mt_subproblem *const c = &n->held;
-    c->stage = stage;
-    for (int k = 0; k < stage; k++) {
-        mt_objective_stage_hold(c, n->ws, k, n->at[k]);
-        if (n->close > 0.0 && k + 1 == n->first->n_stages) {
-            c->held[k].limit = n->at[k] + (n->close * c->held[k].unit);
-            c->in_tol[c->n_in + k] = CLOSE_TOLERANCE * n->close;
-        }
+    const int last = n->first->n_stages - 1;
+    mt_objectives_hold(c, n->ws, stage, n->at);
+    if (n->close > 0.0 && stage > last) { /* its row is the last one */
+        c->held[last].limit = n->at[last] + (n->close * c->held[last].unit);
+        c->rows.in.tol[c->rows.in.n - 1] = CLOSE_TOLERANCE * n->close;
     }
     mt_workspace_back(n->ws, c);
 }
@@ -219,8 +217,8 @@ static mt_status find_idle(nearest *n, const mt_nlp_solution *s, bool *idle, int
         (void)mt_objective_stage_value(w, k, slope);
         keep_idle(1, c->n_t, 0, slope, idle);
     }
-    const int n_eq = mt_subproblem_rows_eq(c);
-    const int n_in = mt_subproblem_rows_in(c);
+    const int n_eq = c->rows.eq.n;
+    const int n_in = c->rows.in.n;
     for (int i = 0; i < n_eq; i++) {
         keep_idle(n_eq, c->n_t, i, v.deq, idle);
     }
@@ -300,8 +298,7 @@ static mt_status keeps(nearest *n, const double *t, double f, mt_nlp_values *v, 
     const mt_status rc = mt_workspace_eval(n->ws, t, false, v, &own);
     *kept = false;
     if (rc == MT_OK) {
-        const mt_missed m = mt_missed_of(mt_subproblem_rows_eq(c), v->eq, c->eq_tol,
-                                         mt_subproblem_rows_in(c), v->in, c->in_tol);
+        const mt_missed m = mt_subproblem_missed(c, v);
         *kept = m.violation <= KEPT && mt_compare(v->f, f, MT_EQUAL_FOUND) <= 0;
     }
     return mt_pass_final(rc, &own, err);
@@ -426,7 +423,7 @@ static mt_status move_to_nearest(nearest *n, double *f, const double *limit, mt_
 static bool is_open_fit(const mt_subproblem *c)
 {
     return c->n_stages == 1 && mt_objective_is(c->stages[0].type, MT_RESIDUALS) &&
-           c->p->n_eq == 0 && c->p->n_res < c->n_t;
+           c->rows.eq.n == 0 && c->rows.res.n < c->n_t;
 }
 
 static bool is_exact(const mt_nlp_solution *s)

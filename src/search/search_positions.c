@@ -19,7 +19,7 @@ static const double SAME = 1e-7;
  * "vibration" are not. */
 static bool is_asked(const mt_problem *p, int requirement)
 {
-    return p->requirements[requirement].row_in >= 0 &&
+    return p->requirements[requirement].role == MT_ROLE_LIMIT &&
            mt_drive_positions_limits_first(p, &p->requirements[requirement]);
 }
 

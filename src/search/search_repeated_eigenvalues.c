@@ -91,8 +91,7 @@ static mt_status try_solve(refine *w, mt_nlp *nlp, double box, double *t, double
     rc = is && rc == MT_OK ? mt_workspace_eval(ws, end.solutions[0].t, false, &v, &own) : rc;
     if (is && rc == MT_OK) {
         w->evals++;
-        const mt_missed m = mt_missed_of(mt_subproblem_rows_eq(ws->c), v.eq, ws->c->eq_tol,
-                                         mt_subproblem_rows_in(ws->c), v.in, ws->c->in_tol);
+        const mt_missed m = mt_subproblem_missed(ws->c, &v);
         if (mt_is_held(m.violation)) {
             memcpy(t, end.solutions[0].t, (size_t)ws->c->n_t * sizeof *t);
             *f = v.f;
@@ -140,14 +139,14 @@ static int balance_rows(const mt_repeated_eigenvalues *m, const double *t, doubl
     const mt_workspace *const ws = m->ws;
     const mt_nlp_values *const v = &m->values;
     const int n = ws->c->n_t;
-    const int n_eq = mt_subproblem_rows_eq(ws->c);
-    const int n_in = mt_subproblem_rows_in(ws->c);
+    const int n_eq = ws->c->rows.eq.n;
+    const int n_in = ws->c->rows.in.n;
     int k = 0;
     for (int i = 0; i < n_eq + n_in; i++) {
         const int in = i - n_eq;
         const bool active =
             !m->replaced[i] &&
-            (in < 0 || v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * ws->c->in_tol[in]));
+            (in < 0 || v->in[in] <= fmax(ACTIVE, ACTIVE_TOLS * ws->c->rows.in.tol[in]));
         for (int j = 0; j < n && active; j++) {
             rows[j + ((ptrdiff_t)k * n)] =
                 in < 0 ? v->deq[i + ((ptrdiff_t)j * n_eq)] : v->din[in + ((ptrdiff_t)j * n_in)];
@@ -179,8 +178,8 @@ static int balance_rows(const mt_repeated_eigenvalues *m, const double *t, doubl
 static void put_multipliers(const mt_repeated_eigenvalues *m, const mt_cone *c,
                             const int *which, mt_nlp_solution *s)
 {
-    const int n_eq = mt_subproblem_rows_eq(m->ws->c);
-    const int n_in = mt_subproblem_rows_in(m->ws->c);
+    const int n_eq = m->ws->c->rows.eq.n;
+    const int n_in = m->ws->c->rows.in.n;
     memset(s->mult_bound, 0, (size_t)m->ws->c->n_t * sizeof *s->mult_bound);
     for (int i = 0; i < n_eq + n_in; i++) {
         double *const mult = i < n_eq ? &s->mult_eq[i] : &s->mult_in[i - n_eq];
@@ -248,8 +247,7 @@ static mt_status evaluate_cluster_kkt(refine *w, const double *t, double *kkt, d
     MT_TRY(mt_repeated_eigenvalues_find(ws, t, TOGETHER, w->mem, &m, err));
     w->evals++;
     const size_t n = (size_t)ws->c->n_t;
-    const size_t most =
-        (size_t)mt_subproblem_rows_eq(ws->c) + (size_t)mt_subproblem_rows_in(ws->c) + n;
+    const size_t most = (size_t)ws->c->rows.eq.n + (size_t)ws->c->rows.in.n + n;
     double *const rows = mt_arena_f64(w->mem, n, most);
     bool *const free_sign = mt_arena_alloc(w->mem, most, sizeof *free_sign);
     int *const which = mt_arena_int(w->mem, most);

@@ -123,10 +123,11 @@ static mt_status verify_open(rounds *r, bool last, bool *any, mt_err *err)
 static mt_status note_prices(rounds *r, const mt_nlp_solution *s, mt_err *err)
 {
     const mt_subproblem *const c = r->ws->c;
-    for (int i = 0; i < c->n_at_position && s->mult_in != NULL; i++) {
+    for (int i = 0; i < c->n_requirements - c->p->n_requirements && s->mult_in != NULL; i++) {
+        const mt_row_span rows = c->rows.of[c->p->n_requirements + i];
         double multiplier = 0.0;
-        for (int k = 0; k < c->at_position[i].n_in; k++) {
-            multiplier += fmax(s->mult_in[c->at_position[i].row_in + k], 0.0);
+        for (int k = rows.first; k < rows.first + rows.n; k++) {
+            multiplier += fmax(s->mult_in[k], 0.0);
         }
         if (!(multiplier > 0.0)) {
             continue;

@@ -148,18 +148,18 @@ static void callback__has_exact_gradients(mt_test *t)
     compiled s;
     if (compile(t, "four_bar", EVERYTHING, &s)) {
         double at[3] = {log(0.16), log(2.3), 0.9 / 3.0};
-        CHECK_INT(t, s.p->n_eq, 3);
-        CHECK_INT(t, s.p->n_in, 6);
-        CHECK_INT(t, s.p->n_res, 9);
+        CHECK_INT(t, s.p->whole.rows.eq.n, 3);
+        CHECK_INT(t, s.p->whole.rows.of_kind[MT_ROW_GOAL].n, 6);
+        CHECK_INT(t, s.p->whole.rows.res.n, 9);
         CHECK_INT(t, s.p->n_stages, 4);
+        double f[4] = {0.0};
         mt_subproblem later;
         CHECK_INT(t, mt_subproblem_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
         for (int k = 0; k < s.p->n_stages; k++) {
-            later.stage = k;
+            mt_objectives_hold(&later, s.w, k, f);
             check_stage(t, s.w, at, &s.mem);
-            mt_objective_stage_hold(&later, s.w, k,
-                                    1.01 * mt_objective_stage_value(s.w, k, NULL));
+            f[k] = 1.01 * mt_objective_stage_value(s.w, k, NULL);
         }
     }
     compiled_free(&s);
@@ -221,9 +221,9 @@ static void damping__has_exact_gradients(mt_test *t)
                 "'objective': {'minimise': 'misfit'}",
                 &s)) {
         double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03)};
-        CHECK_INT(t, s.p->n_eq, 1);
-        CHECK_INT(t, s.p->n_in, 3);
-        CHECK_INT(t, s.p->n_res, 2);
+        CHECK_INT(t, s.p->whole.rows.eq.n, 1);
+        CHECK_INT(t, s.p->whole.rows.of_kind[MT_ROW_GOAL].n, 3);
+        CHECK_INT(t, s.p->whole.rows.res.n, 2);
         check_stage(t, s.w, at, &s.mem);
     }
     compiled_free(&s);
@@ -260,10 +260,10 @@ static void shaken_goals__have_exact_gradients(mt_test *t)
                 "'objective': {'minimise': 'misfit'}",
                 &s)) {
         double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03)};
-        CHECK_INT(t, s.p->n_eq, 1);
-        CHECK_INT(t, s.p->n_res, 1);
+        CHECK_INT(t, s.p->whole.rows.eq.n, 1);
+        CHECK_INT(t, s.p->whole.rows.res.n, 1);
         CHECK(t, s.p->requirements[0].n_parts > 2);
-        CHECK_INT(t, s.p->n_in, s.p->requirements[0].n_parts + 4);
+        CHECK_INT(t, s.p->whole.rows.of_kind[MT_ROW_GOAL].n, s.p->requirements[0].n_parts + 4);
         check_stage(t, s.w, at, &s.mem);
     }
     compiled_free(&s);
@@ -284,19 +284,20 @@ static void shaken_objective__has_an_exact_gradient(mt_test *t)
                 "'objective': [{'minimise': 'vibration'}, {'minimise': 'change'}]",
                 &s)) {
         double at[6] = {log(0.155), log(21.0), log(0.4), log(0.09), log(0.03), 51.5};
+        double f[4] = {0.0};
         mt_subproblem later;
         mt_nlp_values v;
-        CHECK_INT(t, s.p->n_in, 1);
-        CHECK_INT(t, s.p->n_soft, s.p->requirements[1].n_parts + 1);
+        CHECK_INT(t, s.p->whole.rows.of_kind[MT_ROW_GOAL].n, 1);
+        CHECK_INT(t, s.p->whole.rows.of_kind[MT_ROW_VIBRATION].n,
+                  s.p->requirements[1].n_parts + 1);
         CHECK_INT(t, mt_subproblem_for_stages(&s.p->whole, &s.mem, &later, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_use(s.w, &later, NULL), MT_OK);
         for (int k = 0; k < s.p->n_stages; k++) {
-            later.stage = k;
+            mt_objectives_hold(&later, s.w, k, f);
             check_stage(t, s.w, at, &s.mem);
-            mt_objective_stage_hold(&later, s.w, k,
-                                    1.01 * mt_objective_stage_value(s.w, k, NULL));
+            f[k] = 1.01 * mt_objective_stage_value(s.w, k, NULL);
         }
-        later.stage = 0;
+        mt_objectives_hold(&later, s.w, 0, f);
         at[5] = 0.0; /* not given: looked up */
         CHECK_INT(t, mt_subproblem_values_init(s.w->c, &s.mem, &v, NULL), MT_OK);
         CHECK_INT(t, mt_workspace_eval(s.w, at, false, &v, NULL), MT_OK);
@@ -328,7 +329,7 @@ static void measured_responses__have_exact_gradients(mt_test *t)
                 "'objective': {'minimise': 'misfit'}",
                 &s)) {
         double at[5] = {log(0.155), log(21.0), log(0.4), log(0.09), 0.9 / 3.0};
-        CHECK_INT(t, s.p->n_res, 2 * (3 + 3 + 2));
+        CHECK_INT(t, s.p->whole.rows.res.n, 2 * (3 + 3 + 2));
         check_stage(t, s.w, at, &s.mem);
     }
     compiled_free(&s);

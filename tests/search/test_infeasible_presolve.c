@@ -47,10 +47,8 @@ static bool is_design(mt_test *t, mt_workspace *w, const double *at, mt_nlp_valu
 {
     int below[BANDS_MOST];
     double violation = 0.0;
-    const mt_subproblem *const c = w->c;
     CHECK_INT(t, mt_workspace_eval(w, at, false, v, NULL), MT_OK);
-    const mt_missed missed = mt_missed_of(mt_subproblem_rows_eq(c), v->eq, c->eq_tol,
-                                          mt_subproblem_rows_in(c), v->in, c->in_tol);
+    const mt_missed missed = mt_subproblem_missed(w->c, v);
     CHECK_INT(t, mt_mode_placement_assignment(w, at, below, &violation, NULL), MT_OK);
     return mt_is_met(missed.violation, 1.0) && violation == 0.0;
 }

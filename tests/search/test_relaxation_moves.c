@@ -42,6 +42,7 @@ typedef struct asked {
     mt_subproblem c;
     mt_workspace w;
     mt_move m;
+    mt_row typed[2];
     double rows[2];
     double tol[2];
 } asked;
@@ -55,20 +56,21 @@ static void ask(asked *a, int number, limit kind)
                                                      : nan(""),
                           .at_most = upper ? from : nan("")},
                  .tol = {1e-6, 1e-6}};
-    a->requirement = (mt_requirement){.measure = numbers[number].measure,
+    a->requirement = (mt_requirement){.role = kind == TARGET ? MT_ROLE_TARGET : MT_ROLE_LIMIT,
+                                      .measure = numbers[number].measure,
                                       .goal = &a->goal,
                                       .equals = kind == TARGET ? from : nan(""),
-                                      .row_eq = kind == TARGET ? 0 : -1,
-                                      .row_in = kind == TARGET ? -1 : 0,
                                       .size = SIZE_OF_NOTHING};
-    a->p = (mt_problem){
-        .requirements = &a->requirement, .n_requirements = 1, .n_eq = kind == TARGET ? 1 : 0};
-    a->c = (mt_subproblem){.p = &a->p,
-                           .n_in = kind == TARGET ? 0
-                                   : kind == BOTH ? 2
-                                                  : 1,
-                           .eq_tol = a->tol,
-                           .in_tol = a->tol};
+    a->p = (mt_problem){.requirements = &a->requirement, .n_requirements = 1};
+    const mt_row_sense first = kind == TARGET ? MT_EQUAL
+                               : kind == MOST ? MT_AT_MOST
+                                              : MT_AT_LEAST;
+    a->typed[0] = mt_row_init(MT_ROW_GOAL, first);
+    a->typed[1] = mt_row_init(MT_ROW_GOAL, MT_AT_MOST);
+    a->typed[0].requirement = a->typed[1].requirement = 0;
+    const mt_row_block rows = {.n = kind == BOTH ? 2 : 1, .rows = a->typed, .tol = a->tol};
+    a->c = (mt_subproblem){.p = &a->p};
+    *(kind == TARGET ? &a->c.rows.eq : &a->c.rows.in) = rows;
     a->w = (mt_workspace){.p = &a->p, .c = &a->c};
     a->m =
         (mt_move){.kind = MT_MOVE_GOAL, .upper = upper, .target = kind == TARGET, .from = from};
@@ -93,7 +95,7 @@ static void moves__size_and_value_are_inverse(mt_test *t)
                 asked a;
                 ask(&a, i, (limit)k);
                 mt_test_row(t, "%s, %s, row %g", numbers[i].name, kinds[k], row);
-                a.rows[a.c.n_in > 1 ? 1 : 0] = row;
+                a.rows[a.c.rows.in.n > 1 ? 1 : 0] = row;
                 const mt_nlp_values v = {.eq = a.rows, .in = a.rows};
                 const double to = mt_relaxation_value(&a.w, &a.m, &v);
                 const double size = mt_relaxation_size(&a.p, &a.m, to);
