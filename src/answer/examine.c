@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "model/lint.h"
 #include "model/values.h"
-#include "problem/mode_band_pairs.h"
+#include "problem/frequency.h"
 
 enum { TIMES_SIZE = 32 };
 
@@ -31,7 +31,7 @@ static const double FAR_BAND = 10.0;
 typedef struct reach {
     const mt_goal *goal;
     int *above; /* [2 bands] modes above each, at the first design looked at (-1: none yet) */
-    /* least of a mode beside a band (mode_band_pairs.h); 0 or less: one is inside */
+    /* least of a mode beside a band (problem/frequency.h); 0 or less: one is inside */
     double room;
 } reach;
 

@@ -5,8 +5,10 @@
 
 #include "answer/trade.h"
 #include "nlp/merit.h"
+#include "problem/tolerance.h"
+#include "problem/evaluate.h"
 #include "problem/drive_positions.h"
-#include "problem/goal_avoid.h"
+#include "problem/avoidance.h"
 #include "problem/objective.h"
 #include "search/catalogue_search.h"
 

@@ -8,6 +8,7 @@
  * contradict each other pull it about, and how far is what nobody can know better than from
  * them. The given weights are one opinion among these.
  */
+#include "problem/evaluate.h"
 #include "answer/weight_sensitivity.h"
 
 #include <limits.h>

@@ -6,8 +6,9 @@
 
 #include "base/tie.h"
 #include "describe/describe.h"
-#include "problem/goal_avoid.h"
-#include "problem/mode_band_pairs.h"
+#include "problem/configuration.h"
+#include "problem/avoidance.h"
+#include "problem/frequency.h"
 #include "problem/tolerance.h"
 
 static const double PERCENT = 100.0;

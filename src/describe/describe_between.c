@@ -5,7 +5,7 @@
 
 #include "describe/describe.h"
 #include "problem/forced_response.h"
-#include "problem/goal.h"
+#include "problem/goals.h"
 #include "search/drive_path_limit.h"
 
 static const double TWO_PI = 6.283185307179586476925;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/configuration.h"
 #include "describe/describe.h"
 #include "response/response.h"
 #include "vibration/profiled.h"

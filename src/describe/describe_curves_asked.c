@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/configuration.h"
 #include "problem/goal_frequency_response.h"
 #include "response/ports.h"
 

@@ -6,6 +6,7 @@
 
 #include "analysis/count.h"
 #include "describe/describe.h"
+#include "problem/configuration.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
 

@@ -3,7 +3,9 @@
 #include <math.h>
 
 #include "describe/describe.h"
-#include "problem/goal.h"
+#include "problem/evaluate.h"
+#include "problem/configuration.h"
+#include "problem/goals.h"
 #include "problem/goal_frequency_response.h"
 #include "problem/requirement.h"
 

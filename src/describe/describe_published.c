@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/evaluate.h"
+#include "problem/configuration.h"
 #include "analysis/count.h"
 #include "describe/describe.h"
 

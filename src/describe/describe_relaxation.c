@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Moves that let a design exist, as records and sentences. */
+#include "problem/configuration.h"
 #include "describe/describe_relaxation.h"
 
 #include <math.h>

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "describe/describe.h"
+#include "problem/configuration.h"
 #include "problem/forced_response.h"
-#include "problem/goal.h"
+#include "problem/goals.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 static const double PERCENT = 100.0;

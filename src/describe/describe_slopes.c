@@ -4,7 +4,9 @@
 #include <string.h>
 
 #include "describe/describe.h"
-#include "problem/goal.h"
+#include "problem/evaluate.h"
+#include "problem/configuration.h"
+#include "problem/goals.h"
 #include "problem/requirement.h"
 
 static bool is_same_name(const char *a, const char *b)

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "describe/describe.h"
+#include "problem/configuration.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
 #include "prove/band_count.h"

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "describe/describe.h"
-#include "problem/goal_frequency.h"
+#include "problem/frequency.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
 

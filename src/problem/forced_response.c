@@ -5,13 +5,189 @@
  *     d max|H| = Re(conj(H)/|H| dH),       d RMS = Re integral conj(H) dH G df / RMS,
  * a sum over frequencies of weights times dH, which adjoints give.
  */
+
 #include "problem/forced_response.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "problem/forced_response_sampled.h"
-#include "problem/goal.h"
+#include "analysis/damping.h"
+#include "problem/frequency.h"
+#include "problem/goals.h"
+#include "vibration/profiled.h"
+
+static const double TWO_PI = 6.283185307179586476925;
+
+/*
+ * Without a sum over poles: adaptive curves (response/curve.h) and quadrature,
+ *     RMS^2 = integral |H|^2 G df = sum_j |H(w_j)|^2 g_j,
+ * the nodes w_j those of Gauss's rule for ln w between any two neighbours among the points of a curve and the breakpoints of G. The
+ * largest value has no bound: its excess is NaN. Memory is r->mem.
+ */
+enum { CURVE_POINTS = 33, NODES = 4 };
+static const double NODE[NODES] = {-0.8611363115940525752, -0.3399810435848562648,
+                                   0.3399810435848562648, 0.8611363115940525752};
+static const double WEIGHT[NODES] = {0.3478548451374538574, 0.6521451548625461426,
+                                     0.6521451548625461426, 0.3478548451374538574};
+
+/* The value at its omega, with all that belongs to it. */
+static mt_status evaluate_sine_peak(mt_response *r, mt_sine_peak *out, double *by_omega,
+                                    mt_err *err)
+{
+    double complex h = 0.0;
+    double complex dh = 0.0;
+    const mt_sample at = {.h = &h, .dh = &dh};
+    MT_TRY(mt_transfer_at(r->chosen, out->omega, &at, &r->mem, err));
+    if (!isfinite(creal(h))) {
+        *out = (mt_sine_peak){.end = MT_FORCED_INFINITE, .pole = -1, .value = nan("")};
+        return MT_OK;
+    }
+    out->value = cabs(h);
+    out->direction = out->value > 0.0 ? conj(h) / out->value : 0.0;
+    out->excess = nan("");
+    *by_omega = creal(mt_frf_times(out->direction, dh));
+    return MT_OK;
+}
+
+static mt_status trace(mt_response *r, double lower, double upper, mt_curve *out, mt_err *err)
+{
+    const mt_curve_options opt = {
+        .from = lower, .to = upper, .points = CURVE_POINTS, .log = true};
+    return mt_response_curve(r, &opt, out, err);
+}
+
+/* An undamped resonance within the curve, which its points need not hit; NULL: none. */
+static const mt_extreme *resonance(const mt_curve *curve)
+{
+    for (int i = 0; i < curve->n_extremes; i++) {
+        if (curve->extremes[i].infinite) {
+            return &curve->extremes[i];
+        }
+    }
+    return NULL;
+}
+
+static mt_status sampled_find(mt_response *r, double lower, double upper, mt_sine_peak *out,
+                              double *by_omega, mt_err *err)
+{
+    mt_curve curve = {.n = 0};
+    double most = -1.0;
+    *out = (mt_sine_peak){.end = MT_FORCED_FINITE, .pole = -1, .omega = lower};
+    *by_omega = 0.0;
+    if (r->growing >= 0) {
+        *out = (mt_sine_peak){.end = MT_FORCED_UNSTABLE, .pole = r->growing, .value = nan("")};
+        return MT_OK;
+    }
+    if (lower < upper) {
+        MT_TRY(trace(r, lower, upper, &curve, err));
+    }
+    if (resonance(&curve) != NULL) {
+        *out = (mt_sine_peak){.end = MT_FORCED_INFINITE, .pole = -1, .value = nan("")};
+        return MT_OK;
+    }
+    for (int i = 0; i < curve.n; i++) {
+        const double size = cabs(curve.h[i]);
+        if (!(size <= most)) {
+            most = size;
+            out->omega = curve.w[i];
+        }
+    }
+    out->at_edge = lower < upper && (out->omega == lower || out->omega == upper);
+    return evaluate_sine_peak(r, out, by_omega, err);
+}
+
+/* Appends the nodes of one random part to the n present (NULL: counts them only): g in
+ * `weight`. */
+static int add_nodes(const mt_curve *curve, const mt_psd *g, mt_spectral_nodes *to, int n)
+{
+    int i = 0;
+    for (int k = 0; k + 1 < g->n; k++) {
+        double from = TWO_PI * g->hz[k];
+        const double end = TWO_PI * g->hz[k + 1];
+        while (from < end) {
+            while (i < curve->n && curve->w[i] <= from) {
+                i++;
+            }
+            const double to_w = i < curve->n ? fmin(curve->w[i], end) : end;
+            const double half = 0.5 * log(to_w / from);
+            for (int j = 0; j < NODES && to != NULL; j++) {
+                const double w = from * exp(half * (1.0 + NODE[j]));
+                const double level =
+                    g->level[k] * pow(w / (TWO_PI * g->hz[k]), mt_psd_exponent(g, k));
+                to->omega[n + j] = w;
+                to->weight[n + j] = half * WEIGHT[j] * w * level / TWO_PI;
+            }
+            n += NODES;
+            from = to_w;
+        }
+    }
+    return n;
+}
+
+/* All nodes of the random parts, g_j in their weights. */
+static mt_status all_nodes(mt_response *r, const mt_vibration *v, mt_spectral_nodes *out,
+                           mt_err *err)
+{
+    mt_curve *const curves = mt_arena_alloc(&r->mem, (size_t)v->n_random, sizeof *curves);
+    int n = 0;
+    MT_TRY(mt_arena_check(&r->mem, err));
+    for (int i = 0; i < v->n_random; i++) {
+        const mt_psd *const g = &v->random[i].psd;
+        MT_TRY(trace(r, TWO_PI * g->hz[0], TWO_PI * g->hz[g->n - 1], &curves[i], err));
+        n = add_nodes(&curves[i], g, NULL, n);
+    }
+    *out =
+        (mt_spectral_nodes){.n = n,
+                            .omega = mt_arena_f64(&r->mem, (size_t)n, 1),
+                            .weight = mt_arena_alloc(&r->mem, (size_t)n, sizeof *out->weight)};
+    MT_TRY(mt_arena_check(&r->mem, err));
+    n = 0;
+    for (int i = 0; i < v->n_random; i++) {
+        n = add_nodes(&curves[i], &v->random[i].psd, out, n);
+    }
+    return MT_OK;
+}
+
+static mt_status sampled_respond(mt_response *r, const mt_vibration *v,
+                                 mt_vibration_response *out, mt_err *err)
+{
+    mt_profiled profiled;
+    MT_TRY(mt_profiled_find(r, v, &profiled, err));
+    *out = profiled.answers[0];
+    for (int i = 0; i < out->n_tones && out->end == MT_FORCED_FINITE; i++) {
+        double ignored = 0.0;
+        MT_TRY(evaluate_sine_peak(r, &out->tones[i], &ignored, err)); /* its direction */
+    }
+    return MT_OK;
+}
+
+static mt_status sampled_nodes(mt_response *r, const mt_vibration *v,
+                               const mt_vibration_response *of, double by_rms, double by_sine,
+                               mt_spectral_nodes *out, mt_err *err)
+{
+    mt_spectral_nodes tones;
+    mt_spectral_nodes random = {.n = 0};
+    MT_TRY(mt_vibration_respond_tone_nodes(v, of, by_sine, &r->mem, &tones, err));
+    if (by_rms != 0.0 && of->rms > 0.0) {
+        MT_TRY(all_nodes(r, v, &random, err));
+    }
+    out->n = tones.n + random.n;
+    out->omega = mt_arena_f64(&r->mem, (size_t)out->n, 1);
+    out->weight = mt_arena_alloc(&r->mem, (size_t)out->n, sizeof *out->weight);
+    MT_TRY(mt_arena_check(&r->mem, err));
+    for (int i = 0; i < tones.n; i++) {
+        out->omega[i] = tones.omega[i];
+        out->weight[i] = tones.weight[i];
+    }
+    for (int j = 0; j < random.n; j++) {
+        double complex h = 0.0;
+        const mt_sample at = {.h = &h};
+        MT_TRY(mt_transfer_at(r->chosen, random.omega[j], &at, &r->mem, err));
+        out->omega[tones.n + j] = random.omega[j];
+        out->weight[tones.n + j] = by_rms * creal(random.weight[j]) * conj(h) / of->rms;
+    }
+    return MT_OK;
+}
 
 void mt_forced_response_close(mt_configuration_work *view)
 {
@@ -148,7 +324,7 @@ mt_status mt_forced_response_find(mt_workspace *w, const mt_requirement *d, doub
     MT_TRY(open_view(w, d, &s, err));
     *out = (mt_forced_response_peak){.proven = s->summed};
     if (!s->summed) {
-        return mt_sampled_find(&s->r, lower, upper, &out->at, &out->by_omega, err);
+        return sampled_find(&s->r, lower, upper, &out->at, &out->by_omega, err);
     }
     out->at = mt_sine_peak_find(&s->frf, lower, upper);
     if (out->at.end == MT_FORCED_FINITE) {
@@ -167,7 +343,7 @@ mt_status mt_forced_response_respond(mt_workspace *w, const mt_requirement *d,
     MT_TRY(open_view(w, d, &s, err));
     *proven = s->summed;
     return s->summed ? mt_vibration_respond(v, &s->sum, &s->r.mem, out, err)
-                     : mt_sampled_respond(&s->r, v, out, err);
+                     : sampled_respond(&s->r, v, out, err);
 }
 
 mt_status mt_forced_response_nodes(mt_workspace *w, const mt_requirement *d,
@@ -179,7 +355,7 @@ mt_status mt_forced_response_nodes(mt_workspace *w, const mt_requirement *d,
     MT_TRY(open_view(w, d, &s, err));
     return s->summed
                ? mt_vibration_respond_nodes(v, &s->sum, r, by_rms, by_sine, &s->r.mem, out, err)
-               : mt_sampled_nodes(&s->r, v, r, by_rms, by_sine, out, err);
+               : sampled_nodes(&s->r, v, r, by_rms, by_sine, out, err);
 }
 
 mt_status mt_forced_response_slope(mt_workspace *w, const mt_requirement *d,
@@ -227,4 +403,72 @@ mt_status mt_forced_response_find_peak_at(mt_workspace *w, const mt_requirement 
     mt_forced_response_close(view);
     view->analysis = own;
     return rc;
+}
+
+/* The way out of the infinite: undamped poles within [lower, upper] leave it by their nearer
+ * end, or are damped. */
+/* ln of what the infinite is off by, above MT_MOST_INSIDE: no damping that counts for a search
+ * leaves a resonance that much above its limit. */
+static const double BEYOND = 16.0;
+/* A damping ratio of this is worth as much as leaving the range by a factor of e. */
+static const double DAMPED = 1e-3;
+/* An undamped pole is a mode that dampers do not touch: the same frequency, to rounding. */
+static const double SAME = 1e-9;
+
+/* Adds the slope of the damping ratio of the mode at omega with the variables, where it has
+ * none. */
+static mt_status add_damping(mt_workspace *w, mt_analysis *a, double omega, double *slope,
+                             mt_err *err)
+{
+    const mt_damped_modes *damped = NULL;
+    bool repeated = false;
+    mt_err own = {.code = MT_OK};
+    mt_status rc = mt_analysis_damped(a, &damped, &own);
+    for (int i = 0; rc == MT_OK && i < damped->count; i++) {
+        if (damped->kind[i] == MT_DAMPED_OSCILLATING &&
+            fabs(damped->im[i] - omega) <= SAME * omega &&
+            fabs(damped->re[i]) <= SAME * omega) {
+            rc = mt_analysis_dpole(a, i, w->work, w->dshape, &repeated, &own);
+            for (int k = 0; k < w->p->n && rc == MT_OK && !repeated; k++) {
+                slope[k] += mt_workspace_dx_dt(w, k) * w->work[k] / (omega * DAMPED);
+            }
+            break;
+        }
+    }
+    return mt_pass_final(rc, &own, err);
+}
+
+mt_status mt_forced_response_lead(mt_workspace *w, const mt_requirement *d, double lower,
+                                  double upper, double *slope, mt_err *err)
+{
+    mt_analysis *const a = w->views[d->view].analysis;
+    const mt_modes *const modes = &a->modes;
+    int nearest = -1;
+    double least = HUGE_VAL;
+    double sign = 0.0;
+    for (int i = 0; i < modes->count; i++) {
+        const double omega = TWO_PI * mt_modal_hz(modes, i);
+        if (modes->kind[i] != MT_MODE_FLEXIBLE || !(omega >= lower && omega <= upper)) {
+            continue;
+        }
+        const double down = log(omega / lower);
+        const double up = log(upper / omega);
+        if (fmin(down, up) < least) {
+            least = fmin(down, up);
+            nearest = i;
+            sign = down < up ? 1.0 : -1.0;
+        }
+    }
+    w->beyond = BEYOND + (nearest < 0 ? 0.0 : least);
+    for (int k = 0; k < w->p->n && slope != NULL; k++) {
+        slope[k] = 0.0;
+    }
+    if (nearest < 0 || slope == NULL) {
+        return MT_OK;
+    }
+    MT_TRY(mt_problem_dln_frequency(w, a, nearest, 0.0, slope, err));
+    for (int k = 0; k < w->p->n; k++) {
+        slope[k] *= sign;
+    }
+    return add_damping(w, a, TWO_PI * mt_modal_hz(modes, nearest), slope, err);
 }

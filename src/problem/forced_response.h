@@ -6,7 +6,7 @@
 #include "response/response.h"
 #include "vibration/respond.h"
 
-/* Below this fraction of the limit, ln q is continued by its tangent (goal_frequency.h), so
+/* Below this fraction of the limit, ln q is continued by its tangent (frequency.h), so
  * that a response of 0 has a value. */
 #define MT_FORCED_RESPONSE_FLOOR 1e-9
 

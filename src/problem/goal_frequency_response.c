@@ -15,14 +15,16 @@
  * p_i ~ g2 / (1 - g2), the inverse of the variance of e_i (Bendat and Piersol, Random Data:
  * var |H|/|H|^2 = (1 - g2) / (2 n g2) of n averages).
  */
+
 #include "problem/goal_frequency_response.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "problem/configuration.h"
 #include "problem/forced_response.h"
-#include "problem/goal.h"
+#include "problem/goals.h"
 #include "problem/requirement.h"
 #include "response/slopes_forms.h"
 

@@ -24,9 +24,10 @@
  * = x / scale. The total change is
  *     sqrt(sum w_i (t_i - t_i(original))^2).
  *
- * Files: problem.c (creation, coordinates), problem_requirements.c (goals to requirements),
- * problem_program.c (expressions and objectives); goal_*.c and objective_*.c are the kinds,
- * drive_positions.c ties the positions of one drive.
+ * Files: problem.c compiles; goals.c, goal_*.c are the kinds of goal, objective.c those of
+ * objectives; rows.h and requirement.c, avoidance.c, tolerance_eval.c, objective.c the kinds of
+ * rows, which evaluate.c lays out and evaluates; drive_positions.c ties the positions of one
+ * drive.
  */
 
 /* A configuration that goals name; in a subproblem also a further position of a drive. */
@@ -71,7 +72,7 @@ typedef struct mt_requirement {
     int index; /* in the subproblem's list */
     mt_requirement_role role;
     int n_rows;                    /* in the block of its role; 0 of a range */
-    const struct mt_goal_ops *ops; /* of its kind (goal.h), as the next two */
+    const struct mt_goal_ops *ops; /* of its kind (goals.h), as the next two */
     mt_quantity quantity;
     mt_goal_measure measure;
     const mt_goal *goal;
@@ -164,10 +165,6 @@ mt_status mt_problem_new(const mt_study *study, const mt_run *run, mt_problem **
                          mt_err *err);
 /* Accepts NULL. */
 void mt_problem_delete(mt_problem *p);
-/* The system of a configuration at inputs x[n]; with a drive that the caller adds, x[n + 1]. */
-mt_system_def mt_problem_system(const mt_problem *p, int configuration, const double *x);
-/* Counts n modal solutions and reports progress. */
-void mt_problem_note_modal(const mt_problem *p, long n);
 /* Compiles the study and discards the result, as a check. Fails: as mt_problem_new. */
 mt_status mt_problem_try(const mt_study *study, mt_err *err);
 /* First row of a requirement in the block of its role. */
@@ -175,46 +172,10 @@ static inline int mt_requirement_row(const mt_subproblem *c, const mt_requiremen
 {
     return c->rows.of[d->index].first;
 }
-/* Coordinate of value x of variable i. */
-double mt_problem_t(const mt_problem *p, int i, double x);
-/* Value of variable i at coordinate t, clamped to the bounds; exact to rounding. */
-double mt_problem_value(const mt_problem *p, int i, double t);
 /* dx_i/dt_i at the value x of variable i. */
 static inline double mt_problem_dx_dt_at(const mt_problem *p, int i, double x)
 {
     return MT_HAS(p->scale[i]) ? p->scale[i] : x > p->floor[i] ? x : p->floor[i];
 }
-
-/* Analysis of a configuration at x[n], counted in study->counted. *out is the caller's. Fails:
- * as mt_analysis_new. */
-mt_status mt_problem_analyse(const mt_problem *p, int configuration, const double *x,
-                             mt_analysis **out, mt_err *err);
-/* The same with the system and mode count of a compiled configuration (mt_analysis_new_like),
- * which is cheaper. */
-mt_status mt_configuration_analyse(const mt_configuration_problem *view, const double *x,
-                                   mt_analysis **out, mt_err *err);
-/* Analysis of the configuration's mechanism with a drive and the configuration's mode count, at
- * the inputs of mt_analysis_new_driven. */
-mt_status mt_configuration_drive(const mt_problem *p, const mt_configuration_problem *view,
-                                 const mt_system_drive *drive, const double *at,
-                                 mt_analysis **out, mt_err *err);
-/* Index in p->views of a model's configuration; -1: none. */
-int mt_problem_configuration(const mt_problem *p, int configuration);
-/* The same, added where missing. Only while the problem is compiled. */
-mt_status mt_problem_add_configuration(mt_problem *p, int configuration, int *out, mt_err *err);
-/* Number of vibration modes of a configuration, the most of any design of the study. */
-int mt_configuration_vibrations(const mt_configuration_problem *view);
-/* Name of the configuration. */
-const char *mt_configuration_name(const mt_problem *p, const mt_configuration_problem *view);
-
-/* problem_requirements.c: configurations, requirements and their rows. */
-mt_status mt_problem_init_requirements(mt_problem *p, mt_err *err);
-/* problem_responses.c: checks the ports of responses. Fails: MT_E_INPUT, naming the unknown
- * port. */
-mt_status mt_problem_check_responses(const mt_problem *p, mt_err *err);
-/* Sets what each configuration is asked for; after requirements and bands. */
-void mt_problem_query(mt_problem *p);
-/* problem_program.c: the program of expressions, and the objectives. After the requirements. */
-mt_status mt_problem_init_program(mt_problem *p, mt_err *err);
 
 #endif

@@ -2,18 +2,32 @@
 #ifndef PROBLEM_REQUIREMENT_H
 #define PROBLEM_REQUIREMENT_H
 
+#include <math.h>
+
 #include "problem/workspace.h"
+
+/* Largest number of modes beyond a limited one that a search includes. */
+enum { MT_MODE_ORDER_MOST = 5 };
 
 struct mt_forced_response_value;
 
 /* True where d limits the frequency of a mode by its index. Frequencies ascend: a limit on one
  * holds for all beyond it. */
-bool mt_requirement_is_frequency(const mt_requirement *d);
+static inline bool mt_requirement_is_frequency(const mt_requirement *d)
+{
+    return d->quantity == MT_QUANTITY_FREQUENCY && d->mode > 0;
+}
 /* True where the last coordinate is that of the objective "vibration" and has been given a
  * value. */
-bool mt_forced_response_given(const mt_workspace *w);
+static inline bool mt_forced_response_given(const mt_workspace *w)
+{
+    return w->c->forced_response && w->t[w->p->n] != 0.0;
+}
 /* True where d is about a mode, by index or name. */
-bool mt_requirement_is_modal(const mt_requirement *d);
+static inline bool mt_requirement_is_modal(const mt_requirement *d)
+{
+    return d->view >= 0 && d->goal->response_limit == NULL;
+}
 /* Values (and gradients, where out has arrays for them) of one requirement in its rows, after
  * its configuration has been solved. *value (may be NULL): the limited value (infinite for a
  * mode at infinity), or the norm of its residuals. */
@@ -26,11 +40,18 @@ mt_status mt_requirement_eval(mt_workspace *w, const mt_requirement *d, bool wit
 mt_status mt_requirement_find_peak(mt_workspace *w, const mt_requirement *d, mt_analysis *a,
                                    struct mt_forced_response_value *out, mt_err *err);
 /* Divisor of a difference from the required value `asked`. */
-double mt_requirement_unit(const mt_requirement *d, double asked);
+static inline double mt_requirement_unit(const mt_requirement *d, double asked)
+{
+    const bool none = d->measure == MT_MEASURE_PART && !(fabs(asked) > 0.0);
+    return none ? d->size : mt_measure_unit(d->measure, asked);
+}
 /* Excess of q over the nearest or most violated limit, by the kind's measure; positive:
  * violated. */
 double mt_requirement_over(const mt_requirement *d, double q);
 /* Weight of a requirement in the subproblem; NaN: a constraint. */
-double mt_requirement_weight(const mt_workspace *w, const mt_requirement *d);
+static inline double mt_requirement_weight(const mt_workspace *w, const mt_requirement *d)
+{
+    return w->c->weight[d->index];
+}
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+
 #include "problem/rows.h"
 
 #include <math.h>
-#include <string.h>
 
 mt_row mt_row_init(mt_row_kind kind, mt_row_sense sense)
 {

@@ -10,7 +10,7 @@
 /*
  * The rows of a subproblem: one entry for each residual, equality and inequality of its search
  * problem (nlp/nlp.h), in their order, with what the row requires of which value. They are laid
- * out in one pass (mt_subproblem_lay_out), kind by kind, and evaluated by one operation for each
+ * out in one pass (mt_subproblem_lay_out), kind by kind, and evaluated by one operation of each
  * kind (mt_row_ops). Other code asks the entries and does not compute indices.
  */
 struct mt_subproblem;

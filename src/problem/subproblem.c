@@ -1,12 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The subproblem: bounds, coordinates, the arrays of its rows, its budget. */
+
 #include "problem/subproblem.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "nlp/merit.h"
-#include "problem/drive_positions.h"
+#include "problem/problem.h"
 #include "problem/tolerance.h"
+
+double mt_problem_t(const mt_problem *p, int i, double x)
+{
+    const double floor = p->floor[i];
+    if (MT_HAS(p->scale[i])) {
+        return x / p->scale[i];
+    }
+    return x < floor ? log(floor) + ((x - floor) / floor) : log(x);
+}
+
+/* Value of variable i at coordinate t; exact to rounding. */
+static double value_of(const mt_problem *p, int i, double t)
+{
+    const double floor = p->floor[i];
+    if (MT_HAS(p->scale[i])) {
+        return t * p->scale[i];
+    }
+    const double below = floor > 0.0 ? t - log(floor) : 0.0;
+    return below < 0.0 ? floor * (1.0 + below) : exp(t);
+}
 
 mt_status mt_subproblem_copy(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
                              mt_err *err)
@@ -35,57 +57,6 @@ void mt_subproblem_bound(mt_subproblem *c, int i, double lower, double upper)
     c->lower_t[i] = mt_problem_t(c->p, i, lower);
     c->upper_t[i] = mt_problem_t(c->p, i, upper);
     c->tolerance_box = NULL; /* its corners are those of all bounds */
-}
-
-#define OPS(id, name) &mt_rows_##name,
-static const mt_row_ops *const OPERATIONS[] = {MT_ROW_KIND_LIST(OPS)};
-
-mt_status mt_subproblem_lay_out(mt_subproblem *c, const int *below, int n_cuts,
-                                const mt_cut *cuts, mt_workspace *w, mt_arena *mem, mt_err *err)
-{
-    const mt_problem *const p = c->p;
-    const mt_row_layout l = {.c = c,
-                             .below = below,
-                             .n_cuts = n_cuts,
-                             .cuts = cuts,
-                             .known = c->tolerance_box,
-                             .mem = mem};
-    c->tolerance_box = NULL;
-    c->n_t = p->n;
-    c->n_views = p->n_views;
-    c->views = p->views;
-    c->n_requirements = p->n_requirements;
-    c->requirements = p->requirements;
-    c->rows = (mt_row_table){.next_of = NULL};
-    for (int k = 0; k < MT_ROW_KINDS; k++) {
-        const int first = c->rows.in.n;
-        c->rows.of_kind[k].first = first;
-        MT_TRY(OPERATIONS[k]->lay_out != NULL ? OPERATIONS[k]->lay_out(&l, err) : MT_OK);
-        c->rows.of_kind[k].n = c->rows.in.n - first;
-    }
-    mt_row_block *const blocks[] = {&c->rows.res, &c->rows.eq, &c->rows.in, &c->rows.next};
-    for (size_t k = 0; k < MT_COUNT(blocks); k++) {
-        MT_TRY(mt_rows_finish(blocks[k], 0, mem, err));
-    }
-    return w != NULL ? mt_workspace_use(w, c, err) : MT_OK;
-}
-
-mt_status mt_subproblem_eval_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                                  mt_err *err)
-{
-    for (int k = 0; k < MT_ROW_KINDS; k++) {
-        MT_TRY(OPERATIONS[k]->eval != NULL ? OPERATIONS[k]->eval(w, with_gradient, out, err)
-                                           : MT_OK);
-    }
-    return MT_OK;
-}
-
-mt_status mt_subproblem_in_placement(const mt_subproblem *from, const int *below, int n_cuts,
-                                     const mt_cut *cuts, mt_workspace *w, mt_arena *mem,
-                                     mt_subproblem *out, mt_err *err)
-{
-    MT_TRY(mt_subproblem_copy(from, mem, out, err));
-    return mt_subproblem_lay_out(out, below, n_cuts, cuts, w, mem, err);
 }
 
 mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
@@ -136,7 +107,7 @@ void mt_subproblem_x(const mt_subproblem *c, const double *t, double *x)
         } else if (!(t[i] > c->lower_t[i])) {
             x[i] = c->lower[i];
         } else {
-            x[i] = mt_problem_value(p, i, t[i]);
+            x[i] = value_of(p, i, t[i]);
         }
     }
 }

@@ -49,7 +49,7 @@ typedef struct mt_subproblem {
     mt_row_table rows; /* of the present stage */
     /* variables with a tolerance (tolerance.h); NULL: none */
     struct mt_problem_tolerance_box *tolerance_box;
-    /* [n_requirements] the problem's, then those at cuts (at_position.h) */
+    /* [n_requirements] the problem's, then those at cuts (drive_positions.h) */
     const struct mt_requirement *requirements;
     const double *hint; /* [n + 1] a further start; NULL: none */
     mt_search search;   /* the study's, with a part of its budget */
@@ -78,30 +78,14 @@ typedef struct mt_subproblem {
 /* out: a copy of `from` with its own bounds. Fails: MT_E_MEMORY. */
 mt_status mt_subproblem_copy(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
                              mt_err *err);
+/* Coordinate of value x of variable i. */
+double mt_problem_t(const struct mt_problem *p, int i, double x);
 /* Sets the bounds of variable i, as parameter values. Call mt_subproblem_lay_out afterwards. */
 void mt_subproblem_bound(mt_subproblem *c, int i, double lower, double upper);
-/*
- * Lays out the rows of c within its bounds with a mode placement below[n_bands of the problem]
- * (NULL: none) and cuts[n_cuts] (drive_positions.h), which must outlive c: those of bands,
- * after all others, where there is a placement, and those of limits. w: set to c afterwards;
- * NULL while the problem is compiled. Fails: MT_E_INPUT where a goal cannot be evaluated over
- * tolerances, MT_E_MEMORY, numerical failures.
- */
-mt_status mt_subproblem_lay_out(mt_subproblem *c, const int *below, int n_cuts,
-                                const struct mt_cut *cuts, struct mt_workspace *w,
-                                mt_arena *mem, mt_err *err);
-/* `from` with a mode placement: mt_subproblem_copy and mt_subproblem_lay_out. */
-mt_status mt_subproblem_in_placement(const mt_subproblem *from, const int *below, int n_cuts,
-                                     const struct mt_cut *cuts, struct mt_workspace *w,
-                                     mt_arena *mem, mt_subproblem *out, mt_err *err);
 /* `from` with memory for held objectives (mt_objectives_hold), for later stages. Fails:
  * MT_E_MEMORY. */
 mt_status mt_subproblem_for_stages(const mt_subproblem *from, mt_arena *mem, mt_subproblem *out,
                                    mt_err *err);
-/* Fills the rows of all kinds after configurations and corners have been solved. Fails: as the
- * kinds' operations. */
-mt_status mt_subproblem_eval_rows(struct mt_workspace *w, bool with_gradient,
-                                  mt_nlp_values *out, mt_err *err);
 /* Parameter values x[n] of coordinates t[n]; bounds, catalogue values and original values are
  * reproduced exactly. */
 void mt_subproblem_x(const mt_subproblem *c, const double *t, double *x);

@@ -2,7 +2,7 @@
 #ifndef PROBLEM_TOLERANCE_H
 #define PROBLEM_TOLERANCE_H
 
-#include "problem/goal_avoid.h"
+#include "problem/avoidance.h"
 #include "result/result.h"
 
 /*
@@ -23,7 +23,7 @@
  * Without variables of the second kind the worst corners are known at every design: two, exact.
  * Otherwise they are samples. Where the search can continue from a design that violates one
  * (some variable has no catalogue), it begins with those that slopes at the original design
- * give for each mode and side (tolerance_first.c): 2^k analyses become one or two. The design
+ * give for each mode and side (tolerance.c): 2^k analyses become one or two. The design
  * at which a search ends is then evaluated over its own tolerances (mt_tolerance_ranges): more
  * signs are proven there, and for the others the worst point is searched. A point worse than
  * the corners is added to them, and the search continues (tolerance_cut.h). Reported ranges are
@@ -91,17 +91,6 @@ typedef struct mt_tolerance_work {
     const mt_ranges *ranges; /* of the design being described; NULL: not known */
 } mt_tolerance_work;
 
-/*
- * tolerance_first.c: for a configuration whose corners signs[n] do not decide, the worst
- * corners by slopes, for each limited mode m and each side,
- *     x_i (1 -+ tolerance_i)   by the sign of dlambda_m/dx_i   where the sign is not known,
- * at the design within the bounds that is nearest to the original one, each corner once. out->n
- * = 0: no mode has slopes there. Cost: one analysis. Fails: MT_E_MEMORY, MT_E_INTERNAL.
- */
-mt_status mt_tolerance_first(const mt_subproblem *c, int view, const int *signs, mt_arena *mem,
-                             mt_tolerance_corners *out, mt_err *err);
-/* Factor of input i at its low end (side -1), its high end (1), or without influence (0). */
-double mt_tolerance_factor(const mt_subproblem *c, int i, int side);
 /* Effect of raising a variable. */
 enum { MT_FALLS = -1, MT_NOTHING, MT_RISES, MT_UNKNOWN };
 /* Makes w->tolerance_box; NULL where no variable has a tolerance. */
@@ -114,20 +103,29 @@ bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d);
 /* tolerance_eval.c: solves the modes at all corners of the design w->x. No effect without
  * tolerances, as the functions below. */
 mt_status mt_tolerance_solve(mt_workspace *w, bool with_gradient, mt_err *err);
-/* Fills the rows of all corners. After mt_tolerance_solve. */
-mt_status mt_tolerance_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                            mt_err *err);
+/* Makes the subproblem's tolerance_box (NULL where no variable has a tolerance) and appends its
+ * rows. Fails: MT_E_INPUT where a goal cannot be evaluated over tolerances, with the reason;
+ * MT_E_MEMORY, numerical failures. */
+mt_status mt_tolerance_lay_out(const mt_row_layout *l, mt_err *err);
 /* The corners of a configuration; of view -1: of the limit that this requirement is. */
 const mt_tolerance_corners *mt_tolerance_corners_of(const mt_subproblem *c, int view,
                                                     int requirement);
 /* The next row of `in` from `from` on that is evaluated at a corner; -1: none. */
 int mt_tolerance_next_row(const mt_subproblem *c, int from);
+/* True where a row at a corner is one of samples. Configurations of cuts along a drive are
+ * evaluated at their corners only. */
+bool mt_tolerance_row_is_sampled(const mt_subproblem *c, const mt_row *row);
+/* True where a limit of the subproblem is evaluated at sampled corners. */
+bool mt_tolerance_is_sampled(const mt_subproblem *c);
 /* Margin of the row for the value `value`: relative, for frequencies logarithmic; negative:
  * violated. Without the clearance. */
 double mt_tolerance_row_margin(const mt_subproblem *c, const mt_row *row, double value);
-/* mt_avoidance_margin over all corners, or over the ranges where known; modes correspond by
- * index. */
-double mt_tolerance_margin(const mt_workspace *w, const mt_avoidance *c);
+/* mt_avoidance_find_modes after the configuration has been solved, over the tolerances where
+ * there are any: the value that the objective "clearance" maximises. */
+double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c);
+/* The least over all avoidance goals; infinite without bands, NaN where a configuration is
+ * unstable. */
+double mt_avoidances_margin(const mt_workspace *w);
 /*
  * tolerance_range.c: ranges of the vibration modes of each configuration that goals or bands
  * use, and of the expressions of all limits, over the tolerances of the design w->x, by new
@@ -158,7 +156,7 @@ typedef enum mt_tolerance_descent {
     MT_DESCENT_FINE
 } mt_tolerance_descent;
 
-/* tolerance_sample.c: the least and greatest of m values over a box, by sampling. */
+/* tolerance_range.c: the least and greatest of m values over a box, by sampling. */
 typedef struct mt_tolerance_probe {
     int n;            /* inputs */
     const double *lo; /* [n] */

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+
 #include "problem/tolerance_cut.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "problem/avoidance.h"
+#include "problem/configuration.h"
+#include "problem/evaluate.h"
 
 /* Factors that differ by less are those of one corner: rounding of x (1 + tolerance) / x. */
 static const double SAME_FACTOR = 1e-12;
@@ -13,28 +17,11 @@ static const double SAME_FACTOR = 1e-12;
  * are not looked for before the design is described. */
 static const double FAR = 2.0;
 
-/* Configurations of cuts along a drive are evaluated at their corners only. */
-static bool is_judged(const mt_subproblem *c, const mt_row *row)
-{
-    return row->view < c->p->n_views &&
-           !mt_tolerance_corners_of(c, row->view, row->requirement)->exact;
-}
-
 /* True where two rows limit one value on one side, at two corners. */
 static bool is_same(const mt_row *a, const mt_row *b)
 {
     return a->requirement == b->requirement && a->sense == b->sense &&
            a->avoidance == b->avoidance && a->band == b->band && a->mode == b->mode;
-}
-
-bool mt_tolerance_is_sampled(const mt_subproblem *c)
-{
-    for (int k = mt_tolerance_next_row(c, 0); k >= 0; k = mt_tolerance_next_row(c, k + 1)) {
-        if (is_judged(c, &c->rows.in.rows[k])) {
-            return true;
-        }
-    }
-    return false;
 }
 
 static bool same_factor(int n, const double *a, const double *b)
@@ -105,7 +92,7 @@ static mt_status verify_tolerance_rows(const mt_workspace *w, const mt_ranges *r
         const bool again = before != NULL && is_same(before, row);
         before = row;
         const mt_tolerance_range *const range =
-            again || !is_judged(c, row) ? NULL : range_of(ranges, row);
+            again || !mt_tolerance_row_is_sampled(c, row) ? NULL : range_of(ranges, row);
         if (range == NULL) {
             continue;
         }
@@ -240,7 +227,7 @@ static mt_status verify_by_slopes(mt_workspace *w, mt_arena *mem, mt_tolerance_c
         const bool again = before != NULL && is_same(before, row);
         bool own = false;
         before = row;
-        if (!again && is_judged(c, row) && view >= 0) {
+        if (!again && mt_tolerance_row_is_sampled(c, row) && view >= 0) {
             MT_TRY(verify_first(w, row, x, mem, cuts, &own, err));
             far[view] = far[view] && own;
         }

@@ -31,8 +31,6 @@ typedef struct mt_tolerance_cuts {
     long solutions;     /* modal solutions besides its evaluation */
 } mt_tolerance_cuts;
 
-/* True where a limit of the subproblem is evaluated at sampled corners. */
-bool mt_tolerance_is_sampled(const mt_subproblem *c);
 /*
  * Verifies the design t[c->n_t] and adds points worse than the subproblem's corners and the
  * cuts so far: cuts->added of them; lists in mem. w: set to the subproblem. Where the corner by

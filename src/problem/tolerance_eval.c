@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows at the corners: as requirement.c and goal_avoid.c make them, with the corner's modes and
+/* Rows at the corners: as requirement.c and avoidance.c make them, with the corner's modes and
  * its factors in the gradient. */
 #include <math.h>
 
 #include "analysis/count.h"
-#include "problem/goal_avoid.h"
-#include "problem/goal_frequency.h"
-#include "problem/mode_band_pairs.h"
+#include "problem/avoidance.h"
+#include "problem/frequency.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
 
@@ -89,22 +88,6 @@ static mt_status expression(mt_workspace *w, const mt_tolerance_corner *c, mt_no
     return MT_OK;
 }
 
-const mt_tolerance_corners *mt_tolerance_corners_of(const mt_subproblem *c, int view,
-                                                    int requirement)
-{
-    return view >= 0 ? &c->tolerance_box->views[view] : &c->tolerance_box->limits[requirement];
-}
-
-int mt_tolerance_next_row(const mt_subproblem *c, int from)
-{
-    for (int i = from; i < c->rows.in.n; i++) {
-        if (c->rows.in.rows[i].corner >= 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
 double mt_tolerance_row_margin(const mt_subproblem *c, const mt_row *row, double value)
 {
     const double sign = mt_row_sign(row);
@@ -130,8 +113,8 @@ static mt_status value_at_corner(mt_workspace *w, const mt_row *row, bool with_g
                       err);
 }
 
-mt_status mt_tolerance_rows(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
-                            mt_err *err)
+static mt_status eval_corners(mt_workspace *w, bool with_gradient, mt_nlp_values *out,
+                              mt_err *err)
 {
     const ptrdiff_t rows = w->c->rows.in.n;
     const int n = w->p->n;
@@ -182,7 +165,9 @@ static bool span_of(const mt_workspace *w, int view, int k, double *low, double 
     return true;
 }
 
-double mt_tolerance_margin(const mt_workspace *w, const mt_avoidance *c)
+/* mt_avoidance_margin over all corners, or over the ranges where known; modes correspond by
+ * index. */
+static double tolerance_margin(const mt_workspace *w, const mt_avoidance *c)
 {
     const mt_modes *const modes = &w->views[c->view].analysis->modes;
     const int n_corners = w->c->tolerance_box->views[c->view].n;
@@ -202,3 +187,23 @@ double mt_tolerance_margin(const mt_workspace *w, const mt_avoidance *c)
     }
     return room > -HUGE_VAL ? room : nan("");
 }
+
+double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c)
+{
+    return w->c->tolerance_box != NULL
+               ? tolerance_margin(w, c)
+               : mt_avoidance_find_modes(c, &w->views[c->view].analysis->modes, NULL);
+}
+
+double mt_avoidances_margin(const mt_workspace *w)
+{
+    double room = HUGE_VAL;
+    for (int i = 0; i < w->c->n_avoidances; i++) {
+        const mt_avoidance *const c = &w->c->avoidances[i];
+        const double here = w->views[c->view].solved ? mt_avoidance_margin(w, c) : nan("");
+        room = here < room || !MT_HAS(here) ? here : room;
+    }
+    return room;
+}
+
+const mt_row_ops mt_rows_corners = {.lay_out = mt_tolerance_lay_out, .eval = eval_corners};

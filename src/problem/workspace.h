@@ -70,45 +70,9 @@ mt_status mt_workspace_use(mt_workspace *w, const mt_subproblem *c, mt_err *err)
  * that it does not have, so that the cuts may be deleted. */
 void mt_workspace_back(mt_workspace *w, const mt_subproblem *c);
 /* dx_i/dt_i at the last evaluation. */
-double mt_workspace_dx_dt(const mt_workspace *w, int i);
-/* Reports progress: a design, verified over tolerances and drive positions where required,
- * meets all goals with the value f of the first objective. */
-void mt_workspace_judged(const mt_workspace *w, double f);
-/* The present stage of the subproblem as a search problem (arrays belong to the subproblem),
- * for mt_workspace_solve. */
-mt_nlp mt_workspace_nlp(mt_workspace *w);
-/* Callback of the search problem; context is the workspace. Fails: MT_E_INTERRUPTED, and as its
- * parts. */
-mt_status mt_workspace_eval(void *context, const double *t, bool with_gradient,
-                            mt_nlp_values *out, mt_err *err);
-/* The same without counting the evaluation, for callers that count themselves or use
- * mt_workspace_solve. */
-mt_status mt_workspace_eval_uncounted(void *context, const double *t, bool with_gradient,
-                                      mt_nlp_values *out, mt_err *err);
-/* Counts n evaluations of w's subproblem, with their modal solutions. */
-void mt_workspace_note_designs(const mt_workspace *w, long n);
-/* mt_nlp_solve of an nlp whose callback does not count; counts its evaluations
- * (base/work_counters.h). */
-mt_status mt_workspace_solve(const mt_workspace *w, const mt_nlp *nlp,
-                             const mt_nlp_options *opt, mt_arena *mem, mt_nlp_result *out,
-                             mt_err *err);
-/* First half of an evaluation: parameters and expressions at t. mt_configuration_solve follows
- * for each configuration. */
-mt_status mt_workspace_place(mt_workspace *w, const double *t, bool with_gradient, mt_err *err);
-mt_status mt_configuration_solve(mt_workspace *w, mt_configuration_work *view,
-                                 bool with_gradient, mt_err *err);
-/* Modes and shapes that an evaluation of the present subproblem needs of a configuration. */
-mt_analysis_options mt_configuration_queries(const mt_workspace *w,
-                                             const mt_configuration_work *view,
-                                             bool with_gradient);
-/* From now on all modes are requested and, where shapes are, all of these. */
-void mt_configuration_query_all(mt_configuration_work *view);
-/* *pos: position of a mode (by index, or for mode 0 by `named`, its place in the
- * configuration's list of named modes) among the modes; -1: none, or the configuration is
- * unstable. */
-mt_status mt_configuration_position(mt_workspace *w, mt_configuration_work *view, int mode,
-                                    int named, int *pos, mt_err *err);
-/* Positions of all named modes at the last solve, which was at w->x (workspace_track.c). */
-mt_status mt_configuration_track(mt_workspace *w, mt_configuration_work *view, mt_err *err);
+static inline double mt_workspace_dx_dt(const mt_workspace *w, int i)
+{
+    return mt_problem_dx_dt_at(w->p, i, w->x[i]);
+}
 
 #endif

@@ -88,8 +88,8 @@ static void add_piece(const mt_linear *lin, const basis *b, const mt_enclosure_p
 }
 
 /* fixed + sum of the varying terms with their coefficients at the low end of the bounds. */
-static mt_status low_matrix(const mt_enclosure *e, const mt_linear *lin, mt_matrix which,
-                            mt_arena *mem, double **out, mt_err *err)
+static mt_status low_matrix(const mt_enclosure *e, const mt_linear *lin,
+                            mt_enclosure_matrix which, mt_arena *mem, double **out, mt_err *err)
 {
     const ptrdiff_t n = mt_linear_freedoms(lin);
     double *work = NULL;
@@ -235,8 +235,8 @@ static mt_status to_basis_matrix(const basis *b, const double *a, mt_arena *scra
 
 /* dense (r x r, lower): the sum of a coefficient's pieces in the basis; returns whether there
  * are any. */
-static bool add_pieces(const mt_enclosure *e, const basis *b, mt_matrix which, int coefficient,
-                       double *work, double *dense)
+static bool add_pieces(const mt_enclosure *e, const basis *b, mt_enclosure_matrix which,
+                       int coefficient, double *work, double *dense)
 {
     bool any = false;
     memset(dense, 0, (size_t)b->r * (size_t)b->r * sizeof *dense);
@@ -277,7 +277,7 @@ static mt_status make_part(const double *dense, ptrdiff_t r, mt_arena *mem,
 static mt_status parts_of(mt_enclosure *e, const basis *b, int i, double *work, double *dense,
                           mt_err *err)
 {
-    for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+    for (mt_enclosure_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
         mt_enclosure_part *const part = &e->coefficients[i].part[m];
         part->count = 0;
         if (add_pieces(e, b, m, i, work, dense)) {
@@ -340,7 +340,7 @@ static mt_status reduce_to_basis(mt_enclosure *e, basis *b, bool *ok, char *reas
     e->n = b->r;
     e->n_modes = e->n - e->n_rigid;
     MT_TRY(make_parts(e, b, err));
-    for (mt_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
+    for (mt_enclosure_matrix m = MT_STIFFNESS; m < MT_MATRICES; m++) {
         MT_TRY(room(&e->mem, r, r, &e->fixed[m], err));
         MT_TRY(
             to_basis_matrix(b, mt_linear_fixed(lin, KINDS[m]), &e->scratch, e->fixed[m], err));

@@ -42,7 +42,7 @@ double mt_enclosure_lambda(double hz)
     return (TWO_PI * hz) * (TWO_PI * hz);
 }
 
-static void add_parts(mt_enclosure *e, mt_matrix m, mt_side side)
+static void add_parts(mt_enclosure *e, mt_enclosure_matrix m, mt_side side)
 {
     double *const out = e->at[m][side];
     memcpy(out, e->fixed[m], (size_t)e->n * (size_t)e->n * sizeof *out);
@@ -78,7 +78,7 @@ int mt_enclosure_corner_key(const mt_enclosure *e, mt_side side)
 {
     uint64_t key = 1;
     for (int i = 0; i < e->n_coefficients; i++) {
-        for (mt_matrix m = MT_STIFFNESS; m <= MT_MASS; m++) {
+        for (mt_enclosure_matrix m = MT_STIFFNESS; m <= MT_MASS; m++) {
             if (e->coefficients[i].part[m].count > 0) {
                 uint64_t bits = 0;
                 memcpy(&bits, &e->value[m == MT_STIFFNESS ? side : other(side)][i],

@@ -28,7 +28,7 @@
 enum { MT_REASON_SIZE = 256 };
 
 typedef enum mt_side { MT_LOW, MT_HIGH } mt_side;
-typedef enum mt_matrix { MT_STIFFNESS, MT_MASS, MT_MATRICES } mt_matrix;
+typedef enum mt_enclosure_matrix { MT_STIFFNESS, MT_MASS, MT_MATRICES } mt_enclosure_matrix;
 
 /* A positive semidefinite matrix by its nonzero entries of the lower triangle. */
 typedef struct mt_enclosure_part {
@@ -70,7 +70,7 @@ typedef enum mt_enclosure_form {
 } mt_enclosure_form;
 
 typedef struct mt_enclosure_piece {
-    mt_matrix matrix;
+    mt_enclosure_matrix matrix;
     int term;
     int coefficient;
     mt_enclosure_form form;

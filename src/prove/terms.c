@@ -95,7 +95,7 @@ static bool proportional(const monomial *a, const monomial *b)
 
 /* Key of row `which` (0, 1) of a term: the measure of a spring, the body and axis of a
  * rotation; -1: terms that are in no block. */
-static int key_of(const mt_linear *lin, mt_matrix m, int term, int which)
+static int key_of(const mt_linear *lin, mt_enclosure_matrix m, int term, int which)
 {
     const mt_system *const sys = mt_linear_system(lin);
     const int source = mt_linear_terms(lin, KINDS[m])->terms[term].source;
@@ -129,7 +129,7 @@ static int place_of(const block *b, int key)
 
 /* Let the block grow over the terms that couple one of its rows to another; false where it
  * grows too large. */
-static bool grow(const mt_linear *lin, mt_matrix m, block *b)
+static bool grow(const mt_linear *lin, mt_enclosure_matrix m, block *b)
 {
     const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     for (bool grown = true; grown;) {
@@ -157,8 +157,8 @@ static bool grow(const mt_linear *lin, mt_matrix m, block *b)
 
 /* The terms of the block; false where there are too many, or none that could be its
  * reference. */
-static bool gather_block_terms(const mt_linear *lin, mt_matrix m, const mt_enclosure *e,
-                               block *b)
+static bool gather_block_terms(const mt_linear *lin, mt_enclosure_matrix m,
+                               const mt_enclosure *e, block *b)
 {
     const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     b->reference = -1;
@@ -186,7 +186,7 @@ static bool gather_block_terms(const mt_linear *lin, mt_matrix m, const mt_enclo
 
 /* B, lower, its diagonal made one so that units do not matter; false where an entry of that is
  * not positive. */
-static bool block_matrix(const mt_linear *lin, mt_matrix m, const block *b, double *a)
+static bool block_matrix(const mt_linear *lin, mt_enclosure_matrix m, const block *b, double *a)
 {
     const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     const double one = b->constant[b->reference];
@@ -210,7 +210,7 @@ static bool block_matrix(const mt_linear *lin, mt_matrix m, const block *b, doub
 }
 
 /* *yes: true where B is semidefinite, to rounding. */
-static mt_status semidefinite(const mt_linear *lin, mt_matrix m, const block *b,
+static mt_status semidefinite(const mt_linear *lin, mt_enclosure_matrix m, const block *b,
                               mt_arena *scratch, bool *yes, mt_err *err)
 {
     double a[BLOCK * BLOCK] = {0.0};
@@ -223,7 +223,7 @@ static mt_status semidefinite(const mt_linear *lin, mt_matrix m, const block *b,
     return MT_OK;
 }
 
-static const char *term_name(const mt_linear *lin, mt_matrix m, int term)
+static const char *term_name(const mt_linear *lin, mt_enclosure_matrix m, int term)
 {
     const mt_system *const sys = mt_linear_system(lin);
     const int source = mt_linear_terms(lin, KINDS[m])->terms[term].source;
@@ -231,8 +231,8 @@ static const char *term_name(const mt_linear *lin, mt_matrix m, int term)
                              : sys->items[sys->inertias[source].item].name;
 }
 
-static int add_coefficient(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term,
-                           mt_sign sign)
+static int add_coefficient(mt_enclosure *e, const mt_linear *lin, mt_enclosure_matrix m,
+                           int term, mt_sign sign)
 {
     const mt_node source = mt_linear_terms(lin, KINDS[m])->terms[term].coefficient;
     for (int i = 0; i < e->n_coefficients && sign == MT_SIGN_POSITIVE; i++) {
@@ -247,7 +247,7 @@ static int add_coefficient(mt_enclosure *e, const mt_linear *lin, mt_matrix m, i
     return e->n_coefficients++;
 }
 
-static void add_piece(mt_enclosure *e, mt_matrix m, int term, int coefficient,
+static void add_piece(mt_enclosure *e, mt_enclosure_matrix m, int term, int coefficient,
                       mt_enclosure_form form, double factor)
 {
     e->pieces[e->n_pieces++] = (mt_enclosure_piece){
@@ -256,7 +256,8 @@ static void add_piece(mt_enclosure *e, mt_matrix m, int term, int coefficient,
 }
 
 /* The sum and the difference of its two rows. */
-static void split_coupled_term(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term)
+static void split_coupled_term(mt_enclosure *e, const mt_linear *lin, mt_enclosure_matrix m,
+                               int term)
 {
     const double *const a =
         mt_linear_row(lin, KINDS[m], mt_linear_terms(lin, KINDS[m])->terms[term].first);
@@ -274,8 +275,8 @@ static void split_coupled_term(mt_enclosure *e, const mt_linear *lin, mt_matrix 
 }
 
 /* One block at once, or this one of its terms alone. */
-static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_matrix m, int term,
-                           mt_err *err)
+static mt_status list_pair(mt_enclosure *e, const mt_linear *lin, mt_enclosure_matrix m,
+                           int term, mt_err *err)
 {
     const mt_node node = mt_linear_terms(lin, KINDS[m])->terms[term].coefficient;
     block b = {.factor = monomial_of(&mt_linear_system(lin)->program, node),
@@ -317,7 +318,8 @@ static mt_status alloc_term_arrays(mt_enclosure *e, const mt_linear *lin, mt_err
 }
 
 /* Couplings first: they take the squares of their block along. */
-static mt_status list_matrix(mt_enclosure *e, const mt_linear *lin, mt_matrix m, mt_err *err)
+static mt_status list_matrix(mt_enclosure *e, const mt_linear *lin, mt_enclosure_matrix m,
+                             mt_err *err)
 {
     const mt_term_list *const list = mt_linear_terms(lin, KINDS[m]);
     for (int t = 0; t < list->n_terms; t++) {

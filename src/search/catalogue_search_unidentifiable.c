@@ -8,7 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/goal_avoid.h"
+#include "problem/tolerance.h"
+#include "problem/evaluate.h"
+#include "problem/avoidance.h"
 #include "problem/objective.h"
 #include "search/catalogue_search.h"
 

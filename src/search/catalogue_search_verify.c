@@ -9,7 +9,9 @@
 
 #include "base/work_counters.h"
 #include "base/workers.h"
-#include "problem/goal_avoid.h"
+#include "problem/tolerance.h"
+#include "problem/evaluate.h"
+#include "problem/avoidance.h"
 #include "problem/objective.h"
 #include "problem/tolerance_cut.h"
 #include "prove/certify.h"

@@ -13,6 +13,7 @@
  * the least room so far, it is the next position: the least room is then known to the fourth
  * order of the step.
  */
+#include "problem/configuration.h"
 #include "search/drive_path.h"
 
 #include <math.h>

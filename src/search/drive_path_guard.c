@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "problem/goal.h"
+#include "problem/goals.h"
 #include "search/drive_path.h"
 
 /* Greatest turn between two positions [rad], which a spring that passes its own other end at a

@@ -19,6 +19,8 @@
 #include <string.h>
 
 #include "base/work_counters.h"
+#include "problem/avoidance.h"
+#include "problem/configuration.h"
 #include "problem/requirement.h"
 #include "search/drive_path_guard.h"
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "problem/goal_avoid.h"
+#include "problem/avoidance.h"
 #include "problem/objective.h"
 
 /* Of levels, the change grows by the same factor from the first to the last but one. */

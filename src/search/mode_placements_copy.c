@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <string.h>
 
-#include "problem/goal_avoid.h"
+#include "problem/avoidance.h"
 #include "search/mode_placements.h"
 
 mt_status mt_mode_placement_copy(const mt_subproblem *c, const int *below,

@@ -5,6 +5,7 @@
 
 #include "base/format.h"
 #include "base/work_counters.h"
+#include "problem/configuration.h"
 #include "problem/requirement.h"
 #include "prove/shaping.h"
 

@@ -19,6 +19,7 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "problem/evaluate.h"
 #include "problem/tolerance_cut.h"
 #include "search/drive_path.h"
 #include "search/infeasible_presolve.h"

@@ -10,7 +10,8 @@
 #include <string.h>
 
 #include "base/workers.h"
-#include "problem/mode_band_pairs.h"
+#include "problem/evaluate.h"
+#include "problem/frequency.h"
 #include "search/catalogue_search.h"
 #include "search/relaxation.h"
 

@@ -8,6 +8,7 @@
  */
 #include <string.h>
 
+#include "problem/evaluate.h"
 #include "problem/tolerance_cut.h"
 #include "search/relaxation.h"
 

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/mode_order.h"
+#include "problem/evaluate.h"
+#include "problem/requirement.h"
 
 enum { MODES_MOST = 1 + MT_MODE_ORDER_MOST };
 /* Two limits nearer than this are one. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
 #include "search/catalogue_search.h"
 #include "search/infeasible_presolve.h"

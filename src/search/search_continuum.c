@@ -20,6 +20,7 @@
 
 #include "linalg/dense.h"
 #include "nlp/merit.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
 #include "search/search.h"
 

@@ -19,6 +19,7 @@
 #include <string.h>
 
 #include "nlp/merit.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
 #include "search/search.h"
 

@@ -2,10 +2,11 @@
 /*
  * Limits between the positions of a drive that a goal names: where a design
  * misses one most within a way between two of them, that position is one more row of the limit
- * (problem/at_position.h), for all designs.
+ * (problem/drive_positions.h), for all designs.
  */
 #include <math.h>
 
+#include "problem/evaluate.h"
 #include "nlp/merit.h"
 #include "search/drive_path_limit.h"
 #include "search/search.h"

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "problem/evaluate.h"
 #include "nlp/merit.h"
 #include "search/repeated_eigenvalues.h"
 #include "search/search.h"

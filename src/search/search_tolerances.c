@@ -11,6 +11,7 @@
  */
 #include <math.h>
 
+#include "problem/evaluate.h"
 #include "problem/drive_positions.h"
 #include "problem/tolerance_cut.h"
 #include "search/drive_path.h"

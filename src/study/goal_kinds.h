@@ -96,7 +96,7 @@
     X(CLUSTER, "cluster", COUNT, false, WHOLE)
 
 /* X(id, name in files, unit of the numbers, measure of the deviation). The members of a kind
- * are MT_GOAL_<id>_MEMBERS, its operations mt_goal_<name> of problem/goal.h. */
+ * are MT_GOAL_<id>_MEMBERS, its operations mt_goal_<name> of problem/goals.h. */
 #define MT_GOAL_LIST(X)                                       \
     X(FREQUENCY, frequency, "Hz", RATIO)                      \
     X(SHAPE, shape, "", DIFFERENCE)                           \

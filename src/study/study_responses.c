@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Responses that results show. Names of ports are looked up where the mechanism is known
- * (problem/problem_responses.c). */
+ * (problem/problem.c). */
 #include "study/study_priv.h"
 
 void mt_study_check_responses(mt_study_check *c)

@@ -16,6 +16,7 @@
 #include "bare.h"
 #include "exact.h"
 #include "io/io.h"
+#include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "timing.h"
 

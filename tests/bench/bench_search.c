@@ -23,6 +23,7 @@
 #include <string.h>
 
 #include "io/io.h"
+#include "problem/evaluate.h"
 #include "problem/problem.h"
 #include "problem/workspace.h"
 #include "result/result.h"

@@ -13,6 +13,7 @@
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "linalg/blas.h"
+#include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "report/html.h"
 #include "report/result_tables.h"

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "io/io.h"
+#include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "support/mt_alloc.h"
 #include "support/mt_test.h"

@@ -2,6 +2,7 @@
 /* The whole callback of the search against central differences: every row of every kind of
  * goal, every objective, every coordinate. */
 #include "mt_slope.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
 #include "problem/workspace.h"
 #include "study_fixture.h"

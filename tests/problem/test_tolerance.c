@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tolerances against brute force: every corner of the box, and random designs within it. */
 #include "mt_random.h"
+#include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "six.h"
 

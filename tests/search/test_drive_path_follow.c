@@ -4,6 +4,7 @@
  * along the arm, k2 across the ground, has (2 pi f)^2 m = k1 + k2 cos(theta)^2, which is
  * highest at theta = 0.
  */
+#include "problem/evaluate.h"
 #include "problem/problem.h"
 #include "problem/workspace.h"
 #include "search/drive_path.h"

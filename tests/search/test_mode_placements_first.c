@@ -5,6 +5,7 @@
  * random, for proofs that end and proofs that do not, for one worker and for several; and who
  * interrupts the proof has a design.
  */
+#include "problem/evaluate.h"
 #include "nlp/starts.h"
 #include "prove/certify.h"
 #include "search/mode_placements.h"

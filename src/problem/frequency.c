@@ -1,9 +1,61 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "problem/mode_band_pairs.h"
+/* Logarithms of frequencies, their slopes, and margins of modes to bands. */
+
+#include "problem/frequency.h"
 
 #include <math.h>
+#include <string.h>
 
-#include "problem/goal_frequency.h"
+#include "prove/box.h"
+
+/* No floor lies lower: the square of an angular frequency would leave the range of a double. */
+static const double LEAST_FLOOR_HZ = 1e-150;
+
+double mt_frequency_ln_ratio(double hz, double edge_hz, double floor_hz)
+{
+    const double floor = fmax(floor_hz, LEAST_FLOOR_HZ);
+    const double part = hz / floor;
+    if (isinf(hz)) {
+        return MT_MOST_INSIDE;
+    }
+    return part < 1.0 ? log(floor / edge_hz) + (0.5 * ((part * part) - 1.0))
+                      : log(hz / edge_hz);
+}
+
+double mt_problem_ln_ratio(const mt_modes *modes, int pos, double edge_hz, double floor_hz)
+{
+    const double hz = pos < 0 ? HUGE_VAL : mt_modal_hz(modes, pos);
+    return mt_frequency_ln_ratio(hz, edge_hz, floor_hz);
+}
+
+mt_status mt_problem_dln_frequency(mt_workspace *w, mt_analysis *a, int pos, double floor_hz,
+                                   double *out, mt_err *err)
+{
+    const int n = w->p->n;
+    int size = 1;
+    int vibrating = 0;
+    const mt_modes *const modes = &a->modes;
+    if (pos < 0) {
+        memset(out, 0, (size_t)n * sizeof *out);
+        return MT_OK;
+    }
+    const int first = mt_modal_cluster(modes, pos, &size);
+    const double lambda =
+        fmax(modes->lambda[pos], mt_enclosure_lambda(fmax(floor_hz, LEAST_FLOOR_HZ)));
+    for (int k = first; k < first + size; k++) {
+        MT_TRY(mt_analysis_dlambda_raw(a, k, w->work, err));
+        for (int i = 0; i < n; i++) {
+            out[i] = k == first ? w->work[i] : out[i] + w->work[i];
+        }
+        /* vibrations of 0 Hz share their cluster with rigid-body modes, which have no slope and
+         * add nothing to the sum */
+        vibrating += modes->kind[k] == MT_MODE_FLEXIBLE ? 1 : 0;
+    }
+    for (int i = 0; i < n && vibrating > 0; i++) {
+        out[i] *= mt_problem_dx_dt_at(w->p, i, w->x[i]) / (2.0 * lambda * (double)vibrating);
+    }
+    return MT_OK;
+}
 
 mt_mode_band_pair mt_mode_band_pairs_all(const mt_modes *modes, const mt_bands *bands)
 {

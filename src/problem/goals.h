@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef PROBLEM_GOAL_H
-#define PROBLEM_GOAL_H
+#ifndef PROBLEM_GOALS_H
+#define PROBLEM_GOALS_H
 
 #include "problem/workspace.h"
 
 struct mt_forced_response_value;
 
 /*
- * The operations of a kind of goal, one file for each kind (goal_<kind>.c); its description in
- * files is in study/goal_kinds.h. Most kinds are a value q with a slope, limited to an
- * interval; rows, residuals, violations, relaxations, proofs and sentences follow from q and
- * the kind's measure,
+ * The operations of a kind of goal (goals.c, goal_<kind>.c); its description in files is in
+ * study/goal_kinds.h. Most kinds are a value q with a slope, limited to an interval; rows,
+ * residuals, violations, relaxations, proofs and sentences follow from q and the kind's measure,
  *     ratio        row = ln(q / limit)           slope d ln q / dt (infinite q: w->beyond)
  *     part         row = (q - limit) / |limit|   slope dq / dt (divided by 1 where limit is 0)
  *     difference   row = q - limit               slope dq / dt
@@ -47,14 +46,5 @@ typedef struct mt_goal_ops {
 MT_GOAL_LIST(MT_GOAL_OPS)
 #undef MT_GOAL_OPS
 const mt_goal_ops *mt_goal_ops_of(mt_goal_type type);
-
-/* Shape of the mode at pos at the requirement's sensors, in w->shape (and w->dshape), and its
- * norm. Fails: MT_E_DOMAIN where the mode does not move there. (goal_shape.c) */
-mt_status mt_goal_sense(mt_workspace *w, const mt_requirement *d, int pos, bool with_gradient,
-                        double *norm, mt_err *err);
-/* Finds the reference's shape. (goal_shape.c) */
-mt_status mt_goal_compile_shape(mt_problem *p, mt_requirement *d, mt_err *err);
-/* Index of the reference's mode that the requirement names; by default its own index. */
-int mt_goal_reference_mode(const mt_problem *p, const mt_requirement *d);
 
 #endif

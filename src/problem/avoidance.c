@@ -9,18 +9,21 @@
  * tell the search what comes next). With the objective "clearance" every row has to exceed the
  * extra coordinate z, which is made as great as it can be.
  */
-#include "problem/goal_avoid.h"
+
+#include "problem/avoidance.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "analysis/count.h"
 #include "base/tie.h"
-#include "problem/goal.h"
-#include "problem/goal_frequency.h"
-#include "problem/mode_band_pairs.h"
-#include "problem/mode_order.h"
+#include "problem/configuration.h"
+#include "problem/drive_positions.h"
+#include "problem/frequency.h"
+#include "problem/goals.h"
+#include "problem/requirement.h"
 #include "problem/tolerance.h"
+#include "problem/workspace.h"
 
 /* Range of the extra coordinate: a clearance of -95 % to +2000 %. */
 static const double CLEARANCE_LOWER = -3.0;
@@ -305,24 +308,6 @@ bool mt_avoidance_row_at(const mt_subproblem *c, const int *below, int row, mt_r
     return false;
 }
 
-double mt_avoidance_margin(const mt_workspace *w, const mt_avoidance *c)
-{
-    return w->c->tolerance_box != NULL
-               ? mt_tolerance_margin(w, c)
-               : mt_avoidance_find_modes(c, &w->views[c->view].analysis->modes, NULL);
-}
-
-double mt_avoidances_margin(const mt_workspace *w)
-{
-    double room = HUGE_VAL;
-    for (int i = 0; i < w->c->n_avoidances; i++) {
-        const mt_avoidance *const c = &w->c->avoidances[i];
-        const double here = w->views[c->view].solved ? mt_avoidance_margin(w, c) : nan("");
-        room = here < room || !MT_HAS(here) ? here : room;
-    }
-    return room;
-}
-
 void mt_avoidances_query(const mt_subproblem *c, int view, mt_modal_part *shapes)
 {
     const int flexible = mt_configuration_vibrations(&c->views[view]);
@@ -358,4 +343,17 @@ int mt_avoidances_reach(const mt_workspace *w, int view)
         }
     }
     return n;
+}
+
+mt_analysis_options mt_configuration_queries(const mt_workspace *w,
+                                             const mt_configuration_work *view,
+                                             bool with_gradient)
+{
+    mt_analysis_options opt = view->ask;
+    opt.gradient = with_gradient;
+    opt.accuracy = w->accuracy;
+    if (!view->all && !opt.vectors) {
+        mt_avoidances_query(w->c, (int)(view - w->views), &opt.shapes);
+    }
+    return opt;
 }
