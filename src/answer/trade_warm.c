@@ -5,11 +5,11 @@
 
 #include "answer/trade.h"
 #include "nlp/merit.h"
-#include "problem/tolerance.h"
-#include "problem/evaluate.h"
-#include "problem/drive_positions.h"
 #include "problem/avoidance.h"
+#include "problem/drive_positions.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
+#include "problem/tolerance.h"
 #include "search/catalogue_search.h"
 
 enum { LOCAL_EVALUATIONS = 500 };

@@ -8,7 +8,6 @@
  * contradict each other pull it about, and how far is what nobody can know better than from
  * them. The given weights are one opinion among these.
  */
-#include "problem/evaluate.h"
 #include "answer/weight_sensitivity.h"
 
 #include <limits.h>
@@ -16,6 +15,7 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "problem/evaluate.h"
 #include "search/catalogue_search.h"
 
 /* Of a search without which none is begun. */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a study's answer may claim as proven, in sentences; and whether it is a proof that no
  * design exists. */
-#include "problem/configuration.h"
 #include "describe/certificates.h"
 
 #include <math.h>
 #include <stdarg.h>
 
 #include "describe/describe.h"
+#include "problem/configuration.h"
 #include "prove/reach.h"
 #include "search/proof.h"
 

@@ -7,8 +7,8 @@
 
 #include "base/tie.h"
 #include "base/work_counters.h"
-#include "problem/configuration.h"
 #include "problem/avoidance.h"
+#include "problem/configuration.h"
 #include "problem/objective.h"
 #include "problem/tolerance.h"
 

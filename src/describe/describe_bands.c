@@ -6,8 +6,8 @@
 
 #include "base/tie.h"
 #include "describe/describe.h"
-#include "problem/configuration.h"
 #include "problem/avoidance.h"
+#include "problem/configuration.h"
 #include "problem/frequency.h"
 #include "problem/tolerance.h"
 

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/configuration.h"
 #include "describe/describe.h"
+#include "problem/configuration.h"
 #include "response/response.h"
 #include "vibration/profiled.h"
 

@@ -3,10 +3,10 @@
 #include <math.h>
 
 #include "describe/describe.h"
-#include "problem/evaluate.h"
 #include "problem/configuration.h"
-#include "problem/goals.h"
+#include "problem/evaluate.h"
 #include "problem/goal_frequency_response.h"
+#include "problem/goals.h"
 #include "problem/requirement.h"
 
 static const double PERCENT = 100.0;

@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "describe/describe.h"
-#include "problem/configuration.h"
 #include "problem/avoidance.h"
+#include "problem/configuration.h"
 #include "search/drive_path.h"
 
 /* Less than this (ln) beyond an edge is on it: a driven position is closed, and its modes are

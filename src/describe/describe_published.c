@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/evaluate.h"
-#include "problem/configuration.h"
 #include "analysis/count.h"
 #include "describe/describe.h"
+#include "problem/configuration.h"
+#include "problem/evaluate.h"
 
 enum { ORIGINAL, RECOMMENDED, DESIGNS };
 

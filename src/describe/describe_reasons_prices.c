@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "base/tie.h"
-#include "problem/configuration.h"
 #include "problem/avoidance.h"
+#include "problem/configuration.h"
 #include "problem/objective.h"
 #include "search/mode_placements.h"
 #include "search/search.h"

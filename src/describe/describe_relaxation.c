@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Moves that let a design exist, as records and sentences. */
-#include "problem/configuration.h"
 #include "describe/describe_relaxation.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "problem/configuration.h"
 
 static const double PERCENT = 100.0;
 /* Sentences of more moves than that do not help. */

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "describe/describe.h"
-#include "problem/evaluate.h"
 #include "problem/configuration.h"
+#include "problem/evaluate.h"
 #include "problem/goals.h"
 #include "problem/requirement.h"
 

@@ -8,10 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/tolerance.h"
-#include "problem/evaluate.h"
 #include "problem/avoidance.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
+#include "problem/tolerance.h"
 #include "search/catalogue_search.h"
 
 /* Residuals and objectives carry no tolerance: relative to their size, as elsewhere (nlp.h). */

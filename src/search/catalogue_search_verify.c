@@ -9,10 +9,10 @@
 
 #include "base/work_counters.h"
 #include "base/workers.h"
-#include "problem/tolerance.h"
-#include "problem/evaluate.h"
 #include "problem/avoidance.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
+#include "problem/tolerance.h"
 #include "problem/tolerance_cut.h"
 #include "prove/certify.h"
 #include "search/catalogue_search.h"

@@ -13,7 +13,6 @@
  * the least room so far, it is the next position: the least room is then known to the fourth
  * order of the step.
  */
-#include "problem/configuration.h"
 #include "search/drive_path.h"
 
 #include <math.h>
@@ -22,6 +21,7 @@
 #include "base/tie.h"
 #include "base/work_counters.h"
 #include "mechanics/products.h"
+#include "problem/configuration.h"
 
 static const double PART = 0.1;     /* of a clearance, between two positions */
 static const double NEAREST = 1e-3; /* clearances (ln) below it count as it */

@@ -12,10 +12,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/tolerance.h"
-#include "problem/evaluate.h"
 #include "problem/avoidance.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
+#include "problem/tolerance.h"
 #include "search/drive_path.h"
 
 /* Rounds of cuts, and starts of the later ones, which begin next to their answer. */

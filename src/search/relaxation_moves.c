@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "nlp/merit.h"
-#include "problem/evaluate.h"
 #include "problem/avoidance.h"
+#include "problem/evaluate.h"
 #include "problem/objective.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"

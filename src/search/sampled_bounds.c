@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "problem/evaluate.h"
 #include "search/sampled_bounds.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "nlp/starts.h"
+#include "problem/evaluate.h"
 #include "search/proof.h"
 
 /* Slices for each variable that shapes the geometry, and in all. */

@@ -6,8 +6,8 @@
  */
 #include <math.h>
 
-#include "problem/evaluate.h"
 #include "nlp/merit.h"
+#include "problem/evaluate.h"
 #include "search/drive_path_limit.h"
 #include "search/search.h"
 

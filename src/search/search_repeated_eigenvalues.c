@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "problem/evaluate.h"
 #include "nlp/merit.h"
+#include "problem/evaluate.h"
 #include "search/repeated_eigenvalues.h"
 #include "search/search.h"
 

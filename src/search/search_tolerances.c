@@ -11,8 +11,8 @@
  */
 #include <math.h>
 
-#include "problem/evaluate.h"
 #include "problem/drive_positions.h"
+#include "problem/evaluate.h"
 #include "problem/tolerance_cut.h"
 #include "search/drive_path.h"
 #include "search/search.h"

@@ -7,8 +7,8 @@
  * share cos^2(theta - theta_0) of the mode that turned with it: everything below is that closed
  * form.
  */
-#include "problem/evaluate.h"
 #include "problem/configuration.h"
+#include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "study_fixture.h"
 #include "support/mt_random.h"

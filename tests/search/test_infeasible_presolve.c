@@ -4,9 +4,9 @@
  * random about the row of six masses, of which no sample may have a design where that is said,
  * and a requirement left out is none that counts.
  */
-#include "problem/evaluate.h"
 #include "nlp/merit.h"
 #include "nlp/starts.h"
+#include "problem/evaluate.h"
 #include "search/infeasible_presolve.h"
 #include "search/mode_placements.h"
 #include "study_fixture.h"

@@ -5,8 +5,8 @@
  * random, for proofs that end and proofs that do not, for one worker and for several; and who
  * interrupts the proof has a design.
  */
-#include "problem/evaluate.h"
 #include "nlp/starts.h"
+#include "problem/evaluate.h"
 #include "prove/certify.h"
 #include "search/mode_placements.h"
 #include "study_fixture.h"

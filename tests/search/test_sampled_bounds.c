@@ -4,8 +4,8 @@
  * all found: levers between masses clear of bands drawn at random. Each that is listed comes
  * with a design that has it, and no design drawn at random at one of these lengths has another.
  */
-#include "problem/evaluate.h"
 #include "nlp/starts.h"
+#include "problem/evaluate.h"
 #include "search/mode_placements.h"
 #include "search/sampled_bounds.h"
 #include "study_fixture.h"
