@@ -134,4 +134,45 @@ typedef struct mt_tree_modes {
 mt_status mt_tree_slopes(const mt_tree *t, const double *inputs, const mt_tree_modes *modes,
                          double *slope, char why[MT_TREE_WHY], mt_arena *scratch, mt_err *err);
 
+/* For the sources of this room. */
+enum { MT_TREE_MOTION = 6, MT_TREE_EDGE_ROWS = 64 };
+
+/* Local freedom (0..5) of entry k of a body's motion. */
+static inline int mt_tree_freedom(const mt_tree *t, int k)
+{
+    return t->s == MT_TREE_MOTION || k < 2 ? k : MT_TREE_MOTION - 1;
+}
+/* p += X_i^T f. */
+void mt_tree_carry_back(const mt_tree *t, int i, const double *f, double *p);
+
+/* Columns N F, then N R of body i; N' with loads. */
+static inline const double *mt_tree_basis(const mt_tree *t, int i)
+{
+    return (t->scaled != NULL ? t->scaled : t->basis) +
+           ((ptrdiff_t)t->s * (t->y_at[i] + t->free_dof_at[i]));
+}
+
+/* Coordinates x of body i: the first. */
+static inline int mt_tree_first(const mt_tree *t, int i)
+{
+    return t->scaled != NULL ? t->y_at[i] + t->free_dof_at[i] : t->y_at[i];
+}
+/* The equations of an edge, rows of A, and the factor of A A^T scaled to a unit diagonal. */
+typedef struct mt_tree_held {
+    int c;
+    double row[MT_TREE_MOTION * MT_TREE_MOTION];
+    double gram[MT_TREE_MOTION * MT_TREE_MOTION];
+    double scale[MT_TREE_MOTION];
+} mt_tree_held;
+/* Factor the equations, row: c x s, by row. Fails: MT_E_NOT_SPD (the equations are
+ * dependent). */
+mt_status mt_tree_hold(const mt_tree *t, int c, const double *row, mt_tree_held *h,
+                       mt_err *err);
+/* lambda[c]: least-squares solution of A^T lambda = -g. */
+void mt_tree_multipliers(const mt_tree *t, const mt_tree_held *h, const double *g,
+                         double *lambda);
+/* After masses and loads: fill transport, scaled and settled; *positive: all pivots of K are
+ * positive beyond rounding. Fails: MT_E_MEMORY. */
+mt_status mt_tree_factor(mt_tree *t, mt_arena *scratch, bool *positive, mt_err *err);
+
 #endif

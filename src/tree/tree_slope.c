@@ -14,8 +14,6 @@
  *     and 2 P . X' v_before,
  * each a sum over what the input touches. Of repeated modes the same as a symmetric form.
  */
-#include "tree/tree_slope_priv.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -23,6 +21,38 @@
 #include "base/format.h"
 #include "base/interrupt.h"
 #include "linalg/dense.h"
+#include "mechanics/rows.h"
+#include "tree/tree.h"
+
+typedef struct tree_slope {
+    const mt_tree *t;
+    const mt_system *sys;
+    const mt_tree_modes *modes;
+    mt_data data;         /* along the current input */
+    mt_pose *pose;        /* [bodies] along the current input */
+    uint64_t *vec_inputs; /* [n_vecs x words] bit set of the inputs of each vector */
+    double *within;       /* s n x modes: w of mt_tree_within */
+    double *transport;    /* s n x modes: P of mt_tree_transport */
+    double *force;        /* springs x modes: k times the mode's elongation of the spring */
+    double *mu;           /* constraints x modes: multiplier of each equation in the mode */
+    /* n_pairs x constraints: phi_a^T H phi_b; NULL without loads */
+    double *geometric_stiffness;
+    double *projected; /* [2 x modes] work */
+    double *energy;    /* [n_pairs] work */
+    double *slope;     /* n_pairs x n_inputs */
+    char *why;
+    mt_arena *scratch;
+} tree_slope;
+
+/* Column of body i in mode a of `of`: within or transport. */
+static inline const double *tree_slope_at(const tree_slope *w, const double *of, int i, int a)
+{
+    return of + ((ptrdiff_t)w->t->s * (i + ((ptrdiff_t)w->t->n * a)));
+}
+
+static void tree_slope_form(const tree_slope *w, const int body[2], const mt_jet *jet,
+                            bool derivative, double *form);
+static mt_status tree_slope_loads(tree_slope *w, mt_err *err);
 
 enum { MOST = MT_TREE_MOTION, MOST_ROWS = 16 };
 
@@ -31,7 +61,7 @@ static const double ROW_ULPS = 16.0;
 /* A gap's derivative below this part of the drawing's own is rounding. */
 static const double DRAWN_CLOSED = 1e-10;
 
-static bool vec_moves(const mt_tree_slope *w, int vec, int p)
+static bool vec_moves(const tree_slope *w, int vec, int p)
 {
     enum { BITS = 64 };
     const ptrdiff_t words = w->sys->program.words;
@@ -40,7 +70,7 @@ static bool vec_moves(const mt_tree_slope *w, int vec, int p)
 }
 
 /* The inputs of each vector; operands come first. */
-static void find_inputs(mt_tree_slope *w)
+static void find_inputs(tree_slope *w)
 {
     const mt_program *const program = &w->sys->program;
     const ptrdiff_t words = program->words;
@@ -59,7 +89,7 @@ static void find_inputs(mt_tree_slope *w)
 }
 
 /* The data and poses along input p; -1: values alone. */
-static void turn_to(mt_tree_slope *w, int p)
+static void turn_to(tree_slope *w, int p)
 {
     const int last = w->data.input;
     w->data.input = p;
@@ -76,24 +106,26 @@ static void turn_to(mt_tree_slope *w, int p)
     }
 }
 
-double mt_tree_slope_of(const mt_tree_slope *w, mt_node node)
+/* Derivative of a node by the current input. */
+static double tree_slope_of(const tree_slope *w, mt_node node)
 {
     const int p = w->data.input;
     return node == MT_NO_NODE || p < 0 ? 0.0
                                        : w->data.grad[((ptrdiff_t)node * w->sys->n_inputs) + p];
 }
 
-bool mt_tree_slope_moves_vec(const mt_tree_slope *w, int vec)
+static bool tree_slope_moves_vec(const tree_slope *w, int vec)
 {
     return vec_moves(w, vec, w->data.input);
 }
 
-static bool centre_moves(const mt_tree_slope *w, int body)
+static bool centre_moves(const tree_slope *w, int body)
 {
     return body != MT_GROUND && vec_moves(w, w->sys->bodies[body].centre, w->data.input);
 }
 
-bool mt_tree_slope_moves(const mt_tree_slope *w, const mt_measure_def *def)
+/* True where the measure (the vector) depends on the current input. */
+static bool tree_slope_moves(const tree_slope *w, const mt_measure_def *def)
 {
     const int p = w->data.input;
     bool moves = centre_moves(w, def->body[0]) || centre_moves(w, def->body[1]);
@@ -104,21 +136,23 @@ bool mt_tree_slope_moves(const mt_tree_slope *w, const mt_measure_def *def)
         moves = moves || vec_moves(w, def->dir[k], p);
     }
     for (int k = 0; k < MT_BEAM_NUMBERS && def->kind == MT_MEASURE_BEAM; k++) {
-        moves = moves || mt_tree_slope_of(w, def->beam[k]) != 0.0;
+        moves = moves || tree_slope_of(w, def->beam[k]) != 0.0;
     }
     return moves;
 }
 
-void mt_tree_slope_jet(const mt_tree_slope *w, const mt_measure_def *def, bool second,
-                       mt_jet *jet)
+static void tree_slope_jet(const tree_slope *w, const mt_measure_def *def, bool second,
+                           mt_jet *jet)
 {
     const mt_measure_data measure = mt_data_measure(&w->data, def);
     mt_measure_eval(&measure, mt_pose_of(w->pose, def->body[0]),
                     mt_pose_of(w->pose, def->body[1]), second, NULL, jet);
 }
 
-void mt_tree_slope_row(const mt_tree_slope *w, const mt_measure_def *def, int i,
-                       const mt_jet *jet, double *row, double *drow)
+/* Gradient of the measure over the motion of body i, row[s], and its derivative by the current
+ * input, drow[s]. */
+static void tree_slope_row(const tree_slope *w, const mt_measure_def *def, int i,
+                           const mt_jet *jet, double *row, double *drow)
 {
     const mt_tree *const t = w->t;
     const int side = def->body[1] == t->body[i] ? 1 : 0;
@@ -131,7 +165,8 @@ void mt_tree_slope_row(const mt_tree_slope *w, const mt_measure_def *def, int i,
     }
 }
 
-void mt_tree_slope_pair(const mt_tree_slope *w, int a, const int body[2], double *phi)
+/* Motion of two bodies in mode a: phi[12], 0 for constrained freedoms. */
+static void tree_slope_pair(const tree_slope *w, int a, const int body[2], double *phi)
 {
     const mt_tree *const t = w->t;
     memset(phi, 0, MT_LOCAL * sizeof *phi);
@@ -139,7 +174,7 @@ void mt_tree_slope_pair(const mt_tree_slope *w, int a, const int body[2], double
         if (body[side] == MT_GROUND) {
             continue;
         }
-        const double *const v = mt_tree_slope_at(w, w->modes->v, t->place[body[side]], a);
+        const double *const v = tree_slope_at(w, w->modes->v, t->place[body[side]], a);
         for (int k = 0; k < t->s; k++) {
             const int local = mt_tree_freedom(t, k);
             phi[(6 * side) + local] = w->sys->bodies[body[side]].dof[local] >= 0 ? v[k] : 0.0;
@@ -148,7 +183,7 @@ void mt_tree_slope_pair(const mt_tree_slope *w, int a, const int body[2], double
 }
 
 /* Slope by the present input += the symmetric form of left[a] and right[b]. */
-static void add_form(mt_tree_slope *w, const double *left, const double *right)
+static void add_form(tree_slope *w, const double *left, const double *right)
 {
     const mt_tree_modes *const m = w->modes;
     double *const slope = w->slope + ((ptrdiff_t)m->n_pairs * w->data.input);
@@ -159,7 +194,8 @@ static void add_form(mt_tree_slope *w, const double *left, const double *right)
     }
 }
 
-void mt_tree_slope_refuse(const mt_tree_slope *w, const char *text)
+/* Report that there are no slopes: reason `text` for the current input. */
+static void tree_slope_refuse(const tree_slope *w, const char *text)
 {
     const int parameter = w->sys->inputs[w->data.input];
     (void)mt_snprintf(w->why, MT_TREE_WHY, "by %s%s%s %s",
@@ -169,7 +205,7 @@ void mt_tree_slope_refuse(const mt_tree_slope *w, const char *text)
 }
 
 /* True where some input moves this node. */
-static bool varies(const mt_tree_slope *w, mt_node node)
+static bool varies(const tree_slope *w, mt_node node)
 {
     const double *const g = w->data.grad + ((ptrdiff_t)node * w->sys->n_inputs);
     bool any = false;
@@ -180,7 +216,7 @@ static bool varies(const mt_tree_slope *w, mt_node node)
 }
 
 /* Slopes by all inputs += sign times their share of the coefficient times the energies. */
-static void add_energies(mt_tree_slope *w, double sign, mt_node coefficient)
+static void add_energies(tree_slope *w, double sign, mt_node coefficient)
 {
     const int np = w->sys->n_inputs;
     const double *const g = w->data.grad + ((ptrdiff_t)coefficient * np);
@@ -193,7 +229,7 @@ static void add_energies(mt_tree_slope *w, double sign, mt_node coefficient)
 }
 
 /* energy += the form of rows projected[2 a], projected[2 a + 1] of each mode a. */
-static void add_products(mt_tree_slope *w, bool pair)
+static void add_products(tree_slope *w, bool pair)
 {
     const mt_tree_modes *const m = w->modes;
     for (int k = 0; k < m->n_pairs; k++) {
@@ -204,7 +240,7 @@ static void add_products(mt_tree_slope *w, bool pair)
 }
 
 /* Energies of a term with rows over both bodies. */
-static void term_energies(mt_tree_slope *w, mt_term_kind kind, const mt_term *term)
+static void term_energies(tree_slope *w, mt_term_kind kind, const mt_term *term)
 {
     mt_cx rows[MOST_ROWS * MT_LOCAL];
     mt_term_rows(&w->data, kind, term, w->pose, rows);
@@ -213,7 +249,7 @@ static void term_energies(mt_tree_slope *w, mt_term_kind kind, const mt_term *te
         for (int a = 0; a < w->modes->n; a++) {
             double phi[MT_LOCAL];
             double sum[2] = {0.0, 0.0};
-            mt_tree_slope_pair(w, a, term->body, phi);
+            tree_slope_pair(w, a, term->body, phi);
             for (int k = 0; k < MT_LOCAL; k++) {
                 sum[0] += creal(rows[k + (MT_LOCAL * r)]) * phi[k];
                 sum[1] += term->pair ? creal(rows[k + MT_LOCAL]) * phi[k] : 0.0;
@@ -229,12 +265,12 @@ static void term_energies(mt_tree_slope *w, mt_term_kind kind, const mt_term *te
 /* Elongation of a spring of edge i in mode a: from the coordinates x and r without loads, where
  * the products with the row are exact zeros or well above rounding; otherwise from the
  * motion. */
-static double stretch(const mt_tree_slope *w, int i, int a, const double *row,
+static double stretch(const tree_slope *w, int i, int a, const double *row,
                       const double *product)
 {
     const mt_tree *const t = w->t;
     if (t->transport != NULL) {
-        return mt_dot(t->s, row, mt_tree_slope_at(w, w->within, i, a));
+        return mt_dot(t->s, row, tree_slope_at(w, w->within, i, a));
     }
     const int n_y = t->y_at[i + 1] - t->y_at[i];
     const int free_dofs = t->free_dof_at[i + 1] - t->free_dof_at[i];
@@ -243,7 +279,7 @@ static double stretch(const mt_tree_slope *w, int i, int a, const double *row,
     return mt_dot(n_y, product, x) + mt_dot(free_dofs, product + n_y, r);
 }
 
-static void spring_of_edge(mt_tree_slope *w, int q, int i)
+static void spring_of_edge(tree_slope *w, int q, int i)
 {
     const mt_tree *const t = w->t;
     const mt_spring_def *const def = &w->sys->springs[q];
@@ -255,8 +291,8 @@ static void spring_of_edge(mt_tree_slope *w, int q, int i)
     double drow[MOST];
     double product[MOST];
     mt_jet jet;
-    mt_tree_slope_jet(w, measure, false, &jet);
-    mt_tree_slope_row(w, measure, i, &jet, row, drow);
+    tree_slope_jet(w, measure, false, &jet);
+    tree_slope_row(w, measure, i, &jet, row, drow);
     for (int c = 0; c < d; c++) {
         const double *const b = t->basis + ((ptrdiff_t)t->s * (first + c));
         double size = 0.0;
@@ -280,7 +316,7 @@ static void spring_of_edge(mt_tree_slope *w, int q, int i)
 }
 
 /* Derivatives of stiffnesses and masses at constant geometry; spring forces of the modes. */
-static void coefficients(mt_tree_slope *w)
+static void coefficients(tree_slope *w)
 {
     const mt_system *const sys = w->sys;
     const mt_tree *const t = w->t;
@@ -318,7 +354,7 @@ static void coefficients(mt_tree_slope *w)
 }
 
 /* Joint forces of mode a at edge i: A^T mu = -(P + sum of k s f). */
-static mt_status joint_forces_of_mode(mt_tree_slope *w, int i, mt_err *err)
+static mt_status joint_forces_of_mode(tree_slope *w, int i, mt_err *err)
 {
     const mt_tree *const t = w->t;
     const mt_system *const sys = w->sys;
@@ -333,21 +369,21 @@ static mt_status joint_forces_of_mode(mt_tree_slope *w, int i, mt_err *err)
     int n = 0;
     for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
         const mt_measure_def *const def = &sys->measures[sys->constraints[k].measure[0]];
-        mt_tree_slope_jet(w, def, w->geometric_stiffness != NULL, &jet);
-        mt_tree_slope_row(w, def, i, &jet, row + ((ptrdiff_t)t->s * c), drow);
+        tree_slope_jet(w, def, w->geometric_stiffness != NULL, &jet);
+        tree_slope_row(w, def, i, &jet, row + ((ptrdiff_t)t->s * c), drow);
         if (w->geometric_stiffness != NULL) {
-            mt_tree_slope_form(w, def->body, &jet, false,
-                               w->geometric_stiffness + ((ptrdiff_t)w->modes->n_pairs * k));
+            tree_slope_form(w, def->body, &jet, false,
+                            w->geometric_stiffness + ((ptrdiff_t)w->modes->n_pairs * k));
         }
     }
     for (int q = t->first_spring[i]; q >= 0 && c > 0; q = t->next_spring[q], n++) {
         const mt_measure_def *const def = &sys->measures[sys->springs[q].measure[0]];
-        mt_tree_slope_jet(w, def, false, &jet);
-        mt_tree_slope_row(w, def, i, &jet, spring + ((ptrdiff_t)t->s * n), drow);
+        tree_slope_jet(w, def, false, &jet);
+        tree_slope_row(w, def, i, &jet, spring + ((ptrdiff_t)t->s * n), drow);
     }
     MT_TRY(mt_tree_hold(t, c, row, &held, err));
     for (int a = 0; a < w->modes->n && c > 0; a++) {
-        memcpy(g, mt_tree_slope_at(w, w->transport, i, a), (size_t)t->s * sizeof *g);
+        memcpy(g, tree_slope_at(w, w->transport, i, a), (size_t)t->s * sizeof *g);
         n = 0;
         for (int q = t->first_spring[i]; q >= 0; q = t->next_spring[q], n++) {
             mt_axpy(t->s, w->force[q + ((ptrdiff_t)sys->n_springs * a)],
@@ -364,27 +400,27 @@ static mt_status joint_forces_of_mode(mt_tree_slope *w, int i, mt_err *err)
 
 /* slope += f' . w of a measure of edge i times the force that it transmits, of[list a +
  * which]. */
-static void add_row_slope(mt_tree_slope *w, int i, const mt_measure_def *def, const double *of,
+static void add_row_slope(tree_slope *w, int i, const mt_measure_def *def, const double *of,
                           ptrdiff_t list)
 {
     double row[MOST];
     double drow[MOST];
     mt_jet jet;
-    if (!mt_tree_slope_moves(w, def)) {
+    if (!tree_slope_moves(w, def)) {
         return;
     }
     double *const moved = w->projected + w->modes->n;
-    mt_tree_slope_jet(w, def, false, &jet);
-    mt_tree_slope_row(w, def, i, &jet, row, drow);
+    tree_slope_jet(w, def, false, &jet);
+    tree_slope_row(w, def, i, &jet, row, drow);
     for (int a = 0; a < w->modes->n; a++) {
         w->projected[a] = of[list * a];
-        moved[a] = mt_dot(w->t->s, drow, mt_tree_slope_at(w, w->within, i, a));
+        moved[a] = mt_dot(w->t->s, drow, tree_slope_at(w, w->within, i, a));
     }
     add_form(w, w->projected, moved);
 }
 
 /* P . X' v_before: X' v = theta x a', a the arm. */
-static void add_arm(mt_tree_slope *w, int i)
+static void add_arm(tree_slope *w, int i)
 {
     const mt_tree *const t = w->t;
     const mt_tree_modes *const m = w->modes;
@@ -398,8 +434,8 @@ static void add_arm(mt_tree_slope *w, int i)
         a[k] = cx_derivative(w->pose[t->body[i]].x[k] - w->pose[t->body[p]].x[k]);
     }
     for (int k = 0; k < 2 * m->n_pairs; k++) {
-        const double *const f = mt_tree_slope_at(w, w->transport, i, m->pair[k / 2][k % 2]);
-        const double *const v = mt_tree_slope_at(w, m->v, p, m->pair[k / 2][1 - (k % 2)]);
+        const double *const f = tree_slope_at(w, w->transport, i, m->pair[k / 2][k % 2]);
+        const double *const v = tree_slope_at(w, m->v, p, m->pair[k / 2][1 - (k % 2)]);
         if (t->s == 3) {
             slope[k / 2] += v[2] * ((f[1] * a[0]) - (f[0] * a[1]));
         } else {
@@ -411,13 +447,13 @@ static void add_arm(mt_tree_slope *w, int i)
     }
 }
 
-static bool inertia_moves(const mt_tree_slope *w, const mt_inertia_def *def)
+static bool inertia_moves(const tree_slope *w, const mt_inertia_def *def)
 {
     const int p = w->data.input;
     bool moves = centre_moves(w, def->body[0]) || centre_moves(w, def->body[1]);
     for (int k = 0; k < 2; k++) {
-        moves = moves || vec_moves(w, def->point[k], p) ||
-                mt_tree_slope_of(w, def->shape[k]) != 0.0;
+        moves =
+            moves || vec_moves(w, def->point[k], p) || tree_slope_of(w, def->shape[k]) != 0.0;
     }
     for (int k = 0; k < 3; k++) {
         moves = moves || vec_moves(w, def->dir[k], p);
@@ -426,7 +462,7 @@ static bool inertia_moves(const mt_tree_slope *w, const mt_inertia_def *def)
 }
 
 /* slope -= lambda m (g . v)' of a mass whose rows move. */
-static void add_inertia(mt_tree_slope *w, int i)
+static void add_inertia(tree_slope *w, int i)
 {
     const mt_tree_modes *const m = w->modes;
     const mt_term term = mt_term_of_inertia(w->sys, i);
@@ -442,7 +478,7 @@ static void add_inertia(mt_tree_slope *w, int i)
         const mt_cx *const other = term.pair ? rows + ((ptrdiff_t)MT_LOCAL * (1 - r)) : row;
         for (int a = 0; a < m->n; a++) {
             double phi[MT_LOCAL];
-            mt_tree_slope_pair(w, a, term.body, phi);
+            tree_slope_pair(w, a, term.body, phi);
             w->projected[a] = 0.0;
             moved[a] = 0.0;
             for (int k = 0; k < MT_LOCAL; k++) {
@@ -456,7 +492,7 @@ static void add_inertia(mt_tree_slope *w, int i)
 }
 
 /* True where the joints stay closed in the drawn position. */
-static bool stays_closed(mt_tree_slope *w)
+static bool stays_closed(tree_slope *w)
 {
     const mt_system *const sys = w->sys;
     double most = 0.0;
@@ -476,7 +512,7 @@ static bool stays_closed(mt_tree_slope *w)
                                              mt_pose_of(w->pose, def->body[1]), NULL);
         if (!(fabs(cx_derivative(value - w->data.target[i])) <=
               DRAWN_CLOSED * fmax(most, fabs(cx_derivative(w->data.target[i]))))) {
-            mt_tree_slope_refuse(w, "a joint opens that is closed in the reference position");
+            tree_slope_refuse(w, "a joint opens that is closed in the reference position");
             return false;
         }
     }
@@ -484,7 +520,7 @@ static bool stays_closed(mt_tree_slope *w)
 }
 
 /* Slopes from the geometry that depends on the present input. */
-static void add_shape(mt_tree_slope *w)
+static void add_shape(tree_slope *w)
 {
     const mt_tree *const t = w->t;
     const mt_system *const sys = w->sys;
@@ -504,7 +540,7 @@ static void add_shape(mt_tree_slope *w)
     }
 }
 
-static mt_status init_tree_slope(mt_tree_slope *w, const double *inputs, mt_err *err)
+static mt_status init_tree_slope(tree_slope *w, const double *inputs, mt_err *err)
 {
     const mt_system *const sys = w->sys;
     const size_t motions = (size_t)w->t->n * (size_t)w->t->s;
@@ -536,7 +572,7 @@ static mt_status init_tree_slope(mt_tree_slope *w, const double *inputs, mt_err 
     return MT_OK;
 }
 
-static mt_status carry_out(mt_tree_slope *w, mt_err *err)
+static mt_status carry_out(tree_slope *w, mt_err *err)
 {
     const mt_tree *const t = w->t;
     const mt_tree_modes *const m = w->modes;
@@ -562,7 +598,7 @@ static mt_status carry_out(mt_tree_slope *w, mt_err *err)
         }
         add_shape(w);
         if (t->geometric_stiffness != NULL) {
-            MT_TRY(mt_tree_slope_loads(w, err));
+            MT_TRY(tree_slope_loads(w, err));
         }
         if (w->why[0] != '\0') {
             return MT_OK;
@@ -574,7 +610,7 @@ static mt_status carry_out(mt_tree_slope *w, mt_err *err)
 mt_status mt_tree_slopes(const mt_tree *t, const double *inputs, const mt_tree_modes *modes,
                          double *slope, char why[MT_TREE_WHY], mt_arena *scratch, mt_err *err)
 {
-    mt_tree_slope w = {
+    tree_slope w = {
         .t = t, .sys = t->sys, .modes = modes, .slope = slope, .why = why, .scratch = scratch};
     const mt_arena_mark mark = mt_arena_get_mark(scratch);
     why[0] = '\0';
@@ -582,5 +618,229 @@ mt_status mt_tree_slopes(const mt_tree *t, const double *inputs, const mt_tree_m
     MT_TRY(init_tree_slope(&w, inputs, err));
     MT_TRY(carry_out(&w, err));
     mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
+/*
+ * Slopes of the geometric stiffness, c H of every measure that bears a force c, along one
+ * input: phi^T (c' H + c H') phi. What loads and springs bear is known by itself; of the
+ * joints the balance of tree.c is differentiated, from the leaves on,
+ *     N^T (G' + A'^T lambda) = 0,    A^T lambda' = -(G' + A'^T lambda),
+ *     G_before' += X^T G' + X'^T G.
+ * Where the first does not hold, the drawing comes to rest elsewhere.
+ */
+
+/* As for the loads in tree.c, of derivatives. */
+static const double NOT_AT_REST = 1e-9;
+
+typedef struct along {
+    tree_slope *w;
+    double *g;    /* s x n: G' */
+    double *size; /* [n] of all that G' is the sum of */
+} along;
+
+static double unit_of(const mt_tree *t, int k)
+{
+    return mt_tree_freedom(t, k) >= 3 ? t->sys->length_m : 1.0;
+}
+
+/* phi_a^T H phi_b of a jet over two bodies, for each pair, into form[n_pairs]; derivative: of
+ * the derivative of H by the current input. */
+static void tree_slope_form(const tree_slope *w, const int body[2], const mt_jet *jet,
+                            bool derivative, double *form)
+{
+    const mt_tree_modes *const m = w->modes;
+    for (int k = 0; k < m->n_pairs; k++) {
+        double phi[2][MT_LOCAL];
+        form[k] = 0.0;
+        tree_slope_pair(w, m->pair[k][0], body, phi[0]);
+        tree_slope_pair(w, m->pair[k][1], body, phi[1]);
+        for (int c = 0; c < MT_LOCAL; c++) {
+            for (int r = 0; r < MT_LOCAL && phi[1][c] != 0.0; r++) {
+                const mt_cx h = jet->h[r + (MT_LOCAL * c)];
+                form[k] += phi[0][r] * (derivative ? cx_derivative(h) : creal(h)) * phi[1][c];
+            }
+        }
+    }
+}
+
+/* Slope by the present input += scale times a form. */
+static void add_load_form(tree_slope *w, double scale, const double *form)
+{
+    mt_axpy(w->modes->n_pairs, scale, form,
+            w->slope + ((ptrdiff_t)w->modes->n_pairs * w->data.input));
+}
+
+/* Add the contribution of a force c along a measure with this jet to G' and to the slope. */
+static void add_force(const along *l, const int body[2], mt_cx c, const mt_jet *jet)
+{
+    const mt_tree *const t = l->w->t;
+    for (int side = 0; side < 2; side++) {
+        const int at = body[side] == MT_GROUND ? -1 : t->place[body[side]];
+        for (int k = 0; k < t->s && at >= 0; k++) {
+            const int local = mt_tree_freedom(t, k);
+            if (t->sys->bodies[body[side]].dof[local] >= 0) {
+                const double f = cx_derivative(cx_mul(c, jet->g[(6 * side) + local]));
+                l->g[k + ((ptrdiff_t)t->s * at)] += f;
+                l->size[at] += fabs(f) / unit_of(t, k);
+            }
+        }
+    }
+    tree_slope_form(l->w, body, jet, false, l->w->energy);
+    add_load_form(l->w, cx_derivative(c), l->w->energy);
+    tree_slope_form(l->w, body, jet, true, l->w->energy);
+    add_load_form(l->w, creal(c), l->w->energy);
+}
+
+static void add_spring_slope(const along *l, const mt_spring_def *s)
+{
+    const mt_data *const d = &l->w->data;
+    const mt_measure_def *const def = &l->w->sys->measures[s->measure[0]];
+    const bool moves =
+        tree_slope_moves(l->w, def) || tree_slope_of(l->w, s->stiffness) != 0.0 ||
+        tree_slope_of(l->w, s->free) != 0.0 || tree_slope_of(l->w, s->preload) != 0.0;
+    if (s->damper || (s->free == MT_NO_NODE && s->preload == MT_NO_NODE) || !moves) {
+        return;
+    }
+    mt_jet jet;
+    tree_slope_jet(l->w, def, true, &jet);
+    mt_cx c = mt_data_scalar(d, s->preload, 0.0);
+    if (s->free != MT_NO_NODE) {
+        c += cx_mul(mt_data_scalar(d, s->stiffness, 0.0),
+                    jet.value - mt_data_scalar(d, s->free, 0.0));
+    }
+    add_force(l, def->body, c, &jet);
+}
+
+static void add_load(const along *l, const mt_load_def *load)
+{
+    const mt_data *const d = &l->w->data;
+    mt_jet jet;
+    if (load->measure >= 0) {
+        const mt_measure_def *const def = &l->w->sys->measures[load->measure];
+        if (tree_slope_moves(l->w, def) || tree_slope_of(l->w, load->size) != 0.0) {
+            tree_slope_jet(l->w, def, true, &jet);
+            add_force(l, def->body, -mt_data_scalar(d, load->size, 0.0), &jet);
+        }
+        return;
+    }
+    const int body[2] = {load->body, MT_GROUND};
+    mt_cx f[3];
+    bool moves = tree_slope_moves_vec(l->w, load->point);
+    for (int k = 0; k < 3; k++) {
+        f[k] = mt_data_scalar(d, load->force[k], 0.0);
+        moves = moves || tree_slope_of(l->w, load->force[k]) != 0.0;
+    }
+    if (!moves) {
+        return;
+    }
+    mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f,
+                     mt_pose_of(l->w->pose, load->body), true, &jet);
+    add_force(l, body, -1.0, &jet);
+}
+
+/* True where the residual is balanced along the free motions of the edge. */
+static bool stays_at_rest(const along *l, int i, const double *g)
+{
+    const mt_tree *const t = l->w->t;
+    for (int c = t->y_at[i] + t->free_dof_at[i]; c < t->y_at[i + 1] + t->free_dof_at[i + 1];
+         c++) {
+        const double *const b = t->basis + ((ptrdiff_t)t->s * c);
+        double most = 0.0;
+        for (int k = 0; k < t->s; k++) {
+            most = fmax(most, fabs(b[k]) * unit_of(t, k));
+        }
+        if (!(fabs(mt_dot(t->s, b, g)) <= NOT_AT_REST * most * l->size[i])) {
+            tree_slope_refuse(l->w, "the equilibrium is not the reference position");
+            return false;
+        }
+    }
+    return true;
+}
+
+/* G' of the body before: X^T G' + X'^T G, the latter a' x force. */
+static void hand_on(const along *l, int i)
+{
+    const mt_tree *const t = l->w->t;
+    const int p = t->before[i];
+    if (p < 0) {
+        return;
+    }
+    const double *const f = t->pushed + ((ptrdiff_t)t->s * i);
+    double *const g = l->g + ((ptrdiff_t)t->s * p);
+    double a[3];
+    for (int k = 0; k < 3; k++) {
+        a[k] = cx_derivative(l->w->pose[t->body[i]].x[k] - l->w->pose[t->body[p]].x[k]);
+        l->size[p] += fabs(a[k]) * t->force[i] / t->sys->length_m;
+    }
+    mt_tree_carry_back(t, i, l->g + ((ptrdiff_t)t->s * i), g);
+    l->size[p] += l->size[i];
+    if (t->s == 3) {
+        g[2] += (a[0] * f[1]) - (a[1] * f[0]);
+    } else {
+        g[3] += (a[1] * f[2]) - (a[2] * f[1]);
+        g[4] += (a[2] * f[0]) - (a[0] * f[2]);
+        g[5] += (a[0] * f[1]) - (a[1] * f[0]);
+    }
+}
+
+/* Derivative of the forces that the joints of edge i hold. False: not in equilibrium. */
+static mt_status joint_force_slope(const along *l, int i, bool *rests, mt_err *err)
+{
+    tree_slope *const w = l->w;
+    const mt_tree *const t = w->t;
+    double row[MOST * MOST];
+    double drow[MOST];
+    double g[MOST];
+    double slope[MOST];
+    mt_jet jet;
+    mt_tree_held held;
+    int c = 0;
+    memcpy(g, l->g + ((ptrdiff_t)t->s * i), (size_t)t->s * sizeof *g);
+    for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
+        const mt_measure_def *const def = &w->sys->measures[w->sys->constraints[k].measure[0]];
+        const bool moves = tree_slope_moves(w, def);
+        tree_slope_jet(w, def, moves, &jet);
+        tree_slope_row(w, def, i, &jet, row + ((ptrdiff_t)t->s * c), drow);
+        if (moves) {
+            tree_slope_form(w, def->body, &jet, true, w->energy);
+            add_load_form(w, t->held[k], w->energy);
+            mt_axpy(t->s, t->held[k], drow, g);
+        }
+        for (int r = 0; r < t->s && moves; r++) {
+            l->size[i] += fabs(t->held[k] * drow[r]) / unit_of(t, r);
+        }
+    }
+    *rests = stays_at_rest(l, i, g);
+    MT_TRY(mt_tree_hold(t, c, row, &held, err));
+    mt_tree_multipliers(t, &held, g, slope);
+    c = 0;
+    for (int k = t->first_constraint[i]; k >= 0; k = t->next_constraint[k], c++) {
+        add_load_form(w, slope[c], w->geometric_stiffness + ((ptrdiff_t)w->modes->n_pairs * k));
+    }
+    hand_on(l, i);
+    return MT_OK;
+}
+
+/* Contribution of the loads along the current input. Fails: MT_E_NOT_SPD. */
+static mt_status tree_slope_loads(tree_slope *w, mt_err *err)
+{
+    const mt_tree *const t = w->t;
+    const mt_arena_mark mark = mt_arena_get_mark(w->scratch);
+    const along l = {.w = w,
+                     .g = mt_arena_f64(w->scratch, (size_t)t->n, (size_t)t->s),
+                     .size = mt_arena_f64(w->scratch, (size_t)t->n, 1)};
+    bool rests = true;
+    MT_TRY(mt_arena_check(w->scratch, err));
+    for (int i = 0; i < w->sys->n_loads; i++) {
+        add_load(&l, &w->sys->loads[i]);
+    }
+    for (int i = 0; i < w->sys->n_springs; i++) {
+        add_spring_slope(&l, &w->sys->springs[i]);
+    }
+    for (int i = t->n - 1; i >= 0 && rests; i--) {
+        MT_TRY(joint_force_slope(&l, i, &rests, err));
+    }
+    mt_arena_rewind(w->scratch, mark);
     return MT_OK;
 }
