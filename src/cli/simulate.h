@@ -3,8 +3,8 @@
 #define CLI_SIMULATE_H
 
 #include "cli/cli.h"
+#include "simulate/reading.h"
 #include "simulate/start.h"
-#include "simulate/tones.h"
 #include "study/vibration.h"
 
 /* The quantity of a gauge in an output. */

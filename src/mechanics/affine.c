@@ -10,7 +10,7 @@
  *               turns about it, or both turn together
  *     ROTATION  no body turns; BEAM: no body moves
  * Positions reached so fulfil the joints at any y. What is smaller than rounding of the basis
- * is 0 here; simulate/oscillators.c puts the motion that follows into the whole equations.
+ * is 0 here; simulate/propagate.c puts the motion that follows into the whole equations.
  */
 #include "mechanics/affine.h"
 

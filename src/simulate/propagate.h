@@ -2,7 +2,7 @@
 #ifndef SIMULATE_PROPAGATE_H
 #define SIMULATE_PROPAGATE_H
 
-#include "simulate/oscillators.h"
+#include "simulate/simulate.h"
 
 /*
  * The motion of a mechanism whose equations are linear, without integration: states and inputs

@@ -11,15 +11,12 @@
  * is no error of the step: eps l, and eps l/h in velocities (stiffness at most about 1/h^2 of
  * the mass, or the method would not be stable).
  */
-#include "simulate/simulate_priv.h"
-
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/interrupt.h"
-#include "simulate/collocate.h"
 #include "simulate/propagate.h"
+#include "simulate/step.h"
 
 static const double SAFETY = 0.9;
 /* The ratio of a step in which the collocation does not converge. */
@@ -41,8 +38,6 @@ enum { FAILURES_MOST = 1000 };
 static const double MOST_TURN = 1.0;
 /* in a collocation, where the series of increments ends before a^10/47900160. */
 static const double MOST_TURN_STIFF = 0.3;
-/* Rounding errors that a step may leave. */
-static const double ROUNDING = 16.0 * DBL_EPSILON;
 /* A step below this part of the duration leads nowhere. */
 static const double LEAST_STEP = 1e-13;
 /* Samples nearer to the end than this part of their distance are at the end. */
@@ -67,19 +62,6 @@ const char *mt_sim_method_name(mt_sim_method method)
 mt_sim_options mt_sim_options_default(void)
 {
     return (mt_sim_options){.tolerance = TOLERANCE};
-}
-
-void mt_sim_allowed(const mt_sim *s, double h, double out[2])
-{
-    const double rounding = ROUNDING * s->sys->length_m;
-    const double *const rate = s->slope + s->nq;
-    double fast = s->fast;
-    for (int i = 0; i < s->nq; i++) {
-        fast = fmax(fast, s->weight[i] * h * fabs(rate[i]));
-    }
-    const double far = fmax(s->far, h * fast);
-    out[0] = (s->opt->tolerance * far) + rounding;
-    out[1] = (s->opt->tolerance * fast) + (rounding / h);
 }
 
 /* Error of the step over what is allowed, the largest of all coordinates. */

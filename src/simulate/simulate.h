@@ -8,7 +8,7 @@
 
 /*
  * Motion of a mechanism in time, at any amplitude: the equations of mechanics/motion.h, solved
- * for the accelerations (accelerate.h) and integrated (ode.h).
+ * for the accelerations (accelerate.h) and integrated (step.h).
  *
  * Positions are poses with local charts: a step begins at a pose g of each body with increments
  * u = 0 and follows R = exp(u^) R_g, u' = dexp_u^-1 omega (Munthe-Kaas). No angle is singular,

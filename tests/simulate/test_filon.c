@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "base/base.h"
-#include "simulate/filon.h"
+#include "simulate/step.h"
 #include "support/mt_test.h"
 
 enum { POINTS = MT_FILON_POINTS };

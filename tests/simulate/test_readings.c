@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "simulate/reading.h"
-#include "simulate/tones.h"
 #include "support/mt_test.h"
 
 static const double PI = 3.14159265358979323846;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #include "simulate/motions.h"
-#include "simulate/tones.h"
+#include "simulate/reading.h"
 
 static const double AMPLITUDE = 1e-5;
 static const double TOL = 1e-6;

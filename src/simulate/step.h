@@ -1,10 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SIMULATE_SIMULATE_PRIV_H
-#define SIMULATE_SIMULATE_PRIV_H
+#ifndef SIMULATE_STEP_H
+#define SIMULATE_STEP_H
 
+#include "base/base.h"
 #include "simulate/accelerate.h"
-#include "simulate/ode.h"
 #include "simulate/simulate.h"
+
+/*
+ * Steps of an ordinary differential equation y' = f(t, y): Prince and Dormand's explicit
+ * Runge-Kutta pair of the orders eight and seven, thirteen evaluations a step (GSL's).
+ */
+typedef struct mt_ode mt_ode;
+
+enum { MT_ODE_ORDER = 8 };
 
 /*
  * The state of a motion during integration. The integrated vector y[n]:
@@ -61,11 +69,6 @@ mt_status mt_sim_init(mt_sim *s, mt_linear *lin, const mt_sim_start *start,
 void mt_sim_free(mt_sim *s);
 /* The mt_ode_slope of an mt_sim. */
 mt_status mt_sim_slope(void *sim, double t, const double *y, double *out, mt_err *err);
-/* Accelerations, power and velocities of gauges where the base is moved by u, at velocities v,
- * into out[nq + 1 + gauges]. rows not NULL, nq x (1 + gauges): gets forces of the inputs and
- * rows of the gauges; out then lacks their products with v. */
-mt_status mt_sim_rates(mt_sim *s, double t, const double *u, const double *v, double *out,
-                       double *rows, mt_err *err);
 /* Allowed errors of a step h: of positions [m] and of velocities [m/s]. */
 void mt_sim_allowed(const mt_sim *s, double h, double out[2]);
 /* Advance s->begin by a step h from t into s->y. */
@@ -79,5 +82,49 @@ mt_status mt_sim_gauge(mt_sim *s, double t, int gauge, double out[3], mt_err *er
  * value, velocity and acceleration relative to the ground of a gauge there. */
 mt_status mt_sim_ahead(mt_sim *s, double t, mt_err *err);
 void mt_sim_gauge_ahead(mt_sim *s, int gauge, double out[3]);
+
+/*
+ * Integrals of waves times polynomials (Filon quadrature): with l_j Lagrange's polynomials
+ * through Chebyshev points c_j of [0, 1], the ends among them,
+ *     int_0^(c_i) cos(x (c_i - s)) l_j(s) ds, and the same of sin and of sin/x,
+ * for any x >= 0.
+ */
+enum { MT_FILON_DEGREE = 8, MT_FILON_POINTS = MT_FILON_DEGREE + 1, MT_FILON_GAUSS = 48 };
+
+/* The part that does not depend on x. */
+typedef struct mt_filon {
+    double point[MT_FILON_POINTS];
+    double node[MT_FILON_GAUSS];
+    double gauss[MT_FILON_GAUSS];
+    double basis[MT_FILON_POINTS * MT_FILON_GAUSS * MT_FILON_POINTS]; /* l_j at c_i node_g */
+    /* number k of l_j at point i: [k][i + j POINTS] */
+    double derivative[MT_FILON_POINTS][MT_FILON_POINTS * MT_FILON_POINTS];
+    double last[MT_FILON_POINTS]; /* the coefficient of the highest Chebyshev polynomial */
+} mt_filon;
+
+/* The integrals for one x: entry i + j POINTS belongs to l_j and c_i. */
+typedef struct mt_filon_weights {
+    double x;
+    double c[MT_FILON_POINTS]; /* cos x c_i */
+    double s[MT_FILON_POINTS];
+    double nc[MT_FILON_POINTS * MT_FILON_POINTS];
+    double ns[MT_FILON_POINTS * MT_FILON_POINTS];
+    double nd[MT_FILON_POINTS * MT_FILON_POINTS]; /* with sin/x */
+} mt_filon_weights;
+
+void mt_filon_make(mt_filon *q);
+/* Compute the weights for x; returns at once where w->x is x (a new w has x NaN). Errors: some
+ * 1e-14. */
+void mt_filon_weigh(const mt_filon *q, double x, mt_filon_weights *w);
+
+/*
+ * One step of a stiff motion. Vibrations of the springs about the pose at the beginning of the
+ * step are solved exactly; the remaining accelerations are a polynomial in time. Its smoothness
+ * limits the step, not the fastest vibration.
+ */
+
+/* Make s->collocation where the springs at s->base make the motion stiff. Fails: MT_E_MEMORY,
+ * MT_E_NO_CONVERGENCE (eigenvalues), MT_E_DOMAIN. */
+mt_status mt_collocation_new(mt_sim *s, mt_err *err);
 
 #endif
