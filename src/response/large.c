@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * With X the coordinates (X^T H X = I), of M_r = X^T H A X = Z theta Z^T the problem has unit
- * mass in columns u_j = X z_j theta_j^(-1/2), with lambda_j = 1/theta_j - s, those of the exact
- * modes being known better; of a force f it is theta_j^(-1/2) z_j^T X^T f. Nothing else of size
- * n is formed: H is the identity then, and rows of dampers are forces, too.
- */
-#include "response/large_priv.h"
+/* The forced problem of a large mechanism in few coordinates. */
+#include "response/large.h"
 
 #include <float.h>
 #include <math.h>
@@ -13,16 +8,280 @@
 
 #include "base/format.h"
 #include "linalg/dense.h"
+#include "mechanics/absolute.h"
+#include "mechanics/rows.h"
+
+/* A generalised force on the bodies, and its projections. */
+typedef struct force {
+    mt_lowest_push push;
+    double loss;    /* loss factor of a spring's force: the force times 1 + i loss */
+    double *in_all; /* [n] in the coordinates of the problem */
+    mt_left_part left;
+} force;
+
+typedef struct side {
+    force f;
+    double damping;
+    double structural;
+    int partner; /* the side paired with this one; may be itself */
+} side;
+
+typedef struct work {
+    mt_lowest *l;
+    const mt_port_set *ports;
+    mt_arena *mem;
+    mt_arena *scratch;
+    mt_large *out;
+    char *why;
+    mt_data d;
+    mt_placement at;
+    mt_term_list list[MT_TERM_KINDS];
+    int n_x;
+    int free;
+    int kept;     /* vibration modes */
+    int size;     /* columns of x */
+    int most;     /* capacity of x, columns */
+    double *x;    /* n_x x most, orthonormal */
+    double *ax;   /* H A times each column: x^T A x in the norm of H is x^T ax */
+    double *dual; /* [n_x] work */
+    double to;
+    double shift;
+    double alpha;
+    double beta;
+    double loss; /* common to all springs */
+    force *in;
+    force *outs;
+    side *sides;
+    int n_sides;
+    double *states; /* [nq] */
+    double *theta;
+    double *z;
+} work;
+
+/* What pushes, what is seen and what damps locally, each as a force in the coordinates of the
+ * search for modes. */
+
+/* What damps locally is a force of its own: with more of them a dense way costs less. */
+enum { MOST_SIDES = 24 };
+/* Rows of a term. */
+enum { MOST_ROWS = 16 };
+
+/* Sets the reason of a refusal; returns false. */
+static bool large_refuse(work *k, const char *why)
+{
+    (void)mt_snprintf(k->why, MT_LARGE_WHY, "%s", why);
+    return false;
+}
+
+/* Value of a node; 0 where there is none. */
+static double large_value(const work *k, mt_node node)
+{
+    return creal(mt_data_scalar(&k->d, node, 0.0));
+}
+
+static mt_status new_force(const work *k, force *f, mt_err *err)
+{
+    mt_lowest_push_init(k->l, k->scratch, &f->push);
+    return mt_arena_check(k->scratch, err);
+}
+
+/* k->states += factor times a row over the freedoms of a term's bodies. */
+static void add_term_row(work *k, const mt_term *t, const mt_cx *row, double factor)
+{
+    for (int i = 0; i < MT_LOCAL; i++) {
+        const int q = mt_local_dof(k->l->sys, t->body, i);
+        if (q >= 0) {
+            k->states[q] += factor * creal(row[i]);
+        }
+    }
+}
+
+static void clear(work *k)
+{
+    memset(k->states, 0, (size_t)k->l->sys->nq * sizeof *k->states);
+}
+
+/* Writes the row of a sensor's direction into k->states. */
+static void large_sensor_row(work *k, int channel)
+{
+    const mt_term *const t = &k->list[MT_TERM_CHANNEL].terms[channel];
+    mt_cx row[MT_LOCAL];
+    mt_term_rows(&k->d, MT_TERM_CHANNEL, t, k->at.pose, row);
+    clear(k);
+    add_term_row(k, t, row, 1.0);
+}
+
+static mt_status open_inputs(work *k, mt_err *err)
+{
+    k->in = mt_arena_alloc(k->scratch, (size_t)k->ports->n_in, sizeof *k->in);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    for (int i = 0; i < k->ports->n_in; i++) {
+        const mt_port *const port = &k->ports->in[i];
+        MT_TRY(new_force(k, &k->in[i], err));
+        if (port->kind == MT_PORT_BASE) {
+            MT_TRY(mt_lowest_base(k->l, port->index, &k->in[i].push, err));
+        } else {
+            large_sensor_row(k, port->index);
+            MT_TRY(mt_lowest_force(k->l, k->states, &k->in[i].push, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Power of s of an output. */
+static int large_power(const mt_port *out)
+{
+    return out->kind == MT_PORT_SENSOR ? out->motion : out->kind == MT_PORT_DAMPER ? 1 : 0;
+}
+
+/* The force in a spring or damper, in k->states; *one: all of it has one loss factor, *loss. */
+static void force_row(work *k, const mt_port *port, bool *one, double *loss)
+{
+    const mt_term_kind kind =
+        port->kind == MT_PORT_DAMPER ? MT_TERM_DAMPING : MT_TERM_STIFFNESS;
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    mt_force_part part[MT_FORCE_PARTS];
+    const int n = mt_response_force_among(k->l->sys, &k->list[kind], port, part);
+    *one = true;
+    clear(k);
+    for (int i = 0; i < n; i++) {
+        const mt_term *const t = part[i].term;
+        const double lost = kind == MT_TERM_DAMPING ? 0.0 : large_value(k, t->loss);
+        *one = *one && t->count <= MOST_ROWS && (i == 0 || lost == *loss);
+        if (*one) {
+            *loss = lost;
+            mt_term_rows(&k->d, kind, t, k->at.pose, rows);
+            add_term_row(k, t, rows + ((ptrdiff_t)(part[i].row - t->first) * MT_LOCAL),
+                         part[i].share * large_value(k, t->coefficient));
+        }
+    }
+}
+
+static mt_status open_outputs(work *k, bool *is, mt_err *err)
+{
+    k->outs = mt_arena_alloc(k->scratch, (size_t)k->ports->n_out, sizeof *k->outs);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    for (int o = 0; o < k->ports->n_out; o++) {
+        const mt_port *const port = &k->ports->out[o];
+        bool one = true;
+        MT_TRY(new_force(k, &k->outs[o], err));
+        if (port->kind == MT_PORT_JOINT) {
+            *is = large_refuse(k, "forces in joints need all modes");
+            return MT_OK;
+        }
+        if (port->kind == MT_PORT_SENSOR) {
+            large_sensor_row(k, port->index);
+        } else {
+            force_row(k, port, &one, &k->outs[o].loss);
+        }
+        if (!one) {
+            *is = large_refuse(k, "the force of a spring with several loss factors needs "
+                                  "all modes");
+            return MT_OK;
+        }
+        MT_TRY(mt_lowest_force(k->l, k->states, &k->outs[o].push, err));
+    }
+    return MT_OK;
+}
+
+/* Adds one damping row. */
+static mt_status add_side(work *k, const mt_term *t, const mt_cx *row, double damping,
+                          double structural, int partner, mt_err *err)
+{
+    side *const s = &k->sides[k->n_sides];
+    *s = (side){.damping = damping, .structural = structural, .partner = k->n_sides + partner};
+    MT_TRY(new_force(k, &s->f, err));
+    clear(k);
+    add_term_row(k, t, row, 1.0);
+    MT_TRY(mt_lowest_force(k->l, k->states, &s->f.push, err));
+    k->n_sides++;
+    return MT_OK;
+}
+
+/* Rows of all terms of a kind that damp more than all springs alike. */
+static mt_status add_terms(work *k, mt_term_kind kind, bool *is, mt_err *err)
+{
+    mt_cx rows[MOST_ROWS * MT_LOCAL];
+    for (int i = 0; i < k->list[kind].n_terms && *is; i++) {
+        const mt_term *const t = &k->list[kind].terms[i];
+        const double c = large_value(k, t->coefficient);
+        const double by = kind == MT_TERM_DAMPING ? c : c * (large_value(k, t->loss) - k->loss);
+        if (by == 0.0) {
+            continue;
+        }
+        if (k->n_sides + t->count > MOST_SIDES || t->count > MOST_ROWS) {
+            *is = large_refuse(k,
+                               "so many springs and dampers that damp each in its own way need "
+                               "all modes");
+            return MT_OK;
+        }
+        mt_term_rows(&k->d, kind, t, k->at.pose, rows);
+        for (int r = 0; r < t->count; r++) {
+            const double part = t->pair ? 0.5 * by : by;
+            MT_TRY(add_side(
+                k, t, rows + ((ptrdiff_t)r * MT_LOCAL), kind == MT_TERM_DAMPING ? part : 0.0,
+                kind == MT_TERM_DAMPING ? 0.0 : part, t->pair ? 1 - (2 * r) : 0, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* The loss factor that most springs have. */
+static double common_loss(const work *k)
+{
+    const mt_term_list *const list = &k->list[MT_TERM_STIFFNESS];
+    double most = 0.0;
+    int votes = 0;
+    for (int i = 0; i < list->n_terms; i++) { /* Boyer and Moore's vote */
+        const double own = large_value(k, list->terms[i].loss);
+        most = votes == 0 ? own : most;
+        votes += own == most ? 1 : -1;
+    }
+    return most;
+}
+
+static mt_status open_sides(work *k, bool *is, mt_err *err)
+{
+    const mt_damping_def *const d = &k->l->sys->damping;
+    k->alpha = large_value(k, d->mass);
+    k->beta = large_value(k, d->stiffness);
+    k->loss = common_loss(k);
+    k->sides = mt_arena_alloc(k->scratch, MOST_SIDES, sizeof *k->sides);
+    MT_TRY(mt_arena_check(k->scratch, err));
+    if (k->loss != 0.0 && k->l->sys->loaded) {
+        *is = large_refuse(k, "loss factors under a load need all modes");
+    } else if (d->n_named > 0) {
+        *is = large_refuse(k, "damping ratios of named modes need all modes");
+    }
+    if (*is) {
+        MT_TRY(add_terms(k, MT_TERM_DAMPING, is, err));
+    }
+    return *is ? add_terms(k, MT_TERM_STIFFNESS, is, err) : MT_OK;
+}
+
+/* Forces of all inputs, outputs and local dampers. *is false: refused. Fails: MT_E_MEMORY. */
+static mt_status large_forces(work *k, bool *is, mt_err *err)
+{
+    MT_TRY(mt_terms_new(k->l->sys, k->scratch, k->list, err));
+    MT_TRY(mt_absolute_stand(k->l->sys, mt_lowest_settled(k->l), k->l->at, &k->d, &k->at,
+                             k->scratch, err));
+    MT_TRY(open_inputs(k, err));
+    MT_TRY(open_outputs(k, is, err));
+    return *is ? open_sides(k, is, err) : MT_OK;
+}
+
+/*
+ * With X the coordinates (X^T H X = I), of M_r = X^T H A X = Z theta Z^T the problem has unit
+ * mass in columns u_j = X z_j theta_j^(-1/2), with lambda_j = 1/theta_j - s, those of the exact
+ * modes being known better; of a force f it is theta_j^(-1/2) z_j^T X^T f. Nothing else of size
+ * n is formed: H is the identity then, and rows of dampers are forces, too.
+ */
 
 /* Shapes of one force, and below what part of it the next one is not worth having. */
 enum { MOST_SHAPES = 10 };
 static const double NEGLIGIBLE = 1e-9;
 /* What is left of a shape beside the others, below which it is one of them. */
 static const double DEPENDENT = 1e-8;
-
-typedef mt_large_force force;
-typedef mt_large_side side;
-typedef mt_large_work work;
 
 /* x -= columns of the first n of k->x. */
 static void clear_of(const work *k, int n, double *x)
@@ -100,15 +359,15 @@ static bool keep_modes(work *k, double *lambda)
     const mt_modes *const m = &found->modes;
     for (int i = m->n_rigid; i < m->count; i++) {
         if (m->kind[i] != MT_MODE_FLEXIBLE) {
-            return mt_large_refuse(
-                k, "a motion without stiffness is none of its rigid-body modes");
+            return large_refuse(k,
+                                "a motion without stiffness is none of its rigid-body modes");
         }
     }
     k->kept = m->count - k->free;
     *lambda = k->kept == m->all - k->free ? HUGE_VAL
               : found->below > m->count   ? m->lambda[m->count - 1]
                                           : found->tau;
-    return k->kept > 0 ? true : mt_large_refuse(k, "it has no vibration modes");
+    return k->kept > 0 ? true : large_refuse(k, "it has no vibration modes");
 }
 
 /* Cancellation leaves the coordinates not quite orthonormal: returns a bound of the norm of X^T
@@ -208,7 +467,7 @@ static mt_status find_modes(work *k, bool *is, mt_err *err)
             k->size);
     const mt_status rc = mt_eig_graded(k->size, k->z, k->theta, k->scratch, err);
     if (rc == MT_E_NOT_SPD) {
-        *is = mt_large_refuse(k, "sixteen digits do not resolve what its modes leave out");
+        *is = large_refuse(k, "sixteen digits do not resolve what its modes leave out");
         return MT_OK;
     }
     MT_TRY(rc);
@@ -239,8 +498,7 @@ static mt_status damp(work *k, mt_err *err)
         const ptrdiff_t index = i - m->n_rigid;
         const bool vibrates = index >= 0;
         const double ratio =
-            !vibrates ? 0.0
-                      : mt_large_value(k, index < d->n_ratios ? d->ratios[index] : d->ratio);
+            !vibrates ? 0.0 : large_value(k, index < d->n_ratios ? d->ratios[index] : d->ratio);
         c[i * (n + 1)] = k->alpha + (k->beta * m->lambda[i]) +
                          (d->modal ? 2.0 * ratio * sqrt(m->lambda[i]) : 0.0);
         h[i * (n + 1)] = k->loss * m->lambda[i];
@@ -281,7 +539,7 @@ static mt_status add_ground(work *k, int o, filling *f, mt_err *err)
 {
     const mt_port *const out = &k->ports->out[o];
     const mt_system *const sys = k->l->sys;
-    mt_large_sensor_row(k, out->index);
+    large_sensor_row(k, out->index);
     for (int i = 0; i < k->ports->n_in && !out->relative; i++) {
         const mt_port *const in = &k->ports->in[i];
         if (in->kind != MT_PORT_BASE) {
@@ -318,7 +576,7 @@ static mt_status fill_reduced_problem(work *k, mt_err *err)
         memcpy(b + ((ptrdiff_t)i * n), k->in[i].in_all, bytes);
     }
     for (int o = 0; o < ports->n_out; o++) {
-        double *const s = ensure(k, &f.s[mt_large_power(&ports->out[o])], n, ports->n_out);
+        double *const s = ensure(k, &f.s[large_power(&ports->out[o])], n, ports->n_out);
         MT_TRY(mt_arena_check(k->mem, err));
         memcpy(s + ((ptrdiff_t)o * n), k->outs[o].in_all, bytes);
         if (k->outs[o].loss != 0.0) {
@@ -351,9 +609,9 @@ static mt_status fill_reduced_problem(work *k, mt_err *err)
 static double ratio_left(const work *k)
 {
     const mt_damping_def *const d = &k->l->sys->damping;
-    double most = d->modal ? mt_large_value(k, d->ratio) : 0.0;
+    double most = d->modal ? large_value(k, d->ratio) : 0.0;
     for (int i = k->kept; d->modal && i < d->n_ratios; i++) {
-        most = fmax(most, mt_large_value(k, d->ratios[i]));
+        most = fmax(most, large_value(k, d->ratios[i]));
     }
     return most;
 }
@@ -384,7 +642,7 @@ static mt_status note_left(work *k, double lambda, mt_err *err)
         out[o].open *= by;
         out[o].noise *= by;
         out[o].loose *= by;
-        power[ports->n_in + o] = mt_large_power(&ports->out[o]);
+        power[ports->n_in + o] = large_power(&ports->out[o]);
     }
     for (size_t s = 0; s < sides; s++) {
         const side *const own = &k->sides[s];
@@ -441,7 +699,7 @@ static mt_status make_reduced_problem(work *k, bool *is, mt_err *err)
     if (!*is) {
         return MT_OK;
     }
-    MT_TRY(mt_large_forces(k, is, err));
+    MT_TRY(large_forces(k, is, err));
     if (!*is) {
         return MT_OK;
     }

@@ -11,8 +11,6 @@
  */
 #include "response/slopes_forms.h"
 
-#include "response/slopes_priv.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -20,6 +18,7 @@
 #include "base/interrupt.h"
 #include "linalg/dense.h"
 #include "mechanics/independence.h"
+#include "response/slopes.h"
 
 enum {
     MATRICES = MT_SLOPE_MATRICES,

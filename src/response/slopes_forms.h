@@ -3,7 +3,6 @@
 #define RESPONSE_SLOPES_FORMS_H
 
 #include "response/slopes.h"
-#include "response/solutions.h"
 
 /*
  * The derivatives of one response at many frequencies, each by itself. With x' = (x, 1) and y'

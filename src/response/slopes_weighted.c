@@ -12,8 +12,6 @@
  */
 #include "response/slopes_weighted.h"
 
-#include "response/slopes_priv.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +19,7 @@
 #include "base/interrupt.h"
 #include "linalg/dense.h"
 #include "mechanics/independence.h"
-#include "response/solutions.h"
+#include "response/slopes.h"
 
 enum {
     MATRICES = MT_SLOPE_MATRICES,

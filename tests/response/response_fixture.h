@@ -8,8 +8,8 @@
 #include "mechanics/mech.h"
 #include "response/forced_fixture.h"
 #include "response/response.h"
+#include "response/slopes.h"
 #include "response/slopes_forms.h"
-#include "response/solutions.h"
 #include "support/mt_slope.h"
 
 typedef struct asked {
