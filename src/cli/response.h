@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "report/table.h"
 #include "response/response.h"
-#include "vibration/profiled.h"
+#include "vibration/profile_response.h"
 
 /* The response of one configuration with all that its output needs. */
 typedef struct mt_response_view {

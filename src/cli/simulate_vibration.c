@@ -5,7 +5,7 @@
 #include "cli/simulate.h"
 #include "cli/vibrated.h"
 #include "simulate/realise.h"
-#include "vibration/profiled.h"
+#include "vibration/profile_response.h"
 
 /* "base.y=FILE": the file, and where the port begins; else NULL. */
 const char *mt_sim_profile_of(const char *text, const char **port)

@@ -4,7 +4,7 @@
 
 #include "cli/cli.h"
 #include "report/table.h"
-#include "vibration/respond.h"
+#include "vibration/profile_response.h"
 
 /* Load the profile in the file of that name, or, where there is none, the profile of that name
  * built into the program, with its catalogue. Fails and messages as mt_vibration_load. */

@@ -8,7 +8,7 @@
 #include "describe/describe.h"
 #include "problem/configuration.h"
 #include "response/response.h"
-#include "vibration/profiled.h"
+#include "vibration/profile_response.h"
 
 static const double TWO_PI = 6.283185307179586477;
 

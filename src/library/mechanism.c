@@ -11,7 +11,7 @@
 #include "model/lint.h"
 #include "model/values.h"
 #include "response/response.h"
-#include "vibration/profiled.h"
+#include "vibration/profile_response.h"
 
 static const double TWO_PI = 6.283185307179586477;
 

@@ -10,7 +10,7 @@
 #include "base/options.h"
 #include "simulate/realise.h"
 #include "simulate/start.h"
-#include "vibration/profiled.h"
+#include "vibration/profile_response.h"
 
 /* One motion at work. */
 typedef struct work {

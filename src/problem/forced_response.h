@@ -4,7 +4,7 @@
 
 #include "problem/workspace.h"
 #include "response/response.h"
-#include "vibration/respond.h"
+#include "vibration/profile_response.h"
 
 /* Below this fraction of the limit, ln q is continued by its tangent (frequency.h), so
  * that a response of 0 has a value. */

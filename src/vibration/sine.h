@@ -2,7 +2,7 @@
 #ifndef VIBRATION_SINE_H
 #define VIBRATION_SINE_H
 
-#include "vibration/panels.h"
+#include "vibration/spectral.h"
 
 /*
  * The largest response to a tone whose frequency lies anywhere in a range:

@@ -3,7 +3,44 @@
 #define VIBRATION_SPECTRAL_H
 
 #include "study/psd.h"
-#include "vibration/panels.h"
+#include "vibration/frf.h"
+
+enum { MT_GAUSS_NODES = 24 };
+
+/* A part of a range of frequencies on which a response is smooth. */
+typedef struct mt_panel {
+    double anchor; /* from anchor + a to anchor + b [rad/s] */
+    double a;
+    double b;
+} mt_panel;
+
+/* Gauss's rule on [-1, 1]. */
+typedef struct mt_gauss {
+    double node[MT_GAUSS_NODES];
+    double weight[MT_GAUSS_NODES];
+} mt_gauss;
+
+void mt_panels_gauss(mt_gauss *g);
+
+/* Iterator over the panels of [lower, upper], one after another: mt_panels_begin, then
+ * mt_panels_next until it returns false. */
+enum { MT_PANEL_DEPTH = 96 };
+typedef struct mt_panels {
+    const mt_frf *h;
+    double upper;
+    double exponent;
+    double at;   /* the anchor of the last half */
+    double next; /* the following one */
+    bool right;  /* the half that ends at `next` has not been returned yet */
+    bool narrow; /* halving reached its limit: a pole lies on the interval */
+    int depth;
+    mt_panel stack[MT_PANEL_DEPTH];
+} mt_panels;
+
+/* The integrand is the response, its conjugate and w^exponent. */
+void mt_panels_begin(mt_panels *p, const mt_frf *h, double lower, double upper,
+                     double exponent);
+bool mt_panels_next(mt_panels *p, mt_panel *out);
 
 /*
  * Response to stationary random excitation: an input with the one-sided density G(f), straight
@@ -12,7 +49,7 @@
  * Each segment takes the method with the smaller error bound:
  *   - in closed form, |H|^2 in partial fractions over the poles and their conjugates: O(n)
  *     logarithms for each segment, and a few nodes where G is not constant;
- *   - by Gauss's rule on panels that are halved towards the resonances (vibration/panels.h),
+ *   - by Gauss's rule on panels that are halved towards the resonances (see spectral.c),
  *     whose terms are all positive: it is as exact as H itself.
  * A bound includes rounding and truncation; poles and residues are taken as exact.
  */

@@ -4,7 +4,7 @@
 
 #include "common/fuzz.h"
 #include "io/io.h"
-#include "vibration/respond.h"
+#include "vibration/profile_response.h"
 
 enum { MOST_PARTS = 20 };
 

@@ -5,7 +5,7 @@
 #include "mt_slope.h"
 #include "mt_test.h"
 #include "reference.h"
-#include "vibration/respond.h"
+#include "vibration/profile_response.h"
 
 static double hz_a[] = {5.0, 80.0, 500.0};
 static double level_a[] = {1e-2, 4.0, 1e-1};
