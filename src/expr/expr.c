@@ -13,9 +13,9 @@
 
 #include "base/format.h"
 #include "base/text.h"
-#include "expr/names.h"
+#include "expr/kind.h"
 #include "expr/op.h"
-#include "expr/unit_words.h"
+#include "expr/units.h"
 
 typedef struct parser {
     const char *text;

@@ -109,4 +109,8 @@ void mt_program_interval(const mt_program *p, const double *lower, const double 
 void mt_program_interval_gradient(const mt_program *p, const double *lower, const double *upper,
                                   double *lo, double *hi, double *dlo, double *dhi);
 
+/* node[count] = value, first and second derivative by the input at t, for a program with one
+ * input. O(count). Fails: MT_E_DOMAIN where one of them is not finite. */
+mt_status mt_program_second(const mt_program *p, double t, double (*node)[3], mt_err *err);
+
 #endif

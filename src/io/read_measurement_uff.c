@@ -20,7 +20,7 @@
 
 #include "base/format.h"
 #include "base/visible.h"
-#include "expr/unit_text.h"
+#include "expr/units.h"
 #include "io/universal.h"
 
 enum { TEXTS = 5, VALUES_MOST = 100000000, UNIT_TEXT = 48 };

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "expr/unit_text.h"
+#include "expr/units.h"
 
 enum { DISPLACEMENT = 8, REACTION = 9, VELOCITY = 11, ACCELERATION = 12, FORCE = 13 };
 

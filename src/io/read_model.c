@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "expr/names.h"
+#include "expr/kind.h"
 #include "io/file.h"
 #include "io/json_print.h"
 #include "io/read_units.h"

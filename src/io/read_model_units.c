@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "expr/measures.h"
-#include "expr/unit_text.h"
+#include "expr/kind.h"
+#include "expr/units.h"
 #include "io/synonyms.h"
 
 enum { HINT_TEXT = 256, KIN_TEXT = 160, MEMBER_UNIT = 48 };

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "expr/unit_list.h"
+#include "expr/units.h"
 #include "model/names.h"
 
 mt_status mt_model_new(mt_model **out, mt_err *err)

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "expr/names.h"
+#include "expr/kind.h"
 
 mt_addr mt_resolve_addr(const mt_model *m, mt_num num)
 {

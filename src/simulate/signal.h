@@ -2,7 +2,7 @@
 #ifndef SIMULATE_SIGNAL_H
 #define SIMULATE_SIGNAL_H
 
-#include "expr/second.h"
+#include "expr/program.h"
 #include "study/psd.h"
 
 /* A function of time: a force, an acceleration of the ground or a motion of a drive. */

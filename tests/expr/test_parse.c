@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "expr/expr.h"
-#include "expr/names.h"
+#include "expr/kind.h"
 #include "expr_fixture.h"
 #include "mt_alloc.h"
 #include "mt_test.h"

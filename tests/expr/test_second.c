@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "expr/second.h"
+#include "expr/program.h"
 #include "support/mt_test.h"
 
 static int only_t(const void *context, const char *name, size_t length)

@@ -6,8 +6,6 @@
 
 #include "base/format.h"
 #include "expr/kind.h"
-#include "expr/names.h"
-#include "expr/unit_text.h"
 #include "expr/units.h"
 #include "support/mt_test.h"
 
