@@ -20,7 +20,7 @@
 
 #include "base/workers.h"
 #include "io/file.h"
-#include "linalg/blas.h"
+#include "linalg/dense.h"
 
 /* The runtimes of sanitizers claim more than any limit. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

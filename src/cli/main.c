@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "linalg/blas.h"
+#include "linalg/dense.h"
 
 extern char **environ;
 

@@ -7,7 +7,7 @@
 #include "cli/save.h"
 #include "describe/describe.h"
 #include "io/file.h"
-#include "linalg/arithmetic.h"
+#include "linalg/dense.h"
 
 /* The identity of a run, known before anything is computed: program, libraries, files and
  * settings, and the properties of processors that affect arithmetic. Runs with the same

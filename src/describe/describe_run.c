@@ -8,7 +8,7 @@
 #include "base/build.h"
 #include "base/text.h"
 #include "describe/describe.h"
-#include "linalg/blas.h"
+#include "linalg/dense.h"
 #include "nlp/libraries.h"
 
 enum { VERSION_SIZE = 16 };

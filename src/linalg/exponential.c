@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/kernels.h"
+#include "linalg/dense.h"
 
 static const double LARGEST = 0.5;
 enum { TERMS = 20, HALVINGS_MOST = 100 };

@@ -2,6 +2,8 @@
 #ifndef LINALG_LDL_H
 #define LINALG_LDL_H
 
+#include <complex.h>
+
 #include "base/arena.h"
 
 /* Pattern of a sparse symmetric matrix: row i is stored from column first[i] to the diagonal.
@@ -51,5 +53,26 @@ void mt_ldl_solve(const mt_ldl *f, double *x);
 /* *norm: lower estimate of |A^-1| in the 1-norm, seldom more than 3 times too small (dlacn2);
  * infinite where A is singular. Costs a few solutions. Fails: MT_E_MEMORY. */
 mt_status mt_ldl_inverse_norm(const mt_ldl *f, mt_arena *scratch, double *norm, mt_err *err);
+
+/* A = L D L^T of a complex symmetric matrix (not Hermitian), in place of its lower triangle. */
+typedef struct mt_complex_ldl {
+    int n;
+    double complex *a;       /* n x n, the caller's, overwritten */
+    int *pivot;              /* LAPACK's numbering */
+    double complex *inverse; /* [n] inverse pivots of order one; NULL for large n */
+    bool singular;           /* a pivot is exactly 0 */
+} mt_complex_ldl;
+
+/* Factor the lower triangle of A. n^3/3 complex flops. zsytrf; own code for small n. */
+mt_status mt_complex_factor(int n, double complex *a, mt_arena *mem, mt_complex_ldl *out,
+                            mt_err *err);
+/* X := A^-1 B in place of B, n x nrhs. The factor must not be singular. Fails as
+ * mt_complex_factor. */
+mt_status mt_complex_solve(const mt_complex_ldl *f, int nrhs, double complex *b, mt_err *err);
+/* Norm of A before it is factored, from its lower triangle: 1-norm of |re| + |im|. */
+double mt_complex_norm(int n, double complex *a);
+/* Estimated reciprocal condition number of A in that norm; 0 where singular. zsycon. */
+mt_status mt_complex_rcond(const mt_complex_ldl *f, double norm, double *rcond,
+                           mt_arena *scratch, mt_err *err);
 
 #endif

@@ -2,7 +2,6 @@
 #ifndef MECHANICS_ABSOLUTE_H
 #define MECHANICS_ABSOLUTE_H
 
-#include "linalg/factor.h"
 #include "linalg/sparse.h"
 #include "mechanics/position.h"
 

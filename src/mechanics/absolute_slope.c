@@ -15,7 +15,7 @@
 
 #include "base/format.h"
 #include "base/interrupt.h"
-#include "linalg/kernels.h"
+#include "linalg/dense.h"
 #include "mechanics/absolute.h"
 #include "mechanics/lagrangian.h"
 #include "mechanics/rows.h"

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/solve.h"
+#include "linalg/dense.h"
 
 /* O(n^3) for each step of a walk: below a millisecond. */
 enum { EQUATIONS_MOST = 150 };

@@ -20,7 +20,6 @@
 
 #include "base/format.h"
 #include "linalg/dense.h"
-#include "linalg/kernels.h"
 
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
  * iterations (of loops of thousands with the second), and eps gamma cond K is well below 1. */

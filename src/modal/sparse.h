@@ -2,7 +2,6 @@
 #ifndef MODAL_SPARSE_H
 #define MODAL_SPARSE_H
 
-#include "linalg/factor.h"
 #include "linalg/sparse.h"
 #include "modal/lowest.h"
 
@@ -30,7 +29,7 @@ enum { MT_SPARSE_WHY = 200 };
 
 /**
  * The lowest modes by Lanczos' method on (K + shift M)^-1 M, with constraints as stiff springs
- * in the factor (linalg/factor.h) and their forces found by iteration; shift 0 where K allows
+ * in the factor (linalg/sparse.h) and their forces found by iteration; shift 0 where K allows
  * it. Rigid-body modes are those whose strains are rounding. The errors include the
  * cancellation in strains, as in a long slender chain.
  * @param[out] out       in mem; modes.n: freedoms

@@ -9,7 +9,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "linalg/kernels.h"
+#include "linalg/dense.h"
 
 /* Of everything else in a solution. */
 static const double OTHER_ULPS = 64.0;

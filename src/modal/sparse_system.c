@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "linalg/kernels.h"
+#include "linalg/dense.h"
 
 /* Relative pivots: below this a matrix is singular. */
 static const double REGULAR = 1e-15;

@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/complex_ldl.h"
 #include "linalg/dense.h"
+#include "linalg/ldl.h"
 
 /* Roundings per coordinate in an entry Y^T C Y, in terms of its entries' sizes. */
 static const double ENTRY_ULPS = 4.0;

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/complex_ldl.h"
 #include "linalg/dense.h"
+#include "linalg/ldl.h"
 #include "modal/growth.h"
 
 /* Work of mt_response_poles. */

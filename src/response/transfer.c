@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "linalg/complex_ldl.h"
+#include "linalg/ldl.h"
 
 /* Roundings that an entry of D, or a sum of products, is off by. */
 static const double ROUNDINGS = 8.0;

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "linalg/eig.h"
+#include "linalg/dense.h"
 
 /* Parts of the largest moment below which a difference of moments is their rounding. */
 static const double ROUNDING = 1e-14;

@@ -11,7 +11,6 @@
 
 #include "base/arena.h"
 #include "linalg/dense.h"
-#include "linalg/kernels.h"
 #include "mechanics/eliminate.h"
 
 /* out[n] = f(t, y[n]). Its failure ends the step, which fails with the same status. */

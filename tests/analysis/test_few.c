@@ -7,7 +7,7 @@
  */
 #include <stdlib.h>
 
-#include "linalg/kernels.h"
+#include "linalg/dense.h"
 #include "mechanics/mech.h"
 #include "support/mt_random.h"
 

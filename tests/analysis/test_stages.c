@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "linalg/kernels.h"
+#include "linalg/dense.h"
 #include "mechanics/mech.h"
 #include "support/mt_random.h"
 

@@ -41,6 +41,9 @@ WRAP(mt_status, mt_cholesky, (int n, double *a, int *bad, mt_err *err), (n, a, b
 WRAP(mt_status, mt_eig_sym,
      (int n, double *a, double *w, bool vectors, mt_arena *scratch, mt_err *err),
      (n, a, w, vectors, scratch, err), EIG, n, n, n)
+/* Cholesky and Jacobi's method, which the linker does not see within one file. */
+WRAP(mt_status, mt_eig_graded, (int n, double *a, double *w, mt_arena *scratch, mt_err *err),
+     (n, a, w, scratch, err), SOLVE + SVD, n, n, n)
 WRAP(mt_status, mt_inertia,
      (int n, const double *a, const double *b, double shift, int count[3], double *gap,
       mt_arena *scratch, mt_err *err),

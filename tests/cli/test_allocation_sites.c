@@ -31,7 +31,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "linalg/blas.h"
+#include "linalg/dense.h"
 #include "mt_alloc.h"
 #include "mt_child.h"
 #include "mt_random.h"

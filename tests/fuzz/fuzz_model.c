@@ -12,7 +12,7 @@
 #include "common/fuzz.h"
 #include "io/io.h"
 #include "io/json_print.h"
-#include "linalg/blas.h"
+#include "linalg/dense.h"
 #include "mechanics/info.h"
 #include "mechanics/sweep.h"
 #include "model/values.h"

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "linalg/blas.h"
 #include "linalg/dense.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"

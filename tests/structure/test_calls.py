@@ -30,7 +30,7 @@ OPENERS = {"io/file.c", "cli/terminal.c"}
 MOVES = re.compile(r"(?<![\w.>])(rename(?:at)?|(?:un|sym)?link(?:at)?|remove|rmdir|mkdir(?:at)?|f?truncate|f?chmod(?:at)?|f?chown(?:at)?)\s*\(")
 MOVERS = {"io/folder.c", "io/journal.c"}
 LOADS = re.compile(r"(?<![\w.>])(dl(?:m?open|v?sym|close))\s*\(")  # a library that only some need, by its own door
-LOADERS = {"linalg/cholmod.c"}
+LOADERS = {"linalg/sparse.c"}
 CONVERSION = re.compile(r"%(?:%|[-+#0]*(?:\*|\d+)?(?:\.(?:\*|\d+))?(hh?|ll?|[jztLq])?([a-zA-Z]))")
 LITERAL = re.compile(r'"(?:[^"\\\n]|\\.)*"')
 
