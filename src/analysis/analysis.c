@@ -8,7 +8,7 @@
 #include "analysis/count.h"
 #include "analysis/lowest.h"
 #include "analysis/tracking.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "mechanics/energy.h"
 #include "mechanics/products.h"
 #include "mechanics/redundant.h"

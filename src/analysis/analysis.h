@@ -108,7 +108,7 @@ mt_status mt_analysis_new_like(const mt_analysis *like, const double *at, mt_ana
 /* Accepts NULL. */
 void mt_analysis_delete(mt_analysis *a);
 /* Modes at inputs[n_inputs] [the parameters' units] into a->modes, valid until the next call;
- * opt is required. Stages with unchanged inputs are skipped (base/profile.h): where no input of
+ * opt is required. Stages with unchanged inputs are skipped (base/run.h): where no input of
  * K and M changed, a->modes is kept. O(n^3); no heap after the first calls. Fails as above and
  * with MT_E_DOMAIN where stiffness resists a direction that is counted as free (unless
  * a->recount); a->modes is then void. */

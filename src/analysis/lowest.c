@@ -11,8 +11,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/run.h"
 #include "linalg/dense.h"
 #include "modal/balance.h"
 #include "modal/sign.h"

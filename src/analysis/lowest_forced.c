@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "linalg/dense.h"
 
 /* Roundings of a force for each body that it goes through. */

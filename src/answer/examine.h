@@ -2,8 +2,8 @@
 #ifndef ANSWER_EXAMINE_H
 #define ANSWER_EXAMINE_H
 
+#include "base/diagnostics.h"
 #include "base/run.h"
-#include "base/warning.h"
 #include "study/study.h"
 
 /**

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * A study answered in phases. Each may be cut by the caller's wish to stop. Which ones were is
- * told by the interrupt itself, which every unit of work passes (base/interrupt.h): no phase
+ * told by the interrupt itself, which every unit of work passes (base/run.h): no phase
  * hands it up, so none can forget to. What a phase that was cut has written is taken back, and
  * those that need what it would have found are not begun.
  */
@@ -12,7 +12,7 @@
 #include <math.h>
 
 #include "answer/weight_sensitivity.h"
-#include "base/options.h"
+#include "base/base.h"
 #include "base/workers.h"
 #include "describe/describe.h"
 

@@ -5,7 +5,7 @@
 #include <limits.h>
 
 #include "answer/solve.h"
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "base/workers.h"
 #include "search/catalogue_search.h"
 #include "search/mode_placements.h"

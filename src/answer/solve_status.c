@@ -7,7 +7,7 @@
 
 #include "answer/warnings.h"
 #include "base/format.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "describe/certificates.h"
 #include "describe/describe.h"
 

@@ -4,7 +4,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/lowest.h"
-#include "base/warning.h"
+#include "base/diagnostics.h"
 
 /**
  * Notes and warnings about a configuration: its numbers and reference position (mt_model_lint),

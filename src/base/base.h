@@ -30,6 +30,7 @@ static inline bool mt_is_final(mt_status rc)
 {
     return rc == MT_E_MEMORY || rc == MT_E_INTERNAL;
 }
+
 /* The status of the work after a trial that ended with rc and its own text: rc where it is
  * final, otherwise MT_OK. */
 static inline mt_status mt_pass_final(mt_status rc, const mt_err *own, mt_err *err)
@@ -46,5 +47,23 @@ static inline mt_status mt_pass_final(mt_status rc, const mt_err *own, mt_err *e
 #endif
 
 #define MT_COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+
+/*
+ * Copy a public options struct, which begins with its size (modetune/read.h), into the struct
+ * that this library knows: out[size] bytes including the size; 0 where `given` is shorter or
+ * NULL. Fails: MT_E_USAGE with the name of the function, where the size is missing or
+ * implausible, or a member unknown to this library is not 0.
+ */
+mt_status mt_options_take(const char *function, const void *given, size_t size, void *out,
+                          mt_err *err);
+#define MT_OPTIONS_TAKE(given, out, err) \
+    mt_options_take(__func__, (given), sizeof *(out), (out), (err))
+
+/* Commit and compiler that the library was built from; static texts. */
+/* "v1.0.0-3-g0123456789ab", without tags "0123456789ab"; "-dirty" where files differed;
+ * "unknown" where the sources were not a repository of their own. */
+const char *mt_build_commit(void);
+/* "GNU 12.2.0" */
+const char *mt_build_compiler(void);
 
 #endif

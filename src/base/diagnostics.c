@@ -1,10 +1,96 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Problems of files, with their places, and warnings. */
 #include "base/diagnostics.h"
 
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/arena.h"
+#include "base/format.h"
+
+/* Number of notes and warnings kept, and of faults besides, so that no warning displaces a
+ * fault. */
+enum { WARNING_LIMIT = 1000 };
+
+/* Problems by address. */
+
+mt_diags mt_diags_default(mt_arena *mem)
+{
+    return (mt_diags){.mem = mem};
+}
+
+/* Names may be as long as the file: what goes beyond a line is not kept. */
+enum { TEXT_SIZE = 2048 };
+
+MT_PRINTF(5, 0)
+static void add_diagnostic(mt_diags *d, mt_addr addr, mt_severity severity, bool structural,
+                           const char *fmt, va_list args)
+{
+    char line[TEXT_SIZE];
+    const bool written = mt_vsnprintf(line, sizeof line, fmt, args) >= 0;
+    const char *const text = mt_arena_strdup(d->mem, written ? line : fmt);
+    mt_diag *const items =
+        mt_arena_grow(d->mem, d->items, d->count, &d->capacity, sizeof *items);
+    if (items == NULL) {
+        return;
+    }
+    items[d->count] =
+        (mt_diag){.addr = addr, .severity = severity, .structural = structural, .text = text};
+    d->items = items;
+    d->count++;
+}
+
+bool mt_diag_has_room(const mt_diags *d)
+{
+    return d->count < MT_DIAG_LIMIT;
+}
+
+bool mt_diag_may_suggest(const mt_diags *d)
+{
+    return d->errors < MT_DIAG_SUGGESTIONS;
+}
+
+void mt_diag_error(mt_diags *d, mt_addr addr, const char *fmt, ...)
+{
+    d->errors++;
+    if (d->count >= MT_DIAG_LIMIT) {
+        return;
+    }
+    va_list args;
+    va_start(args, fmt);
+    add_diagnostic(d, addr, MT_SEVERITY_ERROR, false, fmt, args);
+    va_end(args);
+}
+
+void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...)
+{
+    d->errors++;
+    d->structural++;
+    if (d->count >= MT_DIAG_LIMIT) {
+        return;
+    }
+    va_list args;
+    va_start(args, fmt);
+    add_diagnostic(d, addr, MT_SEVERITY_ERROR, true, fmt, args);
+    va_end(args);
+}
+
+void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...)
+{
+    d->warnings++;
+    if (d->count >= MT_DIAG_LIMIT) {
+        return;
+    }
+    va_list args;
+    va_start(args, fmt);
+    add_diagnostic(d, addr, MT_SEVERITY_WARNING, false, fmt, args);
+    va_end(args);
+}
+
+/* Problems by file, line and pointer, as they are printed. */
 
 enum { LINE_MAX_BYTES = 1000 }; /* a message is cut there */
 
@@ -184,4 +270,93 @@ const char *mt_diagnostics_message(const mt_diagnostics *d, int i)
 const char *mt_diagnostics_text(const mt_diagnostics *d)
 {
     return d == NULL ? NULL : d->lines.s == NULL ? "" : d->lines.s;
+}
+
+/* Warnings. */
+
+const char *const mt_warning_names[MT_WARNING_NAME_COUNT] = {
+#define MT_WARNING_NAME(name, of) name,
+    MT_WARNING_NAMES(MT_WARNING_NAME)
+#undef MT_WARNING_NAME
+};
+
+mt_warning_list mt_warning_list_default(mt_arena *mem)
+{
+    return (mt_warning_list){.mem = mem};
+}
+
+static bool is_full(const mt_warning_list *list, mt_warning_level level)
+{
+    return list->n >= (level == MT_LEVEL_FAULT ? 2 : 1) * WARNING_LIMIT;
+}
+
+static mt_warning *append_warning(mt_warning_list *list, const mt_warning *item)
+{
+    if (is_full(list, item->level)) {
+        return NULL;
+    }
+    mt_warning *const items =
+        mt_arena_grow(list->mem, list->items, list->n, &list->capacity, sizeof *items);
+    if (items == NULL) {
+        return NULL;
+    }
+    list->items = items;
+    items[list->n] = *item;
+    return &items[list->n++];
+}
+
+mt_warning *mt_warning_add(mt_warning_list *list, mt_warning_level level, const char *kind,
+                           const char *fmt, ...)
+{
+    mt_warning item = {.level = level, .kind = kind, .addr = MT_NO_ADDR};
+    if (is_full(list, level)) {
+        return NULL;
+    }
+    va_list args;
+    va_start(args, fmt);
+    item.text = mt_arena_vprintf(list->mem, fmt, args);
+    va_end(args);
+    return append_warning(list, &item);
+}
+
+void mt_warning_sort(mt_warning_list *list, int first)
+{
+    for (int i = first + 1; i < list->n; i++) {
+        const mt_warning moved = list->items[i];
+        int k = i;
+        for (; k > first && list->items[k - 1].size < moved.size; k--) {
+            list->items[k] = list->items[k - 1];
+        }
+        list->items[k] = moved;
+    }
+}
+
+void mt_warning_accept(mt_warning_list *list, int first, const mt_accepted *accepted)
+{
+    for (int i = first; i < list->n; i++) {
+        mt_warning *const d = &list->items[i];
+        for (int k = 0; k < accepted->n && d->level == MT_LEVEL_WARNING; k++) {
+            if (strcmp(accepted->names[k], d->kind) == 0) {
+                d->level = MT_LEVEL_NOTE;
+                d->text =
+                    mt_arena_printf(list->mem, "accepted: %s", d->text == NULL ? "" : d->text);
+            }
+        }
+    }
+}
+
+static const char *text(mt_warning_list *list, const char *s)
+{
+    return s == NULL ? NULL : mt_arena_strdup(list->mem, s);
+}
+
+void mt_warning_copy(mt_warning_list *list, const mt_warning *item)
+{
+    mt_warning copy = *item;
+    copy.kind = text(list, item->kind);
+    copy.text = text(list, item->text);
+    copy.configuration = text(list, item->configuration);
+    copy.pointer = text(list, item->pointer);
+    copy.file = text(list, item->file);
+    (void)append_warning(list, &copy);
 }

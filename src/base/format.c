@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/decimal.h"
-#include "base/visible.h"
+#include "base/number.h"
+#include "base/text.h"
 
 enum {
     PRECISION_MOST = 40,

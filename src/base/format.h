@@ -11,7 +11,7 @@
  * All formatted text (errors, sentences, tables, pages) is made here, because
  *   - a number that is not finite is written as a word, "undefined" for NaN, "infinite",
  *     "-infinite"; -0 is written as 0, and the decimal point is a point in every locale;
- *   - an argument of %s (or %c) may come from outside and is made visible, see base/visible.h;
+ *   - an argument of %s (or %c) may come from outside and is made visible, see base/text.h;
  *   - a text that is cut, by size or by %.20s, ends before a UTF-8 character, not inside it.
  * Otherwise as vsnprintf with the conversions d i u x X c s e f g and %%, lengths l, ll and z,
  * flags + - 0 #, width and precision (also *). Arguments of system calls (paths) must not be

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "cli/simulate.h"
 #include "cli/vibrated.h"
 #include "mechanics/drive.h"

@@ -2,7 +2,7 @@
 #ifndef CLI_PROFILE_H
 #define CLI_PROFILE_H
 
-#include "base/profile.h"
+#include "base/run.h"
 #include "cli/args.h"
 
 /* Counters of the evaluations of a model from here on, with --profile; else NULL. */

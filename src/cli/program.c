@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "modetune/version.h"
 
-#include "base/build.h"
+#include "base/base.h"
 #include "cli/help.h"
 #include "cli/limits.h"
 #include "cli/manual.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "analysis/sensitivity.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "model/values.h"
 
 static const double PER_CENT = 0.01;

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "base/format.h"
-#include "base/visible.h"
+#include "base/text.h"
 
 enum {
     LINE_SIZE = 8192, /* longer lines of talk are cut */

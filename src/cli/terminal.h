@@ -23,7 +23,7 @@ int mt_exit_worse(int a, int b);
 
 /*
  * All writing to standard output and error. Characters that a terminal would obey (control
- * characters, marks of direction) are made visible, see base/visible.h; only colours and the
+ * characters, marks of direction) are made visible, see base/text.h; only colours and the
  * erasing of the progress line are sent as such.
  */
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/format.h"
-#include "base/ticker.h"
+#include "base/run.h"
 #include "cli/cli.h"
 
 enum { TEXT = 512, DURATION = 32, LOOK_MS = 100 };

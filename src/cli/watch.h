@@ -2,7 +2,7 @@
 #ifndef CLI_WATCH_H
 #define CLI_WATCH_H
 
-#include "base/progress.h"
+#include "base/run.h"
 #include "cli/args.h"
 
 /*

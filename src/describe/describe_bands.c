@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/tie.h"
+#include "base/number.h"
 #include "describe/describe.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "describe/certificates.h"
 #include "describe/describe_catalogue_search.h"
 

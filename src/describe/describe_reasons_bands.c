@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/tie.h"
+#include "base/number.h"
 
 /* A clearance that equals its margin within this, in percent of the edge, is active: ten times
  * the tolerance that a goal has by default. */

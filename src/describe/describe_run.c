@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "base/build.h"
+#include "base/base.h"
 #include "base/text.h"
 #include "describe/describe.h"
 #include "linalg/dense.h"

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
-#include "base/diag.h"
+#include "base/diagnostics.h"
 
 /*
  * Parameter expressions, parsed once into postfix code. Grammar:

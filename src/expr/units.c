@@ -17,8 +17,8 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "base/digits.h"
 #include "base/format.h"
+#include "base/number.h"
 
 #define PI  3.14159265358979323846
 #define DEG (PI / 180.0)

@@ -19,7 +19,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/visible.h"
+#include "base/text.h"
 #include "expr/units.h"
 #include "io/universal.h"
 

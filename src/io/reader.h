@@ -2,7 +2,7 @@
 #ifndef IO_READER_H
 #define IO_READER_H
 
-#include "base/warning.h"
+#include "base/diagnostics.h"
 #include "expr/expr.h"
 #include "io/json.h"
 #include "model/model.h"

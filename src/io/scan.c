@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/visible.h"
+#include "base/text.h"
 #include "io/json.h"
 #include "io/universal.h"
 

@@ -2,7 +2,7 @@
 #ifndef IO_SCAN_H
 #define IO_SCAN_H
 
-#include "base/diag.h"
+#include "base/diagnostics.h"
 
 /*
  * The strict scanner of JSON texts. It refuses all that io/json.h refuses except names given

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/decimal.h"
 #include "base/format.h"
-#include "base/visible.h"
+#include "base/number.h"
+#include "base/text.h"
 
 enum { LONGEST_CHARACTER = 4 }; /* in bytes of UTF-8 */
 /* Digits that identify a double, and those that a double keeps of any decimal number

@@ -2,8 +2,8 @@
 #ifndef IO_WRITE_RESULT_H
 #define IO_WRITE_RESULT_H
 
+#include "base/diagnostics.h"
 #include "base/text.h"
-#include "base/warning.h"
 #include "io/write_json.h"
 #include "result/result.h"
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/options.h"
+#include "base/base.h"
 #include "simulate/realise.h"
 #include "simulate/start.h"
 #include "vibration/profile_response.h"

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/options.h"
+#include "base/base.h"
 #include "io/io.h"
 #include "io/result_model.h"
 #include "library/scene_designs.h"

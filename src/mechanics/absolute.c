@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "mechanics/rows.h"
 
 /* A gap below this times the model length is rounding of the drawing's own numbers. */

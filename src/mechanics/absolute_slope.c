@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "linalg/dense.h"
 #include "mechanics/absolute.h"
 #include "mechanics/lagrangian.h"

@@ -20,7 +20,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "mechanics/branch.h"
 #include "mechanics/newton_step.h"
 #include "mechanics/singular.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "mechanics/couplings.h"
 #include "mechanics/free_spin.h"
 #include "mechanics/reduce.h"

@@ -13,7 +13,7 @@
  *     q = Z y,  A Z = 0,   K_r = Z^T K Z,  M_r = Z^T M Z
  *         (n x n, column-major, both triangles filled)
  *
- * A stage (base/profile.h) is computed again only where an input that it depends on has other
+ * A stage (base/run.h) is computed again only where an input that it depends on has other
  * bits than at its last computation, or where an earlier stage was computed (stages.h).
  * Skipping does not change results: they depend on the inputs alone, and on the first update,
  * whose masses choose the basis of a geometry that no input moves.

@@ -24,7 +24,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "mechanics/constraint.h"
 
 /* Singular values of the reduced Hessian below this fraction of the largest stiffness, be it

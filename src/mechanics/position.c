@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/number.h"
 #include "base/text.h"
-#include "base/tie.h"
 #include "mechanics/drive.h"
 #include "mechanics/newton_tangent.h"
 

@@ -2,7 +2,7 @@
 #ifndef MECHANICS_STAGES_H
 #define MECHANICS_STAGES_H
 
-#include "base/profile.h"
+#include "base/run.h"
 #include "mechanics/rows.h"
 
 /*

@@ -2,7 +2,7 @@
 #ifndef MODAL_SOLVE_H
 #define MODAL_SOLVE_H
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "modal/mass.h"
 #include "modal/modes.h"
 

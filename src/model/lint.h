@@ -2,7 +2,7 @@
 #ifndef MODEL_LINT_H
 #define MODEL_LINT_H
 
-#include "base/warning.h"
+#include "base/diagnostics.h"
 #include "model/model.h"
 #include "model/values.h"
 

@@ -5,8 +5,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
-#include "base/diag.h"
-#include "base/warning.h"
+#include "base/diagnostics.h"
 #include "expr/expr.h"
 #include "expr/kind.h"
 #include "expr/units.h"

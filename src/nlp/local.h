@@ -2,7 +2,7 @@
 #ifndef NLP_LOCAL_H
 #define NLP_LOCAL_H
 
-#include "base/serializer.h"
+#include "base/workers.h"
 #include "nlp/engine.h"
 
 /* One local search and its end. */

@@ -3,7 +3,7 @@
 #define NLP_STEPS_H
 
 #include "base/arena.h"
-#include "base/serializer.h"
+#include "base/workers.h"
 
 /*
  * The improvements of a search: the designs that were better than all before them, in the order
@@ -38,7 +38,7 @@ void mt_steps_append(mt_steps *steps, const mt_steps *more, long evals, int stag
 /* Adds the end of the search in any case: in the last round of its stage where it is not worse
  * than that round's last step, else in a new round. */
 void mt_steps_settle(mt_steps *steps, const mt_step *end);
-/* Writes or reads the steps (base/serializer.h); stages and rounds are 0. */
+/* Writes or reads the steps (base/workers.h); stages and rounds are 0. */
 void mt_steps_serialize(mt_steps *steps, mt_serializer *serializer);
 
 #endif

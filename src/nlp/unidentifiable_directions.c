@@ -22,7 +22,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/tie.h"
+#include "base/number.h"
 #include "nlp/kkt.h"
 #include "nlp/lsq.h"
 #include "nlp/polish.h"

@@ -2,8 +2,7 @@
 #ifndef PROVE_CERTIFY_H
 #define PROVE_CERTIFY_H
 
-#include "base/interrupt.h"
-#include "base/progress.h"
+#include "base/run.h"
 #include "prove/box.h"
 
 /*

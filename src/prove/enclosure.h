@@ -3,7 +3,7 @@
 #define PROVE_ENCLOSURE_H
 
 #include "analysis/analysis.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 
 /*
  * Proven bounds of the modes of one configuration while the inputs stay within a box.

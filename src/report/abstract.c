@@ -6,7 +6,7 @@
 #include <strings.h>
 
 #include "base/base.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "report/number.h"
 #include "report/result_tables.h"
 #include "report/table.h"

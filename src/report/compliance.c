@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "report/number.h"
 
 enum {

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/tie.h"
+#include "base/number.h"
 #include "report/number.h"
 
 enum { VALUE_DIGITS = 6, SHORT_DIGITS = 3, INDENT = 2 };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "report/number.h"
 
 /* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more

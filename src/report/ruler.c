@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/tie.h"
+#include "base/number.h"
 
 enum { INDENT = 2, LEAST = 30, USUAL = 64, MOST = 96, ROOM = MOST + 16, NUMBER = 24 };
 static const double ABOVE = 1.12; /* what is shown above the last thing asked for */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/tie.h"
+#include "base/number.h"
 #include "report/abstract.h"
 #include "report/compliance.h"
 #include "report/curves.h"

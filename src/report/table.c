@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/tie.h"
-#include "base/visible.h"
+#include "base/number.h"
+#include "base/text.h"
 #include "report/number.h"
 #include "result/result.h"
 

@@ -63,7 +63,7 @@ void mt_table_unit(mt_table *t, const char *unit, const char *display_unit);
 /* A published number in the displayed unit, with at most 10 digits and no trailing zeros. */
 void mt_table_quoted(mt_table *t, double value, double factor);
 /* mt_table_percent: a percentage with its sign; mt_table_ratio: a ratio without. For people,
- * noise (base/tie.h) is written as 0. */
+ * noise (base/number.h) is written as 0. */
 void mt_table_percent(mt_table *t, double value, int digits);
 /* The deviation of a goal; for a met goal, a deviation within the accuracy of searches is 0 for
  * people. */
@@ -87,7 +87,7 @@ void mt_table_csv(const mt_table *t, mt_text *out);
 void mt_table_html(const mt_table *t, mt_text *out);
 
 /* One CSV field in one line, quoted where RFC 4180 requires it; control characters are made
- * visible (base/visible.h). Text that a spreadsheet would take for a formula (it begins with =
+ * visible (base/text.h). Text that a spreadsheet would take for a formula (it begins with =
  * + - @) gets an apostrophe in front; a number does not. */
 void mt_csv_field(const char *s, mt_text *out);
 /* Escape text for HTML or a quoted attribute: & < > " ' become references, control characters

@@ -2,7 +2,7 @@
 #ifndef RESPONSE_CURVE_H
 #define RESPONSE_CURVE_H
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "response/transfer.h"
 
 /*

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "analysis/damping.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "linalg/dense.h"
 #include "mechanics/independence.h"
 #include "response/slopes.h"

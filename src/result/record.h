@@ -7,7 +7,7 @@
 
 #include "base/arena.h"
 #include "base/base.h"
-#include "base/serializer.h"
+#include "base/workers.h"
 
 /*
  * The members of a struct as a table. Writer, reader, copier and checks of results walk these

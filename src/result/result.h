@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
-#include "base/warning.h"
+#include "base/diagnostics.h"
 #include "result/curves.h"
 #include "result/made_from.h"
 #include "result/record.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/digits.h"
+#include "base/number.h"
 #include "result/result.h"
 
 mt_status mt_result_new(mt_result **out, mt_err *err)

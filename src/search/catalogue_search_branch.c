@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "base/workers.h"
 #include "problem/objective.h"
 #include "search/catalogue_search.h"

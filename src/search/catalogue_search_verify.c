@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "base/workers.h"
 #include "problem/avoidance.h"
 #include "problem/evaluate.h"

@@ -18,8 +18,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/tie.h"
-#include "base/work_counters.h"
+#include "base/number.h"
+#include "base/run.h"
 #include "mechanics/products.h"
 #include "problem/configuration.h"
 

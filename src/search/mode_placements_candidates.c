@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "nlp/merit.h"
 #include "nlp/starts.h"
 #include "problem/avoidance.h"

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "linalg/exponential.h"
 #include "mechanics/affine.h"
 #include "mechanics/eliminate.h"

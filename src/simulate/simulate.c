@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "simulate/propagate.h"
 #include "simulate/step.h"
 

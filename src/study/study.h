@@ -4,7 +4,7 @@
 
 #include "modetune/study.h"
 
-#include "base/warning.h"
+#include "base/diagnostics.h"
 #include "model/count_box.h"
 #include "model/model.h"
 #include "study/aircraft.h"

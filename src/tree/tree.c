@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "linalg/dense.h"
 #include "mechanics/data.h"
 #include "mechanics/forces.h"

@@ -19,7 +19,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "linalg/dense.h"
 #include "mechanics/rows.h"
 #include "tree/tree.h"

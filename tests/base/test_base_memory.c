@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "base/diag.h"
+#include "base/diagnostics.h"
 #include "support/mt_test.h"
 
 static long fail_after; /* allocations that still succeed; negative: all */

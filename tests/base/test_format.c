@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/decimal.h"
 #include "base/format.h"
-#include "base/visible.h"
+#include "base/number.h"
+#include "base/text.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/progress.h"
+#include "base/run.h"
 #include "base/workers.h"
 #include "support/mt_test.h"
 

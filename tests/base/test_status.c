@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <string.h>
 
-#include "base/diag.h"
+#include "base/diagnostics.h"
 #include "support/mt_test.h"
 
 static void status__every_code_has_a_name_and_a_text(mt_test *t)

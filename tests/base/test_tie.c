@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "base/base.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "support/mt_test.h"
 
 static void tie__what_rounding_tells_apart_is_equal(mt_test *t)

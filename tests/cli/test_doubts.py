@@ -404,7 +404,7 @@ class Doubts(CliTest):
         self.assertIn('/accepted/0: unknown warning "densty"; did you mean "density"?', done.stderr)
 
     def test_every_doubt_has_a_name_that_can_be_accepted(self):
-        header = (SOURCE / "src/base/warning.h").read_text(encoding="utf-8")
+        header = (SOURCE / "src/base/diagnostics.h").read_text(encoding="utf-8")
         names = re.findall(r'X\("(\w+)", "', header)
         self.assertEqual(names, sorted(names))
         used = set()

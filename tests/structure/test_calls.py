@@ -20,7 +20,7 @@ MUTABLE = re.compile(r" O (\.data(?!\.rel\.ro)|\.bss|\.tdata|\.tbss|\*COM\*)\S*\
 # Formatted text is made by base/format.c, which knows words for what is not finite, makes arguments visible and has a decimal point that no locale moves. The
 # terminal has its door in cli/terminal.c.
 FORMATS = re.compile(r"(?<![\w.>])(v?sn?printf)\s*\(")
-FORMATTERS = {"base/format.c", "base/visible.c"}
+FORMATTERS = {"base/format.c", "base/text.c"}
 STREAMS = re.compile(r"(?<![\w.>])(v?f?printf|f?puts|f?putc|putchar|fwrite|perror|stdout|stderr)\b")
 TERMINAL = {"cli/terminal.c"}
 # Files are opened by io/file.c, once for reading and once for writing, which follows no link at the last part of a name and waits for no pipe; io/folder.c and

@@ -4,7 +4,7 @@
   'use strict';
   const mt = (window.mt = window.mt || {});
 
-  // What shows nothing of itself but changes how others are read (base/visible.c), and what
+  // What shows nothing of itself but changes how others are read (base/text.c), and what
   // JSON escapes.
   const HIDDEN = new RegExp('[\\u007f-\\u009f\\u00ad\\u061c\\u180e\\u200b-\\u200f' +
     '\\u2028-\\u202e\\u2060-\\u206f\\ufeff\\ufff9-\\ufffb]');

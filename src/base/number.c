@@ -1,4 +1,54 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers: which are equal but for rounding, and their decimal digits. */
+#include "base/number.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Ties. */
+
+bool mt_exceeds(double a, double b)
+{
+    const double size = fmax(fabs(a), fabs(b));
+    return a > b && (isinf(size) || a - b > MT_TIE * size);
+}
+
+double mt_without_noise(double x, double noise)
+{
+    return fabs(x) < noise ? 0.0 : x;
+}
+
+/*
+ * An integer n below 1e15 over (or times) a power of ten, which as p + e of two doubles is
+ * exact up to 1e44; the quotient is corrected by its remainder.
+ */
+
+double mt_few_digits(double x)
+{
+    enum { DIGITS = 15, EXACT = 22, SUM = 44 };
+    const int k = x == 0.0 ? 0 : DIGITS - 1 - (int)floor(log10(fabs(x)));
+    double power = 1.0;
+    double more = 1.0;
+    if (k > SUM || k < -EXACT) {
+        return nan("");
+    }
+    for (int i = 0; i < abs(k); i++) {
+        *(i < EXACT ? &power : &more) *= 10.0;
+    }
+    if (k < 0) {
+        return round(x / power) * power;
+    }
+    const double p = power * more;
+    const double n = round(x * p);
+    const double q = n / p;
+    return q + (fma(-q, p, n) - q * fma(power, more, -p)) / p;
+}
+
 /*
  * |x| = m 2^e with a whole m < 2^53. Let 10^k <= |x| < 10^(k+1) and p digits be asked for: the
  * text has the digits of N, which is |x| 10^s, s = p - 1 - k, rounded to a whole number, ties
@@ -6,13 +56,6 @@
  * and m 10^s < 2^53 2^66.5 and its shift by e are numbers of 128 bits. Nothing is lost, and the
  * text is the C library's, which takes numbers of any length and ten times as long for it.
  */
-#include "base/decimal.h"
-
-#include <float.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <string.h>
 
 __extension__ typedef unsigned __int128 wide;
 

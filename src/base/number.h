@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef BASE_TIE_H
-#define BASE_TIE_H
+#ifndef BASE_NUMBER_H
+#define BASE_NUMBER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /*
  * Rules for numbers that differ by rounding only, so that the result is the same on every
@@ -26,5 +27,16 @@ bool mt_exceeds(double a, double b);
 
 /* x, or 0 where |x| is below the noise. */
 double mt_without_noise(double x, double noise);
+
+/* The double nearest to x rounded to 15 significant digits, which every double keeps (IEEE
+ * 754-2019, 5.12.2); NaN where x is not finite, or far too large or small. */
+double mt_few_digits(double x);
+
+enum { MT_DECIMAL_DIGITS = 17, MT_DECIMAL_TEXT = 32 };
+
+/* Writes x as "%.*g" of the C library does, with a decimal point in every locale; returns the
+ * length. Returns 0 where digits is not in 1 to MT_DECIMAL_DIGITS, where 0 < |x| < 1e-4, or
+ * where the text has an exponent. */
+size_t mt_decimal(double x, int digits, char out[MT_DECIMAL_TEXT]);
 
 #endif
