@@ -1,8 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the commands share: how they say what went wrong, and facts that several tell. */
+/* The program but for main: what commands share, --help, and the call of a command. */
 #include "cli/cli.h"
 
+#include "modetune/version.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "base/base.h"
+#include "base/format.h"
+#include "cli/args.h"
+#include "cli/limits.h"
+#include "cli/manual.h"
+#include "io/result_folder.h"
+#include "io/result_model.h"
 #include "mechanics/redundant.h"
+#include "report/table.h"
+
+/* What the commands share: how they say what went wrong, and facts that several tell. */
 
 int mt_cli_failed(mt_status rc, const mt_err *err)
 {
@@ -124,4 +139,238 @@ mt_status mt_cli_recommendation(const mt_args *args, const mt_result *result,
     }
     return mt_fail(err, MT_E_USAGE, "%s has %d recommendation%s: there is no rank %d",
                    args->operands[0], n, n == 1 ? "" : "s", args->rank);
+}
+
+/* --model takes a file as it is, with a warning where it is not what was solved; without it the
+ * model is looked for (io/result_model.h). */
+
+mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
+                        char **path, mt_err *err)
+{
+    const char *const given = args->value[MT_OPT_MODEL];
+    const char *const root = args->value[MT_OPT_ROOT];
+    if (given == NULL) {
+        return mt_result_find_model(args->operands[0], result, root, file, path, err);
+    }
+    MT_TRY(mt_file_read(given, root, MT_JSON_MAX_BYTES, file, err));
+    const char *const hash = mt_result_model_sha256(result);
+    if (hash == NULL || strcmp(hash, file->sha256) != 0) {
+        mt_terminal_warning("%s is not what was solved: it has changed since", given);
+    }
+    *path = mt_file_join("x", given);
+    return *path == NULL ? mt_fail_memory(err) : MT_OK;
+}
+
+/* modetune run and modes: how often each stage of the evaluations was done. */
+
+static const double NANOSECOND = 1e-9;
+
+/* Digits of a time. */
+enum { DIGITS = 3 };
+
+mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own)
+{
+    if (!args->given[MT_OPT_PROFILE]) {
+        return NULL;
+    }
+    mt_profile_init(own, mt_terminal_seconds);
+    return own;
+}
+
+int mt_cli_profile_print(mt_profile *p)
+{
+    if (p == NULL) {
+        return MT_EXIT_DONE;
+    }
+    mt_text text = {.s = NULL};
+    mt_table t = mt_table_default();
+    int code = MT_EXIT_DONE;
+    mt_table_column(&t, "stage", "stage", MT_ALIGN_LEFT);
+    mt_table_column(&t, "done", "done", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "shared", "shared", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "skipped", "skipped", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "time [s]", "time_s", MT_ALIGN_POINT);
+    mt_table_column(&t, "what it is", "what", MT_ALIGN_LEFT);
+    for (int i = 0; i < MT_STAGES; i++) {
+        mt_table_text(&t, mt_stage_name((mt_stage_id)i));
+        mt_table_integer(&t, atomic_load(&p->done[i]));
+        mt_table_integer(&t, atomic_load(&p->shared[i]));
+        mt_table_integer(&t, atomic_load(&p->skipped[i]));
+        mt_table_number(&t, NANOSECOND * (double)atomic_load(&p->nanoseconds[i]), DIGITS);
+        mt_table_text(&t, mt_stage_text((mt_stage_id)i));
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), &text);
+    if (text.failed) {
+        mt_err err;
+        code = mt_cli_failed(mt_fail_memory(&err), &err);
+    } else {
+        mt_terminal_diagnostics(text.s);
+    }
+    mt_table_free(&t);
+    mt_text_free(&text);
+    return code;
+}
+
+/* --help, from the tables. */
+
+enum { OPTION_COLUMN = 31, EXIT_COLUMN = 7, LINE_WIDTH = 92, FORM_TEXT = 64 };
+
+static void spaces(int n, mt_text *out)
+{
+    for (int i = 0; i < n; i++) {
+        mt_text_add(out, " ");
+    }
+}
+
+void mt_help_fill(const char *s, int column, mt_text *out)
+{
+    int at = column;
+    for (const char *word = s; *word != '\0'; word += strspn(word, " \n")) {
+        const int length = (int)strcspn(word, " \n");
+        const bool paragraph = word > s && word[-1] == '\n';
+        if (paragraph || (at > column && at + 1 + length > LINE_WIDTH)) {
+            mt_text_add(out, "\n");
+            spaces(column, out);
+            at = column;
+        } else if (at > column) {
+            mt_text_add(out, " ");
+            at++;
+        }
+        mt_text_add_n(out, word, (size_t)length);
+        at += length;
+        word += length;
+    }
+    mt_text_add(out, "\n");
+}
+
+static void help_option(const mt_option *o, mt_text *out)
+{
+    char form[FORM_TEXT];
+    const int n =
+        mt_snprintf(form, sizeof form, "  %c%c%s--%s%s%s", o->letter == '\0' ? ' ' : '-',
+                    o->letter == '\0' ? ' ' : o->letter, o->letter == '\0' ? "  " : ", ",
+                    o->name, o->value == NULL ? "" : " ", o->value == NULL ? "" : o->value);
+    mt_text_add(out, form);
+    if (n + 2 > OPTION_COLUMN) {
+        mt_text_add(out, "\n");
+        spaces(OPTION_COLUMN, out);
+    } else {
+        spaces(OPTION_COLUMN - n, out);
+    }
+    mt_help_fill(o->help, OPTION_COLUMN, out);
+}
+
+static void help_command(int command, mt_text *out)
+{
+    const mt_command *const c = &mt_commands[command];
+    mt_text_addf(out, "Usage: modetune %s %s [options]\n\n", c->name, c->operands);
+    mt_help_fill(c->details, 0, out);
+    mt_text_add(out, "\nOptions:\n");
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_option_is_of(i, command)) {
+            help_option(&mt_options[i], out);
+        }
+    }
+}
+
+void mt_help(int command, mt_text *out)
+{
+    if (command != MT_CMD_NONE) {
+        help_command(command, out);
+        return;
+    }
+    mt_text_add(
+        out, "Usage: modetune COMMAND ...\n\n"
+             "Tells what to change so that the natural frequencies of a mechanism land where "
+             "they must.\n\nCommands:\n");
+    for (int i = 0; i < MT_CMD_IDS; i++) {
+        mt_text_addf(out, "  %-12s %s\n", mt_commands[i].name, mt_commands[i].summary);
+    }
+    mt_text_add(out, "\nOptions of every command:\n");
+    for (int i = 0; i < MT_OPT_IDS; i++) {
+        if (mt_options[i].commands == MT_ALL_COMMANDS || mt_options[i].commands == 0U) {
+            help_option(&mt_options[i], out);
+        }
+    }
+    mt_text_add(out, "\n\"modetune COMMAND --help\" explains a command, \"modetune help "
+                     "TOPIC\" a command or a "
+                     "word of a\nmodel, a study or a result.\n\nExit status:\n");
+    for (int i = 0; i < MT_EXITS; i++) {
+        mt_text_addf(out, "  %-4d ", mt_exits[i].code);
+        mt_help_fill(mt_exits[i].meaning, EXIT_COLUMN, out);
+    }
+}
+
+/* The program. */
+
+typedef int (*command_function)(const mt_args *args, mt_text *out);
+
+static const command_function functions[MT_CMD_IDS] = {
+    [MT_CMD_RUN] = mt_cmd_run,           [MT_CMD_MERGE] = mt_cmd_merge,
+    [MT_CMD_COMPARE] = mt_cmd_compare,   [MT_CMD_MODES] = mt_cmd_modes,
+    [MT_CMD_MAC] = mt_cmd_mac,           [MT_CMD_SWEEP] = mt_cmd_sweep,
+    [MT_CMD_SIMULATE] = mt_cmd_simulate, [MT_CMD_SENSITIVITY] = mt_cmd_sensitivity,
+    [MT_CMD_RESPONSE] = mt_cmd_response, [MT_CMD_INFO] = mt_cmd_info,
+    [MT_CMD_SHOW] = mt_cmd_show,         [MT_CMD_REPORT] = mt_cmd_report,
+    [MT_CMD_EXPLAIN] = mt_cmd_explain,   [MT_CMD_APPLY] = mt_cmd_apply,
+    [MT_CMD_DIFF] = mt_cmd_diff,         [MT_CMD_CHECK] = mt_cmd_check,
+    [MT_CMD_INIT] = mt_cmd_init,         [MT_CMD_EXAMPLES] = mt_cmd_examples,
+    [MT_CMD_SCHEMA] = mt_cmd_schema,     [MT_CMD_PROFILE] = mt_cmd_profile,
+    [MT_CMD_HELP] = mt_cmd_help,
+};
+
+static int wrong_use(const mt_args *args, mt_status rc, const mt_err *err)
+{
+    mt_terminal_error("%s", err->text);
+    if (rc == MT_E_USAGE) {
+        mt_terminal_talk(false, "Try \"modetune%s%s --help\".",
+                         args->command == MT_CMD_NONE ? "" : " ",
+                         args->command == MT_CMD_NONE ? "" : mt_commands[args->command].name);
+    }
+    return mt_exit_of(rc);
+}
+
+/* Commands that read one result accept its folder, too. */
+static mt_status find_result(mt_args *args, mt_err *err)
+{
+    static const unsigned READERS =
+        1U << MT_CMD_REPORT | 1U << MT_CMD_EXPLAIN | 1U << MT_CMD_APPLY | 1U << MT_CMD_SHOW;
+    if ((READERS >> (unsigned)args->command & 1U) == 0) {
+        return MT_OK;
+    }
+    MT_TRY(mt_result_path(args->operands[0], &args->result_path, err));
+    args->operands[0] = args->result_path;
+    return MT_OK;
+}
+
+int mt_cli_main(int argc, char *const argv[])
+{
+    mt_args args;
+    mt_err err = {.code = MT_OK};
+    mt_text out = {.s = NULL};
+    int code = MT_EXIT_DONE;
+    const mt_status rc = mt_args_parse(argc, argv, &args, &err);
+    if (rc != MT_OK) {
+        code = wrong_use(&args, rc, &err);
+    } else if (args.given[MT_OPT_VERSION]) {
+        mt_text_addf(&out, "modetune %s (commit %s, compiled by %s)\n", mt_version(),
+                     mt_build_commit(), mt_build_compiler());
+    } else if (args.given[MT_OPT_MANUAL]) {
+        mt_manual(args.command, &out);
+    } else if (args.given[MT_OPT_COMPLETION]) {
+        mt_completion(args.shell, &out);
+    } else if (args.given[MT_OPT_HELP]) {
+        mt_help(args.command, &out);
+    } else {
+        mt_status ready = mt_limits_set(&args, &err);
+        ready = ready == MT_OK ? find_result(&args, &err) : ready;
+        code =
+            ready == MT_OK ? functions[args.command](&args, &out) : mt_cli_failed(ready, &err);
+    }
+    code = mt_exit_worse(code, mt_terminal_put(&out));
+    if (mt_exit_without_memory()) {
+        mt_limits_explain();
+    }
+    mt_args_free(&args);
+    return code;
 }

@@ -3,12 +3,16 @@
 #define CLI_CLI_H
 
 #include "analysis/analysis.h"
+#include "base/run.h"
+#include "base/text.h"
 #include "cli/args.h"
 #include "cli/loaded_model.h"
 #include "cli/terminal.h"
+#include "io/file.h"
 #include "io/io.h"
 #include "io/write_json.h"
 #include "mechanics/singular.h"
+#include "result/result.h"
 #include "study/study.h"
 
 /*
@@ -67,5 +71,22 @@ mt_status mt_cli_json_redundant(mt_json_writer *w, mt_linear *lin, mt_arena *mem
 /* Member "dead_centre" of an open object: null, or the distance to one and the joints whose
  * equations become dependent there. */
 void mt_cli_json_dead_centre(mt_json_writer *w, const mt_nearness *nearness);
+
+/* The model of a result, the first operand: the file of --model, else a file found that holds
+ * exactly the bytes that were solved. file: mt_file_free; path: heap. Fails: MT_E_INPUT (not
+ * found), MT_E_SYSTEM, MT_E_MEMORY. */
+mt_status mt_find_model(const mt_args *args, const mt_result *result, mt_file *file,
+                        char **path, mt_err *err);
+
+/* Counters of the evaluations of a model from here on, with --profile; else NULL. */
+mt_profile *mt_cli_profile(const mt_args *args, mt_profile *own);
+/* Print the stages as a table on standard error; NULL: nothing. Returns the exit status. */
+int mt_cli_profile_print(mt_profile *p);
+
+/* Append the text of --help: of the program (MT_CMD_NONE) or of one command. */
+void mt_help(int command, mt_text *out);
+/* Append paragraphs of words (one per line of s) in lines of up to 92 columns that begin at
+ * `column`; the caller has already written up to there for the first line. */
+void mt_help_fill(const char *s, int column, mt_text *out);
 
 #endif

@@ -1,19 +1,198 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune check: every problem of files, each as its format says. */
+#include "modetune/read.h"
+#include "modetune/version.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "answer/examine.h"
 #include "answer/warnings.h"
+#include "base/base.h"
 #include "base/format.h"
 #include "cli/cli.h"
-#include "cli/sarif.h"
+#include "cli/terminal.h"
 #include "io/file.h"
 #include "io/files.h"
 #include "io/json_print.h"
+#include "io/write_json.h"
 #include "problem/problem.h"
 #include "report/summary.h"
 #include "report/table.h"
+
+/*
+ * Problems of files as SARIF 2.1.0, which code hosts show at the lines of a review and editors
+ * in their lists. One log, one run:
+ *     sarif_begin(&w);
+ *     sarif_put(&w, &problem); ...
+ *     sarif_end(&w, code, left_out);
+ */
+typedef struct file_problem {
+    mt_severity severity;
+    bool unread;      /* the file itself could not be read */
+    const char *file; /* as given; relative ones become relative URIs */
+    int line;         /* 0: no place; shown at the first line, which hosts require */
+    int column;       /* of code points */
+    const char *pointer;
+    const char *message;
+} file_problem;
+
+/* Of SARIF ("Static Analysis Results Interchange Format", OASIS, version 2.1.0) what code hosts
+ * read: tool.driver with its rules, results with rule, level, message and place. */
+
+/* id: does not change; text for people. */
+#define RULES(X)                                                                             \
+    X(RULE_ERROR, "bad-input", "error", "An input file is wrong",                            \
+      "Something that is missing, of a wrong type, unknown, out of its range or "            \
+      "contradictory: the file cannot be used before it is mended.")                         \
+    X(RULE_WARNING, "hardly-meant", "warning", "A value is allowed but suspicious",          \
+      "Values that look like other units, joints off their links, bands that no mode comes " \
+      "near. They stand before the answer and change no grade.")                             \
+    X(RULE_NOTE, "good-to-know", "note", "A fact of the model",                              \
+      "Free motions, unstable directions, redundant joints, gaps that were closed: welcome " \
+      "where they are meant.")                                                               \
+    X(RULE_UNREAD, "not-analysed", "error", "A file could not be read or analysed",          \
+      "It is not there, not readable or too large, or the mechanism cannot be analysed.")
+#define RULE_ID(id, name, level, brief, whole) id,
+typedef enum rule_id { RULES(RULE_ID) RULE_COUNT } rule_id;
+
+static const struct {
+    const char *name;
+    const char *level;
+    const char *brief;
+    const char *whole;
+} rules[RULE_COUNT] = {
+#define RULE_TEXT(id, name, level, brief, whole) [id] = {name, level, brief, whole},
+    RULES(RULE_TEXT)};
+
+static void put_text(mt_json_writer *w, const char *member, const char *text)
+{
+    mt_json_open(w, member, '{');
+    mt_json_put_string(w, "text", text);
+    mt_json_close(w);
+}
+
+static void sarif_begin(mt_json_writer *w)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "$schema",
+                       "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/"
+                       "sarif-schema-2.1.0.json");
+    mt_json_put_string(w, "version", "2.1.0");
+    mt_json_open(w, "runs", '[');
+    mt_json_open(w, NULL, '{');
+    mt_json_open(w, "tool", '{');
+    mt_json_open(w, "driver", '{');
+    mt_json_put_string(w, "name", "modetune");
+    mt_json_put_string(w, "version", mt_version());
+    mt_json_open(w, "rules", '[');
+    for (int i = 0; i < RULE_COUNT; i++) {
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "id", rules[i].name);
+        put_text(w, "shortDescription", rules[i].brief);
+        put_text(w, "fullDescription", rules[i].whole);
+        mt_json_open(w, "defaultConfiguration", '{');
+        mt_json_put_string(w, "level", rules[i].level);
+        mt_json_close(w);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_json_put_string(w, "columnKind", "unicodeCodePoints");
+    mt_json_open(w, "results", '[');
+}
+
+/* A relative reference, or file:// and the path. */
+static void add_uri(const char *path, mt_text *out)
+{
+    char *const normal = mt_files_normal(path);
+    if (normal == NULL) {
+        out->failed = true;
+        return;
+    }
+    mt_text_add(out, normal[0] == '/' ? "file://" : "");
+    mt_text_add_uri(out, normal);
+    free(normal);
+}
+
+static rule_id rule_of(const file_problem *p)
+{
+    switch (p->severity) {
+    case MT_SEVERITY_WARNING:
+        return RULE_WARNING;
+    case MT_SEVERITY_NOTE:
+        return RULE_NOTE;
+    case MT_SEVERITY_ERROR:
+    case MT_SEVERITY_COUNT:
+        break;
+    }
+    return p->unread ? RULE_UNREAD : RULE_ERROR;
+}
+
+static void sarif_put(mt_json_writer *w, const file_problem *p)
+{
+    const rule_id rule = rule_of(p);
+    mt_text uri = {.s = NULL};
+    add_uri(p->file, &uri);
+    w->out->failed = w->out->failed || uri.failed;
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "ruleId", rules[rule].name);
+    mt_json_put_integer(w, "ruleIndex", rule);
+    mt_json_put_string(w, "level", rules[rule].level);
+    put_text(w, "message", p->message);
+    mt_json_open(w, "locations", '[');
+    mt_json_open(w, NULL, '{');
+    mt_json_open(w, "physicalLocation", '{');
+    mt_json_open(w, "artifactLocation", '{');
+    mt_json_put_string(w, "uri", uri.s == NULL ? "" : uri.s);
+    mt_json_close(w);
+    mt_json_open(w, "region", '{');
+    mt_json_put_integer(w, "startLine", p->line > 0 ? p->line : 1);
+    if (p->line > 0) {
+        mt_json_put_integer(w, "startColumn", p->column);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+    if (p->line > 0 && p->pointer != NULL && p->pointer[0] != '\0') {
+        mt_json_open(w, "logicalLocations", '[');
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "fullyQualifiedName", p->pointer);
+        mt_json_close(w);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_text_free(&uri);
+}
+
+/* code: exit status of the program; left_out: number of problems left out. */
+static void sarif_end(mt_json_writer *w, int code, int left_out)
+{
+    mt_json_close(w);
+    mt_json_open(w, "invocations", '[');
+    mt_json_open(w, NULL, '{');
+    mt_json_put_bool(w, "executionSuccessful", code == MT_EXIT_DONE || code == MT_EXIT_INPUT);
+    mt_json_put_integer(w, "exitCode", code);
+    if (left_out > 0) {
+        char text[64];
+        (void)mt_snprintf(text, sizeof text, "%d more problems are not shown", left_out);
+        mt_json_open(w, "toolExecutionNotifications", '[');
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "level", "note");
+        put_text(w, "message", text);
+        mt_json_close(w);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
+/* The command. */
 
 typedef enum file_kind {
     KIND_MODEL,
@@ -224,12 +403,12 @@ typedef struct output {
     told_before told;
 } output;
 
-static void put_problem(output *to, const mt_file_problem *p)
+static void put_problem(output *to, const file_problem *p)
 {
     static const char *const names[MT_SEVERITY_COUNT] = {"error", "warning", "note"};
     mt_json_writer *const w = &to->w;
     if (to->format == MT_FORMAT_SARIF) {
-        mt_sarif_put(w, p);
+        sarif_put(w, p);
         return;
     }
     mt_json_open(w, NULL, '{');
@@ -253,16 +432,16 @@ static void put_problems(output *to, const char *path, const mt_diagnostics *mes
 {
     const int count = mt_diagnostics_count(messages);
     for (int i = 0; i < count; i++) {
-        const mt_file_problem p = {.severity = mt_diagnostics_severity(messages, i),
-                                   .file = mt_diagnostics_file(messages, i),
-                                   .line = mt_diagnostics_line(messages, i),
-                                   .column = mt_diagnostics_column(messages, i),
-                                   .pointer = mt_diagnostics_pointer(messages, i),
-                                   .message = mt_diagnostics_message(messages, i)};
+        const file_problem p = {.severity = mt_diagnostics_severity(messages, i),
+                                .file = mt_diagnostics_file(messages, i),
+                                .line = mt_diagnostics_line(messages, i),
+                                .column = mt_diagnostics_column(messages, i),
+                                .pointer = mt_diagnostics_pointer(messages, i),
+                                .message = mt_diagnostics_message(messages, i)};
         put_problem(to, &p);
     }
     if (failure != NULL && mt_diagnostics_first_error(messages) < 0) {
-        const mt_file_problem p = {.unread = true, .file = path, .message = failure};
+        const file_problem p = {.unread = true, .file = path, .message = failure};
         put_problem(to, &p);
     }
     to->left_out += mt_diagnostics_left_out(messages);
@@ -408,7 +587,7 @@ int mt_cmd_check(const mt_args *args, mt_text *out)
     if (json) {
         mt_json_open(&to.w, NULL, '[');
     } else if (sarif) {
-        mt_sarif_begin(&to.w);
+        sarif_begin(&to.w);
     }
     for (int i = 0; i < args->n_operands; i++) {
         code = mt_exit_worse(code, check_file(args, args->operands[i], &to));
@@ -416,7 +595,7 @@ int mt_cmd_check(const mt_args *args, mt_text *out)
     if (json) {
         mt_json_close(&to.w);
     } else if (sarif) {
-        mt_sarif_end(&to.w, code, to.left_out);
+        sarif_end(&to.w, code, to.left_out);
     }
     if (json || sarif) {
         code = mt_exit_worse(code, mt_cli_json_done(&to.w));

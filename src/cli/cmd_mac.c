@@ -6,7 +6,7 @@
 #include "analysis/channels.h"
 #include "base/format.h"
 #include "cli/cli.h"
-#include "cli/shapes.h"
+#include "cli/cmd_modes.h"
 #include "report/table.h"
 
 /* Two different modes of one model whose MAC at the sensors is above this look the same there:

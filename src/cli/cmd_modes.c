@@ -1,21 +1,313 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune modes: natural frequencies and shapes of one configuration, or of all. */
+#include "cli/cmd_modes.h"
+
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "analysis/damping.h"
+#include "analysis/lowest.h"
 #include "answer/warnings.h"
 #include "base/format.h"
 #include "cli/cli.h"
-#include "cli/damped.h"
-#include "cli/profile.h"
-#include "cli/shapes.h"
 #include "cli/watch.h"
 #include "report/table.h"
+
+/* Shapes of modes at the sensors, or, without sensors, as motions of the bodies. */
+typedef struct mode_shapes {
+    bool sensors;
+    int n;             /* channels; 0: none */
+    const char **name; /* [n] "c1.y", "crank.rz" */
+    bool *turns;       /* [n] it is an angle */
+    double *value;     /* n x modes, mass-normalised */
+    double length_m;   /* length at which an angle is compared with a displacement */
+    double *largest;   /* [modes] largest displacement of a body or at a sensor */
+} mode_shapes;
+
+/* What modes --damped adds. */
+
+enum { DIGITS = 6, RATIO_DIGITS = 2 };
+
+static const char *kind_name(mt_damped_kind kind)
+{
+    switch (kind) {
+    case MT_DAMPED_OSCILLATING:
+        return "oscillating";
+    case MT_DAMPED_OVERDAMPED:
+        return "overdamped";
+    case MT_DAMPED_RIGID_BODY:
+        return "rigid_body";
+    case MT_DAMPED_UNDECIDED:
+        return "undecided";
+    case MT_DAMPED_UNSTABLE:
+        break;
+    }
+    return "unstable";
+}
+
+/* 1-based number of an oscillating mode; 0 for the others, and where one is undecided. */
+static int index_of(const mt_damped_modes *d, int i)
+{
+    int index = 0;
+    for (int k = 0; k <= i; k++) {
+        index += d->kind[k] == MT_DAMPED_OSCILLATING ? 1 : 0;
+    }
+    return d->kind[i] == MT_DAMPED_OSCILLATING && mt_damped_indexed(d) ? index : 0;
+}
+
+/* A value of a root, or NaN of an undecided one, which is only known to be small. */
+static double decided_value(const mt_damped_modes *d, int i, double x)
+{
+    return d->kind[i] == MT_DAMPED_UNDECIDED ? nan("") : x;
+}
+
+static bool is_within_count(const mt_damped_modes *d, int i, int count)
+{
+    return count == 0 || index_of(d, i) <= count;
+}
+
+/* NaN where there is no oscillation. */
+static double damped_hz(const mt_damped_modes *d, int i)
+{
+    return d->im[i] > 0.0 ? mt_damped_hz(d, i) : nan("");
+}
+
+/* Columns and rows; configuration NULL: no such column. */
+static void damped_columns(mt_table *t, bool with_configuration)
+{
+    if (with_configuration) {
+        mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
+    }
+    mt_table_column(t, "damped mode", "index", MT_ALIGN_RIGHT);
+    mt_table_column(t, "kind", "kind", MT_ALIGN_LEFT);
+    mt_table_column(t, "natural [Hz]", "natural_frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(t, "damped [Hz]", "damped_frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(t, "damping ratio [%]", "damping_ratio_percent", MT_ALIGN_POINT);
+    mt_table_column(t, "decay [1/s]", "decay_per_s", MT_ALIGN_POINT);
+    mt_table_column(t, "residual", "residual", MT_ALIGN_POINT);
+}
+
+static void damped_rows(mt_table *t, const mt_damped_modes *d, int count,
+                        const char *configuration)
+{
+    for (int i = 0; i < d->count; i++) {
+        char text[24];
+        const int index = index_of(d, i);
+        if (!is_within_count(d, i, count)) {
+            continue;
+        }
+        (void)mt_snprintf(text, sizeof text, "%d", index);
+        if (configuration != NULL) {
+            mt_table_text(t, configuration);
+        }
+        mt_table_text(t, index > 0 ? text : NULL);
+        mt_table_text(t, configuration == NULL && d->kind[i] == MT_DAMPED_RIGID_BODY
+                             ? "rigid body"
+                             : kind_name(d->kind[i]));
+        mt_table_number(t, decided_value(d, i, mt_damped_natural_hz(d, i)), DIGITS);
+        mt_table_number(t, decided_value(d, i, damped_hz(d, i)), DIGITS);
+        mt_table_number(t, decided_value(d, i, 100.0 * mt_damped_ratio(d, i)), DIGITS);
+        mt_table_number(t, decided_value(d, i, 0.0 - d->re[i]), DIGITS);
+        mt_table_number(t, d->residual[i], RATIO_DIGITS);
+    }
+}
+
+/* Print the table with its notes. count: oscillating modes to show, 0: all. */
+static void damped_print(const mt_damped_modes *d, int count, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    int overdamped = 0;
+    damped_columns(&t, false);
+    damped_rows(&t, d, count, NULL);
+    mt_text_add(out, "\n");
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+    for (int i = 0; i < d->count; i++) {
+        overdamped += d->kind[i] == MT_DAMPED_OVERDAMPED ? 1 : 0;
+    }
+    if (overdamped > 0) {
+        mt_text_addf(out, "  %d real root%s: %s without oscillation.\n", overdamped,
+                     overdamped == 1 ? "" : "s", overdamped == 1 ? "it decays" : "they decay");
+    }
+}
+
+/* Member "damped_modes". */
+static void damped_json(const mt_damped_modes *d, int count, mt_json_writer *w)
+{
+    mt_json_open(w, "damped_modes", '[');
+    for (int i = 0; i < d->count; i++) {
+        const int index = index_of(d, i);
+        if (!is_within_count(d, i, count)) {
+            continue;
+        }
+        mt_json_open(w, NULL, '{');
+        if (index > 0) {
+            mt_json_put_integer(w, "index", index);
+        } else {
+            mt_json_put_null(w, "index");
+        }
+        mt_json_put_string(w, "kind", kind_name(d->kind[i]));
+        mt_json_put_number(w, "natural_frequency_hz",
+                           decided_value(d, i, mt_damped_natural_hz(d, i)));
+        mt_json_put_number(w, "damped_frequency_hz", decided_value(d, i, damped_hz(d, i)));
+        mt_json_put_number(w, "damping_ratio_percent",
+                           decided_value(d, i, 100.0 * mt_damped_ratio(d, i)));
+        mt_json_put_number(w, "decay_per_s", decided_value(d, i, 0.0 - d->re[i]));
+        mt_json_put_number(w, "residual", d->residual[i]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+/* Shapes. */
+
+/* Parts of the largest component of a mode: what sixteen digits leave of a sum of a few dozen
+ * terms of that size; and what nobody sees in a table. */
+static const double ROUNDING = 64.0 * DBL_EPSILON;
+static const double UNSEEN = 1e-12;
+
+mt_status mt_shapes_at(mt_analysis *a, int ns, const int *channels, int n, const int *positions,
+                       double *value, mt_err *err)
+{
+    for (int i = 0; i < n; i++) {
+        MT_TRY(mt_analysis_shape(a, positions[i], ns, channels, value + ((ptrdiff_t)i * ns),
+                                 NULL, err));
+    }
+    return MT_OK;
+}
+
+/* Sensors as they are, or all states, named by body and direction. */
+static mt_status name_them(const mt_system *sys, int modes, mt_arena *mem, mode_shapes *out,
+                           mt_err *err)
+{
+    static const char *const directions[] = {"x", "y", "z", "rx", "ry", "rz"};
+    out->sensors = sys->n_channels > 0;
+    out->n = out->sensors ? sys->n_channels : sys->nq;
+    out->name = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->name);
+    out->value = mt_arena_f64(mem, (size_t)out->n, (size_t)modes);
+    out->turns = mt_arena_alloc(mem, (size_t)out->n, sizeof *out->turns);
+    out->largest = mt_arena_f64(mem, (size_t)modes, 1);
+    out->length_m = sys->length_m;
+    for (int k = 0; k < sys->n_channels && !mt_arena_failed(mem); k++) {
+        const mt_channel_kind kind = sys->channels[k].kind;
+        out->name[k] = mt_arena_strdup(mem, sys->channels[k].name);
+        out->turns[k] = mt_channel_turns(kind);
+    }
+    for (int b = 0; b < sys->n_bodies && !out->sensors && !mt_arena_failed(mem); b++) {
+        for (int d = 0; d < MT_COUNT(directions); d++) {
+            const int q = sys->bodies[b].dof[d];
+            if (q >= 0) {
+                out->name[q] =
+                    mt_arena_printf(mem, "%s.%s", sys->bodies[b].name, directions[d]);
+                out->turns[q] = d >= 3;
+            }
+        }
+    }
+    return mt_arena_check(mem, err);
+}
+
+static mt_status at_sensors(mt_analysis *a, int modes, mt_arena *mem, mode_shapes *out,
+                            mt_err *err)
+{
+    int *const channels = mt_arena_int(mem, (size_t)out->n);
+    int *const positions = mt_arena_int(mem, (size_t)modes);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int k = 0; k < out->n; k++) {
+        channels[k] = k;
+    }
+    for (int i = 0; i < modes; i++) {
+        positions[i] = i;
+    }
+    return mt_shapes_at(a, out->n, channels, modes, positions, out->value, err);
+}
+
+/* Size of component k of column i, an angle times the model's length. */
+static double component_size(const mode_shapes *s, int k, int i)
+{
+    return fabs(s->value[k + ((ptrdiff_t)i * s->n)]) * (s->turns[k] ? s->length_m : 1.0);
+}
+
+/* phi nq x modes, over all states. What is rounding of the largest displacement becomes 0. */
+static void clean(const mt_system *sys, int modes, const double *phi, const mode_shapes *s)
+{
+    for (int i = 0; i < modes; i++) {
+        const double *const x = phi + ((ptrdiff_t)i * sys->nq);
+        double most = 0.0;
+        for (int k = 0; k < s->n; k++) {
+            most = fmax(most, component_size(s, k, i));
+        }
+        for (int k = 0; k < 6 * sys->n_bodies; k++) {
+            const int dof = sys->bodies[k / 6].dof[k % 6];
+            const double size = dof < 0 ? 0.0 : fabs(x[dof]);
+            most = fmax(most, size * (k % 6 >= 3 ? sys->length_m : 1.0));
+        }
+        s->largest[i] = most;
+        for (int k = 0; k < s->n; k++) {
+            if (component_size(s, k, i) <= ROUNDING * most) {
+                s->value[k + ((ptrdiff_t)i * s->n)] = 0.0;
+            }
+        }
+    }
+}
+
+/* A component of column i as shown in a table of a few digits: 0 where it is negligible
+ * relative to the largest of its mode. */
+static double shapes_shown(const mode_shapes *shapes, int k, int i)
+{
+    return component_size(shapes, k, i) <= UNSEEN * shapes->largest[i]
+               ? 0.0
+               : shapes->value[k + ((ptrdiff_t)i * shapes->n)];
+}
+
+/* Room for the motions of all bodies. */
+static mt_status room_for(const mt_system *sys, int modes, mt_arena *mem, double **phi,
+                          mt_err *err)
+{
+    *phi = mt_arena_f64(mem, (size_t)sys->nq, (size_t)modes);
+    return mt_arena_check(mem, err);
+}
+
+/* Shapes of the first `modes` positions, in mem. Components within rounding of the largest are
+ * 0. */
+static mt_status shapes_of(mt_analysis *a, int modes, mt_arena *mem, mode_shapes *out,
+                           mt_err *err)
+{
+    double *phi = NULL;
+    MT_TRY(name_them(a->sys, modes, mem, out, err));
+    MT_TRY(room_for(a->sys, modes, mem, &phi, err));
+    mt_linear_expand(a->lin, modes, a->modes.y, phi);
+    if (out->sensors) {
+        MT_TRY(at_sensors(a, modes, mem, out, err));
+    } else {
+        memcpy(out->value, phi, (size_t)a->sys->nq * (size_t)modes * sizeof *phi);
+    }
+    clean(a->sys, modes, phi, out);
+    return MT_OK;
+}
+
+static mt_status shapes_of_lowest(mt_lowest *l, int modes, mt_arena *mem, mode_shapes *out,
+                                  mt_err *err)
+{
+    double *phi = NULL;
+    MT_TRY(name_them(l->sys, modes, mem, out, err));
+    MT_TRY(room_for(l->sys, modes, mem, &phi, err));
+    MT_TRY(mt_lowest_shapes(l, modes, phi, err));
+    if (out->sensors) {
+        MT_TRY(mt_lowest_sense(l, modes, out->value, err));
+    } else {
+        memcpy(out->value, phi, (size_t)l->sys->nq * (size_t)modes * sizeof *phi);
+    }
+    clean(l->sys, modes, phi, out);
+    return MT_OK;
+}
+
+/* The command. */
 
 /* Without --count: more modes than this are rarely read, and of large mechanisms the lowest are
  * found in a small part of the time. */
 enum { DEFAULT_MODES = 20 };
-enum { HZ_DIGITS = 6, RATIO_DIGITS = 2 };
+enum { HZ_DIGITS = 6 };
 /* A table on paper tells the error of a frequency from this part of it on: the digits that it
  * prints. */
 static const double TOLD_ERROR = 1e-6;
@@ -27,13 +319,13 @@ static const double MOST_LEFT = 1e-9;
 typedef struct view {
     const mt_loaded_model *s;
     int c;
-    mt_analysis *a;    /* by dense matrices; NULL: */
-    mt_lowest *l;      /* of the lowest ones */
-    const mt_modes *m; /* of one of them */
-    int shown;         /* positions of modes to write */
-    mt_shapes shapes;  /* n 0: not asked for */
-    int count;         /* of vibration modes to write */
-    bool asked;        /* by --count */
+    mt_analysis *a;     /* by dense matrices; NULL: */
+    mt_lowest *l;       /* of the lowest ones */
+    const mt_modes *m;  /* of one of them */
+    int shown;          /* positions of modes to write */
+    mode_shapes shapes; /* n 0: not asked for */
+    int count;          /* of vibration modes to write */
+    bool asked;         /* by --count */
     bool with_damping;
     const mt_damped_modes *damped;
     mt_warning_list warning_list;
@@ -131,7 +423,7 @@ static mt_status json_view(mt_json_writer *w, const view *v, mt_err *err)
     }
     mt_json_close(w);
     if (v->with_damping) {
-        mt_damped_json(v->damped, v->count, w);
+        damped_json(v->damped, v->count, w);
     }
     if (v->a != NULL) {
         MT_TRY(mt_cli_json_redundant(w, v->a->lin, &v->a->mem, err));
@@ -170,7 +462,7 @@ static bool any_rough(const view *v)
 }
 
 static mt_table table_new(bool with_configuration, bool with_error, int n_shapes,
-                          const mt_shapes *shapes)
+                          const mode_shapes *shapes)
 {
     mt_table t = mt_table_default();
     if (with_configuration) {
@@ -222,7 +514,7 @@ static void fill_table(mt_table *t, const view *v, bool csv)
         if (csv) {
             mt_table_number(t, m->lambda[i], HZ_DIGITS);
             for (int k = 0; k < v->shapes.n; k++) {
-                mt_table_number(t, mt_shapes_shown(&v->shapes, k, i), HZ_DIGITS);
+                mt_table_number(t, shapes_shown(&v->shapes, k, i), HZ_DIGITS);
             }
         }
     }
@@ -244,7 +536,7 @@ static void print_shapes(const view *v, mt_text *out)
     for (int k = 0; k < v->shapes.n; k++) {
         mt_table_text(&t, v->shapes.name[k]);
         for (int i = 0; i < v->shown; i++) {
-            mt_table_number(&t, mt_shapes_shown(&v->shapes, k, i), 4);
+            mt_table_number(&t, shapes_shown(&v->shapes, k, i), 4);
         }
     }
     mt_text_add(out, "\n  Mass-normalised shapes (numbers in parentheses: modes without "
@@ -320,7 +612,7 @@ static void text_view(const view *v, mt_text *out)
         print_shapes(v, out);
     }
     if (v->with_damping) {
-        mt_damped_print(v->damped, v->count, out);
+        damped_print(v->damped, v->count, out);
     }
     write_others(v, out);
     mt_text_add(out, "\n");
@@ -339,10 +631,9 @@ static mt_status csv_view(sink *to, const view *v)
     if (v->with_damping) { /* a table of its own kind: the damped modes alone */
         if (to->table.n_columns == 0 && !to->table.failed) {
             to->table = mt_table_default();
-            mt_damped_columns(&to->table, true);
+            damped_columns(&to->table, true);
         }
-        mt_damped_rows(&to->table, v->damped, v->count,
-                       mt_loaded_model_configuration(v->s, v->c));
+        damped_rows(&to->table, v->damped, v->count, mt_loaded_model_configuration(v->s, v->c));
         return MT_OK;
     }
     if (to->table.n_columns == 0 && !to->table.failed) {
@@ -393,8 +684,8 @@ static mt_status show_configuration_modes(sink *to, const mt_loaded_model *s, in
     }
     v.shown = mt_modes_shown(v.m, v.count);
     if (to->args->given[MT_OPT_SHAPES]) {
-        rc = v.l != NULL ? mt_shapes_of_lowest(v.l, v.shown, &mem, &v.shapes, err)
-                         : mt_shapes_of(v.a, v.shown, &mem, &v.shapes, err);
+        rc = v.l != NULL ? shapes_of_lowest(v.l, v.shown, &mem, &v.shapes, err)
+                         : shapes_of(v.a, v.shown, &mem, &v.shapes, err);
     }
     if (rc == MT_OK && to->args->given[MT_OPT_DAMPED]) {
         v.with_damping = true;

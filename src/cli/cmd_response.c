@@ -4,12 +4,650 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "cli/response.h"
+#include "cli/cli.h"
 #include "cli/vibrated.h"
+#include "report/table.h"
+#include "response/response.h"
+#include "vibration/profile_response.h"
 
-enum { DEFAULT_POINTS = 50, DEFAULT_MODES = 6 };
+/* The response of one configuration with all that its output needs. */
+typedef struct response_view {
+    const char *configuration;
+    const mt_loaded_model *s;
+    const mt_response *r;
+    const mt_curve *curve;
+    mt_curve_options opt; /* options of the tracing */
+    bool direct;
+    const mt_pole_sum *sums;     /* [pairs] of --poles; NULL: not requested, or not available */
+    const char *no_sums;         /* reason for no sums; NULL */
+    const mt_profiled *profiled; /* --vibration; NULL */
+    int n;                       /* of --sensitivity */
+    const int *parameter;        /* [n] */
+    const double *value;         /* [n] */
+    /* n_extremes x n: change of |H| in per cent, for one per cent more */
+    const double *percent;
+} response_view;
+
+static const mt_port *response_input_of(const response_view *v, int pair);
+static const mt_port *response_output_of(const response_view *v, int pair);
+
+/* What a profile of vibration does to the outputs of a response, in words and numbers. */
+
+enum { DIGITS = 5, UNIT_TEXT = 64 };
 
 static const double TWO_PI = 6.283185307179586477;
+
+static mt_vibrated row_of(const response_view *v, int pair)
+{
+    const mt_port *const to = response_output_of(v, pair);
+    return (mt_vibrated){.profile = v->profiled->v,
+                         .response = &v->profiled->answers[pair],
+                         .is_acceleration =
+                             to->kind == MT_PORT_SENSOR && to->motion == 2 && !to->turns,
+                         .unit = to->unit};
+}
+
+/* Columns that identify the pair, before its values. */
+static void pair_columns(const response_view *v, mt_table *t)
+{
+    if (v->r->ports.n_in > 1) {
+        mt_table_column(t, "input", "input", MT_ALIGN_LEFT);
+    }
+    mt_table_column(t, "output", "output", MT_ALIGN_LEFT);
+}
+
+static void pair_cells(const response_view *v, int pair, mt_table *t)
+{
+    if (v->r->ports.n_in > 1) {
+        mt_table_text(t, response_input_of(v, pair)->name);
+    }
+    mt_table_text(t, response_output_of(v, pair)->name);
+}
+
+static void print_rows(const response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    pair_columns(v, &t);
+    mt_vibrated_columns(&t);
+    for (int p = 0; p < v->profiled->n_pairs; p++) {
+        const mt_vibrated row = row_of(v, p);
+        pair_cells(v, p, &t);
+        mt_vibrated_row(&t, &row);
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_text_add(out, "\n");
+    mt_table_free(&t);
+}
+
+static void print_tones(const response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    pair_columns(v, &t);
+    mt_vibrated_tone_columns(&t);
+    for (int p = 0; p < v->profiled->n_pairs; p++) {
+        const mt_vibrated row = row_of(v, p);
+        for (int i = 0; i < v->profiled->v->n_tones; i++) {
+            pair_cells(v, p, &t);
+            mt_vibrated_tone_row(&t, &row, i);
+        }
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_text_add(out, v->profiled->no_sums == NULL
+                         ? "  Each is the largest within its range, proven up to that part of "
+                           "it.\n\n"
+                         : "\n");
+    mt_table_free(&t);
+}
+
+/* The vibration mode whose pole this is: the one with the nearest frequency; 0: none. */
+static int mode_of(const response_view *v, double complex pole)
+{
+    const mt_modes *const modes = v->r->modes;
+    const double hz = cabs(pole) / TWO_PI;
+    int best = 0;
+    double least = HUGE_VAL;
+    for (int i = 1; i <= mt_modal_vibrations(modes); i++) {
+        const double off = fabs(mt_modal_hz(modes, mt_modal_flexible(modes, i)) - hz);
+        best = off < least ? i : best;
+        least = fmin(off, least);
+    }
+    return best;
+}
+
+/* Print the reason for a pair without a value; *said: the pole named last, so that pairs with
+ * the same pole are reported once. */
+static void print_end(const response_view *v, int pair, int *said, mt_text *out)
+{
+    const mt_vibration_response *const a = &v->profiled->answers[pair];
+    if (a->end == MT_FORCED_FINITE || a->pole < 0 || a->pole == *said) {
+        return;
+    }
+    const double complex pole = v->profiled->poles[a->pole];
+    const int mode = mode_of(v, pole);
+    const char *const name =
+        mode > 0 ? mt_mode_name(v->s, v->r->sys->configuration, mode) : NULL;
+    *said = a->pole;
+    mt_text_addf(out, "  Vibration mode %d%s%s%s, %.6g Hz, ", mode, name == NULL ? "" : " \"",
+                 name == NULL ? "" : name, name == NULL ? "" : "\"", cabs(pole) / TWO_PI);
+    mt_text_add(out, a->end == MT_FORCED_INFINITE
+                         ? "has no damping, and the profile acts there: what it shakes is "
+                           "infinite.\n"
+                         : "grows by itself: there is no steady response.\n");
+}
+
+/* The output of --vibration. */
+/* Print the vibration of each output under the profile, with its notes. */
+static void response_vibration_print(const response_view *v, mt_text *out)
+{
+    const mt_vibration *const p = v->profiled->v;
+    const char *const axis = mt_vibrated_axis(p);
+    int said = -1;
+    mt_text_addf(out, "  Under %s%s%s", mt_vibrated_name(p), axis == NULL ? "" : ", along ",
+                 axis == NULL ? "" : axis);
+    if (p->n_random > 0) {
+        mt_text_addf(out, " (%.5g g RMS)", mt_vibration_rms(p) / MT_STANDARD_GRAVITY);
+    }
+    mt_text_add(out, "; ");
+    mt_vibrated_rule(p, out);
+    mt_text_add(out, ":\n");
+    print_rows(v, out);
+    for (int k = 0; k < v->profiled->n_pairs; k++) {
+        print_end(v, k, &said, out);
+    }
+    mt_text_add(out, said >= 0 ? "\n" : "");
+    if (p->n_tones > 0) {
+        print_tones(v, out);
+    }
+    if (v->profiled->no_sums != NULL) {
+        mt_text_addf(out,
+                     "  %s. The numbers are therefore by quadrature: errors are estimates, and "
+                     "of tones nothing is proven.\n\n",
+                     v->profiled->no_sums);
+    }
+    mt_vibrated_marks(p, out);
+}
+
+/* Members "profile", and "vibration", "psd_unit", "psd" of a response. */
+static void response_vibration_json(const response_view *v, mt_json_writer *w)
+{
+    const mt_vibration *const p = v->profiled->v;
+    mt_json_open(w, "profile", '{');
+    mt_json_put_string(w, "file", p->path);
+    mt_json_put_string(w, "name", p->name);
+    mt_json_put_string(w, "axis", mt_vibrated_axis(p));
+    mt_json_put_number(w, "rms_m_per_s2", mt_vibration_rms(p));
+    mt_vibrated_rule_json(w, p);
+    mt_json_close(w);
+    mt_json_put_string(w, "vibration_method",
+                       v->profiled->no_sums == NULL ? "poles" : "quadrature");
+}
+
+/* The density at a frequency, or NaN where it is infinite. */
+static double density_at(const response_view *v, int pair, int point)
+{
+    const ptrdiff_t at = pair + ((ptrdiff_t)point * v->profiled->n_pairs);
+    const double psd =
+        mt_profiled_psd(v->profiled, pair, v->curve->w[point] / TWO_PI, v->curve->h[at]);
+    return isfinite(psd) ? psd : nan("");
+}
+
+static void density_unit(const response_view *v, int pair, char unit[UNIT_TEXT])
+{
+    (void)mt_snprintf(unit, UNIT_TEXT, "(%s)^2/Hz", response_output_of(v, pair)->unit);
+}
+
+static void response_vibration_json_pair(const response_view *v, int pair, mt_json_writer *w)
+{
+    const mt_vibrated row = row_of(v, pair);
+    const mt_vibration_response *const a = row.response;
+    char unit[UNIT_TEXT];
+    density_unit(v, pair, unit);
+    mt_json_open(w, "vibration", '{');
+    mt_vibrated_json(w, &row);
+    if (a->end != MT_FORCED_FINITE && a->pole >= 0) {
+        mt_json_put_integer(w, "by_mode", mode_of(v, v->profiled->poles[a->pole]));
+    }
+    mt_json_close(w);
+    mt_json_put_string(w, "psd_unit", unit);
+    mt_json_open_flat(w, "psd", '[');
+    for (int i = 0; i < v->curve->n; i++) {
+        mt_json_put_number(w, NULL, density_at(v, pair, i));
+    }
+    mt_json_close(w);
+}
+
+/* The columns, and the cells for one frequency of the curve. */
+static void response_vibration_columns(mt_table *t)
+{
+    mt_table_column(t, "psd", "psd", MT_ALIGN_POINT);
+    mt_table_column(t, "psd unit", "psd_unit", MT_ALIGN_LEFT);
+}
+
+static void response_vibration_cells(const response_view *v, int pair, int point, mt_table *t)
+{
+    char unit[UNIT_TEXT];
+    density_unit(v, pair, unit);
+    mt_table_number(t, density_at(v, pair, point), DIGITS);
+    mt_table_text(t, unit);
+}
+
+/* A response as text, JSON and CSV. */
+
+enum { HZ_DIGITS = 7, HEADING_TEXT = 160 };
+
+/* NaN where there is no value. */
+static double magnitude(double complex h)
+{
+    const double size = cabs(h);
+    return isfinite(size) ? size : nan("");
+}
+
+static const mt_port *response_input_of(const response_view *v, int pair)
+{
+    return &v->r->ports.in[pair / v->r->ports.n_out];
+}
+
+static const mt_port *response_output_of(const response_view *v, int pair)
+{
+    return &v->r->ports.out[pair % v->r->ports.n_out];
+}
+
+static int pairs_of(const response_view *v)
+{
+    return v->r->ports.n_in * v->r->ports.n_out;
+}
+
+static double complex value_at(const response_view *v, int pair, int point)
+{
+    return v->curve->h[pair + ((ptrdiff_t)point * pairs_of(v))];
+}
+
+static double error_at(const response_view *v, int pair, int point)
+{
+    const double error = v->curve->error[pair + ((ptrdiff_t)point * pairs_of(v))];
+    return isfinite(error) ? error : nan("");
+}
+
+/* An extreme with rounding set to 0. */
+static double complex extreme_of(const mt_extreme *e)
+{
+    return e->infinite ? nan("") : (cabs(e->h) > e->error ? e->h : 0.0);
+}
+
+static const char *extreme_kind_name(const mt_extreme *e)
+{
+    return e->infinite        ? "resonance"
+           : e->peak          ? "peak"
+           : e->antiresonance ? "antiresonance"
+                              : "minimum";
+}
+
+static void write_pair_unit(const response_view *v, int pair, char unit[HEADING_TEXT])
+{
+    (void)mt_snprintf(unit, HEADING_TEXT, "%s per %s", response_output_of(v, pair)->unit,
+                      response_input_of(v, pair)->unit);
+}
+
+static double percent_of(const response_view *v, int e, int k)
+{
+    return v->percent[e + ((ptrdiff_t)k * v->curve->n_extremes)];
+}
+
+static const char *parameter_of(const response_view *v, int k)
+{
+    return v->s->model->parameters[v->parameter[k]].name.s;
+}
+
+static void print_extremes(const response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "input", "input", MT_ALIGN_LEFT);
+    mt_table_column(&t, "output", "output", MT_ALIGN_LEFT);
+    mt_table_column(&t, "kind", "kind", MT_ALIGN_LEFT);
+    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "magnitude", "magnitude", MT_ALIGN_POINT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
+    for (int k = 0; k < v->n; k++) {
+        char heading[HEADING_TEXT];
+        (void)mt_snprintf(heading, sizeof heading, "by 1 %% of %s", parameter_of(v, k));
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+    }
+    for (int e = 0; e < v->curve->n_extremes; e++) {
+        const mt_extreme *const x = &v->curve->extremes[e];
+        char unit[HEADING_TEXT];
+        write_pair_unit(v, x->pair, unit);
+        mt_table_text(&t, response_input_of(v, x->pair)->name);
+        mt_table_text(&t, response_output_of(v, x->pair)->name);
+        mt_table_text(&t, extreme_kind_name(x));
+        mt_table_number(&t, x->w / TWO_PI, HZ_DIGITS);
+        mt_table_number(&t, magnitude(extreme_of(x)), DIGITS);
+        mt_table_text(&t, unit);
+        mt_table_number(&t, mt_phase_deg(extreme_of(x)), DIGITS);
+        for (int k = 0; k < v->n; k++) {
+            mt_table_change(&t, percent_of(v, e, k), DIGITS);
+        }
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+}
+
+/* Print the frequencies of the grid only; the other points are for drawings. */
+static void print_grid(const response_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    int at = 0;
+    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    for (int p = 0; p < pairs_of(v); p++) {
+        char heading[HEADING_TEXT];
+        char unit[HEADING_TEXT];
+        write_pair_unit(v, p, unit);
+        (void)mt_snprintf(heading, sizeof heading, "%s%s%s [%s]",
+                          response_output_of(v, p)->name, v->r->ports.n_in > 1 ? " by " : "",
+                          v->r->ports.n_in > 1 ? response_input_of(v, p)->name : "", unit);
+        mt_table_column(&t, heading, heading, MT_ALIGN_POINT);
+        mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
+    }
+    for (int i = 0; i < v->curve->n && at < v->opt.points; i++) {
+        if (v->curve->w[i] < mt_curve_grid(&v->opt, at)) {
+            continue;
+        }
+        at++;
+        mt_table_number(&t, v->curve->w[i] / TWO_PI, HZ_DIGITS);
+        for (int p = 0; p < pairs_of(v); p++) {
+            mt_table_number(&t, magnitude(value_at(v, p, i)), DIGITS);
+            mt_table_number(&t, mt_phase_deg(value_at(v, p, i)), DIGITS);
+        }
+    }
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+}
+
+/* Geometric mean of the errors' parts of their values, up to the next power of 10. */
+static double mean_error(const response_view *v)
+{
+    double sum = 0.0;
+    int n = 0;
+    for (int p = 0; p < pairs_of(v); p++) {
+        for (int i = 0; i < v->curve->n; i++) {
+            const double error = error_at(v, p, i);
+            const double value = magnitude(value_at(v, p, i));
+            if (error > 0.0 && value > 0.0 && isfinite(error / value)) {
+                sum += log(error) - log(value);
+                n++;
+            }
+        }
+    }
+    return n > 0 ? pow(10.0, ceil(sum / n / log(10.0))) : 0.0;
+}
+
+static void print_method(const response_view *v, mt_text *out)
+{
+    const mt_basis *const b = &v->r->basis;
+    if (v->direct) {
+        mt_text_add(out, "  Directly: a factor of the dynamic stiffness at every frequency.");
+    } else if (v->r->a == NULL) {
+        mt_text_addf(out, "  By the %d lowest of %d modes and %d shapes of the others%s.",
+                     v->r->modes->count, v->r->modes->all, v->r->shapes,
+                     b->t.diagonal ? "" : ", coupled by their damping");
+    } else {
+        mt_text_addf(out, "  By %d of %d modes%s.", b->n_modes, b->n_modes + b->n_left,
+                     b->t.diagonal ? "" : ", coupled by their damping");
+    }
+    mt_text_addf(
+        out, " %d frequencies, %d of them of the grid; %s below %.0e of a value on average.\n",
+        v->curve->n, v->opt.points,
+        v->r->a == NULL ? "rounding and what is left out are" : "rounding is", mean_error(v));
+    if (!v->direct && b->n_left > 0) {
+        mt_text_addf(out,
+                     "  %d modes from %.5g Hz on follow statically: near and above that the "
+                     "response is wrong.\n",
+                     b->n_left, sqrt(fmax(b->lowest_left, 0.0)) / TWO_PI);
+    }
+    if (!v->curve->complete) {
+        mt_text_add(out, "  Not all peaks are shown as fine as asked for: that takes too many "
+                         "frequencies.\n");
+    }
+}
+
+static void print_poles(const response_view *v, mt_text *out)
+{
+    if (v->no_sums != NULL) {
+        mt_text_addf(out, "  %s.\n", v->no_sums);
+    }
+    if (v->sums == NULL) {
+        return;
+    }
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "pole: re [1/s]", "re", MT_ALIGN_POINT);
+    mt_table_column(&t, "im [rad/s]", "im", MT_ALIGN_POINT);
+    for (int k = 0; k < v->sums->n; k++) {
+        mt_table_number(&t, creal(v->sums->s[k]), HZ_DIGITS);
+        mt_table_number(&t, cimag(v->sums->s[k]), HZ_DIGITS);
+    }
+    mt_text_add(out, "\n");
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+}
+
+static void response_print(const response_view *v, mt_text *out)
+{
+    bool infinite = false;
+    for (int e = 0; e < v->curve->n_extremes; e++) {
+        infinite = infinite || v->curve->extremes[e].infinite;
+    }
+    mt_text_addf(out, "%s: response to %s%s, %.6g to %.6g Hz\n", v->configuration,
+                 v->r->ports.in[0].name, v->r->ports.n_in > 1 ? ", ..." : "",
+                 v->opt.from / TWO_PI, v->opt.to / TWO_PI);
+    if (v->profiled != NULL) {
+        response_vibration_print(v, out);
+    }
+    if (v->curve->n_extremes > 0) {
+        print_extremes(v, out);
+        mt_text_add(out, "\n");
+    }
+    if (v->profiled == NULL) {
+        print_grid(v, out);
+    }
+    print_poles(v, out);
+    print_method(v, out);
+    if (infinite) {
+        mt_text_add(out,
+                    "  Resonances that nothing damps have no magnitude: it is infinite.\n");
+    }
+    mt_text_add(out, "\n");
+}
+
+static void json_ports(mt_json_writer *w, const char *member, int n, const mt_port *ports)
+{
+    mt_json_open(w, member, '[');
+    for (int i = 0; i < n; i++) {
+        mt_json_open_flat(w, NULL, '{');
+        mt_json_put_string(w, "name", ports[i].name);
+        mt_json_put_string(w, "unit", ports[i].unit);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static void json_extreme(const response_view *v, int e, mt_json_writer *w)
+{
+    const mt_extreme *const x = &v->curve->extremes[e];
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "kind", extreme_kind_name(x));
+    mt_json_put_number(w, "frequency_hz", x->w / TWO_PI);
+    mt_json_put_number(w, "magnitude", magnitude(extreme_of(x)));
+    mt_json_put_number(w, "phase_deg", mt_phase_deg(extreme_of(x)));
+    if (v->n > 0) {
+        mt_json_open(w, "sensitivities", '[');
+        for (int k = 0; k < v->n; k++) {
+            mt_json_open_flat(w, NULL, '{');
+            mt_json_put_string(w, "parameter", parameter_of(v, k));
+            mt_json_put_number(w, "value", v->value[k]);
+            mt_json_put_number(w, "magnitude_per_percent", percent_of(v, e, k));
+            mt_json_close(w);
+        }
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static void json_series(const response_view *v, int pair, const char *member, int what,
+                        mt_json_writer *w)
+{
+    mt_json_open_flat(w, member, '[');
+    for (int i = 0; i < v->curve->n; i++) {
+        const double complex h = value_at(v, pair, i);
+        const bool has = isfinite(cabs(h));
+        mt_json_put_number(w, NULL,
+                           what == 2   ? error_at(v, pair, i)
+                           : !has      ? nan("")
+                           : what == 0 ? creal(h)
+                                       : cimag(h));
+    }
+    mt_json_close(w);
+}
+
+static void json_complex(mt_json_writer *w, const char *re, const char *im, double complex z)
+{
+    mt_json_put_number(w, re, creal(z));
+    mt_json_put_number(w, im, cimag(z));
+}
+
+/* Write the poles where requested. */
+static void json_poles(const response_view *v, int pair, mt_json_writer *w)
+{
+    if (v->no_sums != NULL) {
+        mt_json_put_null(w, "poles");
+        mt_json_put_string(w, "no_poles", v->no_sums);
+    }
+    if (v->sums == NULL) {
+        return;
+    }
+    const mt_pole_sum *const sum = &v->sums[pair];
+    mt_json_open(w, "poles", '[');
+    for (int k = 0; k < sum->n; k++) {
+        mt_json_open_flat(w, NULL, '{');
+        json_complex(w, "re", "im", sum->s[k]);
+        json_complex(w, "residue_re", "residue_im", sum->residue[k]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_open(w, "polynomial", '[');
+    for (int k = 0; k < 3; k++) {
+        mt_json_open_flat(w, NULL, '{');
+        json_complex(w, "re", "im", sum->d[k]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static void json_pair(const response_view *v, int pair, mt_json_writer *w)
+{
+    char unit[HEADING_TEXT];
+    write_pair_unit(v, pair, unit);
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "input", response_input_of(v, pair)->name);
+    mt_json_put_string(w, "output", response_output_of(v, pair)->name);
+    mt_json_put_string(w, "unit", unit);
+    mt_json_open(w, "extremes", '[');
+    for (int e = 0; e < v->curve->n_extremes; e++) {
+        if (v->curve->extremes[e].pair == pair) {
+            json_extreme(v, e, w);
+        }
+    }
+    mt_json_close(w);
+    json_poles(v, pair, w);
+    json_series(v, pair, "re", 0, w);
+    json_series(v, pair, "im", 1, w);
+    json_series(v, pair, "error", 2, w);
+    if (v->profiled != NULL) {
+        response_vibration_json_pair(v, pair, w);
+    }
+    mt_json_close(w);
+}
+
+static void response_json(const response_view *v, mt_json_writer *w)
+{
+    const mt_basis *const b = &v->r->basis;
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", v->configuration);
+    mt_json_put_string(w, "method", v->direct ? "direct" : "modes");
+    const bool lowest = v->r->a == NULL;
+    mt_json_put_integer(w, "modes", lowest ? v->r->modes->count : b->n_modes);
+    mt_json_put_integer(w, "modes_left_out",
+                        lowest ? v->r->modes->all - v->r->modes->count : b->n_left);
+    if (lowest) {
+        mt_json_put_integer(w, "shapes_of_others", v->r->shapes);
+    }
+    mt_json_put_bool(w, "coupled", !b->t.diagonal);
+    mt_json_put_bool(w, "complete", v->curve->complete);
+    if (v->profiled != NULL) {
+        response_vibration_json(v, w);
+    }
+    json_ports(w, "inputs", v->r->ports.n_in, v->r->ports.in);
+    json_ports(w, "outputs", v->r->ports.n_out, v->r->ports.out);
+    mt_json_open_flat(w, "frequencies_hz", '[');
+    for (int i = 0; i < v->curve->n; i++) {
+        mt_json_put_number(w, NULL, v->curve->w[i] / TWO_PI);
+    }
+    mt_json_close(w);
+    mt_json_open(w, "responses", '[');
+    for (int p = 0; p < pairs_of(v); p++) {
+        json_pair(v, p, w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
+/* psd: with the columns of --vibration. */
+static mt_table response_csv_table(bool psd)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "configuration", "configuration", MT_ALIGN_LEFT);
+    mt_table_column(&t, "input", "input", MT_ALIGN_LEFT);
+    mt_table_column(&t, "output", "output", MT_ALIGN_LEFT);
+    mt_table_column(&t, "frequency [Hz]", "frequency_hz", MT_ALIGN_POINT);
+    mt_table_column(&t, "re", "re", MT_ALIGN_POINT);
+    mt_table_column(&t, "im", "im", MT_ALIGN_POINT);
+    mt_table_column(&t, "magnitude", "magnitude", MT_ALIGN_POINT);
+    mt_table_column(&t, "phase [deg]", "phase_deg", MT_ALIGN_POINT);
+    mt_table_column(&t, "error", "error", MT_ALIGN_POINT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    if (psd) {
+        response_vibration_columns(&t);
+    }
+    return t;
+}
+
+static void response_csv_rows(const response_view *v, mt_table *t)
+{
+    for (int p = 0; p < pairs_of(v); p++) {
+        char unit[HEADING_TEXT];
+        write_pair_unit(v, p, unit);
+        for (int i = 0; i < v->curve->n; i++) {
+            const double complex h = value_at(v, p, i);
+            const bool has = isfinite(cabs(h));
+            mt_table_text(t, v->configuration);
+            mt_table_text(t, response_input_of(v, p)->name);
+            mt_table_text(t, response_output_of(v, p)->name);
+            mt_table_number(t, v->curve->w[i] / TWO_PI, HZ_DIGITS);
+            mt_table_number(t, has ? creal(h) : nan(""), DIGITS);
+            mt_table_number(t, has ? cimag(h) : nan(""), DIGITS);
+            mt_table_number(t, magnitude(h), DIGITS);
+            mt_table_number(t, mt_phase_deg(h), DIGITS);
+            mt_table_number(t, error_at(v, p, i), DIGITS);
+            mt_table_text(t, unit);
+            if (v->profiled != NULL) {
+                response_vibration_cells(v, p, i, t);
+            }
+        }
+    }
+}
+
+/* The command. */
+
+enum { DEFAULT_POINTS = 50, DEFAULT_MODES = 6 };
 static const double PER_CENT = 0.01;
 /* The range that is looked at by default, in parts of its vibration modes' frequencies. */
 static const double BELOW_FIRST = 0.25;
@@ -37,7 +675,7 @@ typedef struct job {
     mt_response r;
     mt_profiled profiled;
     mt_curve curve;
-    mt_response_view v;
+    response_view v;
 } job;
 
 static mt_response_request request_of(const mt_args *args)
@@ -353,25 +991,25 @@ static int show_configuration_response(sink *to, mt_loaded_model *s, int c)
 {
     job j = {.args = to->args, .profile = to->profile, .s = s, .c = c};
     mt_err err = {.code = MT_OK};
-    j.v = (mt_response_view){.configuration = mt_loaded_model_configuration(s, c),
-                             .s = s,
-                             .r = &j.r,
-                             .curve = &j.curve,
-                             .direct = to->args->given[MT_OPT_DIRECT]};
+    j.v = (response_view){.configuration = mt_loaded_model_configuration(s, c),
+                          .s = s,
+                          .r = &j.r,
+                          .curve = &j.curve,
+                          .direct = to->args->given[MT_OPT_DIRECT]};
     mt_loaded_model_warn_overridden(s, c);
     const mt_status rc = compute_response(&j, &err);
     if (rc == MT_OK) {
         switch (to->args->format) {
         case MT_FORMAT_JSON:
-            mt_response_json(&j.v, &to->w);
+            response_json(&j.v, &to->w);
             break;
         case MT_FORMAT_CSV:
-            mt_response_csv_rows(&j.v, &to->table);
+            response_csv_rows(&j.v, &to->table);
             break;
         case MT_FORMAT_HTML:  /* of report alone */
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
-            mt_response_print(&j.v, to->out);
+            response_print(&j.v, to->out);
             mt_loaded_model_note_links(s, c, to->out);
             break;
         }
@@ -408,7 +1046,7 @@ int mt_cmd_response(const mt_args *args, mt_text *out)
     sink to = {.args = args,
                .out = out,
                .w = mt_json_writer_default(out),
-               .table = mt_response_csv_table(args->given[MT_OPT_VIBRATION])};
+               .table = response_csv_table(args->given[MT_OPT_VIBRATION])};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];
     int code =

@@ -1,20 +1,387 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune run and compare: answer studies, write what was found, judge published values. */
+#include "modetune/version.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "answer/solve.h"
-#include "cli/batch.h"
+#include "base/sha256.h"
+#include "cli/args.h"
 #include "cli/cli.h"
-#include "cli/profile.h"
 #include "cli/save.h"
 #include "cli/watch.h"
-#include "cli/work.h"
+#include "describe/describe.h"
+#include "io/file.h"
+#include "io/folder.h"
+#include "io/journal.h"
 #include "library/scene_designs.h"
+#include "linalg/dense.h"
+#include "report/index.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "result/result.h"
 #include "study/study.h"
+
+/*
+ * The journal of one study's run, for --resume, --shard and merge. All functions return an exit
+ * status, with all messages given.
+ */
+
+/*
+ * Several studies run together: the outcome of each, as a table at the end and as index.json
+ * and index.html in the folder of their results. The index is replaced after every study,
+ * unless that takes more than a small part of the time. In the index of a killed run, studies
+ * not yet recorded are "not run".
+ */
+typedef struct study_batch {
+    const mt_args *args;
+    mt_arena mem;
+    mt_index_study *studies; /* [n_operands] */
+    double written_s;        /* time of writing the index, and the duration of writing */
+    double cost_s;
+} study_batch;
+
+/* The end of running one study. */
+typedef struct batch_end {
+    const mt_result *result; /* NULL: none */
+    const char *sha256;      /* of result.json; "": not written */
+    const char *message;     /* reason for no result; "": unknown */
+    int exit_status;
+    double seconds;
+} batch_end;
+
+/* The folder of a run that can be taken up again. */
+
+/* The identity of a run, known before anything is computed: program, libraries, files and
+ * settings, and the properties of processors that affect arithmetic. Runs with the same
+ * identity give the same record of every task. */
+static mt_status identity_of(const mt_study *study, mt_text *out, mt_err *err)
+{
+    mt_result *result = NULL;
+    MT_TRY(mt_result_new(&result, err));
+    mt_status rc = mt_describe_run(study, result, err);
+    if (rc == MT_OK) {
+        char digits[MT_ARITHMETIC_TEXT];
+        mt_json_writer w = mt_json_writer_default(out);
+        mt_json_open(&w, NULL, '{');
+        mt_result_put_member(&w, "run", result);
+        mt_arithmetic_digest(digits);
+        mt_json_put_string(&w, "arithmetic", digits);
+        mt_json_close(&w);
+        rc = mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+    }
+    mt_result_delete(result);
+    return rc;
+}
+
+/* Path of the journal: next to the folder of the result; a part has its own. Heap, NULL when
+ * out of memory. */
+static char *journal_of(const mt_args *args, const char *study_path)
+{
+    mt_text t = {.s = NULL};
+    char *const folder = mt_save_folder(args, study_path);
+    if (folder == NULL) {
+        return NULL;
+    }
+    mt_text_add(&t, folder);
+    if (args->part > 0) {
+        mt_text_addf(&t, ".%d-of-%d", args->part, args->parts);
+    }
+    mt_text_add(&t, ".journal");
+    free(folder);
+    if (t.failed) {
+        mt_text_free(&t);
+    }
+    return t.s;
+}
+
+/* Report the state of the path of this run's journal. Fails: MT_E_SYSTEM, for a part, whose
+ * only output is its journal. */
+static mt_status write_place(const mt_args *args, const char *study_path, const char *path,
+                             mt_journal *j, mt_journal_place place, mt_err *err)
+{
+    const bool quiet = args->given[MT_OPT_QUIET];
+    const bool part = args->part > 0;
+    switch (place) {
+    case MT_JOURNAL_NEW:
+        if (args->given[MT_OPT_RESUME]) {
+            mt_terminal_talk(quiet, "%s: there is no %s to resume, so everything is computed",
+                             study_path, path);
+        }
+        break;
+    case MT_JOURNAL_KEPT:
+        mt_terminal_talk(
+            quiet,
+            "%s: a journal was left there, of a run that was not finished or of a "
+            "part: it is kept as %s" MT_JOURNAL_OLD
+            "; --resume would have gone on from it, and `modetune merge %s %s" MT_JOURNAL_OLD
+            "` does",
+            study_path, path, study_path, path);
+        break;
+    case MT_JOURNAL_HELD:
+        if (part) {
+            return mt_fail(err, MT_E_SYSTEM, "%s: another run is writing it", path);
+        }
+        mt_terminal_talk(quiet, "%s: another run is writing %s: this one keeps no journal",
+                         study_path, path);
+        break;
+    case MT_JOURNAL_FAILED:
+        return part ? mt_journal_end(j, false, err) : MT_OK;
+    case MT_JOURNAL_CONTINUED:
+        break;
+    }
+    return MT_OK;
+}
+
+/* The journals that are read, and where new records go. */
+static mt_status open_files(const mt_args *args, const char *study_path, mt_journal *j,
+                            mt_err *err)
+{
+    char *const path = journal_of(args, study_path);
+    if (path == NULL) {
+        return mt_fail_memory(err);
+    }
+    const bool adds = args->given[MT_OPT_RESUME] && !mt_file_absent(path);
+    const bool quiet = args->given[MT_OPT_QUIET];
+    mt_journal_place place = MT_JOURNAL_NEW;
+    mt_status rc = MT_OK;
+    for (int i = 0; i < args->n_journals && rc == MT_OK; i++) {
+        bool foreign = false;
+        rc = mt_journal_read(j, args->journals[i], &foreign, err);
+        if (foreign) {
+            const mt_err why = *err;
+            const bool redo = args->given[MT_OPT_REDO];
+            rc = redo ? MT_OK : mt_fail(err, rc, "%s; --redo does its tasks again", why.text);
+            mt_terminal_talk(quiet || !redo, "%s; its tasks are done again", why.text);
+        }
+    }
+    rc = rc == MT_OK && adds ? mt_journal_read(j, path, NULL, err) : rc;
+    if (args->command == MT_CMD_RUN && rc == MT_OK) {
+        rc = mt_journal_write_to(j, path, adds, &place, err);
+        rc = rc == MT_OK ? write_place(args, study_path, path, j, place, err) : rc;
+    }
+    free(path);
+    return rc;
+}
+
+/* Open the journal for a study that was read; NULL on failure. */
+static int work_begin(const mt_args *args, const char *study_path, const mt_study *study,
+                      mt_journal **out)
+{
+    mt_err err = {.code = MT_OK};
+    mt_text identity = {.s = NULL};
+    *out = NULL;
+    mt_status rc = identity_of(study, &identity, &err);
+    rc = rc == MT_OK ? mt_journal_new(identity.s, out, &err) : rc;
+    mt_text_free(&identity);
+    rc = rc == MT_OK ? open_files(args, study_path, *out, &err) : rc;
+    if (rc == MT_OK) {
+        return MT_EXIT_DONE;
+    }
+    mt_journal_delete(*out);
+    *out = NULL;
+    return mt_cli_failed(rc, &err);
+}
+
+/* Report the use of the records read, and the state of the part where one was requested. */
+static void report_journal_use(const mt_args *args, const char *study_path, bool complete,
+                               bool part, const mt_journal *j)
+{
+    const mt_journal_counts n = mt_journal_count(j);
+    const bool quiet = args->given[MT_OPT_QUIET];
+    if (n.ignored > 0) {
+        mt_terminal_warning("%s: %ld lines of the journals are damaged or contradict each "
+                            "other: what they held was done again",
+                            study_path, n.ignored);
+    }
+    if (args->command == MT_CMD_MERGE || args->given[MT_OPT_RESUME]) {
+        mt_terminal_talk(quiet, "%s: %ld tasks known of %ld in journals, %ld done now",
+                         study_path, n.used, n.known, n.made);
+    } else if (part || (!complete && n.written > 0)) {
+        mt_terminal_talk(quiet, "%s: %ld tasks are in the journal", study_path, n.written);
+    }
+}
+
+/* End the journal after an answer with this exit status so far. `complete`: nothing is left to
+ * resume, and the journal, unless it is a part's, is removed. A failure to write it is a
+ * warning, for a part an error. */
+static int work_end(const mt_args *args, const char *study_path, int code, bool complete,
+                    mt_journal *j)
+{
+    mt_err err = {.code = MT_OK};
+    const bool part = args->given[MT_OPT_SHARD];
+    const bool cut = code == MT_EXIT_INTERRUPTED || code == MT_EXIT_GOALS;
+    const bool done = part && (complete || !cut); /* or it cannot be */
+    if (done) {                                   /* one without a record is a part, too */
+        mt_journal_begin(j);
+    }
+    const mt_status rc = mt_journal_end(j, complete && !part, &err);
+    report_journal_use(args, study_path, complete, done, j);
+    if (rc != MT_OK && part) {
+        return mt_exit_worse(code, mt_cli_failed(rc, &err));
+    }
+    if (rc != MT_OK && code != MT_EXIT_SYSTEM) { /* else the same is told of the result */
+        mt_terminal_warning("%s: the journal: %s", study_path, err.text);
+    }
+    return code;
+}
+
+/* The index of several studies. */
+
+/* The index may take a twentieth of the time. */
+static const double PATIENCE = 20.0;
+
+/* Begin with all studies "not run". Returns MT_EXIT_DONE or the exit status, with all messages
+ * given; batch_free in any case (out zeroed before). */
+static int batch_begin(const mt_args *args, study_batch *out)
+{
+    mt_err err = {.code = MT_OK};
+    out->args = args;
+    mt_status rc = mt_arena_init(&out->mem, 0, &err);
+    if (rc == MT_OK) {
+        out->studies =
+            mt_arena_alloc(&out->mem, (size_t)args->n_operands, sizeof *out->studies);
+    }
+    for (int i = 0; i < args->n_operands && out->studies != NULL; i++) {
+        char *const folder = mt_save_folder(args, args->operands[i]);
+        if (folder == NULL) {
+            mt_arena_fail(&out->mem);
+            break;
+        }
+        out->studies[i] = (mt_index_study){
+            .path = args->operands[i],
+            .file = mt_text_base_name(args->operands[i]),
+            .folder = mt_arena_strdup(&out->mem, mt_text_base_name(folder)),
+            .state = "not run",
+            .change = nan(""),
+            .seconds = nan(""),
+            .exit_status = -1,
+        };
+        free(folder);
+    }
+    rc = rc == MT_OK ? mt_arena_check(&out->mem, &err) : rc;
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+}
+
+static void put_study(mt_json_writer *w, const mt_index_study *s)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "file", s->file);
+    mt_json_put_string(w, "folder", s->folder);
+    mt_json_put_string(w, "state", s->state);
+    mt_json_put_string(w, "name", s->name);
+    mt_json_put_string(w, "status", s->status);
+    mt_json_put_string(w, "grade", s->grade);
+    mt_json_put_number(w, "change", s->change);
+    if (s->exit_status < 0) {
+        mt_json_put_null(w, "exit_status");
+    } else {
+        mt_json_put_integer(w, "exit_status", s->exit_status);
+    }
+    mt_json_put_string(w, "message", s->message);
+    mt_json_put_string(w, "result_sha256", s->sha256);
+    mt_json_close(w);
+}
+
+static mt_status put_index(const study_batch *batch, mt_text *out, mt_err *err)
+{
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_json_open(&w, NULL, '{');
+    mt_json_put_string(&w, "format", "modetune-index/1");
+    mt_json_put_string(&w, "modetune", mt_version());
+    mt_json_open(&w, "studies", '[');
+    for (int i = 0; i < batch->args->n_operands; i++) {
+        put_study(&w, &batch->studies[i]);
+    }
+    mt_json_close(&w);
+    mt_json_close(&w);
+    return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
+}
+
+static int write_index(study_batch *batch)
+{
+    const mt_args *const args = batch->args;
+    const double start = mt_terminal_seconds();
+    mt_err err = {.code = MT_OK};
+    mt_text json = {.s = NULL};
+    mt_text page = {.s = NULL};
+    mt_report_index_html(batch->studies, args->n_operands, &page);
+    mt_status rc = page.failed ? mt_fail_memory(&err) : put_index(batch, &json, &err);
+    if (rc == MT_OK) {
+        const mt_folder_file files[] = {{mt_index_names[0], page.s, page.length},
+                                        {mt_index_names[1], json.s, json.length}};
+        mt_terminal_hold_signals();
+        rc = mt_folder_replace(mt_save_base(args), files, MT_COUNT(files), &err);
+        mt_terminal_release_signals();
+    }
+    mt_text_free(&json);
+    mt_text_free(&page);
+    batch->written_s = mt_terminal_seconds();
+    batch->cost_s = batch->written_s - start;
+    return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+}
+
+/* Record the end of study i. Returns the exit status of writing the index. */
+static int batch_note(study_batch *batch, int i, const batch_end *end)
+{
+    static const char unwritten[] = "the result was not written";
+    mt_arena *const mem = &batch->mem;
+    mt_index_study *const s = &batch->studies[i];
+    const mt_result *const r = end->result;
+    s->exit_status = end->exit_status;
+    if (end->sha256[0] != '\0') {
+        s->state = "answered";
+        s->name = r->study.name == NULL ? NULL : mt_arena_strdup(mem, r->study.name);
+        s->status = mt_result_status_name(r->status);
+        s->seconds = end->seconds;
+        s->sha256 = mt_arena_strdup(mem, end->sha256);
+        s->has_report = !batch->args->no_report;
+        if (r->n_recommendations > 0) {
+            s->grade = mt_arena_strdup(mem, r->recommendations[0].grade);
+            s->change = r->recommendations[0].change;
+        }
+    } else {
+        s->state = "not answered";
+        s->message = mt_arena_strdup(mem, end->message[0] != '\0' ? end->message : unwritten);
+    }
+    mt_err err = {.code = MT_OK};
+    const mt_status rc = mt_arena_check(mem, &err);
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    const bool late = mt_terminal_seconds() - batch->written_s > PATIENCE * batch->cost_s;
+    return late ? write_index(batch) : MT_EXIT_DONE;
+}
+
+/* Write the whole index; as text append the table to out. Returns the exit status of
+ * writing. */
+static int batch_close(study_batch *batch, mt_text *out)
+{
+    const int n = batch->args->n_operands;
+    if (mt_arena_failed(&batch->mem)) {
+        return MT_EXIT_SYSTEM; /* no index with holes; what could not be noted has been said */
+    }
+    if (batch->args->format == MT_FORMAT_TEXT) {
+        mt_table t = mt_report_index(batch->studies, n);
+        mt_text_add(out, "Studies\n");
+        mt_table_print(&t, 2, mt_terminal_width(), out);
+        mt_table_free(&t);
+    }
+    const int code = write_index(batch);
+    if (code == MT_EXIT_DONE) {
+        mt_terminal_talk(batch->args->given[MT_OPT_QUIET], "%d studies; index written to %s/",
+                         n, mt_save_base(batch->args));
+    }
+    return code;
+}
+
+static void batch_free(study_batch *batch)
+{
+    mt_arena_free(&batch->mem);
+}
+
+/* The commands. */
 
 /* One study on its way. */
 typedef struct job {
@@ -103,7 +470,7 @@ static int answer(job *j)
     j->profile = mt_cli_profile(j->args, &j->counts);
     mt_task_path tasks = {.store = NULL};
     if (j->args->command != MT_CMD_COMPARE) {
-        const int begun = mt_work_begin(j->args, j->path, j->study, &j->journal);
+        const int begun = work_begin(j->args, j->path, j->study, &j->journal);
         if (begun != MT_EXIT_DONE) {
             return begun;
         }
@@ -221,8 +588,8 @@ static char *words_about(const mt_args *args, int first)
 typedef struct round_of {
     const mt_args *args;
     use_answer use;
-    bool stops;      /* a signal ends a search, not the program */
-    mt_batch *batch; /* NULL: no index */
+    bool stops;         /* a signal ends a search, not the program */
+    study_batch *batch; /* NULL: no index */
     mt_json_writer w;
     mt_text *out;
 } round_of;
@@ -243,7 +610,7 @@ static int one_study(round_of *all, int i)
         code = all->use(&j, &all->w, all->out);
     }
     if (j.journal != NULL) {
-        code = mt_work_end(args, j.path, code, j.complete, j.journal);
+        code = work_end(args, j.path, code, j.complete, j.journal);
     }
     mt_terminal_release_signals();
     mt_journal_delete(j.journal);
@@ -252,12 +619,12 @@ static int one_study(round_of *all, int i)
         code = mt_exit_worse(code, mt_terminal_put(all->out));
     }
     if (all->batch != NULL) {
-        const mt_batch_end end = {.result = j.result,
-                                  .sha256 = j.sha256,
-                                  .message = j.err.text,
-                                  .exit_status = code,
-                                  .seconds = j.seconds};
-        code = mt_exit_worse(code, mt_batch_note(all->batch, i, &end));
+        const batch_end end = {.result = j.result,
+                               .sha256 = j.sha256,
+                               .message = j.err.text,
+                               .exit_status = code,
+                               .seconds = j.seconds};
+        code = mt_exit_worse(code, batch_note(all->batch, i, &end));
     }
     mt_result_delete(j.result);
     mt_study_delete(j.study);
@@ -296,7 +663,7 @@ static int for_each_study(round_of *all)
 
 int mt_cmd_run(const mt_args *args, mt_text *out)
 {
-    mt_batch batch = {.args = args};
+    study_batch batch = {.args = args};
     round_of all = {.args = args,
                     .use = run_one,
                     .stops = true,
@@ -305,13 +672,13 @@ int mt_cmd_run(const mt_args *args, mt_text *out)
                     .out = out};
     int code = mt_save_plan(args);
     if (code == MT_EXIT_DONE && all.batch != NULL) {
-        code = mt_batch_begin(args, &batch);
+        code = batch_begin(args, &batch);
     }
     if (code == MT_EXIT_DONE) {
         code = for_each_study(&all);
-        code = all.batch == NULL ? code : mt_exit_worse(code, mt_batch_close(&batch, out));
+        code = all.batch == NULL ? code : mt_exit_worse(code, batch_close(&batch, out));
     }
-    mt_batch_free(&batch);
+    batch_free(&batch);
     return code;
 }
 

@@ -1,34 +1,292 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune sensitivity: how far one per cent more of a parameter moves each frequency. */
+/*
+ * A parameter that is made of others ("EI": "E*I") must not be an input together with them, or
+ * it would no longer follow: it gets an analysis of its own.
+ */
+#include <string.h>
 
+#include "analysis/sensitivity.h"
 #include "base/format.h"
-#include "cli/sensitivity_table.h"
+#include "base/number.h"
+#include "cli/cli.h"
+#include "mechanics/independence.h"
+#include "model/values.h"
 #include "report/table.h"
+
+/*
+ * The sensitivities of the frequencies of one configuration to parameters: exact derivatives of
+ * the first vibration modes. A single repeated mode has no derivative; directional values are
+ * given instead (eigenvalues of Y^T (dK - lambda dM) Y over the cluster), ascending.
+ */
+typedef struct sensitivity_table {
+    const mt_loaded_model *s;
+    int c;
+    mt_arena mem;
+    mt_lowest_method way; /* NONE: by all modes */
+    int bodies;           /* else */
+    int n;                /* parameters */
+    int *parameter;       /* [n] */
+    double *value;        /* [n] in this configuration */
+    bool *overridden;     /* [n] overridden by the configuration: no influence */
+    int modes;            /* number of vibration modes */
+    int unstable;         /* unstable modes of the configuration */
+    int *position;        /* [modes] */
+    double *hz;           /* [modes] */
+    bool *repeated;       /* [modes] */
+    int room;             /* leading dimension of per_unit */
+    /* room x n: Hz per unit of the parameter; NaN where it has no derivative */
+    double *per_unit;
+    mt_independence *independence; /* [n] reason for no derivative */
+} sensitivity_table;
+
+static const double PER_CENT = 0.01;
+static const double MILLIMETRE = 1e-3;
+
+static bool is_overridden(const sensitivity_table *v, int parameter)
+{
+    const mt_configuration *const conf = &v->s->model->configurations[v->c];
+    for (int k = 0; k < conf->n_overrides; k++) {
+        if (conf->overrides[k].parameter == parameter) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Choose the modes once; later analyses use the same ones. */
+static mt_status choose_modes(sensitivity_table *v, const mt_modes *m, int wanted, mt_err *err)
+{
+    if (v->position != NULL) {
+        return MT_OK;
+    }
+    const size_t most = (size_t)m->count;
+    v->room = m->count;
+    v->unstable = m->n_unstable;
+    v->position = mt_arena_int(&v->mem, most);
+    v->hz = mt_arena_f64(&v->mem, most, 1);
+    v->repeated = mt_arena_alloc(&v->mem, most, sizeof *v->repeated);
+    v->per_unit = mt_arena_f64(&v->mem, most, (size_t)v->n);
+    MT_TRY(mt_arena_check(&v->mem, err));
+    for (int i = 0; i < m->count && v->modes < wanted; i++) {
+        int size = 1;
+        if (m->kind[i] == MT_MODE_FLEXIBLE) {
+            (void)mt_modal_cluster(m, i, &size);
+            v->position[v->modes] = i;
+            v->hz[v->modes] = mt_modal_hz(m, i);
+            v->repeated[v->modes] = size > 1;
+            v->modes++;
+        }
+    }
+    return MT_OK;
+}
+
+/* Parameters of the survey to look at together, beside the inputs of --set. */
+typedef struct question {
+    int wanted; /* modes */
+    int n;
+    const int *entry; /* [n] of the survey */
+    int *slot;        /* [n] input of each */
+    int count;        /* inputs */
+    int *inputs;
+    double *at;
+} question;
+
+static mt_status list_question_inputs(sensitivity_table *v, question *q, mt_err *err)
+{
+    const mt_loaded_model *const s = v->s;
+    const size_t room = (size_t)s->n_inputs + (size_t)q->n;
+    q->inputs = mt_arena_int(&v->mem, room);
+    q->slot = mt_arena_int(&v->mem, room);
+    q->at = mt_arena_f64(&v->mem, room, 1);
+    MT_TRY(mt_arena_check(&v->mem, err));
+    for (int i = 0; i < s->n_inputs; i++) {
+        q->inputs[q->count] = s->inputs[i];
+        q->at[q->count++] = s->at[i];
+    }
+    for (int i = 0; i < q->n; i++) {
+        const int parameter = v->parameter[q->entry[i]];
+        q->slot[i] = q->count;
+        for (int k = 0; k < s->n_inputs; k++) {
+            q->slot[i] = s->inputs[k] == parameter ? k : q->slot[i];
+        }
+        if (q->slot[i] == q->count) {
+            q->inputs[q->count] = parameter;
+            q->at[q->count++] = v->value[q->entry[i]];
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status answer_by_all(sensitivity_table *v, const question *q, mt_err *err)
+{
+    mt_analysis *a = NULL;
+    mt_analysis_options opt = mt_analysis_options_default();
+    opt.gradient = true;
+    opt.modes.first = q->wanted;
+    const mt_system_def def = mt_loaded_model_system(v->s, v->c, q->count, q->inputs, q->at);
+    mt_status rc = mt_analysis_new_of(&def, q->wanted, &a, err);
+    rc = rc == MT_OK ? mt_analysis_solve(a, q->at, &opt, err) : rc;
+    rc = rc == MT_OK ? choose_modes(v, &a->modes, q->wanted, err) : rc;
+    for (int i = 0; rc == MT_OK && i < q->n; i++) {
+        rc = mt_analysis_sensitivity(a, q->slot[i], v->modes, v->position, &v->mem,
+                                     v->per_unit + ((ptrdiff_t)q->entry[i] * v->room),
+                                     &v->independence[q->entry[i]], err);
+    }
+    mt_analysis_delete(a);
+    return mt_err_in(err, rc, "%s", v->s->path);
+}
+
+/* *done false: the method is not available. */
+static mt_status answer_by_lowest(sensitivity_table *v, const question *q, bool *done,
+                                  mt_err *err)
+{
+    char why[MT_TREE_WHY] = "";
+    const mt_lowest_want want = {.count = q->wanted, .shapes = true, .drawn = true};
+    mt_lowest *l = NULL;
+    double *slope = NULL;
+    mt_status rc =
+        mt_loaded_model_lowest(v->s, v->c, q->count, q->inputs, q->at, want, &l, err);
+    *done = rc == MT_OK && l != NULL;
+    if (!*done) {
+        return rc;
+    }
+    rc = choose_modes(v, &l->found.modes, q->wanted, err);
+    if (rc == MT_OK) {
+        slope = mt_arena_f64(&v->mem, (size_t)v->modes, (size_t)q->count);
+        rc = mt_arena_check(&v->mem, err);
+    }
+    rc = rc == MT_OK ? mt_lowest_sensitivity(l, v->modes, slope, why, err) : rc;
+    *done = why[0] == '\0';
+    v->way = *done ? l->way : MT_LOWEST_NONE;
+    v->bodies = l->sys->n_bodies;
+    for (int i = 0; rc == MT_OK && *done && i < q->n; i++) {
+        memcpy(v->per_unit + ((ptrdiff_t)q->entry[i] * v->room),
+               slope + ((ptrdiff_t)q->slot[i] * v->modes), (size_t)v->modes * sizeof *slope);
+    }
+    mt_lowest_delete(l);
+    rc = mt_err_in(err, rc, "%s", v->s->path);
+    return rc == MT_OK && !*done ? mt_loaded_model_admit_dense(v->s, v->c, why, err) : rc;
+}
+
+static mt_status analyse(sensitivity_table *v, int n, const int *entry, int wanted, mt_err *err)
+{
+    question q = {.wanted = wanted, .n = n, .entry = entry};
+    bool done = false;
+    MT_TRY(list_question_inputs(v, &q, err));
+    MT_TRY(answer_by_lowest(v, &q, &done, err));
+    return done ? MT_OK : answer_by_all(v, &q, err);
+}
+
+/* What the parameters are in this configuration, its own overrides included. */
+static mt_status find_values(sensitivity_table *v, mt_err *err)
+{
+    const mt_loaded_model *const s = v->s;
+    double *const all = mt_arena_f64(&v->mem, (size_t)s->model->n_parameters, 1);
+    v->overridden = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->overridden);
+    v->independence = mt_arena_alloc(&v->mem, (size_t)v->n, sizeof *v->independence);
+    v->value = mt_arena_f64(&v->mem, (size_t)v->n, 1);
+    MT_TRY(mt_arena_check(&v->mem, err));
+    const mt_status rc =
+        mt_model_parameters(s->model, v->c, s->n_inputs, s->inputs, s->at, &v->mem, all, err);
+    for (int k = 0; k < v->n && rc == MT_OK; k++) {
+        v->value[k] = all[v->parameter[k]];
+        v->overridden[k] = is_overridden(v, v->parameter[k]);
+    }
+    return mt_err_in(err, rc, "%s: configuration \"%s\"", s->path,
+                     mt_loaded_model_configuration(s, v->c));
+}
+
+static mt_status carry_out(sensitivity_table *v, int wanted, mt_err *err)
+{
+    int *const together = mt_arena_int(&v->mem, (size_t)v->n);
+    int n = 0;
+    MT_TRY(mt_arena_check(&v->mem, err));
+    for (int k = 0; k < v->n; k++) {
+        if (mt_model_parameter_follows(v->s->model, v->parameter[k]) == 0) {
+            together[n++] = k;
+        }
+    }
+    if (n > 0) {
+        MT_TRY(analyse(v, n, together, wanted, err));
+    }
+    for (int k = 0; k < v->n; k++) {
+        if (mt_model_parameter_follows(v->s->model, v->parameter[k]) != 0) {
+            MT_TRY(analyse(v, 1, &k, wanted, err));
+        }
+    }
+    return MT_OK;
+}
+
+/* Compute the table. `parameters`: "A,B", or NULL for all that are not expressions of others. v
+ * zeroed before; sensitivity_table_free in any case. */
+static mt_status sensitivity_table_take(const mt_loaded_model *s, int c, const char *parameters,
+                                        int modes, sensitivity_table *v, mt_err *err)
+{
+    v->s = s;
+    v->c = c;
+    MT_TRY(mt_arena_init(&v->mem, 0, err));
+    MT_TRY(mt_loaded_model_parameters(s, "parameters", parameters, &v->mem, &v->n,
+                                      &v->parameter, err));
+    MT_TRY(find_values(v, err));
+    return carry_out(v, modes, err);
+}
+
+static void sensitivity_table_free(sensitivity_table *v)
+{
+    mt_arena_free(&v->mem);
+    memset(v, 0, sizeof *v);
+}
+
+/* Change in Hz of mode i for one per cent more of parameter k. */
+static double sensitivity_table_per_percent(const sensitivity_table *v, int i, int k)
+{
+    return PER_CENT * v->value[k] * v->per_unit[i + ((ptrdiff_t)k * v->room)];
+}
+
+/* True where the change for 1 % more of parameter k is shown. For a coordinate at or below 0 it
+ * is that for 1 mm more. */
+static bool sensitivity_table_has_percent(const sensitivity_table *v, int k)
+{
+    const char *const unit = v->s->model->parameters[v->parameter[k]].unit;
+    return v->value[k] > 0.0 || unit == NULL || strcmp(unit, "m") != 0;
+}
+
+/* The shown change [Hz], with rounding as 0. */
+static double sensitivity_table_shown(const sensitivity_table *v, int i, int k)
+{
+    const double per_unit = v->per_unit[i + ((ptrdiff_t)k * v->room)];
+    const double more = sensitivity_table_has_percent(v, k)
+                            ? sensitivity_table_per_percent(v, i, k)
+                            : MILLIMETRE * per_unit;
+    return mt_without_noise(more, MT_SLOPE_NOISE * v->hz[i]);
+}
+
+/* modetune sensitivity: how far one per cent more of a parameter moves each frequency. */
 
 enum { DEFAULT_MODES = 6, DIGITS = 4, HZ_DIGITS = 6, HEADING_TEXT = 40, NAME_TEXT = 128 };
 
-static const char *parameter_si_unit(const mt_sensitivity_table *v, int k)
+static const char *parameter_si_unit(const sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].unit;
 }
 
 /* The unit in which its value is shown; NULL: SI. */
-static const mt_unit *shown_parameter_unit(const mt_sensitivity_table *v, int k)
+static const mt_unit *shown_parameter_unit(const sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].written;
 }
 
-static const char *parameter_name(const mt_sensitivity_table *v, int k)
+static const char *parameter_name(const sensitivity_table *v, int k)
 {
     return v->s->model->parameters[v->parameter[k]].name.s;
 }
 
-static bool has_none(const mt_sensitivity_table *v, int k)
+static bool has_none(const sensitivity_table *v, int k)
 {
     return v->independence[k].opens || v->independence[k].blocks;
 }
 
-static void json_no_derivatives(mt_json_writer *w, const mt_sensitivity_table *v)
+static void json_no_derivatives(mt_json_writer *w, const sensitivity_table *v)
 {
     mt_json_open(w, "no_derivatives", '[');
     for (int k = 0; k < v->n; k++) {
@@ -44,7 +302,7 @@ static void json_no_derivatives(mt_json_writer *w, const mt_sensitivity_table *v
     mt_json_close(w);
 }
 
-static void write_sensitivity_json(mt_json_writer *w, const mt_sensitivity_table *v)
+static void write_sensitivity_json(mt_json_writer *w, const sensitivity_table *v)
 {
     mt_json_open(w, NULL, '{');
     mt_json_put_string(w, "configuration", mt_loaded_model_configuration(v->s, v->c));
@@ -61,7 +319,7 @@ static void write_sensitivity_json(mt_json_writer *w, const mt_sensitivity_table
             mt_json_put_string(w, "parameter", parameter_name(v, k));
             mt_json_put_string(w, "unit", parameter_si_unit(v, k));
             mt_json_put_number(w, "value", v->value[k]);
-            mt_json_put_number(w, "hz_per_percent", mt_sensitivity_table_per_percent(v, i, k));
+            mt_json_put_number(w, "hz_per_percent", sensitivity_table_per_percent(v, i, k));
             mt_json_put_number(w, "hz_per_unit", v->per_unit[i + ((ptrdiff_t)k * v->room)]);
             mt_json_close(w);
         }
@@ -88,7 +346,7 @@ static mt_table csv_table(void)
     return t;
 }
 
-static void fill_csv(mt_table *t, const mt_sensitivity_table *v)
+static void fill_csv(mt_table *t, const sensitivity_table *v)
 {
     for (int i = 0; i < v->modes; i++) {
         for (int k = 0; k < v->n; k++) {
@@ -98,14 +356,14 @@ static void fill_csv(mt_table *t, const mt_sensitivity_table *v)
             mt_table_text(t, v->repeated[i] ? "true" : "false");
             mt_table_text(t, parameter_name(v, k));
             mt_table_number(t, v->value[k], HZ_DIGITS);
-            mt_table_number(t, mt_sensitivity_table_per_percent(v, i, k), DIGITS);
+            mt_table_number(t, sensitivity_table_per_percent(v, i, k), DIGITS);
             mt_table_number(t, v->per_unit[i + ((ptrdiff_t)k * v->room)], DIGITS);
             mt_table_text(t, parameter_si_unit(v, k));
         }
     }
 }
 
-static void write_notes(mt_text *out, const mt_sensitivity_table *v, bool repeated,
+static void write_notes(mt_text *out, const sensitivity_table *v, bool repeated,
                         bool coordinates, bool overridden)
 {
     if (coordinates) {
@@ -145,7 +403,7 @@ static void write_notes(mt_text *out, const mt_sensitivity_table *v, bool repeat
     mt_text_add(out, "\n");
 }
 
-static void write_sensitivity_text(mt_text *out, const mt_sensitivity_table *v)
+static void write_sensitivity_text(mt_text *out, const sensitivity_table *v)
 {
     mt_table t = mt_table_default();
     bool repeated = false;
@@ -162,7 +420,7 @@ static void write_sensitivity_text(mt_text *out, const mt_sensitivity_table *v)
         repeated = repeated || v->repeated[i];
     }
     for (int k = 0; k < v->n; k++) {
-        const bool percent = mt_sensitivity_table_has_percent(v, k);
+        const bool percent = sensitivity_table_has_percent(v, k);
         char name[NAME_TEXT];
         (void)mt_snprintf(name, sizeof name, "%s (1 mm)", parameter_name(v, k));
         mt_table_text(&t, percent ? parameter_name(v, k) : name);
@@ -171,7 +429,7 @@ static void write_sensitivity_text(mt_text *out, const mt_sensitivity_table *v)
                         HZ_DIGITS);
         mt_table_text(&t, mt_unit_name(shown_parameter_unit(v, k), parameter_si_unit(v, k)));
         for (int i = 0; i < v->modes; i++) {
-            mt_table_change(&t, mt_sensitivity_table_shown(v, i, k), DIGITS);
+            mt_table_change(&t, sensitivity_table_shown(v, i, k), DIGITS);
         }
         overridden = overridden || v->overridden[k];
     }
@@ -187,10 +445,10 @@ static mt_status show_configuration_slopes(const mt_args *args, const mt_loaded_
                                            mt_json_writer *w, mt_table *t, mt_text *out,
                                            bool *wrong, mt_err *err)
 {
-    mt_sensitivity_table v = {.s = NULL};
+    sensitivity_table v = {.s = NULL};
     const int modes = args->count > 0 ? args->count : DEFAULT_MODES;
     const mt_status rc =
-        mt_sensitivity_table_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
+        sensitivity_table_take(s, c, args->value[MT_OPT_PARAMETERS], modes, &v, err);
     if (rc == MT_OK) {
         switch (args->format) {
         case MT_FORMAT_JSON:
@@ -208,7 +466,7 @@ static mt_status show_configuration_slopes(const mt_args *args, const mt_loaded_
         }
     }
     *wrong = rc == MT_E_USAGE && v.value == NULL;
-    mt_sensitivity_table_free(&v);
+    sensitivity_table_free(&v);
     return rc;
 }
 

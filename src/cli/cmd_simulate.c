@@ -1,12 +1,944 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* modetune simulate: motion of one configuration in time. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/format.h"
 #include "base/run.h"
-#include "cli/simulate.h"
+#include "cli/cli.h"
 #include "cli/vibrated.h"
 #include "mechanics/drive.h"
+#include "model/values.h"
+#include "report/table.h"
+#include "response/ports.h"
+#include "simulate/reading.h"
+#include "simulate/realise.h"
+#include "simulate/start.h"
+#include "study/vibration.h"
+#include "vibration/profile_response.h"
+
+/* The quantity of a gauge in an output. */
+typedef enum seen_quantity { SEEN_VALUE, SEEN_SPEED, SEEN_ACCELERATION } seen_quantity;
+
+/* One --output. */
+typedef struct sim_output {
+    const char *port; /* "grip.x:velocity" */
+    int gauge;        /* index among the options' gauges */
+    seen_quantity what;
+    bool angle;
+} sim_output;
+
+/* A realisation of --vibration. */
+typedef struct sim_forced_response {
+    const mt_vibration *v; /* NULL: none */
+    int axis;              /* axis of the ground */
+    unsigned long seed;
+    double rms; /* RMS of the random parts over the duration [m/s^2] */
+} sim_forced_response;
+
+enum { SIM_SEED = 1 };
+
+/* The options of the command, resolved for a system. */
+typedef struct sim_request {
+    mt_sim_options opt;
+    int n_outputs;
+    sim_output *outputs;
+    int n_starts;
+    mt_sim_joint *starts;
+    int n_rates;
+    mt_sim_joint *rates;
+    int mode; /* 0: not given */
+    double amplitude;
+    sim_forced_response forced_response;
+    double steady_hz; /* the single frequency of --sine; 0: none, or several */
+} sim_request;
+
+/* The vibrations identified in the motion of one gauge. */
+typedef struct sim_reading {
+    const char *name; /* port without quantity */
+    bool angle;
+    mt_ring ring;
+    mt_tones tones;
+    mt_steady steady;
+} sim_reading;
+
+/* A motion with all that its output needs. */
+typedef struct sim_view {
+    const char *configuration;
+    const mt_system *sys;
+    const sim_request *request;
+    const mt_sim_result *r;
+    sim_reading *readings; /* [gauges] */
+    bool free;             /* no excitation: rings and tones are meaningful */
+} sim_view;
+
+/* A profile of vibration as a motion of the ground: one realisation of it. */
+
+/* Split --vibration [PORT=]FILE: returns the file; *port: the port, or NULL */
+/* "base.y=FILE": the file, and where the port begins; else NULL. */
+static const char *sim_profile_of(const char *text, const char **port)
+{
+    const char *const equals = strchr(text, '=');
+    const bool has = strncmp(text, "base.", strlen("base.")) == 0 && equals != NULL;
+    *port = has ? text : NULL;
+    return has ? equals + 1 : text;
+}
+
+static mt_status find_axis(const mt_args *args, const mt_vibration *v, const mt_system *sys,
+                           mt_arena *mem, int *axis, mt_err *err)
+{
+    const char *port = NULL;
+    const char *const file = sim_profile_of(args->value[MT_OPT_VIBRATION], &port);
+    mt_response_request request = {.n_in = 0};
+    mt_port ground;
+    if (port != NULL) {
+        port = mt_arena_strndup(mem, port, (size_t)(file - 1 - port));
+        request = (mt_response_request){.n_in = 1, .inputs = &port};
+    }
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_err_in(err, mt_profiled_ports(v, sys, mem, &request, err), "--vibration PORT=%s",
+                     file));
+    MT_TRY(mt_err_in(err, mt_port_input(sys, request.inputs[0], mem, &ground, err),
+                     "--vibration"));
+    MT_TRY(mt_err_in(err, mt_profiled_input(&ground, err), "--vibration"));
+    *axis = ground.index;
+    return MT_OK;
+}
+
+/* Append the profile's parts to the inputs. */
+static mt_status sim_vibrate(const mt_args *args, mt_loaded_model *s, const mt_system *sys,
+                             const mt_vibration *v, sim_request *out, mt_sim_input *inputs,
+                             mt_err *err)
+{
+    sim_forced_response *const to = &out->forced_response;
+    mt_realised shake;
+    int axis = 0;
+    MT_TRY(find_axis(args, v, sys, &s->mem, &axis, err));
+    *to = (sim_forced_response){
+        .v = v, .axis = axis, .seed = args->given[MT_OPT_SEED] ? args->seed : SIM_SEED};
+    const mt_status rc = mt_realise(v, args->duration_s, to->seed, &s->mem, &shake, err);
+    MT_TRY(
+        mt_err_in(err, rc, "--vibration: %s in %g s", mt_vibrated_name(v), args->duration_s));
+    mt_realise_inputs(&shake, axis, inputs + out->opt.n_inputs);
+    out->opt.n_inputs += shake.n;
+    out->steady_hz = 0.0;
+    to->rms = shake.rms;
+    return MT_OK;
+}
+
+static const char *axis_of(const sim_forced_response *s)
+{
+    static const char *const names[] = {"base.x", "base.y", "base.z"};
+    return names[s->axis];
+}
+
+static void sim_forced_response_print(const sim_forced_response *s, mt_text *out)
+{
+    const mt_vibration *const v = s->v;
+    mt_text_addf(out, "  %s is shaken by %s", axis_of(s), mt_vibrated_name(v));
+    if (v->n_random > 0) {
+        mt_text_addf(
+            out,
+            ": random parts of %.5g g RMS in this realisation (seed %lu), %.5g g in the "
+            "profile",
+            s->rms / MT_STANDARD_GRAVITY, s->seed, mt_vibration_rms(v) / MT_STANDARD_GRAVITY);
+    }
+    mt_text_add(out, v->n_tones > 0 ? "; tones go through their ranges once.\n" : ".\n");
+    mt_vibrated_marks(v, out);
+}
+
+/* Member "vibration" of an open object. */
+static void sim_forced_response_json(const sim_forced_response *s, mt_json_writer *w)
+{
+    mt_json_open(w, "vibration", '{');
+    mt_json_put_string(w, "file", s->v->path);
+    mt_json_put_string(w, "name", s->v->name);
+    mt_json_put_string(w, "port", axis_of(s));
+    mt_json_put_integer(w, "seed", (long)s->seed);
+    mt_json_put_number(w, "rms_m_per_s2", mt_vibration_rms(s->v));
+    mt_json_put_number(w, "realised_rms_m_per_s2", s->rms);
+    mt_vibrated_rule_json(w, s->v);
+    mt_json_close(w);
+}
+
+/* The options of `simulate` in the words of a system. */
+
+/* Lines of the result in a period of a sine, so that its harmonics are told apart. */
+enum { STEADY_SAMPLES = 24 };
+enum { AXES = 3 };
+static const char *const base_ports[AXES] = {"base.x", "base.y", "base.z"};
+
+/* A port of an input: what stands before '='. */
+typedef struct input_port {
+    mt_sim_push push;
+    int at;    /* channel or axis */
+    int slope; /* BASE: which derivative of the signal is the acceleration */
+    int joint; /* MOVE */
+} input_port;
+
+static const char *option_name(mt_option_id option)
+{
+    return mt_options[option].name;
+}
+
+/* "NAME=REST": the name into mem, what follows. */
+static mt_status split_name_and_rest(const mt_repeat *r, mt_arena *mem, const char **name,
+                                     const char **rest, mt_err *err)
+{
+    const char *const equals = strchr(r->value, '=');
+    if (equals == NULL || equals == r->value || equals[1] == '\0') {
+        return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not %s", option_name(r->option),
+                       r->value, mt_options[r->option].value);
+    }
+    *name = mt_arena_strndup(mem, r->value, (size_t)(equals - r->value));
+    *rest = equals + 1;
+    return mt_arena_check(mem, err);
+}
+
+static bool is_input(mt_option_id option)
+{
+    return option == MT_OPT_PUSH || option == MT_OPT_SINE || option == MT_OPT_CHIRP ||
+           option == MT_OPT_RANDOM;
+}
+
+/* A joint of the model, or a link's hinge ("beam.h3"), not a sensor's channel. */
+static bool is_joint(const mt_model *model, const char *name)
+{
+    for (int i = 0; i < model->n_joints; i++) {
+        if (strcmp(model->joints[i].name.s, name) == 0) {
+            return true;
+        }
+    }
+    const char *const dot = strchr(name, '.');
+    return dot != NULL && dot[1] == 'h' && dot[2] >= '0' && dot[2] <= '9';
+}
+
+/* The name of the joint that --input, --sine or --sweep moves; NULL: none. Fails: MT_E_USAGE
+ * (two), MT_E_MEMORY. */
+static mt_status sim_moved_joint(const mt_args *args, const mt_model *model, mt_arena *mem,
+                                 const char **name, mt_err *err)
+{
+    *name = NULL;
+    for (int i = 0; i < args->n_repeats; i++) {
+        const char *joint = "";
+        const char *rest = "";
+        if (!is_input(args->repeats[i].option)) {
+            continue;
+        }
+        MT_TRY(split_name_and_rest(&args->repeats[i], mem, &joint, &rest, err));
+        if (!is_joint(model, joint)) {
+            continue;
+        }
+        if (*name != NULL && strcmp(*name, joint) != 0) {
+            return mt_fail(err, MT_E_USAGE,
+                           "--%s: one joint can be moved, \"%s\" already is, \"%s\" would be "
+                           "the second",
+                           option_name(args->repeats[i].option), *name, joint);
+        }
+        *name = joint;
+    }
+    return MT_OK;
+}
+
+/* The value of --start for the joint of this name; *given: true where there is one. */
+static mt_status sim_start_of(const mt_args *args, mt_loaded_model *s, const char *joint,
+                              bool *given, double *value, mt_err *err)
+{
+    *given = false;
+    *value = 0.0;
+    for (int i = 0; i < args->n_repeats; i++) {
+        const char *name = "";
+        const char *rest = "";
+        if (args->repeats[i].option != MT_OPT_START) {
+            continue;
+        }
+        MT_TRY(split_name_and_rest(&args->repeats[i], &s->mem, &name, &rest, err));
+        if (strcmp(name, joint) == 0) {
+            MT_TRY(mt_loaded_model_number(s, option_name(MT_OPT_START),
+                                          mt_loaded_model_joint_unit(s->model, name), rest,
+                                          strlen(rest), value, err));
+            *given = true;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status no_such_port(const mt_system *sys, mt_option_id option, const char *name,
+                              bool base, bool channels, mt_arena *mem, mt_err *err)
+{
+    const size_t room = (size_t)sys->n_channels + (size_t)sys->n_joints + AXES;
+    const char **const names = mt_arena_alloc(mem, room, sizeof *names);
+    MT_TRY(mt_arena_check(mem, err));
+    int n = 0;
+    for (int i = 0; channels && i < sys->n_channels; i++) {
+        names[n++] = sys->channels[i].name;
+    }
+    for (int i = 0; i < sys->n_joints; i++) {
+        if (sys->joints[i].coordinate >= 0) {
+            names[n++] = sys->joints[i].name;
+        }
+    }
+    for (int i = 0; base && i < sys->dimension; i++) {
+        names[n++] = base_ports[i];
+    }
+    const char *const nearest = mt_text_nearest(name, names, n);
+    return mt_fail(err, MT_E_USAGE, "--%s: there is no %s \"%s\" in this configuration%s%s%s",
+                   option_name(option), channels ? "sensor's direction and no joint" : "joint",
+                   name, nearest == NULL ? "" : "; did you mean \"",
+                   nearest == NULL ? "" : nearest, nearest == NULL ? "" : "\"?");
+}
+
+/* A joint with a coordinate. */
+static mt_status find_coordinate_joint(const mt_system *sys, mt_option_id option,
+                                       const char *name, mt_arena *mem, int *out, mt_err *err)
+{
+    *out = mt_system_find_joint(sys, name);
+    if (*out < 0) {
+        return no_such_port(sys, option, name, false, false, mem, err);
+    }
+    return sys->joints[*out].coordinate >= 0
+               ? MT_OK
+               : mt_fail(err, MT_E_USAGE, "--%s: joint \"%s\" (%s) has no coordinate",
+                         option_name(option), name, mt_joint_type_name(sys->joints[*out].type));
+}
+
+static mt_status find_port(const mt_system *sys, mt_option_id option, const char *name,
+                           mt_arena *mem, input_port *out, mt_err *err)
+{
+    *out = (input_port){.push = MT_SIM_FORCE, .at = mt_system_find_channel(sys, name)};
+    if (out->at >= 0) {
+        return MT_OK;
+    }
+    if (strncmp(name, "base.", strlen("base.")) == 0) {
+        mt_port ground;
+        MT_TRY(mt_err_in(err, mt_port_input(sys, name, mem, &ground, err), "--%s",
+                         option_name(option)));
+        *out =
+            (input_port){.push = MT_SIM_BASE, .at = ground.index, .slope = 2 - ground.motion};
+        return MT_OK;
+    }
+    const int joint = mt_system_find_joint(sys, name);
+    if (joint >= 0 && sys->driven && joint == sys->drive_joint && !sys->trim) {
+        *out = (input_port){.push = MT_SIM_MOVE, .joint = joint};
+        return MT_OK;
+    }
+    return no_such_port(sys, option, name, true, true, mem, err);
+}
+
+/* Parameters of the model, and behind them the time. */
+static int lookup(const void *context, const char *name, size_t length)
+{
+    const mt_model *const model = context;
+    return length == 1 && name[0] == 't' ? model->n_parameters
+                                         : mt_model_lookup(model, name, length);
+}
+
+static mt_status read_expression(mt_loaded_model *s, const char *text, mt_signal *out,
+                                 mt_err *err)
+{
+    const mt_model *const model = s->model;
+    mt_program *const p = mt_arena_alloc(&s->mem, 1, sizeof *p);
+    mt_node *const nodes =
+        mt_arena_alloc(&s->mem, (size_t)model->n_parameters + 1, sizeof *nodes);
+    mt_expr e;
+    MT_TRY(mt_arena_check(&s->mem, err));
+    MT_TRY(mt_expr_parse(text, lookup, model, NULL, 0, &s->mem, &e, err));
+    MT_TRY(mt_program_init(p, 1, &s->mem, err));
+    for (int i = 0; i < model->n_parameters; i++) {
+        nodes[i] = mt_program_const(p, s->values[i]);
+    }
+    nodes[model->n_parameters] = mt_program_input(p, 0, MT_NO_ADDR);
+    out->kind = MT_SIGNAL_EXPRESSION;
+    out->program = p;
+    out->node = mt_program_expr(p, &e, nodes, MT_NO_ADDR);
+    MT_TRY(mt_program_finish(p, err));
+    out->work = mt_arena_alloc(&s->mem, (size_t)p->count, sizeof *out->work);
+    return mt_arena_check(&s->mem, err);
+}
+
+/* The unit of amplitudes at a port in the model; NULL: SI. */
+static const mt_unit *shown_amplitude_unit(const mt_loaded_model *s, const mt_system *sys,
+                                           const input_port *p)
+{
+    switch (p->push) {
+    case MT_SIM_FORCE:
+        break;
+    case MT_SIM_BASE:
+        return p->slope > 0 ? s->model->units[MT_LENGTH] : NULL;
+    case MT_SIM_MOVE:
+        return mt_loaded_model_joint_unit(s->model, sys->joints[p->joint].name);
+    }
+    return NULL;
+}
+
+/* Numbers between the separators, the first in a unit: text "A@B" or "A@B:C". */
+static mt_status read_numbers(mt_loaded_model *s, const mt_repeat *r, const mt_unit *unit,
+                              const char *text, const char *separators, double *out,
+                              mt_err *err)
+{
+    for (size_t k = 0;; k++) {
+        const char *const end = separators[k] == '\0' ? NULL : strchr(text, separators[k]);
+        if (end == NULL && separators[k] != '\0') {
+            return mt_fail(err, MT_E_USAGE, "--%s: \"%s\" is not %s", option_name(r->option),
+                           r->value, mt_options[r->option].value);
+        }
+        const size_t length = end == NULL ? strlen(text) : (size_t)(end - text);
+        MT_TRY(mt_loaded_model_number(s, option_name(r->option), k == 0 ? unit : NULL, text,
+                                      length, &out[k], err));
+        if (end == NULL) {
+            return MT_OK;
+        }
+        text = end + 1;
+    }
+}
+
+static mt_status read_sine(mt_loaded_model *s, const mt_repeat *r, const mt_unit *unit,
+                           const char *text, mt_signal *out, mt_err *err)
+{
+    double number[2] = {0.0, 0.0};
+    mt_sine *const sine = mt_arena_alloc(&s->mem, 1, sizeof *sine);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    MT_TRY(read_numbers(s, r, unit, text, "@", number, err));
+    if (!(number[1] > 0.0)) {
+        return mt_fail(err, MT_E_USAGE, "--sine: %s: the frequency is not above 0", r->value);
+    }
+    *sine = (mt_sine){.amplitude = number[0], .hz = number[1]};
+    *out = (mt_signal){.kind = MT_SIGNAL_SINES, .n = 1, .sines = sine};
+    return MT_OK;
+}
+
+static mt_status read_sweep(mt_loaded_model *s, const mt_repeat *r, const mt_unit *unit,
+                            const char *text, double duration_s, mt_signal *out, mt_err *err)
+{
+    static const char suffix[] = ":linear";
+    double number[3] = {0.0, 0.0, 0.0};
+    const size_t length = strlen(text);
+    const size_t tail = sizeof suffix - 1;
+    const bool linear = length > tail && strcmp(text + length - tail, suffix) == 0;
+    const char *const numbers =
+        mt_arena_strndup(&s->mem, text, linear ? length - tail : length);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    MT_TRY(read_numbers(s, r, unit, numbers, "@:", number, err));
+    if (!(number[1] > 0.0) || !(number[2] > 0.0)) {
+        return mt_fail(err, MT_E_USAGE, "--sweep: %s: a frequency is not above 0", r->value);
+    }
+    *out = (mt_signal){.kind = MT_SIGNAL_SWEEP,
+                       .level = number[0],
+                       .from_hz = number[1],
+                       .to_hz = number[2],
+                       .duration_s = duration_s,
+                       .linear = linear};
+    return MT_OK;
+}
+
+/* "HZ:PSD,HZ:PSD,...": of so many lines that it does not repeat. */
+static mt_status read_random(mt_loaded_model *s, const mt_args *args, const mt_repeat *r,
+                             const char *text, mt_signal *out, mt_err *err)
+{
+    size_t n = 1;
+    for (const char *at = strchr(text, ','); at != NULL; at = strchr(at + 1, ',')) {
+        n++;
+    }
+    double *const hz = mt_arena_f64(&s->mem, n, 1);
+    double *const value = mt_arena_f64(&s->mem, n, 1);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    for (size_t i = 0; i < n; i++) {
+        const size_t length = strcspn(text, ",");
+        const char *const pair = mt_arena_strndup(&s->mem, text, length);
+        double number[2] = {0.0, 0.0};
+        MT_TRY(mt_arena_check(&s->mem, err));
+        MT_TRY(read_numbers(s, r, NULL, pair, ":", number, err));
+        hz[i] = number[0];
+        value[i] = number[1];
+        text += length + (text[length] == ',' ? 1 : 0);
+    }
+    const mt_psd psd = {.n = (int)n, .hz = hz, .level = value};
+    const unsigned long seed = args->given[MT_OPT_SEED] ? args->seed : SIM_SEED;
+    return mt_err_in(err, mt_realise_psd(&psd, args->duration_s, seed, &s->mem, out, err),
+                     "--random: %s", r->value);
+}
+
+static mt_status read_input(mt_loaded_model *s, const mt_args *args, const mt_system *sys,
+                            const mt_repeat *r, sim_request *out, mt_sim_input *inputs,
+                            mt_err *err)
+{
+    const char *name = "";
+    const char *rest = "";
+    input_port p = {.push = MT_SIM_FORCE};
+    mt_signal *const signal = mt_arena_alloc(&s->mem, 1, sizeof *signal);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    MT_TRY(split_name_and_rest(r, &s->mem, &name, &rest, err));
+    MT_TRY(find_port(sys, r->option, name, &s->mem, &p, err));
+    if (r->option == MT_OPT_SINE) {
+        MT_TRY(read_sine(s, r, shown_amplitude_unit(s, sys, &p), rest, signal, err));
+        const double hz = signal->sines[0].hz;
+        const bool first = out->opt.n_inputs == 0;
+        out->steady_hz = first || out->steady_hz == hz ? hz : 0.0;
+    } else if (r->option == MT_OPT_CHIRP) {
+        MT_TRY(read_sweep(s, r, shown_amplitude_unit(s, sys, &p), rest, out->opt.duration_s,
+                          signal, err));
+    } else if (r->option == MT_OPT_RANDOM) {
+        MT_TRY(read_random(s, args, r, rest, signal, err));
+    } else {
+        const mt_status rc = read_expression(s, rest, signal, err);
+        MT_TRY(mt_err_in(err, rc == MT_E_INPUT ? MT_E_USAGE : rc, "--input: %s", rest));
+    }
+    out->steady_hz = r->option == MT_OPT_SINE ? out->steady_hz : 0.0;
+    inputs[out->opt.n_inputs++] =
+        (mt_sim_input){.push = p.push, .at = p.at, .slope = p.slope, .signal = signal};
+    return MT_OK;
+}
+
+/* The gauge of a port without its quantity, each once. */
+static mt_status find_gauge(const mt_system *sys, const char *name, sim_request *out,
+                            mt_gauge *gauges, mt_arena *mem, int *at, mt_err *err)
+{
+    mt_gauge g = {.channel = mt_system_find_channel(sys, name), .joint = -1};
+    if (g.channel < 0) {
+        g.joint = mt_system_find_joint(sys, name);
+        if (g.joint < 0) {
+            return no_such_port(sys, MT_OPT_SEEN, name, false, true, mem, err);
+        }
+        MT_TRY(find_coordinate_joint(sys, MT_OPT_SEEN, name, mem, &g.joint, err));
+    }
+    for (*at = 0; *at < out->opt.n_gauges; ++*at) {
+        if (gauges[*at].channel == g.channel && gauges[*at].joint == g.joint) {
+            return MT_OK;
+        }
+    }
+    gauges[out->opt.n_gauges++] = g;
+    return MT_OK;
+}
+
+static bool is_angle(const mt_system *sys, mt_gauge g)
+{
+    if (g.channel < 0) {
+        return sys->joints[g.joint].angle;
+    }
+    return mt_channel_turns(sys->channels[g.channel].kind);
+}
+
+static mt_status read_output(const mt_system *sys, const char *text, sim_request *out,
+                             mt_gauge *gauges, mt_arena *mem, mt_err *err)
+{
+    sim_output *const o = &out->outputs[out->n_outputs];
+    const char *name = "";
+    mt_port seen = {.motion = 0};
+    *o = (sim_output){.port = text};
+    MT_TRY(mt_err_in(err, mt_port_split(text, false, mem, &name, &seen, err), "--output"));
+    o->what = (seen_quantity)seen.motion;
+    MT_TRY(find_gauge(sys, name, out, gauges, mem, &o->gauge, err));
+    o->angle = is_angle(sys, gauges[o->gauge]);
+    out->n_outputs++;
+    return MT_OK;
+}
+
+static mt_status read_outputs(const mt_args *args, const mt_system *sys, mt_arena *mem,
+                              sim_request *out, mt_err *err)
+{
+    const size_t room =
+        (size_t)args->n_repeats + (size_t)sys->n_channels + (size_t)sys->n_joints;
+    mt_gauge *const gauges = mt_arena_alloc(mem, room, sizeof *gauges);
+    out->outputs = mt_arena_alloc(mem, room, sizeof *out->outputs);
+    MT_TRY(mt_arena_check(mem, err));
+    out->opt.gauges = gauges;
+    for (int i = 0; i < args->all[MT_OPT_SEEN].n; i++) {
+        MT_TRY(read_output(sys, args->all[MT_OPT_SEEN].value[i], out, gauges, mem, err));
+    }
+    for (int i = 0; !args->given[MT_OPT_SEEN] && i < sys->n_channels; i++) {
+        MT_TRY(read_output(sys, sys->channels[i].name, out, gauges, mem, err));
+    }
+    const bool joints = out->n_outputs == 0;
+    for (int i = 0; joints && i < sys->n_joints; i++) {
+        if (sys->joints[i].coordinate >= 0) {
+            MT_TRY(read_output(sys, sys->joints[i].name, out, gauges, mem, err));
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status read_joint(mt_loaded_model *s, const mt_system *sys, const mt_repeat *r,
+                            mt_sim_joint *out, mt_err *err)
+{
+    const char *name = "";
+    const char *rest = "";
+    MT_TRY(split_name_and_rest(r, &s->mem, &name, &rest, err));
+    MT_TRY(find_coordinate_joint(sys, r->option, name, &s->mem, &out->joint, err));
+    return mt_loaded_model_number(s, option_name(r->option),
+                                  mt_loaded_model_joint_unit(s->model, name), rest,
+                                  strlen(rest), &out->value, err);
+}
+
+/* The unit of a displacement along a mode: an angle where sensors show nothing else. */
+static const mt_unit *shape_unit(const mt_loaded_model *s, const mt_system *sys)
+{
+    bool turns = sys->n_channels > 0;
+    for (int i = 0; i < sys->n_channels; i++) {
+        turns = turns && mt_channel_turns(sys->channels[i].kind);
+    }
+    return s->model->units[turns ? MT_ANGLE : MT_LENGTH];
+}
+
+static mt_status read_mode(mt_loaded_model *s, const mt_system *sys, const char *text,
+                           sim_request *out, mt_err *err)
+{
+    char *end = NULL;
+    const long n = strtol(text, &end, 10);
+    if (text[0] < '1' || text[0] > '9' || *end != ':' || n > 1000000) {
+        return mt_fail(err, MT_E_USAGE, "--mode: \"%s\" is not N:AMPLITUDE", text);
+    }
+    out->mode = (int)n;
+    return mt_loaded_model_number(s, "mode", shape_unit(s, sys), end + 1, strlen(end + 1),
+                                  &out->amplitude, err);
+}
+
+/* Resolve all other options for a system; profile: of --vibration, or NULL. Fails: MT_E_USAGE,
+ * MT_E_MEMORY. */
+static mt_status sim_read(const mt_args *args, mt_loaded_model *s, const mt_system *sys,
+                          const mt_vibration *profile, sim_request *out, mt_err *err)
+{
+    const int shakes = profile == NULL ? 0 : profile->n_random + profile->n_tones;
+    const size_t room = (size_t)args->n_repeats + (size_t)shakes + 1;
+    mt_sim_input *const inputs = mt_arena_alloc(&s->mem, room, sizeof *inputs);
+    *out = (sim_request){.opt = mt_sim_options_default()};
+    out->starts = mt_arena_alloc(&s->mem, room, sizeof *out->starts);
+    out->rates = mt_arena_alloc(&s->mem, room, sizeof *out->rates);
+    MT_TRY(mt_arena_check(&s->mem, err));
+    if (!args->given[MT_OPT_DURATION]) {
+        return mt_fail(err, MT_E_USAGE, "\"simulate\" needs --duration SECONDS");
+    }
+    out->opt.duration_s = args->duration_s;
+    out->opt.sample_s = args->dt_out_s > 0.0 ? args->dt_out_s : 0.01 * args->duration_s;
+    out->opt.tolerance = args->tolerance > 0.0 ? args->tolerance : out->opt.tolerance;
+    out->opt.integrates = args->given[MT_OPT_INTEGRATE];
+    out->opt.inputs = inputs;
+    for (int i = 0; i < args->n_repeats; i++) {
+        const mt_repeat *const r = &args->repeats[i];
+        if (is_input(r->option)) {
+            MT_TRY(read_input(s, args, sys, r, out, inputs, err));
+        } else if (r->option == MT_OPT_START) {
+            MT_TRY(read_joint(s, sys, r, &out->starts[out->n_starts++], err));
+        } else if (r->option == MT_OPT_RATE) {
+            MT_TRY(read_joint(s, sys, r, &out->rates[out->n_rates++], err));
+        }
+    }
+    if (profile != NULL) {
+        MT_TRY(sim_vibrate(args, s, sys, profile, out, inputs, err));
+    }
+    if (args->value[MT_OPT_ALONG] != NULL) {
+        MT_TRY(read_mode(s, sys, args->value[MT_OPT_ALONG], out, err));
+    }
+    if (args->dt_out_s == 0.0 && out->steady_hz > 0.0) {
+        out->opt.sample_s = fmin(out->opt.sample_s, 1.0 / (STEADY_SAMPLES * out->steady_hz));
+    }
+    out->opt.turning = out->opt.n_inputs == 0;
+    return read_outputs(args, sys, &s->mem, out, err);
+}
+
+/* A motion as text, JSON and CSV. */
+
+enum { DIGITS = 6, HEADING = 300 };
+/* Lines of a table on paper; of more, evenly spaced ones are printed. */
+enum { LINES_MOST = 41 };
+/* The mean periods of a gauge are told where they differ by less than this part. */
+static const double REGULAR = 0.05;
+/* A steady amplitude is told where the sum of harmonics leaves less than this of it. */
+static const double STEADY = 0.05;
+/* Harmonics below this part of the first are left out on paper. */
+static const double WEAK = 1e-4;
+enum { TONES_SHOWN = 4 };
+
+/* Value of an output at a sample. */
+static double seen(const sim_view *v, int output, int sample)
+{
+    const sim_output *const o = &v->request->outputs[output];
+    const double *const of[] = {v->r->value, v->r->speed, v->r->acceleration};
+    return of[o->what][o->gauge + ((ptrdiff_t)sample * v->r->n_gauges)];
+}
+
+static const char *motion_output_unit(const sim_output *o)
+{
+    static const char *const units[2][3] = {{"m", "m/s", "m/s^2"}, {"rad", "rad/s", "rad/s^2"}};
+    return units[o->angle ? 1 : 0][o->what];
+}
+
+/* "grip.x_m_per_s2" */
+static void member_of(const sim_view *v, const sim_output *o, char text[HEADING])
+{
+    static const char *const units[2][3] = {{"m", "m_per_s", "m_per_s2"},
+                                            {"rad", "rad_per_s", "rad_per_s2"}};
+    (void)mt_snprintf(text, HEADING, "%s_%s", v->readings[o->gauge].name,
+                      units[o->angle ? 1 : 0][o->what]);
+}
+
+static void make_motion_columns(const sim_view *v, bool csv, mt_table *t)
+{
+    char heading[HEADING];
+    char member[HEADING];
+    mt_table_column(t, "time [s]", "time_s", MT_ALIGN_POINT);
+    for (int k = 0; k < v->request->n_outputs; k++) {
+        const sim_output *const o = &v->request->outputs[k];
+        (void)mt_snprintf(heading, sizeof heading, "%s [%s]", o->port, motion_output_unit(o));
+        member_of(v, o, member);
+        mt_table_column(t, heading, member, MT_ALIGN_POINT);
+    }
+    if (csv) {
+        mt_table_column(t, "kinetic energy", "kinetic_j", MT_ALIGN_POINT);
+        mt_table_column(t, "potential energy", "potential_j", MT_ALIGN_POINT);
+        mt_table_column(t, "work", "work_j", MT_ALIGN_POINT);
+    }
+}
+
+static void row(const sim_view *v, int i, bool csv, mt_table *t)
+{
+    mt_table_number(t, v->r->t[i], DIGITS);
+    for (int k = 0; k < v->request->n_outputs; k++) {
+        mt_table_number(t, seen(v, k, i), DIGITS);
+    }
+    if (csv) {
+        mt_table_number(t, v->r->kinetic[i], DIGITS);
+        mt_table_number(t, v->r->potential[i], DIGITS);
+        mt_table_number(t, v->r->work[i], DIGITS);
+    }
+}
+
+static void simulate_csv(const sim_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    make_motion_columns(v, true, &t);
+    for (int i = 0; i < v->r->n; i++) {
+        row(v, i, true, &t);
+    }
+    mt_table_csv(&t, out);
+    mt_table_free(&t);
+}
+
+static void write_ring(const sim_reading *g, mt_text *out)
+{
+    const char *const unit = g->angle ? "rad" : "m";
+    if (g->ring.periods > 0 && g->ring.spread < REGULAR) {
+        mt_text_addf(out,
+                     "  %s turns with %.9g Hz (%d period%s, alike to %.1e), first swing %.6g "
+                     "%s either way",
+                     g->name, g->ring.hz, g->ring.periods, g->ring.periods == 1 ? "" : "s",
+                     g->ring.spread, g->ring.amplitude, unit);
+        if (isfinite(g->ring.damping)) {
+            mt_text_addf(out, ", damping ratio %.3g", g->ring.damping);
+        }
+        mt_text_add(out, ".\n");
+    }
+    if (g->tones.n > 0) {
+        mt_text_addf(out, "  Tones of %s (%.1e of it left over):", g->name, g->tones.residual);
+        for (int k = 0; k < g->tones.n && k < TONES_SHOWN; k++) {
+            const mt_tone *const tone = &g->tones.tone[k];
+            mt_text_addf(out, "%s %.9g Hz with %.4g %s, damping ratio %.3g", k == 0 ? "" : ";",
+                         tone->hz, tone->amplitude, unit, tone->damping);
+        }
+        mt_text_add(out, ".\n");
+    }
+}
+
+static void write_steady(const sim_view *v, const sim_reading *g, mt_text *out)
+{
+    if (g->steady.periods == 0 || !(g->steady.residual < STEADY)) {
+        return;
+    }
+    mt_text_addf(out, "  %s in the last %d period%s (%.1e of it left over):", g->name,
+                 g->steady.periods, g->steady.periods == 1 ? "" : "s", g->steady.residual);
+    for (int h = 0; h < MT_HARMONICS; h++) {
+        if (h == 0 || g->steady.amplitude[h] > WEAK * g->steady.amplitude[0]) {
+            mt_text_addf(out, "%s %.6g %s at %.6g Hz, phase %.4g rad", h == 0 ? "" : ";",
+                         g->steady.amplitude[h], g->angle ? "rad" : "m",
+                         (h + 1) * v->request->steady_hz, g->steady.phase[h]);
+        }
+    }
+    mt_text_add(out, ".\n");
+}
+
+/* How the motion was found, and how well. */
+static void write_method(const sim_view *v, mt_text *out)
+{
+    const mt_sim_result *const r = v->r;
+    switch (r->method) {
+    case MT_SIM_INTEGRATED:
+    case MT_SIM_METHODS:
+        if (r->stiff_steps > 0) {
+            mt_text_addf(
+                out,
+                "  Stiff springs: in %ld steps their fast vibrations are solved beforehand.\n",
+                r->stiff_steps);
+        }
+        mt_text_addf(out,
+                     "  %ld steps (%ld more rejected), %ld evaluations, tolerance %.1e.\n\n",
+                     r->steps, r->rejected, r->evaluations, v->request->opt.tolerance);
+        return;
+    case MT_SIM_EXACT:
+        mt_text_addf(
+            out, "  Exact: the equations are linear%s; %ld steps by the matrix exponential.\n",
+            v->free ? " and nothing pushes" : ", the inputs are sines and polynomials of time",
+            r->steps);
+        break;
+    case MT_SIM_FITTED:
+        mt_text_addf(out,
+                     "  The equations are linear: %ld steps by the matrix exponential, with "
+                     "inputs as polynomials\n  in each of them, which miss at most %.1e of "
+                     "their largest value.\n",
+                     r->steps, r->fit.input_error);
+        break;
+    }
+    mt_text_addf(
+        out,
+        "  Put into the whole equations of motion at %d samples it leaves at most %.1e "
+        "of their largest force.\n\n",
+        r->fit.checks, r->fit.residual);
+}
+
+static void simulate_print(const sim_view *v, mt_text *out)
+{
+    const mt_sim_result *const r = v->r;
+    mt_table t = mt_table_default();
+    const int every = ((r->n - 1) / (LINES_MOST - 1)) + ((r->n - 1) % (LINES_MOST - 1) != 0);
+    make_motion_columns(v, false, &t);
+    for (int i = 0; i < r->n; i++) {
+        if (every == 0 || i % every == 0 || i + 1 == r->n) {
+            row(v, i, false, &t);
+        }
+    }
+    mt_text_addf(out, "%s\n", v->configuration);
+    mt_table_print(&t, 2, mt_terminal_width(), out);
+    mt_table_free(&t);
+    for (int g = 0; g < r->n_gauges; g++) {
+        if (v->free) {
+            write_ring(&v->readings[g], out);
+        }
+        write_steady(v, &v->readings[g], out);
+    }
+    if (v->request->forced_response.v != NULL) {
+        sim_forced_response_print(&v->request->forced_response, out);
+    }
+    mt_text_addf(out, "  Energy: up to %.4g J, balanced to %.1e J.\n", r->energy_scale_j,
+                 r->energy_error_j);
+    if (v->sys->n_constraints > 0) {
+        mt_text_addf(out, "  Joints: at most %.1e m of drift in a step, %.1e m left of it.\n",
+                     r->gap_m, r->left_m);
+    }
+    write_method(v, out);
+}
+
+static void json_list(mt_json_writer *w, const char *name, int n, const double *x)
+{
+    mt_json_open_flat(w, name, '[');
+    for (int i = 0; i < n; i++) {
+        mt_json_put_number(w, NULL, x[i]);
+    }
+    mt_json_close(w);
+}
+
+static void json_outputs(const sim_view *v, mt_json_writer *w)
+{
+    mt_json_open(w, "outputs", '[');
+    for (int k = 0; k < v->request->n_outputs; k++) {
+        const sim_output *const o = &v->request->outputs[k];
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "port", o->port);
+        mt_json_put_string(w, "unit", motion_output_unit(o));
+        mt_json_open_flat(w, "values", '[');
+        for (int i = 0; i < v->r->n; i++) {
+            mt_json_put_number(w, NULL, seen(v, k, i));
+        }
+        mt_json_close(w);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static void json_free(const sim_reading *g, mt_json_writer *w)
+{
+    mt_json_open(w, "turnings", '{');
+    mt_json_put_integer(w, "periods", g->ring.periods);
+    mt_json_put_number(w, "frequency_hz", g->ring.hz);
+    mt_json_put_number(w, "spread", g->ring.spread);
+    mt_json_put_number(w, "amplitude", g->ring.amplitude);
+    mt_json_put_number(w, "damping_ratio", g->ring.damping);
+    mt_json_close(w);
+    mt_json_open(w, "tones", '[');
+    for (int k = 0; k < g->tones.n; k++) {
+        mt_json_open_flat(w, NULL, '{');
+        mt_json_put_number(w, "frequency_hz", g->tones.tone[k].hz);
+        mt_json_put_number(w, "damping_ratio", g->tones.tone[k].damping);
+        mt_json_put_number(w, "amplitude", g->tones.tone[k].amplitude);
+        mt_json_put_number(w, "phase_rad", g->tones.tone[k].phase);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_put_number(w, "tones_residual", g->tones.residual);
+}
+
+static void json_steady(const sim_view *v, const sim_reading *g, mt_json_writer *w)
+{
+    mt_json_open(w, "steady", '{');
+    mt_json_put_integer(w, "periods", g->steady.periods);
+    mt_json_put_number(w, "frequency_hz", v->request->steady_hz);
+    mt_json_put_number(w, "mean", g->steady.mean);
+    json_list(w, "amplitudes", MT_HARMONICS, g->steady.amplitude);
+    json_list(w, "phases_rad", MT_HARMONICS, g->steady.phase);
+    mt_json_put_number(w, "residual", g->steady.residual);
+    mt_json_close(w);
+}
+
+static void json_readings(const sim_view *v, mt_json_writer *w)
+{
+    mt_json_open(w, "readings", '[');
+    for (int i = 0; i < v->r->n_gauges; i++) {
+        const sim_reading *const g = &v->readings[i];
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "port", g->name);
+        mt_json_put_string(w, "unit", g->angle ? "rad" : "m");
+        if (v->free) {
+            json_free(g, w);
+        }
+        if (v->request->steady_hz > 0.0) {
+            json_steady(v, g, w);
+        }
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static void simulate_json(const sim_view *v, mt_json_writer *w)
+{
+    const mt_sim_result *const r = v->r;
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", v->configuration);
+    mt_json_put_bool(w, "complete", r->stop == MT_SIM_DONE);
+    mt_json_put_string(w, "method", mt_sim_method_name(r->method));
+    mt_json_put_number(w, "tolerance", v->request->opt.tolerance);
+    if (v->request->forced_response.v != NULL) {
+        sim_forced_response_json(&v->request->forced_response, w);
+    }
+    json_list(w, "time_s", r->n, r->t);
+    json_outputs(v, w);
+    json_list(w, "kinetic_j", r->n, r->kinetic);
+    json_list(w, "potential_j", r->n, r->potential);
+    json_list(w, "work_j", r->n, r->work);
+    mt_json_put_number(w, "energy_scale_j", r->energy_scale_j);
+    mt_json_put_number(w, "energy_error_j", r->energy_error_j);
+    mt_json_put_number(w, "joint_drift_m", r->gap_m);
+    mt_json_put_number(w, "joint_gap_m", r->left_m);
+    mt_json_put_integer(w, "steps", r->steps);
+    mt_json_put_integer(w, "stiff_steps", r->stiff_steps);
+    mt_json_put_integer(w, "rejected_steps", r->rejected);
+    mt_json_put_integer(w, "evaluations", r->evaluations);
+    if (r->method != MT_SIM_INTEGRATED) {
+        mt_json_put_number(w, "equations_residual", r->fit.residual);
+        mt_json_put_number(w, "input_error", r->fit.input_error);
+    }
+    json_readings(v, w);
+    mt_json_close(w);
+}
+
+/* The command. */
 
 enum { STEADY_PERIODS = 10 };
 
@@ -21,10 +953,10 @@ typedef struct job {
     mt_analysis *a; /* with --mode */
     mt_system *sys; /* without */
     mt_linear *lin;
-    mt_sim_request request;
+    sim_request request;
     mt_sim_start start;
     mt_sim_result result;
-    mt_sim_view view;
+    sim_view view;
 } job;
 
 /* Choose the configuration. */
@@ -45,9 +977,9 @@ static mt_status make_driven_system(job *j, mt_err *err)
     mt_loaded_model *const s = j->s;
     mt_system_drive drive = {.fixed = true};
     bool given = false;
-    MT_TRY(mt_sim_moved_joint(j->args, s->model, &s->mem, &drive.joint, err));
+    MT_TRY(sim_moved_joint(j->args, s->model, &s->mem, &drive.joint, err));
     if (drive.joint != NULL) {
-        MT_TRY(mt_sim_start_of(j->args, s, drive.joint, &given, &drive.position, err));
+        MT_TRY(sim_start_of(j->args, s, drive.joint, &given, &drive.position, err));
     }
     if (j->args->given[MT_OPT_ALONG] && drive.joint != NULL) {
         return mt_fail(err, MT_E_USAGE,
@@ -133,7 +1065,7 @@ static mt_status start_along(job *j, mt_err *err)
 /* Position and velocities to begin with. */
 static mt_status set_start_state(job *j, mt_err *err)
 {
-    const mt_sim_request *const r = &j->request;
+    const sim_request *const r = &j->request;
     const int d = j->sys->driven && !j->sys->trim ? j->sys->drive_joint : -1;
     double drive = 0.0;
     int n = 0;
@@ -164,7 +1096,7 @@ static mt_status set_start_state(job *j, mt_err *err)
         "--rate");
 }
 
-static mt_status read_gauge_tones(job *j, int g, mt_sim_reading *out, mt_err *err)
+static mt_status read_gauge_tones(job *j, int g, sim_reading *out, mt_err *err)
 {
     const mt_sim_result *const r = &j->result;
     const mt_gauge gauge = j->request.opt.gauges[g];
@@ -191,11 +1123,11 @@ static mt_status read_gauge_tones(job *j, int g, mt_sim_reading *out, mt_err *er
 static mt_status read_all(job *j, mt_err *err)
 {
     const int n = j->request.opt.n_gauges;
-    j->view = (mt_sim_view){.configuration = mt_loaded_model_configuration(j->s, j->c),
-                            .sys = j->sys,
-                            .request = &j->request,
-                            .r = &j->result,
-                            .free = j->request.opt.n_inputs == 0};
+    j->view = (sim_view){.configuration = mt_loaded_model_configuration(j->s, j->c),
+                         .sys = j->sys,
+                         .request = &j->request,
+                         .r = &j->result,
+                         .free = j->request.opt.n_inputs == 0};
     j->view.readings = mt_arena_alloc(&j->mem, (size_t)n, sizeof *j->view.readings);
     MT_TRY(mt_arena_check(&j->mem, err));
     for (int g = 0; g < n; g++) {
@@ -226,7 +1158,7 @@ static mt_status run_motion(job *j, mt_err *err)
     mt_loaded_model_warn_overridden(j->s, j->c);
     MT_TRY(mt_loaded_model_admit_dense(j->s, j->c, "a motion needs them", err));
     MT_TRY(make_driven_system(j, err));
-    MT_TRY(mt_sim_read(j->args, j->s, j->sys, j->profile, &j->request, err));
+    MT_TRY(sim_read(j->args, j->s, j->sys, j->profile, &j->request, err));
     MT_TRY(set_start_state(j, err));
     MT_TRY(simulate_until_interrupt(j, err));
     return read_all(j, err);
@@ -237,15 +1169,15 @@ static int print_motion(const job *j, mt_text *out)
     mt_json_writer w = mt_json_writer_default(out);
     switch (j->args->format) {
     case MT_FORMAT_JSON:
-        mt_simulate_json(&j->view, &w);
+        simulate_json(&j->view, &w);
         return mt_cli_json_done(&w);
     case MT_FORMAT_CSV:
-        mt_simulate_csv(&j->view, out);
+        simulate_csv(&j->view, out);
         return MT_EXIT_DONE;
     case MT_FORMAT_HTML:  /* of report alone */
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
-        mt_simulate_print(&j->view, out);
+        simulate_print(&j->view, out);
         mt_loaded_model_note_links(j->s, j->c, out);
         return MT_EXIT_DONE;
     }
@@ -270,10 +1202,9 @@ static int load_motion_profile(job *j)
     const char *port = NULL;
     mt_diagnostics messages = {.count = 0};
     mt_err err = {.code = MT_OK};
-    const mt_status rc = text == NULL
-                             ? MT_OK
-                             : mt_vibrated_load(j->args, mt_sim_profile_of(text, &port),
-                                                &j->profile, &messages, &err);
+    const mt_status rc = text == NULL ? MT_OK
+                                      : mt_vibrated_load(j->args, sim_profile_of(text, &port),
+                                                         &j->profile, &messages, &err);
     return mt_cli_loaded(rc, &messages, &err);
 }
 

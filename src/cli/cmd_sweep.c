@@ -1,14 +1,339 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* modetune sweep: positions, ratios and frequencies along the range of one driven joint. */
+/* A sweep as text, JSON and CSV. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/sweep.h"
+#include "base/format.h"
+#include "cli/cli.h"
 #include "mechanics/drive.h"
+#include "mechanics/sweep.h"
 #include "model/joint.h"
 #include "model/setting.h"
+#include "report/table.h"
+
+/* The drive and the positions of --drive and --hold. */
+typedef struct sweep_request {
+    mt_system_drive drive;
+    int n;
+    double *positions; /* [n] rad or m from the reference position */
+} sweep_request;
+
+/* The sweep of one configuration with all that its output needs. */
+typedef struct sweep_view {
+    const char *configuration;
+    const sweep_request *request;
+    const mt_system *sys;
+    mt_sweep sweep;
+    int modes;      /* frequencies per point; 0: not requested */
+    double *hz;     /* modes x n points; NaN: no such mode */
+    int *rigid;     /* [n] rigid-body modes */
+    int *unstable;  /* [n] */
+    int *undecided; /* [n] */
+} sweep_view;
+
+enum { DIGITS = 6, HOLD_DIGITS = 4, HEADING = 300 };
+
+/* Positions, ratios and forces are rounding below this [rad, m, 1, N, N m]: for people that is
+ * 0. */
+static const double ROUNDING = 1e-12;
+
+static double tidy(double x)
+{
+    return fabs(x) < ROUNDING ? 0.0 : x;
+}
+
+static const mt_system_joint *driven(const sweep_view *v)
+{
+    return &v->sys->joints[v->sys->drive_joint];
+}
+
+static const char *drive_si_unit(bool angle)
+{
+    return angle ? "rad" : "m";
+}
+
+/* The unit in which its coordinates are shown: the model's; NULL: SI. */
+static const mt_unit *shown_drive_unit(const sweep_view *v, bool angle)
+{
+    return mt_model_shown(v->sys->model, angle ? MT_ANGLE : MT_LENGTH);
+}
+
+static const char *shown_name(const sweep_view *v, bool angle)
+{
+    return mt_unit_name(shown_drive_unit(v, angle), drive_si_unit(angle));
+}
+
+static double shown_drive_position(const sweep_view *v, bool angle, double x)
+{
+    return mt_unit_from_si(shown_drive_unit(v, angle), tidy(x));
+}
+
+/* A joint's motion per that of the driven one, in these units. */
+static double shown_ratio(const sweep_view *v, bool angle, double ratio)
+{
+    return shown_drive_position(
+        v, angle, mt_unit_to_si(shown_drive_unit(v, driven(v)->angle), tidy(ratio)));
+}
+
+/* True where the holding force acts along an angle. */
+static bool hold_is_moment(const sweep_view *v)
+{
+    if (!v->sys->trim) {
+        return driven(v)->angle;
+    }
+    const mt_spring_def *const s = &v->sys->springs[v->sys->trim_spring];
+    const mt_measure_kind kind = v->sys->measures[s->measure[0]].kind;
+    return kind == MT_MEASURE_ANGLE || kind == MT_MEASURE_ROTATION;
+}
+
+/* Joints with a coordinate, other than the driven one. */
+static bool told(const sweep_view *v, int joint)
+{
+    return v->sys->joints[joint].coordinate >= 0 && joint != v->sys->drive_joint;
+}
+
+static void text_columns(const sweep_view *v, mt_table *t)
+{
+    char s[HEADING];
+    const mt_system_joint *const d = driven(v);
+    (void)mt_snprintf(s, sizeof s, "%s [%s]", d->name, shown_name(v, d->angle));
+    mt_table_column(t, s, "position", MT_ALIGN_POINT);
+    for (int i = 0; i < v->sys->n_joints; i++) {
+        const mt_system_joint *const joint = &v->sys->joints[i];
+        if (!told(v, i)) {
+            continue;
+        }
+        (void)mt_snprintf(s, sizeof s, "%s [%s]", joint->name, shown_name(v, joint->angle));
+        mt_table_column(t, s, joint->name, MT_ALIGN_POINT);
+        if (joint->angle == d->angle) {
+            (void)mt_snprintf(s, sizeof s, "per %s", d->name);
+        } else {
+            (void)mt_snprintf(s, sizeof s, "per %s [%s/%s]", d->name,
+                              shown_name(v, joint->angle), shown_name(v, d->angle));
+        }
+        mt_table_column(t, s, "ratio", MT_ALIGN_POINT);
+    }
+    (void)mt_snprintf(s, sizeof s, "%s [%s]", v->sys->trim ? v->request->drive.spring : "lock",
+                      hold_is_moment(v) ? "N m" : "N");
+    mt_table_column(t, s, "hold", MT_ALIGN_POINT);
+    for (int i = 0; i < v->modes; i++) {
+        (void)mt_snprintf(s, sizeof s, "mode %d [Hz]", i + 1);
+        mt_table_column(t, s, "mode", MT_ALIGN_POINT);
+    }
+}
+
+static void text_row(const sweep_view *v, int point, mt_table *t)
+{
+    const mt_sweep_point *const p = &v->sweep.points[point];
+    mt_table_number(t, mt_unit_from_si(shown_drive_unit(v, driven(v)->angle), p->drive),
+                    DIGITS);
+    for (int i = 0; i < v->sys->n_joints; i++) {
+        if (told(v, i)) {
+            const bool angle = v->sys->joints[i].angle;
+            mt_table_number(t, shown_drive_position(v, angle, p->coordinate[i]), DIGITS);
+            mt_table_number(t, shown_ratio(v, angle, p->ratio[i]), DIGITS);
+        }
+    }
+    mt_table_number(t, tidy(p->hold), HOLD_DIGITS);
+    for (int i = 0; i < v->modes; i++) {
+        mt_table_number(t, v->hz[i + ((ptrdiff_t)point * v->modes)], DIGITS);
+    }
+}
+
+static void write_undecided(const sweep_view *v, mt_text *out)
+{
+    int n = 0;
+    for (int i = 0; i < v->sweep.n_points && v->rigid != NULL; i++) {
+        n += v->sweep.points[i].status == MT_OK && v->undecided[i] > 0 ? 1 : 0;
+    }
+    if (n > 0) {
+        mt_text_addf(
+            out,
+            "  UNDECIDED at %d position%s: springs and loads cancel, and rounding hides "
+            "whether it is stable.\n",
+            n, n == 1 ? "" : "s");
+    }
+}
+
+static void write_modes(const sweep_view *v, mt_text *out)
+{
+    int unstable = 0;
+    int rigid = 0;
+    if (v->rigid != NULL && v->modes == 0) {
+        mt_text_add(out,
+                    "  No vibration modes: with the joint held nothing is left to vibrate.\n");
+    }
+    for (int i = 0; i < v->sweep.n_points && v->rigid != NULL; i++) {
+        if (v->sweep.points[i].status == MT_OK) {
+            unstable += v->unstable[i] > 0 ? 1 : 0;
+            rigid = v->rigid[i] > rigid ? v->rigid[i] : rigid;
+        }
+    }
+    if (rigid > 0) {
+        mt_text_addf(out, "  %d rigid-body mode%s: it can move freely.\n", rigid,
+                     rigid == 1 ? "" : "s");
+    }
+    if (unstable > 0) {
+        mt_text_addf(out, "  UNSTABLE at %d position%s: %s not hold.\n", unstable,
+                     unstable == 1 ? "" : "s", unstable == 1 ? "it does" : "they do");
+    }
+    write_undecided(v, out);
+}
+
+/* Write the position of the range nearest to a dead centre. */
+static void write_dead_centre(const sweep_view *v, mt_text *out)
+{
+    const mt_sweep_point *nearest = NULL;
+    for (int i = 0; i < v->sweep.n_points; i++) {
+        const mt_sweep_point *const p = &v->sweep.points[i];
+        if (p->status == MT_OK && p->near->near &&
+            (nearest == NULL || p->near->distance < nearest->near->distance)) {
+            nearest = p;
+        }
+    }
+    if (nearest != NULL) {
+        mt_text_addf(out,
+                     "  Near a dead centre at %.6g %s: about %.2g rad (or model lengths) on, "
+                     "joints %s depend on each other.\n",
+                     mt_unit_from_si(shown_drive_unit(v, driven(v)->angle), nearest->drive),
+                     shown_name(v, driven(v)->angle), nearest->near->distance,
+                     nearest->near->joints.text);
+    }
+}
+
+static void sweep_print(const sweep_view *v, mt_text *out)
+{
+    mt_table t = mt_table_default();
+    double gap = 0.0;
+    text_columns(v, &t);
+    for (int i = 0; i < v->sweep.n_points; i++) {
+        if (v->sweep.points[i].status == MT_OK) {
+            text_row(v, i, &t);
+            gap = fmax(gap, v->sweep.points[i].gap_m);
+        }
+    }
+    mt_text_addf(out, "%s\n", v->configuration);
+    if (v->sweep.n_reached > 0) {
+        mt_table_print(&t, 2, mt_terminal_width(), out);
+        mt_text_addf(out, "  Largest gap of a joint %.1e m.\n", gap);
+        write_dead_centre(v, out);
+    }
+    if (v->sweep.n_reached < v->sweep.n_points) {
+        mt_text_addf(out, "  %d of %d positions reached.\n", v->sweep.n_reached,
+                     v->sweep.n_points);
+    }
+    write_modes(v, out);
+    mt_text_add(out, "\n");
+    mt_table_free(&t);
+}
+
+static void json_point(const sweep_view *v, int point, mt_json_writer *w)
+{
+    const mt_sweep_point *const p = &v->sweep.points[point];
+    mt_json_open(w, NULL, '{');
+    mt_json_put_number(w, driven(v)->angle ? "position_rad" : "position_m", p->drive);
+    if (p->status != MT_OK) {
+        mt_json_put_string(w, "error", p->why);
+        mt_json_close(w);
+        return;
+    }
+    mt_json_open(w, "joints", '[');
+    for (int i = 0; i < v->sys->n_joints; i++) {
+        const mt_system_joint *const joint = &v->sys->joints[i];
+        if (joint->coordinate < 0) {
+            continue;
+        }
+        mt_json_open_flat(w, NULL, '{');
+        mt_json_put_string(w, "name", joint->name);
+        mt_json_put_number(w, joint->angle ? "coordinate_rad" : "coordinate_m",
+                           p->coordinate[i]);
+        mt_json_put_number(w, "ratio", p->ratio[i]);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+    mt_json_put_number(w, hold_is_moment(v) ? "hold_n_m" : "hold_n", p->hold);
+    mt_json_put_number(w, "equilibrium_residual", p->residual);
+    mt_json_put_number(w, "gap_m", p->gap_m);
+    mt_cli_json_dead_centre(w, p->near);
+    if (v->rigid != NULL) {
+        mt_json_open_flat(w, "frequencies_hz", '[');
+        for (int i = 0; i < v->modes; i++) {
+            mt_json_put_number(w, NULL, v->hz[i + ((ptrdiff_t)point * v->modes)]);
+        }
+        mt_json_close(w);
+        mt_json_put_integer(w, "rigid_body_modes", v->rigid[point]);
+        mt_json_put_integer(w, "unstable_modes", v->unstable[point]);
+        mt_json_put_integer(w, "undecided_modes", v->undecided[point]);
+    }
+    mt_json_close(w);
+}
+
+static void sweep_json(const sweep_view *v, mt_json_writer *w)
+{
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "configuration", v->configuration);
+    mt_json_put_string(w, "joint", driven(v)->name);
+    mt_json_put_string(w, "hold", v->sys->trim ? "trim" : "lock");
+    mt_json_put_string(w, "spring", v->sys->trim ? v->request->drive.spring : NULL);
+    mt_json_open(w, "points", '[');
+    for (int i = 0; i < v->sweep.n_points; i++) {
+        json_point(v, i, w);
+    }
+    mt_json_close(w);
+    mt_json_close(w);
+}
+
+/* Columns, then rows of all points; two configurations with the same joints have the same
+ * columns. */
+static void sweep_csv_columns(const sweep_view *v, mt_table *t)
+{
+    char s[HEADING];
+    mt_table_column(t, "configuration", "configuration", MT_ALIGN_LEFT);
+    (void)mt_snprintf(s, sizeof s, "position_%s", drive_si_unit(driven(v)->angle));
+    mt_table_column(t, s, s, MT_ALIGN_POINT);
+    for (int i = 0; i < v->sys->n_joints; i++) {
+        if (told(v, i)) {
+            const mt_system_joint *const joint = &v->sys->joints[i];
+            (void)mt_snprintf(s, sizeof s, "%s_%s", joint->name, drive_si_unit(joint->angle));
+            mt_table_column(t, s, s, MT_ALIGN_POINT);
+            (void)mt_snprintf(s, sizeof s, "%s_ratio", joint->name);
+            mt_table_column(t, s, s, MT_ALIGN_POINT);
+        }
+    }
+    (void)mt_snprintf(s, sizeof s, "%s", hold_is_moment(v) ? "hold_n_m" : "hold_n");
+    mt_table_column(t, s, s, MT_ALIGN_POINT);
+    mt_table_column(t, "residual", "equilibrium_residual", MT_ALIGN_POINT);
+    mt_table_column(t, "gap", "gap_m", MT_ALIGN_POINT);
+    for (int i = 0; i < v->modes; i++) {
+        (void)mt_snprintf(s, sizeof s, "mode_%d_hz", i + 1);
+        mt_table_column(t, s, s, MT_ALIGN_POINT);
+    }
+}
+
+static void sweep_csv_rows(const sweep_view *v, mt_table *t)
+{
+    for (int k = 0; k < v->sweep.n_points; k++) {
+        const mt_sweep_point *const p = &v->sweep.points[k];
+        mt_table_text(t, v->configuration);
+        mt_table_number(t, p->drive, DIGITS);
+        for (int i = 0; i < v->sys->n_joints; i++) {
+            if (told(v, i)) {
+                mt_table_number(t, p->coordinate[i], DIGITS);
+                mt_table_number(t, p->ratio[i], DIGITS);
+            }
+        }
+        mt_table_number(t, p->hold, DIGITS);
+        mt_table_number(t, p->residual, DIGITS);
+        mt_table_number(t, p->gap_m, DIGITS);
+        for (int i = 0; i < v->modes; i++) {
+            mt_table_number(t, v->hz[i + ((ptrdiff_t)k * v->modes)], DIGITS);
+        }
+    }
+}
+
+/* modetune sweep: positions, ratios and frequencies along the range of one driven joint. */
 
 enum { DEFAULT_MODES = 6, MOST_POINTS = 100001 };
 
@@ -33,7 +358,7 @@ static mt_status read_points(const char *text, const double range[2], int *out, 
 
 /* "JOINT=FROM:TO:N" with expressions of the subject's values, into mem. Fails: MT_E_USAGE,
  * MT_E_MEMORY. */
-static mt_status read_request(const mt_args *args, mt_loaded_model *s, mt_sweep_request *out,
+static mt_status read_request(const mt_args *args, mt_loaded_model *s, sweep_request *out,
                               mt_err *err)
 {
     const char *const text = args->value[MT_OPT_DRIVE];
@@ -64,7 +389,7 @@ static mt_status read_request(const mt_args *args, mt_loaded_model *s, mt_sweep_
 
 /* One configuration at work. */
 typedef struct job {
-    mt_sweep_view v;
+    sweep_view v;
     mt_arena mem;
     mt_analysis *a; /* with --modes */
     mt_system *sys; /* without */
@@ -109,7 +434,7 @@ static mt_status prepare_modes(job *j, int wanted, mt_err *err)
 }
 
 /* The range of the command line lies within reach of the joint. */
-static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt_err *err)
+static mt_status check_reach(const mt_system *sys, const sweep_request *r, mt_err *err)
 {
     const double reach = mt_drive_reach(sys, sys->drive_joint);
     const mt_dimension of = sys->joints[sys->drive_joint].angle ? MT_ANGLE : MT_LENGTH;
@@ -130,7 +455,7 @@ static mt_status check_reach(const mt_system *sys, const mt_sweep_request *r, mt
 static mt_status sweep_configuration(const mt_args *args, const mt_loaded_model *s, int c,
                                      job *j, mt_err *err)
 {
-    const mt_sweep_request *const r = j->v.request;
+    const sweep_request *const r = j->v.request;
     const mt_sweep_visitor visitor = {.visit = store_point_modes, .context = j};
     const size_t n = (size_t)s->n_inputs;
     MT_TRY(mt_arena_init(&j->mem, 0, err));
@@ -166,7 +491,7 @@ static mt_status sweep_configuration(const mt_args *args, const mt_loaded_model 
 }
 
 /* Each reason why points are missing, once. */
-static int write_missing(const mt_loaded_model *s, const mt_sweep_view *v)
+static int write_missing(const mt_loaded_model *s, const sweep_view *v)
 {
     const char *last = NULL;
     int code = MT_EXIT_DONE;
@@ -201,10 +526,10 @@ static bool same_columns(const mt_table *a, const mt_table *b)
     return same;
 }
 
-static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
+static mt_status add_csv(sink *to, const sweep_view *v, mt_err *err)
 {
     mt_table columns = mt_table_default();
-    mt_sweep_csv_columns(v, &columns);
+    sweep_csv_columns(v, &columns);
     if (columns.failed || to->table.failed) {
         to->table.failed = true; /* the output that the table goes into tells */
         mt_table_free(&columns);
@@ -212,7 +537,7 @@ static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
     }
     if (to->table.n_columns == 0) {
         to->table = columns;
-        mt_sweep_csv_rows(v, &to->table);
+        sweep_csv_rows(v, &to->table);
         return MT_OK;
     }
     const bool same = same_columns(&to->table, &columns);
@@ -222,7 +547,7 @@ static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
                        "configurations with different joints do not fit into one CSV table: "
                        "choose one with -c");
     }
-    mt_sweep_csv_rows(v, &to->table);
+    sweep_csv_rows(v, &to->table);
     return MT_OK;
 }
 
@@ -231,7 +556,7 @@ static mt_status add_csv(sink *to, const mt_sweep_view *v, mt_err *err)
 static void warn_range(const job *j)
 {
     static const double ONE_TURN = 6.283185307179586;
-    const mt_sweep_request *const r = j->v.request;
+    const sweep_request *const r = j->v.request;
     double most = 0.0;
     for (int i = 0; i < r->n; i++) {
         most = fabs(r->positions[i]) > fabs(most) ? r->positions[i] : most;
@@ -245,7 +570,7 @@ static void warn_range(const job *j)
 }
 
 static int show_configuration_sweep(sink *to, const mt_loaded_model *s, int c,
-                                    const mt_sweep_request *request)
+                                    const sweep_request *request)
 {
     job j = {.a = NULL};
     mt_err err = {.code = MT_OK};
@@ -263,7 +588,7 @@ static int show_configuration_sweep(sink *to, const mt_loaded_model *s, int c,
         code = write_missing(s, &j.v);
         switch (to->args->format) {
         case MT_FORMAT_JSON:
-            mt_sweep_json(&j.v, &to->w);
+            sweep_json(&j.v, &to->w);
             break;
         case MT_FORMAT_CSV:
             rc = add_csv(to, &j.v, &err);
@@ -271,7 +596,7 @@ static int show_configuration_sweep(sink *to, const mt_loaded_model *s, int c,
         case MT_FORMAT_HTML:  /* of report alone */
         case MT_FORMAT_SARIF: /* of check alone */
         case MT_FORMAT_TEXT:
-            mt_sweep_print(&j.v, to->out);
+            sweep_print(&j.v, to->out);
             mt_loaded_model_note_links(s, c, to->out);
             break;
         }
@@ -291,7 +616,7 @@ int mt_cmd_sweep(const mt_args *args, mt_text *out)
 {
     mt_loaded_model s = {.model = NULL};
     sink to = {.args = args, .out = out, .w = mt_json_writer_default(out)};
-    mt_sweep_request request = {.n = 0};
+    sweep_request request = {.n = 0};
     mt_err err = {.code = MT_OK};
     const bool json = args->format == MT_FORMAT_JSON;
     const bool list = json && !args->given[MT_OPT_CONFIGURATION];

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that are part of the program, and the commands that give them out: examples, init,
+ * schema. */
 #include "cli/shipped.h"
 
 #include <string.h>
@@ -8,6 +10,20 @@
 #include "io/file.h"
 #include "io/folder.h"
 #include "report/table.h"
+
+enum { SHIPPED_NAME = 64, SHIPPED_MOST = 100 };
+
+/**
+ * Write n files of the distribution into a folder, which is made, under the given names. Where
+ * an existing file holds other bytes, none is written. Fails: MT_E_INPUT (naming the first such
+ * file), MT_E_SYSTEM, MT_E_MEMORY.
+ */
+typedef struct shipped_copy {
+    const mt_shipped *file;
+    const char *name; /* "schemas/model.schema.json" */
+} shipped_copy;
+
+/* The files. */
 
 const mt_shipped_kind mt_shipped_examples = {.command = "examples",
                                              .what = "example",
@@ -83,7 +99,7 @@ void mt_shipped_names(const mt_shipped_kind *kind, mt_text *out)
     const mt_shipped *const files = mt_shipped_all(&n);
     const char *between = "";
     for (int i = 0; i < n; i++) {
-        char name[MT_SHIPPED_NAME];
+        char name[SHIPPED_NAME];
         if (shipped_file_name(kind, &files[i], name, sizeof name)) {
             mt_text_addf(out, "%s%s", between, name);
             between = " ";
@@ -100,7 +116,7 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
     mt_table_column(&t, kind->what, "name", MT_ALIGN_LEFT);
     mt_table_column(&t, kind->heading, "text", MT_ALIGN_LEFT);
     for (int i = 0; i < n; i++) {
-        char name[MT_SHIPPED_NAME];
+        char name[SHIPPED_NAME];
         mt_text said = {.s = NULL};
         if (shipped_file_name(kind, &files[i], name, sizeof name)) {
             add_first_sentence(&files[i], kind->says, &said);
@@ -124,13 +140,13 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
 mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
                            const mt_shipped **out, mt_err *err)
 {
-    const char *known[MT_SHIPPED_MOST];
-    char text[MT_SHIPPED_MOST][MT_SHIPPED_NAME];
+    const char *known[SHIPPED_MOST];
+    char text[SHIPPED_MOST][SHIPPED_NAME];
     int n = 0;
     int count = 0;
     const mt_shipped *const files = mt_shipped_all(&count);
-    for (int i = 0; i < count && n < MT_SHIPPED_MOST; i++) {
-        if (!shipped_file_name(kind, &files[i], text[n], MT_SHIPPED_NAME)) {
+    for (int i = 0; i < count && n < SHIPPED_MOST; i++) {
+        if (!shipped_file_name(kind, &files[i], text[n], SHIPPED_NAME)) {
             continue;
         }
         if (strcmp(text[n], name) == 0) {
@@ -167,7 +183,7 @@ static mt_status compare_existing_file(const char *path, const mt_shipped *file,
                  : mt_fail(err, MT_E_INPUT, "%s: is there already, and is left alone", path);
 }
 
-static mt_status write_one(const char *folder, const mt_shipped_copy *copy, mt_err *err)
+static mt_status write_one(const char *folder, const shipped_copy *copy, mt_err *err)
 {
     const char *const slash = strrchr(copy->name, '/');
     mt_text into = {.s = NULL};
@@ -185,10 +201,10 @@ static mt_status write_one(const char *folder, const mt_shipped_copy *copy, mt_e
     return rc;
 }
 
-mt_status mt_shipped_write(const char *folder, const mt_shipped_copy *copies, int n,
-                           mt_err *err)
+static mt_status shipped_write(const char *folder, const shipped_copy *copies, int n,
+                               mt_err *err)
 {
-    bool same[MT_SHIPPED_MOST] = {false};
+    bool same[SHIPPED_MOST] = {false};
     mt_status rc = MT_OK;
     for (int i = 0; i < n && rc == MT_OK; i++) {
         mt_text path = {.s = NULL};
@@ -201,4 +217,132 @@ mt_status mt_shipped_write(const char *folder, const mt_shipped_copy *copies, in
         rc = same[i] ? MT_OK : write_one(folder, &copies[i], err);
     }
     return rc;
+}
+
+/* modetune examples: the studies that are part of the program, with all that they name. */
+
+/* True where the text of a file names the other one, be it by its path from its own folder, or,
+ * a catalogue of aircraft, by one of these. */
+static bool names(const mt_shipped *file, const mt_shipped *other)
+{
+    const char *const base = strrchr(other->path, '/') + 1;
+    char quoted[SHIPPED_NAME + 4];
+    const bool catalogue = strcmp(base, "aircraft.json") == 0;
+    (void)mt_snprintf(quoted, sizeof quoted, "%s%s\"", catalogue ? "" : "/", base);
+    return strstr(file->bytes, quoted) != NULL ||
+           (catalogue && strstr(file->bytes, "\"aircraft\"") != NULL);
+}
+
+/* The files that those of copies[0 .. n) name, and what these name. */
+static int add_named(shipped_copy *copies, int n)
+{
+    int count = 0;
+    const mt_shipped *const files = mt_shipped_all(&count);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < count && n < SHIPPED_MOST; k++) {
+            bool has = strncmp(files[k].path, mt_shipped_examples.folder,
+                               strlen(mt_shipped_examples.folder)) == 0;
+            for (int j = 0; j < n; j++) {
+                has = has || copies[j].file == &files[k];
+            }
+            if (!has && strncmp(files[k].path, "init/", strlen("init/")) != 0 &&
+                names(copies[i].file, &files[k])) {
+                copies[n++] = (shipped_copy){&files[k], files[k].path};
+            }
+        }
+    }
+    return n;
+}
+
+int mt_cmd_examples(const mt_args *args, mt_text *out)
+{
+    shipped_copy copies[SHIPPED_MOST];
+    mt_err err = {.code = MT_OK};
+    int n = 0;
+    if (args->n_operands == 0) {
+        return mt_shipped_list(args, &mt_shipped_examples, out);
+    }
+    mt_status rc = MT_OK;
+    for (int i = 0; i < args->n_operands && i < SHIPPED_MOST && rc == MT_OK; i++) {
+        const mt_shipped *file = NULL;
+        rc = mt_shipped_named(&mt_shipped_examples, args->operands[i], &file, &err);
+        if (rc == MT_OK) {
+            copies[n++] = (shipped_copy){file, file->path};
+        }
+    }
+    const char *const to =
+        args->value[MT_OPT_OUTPUT] != NULL ? args->value[MT_OPT_OUTPUT] : ".";
+    n = rc == MT_OK ? add_named(copies, n) : n;
+    rc = rc == MT_OK ? shipped_write(to, copies, n, &err) : rc;
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    for (int i = 0; i < n; i++) {
+        mt_text_addf(out, "%s/%s\n", to, copies[i].name);
+    }
+    return MT_EXIT_DONE;
+}
+
+/* modetune init: a model and a study to begin with, and the schemas that editors complete them
+ * by. */
+
+/* A file of the kind of model that is asked for (src/cli/init/KIND/; NULL: of the lever in the
+ * plane). NULL: there is no such kind. */
+static const mt_shipped *find_file(const char *kind, const char *name)
+{
+    char path[64];
+    (void)mt_snprintf(path, sizeof path, "init/%s%s%s", kind == NULL ? "" : kind,
+                      kind == NULL ? "" : "/", name);
+    return mt_shipped_find(path);
+}
+
+int mt_cmd_init(const mt_args *args, mt_text *out)
+{
+    const char *const folder = args->n_operands > 0 ? args->operands[0] : ".";
+    const char *const kind = args->value[MT_OPT_KIND];
+    mt_err err = {.code = MT_OK};
+    const shipped_copy copies[] = {
+        {find_file(kind, "model.json"), "model.json"},
+        {find_file(kind, "study.json"), "study.json"},
+        {mt_shipped_find("schemas/model.schema.json"), "schemas/model.schema.json"},
+        {mt_shipped_find("schemas/study.schema.json"), "schemas/study.schema.json"},
+    };
+    if (copies[0].file == NULL) {
+        return mt_cli_failed(mt_fail(&err, MT_E_USAGE,
+                                     "no kind of model is called \"%s\"; --kind takes stick, "
+                                     "mounts, arm, updating or rotor",
+                                     kind),
+                             &err);
+    }
+    const mt_status rc = shipped_write(folder, copies, MT_COUNT(copies), &err);
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    for (int i = 0; i < MT_COUNT(copies); i++) {
+        mt_text_addf(out, "%s/%s\n", folder, copies[i].name);
+    }
+    mt_terminal_talk(
+        args->given[MT_OPT_QUIET],
+        "%s: a model and a study to change into your own. \"modetune modes "
+        "model.json\" prints its frequencies, \"modetune run study.json\" says what "
+        "to change.",
+        folder);
+    return MT_EXIT_DONE;
+}
+
+/* modetune schema: the JSON Schemas, which editors complete and check files by. */
+
+int mt_cmd_schema(const mt_args *args, mt_text *out)
+{
+    mt_err err = {.code = MT_OK};
+    const mt_shipped *file = NULL;
+    if (args->n_operands == 0) {
+        return mt_shipped_list(args, &mt_shipped_schemas, out);
+    }
+    const mt_status rc = mt_shipped_named(&mt_shipped_schemas, args->operands[0], &file, &err);
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    mt_text_add_n(out, file->bytes, file->size);
+    return MT_EXIT_DONE;
 }

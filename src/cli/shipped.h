@@ -5,8 +5,6 @@
 #include "cli/args.h"
 #include "io/shipped.h"
 
-enum { MT_SHIPPED_NAME = 64, MT_SHIPPED_MOST = 100 };
-
 /* A kind of shipped files: those in one folder with one ending; the name is between these. */
 typedef struct mt_shipped_kind {
     const char *command; /* command that lists them */
@@ -30,16 +28,5 @@ int mt_shipped_list(const mt_args *args, const mt_shipped_kind *kind, mt_text *o
  * all. */
 mt_status mt_shipped_named(const mt_shipped_kind *kind, const char *name,
                            const mt_shipped **out, mt_err *err);
-/**
- * Write n files of the distribution into a folder, which is made, under the given names. Where
- * an existing file holds other bytes, none is written. Fails: MT_E_INPUT (naming the first such
- * file), MT_E_SYSTEM, MT_E_MEMORY.
- */
-typedef struct mt_shipped_copy {
-    const mt_shipped *file;
-    const char *name; /* "schemas/model.schema.json" */
-} mt_shipped_copy;
-mt_status mt_shipped_write(const char *folder, const mt_shipped_copy *copies, int n,
-                           mt_err *err);
 
 #endif

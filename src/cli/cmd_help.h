@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef CLI_DOCUMENTS_H
-#define CLI_DOCUMENTS_H
+#ifndef CLI_CMD_HELP_H
+#define CLI_CMD_HELP_H
 
 #include <stdbool.h>
 
 #include "io/shipped.h"
 
-/* The Markdown documents built into the program, ordered by path; *n is their number. */
-const mt_shipped *mt_documents_all(int *n);
 /* The document of that path; NULL: none. */
 const mt_shipped *mt_documents_find(const char *path);
-/* True where the document is a reference generated from schemas; other documents are listed
- * first. */
-bool mt_document_is_reference(const mt_shipped *document);
 /* The document of the commands. */
 #define MT_DOCUMENT_COMMANDS "src/cli/README.md"
 
@@ -34,6 +29,5 @@ bool mt_passage_next(const char *text, mt_passage *p);
 bool mt_passage_name(const mt_passage *p, const char **at, const char **name, size_t *length);
 /* True where name is one of the passage's names. */
 bool mt_passage_is(const mt_passage *p, const char *name);
-bool mt_passage_is_row(const mt_passage *p);
 
 #endif

@@ -1,0 +1,491 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The commands that read results: report, explain, apply and diff. */
+#include "modetune/version.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "cli/save.h"
+#include "io/result_diff.h"
+#include "library/scene_designs.h"
+#include "report/explain.h"
+#include "report/table.h"
+
+/* modetune report: a result read back and told again, from itself alone; where its model is
+ * found, pages show the mechanism, too. */
+
+/* The scene of the result's designs, where the model that was solved is found. Fails:
+ * MT_E_MEMORY, MT_E_SYSTEM (a candidate cannot be read: the page would differ). */
+static mt_status find_scene(const mt_args *args, const mt_result *result, mt_text *scene,
+                            mt_err *err)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_file file = {.bytes = NULL};
+    char *path = NULL;
+    mt_model *model = NULL;
+    mt_diagnostics messages = {.count = 0};
+    mt_err why = {.code = MT_OK};
+    mt_status rc = mt_find_model(args, result, &file, &path, &why);
+    rc = rc == MT_OK ? mt_model_load(path, &opt, &model, &messages, &why) : rc;
+    rc = rc == MT_OK ? mt_scene_of_result(model, result, 1, scene, &why) : rc;
+    mt_diagnostics_free(&messages);
+    mt_model_delete(model);
+    mt_file_free(&file);
+    free(path);
+    return mt_is_final(rc) || rc == MT_E_SYSTEM ? mt_fail(err, rc, "%s", why.text) : MT_OK;
+}
+
+int mt_cmd_report(const mt_args *args, mt_text *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    mt_result *result = NULL;
+    mt_text scene = {.s = NULL};
+    mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
+    if (rc == MT_OK && (args->format == MT_FORMAT_HTML || args->given[MT_OPT_OUTPUT])) {
+        rc = find_scene(args, result, &scene, &err);
+        code = rc == MT_OK ? code : mt_cli_failed(rc, &err);
+    }
+    if (rc == MT_OK) {
+        mt_json_writer w = mt_json_writer_default(out);
+        mt_save_print(args, result, scene.s, &w, out);
+        code = args->format == MT_FORMAT_JSON ? mt_cli_json_done(&w) : MT_EXIT_DONE;
+    }
+    if (rc == MT_OK && args->given[MT_OPT_OUTPUT]) {
+        code = mt_exit_worse(code, mt_save_again(args, args->operands[0], result, scene.s));
+    }
+    mt_text_free(&scene);
+    mt_result_delete(result);
+    return code;
+}
+
+/* modetune explain: what moves each goal of a design, what holds it, and the price. */
+
+static void print_json(const mt_result *result, const mt_recommendation *r, mt_json_writer *w)
+{
+    static const char *const members[] = {"rank", "grade", "parameters", "goals", "reasons"};
+    mt_json_open(w, NULL, '{');
+    mt_json_put_string(w, "study", result->study.file);
+    for (int i = 0; i < MT_COUNT(members); i++) {
+        mt_design_put_member(w, members[i], result, r);
+    }
+    mt_json_close(w);
+}
+
+/* The design asked for; without --rank the best, and where none is recommended the original. */
+static mt_status choose_explained_design(const mt_args *args, const mt_result *result,
+                                         const mt_recommendation **out, mt_err *err)
+{
+    if (!args->given[MT_OPT_RANK] && result->n_recommendations == 0) {
+        *out = &result->baseline;
+        return MT_OK;
+    }
+    return mt_cli_recommendation(args, result, out, err);
+}
+
+static int print(const mt_args *args, const mt_result *result, mt_text *out)
+{
+    const mt_recommendation *r = NULL;
+    mt_json_writer w = mt_json_writer_default(out);
+    mt_err err = {.code = MT_OK};
+    const mt_status rc = choose_explained_design(args, result, &r, &err);
+    if (rc != MT_OK) {
+        return mt_cli_failed(rc, &err);
+    }
+    if (args->format == MT_FORMAT_JSON) {
+        print_json(result, r, &w);
+        return mt_cli_json_done(&w);
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table t = mt_report_movers(r);
+        mt_table_csv(&t, out);
+        mt_table_free(&t);
+    } else {
+        mt_report_explain(result, r, mt_terminal_width(), out);
+    }
+    return MT_EXIT_DONE;
+}
+
+int mt_cmd_explain(const mt_args *args, mt_text *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    mt_result *result = NULL;
+    const mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
+    code = rc == MT_OK ? print(args, result, out) : code;
+    mt_result_delete(result);
+    return code;
+}
+
+/*
+ * modetune apply: the model's own text with the recommended numbers put in, and those that the
+ * study was asked with instead of the model's own, each in the unit that the model gives it in:
+ * a number that reads as the same value, or as one next to it (expr/units.h).
+ */
+
+typedef struct replacement {
+    size_t begin;
+    size_t end;
+    double value;
+} replacement;
+
+/* Ascending by begin. */
+static int by_place(const void *a, const void *b)
+{
+    const replacement *const x = a;
+    const replacement *const y = b;
+    return (x->begin > y->begin) - (x->begin < y->begin);
+}
+
+/* The unit of this parameter's number in the model, its value having this SI unit; NULL: SI, or
+ * none given. */
+static const mt_unit *find_parameter_unit(const mt_json *doc, mt_addr parameter, const char *si)
+{
+    const mt_addr unit = mt_json_member(doc, parameter, "unit");
+    const bool is_text = unit != MT_NO_ADDR && mt_json_type_of(doc, unit) == MT_JSON_STRING;
+    return is_text ? mt_unit_find_of(mt_json_string(doc, unit), si) : NULL;
+}
+
+/* The text of a parameter's value in the model, and the number for it. The result is a file,
+ * too, and may name a missing parameter (its reader has refused duplicates). */
+static mt_status find_place(const mt_json *doc, const char *path, const char *name,
+                            const char *si, double value, replacement *out, mt_err *err)
+{
+    const mt_addr parameters = mt_json_member(doc, MT_JSON_ROOT, "parameters");
+    mt_addr at = parameters == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(doc, parameters, name);
+    out->value = value;
+    if (at != MT_NO_ADDR && mt_json_type_of(doc, at) == MT_JSON_OBJECT) {
+        out->value = mt_unit_written(find_parameter_unit(doc, at, si), value);
+        at = mt_json_member(doc, at, "value");
+    }
+    if (at == MT_NO_ADDR || !mt_json_span(doc, at, &out->begin, &out->end)) {
+        return mt_fail(err, MT_E_INPUT, "%s: there is no parameter \"%s\"", path, name);
+    }
+    return isfinite(value)
+               ? MT_OK
+               : mt_fail(err, MT_E_INPUT, "the result recommends no value of \"%s\"", name);
+}
+
+/* Find the places of the recommended values and of the study's overrides. */
+static mt_status find_places(const mt_recommendation *r, const mt_result_run *run,
+                             const mt_json *doc, const char *path, replacement *list, int *n,
+                             mt_err *err)
+{
+    *n = 0;
+    for (int i = 0; i < r->n_parameters; i++) {
+        const mt_result_parameter *const p = &r->parameters[i];
+        MT_TRY(find_place(doc, path, p->name, p->unit, p->recommended, &list[(*n)++], err));
+    }
+    for (int i = 0; i < run->n_overrides; i++) {
+        const mt_result_override *const o = &run->overrides[i];
+        if (strcmp(o->kind, "parameter") == 0) {
+            MT_TRY(find_place(doc, path, o->name, o->unit, o->value, &list[(*n)++], err));
+        }
+    }
+    qsort(list, (size_t)*n, sizeof *list, by_place);
+    for (int i = 1; i < *n; i++) {
+        if (list[i].begin == list[i - 1].begin) {
+            return mt_fail(err, MT_E_INPUT,
+                           "the result has a parameter both recommended and set");
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status substitute(const mt_recommendation *r, const mt_result_run *run,
+                            const mt_file *file, const char *path, mt_text *out, mt_err *err)
+{
+    mt_json *doc = NULL;
+    replacement *const list =
+        calloc((size_t)r->n_parameters + (size_t)run->n_overrides + 1, sizeof *list);
+    int n = 0;
+    if (list == NULL) {
+        return mt_fail_memory(err);
+    }
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    if (rc != MT_OK) {
+        (void)mt_err_in(err, rc, "%s", path);
+        goto done;
+    }
+    rc = find_places(r, run, doc, path, list, &n, err);
+    size_t at = 0;
+    for (int i = 0; rc == MT_OK && i < n; i++) {
+        char number[MT_JSON_NUMBER_SIZE];
+        mt_text_add_n(out, file->bytes + at, list[i].begin - at);
+        mt_text_add(out, mt_json_format_shortest(list[i].value, number));
+        at = list[i].end;
+    }
+    if (rc == MT_OK) {
+        mt_text_add_n(out, file->bytes + at, file->length - at);
+    }
+done:
+    mt_json_delete(doc);
+    free(list);
+    return rc;
+}
+
+static mt_status apply_recommendation(const mt_args *args, const mt_result *result,
+                                      mt_text *out, mt_err *err)
+{
+    const char *const path = args->operands[0];
+    const mt_recommendation *chosen = NULL;
+    mt_file file = {.bytes = NULL};
+    char *model_path = NULL;
+    MT_TRY(mt_cli_recommendation(args, result, &chosen, err));
+    mt_status rc = mt_find_model(args, result, &file, &model_path, err);
+    if (rc == MT_OK) {
+        rc = substitute(chosen, &result->run, &file, model_path, out, err);
+    }
+    const char *const version = result->run.modetune_version;
+    if (rc == MT_OK && (version == NULL || strcmp(version, MT_VERSION_STRING) != 0)) {
+        mt_terminal_warning(
+            "%s was written by modetune %s, this is %s: its grades may differ today", path,
+            version == NULL ? "of an unknown version" : version, MT_VERSION_STRING);
+    }
+    if (rc == MT_OK && !chosen->feasible) {
+        mt_terminal_warning("recommendation %d does not meet all goals", chosen->rank);
+    }
+    free(model_path);
+    mt_file_free(&file);
+    return rc;
+}
+
+int mt_cmd_apply(const mt_args *args, mt_text *out)
+{
+    const mt_io_options opt = mt_cli_io(args);
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    mt_result *result = NULL;
+    mt_status rc = mt_result_load(args->operands[0], &opt, &result, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
+    if (rc == MT_OK) {
+        rc = apply_recommendation(args, result, out, &err);
+        code = rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &err);
+    }
+    mt_result_delete(result);
+    return code;
+}
+
+/* modetune diff: what two results say differently. */
+
+enum { DIGITS = 6, CHANGE_DIGITS = 3, SIDES = 2 };
+
+/* In per cent of the first; NaN where that says nothing. */
+static double change_of(const mt_difference *d)
+{
+    const mt_reported *const t = d->told;
+    const bool numbers = t[0].type == MT_JSON_NUMBER && t[1].type == MT_JSON_NUMBER;
+    const bool percent = d->unit != NULL && strcmp(d->unit, "%") == 0;
+    return numbers && !percent && !d->provenance && t[0].number != 0.0
+               ? 100.0 * ((t[1].number - t[0].number) / fabs(t[0].number))
+               : nan("");
+}
+
+/* Integers without a unit are counts. */
+static void add_number(mt_table *t, double x, const char *unit)
+{
+    static const double LARGEST_COUNT = 1e15;
+    if (unit == NULL && x == floor(x) && fabs(x) < LARGEST_COUNT) {
+        mt_table_integer(t, (long long)x);
+    } else {
+        mt_table_number(t, x, DIGITS);
+    }
+}
+
+static void add_value(mt_table *t, const mt_reported *told, const char *unit)
+{
+    switch (told->type) {
+    case MT_JSON_NUMBER:
+        add_number(t, told->number, unit);
+        return;
+    case MT_JSON_STRING:
+        mt_table_text(t, told->text);
+        return;
+    case MT_JSON_BOOL:
+        mt_table_text(t, told->number != 0.0 ? "true" : "false");
+        return;
+    case MT_JSON_NULL:
+        mt_table_text(t, NULL);
+        return;
+    case MT_JSON_ARRAY:
+    case MT_JSON_OBJECT:
+        mt_table_text(t, "there");
+        return;
+    }
+    mt_table_text(t, "missing");
+}
+
+static mt_table make_difference_columns(bool with_part)
+{
+    mt_table t = mt_table_default();
+    if (with_part) {
+        mt_table_column(&t, "part", "part", MT_ALIGN_LEFT);
+    }
+    mt_table_column(&t, "what", "what", MT_ALIGN_LEFT);
+    mt_table_column(&t, "member", "member", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "A", "a", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "B", "b", MT_ALIGN_RIGHT);
+    mt_table_column(&t, "change [%]", "change_percent", MT_ALIGN_POINT);
+    return t;
+}
+
+static void add_difference_row(mt_table *t, const mt_difference *d, bool with_part)
+{
+    if (with_part) {
+        mt_table_text(t, d->part);
+    }
+    mt_table_text(t, d->what[0] == '\0' ? NULL : d->what);
+    mt_table_text(t, d->member[0] == '\0' ? NULL : d->member);
+    mt_table_text(t, d->unit);
+    add_value(t, &d->told[0], d->unit);
+    add_value(t, &d->told[1], d->unit);
+    mt_table_change(t, change_of(d), CHANGE_DIGITS);
+}
+
+/* Those of one part, numbers first .. last - 1, as a section; what follows from others only
+ * where there are no others. Returns how many it leaves out. */
+static int print_part(const mt_difference *items, int first, int last, bool provenance,
+                      mt_text *out)
+{
+    int left_out = 0;
+    mt_table t = make_difference_columns(false);
+    for (int pass = 0; pass < 2 && mt_table_rows(&t) == 0; pass++) {
+        left_out = 0;
+        for (int i = first; i < last; i++) {
+            const bool shown = pass == 1 || !items[i].derived;
+            if (items[i].provenance == provenance && shown) {
+                add_difference_row(&t, &items[i], false);
+            }
+            left_out += items[i].provenance == provenance && !shown ? 1 : 0;
+        }
+    }
+    if (mt_table_rows(&t) > 0) {
+        mt_text_addf(out, "\n%s\n", provenance ? "made by" : items[first].part);
+        mt_table_print(&t, 2, mt_terminal_width(), out);
+    }
+    out->failed = out->failed || t.failed;
+    mt_table_free(&t);
+    return left_out;
+}
+
+static int end_of_part(const mt_result_diff *diff, int first)
+{
+    int last = first;
+    while (last < diff->n && strcmp(diff->items[last].part, diff->items[first].part) == 0) {
+        last++;
+    }
+    return last;
+}
+
+static void print_text(const mt_args *args, const mt_result_diff *diff, mt_text *out)
+{
+    mt_text_addf(out, "A  %s\nB  %s\n", args->operands[0], args->operands[1]);
+    (void)print_part(diff->items, 0, diff->n, true, out);
+    int left_out = 0;
+    for (int first = 0; first < diff->n; first = end_of_part(diff, first)) {
+        left_out += print_part(diff->items, first, end_of_part(diff, first), false, out);
+    }
+    if (diff->of_answer == 0) {
+        mt_text_add(out, "\nThe answers are the same.\n");
+        return;
+    }
+    mt_text_addf(out, "\nThe answers differ in %d member%s", diff->of_answer,
+                 diff->of_answer == 1 ? "" : "s");
+    if (left_out > 0) {
+        mt_text_addf(out, "; %d of them follow from the others and are left out here",
+                     left_out);
+    }
+    mt_text_add(out, ".\n");
+}
+
+static void put_value(mt_json_writer *w, const char *name, const mt_reported *t)
+{
+    if (t->type == MT_JSON_NUMBER) {
+        mt_json_put_number(w, name, t->number);
+    } else if (t->type == MT_JSON_STRING) {
+        mt_json_put_string(w, name, t->text);
+    } else if (t->type == MT_JSON_BOOL) {
+        mt_json_put_bool(w, name, t->number != 0.0);
+    } else {
+        mt_json_put_null(w, name);
+    }
+}
+
+static void put_differences(mt_json_writer *w, const char *name, const mt_result_diff *diff,
+                            bool provenance)
+{
+    mt_json_open(w, name, '[');
+    for (int i = 0; i < diff->n; i++) {
+        const mt_difference *const d = &diff->items[i];
+        if (d->provenance != provenance) {
+            continue;
+        }
+        mt_json_open(w, NULL, '{');
+        mt_json_put_string(w, "part", d->part);
+        mt_json_put_string(w, "what", d->what);
+        mt_json_put_string(w, "member", d->member[0] == '\0' ? NULL : d->member);
+        mt_json_put_string(w, "unit", d->unit);
+        put_value(w, "a", &d->told[0]);
+        put_value(w, "b", &d->told[1]);
+        mt_json_put_number(w, "change_percent", change_of(d));
+        mt_json_put_string(w, "pointer_a", d->pointer[0]);
+        mt_json_put_string(w, "pointer_b", d->pointer[1]);
+        mt_json_put_bool(w, "derived", d->derived);
+        mt_json_close(w);
+    }
+    mt_json_close(w);
+}
+
+static int print_differences(const mt_args *args, const mt_result_diff *diff, mt_text *out)
+{
+    if (args->format == MT_FORMAT_JSON) {
+        mt_json_writer w = mt_json_writer_default(out);
+        mt_json_open(&w, NULL, '{');
+        mt_json_put_string(&w, "a", args->operands[0]);
+        mt_json_put_string(&w, "b", args->operands[1]);
+        mt_json_put_number(&w, "rel_tol", args->rel_tol);
+        mt_json_put_number(&w, "abs_tol", args->abs_tol);
+        mt_json_put_bool(&w, "same", diff->of_answer == 0);
+        put_differences(&w, "made_by", diff, true);
+        put_differences(&w, "differences", diff, false);
+        mt_json_close(&w);
+        return mt_cli_json_done(&w);
+    }
+    if (args->format == MT_FORMAT_CSV) {
+        mt_table t = make_difference_columns(true);
+        for (int i = 0; i < diff->n; i++) {
+            add_difference_row(&t, &diff->items[i], true);
+        }
+        mt_table_csv(&t, out);
+        mt_table_free(&t);
+    } else {
+        print_text(args, diff, out);
+    }
+    return MT_EXIT_DONE;
+}
+
+int mt_cmd_diff(const mt_args *args, mt_text *out)
+{
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.code = MT_OK};
+    mt_result_diff diff = {.n = 0};
+    const char *const paths[SIDES] = {args->operands[0], args->operands[1]};
+    const mt_diff_tolerance tol = {args->rel_tol, args->abs_tol};
+    const mt_status rc =
+        mt_result_diff_find(paths, tol, args->value[MT_OPT_ROOT], &diff, &messages, &err);
+    int code = mt_cli_loaded(rc, &messages, &err);
+    if (rc == MT_OK) {
+        const bool same = diff.of_answer == 0;
+        code = mt_exit_worse(same ? MT_EXIT_DONE : MT_EXIT_GOALS,
+                             print_differences(args, &diff, out));
+    }
+    mt_result_diff_free(&diff);
+    return code;
+}
