@@ -5,6 +5,8 @@
 #include "modetune/study.h"
 
 #include <math.h>
+#include <stdatomic.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include "base/base.h"
@@ -230,4 +232,12 @@ mt_status mt_solve_json(const char *study, const mt_read_options *read,
     mt_result_delete(answer);
     mt_study_delete(question);
     return rc;
+}
+
+/* A request to stop as an int of the caller. */
+
+int mt_stop_request_at(void *stop)
+{
+    /* the int of a caller who sees to it, or whose language does, that it is written at once */
+    return stop == NULL ? MT_STOP_REQUEST_NONE : atomic_load((atomic_int *)stop);
 }
