@@ -256,7 +256,7 @@ static int add_named(shipped_copy *copies, int n)
 
 int mt_cmd_examples(const mt_args *args, mt_text *out)
 {
-    shipped_copy copies[SHIPPED_MOST];
+    shipped_copy copies[SHIPPED_MOST] = {{NULL, NULL}};
     mt_err err = {.code = MT_OK};
     int n = 0;
     if (args->n_operands == 0) {

@@ -5,8 +5,8 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "base/tie.h"
-#include "base/work_counters.h"
+#include "base/number.h"
+#include "base/run.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"
 #include "problem/objective.h"

@@ -4,12 +4,11 @@
  * over its limit; limits are relative (a ratio's logarithm), bounds are in t, which is chained
  * to the parameter here. The change enters the search as half its square: dc = df / c.
  */
-#include "describe/describe_reasons_priv.h"
-
 #include <math.h>
 #include <string.h>
 
-#include "base/tie.h"
+#include "base/number.h"
+#include "describe/describe_reasons_priv.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"
 #include "problem/objective.h"

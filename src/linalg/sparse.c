@@ -320,7 +320,7 @@ mt_status mt_factor_analyse(const mt_lower *h, const int *part, mt_arena *mem,
 {
     mt_factor_pattern *const p = mt_arena_alloc(mem, 1, sizeof *p);
     mt_arena scratch = {.first = NULL};
-    mt_cholmod cholmod;
+    mt_cholmod cholmod = {.start = NULL};
     cholmod_common c;
     *out = NULL;
     MT_TRY(mt_arena_check(mem, err));

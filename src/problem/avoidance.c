@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "analysis/count.h"
-#include "base/tie.h"
+#include "base/number.h"
 #include "problem/configuration.h"
 #include "problem/drive_positions.h"
 #include "problem/frequency.h"

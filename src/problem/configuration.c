@@ -6,8 +6,7 @@
 #include <math.h>
 
 #include "analysis/count.h"
-#include "base/progress.h"
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "problem/problem.h"
 #include "problem/workspace.h"
 

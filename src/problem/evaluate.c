@@ -8,9 +8,7 @@
 #include <string.h>
 
 #include "base/format.h"
-#include "base/interrupt.h"
-#include "base/progress.h"
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "nlp/merit.h"
 #include "problem/avoidance.h"
 #include "problem/drive_positions.h"

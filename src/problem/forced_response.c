@@ -14,15 +14,16 @@
 #include "analysis/damping.h"
 #include "problem/frequency.h"
 #include "problem/goals.h"
-#include "vibration/profiled.h"
+#include "vibration/profile_response.h"
 
 static const double TWO_PI = 6.283185307179586476925;
 
 /*
- * Without a sum over poles: adaptive curves (response/curve.h) and quadrature,
+ * Without a sum over poles: adaptive curves (response/curves.h) and quadrature,
  *     RMS^2 = integral |H|^2 G df = sum_j |H(w_j)|^2 g_j,
- * the nodes w_j those of Gauss's rule for ln w between any two neighbours among the points of a curve and the breakpoints of G. The
- * largest value has no bound: its excess is NaN. Memory is r->mem.
+ * the nodes w_j those of Gauss's rule for ln w between any two neighbours among the points of a
+ * curve and the breakpoints of G. The largest value has no bound: its excess is NaN. Memory is
+ * r->mem.
  */
 enum { CURVE_POINTS = 33, NODES = 4 };
 static const double NODE[NODES] = {-0.8611363115940525752, -0.3399810435848562648,

@@ -21,7 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "problem/configuration.h"
 #include "problem/forced_response.h"
 #include "problem/goals.h"

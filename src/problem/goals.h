@@ -9,7 +9,8 @@ struct mt_forced_response_value;
 /*
  * The operations of a kind of goal (goals.c, goal_<kind>.c); its description in files is in
  * study/goal_kinds.h. Most kinds are a value q with a slope, limited to an interval; rows,
- * residuals, violations, relaxations, proofs and sentences follow from q and the kind's measure,
+ * residuals, violations, relaxations, proofs and sentences follow from q and the kind's
+ * measure,
  *     ratio        row = ln(q / limit)           slope d ln q / dt (infinite q: w->beyond)
  *     part         row = (q - limit) / |limit|   slope dq / dt (divided by 1 where limit is 0)
  *     difference   row = q - limit               slope dq / dt

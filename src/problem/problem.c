@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/progress.h"
+#include "base/run.h"
 #include "model/values.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/interrupt.h"
+#include "base/run.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"
 #include "problem/evaluate.h"

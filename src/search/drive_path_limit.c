@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"
 #include "problem/requirement.h"

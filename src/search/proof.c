@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/format.h"
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "problem/configuration.h"
 #include "problem/requirement.h"
 #include "prove/shaping.h"

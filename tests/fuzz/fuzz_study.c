@@ -12,7 +12,7 @@
 
 #include "common/fuzz.h"
 #include "io/io.h"
-#include "linalg/blas.h"
+#include "linalg/dense.h"
 #include "problem/evaluate.h"
 #include "problem/workspace.h"
 #include "report/html.h"

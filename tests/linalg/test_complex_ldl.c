@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "linalg/complex.h"
 #include "linalg/ldl.h"
 #include "support/mt_random.h"
 #include "support/mt_test.h"
