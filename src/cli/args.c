@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/format.h"
+#include "base/possible.h"
 #include "base/workers.h"
 #include "cli/limits.h"
-#include "model/possible.h"
 #include "response/curve.h"
 #include "study/study.h"
 

@@ -12,10 +12,10 @@
 #include "cli/args.h"
 #include "cli/limits.h"
 #include "cli/manual.h"
-#include "io/result_folder.h"
-#include "io/result_model.h"
 #include "mechanics/redundant.h"
 #include "report/table.h"
+#include "result/folder.h"
+#include "result/model.h"
 
 /* What the commands share: how they say what went wrong, and facts that several tell. */
 

@@ -8,10 +8,10 @@
 
 #include "cli/cli.h"
 #include "cli/save.h"
-#include "io/result_diff.h"
 #include "library/scene_designs.h"
 #include "report/explain.h"
 #include "report/table.h"
+#include "result/diff.h"
 
 /* modetune report: a result read back and told again, from itself alone; where its model is
  * found, pages show the mechanism, too. */

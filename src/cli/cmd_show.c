@@ -9,11 +9,11 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/folder.h"
-#include "io/write_scene.h"
 #include "library/scene_designs.h"
 #include "report/page.h"
 #include "report/table.h"
 #include "scene/scene.h"
+#include "scene/write.h"
 
 /*
  * Isometric: the eye looks along (-1, -1, -1), every axis is as long as the others. With e3 up

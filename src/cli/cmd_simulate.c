@@ -8,6 +8,7 @@
 #include "base/run.h"
 #include "cli/cli.h"
 #include "cli/vibrated.h"
+#include "environment/vibration.h"
 #include "mechanics/drive.h"
 #include "model/values.h"
 #include "report/table.h"
@@ -15,7 +16,6 @@
 #include "simulate/reading.h"
 #include "simulate/realise.h"
 #include "simulate/start.h"
-#include "study/vibration.h"
 #include "vibration/profile_response.h"
 
 /* The quantity of a gauge in an output. */

@@ -4,7 +4,7 @@
 
 #include "base/sha256.h"
 #include "cli/args.h"
-#include "io/io.h"
+#include "io/write_json.h"
 #include "result/result.h"
 
 /* Check, before anything is run, that every study has its own folder. Returns MT_EXIT_DONE, or

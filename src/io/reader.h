@@ -3,9 +3,11 @@
 #define IO_READER_H
 
 #include "base/diagnostics.h"
+#include "base/document.h"
+#include "base/possible.h"
 #include "expr/expr.h"
+#include "expr/kind.h"
 #include "io/json.h"
-#include "model/model.h"
 
 /*
  * Shared by the readers of models and studies. Objects are checked against key tables, values
@@ -72,7 +74,7 @@ typedef struct mt_key {
 } mt_key;
 
 /* The last columns of a key table: required, and for members with numbers their row of
- * model/possible.h. */
+ * base/possible.h. */
 #define MT_KEY_REST(...) MT_KEY_REST_OF(__VA_ARGS__, NONE, )
 #define MT_KEY_REST_OF(given, numbers, ...) \
     .required = (given), .possible = MT_POSSIBLE_##numbers
@@ -96,7 +98,7 @@ enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
  * latter is noted.
  */
 bool mt_reader_object(mt_reader *r, mt_addr value, const mt_key_table *table, mt_addr *found);
-/* The row of model/possible.h of a recently matched member. */
+/* The row of base/possible.h of a recently matched member. */
 mt_possible_id mt_reader_possible(const mt_reader *r, mt_addr value);
 /* Check a number (NaN: not known), the value of a recently matched member or an item of it,
  * against the member's row: an impossible value is noted ("weight (0) must be above 0"), an

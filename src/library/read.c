@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading and writing for users of the library: the same as for the program. */
+#include "model/read.h"
+
 #include "modetune/model.h"
 #include "modetune/profile.h"
 #include "modetune/study.h"
@@ -10,10 +12,14 @@
 #include <stdlib.h>
 
 #include "base/base.h"
-#include "io/io.h"
-#include "io/result_model.h"
+#include "environment/read_profile.h"
+#include "io/options.h"
 #include "library/scene_designs.h"
 #include "report/html.h"
+#include "result/model.h"
+#include "result/read.h"
+#include "result/write.h"
+#include "study/read.h"
 
 /* What a study is called that comes as a text. */
 static const char STUDY_PATH[] = "study.json";

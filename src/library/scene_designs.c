@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/write_scene.h"
 #include "model/lint.h"
+#include "scene/write.h"
 
 mt_status mt_scene_name_modes(const mt_model *m, mt_arena *mem, mt_scene_query *ask,
                               mt_err *err)

@@ -2,8 +2,8 @@
 #ifndef MODEL_LINT_PRIV_H
 #define MODEL_LINT_PRIV_H
 
+#include "base/possible.h"
 #include "model/lint.h"
-#include "model/possible.h"
 
 /* Shared by the files lint*.c: one configuration, its numbers, and its warnings. */
 typedef struct mt_lint {

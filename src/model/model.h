@@ -6,10 +6,11 @@
 
 #include "base/arena.h"
 #include "base/diagnostics.h"
+#include "base/document.h"
+#include "base/possible.h"
 #include "expr/expr.h"
 #include "expr/kind.h"
 #include "expr/units.h"
-#include "model/possible.h"
 
 /*
  * The description of one mechanism and its configurations. A reader fills the lists (names,
@@ -18,12 +19,9 @@
  * expressions of parameters: values belong to a configuration (mechanics instantiates it).
  * Geometry: the reference position, global coordinates [m]; angles [rad].
  */
-enum { MT_ABSENT = -1, MT_GROUND = -1, MT_MAX_LIST = 100000 };
+enum { MT_GROUND = -1 };
 /* Greatest number of elements of a link, and of entries listed for them. */
 enum { MT_MAX_ELEMENTS = 1000000 };
-/* Greatest position of a drive from the reference position: rad (159 turns), or lengths of the
- * mechanism. It is approached in steps of at most a tenth. */
-enum { MT_DRIVE_REACH = 1000 };
 /* Greatest product of configurations and (numbers and items) of a model: every configuration is
  * checked with all its numbers. */
 enum { MT_MAX_CONFIGURED = 10000000 };
@@ -38,30 +36,12 @@ typedef struct mt_number {
     const char *unit_warning; /* why its unit does not fit the member; NULL: it fits */
 } mt_number;
 
-/* A name in the file: text and location. s == NULL: absent. */
-typedef struct mt_name {
-    const char *s;
-    mt_addr addr;
-} mt_name;
-
-typedef struct mt_name_list {
-    int count;
-    mt_name *items;
-} mt_name_list;
-
 /* `in`: which configurations contain an item. */
 typedef struct mt_presence {
     bool given;         /* false: all configurations */
     mt_name_list names; /* as written */
     bool *present;      /* [n_configurations], resolved through `like`; NULL: all */
 } mt_presence;
-
-typedef enum mt_origin {
-    MT_ORIGIN_NONE,
-    MT_ORIGIN_PUBLISHED,
-    MT_ORIGIN_IDENTIFIED,
-    MT_ORIGIN_ASSUMED
-} mt_origin;
 
 typedef struct mt_parameter {
     mt_name name;
@@ -400,11 +380,6 @@ typedef struct mt_setting {
     double value;
     double original; /* the file's */
 } mt_setting;
-
-#define MT_LIST_OF(type, name) \
-    type *name;                \
-    int n_##name;              \
-    int cap_##name
 
 typedef struct mt_model {
     mt_arena mem;     /* owns everything below; freed by mt_model_delete */

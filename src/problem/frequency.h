@@ -2,8 +2,8 @@
 #ifndef PROBLEM_FREQUENCY_H
 #define PROBLEM_FREQUENCY_H
 
+#include "environment/bands.h"
 #include "problem/workspace.h"
-#include "study/bands.h"
 
 /*
  * Rows in ln f. A spring of stiffness 0 gives f = 0 and df/dk infinite, while d(f^2)/dk is

@@ -3,9 +3,9 @@
 #define PROBLEM_PROBLEM_H
 
 #include "analysis/tracking.h"
+#include "environment/bands.h"
 #include "problem/reference.h"
 #include "problem/subproblem.h"
-#include "study/bands.h"
 #include "study/study.h"
 
 /*

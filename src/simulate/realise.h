@@ -2,8 +2,8 @@
 #ifndef SIMULATE_REALISE_H
 #define SIMULATE_REALISE_H
 
+#include "environment/vibration.h"
 #include "simulate/simulate.h"
-#include "study/vibration.h"
 
 /* One realisation of a profile of vibration as a motion of the ground: random parts first, then
  * tones, each of which stays at its frequency or sweeps its range once. */

@@ -2,8 +2,8 @@
 #ifndef SIMULATE_SIGNAL_H
 #define SIMULATE_SIGNAL_H
 
+#include "environment/psd.h"
 #include "expr/program.h"
-#include "study/psd.h"
 
 /* A function of time: a force, an acceleration of the ground or a motion of a drive. */
 typedef enum mt_signal_kind {

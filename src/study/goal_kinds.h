@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "model/possible.h"
+#include "base/possible.h"
 
 /*
  * The kinds of goals as a table: their names in files, the members that each reads, the
@@ -13,7 +13,7 @@
  *
  * X(slot, name, type, required, row) for each member: its place in an mt_goal, its name in
  * files, its type there (MT_KEY_... of io/reader.h), true where it is required, and the row of
- * model/possible.h with its possible numbers.
+ * base/possible.h with its possible numbers.
  */
 #define MT_GOAL_ANY(X)                               \
     X(TYPE, "type", TEXT, true, NONE)                \

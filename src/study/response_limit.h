@@ -2,7 +2,7 @@
 #ifndef STUDY_RESPONSE_LIMIT_H
 #define STUDY_RESPONSE_LIMIT_H
 
-#include "study/vibration.h"
+#include "environment/vibration.h"
 
 /* The quantity of a forced vibration that a goal limits. */
 typedef enum mt_response_limit_quantity {

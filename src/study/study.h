@@ -5,12 +5,12 @@
 #include "modetune/study.h"
 
 #include "base/diagnostics.h"
+#include "environment/aircraft.h"
+#include "environment/bands.h"
+#include "measurement/measurement.h"
 #include "model/count_box.h"
 #include "model/model.h"
-#include "study/aircraft.h"
-#include "study/bands.h"
 #include "study/goal_kinds.h"
-#include "study/measurement.h"
 #include "study/objective_kinds.h"
 #include "study/response_limit.h"
 
@@ -19,10 +19,8 @@
  * reader (io), checked by mt_study_finish, then immutable. Numbers of a study are expressions
  * of the model's parameters evaluated once at the original design (plain doubles here), except
  * those that must follow the design: limit.expression, objective.expression, published.quantity
- * (mt_expr). NaN (nan("")) stands for "not given" in the doubles below; MT_HAS(x) is true where
- * x is given.
+ * (mt_expr). NaN (nan("")) stands for "not given" in the doubles below.
  */
-#define MT_HAS(x) ((x) == (x))
 
 /* Default tolerance of a goal, in percent of its limit or target: far below what an engineer
  * can build, far above rounding. */

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "study/rotor.h"
+#include "environment/rotor.h"
 
 static void check_intervals(mt_study_check *c, const mt_bands_source *source)
 {

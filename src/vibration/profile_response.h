@@ -2,8 +2,8 @@
 #ifndef VIBRATION_PROFILE_RESPONSE_H
 #define VIBRATION_PROFILE_RESPONSE_H
 
+#include "environment/vibration.h"
 #include "response/response.h"
-#include "study/vibration.h"
 #include "vibration/sine.h"
 #include "vibration/spectral.h"
 

@@ -12,6 +12,7 @@
 #include <glob.h>
 
 #include "describe/describe.h"
+#include "result/write.h"
 #include "study_kinds.h"
 
 enum { PLACES = 50, PATH_SIZE = 600 };

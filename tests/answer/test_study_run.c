@@ -7,6 +7,7 @@
 #include "answer/solve.h"
 #include "describe/describe.h"
 #include "mt_alloc.h"
+#include "result/write.h"
 #include "study_fixture.h"
 
 #define MODEL STUDY_TWO_MASSES("'k1': 2.9, 'k2': 1.05, 'm': 1", "")

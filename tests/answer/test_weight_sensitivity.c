@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "io/io.h"
 #include "mt_test.h"
 #include "result/result.h"
+#include "study/read.h"
 #include "study/study.h"
 
 static const char MODEL[] =

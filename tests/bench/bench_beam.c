@@ -15,8 +15,9 @@
 #include "bare.h"
 #include "exact.h"
 #include "exact_beam.h"
-#include "io/io.h"
+#include "io/options.h"
 #include "result/result.h"
+#include "study/read.h"
 #include "study/study.h"
 #include "timing.h"
 

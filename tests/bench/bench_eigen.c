@@ -17,7 +17,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/lowest.h"
-#include "io/io.h"
+#include "model/read.h"
 #include "model/values.h"
 #include "timing.h"
 

@@ -15,9 +15,10 @@
 
 #include "bare.h"
 #include "exact.h"
-#include "io/io.h"
+#include "io/options.h"
 #include "problem/evaluate.h"
 #include "problem/workspace.h"
+#include "study/read.h"
 #include "timing.h"
 
 enum { PATH_LENGTH = 4096, MOST_VIEWS = 16 };

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/io.h"
+#include "model/read.h"
 #include "response/response.h"
 #include "timing.h"
 

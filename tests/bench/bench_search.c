@@ -22,12 +22,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/io.h"
+#include "io/options.h"
 #include "problem/evaluate.h"
 #include "problem/problem.h"
 #include "problem/workspace.h"
 #include "result/result.h"
 #include "search/mode_placements.h"
+#include "study/read.h"
 #include "timing.h"
 
 enum { LEVELS = 11, STARTS = 9, QUICK_STARTS = 2, MOST = 64 };

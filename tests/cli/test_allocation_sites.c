@@ -47,7 +47,7 @@ enum {
 enum { FULL = 100, SOME = 25, FEW = 10 };
 
 #define MODELS "tests/models/"
-#define WRONG  "tests/io/wrong/"
+#define WRONG  "tests/documents/wrong/"
 static struct {
     /* separated by blanks; @: a folder for results, empty before each run; %: one with a
      * result */
@@ -89,8 +89,8 @@ static struct {
      FULL},
     {"sweep --drive pivo=-0.1:0.1:3 --format csv " MODELS "driven_rod.json", MT_EXIT_INPUT,
      FULL},
-    {"simulate --vibration base.y=tests/io/good/profile.json -c still --duration 0.01 " MODELS
-     "four_bar.json",
+    {"simulate --vibration base.y=tests/documents/good/profile.json -c still --duration "
+     "0.01 " MODELS "four_bar.json",
      MT_EXIT_DONE, SOME},
     {"simulate -c loaded --duration 0.02 --start jA=0.1 --rate jA=1 " MODELS
      "space_four_bar.json",
@@ -103,7 +103,8 @@ static struct {
      "--format csv " MODELS "four_bar.json",
      MT_EXIT_DONE, FULL},
     {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE, FULL},
-    {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
+    {"check tests/documents/good/study_full.json problems/aircraft.json "
+     "studies/engine_orders.json",
      MT_EXIT_INPUT, FULL},
     {"check --format csv " WRONG "dampers.json " WRONG "study_unknown_names.json",
      MT_EXIT_INPUT, FULL},
@@ -114,7 +115,7 @@ static struct {
     {"check --format json " WRONG "study_model_outside.json " WRONG "study_model_missing.json",
      MT_EXIT_INPUT, FULL},
     {"check %/engine_orders/result.json", MT_EXIT_DONE, FULL},
-    {"profile --spectrum 10:90:3 tests/io/good/profile.json", MT_EXIT_DONE, FULL},
+    {"profile --spectrum 10:90:3 tests/documents/good/profile.json", MT_EXIT_DONE, FULL},
     {"profile --format json helicopter_uh60_cargo", MT_EXIT_DONE, FULL},
     {"profile --format csv white", MT_EXIT_DONE, FULL},
     {"profile " WRONG "profile_tones.json", MT_EXIT_INPUT, FULL},
@@ -166,7 +167,8 @@ static struct {
     {"response --vibration helicopter_uh60_panel --input base.x -c still --points 3 " MODELS
      "four_bar.json",
      MT_EXIT_DONE, FULL},
-    {"response --vibration tests/io/good/profile.json --input base.y --format json -c still "
+    {"response --vibration tests/documents/good/profile.json --input base.y --format json -c "
+     "still "
      "--points 3 " MODELS "four_bar.json",
      MT_EXIT_DONE, SOME},
     {"response --input tip.x --format json --sensitivity a,k -c still --points 3 " MODELS

@@ -44,7 +44,7 @@ SARIF = closed({
 PROBLEM = closed({"file": {"type": "string"}, "line": {"type": ["integer", "null"], "minimum": 1}, "column": {"type": ["integer", "null"], "minimum": 1},
                   "pointer": {"type": ["string", "null"], "pattern": "^(/.*)?$"}, "severity": LEVEL, "message": {"type": "string", "minLength": 1}})
 IS_SARIF, IS_PROBLEM = (jsonschema.Draft7Validator(schema) for schema in (SARIF, PROBLEM))
-WRONG = sorted((SOURCE / "tests/io/wrong").glob("*.json"))
+WRONG = sorted((SOURCE / "tests/documents/wrong").glob("*.json"))
 
 
 class CheckFormats(CliTest):

@@ -48,14 +48,16 @@ static const struct {
     {"response --input tip.x --output tip.y:velocity --sensitivity k -c still --points 3 "
      "--from 1 --to 2 " MODELS "four_bar.json",
      MT_EXIT_DONE},
-    {"response --vibration tests/io/good/profile.json --input base.y -c still --points 3 "
+    {"response --vibration tests/documents/good/profile.json --input base.y -c still --points "
+     "3 "
      "--format csv " MODELS "four_bar.json",
      MT_EXIT_DONE},
     {"info " MODELS "space_stick.json", MT_EXIT_DONE},
     {"info --format json " MODELS "space_four_bar.json", MT_EXIT_DONE},
     {"info --format csv " MODELS "four_bar.json", MT_EXIT_DONE},
     {"sweep --drive pivot=-0.1:0.1:3 --modes " MODELS "driven_rod.json", MT_EXIT_DONE},
-    {"simulate --vibration base.y=tests/io/good/profile.json -c still --duration 0.01 --format "
+    {"simulate --vibration base.y=tests/documents/good/profile.json -c still --duration 0.01 "
+     "--format "
      "json " MODELS "four_bar.json",
      MT_EXIT_DONE},
     {"simulate -c still --start jA=0.1 --rate jA=1 --duration 0.05 --format json " MODELS
@@ -68,10 +70,12 @@ static const struct {
      "four_bar.json",
      MT_EXIT_DONE},
     {"check --format json tests/schema/space.json tests/schema/plane.json", MT_EXIT_DONE},
-    {"check tests/io/good/study_full.json problems/aircraft.json studies/engine_orders.json",
+    {"check tests/documents/good/study_full.json problems/aircraft.json "
+     "studies/engine_orders.json",
      MT_EXIT_INPUT},
-    {"check tests/io/wrong/dampers.json", MT_EXIT_INPUT},
-    {"check --format sarif tests/io/wrong/dampers.json tests/schema/plane.json", MT_EXIT_INPUT},
+    {"check tests/documents/wrong/dampers.json", MT_EXIT_INPUT},
+    {"check --format sarif tests/documents/wrong/dampers.json tests/schema/plane.json",
+     MT_EXIT_INPUT},
     {"run --threads 1 -o @ --quiet studies/engine_orders.json", MT_EXIT_DONE},
     {"run --threads 1 -o @ --quiet studies/inceptor_tuning_2.json", MT_EXIT_DONE},
     {"compare --threads 1 --format json studies/inceptor_catalogue.json", MT_EXIT_DONE},
@@ -79,9 +83,9 @@ static const struct {
     {"check @/engine_orders/result.json", MT_EXIT_DONE},
     {"examples", MT_EXIT_DONE},
     {"schema --format json", MT_EXIT_DONE},
-    {"profile --spectrum 10:90:3 tests/io/good/profile.json", MT_EXIT_DONE},
+    {"profile --spectrum 10:90:3 tests/documents/good/profile.json", MT_EXIT_DONE},
     {"profile --format json helicopter_uh60_cargo", MT_EXIT_DONE},
-    {"check tests/io/wrong/profile_members.json", MT_EXIT_INPUT},
+    {"check tests/documents/wrong/profile_members.json", MT_EXIT_INPUT},
     {"diff @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},
     {"diff --format json @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},
     {"diff --rel-tol 0.1 --format csv @/engine_orders @/inceptor_tuning_2", MT_EXIT_GOALS},

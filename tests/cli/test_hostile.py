@@ -25,8 +25,8 @@ SECONDS = 60 if INSTRUMENTED else 3  # of the processor; no file of that size ta
 MEMORY = "1G"
 TALK = 400_000  # bytes of messages: at most 200 lines
 STATES = {0, 1, 2, 3, 4}
-FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/io/good/study_full.json", "tests/io/good/study_bands.json",
-         "tests/io/good/aircraft.json", "tests/io/good/profile.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
+FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/documents/good/study_full.json", "tests/documents/good/study_bands.json",
+         "tests/documents/good/aircraft.json", "tests/documents/good/profile.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
          "studies/six_masses_bands.json", "tests/models/space_couplings.json"]
 COMMANDS = {"model": [("modes",), ("info",), ("sensitivity", "--count", "2")], "study": [("run", "-o", "out", "--quiet")]}
 knobs = argparse.Namespace(size=500 if INSTRUMENTED else 2000 if EVERY else 1000, count=20 if EVERY else 6, seed=4)
@@ -88,8 +88,8 @@ class Hostile(CliTest):
             if not (root / folder).exists():
                 (root / folder).mkdir(parents=True)
         for other in ("problems/inceptor.json", "problems/engine_accessory.json", "problems/aircraft.json",
-                      "problems/six_masses.json", "tests/io/wrong/parts/model.json", "tests/models/six_masses.json",
-                      "tests/io/good/aircraft.json"):
+                      "problems/six_masses.json", "tests/documents/wrong/parts/model.json", "tests/models/six_masses.json",
+                      "tests/documents/good/aircraft.json"):
             if (SOURCE / other).exists():
                 (root / other).parent.mkdir(parents=True, exist_ok=True)
                 (root / other).write_bytes((SOURCE / other).read_bytes())

@@ -18,22 +18,22 @@ STICK = {
 }
 
 
-# Functions that rows of src/model/possible.c name, and what drives each from both sides: a test here, of doubts, or a wrong file.
+# Functions that rows of src/base/possible.c name, and what drives each from both sides: a test here, of doubts, or a wrong file.
 WITH = {
-    "nonzero": "tests/io/wrong/structure_space.json", "lint_matrix": "tests/io/wrong/structure_space.json",
-    "lint_axes": "tests/io/wrong/structure_space.json", "lint_line": "test_a_bound_at_which_points_coincide",
+    "nonzero": "tests/documents/wrong/structure_space.json", "lint_matrix": "tests/documents/wrong/structure_space.json",
+    "lint_axes": "tests/documents/wrong/structure_space.json", "lint_line": "test_a_bound_at_which_points_coincide",
     "mt_lint_tensor": "test_inertia_by_expressions_configurations_and_bounds", "lint_section": "test_bounds_at_which_nothing_can_be_built",
     "lint_stout": "test_values_of_a_model", "lint_drive": "test_values_of_a_model", "lint_stroke": "test_a_stroke_longer_than_the_drawing",
-    "lint_gravity": "test_values_of_a_model", "mt_reader_count": "tests/io/wrong/study_counts.json",
+    "lint_gravity": "test_values_of_a_model", "mt_reader_count": "tests/documents/wrong/study_counts.json",
     "warn_target": "test_values_of_a_study", "warn_reference": "test_measured_frequencies_in_other_units",
 }
 # ... and functions that the test of studies, profiles and catalogues drives member by member, each from both sides.
-BY_MEMBER = "tests/io/test_possible_files.c"
+BY_MEMBER = "tests/documents/test_possible_files.c"
 
 
 class Possible(CliTest):
     def test_every_function_that_a_row_names_is_there_and_driven(self):
-        rows = (SOURCE / "src/model/possible.c").read_text(encoding="utf-8")
+        rows = (SOURCE / "src/base/possible.c").read_text(encoding="utf-8")
         named = set(re.findall(r'\.with = "(\w+)"', rows))
         kinds = re.search(r"ANALYSED\[\] = \{(.*?)\}", (SOURCE / BY_MEMBER).read_text(encoding="utf-8"))[1]
         self.assertEqual(set(re.findall(r'"(\w+)"', kinds)), {"warn_target", "warn_reference"})

@@ -2,7 +2,7 @@
 """A generator of wrong files: every model, study, profile of vibration and catalogue of aircraft of the tree, and models that chance
 makes, with one number that cannot be or hardly is, for each numeric member of its schema at each place where it stands. A change
 that `check` passes in silence fails, and so does one that is told elsewhere; so does a numeric member that nothing here changes
-(MT_EVERY=1: all places, not one of each member). Edges are driven by tests/io/test_possible.c and test_possible_files.c, slips of
+(MT_EVERY=1: all places, not one of each member). Edges are driven by tests/documents/test_possible.c and test_possible_files.c, slips of
 several numbers by test_wrong_models.py; here it is every file that has to be read with care."""
 import copy
 import json
@@ -16,7 +16,7 @@ sys.path.insert(0, str(SOURCE / "tests/mechanisms"))
 from makers import KINDS as MECHANISMS  # noqa: E402
 
 PLACES = 10 ** 6 if "MT_EVERY" in os.environ else 1
-FOLDERS = ("studies", "src/cli/init", "tests/models", "tests/schema", "tests/io/good", "problems", "problems/profiles", "tests/bench/studies")
+FOLDERS = ("studies", "src/cli/init", "tests/models", "tests/schema", "tests/documents/good", "problems", "problems/profiles", "tests/bench/studies")
 KINDS = ("model", "study", "profile", "aircraft")
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A generator of wrong files: every model of the tree with one change that makes it impossible or implausible, for each place where
 the change can be made. A change that `check` passes in silence fails, and so does one that is told elsewhere. Numbers by
-themselves are driven by tests/io/test_possible.c; here is what a slip does to several at once (MT_EVERY=1: all places, not one of
+themselves are driven by tests/documents/test_possible.c; here is what a slip does to several at once (MT_EVERY=1: all places, not one of
 each kind in a model)."""
 import copy
 import json

@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "common/fuzz.h"
-#include "io/io.h"
+#include "environment/read_aircraft.h"
+#include "io/options.h"
+#include "io/write_json.h"
+#include "study/read.h"
 
 /* The study names what the catalogue lists first. */
 static void use(const char *name)

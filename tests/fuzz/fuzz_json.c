@@ -4,8 +4,9 @@
  * model. Whatever happens, the messages are lines of visible text.
  */
 #include "common/fuzz.h"
-#include "io/io.h"
+#include "io/json.h"
 #include "io/json_print.h"
+#include "model/read.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "common/fuzz.h"
-#include "io/io.h"
-#include "io/read_measurement.h"
+#include "io/options.h"
+#include "measurement/read.h"
 
 enum { LIKE_THEM = 12 };
 

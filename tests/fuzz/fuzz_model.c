@@ -10,11 +10,12 @@
 #include "analysis/damping.h"
 #include "answer/warnings.h"
 #include "common/fuzz.h"
-#include "io/io.h"
+#include "io/json.h"
 #include "io/json_print.h"
 #include "linalg/dense.h"
 #include "mechanics/info.h"
 #include "mechanics/sweep.h"
+#include "model/read.h"
 #include "model/values.h"
 
 /* Stiffness over mass [rad^2/s^2] beyond which slopes, products of two such numbers, may be no

@@ -3,7 +3,8 @@
 #include <math.h>
 
 #include "common/fuzz.h"
-#include "io/io.h"
+#include "environment/read_profile.h"
+#include "io/options.h"
 #include "vibration/profile_response.h"
 
 enum { MOST_PARTS = 20 };

@@ -6,10 +6,12 @@
 
 #include "cli/cli.h"
 #include "common/fuzz.h"
-#include "io/io.h"
+#include "io/json.h"
 #include "report/html.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
+#include "result/read.h"
+#include "result/write.h"
 
 static void show(const mt_result *r)
 {

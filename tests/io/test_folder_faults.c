@@ -22,10 +22,12 @@
 
 #include "io/file.h"
 #include "io/folder.h"
-#include "io/io.h"
 #include "mt_faults.h"
 #include "mt_random.h"
 #include "mt_test.h"
+#include "result/folder.h"
+#include "result/read.h"
+#include "result/write.h"
 
 enum { LENGTH = 200, CHILD_MEMORY = 77, OTHERS = 8 };
 

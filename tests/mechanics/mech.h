@@ -9,7 +9,8 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "io/io.h"
+#include "io/json.h"
+#include "model/read.h"
 #include "support/mt_test.h"
 
 enum { MECH_PATH = 512, MECH_INPUTS = 16 };

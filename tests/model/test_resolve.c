@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models made in memory. What files can have wrong is in tests/io/wrong. */
+/* Models made in memory. What files can have wrong is in tests/documents/wrong. */
 #include "modetune/model.h"
 
 #include <stdio.h>

@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "base/text.h"
-#include "io/io.h"
 #include "io/json.h"
+#include "model/read.h"
 #include "model/values.h"
 #include "mt_test.h"
 

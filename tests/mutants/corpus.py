@@ -65,7 +65,7 @@ class Corpus:
     def __init__(self, program):
         self.program, self._results = program, {}
         self.trees, self.studies = {kind: {} for kind in PLACES}, {}
-        places = ["problems", "problems/profiles", "studies", "tests/models", "tests/io/good"]
+        places = ["problems", "problems/profiles", "studies", "tests/models", "tests/documents/good"]
         for path in sorted(p for place in places for p in (SOURCE / place).glob("*.json")):
             tree = _read(path)
             kind = FORMATS.get(tree.get("format"))

@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "io/io.h"
+#include "io/options.h"
 #include "problem/evaluate.h"
 #include "problem/workspace.h"
+#include "study/read.h"
 #include "support/mt_alloc.h"
 #include "support/mt_test.h"
 

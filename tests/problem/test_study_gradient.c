@@ -319,7 +319,7 @@ static void measured_responses__have_exact_gradients(mt_test *t)
                 " {'parameter': 'eta', 'lower': 0.01, 'upper': 0.3},"
                 " {'parameter': 'alpha', 'lower': -1, 'upper': 2}],"
                 "'measurements': {'shaker': {'file': '" MT_TEST_SOURCE_DIR
-                "/tests/io/wrong/parts/measured.csv'}},"
+                "/tests/documents/wrong/parts/measured.csv'}},"
                 "'goals': ["
                 "{'type': 'frequency_response', 'configurations': ['all', 'still'],"
                 " 'input': 'base.x', 'output': 'spring.coil', 'measurement': 'shaker',"

@@ -13,10 +13,12 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "io/io.h"
+#include "io/options.h"
+#include "model/read.h"
 #include "mt_test.h"
 #include "report/result_tables.h"
 #include "result/result.h"
+#include "study/read.h"
 #include "study/study.h"
 
 #define PROBLEMS MT_TEST_SOURCE_DIR "/problems/"

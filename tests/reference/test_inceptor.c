@@ -9,10 +9,11 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "io/io.h"
+#include "model/read.h"
 #include "model/values.h"
 #include "mt_test.h"
 #include "result/result.h"
+#include "study/read.h"
 #include "study/study.h"
 
 #define PROBLEMS MT_TEST_SOURCE_DIR "/problems/"

@@ -138,7 +138,7 @@ def required(study, schema, result, dropped):
             yield f"{study.name}: without {'/'.join(map(str, member))} it is valid all the same"
 
 
-OF_CUT = {"#/definitions/unchecked"}  # of a run that was cut: cli/test_budget, cli/test_interrupts; io/test_result_file has one
+OF_CUT = {"#/definitions/unchecked"}  # of a run that was cut: cli/test_budget, cli/test_interrupts; result/test_result_file has one
 
 
 def main():

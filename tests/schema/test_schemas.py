@@ -18,7 +18,7 @@ KINDS = {"modetune-model/1": "model", "modetune-study/1": "study", "modetune-res
 
 def shipped():
     """All files that are there to be read, with their kind."""
-    files = [p for folder in ("problems", "problems/profiles", "studies", "examples", "tests/schema", "tests/io/good") for p in sorted((ROOT / folder).glob("*.json"))]
+    files = [p for folder in ("problems", "problems/profiles", "studies", "examples", "tests/schema", "tests/documents/good") for p in sorted((ROOT / folder).glob("*.json"))]
     return [(p, KINDS.get(load(p).get("format"))) for p in files]
 
 

@@ -9,9 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "environment/read_aircraft.h"
+#include "environment/read_profile.h"
 #include "io/file.h"
-#include "io/io.h"
+#include "io/options.h"
+#include "model/read.h"
 #include "mt_test.h"
+#include "study/read.h"
 
 enum { MAX_LINE = 4096, LIST_LIMIT = 1 << 24 };
 

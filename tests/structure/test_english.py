@@ -22,7 +22,7 @@ WORDS = {
 }
 # Strings of another kind: words of a format that is read, places of drawings on pages whose names the files keep, quotations.
 LEFT = {
-    "src/io/read_measurement_uff.c": {"1/min"},          # labels of universal files
+    "src/measurement/read_uff.c": {"1/min"},          # labels of universal files
     "src/report/page": {"as drawn"},                     # the position of a drive that the page shows
     "src/cli/cmd_info.c": {"as drawn"}, "src/model": {"as drawn"}, "src/mechanics": {"as drawn"}, "src/answer": {"as drawn"}, "schemas": {"as drawn"},
     "problems/README.md": {"as drawn"}, "src/cli/README.md": {"as drawn", "anew"}, "studies/tutorial/README.md": {"as drawn", "anew"},

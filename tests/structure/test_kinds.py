@@ -10,7 +10,7 @@ TABLES = {"GOAL": "src/study/goal_kinds.h", "OBJECTIVE": "src/study/objective_ki
 # what is meant where a kind is named all the same
 MEANT = {
     "MT_OBJECTIVE_NONE": None,  # that there is no objective may be asked anywhere
-    "MT_OBJECTIVE_EXPRESSION": ("src/io/read_study_objectives.c",),  # what is no word is an expression
+    "MT_OBJECTIVE_EXPRESSION": ("src/study/read_objectives.c",),  # what is no word is an expression
     "MT_OBJECTIVE_CHANGE": (  # the distance from the original design itself
         "src/study/study_objectives.c",  # the objective where none is given
         "src/search/relaxation_moves.c",  # the nearest design

@@ -8,7 +8,7 @@ AGREED = {".ci", ".clang-format", ".clang-tidy", ".editorconfig", ".gitignore", 
           "CMakePresets.json", "CONTRIBUTING.md", "LICENSE", "README.md", "bootstrap", "include", "problems",
           "schemas", "src", "studies", "tests"}
 # Folders of tests besides those of the rooms: what judges the whole program, or the tree itself.
-BESIDES = {"bench", "browser", "fuzz", "hunt", "install", "mechanisms", "models", "mutants", "planted", "races", "reference", "schema", "stress", "structure",
+BESIDES = {"bench", "browser", "documents", "fuzz", "hunt", "install", "mechanisms", "models", "mutants", "planted", "races", "reference", "schema", "stress", "structure",
            "support"}
 IGNORED = {".git", "build", "results"}
 MAX_LINES = 1500

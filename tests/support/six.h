@@ -11,9 +11,10 @@
 
 #include "analysis/analysis.h"
 #include "base/text.h"
-#include "io/io.h"
 #include "mt_test.h"
 #include "result/result.h"
+#include "result/write.h"
+#include "study/read.h"
 #include "study/study.h"
 
 enum { SIX = 6, SIX_BANDS = 4, SIX_MOST = 32 };

@@ -13,8 +13,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/io.h"
+#include "io/options.h"
 #include "result/result.h"
+#include "study/read.h"
 #include "study/study.h"
 #include "support/mt_test.h"
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "environment/psd.h"
 #include "response/poles.h"
-#include "study/psd.h"
 
 #define REF_I  ((double complex)I)
 #define REF_PI 3.14159265358979323846264338327950288L

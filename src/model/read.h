@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef MODEL_READ_H
+#define MODEL_READ_H
+
+#include "base/diagnostics.h"
+#include "io/json.h"
+#include "io/options.h"
+#include "io/reader.h"
+#include "model/model.h"
+
+/**
+ * Read, resolve and check a model file (format "modetune-model/1").
+ * @param[in]  opt       NULL: defaults
+ * @param[out] out       the model, owned by the caller (mt_model_delete); NULL on failure
+ * @param[out] messages  every diagnostic, warnings included, is added; may be NULL
+ * Fails: MT_E_INPUT (err: the first diagnostic), MT_E_SYSTEM, MT_E_MEMORY.
+ */
+mt_status mt_model_load(const char *path, const mt_io_options *opt, mt_model **out,
+                        mt_diagnostics *messages, mt_err *err);
+/* As mt_model_load, from a parsed document; problems go to its diagnostics. `file` names it in
+ * err and in the model. */
+mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_err *err);
+
+/* All key tables of a model file, `what` being the name of the definition in the schema; *n is
+ * their number. */
+const mt_key_table *const *mt_model_key_tables(int *n);
+
+#endif

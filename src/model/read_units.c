@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Units of parameters: what their names say, and what their uses do. */
+#include "model/read_priv.h"
+
+#include <string.h>
+
+#include "base/format.h"
+#include "expr/kind.h"
+#include "expr/units.h"
+#include "io/synonyms.h"
+
+enum { HINT_TEXT = 256, KIN_TEXT = 160, MEMBER_UNIT = 48 };
+
+/* Names of what measures the same as `said`, in kin[KIN_TEXT]; the one that is worth the same;
+ * NULL: none is. */
+static const char *find_kin(const mt_unit_worth *said, char kin[KIN_TEXT])
+{
+    int n = 0;
+    size_t used = 0;
+    mt_unit_worth has;
+    const char *const *const names = mt_model_units(&n);
+    kin[0] = '\0';
+    for (int i = 0; i < n; i++) {
+        const size_t length = strlen(names[i]) + strlen(", \"\"");
+        if (!mt_unit_read(names[i], MT_READ_MASSES, &has) ||
+            !mt_unit_same_powers(said, &has, true)) {
+            continue;
+        }
+        if (mt_unit_same_factor(said->factor, has.factor)) {
+            return names[i];
+        }
+        if (used + length < KIN_TEXT) {
+            (void)mt_snprintf(kin + used, KIN_TEXT - used, "%s\"%s\"", used == 0 ? "" : ", ",
+                              names[i]);
+            used += strlen(kin + used);
+        }
+    }
+    return NULL;
+}
+
+/* The correct form of a unit with an unknown notation, in out[HINT_TEXT]. False: it cannot be
+ * interpreted. */
+static bool name_of_unit(const char *text, char out[HINT_TEXT])
+{
+    char kin[KIN_TEXT];
+    mt_unit_worth said;
+    for (int reading = 0; reading < MT_READINGS; reading++) {
+        if (!mt_unit_read(text, (mt_unit_reading)reading, &said)) {
+            return false;
+        }
+        const char *const same = find_kin(&said, kin);
+        if (same != NULL) {
+            (void)mt_snprintf(out, HINT_TEXT, "; did you mean \"%s\"?", same);
+            return true;
+        }
+        if (kin[0] != '\0') {
+            (void)mt_snprintf(out, HINT_TEXT, " (of its kind: %s)", kin);
+            return true;
+        }
+    }
+    (void)mt_snprintf(out, HINT_TEXT, ": leave it out, and write the number in units of SI");
+    return true;
+}
+
+static void set_unit(mt_parameter *p, const mt_unit *unit, const char *name)
+{
+    const bool other = unit != NULL && !mt_unit_is_si(unit);
+    p->written = other ? unit : NULL;
+    p->unit = other ? unit->si : name;
+}
+
+void mt_read_parameter_unit(mt_model_reader *mr, mt_addr value, mt_parameter *p)
+{
+    int n = 0;
+    char hint[HINT_TEXT];
+    const char *const *const names = mt_model_units(&n);
+    if (!mt_reader_type(&mr->r, value, MT_KEY_TEXT)) {
+        return;
+    }
+    const char *const text = mt_json_string(mr->r.doc, value);
+    for (int i = 0; i < n; i++) {
+        if (strcmp(names[i], text) == 0) {
+            set_unit(p, mt_unit_find(text), names[i]);
+            return;
+        }
+    }
+    if (name_of_unit(text, hint)) {
+        mt_diag_structure(mr->r.diags, value, "unknown unit \"%s\"%s", text, hint);
+    } else {
+        const bool may = mt_diag_may_suggest(mr->r.diags);
+        const char *const other = may ? mt_synonym(text, names, n) : NULL;
+        const char *const near = may && other == NULL ? mt_text_nearest(text, names, n) : other;
+        mt_diag_structure(mr->r.diags, value, "unknown unit \"%s\"%s%s%s", text,
+                          near == NULL ? " (\"modetune schema model\" has all)"
+                                       : "; did you mean \"",
+                          near == NULL ? "" : near, near == NULL ? "" : "\"?");
+    }
+}
+
+/* A word of a member's name that is a unit, or "/"; NULL: another. */
+static const char *unit_word(const char *word, size_t length)
+{
+    static const char *const words[][2] = {
+        {"n", "N"},   {"m", "m"},   {"kg", "kg"}, {"s", "s"},   {"pa", "Pa"},   {"hz", "Hz"},
+        {"m2", "m2"}, {"m3", "m3"}, {"m4", "m4"}, {"s2", "s2"}, {"rad", "rad"}, {"per", "/"}};
+    for (int i = 0; i < MT_COUNT(words); i++) {
+        if (strlen(words[i][0]) == length && memcmp(words[i][0], word, length) == 0) {
+            return words[i][1];
+        }
+    }
+    return NULL;
+}
+
+/* The unit that a member's name ends in, "N m / rad" of "stiffness_n_m_per_rad"; in text. */
+static const char *unit_of_member(const char *name, char text[MEMBER_UNIT])
+{
+    size_t at = MEMBER_UNIT - 1;
+    size_t end = strlen(name);
+    text[at] = '\0';
+    while (end > 0) {
+        size_t begin = end;
+        while (begin > 0 && name[begin - 1] != '_') {
+            begin--;
+        }
+        const char *const word = begin == 0 ? NULL : unit_word(name + begin, end - begin);
+        if (word == NULL || at < strlen(word) + 1) {
+            break;
+        }
+        if (at < MEMBER_UNIT - 1) {
+            text[--at] = ' ';
+        }
+        at -= strlen(word);
+        /* NOLINTNEXTLINE(bugprone-not-null-terminated-result): what follows is there */
+        memcpy(text + at, word, strlen(word));
+        end = begin - 1;
+    }
+    return text + at;
+}
+
+/* The member that a number is the value of, or stands in a list of; NULL: none. */
+static const char *member_of(const mt_model_reader *mr, mt_addr value)
+{
+    while (value > MT_JSON_ROOT && mt_json_name(mr->r.doc, value) == NULL) {
+        value--;
+    }
+    return mt_json_name(mr->r.doc, value);
+}
+
+/* The unit that a number must have: that of its member, or, as the value of a parameter
+ * (MT_ABSENT: of none), that of the parameter; perhaps in text. NULL: not known. */
+static const char *unit_of_number(const mt_model_reader *mr, const mt_number *number,
+                                  int parameter, char text[MEMBER_UNIT])
+{
+    if (parameter != MT_ABSENT) {
+        return mr->m->parameters[parameter].unit;
+    }
+    if (number->possible == MT_POSSIBLE_POINT) {
+        return "m";
+    }
+    const char *const member = member_of(mr, number->addr);
+    return member == NULL ? NULL : unit_of_member(member, text);
+}
+
+static bool measured(const mt_model_reader *mr, const mt_number *number, int parameter,
+                     mt_unit_worth *out)
+{
+    char text[MEMBER_UNIT];
+    const char *const unit = unit_of_number(mr, number, parameter, text);
+    return unit != NULL && mt_unit_read(unit, MT_READ_MASSES, out);
+}
+
+/* The parameter that an expression is, with whatever sign; MT_ABSENT: it is something else. */
+static int parameter_alone(const mt_expr *e)
+{
+    if (e->length == 0 || e->code[0].op != MT_OP_PARAM) {
+        return MT_ABSENT;
+    }
+    const bool alone = e->length == 1 || (e->length == 2 && e->code[1].op == MT_OP_NEG);
+    return alone ? e->code[0].param : MT_ABSENT;
+}
+
+static bool is_other(const mt_parameter *p)
+{
+    return p->written != NULL && p->written->dimension == MT_OTHER;
+}
+
+static bool is_gram(const mt_parameter *p)
+{
+    return is_other(p) && p->value != MT_ABSENT && strcmp(p->written->name, "g") == 0;
+}
+
+/* How many numbers that are masses, accelerations, or neither a parameter is part of. */
+enum { USES_MASS, USES_ACCELERATION, USES_OTHER, USES };
+
+/* Count the uses of parameters in "g": uses of masses have no time in their dimension,
+ * accelerations no mass; forces and unknown uses fit both. */
+static void count_uses(const mt_model_reader *mr, const mt_number *number, int owner,
+                       int (*uses)[USES])
+{
+    const mt_model *const m = mr->m;
+    for (int i = 0; i < number->expr.length; i++) {
+        const mt_code *const c = &number->expr.code[i];
+        mt_unit_worth of = {0};
+        if (c->op != MT_OP_PARAM || !is_gram(&m->parameters[c->param])) {
+            continue;
+        }
+        const bool known = measured(mr, number, owner, &of);
+        const int kg = of.power[MT_BASE_KG];
+        const int s = of.power[MT_BASE_S];
+        uses[c->param][known && kg == 1 && s == 0    ? USES_MASS
+                       : known && kg == 0 && s == -2 ? USES_ACCELERATION
+                                                     : USES_OTHER]++;
+    }
+}
+
+static void settle_gram(mt_model_reader *mr, int parameter, const int uses[USES])
+{
+    mt_model *const m = mr->m;
+    mt_parameter *const p = &m->parameters[parameter];
+    mt_number *const number = &m->nums[p->value];
+    const int known = uses[USES_MASS] + uses[USES_ACCELERATION];
+    if ((uses[USES_MASS] > 0 && uses[USES_ACCELERATION] > 0) ||
+        (uses[USES_OTHER] > 0 && known == 0)) {
+        mt_diag_error(mr->r.diags, number->addr,
+                      "\"g\" is a gram or 9.80665 m/s^2, and what uses \"%s\" does not say "
+                      "which: write the number in \"kg\" or in \"m/s^2\"",
+                      p->name.s);
+    } else if (uses[USES_ACCELERATION] > 0) {
+        set_unit(p, mt_unit_find_of("g", "m/s^2"), NULL);
+        if (mt_json_type_of(mr->r.doc, number->addr) == MT_JSON_NUMBER) {
+            const double written = mt_json_number(mr->r.doc, number->addr);
+            (void)mt_expr_number(mt_unit_to_si(p->written, written), mr->r.mem, &number->expr,
+                                 NULL);
+        }
+    }
+}
+
+/* A parameter whose unit is converted is the value of a member: both measure the same. */
+static void check_use(mt_model_reader *mr, const mt_number *number, int owner)
+{
+    const int parameter = parameter_alone(&number->expr);
+    mt_unit_worth is;
+    mt_unit_worth wanted;
+    if (parameter == MT_ABSENT || !is_other(&mr->m->parameters[parameter])) {
+        return;
+    }
+    const mt_parameter *const p = &mr->m->parameters[parameter];
+    if (!measured(mr, number, owner, &wanted) || !mt_unit_read(p->unit, MT_READ_MASSES, &is) ||
+        mt_unit_same_powers(&is, &wanted, false)) {
+        return;
+    }
+    mt_diag_error(mr->r.diags, number->addr,
+                  "\"%s\" is in %s, of which 1 is %g %s: that is not what is wanted here",
+                  p->name.s, p->written->name, mt_unit_factor(p->written), p->unit);
+}
+
+/* [n_nums] the parameter that a number is the value of, MT_ABSENT: of none; NULL where memory
+ * is out. */
+static int *find_owners(mt_model *m)
+{
+    int *const owner = mt_arena_int(&m->mem, (size_t)m->n_nums);
+    if (mt_arena_failed(&m->mem)) {
+        return NULL;
+    }
+    for (int k = 0; k < m->n_nums; k++) {
+        owner[k] = MT_ABSENT;
+    }
+    for (int i = 0; i < m->n_parameters; i++) {
+        if (m->parameters[i].value != MT_ABSENT) {
+            owner[m->parameters[i].value] = i;
+        }
+    }
+    return owner;
+}
+
+void mt_read_settle_units(mt_model_reader *mr)
+{
+    mt_model *const m = mr->m;
+    const int *const owner = find_owners(m);
+    int(*const uses)[USES] = mt_arena_alloc(&m->mem, (size_t)m->n_parameters, sizeof *uses);
+    if (owner == NULL || mt_arena_failed(&m->mem)) {
+        return;
+    }
+    bool any = false;
+    for (int i = 0; i < m->n_parameters; i++) {
+        any = any || is_other(&m->parameters[i]);
+    }
+    for (int k = 0; k < m->n_nums && any; k++) {
+        count_uses(mr, &m->nums[k], owner[k], uses);
+    }
+    for (int i = 0; i < m->n_parameters; i++) {
+        if (is_gram(&m->parameters[i])) {
+            settle_gram(mr, i, uses[i]);
+        }
+    }
+    for (int k = 0; k < m->n_nums && any; k++) {
+        check_use(mr, &m->nums[k], owner[k]);
+    }
+}
+
+/* True where the expression contains a parameter or a constant with a dimension. */
+static bool has_unit(const mt_expr *e)
+{
+    for (int i = 0; i < e->length; i++) {
+        const mt_code *const c = &e->code[i];
+        if (c->op == MT_OP_PARAM || (c->op == MT_OP_CONST && c->param >= (int)MT_KIND_LENGTH)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool unit_of_parameter(const void *context, int parameter, mt_unit_worth *out)
+{
+    const mt_model *const m = context;
+    const char *const unit = m->parameters[parameter].unit;
+    return unit != NULL && mt_unit_read(unit, MT_READ_MASSES, out);
+}
+
+/* The name of what measures this, of SI; its powers, in text, where it has none. */
+static const char *name_of_powers(const mt_unit_worth *is, char text[MEMBER_UNIT])
+{
+    static const char *const bases[] = {"m", "kg", "s"};
+    int n = 0;
+    size_t used = 0;
+    mt_unit_worth has;
+    const char *const *const names = mt_model_units(&n);
+    for (int i = 0; i < n; i++) {
+        if (mt_unit_read(names[i], MT_READ_MASSES, &has) && has.factor == 1.0 &&
+            mt_unit_same_powers(is, &has, true)) {
+            return names[i];
+        }
+    }
+    text[0] = '\0';
+    for (int k = 0; k < MT_BASE_RAD; k++) {
+        if (is->power[k] != 0) {
+            (void)mt_snprintf(text + used, MEMBER_UNIT - used, "%s%s^%d", used == 0 ? "" : " ",
+                              bases[k], is->power[k]);
+            used = strlen(text);
+        }
+    }
+    return text;
+}
+
+/* True where the units are rad/s and Hz: an expression may contain their factor 2 pi. */
+static bool is_turned(const char *a, const char *b)
+{
+    return strcmp(a, "rad/s") == 0 && (strcmp(b, "Hz") == 0 || strcmp(b, "1/s") == 0);
+}
+
+/* [n_nums] moments of inertia of bodies whose mass is written as a number: the mass may be a
+ * factor of the expression, or an omitted 1, as in a^2/12. NULL where memory is out. */
+static bool *find_numbered_masses(mt_model *m)
+{
+    bool *const numbered = mt_arena_alloc(&m->mem, (size_t)m->n_nums, sizeof *numbered);
+    for (int i = 0; i < m->n_bodies && numbered != NULL; i++) {
+        const mt_body *const b = &m->bodies[i];
+        const mt_expr *const mass = b->mass == MT_ABSENT ? NULL : &m->nums[b->mass].expr;
+        const bool number =
+            mass != NULL && mass->length == 1 && mass->code[0].op == MT_OP_CONST;
+        for (int k = 0; k < MT_COUNT(b->inertia) && number; k++) {
+            if (b->inertia[k] != MT_ABSENT) {
+                numbered[b->inertia[k]] = true;
+            }
+        }
+    }
+    return numbered;
+}
+
+/* numbered: a number in it, or none, may be a mass. */
+static void warn_unit(mt_model_reader *mr, mt_number *number, int owner, bool numbered)
+{
+    const mt_model *const m = mr->m;
+    const int alone = parameter_alone(&number->expr);
+    char text[MEMBER_UNIT];
+    char is_text[MEMBER_UNIT];
+    char wanted_text[MEMBER_UNIT];
+    mt_unit_worth is;
+    mt_unit_worth wanted;
+    const char *const unit = unit_of_number(mr, number, owner, text);
+    if (unit == NULL || !mt_unit_read(unit, MT_READ_MASSES, &wanted) ||
+        !mt_expr_measures(&number->expr, unit_of_parameter, m, &is)) {
+        return;
+    }
+    const char *const has =
+        alone == MT_ABSENT ? name_of_powers(&is, is_text) : m->parameters[alone].unit;
+    const bool turned = alone != MT_ABSENT && (is_turned(has, unit) || is_turned(unit, has));
+    if (mt_unit_same_powers(&is, &wanted, false) && !turned) {
+        return;
+    }
+    mt_unit_worth times_kg = is;
+    times_kg.power[MT_BASE_KG]++;
+    if (numbered && mt_unit_same_powers(&times_kg, &wanted, false)) {
+        return;
+    }
+    const char *const member =
+        owner == MT_ABSENT ? member_of(mr, number->addr) : m->parameters[owner].name.s;
+    number->unit_warning = mt_arena_printf(
+        &mr->m->mem, "%s%s%s is in %s, and \"%s\" in %s", alone == MT_ABSENT ? "" : "\"",
+        alone == MT_ABSENT ? "this expression" : m->parameters[alone].name.s,
+        alone == MT_ABSENT ? "" : "\"", has, member == NULL ? "" : member,
+        owner == MT_ABSENT ? name_of_powers(&wanted, wanted_text) : unit);
+}
+
+void mt_read_warning_units(mt_model_reader *mr)
+{
+    mt_model *const m = mr->m;
+    int *const owner = find_owners(m);
+    const bool *const numbered = find_numbered_masses(m);
+    if (owner == NULL || numbered == NULL) {
+        return;
+    }
+    for (int c = 0; c < m->n_configurations; c++) {
+        for (int i = 0; i < m->configurations[c].n_overrides; i++) {
+            const mt_override *const o = &m->configurations[c].overrides[i];
+            const char *const name = o->parameter_name.s;
+            const int parameter = name == NULL ? -1 : mt_model_find_parameter(m, name);
+            if (o->value != MT_ABSENT && parameter >= 0) {
+                owner[o->value] = parameter;
+            }
+        }
+    }
+    for (int k = 0; k < m->n_nums; k++) {
+        if (has_unit(&m->nums[k].expr)) {
+            warn_unit(mr, &m->nums[k], owner[k], numbered[k]);
+        }
+    }
+}

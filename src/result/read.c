@@ -1,0 +1,519 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * A result read back, whole: every member of the tables must be there and of its type, and no
+ * other. Besides, the parameters of every design are the variables, and each point of a trade
+ * study has one value of each quantity that varies.
+ */
+#include "result/read.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/file.h"
+#include "io/folder.h"
+#include "io/json_print.h"
+#include "io/reader.h"
+#include "result/folder.h"
+#include "study/study.h"
+
+enum { READER_PATIENCE_MS = 10000 };
+
+static const char FORMAT[] = "format";
+
+enum {
+    MOST_FIELDS = 40, /* of a record */
+    MOST_OUTPUTS = 16
+};
+
+typedef struct result_reader {
+    mt_reader r;
+    mt_result *result;
+    int n_variables;
+    const char **variables; /* [n_variables] as listed; they live as long as the document */
+    mt_name *by_name;       /* [n_variables] sorted; addr: the place in the list */
+} result_reader;
+
+static void read_record(result_reader *s, mt_addr value, const mt_record *record, void *item);
+
+static mt_addr member(const result_reader *s, mt_addr object, const char *name)
+{
+    return object == MT_NO_ADDR ? MT_NO_ADDR : mt_json_member(s->r.doc, object, name);
+}
+
+/* Null where it may be; what is absent or wrong has been noted, and reads as null. */
+static bool is_null(result_reader *s, const mt_field *f, mt_addr value)
+{
+    return value == MT_NO_ADDR ||
+           (f->nullable && mt_json_type_of(s->r.doc, value) == MT_JSON_NULL);
+}
+
+static double read_number(result_reader *s, mt_addr value, bool nullable)
+{
+    const mt_json_type type = mt_json_type_of(s->r.doc, value);
+    if (type == MT_JSON_NUMBER) {
+        return mt_json_number(s->r.doc, value);
+    }
+    if (type != MT_JSON_NULL || !nullable) {
+        mt_diag_structure(s->r.diags, value, "must be a number%s, not %s",
+                          nullable ? " or null" : "", mt_json_type_text(type));
+    }
+    return nan("");
+}
+
+/* Integers are exact in a double up to here. */
+static const double LONGEST = 9007199254740992.0;
+
+static long read_long(result_reader *s, mt_addr value)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_COUNT)) {
+        return 0;
+    }
+    const double number = mt_json_number(s->r.doc, value);
+    if (number == floor(number) && number >= 0.0 && number <= LONGEST) {
+        return (long)number;
+    }
+    mt_diag_structure(s->r.diags, value, "must be a whole number, 0 or more");
+    return 0;
+}
+
+static void read_list(result_reader *s, mt_addr value, const mt_field *f, void *at, int *n)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return;
+    }
+    mt_items items = mt_reader_items(&s->r, value);
+    char *const room = mt_reader_room(&s->r, &items, f->record->size);
+    mt_record_set_pointer(at, room);
+    for (*n = 0; mt_items_next(&items); ++*n) {
+        read_record(s, items.at, f->record, room + ((size_t)*n * f->record->size));
+    }
+}
+
+/* One of the names; as the table has it, so that it lives for ever. */
+static const char *read_choice(result_reader *s, mt_addr value, const mt_field *f)
+{
+    const int k = mt_reader_choice(&s->r, value, f->name, f->choices, f->n_choices);
+    return k == MT_ABSENT ? NULL : f->choices[k];
+}
+
+/* The first where it is none of them (noted). */
+static int read_enum(result_reader *s, mt_addr value, const mt_field *f)
+{
+    const int k = mt_reader_choice(&s->r, value, f->name, f->choices, f->n_choices);
+    return k == MT_ABSENT ? 0 : k;
+}
+
+static void read_texts(result_reader *s, mt_addr value, const mt_field *f, const char ***texts,
+                       int *n)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return;
+    }
+    mt_items items = mt_reader_items(&s->r, value);
+    *texts = mt_reader_room(&s->r, &items, sizeof **texts);
+    for (*n = 0; mt_items_next(&items); ++*n) {
+        (*texts)[*n] =
+            f->choices != NULL ? read_choice(s, items.at, f) : mt_reader_text(&s->r, items.at);
+    }
+}
+
+static void read_numbers(result_reader *s, mt_addr value, double **numbers, int *n)
+{
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return;
+    }
+    mt_items items = mt_reader_items(&s->r, value);
+    *numbers = mt_reader_room(&s->r, &items, sizeof **numbers);
+    for (*n = 0; mt_items_next(&items); ++*n) {
+        (*numbers)[*n] = read_number(s, items.at, true);
+    }
+}
+
+static int by_name(const void *a, const void *b)
+{
+    const mt_name *const x = a;
+    const mt_name *const y = b;
+    return strcmp(x->s, y->s);
+}
+
+/* Index of the variable; `expected` is tried first. MT_ABSENT: there is none of that name. */
+static int find_variable(const result_reader *s, const char *name, int expected)
+{
+    if (expected < s->n_variables && strcmp(s->variables[expected], name) == 0) {
+        return expected;
+    }
+    const mt_name key = {.s = name};
+    const mt_name *const found =
+        s->n_variables == 0
+            ? NULL
+            : bsearch(&key, s->by_name, (size_t)s->n_variables, sizeof key, by_name);
+    return found == NULL ? MT_ABSENT : (int)found->addr;
+}
+
+/* Each variable's number, by its name: the parser has seen that no name comes twice. */
+static double *read_by_variable(result_reader *s, mt_addr value, bool nullable)
+{
+    const int n = s->n_variables;
+    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+        return NULL;
+    }
+    double *const values = mt_arena_f64(s->r.mem, (size_t)n, 1);
+    int members = 0;
+    bool known = true;
+    for (mt_items i = mt_reader_items(&s->r, value); values != NULL && mt_items_next(&i);) {
+        const char *const name = mt_json_name(s->r.doc, i.at);
+        const int k = find_variable(s, name, members);
+        if (k == MT_ABSENT) {
+            mt_diag_error(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
+                          "\"%s\" is not a variable", name);
+            known = false;
+        } else {
+            values[k] = read_number(s, i.at, nullable);
+            members++;
+        }
+    }
+    if (values != NULL && known && members < n) {
+        mt_diag_error(s->r.diags, value, "%d of %d variables are missing", n - members, n);
+    }
+    return values;
+}
+
+static void read_option(result_reader *s, mt_addr value, const mt_field *f, void *at)
+{
+    void *const own = mt_arena_alloc(s->r.mem, 1, f->record->size);
+    mt_record_set_pointer(at, own);
+    if (own != NULL) {
+        read_record(s, value, f->record, own);
+    }
+}
+
+/* `value` is neither null nor absent. */
+static void read_field(result_reader *s, mt_addr value, const mt_field *f, void *item)
+{
+    void *const at = (char *)item + f->offset;
+    void *const other = (char *)item + f->other;
+    switch (f->type) {
+    case MT_FIELD_TEXT:
+        *(const char **)at = mt_reader_text(&s->r, value);
+        break;
+    case MT_FIELD_CHOICE:
+        *(const char **)at = read_choice(s, value, f);
+        break;
+    case MT_FIELD_ENUM:
+        *(int *)at = read_enum(s, value, f);
+        break;
+    case MT_FIELD_NUMBER:
+        *(double *)at = read_number(s, value, f->nullable);
+        break;
+    case MT_FIELD_VALUE:
+        if (mt_json_type_of(s->r.doc, value) == MT_JSON_STRING) {
+            *(const char **)other = mt_reader_text(&s->r, value);
+            break;
+        }
+        *(double *)at = read_number(s, value, f->nullable);
+        break;
+    case MT_FIELD_COUNT:
+        *(int *)at = mt_reader_count(&s->r, value, f->least, INT_MAX, *(int *)at);
+        break;
+    case MT_FIELD_LONG:
+        *(long *)at = read_long(s, value);
+        break;
+    case MT_FIELD_FLAG:
+        *(bool *)at = mt_reader_flag(&s->r, value, false);
+        break;
+    case MT_FIELD_RECORD:
+        read_record(s, value, f->record, at);
+        break;
+    case MT_FIELD_OPTION:
+        read_option(s, value, f, at);
+        break;
+    case MT_FIELD_LIST:
+        read_list(s, value, f, at, other);
+        break;
+    case MT_FIELD_TEXTS:
+        read_texts(s, value, f, at, other);
+        break;
+    case MT_FIELD_NUMBERS:
+        read_numbers(s, value, at, other);
+        break;
+    case MT_FIELD_BY_VARIABLE:
+        mt_record_set_pointer(at, read_by_variable(s, value, f->numbers_nullable));
+        break;
+    case MT_FIELD_TYPE_COUNT:
+        break;
+    }
+}
+
+static const mt_field *find_field(const mt_record *record, const char *name, int expected)
+{
+    for (int i = 0; i < record->n; i++) {
+        const mt_field *const f = &record->fields[(expected + i) % record->n];
+        if (f->name != NULL && strcmp(f->name, name) == 0) {
+            return f;
+        }
+    }
+    return NULL;
+}
+
+static void read_members(result_reader *s, mt_addr value, const mt_record *record, void *item)
+{
+    bool seen[MOST_FIELDS] = {false};
+    int expected = 0;
+    assert(record->n <= MOST_FIELDS);
+    if (!mt_reader_type(&s->r, value, MT_KEY_OBJECT)) {
+        return;
+    }
+    for (mt_items i = mt_reader_items(&s->r, value); mt_items_next(&i);) {
+        const char *const name = mt_json_name(s->r.doc, i.at);
+        const mt_field *const f = find_field(record, name, expected);
+        if (f != NULL && !seen[f - record->fields]) { /* given twice has been noted */
+            seen[f - record->fields] = true;
+            expected = (int)(f - record->fields) + 1;
+            if (!is_null(s, f, i.at)) {
+                read_field(s, i.at, f, item);
+            }
+        } else if (f == NULL && (record != &mt_result_record || strcmp(name, FORMAT) != 0)) {
+            /* the table of the result lacks its format */
+            mt_diag_structure(s->r.diags, mt_json_name_addr(s->r.doc, i.at),
+                              "unknown member \"%s\"", name);
+        }
+    }
+    for (int i = 0; i < record->n; i++) {
+        if (record->fields[i].name != NULL && !seen[i]) {
+            mt_diag_structure(s->r.diags, value, "member \"%s\" is missing",
+                              record->fields[i].name);
+        }
+    }
+}
+
+static void read_record(result_reader *s, mt_addr value, const mt_record *record, void *item)
+{
+    mt_record_clear(record, item);
+    read_members(s, value, record, item);
+}
+
+/* The variables come before what is told by their names, wherever they stand; what is no text
+ * is noted when its turn comes. */
+static void list_variables(result_reader *s)
+{
+    const mt_addr list = member(s, MT_JSON_ROOT, "variables");
+    mt_items items = mt_reader_items(&s->r, list);
+    const mt_items again = items;
+    s->variables = mt_reader_room(&s->r, &items, sizeof *s->variables);
+    items = again;
+    s->by_name = mt_reader_room(&s->r, &items, sizeof *s->by_name);
+    if (mt_arena_failed(s->r.mem)) {
+        return;
+    }
+    while (mt_items_next(&items)) {
+        const bool is_text = mt_json_type_of(s->r.doc, items.at) == MT_JSON_STRING;
+        const char *const name = is_text ? mt_json_string(s->r.doc, items.at) : "";
+        if (is_text && mt_json_type_of(s->r.doc, list) == MT_JSON_ARRAY) {
+            s->by_name[s->n_variables] = (mt_name){.s = name, .addr = s->n_variables};
+            s->variables[s->n_variables++] = name;
+        }
+    }
+    if (s->n_variables > 0) {
+        qsort(s->by_name, (size_t)s->n_variables, sizeof *s->by_name, by_name);
+    }
+    for (int i = 1; i < s->n_variables; i++) {
+        if (strcmp(s->by_name[i].s, s->by_name[i - 1].s) == 0) {
+            mt_diag_error(s->r.diags, list, "\"%s\" is listed twice", s->by_name[i].s);
+        }
+    }
+}
+
+/* The parameters of a design are the variables, in their order; a design that was not found has
+ * none. */
+static void check_design(result_reader *s, mt_addr design)
+{
+    const mt_addr list = member(s, design, "parameters");
+    mt_items items = mt_reader_items(&s->r, list);
+    if (items.count != 0 && items.count != s->n_variables) {
+        mt_diag_error(s->r.diags, list, "has %d parameters, not one for each of %d variables",
+                      items.count, s->n_variables);
+        return;
+    }
+    for (int i = 0; mt_items_next(&items); i++) {
+        const mt_addr name = member(s, items.at, "name");
+        if (name != MT_NO_ADDR && mt_json_type_of(s->r.doc, name) == MT_JSON_STRING &&
+            strcmp(mt_json_string(s->r.doc, name), s->variables[i]) != 0) {
+            mt_diag_error(s->r.diags, name, "must be \"%s\", the variable of this place",
+                          s->variables[i]);
+        }
+    }
+}
+
+static void check_trade(result_reader *s, mt_addr trade)
+{
+    const mt_addr vary = member(s, trade, "vary");
+    const int n = mt_reader_items(&s->r, vary).count;
+    if (n < 1 || n > MT_MAX_VARY) {
+        mt_diag_structure(s->r.diags, vary == MT_NO_ADDR ? trade : vary,
+                          "must have 1 to %d quantities", MT_MAX_VARY);
+    }
+    mt_items points = mt_reader_items(&s->r, member(s, trade, "points"));
+    while (mt_items_next(&points)) {
+        const mt_addr values = member(s, points.at, "values");
+        if (values != MT_NO_ADDR && mt_reader_items(&s->r, values).count != n) {
+            mt_diag_error(s->r.diags, values, "must have %d value%s, as many as vary", n,
+                          n == 1 ? "" : "s");
+        }
+        check_design(s, member(s, points.at, "best"));
+    }
+}
+
+/* Check the outputs: few, and with valid places. */
+static void check_outputs(result_reader *s, mt_addr list)
+{
+    mt_items items = mt_reader_items(&s->r, list);
+    if (items.count > MOST_OUTPUTS) {
+        mt_diag_error(s->r.diags, list, "names more than %d files", MOST_OUTPUTS);
+        return;
+    }
+    while (mt_items_next(&items)) {
+        const mt_addr file = member(s, items.at, "file");
+        const bool is_text =
+            file != MT_NO_ADDR && mt_json_type_of(s->r.doc, file) == MT_JSON_STRING;
+        const char *const name = is_text ? mt_json_string(s->r.doc, file) : "";
+        if (is_text && (name[0] == '\0' || strchr(name, '/') != NULL ||
+                        strcmp(name, ".") == 0 || strcmp(name, "..") == 0)) {
+            mt_diag_error(s->r.diags, file, "\"%s\" is not a file beside it", name);
+        }
+    }
+}
+
+bool mt_result_check_format(mt_reader *r)
+{
+    if (!mt_reader_type(r, MT_JSON_ROOT, MT_KEY_OBJECT) ||
+        !mt_reader_format(r, "modetune-result/1", "result")) {
+        return false;
+    }
+    const mt_addr format = mt_json_member(r->doc, MT_JSON_ROOT, FORMAT);
+    if (format == MT_NO_ADDR) {
+        mt_diag_structure(r->diags, MT_JSON_ROOT, "member \"%s\" is missing", FORMAT);
+    }
+    return true;
+}
+
+static void read_result_root(result_reader *s)
+{
+    if (!mt_result_check_format(&s->r)) {
+        return;
+    }
+    list_variables(s);
+    read_members(s, MT_JSON_ROOT, &mt_result_record, s->result);
+    check_design(s, member(s, MT_JSON_ROOT, "baseline"));
+    const mt_addr list = member(s, MT_JSON_ROOT, "recommendations");
+    for (mt_items i = mt_reader_items(&s->r, list); mt_items_next(&i);) {
+        check_design(s, i.at);
+    }
+    if (s->result->trade != NULL) {
+        check_trade(s, member(s, MT_JSON_ROOT, "trade"));
+    }
+    check_outputs(s, member(s, member(s, MT_JSON_ROOT, "run"), "outputs"));
+    for (int i = 0; i < s->result->n_doubts; i++) {
+        s->result->doubts[i].level = MT_LEVEL_WARNING;
+    }
+}
+
+static mt_status read_result_text(result_reader *s, const char *path, const mt_file *file,
+                                  mt_diagnostics *messages, mt_err *err)
+{
+    mt_json *doc = NULL;
+    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    if (doc == NULL) {
+        return rc;
+    }
+    s->r.doc = doc;
+    s->r.diags = mt_json_diags(doc);
+    s->r.mem = &s->result->mem;
+    if (rc == MT_OK) {
+        read_result_root(s);
+    }
+    rc = mt_reader_status(&s->r, path, err);
+    if (messages != NULL) {
+        mt_json_report(doc, path, messages);
+        rc = messages->lines.failed ? mt_fail_memory(err) : rc;
+    }
+    mt_json_delete(doc);
+    return rc;
+}
+
+static const mt_files *files_of(const mt_io_options *opt)
+{
+    return opt == NULL ? NULL : &opt->files;
+}
+
+/* The file by itself; sha256 of its bytes. */
+static mt_status load_alone(const char *path, const mt_io_options *opt, mt_result **out,
+                            char sha256[MT_SHA256_TEXT], mt_diagnostics *messages, mt_err *err)
+{
+    const size_t limit =
+        opt == NULL || opt->max_bytes == 0 ? MT_JSON_MAX_BYTES : opt->max_bytes;
+    mt_file file = {0};
+    result_reader s = {.result = NULL};
+    *out = NULL;
+    mt_status rc = mt_result_new(&s.result, err);
+    if (rc == MT_OK) {
+        rc = mt_files_read(files_of(opt), path, NULL, limit, &file, err);
+    }
+    if (rc == MT_OK) {
+        memcpy(sha256, file.sha256, MT_SHA256_TEXT);
+        rc = read_result_text(&s, path, &file, messages, err);
+    }
+    mt_file_free(&file);
+    if (rc != MT_OK) {
+        mt_result_delete(s.result);
+        return rc;
+    }
+    *out = s.result;
+    return MT_OK;
+}
+
+/* Read again under the folder's lock: files that did not match may have been in the middle of a
+ * replacement. */
+static mt_status load_locked(const char *path, const mt_io_options *opt, mt_result **out,
+                             mt_diagnostics *messages, mt_err *err)
+{
+    char sha256[MT_SHA256_TEXT];
+    char *const folder = mt_file_folder(path);
+    if (folder == NULL) {
+        return mt_fail_memory(err);
+    }
+    int lock = -1;
+    mt_status rc = mt_folder_lock(folder, true, READER_PATIENCE_MS, &lock, err);
+    free(folder);
+    rc = rc == MT_OK ? load_alone(path, opt, out, sha256, messages, err) : rc;
+    if (rc == MT_OK && mt_result_has_folder(path, *out)) {
+        rc = mt_result_check_folder(path, sha256, *out, err);
+    }
+    mt_folder_unlock(lock);
+    return rc;
+}
+
+mt_status mt_result_load(const char *path, const mt_io_options *opt, mt_result **out,
+                         mt_diagnostics *messages, mt_err *err)
+{
+    char sha256[MT_SHA256_TEXT];
+    bool given = false; /* by its text, which has no folder */
+    *out = NULL;
+    MT_TRY(mt_files_give(files_of(opt), path, &given, err));
+    mt_status rc = load_alone(path, opt, out, sha256, messages, err);
+    if (rc == MT_OK && !given && mt_result_has_folder(path, *out)) {
+        rc = mt_result_check_folder(path, sha256, *out, err);
+        if (rc == MT_E_INPUT) {
+            mt_result_delete(*out);
+            *out = NULL;
+            rc = load_locked(path, opt, out, messages, err);
+        }
+    }
+    if (rc != MT_OK) {
+        mt_result_delete(*out);
+        *out = NULL;
+    }
+    return rc;
+}

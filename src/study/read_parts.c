@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the readers of a study's parts have in common. */
+#include "study/read_priv.h"
+
+#include <limits.h>
+#include <math.h>
+
+#include "model/values.h"
+
+bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table *table,
+                          mt_study_object *out)
+{
+    out->addr = value;
+    out->table = table;
+    return mt_reader_object(&s->r, value, table, out->found);
+}
+
+static mt_addr member(const mt_study_reader *s, const mt_study_object *o, int key)
+{
+    return mt_json_member(s->r.doc, o->addr, o->table->keys[key].name);
+}
+
+bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key)
+{
+    return member(s, o, key) != MT_NO_ADDR;
+}
+
+mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key)
+{
+    const mt_addr at = member(s, o, key);
+    return at == MT_NO_ADDR ? o->addr : at;
+}
+
+/* "a", "b" or "c" */
+static void list_keys(const mt_key *keys, int n, mt_text *out)
+{
+    for (int i = 0; i < n; i++) {
+        const char *const between = i == 0 ? "" : i == n - 1 ? " or " : ", ";
+        mt_text_addf(out, "%s\"%s\"", between, keys[i].name);
+    }
+}
+
+int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n)
+{
+    const mt_key *const keys = &o->table->keys[first];
+    int which = MT_ABSENT;
+    for (int k = 0; k < n; k++) {
+        if (!mt_read_study_has(s, o, first + k)) {
+            continue;
+        }
+        if (which != MT_ABSENT) {
+            mt_diag_structure(s->r.diags, mt_json_name_addr(s->r.doc, member(s, o, first + k)),
+                              "\"%s\" excludes \"%s\"", keys[k].name, keys[which].name);
+            return MT_ABSENT;
+        }
+        which = k;
+    }
+    if (which == MT_ABSENT) {
+        mt_text names = {0};
+        list_keys(keys, n, &names);
+        if (names.failed) {
+            mt_arena_fail(s->r.mem);
+        } else {
+            mt_diag_structure(s->r.diags, o->addr, "one of %s is missing", names.s);
+        }
+        mt_text_free(&names);
+    }
+    return which;
+}
+
+static double read_expr_number(mt_study_reader *s, mt_addr value)
+{
+    if (value == MT_NO_ADDR || !mt_reader_type(&s->r, value, MT_KEY_NUMBER)) {
+        return nan("");
+    }
+    if (mt_json_type_of(s->r.doc, value) == MT_JSON_NUMBER) {
+        return mt_json_number(s->r.doc, value);
+    }
+    const mt_model *const model = s->study->model;
+    mt_expr e = {0};
+    if (model == NULL || s->study->original == NULL || !mt_reader_expr(&s->r, value, &e)) {
+        return nan(""); /* without a model nothing can be said about its parameters */
+    }
+    double number = nan("");
+    const mt_status rc =
+        mt_model_expr_value(model, s->study->original, &e, &s->study->mem, &number, NULL);
+    if (rc == MT_E_MEMORY) {
+        mt_arena_fail(s->r.mem); /* it was told, and rewound */
+    } else if (rc != MT_OK) {
+        mt_diag_error(s->r.diags, value, "\"%s\" has no finite value at the original design",
+                      mt_json_string(s->r.doc, value));
+    }
+    return rc == MT_OK ? number : nan("");
+}
+
+double mt_read_study_number(mt_study_reader *s, mt_addr value)
+{
+    const double number = read_expr_number(s, value);
+    mt_reader_check_range(&s->r, value, value, number);
+    return number;
+}
+
+double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
+                            mt_addr *place)
+{
+    *place = mt_read_study_place(s, o, key);
+    return mt_read_study_number(s, o->found[key]);
+}
+
+bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2])
+{
+    out[0] = nan("");
+    out[1] = nan("");
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return false;
+    }
+    mt_addr ends[2];
+    if (mt_reader_pair(&s->r, value, &ends[0], &ends[1]) != 2) {
+        mt_diag_structure(s->r.diags, value, "must be two numbers: [lower, upper]");
+        return false;
+    }
+    for (int i = 0; i < 2; i++) {
+        out[i] = read_expr_number(s, ends[i]);
+        mt_reader_check_range(&s->r, member, ends[i], out[i]);
+    }
+    return true;
+}
+
+void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text)
+{
+    *out = (mt_expr){0};
+    *text = mt_reader_text(&s->r, value);
+    if (*text != NULL && s->study->model != NULL) {
+        (void)mt_reader_expr_text(&s->r, value, *text, out);
+    }
+}
+
+int mt_read_study_index(mt_study_reader *s, mt_addr value)
+{
+    return mt_reader_count(&s->r, value, 1, MT_MAX_LIST, 0);
+}
+
+mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int key)
+{
+    const mt_addr value = o->found[key];
+    mt_mode_ref mode = {.named = MT_ABSENT, .addr = mt_read_study_place(s, o, key)};
+    if (value == MT_NO_ADDR) {
+        return mode;
+    }
+    if (mt_json_type_of(s->r.doc, value) == MT_JSON_STRING) {
+        mode.mode_name = mt_reader_ref(&s->r, value);
+    } else {
+        mode.index = mt_read_study_index(s, value);
+    }
+    return mode;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef STUDY_READ_PRIV_H
+#define STUDY_READ_PRIV_H
+
+#include "environment/read_aircraft.h"
+#include "io/options.h"
+#include "io/reader.h"
+#include "model/read.h"
+#include "study/study.h"
+
+/* A model file that the study names. */
+typedef struct mt_study_file {
+    mt_name path;          /* as written */
+    const mt_model *model; /* NULL: it could not be read, which has been noted */
+} mt_study_file;
+
+/* The state of reading a study, shared by read_study_*.c. */
+typedef struct mt_study_reader {
+    mt_reader r;
+    mt_study *study;
+    mt_io_options files;            /* for the models; root is set */
+    mt_diagnostics *model_messages; /* diagnostics of the model files */
+    /* MT_OK, or the failure of reading a model; reading goes on only after MT_E_INPUT */
+    mt_status failed;
+    mt_err why; /* the first such failure */
+    MT_LIST_OF(mt_study_file, read);
+} mt_study_reader;
+
+/* One list of keys makes the enum of their places in `found` and the table. */
+#define MT_STUDY_KEY_ENUM(id, ...) id,
+#define MT_STUDY_KEY(id, label, kind, ...) \
+    {.name = (label), .type = (kind), MT_KEY_REST(__VA_ARGS__)},
+
+/* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a
+ * wrong type). */
+typedef struct mt_study_object {
+    mt_addr addr;
+    const mt_key_table *table;
+    mt_addr found[MT_MAX_KEYS];
+} mt_study_object;
+bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table *table,
+                          mt_study_object *out);
+/* mt_read_study_has: true where the member is present, also of a wrong type.
+ * mt_read_study_place: its address, else the object's. */
+bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key);
+mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key);
+/* The one of n members (neighbours in the table, from `first`) that is there; MT_ABSENT where
+ * none or several are (noted). */
+int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n);
+
+/* A number; expressions are evaluated at the original design. NaN where absent or wrong
+ * (noted). Values that are impossible or implausible by the row of its member are noted. */
+double mt_read_study_number(mt_study_reader *s, mt_addr value);
+/* A member that is a number, and its place. */
+double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
+                            mt_addr *place);
+/* A value of a parameter of the model (of any name): a bare number is in the study's unit of
+ * its kind or in the parameter's own. Returned in SI, NaN as of mt_read_study_number. */
+double mt_read_study_value(mt_study_reader *s, mt_addr value, const char *parameter);
+/* A member that is such a value, and its place. */
+double mt_read_study_value_member(mt_study_reader *s, const mt_study_object *o, int key,
+                                  const char *parameter, mt_addr *place);
+/* The unit of bare numbers for the parameter; NULL: SI, or not known. */
+const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *parameter);
+/* Note a bare limit of an expression, which is in SI, that looks like a number in another
+ * unit. */
+void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value);
+/* An expression that follows the design, and its text. */
+void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
+/* "mode": a name or an index from 1. */
+mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int key);
+/* An index from 1; 0 where absent or wrong. */
+int mt_read_study_index(mt_study_reader *s, mt_addr value);
+/* Load a model that the study names, once; NULL where it cannot be read (noted). */
+const mt_model *mt_read_study_model(mt_study_reader *s, mt_name path);
+/* A list of two numbers, lower and upper, of a member or an item of it; false (noted) where it
+ * is anything else. Wrong numbers are NaN. */
+bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2]);
+/* Record a file that was read, with the digest of its bytes. */
+void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256);
+/* Note a refused file at the address of `path` in the study, unless its own diagnostics report
+ * it (`told`); also where `file`, the joined path, leads to nothing. A file that exists and
+ * cannot be read is not a problem of the study. */
+void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
+                                mt_status rc, const mt_err *why, bool told);
+
+void mt_read_study_variables(mt_study_reader *s, mt_addr list);
+void mt_read_study_references(mt_study_reader *s, mt_addr object);
+void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
+/* Read the members of a goal on ports that is compared with a measurement. */
+void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
+void mt_read_study_goals(mt_study_reader *s, mt_addr list);
+/* A profile of vibration that the study names, each read once; NULL: no name, or it could not
+ * be read (noted). */
+const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name);
+/* Read the other members of a goal about ports. */
+void mt_read_study_response_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
+void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
+void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
+/* Read the catalogue of aircraft: the one named, else, where a goal needs one, that in the
+ * model's folder, else the one built into the program. Call it after the goals. */
+void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
+/* Call it after variables and goals; goals: the list of goals, whose indices it uses. */
+void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
+void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
+void mt_read_study_responses(mt_study_reader *s, mt_addr list);
+void mt_read_study_published(mt_study_reader *s, mt_addr list);
+
+extern const mt_key_table mt_study_keys;
+extern const mt_key_table mt_study_search_keys;
+extern const mt_key_table mt_study_weight_sensitivity_keys;
+extern const mt_key_table mt_study_variable_keys;
+extern const mt_key_table mt_study_catalogue_keys;
+extern const mt_key_table mt_study_trade_keys;
+extern const mt_key_table mt_study_vary_keys;
+extern const mt_key_table mt_study_span_keys;
+extern const mt_key_table mt_study_reference_keys;
+extern const mt_key_table mt_study_measured_keys;
+extern const mt_key_table mt_study_measurement_keys;
+extern const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT]; /* by kind */
+extern const mt_key_table mt_study_rotor_keys;
+extern const mt_key_table mt_study_tail_keys;
+extern const mt_key_table mt_study_machine_keys;
+extern const mt_key_table mt_study_gear_keys;
+extern const mt_key_table mt_study_objective_keys;
+extern const mt_key_table mt_study_response_keys;
+extern const mt_key_table mt_study_published_keys;
+extern const mt_key_table mt_study_published_frequency_keys;
+extern const mt_key_table mt_study_published_mac_keys;
+
+#endif

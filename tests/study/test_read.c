@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A right study: every member arrives, names are resolved, numbers are evaluated at the
+ * original design. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "io/options.h"
+#include "mt_alloc.h"
+#include "mt_test.h"
+#include "study/read.h"
+
+#define FULL  MT_TEST_SOURCE_DIR "/tests/documents/good/study_full.json"
+#define MODEL MT_TEST_SOURCE_DIR "/tests/documents/wrong/parts/model.json"
+
+static const double TOL = 1e-15; /* a few roundings: quotients and products of two numbers */
+
+static mt_study *load(mt_test *t, const char *path)
+{
+    mt_study *s = NULL;
+    mt_diagnostics messages = {.count = 0};
+    mt_err err = {.text = ""};
+    CHECK_INT(t, mt_study_load(path, NULL, &s, &messages, &err), MT_OK);
+    CHECK_STR(t, messages.lines.s, NULL);
+    CHECK_STR(t, err.text, "");
+    mt_diagnostics_free(&messages);
+    return s;
+}
+
+/* A small study with these members, in a file of its own beside the model; the caller deletes
+ * it. */
+static mt_study *load_text(mt_test *t, const char *members, mt_diagnostics *messages)
+{
+    char folder[] = "/tmp/mt_study_XXXXXX";
+    char path[64];
+    mt_study *s = NULL;
+    mt_io_options opt = {.root = "/"};
+    if (!CHECK(t, mkdtemp(folder) != NULL)) {
+        return NULL;
+    }
+    (void)snprintf(path, sizeof path, "%s/two.masses.json", folder);
+    FILE *const f = fopen(path, "w");
+    if (CHECK(t, f != NULL)) {
+        (void)fprintf(f, "{\"format\": \"modetune-study/1\", \"model\": \"%s\"%s}", MODEL,
+                      members);
+        CHECK_INT(t, fclose(f), 0);
+        CHECK_INT(t, mt_study_load(path, &opt, &s, messages, NULL), MT_OK);
+    }
+    (void)unlink(path);
+    (void)rmdir(folder);
+    return s;
+}
+
+static void check_variables(mt_test *t, const mt_study *s)
+{
+    if (!CHECK_INT(t, s->n_variables, 3)) {
+        return;
+    }
+    const mt_variable *const v = s->variables;
+    CHECK_INT(t, v[0].parameter, mt_model_find_parameter(s->model, "k1"));
+    CHECK_NEAR(t, v[0].lower, 0.5, TOL);
+    CHECK_NEAR(t, v[0].upper, 6.0, TOL);
+    CHECK_NEAR(t, v[0].original, 3.0, TOL);
+    CHECK_NEAR(t, v[0].weight, 2.0, TOL);
+    CHECK_NEAR(t, v[0].scale, 0.5, TOL);
+    CHECK_NEAR(t, v[0].tolerance_percent, 3.0, TOL);
+    if (CHECK_INT(t, v[1].n_catalogue, 3)) { /* ascending */
+        CHECK_NEAR(t, v[1].catalogue[0], 1.0, TOL);
+        CHECK_NEAR(t, v[1].catalogue[1], 2.5, TOL);
+        CHECK_NEAR(t, v[1].catalogue[2], 4.0, TOL);
+    }
+    CHECK_NEAR(t, v[1].range, 3.0, TOL);
+    CHECK_NEAR(t, v[1].weight, 1.0, TOL);
+    CHECK(t, !MT_HAS(v[1].tolerance_percent));
+    CHECK_NEAR(t, v[2].upper, 0.17453292519943295, TOL);
+    CHECK_NEAR_ABS(t, v[2].original, 0.0, 0.0);
+}
+
+static void check_frequency_goals(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = s->goals;
+    CHECK_INT(t, g[0].type, MT_GOAL_FREQUENCY);
+    CHECK_NEAR(t, g[0].equals, 0.3, TOL);
+    CHECK_NEAR(t, g[0].tolerance_percent, 0.5, TOL);
+    CHECK_NEAR(t, g[0].weight, 3.0, TOL);
+    CHECK_INT(t, g[0].mode.index, 1);
+    CHECK_INT(t, g[0].mode.named, MT_ABSENT);
+    CHECK_STR(t, g[0].description, "the first");
+    CHECK(t, !MT_HAS(g[0].at_least) && !MT_HAS(g[0].at_most));
+    CHECK_INT(t, g[1].n_configurations, 2);
+    CHECK_INT(t, g[1].configurations[1], mt_model_find_configuration(s->model, "heavy"));
+    CHECK_INT(t, g[1].mode.index, 0);
+    CHECK_INT(t, g[1].mode.named, mt_model_find_mode(s->model, "in phase"));
+    CHECK_NEAR(t, g[1].at_least, 0.1, TOL);
+    CHECK_NEAR(t, g[1].at_most, 7.0, TOL);
+    CHECK(t, !MT_HAS(g[1].equals) && !MT_HAS(g[1].weight));
+    CHECK_NEAR(t, g[1].tolerance_percent, 1e-4, TOL);
+}
+
+static void check_other_goals(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = s->goals;
+    CHECK_INT(t, g[2].type, MT_GOAL_SHAPE);
+    CHECK_INT(t, g[2].reference, mt_study_find_reference(s, "test"));
+    CHECK_INT(t, g[2].reference_mode, 1);
+    CHECK_INT(t, g[3].type, MT_GOAL_MAC);
+    CHECK_INT(t, g[3].reference, mt_study_find_reference(s, "same"));
+    CHECK_INT(t, g[3].reference_mode, 0);
+    CHECK_NEAR(t, g[3].at_least, 0.95, TOL);
+    CHECK_INT(t, g[4].type, MT_GOAL_LIMIT);
+    CHECK_STR(t, g[4].expression_text, "m + k1");
+    CHECK(t, g[4].expression.length == 3);
+    CHECK_INT(t, g[4].n_configurations, 0);
+    CHECK_NEAR(t, g[4].at_most, 7.0, TOL);
+    CHECK_NEAR_ABS(t, g[5].equals, 0.0, 0.0);
+    CHECK_INT(t, g[6].type, MT_GOAL_FREQUENCY);
+    CHECK_INT(t, g[6].reference, mt_study_find_reference(s, "test"));
+    CHECK_INT(t, g[6].reference_mode, 2);
+    CHECK(t, !MT_HAS(g[6].equals));
+    CHECK_INT(t, g[0].reference, MT_ABSENT);
+}
+
+static void check_measured(mt_test *t, const mt_study *s)
+{
+    const mt_goal *const g = &s->goals[7];
+    if (!CHECK_INT(t, s->n_measurements, 2) ||
+        !CHECK_INT(t, g->type, MT_GOAL_FREQUENCY_RESPONSE)) {
+        return;
+    }
+    const mt_measurement *const m = &s->measurements[0];
+    CHECK_INT(t, g->n_configurations, 2);
+    CHECK_STR(t, g->response_limit->input.s, "s1.x");
+    CHECK_STR(t, g->response_limit->output.s, "s2.x:acceleration");
+    CHECK_INT(t, g->response_limit->measurement, 0);
+    CHECK(t, g->response_limit->coherence);
+    CHECK_NEAR(t, g->response_limit->lower_hz, 0.5, TOL);
+    CHECK_NEAR(t, g->response_limit->upper_hz, 3.0, TOL);
+    CHECK_NEAR(t, g->weight, 2.0, TOL);
+    CHECK_NEAR(t, m->factor, 2.0, TOL);
+    if (CHECK_INT(t, m->n_responses, 1) && CHECK_INT(t, m->responses[0].n_lines, 3)) {
+        CHECK_NEAR(t, m->responses[0].scale, 2.0, TOL);
+        CHECK_NEAR(t, m->responses[0].lines[2].coherence, 0.75, TOL);
+    }
+    CHECK(t, s->measurements[1].responses[0].scale == 1.0);
+}
+
+static void check_references(mt_test *t, const mt_study *s)
+{
+    if (!CHECK_INT(t, s->n_references, 2)) {
+        return;
+    }
+    const mt_reference *const r = s->references;
+    CHECK(t, r[0].model == s->model); /* the same file is read once */
+    CHECK_INT(t, r[0].configuration, mt_model_find_configuration(s->model, "loaded"));
+    CHECK(t, r[1].model == NULL);
+    if (CHECK_INT(t, r[1].n_modes, 2) && CHECK_INT(t, r[1].modes[0].n_values, 3)) {
+        CHECK_NEAR(t, r[1].modes[0].frequency_hz, 4.3, TOL);
+        CHECK_STR(t, r[1].modes[0].channels[1].s, "s2.x");
+        CHECK_NEAR(t, r[1].modes[0].values[1], 0.25, TOL);
+        CHECK_INT(t, r[1].modes[1].n_values, 0);
+    }
+    CHECK_STR(t, r[1].source, "made up");
+}
+
+static void check_objectives(mt_test *t, const mt_study *s)
+{
+    if (!CHECK_INT(t, s->n_objectives, 4)) {
+        return;
+    }
+    CHECK_INT(t, s->objectives[0].type, MT_OBJECTIVE_MISFIT);
+    CHECK_INT(t, s->objectives[1].type, MT_OBJECTIVE_MASS);
+    CHECK_INT(t, s->objectives[1].of.count, 2);
+    CHECK_INT(t, s->objectives[2].type, MT_OBJECTIVE_EXPRESSION);
+    CHECK_STR(t, s->objectives[2].expression_text, "k1 + k2");
+    CHECK_INT(t, s->objectives[3].type, MT_OBJECTIVE_CHANGE);
+}
+
+static void check_published(mt_test *t, const mt_study *s)
+{
+    if (!CHECK_INT(t, s->n_published, 6)) {
+        return;
+    }
+    const mt_published *const p = s->published;
+    CHECK_INT(t, p[0].kind, MT_PUBLISHED_PARAMETER);
+    CHECK_INT(t, p[0].role, MT_ROLE_CALIBRATES);
+    CHECK_STR(t, p[0].label, "first spring");
+    CHECK_STR(t, p[0].source, "Table 2");
+    CHECK_NEAR(t, p[0].tolerance_percent, 1.0, TOL);
+    CHECK(t, !MT_HAS(p[0].tolerance) && !p[0].original);
+    CHECK_INT(t, p[1].kind, MT_PUBLISHED_QUANTITY);
+    CHECK(t, p[1].original);
+    CHECK_INT(t, p[1].role, MT_ROLE_NOT_COMPARABLE);
+    CHECK_INT(t, p[2].kind, MT_PUBLISHED_FREQUENCY);
+    CHECK_INT(t, p[2].configuration, mt_model_find_configuration(s->model, "bare"));
+    CHECK_INT(t, p[2].mode.index, 2);
+    CHECK_INT(t, p[2].role, MT_ROLE_VERIFIES);
+    CHECK_INT(t, p[3].kind, MT_PUBLISHED_MAC);
+    CHECK_INT(t, p[3].reference, mt_study_find_reference(s, "test"));
+    CHECK_INT(t, p[3].reference_mode, 1);
+    CHECK_NEAR(t, p[3].value, 0.99804, TOL);
+    CHECK_NEAR(t, p[3].at_least, 0.99784, TOL);
+    CHECK_NEAR(t, p[4].at_most, 1.5, TOL);
+    CHECK_INT(t, p[5].kind, MT_PUBLISHED_STATUS);
+    CHECK_STR(t, p[5].status, "compromise");
+}
+
+static void study__every_member_arrives(mt_test *t)
+{
+    mt_study *const s = load(t, FULL);
+    REQUIRE(t, s != NULL);
+    CHECK_STR(t, s->name, "Every member once");
+    CHECK_INT(t, s->recommendations, 3);
+    CHECK_INT(t, s->search.seed, 7);
+    CHECK_INT(t, s->search.starts, 12);
+    CHECK_INT(t, s->search.max_evaluations, 5000);
+    CHECK_INT(t, s->search.max_modal_solutions, 90000);
+    CHECK_NEAR(t, s->search.proof_s, 10.0, 0.0);
+    CHECK_NEAR(t, s->weight_sensitivity.factor, 4.0, 0.0);
+    if (CHECK_INT(t, s->n_goals, 8)) {
+        check_frequency_goals(t, s);
+        check_other_goals(t, s);
+        check_measured(t, s);
+    }
+    check_variables(t, s);
+    check_references(t, s);
+    check_objectives(t, s);
+    check_published(t, s);
+    mt_study_delete(s);
+}
+
+static void study__inputs_are_listed_with_their_digests(mt_test *t)
+{
+    mt_study *const s = load(t, FULL);
+    REQUIRE(t, s != NULL);
+    if (CHECK_INT(t, s->n_inputs, 4)) {
+        CHECK_STR(t, s->inputs[0].name, "study_full.json");
+        CHECK_STR(t, s->inputs[1].name, "../wrong/parts/model.json");
+        CHECK_STR(t, s->inputs[2].name, "../wrong/parts/measured.csv");
+        CHECK_STR(t, s->inputs[1].sha256, s->model->sha256);
+        CHECK_INT(t, strlen(s->inputs[0].sha256), 64);
+    }
+    mt_study_delete(s);
+}
+
+static void study__defaults_are_filled_in(mt_test *t)
+{
+    mt_study *s = load_text(t, "", NULL);
+    if (s != NULL) {
+        CHECK_STR(t, s->name, "two.masses");
+        CHECK_INT(t, s->recommendations, 5);
+        CHECK_INT(t, s->search.seed, 1);
+        CHECK_INT(t, s->search.starts, 0);
+        CHECK(t, isnan(s->weight_sensitivity.factor));
+        CHECK_INT(t, s->n_objectives, 0); /* nothing may change */
+    }
+    mt_study_delete(s);
+    s = load_text(t, ", \"variables\": [{\"parameter\": \"k1\", \"lower\": 1, \"upper\": 10}]",
+                  NULL);
+    if (s != NULL && CHECK_INT(t, s->n_objectives, 1)) {
+        CHECK_INT(t, s->objectives[0].type, MT_OBJECTIVE_CHANGE);
+    }
+    mt_study_delete(s);
+}
+
+static void study__bounds_below_zero_are_fine(mt_test *t)
+{
+    mt_study *const s = load_text(
+        t, ", \"variables\": [{\"parameter\": \"k1\", \"lower\": -1, \"upper\": 4}]", NULL);
+    if (s != NULL) {
+        CHECK_NEAR(t, s->variables[0].lower, -1.0, TOL);
+        CHECK_NEAR(t, s->variables[0].range, 5.0, TOL);
+    }
+    mt_study_delete(s);
+}
+
+static void study__an_original_value_outside_the_bounds_is_a_warning(mt_test *t)
+{
+    mt_diagnostics messages = {.count = 0};
+    mt_study *const s = load_text(
+        t, ", \"variables\": [{\"parameter\": \"k1\", \"lower\": 4, \"upper\": 5}]", &messages);
+    CHECK(t, messages.lines.s != NULL &&
+                 strstr(messages.lines.s,
+                        "warning: /variables/0: the original value of \"k1\" (3) "
+                        "lies outside 4 to 5\n") != NULL);
+    mt_study_delete(s);
+    mt_diagnostics_free(&messages);
+}
+
+static void study__models_lie_beneath_the_root(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *root;
+        mt_status want;
+    } rows[] = {
+        {"default: the parent of the study's folder", NULL, MT_OK},
+        {"a folder above", MT_TEST_SOURCE_DIR, MT_OK},
+        {"a folder that holds the model only", MT_TEST_SOURCE_DIR "/tests/documents/wrong",
+         MT_OK},
+        {"a folder that does not", MT_TEST_SOURCE_DIR "/tests/documents/good", MT_E_INPUT},
+    };
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        mt_study *s = NULL;
+        mt_diagnostics messages = {.count = 0};
+        const mt_io_options opt = {.root = rows[i].root};
+        mt_test_row(t, "%s", rows[i].name);
+        CHECK_INT(t, mt_study_load(FULL, &opt, &s, &messages, NULL), rows[i].want);
+        const bool told = messages.lines.s != NULL &&
+                          strstr(messages.lines.s, "outside the root folder") != NULL;
+        CHECK(t, told == (rows[i].want != MT_OK));
+        mt_study_delete(s);
+        mt_diagnostics_free(&messages);
+    }
+}
+
+static void study__no_file_is_a_system_failure(mt_test *t)
+{
+    mt_study *s = NULL;
+    mt_err err = {.text = ""};
+    CHECK_INT(t, mt_study_load("/nonexistent/study.json", NULL, &s, NULL, &err), MT_E_SYSTEM);
+    CHECK(t, s == NULL);
+    CHECK(t, strstr(err.text, "/nonexistent/study.json") != NULL);
+}
+
+static void study__every_failing_allocation_is_survived(mt_test *t)
+{
+    mt_status rc = MT_E_MEMORY;
+    for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
+        const long before = mt_alloc_live();
+        mt_study *s = NULL;
+        mt_diagnostics messages = {.count = 0};
+        mt_test_row(t, "allocation %ld", nth);
+        mt_alloc_fail_after(nth);
+        rc = mt_study_load(FULL, NULL, &s, &messages, NULL);
+        mt_alloc_fail_after(-1);
+        CHECK(t, (rc == MT_OK) == (s != NULL));
+        mt_study_delete(s);
+        mt_diagnostics_free(&messages);
+        CHECK_INT(t, mt_alloc_live(), before);
+    }
+    CHECK(t, rc == MT_OK || !mt_alloc_works());
+}
+
+MT_TEST_MAIN(MT_TEST(study__every_member_arrives),
+             MT_TEST(study__inputs_are_listed_with_their_digests),
+             MT_TEST(study__defaults_are_filled_in), MT_TEST(study__bounds_below_zero_are_fine),
+             MT_TEST(study__an_original_value_outside_the_bounds_is_a_warning),
+             MT_TEST(study__models_lie_beneath_the_root),
+             MT_TEST(study__no_file_is_a_system_failure),
+             MT_TEST(study__every_failing_allocation_is_survived))
