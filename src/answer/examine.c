@@ -161,8 +161,10 @@ static double original_hz(const mt_study *s, const mt_goal *goal, const mt_analy
     return pos < 0 ? nan("") : mt_modal_hz(&a->modes, pos);
 }
 
-static void warn_target(mt_warning_list *out, const mt_goal *goal, mt_goal_slot slot, double hz)
+static void warn_target(const mt_study *s, mt_warning_list *out, const mt_goal *goal,
+                        mt_goal_slot slot, double hz)
 {
+    const char *const name = mt_goal_member_name(mt_goal_kind_of(goal->type), slot);
     const double asked = goal->number[slot];
     const bool above = slot != MT_SLOT_AT_MOST;
     const bool below = slot != MT_SLOT_AT_LEAST;
@@ -178,10 +180,9 @@ static void warn_target(mt_warning_list *out, const mt_goal *goal, mt_goal_slot 
     mt_warning *const d =
         mt_warning_add(out, MT_LEVEL_WARNING, "target",
                        "%s %.6g Hz is %s %s the original frequency, %.6g Hz: is the unit Hz?",
-                       mt_goal_member_name(mt_goal_kind_of(goal->type), slot), asked, times,
-                       ratio >= 1.0 ? "above" : "below", hz);
+                       name, asked, times, ratio >= 1.0 ? "above" : "below", hz);
     if (d != NULL) {
-        d->addr = goal->number_addr[slot];
+        d->addr = mt_study_member(s, goal->addr, name);
     }
 }
 
@@ -312,7 +313,7 @@ static mt_status examine_configuration(const mt_study *s, const mt_run *run, int
             const double hz = original_hz(s, goal, a);
             ratio[g] = hz > 0.0 ? measured_hz(s, goal) / hz : nan("");
             for (int slot = MT_SLOT_EQUALS; slot <= MT_SLOT_AT_MOST; slot++) {
-                warn_target(of_study, goal, (mt_goal_slot)slot, hz);
+                warn_target(s, of_study, goal, (mt_goal_slot)slot, hz);
             }
         }
     }
@@ -380,7 +381,7 @@ mt_status mt_study_examine(const mt_study *study, const mt_run *run, double most
     for (int i = first; i < out->n; i++) {
         mt_warning *const d = &out->items[i];
         d->file = mt_text_base_name(study->path);
-        mt_study_place_warning(study, d);
+        mt_study_place_warning(study, out->mem, d);
     }
     for (int i = 0; i < of_model.n; i++) {
         of_model.items[i].file = study->model_path.s;

@@ -43,6 +43,14 @@ static void add_diagnostic(mt_diags *d, mt_addr addr, mt_severity severity, bool
     d->count++;
 }
 
+mt_addr mt_diag_member(const mt_diags *d, mt_addr object, const char *member)
+{
+    const mt_addr at = d->document == NULL || member == NULL
+                           ? MT_NO_ADDR
+                           : d->lookup(d->document, object, member);
+    return at == MT_NO_ADDR ? object : at;
+}
+
 bool mt_diag_has_room(const mt_diags *d)
 {
     return d->count < MT_DIAG_LIMIT;

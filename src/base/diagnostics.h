@@ -27,8 +27,13 @@ typedef struct mt_diag {
     const char *text;
 } mt_diag;
 
+/* The address of an object's member in a document; MT_NO_ADDR where it has none so called. */
+typedef mt_addr (*mt_diag_lookup)(const void *document, mt_addr object, const char *member);
+
 typedef struct mt_diags {
-    mt_arena *mem; /* not owned */
+    mt_arena *mem;         /* not owned */
+    const void *document;  /* of the addresses; NULL: none */
+    mt_diag_lookup lookup; /* in the document */
     mt_diag *items;
     int count;
     int capacity;
@@ -48,6 +53,9 @@ void mt_diag_structure(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINT
 bool mt_diag_has_room(const mt_diags *d);
 /* True for the first MT_DIAG_SUGGESTIONS errors, which get a suggestion ("did you mean"). */
 bool mt_diag_may_suggest(const mt_diags *d);
+/* The address of an object's member, wrong values included; the object's own where it has none
+ * of that name, where member is NULL, or where there is no document. O(members). */
+mt_addr mt_diag_member(const mt_diags *d, mt_addr object, const char *member);
 void mt_diag_warning(mt_diags *d, mt_addr addr, const char *fmt, ...) MT_PRINTF(3, 4);
 
 /* A problem with its location; file, pointer and message are offsets of NUL-terminated texts in

@@ -47,14 +47,11 @@ int mt_cli_loaded(mt_status rc, mt_diagnostics *messages, const mt_err *err)
 void mt_cli_place(const mt_study *study, const char *path, mt_status rc, mt_err *err,
                   mt_diagnostics *messages)
 {
-    const mt_study_place *const found =
-        rc == MT_E_INPUT ? mt_study_locate(study, err->text) : NULL;
-    if (found == NULL) {
+    mt_diagnostic_place place = {.file = path};
+    if (rc != MT_E_INPUT || !mt_study_locate(study, err->text, &place.line, &place.column)) {
         (void)mt_err_in(err, rc, "%s", path);
         return;
     }
-    const mt_diagnostic_place place = {
-        .file = path, .line = found->line, .column = found->column};
     mt_diagnostics_add(messages, MT_SEVERITY_ERROR, &place, err->text);
 }
 

@@ -44,11 +44,6 @@ mt_rotor mt_rotor_default(mt_addr addr)
         .range_upper = 1.0,
         .margin_percent = nan(""),
         .addr = addr,
-        .speed_addr = addr,
-        .tail_addr = addr,
-        .tail_speed_addr = addr,
-        .range_addr = addr,
-        .margin_addr = addr,
     };
 }
 

@@ -51,6 +51,7 @@ typedef struct mt_rotor {
     const char *name; /* in labels; NULL: the aircraft's, else "rotor" */
     double speed_hz;
     int blades;
+    bool has_tail; /* the file gives a tail rotor */
     double tail_speed_hz;
     int tail_blades;
     int n_harmonics;
@@ -60,11 +61,6 @@ typedef struct mt_rotor {
     double range_upper;
     double margin_percent; /* default: that of the list of bands */
     mt_addr addr;
-    mt_addr speed_addr; /* the addresses of what was not given equal addr */
-    mt_addr tail_addr;
-    mt_addr tail_speed_addr;
-    mt_addr range_addr;
-    mt_addr margin_addr;
 } mt_rotor;
 
 /* A rotor with every optional member at "not given" or its default, all addresses at addr. */

@@ -47,7 +47,14 @@ bool mt_order_parse(const char *text, char letter, mt_order *out)
 
 mt_gear mt_gear_default(mt_addr addr)
 {
-    return (mt_gear){.ratio = 1.0, .addr = addr, .ratio_addr = addr, .sidebands_addr = addr};
+    return (mt_gear){.ratio = 1.0, .addr = addr};
+}
+
+mt_addr mt_machine_range_addr(const mt_machine *machine, const mt_diags *diags)
+{
+    const mt_addr factors = mt_diag_member(diags, machine->addr, "speed_range");
+    return factors != machine->addr ? factors
+                                    : mt_diag_member(diags, machine->addr, "speed_range_hz");
 }
 
 mt_machine mt_machine_default(mt_addr addr)
@@ -58,10 +65,7 @@ mt_machine mt_machine_default(mt_addr addr)
                         .lower_hz = nan(""),
                         .upper_hz = nan(""),
                         .margin_percent = nan(""),
-                        .addr = addr,
-                        .speed_addr = addr,
-                        .range_addr = addr,
-                        .margin_addr = addr};
+                        .addr = addr};
 }
 
 double mt_machine_speed_hz(const mt_machine *machine, int end)

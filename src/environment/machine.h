@@ -42,8 +42,6 @@ typedef struct mt_gear {
     int n_orders; /* multiples of the mesh; 0: the mesh itself */
     mt_order *orders;
     mt_addr addr;
-    mt_addr ratio_addr; /* addr where not given */
-    mt_addr sidebands_addr;
 } mt_gear;
 
 /* Numbers are NaN where not given. */
@@ -60,12 +58,11 @@ typedef struct mt_machine {
     mt_gear *gears;
     double margin_percent; /* default: that of the list of bands */
     mt_addr addr;
-    mt_addr speed_addr; /* the addresses of what was not given equal addr */
-    mt_addr range_addr;
-    mt_addr margin_addr;
 } mt_machine;
 
 mt_gear mt_gear_default(mt_addr addr);
+/* The address of its range of speeds, in either form; its own where none is given. */
+mt_addr mt_machine_range_addr(const mt_machine *machine, const mt_diags *diags);
 mt_machine mt_machine_default(mt_addr addr);
 /* Lowest (end 0) or highest (end 1) speed [1/s]; NaN where not known. */
 double mt_machine_speed_hz(const mt_machine *machine, int end);

@@ -133,12 +133,9 @@ static mt_vibration_origin read_origin(mt_reader *r, mt_addr origin, mt_addr sou
 /* [f, level], or an object with a slope, of the list of a density. */
 static void read_point(mt_reader *r, mt_addr list, mt_addr value, mt_vibration_random *out)
 {
-    mt_vibration_point p = {.hz = nan(""),
-                            .level = nan(""),
-                            .slope_db = nan(""),
-                            .addr = value,
-                            .hz_addr = value,
-                            .level_addr = value};
+    mt_vibration_point p = {
+        .hz = nan(""), .level = nan(""), .slope_db = nan(""), .addr = value, .hz_addr = value};
+    mt_addr level = MT_NO_ADDR;
     if (!mt_reader_type(r, value, MT_KEY_LIST_OR_OBJECT)) {
         return;
     }
@@ -148,14 +145,14 @@ static void read_point(mt_reader *r, mt_addr list, mt_addr value, mt_vibration_r
         p.hz = mt_read_profile_number(r, found[POINT_HZ]);
         p.hz_addr = found[POINT_HZ];
         p.slope_db = mt_read_profile_number(r, found[POINT_SLOPE]);
-    } else if (mt_reader_pair(r, value, &p.hz_addr, &p.level_addr) != 2) {
+    } else if (mt_reader_pair(r, value, &p.hz_addr, &level) != 2) {
         mt_diag_structure(r->diags, value, "must be two numbers: [frequency, density]");
         return;
     } else {
         p.hz = read_bare(r, p.hz_addr);
-        p.level = read_bare(r, p.level_addr);
+        p.level = read_bare(r, level);
         mt_reader_check_range_of(r, "frequency", p.hz_addr, p.hz, MT_POSSIBLE_HZ);
-        mt_reader_check_range(r, list, p.level_addr, p.level);
+        mt_reader_check_range(r, list, level, p.level);
     }
     out->points[out->n_points++] = p;
 }
@@ -174,12 +171,10 @@ static void read_random(mt_reader *r, mt_addr value, mt_vibration *v)
         .published_rms = MT_STANDARD_GRAVITY * mt_read_profile_number(r, found[RANDOM_RMS_G]),
         .origin = read_origin(r, found[RANDOM_ORIGIN], found[RANDOM_SOURCE]),
         .addr = value,
-        .points_addr = value,
-        .published_addr = found[RANDOM_RMS_G]};
+    };
     if (which == MT_ABSENT || found[which] == MT_NO_ADDR) {
         return;
     }
-    out->points_addr = found[which];
     mt_items items = mt_reader_items(r, found[which]);
     if (items.count < 2) {
         mt_diag_structure(r->diags, found[which], "a density has at least two breakpoints");
@@ -208,8 +203,7 @@ static void read_tone(mt_reader *r, mt_addr value, mt_vibration *v)
         .in_g = level == TONE_G,
         .origin = read_origin(r, found[TONE_ORIGIN], found[TONE_SOURCE]),
         .addr = value,
-        .range_addr = found[TONE_RANGE],
-        .level_addr = level == MT_ABSENT ? value : found[level]};
+    };
     if (which == TONE_RANGE) {
         (void)mt_read_profile_pair(r, found[TONE_RANGE], &out->lower_hz, &out->upper_hz);
     } else {
@@ -229,7 +223,6 @@ static void read_combine(mt_reader *r, mt_addr value, mt_vibration *v)
     v->rule = rule == MT_ABSENT ? MT_TONES_SUM : (mt_vibration_sum)rule;
     if (found[COMBINE_SIGMA] != MT_NO_ADDR) {
         v->sigma = mt_read_profile_number(r, found[COMBINE_SIGMA]);
-        v->sigma_addr = found[COMBINE_SIGMA];
     }
 }
 

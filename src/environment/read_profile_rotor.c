@@ -38,11 +38,10 @@ const mt_key_table mt_profile_tail_keys = {"tail_rotor", TAIL_LIST, TAIL_COUNT};
 static const double RPM_PER_HZ = 60.0;
 
 /* Of two members, speed_hz and speed_rpm [Hz]. */
-static double read_speed(mt_reader *r, const mt_addr *found, int hz, mt_addr *place)
+static double read_speed(mt_reader *r, const mt_addr *found, int hz)
 {
     const int which = found[hz] != MT_NO_ADDR ? hz : hz + 1;
     const double speed = mt_read_profile_number(r, found[which]);
-    *place = found[which] != MT_NO_ADDR ? found[which] : *place;
     return which == hz ? speed : speed / RPM_PER_HZ;
 }
 
@@ -52,9 +51,9 @@ static void read_tail(mt_reader *r, mt_addr value, mt_rotor *rotor)
     if (value == MT_NO_ADDR || !mt_reader_object(r, value, &mt_profile_tail_keys, found)) {
         return;
     }
-    rotor->tail_addr = value;
+    rotor->has_tail = true;
     (void)mt_read_profile_one_of(r, value, &mt_profile_tail_keys, TAIL_SPEED_HZ);
-    rotor->tail_speed_hz = read_speed(r, found, TAIL_SPEED_HZ, &rotor->tail_speed_addr);
+    rotor->tail_speed_hz = read_speed(r, found, TAIL_SPEED_HZ);
     rotor->tail_blades = mt_reader_count(r, found[TAIL_BLADES], 1, MT_MAX_BLADES, 0);
 }
 
@@ -98,14 +97,13 @@ void mt_read_profile_rotor(mt_reader *r, mt_addr value, mt_rotor *rotor)
         rotor->aircraft = mt_reader_ref(r, found[ROTOR_AIRCRAFT]);
     }
     rotor->name = mt_reader_text(r, found[ROTOR_NAME]);
-    rotor->speed_hz = read_speed(r, found, ROTOR_SPEED_HZ, &rotor->speed_addr);
+    rotor->speed_hz = read_speed(r, found, ROTOR_SPEED_HZ);
     rotor->blades = mt_reader_count(r, found[ROTOR_BLADES], 1, MT_MAX_BLADES, 0);
     read_tail(r, found[ROTOR_TAIL], rotor);
     mt_read_harmonics(r, found[ROTOR_HARMONICS], rotor);
     if (mt_read_profile_pair(r, found[ROTOR_RANGE], &rotor->range_lower, &rotor->range_upper)) {
-        rotor->range_addr = found[ROTOR_RANGE];
         mt_read_warning_range(r, rotor->range_lower, rotor->range_upper, MT_ROTOR_LEAST_SPEED,
-                              "rotor's", rotor->range_addr);
+                              "rotor's", found[ROTOR_RANGE]);
     }
 }
 

@@ -56,8 +56,7 @@ int mt_rotor_warnings(const mt_rotor *rotor, const mt_aircraft *aircraft,
 void mt_rotor_check_harmonics(const mt_rotor *rotor, const mt_aircraft *aircraft,
                               mt_diags *diags)
 {
-    const bool has_tail =
-        aircraft == NULL ? rotor->tail_addr != rotor->addr : aircraft->has_tail;
+    const bool has_tail = aircraft == NULL ? rotor->has_tail : aircraft->has_tail;
     if (mt_rotor_too_many(diags, rotor->n_harmonics, rotor->addr, "harmonics")) {
         return;
     }
@@ -101,7 +100,7 @@ const char *mt_rotor_warning_range(double lower, double upper, double least, con
 void mt_rotor_check_range(const mt_rotor *rotor, mt_diags *diags)
 {
     if (rotor->range_lower > rotor->range_upper) {
-        mt_diag_error(diags, rotor->range_addr,
+        mt_diag_error(diags, mt_diag_member(diags, rotor->addr, "speed_range"),
                       "the range of speeds (%g to %g) must be ascending", rotor->range_lower,
                       rotor->range_upper);
     }

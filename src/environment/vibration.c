@@ -25,7 +25,7 @@ mt_status mt_vibration_new(mt_vibration **out, mt_err *err)
     if (v == NULL) {
         return mt_fail_memory(err);
     }
-    *v = (mt_vibration){.axis = MT_ABSENT, .sigma = DEFAULT_SIGMA, .sigma_addr = MT_NO_ADDR};
+    *v = (mt_vibration){.axis = MT_ABSENT, .sigma = DEFAULT_SIGMA};
     const mt_status rc = mt_arena_init(&v->mem, 0, err);
     if (rc != MT_OK) {
         free(v);
@@ -87,7 +87,9 @@ static bool follow_slopes(mt_diags *d, mt_vibration_random *r)
         first++;
     }
     if (first == r->n_points) {
-        mt_diag_error(d, r->points_addr, "no breakpoint has a level");
+        mt_diag_error(d,
+                      mt_diag_member(d, r->addr, r->in_g ? "psd_g2_per_hz" : "psd_m2_per_s3"),
+                      "no breakpoint has a level");
         return false;
     }
     for (int i = first - 1; i >= 0; i--) {
@@ -115,7 +117,7 @@ static void compare_with_print(mt_diags *d, const mt_vibration_random *r)
 {
     const double off = (r->rms / r->published_rms) - 1.0;
     if (fabs(off) > PUBLISHED_TOL) {
-        mt_diag_warning(d, r->published_addr,
+        mt_diag_warning(d, mt_diag_member(d, r->addr, "published_rms_g"),
                         "the breakpoints have an RMS of %.4g g, which is %.2g %% off the "
                         "published one",
                         r->rms / MT_STANDARD_GRAVITY, 100.0 * off);
@@ -220,8 +222,8 @@ static void check_source(mt_vibration *v, mt_vibration_source *s, mt_diags *d)
         return;
     }
     if (s->lower_hz > s->upper_hz) {
-        mt_diag_error(d, s->range_addr, "the range (%g to %g Hz) must be ascending",
-                      s->lower_hz, s->upper_hz);
+        mt_diag_error(d, mt_diag_member(d, s->addr, "frequency_hz"),
+                      "the range (%g to %g Hz) must be ascending", s->lower_hz, s->upper_hz);
     }
 }
 

@@ -28,7 +28,6 @@ typedef struct mt_vibration_point {
     double slope_db; /* [dB/octave], NaN: not given */
     mt_addr addr;
     mt_addr hz_addr;
-    mt_addr level_addr;
 } mt_vibration_point;
 
 typedef struct mt_vibration_random {
@@ -38,8 +37,6 @@ typedef struct mt_vibration_random {
     double published_rms; /* RMS of the random part that the source prints [m/s^2], NaN: none */
     mt_vibration_origin origin;
     mt_addr addr;
-    mt_addr points_addr;
-    mt_addr published_addr;
     mt_psd psd;      /* [(m/s^2)^2/Hz], by mt_vibration_finish */
     double *level_g; /* [psd.n] the same in g^2/Hz */
     double rms;      /* RMS of the input itself [m/s^2] */
@@ -55,8 +52,6 @@ typedef struct mt_vibration_source {
     bool in_g;
     mt_vibration_origin origin;
     mt_addr addr;
-    mt_addr range_addr;
-    mt_addr level_addr;
 } mt_vibration_source;
 
 typedef struct mt_vibration_tone {
@@ -98,7 +93,6 @@ struct mt_vibration {
     /* the combined peak: sigma RMS + the peaks of the tones by this rule */
     double sigma; /* default 3 */
     mt_vibration_sum rule;
-    mt_addr sigma_addr;
     /* by mt_vibration_finish */
     int n_tones;
     mt_vibration_tone *tones;

@@ -179,6 +179,11 @@ static mt_status build(void *context, mt_err *err)
     return rc;
 }
 
+static mt_addr lookup_member(const void *document, mt_addr object, const char *member)
+{
+    return mt_json_member(document, object, member);
+}
+
 mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *err)
 {
     *out = NULL;
@@ -189,6 +194,8 @@ mt_status mt_json_parse(const char *text, size_t length, mt_json **out, mt_err *
     /* of a text that is too long only the start is of use */
     doc->length = length > MT_JSON_MAX_BYTES ? 0 : length;
     doc->diags = mt_diags_default(&doc->mem);
+    doc->diags.document = doc;
+    doc->diags.lookup = lookup_member;
     doc->spots.most = MT_JSON_MAX_VALUES;
     doc->text = mt_arena_strndup(&doc->mem, text, doc->length);
     mt_status rc = mt_arena_check(&doc->mem, err);

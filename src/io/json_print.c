@@ -92,6 +92,41 @@ static int index_in_list(const mt_json *doc, mt_addr value)
     return index;
 }
 
+/* The child of a value that a pointer's token of n bytes names. */
+static mt_addr find_child(const mt_json *doc, mt_addr value, const char *token, size_t n)
+{
+    if (mt_json_type_of(doc, value) == MT_JSON_ARRAY) {
+        const cJSON *const item =
+            cJSON_GetArrayItem(doc->items[value], (int)strtol(token, NULL, 10));
+        return item == NULL || *token < '0' || *token > '9' ? MT_NO_ADDR : item->valueint;
+    }
+    mt_text name = {.s = NULL};
+    for (size_t i = 0; i < n; i++) { /* ~0 is ~, ~1 is / */
+        const bool escaped = token[i] == '~' && i + 1 < n;
+        const char *const plain = escaped ? (token[i + 1] == '1' ? "/" : "~") : token + i;
+        mt_text_add_n(&name, plain, 1);
+        i += escaped ? 1 : 0;
+    }
+    const mt_addr at =
+        name.failed || name.s == NULL ? MT_NO_ADDR : mt_json_member(doc, value, name.s);
+    mt_text_free(&name);
+    return at;
+}
+
+mt_addr mt_json_find(const mt_json *doc, const char *pointer, size_t length)
+{
+    mt_addr at = doc->items == NULL ? MT_NO_ADDR : MT_JSON_ROOT;
+    for (size_t i = 0; i < length && at != MT_NO_ADDR;) {
+        size_t n = 0;
+        while (i + 1 + n < length && pointer[i + 1 + n] != '/') {
+            n++;
+        }
+        at = pointer[i] == '/' ? find_child(doc, at, pointer + i + 1, n) : MT_NO_ADDR;
+        i += n + 1;
+    }
+    return at;
+}
+
 void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out)
 {
     const mt_json_spot *const spots = doc->spots.items;

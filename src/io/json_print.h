@@ -11,6 +11,8 @@
 void mt_json_locate(const mt_json *doc, mt_addr addr, int *line, int *column);
 /* The same for n addresses of values in ascending order, in one walk through the text. */
 void mt_json_locates(const mt_json *doc, int n, const mt_addr *addrs, int *lines, int *columns);
+/* The value that a JSON pointer of so many bytes leads to; MT_NO_ADDR where there is none. */
+mt_addr mt_json_find(const mt_json *doc, const char *pointer, size_t length);
 /* Append the JSON pointer of an address (RFC 6901: ~ is ~0, / is ~1; the root's is empty). */
 void mt_json_pointer(const mt_json *doc, mt_addr addr, mt_text *out);
 /* Add all diagnostics with their places, sorted by place (those of one place in the order

@@ -11,11 +11,7 @@ enum { LISTED_MOST = 10, FREEDOM_TEXT = 24 };
 
 mt_measurement mt_measurement_default(mt_name name, mt_addr addr)
 {
-    return (mt_measurement){.name = name,
-                            .factor = nan(""),
-                            .factor_addr = addr,
-                            .dataset_addr = addr,
-                            .addr = addr};
+    return (mt_measurement){.name = name, .factor = nan(""), .addr = addr};
 }
 
 static bool read_axis(const char **s, int *direction)

@@ -48,9 +48,7 @@ typedef struct mt_measurement {
     mt_name name;
     mt_name path;  /* as written */
     double factor; /* numbers of the file times factor are in SI; NaN: by the file's units */
-    mt_addr factor_addr;
-    int dataset; /* 0: not given */
-    mt_addr dataset_addr;
+    int dataset;   /* 0: not given */
     mt_name response_name; /* "12+Z"; s NULL: not given */
     mt_name reference_name;
     MT_LIST_OF(mt_measured_response, responses);

@@ -36,7 +36,7 @@ static bool any_tolerance(const mt_problem *p)
 
 bool mt_tolerance_is_range(const mt_problem *p, const mt_requirement *d)
 {
-    return any_tolerance(p) && MT_HAS(d->equals) && d->goal->tolerance_addr != d->goal->addr;
+    return any_tolerance(p) && MT_HAS(d->equals) && d->goal->tolerance_given;
 }
 
 /* Bounds widened by the tolerances. */

@@ -292,7 +292,7 @@ static void read_search(mt_study_reader *s, mt_addr value)
         mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
     search->max_modal_solutions =
         mt_reader_count(&s->r, o.found[SEARCH_MAX_SOLUTIONS], 1, INT_MAX, 0);
-    search->proof_s = mt_read_study_member(s, &o, SEARCH_PROOF, &search->proof_addr);
+    search->proof_s = mt_read_study_number(s, o.found[SEARCH_PROOF]);
 }
 
 static void read_weight_sensitivity(mt_study_reader *s, mt_addr value)
@@ -301,66 +301,9 @@ static void read_weight_sensitivity(mt_study_reader *s, mt_addr value)
     if (value != MT_NO_ADDR &&
         mt_read_study_object(s, value, &mt_study_weight_sensitivity_keys, &o)) {
         mt_weight_sensitivity *const weight_sensitivity = &s->study->weight_sensitivity;
-        weight_sensitivity->factor = mt_read_study_member(s, &o, WEIGHT_SENSITIVITY_FACTOR,
-                                                          &weight_sensitivity->factor_addr);
-    }
-}
-
-/* Studies of more items than this keep no places: pointers cost a walk along their list. */
-enum { MOST_PLACED = 1000 };
-
-static void note_place(mt_study_reader *s, mt_addr addr)
-{
-    mt_study *const study = s->study;
-    mt_study_place *const places = mt_arena_grow(&study->mem, study->places, study->n_places,
-                                                 &study->cap_places, sizeof *places);
-    mt_text pointer = {.s = NULL};
-    if (places == NULL) {
-        return;
-    }
-    mt_json_pointer(s->r.doc, addr, &pointer);
-    mt_study_place *const p = &places[study->n_places++];
-    *p = (mt_study_place){.addr = addr};
-    mt_json_locate(s->r.doc, addr, &p->line, &p->column);
-    p->pointer = mt_arena_strdup(&study->mem, pointer.s == NULL ? "" : pointer.s);
-    if (pointer.failed) {
-        mt_arena_fail(&study->mem);
-    }
-    mt_text_free(&pointer);
-    study->places = places;
-}
-
-/* Keep the places of members: the document is deleted before the study is checked with its
- * model. */
-static void note_places(mt_study_reader *s)
-{
-    mt_study *const study = s->study;
-    for (int i = 0; i < study->n_goals && i < MOST_PLACED; i++) {
-        const mt_goal *const g = &study->goals[i];
-        note_place(s, g->addr);
-        note_place(s, g->equals_addr);
-        note_place(s, g->at_least_addr);
-        note_place(s, g->at_most_addr);
-        if (g->response_limit != NULL) {
-            note_place(s, g->response_limit->input.addr);
-            note_place(s, g->response_limit->output.addr);
-        }
-    }
-    for (int i = 0; i < study->warning_list.n && i < MOST_PLACED; i++) {
-        note_place(s, study->warning_list.items[i].addr);
-    }
-    for (int i = 0; i < study->n_responses && i < MOST_PLACED; i++) {
-        note_place(s, study->responses[i].addr);
-        note_place(s, study->responses[i].response_limit.input.addr);
-        note_place(s, study->responses[i].response_limit.output.addr);
-    }
-    for (int i = 0; i < study->n_variables && i < MOST_PLACED; i++) {
-        note_place(s, study->variables[i].addr);
-        note_place(s, study->variables[i].lower_addr);
-        note_place(s, study->variables[i].upper_addr);
-    }
-    for (int i = 0; i < study->n_references && i < MOST_PLACED; i++) {
-        note_place(s, study->references[i].addr);
+        weight_sensitivity->factor =
+            mt_read_study_number(s, o.found[WEIGHT_SENSITIVITY_FACTOR]);
+        weight_sensitivity->addr = value;
     }
 }
 
@@ -378,7 +321,6 @@ static void read_study_root(mt_study_reader *s)
     study->revision = mt_reader_text(&s->r, o.found[STUDY_REVISION]);
     study->date = mt_reader_text(&s->r, o.found[STUDY_DATE]);
     study->accepted = mt_reader_accepted(&s->r, o.found[STUDY_ACCEPTED]);
-    study->recommendations_addr = mt_read_study_place(s, &o, STUDY_RECOMMENDATIONS);
     study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
                                              MAX_RECOMMENDATIONS, study->recommendations);
     study->alternatives = o.found[STUDY_RECOMMENDATIONS] != MT_NO_ADDR;
@@ -418,7 +360,6 @@ static mt_status read_document(mt_study_reader *s, mt_err *err)
         if (rc != MT_OK && rc != MT_E_INPUT) {
             return rc;
         }
-        note_places(s);
     }
     const mt_status rc = mt_reader_status(&s->r, study->path, err);
     if (rc == MT_OK && s->failed != MT_OK) {
@@ -438,6 +379,7 @@ static mt_status read_study_text(mt_study_reader *s, const mt_file *file,
     if (doc == NULL) {
         return rc;
     }
+    s->study->document = doc; /* deleted with it */
     s->r.doc = doc;
     s->r.diags = mt_json_diags(doc);
     s->model_messages = &model_messages;
@@ -456,7 +398,6 @@ static mt_status read_study_text(mt_study_reader *s, const mt_file *file,
     }
     s->model_messages = NULL;
     mt_diagnostics_free(&model_messages);
-    mt_json_delete(doc);
     return rc;
 }
 

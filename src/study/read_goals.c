@@ -54,8 +54,6 @@ static void read_configurations(const reading *g)
     mt_study_reader *const s = g->s;
     const bool one = has_goal_member(g, MT_SLOT_CONFIGURATION);
     const mt_addr list = found(g, MT_SLOT_CONFIGURATIONS);
-    g->goal->configurations_addr =
-        goal_member_addr(g, one ? MT_SLOT_CONFIGURATION : MT_SLOT_CONFIGURATIONS);
     if (one && has_goal_member(g, MT_SLOT_CONFIGURATIONS)) {
         one_of(g, MT_SLOT_CONFIGURATION, 2);
         return;
@@ -147,7 +145,7 @@ static void read_avoid(const reading *g)
     if (avoid == NULL) {
         return;
     }
-    *avoid = mt_avoid_default(g->goal->addr);
+    *avoid = mt_avoid_default();
     g->goal->avoid = avoid;
     for (int i = 0; i < MT_COUNT(makes); i++) {
         any = any || has_goal_member(g, makes[i]);
@@ -155,9 +153,6 @@ static void read_avoid(const reading *g)
     if (!any) {
         one_of(g, MT_SLOT_BANDS, MT_COUNT(makes));
     }
-    avoid->bands_addr = goal_member_addr(g, MT_SLOT_BANDS);
-    avoid->margin_addr = goal_member_addr(g, MT_SLOT_MARGIN);
-    avoid->up_to_addr = goal_member_addr(g, MT_SLOT_UP_TO);
     read_bands(s, found(g, MT_SLOT_BANDS), &avoid->source);
     read_rotors(g, &avoid->source);
     read_machines(g, &avoid->source);
@@ -208,7 +203,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
     for (int i = 0; i < g.kind->n; i++) {
         const mt_goal_slot slot = g.kind->members[i].slot;
         if (slot < MT_GOAL_NUMBERS) {
-            const double number = mt_read_study_member(s, &g.o, i, &goal->number_addr[slot]);
+            const double number = mt_read_study_number(s, g.o.found[i]);
             goal->number[slot] = MT_HAS(number) ? number : goal->number[slot];
         } else if (slot == MT_SLOT_CONFIGURATION) {
             read_configurations(&g);
@@ -224,6 +219,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
             mt_read_study_response_limit(s, &g.o, goal);
         }
     }
+    goal->tolerance_given = has_goal_member(&g, MT_SLOT_TOLERANCE);
     check_requirements(&g);
     return true;
 }

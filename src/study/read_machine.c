@@ -82,10 +82,9 @@ static void read_gear(mt_study_reader *s, mt_addr value, mt_gear *gear)
     gear->name = mt_reader_text(&s->r, o.found[GEAR_NAME]);
     gear->teeth = mt_reader_count(&s->r, o.found[GEAR_TEETH], 1, MT_MAX_TEETH, 0);
     if (o.found[GEAR_RATIO] != MT_NO_ADDR) {
-        gear->ratio = mt_read_study_member(s, &o, GEAR_RATIO, &gear->ratio_addr);
+        gear->ratio = mt_read_study_number(s, o.found[GEAR_RATIO]);
     }
     gear->sidebands = mt_reader_count(&s->r, o.found[GEAR_SIDEBANDS], 0, MT_MAX_SIDEBANDS, 0);
-    gear->sidebands_addr = mt_read_study_place(s, &o, GEAR_SIDEBANDS);
     gear->orders = read_orders(s, o.found[GEAR_ORDERS], 'G', &gear->n_orders);
 }
 
@@ -94,9 +93,8 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
 {
     double range[2];
     (void)mt_read_study_one_of(s, o, MACHINE_SPEED, 2);
-    machine->speed_hz = mt_read_study_member(s, o, MACHINE_SPEED, &machine->speed_addr);
+    machine->speed_hz = mt_read_study_number(s, o->found[MACHINE_SPEED]);
     if (o->found[MACHINE_SPEEDS] != MT_NO_ADDR) {
-        machine->range_addr = mt_read_study_place(s, o, MACHINE_SPEEDS);
         if (mt_read_study_pair(s, o->found[MACHINE_SPEEDS], o->found[MACHINE_SPEEDS], range)) {
             machine->lower_hz = range[0];
             machine->upper_hz = range[1];
@@ -105,9 +103,8 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
     if (!mt_read_study_has(s, o, MACHINE_RANGE)) {
         return;
     }
-    machine->range_addr = mt_read_study_place(s, o, MACHINE_RANGE);
     if (!mt_read_study_has(s, o, MACHINE_SPEED)) {
-        mt_diag_structure(s->r.diags, machine->range_addr,
+        mt_diag_structure(s->r.diags, mt_read_study_place(s, o, MACHINE_RANGE),
                           "\"speed_range\" multiplies \"speed_hz\", which is missing");
     }
     if (o->found[MACHINE_RANGE] != MT_NO_ADDR &&
@@ -115,7 +112,7 @@ static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine
         machine->range_lower = range[0];
         machine->range_upper = range[1];
         mt_read_warning_range(&s->r, range[0], range[1], MT_MACHINE_LEAST_SPEED, "machine's",
-                              machine->range_addr);
+                              o->found[MACHINE_RANGE]);
     }
 }
 
@@ -139,6 +136,5 @@ void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machin
             read_gear(s, gears.at, &machine->gears[machine->n_gears++]);
         }
     }
-    machine->margin_percent =
-        mt_read_study_member(s, &o, MACHINE_MARGIN, &machine->margin_addr);
+    machine->margin_percent = mt_read_study_number(s, o.found[MACHINE_MARGIN]);
 }

@@ -62,10 +62,9 @@ static void read_measurement(mt_study_reader *s, mt_addr value, mt_measurement *
     }
     m->path = mt_reader_ref(&s->r, o.found[MEASUREMENT_FILE]);
     m->dataset = mt_reader_count(&s->r, o.found[MEASUREMENT_DATASET], 1, INT_MAX, 0);
-    m->dataset_addr = mt_read_study_place(s, &o, MEASUREMENT_DATASET);
     m->response_name = read_freedom(s, o.found[MEASUREMENT_RESPONSE]);
     m->reference_name = read_freedom(s, o.found[MEASUREMENT_REFERENCE]);
-    m->factor = mt_read_study_member(s, &o, MEASUREMENT_FACTOR, &m->factor_addr);
+    m->factor = mt_read_study_number(s, o.found[MEASUREMENT_FACTOR]);
     if (m->path.s != NULL) {
         load_measurement(s, m);
     }
@@ -96,7 +95,6 @@ void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goa
     double edges[2];
     response_limit->measurement_name = mt_reader_ref(&s->r, o->found[named]);
     response_limit->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
-    response_limit->band_addr = mt_read_study_place(s, o, band);
     if (o->found[band] != MT_NO_ADDR &&
         mt_read_study_pair(s, o->found[band], o->found[band], edges)) {
         response_limit->lower_hz = edges[0];

@@ -100,13 +100,6 @@ double mt_read_study_number(mt_study_reader *s, mt_addr value)
     return number;
 }
 
-double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
-                            mt_addr *place)
-{
-    *place = mt_read_study_place(s, o, key);
-    return mt_read_study_number(s, o->found[key]);
-}
-
 bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2])
 {
     out[0] = nan("");

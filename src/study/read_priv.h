@@ -51,15 +51,9 @@ int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first
 /* A number; expressions are evaluated at the original design. NaN where absent or wrong
  * (noted). Values that are impossible or implausible by the row of its member are noted. */
 double mt_read_study_number(mt_study_reader *s, mt_addr value);
-/* A member that is a number, and its place. */
-double mt_read_study_member(mt_study_reader *s, const mt_study_object *o, int key,
-                            mt_addr *place);
 /* A value of a parameter of the model (of any name): a bare number is in the study's unit of
  * its kind or in the parameter's own. Returned in SI, NaN as of mt_read_study_number. */
 double mt_read_study_value(mt_study_reader *s, mt_addr value, const char *parameter);
-/* A member that is such a value, and its place. */
-double mt_read_study_value_member(mt_study_reader *s, const mt_study_object *o, int key,
-                                  const char *parameter, mt_addr *place);
 /* The unit of bare numbers for the parameter; NULL: SI, or not known. */
 const mt_unit *mt_read_study_unit(const mt_study_reader *s, const char *parameter);
 /* Note a bare limit of an expression, which is in SI, that looks like a number in another

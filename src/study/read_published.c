@@ -65,7 +65,6 @@ static void read_subject(mt_study_reader *s, const mt_study_object *o, mt_publis
     const int status =
         mt_reader_choice(&s->r, o->found[PUBLISHED_STATUS], "status", statuses, n);
     p->status = status == MT_ABSENT ? NULL : statuses[status];
-    p->status_addr = mt_read_study_place(s, o, PUBLISHED_STATUS);
 }
 
 /* The number published and how it is to be judged. */
@@ -77,16 +76,14 @@ static void read_judgement(mt_study_reader *s, const mt_study_object *o, mt_publ
         roles[i] = mt_role_name((mt_role)i);
     }
     const char *const name = p->parameter_name.s; /* NULL: of something else */
-    p->value = mt_read_study_value_member(s, o, PUBLISHED_VALUE, name, &p->value_addr);
+    p->value = mt_read_study_value(s, o->found[PUBLISHED_VALUE], name);
     p->at_least = mt_read_study_value(s, o->found[PUBLISHED_AT_LEAST], name);
     p->at_most = mt_read_study_value(s, o->found[PUBLISHED_AT_MOST], name);
-    p->tolerance =
-        mt_read_study_value_member(s, o, PUBLISHED_TOLERANCE, name, &p->tolerance_addr);
+    p->tolerance = mt_read_study_value(s, o->found[PUBLISHED_TOLERANCE], name);
     for (int key = PUBLISHED_VALUE; key <= PUBLISHED_TOLERANCE; key++) {
         mt_read_study_check_requirement(s, &p->quantity, o->found[key]);
     }
-    p->tolerance_percent =
-        mt_read_study_member(s, o, PUBLISHED_TOLERANCE_PERCENT, &p->tolerance_percent_addr);
+    p->tolerance_percent = mt_read_study_number(s, o->found[PUBLISHED_TOLERANCE_PERCENT]);
     const int role =
         mt_reader_choice(&s->r, o->found[PUBLISHED_ROLE], "role", roles, MT_ROLE_COUNT);
     p->role = role == MT_ABSENT ? p->role : (mt_role)role;

@@ -71,7 +71,6 @@ static void read_measured(mt_study_reader *s, mt_addr value, mt_measured_mode *m
     *mode = (mt_measured_mode){
         .frequency_hz = nan(""),
         .addr = value,
-        .frequency_addr = value,
     };
     if (!mt_read_study_object(s, value, &mt_study_measured_keys, &o)) {
         return;
@@ -81,7 +80,7 @@ static void read_measured(mt_study_reader *s, mt_addr value, mt_measured_mode *m
         mt_diag_structure(s->r.diags, value,
                           "a measured mode needs \"frequency_hz\" or \"shape\"");
     }
-    mode->frequency_hz = mt_read_study_member(s, &o, MEASURED_FREQUENCY, &mode->frequency_addr);
+    mode->frequency_hz = mt_read_study_number(s, o.found[MEASURED_FREQUENCY]);
     read_shape(s, o.found[MEASURED_SHAPE], mode);
 }
 

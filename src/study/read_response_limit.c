@@ -191,8 +191,6 @@ static void read_frequencies(const reading *g, mt_response_limit *response_limit
 {
     const int band = mt_goal_member_at(g->kind, MT_SLOT_BAND);
     double edges[2];
-    response_limit->band_addr = limit_member_addr(g, MT_SLOT_BAND);
-    response_limit->at_addr = limit_member_addr(g, MT_SLOT_AT);
     (void)mt_read_study_one_of(g->s, g->o, band, 2);
     if (found(g, MT_SLOT_AT) != MT_NO_ADDR) {
         response_limit->lower_hz = mt_read_study_number(g->s, found(g, MT_SLOT_AT));
@@ -212,7 +210,6 @@ static void read_profile(const reading *g, mt_response_limit *response_limit)
                                        MT_RESPONSE_LIMIT_QUANTITIES - MT_RESPONSE_LIMIT_RMS);
     response_limit->quantity =
         (mt_response_limit_quantity)(MT_RESPONSE_LIMIT_RMS + (which == MT_ABSENT ? 0 : which));
-    response_limit->quantity_addr = limit_member_addr(g, MT_SLOT_QUANTITY);
     response_limit->profile_name = name_at(g, MT_SLOT_PROFILE);
     response_limit->profile = mt_read_study_profile(g->s, response_limit->profile_name);
 }
@@ -225,7 +222,7 @@ void mt_read_study_response_limit(mt_study_reader *s, const mt_study_object *o, 
     if (response_limit == NULL) {
         return;
     }
-    *response_limit = mt_response_limit_default(goal->addr);
+    *response_limit = mt_response_limit_default();
     goal->response_limit = response_limit;
     response_limit->input = name_at(&g, MT_SLOT_INPUT);
     response_limit->output = name_at(&g, MT_SLOT_OUTPUT);

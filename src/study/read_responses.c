@@ -24,7 +24,6 @@ static bool read_response(mt_study_reader *s, mt_addr value, mt_study_response *
     r->configuration_name = mt_reader_ref(&s->r, o.found[RESPONSE_CONFIGURATION]);
     r->response_limit.input = mt_reader_ref(&s->r, o.found[RESPONSE_INPUT]);
     r->response_limit.output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
-    r->response_limit.band_addr = mt_read_study_place(s, &o, RESPONSE_BAND);
     if (o.found[RESPONSE_BAND] != MT_NO_ADDR &&
         mt_read_study_pair(s, o.found[RESPONSE_BAND], o.found[RESPONSE_BAND], band)) {
         r->response_limit.lower_hz = band[0];

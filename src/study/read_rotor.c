@@ -62,7 +62,7 @@ static bool times_rpm(const char *text)
 
 /* Read a speed per minute, in Hz. An expression there that converts to Hz itself is refused:
  * the result would be a sixtieth of the intended speed. */
-static double read_rpm(mt_study_reader *s, const mt_study_object *o, int key, mt_addr *place)
+static double read_rpm(mt_study_reader *s, const mt_study_object *o, int key)
 {
     const mt_addr at = o->found[key];
     if (at != MT_NO_ADDR && mt_json_type_of(s->r.doc, at) == MT_JSON_STRING &&
@@ -71,18 +71,17 @@ static double read_rpm(mt_study_reader *s, const mt_study_object *o, int key, mt
                       "is per minute as it is: leave out \"rpm\", or write it as \"speed_hz\"");
         return mt_read_study_number(s, MT_NO_ADDR);
     }
-    return mt_read_study_member(s, o, key, place) / RPM_PER_HZ;
+    return mt_read_study_number(s, at) / RPM_PER_HZ;
 }
 
 /* One of two members, neighbours in the table: speed_hz or speed_rpm [Hz]. */
-static double read_speed(mt_study_reader *s, const mt_study_object *o, int hz, mt_addr *place)
+static double read_speed(mt_study_reader *s, const mt_study_object *o, int hz)
 {
-    *place = o->addr;
     if (mt_read_study_has(s, o, hz)) {
-        return mt_read_study_member(s, o, hz, place);
+        return mt_read_study_number(s, o->found[hz]);
     }
     if (mt_read_study_has(s, o, hz + 1)) {
-        return read_rpm(s, o, hz + 1, place);
+        return read_rpm(s, o, hz + 1);
     }
     return mt_read_study_number(s, MT_NO_ADDR);
 }
@@ -94,7 +93,7 @@ static void read_tail(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
         return;
     }
     (void)mt_read_study_one_of(s, &o, TAIL_SPEED_HZ, 2);
-    rotor->tail_speed_hz = read_speed(s, &o, TAIL_SPEED_HZ, &rotor->tail_speed_addr);
+    rotor->tail_speed_hz = read_speed(s, &o, TAIL_SPEED_HZ);
     rotor->tail_blades = mt_reader_count(&s->r, o.found[TAIL_BLADES], 1, MT_MAX_BLADES, 0);
 }
 
@@ -123,20 +122,19 @@ void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
     rotor->aircraft = mt_reader_ref(&s->r, o.found[ROTOR_AIRCRAFT]);
     rotor->aircraft.addr = mt_read_study_place(s, &o, ROTOR_AIRCRAFT);
     rotor->name = mt_reader_text(&s->r, o.found[ROTOR_NAME]);
-    rotor->speed_hz = read_speed(s, &o, ROTOR_SPEED_HZ, &rotor->speed_addr);
+    rotor->speed_hz = read_speed(s, &o, ROTOR_SPEED_HZ);
     rotor->blades = mt_reader_count(&s->r, o.found[ROTOR_BLADES], 1, MT_MAX_BLADES, 0);
-    rotor->tail_addr = mt_read_study_place(s, &o, ROTOR_TAIL);
+    rotor->has_tail = mt_read_study_has(s, &o, ROTOR_TAIL);
     read_tail(s, o.found[ROTOR_TAIL], rotor);
     mt_read_harmonics(&s->r, o.found[ROTOR_HARMONICS], rotor);
-    rotor->range_addr = mt_read_study_place(s, &o, ROTOR_RANGE);
     if (o.found[ROTOR_RANGE] != MT_NO_ADDR &&
         mt_read_study_pair(s, o.found[ROTOR_RANGE], o.found[ROTOR_RANGE], range)) {
         rotor->range_lower = range[0];
         rotor->range_upper = range[1];
         mt_read_warning_range(&s->r, range[0], range[1], MT_ROTOR_LEAST_SPEED, "rotor's",
-                              rotor->range_addr);
+                              o.found[ROTOR_RANGE]);
     }
-    rotor->margin_percent = mt_read_study_member(s, &o, ROTOR_MARGIN, &rotor->margin_addr);
+    rotor->margin_percent = mt_read_study_number(s, o.found[ROTOR_MARGIN]);
 }
 
 static bool needs_catalogue(const mt_study *study)

@@ -167,7 +167,6 @@ static void read_vary(mt_study_reader *s, mt_addr value, mt_addr goals, mt_vary 
     v->upper = bound == 1;
     v->member = member == MT_ABSENT ? NULL : members[member];
     v->goal = goal_of(s, o.found[VARY_GOAL], goals);
-    v->values_addr = mt_read_study_place(s, &o, VARY_VALUES);
     read_values(s, o.found[VARY_VALUES], v);
 }
 
@@ -200,7 +199,6 @@ void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals)
         return;
     }
     trade->addr = value;
-    trade->objectives_addr = mt_read_study_place(s, &o, TRADE_OBJECTIVES);
     read_front(s, o.found[TRADE_OBJECTIVES], trade);
     const mt_addr list = o.found[TRADE_VARY];
     mt_items items = mt_reader_items(&s->r, list);

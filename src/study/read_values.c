@@ -68,13 +68,6 @@ double mt_read_study_value(mt_study_reader *s, mt_addr value, const char *parame
     return number;
 }
 
-double mt_read_study_value_member(mt_study_reader *s, const mt_study_object *o, int key,
-                                  const char *parameter, mt_addr *place)
-{
-    *place = mt_read_study_place(s, o, key);
-    return mt_read_study_value(s, o->found[key], parameter);
-}
-
 void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_addr value)
 {
     const mt_unit *const unit =

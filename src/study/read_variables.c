@@ -135,14 +135,13 @@ static void read_variable(mt_study_reader *s, mt_addr value, mt_variable *v)
     }
     v->parameter_name = mt_reader_ref(&s->r, o.found[VARIABLE_PARAMETER]);
     const char *const name = v->parameter_name.s;
-    v->lower = mt_read_study_value_member(s, &o, VARIABLE_LOWER, name, &v->lower_addr);
-    v->upper = mt_read_study_value_member(s, &o, VARIABLE_UPPER, name, &v->upper_addr);
-    v->catalogue_addr = mt_read_study_place(s, &o, VARIABLE_CATALOGUE);
+    v->lower = mt_read_study_value(s, o.found[VARIABLE_LOWER], name);
+    v->upper = mt_read_study_value(s, o.found[VARIABLE_UPPER], name);
     read_catalogue(s, o.found[VARIABLE_CATALOGUE], v);
-    const double weight = mt_read_study_member(s, &o, VARIABLE_WEIGHT, &v->weight_addr);
+    const double weight = mt_read_study_number(s, o.found[VARIABLE_WEIGHT]);
     v->weight = MT_HAS(weight) ? weight : v->weight;
-    v->scale = mt_read_study_value_member(s, &o, VARIABLE_SCALE, name, &v->scale_addr);
-    v->tolerance_percent = mt_read_study_member(s, &o, VARIABLE_TOLERANCE, &v->tolerance_addr);
+    v->scale = mt_read_study_value(s, o.found[VARIABLE_SCALE], name);
+    v->tolerance_percent = mt_read_study_number(s, o.found[VARIABLE_TOLERANCE]);
 }
 
 void mt_read_study_variables(mt_study_reader *s, mt_addr list)

@@ -27,11 +27,8 @@ typedef struct mt_response_limit {
     const char *unit; /* of the numbers, from the names of the ports; "": not known */
     /* frequency_response: the measurement to compare with; s NULL: none */
     mt_name measurement_name;
-    int measurement;   /* of the study's; by finish */
-    bool coherence;    /* lines are weighted by their coherence */
-    mt_addr band_addr; /* the addresses of what was not given equal the goal's */
-    mt_addr at_addr;
-    mt_addr quantity_addr;
+    int measurement; /* of the study's; by finish */
+    bool coherence;  /* lines are weighted by their coherence */
 } mt_response_limit;
 
 /* A profile of vibration that goals name. */

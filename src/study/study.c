@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+#include "io/json_print.h"
+
 enum { DEFAULT_RECOMMENDATIONS = 5, DEFAULT_SEED = 1 };
 
 mt_status mt_study_new(mt_study **out, mt_err *err)
@@ -21,10 +24,8 @@ mt_status mt_study_new(mt_study **out, mt_err *err)
     }
     study->warning_list = mt_warning_list_default(&study->mem);
     study->recommendations = DEFAULT_RECOMMENDATIONS;
-    study->search =
-        (mt_search){.seed = DEFAULT_SEED, .proof_s = nan(""), .proof_addr = MT_NO_ADDR};
-    study->weight_sensitivity =
-        (mt_weight_sensitivity){.factor = nan(""), .factor_addr = MT_NO_ADDR};
+    study->search = (mt_search){.seed = DEFAULT_SEED, .proof_s = nan("")};
+    study->weight_sensitivity = (mt_weight_sensitivity){.factor = nan(""), .addr = MT_NO_ADDR};
     *out = study;
     return MT_OK;
 }
@@ -40,6 +41,7 @@ void mt_study_delete(mt_study *study)
     for (int i = 0; i < study->n_profiles; i++) {
         mt_vibration_delete(study->profiles[i].profile);
     }
+    mt_json_delete(study->document);
     mt_arena_free(&study->mem);
     free(study);
 }
@@ -147,28 +149,37 @@ int mt_study_find_reference(const mt_study *study, const char *name)
     return MT_ABSENT;
 }
 
-void mt_study_place_warning(const mt_study *study, mt_warning *warning)
+mt_addr mt_study_member(const mt_study *study, mt_addr object, const char *member)
 {
-    for (int i = 0; i < study->n_places && warning->line == 0; i++) {
-        const mt_study_place *const p = &study->places[i];
-        if (p->addr == warning->addr) {
-            warning->line = p->line;
-            warning->column = p->column;
-            warning->pointer = p->pointer;
-        }
-    }
+    return study->document == NULL
+               ? object
+               : mt_diag_member(mt_json_diags(study->document), object, member);
 }
 
-const mt_study_place *mt_study_locate(const mt_study *study, const char *text)
+void mt_study_place_warning(const mt_study *study, mt_arena *mem, mt_warning *warning)
 {
-    const size_t length = strcspn(text, ":");
-    for (int i = 0; i < study->n_places; i++) {
-        const char *const pointer = study->places[i].pointer;
-        if (length > 0 && strlen(pointer) == length && strncmp(pointer, text, length) == 0) {
-            return &study->places[i];
-        }
+    mt_text pointer = {.s = NULL};
+    if (study->document == NULL || warning->line != 0 || warning->addr == MT_NO_ADDR) {
+        return;
     }
-    return NULL;
+    mt_json_locate(study->document, warning->addr, &warning->line, &warning->column);
+    mt_json_pointer(study->document, warning->addr, &pointer);
+    warning->pointer = mt_arena_strdup(mem, pointer.s == NULL ? "" : pointer.s);
+    if (pointer.failed) {
+        mt_arena_fail(mem);
+    }
+    mt_text_free(&pointer);
+}
+
+bool mt_study_locate(const mt_study *study, const char *text, int *line, int *column)
+{
+    const mt_addr at = study->document == NULL || *text != '/'
+                           ? MT_NO_ADDR
+                           : mt_json_find(study->document, text, strcspn(text, ":"));
+    if (at != MT_NO_ADDR) {
+        mt_json_locate(study->document, at, line, column);
+    }
+    return at != MT_NO_ADDR;
 }
 
 static mt_mode_ref no_mode(mt_addr addr)
@@ -188,12 +199,6 @@ mt_variable mt_variable_default(mt_addr addr)
         .tolerance_percent = nan(""),
         .original = nan(""),
         .addr = addr,
-        .lower_addr = addr,
-        .upper_addr = addr,
-        .catalogue_addr = addr,
-        .weight_addr = addr,
-        .scale_addr = addr,
-        .tolerance_addr = addr,
     };
 }
 
@@ -201,7 +206,6 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
 {
     return (mt_goal){
         .type = type,
-        .configurations_addr = addr,
         .mode = no_mode(addr),
         .equals = nan(""),
         .at_least = nan(""),
@@ -212,12 +216,6 @@ mt_goal mt_goal_default(mt_goal_type type, mt_addr addr)
         .reference_name = {.addr = addr},
         .reference = MT_ABSENT,
         .addr = addr,
-        .equals_addr = addr,
-        .at_least_addr = addr,
-        .at_most_addr = addr,
-        .tolerance_addr = addr,
-        .weight_addr = addr,
-        .length_addr = addr,
     };
 }
 
@@ -226,26 +224,18 @@ double mt_goal_tolerance(const mt_goal *goal)
     return goal->tolerance_percent / 100.0;
 }
 
-mt_avoid mt_avoid_default(mt_addr addr)
+mt_avoid mt_avoid_default(void)
 {
     return (mt_avoid){
         .source = {.margin_percent = nan(""), .up_to_hz = nan("")},
         .cluster = MT_DEFAULT_CLUSTER,
-        .bands_addr = addr,
-        .margin_addr = addr,
-        .up_to_addr = addr,
     };
 }
 
-mt_response_limit mt_response_limit_default(mt_addr addr)
+mt_response_limit mt_response_limit_default(void)
 {
-    return (mt_response_limit){.lower_hz = nan(""),
-                               .upper_hz = nan(""),
-                               .unit = "",
-                               .measurement = MT_ABSENT,
-                               .band_addr = addr,
-                               .at_addr = addr,
-                               .quantity_addr = addr};
+    return (mt_response_limit){
+        .lower_hz = nan(""), .upper_hz = nan(""), .unit = "", .measurement = MT_ABSENT};
 }
 
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
@@ -256,7 +246,6 @@ mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr)
         .parameter = MT_ABSENT,
         .goal = MT_ABSENT,
         .addr = addr,
-        .values_addr = addr,
     };
 }
 
@@ -275,17 +264,13 @@ mt_published mt_published_default(mt_published_kind kind, mt_addr addr)
         .at_most = nan(""),
         .role = MT_ROLE_VERIFIES,
         .addr = addr,
-        .status_addr = addr,
-        .value_addr = addr,
-        .tolerance_addr = addr,
-        .tolerance_percent_addr = addr,
     };
 }
 
 mt_study_response mt_study_response_default(mt_addr addr)
 {
     return (mt_study_response){.configuration = MT_ABSENT,
-                               .response_limit = mt_response_limit_default(addr),
+                               .response_limit = mt_response_limit_default(),
                                .addr = addr};
 }
 

@@ -7,6 +7,7 @@
 #include "base/diagnostics.h"
 #include "environment/aircraft.h"
 #include "environment/bands.h"
+#include "io/json.h"
 #include "measurement/measurement.h"
 #include "model/count_box.h"
 #include "model/model.h"
@@ -41,12 +42,6 @@ typedef struct mt_variable {
     double original;          /* the model's value; by finish */
     const mt_unit *shown;     /* unit in which its numbers are shown; NULL: SI; by finish */
     mt_addr addr;
-    mt_addr lower_addr; /* the addresses of what was not given equal addr */
-    mt_addr upper_addr;
-    mt_addr catalogue_addr;
-    mt_addr weight_addr;
-    mt_addr scale_addr;
-    mt_addr tolerance_addr;
 } mt_variable;
 
 typedef struct mt_mode_ref {
@@ -62,17 +57,13 @@ typedef struct mt_avoid {
     /* number of modes on each side of a band that have constraints of their own, so that
      * neighbours which exchange their order are seen */
     int cluster;
-    mt_bands bands;     /* of the source; by finish */
-    mt_addr bands_addr; /* the addresses of what was not given equal the goal's */
-    mt_addr margin_addr;
-    mt_addr up_to_addr;
+    mt_bands bands; /* of the source; by finish */
 } mt_avoid;
 
 typedef struct mt_goal {
     mt_goal_type type; /* kinds: goal_kinds.h */
     /* one ("configuration") or several ("configurations"); none given: the model's only one */
     mt_name_list configuration_names;
-    mt_addr configurations_addr; /* of the member given; addr: neither is */
     int n_configurations;
     int *configurations;
     mt_mode_ref mode;
@@ -88,17 +79,7 @@ typedef struct mt_goal {
         };
         double number[MT_GOAL_NUMBERS];
     };
-    union { /* the addresses of these; equal to addr where not given */
-        struct {
-            mt_addr equals_addr;
-            mt_addr at_least_addr;
-            mt_addr at_most_addr;
-            mt_addr tolerance_addr;
-            mt_addr weight_addr;
-            mt_addr length_addr;
-        };
-        mt_addr number_addr[MT_GOAL_NUMBERS];
-    };
+    bool tolerance_given; /* false: tolerance_percent is the default */
     /* of shape and mac; of frequency: the target is that mode's frequency instead of
      * "target_hz". reference_name.addr equals addr where not given */
     mt_name reference_name;
@@ -120,7 +101,6 @@ typedef struct mt_measured_mode {
     mt_name *channels; /* "sensor.direction" */
     double *values;
     mt_addr addr;
-    mt_addr frequency_addr;
 } mt_measured_mode;
 
 typedef struct mt_reference {
@@ -189,10 +169,6 @@ typedef struct mt_published {
     /* "label": its name in comparison tables; NULL: made from the other members */
     const char *label;
     mt_addr addr;
-    mt_addr status_addr; /* the addresses of what was not given equal addr */
-    mt_addr value_addr;
-    mt_addr tolerance_addr;
-    mt_addr tolerance_percent_addr;
 } mt_published;
 
 /* A response that the result shows of every design. */
@@ -227,7 +203,6 @@ typedef struct mt_vary {
     double *values;   /* [n_values] in the order given; in the unit of what varies */
     const char *text; /* "upper bound of M_SAU", "target_hz of goal 1": by finish */
     mt_addr addr;
-    mt_addr values_addr;
 } mt_vary;
 
 enum { MT_MAX_VARY = 2, MT_MAX_TRADE_POINTS = 10000 };
@@ -238,7 +213,6 @@ typedef struct mt_trade {
     int n_objectives; /* 0 or 2: of the Pareto front */
     mt_objective_type objectives[2];
     mt_addr addr;
-    mt_addr objectives_addr; /* addr where not given */
 } mt_trade;
 
 enum { MT_STARTS_MOST = 100000 };
@@ -262,7 +236,6 @@ typedef struct mt_search {
     int max_positions;
     /* nominal seconds of each proof (prove/certify.h); 0: no proofs; NaN: not given */
     double proof_s;
-    mt_addr proof_addr;
 } mt_search;
 
 /* The name of the member of "search" whose limit is the budget. */
@@ -271,24 +244,15 @@ const char *mt_search_budget(const mt_search *s);
 /* Sensitivity of the best design of a misfit to its weights: how far it moves when single
  * weights change. */
 typedef struct mt_weight_sensitivity {
-    /* factor by which each goal's weight is multiplied and divided in turn; NaN: not
-     * requested */
+    /* factor by which each goal's weight is multiplied and divided in turn */
     double factor;
-    mt_addr factor_addr;
+    mt_addr addr; /* MT_NO_ADDR: not requested */
 } mt_weight_sensitivity;
 
 typedef struct mt_input_file {
     const char *name;   /* relative to the study's folder */
     const char *sha256; /* hex */
 } mt_input_file;
-
-/* The place in the study's file of an address, for later messages. */
-typedef struct mt_study_place {
-    mt_addr addr;
-    int line; /* from 1 */
-    int column;
-    const char *pointer;
-} mt_study_place;
 
 /* A number that overrides a number of the files. */
 typedef struct mt_requested_number {
@@ -301,7 +265,8 @@ typedef struct mt_requested_number {
 } mt_requested_number;
 
 typedef struct mt_study {
-    mt_arena mem; /* owns everything but the models' own memory */
+    mt_arena mem;      /* owns everything but the models' own memory */
+    mt_json *document; /* of its addresses, owned; NULL: made in memory */
     const char *path;
     const char *name;
     const char *description;
@@ -340,17 +305,14 @@ typedef struct mt_study {
     /* sentences for the result: values that are not confirmed, bands that were merged; by
      * finish */
     MT_LIST_OF(const char *, warnings);
-    /* warnings about the study's own numbers by finish, their places by the reader */
+    /* warnings about the study's own numbers, by the reader and by finish */
     mt_warning_list warning_list;
     mt_accepted accepted; /* accepted warnings, those of its model too */
-    /* places of goals, variables and their numbers; by the reader */
-    MT_LIST_OF(mt_study_place, places);
-    bool examined;       /* true for a point of a trade study: warnings were given already */
-    int recommendations; /* number of designs to report; default 5 */
+    bool examined;        /* true for a point of a trade study: warnings were given already */
+    int recommendations;  /* number of designs to report; default 5 */
     /* true where `recommendations` is given: others are wanted even where the original is the
      * best */
     bool alternatives;
-    mt_addr recommendations_addr;
     mt_search search;
     mt_weight_sensitivity weight_sensitivity;
     /* overrides, by the reader; already applied to model and search */
@@ -366,8 +328,8 @@ mt_status mt_study_new(mt_study **out, mt_err *err);
  * addresses at addr. */
 mt_variable mt_variable_default(mt_addr addr);
 mt_goal mt_goal_default(mt_goal_type type, mt_addr addr);
-mt_avoid mt_avoid_default(mt_addr addr);
-mt_response_limit mt_response_limit_default(mt_addr addr);
+mt_avoid mt_avoid_default(void);
+mt_response_limit mt_response_limit_default(void);
 /* Tolerance of a goal as a fraction: tolerance_percent / 100. */
 double mt_goal_tolerance(const mt_goal *goal);
 mt_vary mt_vary_default(mt_vary_kind kind, mt_addr addr);
@@ -412,11 +374,13 @@ bool mt_study_has_limits(const mt_study *study);
 bool mt_study_is_scale(const mt_study *study, const mt_goal *goal);
 /* True where a goal names this configuration. */
 bool mt_study_asks(const mt_study *study, int configuration);
-/* Fill in the place of a warning's address, if known. */
-void mt_study_place_warning(const mt_study *study, mt_warning *warning);
-/* The place of the member that the text's leading JSON pointer names ("/goals/2: ..."); NULL:
- * the text begins with none, or the place was not kept. */
-const mt_study_place *mt_study_locate(const mt_study *study, const char *text);
+/* The address of a member of an object of the study's file; the object's own without one. */
+mt_addr mt_study_member(const mt_study *study, mt_addr object, const char *member);
+/* Fill in the place of a warning's address, if known; its pointer lies in mem. */
+void mt_study_place_warning(const mt_study *study, mt_arena *mem, mt_warning *warning);
+/* The line and column of the value that the text's leading JSON pointer ("/goals/2: ...")
+ * names; false where the text begins with none, or the study comes from no file. */
+bool mt_study_locate(const mt_study *study, const char *text, int *line, int *column);
 /* The names in files: "verifies", "parameter". */
 const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);

@@ -81,7 +81,7 @@ static void check_gear(mt_study_check *c, const mt_gear *gear)
         least = i == 0 ? times : fmin(least, times);
     }
     if (gear->teeth > 0 && !(least * gear->teeth > gear->sidebands)) {
-        mt_diag_error(c->diags, gear->sidebands_addr,
+        mt_diag_error(c->diags, mt_diag_member(c->diags, gear->addr, "sidebands"),
                       "sideband %d of a mesh of %g per turn does not lie above 0 Hz",
                       gear->sidebands, least * gear->teeth);
     }
@@ -92,7 +92,7 @@ static void check_machine(mt_study_check *c, const mt_avoid *avoid, const mt_mac
     const double lower = mt_machine_speed_hz(machine, 0);
     const double upper = mt_machine_speed_hz(machine, 1);
     if (!(machine->speed_hz <= 0.0) && lower > upper) {
-        mt_diag_error(c->diags, machine->range_addr,
+        mt_diag_error(c->diags, mt_machine_range_addr(machine, c->diags),
                       "the range of speeds (%g to %g Hz) must be ascending", lower, upper);
     }
     check_orders(c, machine->orders, machine->n_orders);
@@ -125,8 +125,8 @@ static void make_bands(mt_study_check *c, const mt_goal *goal)
         return; /* as the arena knows */
     }
     if (avoid->bands.n == 0) {
-        mt_diag_error(c->diags, avoid->up_to_addr, "no band lies below up_to_hz (%g)",
-                      avoid->source.up_to_hz);
+        mt_diag_error(c->diags, mt_diag_member(c->diags, goal->addr, "up_to_hz"),
+                      "no band lies below up_to_hz (%g)", avoid->source.up_to_hz);
     }
     for (int i = 0; i < avoid->bands.n_notes; i++) {
         mt_check_warn_result(c, mt_arena_printf(&s->mem, "/goals/%d: %s",

@@ -119,7 +119,7 @@ static const mt_warning *fault_at(const mt_warning_list *list, mt_addr addr)
 static void one_variable(corners *k, int i, bool upper)
 {
     const mt_variable *const v = &k->c->study->variables[i];
-    const mt_addr own = upper ? v->upper_addr : v->lower_addr;
+    const mt_addr own = mt_diag_member(k->c->diags, v->addr, upper ? "upper" : "lower");
     mt_warning_list list = mt_warning_list_default(&k->mem);
     k->x[i] = upper ? v->upper : v->lower;
     if (is_allowed(k)) {
@@ -128,7 +128,9 @@ static void one_variable(corners *k, int i, bool upper)
     for (int d = 0; d < list.n; d++) {
         if (list.items[d].level == MT_LEVEL_FAULT &&
             fault_at(&k->told, list.items[d].addr) == NULL) {
-            mt_diag_error(k->c->diags, v->n_catalogue > 0 ? v->catalogue_addr : own,
+            mt_diag_error(k->c->diags,
+                          v->n_catalogue > 0 ? mt_diag_member(k->c->diags, v->addr, "catalogue")
+                                             : own,
                           "with %s at %g%s%s, %s", v->parameter_name.s,
                           mt_unit_from_si(v->shown, k->x[i]), v->shown == NULL ? "" : " ",
                           mt_unit_name(v->shown, ""), list.items[d].text);

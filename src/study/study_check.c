@@ -184,15 +184,15 @@ void mt_check_reference_mode(mt_study_check *c, int reference, int reference_mod
     if (shape && m->n_values == 0) {
         mt_diag_error(c->diags, addr, "mode %d of reference \"%s\" has no shape", index,
                       r->name.s);
-    } else if (!shape && !mt_check_given(m->frequency_hz, m->frequency_addr, m->addr)) {
+    } else if (!shape && !mt_check_given(c, m->frequency_hz, m->addr, "frequency_hz")) {
         mt_diag_error(c->diags, addr, "mode %d of reference \"%s\" has no frequency", index,
                       r->name.s);
     }
 }
 
-bool mt_check_given(double value, mt_addr value_addr, mt_addr owner)
+bool mt_check_given(const mt_study_check *c, double value, mt_addr object, const char *member)
 {
-    return MT_HAS(value) || value_addr != owner;
+    return MT_HAS(value) || mt_diag_member(c->diags, object, member) != object;
 }
 
 /* Values at the original design, once: variables start from them. */
@@ -235,7 +235,7 @@ mt_status mt_study_finish(mt_study *study, mt_diags *diags, mt_err *err)
     mt_study_check_trade(&c);
     mt_study_fill_counted(&c);
     if (study->recommendations < 1) {
-        mt_diag_error(diags, study->recommendations_addr,
+        mt_diag_error(diags, mt_diag_member(diags, MT_JSON_ROOT, "recommendations"),
                       "recommendations (%d) must be above 0", study->recommendations);
     }
     if (!mt_arena_failed(&study->mem)) {

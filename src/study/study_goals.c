@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/study_priv.h"
 
+mt_addr mt_check_goal_addr(const mt_study_check *c, const mt_goal *goal, mt_goal_slot slot)
+{
+    return mt_diag_member(c->diags, goal->addr,
+                          mt_goal_member_name(mt_goal_kind_of(goal->type), slot));
+}
+
 static void resolve_configurations(mt_study_check *c, mt_goal *goal)
 {
     const mt_name_list *const names = &goal->configuration_names;
@@ -11,9 +17,11 @@ static void resolve_configurations(mt_study_check *c, mt_goal *goal)
     }
     goal->n_configurations = n;
     if (names->count == 0) {
-        goal->configurations[0] = goal->configurations_addr == goal->addr
-                                      ? mt_check_only_configuration(c, c->model, goal->addr)
-                                      : MT_ABSENT; /* a wrong member has been noted */
+        const bool wrong = /* which has been noted */
+            mt_diag_member(c->diags, goal->addr, "configuration") != goal->addr ||
+            mt_diag_member(c->diags, goal->addr, "configurations") != goal->addr;
+        goal->configurations[0] =
+            wrong ? MT_ABSENT : mt_check_only_configuration(c, c->model, goal->addr);
         return;
     }
     for (int i = 0; i < n; i++) {
@@ -28,19 +36,19 @@ static void resolve_configurations(mt_study_check *c, mt_goal *goal)
     }
 }
 
-static bool given(const mt_goal *goal, mt_goal_slot slot)
+static bool given(const mt_study_check *c, const mt_goal *goal, mt_goal_slot slot)
 {
-    return mt_check_given(goal->number[slot], goal->number_addr[slot], goal->addr);
+    return MT_HAS(goal->number[slot]) || mt_check_goal_addr(c, goal, slot) != goal->addr;
 }
 
 /* Check the requirements of a goal of a kind with values: an equality excludes another one and
  * limits, limits must leave a range, and only an equality has a residual. */
 static void check_requirements(mt_study_check *c, const mt_goal *goal, const mt_goal_kind *kind)
 {
-    const bool value = given(goal, MT_SLOT_EQUALS);
+    const bool value = given(c, goal, MT_SLOT_EQUALS);
     const bool reference = goal->reference_name.addr != goal->addr;
-    const bool least = given(goal, MT_SLOT_AT_LEAST);
-    const bool most = given(goal, MT_SLOT_AT_MOST);
+    const bool least = given(c, goal, MT_SLOT_AT_LEAST);
+    const bool most = given(c, goal, MT_SLOT_AT_MOST);
     const char *const equals = mt_goal_member_name(kind, MT_SLOT_EQUALS);
     /* the member that asks for a value, by its number or by a reference that gives it */
     const char *const equality = value       ? equals
@@ -61,11 +69,12 @@ static void check_requirements(mt_study_check *c, const mt_goal *goal, const mt_
                       refers ? "\"reference\", " : "", at_least, at_most);
     }
     if (goal->at_least >= goal->at_most) {
-        mt_diag_error(c->diags, goal->at_most_addr, "%s (%g) is not above %s (%g)", at_most,
-                      goal->at_most, at_least, goal->at_least);
+        mt_diag_error(c->diags, mt_check_goal_addr(c, goal, MT_SLOT_AT_MOST),
+                      "%s (%g) is not above %s (%g)", at_most, goal->at_most, at_least,
+                      goal->at_least);
     }
     if (MT_HAS(goal->weight) && equality == NULL && (least || most)) {
-        mt_diag_error(c->diags, goal->weight_addr,
+        mt_diag_error(c->diags, mt_check_goal_addr(c, goal, MT_SLOT_WEIGHT),
                       "only a goal with \"%s\"%s can be part of the misfit", equals,
                       refers ? " or \"reference\"" : "");
     }

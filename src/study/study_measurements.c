@@ -38,9 +38,9 @@ static bool is_meant(const mt_measurement *m, const mt_measured_response *r)
 }
 
 /* The address of the member that selects one of several responses. */
-static mt_addr choice_of(const mt_measurement *m)
+static mt_addr choice_of(const mt_study_check *c, const mt_measurement *m)
 {
-    return m->dataset > 0                ? m->dataset_addr
+    return m->dataset > 0                ? mt_diag_member(c->diags, m->addr, "dataset")
            : m->response_name.s != NULL  ? m->response_name.addr
            : m->reference_name.s != NULL ? m->reference_name.addr
                                          : m->addr;
@@ -53,7 +53,7 @@ static void keep_selected_response(mt_study_check *c, mt_measurement *m)
     const bool asked =
         m->dataset > 0 || m->response_name.s != NULL || m->reference_name.s != NULL;
     if (table && asked) {
-        mt_diag_error(c->diags, choice_of(m),
+        mt_diag_error(c->diags, choice_of(c, m),
                       "datasets and nodes go with a universal file, and \"%s\" is a table",
                       m->path.s);
         return;
@@ -74,7 +74,7 @@ static void keep_selected_response(mt_study_check *c, mt_measurement *m)
         return;
     }
     const char *const list = mt_measured_list_text(m, &c->study->mem);
-    mt_diag_error(c->diags, choice_of(m),
+    mt_diag_error(c->diags, choice_of(c, m),
                   n > 1 ? "%d frequency responses of \"%s\" can be meant: say which by "
                           "\"dataset\", or by \"response_node\" and \"reference_node\" (%s)"
                         : "%d frequency responses of \"%s\" are meant by this; it has: %s",
@@ -128,8 +128,8 @@ void mt_study_check_measurements(mt_study_check *c)
     }
 }
 
-void mt_study_check_measured(mt_study_check *c, mt_response_limit *s)
+void mt_study_check_measured(mt_study_check *c, mt_response_limit *s, mt_addr goal)
 {
     s->measurement = mt_check_measurement(c, s->measurement_name);
-    mt_check_range(c, s);
+    mt_check_range(c, s, goal);
 }

@@ -66,12 +66,13 @@ static void check_misfit(mt_study_check *c)
     bool weighted = false;
     for (int i = 0; i < s->n_goals; i++) {
         const mt_goal *const goal = &s->goals[i];
-        if (!mt_check_given(goal->weight, goal->weight_addr, goal->addr)) {
+        const mt_addr weight = mt_check_goal_addr(c, goal, MT_SLOT_WEIGHT);
+        if (!MT_HAS(goal->weight) && weight == goal->addr) {
             continue;
         }
         weighted = true;
         if (misfit == NULL && s->n_variables > 0) {
-            mt_diag_error(c->diags, goal->weight_addr,
+            mt_diag_error(c->diags, weight,
                           "a weighted goal needs \"objective\": {\"minimise\": \"misfit\"}");
         }
     }
@@ -84,13 +85,13 @@ static void check_misfit(mt_study_check *c)
 static void check_weight_sensitivity(mt_study_check *c)
 {
     const mt_weight_sensitivity *const weight_sensitivity = &c->study->weight_sensitivity;
-    if (weight_sensitivity->factor_addr == MT_NO_ADDR) {
+    if (weight_sensitivity->addr == MT_NO_ADDR) {
         return;
     }
     const bool first = c->study->n_objectives > 0 &&
                        mt_objective_is(c->study->objectives[0].type, MT_RESIDUALS);
     if (!first) {
-        mt_diag_error(c->diags, weight_sensitivity->factor_addr,
+        mt_diag_error(c->diags, mt_diag_member(c->diags, weight_sensitivity->addr, "factor"),
                       "a spread needs \"objective\": {\"minimise\": \"misfit\"}");
     }
 }

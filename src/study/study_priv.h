@@ -15,7 +15,7 @@ typedef struct mt_study_check { /* a shortage of memory is remembered by the stu
 void mt_study_check_references(mt_study_check *c);   /* study_references.c */
 void mt_study_check_measurements(mt_study_check *c); /* study_measurements.c */
 /* the measurement that a goal is compared with; called by mt_study_check_response_limit */
-void mt_study_check_measured(mt_study_check *c, mt_response_limit *s);
+void mt_study_check_measured(mt_study_check *c, mt_response_limit *s, mt_addr goal);
 void mt_study_check_variables(mt_study_check *c); /* study_variables.c */
 void mt_study_check_goals(mt_study_check *c);     /* study_goals.c */
 /* study_avoid.c; called by mt_study_check_goals */
@@ -64,10 +64,14 @@ int mt_count_common_channels(const mt_model *model, const mt_measured_mode *mode
 /* Note at addr where the model and the reference's model have no sensor and direction in
  * common, which a shape or a MAC needs (study_references.c). */
 void mt_check_common_sensors(mt_study_check *c, int reference, mt_addr addr);
-/* True where a number was given, even one that could not be read: its own address is then
- * known. */
-bool mt_check_given(double value, mt_addr value_addr, mt_addr owner);
-/* Check that the two frequencies of the range ascend (study_response_limit.c). */
-void mt_check_range(mt_study_check *c, const mt_response_limit *s);
+/* True where a number was given, even one that could not be read: the object then has the
+ * member. */
+bool mt_check_given(const mt_study_check *c, double value, mt_addr object, const char *member);
+/* The address of a member of the goal (study_goals.c); the goal's own where it has none, or its
+ * kind knows none. */
+mt_addr mt_check_goal_addr(const mt_study_check *c, const mt_goal *goal, mt_goal_slot slot);
+/* Check that the two frequencies of the range, "band_hz" of its owner, ascend
+ * (study_response_limit.c). */
+void mt_check_range(mt_study_check *c, const mt_response_limit *s, mt_addr owner);
 
 #endif

@@ -6,21 +6,22 @@
  * shown. */
 static void check_judgement(mt_study_check *c, const mt_published *p)
 {
-    const bool absolute = mt_check_given(p->tolerance, p->tolerance_addr, p->addr);
-    const bool relative =
-        mt_check_given(p->tolerance_percent, p->tolerance_percent_addr, p->addr);
-    const bool value = mt_check_given(p->value, p->value_addr, p->addr);
+    const bool absolute = mt_check_given(c, p->tolerance, p->addr, "tolerance");
+    const bool relative = mt_check_given(c, p->tolerance_percent, p->addr, "tolerance_percent");
+    const bool value = mt_check_given(c, p->value, p->addr, "value");
     const bool limits = MT_HAS(p->at_least) || MT_HAS(p->at_most);
     if (!value && !limits) {
         mt_diag_error(c->diags, p->addr, "give \"value\", \"at_least\" or \"at_most\"");
     } else if (limits && (absolute || relative)) {
-        mt_diag_error(c->diags, absolute ? p->tolerance_addr : p->tolerance_percent_addr,
-                      "a tolerance excludes limits");
+        mt_diag_error(
+            c->diags,
+            mt_diag_member(c->diags, p->addr, absolute ? "tolerance" : "tolerance_percent"),
+            "a tolerance excludes limits");
     } else if (absolute && relative) {
-        mt_diag_error(c->diags, p->tolerance_percent_addr,
+        mt_diag_error(c->diags, mt_diag_member(c->diags, p->addr, "tolerance_percent"),
                       "\"tolerance_percent\" excludes \"tolerance\"");
     } else if (!limits && !absolute && !relative && p->role != MT_ROLE_NOT_COMPARABLE) {
-        mt_diag_error(c->diags, p->value_addr,
+        mt_diag_error(c->diags, mt_diag_member(c->diags, p->addr, "value"),
                       "\"value\" needs \"tolerance\", \"tolerance_percent\" or a limit");
     }
     if (p->at_least > p->at_most) {
@@ -31,8 +32,8 @@ static void check_judgement(mt_study_check *c, const mt_published *p)
 
 static void check_status(mt_study_check *c, const mt_published *p)
 {
-    const bool judged = mt_check_given(p->value, p->value_addr, p->addr) ||
-                        MT_HAS(p->at_least) || MT_HAS(p->at_most) || MT_HAS(p->tolerance) ||
+    const bool judged = mt_check_given(c, p->value, p->addr, "value") || MT_HAS(p->at_least) ||
+                        MT_HAS(p->at_most) || MT_HAS(p->tolerance) ||
                         MT_HAS(p->tolerance_percent);
     if (judged) {
         mt_diag_error(c->diags, p->addr, "a published status has no value, limit or tolerance");

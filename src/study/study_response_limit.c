@@ -87,10 +87,10 @@ static void find_unit(mt_study_check *c, mt_response_limit *s)
     }
 }
 
-void mt_check_range(mt_study_check *c, const mt_response_limit *s)
+void mt_check_range(mt_study_check *c, const mt_response_limit *s, mt_addr owner)
 {
     if (s->lower_hz >= s->upper_hz) {
-        mt_diag_error(c->diags, s->band_addr,
+        mt_diag_error(c->diags, mt_diag_member(c->diags, owner, "band_hz"),
                       "band_hz (%g to %g) must be two frequencies in ascending order",
                       s->lower_hz, s->upper_hz);
     }
@@ -99,17 +99,17 @@ void mt_check_range(mt_study_check *c, const mt_response_limit *s)
 static void check_frequencies(mt_study_check *c, const mt_goal *goal,
                               const mt_response_limit *s)
 {
-    const bool single = s->at_addr != goal->addr;
+    const bool single = mt_diag_member(c->diags, goal->addr, "at_hz") != goal->addr;
     if (!MT_HAS(s->lower_hz) || !MT_HAS(s->upper_hz)) {
         return; /* noted by the reader */
     }
     if (single) {
         return;
     }
-    mt_check_range(c, s);
+    mt_check_range(c, s, goal->addr);
     for (int k = MT_SLOT_EQUALS; k <= MT_SLOT_AT_LEAST; k++) {
         if (MT_HAS(goal->number[k])) {
-            mt_diag_error(c->diags, goal->number_addr[k],
+            mt_diag_error(c->diags, mt_check_goal_addr(c, goal, (mt_goal_slot)k),
                           "the largest response over a band is only limited from above: give "
                           "\"at_most\", or one frequency, \"at_hz\"");
         }
@@ -148,15 +148,15 @@ static void check_profile(mt_study_check *c, const mt_goal *goal, mt_response_li
                                                                    : NULL;
     check_input(c, goal, s);
     if (lacks != NULL) {
-        const bool given = s->quantity_addr != goal->addr;
-        mt_diag_error(c->diags, given ? s->quantity_addr : s->profile_name.addr,
+        const mt_addr quantity = mt_diag_member(c->diags, goal->addr, "quantity");
+        mt_diag_error(c->diags, quantity != goal->addr ? quantity : s->profile_name.addr,
                       "the profile \"%s\" has no %s: \"quantity\": \"%s\" is always 0",
                       s->profile_name.s, lacks, mt_response_limit_names[s->quantity]);
     }
     for (int k = MT_SLOT_EQUALS; k <= MT_SLOT_AT_LEAST && s->quantity != MT_RESPONSE_LIMIT_RMS;
          k++) {
         if (MT_HAS(goal->number[k])) {
-            mt_diag_error(c->diags, goal->number_addr[k],
+            mt_diag_error(c->diags, mt_check_goal_addr(c, goal, (mt_goal_slot)k),
                           "the largest response to tones is only limited from above: give "
                           "\"at_most\", or \"quantity\": \"rms\"");
         }
@@ -170,7 +170,7 @@ void mt_study_check_response_limit(mt_study_check *c, mt_goal *goal)
         return; /* memory is out */
     }
     if (mt_goal_member_at(mt_goal_kind_of(goal->type), MT_SLOT_MEASUREMENT) >= 0) {
-        mt_study_check_measured(c, s);
+        mt_study_check_measured(c, s, goal->addr);
         return; /* its number is a distance, without a unit */
     }
     if (s->quantity == MT_RESPONSE_LIMIT_RESPONSE) {

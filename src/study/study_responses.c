@@ -10,6 +10,6 @@ void mt_study_check_responses(mt_study_check *c)
         r->configuration = r->configuration_name.s == NULL
                                ? mt_check_only_configuration(c, c->model, r->addr)
                                : mt_check_configuration(c, c->model, r->configuration_name);
-        mt_check_range(c, &r->response_limit);
+        mt_check_range(c, &r->response_limit, r->addr);
     }
 }

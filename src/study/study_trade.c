@@ -58,7 +58,7 @@ static void check_sides(mt_study_check *c, const mt_vary *v)
             const double low = lower ? v->values[i] : other->values[k];
             const double high = lower ? other->values[k] : v->values[i];
             if (!(low < high)) {
-                mt_diag_error(c->diags, v->values_addr,
+                mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "values"),
                               "%s %g is not %s %s %g, which varies, too", side_name(v),
                               mt_unit_from_si(shown, v->values[i]), lower ? "below" : "above",
                               side_name(other), mt_unit_from_si(shown, other->values[k]));
@@ -92,8 +92,8 @@ static void vary_bound(mt_study_check *c, mt_vary *v)
     const double other = v->upper ? variable->lower : variable->upper;
     for (int i = 0; i < v->n_values && other_side(c, v) == NULL; i++) {
         if (v->upper ? v->values[i] <= other : v->values[i] >= other) {
-            mt_diag_error(c->diags, v->values_addr, "%s bound %g is not %s %s bound (%g)",
-                          v->upper ? "upper" : "lower",
+            mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "values"),
+                          "%s bound %g is not %s %s bound (%g)", v->upper ? "upper" : "lower",
                           mt_unit_from_si(variable->shown, v->values[i]),
                           v->upper ? "above the" : "below the", v->upper ? "lower" : "upper",
                           mt_unit_from_si(variable->shown, other));
@@ -133,7 +133,8 @@ static void vary_goal(mt_study_check *c, const mt_vary *v)
                              (m->slot == MT_SLOT_AT_MOST && v->values[i] <= goal->at_least);
         if (!mt_possible_is(&mt_possible_of[m->possible], v->values[i]) ||
             (crosses && other_side(c, v) == NULL)) {
-            mt_diag_error(c->diags, v->values_addr, "%s cannot be %g", v->member, v->values[i]);
+            mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "values"),
+                          "%s cannot be %g", v->member, v->values[i]);
         }
     }
 }
@@ -155,7 +156,8 @@ static void check_values(mt_study_check *c, const mt_vary *v)
     for (int i = 1; i < v->n_values; i++) {
         for (int k = 0; k < i; k++) {
             if (v->values[k] == v->values[i]) {
-                mt_diag_error(c->diags, v->values_addr, "%.17g is listed twice", v->values[i]);
+                mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "values"),
+                              "%.17g is listed twice", v->values[i]);
                 return;
             }
         }
@@ -208,20 +210,21 @@ static void check_front(mt_study_check *c)
     for (int i = 0; i < trade->n_objectives; i++) {
         const mt_objective_type type = trade->objectives[i];
         if (mt_objective_is(type, MT_BANDS) && !mt_study_has_bands(s)) {
-            mt_diag_error(c->diags, trade->objectives_addr,
+            mt_diag_error(c->diags, mt_diag_member(c->diags, trade->addr, "objectives"),
                           "the clearance needs a goal of type \"avoid\"");
         } else if (mt_objective_is(type, MT_SHAKES) && !mt_study_has_limits(s)) {
-            mt_diag_error(c->diags, trade->objectives_addr,
+            mt_diag_error(c->diags, mt_diag_member(c->diags, trade->addr, "objectives"),
                           "the vibration needs a goal of type \"response\" or \"vibration\" "
                           "with \"at_most\" alone");
         } else if (mt_objective_is(type, MT_OF_STUDY) && !has_objective(s, type)) {
-            mt_diag_error(c->diags, trade->objectives_addr,
+            mt_diag_error(c->diags, mt_diag_member(c->diags, trade->addr, "objectives"),
                           "\"%s\" is not an objective of the study",
                           mt_objective_kind_of(type)->name);
         }
     }
     if (trade->n_objectives == 2 && trade->objectives[0] == trade->objectives[1]) {
-        mt_diag_error(c->diags, trade->objectives_addr, "the two objectives are the same");
+        mt_diag_error(c->diags, mt_diag_member(c->diags, trade->addr, "objectives"),
+                      "the two objectives are the same");
     }
 }
 

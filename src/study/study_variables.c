@@ -16,13 +16,14 @@ static int ascending(const void *a, const void *b)
 static void check_catalogue(mt_study_check *c, mt_variable *v)
 {
     if (v->n_catalogue > MT_MAX_CATALOGUE) {
-        mt_diag_error(c->diags, v->catalogue_addr, "the catalogue has more than %d values",
-                      MT_MAX_CATALOGUE);
+        mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "catalogue"),
+                      "the catalogue has more than %d values", MT_MAX_CATALOGUE);
     }
     qsort(v->catalogue, (size_t)v->n_catalogue, sizeof *v->catalogue, ascending);
     for (int i = 1; i < v->n_catalogue; i++) {
         if (v->catalogue[i] <= v->catalogue[i - 1]) {
-            mt_diag_error(c->diags, v->catalogue_addr, "the catalogue lists %.17g twice",
+            mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "catalogue"),
+                          "the catalogue lists %.17g twice",
                           mt_unit_written(v->shown, v->catalogue[i]));
         }
     }
@@ -33,11 +34,12 @@ static void check_catalogue(mt_study_check *c, mt_variable *v)
 /* Continuous between two bounds, or discrete. */
 static void check_range(mt_study_check *c, mt_variable *v)
 {
-    const bool lower = mt_check_given(v->lower, v->lower_addr, v->addr);
-    const bool upper = mt_check_given(v->upper, v->upper_addr, v->addr);
-    const bool catalogue = v->n_catalogue > 0 || v->catalogue_addr != v->addr;
+    const bool lower = mt_check_given(c, v->lower, v->addr, "lower");
+    const bool upper = mt_check_given(c, v->upper, v->addr, "upper");
+    const bool catalogue =
+        v->n_catalogue > 0 || mt_diag_member(c->diags, v->addr, "catalogue") != v->addr;
     if (catalogue && (lower || upper)) {
-        mt_diag_error(c->diags, v->catalogue_addr,
+        mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "catalogue"),
                       "a variable has either a catalogue or bounds, not both");
         return;
     }
@@ -52,8 +54,8 @@ static void check_range(mt_study_check *c, mt_variable *v)
         mt_diag_error(c->diags, v->addr, "\"%s\" is missing: a variable needs both bounds",
                       lower ? "upper" : "lower");
     } else if (v->lower >= v->upper) {
-        mt_diag_error(c->diags, v->upper_addr, "upper (%g) is %s lower (%g)",
-                      mt_unit_from_si(v->shown, v->upper),
+        mt_diag_error(c->diags, mt_diag_member(c->diags, v->addr, "upper"),
+                      "upper (%g) is %s lower (%g)", mt_unit_from_si(v->shown, v->upper),
                       v->lower > v->upper ? "below" : "equal to",
                       mt_unit_from_si(v->shown, v->lower));
     }

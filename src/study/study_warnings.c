@@ -41,7 +41,7 @@ static void at(mt_warning *warning, mt_addr addr)
 
 /* Warn of implausible speeds: they are in turns per second, and a number meant per minute is
  * sixty times too high. */
-static void warn_speed(mt_warning_list *out, const mt_machine *machine)
+static void warn_speed(const mt_study_check *c, mt_warning_list *out, const mt_machine *machine)
 {
     const double lower = mt_machine_speed_hz(machine, 0);
     const double upper = mt_machine_speed_hz(machine, 1);
@@ -50,7 +50,8 @@ static void warn_speed(mt_warning_list *out, const mt_machine *machine)
                           "the machine turns at %g to %g Hz, which is %g to %g per minute: if "
                           "turns per minute are meant, write \"%g*rpm\"",
                           lower, upper, SECONDS * lower, SECONDS * upper, upper),
-           MT_HAS(machine->lower_hz) ? machine->range_addr : machine->speed_addr);
+           MT_HAS(machine->lower_hz) ? mt_machine_range_addr(machine, c->diags)
+                                     : mt_diag_member(c->diags, machine->addr, "speed_hz"));
     }
 }
 
@@ -64,18 +65,21 @@ static void warn_margin(mt_warning_list *out, double margin, mt_addr addr)
     }
 }
 
-static void warn_avoid(mt_warning_list *out, const mt_goal *goal)
+static void warn_avoid(const mt_study_check *c, mt_warning_list *out, const mt_goal *goal)
 {
     const mt_avoid *const avoid = goal->avoid;
-    warn_margin(out, avoid->source.margin_percent, avoid->margin_addr);
+    warn_margin(out, avoid->source.margin_percent,
+                mt_diag_member(c->diags, goal->addr, "margin_percent"));
     for (int i = 0; i < avoid->source.n_rotors; i++) {
         const mt_rotor *const rotor = &avoid->source.rotors[i];
-        warn_margin(out, rotor->margin_percent, rotor->margin_addr);
+        warn_margin(out, rotor->margin_percent,
+                    mt_diag_member(c->diags, rotor->addr, "margin_percent"));
     }
     for (int i = 0; i < avoid->source.n_machines; i++) {
         const mt_machine *const machine = &avoid->source.machines[i];
-        warn_speed(out, machine);
-        warn_margin(out, machine->margin_percent, machine->margin_addr);
+        warn_speed(c, out, machine);
+        warn_margin(out, machine->margin_percent,
+                    mt_diag_member(c->diags, machine->addr, "margin_percent"));
     }
     for (int i = 0; i < avoid->bands.n; i++) {
         const mt_band *const band = &avoid->bands.items[i];
@@ -85,7 +89,7 @@ static void warn_avoid(mt_warning_list *out, const mt_goal *goal)
                               "the band %s has almost no width, %.6g to %.6g Hz%s", band->label,
                               band->lower_hz, band->upper_hz,
                               cut ? ": up_to_hz cuts the rest off" : ""),
-               cut ? avoid->up_to_addr : avoid->bands_addr);
+               mt_diag_member(c->diags, goal->addr, cut ? "up_to_hz" : "bands_hz"));
         }
     }
 }
@@ -100,8 +104,9 @@ static bool is_stiffness(const char *unit)
     return is;
 }
 
-static void warn_variable(mt_warning_list *out, const mt_study *s, const mt_variable *v)
+static void warn_variable(const mt_study_check *c, mt_warning_list *out, const mt_variable *v)
 {
+    const mt_study *const s = c->study;
     const char *const name = v->parameter_name.s;
     const double ratio = v->lower > 0.0 ? v->upper / v->lower : 0.0;
     if (ratio > MOST_SPAN) {
@@ -121,7 +126,7 @@ static void warn_variable(mt_warning_list *out, const mt_study *s, const mt_vari
                           "the bounds of %s reach below 0, to a spring or damper that gives "
                           "energy: its original value is above",
                           name),
-           v->lower_addr);
+           mt_diag_member(c->diags, v->addr, "lower"));
     }
     const bool below =
         v->original > 0.0 && v->upper > 0.0 && v->original / v->upper > MOST_SHIFT;
@@ -141,8 +146,9 @@ static void warn_variable(mt_warning_list *out, const mt_study *s, const mt_vari
 
 /* Warn of tolerances finer than parts are made: relative for stiffnesses, absolute in metres
  * for lengths. */
-static void warn_fine(mt_warning_list *out, const mt_study *s, const mt_variable *v)
+static void warn_fine(const mt_study_check *c, mt_warning_list *out, const mt_variable *v)
 {
+    const mt_study *const s = c->study;
     const char *const unit =
         v->parameter == MT_ABSENT ? NULL : s->model->parameters[v->parameter].unit;
     const double percent = v->tolerance_percent;
@@ -157,18 +163,18 @@ static void warn_fine(mt_warning_list *out, const mt_study *s, const mt_variable
                    "tolerance_percent %g of %s is at most %.2g m: no part is made so "
                    "exactly; is %g %% meant?",
                    percent, v->parameter_name.s, percent / PERCENT * size, PERCENT * percent),
-               v->tolerance_addr);
+               mt_diag_member(c->diags, v->addr, "tolerance_percent"));
         }
     } else if (is_stiffness(unit) && percent < LEAST_STIFFNESS_PERCENT) {
         at(mt_warning_add(out, MT_LEVEL_WARNING, "tolerance",
                           "tolerance_percent %g of %s: no spring or damper is made so exactly; "
                           "is %g %% meant?",
                           percent, v->parameter_name.s, PERCENT * percent),
-           v->tolerance_addr);
+           mt_diag_member(c->diags, v->addr, "tolerance_percent"));
     }
 }
 
-static void warn_trade(mt_warning_list *out, const mt_trade *trade)
+static void warn_trade(const mt_study_check *c, mt_warning_list *out, const mt_trade *trade)
 {
     /* a span from 0 to 10 per cent passes by all that is less */
     for (int i = 0; i < trade->n_vary; i++) {
@@ -178,7 +184,7 @@ static void warn_trade(mt_warning_list *out, const mt_trade *trade)
             most = fmax(most, v->values[k]);
         }
         if (v->kind == MT_VARY_GOAL && v->slot == MT_SLOT_MARGIN) {
-            warn_margin(out, most, v->values_addr);
+            warn_margin(out, most, mt_diag_member(c->diags, v->addr, "values"));
         }
     }
 }
@@ -205,8 +211,7 @@ static void warn_weights(mt_warning_list *out, const mt_study *s)
             continue;
         }
         fitted = fitted || MT_HAS(goal->weight);
-        if (!MT_HAS(goal->weight) && asks_frequency(goal) &&
-            goal->tolerance_addr == goal->addr) {
+        if (!MT_HAS(goal->weight) && asks_frequency(goal) && !goal->tolerance_given) {
             first = first == NULL ? goal : first;
             n++;
         }
@@ -348,22 +353,23 @@ static void warn_limit(mt_warning_list *out, const mt_study *s, const mt_goal *g
     mt_arena_free(&mem);
 }
 
-static void warn_all(const mt_study *s, mt_warning_list *out)
+static void warn_all(const mt_study_check *c, mt_warning_list *out)
 {
+    const mt_study *const s = c->study;
     for (int i = 0; i < s->n_variables; i++) {
-        warn_variable(out, s, &s->variables[i]);
-        warn_fine(out, s, &s->variables[i]);
+        warn_variable(c, out, &s->variables[i]);
+        warn_fine(c, out, &s->variables[i]);
     }
     for (int i = 0; i < s->n_goals; i++) {
         if (s->goals[i].avoid != NULL) {
-            warn_avoid(out, &s->goals[i]);
+            warn_avoid(c, out, &s->goals[i]);
         }
         warn_limit(out, s, &s->goals[i]);
         warn_shape(out, s, &s->goals[i]);
         warn_order(out, s, &s->goals[i]);
     }
     warn_weights(out, s);
-    warn_trade(out, &s->trade);
+    warn_trade(c, out, &s->trade);
 }
 
 void mt_study_check_warnings(mt_study_check *c)
@@ -371,7 +377,7 @@ void mt_study_check_warnings(mt_study_check *c)
     mt_study *const s = c->study;
     mt_warning_list *const out = &s->warning_list;
     if (c->diags->errors == 0) {
-        warn_all(s, out);
+        warn_all(c, out);
     }
     mt_warning_accept(out, 0, &s->accepted);
     for (int i = 0; i < out->n; i++) {

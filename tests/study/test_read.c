@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "io/options.h"
 #include "mt_alloc.h"
 #include "mt_test.h"
@@ -315,6 +316,47 @@ static void study__models_lie_beneath_the_root(mt_test *t)
     }
 }
 
+/* The place of every member of a long study is known as long as the study lives. */
+static void study__the_last_of_many_goals_has_its_line(mt_test *t)
+{
+    enum { GOALS = 1500 };
+    mt_text members = {0};
+    mt_diagnostics messages = {.count = 0};
+    mt_arena mem = {.first = NULL};
+    mt_warning warning = {.addr = MT_NO_ADDR};
+    int line = 0;
+    int column = 0;
+    mt_text_add(&members, ", \"goals\": [");
+    for (int i = 0; i < GOALS; i++) {
+        mt_text_addf(&members,
+                     "%s\n{\"type\": \"frequency\", \"mode\": 1, \"at_most_hz\": %d, "
+                     "\"configuration\": \"bare\"}",
+                     i == 0 ? "" : ",", 1000 + i);
+    }
+    mt_text_add(&members, "]");
+    mt_study *const s = load_text(t, members.s, &messages);
+    if (CHECK(t, s != NULL) && CHECK_INT(t, s->n_goals, GOALS)) {
+        const mt_addr last = s->goals[GOALS - 1].addr;
+        warning.addr = mt_study_member(s, last, "at_most_hz");
+        mt_study_place_warning(s, &mem, &warning);
+        CHECK_INT(t, warning.line, GOALS + 1);
+        CHECK_STR(t, warning.pointer, "/goals/1499/at_most_hz");
+        CHECK(t, mt_study_locate(s, "/goals/1499: what is said", &line, &column));
+        CHECK_INT(t, line, GOALS + 1);
+        CHECK_INT(t, column, 1);
+        CHECK(t, mt_study_locate(s, "/goals/1499/mode: what is said", &line, &column));
+        CHECK_INT(t, column, 31);
+        CHECK(t, !mt_study_locate(s, "/goals/1500: what is said", &line, &column));
+        CHECK(t, !mt_study_locate(s, "/goals/x: what is said", &line, &column));
+        CHECK(t, !mt_study_locate(s, "goals: what is said", &line, &column));
+        CHECK(t, mt_study_member(s, last, "weight") == last);
+    }
+    mt_study_delete(s);
+    mt_arena_free(&mem);
+    mt_diagnostics_free(&messages);
+    mt_text_free(&members);
+}
+
 static void study__no_file_is_a_system_failure(mt_test *t)
 {
     mt_study *s = NULL;
@@ -348,5 +390,6 @@ MT_TEST_MAIN(MT_TEST(study__every_member_arrives),
              MT_TEST(study__defaults_are_filled_in), MT_TEST(study__bounds_below_zero_are_fine),
              MT_TEST(study__an_original_value_outside_the_bounds_is_a_warning),
              MT_TEST(study__models_lie_beneath_the_root),
+             MT_TEST(study__the_last_of_many_goals_has_its_line),
              MT_TEST(study__no_file_is_a_system_failure),
              MT_TEST(study__every_failing_allocation_is_survived))
