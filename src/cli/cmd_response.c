@@ -135,7 +135,6 @@ static void print_end(const response_view *v, int pair, int *said, mt_text *out)
                          : "grows by itself: there is no steady response.\n");
 }
 
-/* The output of --vibration. */
 /* Print the vibration of each output under the profile, with its notes. */
 static void response_vibration_print(const response_view *v, mt_text *out)
 {

@@ -24,11 +24,6 @@
 #include "study/study.h"
 
 /*
- * The journal of one study's run, for --resume, --shard and merge. All functions return an exit
- * status, with all messages given.
- */
-
-/*
  * Several studies run together: the outcome of each, as a table at the end and as index.json
  * and index.html in the folder of their results. The index is replaced after every study,
  * unless that takes more than a small part of the time. In the index of a killed run, studies
@@ -51,7 +46,10 @@ typedef struct batch_end {
     double seconds;
 } batch_end;
 
-/* The folder of a run that can be taken up again. */
+/*
+ * The journal of one study's run, for --resume, --shard and merge. All functions return an exit
+ * status, with all messages given.
+ */
 
 /* The identity of a run, known before anything is computed: program, libraries, files and
  * settings, and the properties of processors that affect arithmetic. Runs with the same

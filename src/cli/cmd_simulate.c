@@ -75,8 +75,8 @@ typedef struct sim_view {
 
 /* A profile of vibration as a motion of the ground: one realisation of it. */
 
-/* Split --vibration [PORT=]FILE: returns the file; *port: the port, or NULL */
-/* "base.y=FILE": the file, and where the port begins; else NULL. */
+/* Split --vibration [PORT=]FILE, "base.y=FILE": returns the file; *port: where the port begins,
+ * NULL without one. */
 static const char *sim_profile_of(const char *text, const char **port)
 {
     const char *const equals = strchr(text, '=');

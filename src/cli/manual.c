@@ -12,8 +12,6 @@
 
 /* Text in the language of man(7). Characters with a meaning there are escaped. */
 
-/* Text in the language of man(7). */
-
 static void escape(const char *s, size_t n, mt_text *out)
 {
     for (const char *at = s; at < s + n; at++) {
