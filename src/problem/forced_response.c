@@ -19,7 +19,7 @@
 static const double TWO_PI = 6.283185307179586476925;
 
 /*
- * Without a sum over poles: adaptive curves (response/curves.h) and quadrature,
+ * Without a sum over poles: adaptive curves (response/curve.h) and quadrature,
  *     RMS^2 = integral |H|^2 G df = sum_j |H(w_j)|^2 g_j,
  * the nodes w_j those of Gauss's rule for ln w between any two neighbours among the points of a
  * curve and the breakpoints of G. The largest value has no bound: its excess is NaN. Memory is
