@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A generator of wrong studies: random ones that ask for everything (goals of every kind, variables, catalogues, tolerances, trades, orders,
 references, measurements, published values), each with one change that makes it impossible or implausible. A change that `check` passes
@@ -5,22 +6,22 @@ in silence fails, and so does one that is told elsewhere, a kind of change that 
 it is. Numbers by themselves are changed as in test_wrong_files.py, at every place of these studies; here is what refers to something
 else, and what is wrong beside something else.
 
-    tests/cli/test_wrong_studies.py --seed S --count N [--seconds T]    # other studies than the suite's
-    tests/cli/test_wrong_studies.py --seed S --only I --keep DIR         # one of them, with all its wrong ones
+With options it is a campaign (tests/support/campaign.py) of other studies than the suite's, each changed at all places.
 """
-import argparse
 import copy
 import json
-import random
+import math
 import re
-import shutil
+import subprocess
 import sys
-import time
+import tempfile
 import unittest
 from pathlib import Path
 
-from common_cli import SOURCE, CliTest
-from test_wrong_files import Walk, changed, changes_of
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import campaign  # noqa: E402
+from common_cli import PROGRAM  # noqa: E402
+from test_wrong_files import Walk, changed, changes_of  # noqa: E402
 
 TOLERANT = ("frequency", "avoid", "limit")
 STUDIES, PLACES = 12, 1  # of the quick suite: studies, and places of each change in one of them
@@ -250,76 +251,68 @@ def judge(told, place, severity, words):
     return None if re.search(words, "\n".join(near)) else json.dumps(told)
 
 
-class WrongStudies(CliTest):
-    KINDS_LEAST = 100
+def told_by_check(folder, files):
+    """What `check` says of each file: {file: problems}."""
+    done = subprocess.run([PROGRAM, "check", "--format", "json", *files], cwd=folder, capture_output=True, encoding="utf-8", timeout=600, check=False)
+    return {got["file"]: got["problems"] for got in json.loads(done.stdout)}
 
-    def put(self, rng, name):
+
+class WrongStudies(campaign.Generator):
+    script, cases, tallied = "tests/cli/test_wrong_studies.py", "wrong studies", ("changes",)
+
+    def __init__(self, places=math.inf):
+        self.places, self.done = places, {}  # so many places of each kind of change in all studies together
+
+    def make(self, seed, kind, index):
+        rng = campaign.draw(f"{seed} {index}")
         model = chain(rng)
-        self.write("problems/chain.json", json.dumps(model))
-        self.write("studies/hammer.csv", CSV)
-        self.write(f"studies/{PROFILE}", json.dumps(FLAT))
-        s = study(rng, model)
-        return s, self.write(f"studies/{name}.json", json.dumps(s))
+        return campaign.Case(kind, {"model": model, "study": study(rng, model)}, rng)
 
-    def check(self, files):
-        return {got["file"]: got["problems"] for got in json.loads(self.run_program("check", "--format", "json", *files).stdout)}
+    def put(self, case, folder):
+        """The study as it is, with the files that it names; its name."""
+        texts = {"problems/chain.json": json.dumps(case.document["model"]), "studies/hammer.csv": CSV, f"studies/{PROFILE}": json.dumps(FLAT),
+                 "studies/sound.json": json.dumps(case.document["study"])}
+        for name, text in texts.items():
+            (folder / name).parent.mkdir(exist_ok=True)
+            (folder / name).write_text(text, encoding="utf-8")
+        return "studies/sound.json"
 
-    def findings(self, rng, places, done):
-        """Of one study: (kind, place, what is said instead)."""
-        s, sound = self.put(rng, "sound")
-        wrong = list(all_changes(s, Walk("study"), places, done))
-        files = {self.write(f"studies/w{i}.json", json.dumps(w[2])): w for i, w in enumerate(wrong)}
-        told = self.check([sound, *files])
-        out = [("sound", (), json.dumps(p)) for p in told[sound]]
+    def judge(self, case, folder, tally):
+        sound = self.put(case, folder)
+        files = {f"studies/w{i}.json": w for i, w in enumerate(all_changes(case.document["study"], Walk("study"), self.places, self.done))}
+        for file, (_, _, wrong, _, _) in files.items():
+            (folder / file).write_text(json.dumps(wrong), encoding="utf-8")
+        tally["changes"] += len(files)
+        told = told_by_check(folder, [sound, *files])
+        for p in told[sound]:
+            yield "sound", json.dumps(p)
         for file, (kind, place, _, severity, words) in files.items():
             bad = judge(told[file], place, severity, words)
-            out += [] if bad is None else [(kind, place, bad)]
-        return out
+            if bad is not None:
+                yield kind, f"at {'/'.join(map(str, place))}: {bad[:400]}"
+
+
+class Suite(unittest.TestCase):
+    KINDS_LEAST = 100
 
     def test_no_slip_of_a_random_study_is_passed_in_silence(self):
-        done = {}
-        for i in range(STUDIES):
-            with self.subTest(i):
-                self.assertEqual(self.findings(random.Random(f"wrong {i}"), PLACES, done), [])
-        self.assertGreater(len(done), self.KINDS_LEAST, sorted(done))
+        wrong = WrongStudies(PLACES)
+        campaign.hold(self, wrong, "wrong", wrong.todo([""], STUDIES))
+        self.assertGreater(len(wrong.done), self.KINDS_LEAST, sorted(wrong.done))
 
     def test_silence_is_noticed(self):
         """A change that nothing is said of, and one that is told at another place."""
-        s, sound = self.put(random.Random("wrong 0"), "sound")
-        self.assertIsNotNone(judge(self.check([sound])[sound], ("goals", 0, "mode"), "error", "."))
+        wrong = WrongStudies()
+        with tempfile.TemporaryDirectory() as folder:
+            sound = wrong.put(wrong.make("wrong", "", 0), Path(folder))
+            self.assertIsNotNone(judge(told_by_check(folder, [sound])[sound], ("goals", 0, "mode"), "error", "."))
         elsewhere = [{"severity": "error", "pointer": "/goals/1/mode", "message": "unknown mode"}]
         self.assertIsNotNone(judge(elsewhere, ("goals", 0, "mode"), "error", "unknown mode"))
         self.assertIsNotNone(judge(elsewhere, ("goals", 1, "mode"), "warning", "unknown mode"))
         self.assertIsNone(judge(elsewhere, ("goals", 1, "mode"), "error", "unknown mode"))
-        self.assertIn("goals", s)
-
-
-def hunt(asked):
-    """Fresh studies until the count or the time is up; a finding comes with the command that shows it again."""
-    test, end, bad, n = WrongStudies(), time.monotonic() + asked.seconds, 0, 0
-    for i in [asked.only] if asked.only is not None else range(asked.count):
-        if time.monotonic() > end:
-            break
-        n += 1
-        test.setUp()
-        for kind, place, said in test.findings(random.Random(f"{asked.seed} {i}"), 10 ** 6, {}):
-            bad += 1
-            print(f"{kind} at {'/'.join(map(str, place))}: {said[:400]}\n  tests/cli/test_wrong_studies.py --seed {asked.seed} --only {i}", flush=True)
-        if asked.keep:
-            shutil.copytree(test.folder, asked.keep, dirs_exist_ok=True)
-        test.doCleanups()
-    print(f"wrong studies: {n} of seed {asked.seed}, {bad} findings")
-    return 1 if bad > asked.rare * n else 0
 
 
 if __name__ == "__main__":
     if len(sys.argv) > 1 and sys.argv[1].startswith("--"):
-        parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-        parser.add_argument("--seed", default="1")
-        parser.add_argument("--count", type=int, default=20)
-        parser.add_argument("--seconds", type=float, default=1e9)
-        parser.add_argument("--rare", type=float, default=0.0)
-        parser.add_argument("--only", type=int)
-        parser.add_argument("--keep", type=Path)
-        sys.exit(hunt(parser.parse_args()))
+        sys.exit(campaign.main(WrongStudies()))
     unittest.main(verbosity=1)

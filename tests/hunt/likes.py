@@ -2,21 +2,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`like` with every override: a random chain of configurations against the same ones written out in full.
 
-    likes.py [--seed S] [--count N] [--seconds T] [--index I] [--keep DIR]
+The command line is that of every campaign (tests/support/campaign.py).
 """
-import argparse
 import copy
 import json
-import os
-import random
 import subprocess
 import sys
-import tempfile
-import time
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+
+import campaign  # noqa: E402
+
 WHOLE = ("gravity_m_per_s2", "drive", "damping")  # members that an override replaces as a whole
 COMMANDS = (("modes", "--damped", "--count", "all"), ("info",), ("response", "--input", "s2.x", "--from", "0.5", "--to", "30", "--points", "5"))
 
@@ -87,7 +84,7 @@ def answers(folder, model):
     for command, *more in COMMANDS:
         one = []
         for name in model["configurations"]:
-            done = subprocess.run([PROGRAM, command, str(path), "-c", name, "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8",
+            done = subprocess.run([campaign.PROGRAM, command, str(path), "-c", name, "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8",
                                   timeout=60, check=False)
             one.append((name, done.returncode, json.loads(done.stdout) if done.returncode == 0 else done.stderr))
         said.append(one)
@@ -109,45 +106,34 @@ def drops(like, full, name):
     return own is not None and bool(set(above.get("damping", {})) - set(own))
 
 
-def findings(folder, index, seed, spoil=None):
-    """Yields sentences; spoil: a fault, put into what is written out."""
-    rng = random.Random(f"{seed}:like:{index}")
-    like, full = case(rng)
-    if spoil and not spoil(full):
-        return
-    for command, a, b in zip(COMMANDS, answers(folder, like), answers(folder, full)):
-        for (name, code, one), (_, other_code, other) in zip(a, b):
-            if code != other_code:
-                yield f"{command[0]} of {name}: exit code {code}, written out {other_code}: {one if code else other}"
-            elif code == 0 and without_places(one) != without_places(other):
-                yield f"{command[0]} of {name} differs from what is written out"
-            elif code == 0 and isinstance(one, list) and any(d["kind"] == "dropped" for d in one[0]["doubts"]) != drops(like, full, name):
-                yield f"{command[0]} of {name}: what its damping drops is {'not ' if drops(like, full, name) else ''}to be told"
-            elif code not in (0, 2, 3):
-                yield f"{command[0]} of {name}: exit code {code}: {one}"
+class Likes(campaign.Generator):
+    script, cases = "tests/hunt/likes.py", "chains"
 
+    def make(self, seed, kind, index):
+        rng = campaign.draw(seed, "like", index)
+        like, full = case(rng)
+        return campaign.Case(kind, {"like": like, "full": full}, rng)
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--count", type=int, default=20)
-    parser.add_argument("--index", type=int)
-    parser.add_argument("--seconds", type=float)
-    parser.add_argument("--rare", type=float, default=0.0, help="findings per chain up to which the exit status is 0 (but of one always, where not 0)")
-    parser.add_argument("--keep", help="write the last model here")
-    args = parser.parse_args()
-    indices, bad, done, started = range(args.count) if args.index is None else [args.index], 0, 0, time.monotonic()
-    with tempfile.TemporaryDirectory() as scratch:
-        for index in indices:
-            if args.seconds is not None and time.monotonic() - started > args.seconds:
-                break
-            done += 1
-            for text in findings(Path(args.keep or scratch), index, args.seed):
-                bad += 1
-                print(f"{text}\n    tests/hunt/likes.py --seed {args.seed} --index {index}", flush=True)
-    print(f"{done} chains of seed {args.seed}: {bad} findings")
-    return 1 if bad > max(args.rare > 0, args.rare * done) else 0
+    def judge(self, case, folder, tally):
+        like, full = case.document["like"], case.document["full"]
+        for command, a, b in zip(COMMANDS, answers(folder, like), answers(folder, full)):
+            for (name, code, one), (_, other_code, other) in zip(a, b):
+                if code != other_code:
+                    yield command[0], f"of {name}: exit code {code}, written out {other_code}: {one if code else other}"
+                elif code == 0 and without_places(one) != without_places(other):
+                    yield command[0], f"of {name} differs from what is written out"
+                elif code == 0 and isinstance(one, list) and any(d["kind"] == "dropped" for d in one[0]["doubts"]) != drops(like, full, name):
+                    yield command[0], f"of {name}: what its damping drops is {'not ' if drops(like, full, name) else ''}to be told"
+                elif code not in (0, 2, 3):
+                    yield command[0], f"of {name}: exit code {code}: {one}"
+
+    def smaller(self, document):
+        """Nodes go that both have."""
+        like, full = document["like"], document["full"]
+        common = {path for path, _, _ in campaign.nodes(full)}
+        for path in sorted((p for p, _, _ in campaign.nodes(like) if p in common), key=len):
+            yield {"like": campaign.without(like, path), "full": campaign.without(full, path)}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaign.main(Likes()))

@@ -2,25 +2,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The hunt: random studies, every claim of whose results is held against brute force.
 
-    run.py [--seed S] [--count N] [--seconds T] [--only KIND] [--index I] [--keep DIR]
-
-Study I of kind KIND with seed S is the same on every machine; a finding says how to see it again.
+The command line is that of every campaign (tests/support/campaign.py).
 """
-import argparse
+import copy
 import itertools
 import json
-import os
-import random
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-sys.dont_write_bytecode = True
+sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "support")]
 
+import campaign  # noqa: E402  first: it sets what numpy reads
 import numpy as np  # noqa: E402
 
 import check_again  # noqa: E402
@@ -29,13 +23,9 @@ import check_numbers  # noqa: E402
 import check_relaxed  # noqa: E402
 import check_words  # noqa: E402
 import studies  # noqa: E402
-from known import reason  # noqa: E402
 from question import Question  # noqa: E402
 
-SOURCE = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
 CHECKS = {**check_numbers.CHECKS, **check_claims.CHECKS, **check_words.CHECKS, **check_relaxed.CHECKS}
-BATCH = 20
 WORKERS_EVERY = 4  # batches: one of so many is run with two workers, too
 
 
@@ -59,10 +49,6 @@ class Run:
         self.here = None   # the cost where rank 1 is, by a search of ours (check_words.py)
 
 
-def make(seed, kind, index):
-    return studies.KINDS[kind](random.Random(f"{seed}:{kind}:{index}"))
-
-
 def write(folder, name, model, study):
     (folder / name).mkdir(parents=True, exist_ok=True)
     (folder / name / "model.json").write_text(json.dumps(model, indent=1))
@@ -73,7 +59,7 @@ def write(folder, name, model, study):
 def solve(folder, names, threads=1, out="out"):
     """{name: (exit code, standard error, result or None)}; the exit code of a batch is the worst of its studies."""
     paths = [str(folder / n / f"{n}.json") for n in names]
-    command = [PROGRAM, "run", *paths, "-o", str(folder / out), "--quiet", "--threads", str(threads)]
+    command = [campaign.PROGRAM, "run", *paths, "-o", str(folder / out), "--quiet", "--threads", str(threads)]
     try:
         done = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=600)
     except subprocess.TimeoutExpired:
@@ -123,62 +109,94 @@ def findings(name, model, study, answer):
     return out
 
 
-def hunt(seed, kinds, indices, tally, seconds=None, keep=None, kept=None):
-    """Yields (kind, index, check, text) of findings; counts in tally what was done, keeps (model, study, answer) of each in `kept`."""
-    started = time.monotonic()
-    todo = [(k, i) for i in indices for k in kinds]
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(keep or scratch)
-        for number, first in enumerate(range(0, len(todo), BATCH)):
-            if seconds is not None and time.monotonic() - started > seconds:
-                return
-            batch = {}
-            for kind, index in todo[first:first + BATCH]:
-                try:
-                    batch[f"{kind}_{index}"] = (kind, index, *make(seed, kind, index))
-                except Exception as fault:  # a fault of this reference ends one study, never the hunt
-                    tally["studies"] += 1
-                    yield kind, index, "reference", repr(fault)
-            for name, (_, _, model, study) in batch.items():
-                write(folder, name, model, study)
-            answers = solve(folder, list(batch))
-            differ = []
-            if number % WORKERS_EVERY == 0 or len(batch) == 1:
-                solve(folder, list(batch), threads=2, out="two")
-                differ = check_again.same_bytes(folder, list(batch), "out", "two")
-            for name in differ:
-                yield *batch[name][:2], "workers", "the results of one and two workers differ"
-            for name, (kind, index, model, study) in batch.items():
-                tally["studies"] += 1
-                tally["refused"] += answers[name][2] is None
-                if kept is not None:
-                    kept[kind, index] = model, study, answers[name]
-                for check, text in findings(name, model, study, answers[name]):
-                    yield kind, index, check, text
+def smaller(model, study):
+    """Copies of both with one thing less, and what depends on it."""
+    for member in [m for m in study if m not in ("format", "model", "goals", "variables")]:
+        yield model, {k: v for k, v in study.items() if k != member}
+    for whole in ("variables", "goals"):
+        for i, item in enumerate(study.get(whole, [])):
+            if len(study[whole]) > 1:
+                yield model, {**study, whole: study[whole][:i] + study[whole][i + 1:]}
+            for member in [m for m in item if m not in ("parameter", "type", "lower", "upper")]:
+                less = copy.deepcopy(study)
+                del less[whole][i][member]
+                yield model, less
+            for k in range(len(item.get("bands_hz", []))):
+                less = copy.deepcopy(study)
+                del less[whole][i]["bands_hz"][k]
+                yield model, less
+    for member in [m for m in model if m not in ("format", "dimension", "bodies", "parameters")]:
+        yield {k: v for k, v in model.items() if k != member}, study
+    for whole in ("springs", "bodies"):
+        for i, item in enumerate(model.get(whole, []) if not any("preload_n" in s for s in model.get("springs", [])) else []):
+            less = copy.deepcopy(model)
+            del less[whole][i]
+            if whole == "bodies":
+                for other in ("springs", "joints"):
+                    less[other] = [o for o in less.get(other, []) if item["name"] not in o.get("bodies", [])]
+            yield less, study
+            for member in [m for m in item if m in ("in", "density_kg_per_m3", "inertia_kg_m2")]:
+                less = copy.deepcopy(model)
+                del less[whole][i][member]
+                yield less, study
+    for whole in ("parameters", "configurations"):
+        for name in list(model.get(whole, {})):
+            less = copy.deepcopy(model)
+            del less[whole][name]
+            yield less, study
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--count", type=int, default=20, help="studies of each kind")
-    parser.add_argument("--seconds", type=float)
-    parser.add_argument("--only", choices=list(studies.KINDS), action="append")
-    parser.add_argument("--index", type=int)
-    parser.add_argument("--known", action="store_true", help="show findings that wait for their mending, too")
-    parser.add_argument("--rare", type=float, default=0.0, help="findings per study up to which the exit status is 0 (but of one always, where not 0)")
-    parser.add_argument("--keep", help="write studies and results here")
-    args = parser.parse_args()
-    indices = range(args.count) if args.index is None else [args.index]
-    bad, waiting, tally = 0, 0, {"studies": 0, "refused": 0}
-    for kind, index, check, text in hunt(args.seed, args.only or list(studies.KINDS), indices, tally, args.seconds, args.keep):
-        known = reason(check, kind)
-        bad, waiting = bad + (known is None), waiting + (known is not None)
-        if known is None or args.known or args.index is not None:
-            print(f"{check}: {text}{f' (known: {known})' if known else ''}\n"
-                  f"    tests/hunt/run.py --seed {args.seed} --only {kind} --index {index}", flush=True)
-    print(f"{tally['studies']} studies of seed {args.seed} ({tally['refused']} refused): {bad} findings, {waiting} known")
-    return 1 if bad > max(args.rare > 0, args.rare * tally["studies"]) else 0
+class Hunt(campaign.Generator):
+    script, cases, kinds, batch, tallied = "tests/hunt/run.py", "studies", tuple(studies.KINDS), 20, ("refused",)
+
+    def __init__(self, kept=None):
+        self.kept = kept  # {(kind, index): (model, study, answer)} of all that was judged
+
+    def make(self, seed, kind, index):
+        rng = campaign.draw(seed, kind, index)
+        model, study = studies.KINDS[kind](rng)
+        return campaign.Case(kind, {"model": model, "study": study}, rng)
+
+    def judge(self, case, folder, tally):
+        model, study = case.document["model"], case.document["study"]
+        yield from findings("case", model, study, again(model, [study])[0])
+
+    def judge_batch(self, seed, number, batch, folder, tally):
+        made = {}
+        for kind, index in batch:
+            tally["studies"] += 1
+            try:
+                case = self.make(seed, kind, index).document
+            except Exception as fault:  # noqa: BLE001  of this reference ends one study, never the campaign
+                yield campaign.Finding(kind, index, "reference", campaign.sentence(fault))
+                continue
+            made[campaign.name_of(kind, index)] = kind, index, case["model"], case["study"]
+        for name, (_, _, model, study) in made.items():
+            write(folder, name, model, study)
+        answers = solve(folder, list(made))
+        differ = []
+        if number % WORKERS_EVERY == 0 or len(made) == 1:
+            solve(folder, list(made), threads=2, out="two")
+            differ = check_again.same_bytes(folder, list(made), "out", "two")
+        for name in differ:
+            yield campaign.Finding(*made[name][:2], "workers", "the results of one and two workers differ")
+        for name, (kind, index, model, study) in made.items():
+            tally["refused"] += answers[name][2] is None
+            if self.kept is not None:
+                self.kept[kind, index] = model, study, answers[name]
+            for check, text in findings(name, model, study, answers[name]):
+                yield campaign.Finding(kind, index, check, text)
+
+    def smaller(self, document):
+        for model, study in smaller(document["model"], document["study"]):
+            yield {**document, "model": model, "study": study}
+        yield from campaign.smaller(document)
+
+    def write(self, case, folder):
+        super().write(case, folder)
+        (folder / "model.json").write_text(json.dumps(case.document["model"], indent=1) + "\n")
+        (folder / "study.json").write_text(json.dumps({**case.document["study"], "model": "model.json"}, indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaign.main(Hunt()))

@@ -4,17 +4,17 @@ found, and a study of each kind of a fixed seed; run.py draws more, of fresh one
 import functools
 import itertools
 import json
-import os
 import unittest
 from pathlib import Path
 
 import run
+import campaign
 import numpy as np
+from campaign import EVERY, INSTRUMENTED, Tally
 from faults import FAULTS
-from known import reason
 
 SEED = "7"
-WHOLE = bool({"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ))
+WHOLE = EVERY or INSTRUMENTED
 COUNT = 1  # of each kind
 FIRST = {"_second_objective": [("limits", 14)], "_range": [("infeasible", 9)]}  # before others, of which none has a place for the fault
 CASES = Path(__file__).resolve().parent / "cases"
@@ -22,33 +22,28 @@ CASES = Path(__file__).resolve().parent / "cases"
 
 @functools.cache
 def hunted():
-    """Findings and tally of the suite's random studies, and of each (model, study, answer)."""
-    tally, kept = {"studies": 0, "refused": 0}, {}
-    return list(run.hunt(SEED, list(run.studies.KINDS), range(COUNT), tally, kept=kept)), tally, kept
+    """Findings and tally of the suite's random studies, and the generator, which keeps (model, study, answer) of each."""
+    hunt, tally = run.Hunt(kept={}), Tally()
+    return list(campaign.run(hunt, SEED, hunt.todo(hunt.kinds, COUNT), tally)), tally, hunt
 
 
 def solved(kind, index):
     """(model, study, answer): where a fault is planted, among those of the suite first."""
-    kept = hunted()[2]
-    if (kind, index) not in kept:
-        model, study = run.make(SEED, kind, index)
-        kept[kind, index] = model, study, run.again(model, [study])[0]
-    return kept[kind, index]
+    hunt = hunted()[2]
+    if (kind, index) not in hunt.kept:
+        case = hunt.make(SEED, kind, index).document
+        hunt.kept[kind, index] = case["model"], case["study"], run.again(case["model"], [case["study"]])[0]
+    return hunt.kept[kind, index]
 
 
 class Cases(unittest.TestCase):
     """What the hunt once found. A case is one file {"holds": why it is here, "model": ..., "study": ...}."""
 
     def test_cases(self):
-        for path in sorted(CASES.glob("*.json"))[::1 if WHOLE else 6]:
-            case = json.loads(path.read_text())
-            with self.subTest(case=path.stem):
-                wrong = [f for f in run.findings(path.stem, case["model"], case["study"], run.again(case["model"], [case["study"]])[0])
-                         if not reason(f[0], case.get("kind"))]
-                self.assertEqual(wrong, [], case["holds"])
+        campaign.hold_saved(self, run.Hunt(), CASES, 1 if WHOLE else 6)
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
+@unittest.skipIf(INSTRUMENTED, "judges the hunt, not the program")
 class Faults(unittest.TestCase):
     def test_faults_are_found(self):
         for plant, kinds, check in FAULTS:
@@ -77,11 +72,8 @@ class Faults(unittest.TestCase):
 
 class Hunt(unittest.TestCase):
     def test_random_studies(self):
-        found, tally, _ = hunted()
-        for kind, index, check, text in found:
-            if reason(check, kind) is None:
-                with self.subTest(check=check):
-                    self.fail(f"{text}\n    tests/hunt/run.py --seed {SEED} --only {kind} --index {index}")
+        found, tally, hunt = hunted()
+        campaign.fail(self, hunt, SEED, found)
         self.assertLess(tally["refused"], tally["studies"] // 8)
 
 

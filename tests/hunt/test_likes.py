@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`like` in the suite: chains of configurations of a fixed seed, and faults that must be found."""
-import os
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import likes  # noqa: E402
+import likes
+from campaign import EVERY, INSTRUMENTED, Tally, hold
 
-COUNT = 20 if "MT_EVERY" in os.environ else 4
+COUNT = 20 if EVERY else 4
 
 
 def _forget(member):
@@ -32,16 +30,18 @@ def item_lost(full):
 
 class Likes(unittest.TestCase):
     def test_chains(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for index in range(COUNT):
-                with self.subTest(index=index):
-                    self.assertEqual(list(likes.findings(Path(folder), index, "suite")), [])
+        hold(self, likes.Likes(), "suite", likes.Likes().todo([""], COUNT))
 
-    @unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
+    @unittest.skipIf(INSTRUMENTED, "judges the hunt, not the program")
     def test_faults_are_found(self):
         for plant in (*(_forget(m) for m in ("parameters", *likes.WHOLE)), item_lost):
-            with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
-                self.assertTrue(any(list(likes.findings(Path(folder), index, "faults", plant)) for index in range(3)))
+            with self.subTest(fault=plant.__name__):
+                self.assertTrue(any(self._found(plant, index) for index in range(3)))
+
+    def _found(self, plant, index):
+        case = likes.Likes().make("faults", "", index)
+        with tempfile.TemporaryDirectory() as folder:
+            return plant(case.document["full"]) and list(likes.Likes().judge(case, Path(folder), Tally()))
 
 
 if __name__ == "__main__":

@@ -2,36 +2,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random mechanisms against an independent mechanics in eighty digits.
 
-    run.py [--seed S] [--count N] [--seconds T] [--only KIND] [--index I] [--keep DIR]
-
-Mechanism I of kind KIND with seed S is the same on every machine; a finding says how to see it again.
+The command line is that of every campaign (tests/support/campaign.py).
 """
-import argparse
 import json
-import os
 import random
 import subprocess
 import sys
-import tempfile
-import time
 from decimal import Decimal
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-sys.dont_write_bytecode = True
+sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "support")]
 
+import campaign  # noqa: E402  first: it sets what numpy reads
 import damped  # noqa: E402
 import ring  # noqa: E402
 import statics  # noqa: E402
 from changes import CHANGES  # noqa: E402
 from exact import binary, number  # noqa: E402
-from known import reason  # noqa: E402
 from families import KINDS  # noqa: E402
 from oracle import Refused  # noqa: E402
 
-SOURCE = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
 ACCURACY = Decimal("1e-9")  # of frequencies
 SLOPES = Decimal("1e-6")    # of derivatives, in frequency per parameter
 MODEST = Decimal("1e-6")    # relative, of a bound where nothing cancels
@@ -48,7 +38,7 @@ class Answer:
         path = folder / f"{name}.json"
         path.write_text(json.dumps(model, indent=1))
         more = [*more, "--count", "all"] if command == "modes" else more
-        done = subprocess.run([PROGRAM, command, str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
+        done = subprocess.run([campaign.PROGRAM, command, str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
         self.code, self.words = done.returncode, done.stderr
         answer = json.loads(done.stdout) if done.returncode == 0 else None
         self.said = answer[0] if isinstance(answer, list) else answer
@@ -65,7 +55,7 @@ class Answer:
         return [number(m["frequency_hz"]) for m in self.said["modes"] if m["kind"] == "flexible"]
 
 
-class Case:
+class Judgement:
     def __init__(self, folder, kind, rng, model):
         self.folder, self.kind, self.rng, self.model = folder, kind, rng, model
         self.modes = statics.modes(model)
@@ -258,54 +248,24 @@ class Case:
             yield from self.ringing(answer) if not answer.code else ()
 
 
-def hunt(seed, kinds, indices, tally, seconds=None, keep=None):
-    """Yields (kind, index, check, text, why it is expected or None); counts in tally what was done."""
-    started = time.monotonic()
-    with tempfile.TemporaryDirectory() as scratch:
-        for index in indices:
-            for kind in kinds:
-                if seconds is not None and time.monotonic() - started > seconds:
-                    return
-                folder = Path(keep or scratch) / f"{kind}_{index}"
-                folder.mkdir(parents=True, exist_ok=True)
-                rng = random.Random(f"{seed}:{kind}:{index}")
-                tally["mechanisms"] += 1
-                try:
-                    try:
-                        case = Case(folder, kind, rng, KINDS[kind](rng))
-                    except Refused as why:
-                        tally["left out"] += 1
-                        tally[str(why)] = tally.get(str(why), 0) + 1
-                        continue
-                    for check, text in case.findings():
-                        yield kind, index, check, text, reason(check, case)
-                    tally["tones"] = tally.get("tones", 0) + case.tones
-                except Exception as fault:  # a fault of this reference ends one case, never the hunt
-                    yield kind, index, "reference", repr(fault), None
+class Mechanisms(campaign.Generator):
+    script, cases, kinds, tallied = "tests/mechanisms/run.py", "mechanisms", tuple(KINDS), ("left out",)
 
+    def make(self, seed, kind, index):
+        rng = campaign.draw(seed, kind, index)
+        try:
+            return campaign.Case(kind, {"model": KINDS[kind](rng)}, rng)
+        except Refused as why:
+            raise campaign.LeftOut(why) from None
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--count", type=int, default=20, help="mechanisms of each kind")
-    parser.add_argument("--seconds", type=float)
-    parser.add_argument("--only", choices=list(KINDS), action="append")
-    parser.add_argument("--index", type=int)
-    parser.add_argument("--rare", type=float, default=0.0, help="findings per mechanism up to which the exit status is 0 (but of one always, where not 0)")
-    parser.add_argument("--known", action="store_true", help="show findings that wait for their mending, too")
-    parser.add_argument("--keep", help="write models here")
-    args = parser.parse_args()
-    indices = range(args.count) if args.index is None else [args.index]
-    bad, waiting, tally = 0, 0, {"mechanisms": 0, "left out": 0}
-    for kind, index, check, text, why in hunt(args.seed, args.only or list(KINDS), indices, tally, args.seconds, args.keep):
-        bad, waiting = bad + (why is None), waiting + (why is not None)
-        if why is None or args.known or args.index is not None:
-            print(f"{check}: {text}{f' (known: {why})' if why else ''}\n"
-                  f"    tests/mechanisms/run.py --seed {args.seed} --only {kind} --index {index}", flush=True)
-    left = ", ".join(f"{k}: {v}" for k, v in tally.items() if k != "mechanisms")
-    print(f"{tally['mechanisms']} mechanisms of seed {args.seed} ({left}): {bad} findings, {waiting} known")
-    return 1 if bad > max(args.rare > 0, args.rare * tally["mechanisms"]) else 0
+    def judge(self, case, folder, tally):
+        try:
+            judgement = Judgement(folder, case.kind, case.rng, case.document["model"])
+        except Refused as why:
+            raise campaign.LeftOut(why) from None
+        yield from judgement.findings()
+        tally["tones"] += judgement.tones
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaign.main(Mechanisms()))

@@ -2,8 +2,6 @@
 """Random mechanisms in the suite: saved cases, faults that must be found, and one of each kind of a fixed seed, in a plane or
 in space (MT_EVERY=1: both)."""
 import functools
-import json
-import os
 import random
 import tempfile
 import unittest
@@ -14,12 +12,12 @@ import exact
 import ring
 import run
 import statics
+from campaign import EVERY, INSTRUMENTED, hold, hold_saved
 from faults import DAMPING_FAULTS, FAULTS, RINGING_FAULTS
-from known import reason
 
 SEED = "1"
 COUNT = 1  # of each kind; run.py draws more, of fresh seeds
-FEW = not {"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ)
+FEW = not (EVERY or INSTRUMENTED)
 TRIED = 4 if FEW else 10  # mechanisms that each fault is planted in; `least` is of ten
 # In turn the one in a plane and the one in space of two kinds that differ in that alone.
 TWINS = [name for name in run.KINDS if name.endswith("2") and name[:-1] + "3" in run.KINDS]
@@ -30,7 +28,7 @@ CASES = Path(__file__).resolve().parent / "cases"
 G = 9.81
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
+@unittest.skipIf(INSTRUMENTED, "judges the hunt, not the program")
 class Oracle(unittest.TestCase):
     """What the oracle finds where the answer is known."""
 
@@ -80,7 +78,7 @@ def made(kind, index):
 def sound(kind, index):
     """The mechanism that faults are planted in; None where what the program says of it is not what it is."""
     with tempfile.TemporaryDirectory() as folder:
-        case = run.Case(Path(folder), "fault", None, made(kind, index))
+        case = run.Judgement(Path(folder), "fault", None, made(kind, index))
         return None if list(case.agree(run.Answer(Path(folder), "sound", case.model))) else case
 
 
@@ -88,15 +86,10 @@ class Cases(unittest.TestCase):
     """What was once found. A case is one file {"holds": why it is here, "model": ...}."""
 
     def test_cases(self):
-        for path in sorted(CASES.glob("*.json"))[::2 if FEW else 1]:
-            case = json.loads(path.read_text())
-            with self.subTest(case=path.stem), tempfile.TemporaryDirectory() as folder:
-                found = run.Case(Path(folder), path.stem, random.Random(path.stem), case["model"])
-                wrong = [f for f in found.findings() if not reason(f[0], found)]
-                self.assertEqual(wrong, [], case["holds"])
+        hold_saved(self, run.Mechanisms(), CASES, 2 if FEW else 1)
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the hunt, not the program")
+@unittest.skipIf(INSTRUMENTED, "judges the hunt, not the program")
 class Faults(unittest.TestCase):
     def test_faults_are_found(self):
         for plant, kinds, least in FAULTS:
@@ -113,7 +106,7 @@ class Faults(unittest.TestCase):
             with self.subTest(fault=plant.__name__), tempfile.TemporaryDirectory() as folder:
                 tried = found = 0
                 for index in range(3 if FEW else 6):
-                    case = run.Case(Path(folder), "free2", random.Random(f"ring:{index}"), made("loaded2", index))
+                    case = run.Judgement(Path(folder), "free2", random.Random(f"ring:{index}"), made("loaded2", index))
                     answer = run.Answer(Path(folder), "as_made", case.model)
                     wrong = list(case.ringing(answer, plant)) if not answer.code else []
                     tried, found = tried + (case.tones > 0), found + bool(wrong)
@@ -125,7 +118,7 @@ class Faults(unittest.TestCase):
         while len(tried) < of:
             self.assertLess(index, 100, "the fault has no place in these mechanisms")
             kind = ("loaded2", "loaded3")[index % 2]
-            case = run.Case(folder, kind, random.Random(f"damped:{index}"), made(kind, index))
+            case = run.Judgement(folder, kind, random.Random(f"damped:{index}"), made(kind, index))
             index += 1
             found += bool(list(case.damping(lambda model: plant(model) and tried.append(model) is None)))
         return found
@@ -146,11 +139,7 @@ class Faults(unittest.TestCase):
 
 class Mechanisms(unittest.TestCase):
     def test_random_mechanisms(self):
-        tally = {"mechanisms": 0, "left out": 0}
-        for kind, index, check, text, why in run.hunt(SEED, [kind for kind in run.KINDS if kind not in LEFT_OUT], range(COUNT), tally):
-            if why is None:
-                with self.subTest(check=check):
-                    self.fail(f"{text}\n    tests/mechanisms/run.py --seed {SEED} --only {kind} --index {index}")
+        tally = hold(self, run.Mechanisms(), SEED, [(kind, index) for index in range(COUNT) for kind in run.KINDS if kind not in LEFT_OUT])
         self.assertLess(tally["left out"], max(2, tally["mechanisms"] // 20))
 
 

@@ -83,6 +83,10 @@ def put(root, path, value):
         parent[path[-1]] = value
 
 
+def is_text(value):
+    return isinstance(value, str) and not isinstance(value, Number)
+
+
 def resolves(value, pointer):
     """Does a JSON pointer (of an error message) name a place of a plain document?"""
     for step in pointer.split("/")[1:]:

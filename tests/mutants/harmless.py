@@ -2,9 +2,7 @@
 """Changes that mean nothing: what every command answers is the same, to the last digit. Each takes (rng, {place: tree}) and changes the trees."""
 import json
 import re
-import tempfile
 from decimal import Decimal
-from pathlib import Path
 
 import document
 from document import Number, Object
@@ -183,9 +181,3 @@ def compare(program, rng, case, change, folder, tally):
             yield "harmless", f"{where}: exit codes {before.code} and {after.code}: {after.said()}"
         elif expected != given:
             yield "harmless", f"{where}: {_different(expected, given)}"
-
-
-def findings(program, corpus, rng, tally, keep=None):
-    case = corpus.pick(rng, rng.choice(("model", "model", "study")))
-    with tempfile.TemporaryDirectory() as scratch:
-        yield from compare(program, rng, case, rng.choice(sorted(CHANGES)), Path(keep or scratch), tally)

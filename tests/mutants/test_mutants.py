@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The mutants in the suite: saved cases, faults that must be found, and some of a fixed seed (MT_EVERY=1: six times as many, and
 saved cases with three draws of commands)."""
-import json
 import os
 import random
 import signal
@@ -9,15 +8,13 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import document
 import run
+from campaign import EVERY, INSTRUMENTED, PROGRAM, hold, hold_saved
 from commands import Answer, Program
-from corpus import Case, Corpus
-from known import reason
+from corpus import Corpus
 
 SEED = "5"
-EVERY = "MT_EVERY" in os.environ
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
+FEW = not (EVERY or INSTRUMENTED)
 COUNT = 6 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else len(run.ROUND)
 CASES = Path(__file__).resolve().parent / "cases"
 
@@ -47,29 +44,19 @@ class Cases(unittest.TestCase):
     """What was once found. A case is one file {"holds": why it is here, "kind": ..., "files": {place: text}}, of which one is the kind's."""
 
     def test_cases(self):
-        program = Program(run.PROGRAM)
-        for path in sorted(CASES.glob("*.json")):
-            saved = json.loads(path.read_text(encoding="utf-8"))
-            case = Case(saved["kind"], path.stem, document.Object(), {})
-            case.files = {place: text if isinstance(text, str) else json.dumps(text) for place, text in saved["files"].items()}
-            case.original = document.read(case.files[case.target])
-            for draw in range(3 if EVERY or "MT_INSTRUMENTED" in os.environ else 1):
-                with self.subTest(case=path.stem, draw=draw), tempfile.TemporaryDirectory() as folder:
-                    case.write(Path(folder))
-                    found = list(Answer(program, Path(folder), case, {"commands": 0}).findings(random.Random(draw)))
-                    self.assertEqual([f for f in found if not reason(*f)], [], saved["holds"])
+        hold_saved(self, run.Mutants(Program(PROGRAM)), CASES, draws=1 if FEW else 3)
 
 
 class Faults(unittest.TestCase):
     def test_faults_are_found(self):
-        corpus = Corpus(run.PROGRAM)
+        corpus = Corpus(PROGRAM)
         for fault, script in FAULTS.items():
             with self.subTest(fault=fault), tempfile.TemporaryDirectory() as folder:
                 self.assertIn(fault.split(" ")[0], self._found(Path(folder), corpus, fault, script))
 
     def _found(self, folder, corpus, fault, script):
         path = folder / "modetune"
-        path.write_text(f"#!/bin/bash\nSOUND={os.path.abspath(run.PROGRAM)}\n{script}\n", encoding="utf-8")
+        path.write_text(f"#!/bin/bash\nSOUND={os.path.abspath(PROGRAM)}\n{script}\n", encoding="utf-8")
         path.chmod(0o755)
         program = Program(path, patience=(0.2, 0.2) if fault == "stuck" else None)
         if fault == "harmless":
@@ -99,12 +86,8 @@ class Interrupts(unittest.TestCase):
 
 class Mutants(unittest.TestCase):
     def test_random_mutants(self):
-        tally = {"mutants": 0, "commands": 0}
-        todo = [(kind, index) for kind, index in run.rounds(run.KINDS, COUNT) if not FEW or index % 6 == 0]
-        for kind, index, check, text in run.hunt(Program(run.PROGRAM), SEED, todo, tally):
-            if reason(check, text) is None:
-                with self.subTest(check=check):
-                    self.fail(f"{text}\n    tests/mutants/run.py --seed {SEED} --only {kind} --index {index}")
+        mutants = run.Mutants(Program(PROGRAM))
+        tally = hold(self, mutants, SEED, [(kind, index) for kind, index in mutants.todo(mutants.kinds, COUNT) if not FEW or index % 6 == 0])
         self.assertGreater(tally["good"], tally["mutants"] // 8)  # not all are refused at the door
 
 

@@ -2,37 +2,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Models at the limits of sixteen digits against an independent mechanics in eighty.
 
-    run.py [--seed S] [--count N] [--seconds T] [--only FAMILY] [--index I] [--far F] [--keep DIR]
+The command line is that of every campaign (tests/support/campaign.py), and --far F.
 
 What the data determine is asked of the oracle: every number of the file is changed by a relative 1e-30, more or less, of random sign, every coordinate by that part of
 the mechanism's size, and what that changes in an eigenvalue, relative, over 1e-30, is its condition. Held are: counts, and kinds unless
 roundings of the data leave it open whether the eigenvalue is 0; error <= bound for every mode; where the condition is at most 1e4, error <= 1e-10 of the eigenvalue. The table's last columns judge the bound: how much of it the error
 takes at worst, and how many times it exceeds what the data leave open, condition times 2^-53.
 """
-import argparse
 import json
 import math
-import os
-import random
 import subprocess
 import sys
-import tempfile
 import time
 from decimal import Decimal
 from pathlib import Path
 
-sys.dont_write_bytecode = True
-sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "mechanisms")]
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path[:0] = [str(Path(__file__).resolve().parent), *(str(Path(__file__).resolve().parents[1] / room) for room in ("mechanisms", "support"))]
 
+import campaign  # noqa: E402  first: it sets what numpy reads
 import statics  # noqa: E402
 from exact import binary, cholesky  # noqa: E402
 from extremes import FAMILIES  # noqa: E402
 from hanging import Hanging  # noqa: E402
 from oracle import Oracle, Refused  # noqa: E402
 
-SOURCE = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("MODETUNE", str(SOURCE / "build/release/modetune"))
 WANTED = Decimal("1e-10")   # of an eigenvalue that the data determine
 DETERMINED = Decimal("1e4")  # condition up to which they do: a hundred roundings of it are 1e-10
 OPEN = Decimal("1e6")        # from here on rest, or which way a dead centre leads, may itself be lost, and the program says so
@@ -188,15 +181,20 @@ COUNTED = {"long chains": Chain, "large trees": Chain, "large stars": Star, "han
 # what the program says -------------------------------------------------------------------------------------------------------------------------------------
 class Row:
     """A line of the table."""
+    SUMS, WORST = ("cases", "left", "modes", "determined", "seconds"), ("error", "told", "share", "excess")
 
     def __init__(self, name):
-        self.name, self.cases, self.modes, self.determined, self.left_out = name, 0, 0, 0, {}
+        self.name, self.cases, self.left, self.modes, self.determined = name, 0, 0, 0, 0
         self.error = self.told = self.share = self.excess = Decimal(0)
         self.seconds = 0.0
 
+    def __add__(self, other):
+        both = Row(self.name)
+        vars(both).update({m: getattr(self, m) + getattr(other, m) for m in self.SUMS}, **{m: max(getattr(self, m), getattr(other, m)) for m in self.WORST})
+        return both
+
     def text(self):
-        left = sum(self.left_out.values())
-        return f"{self.name:26}{self.cases:6}{left:6}{self.modes:7}{self.determined:7}{self.error:10.1e}{self.told:10.1e}{self.share:9.3f}{self.excess:10.1e}{self.seconds:8.1f}"
+        return f"{self.name:26}{self.cases:6}{self.left:6}{self.modes:7}{self.determined:7}{self.error:10.1e}{self.told:10.1e}{self.share:9.3f}{self.excess:10.1e}{self.seconds:8.1f}"
 
 
 HEAD = f"{'family':26}{'cases':>6}{'left':>6}{'modes':>7}{'determ.':>7}{'error':>10}{'bound':>10}{'err/bnd':>9}{'bnd/data':>10}{'time s':>8}"
@@ -207,7 +205,7 @@ def ask(folder, model, *more):
     path.write_text(json.dumps(model, indent=1))
     started = time.monotonic()
     more = more or ("--count", "all")
-    done = subprocess.run([PROGRAM, "modes", str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
+    done = subprocess.run([campaign.PROGRAM, "modes", str(path), "--format", "json", "--quiet", *more], capture_output=True, encoding="utf-8", timeout=120)
     return done, time.monotonic() - started
 
 
@@ -242,71 +240,44 @@ def judge(row, exact, said):
             yield "accuracy", f"mode {i + 1}: omega^2 is {given:.17g} within {bound:.3g}, exact {x:.20g}, {error / abs(x):.1e} off; condition {condition:.1e}"
 
 
-def one(row, rng, far, folder):
-    """Yields (check, sentence) of one model of the row's family."""
-    name = row.name
-    model = FAMILIES[name](rng, rng.uniform(0, 1) if far is None else far)
-    try:
-        exact = COUNTED[name](model) if name in COUNTED else Exact(model, rng)
-    except (Refused, ZeroDivisionError) as why:
-        row.left_out[str(why)] = row.left_out.get(str(why), 0) + 1
-        return
-    done, seconds = ask(folder, model, *exact.asked)
-    if done.returncode == 3 and any(w in done.stderr for w in ("no equilibrium", "dead centre")) and exact.open() > OPEN:
-        row.left_out["refused as undetermined"] = row.left_out.get("refused as undetermined", 0) + 1
-        return
-    row.cases += 1
-    row.seconds += seconds
-    if done.returncode:
-        yield "refused", f"exit code {done.returncode}: {done.stderr.strip()[-400:]}"
-        return
-    yield from exact.judge(row, json.loads(done.stdout)[0])
+class Stress(campaign.Generator):
+    script, cases, kinds, tallied = "tests/stress/run.py", "models", tuple(FAMILIES), ("left out",)
 
+    def __init__(self, far=None):
+        self.far = far
 
-def stress(seed, names, indices, rows, seconds=None, far=None, keep=None):
-    """Yields (family, index, check, sentence)."""
-    started = time.monotonic()
-    with tempfile.TemporaryDirectory() as scratch:
-        for index in indices:
-            for name in names:
-                if seconds is not None and time.monotonic() - started > seconds:
-                    return
-                row = rows.setdefault(name, Row(name))
-                try:
-                    for check, text in one(row, random.Random(f"stress:{seed}:{name}:{index}"), far, keep or scratch):
-                        yield name, index, check, text
-                except Exception as fault:  # a fault of this reference ends one case, never the run
-                    yield name, index, "reference", repr(fault)
+    def options(self, parser):
+        parser.add_argument("--far", type=float, help="0 to 1: how far all of them go; else each at random")
 
+    def asked(self, args):
+        self.far = args.far
+        return [] if self.far is None else ["--far", str(self.far)]
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", default="1")
-    parser.add_argument("--count", type=int, default=20, help="models of each family")
-    parser.add_argument("--seconds", type=float)
-    parser.add_argument("--only", choices=list(FAMILIES), action="append")
-    parser.add_argument("--index", type=int)
-    parser.add_argument("--far", type=float, help="0 to 1: how far all of them go; else each at random")
-    parser.add_argument("--rare", type=float, default=0.0, help="findings per model up to which the exit status is 0 (but of one always, where not 0)")
-    parser.add_argument("--keep", help="leave the last model here")
-    args = parser.parse_args()
-    rows, bad = {}, 0
-    indices = range(args.count) if args.index is None else [args.index]
-    for name, index, check, text in stress(args.seed, args.only or list(FAMILIES), indices, rows, args.seconds, args.far, args.keep):
-        bad += 1
-        far = f" --far {args.far}" if args.far is not None else ""
-        print(f"{check}: {text}\n    tests/stress/run.py --seed {args.seed} --only '{name}' --index {index}{far}", flush=True)
-    print(HEAD)
-    for row in rows.values():
-        print(row.text())
-    left = {}
-    for row in rows.values():
-        for why, n in row.left_out.items():
-            left[why] = left.get(why, 0) + n
-    cases = sum(row.cases for row in rows.values())
-    print(f"{cases} models of seed {args.seed} ({', '.join(f'{k}: {v}' for k, v in left.items()) or 'none'} left out): {bad} findings")
-    return 1 if bad > max(args.rare > 0, args.rare * cases) else 0
+    def make(self, seed, kind, index):
+        rng = campaign.draw("stress", seed, kind, index)
+        return campaign.Case(kind, {"model": FAMILIES[kind](rng, rng.uniform(0, 1) if self.far is None else self.far)}, rng)
+
+    def judge(self, case, folder, tally):
+        row = tally.setdefault(case.kind, Row(case.kind))
+        try:
+            exact = COUNTED[case.kind](case.document["model"]) if case.kind in COUNTED else Exact(case.document["model"], case.rng)
+        except (Refused, ZeroDivisionError) as why:
+            row.left += 1
+            raise campaign.LeftOut(why) from None
+        done, seconds = ask(folder, case.document["model"], *exact.asked)
+        if done.returncode == 3 and any(w in done.stderr for w in ("no equilibrium", "dead centre")) and exact.open() > OPEN:
+            row.left += 1
+            raise campaign.LeftOut("refused as undetermined")
+        row.cases += 1
+        row.seconds += seconds
+        if done.returncode:
+            yield "refused", f"exit code {done.returncode}: {done.stderr.strip()[-400:]}"
+        else:
+            yield from exact.judge(row, json.loads(done.stdout)[0])
+
+    def table(self, tally):
+        return [HEAD, *(row.text() for row in tally.values() if isinstance(row, Row))]
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaign.main(Stress()))

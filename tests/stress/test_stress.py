@@ -2,7 +2,6 @@
 """Some models of every family (run.py), and errors that must be found in what the program answers. MT_EVERY=1: more of them, and
 larger ones."""
 import json
-import os
 import random
 import tempfile
 import unittest
@@ -11,9 +10,10 @@ from decimal import Decimal
 import run  # first: it says where the others are
 import extremes  # noqa: E402
 import hanging  # noqa: E402
+from campaign import EVERY, INSTRUMENTED, Tally, hold  # noqa: E402
+from campaign import run as judged  # noqa: E402
 
-EVERY = "MT_EVERY" in os.environ
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
+FEW = not (EVERY or INSTRUMENTED)
 COUNT = 4 if EVERY else 1 if FEW else 2  # of each family
 
 
@@ -24,47 +24,45 @@ def slide(beside):
 
 
 class Stress(unittest.TestCase):
+    def sound(self, seed, family, indices, tally=None, far=None):
+        """These models of a family have no finding."""
+        tally = Tally() if tally is None else tally
+        self.assertEqual(list(judged(run.Stress(far), seed, [(family, index) for index in indices], tally)), [])
+        return tally
+
     def test_families(self):
-        rows = {}
-        for name, index, check, text in run.stress("1", list(run.FAMILIES), range(COUNT), rows):
-            with self.subTest(family=name, check=check):
-                self.fail(f"{text}\n    tests/stress/run.py --seed 1 --only '{name}' --index {index}")
-        print("\n".join([run.HEAD, *(row.text() for row in rows.values())]))
-        for row in rows.values():
+        tally = hold(self, run.Stress(), "1", run.Stress().todo(run.FAMILIES, COUNT))
+        print("\n".join(run.Stress().table(tally)))
+        for row in (tally[name] for name in run.FAMILIES):
             if COUNT > 2:  # of two either may ask what the data do not determine, or what the reference does not find
-                self.assertGreater(row.cases, sum(row.left_out.values()), row.name)
+                self.assertGreater(row.cases, row.left, row.name)
                 self.assertGreater(row.determined, 0, row.name)
             else:
                 self.assertGreater(row.cases, 0, row.name)
 
     def test_bounds_count_what_the_constraints_leave_open(self):
         """Two ropes that are almost parallel: the circle that they leave is known to rounding over their angle."""
-        found = list(run.stress("1", ["nearly redundant joints"], [15, 64, 111], {}))
-        self.assertEqual(found, [])
+        self.sound("1", "nearly redundant joints", [15, 64, 111])
 
     def test_forces_are_those_of_the_balance(self):
         """Stiff springs under a little load: their forces are lost in the rounding of the position, and found by what is unbalanced there."""
-        found = list(run.stress("f", ["heavy on stiff feet"], [18] if FEW else [18, 43], {}, far=1.0))
-        self.assertEqual(found, [])
+        self.sound("f", "heavy on stiff feet", [18] if FEW else [18, 43], far=1.0)
 
     def test_places_of_rest_are_known_to_the_rounding_of_lengths(self):
         """A stiff spring with a short lever under load: what rounding of its length turns its body by changes the lever."""
-        found = list(run.stress("fin2", ["heavy on stiff feet"], [5], {}, far=1.0)) + list(run.stress("1", ["short levers"], [5, 29, 32, 42], {}, far=1.0))
-        self.assertEqual(found, [])
+        self.sound("fin2", "heavy on stiff feet", [5], far=1.0)
+        self.sound("1", "short levers", [5, 29, 32, 42], far=1.0)
 
     def test_what_is_drawn_at_rest_stays_there(self):
         """Columns short of their critical load by next to nothing, or beyond it: rounding of the balance, over the stiffness that is left, leads nowhere."""
-        rows = {}
-        found = list(run.stress("c1", ["nearly buckled"], [46, 111], rows)) + list(run.stress("g", ["nearly buckled"], range(20), rows))
-        self.assertEqual(found, [])
-        self.assertEqual(rows["nearly buckled"].left_out, {})
+        tally = self.sound("g", "nearly buckled", range(20), self.sound("c1", "nearly buckled", [46, 111]))
+        self.assertEqual(tally["nearly buckled"].left, 0)
 
     def test_what_is_0_in_decimals_is_not_told_from_it(self):
         """A slide that a rod holds at its dead centre but for 4e-17 of the axis as it is read; a spring that is straight across a slot but for as much."""
-        rows = {}
-        found = list(run.stress("zz", ["both"], [22], rows)) + list(run.stress("1795386040.2", ["nanometres to kilometres"], [5], rows))
-        self.assertEqual(found, [])
-        self.assertEqual(rows["both"].left_out, {"refused as undetermined": 1})
+        tally = self.sound("zz", "both", [22])
+        self.sound("1795386040.2", "nanometres to kilometres", [5])
+        self.assertEqual((tally["left out"], tally["refused as undetermined"]), (1, 1))
 
     def test_slides_beside_their_dead_centre_are_refused_next_to_it_only(self):
         """Beside it by 2^-k: an answer down to 2^-20, a refusal from 2^-30 on, and what is refused is not determined."""
@@ -80,35 +78,27 @@ class Stress(unittest.TestCase):
 
     def test_springs_beyond_the_freedoms(self):
         """They hold each other: what Householder's method leaves in the stiff ones counts beside the soft ones."""
-        rows = {}
-        found = list(run.stress("q1", ["redundant springs"], [6], rows)) + list(run.stress("fin7", ["redundant springs"], [6], rows))
-        self.assertEqual(found, [])
-        self.assertLess(rows["redundant springs"].share, 0.2)  # the second one, by elimination, whatever the springs: 0.32
+        tally = self.sound("fin7", "redundant springs", [6], self.sound("q1", "redundant springs", [6]))
+        self.assertLess(tally["redundant springs"].share, 0.2)  # the second one, by elimination, whatever the springs: 0.32
 
     def test_bounds_follow_from_energies(self):
         """Errors and bounds of what the data determine, of springs and masses far apart: a thousand times as good where quotients of energies are taken."""
-        rows = {}
-        found = list(run.stress("q1", ["stiffnesses 1:1e12", "masses 1:1e9", "both", "slender beams"], range(6 if EVERY else 1 if FEW else 2), rows))
-        self.assertEqual(found, [])
-        for row in rows.values():
+        for family in ("stiffnesses 1:1e12", "masses 1:1e9", "both", "slender beams"):
+            row = self.sound("q1", family, range(6 if EVERY else 1 if FEW else 2))[family]
             self.assertLess(row.told, 1e-11, row.name)
             self.assertLess(row.error, 1e-13, row.name)
 
-    @unittest.skipUnless(EVERY or "MT_INSTRUMENTED" in os.environ, "three seconds of the reference")
+    @unittest.skipUnless(EVERY or INSTRUMENTED, "three seconds of the reference")
     def test_long_stacks_keep_their_modes(self):
         """Rods with a short way from the end of a long arm pass on what the platform above does, enlarged and turned: bounds that grew with each step made 87 of 90 modes free."""
-        rows = {}
-        found = list(run.stress("3", ["hanging stacks"], [3], rows))
-        self.assertEqual(found, [])
-        self.assertLess(rows["hanging stacks"].told, 1e-5)
+        self.assertLess(self.sound("3", "hanging stacks", [3])["hanging stacks"].told, 1e-5)
 
     def test_many_equal_modes_of_a_tree_are_all_found(self):
         """Arms on a hub: 120 equal ones; 104 that almost are; in groups of twenty, of which the errors add up."""
-        found = list(run.stress("2", ["large stars"], [0, 12, 11, 3], {}))
-        self.assertEqual(found, [])
+        self.sound("2", "large stars", [0, 12, 11, 3])
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
+@unittest.skipIf(INSTRUMENTED, "judges the reference, not the program")
 class Faults(unittest.TestCase):
     """Wrong answers are told from right ones."""
 
@@ -153,7 +143,7 @@ class Faults(unittest.TestCase):
         self.assertEqual(self._found(), {"counts"})
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
+@unittest.skipIf(INSTRUMENTED, "judges the reference, not the program")
 class HangingFaults(unittest.TestCase):
     """Wrong answers of what hangs are told from right ones."""
 
@@ -191,7 +181,7 @@ class HangingFaults(unittest.TestCase):
         self.assertEqual(self._found(), {"counts"})
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ, "judges the reference, not the program")
+@unittest.skipIf(INSTRUMENTED, "judges the reference, not the program")
 class Reference(unittest.TestCase):
     """Sturm's count of a row of masses against the mechanics in eighty digits, and the condition where it is known."""
 
