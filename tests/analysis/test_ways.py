@@ -17,10 +17,10 @@ from collections import Counter
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from suite import EVERY  # noqa: E402
 import large  # noqa: E402
 
 PROGRAM = os.environ["MODETUNE"]
-EVERY = "MT_EVERY" in os.environ
 CASES = 24 if EVERY else 12
 COUNT = 6
 LEAST = 100  # bodies, from where the lowest modes have a way of their own

@@ -3,7 +3,6 @@
 import atexit
 import functools
 import json
-import os
 import sys
 import tempfile
 import unittest
@@ -12,12 +11,12 @@ from pathlib import Path
 from browser import Browser
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from suite import EVERY  # noqa: E402
 from answers import PROGRAM, SOURCE, answers  # noqa: E402
 
 STUDIES = sorted((SOURCE / "studies").glob("*.json"))
 SIZES = [(390, 844), (1280, 900), (1920, 1080)]
 WINDOWS = [{"width": width, "height": height, "dark": dark} for width, height in SIZES for dark in (False, True)]
-EVERY = "MT_EVERY" in os.environ
 
 
 @functools.cache

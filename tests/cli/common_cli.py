@@ -4,12 +4,13 @@ import json
 import os
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-SOURCE = Path(os.environ.get("SOURCE_DIR", Path(__file__).resolve().parents[2]))
-PROGRAM = os.path.abspath(os.environ.get("MODETUNE", SOURCE / "build/release/modetune"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from suite import PROGRAM, SOURCE  # noqa: E402, F401  for who imports them from here, too
 COMMANDS = ["run", "merge", "compare", "modes", "mac", "sweep", "simulate", "sensitivity", "response", "info", "show", "report", "explain", "apply", "diff", "check",
             "init", "examples", "schema", "profile", "help"]
 

@@ -2,7 +2,6 @@
 """Hostile files: any of the tree's own files, grown at one place to a size that is asked for, and files of kinds that growing does not reach."""
 import copy
 import json
-import random
 
 EXTREMES = [0, -1, 1e308, -1e308, 5e-324, 1e-200, 1e15, 1e12, 1e9, 2147483647, 100000, 0.1]
 

@@ -9,11 +9,10 @@ of free length l is tied to a point of the ground next to its way. With d from t
 and where the ground shakes along x, the acceleration of the mass along x per that of the ground
     |H_b(theta)|^2 = ((K - m w^2 (1 - x))^2 + (w c)^2) / ((K - m w^2)^2 + (w c)^2),   x = cos(theta)^2:
 all of them come and go within an angle of about l. A second mass on the arm has a mode of its own, which the first one's crosses.
-Every claim of every design is held against a grid that resolves the spring, and so is that no design nearer to the original keeps the limit. MT_EVERY=1: ten times as many arms.
+Every claim of every design is held against a grid that resolves the spring, and so is that no design nearer to the original keeps the limit. MT_EVERY=1: ten times as many arms; MT_COUNT and MT_SEED: others.
 """
 import json
 import math
-import os
 import random
 import re
 import tempfile
@@ -22,10 +21,11 @@ from pathlib import Path
 
 import numpy as np
 from common_cli import main
+from suite import SEED, count
 from test_motion import TWO_PI, run
 
-SEED = int(os.environ.get("MT_BETWEEN_SEED", "1"))
-COUNT = 60 if os.environ.get("MT_EVERY", "0") != "0" else 5
+SEED = int(SEED)
+COUNT = count(5, every=60)
 M, M2 = 1.0, 0.5
 
 

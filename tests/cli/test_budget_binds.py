@@ -3,10 +3,10 @@
 trade study. What does not fit is left out and said; one that suffices changes no design. MT_EVERY=1: those of the pedal, which take longest, with every budget, too, and every kind by any number of workers."""
 import json
 import math
-import os
 import sys
 
 from common_cli import MODEL, SOURCE, CliTest, main, study
+from suite import EVERY, FEW, INSTRUMENTED
 
 sys.path.insert(0, str(SOURCE / "tests/support"))
 from pedal import FREE, PEDAL, study as pedal  # noqa: E402
@@ -16,9 +16,7 @@ def masses(**more):
     return {**json.loads(study()), **more}
 
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
-BUDGETS = (60, 300) if "MT_INSTRUMENTED" in os.environ else (20, 100, 1000) if FEW else (20, 60, 100, 300, 1000)
+BUDGETS = (60, 300) if INSTRUMENTED else (20, 100, 1000) if FEW else (20, 60, 100, 300, 1000)
 CHOICES = [1, 1.5, 2, 3, 4, 6, 8, 12]
 CATALOGUES = [{"parameter": p, "catalogue": CHOICES} for p in ("k1", "k2")]
 HIGH = [{"type": "frequency", "configuration": "held", "mode": 1, "at_least_hz": 0.15}]

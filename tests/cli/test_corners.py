@@ -3,20 +3,20 @@
 
 A row of masses on a guide, whose stiffnesses, masses and limits depend on two to four variables, some of them not monotone: slopes at the original design then name a corner
 that is not the worst. What is found meets all goals at every corner and within, and its objective is no worse than that of all corners, wherever corners are the worst there is.
-MT_CORNER_STUDIES and MT_CORNER_SEED ask for more, and others, than the test does by itself.
+MT_COUNT and MT_SEED ask for more, and others, than the test does by itself.
 """
 import itertools
 import json
 import math
-import os
 import random
 
 import numpy
 
 from common_cli import CliTest, main
+from suite import SEED, count
 
-STUDIES = int(os.environ.get("MT_CORNER_STUDIES", "200" if os.environ.get("MT_EVERY", "0") != "0" else "6" if "MT_INSTRUMENTED" in os.environ else "24"))
-SEED = int(os.environ.get("MT_CORNER_SEED", "1"))
+STUDIES = count(24, every=200, instrumented=6)
+SEED = int(SEED)
 # A goal counts as met within 1e-6, relatively.
 MET = 3e-6
 ROUNDING = 1e-9

@@ -5,10 +5,10 @@ import csv
 import ctypes
 import io
 import json
-import os
 import re
 
 from common_cli import SOURCE, CliTest, main, study
+from suite import EVERY
 
 # What is not compared, wherever it stands.
 SENTENCES = {"history", "column", "goal", "kkt_residual", "line", "orthogonality", "outputs", "reasons", "residual", "status_text", "text", "warnings"}
@@ -20,7 +20,6 @@ KEYS = {"assumptions": ["parameter"], "certificates": ["kind", "pointer"], "curv
         "inputs": ["file"], "mac_matrices": ["configuration", "reference"], "rows": ["mode"], "motion": ["goal", "drive"], "objectives": ["text"], "orders": ["label"], "overrides": ["kind", "name"], "parameters": ["name"],
         "per_variable": ["name"], "published": ["pointer"], "relaxations": ["kind", "pointer", "what"], "responses": ["goal", "configuration"], "responses_between": ["goal", "drive"], "spread": ["parameter"], "vary": ["pointer"]}
 LIBC = ctypes.CDLL(None)
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 BY_PLACE = {"densities", "history", "points", "reasons", "recommendations", "unchecked", "undetermined", "outputs"}
 MADE_BY = ("study", "model", "run")
 HOLDS = """, "published": [

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From an empty folder to an answer: init, examples, schema, and the catalogue of aircraft that is found without a path."""
 import json
-import os
 import re
 
 import jsonschema
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 SLOW = ("arm", "stick")  # seconds: answered with MT_EVERY=1
 STUDY = """{ "format": "modetune-study/1", "name": "x", "model": "../mine/model.json",
   "variables": [ { "parameter": "servo", "lower": 200, "upper": 5000 } ],

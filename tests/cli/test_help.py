@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """--help, the manual pages and the documents say the same, help finds topics; wrong use is answered helpfully."""
-import os
 import re
 import subprocess
 from pathlib import Path
 
 from common_cli import COMMANDS, SOURCE, CliTest, main, options_in
+from suite import EVERY
 
 PAGES = [Path(SOURCE) / page for page in ("README.md", "problems/README.md", "studies/README.md", "studies/tutorial/README.md", "src/cli/README.md")]
 # Which options each command has: written down once more, so that a change is a decision.
@@ -190,7 +190,7 @@ class Topics(CliTest):
                 for one in set(names):
                     want.setdefault(one, []).append((name, section))
         self.assertGreater(len(want), 80)
-        for topic in [t for t in want if " " not in t][::1 if os.environ.get("MT_EVERY") else 12] + ["avoid", "search"]:
+        for topic in [t for t in want if " " not in t][::1 if EVERY else 12] + ["avoid", "search"]:
             with self.subTest(topic):
                 if topic in COMMANDS and want[topic][0][0] != "src/cli/README.md":
                     continue

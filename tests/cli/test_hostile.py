@@ -7,7 +7,6 @@ MT_EVERY=1: files of twice the size, and twenty grown files and twenty with extr
 """
 import argparse
 import json
-import os
 import random
 import resource
 import subprocess
@@ -17,11 +16,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import common_hostile as hostile
 from common_cli import PROGRAM, SOURCE, CliTest
+from suite import EVERY, INSTRUMENTED, LAUNCHED
 
-INSTRUMENTED = "MT_INSTRUMENTED" in os.environ or "MT_TEST_LAUNCHED" in os.environ
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
+SLOW = INSTRUMENTED or LAUNCHED
 BASE = 5000  # size that the seconds are for
-SECONDS = 60 if INSTRUMENTED else 3  # of the processor; no file of that size takes one
+SECONDS = 60 if SLOW else 3  # of the processor; no file of that size takes one
 MEMORY = "1G"
 TALK = 400_000  # bytes of messages: at most 200 lines
 STATES = {0, 1, 2, 3, 4}
@@ -29,7 +28,7 @@ FILES = ["tests/schema/plane.json", "tests/schema/space.json", "tests/documents/
          "tests/documents/good/aircraft.json", "tests/documents/good/profile.json", "problems/inceptor.json", "studies/engine_orders.json", "studies/inceptor_trade.json",
          "studies/six_masses_bands.json", "tests/models/space_couplings.json"]
 COMMANDS = {"model": [("modes",), ("info",), ("sensitivity", "--count", "2")], "study": [("run", "-o", "out", "--quiet")]}
-knobs = argparse.Namespace(size=500 if INSTRUMENTED else 2000 if EVERY else 1000, count=20 if EVERY else 6, seed=4)
+knobs = argparse.Namespace(size=500 if SLOW else 2000 if EVERY else 1000, count=20 if EVERY else 6, seed=4)
 
 
 def seconds():

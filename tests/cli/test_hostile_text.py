@@ -22,6 +22,7 @@ import unicodedata
 from pathlib import Path
 
 from common_cli import MODEL, PROGRAM, SOURCE, study as two_springs
+from suite import EVERY, FEW
 
 HOSTILE = [
     "\x1b]0;owned\x07", "\x1b[2J\x1b[1;1H", "\x9b31m", "\x90q\x9c", "\x7f\x08\x08", "a\nmodetune: error: forged", "a\r\nb", "a\rb", "\u202eesrever\u202c",
@@ -32,8 +33,6 @@ HOSTILE = [
 FREE = {"description", "source", "label"}
 SLOW = {"inceptor_identification", "inceptor_rotor", "truss_72bar", "inceptor_trade"}  # more than half a second
 DROPPED = {"sha256", "study_path", "solve_s"}
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 SHARE = 8 if EVERY else 48 if FEW else 24
 LONG = 400  # texts beyond it may be cut somewhere
 

@@ -14,6 +14,7 @@ import unittest
 from pathlib import Path
 
 from common_cli import PROGRAM, CliTest, main
+from suite import LAUNCHED
 
 # A beam whose modes take the longer the more elements it has, and a search among them that no test waits for.
 BEAM = """{ "format": "modetune-model/1", "dimension": 2, "parameters": { "E": 1e9, "m": 1 },
@@ -176,7 +177,7 @@ class Run(CliTest):
         self.assertEqual(running.end()[0], 130)
 
 
-@unittest.skipUnless(Path("/proc/self/io").exists() and "MT_TEST_LAUNCHED" not in os.environ,
+@unittest.skipUnless(Path("/proc/self/io").exists() and not LAUNCHED,
                      "what a program has read is told by Linux alone, and of itself only")
 class Commands(CliTest):
     """The program has read its files and is at work on them."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A run that is killed and resumed, or shared out and merged, writes the bytes of one that was left alone.
-MT_KILLS=100: so many kills at random moments (MT_EVERY=1: 30; else 4), MT_KILLS_SEED=S.
+MT_COUNT=100: so many kills at random moments (MT_EVERY=1: 30; else 4), MT_SEED=S.
 MT_EVERY=1: any number of workers up to 8, seven parts, every place where a journal is cut, a proof that goes on after a kill; else some of them."""
 import hashlib
 import json
@@ -13,12 +13,10 @@ import time
 from pathlib import Path
 
 from common_cli import PROGRAM, CliTest, main
+from suite import EVERY, FEW, INSTRUMENTED, SEED, count
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
-FEWER = "MT_INSTRUMENTED" in os.environ  # a sanitizer looks at the same lines with a few parts and workers
-KILLS = int(os.environ.get("MT_KILLS", "30" if EVERY else "3" if FEWER else "4"))
-SEED = int(os.environ.get("MT_KILLS_SEED", "1"))
+FEWER = INSTRUMENTED  # a sanitizer looks at the same lines with a few parts and workers
+KILLS = count(4, every=30, instrumented=3)
 # Eight masses in a row between the ground and nothing, their springs the variables.
 N = 8
 CHAIN = {
@@ -111,7 +109,7 @@ class Journal(CliTest):
             begun = time.monotonic()
             self.run_study(name, "whole", "--threads", "2")
             seconds[name] = time.monotonic() - begun
-        moments = random.Random(SEED)
+        moments = random.Random(int(SEED))
         for kill in range(KILLS):
             name = names[kill % len(names)]
             for _ in range(moments.randint(1, 2)):  # perhaps of the resumed run, too

@@ -3,16 +3,14 @@
 time goes with the square of the size. MT_EVERY=1: a frame that nothing holds, a ring of 6000 bars, else of 1000, and trees of 20000 bodies, else of 6000."""
 import json
 import math
-import os
 import sys
 
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY, FEW
 
 sys.path.insert(0, str(SOURCE / "tests/support"))
 import large  # noqa: E402
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 PARTS = 10000 if EVERY else 3000  # written out
 TREE = 20000 if EVERY else 6000  # more than dense matrices take
 ELEMENTS = 1000000  # the most that a link may have

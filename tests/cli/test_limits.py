@@ -2,14 +2,13 @@
 """Too little memory ends every command at once with exit status 4 and a sentence: never a hang, never a crash, never a wrong answer.
 MT_EVERY=1: within a few megabytes of the least that is enough, else within thirty."""
 import itertools
-import os
 import resource
 import subprocess
 import unittest
 
 from common_cli import PROGRAM, SOURCE, CliTest, main
+from suite import EVERY, INSTRUMENTED, LAUNCHED
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 MB = 1 << 20
 SECONDS = 5  # of the processor; every command takes a fraction of one
 COMMANDS = [
@@ -24,7 +23,7 @@ COMMANDS = [
 ]
 
 
-@unittest.skipIf("MT_INSTRUMENTED" in os.environ or "MT_TEST_LAUNCHED" in os.environ, "a sanitizer needs address space")
+@unittest.skipIf(INSTRUMENTED or LAUNCHED, "a sanitizer needs address space")
 class Limits(CliTest):
     def under(self, words, **limits):
         """Run a command of the source tree under limits of the system; its exit status, output and errors."""

@@ -9,7 +9,6 @@ The suite chooses among a few values where the search itself is not asked about.
 """
 import json
 import math
-import os
 import random
 import re
 import subprocess
@@ -18,13 +17,12 @@ import unittest
 from pathlib import Path
 
 from common_cli import PROGRAM, main
+from suite import EVERY, FEW
 
 
 def run(*args, cwd):
     return subprocess.run([PROGRAM, *args], cwd=cwd, capture_output=True, encoding="utf-8", timeout=600)
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 TWO_PI = 2 * math.pi
 M, K2 = 2.0, 5000.0
 

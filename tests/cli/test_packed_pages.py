@@ -2,7 +2,6 @@
 """Data in pages are packed (report/dedupe_json.h) and say the same: read back they are the result, and what `show` draws. What is drawn of an inceptor
 takes seconds: MT_EVERY=1 looks at these, too."""
 import json
-import os
 import subprocess
 import sys
 import unittest
@@ -11,10 +10,11 @@ from pathlib import Path
 from common_pack import data
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from suite import EVERY  # noqa: E402
 from answers import PROGRAM, SOURCE, answer  # noqa: E402
 
 STUDIES = ("inceptor_catalogue", "inceptor_tuning_1", "beam_identification", "six_masses_bands", "truss_10bar_E68_9")
-SHOWN = STUDIES if "MT_EVERY" in os.environ else STUDIES[2:]
+SHOWN = STUDIES if EVERY else STUDIES[2:]
 DRIVEN = "tests/models/four_bar.json"
 MOST_SHOW, MOST_REPORT = 300_000, 560_000  # bytes of pages, of these studies
 

@@ -10,13 +10,13 @@ MT_EVERY=1: a search with bands beside it, bands that cut, and every budget.
 """
 import json
 import math
-import os
 import re
 import tempfile
 import unittest
 from pathlib import Path
 
 from common_cli import main
+from suite import EVERY
 from test_motion import FEW, K2, M, TWO_PI, arm, avoid, k1_for, run, study
 
 HZ = 12.0
@@ -192,7 +192,7 @@ class Positions(unittest.TestCase):
         self.assertAlmostEqual(design["parameters"][0]["recommended"] / 25.0, 1, delta=1e-5)
         self.assertEqual(design["motion"][0]["grade"], "sampled")
 
-    @unittest.skipUnless(os.environ.get("MT_EVERY", "0") != "0", "searches for seconds: MT_EVERY=1")
+    @unittest.skipUnless(EVERY, "searches for seconds: MT_EVERY=1")
     def test_bands_that_cut_beside_it(self):
         """Both have their worst between the positions: the spring keeps the mode below a band, the damper the limit."""
         positions = {"down": -1.1, "up": 0.9}

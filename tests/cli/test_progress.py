@@ -2,7 +2,6 @@
 """--progress: what standard error says while a command is at work, on a terminal, in a pipe and for programs; results do not depend on it.
 MT_EVERY=1: every kind of study that is judged anew, and the ten seconds between two lines of a pipe."""
 import json
-import os
 import re
 import signal
 import time
@@ -11,12 +10,12 @@ import unittest
 import jsonschema
 
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY, INSTRUMENTED
 from test_budget_binds import KINDS, PEDAL
 from test_interrupts import BEAM, LONG, Running
 
 SCHEMA = json.loads((SOURCE / "schemas/progress.schema.json").read_text(encoding="utf-8"))
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEWER = "MT_INSTRUMENTED" in os.environ  # what waits for a clock shows a sanitizer nothing
+FEWER = INSTRUMENTED  # what waits for a clock shows a sanitizer nothing
 WIPE = "\r\x1b[K"
 SHORT = LONG.replace("5000", "40").replace("1000000000", "40000")
 # Two equal targets for one mode: impossible, which a proof and changes of the question are about.

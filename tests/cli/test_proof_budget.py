@@ -4,11 +4,11 @@ what settles them. What is proven with little is proven with all; no time is mea
 long as all others, too."""
 import json
 import math
-import os
 import random
 import re
 
 from common_cli import MODEL, CliTest, main, study
+from suite import EVERY, FEW, INSTRUMENTED
 from test_budget_binds import CHOICES, HIGH, KINDS, PEDAL, masses
 
 TOO_HIGH = [{**HIGH[0], "at_least_hz": 5}, {"type": "frequency", "configuration": "held", "mode": 2, "at_most_hz": 0.2}]
@@ -26,9 +26,7 @@ PROVEN = {
     "apart": masses(goals=APART),
     "trade": KINDS["trade"],
 }
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
-BUDGETS = ("0", "1e-6") if "MT_INSTRUMENTED" in os.environ else ("0", "1e-12", "1e-5") if FEW else ("0", "1e-12", "1e-6", "1e-5", "1e-4")
+BUDGETS = ("0", "1e-6") if INSTRUMENTED else ("0", "1e-12", "1e-5") if FEW else ("0", "1e-12", "1e-6", "1e-5", "1e-4")
 NOT_PROVEN = '"proof_s" is 0|budget of (the proof|branch and bound) ended|heuristic|sampled, not proven'
 BY_BOXES = re.compile(r" \([^()]*\d+ boxes[^()]*\)")
 

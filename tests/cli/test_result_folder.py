@@ -15,11 +15,11 @@ import subprocess
 import unittest
 
 from common_cli import COMMANDS, PROGRAM, SOURCE, CliTest, main, study
+from suite import EVERY as ALL, INSTRUMENTED, LAUNCHED
 
 FAULTY = os.environ.get("MODETUNE_FAULTS", os.path.join(os.path.dirname(PROGRAM), "tests/modetune_faults"))
 EVERY = os.environ.get("MT_FAULTS_EVERY", "0") != "0"
 SEED = int(os.environ.get("MT_FAULTS_SEED", "1"))
-INSTRUMENTED, ALL = (os.environ.get(name, "0") != "0" for name in ("MT_INSTRUMENTED", "MT_EVERY"))
 FEW = not (EVERY or INSTRUMENTED or ALL)
 STRIDE = 1 if EVERY else 30 if INSTRUMENTED else 4 if ALL else 48  # of a command's calls
 ERRORS = [errno.EIO, errno.ENOSPC, errno.EMFILE, errno.EDQUOT, errno.EINTR]
@@ -371,7 +371,7 @@ class Streams(FolderTest):
                          (4, "modetune: error: results/two/result.json: File too large\n"))
         self.assertEqual(self.files(), before)
 
-    @unittest.skipIf("MT_TEST_LAUNCHED" in os.environ, "the launcher needs its streams")
+    @unittest.skipIf(LAUNCHED, "the launcher needs its streams")
     def test_closed_streams_are_4_and_no_file_is_written_into(self):
         new = self.files()
         for closed in (">&-", "2>&-", "<&- >&- 2>&-"):

@@ -4,7 +4,6 @@ MT_EVERY=1: also of what is shown until it is too much."""
 import functools
 import json
 import math
-import os
 import re
 import subprocess
 import unittest
@@ -14,9 +13,9 @@ from html.parser import HTMLParser
 import jsonschema
 
 from common_cli import MODEL, PROGRAM, SOURCE, CliTest, study
+from suite import EVERY
 from common_pack import unpack
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 HOSTILE = "</script><img src=x onerror=alert(1)>"
 SCHEMA = jsonschema.Draft7Validator(json.loads((SOURCE / "schemas/scene.schema.json").read_text(encoding="utf-8")))
 MODES, POSITIONS = 12, range(15, 26)

@@ -3,15 +3,14 @@
 MT_EVERY=1: three realisations, and a chain's outputs one by one."""
 import json
 import math
-import os
 import unittest
 
 import numpy
 
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY
 from common_shaken import G, chain, one_mass
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 PENDULUM = SOURCE / "tests/models/pendulum.json"
 
 

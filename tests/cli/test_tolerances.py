@@ -2,22 +2,22 @@
 """Variables with tolerances: random studies whose every claim over the tolerances is held against dense sampling and an own eigensolver.
 
 A row of masses on a guide, springs between them. Stiffnesses and masses are expressions that share variables, are not monotone, or rise or fall in one variable depending on another;
-bars enter stiffness and mass. MT_TOLERANCE_STUDIES and MT_TOLERANCE_SEED ask for more, and others, than the test does by itself.
+bars enter stiffness and mass. MT_COUNT and MT_SEED ask for more, and others, than the test does by itself.
 """
 import functools
 import itertools
 import json
 import math
-import os
 import random
 import re
 
 import numpy
 
 from common_cli import CliTest, main
+from suite import SEED, count
 
-STUDIES = int(os.environ.get("MT_TOLERANCE_STUDIES", "8" if "MT_INSTRUMENTED" in os.environ else "40"))
-SEED = int(os.environ.get("MT_TOLERANCE_SEED", "1"))
+STUDIES = count(40, instrumented=8)
+SEED = int(SEED)
 # A goal counts as met within 1e-6, relatively; two eigensolvers agree to some n eps.
 MET = 3e-6
 ROUNDING = 1e-9
@@ -345,8 +345,7 @@ class Tolerances(CliTest):
         if STUDIES >= 40:  # else the sample does not say much
             for kind in (("solved", "proven"), ("solved", "sampled")):
                 self.assertGreater(seen.get(kind, 0), STUDIES // 20, seen)
-        if os.environ.get("MT_TOLERANCE_SEED"):
-            print(seen)
+        print(seen)
 
 
 if __name__ == "__main__":

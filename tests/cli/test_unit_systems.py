@@ -6,16 +6,15 @@ Two masses in a row, as numbers over a unit of mass, length and time: what is re
 The quick suite takes three systems; MT_EVERY=1: all ten, and other numbers.
 """
 import json
-import os
 import random
 import tempfile
 import unittest
 from pathlib import Path
 
 from common_cli import main
+from suite import EVERY
 from test_motion import run
 
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 # kg, m and s of one unit
 SYSTEMS = {"SI": (1, 1, 1), "t mm s": (1e3, 1e-3, 1), "ship": (1e6, 100, 10), "pg um s": (1e-15, 1e-6, 1), "g mm ms": (1e-3, 1e-3, 1e-3),
            "kg mm ms": (1, 1e-3, 1e-3), "slug ft s": (14.59, 0.3048, 1), "slinch in s": (175.1, 0.0254, 1), "g cm s": (1e-3, 1e-2, 1),

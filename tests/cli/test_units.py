@@ -6,7 +6,6 @@ import copy
 import csv
 import json
 import math
-import os
 import re
 import shutil
 import struct
@@ -14,6 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY, FEW
 
 # 1 of it in SI, as the program computes it: number * numerator / denominator.
 UNITS = {"mm": (1.0, 1000.0), "cm": (1.0, 100.0), "in": (254.0, 10000.0), "ft": (3048.0, 10000.0), "deg": (math.pi / 180.0, 1.0),
@@ -21,8 +21,6 @@ UNITS = {"mm": (1.0, 1000.0), "cm": (1.0, 100.0), "in": (254.0, 10000.0), "ft": 
 SI = {"mm": "m", "cm": "m", "in": "m", "ft": "m", "deg": "rad", "rpm": "Hz"}
 DIMENSION = {"m": "length", "rad": "angle", "Hz": "speed"}
 WAYS = [{"length": "mm", "angle": "deg", "speed": "rpm"}, {"length": "in", "angle": "deg", "speed": "rpm"}, {"length": "ft"}, {"length": "cm"}]
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-FEW = not EVERY and "MT_INSTRUMENTED" not in os.environ
 SECONDS = {"inceptor_identification", "inceptor_rotor", *(("beam_identification", "inceptor_tuning_2", "truss_10bar_E68_9") if FEW else ())}
 QUICK = ["beam_identification", "beam_table_3", "engine_orders", "inceptor_identification", "inceptor_rotor", "inceptor_stick",
          "inceptor_tuning_1", "inceptor_tuning_2", "six_masses_bands", "truss_10bar_E68_9"]

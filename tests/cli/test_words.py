@@ -8,7 +8,6 @@ With an instrumented program a division by zero ends it: that is a problem, too.
 import argparse
 import copy
 import json
-import os
 import random
 import subprocess
 import sys
@@ -16,10 +15,10 @@ import tempfile
 from pathlib import Path
 
 from common_cli import MODEL, PROGRAM, SOURCE
+from suite import EVERY
 from common_words import problems_of
 
 EXTREMES = [0, -0.0, 1, -1, 1e-3, 1e3, 1e-9, 1e9, 1e-30, 1e30, 1e-160, 1e160, 1e-200, 1e200, 1e-300, 1e300, 5e-324, 1.7e308, -1e-200, -1e300]
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
 # Exit statuses of an answer or of a reason against one; anything else is a crash or a sanitizer.
 FINE = {0, 1, 2, 3, 4}
 SECONDS = 60

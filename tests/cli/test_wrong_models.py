@@ -5,18 +5,18 @@ themselves are driven by tests/documents/test_possible.c; here is what a slip do
 each kind in a model)."""
 import copy
 import json
-import os
 import random
 import re
 import sys
 
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY
 
 sys.path.insert(0, str(SOURCE / "tests/mechanisms"))
 from makers import KINDS  # noqa: E402
 
-PLACES = 10 ** 6 if "MT_EVERY" in os.environ else 1
-SEEDS = 3 if "MT_EVERY" in os.environ else 1
+PLACES = 10 ** 6 if EVERY else 1
+SEEDS = 3 if EVERY else 1
 FOLDERS = ("problems", "tests/models", "src/cli/init")
 COINCIDE = r"two points coincide|is a point mass and can be held at its centre only"
 LINES = ("axial", "bar")  # springs that act along the line between two points

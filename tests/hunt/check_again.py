@@ -2,8 +2,6 @@
 """What takes another run of the program: the same bytes for any number of workers, and every point of a trade study by itself."""
 import copy
 
-from check_numbers import near
-
 SAME = 1e-4  # of a score: two searches that started differently
 
 

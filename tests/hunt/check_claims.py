@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 import search
-from check_numbers import design_of, near
+from check_numbers import design_of
 from question import MANY_POSITIONS, Question
 
 BETTER = 1e-4      # a design is better that much, relative (of at least FLOOR)

@@ -5,7 +5,8 @@ import unittest
 from pathlib import Path
 
 import likes
-from campaign import EVERY, INSTRUMENTED, Tally, hold
+from campaign import Tally, hold
+from suite import EVERY, INSTRUMENTED
 
 COUNT = 20 if EVERY else 4
 

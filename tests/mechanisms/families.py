@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mechanisms with a structure that chance does not find: loops that move, dead centres, rest in any position, trusses on a grid."""
-from decimal import Decimal
-
 from changes import CHANGES, short
 from exact import number
 from makers import ANGLED, KINDS, Maker

@@ -12,12 +12,12 @@ import exact
 import ring
 import run
 import statics
-from campaign import EVERY, INSTRUMENTED, hold, hold_saved
+from campaign import hold, hold_saved
 from faults import DAMPING_FAULTS, FAULTS, RINGING_FAULTS
+from suite import FEW, INSTRUMENTED
 
 SEED = "1"
 COUNT = 1  # of each kind; run.py draws more, of fresh seeds
-FEW = not (EVERY or INSTRUMENTED)
 TRIED = 4 if FEW else 10  # mechanisms that each fault is planted in; `least` is of ten
 # In turn the one in a plane and the one in space of two kinds that differ in that alone.
 TWINS = [name for name in run.KINDS if name.endswith("2") and name[:-1] + "3" in run.KINDS]

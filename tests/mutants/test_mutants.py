@@ -9,13 +9,13 @@ import unittest
 from pathlib import Path
 
 import run
-from campaign import EVERY, INSTRUMENTED, PROGRAM, hold, hold_saved
+from campaign import hold, hold_saved
 from commands import Answer, Program
 from corpus import Corpus
+from suite import FEW, INSTRUMENTED, LAUNCHED, PROGRAM
 
 SEED = "5"
-FEW = not (EVERY or INSTRUMENTED)
-COUNT = 6 if os.environ.get("MT_INSTRUMENTED") or os.environ.get("MT_TEST_LAUNCHED") else len(run.ROUND)
+COUNT = 6 if INSTRUMENTED or LAUNCHED else len(run.ROUND)
 CASES = Path(__file__).resolve().parent / "cases"
 
 # Programs that are wrong in one way: a shell script around the sound one, "$@" what it was asked.

@@ -11,7 +11,6 @@ shifted and scaled. The frequencies are compared with those of the same rows red
 """
 import json
 import math
-import os
 import random
 import sys
 import unittest
@@ -23,9 +22,10 @@ import scipy.linalg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
+from suite import SEED, count  # noqa: E402
 
-SEED = int(os.environ.get("MT_SEED", "1"))
-COUNT = int(os.environ.get("MT_COUNT", "300" if "MT_EVERY" in os.environ else "50" if "MT_INSTRUMENTED" in os.environ else "15"))
+SEED = int(SEED)
+COUNT = count(15, every=300, instrumented=50)
 
 PLANE_JOINTS = ["fixed", "revolute", "prismatic", "pin-in-slot", "distance"]
 SPACE_JOINTS = ["fixed", "revolute", "prismatic", "cylindrical", "spherical", "universal", "planar", "point-on-line", "distance"]

@@ -8,7 +8,6 @@ Both are banded in displacements; the lowest eigenvalues come from inverse itera
 """
 import json
 import math
-import os
 import sys
 import unittest
 from decimal import Decimal, getcontext
@@ -16,11 +15,12 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
+from suite import INSTRUMENTED  # noqa: E402
 
 getcontext().prec = 45
 D = Decimal
 PROMISED = 1e-9
-SMALL = "MT_INSTRUMENTED" in os.environ
+SMALL = INSTRUMENTED
 CHAINS = [40] if SMALL else [100, 400, 1000]
 STRIPS = [12] if SMALL else [60, 144, 300]
 

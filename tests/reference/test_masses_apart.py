@@ -9,7 +9,6 @@ chain's. Masses are spread over up to twenty decades; every frequency has to be 
 import decimal
 import json
 import math
-import os
 import random
 import sys
 import unittest
@@ -17,9 +16,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
+from suite import SEED, count  # noqa: E402
 
-SEED = int(os.environ.get("MT_SEED", "1"))
-COUNT = int(os.environ.get("MT_COUNT", "8"))
+COUNT = count(8)
 DECADES = [0, 4, 8, 12, 16, 20]
 WANTED = 1e-10  # relative, of omega^2
 decimal.getcontext().prec = 80

@@ -3,7 +3,6 @@
 numpy; and, with MT_EVERY=1, that a proof ends where no reasonable one decides: a target and a band that miss each other by 4e-5."""
 import json
 import math
-import os
 import random
 import re
 import sys
@@ -14,6 +13,7 @@ import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
+from suite import EVERY  # noqa: E402
 
 N = 28
 NOMINAL = {"k_a": 4e4, "k_b": 2e4, "k_c": 1e4}
@@ -123,7 +123,7 @@ class Dense(CliTest):
         self.assertIn("no proof: gravity", result["certificates"][0]["text"].replace('configuration "default": ', ""))
         self.assertLess(int(re.search(r"(\d+) evaluations", self.said).group(1)), 300)
 
-    @unittest.skipUnless("MT_EVERY" in os.environ, "the whole budget of a proof, four seconds")
+    @unittest.skipUnless(EVERY, "the whole budget of a proof, four seconds")
     def test_a_proof_ends(self):
         result = self.answer([11.034765625, 15.0], 1)
         first = result["certificates"][0]

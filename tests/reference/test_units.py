@@ -7,7 +7,6 @@ powers of ten). Frequencies must then be multiplied by one over that of time, an
 """
 import json
 import math
-import os
 import random
 import sys
 import unittest
@@ -15,9 +14,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 from common_cli import CliTest  # noqa: E402
+from suite import SEED, count  # noqa: E402
 
-SEED = int(os.environ.get("MT_SEED", "1"))
-COUNT = int(os.environ.get("MT_COUNT", "60" if {"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ) else "20"))
+COUNT = count(20, every=60, instrumented=60)
 
 
 class Units:

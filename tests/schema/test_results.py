@@ -2,7 +2,6 @@
 """Every shipped study holds what it publishes. Its result.json validates against its schema, every member of which is required and appears: a member that the
 writer drops is missed here. Read back, it gives all files and texts again, to the byte: of some studies what takes long is left to MT_EVERY=1."""
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -13,10 +12,11 @@ import jsonschema
 from common_schema import ROOT, Schema, changed, load
 
 sys.path.append(str(ROOT / "tests/support"))
+from suite import EVERY  # noqa: E402
 from answers import PROGRAM, answer, answers  # noqa: E402
 
 # They take longest to be read back, and have nothing that others have not.
-NOT_AGAIN = set() if "MT_EVERY" in os.environ else {"inceptor_catalogue", "inceptor_identification", "inceptor_prediction", "inceptor_rotor",
+NOT_AGAIN = set() if EVERY else {"inceptor_catalogue", "inceptor_identification", "inceptor_prediction", "inceptor_rotor",
                                                      "inceptor_tuning_2", "inceptor_tuning_3"}
 
 SHIPPED = sorted((ROOT / "studies").glob("*.json"))

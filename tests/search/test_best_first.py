@@ -4,24 +4,24 @@
 
 Random rows of masses with springs and masses as variables, weights, linear measures, bands and limits, for the least change. A study with "max_evaluations" has
 all placements searched, from all starts: its designs are no better than those of the study without it, and those that are not listed change no less than what
-is said of the placements left out. The suite has a few; MT_EVERY=1: sixty; MT_BEST=N: so many; MT_BEST_SEED=S.
+is said of the placements left out. The suite has a few; MT_EVERY=1: sixty; MT_COUNT=N: so many; MT_SEED=S.
 """
 import json
 import math
-import os
 import random
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from suite import PROGRAM, SEED, count  # noqa: E402
+
 import numpy as np
 
-PROGRAM = os.environ["MODETUNE"]
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
-COUNT = int(os.environ.get("MT_BEST", "60" if EVERY else "5" if "MT_INSTRUMENTED" in os.environ else "10"))
-SEED = os.environ.get("MT_BEST_SEED", "1")
+COUNT = count(10, every=60, instrumented=5)
 ALL = 10**8  # evaluations: no search uses them up
 SAME = 1e-6  # of the changes of two searches that end at the same design
 

@@ -4,26 +4,25 @@
 
 Random rows of masses with two or three catalogues and one or two continuous variables, bands, targets and limits, for the least change or the least of an
 expression. What branch and bound says is the best of all must be: each value of the first catalogue is made a study of its own, whose combinations the program
-enumerates (search/test_discrete has that against brute force). The suite has two of few combinations. MT_EVERY=1: ten of any size; MT_MIXED=N: so many (200 take ten minutes);
-MT_MIXED_SEED=S.
+enumerates (search/test_discrete has that against brute force). The suite has two of few combinations. MT_EVERY=1: ten of any size; MT_COUNT=N: so many (200 take ten minutes);
+MT_SEED=S.
 """
 import json
 import math
-import os
 import random
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from suite import FEW, PROGRAM, SEED, SOURCE, count  # noqa: E402
+
 import numpy as np
 
-PROGRAM = os.environ["MODETUNE"]
-SOURCE = Path(os.environ["SOURCE_DIR"])
-COUNT = int(os.environ.get("MT_MIXED", "6" if os.environ.get("MT_EVERY", "0") != "0" else "0"))  # 0: QUICK ones
-FEW = not {"MT_EVERY", "MT_INSTRUMENTED"} & set(os.environ)
+COUNT = count(0, every=6)  # 0: QUICK ones
 QUICK = ((3,), (2,)) if FEW else ((2, 3), (1, 2, 4))  # seconds of one core; without and with lengths
-SEED = os.environ.get("MT_MIXED_SEED", "1")
 SAME = 1e-5  # of the objectives of two searches that end at the same design
 
 
@@ -180,8 +179,6 @@ class Mixed(unittest.TestCase):
                 text = next(c["text"] for c in result["certificates"] if c["kind"] == "enumeration")
                 branched += "branch and bound excludes" in text
                 complete += "excludes all others" in text
-                if os.environ.get("MT_MIXED_SHOW"):
-                    print(index, combinations(study), found, want, text[:90], flush=True)
                 self.assertTrue(found <= want * (1 + SAME), f"{found} found, {want} exists: {text}")
         self.assertGreater(branched, len(indices) // 2)
         self.assertGreater(complete, len(indices) // 2)

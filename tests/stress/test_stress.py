@@ -10,10 +10,10 @@ from decimal import Decimal
 import run  # first: it says where the others are
 import extremes  # noqa: E402
 import hanging  # noqa: E402
-from campaign import EVERY, INSTRUMENTED, Tally, hold  # noqa: E402
+from campaign import Tally, hold  # noqa: E402
 from campaign import run as judged  # noqa: E402
+from suite import EVERY, FEW, INSTRUMENTED  # noqa: E402
 
-FEW = not (EVERY or INSTRUMENTED)
 COUNT = 4 if EVERY else 1 if FEW else 2  # of each family
 
 

@@ -7,7 +7,6 @@ where they stand side by side), from descriptions of the schemas and from the do
 import json
 import re
 import sys
-from pathlib import Path
 
 from common import ROOT, verdict
 

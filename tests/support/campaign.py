@@ -30,12 +30,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy is loaded
 sys.dont_write_bytecode = True
 
 from known import KNOWN  # noqa: E402
-
-SOURCE = Path(__file__).resolve().parents[2]
-RELEASE = SOURCE / "build/release/modetune"
-PROGRAM = os.environ.get("MODETUNE", str(RELEASE))
-INSTRUMENTED = "MT_INSTRUMENTED" in os.environ
-EVERY = os.environ.get("MT_EVERY", "0") != "0"
+from suite import PROGRAM, SOURCE  # noqa: E402
 
 Finding = collections.namedtuple("Finding", "kind index check text")
 
@@ -210,7 +205,7 @@ def run(generator, seed, todo, tally, seconds=None, keep=None, jobs=1):
 def again(generator, seed, finding, more=()):
     """The command that shows a finding again."""
     only = ["--only", finding.kind] if len(generator.kinds) > 1 else []
-    program = [] if Path(PROGRAM).resolve() == RELEASE.resolve() else [f"MODETUNE={os.path.relpath(PROGRAM)}"]
+    program = [] if Path(PROGRAM).resolve() == (SOURCE / "build/release/modetune").resolve() else [f"MODETUNE={os.path.relpath(PROGRAM)}"]
     return shlex.join([*program, generator.script, "--seed", seed, *only, "--index", str(finding.index), *more])
 
 
