@@ -52,6 +52,47 @@ double mt_piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_
     return DBL_EPSILON * extent;
 }
 
+double mt_piece_work(const mt_piece *p, const double *way)
+{
+    double local[MT_LOCAL];
+    double sum = 0.0;
+    mt_piece_motion(p, way, local);
+    for (int k = 0; k < MT_LOCAL; k++) {
+        sum += p->g[k] * local[k];
+    }
+    return sum;
+}
+
+double mt_piece_bend(const mt_piece *p, const double *phi, double *out)
+{
+    double way[MT_LOCAL];
+    double bent[MT_LOCAL] = {0.0};
+    double energy = 0.0;
+    mt_piece_motion(p, phi, way);
+    for (int c = 0; c < MT_LOCAL; c++) {
+        const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * c);
+        if (way[c] != 0.0) {
+            for (int r = 0; r < MT_LOCAL; r++) {
+                bent[r] += h[r] * way[c];
+            }
+        }
+    }
+    for (int r = 0; r < MT_LOCAL; r++) {
+        energy += way[r] * bent[r];
+        out[r] = bent[r];
+    }
+    return energy;
+}
+
+void mt_piece_add(const mt_piece *p, double c, const double *local, double *to)
+{
+    for (int k = 0; k < MT_LOCAL && c != 0.0; k++) {
+        if (p->dof[k] >= 0) {
+            to[p->dof[k]] += c * local[k];
+        }
+    }
+}
+
 void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                    const mt_jet *jet, const double size_force[2], double *terms, mt_piece *out)
 {
@@ -59,6 +100,9 @@ void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *p
     *out = (mt_piece){.size = size_force[0],
                       .equation = -1,
                       .factor = 1.0,
+                      .def = def,
+                      .spring = -1,
+                      .load = -1,
                       .roundness = mt_piece_roundness(d, def, poses)};
     if (is_chord(def)) {
         extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));

@@ -18,9 +18,14 @@ typedef struct mt_piece {
      * its own; half of the spring's stiffness where it couples two); otherwise 0 */
     double stiffness;
     int partner;
-    bool trimmed;  /* the force is an unknown, whatever its stiffness */
-    int equation;  /* equation whose multiplier the force is; -1: none */
-    double factor; /* coefficient of the measure in it */
+    bool trimmed;              /* the force is an unknown, whatever its stiffness */
+    int equation;              /* equation whose multiplier the force is; -1: none */
+    double factor;             /* coefficient of the measure in it */
+    const mt_measure_def *def; /* the measure; NULL: of the load of a point */
+    int spring;                /* whose force it is, with its measure number `side`; -1: none */
+    int side;
+    int load;       /* -1: none */
+    double stretch; /* of a spring: the measure less its rest value */
     /* rounding error of the measure less its rest value, from rounded positions; both are
      * rounded alike where nothing has moved */
     double roundness;
@@ -43,6 +48,20 @@ bool mt_piece_is_angle(const mt_measure_def *def);
 double mt_piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_pose *poses);
 /* True where the bodies of a measure have the same poses as in `rest`, to the bit. */
 bool mt_piece_is_still(const mt_measure_def *def, const mt_pose *poses, const mt_pose *rest);
+/* What a motion of the states is to a piece, 0 where it has none. */
+static inline void mt_piece_motion(const mt_piece *p, const double *way, double local[MT_LOCAL])
+{
+    for (int k = 0; k < MT_LOCAL; k++) {
+        local[k] = p->dof[k] >= 0 ? way[p->dof[k]] : 0.0;
+    }
+}
+/* g . way. */
+double mt_piece_work(const mt_piece *p, const double *way);
+/* out[MT_LOCAL] = H phi, of which what belongs to no state is for nobody; returns
+ * phi^T H phi. */
+double mt_piece_bend(const mt_piece *p, const double *phi, double *out);
+/* to[nq] += c local. */
+void mt_piece_add(const mt_piece *p, double c, const double *local, double *to);
 /* Fill a piece with this jet; spring and equation are set later. terms (nq x nq) += size
  * |jet.h|, and force times the coordinates' size: lengths that cancel in an entry between
  * rotations are differences of coordinates. */

@@ -59,58 +59,6 @@ mt_status mt_equilibrium_rounding_new(mt_linear *lin, mt_equilibrium_rounding **
     return MT_OK;
 }
 
-/* What a motion of the states is to a piece, 0 where it has none. */
-static inline void local_motion(const mt_piece *p, const double *way, double *local)
-{
-    for (int k = 0; k < MT_LOCAL; k++) {
-        local[k] = p->dof[k] >= 0 ? way[p->dof[k]] : 0.0;
-    }
-}
-
-/* g . way. */
-static double work_of_piece(const mt_piece *p, const double *way)
-{
-    double local[MT_LOCAL];
-    double sum = 0.0;
-    local_motion(p, way, local);
-    for (int k = 0; k < MT_LOCAL; k++) {
-        sum += p->g[k] * local[k];
-    }
-    return sum;
-}
-
-/* out[MT_LOCAL] = H phi, of which what belongs to no state is for nobody; returns
- * phi^T H phi. */
-static double bend(const mt_piece *p, const double *phi, double *out)
-{
-    double way[MT_LOCAL];
-    double bent[MT_LOCAL] = {0.0};
-    double energy = 0.0;
-    local_motion(p, phi, way);
-    for (int c = 0; c < MT_LOCAL; c++) {
-        const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * c);
-        if (way[c] != 0.0) {
-            for (int r = 0; r < MT_LOCAL; r++) {
-                bent[r] += h[r] * way[c];
-            }
-        }
-    }
-    for (int r = 0; r < MT_LOCAL; r++) {
-        energy += way[r] * bent[r];
-        out[r] = bent[r];
-    }
-    return energy;
-}
-
-static void add_to_states(const mt_piece *p, double c, const double *local, double *to)
-{
-    for (int k = 0; k < MT_LOCAL && c != 0.0; k++) {
-        if (p->dof[k] >= 0) {
-            to[p->dof[k]] += c * local[k];
-        }
-    }
-}
-
 /* bent, energies and mu, A^T mu = (K - lambda M) phi; the sparse equations of the equilibrium,
  * where they are factored, have it with x = 0. */
 static mt_status joint_forces(mt_equilibrium_rounding *r, double lambda, const double *phi,
@@ -123,8 +71,8 @@ static mt_status joint_forces(mt_equilibrium_rounding *r, double lambda, const d
     for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
         double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
-        r->energy[i] = bend(p, phi, bent);
-        add_to_states(p, lin->kg != NULL ? p->force : 0.0, bent, r->pull);
+        r->energy[i] = mt_piece_bend(p, phi, bent);
+        mt_piece_add(p, lin->kg != NULL ? p->force : 0.0, bent, r->pull);
     }
     return solver->sparse
                ? mt_saddle_solve(&solver->saddle, r->pull, NULL, NULL, r->mu, &lin->scratch,
@@ -145,15 +93,15 @@ static double sum_piece_forces(mt_equilibrium_rounding *r, const double *phi)
         const double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
         if (p->equation >= 0) {
             r->across[p->equation] += p->factor * r->energy[i];
-            add_to_states(p, p->equation < lin->m ? -2.0 * p->factor * r->mu[p->equation] : 0.0,
-                          bent, r->pull);
+            mt_piece_add(p, p->equation < lin->m ? -2.0 * p->factor * r->mu[p->equation] : 0.0,
+                         bent, r->pull);
             continue;
         }
-        add_to_states(p, 2.0 * p->stiffness * work_of_piece(other, phi), bent, r->pull);
+        mt_piece_add(p, 2.0 * p->stiffness * mt_piece_work(other, phi), bent, r->pull);
         if (p->trimmed) {
             trim += r->energy[i];
         } else {
-            add_to_states(other, p->stiffness * r->energy[i], other->g, r->pull);
+            mt_piece_add(other, p->stiffness * r->energy[i], other->g, r->pull);
         }
     }
     return trim;
@@ -171,7 +119,7 @@ mt_status mt_equilibrium_rounding_of(mt_equilibrium_rounding *r, double lambda,
                              &lin->scratch, err));
     for (int i = 0; i < lin->n_pieces; i++) {
         const mt_piece *const p = &lin->pieces[i];
-        const double way = fabs(r->energy[i] - work_of_piece(p, r->x));
+        const double way = fabs(r->energy[i] - mt_piece_work(p, r->x));
         if (p->equation < 0 && !p->trimmed) {
             sum += way *
                    ((fabs(p->stiffness) * p[p->partner].roundness) + (DBL_EPSILON * p->size));

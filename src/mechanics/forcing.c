@@ -3,6 +3,7 @@
 
 #include "mechanics/linear_priv.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -110,6 +111,7 @@ void mt_linear_row_add(const mt_linear *lin, mt_term_kind kind, int row, double 
 
 static bool is_moved(const mt_linear *lin, int p)
 {
+    assert(lin->tangent == NULL || !lin->due);
     return lin->tangent != NULL && lin->tangent[p].moves;
 }
 
@@ -168,6 +170,7 @@ mt_status mt_linear_joint_geometric_slope(mt_linear *lin, int p, int joint, int 
     const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
     double *const h = mt_arena_f64(&lin->scratch, (size_t)nq, (size_t)nq);
     MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_tangent_complete(lin, err));
     MT_TRY(mt_tangent_joint(lin, p, joint, h, err));
     for (ptrdiff_t c = 0; c < nq; c++) {
         out[c] = sign * h[dof + (c * nq)];

@@ -93,6 +93,9 @@ mt_status mt_linear_independence(mt_linear *lin, int p, mt_arena *mem, mt_indepe
                                  mt_err *err)
 {
     *out = (mt_independence){.opens = false};
+    if (mt_linear_redundant(lin) > 0) {
+        MT_TRY(mt_tangent_complete(lin, err));
+    }
     if (!can_change(lin, p)) {
         return MT_OK;
     }
@@ -119,6 +122,9 @@ mt_status mt_linear_blocked(mt_linear *lin, int p, int cols, const double *y, bo
                             mt_err *err)
 {
     memset(blocked, 0, (size_t)cols * sizeof *blocked);
+    if (mt_linear_redundant(lin) > 0) {
+        MT_TRY(mt_tangent_complete(lin, err));
+    }
     if (!can_change(lin, p)) {
         return MT_OK;
     }

@@ -179,9 +179,11 @@ static mt_cx add_spring_force(const mt_data *d, int i, mt_cx stretch, double way
     return force;
 }
 
+/* state: stretch and force. */
 static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
-                        const mt_relative_jet *jet, double force, mt_lagrangian *out)
+                        const mt_relative_jet *jet, const double state[2], mt_lagrangian *out)
 {
+    const double force = state[1];
     const mt_spring_def *const s = &d->sys->springs[i];
     const mt_measure_def *const def = &d->sys->measures[s->measure[side]];
     const bool coupling = s->measure[0] != s->measure[1];
@@ -189,6 +191,9 @@ static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
     const double k = creal(mt_data_scalar(d, s->stiffness, 0.0));
     mt_piece *const piece = note_terms(d, def, poses, jet, fabs(force), fabs(force), out);
     if (piece != NULL) {
+        piece->spring = i;
+        piece->side = side;
+        piece->stretch = state[0];
         piece->force = force;
         piece->stiffness = coupling ? 0.5 * k : k;
         piece->partner = other - side;
@@ -207,6 +212,17 @@ static bool is_forceless(const mt_data *d, int i)
     const mt_cx force = mt_data_scalar(d, s->preload, 0.0);
     return i != d->sys->trim_spring && creal(k) == 0.0 && cimag(k) == 0.0 &&
            creal(force) == 0.0 && cimag(force) == 0.0;
+}
+
+/* True where that may differ at another design: it counts where forces are told one by one. */
+static bool may_push(const mt_system *sys, int i)
+{
+    const mt_node nodes[] = {sys->springs[i].stiffness, sys->springs[i].preload};
+    bool varies = false;
+    for (int k = 0; k < 2; k++) {
+        varies = varies || (nodes[k] != MT_NO_NODE && sys->program.active[nodes[k]]);
+    }
+    return varies;
 }
 
 /* Change of a measure along the remaining step. */
@@ -238,7 +254,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         const bool coupling = s->measure[0] != s->measure[1];
         mt_cx stretch[2] = {0.0, 0.0};
         double way[2] = {0.0, 0.0};
-        if (s->damper || is_forceless(d, i)) {
+        if (s->damper || (is_forceless(d, i) && (out->terms == NULL || !may_push(sys, i)))) {
             continue;
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
@@ -262,7 +278,9 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
             force[0] = add_spring_force(d, i, stretch[0], way[0], jet, curvature, &sum, out);
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
-            note_spring(d, i, side, at->pose, &jet[side], creal(force[side]), out);
+            const double state[2] = {creal(stretch[side]) + (coupling ? 0.0 : way[side]),
+                                     creal(force[side])};
+            note_spring(d, i, side, at->pose, &jet[side], state, out);
         }
     }
     mt_curvature_flush(&sum);
@@ -306,6 +324,8 @@ static void note_load(const mt_data *d, const mt_load_def *load, const mt_pose *
     }
     if (piece != NULL) {
         piece->force = -creal(size);
+        piece->load = (int)(load - d->sys->loads);
+        piece->def = load->measure >= 0 ? piece->def : NULL;
     }
 }
 

@@ -49,6 +49,7 @@ static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
     MT_TRY(mt_arena_check(&lin->base, err));
     mt_couplings_find(lin, lin->coupling);
     mt_stages_init(&lin->stages, sys, lin->list, &lin->base);
+    lin->forced = mt_arena_alloc(&lin->base, (size_t)lin->stages.words, sizeof *lin->forced);
     lin->stages.profile = sys->run->profile;
     return mt_arena_check(&lin->base, err);
 }

@@ -7,6 +7,7 @@
 #include "mechanics/linear.h"
 
 /* Data of a linearised system, shared by the files of this room. */
+typedef struct mt_section_slopes mt_section_slopes; /* equilibrium_slopes.c */
 
 struct mt_linear {
     const mt_system *sys;
@@ -68,6 +69,12 @@ struct mt_linear {
     bool has_last;              /* `last` is valid */
     bool free_spin_varies;      /* the existence of free spins depends on inputs */
     mt_linear_tangent *tangent; /* [n_inputs], where geometry or position depend on inputs */
+    /* the inputs that act through the equilibrium's forces alone, where there are several:
+     * slopes of eigenvalues by them need no tangent (equilibrium_slopes.h) */
+    uint64_t *forced;
+    bool by_adjoint;             /* there are some */
+    bool due;                    /* and nobody has asked for their tangents yet */
+    mt_section_slopes *sections; /* NULL: not yet */
 };
 
 /* out (n x n) += c times the term's rows, lower triangle. */

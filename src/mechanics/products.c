@@ -16,8 +16,10 @@
 
 #include "mechanics/linear_priv.h"
 
+#include <assert.h>
 #include <string.h>
 
+#include "mechanics/equilibrium_slopes.h"
 #include "mechanics/tangent.h"
 
 /* A sum of terms: K, C or M by their coefficients, or H by what the loss factors make of those
@@ -99,6 +101,7 @@ static void full_product(const mt_linear *lin, sum s, double scale, const double
 
 static bool is_moved(const mt_linear *lin, int p)
 {
+    assert(lin->tangent == NULL || !lin->due);
     return lin->tangent != NULL && lin->tangent[p].moves;
 }
 
@@ -229,6 +232,7 @@ static mt_status moving_product(mt_linear *lin, sum s, int p, moving *v, double 
 static mt_status products(mt_linear *lin, const sum s[2], int p, int cols, const double *y,
                           double *const out[2], mt_err *err)
 {
+    MT_TRY(mt_tangent_complete(lin, err));
     if (!is_moved(lin, p)) {
         coefficient_products(lin, s[0], p, cols, y, out[0]);
         coefficient_products(lin, s[1], p, cols, y, out[1]);
@@ -278,6 +282,11 @@ static double row_slope(const mt_linear *lin, int kind, int p, const double *phi
     return total;
 }
 
+mt_status mt_linear_complete(mt_linear *lin, mt_err *err)
+{
+    return mt_tangent_complete(lin, err);
+}
+
 void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *phi, double *w)
 {
     full_product(lin, STIFFNESS, 1.0, phi, w);
@@ -295,28 +304,38 @@ static mt_status joint_forces(mt_linear *lin, double lambda, moving *v, mt_err *
     return mt_eliminate_multipliers(&lin->e, v->w, v->lambda, &lin->scratch, err);
 }
 
+/* True where a tangent has the slope of an eigenvalue by input p, beyond the coefficients. */
+static bool has_own_slope(const mt_linear *lin, int p)
+{
+    const bool forced = lin->by_adjoint && mt_stages_has(lin->forced, p);
+    return lin->tangent != NULL && !forced && lin->tangent[p].moves;
+}
+
 mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, double *slope,
                            mt_err *err)
 {
     const int nq = lin->sys->nq;
     const int np = lin->sys->n_inputs;
-    bool first = true;
     moving v;
     memset(slope, 0, (size_t)np * sizeof *slope);
     coefficient_slopes(lin, MT_TERM_STIFFNESS, 1.0, y, slope);
     coefficient_slopes(lin, MT_TERM_MASS, -lambda, y, slope);
-    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    bool any = lin->tangent != NULL && lin->by_adjoint;
     for (int p = 0; p < np; p++) {
-        if (!is_moved(lin, p)) {
+        any = any || has_own_slope(lin, p);
+    }
+    if (!any) {
+        return MT_OK;
+    }
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    MT_TRY(moving_init(&v, lin, &lin->scratch, err));
+    mt_eliminate_expand(&lin->e, y, v.phi);
+    MT_TRY(joint_forces(lin, lambda, &v, err));
+    for (int p = 0; p < np; p++) {
+        if (!has_own_slope(lin, p)) {
             continue;
         }
         const mt_linear_tangent *const t = &lin->tangent[p];
-        if (first) {
-            MT_TRY(moving_init(&v, lin, &lin->scratch, err));
-            mt_eliminate_expand(&lin->e, y, v.phi);
-            MT_TRY(joint_forces(lin, lambda, &v, err));
-            first = false;
-        }
         slope[p] += row_slope(lin, MT_TERM_STIFFNESS, p, v.phi) -
                     (lambda * row_slope(lin, MT_TERM_MASS, p, v.phi));
         if (lin->kg != NULL) {
@@ -325,6 +344,9 @@ mt_status mt_linear_slopes(mt_linear *lin, double lambda, const double *y, doubl
         }
         mt_gemv(false, lin->m, nq, 1.0, t->a, lin->m, v.phi, 0.0, v.b);
         slope[p] -= 2.0 * mt_dot(lin->m, v.lambda, v.b);
+    }
+    if (lin->by_adjoint) {
+        MT_TRY(mt_equilibrium_slopes(lin, lambda, v.phi, v.lambda, slope, err));
     }
     mt_arena_rewind(&lin->scratch, mark);
     return MT_OK;
@@ -356,6 +378,7 @@ mt_status mt_linear_sense_derivative(mt_linear *lin, int p, int ns, const int *c
                                      int cols, const double *y, const double *dy, double *ds,
                                      mt_err *err)
 {
+    MT_TRY(mt_tangent_complete(lin, err));
     if (!is_moved(lin, p)) {
         return mt_linear_sense(lin, ns, channel, cols, dy, ds, err);
     }

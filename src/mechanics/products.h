@@ -4,6 +4,11 @@
 
 #include "mechanics/linear.h"
 
+/* After an update with gradients, before mt_linear_states_slope, mt_linear_between_slope,
+ * mt_linear_contract_slope and the slopes of forcing.h: derivatives of the position, which
+ * slopes of eigenvalues do without, are computed where they have not been. */
+mt_status mt_linear_complete(mt_linear *lin, mt_err *err);
+
 /* Products of K, M and sensors with shapes y in the freedoms (n x cols, column-major), and
  * their derivatives. */
 

@@ -200,8 +200,9 @@ typedef struct mt_system {
     /* held by a spring: the linearised system has no constraint of the drive */
     bool trim;
     int trim_spring; /* of springs; -1 */
-    /* inputs, as bit sets of the program: those of vectors, targets and mass shapes; those and
-     * the positions of sensors; those of the equilibrium in addition */
+    /* inputs, as bit sets of the program: those of vectors and targets; those and the sections
+     * of beams; those and the positions of sensors; those of the equilibrium in addition */
+    uint64_t *places;
     uint64_t *frame;
     uint64_t *shape;
     uint64_t *forces;

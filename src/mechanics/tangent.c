@@ -107,29 +107,72 @@ static mt_status tangent_constraints(mt_linear *lin, const mt_placement *at,
     return MT_OK;
 }
 
+static mt_status make_tangent(mt_linear *lin, int p, mt_placement *at, mt_err *err)
+{
+    const mt_system *const sys = lin->sys;
+    mt_arena *const mem = &lin->geometry->mem;
+    lin->dual.input = p;
+    if (lin->position.equilibrium.active || at->pose == NULL) {
+        at->pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *at->pose);
+        MT_TRY(mt_arena_check(mem, err));
+    }
+    MT_TRY(mt_position_tangent(&lin->position, &lin->dual, &lin->scratch, err));
+    mt_poses_tangent(sys, lin->position.at.pose, lin->position.d_pose, at->pose);
+    MT_TRY(tangent_rows(lin, at->pose, &lin->tangent[p], err));
+    return tangent_constraints(lin, at, &lin->tangent[p], err);
+}
+
+/* From so many inputs on that act through forces alone, a slope takes less without their
+ * tangents: what it needs instead costs as much as one of them. */
+enum { ADJOINT_INPUTS = 2 };
+
+/* The inputs of `moves` that act through forces alone. */
+static void find_forced(mt_linear *lin, const uint64_t *moves)
+{
+    const size_t size = (size_t)lin->stages.words * sizeof *lin->forced;
+    int count = 0;
+    memset(lin->forced, 0, size);
+    for (int p = lin->first_input; p < lin->sys->n_inputs && lin->kg != NULL; p++) {
+        if (mt_stages_has(moves, p) && !mt_stages_has(lin->sys->places, p)) {
+            mt_stages_put(lin->forced, p);
+            count++;
+        }
+    }
+    lin->by_adjoint = count >= ADJOINT_INPUTS;
+    lin->due = lin->by_adjoint;
+    if (!lin->by_adjoint) {
+        memset(lin->forced, 0, size);
+    }
+}
+
 mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err)
 {
     const mt_system *const sys = lin->sys;
     mt_arena *const mem = &lin->geometry->mem;
-    lin->tangent = mt_arena_alloc(mem, (size_t)sys->n_inputs, sizeof *lin->tangent);
-    const bool loaded = lin->position.equilibrium.active;
     mt_placement at = lin->position.at;
-    at.pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *at.pose);
+    lin->tangent = mt_arena_alloc(mem, (size_t)sys->n_inputs, sizeof *lin->tangent);
+    lin->sections = NULL;
     MT_TRY(mt_arena_check(mem, err));
+    find_forced(lin, moves);
+    at.pose = NULL;
     for (int p = lin->first_input; p < sys->n_inputs; p++) {
-        if (!mt_stages_has(moves, p)) {
-            continue;
+        if (mt_stages_has(moves, p) && !mt_stages_has(lin->forced, p)) {
+            MT_TRY(make_tangent(lin, p, &at, err));
         }
-        lin->dual.input = p;
-        if (loaded) {
-            at.pose = mt_arena_alloc(mem, (size_t)sys->n_bodies, sizeof *at.pose);
-            MT_TRY(mt_arena_check(mem, err));
-        }
-        MT_TRY(mt_position_tangent(&lin->position, &lin->dual, &lin->scratch, err));
-        mt_poses_tangent(sys, lin->position.at.pose, lin->position.d_pose, at.pose);
-        MT_TRY(tangent_rows(lin, at.pose, &lin->tangent[p], err));
-        MT_TRY(tangent_constraints(lin, &at, &lin->tangent[p], err));
     }
+    return MT_OK;
+}
+
+mt_status mt_tangent_complete(mt_linear *lin, mt_err *err)
+{
+    mt_placement at = lin->position.at;
+    at.pose = NULL;
+    for (int p = 0; p < lin->sys->n_inputs && lin->tangent != NULL && lin->due; p++) {
+        if (mt_stages_has(lin->forced, p)) {
+            MT_TRY(make_tangent(lin, p, &at, err));
+        }
+    }
+    lin->due = false;
     return MT_OK;
 }
 

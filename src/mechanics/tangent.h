@@ -19,8 +19,11 @@ struct mt_linear_tangent {
     mt_cx *lambda; /* [all constraints] with their derivatives; NULL without loads */
 };
 
-/* Fill lin->tangent for the inputs in the set `moves`; the others have no effect here. */
+/* Fill lin->tangent for the inputs in the set `moves`; the others have no effect here. Those
+ * that act through forces alone are left due, where there are several. */
 mt_status mt_tangent_update(mt_linear *lin, const uint64_t *moves, mt_err *err);
+/* Fill those that are due. */
+mt_status mt_tangent_complete(mt_linear *lin, mt_err *err);
 /* out (nq x nq) := derivative of the contribution of one joint's equations to Kg; 0 without
  * loads. */
 mt_status mt_tangent_joint(mt_linear *lin, int p, int joint, double *out, mt_err *err);

@@ -725,6 +725,7 @@ static mt_status response_slopes(work *k, double complex *dh, mt_err *err)
     const ptrdiff_t pairs = (ptrdiff_t)k->p->basis->f->n_in * k->p->basis->f->n_out;
     const int n_inputs = k->p->a->sys->n_inputs;
     bool singular = false;
+    MT_TRY(mt_linear_complete(k->lin, err));
     MT_TRY(open_work(k, err));
     MT_TRY(open_ports(k, &singular, err));
     for (ptrdiff_t at = 0; at < pairs * n_inputs; at++) {

@@ -365,6 +365,7 @@ static mt_status make_slope_forms(work *k, mt_arena *mem, mt_slope_forms *f, mt_
     const size_t square = (size_t)k->ny * (size_t)k->ny;
     double *const t = mt_arena_f64(k->mem, inputs * PARTS, square);
     MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(mt_linear_complete(k->lin, err));
     MT_TRY(open_work(k, err));
     for (size_t p = 0; p < inputs; p++) {
         double *const own = t + (p * PARTS * square);

@@ -426,6 +426,7 @@ static mt_status slopes_of_all(work *k, double *slope, mt_err *err)
     double *const part = mt_arena_f64(k->mem, (size_t)k->ny, 1);
     double *const motion = mt_arena_f64(k->mem, (size_t)k->nq, 1);
     MT_TRY(mt_arena_check(k->mem, err));
+    MT_TRY(mt_linear_complete(k->lin, err));
     for (int p = 0; p < k->p->a->sys->n_inputs; p++) {
         const mt_arena_mark mark = mt_arena_get_mark(k->mem);
         mt_independence why = {.opens = false};
