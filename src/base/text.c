@@ -42,6 +42,11 @@ static bool reserve(mt_text *t, size_t n)
     return true;
 }
 
+void mt_text_reserve(mt_text *t, size_t n)
+{
+    (void)reserve(t, n);
+}
+
 void mt_text_add(mt_text *t, const char *s)
 {
     mt_text_add_n(t, s, strlen(s));

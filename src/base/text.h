@@ -17,6 +17,8 @@ typedef struct mt_text {
 } mt_text;
 
 void mt_text_free(mt_text *t);
+/* Make room for n more bytes at once, where many additions are known to come. */
+void mt_text_reserve(mt_text *t, size_t n);
 void mt_text_add(mt_text *t, const char *s);
 void mt_text_add_n(mt_text *t, const char *s, size_t n);
 /* Formatted, see base/format.h. %s arguments are made visible, so a path is put together with

@@ -598,7 +598,7 @@ static void warn(const mt_scene *scene, const char *path)
 static mt_status page(const mt_scene *scene, const char *title, mt_text *out, mt_err *err)
 {
     mt_text json = {.s = NULL};
-    const mt_status rc = mt_scene_write(scene, &json, err);
+    const mt_status rc = mt_scene_write_page(scene, &json, err);
     if (rc == MT_OK) {
         const mt_page_data data[] = {{"scene", json.s}};
         mt_page_begin(MT_PAGE_SHOW, title, out);

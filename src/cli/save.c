@@ -187,6 +187,7 @@ typedef struct saving {
     const char *scene;      /* NULL: none */
     char *folder;
     mt_text texts[MT_RESULT_FILE_COUNT];
+    mt_text json; /* of the page */
     char sha256[MT_SHA256_TEXT];
     mt_err err;
 } saving;
@@ -213,20 +214,18 @@ static mt_status write_timing(const mt_args *args, const mt_result *result, doub
     return mt_json_done(&w) ? MT_OK : mt_fail_memory(&s->err);
 }
 
-static void write_page(const mt_result *result, const char *scene, mt_text *out)
+/* The page, and the JSON that it holds. */
+static void write_page(const mt_result *result, const char *scene, mt_text *json, mt_text *out)
 {
-    mt_text json = {.s = NULL};
-    if (mt_result_write_page(result, &json, NULL) == MT_OK) {
-        mt_report_html(result, json.s, scene, out);
+    if (mt_result_write_page(result, json, NULL) == MT_OK) {
+        mt_report_html(result, json->s, scene, out);
     } else {
         out->failed = true;
     }
-    mt_text_free(&json);
 }
 
-/* The tables and the page; empty where the result has none of the kind. */
-static void write_output(const mt_result *result, const char *scene, mt_result_file which,
-                         mt_text *out)
+/* The tables; empty where the result has none of the kind. */
+static void write_output(const mt_result *result, mt_result_file which, mt_text *out)
 {
     mt_table table = {0};
     switch (which) {
@@ -250,8 +249,6 @@ static void write_output(const mt_result *result, const char *scene, mt_result_f
         }
         break;
     case MT_RESULT_FILE_REPORT:
-        write_page(result, scene, out);
-        break;
     case MT_RESULT_FILE_TIMING:
     case MT_RESULT_FILE_RESULT:
     case MT_RESULT_FILE_COUNT:
@@ -262,15 +259,16 @@ static void write_output(const mt_result *result, const char *scene, mt_result_f
 void mt_save_print(const mt_args *args, const mt_result *result, const char *scene,
                    mt_json_writer *w, mt_text *out)
 {
+    mt_text json = {.s = NULL};
     switch (args->format) {
     case MT_FORMAT_JSON:
         mt_result_put(w, NULL, result);
         break;
     case MT_FORMAT_CSV:
-        write_output(result, scene, MT_RESULT_FILE_DESIGNS, out);
+        write_output(result, MT_RESULT_FILE_DESIGNS, out);
         break;
     case MT_FORMAT_HTML:
-        write_output(result, scene, MT_RESULT_FILE_REPORT, out);
+        write_page(result, scene, &json, out);
         break;
     case MT_FORMAT_SARIF: /* of check alone */
     case MT_FORMAT_TEXT:
@@ -278,6 +276,7 @@ void mt_save_print(const mt_args *args, const mt_result *result, const char *sce
         mt_text_add(out, "\n");
         break;
     }
+    mt_text_free(&json);
 }
 
 /* The files that result.json names, and itself with its digest. */
@@ -288,8 +287,10 @@ static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
     int n = 0;
     for (int i = 0; i < MT_RESULT_FILE_TIMING; i++) {
         const mt_result_file which = (mt_result_file)i;
-        if (which != MT_RESULT_FILE_REPORT || !args->no_report) {
-            write_output(result, s->scene, which, &s->texts[i]);
+        if (which != MT_RESULT_FILE_REPORT) {
+            write_output(result, which, &s->texts[i]);
+        } else if (!args->no_report) {
+            write_page(result, s->scene, &s->json, &s->texts[i]);
         }
         MT_TRY(s->texts[i].failed ? mt_fail_memory(&s->err) : MT_OK);
         const mt_text *const made = &s->texts[i];
@@ -300,7 +301,8 @@ static mt_status write_texts(const mt_args *args, mt_result *result, saving *s)
     }
     MT_TRY(mt_result_note_outputs(result, n, names, sha256, &s->err));
     mt_text *const text = &s->texts[MT_RESULT_FILE_RESULT];
-    MT_TRY(mt_result_write(result, text, &s->err));
+    MT_TRY(mt_result_write_after_page(result, &s->json, text, &s->err));
+    mt_text_free(&s->json);
     mt_sha256(text->s, text->length, s->sha256);
     return MT_OK;
 }
@@ -327,6 +329,7 @@ static int end(const mt_args *args, mt_status rc, const char *told, saving *s)
     for (int i = 0; i < MT_RESULT_FILE_COUNT; i++) {
         mt_text_free(&s->texts[i]);
     }
+    mt_text_free(&s->json);
     free(s->folder);
     return rc == MT_OK ? MT_EXIT_DONE : mt_cli_failed(rc, &s->err);
 }

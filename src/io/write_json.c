@@ -105,21 +105,9 @@ static bool is_plain(char c)
     return c >= ' ' && c < 0x7F && c != '"' && c != '\\';
 }
 
+/* A text of any length and characters. */
 static void put_text(mt_text *out, const char *s)
 {
-    enum { SHORT = 48 };
-    char whole[SHORT + 2];
-    size_t n = 0;
-    while (n < SHORT && is_plain(s[n])) {
-        whole[n + 1] = s[n];
-        n++;
-    }
-    if (s[n] == '\0') { /* as names are */
-        whole[0] = '"';
-        whole[n + 1] = '"';
-        mt_text_add_n(out, whole, n + 2);
-        return;
-    }
     mt_text_add(out, "\"");
     while (*s != '\0') {
         size_t plain = 0;
@@ -133,23 +121,60 @@ static void put_text(mt_text *out, const char *s)
     mt_text_add(out, "\"");
 }
 
-static void new_line(mt_json_writer *w)
+/* What comes next in the text, gathered to be added at once: comma, line, name and value. */
+enum { SHORT_NAME = 48, HEAD = 2 * MT_JSON_WRITER_DEPTH + 2 * SHORT_NAME + 16 };
+typedef struct head {
+    char s[HEAD];
+    size_t n;
+} head;
+
+static void append(head *h, const char *s, size_t n)
 {
-    static const char indent[] = "\n                                "; /* of 16 levels */
-    const size_t most = (sizeof indent - 2) / 2;
-    const size_t depth = (size_t)w->depth;
-    mt_text_add_n(w->out, indent, 1 + 2 * (depth < most ? depth : most));
-    for (size_t i = most; i < depth; i++) {
-        mt_text_add(w->out, "  ");
+    memcpy(h->s + h->n, s, n);
+    h->n += n;
+}
+
+static void flush(mt_json_writer *w, head *h)
+{
+    mt_text_add_n(w->out, h->s, h->n);
+    h->n = 0;
+}
+
+static void append_text(mt_json_writer *w, head *h, const char *s)
+{
+    char *const quoted = h->s + h->n;
+    size_t n = 0;
+    quoted[0] = '"';
+    while (n < SHORT_NAME - 2 && is_plain(s[n])) {
+        quoted[n + 1] = s[n];
+        n++;
+    }
+    if (s[n] == '\0') { /* as names are */
+        quoted[n + 1] = '"';
+        h->n += n + 2;
+        return;
+    }
+    flush(w, h);
+    put_text(w->out, s);
+}
+
+static void append_line(const mt_json_writer *w, head *h)
+{
+    const size_t indent = 2 * (size_t)w->depth;
+    if (!w->tight) {
+        h->s[h->n] = '\n';
+        memset(h->s + h->n + 1, ' ', indent);
+        h->n += 1 + indent;
     }
 }
 
 /* Comma, line and name before a value; false where the writer was misused. */
-static bool begin_value(mt_json_writer *w, const char *name)
+static bool begin_value(mt_json_writer *w, const char *name, head *h)
 {
     const int level = w->depth - 1;
     const bool in_object = level >= 0 && w->close[level] == '}';
     const bool second_top = level < 0 && w->any[0];
+    h->n = 0;
     if (w->misused || in_object != (name != NULL) || second_top) {
         w->misused = true;
         return false;
@@ -159,29 +184,31 @@ static bool begin_value(mt_json_writer *w, const char *name)
         return true;
     }
     if (w->any[level]) {
-        mt_text_add_n(w->out, ", ", w->flat[level] ? 2 : 1);
+        append(h, ", ", w->flat[level] && !w->tight ? 2 : 1);
     }
     if (!w->flat[level]) {
-        new_line(w);
+        append_line(w, h);
     }
     w->any[level] = true;
     if (name != NULL) {
-        put_text(w->out, name);
-        mt_text_add_n(w->out, ": ", 2);
+        append_text(w, h, name);
+        append(h, ": ", w->tight ? 1 : 2);
     }
     return true;
 }
 
 static void open_level(mt_json_writer *w, const char *name, char bracket, bool flat)
 {
+    head h;
     const bool known = bracket == '{' || bracket == '[';
     if (!known || w->depth == MT_JSON_WRITER_DEPTH) {
         w->misused = true;
     }
-    if (!begin_value(w, name)) {
+    if (!begin_value(w, name, &h)) {
         return;
     }
-    mt_text_add_n(w->out, &bracket, 1);
+    append(&h, &bracket, 1);
+    flush(w, &h);
     const bool inherited = w->depth > 0 && w->flat[w->depth - 1];
     w->close[w->depth] = bracket == '{' ? '}' : ']';
     w->any[w->depth] = false;
@@ -201,22 +228,27 @@ void mt_json_open_flat(mt_json_writer *w, const char *name, char bracket)
 
 void mt_json_close(mt_json_writer *w)
 {
+    head h = {.n = 0};
     if (w->misused || w->depth == 0) {
         w->misused = true;
         return;
     }
     w->depth--;
     if (w->any[w->depth] && !w->flat[w->depth]) {
-        new_line(w);
+        append_line(w, &h);
     }
-    mt_text_add_n(w->out, &w->close[w->depth], 1);
+    append(&h, &w->close[w->depth], 1);
+    flush(w, &h);
     w->any[w->depth == 0 ? 0 : w->depth - 1] = true;
 }
 
+/* value: no longer than a number. */
 static void put_raw(mt_json_writer *w, const char *name, const char *value)
 {
-    if (begin_value(w, name)) {
-        mt_text_add(w->out, value);
+    head h;
+    if (begin_value(w, name, &h)) {
+        append(&h, value, strlen(value));
+        flush(w, &h);
     }
 }
 
@@ -234,9 +266,9 @@ void mt_json_put_rounded(mt_json_writer *w, const char *name, double value, int 
 
 void mt_json_put_integer(mt_json_writer *w, const char *name, long long value)
 {
-    if (begin_value(w, name)) {
-        mt_text_addf(w->out, "%lld", value);
-    }
+    char buffer[MT_JSON_NUMBER_SIZE];
+    (void)mt_snprintf(buffer, sizeof buffer, "%lld", value);
+    put_raw(w, name, buffer);
 }
 
 void mt_json_put_bool(mt_json_writer *w, const char *name, bool value)
@@ -246,10 +278,12 @@ void mt_json_put_bool(mt_json_writer *w, const char *name, bool value)
 
 void mt_json_put_string(mt_json_writer *w, const char *name, const char *value)
 {
+    head h;
     if (value == NULL) {
         put_raw(w, name, "null");
-    } else if (begin_value(w, name)) {
-        put_text(w->out, value);
+    } else if (begin_value(w, name, &h)) {
+        append_text(w, &h, value);
+        flush(w, &h);
     }
 }
 
@@ -263,7 +297,7 @@ bool mt_json_done(mt_json_writer *w)
     if (w->depth != 0 || !w->any[0]) {
         w->misused = true;
     }
-    if (!w->misused) {
+    if (!w->misused && !w->tight) {
         mt_text_add(w->out, "\n");
     }
     return !w->misused && !w->out->failed;

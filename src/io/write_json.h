@@ -27,6 +27,7 @@ typedef struct mt_json_writer {
     mt_text *out; /* not owned */
     int depth;
     bool misused;
+    bool tight;                       /* without any white space: for programs */
     char close[MT_JSON_WRITER_DEPTH]; /* the bracket that ends each open level */
     bool any[MT_JSON_WRITER_DEPTH];   /* something has been written on that level */
     bool flat[MT_JSON_WRITER_DEPTH];  /* on one line */
@@ -49,8 +50,8 @@ void mt_json_put_bool(mt_json_writer *w, const char *name, bool value);
 /* Text, escaped; NULL becomes null. Bytes are taken as UTF-8; ill-formed ones become U+FFFD. */
 void mt_json_put_string(mt_json_writer *w, const char *name, const char *value);
 void mt_json_put_null(mt_json_writer *w, const char *name);
-/* Add the final line feed. True where all brackets are closed, nothing was misused, and memory
- * sufficed. */
+/* Add the final line feed, unless tight. True where all brackets are closed, nothing was
+ * misused, and memory sufficed. */
 bool mt_json_done(mt_json_writer *w);
 
 /* The number as mt_json_put_number writes it; "null" where it is not finite. Returns buffer. */

@@ -239,7 +239,7 @@ mt_status mt_scene_of_result(const mt_model *model, const mt_result *result, int
     MT_TRY(mt_arena_init(&mem, 0, err));
     mt_status rc = make_result_scene(model, result, threads, &mem, &scene, &why);
     if (rc == MT_OK && scene->size > 0.0) {
-        rc = mt_scene_write(scene, json, &why);
+        rc = mt_scene_write_page(scene, json, &why);
     }
     mt_scene_delete(scene);
     mt_arena_free(&mem);

@@ -269,6 +269,13 @@ void mt_html_escape(const char *s, mt_text *out)
 {
     static const char special[] = "&<>\"'";
     static const char *const reference[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
+    size_t plain = 0;
+    while (s[plain] >= ' ' && s[plain] <= '~' && s[plain] != '&' && s[plain] != '<' &&
+           s[plain] != '>' && s[plain] != '"' && s[plain] != '\'') {
+        plain++;
+    }
+    mt_text_add_n(out, s, plain); /* often all of it */
+    s += plain;
     size_t left = strlen(s);
     while (left > 0) {
         const char *const found = strchr(special, *s);
@@ -281,7 +288,7 @@ void mt_html_escape(const char *s, mt_text *out)
             used = mt_visible_escape(s, left, escape);
             mt_text_add(out, escape);
         } else {
-            const size_t plain = strcspn(s, special);
+            plain = strcspn(s, special);
             used = blank || used < plain ? used : plain;
             mt_text_add_n(out, s, used);
         }

@@ -17,6 +17,10 @@ mt_status mt_result_write(const mt_result *result, mt_text *out, mt_err *err);
  * misfit, clearance_percent, objectives, parameters of their best designs, none where no point
  * has one. */
 mt_status mt_result_write_page(const mt_result *result, mt_text *out, mt_err *err);
+/* What mt_result_write appends, in less time. page: what mt_result_write_page has written of
+ * the same result, before or after the files written with it were noted; empty: nothing. */
+mt_status mt_result_write_after_page(const mt_result *result, const mt_text *page, mt_text *out,
+                                     mt_err *err);
 /* Write the result as a value within a larger document (name NULL: in a list, or the whole). */
 void mt_result_put(mt_json_writer *w, const char *name, const mt_result *result);
 /* Write the warnings of one level as a list of objects. */

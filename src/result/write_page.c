@@ -2,6 +2,7 @@
 /* A result as its page holds it: of a large grid a table of numbers. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "result/write.h"
 
@@ -168,9 +169,53 @@ static mt_status write(const mt_result *result, mt_trade_point *whole, mt_text *
     return mt_json_done(&w) ? MT_OK : mt_fail_memory(err);
 }
 
+/* True where a page has all points, and differs from the result in its member `run` alone. */
+static bool is_whole(const mt_result *result)
+{
+    return result->trade == NULL || result->trade->n_points <= MT_TRADE_WHOLE;
+}
+
+/* The lines of the member `run`, from the line feed before it to that before what follows it.
+ * No text holds a line feed, so that indentation tells a member of the whole from others.
+ * Returns their length; 0: there are none. */
+static size_t find_run(const char *json, const char **start)
+{
+    static const char BEGIN[] = "\n  \"run\": {";
+    static const char END[] = "\n  }";
+    *start = strstr(json, BEGIN);
+    const char *const end = *start == NULL ? NULL : strstr(*start + 1, END);
+    return end == NULL ? 0 : (size_t)(end - *start) + sizeof END - 1;
+}
+
+mt_status mt_result_write_after_page(const mt_result *result, const mt_text *page, mt_text *out,
+                                     mt_err *err)
+{
+    mt_text own = {.s = NULL};
+    mt_json_writer w = mt_json_writer_default(&own);
+    const char *from = NULL;
+    const char *run = NULL;
+    const size_t old = is_whole(result) && page->s != NULL ? find_run(page->s, &from) : 0;
+    if (old == 0) {
+        return mt_result_write(result, out, err);
+    }
+    mt_json_open(&w, NULL, '{');
+    mt_result_put_member(&w, "run", result);
+    mt_json_close(&w);
+    const size_t new = mt_json_done(&w) ? find_run(own.s, &run) : 0;
+    if (new > 0) {
+        const size_t before = (size_t)(from - page->s);
+        mt_text_reserve(out, page->length - old + new);
+        mt_text_add_n(out, page->s, before);
+        mt_text_add_n(out, run, new);
+        mt_text_add_n(out, from + old, page->length - before - old);
+    }
+    mt_text_free(&own);
+    return new > 0 && !out->failed ? MT_OK : mt_fail_memory(err);
+}
+
 mt_status mt_result_write_page(const mt_result *result, mt_text *out, mt_err *err)
 {
-    if (result->trade == NULL || result->trade->n_points <= MT_TRADE_WHOLE) {
+    if (is_whole(result)) {
         return write(result, NULL, out, err);
     }
     mt_trade_point *const whole = calloc(MT_TRADE_WHOLE, sizeof *whole);

@@ -292,13 +292,24 @@ static void put_scene(mt_json_writer *w, const mt_scene *scene)
     mt_json_close(w);
 }
 
-mt_status mt_scene_write(const mt_scene *scene, mt_text *out, mt_err *err)
+static mt_status write_scene(const mt_scene *scene, bool tight, mt_text *out, mt_err *err)
 {
     mt_json_writer w = mt_json_writer_default(out);
+    w.tight = tight;
     put_scene(&w, scene);
     if (mt_json_done(&w)) {
         return MT_OK;
     }
     return out->failed ? mt_fail_memory(err)
                        : mt_fail(err, MT_E_INTERNAL, "the scene is not a JSON document");
+}
+
+mt_status mt_scene_write(const mt_scene *scene, mt_text *out, mt_err *err)
+{
+    return write_scene(scene, false, out, err);
+}
+
+mt_status mt_scene_write_page(const mt_scene *scene, mt_text *out, mt_err *err)
+{
+    return write_scene(scene, true, out, err);
 }

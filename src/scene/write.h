@@ -9,5 +9,7 @@
  * with six digits, frequencies with nine. The same scene gives the same bytes. Fails:
  * MT_E_MEMORY. */
 mt_status mt_scene_write(const mt_scene *scene, mt_text *out, mt_err *err);
+/* The same without white space, as a page embeds it. */
+mt_status mt_scene_write_page(const mt_scene *scene, mt_text *out, mt_err *err);
 
 #endif

@@ -64,6 +64,37 @@ static void write_json__objects_and_lists_are_indented(mt_test *t)
     mt_text_free(&text);
 }
 
+/* The same calls, with and without white space. */
+static void write_json__is_tight_where_programs_read_it(mt_test *t)
+{
+    static const char *const want[] = {
+        ("{\n  \"a b\": [\n    1,\n    \"c, d\"\n  ],\n"
+         "  \"e\": [1, {\"f\": true}],\n  \"g\": {}\n}\n"),
+        "{\"a b\":[1,\"c, d\"],\"e\":[1,{\"f\":true}],\"g\":{}}"};
+    for (int tight = 0; tight < 2; tight++) {
+        mt_text text = {.s = NULL};
+        mt_json_writer w = mt_json_writer_default(&text);
+        w.tight = tight == 1;
+        mt_json_open(&w, NULL, '{');
+        mt_json_open(&w, "a b", '[');
+        mt_json_put_integer(&w, NULL, 1);
+        mt_json_put_string(&w, NULL, "c, d");
+        mt_json_close(&w);
+        mt_json_open_flat(&w, "e", '[');
+        mt_json_put_number(&w, NULL, 1.0);
+        mt_json_open(&w, NULL, '{');
+        mt_json_put_bool(&w, "f", true);
+        mt_json_close(&w);
+        mt_json_close(&w);
+        mt_json_open(&w, "g", '{');
+        mt_json_close(&w);
+        mt_json_close(&w);
+        CHECK(t, mt_json_done(&w));
+        CHECK_STR(t, text.s, want[tight]);
+        mt_text_free(&text);
+    }
+}
+
 static void write_json__misuse_is_remembered(mt_test *t)
 {
     static const struct {
@@ -206,6 +237,7 @@ static void write_json__the_locale_does_not_matter(mt_test *t)
 }
 
 MT_TEST_MAIN(MT_TEST(write_json__objects_and_lists_are_indented),
+             MT_TEST(write_json__is_tight_where_programs_read_it),
              MT_TEST(write_json__misuse_is_remembered), MT_TEST(write_json__nesting_is_limited),
              MT_TEST(write_json__strings_are_escaped),
              MT_TEST(write_json__doubles_come_back_bit_for_bit),
