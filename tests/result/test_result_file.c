@@ -28,15 +28,33 @@ static void write_file(const char *text, char path[64])
     }
 }
 
-/* The sample written, with one text replaced by another; heap (mt_text). */
-static mt_text written(const char *find, const char *replace)
+/* Points of a trade study that are read one by one. */
+enum { MANY = 250 };
+
+/* The sample written with so many times its point; heap (mt_text). */
+static mt_text written_points(int n)
 {
+    static mt_trade_point points[MANY];
     sample s = {.result = NULL};
     mt_text all = {0};
-    if (!make_sample(&s) || mt_result_write(s.result, &all, NULL) != MT_OK) {
-        mt_text_free(&all);
+    if (make_sample(&s)) {
+        for (int i = 0; i < n; i++) {
+            points[i] = s.point;
+        }
+        s.trade.points = points;
+        s.trade.n_points = n;
+        if (mt_result_write(s.result, &all, NULL) != MT_OK) {
+            mt_text_free(&all);
+        }
     }
     mt_result_delete(s.result);
+    return all;
+}
+
+/* The same with one text replaced by another. */
+static mt_text written(int n, const char *find, const char *replace)
+{
+    mt_text all = written_points(n);
     char *const at = find == NULL || all.s == NULL ? NULL : strstr(all.s, find);
     mt_text out = {0};
     if (find == NULL) {
@@ -55,7 +73,7 @@ static mt_text written(const char *find, const char *replace)
 static void result_file__comes_back_whole(mt_test *t)
 {
     char path[64];
-    mt_text text = written(NULL, NULL);
+    mt_text text = written(1, NULL, NULL);
     mt_diagnostics messages = {.count = 0};
     mt_text again = {0};
     mt_result *r = NULL;
@@ -78,11 +96,58 @@ static void result_file__comes_back_whole(mt_test *t)
     mt_text_free(&text);
 }
 
+/* Many points are read one by one where their layout is that of the writer, and mean the same
+ * otherwise. */
+static void result_file__of_many_points_is_read_in_any_layout(mt_test *t)
+{
+    static const struct {
+        const char *name;
+        const char *find;
+        const char *replace;
+    } rows[] = {
+        {"as written", "", ""},
+        {"a list that begins otherwise", "\"points\": [", "\"points\":  ["},
+        {"a point that begins otherwise", "      {\n        \"values\"", "      { \"values\""},
+        {"a point that ends otherwise", "\n      },\n      {\n        \"values\"",
+         "},\n      {\n        \"values\""},
+        {"a list that ends otherwise", "\n    ]\n  }", "]\n  }"},
+        {"the members in another order", "\"format\": \"modetune-result/1\",\n", ""},
+    };
+    mt_text want = written_points(MANY);
+    REQUIRE(t, want.s != NULL);
+    for (int i = 0; i < MT_COUNT(rows); i++) {
+        char path[64];
+        mt_text text = written(MANY, rows[i].find, rows[i].replace);
+        mt_diagnostics messages = {.count = 0};
+        mt_text again = {0};
+        mt_result *r = NULL;
+        mt_test_row(t, "%s", rows[i].name);
+        if (i == MT_COUNT(rows) - 1 && text.s != NULL) { /* the format comes last */
+            text.length = (size_t)(strrchr(text.s, '}') - text.s);
+            mt_text_add(&text, ", \"format\": \"modetune-result/1\"}\n");
+        }
+        REQUIRE(t, text.s != NULL && !text.failed);
+        write_file(text.s, path);
+        CHECK_INT(t, mt_result_load(path, NULL, &r, &messages, NULL), MT_OK);
+        CHECK_STR(t, messages.lines.s, NULL);
+        (void)unlink(path);
+        if (r != NULL) {
+            CHECK_INT(t, mt_result_write(r, &again, NULL), MT_OK);
+            CHECK_STR(t, again.s, want.s);
+        }
+        mt_result_delete(r);
+        mt_text_free(&again);
+        mt_diagnostics_free(&messages);
+        mt_text_free(&text);
+    }
+    mt_text_free(&want);
+}
+
 /* A copy of all that it has borrowed: what it was copied from may go. */
 static void result_file__is_its_own(mt_test *t)
 {
     sample s = {.result = NULL};
-    mt_text whole = written(NULL, NULL);
+    mt_text whole = written(1, NULL, NULL);
     mt_text text = {0};
     REQUIRE(t, whole.s != NULL && make_sample(&s));
     CHECK_INT(t, mt_result_own(s.result, NULL), MT_OK);
@@ -143,7 +208,7 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
         "\"band_id\": 1",
         "\"commit\": \"0123456789ab\"",
     };
-    mt_text text = written(NULL, NULL);
+    mt_text text = written(1, NULL, NULL);
     REQUIRE(t, text.s != NULL);
     for (int i = 0; i < MT_COUNT(members); i++) {
         CHECK(t, strstr(text.s, members[i]) != NULL);
@@ -153,8 +218,8 @@ static void result_file__holds_what_the_design_promises(mt_test *t)
 
 static void result_file__writing_twice_gives_the_same_bytes(mt_test *t)
 {
-    mt_text a = written(NULL, NULL);
-    mt_text b = written(NULL, NULL);
+    mt_text a = written(1, NULL, NULL);
+    mt_text b = written(1, NULL, NULL);
     CHECK(t, a.s != NULL);
     CHECK_STR(t, a.s, b.s);
     mt_text_free(&a);
@@ -202,10 +267,12 @@ static void result_file__a_damaged_one_is_refused(mt_test *t)
          "24: error: /baseline/parameters/1/recommended: must be a number or null, not a "
          "string\n"},
     };
-    for (int i = 0; i < MT_COUNT(rows); i++) {
+    for (int k = 0; k < 2 * MT_COUNT(rows); k++) {
+        const int i = k / 2;
+        const int points = k % 2 == 0 ? 1 : MANY;
         char path[64];
-        mt_test_row(t, "%s", rows[i].name);
-        mt_text text = written(rows[i].find, rows[i].replace);
+        mt_test_row(t, "%s, %d points", rows[i].name, points);
+        mt_text text = written(points, rows[i].find, rows[i].replace);
         mt_diagnostics messages = {.count = 0};
         mt_result *r = NULL;
         if (CHECK(t, text.s != NULL)) {
@@ -235,7 +302,7 @@ static void result_file__no_file_is_a_system_failure(mt_test *t)
 static void result_file__every_failing_allocation_is_survived(mt_test *t)
 {
     char path[64];
-    mt_text text = written(NULL, NULL);
+    mt_text text = written(1, NULL, NULL);
     REQUIRE(t, text.s != NULL);
     write_file(text.s, path);
     CHECK(t, path[0] != '\0');
@@ -266,7 +333,9 @@ static void result_file__every_failing_allocation_is_survived(mt_test *t)
     mt_text_free(&text);
 }
 
-MT_TEST_MAIN(MT_TEST(result_file__comes_back_whole), MT_TEST(result_file__is_its_own),
+MT_TEST_MAIN(MT_TEST(result_file__comes_back_whole),
+             MT_TEST(result_file__of_many_points_is_read_in_any_layout),
+             MT_TEST(result_file__is_its_own),
              MT_TEST(result_file__holds_what_the_design_promises),
              MT_TEST(result_file__writing_twice_gives_the_same_bytes),
              MT_TEST(result_file__a_damaged_one_is_refused),
