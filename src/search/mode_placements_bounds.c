@@ -61,6 +61,7 @@ typedef struct ranges {
     bool known; /* false: they can be anything */
     double **low;
     double **high;
+    bool *blocked; /* [n_bands] work */
 } ranges;
 
 static mt_status find_enclosed_ranges(const mt_proof *proof, const double *lo, const double *hi,
@@ -117,12 +118,14 @@ static void note_level(const mt_proof *proof, const ranges *r, int box, int k,
 {
     const mt_problem *const p = b->c->p;
     for (int below = 0; below <= b->most; below++) {
+        memset(r->blocked, 0, (size_t)p->n_bands * sizeof *r->blocked);
+        for (int i = 0; i < p->n_bands; i++) {
+            bool *const blocked = &r->blocked[p->tie[i]];
+            *blocked = *blocked || !allows(proof, r, i, below);
+        }
         for (int i = 0; i < p->n_bands; i++) {
             int *const level = entry(b, box, i, below);
-            bool possible = p->tie[i] == i && *level == b->n_levels;
-            for (int m = i; m < p->n_bands && possible; m++) {
-                possible = p->tie[m] != i || allows(proof, r, m, below);
-            }
+            const bool possible = p->tie[i] == i && *level == b->n_levels && !r->blocked[i];
             *level = possible ? k : *level;
         }
     }
@@ -132,6 +135,7 @@ static void note_level(const mt_proof *proof, const ranges *r, int box, int k,
 static mt_status claim_ranges(const mt_proof *proof, mt_arena *mem, ranges *r, mt_err *err)
 {
     const size_t n = (size_t)proof->question.n_views;
+    r->blocked = mt_arena_alloc(mem, (size_t)proof->question.n_bands, sizeof *r->blocked);
     r->low = mt_arena_alloc(mem, n, sizeof *r->low);
     r->high = mt_arena_alloc(mem, n, sizeof *r->high);
     MT_TRY(mt_arena_check(mem, err));
@@ -250,7 +254,13 @@ typedef struct walk {
     long visited; /* bands set so far */
     int n;
     int *below; /* [n_bands] */
-    int *list;  /* [most x n_bands]; NULL: they are counted */
+    /* [n_bands] of the earlier bands of the same configuration the next one below or at the
+     * same height, and the next one above; -1: none. Earlier bands are in order already, so
+     * these two alone limit the number of modes */
+    int *under;
+    int *over;
+    int *reached; /* [(n_bands + 1) x n_boxes] level of so many bands in each box */
+    int *list;    /* [most x n_bands]; NULL: they are counted */
 } walk;
 
 /* More would take long even to count. */
@@ -272,22 +282,68 @@ static placed_band band_at(const mt_problem *p, int band)
 }
 
 /* Of two bands of one configuration no fewer modes lie below the upper one. */
-static bool in_order(const mt_problem *p, const int *below, int band)
+static void find_neighbours(const mt_problem *p, const placed_band *at, walk *w)
 {
-    const placed_band own = band_at(p, band);
-    bool ordered = true;
-    for (int i = 0; i < band && ordered; i++) {
-        const placed_band other = band_at(p, i);
-        const int more =
-            own.lower_hz >= other.lower_hz ? below[band] - below[i] : below[i] - below[band];
-        ordered = own.view != other.view || more >= 0;
+    for (int band = 0; band < p->n_bands; band++) {
+        int under = -1;
+        int over = -1;
+        for (int i = 0; i < band; i++) {
+            const double hz = at[i].lower_hz;
+            if (at[i].view != at[band].view) {
+                continue;
+            }
+            if (hz <= at[band].lower_hz) {
+                under = under < 0 || hz >= at[under].lower_hz ? i : under;
+            } else {
+                over = over < 0 || hz < at[over].lower_hz ? i : over;
+            }
+        }
+        w->under[band] = under;
+        w->over[band] = over;
     }
-    return ordered;
+}
+
+static mt_status begin_walk(const mt_mode_placement_bounds *b, int most, mt_arena *mem, walk *w,
+                            mt_err *err)
+{
+    const mt_problem *const p = b->c->p;
+    const size_t row = (size_t)p->n_bands;
+    *w = (walk){.b = b,
+                .most = most,
+                .below = mt_arena_int(mem, row),
+                .under = mt_arena_int(mem, row),
+                .over = mt_arena_int(mem, row),
+                .reached = mt_arena_int(mem, (row + 1) * (size_t)b->n_boxes)};
+    placed_band *const at = mt_arena_alloc(mem, row, sizeof *at);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < p->n_bands; i++) {
+        at[i] = band_at(p, i);
+    }
+    find_neighbours(p, at, w);
+    for (int box = 0; box < b->n_boxes; box++) {
+        w->reached[box] = b->any[box];
+    }
+    return MT_OK;
 }
 
 static bool is_over(const walk *w)
 {
     return w->n > w->most || w->visited > VISITED_MOST;
+}
+
+/* Levels with one band more in each box; false where all are above the cap. */
+static bool reaches(const walk *w, int band)
+{
+    const mt_mode_placement_bounds *const b = w->b;
+    const int *const before = w->reached + ((ptrdiff_t)band * b->n_boxes);
+    int *const after = w->reached + ((ptrdiff_t)(band + 1) * b->n_boxes);
+    bool any = false;
+    for (int box = 0; box < b->n_boxes; box++) {
+        const int own = level_of(b, box, band, w->below[band]);
+        after[box] = own > before[box] ? own : before[box];
+        any = any || after[box] <= w->cap;
+    }
+    return any;
 }
 
 static void walk_from(walk *w, int band) /* NOLINT(misc-no-recursion): as deep as bands */
@@ -302,12 +358,15 @@ static void walk_from(walk *w, int band) /* NOLINT(misc-no-recursion): as deep a
         return;
     }
     const bool tied = p->tie[band] != band;
-    const int first = tied ? w->below[p->tie[band]] : 0;
-    const int last = tied ? first : w->b->most;
+    const int same = w->below[p->tie[band]];
+    const int least = w->under[band] >= 0 ? w->below[w->under[band]] : 0;
+    const int most = w->over[band] >= 0 ? w->below[w->over[band]] : w->b->most;
+    const int first = tied && same > least ? same : least;
+    const int last = tied && same < most ? same : most;
     for (int k = first; k <= last && !is_over(w); k++) {
         w->below[band] = k;
         w->visited++;
-        if (in_order(p, w->below, band) && level_of_first(w->b, w->below, band + 1) <= w->cap) {
+        if (reaches(w, band)) {
             walk_from(w, band + 1);
         }
     }
@@ -320,6 +379,23 @@ static bool count_placements(walk *w, int cap)
     w->visited = 0;
     walk_from(w, 0);
     return !is_over(w);
+}
+
+/* The highest level up to which they can be counted, -1: none. More levels are no fewer
+ * assignments. */
+static int find_cap(walk *w)
+{
+    int good = -1;
+    int bad = w->b->n_levels;
+    while (bad - good > 1) {
+        const int middle = good + ((bad - good) / 2);
+        if (count_placements(w, middle)) {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    return good;
 }
 
 typedef struct ranked {
@@ -383,15 +459,12 @@ mt_status mt_mode_placement_bounds_list(const mt_mode_placement_bounds *b, int m
                                         double *rest, mt_err *err)
 {
     const size_t row = (size_t)b->c->p->n_bands;
-    walk w = {.b = b, .most = most, .below = mt_arena_int(mem, row)};
+    walk w;
     *out = (mt_mode_placement_candidates){.n = 0};
-    MT_TRY(mt_arena_check(mem, err));
-    int cap = b->n_levels - 1;
-    while (cap >= 0 && !count_placements(&w, cap)) {
-        cap--;
-    }
+    MT_TRY(begin_walk(b, most, mem, &w, err));
+    const int cap = find_cap(&w);
     *rest = cap + 1 < b->n_levels ? b->least[cap + 1] : HUGE_VAL;
-    if (cap < 0 || w.n == 0) {
+    if (cap < 0 || !count_placements(&w, cap) || w.n == 0) {
         return MT_OK;
     }
     w.list = mt_arena_int(mem, (size_t)w.n * row);
