@@ -19,6 +19,12 @@ static bool excluded(const mt_catalogue_search_report *report)
     return report->settled && report->n_kinds == 0 && report->feasible == 0;
 }
 
+/* True where combinations were left out because none of their designs can be listed. */
+static bool leaves_out(const mt_catalogue_search_report *r)
+{
+    return r->all && !r->branched && (double)r->judged < r->combinations;
+}
+
 /* Text of the progress of branch and bound with continuous variables. */
 static const char *branched_text(const mt_catalogue_search_report *r, mt_arena *mem,
                                  const char *rest)
@@ -76,11 +82,11 @@ static const char *certificate_text(const mt_catalogue_search_report *r,
                                "goals: all were enumerated.%s",
                                r->combinations, rest);
     }
-    if ((double)r->judged < r->combinations) {
+    if (leaves_out(r)) {
         return mt_arena_printf(mem,
-                               "Enumerated: of %.0f combinations of catalogue values %d were "
-                               "judged, in the order of their change, and the others change "
-                               "more than every design listed.%s",
+                               "Enumerated, best first: of %.0f combinations of catalogue "
+                               "values %d were judged, and no design of the others can be "
+                               "among those asked for.%s",
                                r->combinations, r->judged, rest);
     }
     const char *const between =
@@ -98,6 +104,36 @@ static const char *certificate_text(const mt_catalogue_search_report *r,
                            "judged, %d of them meet%s all goals%s.%s",
                            r->combinations, r->feasible, r->feasible == 1 ? "s" : "", between,
                            rest);
+}
+
+/* A bound to four digits, never above what is proven. */
+static double shown_bound(double bound)
+{
+    static const double DIGITS = 1e3;
+    const double unit = bound != 0.0 ? pow(10.0, floor(log10(fabs(bound)))) / DIGITS : 1.0;
+    return floor(bound / unit) * unit;
+}
+
+/* What is known of the combinations that an enumeration left out. */
+static mt_status describe_left_out(const mt_catalogue_search_report *r, mt_result *result,
+                                   mt_err *err)
+{
+    mt_arena *const mem = &result->mem;
+    const double n = r->combinations - (double)r->judged;
+    const char *const which = n > 1.0 ? mt_arena_printf(mem, "the other %.0f combinations", n)
+                                      : "the one other combination";
+    const char *const how = r->excluded == 0 ? "by bounds of the objective"
+                            : isfinite(r->beyond)
+                                ? "by bounds of the objective and of the modes"
+                                : "by bounds of the modes";
+    const char *const text =
+        isfinite(r->beyond)
+            ? mt_arena_printf(mem,
+                              "No design of %s meets all goals and %s below %.4g: proven %s.",
+                              which, r->by_change ? "has a change" : "has a first objective",
+                              shown_bound(r->beyond), how)
+            : mt_arena_printf(mem, "No design of %s meets all goals: proven %s.", which, how);
+    return mt_describe_certificate(result, "least_objective", true, text, err);
 }
 
 static const char *with_others(const mt_catalogue_search_report *r)
@@ -177,6 +213,9 @@ mt_status mt_describe_catalogue_certificate(const mt_catalogue_search_report *re
                                    certificate_text(report, found, &result->mem), err));
     *infeasible =
         excluded(report) || (proves(report) && (found->n_solutions == 0 || found->compromise));
+    if (leaves_out(report)) {
+        MT_TRY(describe_left_out(report, result, err));
+    }
     if (report->asked) {
         MT_TRY(describe_kinds(report, result, err));
     }

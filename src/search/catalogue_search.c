@@ -2,19 +2,14 @@
 #include "search/catalogue_search.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "problem/drive_positions.h"
+#include "problem/objective.h"
 #include "search/search.h"
 
-/* Combinations between two looks at what is left to do: enough for any number of workers, few
- * enough to stop in time. Fixed, so that results do not depend on the workers. */
-enum { BATCH = 4096, BATCH_MIXED = 16 };
 /* Designs that are kept for alternatives, where the study does not ask for more. */
 enum { KEPT = 16 };
-/* Of a budget, what each combination of a batch may use at least. */
-enum { LEAST_BUDGET = 20 };
 
 bool mt_study_has_catalogues(const mt_study *study)
 {
@@ -57,128 +52,30 @@ void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c)
         c->t[i] = t;
         change += 0.5 * v->weight * away * away;
     }
-    c->least = change;
+    c->change = change;
 }
 
-/* All combinations, the last variable fastest. */
-static mt_status list_all(const mt_catalogue_search *d, int n, mt_combination **out,
-                          mt_err *err)
-{
-    MT_TRY(mt_catalogue_search_alloc(d, n, out, err));
-    for (int i = 0; i < n; i++) {
-        int rest = i;
-        for (int k = d->n_listed - 1; k >= 0; k--) {
-            const int values = d->p->study->variables[d->variable[k]].n_catalogue;
-            (*out)[i].pick[k] = rest % values;
-            rest /= values;
-        }
-        mt_catalogue_search_set(d, &(*out)[i]);
-    }
-    return MT_OK;
-}
-
-/* Orders by unavoidable change, then by the order of the list (pick is in one array in that
- * order). */
-static int by_change(const void *a, const void *b)
-{
-    const mt_combination *const x = a;
-    const mt_combination *const y = b;
-    if (x->least != y->least) {
-        return x->least < y->least ? -1 : 1;
-    }
-    return x->pick < y->pick ? -1 : x->pick > y->pick ? 1 : 0;
-}
-
-/* The best `most` of list[n], ranked, into best[*n_best]: insertion, so that equal ones keep
- * their order. What would be among them is followed over its motion first. */
-static mt_status rank_best_combinations(mt_catalogue_search *d, mt_combination *const *list,
-                                        int n, int most, mt_combination **best, int *n_best,
-                                        mt_err *err)
+/* By insertion, so that equal ones keep their order. */
+mt_status mt_catalogue_search_rank(mt_catalogue_search *d, mt_combination *const *list, int n,
+                                   mt_combination_ranking *r, mt_err *err)
 {
     for (int i = 0; i < n; i++) {
-        if (*n_best < most || mt_catalogue_search_before(d, list[i], best[*n_best - 1])) {
+        if (r->n < r->most || mt_catalogue_search_before(d, list[i], r->best[r->n - 1])) {
             MT_TRY(mt_catalogue_search_follow(d, list[i], err));
         }
         if (!list[i]->judged || !MT_HAS(list[i]->missed.violation)) {
             continue;
         }
-        int at = *n_best < most ? (*n_best)++ : most;
-        for (; at > 0 && mt_catalogue_search_before(d, list[i], best[at - 1]); at--) {
-            if (at < most) {
-                best[at] = best[at - 1];
+        int at = r->n < r->most ? r->n++ : r->most;
+        for (; at > 0 && mt_catalogue_search_before(d, list[i], r->best[at - 1]); at--) {
+            if (at < r->most) {
+                r->best[at] = r->best[at - 1];
             }
         }
-        if (at < most) {
-            best[at] = list[i];
+        if (at < r->most) {
+            r->best[at] = list[i];
         }
     }
-    return MT_OK;
-}
-
-/* True where no combination from `next` on can rank among the best: each has a larger
- * unavoidable change than the last of these. */
-static bool settled(const mt_catalogue_search *d, const mt_combination *next, int most,
-                    mt_combination *const *best, int n_best)
-{
-    return d->p->stages[0].type == MT_OBJECTIVE_CHANGE && n_best == most &&
-           best[most - 1]->feasible && next->least > best[most - 1]->f[0];
-}
-
-/* Number of the next n combinations that the budget allows, besides the verification of those
- * that might rank; *share: evaluations for each, 0: no limit. */
-static int affordable(const mt_catalogue_search *d, int n, long *share)
-{
-    const long most = d->c->search.max_evaluations;
-    const long kept = KEPT * mt_catalogue_search_verdict(d);
-    const long left = most - d->evals - (kept < most / 2 ? kept : most / 2);
-    const long least = d->mixed ? LEAST_BUDGET : 1;
-    *share = 0;
-    if (most <= 0) {
-        return n;
-    }
-    n = left / least < n ? (int)(left > 0 ? left / least : 0) : n;
-    *share = n > 0 ? left / n : 0;
-    return n;
-}
-
-typedef struct ranking {
-    int most;
-    int n;
-    mt_combination **best; /* [most] */
-} ranking;
-
-/* Pointers to all n combinations: all[n]. */
-static mt_status enumerate(mt_catalogue_search *d, int n, ranking *r,
-                           mt_catalogue_search_report *report, mt_combination ***all,
-                           mt_err *err)
-{
-    mt_combination *list = NULL;
-    const int batch = d->mixed ? BATCH_MIXED : BATCH;
-    MT_TRY(list_all(d, n, &list, err));
-    qsort(list, (size_t)n, sizeof *list, by_change);
-    *all = mt_arena_alloc(d->mem, (size_t)n, sizeof(mt_combination *));
-    MT_TRY(mt_arena_check(d->mem, err));
-    for (int i = 0; i < n; i++) {
-        (*all)[i] = &list[i];
-    }
-    for (int first = 0; first < n; first += batch) {
-        const int size = n - first < batch ? n - first : batch;
-        long share = 0;
-        const int now = affordable(d, size, &share);
-        if (settled(d, &list[first], r->most, r->best, r->n)) {
-            break;
-        }
-        if (d->stop == MT_STOP_USER) {
-            break;
-        }
-        MT_TRY(mt_catalogue_search_verify(d, now, list + first, share, err));
-        MT_TRY(rank_best_combinations(d, *all + first, now, r->most, r->best, &r->n, err));
-        if (now < size) {
-            d->stop = d->stop == MT_STOP_USER ? MT_STOP_USER : MT_STOP_MAX_EVALS;
-            break;
-        }
-    }
-    report->all = d->stop == MT_STOP_DONE;
     return MT_OK;
 }
 
@@ -218,8 +115,9 @@ static mt_status to_solution(const mt_catalogue_search *d, const mt_combination 
     return MT_OK;
 }
 
-static mt_status collect_combinations(const mt_catalogue_search *d, const ranking *r,
-                                      mt_nlp_result *out, mt_err *err)
+static mt_status collect_combinations(const mt_catalogue_search *d,
+                                      const mt_combination_ranking *r, mt_nlp_result *out,
+                                      mt_err *err)
 {
     *out = (mt_nlp_result){
         .evals = d->evals, .starts = d->starts, .stop = d->stop, .steps = d->steps};
@@ -235,7 +133,7 @@ static mt_status collect_combinations(const mt_catalogue_search *d, const rankin
 
 /* Where none satisfies its limits between the positions, those that satisfy them at the named
  * ones count as feasible. */
-static bool take_broken(const ranking *r, mt_combination *const *all, int n)
+static bool take_broken(const mt_combination_ranking *r, mt_combination *const *all, int n)
 {
     bool any = false;
     const bool none = r->n == 0 || !r->best[0]->feasible;
@@ -264,7 +162,7 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
                              .mem = mem};
     MT_TRY(list_catalogue_variables(&d, err));
     const int asked = d.p->study->recommendations;
-    ranking r = {.most = asked > KEPT ? asked : KEPT};
+    mt_combination_ranking r = {.most = asked > KEPT ? asked : KEPT};
     r.best = mt_arena_alloc(mem, (size_t)r.most, sizeof(mt_combination *));
     MT_TRY(mt_arena_check(mem, err));
     double n = 1.0;
@@ -274,7 +172,7 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
     mt_combination **all = NULL;
     int n_all = 0;
     *report = (mt_catalogue_search_report){
-        .mixed = d.mixed, .combinations = n, .best_within = nan("")};
+        .mixed = d.mixed, .combinations = n, .beyond = HUGE_VAL, .best_within = nan("")};
     if (n > (double)(d.mixed ? MT_CATALOGUE_SEARCH_MOST_MIXED : MT_CATALOGUE_SEARCH_MOST)) {
         MT_TRY(mt_catalogue_search_near(&d, &all, &n_all, err));
         if (d.mixed && d.stop == MT_STOP_DONE) {
@@ -283,7 +181,7 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
         }
     } else {
         n_all = (int)n;
-        MT_TRY(enumerate(&d, n_all, &r, report, &all, err));
+        MT_TRY(mt_catalogue_search_enumerate(&d, n_all, &r, report, &all, err));
     }
     if ((d.mixed || !report->all) && d.stop != MT_STOP_USER) {
         MT_TRY(
@@ -293,11 +191,11 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
         return mt_fail_memory(err);
     }
     r.n = 0;
-    MT_TRY(rank_best_combinations(&d, all, n_all, r.most, r.best, &r.n, err));
+    MT_TRY(mt_catalogue_search_rank(&d, all, n_all, &r, err));
     report->broken = take_broken(&r, all, n_all);
     if (report->broken) {
         r.n = 0;
-        MT_TRY(rank_best_combinations(&d, all, n_all, r.most, r.best, &r.n, err));
+        MT_TRY(mt_catalogue_search_rank(&d, all, n_all, &r, err));
     }
     MT_TRY(mt_catalogue_search_settle(&d, r.n < asked ? r.n : asked, r.best, err));
     for (int i = 0; i < n_all; i++) {
@@ -305,6 +203,9 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
         report->feasible += all[i]->feasible ? 1 : 0;
         report->followed += all[i]->followed && all[i]->feasible ? 1 : 0;
     }
+    report->beyond = isfinite(report->beyond)
+                         ? mt_objective_stage_shown(&d.p->stages[0], report->beyond)
+                         : report->beyond;
     report->driven = (mt_drive_positions_any(d.p) || mt_search_has_positions(d.c)) && !d.mixed;
     MT_TRY(collect_combinations(&d, &r, out, err));
     const bool known = r.n > 0 && r.best[0]->feasible && d.stop != MT_STOP_USER;

@@ -11,8 +11,8 @@
  * are searched continuously for each combination (an ordinary search, over mode placements
  * where there are bands).
  *
- * Few combinations are all enumerated, by ascending unavoidable change; with the objective
- * "change" the enumeration ends where no later one can rank among those kept. Beyond
+ * Few combinations are enumerated, best first, until no other can be among the designs asked
+ * for (catalogue_search_enumerate.c). Beyond
  * MT_CATALOGUE_SEARCH_MOST combinations (MT_CATALOGUE_SEARCH_MOST_MIXED where continuous
  * variables remain) the search is a heuristic: the relaxed problem (every catalogue as the
  * interval that it spans), roundings of its designs, then steps to neighbouring values while
@@ -38,9 +38,15 @@ typedef struct mt_catalogue_search_report {
     /* largest share of the best objective by which an open combination may improve it, by
      * bounds of the objective alone; NaN: not known */
     double open_within;
-    int followed; /* feasible combinations followed */
-    bool broken;  /* none of those followed keeps its limits between the positions */
-    int feasible; /* of those evaluated: combinations with a design that meets all goals */
+    int excluded; /* of an enumeration: combinations that certificates exclude */
+    /* of an enumeration: no combination that was not judged has a design that meets all goals
+     * and a first objective, as results show it, below this, which is not below those asked
+     * for; HUGE_VAL: none of them meets all goals */
+    double beyond;
+    bool by_change; /* that objective is the change */
+    int followed;   /* feasible combinations followed */
+    bool broken;    /* none of those followed keeps its limits between the positions */
+    int feasible;   /* of those evaluated: combinations with a design that meets all goals */
     /* branch and bound with proofs alone (catalogue_search_prove.c) */
     bool asked;        /* it ran */
     bool settled;      /* every mode placement but n_kinds is proven infeasible */
@@ -60,7 +66,8 @@ typedef struct mt_combination {
     double *t;          /* [n + 1] the design; coordinates of catalogues are those of pick */
     double *f;          /* [n_stages] objectives there */
     const double *from; /* [n + 1] a design t to start from; NULL: none */
-    double least;       /* half of the squared change due to pick alone */
+    double change;      /* half of the squared change due to pick alone */
+    double least;       /* lower bound of the first objective (catalogue_search_enumerate.c) */
     mt_missed missed;
     double kkt;
     bool judged;
@@ -144,6 +151,23 @@ mt_status mt_catalogue_search_alloc(const mt_catalogue_search *d, int n, mt_comb
 mt_status mt_catalogue_search_close(const mt_subproblem *whole, const double *x,
                                     mt_workspace *w, mt_arena *mem, mt_subproblem *out,
                                     mt_err *err);
+/* The best of some combinations. */
+typedef struct mt_combination_ranking {
+    int most;
+    int n;
+    mt_combination **best; /* [most] */
+} mt_combination_ranking;
+/* Ranks list[n] among those of r. What would be among them is followed over its motion first.
+ * Fails: as mt_catalogue_search_follow. */
+mt_status mt_catalogue_search_rank(mt_catalogue_search *d, mt_combination *const *list, int n,
+                                   mt_combination_ranking *r, mt_err *err);
+/* catalogue_search_enumerate.c: judges the n combinations, best first, until no other can be
+ * among the designs asked for. (*all)[n]: all of them, in the order in which equal ones are
+ * listed; sets all, excluded and beyond of the report. */
+mt_status mt_catalogue_search_enumerate(mt_catalogue_search *d, int n,
+                                        mt_combination_ranking *ranking,
+                                        mt_catalogue_search_report *report,
+                                        mt_combination ***all, mt_err *err);
 /* Sets the coordinates and the unavoidable change of c from its pick. */
 void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c);
 /* catalogue_search_prove.c: results of branch and bound with proofs, into the report;

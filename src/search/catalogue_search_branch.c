@@ -17,7 +17,6 @@
  * variables. Boxes are looked at in rounds of a fixed number, with one cap for all of a round:
  * nothing depends on the workers.
  */
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +38,6 @@ enum {
  * that of a single combination saves a search, and may cost more. */
 static const double LOOK = 50.0;
 static const double LOOK_SINGLE = 4000.0;
-/* A box beside its factorisations, in multiplications, as in certify.c. */
-static const double BOX = 500.0;
 /* First objectives that differ by less are equal where others decide between them, as in
  * catalogue_search_prove.c. */
 static const double EQUAL = 1e-9;
@@ -53,15 +50,6 @@ typedef struct box {
     int number;   /* in the order that they are made in */
 } box;
 
-/* What is known of a box after a look at it. */
-typedef struct look {
-    bool excluded;
-    bool met;  /* a design meets everything, with an objective below the cap */
-    double *x; /* [n] that one */
-    long work; /* as certificates count it */
-    long multiplications;
-} look;
-
 typedef struct branching {
     mt_catalogue_search *d;
     bool enclosed; /* certificates can be had, and have not spent their budget */
@@ -70,14 +58,13 @@ typedef struct branching {
     double cap;                         /* of the round */
     double *lower;                      /* [n_workers x n] a worker's box */
     double *upper;
-    double unit; /* multiplications of one box of a certificate, about */
     box *open;
     int n_open;
     int capacity;
     int made;
     double work;    /* of all looks, as certificates count it */
     box now[ROUND]; /* of the round */
-    look looks[ROUND];
+    mt_catalogue_search_look looks[ROUND];
     int n_now;
     mt_combination *fresh; /* [2 ROUND] to be searched */
     int n_fresh;
@@ -100,39 +87,15 @@ static void bound(const mt_catalogue_search *d, const box *b, double *lower, dou
     }
 }
 
-static mt_status certify(const branching *v, int worker, const box *b, look *out, mt_arena *mem,
-                         mt_err *err)
+static mt_status certify(const branching *v, int worker, const box *b,
+                         mt_catalogue_search_look *out, mt_arena *mem, mt_err *err)
 {
     const ptrdiff_t at = (ptrdiff_t)worker * v->d->p->n;
-    mt_proof *proof = NULL;
-    mt_certify_search found = {0};
+    const mt_certify_cap *const cap = v->cap < HUGE_VAL ? &v->caps[worker].cap : NULL;
     bound(v->d, b, v->lower + at, v->upper + at);
-    MT_TRY(mt_catalogue_search_proof_of(&v->proofs[worker], v->lower + at, v->upper + at,
-                                        &proof, err));
-    if (proof == NULL) {
-        return MT_OK;
-    }
-    proof->spent = NULL; /* noted box by box */
-    proof->question.progress = NULL;
-    proof->question.any = true;
-    proof->question.cap = v->cap < HUGE_VAL ? &v->caps[worker].cap : NULL;
-    proof->question.max_work = v->unit * (b->combinations > 1.0 ? LOOK : LOOK_SINGLE);
-    for (int i = 0; i < proof->question.n_views; i++) {
-        proof->views[i]->operations = 0.0;
-    }
-    MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, &found, err));
-    out->met = found.n_found > 0;
-    out->excluded = !out->met && found.proven;
-    if (out->met) {
-        memcpy(out->x, found.at, (size_t)v->d->p->n * sizeof *out->x);
-    }
-    double multiplications = 0.0;
-    for (int i = 0; i < proof->question.n_views; i++) {
-        multiplications += proof->views[i]->operations;
-    }
-    out->multiplications = (long)multiplications;
-    out->work = (long)found.work;
-    return MT_OK;
+    return mt_catalogue_search_look_at(&v->proofs[worker], v->lower + at, v->upper + at, cap,
+                                       b->combinations > 1.0 ? LOOK : LOOK_SINGLE, mem, out,
+                                       err);
 }
 
 static mt_status examine_box(void *context, int worker, int task, mt_task_path *own,
@@ -152,23 +115,7 @@ static mt_status examine_box(void *context, int worker, int task, mt_task_path *
 static void serialize_look(void *context, int task, mt_serializer *serializer)
 {
     branching *const v = context;
-    const mt_catalogue_search *const d = v->d;
-    look *const l = &v->looks[task];
-    mt_serializer_flag(serializer, &l->excluded);
-    mt_serializer_flag(serializer, &l->met);
-    mt_serializer_long(serializer, &l->work, 0, LONG_MAX);
-    mt_serializer_long(serializer, &l->multiplications, 0, LONG_MAX);
-    mt_serializer_numbers(serializer, (size_t)d->p->n, l->x);
-    serializer->failed = serializer->failed || (l->excluded && l->met);
-    for (int i = 0; i < d->p->n && l->met; i++) {
-        const bool within = l->x[i] >= d->c->lower[i] && l->x[i] <= d->c->upper[i];
-        serializer->failed = serializer->failed || !within;
-    }
-    if (serializer->reads &&
-        !mt_serializer_is_read(serializer)) { /* as if nothing had been read */
-        memset(l->x, 0, (size_t)d->p->n * sizeof *l->x);
-        *l = (look){.x = l->x};
-    }
+    mt_catalogue_search_look_serialize(v->d->c, &v->looks[task], serializer);
 }
 
 /* Tests whether a proof is possible for the geometry of an evaluated combination; it is then
@@ -192,11 +139,6 @@ static mt_status probe(branching *v, mt_err *err)
     }
     MT_TRY(mt_catalogue_search_proof_of(&v->proofs[0], v->lower, v->upper, &proof, err));
     v->enclosed = proof != NULL;
-    v->unit = BOX;
-    for (int i = 0; v->enclosed && i < proof->question.n_views; i++) {
-        const double order = proof->views[i]->n;
-        v->unit += order * order * order;
-    }
     return MT_OK;
 }
 
@@ -346,8 +288,8 @@ static void select_boxes(branching *v, double cap)
     qsort(v->open, (size_t)v->n_open, sizeof *v->open, by_bound);
     v->n_now = 0;
     while (v->n_now < ROUND && v->n_open > 0) {
-        look *const l = &v->looks[v->n_now];
-        *l = (look){.x = l->x};
+        mt_catalogue_search_look *const l = &v->looks[v->n_now];
+        *l = (mt_catalogue_search_look){.x = l->x};
         v->now[v->n_now++] = v->open[--v->n_open];
     }
 }
@@ -401,7 +343,7 @@ static mt_status follow_up(branching *v, mt_err *err)
     MT_TRY(mt_catalogue_search_alloc(d, 2 * ROUND, &v->fresh, err));
     for (int i = 0; i < v->n_now; i++) {
         const box *const b = &v->now[i];
-        const look *const l = &v->looks[i];
+        const mt_catalogue_search_look *const l = &v->looks[i];
         if (l->excluded) {
             continue;
         }

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "search/catalogue_search_proofs.h"
 
+#include <limits.h>
 #include <string.h>
+
+/* A box beside its factorisations, in multiplications, as in certify.c. */
+static const double BOX = 500.0;
 
 mt_status mt_catalogue_search_proofs_init(mt_catalogue_search_proofs *s, const mt_subproblem *c,
                                           mt_arena *mem, mt_err *err)
@@ -127,4 +131,62 @@ mt_status mt_catalogue_search_proof_of(mt_catalogue_search_proofs *s, const doub
         memcpy((*out)->upper, upper, size);
     }
     return MT_OK;
+}
+
+mt_status mt_catalogue_search_look_at(mt_catalogue_search_proofs *s, const double *lower,
+                                      const double *upper, const mt_certify_cap *cap,
+                                      double boxes, mt_arena *mem,
+                                      mt_catalogue_search_look *out, mt_err *err)
+{
+    mt_proof *proof = NULL;
+    mt_certify_search found = {0};
+    MT_TRY(mt_catalogue_search_proof_of(s, lower, upper, &proof, err));
+    if (proof == NULL) {
+        return MT_OK;
+    }
+    double unit = BOX;
+    for (int i = 0; i < proof->question.n_views; i++) {
+        const double order = proof->views[i]->n;
+        unit += order * order * order;
+        proof->views[i]->operations = 0.0;
+    }
+    proof->spent = NULL; /* noted box by box */
+    proof->question.progress = NULL;
+    proof->question.any = true;
+    proof->question.cap = cap;
+    proof->question.max_work = unit * boxes;
+    MT_TRY(mt_certify_assignments(&proof->question, 0, NULL, mem, &found, err));
+    out->met = found.n_found > 0;
+    out->excluded = !out->met && found.proven;
+    if (out->met) {
+        memcpy(out->x, found.at, (size_t)s->c->p->n * sizeof *out->x);
+    }
+    double multiplications = 0.0;
+    for (int i = 0; i < proof->question.n_views; i++) {
+        multiplications += proof->views[i]->operations;
+    }
+    out->multiplications = (long)multiplications;
+    out->work = (long)found.work;
+    return MT_OK;
+}
+
+void mt_catalogue_search_look_serialize(const mt_subproblem *c, mt_catalogue_search_look *look,
+                                        mt_serializer *serializer)
+{
+    const int n = c->p->n;
+    mt_serializer_flag(serializer, &look->excluded);
+    mt_serializer_flag(serializer, &look->met);
+    mt_serializer_long(serializer, &look->work, 0, LONG_MAX);
+    mt_serializer_long(serializer, &look->multiplications, 0, LONG_MAX);
+    mt_serializer_numbers(serializer, (size_t)n, look->x);
+    serializer->failed = serializer->failed || (look->excluded && look->met);
+    for (int i = 0; i < n && look->met; i++) {
+        const bool within = look->x[i] >= c->lower[i] && look->x[i] <= c->upper[i];
+        serializer->failed = serializer->failed || !within;
+    }
+    if (serializer->reads &&
+        !mt_serializer_is_read(serializer)) { /* as if nothing had been read */
+        memset(look->x, 0, (size_t)n * sizeof *look->x);
+        *look = (mt_catalogue_search_look){.x = look->x};
+    }
 }

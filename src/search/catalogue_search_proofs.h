@@ -2,6 +2,7 @@
 #ifndef SEARCH_CATALOGUE_SEARCH_PROOFS_H
 #define SEARCH_CATALOGUE_SEARCH_PROOFS_H
 
+#include "base/serializer.h"
 #include "search/proof.h"
 
 /*
@@ -37,5 +38,24 @@ void mt_catalogue_search_geometry(const mt_catalogue_search_proofs *s, int which
  * not possible. Fails: as mt_proof_init. */
 mt_status mt_catalogue_search_proof_of(mt_catalogue_search_proofs *s, const double *lower,
                                        const double *upper, mt_proof **out, mt_err *err);
+
+/* What a short certificate says of a box of combinations. */
+typedef struct mt_catalogue_search_look {
+    bool excluded; /* no design of it meets the goals and has an objective below the cap */
+    bool met;      /* a design does */
+    double *x;     /* [n] that one */
+    long work;     /* as certificates count it */
+    long multiplications;
+} mt_catalogue_search_look;
+/* Looks at lower <= x <= upper [n] with the work of `boxes` boxes at most; cap NULL: any
+ * objective. Of the look x is the caller's. Without a proof nothing is known. Fails: as
+ * mt_catalogue_search_proof_of. */
+mt_status mt_catalogue_search_look_at(mt_catalogue_search_proofs *s, const double *lower,
+                                      const double *upper, const mt_certify_cap *cap,
+                                      double boxes, mt_arena *mem,
+                                      mt_catalogue_search_look *out, mt_err *err);
+/* Writes or reads a look within the bounds of c. */
+void mt_catalogue_search_look_serialize(const mt_subproblem *c, mt_catalogue_search_look *look,
+                                        mt_serializer *serializer);
 
 #endif
