@@ -17,6 +17,7 @@
 #include "io/json_print.h"
 #include "io/reader.h"
 #include "result/folder.h"
+#include "result/points.h"
 #include "study/study.h"
 
 enum { READER_PATIENCE_MS = 10000 };
@@ -25,7 +26,8 @@ static const char FORMAT[] = "format";
 
 enum {
     MOST_FIELDS = 40, /* of a record */
-    MOST_OUTPUTS = 16
+    MOST_OUTPUTS = 16,
+    MANY_POINTS = 200 /* of a trade study: read one by one */
 };
 
 typedef struct result_reader {
@@ -347,6 +349,17 @@ static void check_design(result_reader *s, mt_addr design)
     }
 }
 
+/* A value for each of the n quantities that vary, and the variables. */
+static void check_point(result_reader *s, int n, mt_addr point)
+{
+    const mt_addr values = member(s, point, "values");
+    if (values != MT_NO_ADDR && mt_reader_items(&s->r, values).count != n) {
+        mt_diag_error(s->r.diags, values, "must have %d value%s, as many as vary", n,
+                      n == 1 ? "" : "s");
+    }
+    check_design(s, member(s, point, "best"));
+}
+
 static void check_trade(result_reader *s, mt_addr trade)
 {
     const mt_addr vary = member(s, trade, "vary");
@@ -357,12 +370,7 @@ static void check_trade(result_reader *s, mt_addr trade)
     }
     mt_items points = mt_reader_items(&s->r, member(s, trade, "points"));
     while (mt_items_next(&points)) {
-        const mt_addr values = member(s, points.at, "values");
-        if (values != MT_NO_ADDR && mt_reader_items(&s->r, values).count != n) {
-            mt_diag_error(s->r.diags, values, "must have %d value%s, as many as vary", n,
-                          n == 1 ? "" : "s");
-        }
-        check_design(s, member(s, points.at, "best"));
+        check_point(s, n, points.at);
     }
 }
 
@@ -420,11 +428,96 @@ static void read_result_root(result_reader *s)
     }
 }
 
+/* Parse a text, and read from it next; *whole: nothing is to be said about it. */
+static mt_status open_part(result_reader *s, const char *text, size_t length, mt_json **doc,
+                           bool *whole, mt_err *err)
+{
+    const mt_status rc = mt_json_parse(text, length, doc, err);
+    s->r.doc = *doc;
+    s->r.diags = *doc == NULL ? NULL : mt_json_diags(*doc);
+    s->r.n_matched = 0; /* addresses of another text */
+    *whole = rc == MT_OK;
+    return rc == MT_E_INPUT ? MT_OK : rc;
+}
+
+static mt_status close_part(result_reader *s, bool *whole, mt_err *err)
+{
+    *whole = *whole && s->r.diags->errors == 0 && s->r.diags->warnings == 0;
+    MT_TRY(mt_arena_check(s->r.diags->mem, err));
+    return mt_arena_check(s->r.mem, err);
+}
+
+static mt_status read_points(result_reader *s, mt_result_points *points, bool *whole,
+                             mt_err *err)
+{
+    const mt_field *const trade = find_field(&mt_result_record, "trade", 0);
+    const mt_field *const list = trade == NULL ? NULL : find_field(trade->record, "points", 0);
+    mt_trade_result *const to = s->result->trade;
+    if (list == NULL) {
+        return mt_fail(err, MT_E_INTERNAL, "a result has no list of points");
+    }
+    to->points = mt_arena_alloc(s->r.mem, (size_t)points->n, sizeof *to->points);
+    MT_TRY(mt_arena_check(s->r.mem, err));
+    for (int i = 0; i < points->n && *whole; i++) {
+        mt_json *doc = NULL;
+        const char *text = NULL;
+        const size_t length = mt_result_points_next(points, &text);
+        mt_status rc = open_part(s, text, length, &doc, whole, err);
+        if (*whole) {
+            read_record(s, MT_JSON_ROOT, list->record, &to->points[i]);
+            check_point(s, to->n_vary, MT_JSON_ROOT);
+            rc = close_part(s, whole, err);
+        }
+        mt_json_delete(doc);
+        MT_TRY(rc);
+    }
+    to->n_points = points->n;
+    return MT_OK;
+}
+
+/* The same as of the whole text, in a tenth of its memory, where the text is laid out as
+ * mt_result_write does and there is nothing to say about it; else *whole is false. */
+static mt_status read_in_parts(result_reader *s, const mt_file *file, bool *whole, mt_err *err)
+{
+    mt_result_points points;
+    mt_json *rest = NULL; /* the names of the variables live in it */
+    *whole = false;
+    MT_TRY(mt_result_points_find(file->bytes, file->length, MANY_POINTS, &points, err));
+    if (points.rest == NULL) {
+        return MT_OK;
+    }
+    mt_status rc = open_part(s, points.rest, points.rest_length, &rest, whole, err);
+    if (*whole) {
+        read_result_root(s);
+        rc = close_part(s, whole, err);
+    }
+    *whole = *whole && s->result->trade != NULL && s->result->trade->n_points == 0;
+    if (rc == MT_OK && *whole) {
+        rc = read_points(s, &points, whole, err);
+    }
+    mt_json_delete(rest);
+    mt_result_points_free(&points);
+    return rc;
+}
+
 static mt_status read_result_text(result_reader *s, const char *path, const mt_file *file,
                                   mt_diagnostics *messages, mt_err *err)
 {
     mt_json *doc = NULL;
-    mt_status rc = mt_json_parse(file->bytes, file->length, &doc, err);
+    bool whole = false;
+    mt_err own = {.code = MT_OK};
+    s->r.mem = &s->result->mem;
+    mt_status rc = read_in_parts(s, file, &whole, &own);
+    if (rc != MT_OK) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    if (whole) {
+        return MT_OK;
+    }
+    mt_result_delete(s->result); /* what could be read of it in parts */
+    *s = (result_reader){.result = NULL};
+    MT_TRY(mt_result_new(&s->result, err));
+    rc = mt_json_parse(file->bytes, file->length, &doc, err);
     if (doc == NULL) {
         return rc;
     }

@@ -15,7 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/work_counters.h"
+#include "base/run.h"
 #include "base/workers.h"
 #include "problem/objective.h"
 #include "search/catalogue_search.h"

@@ -2,7 +2,7 @@
 #ifndef SEARCH_CATALOGUE_SEARCH_PROOFS_H
 #define SEARCH_CATALOGUE_SEARCH_PROOFS_H
 
-#include "base/serializer.h"
+#include "base/workers.h"
 #include "search/proof.h"
 
 /*

@@ -4,10 +4,15 @@ MT_EVERY=1: within a few megabytes of the least that is enough, else within thir
 import itertools
 import resource
 import subprocess
+import sys
 import unittest
+from pathlib import Path
 
 from common_cli import PROGRAM, SOURCE, CliTest, main
 from suite import EVERY, INSTRUMENTED, LAUNCHED
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from answers import answer  # noqa: E402
 
 MB = 1 << 20
 SECONDS = 5  # of the processor; every command takes a fraction of one
@@ -72,6 +77,18 @@ class Limits(CliTest):
         self.assertRegex(done.stderr, r"out of memory\nThe program may use 4 MB \(--max-memory\)\.\n$")
         enough = self.expect(0, "modes", model, "--max-memory", "1G")
         self.assertEqual(enough.stdout, self.expect(0, "modes", model).stdout)
+
+    def test_a_result_of_many_points_takes_a_few_times_its_text(self):
+        text = (answer(SOURCE / "studies/inceptor_trade.json").folder / "result.json").read_text(encoding="utf-8")
+        begin = text.index('\n    "points": [') + len('\n    "points": [')
+        end = text.index("\n    ]", begin)
+        many = text[:begin] + ",".join([text[begin:end]] * 50) + text[end:]
+        self.assertGreater(len(many), 10 * MB)
+        result = self.write("many.json", many)
+        self.assertEqual(self.expect(0, "report", result, "--format", "json", "--max-memory", "60M").stdout, many)
+        other = self.write("other.json", many[:begin] + " " + many[begin:])  # laid out otherwise: read as a whole
+        self.assertEqual(self.expect(0, "report", other, "--format", "json").stdout, many)
+        self.expect(4, "report", other, "--format", "json", "--max-memory", "60M")
 
     def test_sizes(self):
         for size in ("1M", "1048576", "1024k", "2000G", "1024T"):

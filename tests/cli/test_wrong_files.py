@@ -6,16 +6,16 @@ that `check` passes in silence fails, and so does one that is told elsewhere; so
 several numbers by test_wrong_models.py; here it is every file that has to be read with care."""
 import copy
 import json
-import os
 import random
 import sys
 
 from common_cli import SOURCE, CliTest, main
+from suite import EVERY
 
 sys.path.insert(0, str(SOURCE / "tests/mechanisms"))
 from makers import KINDS as MECHANISMS  # noqa: E402
 
-PLACES = 10 ** 6 if "MT_EVERY" in os.environ else 1
+PLACES = 10 ** 6 if EVERY else 1
 FOLDERS = ("studies", "src/cli/init", "tests/models", "tests/schema", "tests/documents/good", "problems", "problems/profiles", "tests/bench/studies")
 KINDS = ("model", "study", "profile", "aircraft")
 

@@ -11,7 +11,7 @@
 #include <sys/time.h>
 
 #include "common/fuzz.h"
-#include "io/io.h"
+#include "io/options.h"
 #include "linalg/dense.h"
 #include "problem/evaluate.h"
 #include "problem/workspace.h"
@@ -19,7 +19,10 @@
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "report/trade.h"
+#include "result/read.h"
 #include "result/result.h"
+#include "result/write.h"
+#include "study/read.h"
 #include "study/study.h"
 
 enum {

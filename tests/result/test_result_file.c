@@ -10,6 +10,7 @@
 #include "io/json.h"
 #include "mt_alloc.h"
 #include "mt_test.h"
+#include "result/folder.h"
 #include "result/read.h"
 #include "result/result_sample.h"
 #include "result/write.h"
@@ -237,6 +238,38 @@ static int line_of(const char *text, const char *what)
     return line;
 }
 
+/* From the JSON of its page, before and after its files are noted. */
+static void result_file__is_the_same_by_way_of_its_page(mt_test *t)
+{
+    static const char *const names[] = {"a.csv", "report.html"};
+    char digests[2][MT_SHA256_TEXT] = {"12", "ab"};
+    sample s;
+    mt_text page = {.s = NULL};
+    const mt_text none = {.s = NULL};
+    if (!CHECK(t, make_sample(&s))) {
+        return;
+    }
+    CHECK_INT(t, mt_result_write_page(s.result, &page, NULL), MT_OK);
+    for (int noted = 0; noted < 2; noted++) {
+        for (int k = 0; k < 2; k++) {
+            mt_text whole = {.s = NULL};
+            mt_text after = {.s = NULL};
+            mt_test_row(t, "noted %d, page %d", noted, k);
+            CHECK_INT(t, mt_result_write(s.result, &whole, NULL), MT_OK);
+            CHECK_INT(
+                t, mt_result_write_after_page(s.result, k == 0 ? &none : &page, &after, NULL),
+                MT_OK);
+            CHECK_STR(t, after.s, whole.s);
+            CHECK(t, (strcmp(whole.s, page.s) == 0) == (s.result->run.n_outputs == 0));
+            mt_text_free(&whole);
+            mt_text_free(&after);
+        }
+        CHECK_INT(t, mt_result_note_outputs(s.result, 2, names, digests, NULL), MT_OK);
+    }
+    mt_text_free(&page);
+    mt_result_delete(s.result);
+}
+
 static void result_file__a_damaged_one_is_refused(mt_test *t)
 {
     static const struct {
@@ -338,6 +371,7 @@ MT_TEST_MAIN(MT_TEST(result_file__comes_back_whole),
              MT_TEST(result_file__is_its_own),
              MT_TEST(result_file__holds_what_the_design_promises),
              MT_TEST(result_file__writing_twice_gives_the_same_bytes),
+             MT_TEST(result_file__is_the_same_by_way_of_its_page),
              MT_TEST(result_file__a_damaged_one_is_refused),
              MT_TEST(result_file__no_file_is_a_system_failure),
              MT_TEST(result_file__every_failing_allocation_is_survived))

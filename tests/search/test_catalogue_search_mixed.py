@@ -6,10 +6,14 @@ Random rows of masses with two or three catalogues and one or two continuous var
 expression. What branch and bound says is the best of all must be: each value of the first catalogue is made a study of its own, whose combinations the program
 enumerates (search/test_discrete has that against brute force). The suite has two of few combinations. MT_EVERY=1: ten of any size; MT_COUNT=N: so many (200 take ten minutes);
 MT_SEED=S.
+
+Few combinations are enumerated best first. Under "max_evaluations" all of them are judged: the list is the same without it, and no combination that was left out is
+better than what is said of them.
 """
 import json
 import math
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -182,6 +186,43 @@ class Mixed(unittest.TestCase):
                 self.assertTrue(found <= want * (1 + SAME), f"{found} found, {want} exists: {text}")
         self.assertGreater(branched, len(indices) // 2)
         self.assertGreater(complete, len(indices) // 2)
+
+    def test_what_is_left_out_cannot_be_listed(self):
+        rng, left_out, evaluations = random.Random(f"{SEED}:few"), 0, [0, 0]
+        for case in range(10 * COUNT or (8 if FEW else 3)):
+            model, study = question(rng, case % 4 == 3)
+            while combinations(study) > 60:
+                most = max((v for v in study["variables"] if "catalogue" in v), key=lambda v: len(v["catalogue"]))
+                most["catalogue"].pop(rng.randrange(len(most["catalogue"])))
+            study["recommendations"] = rng.choice([1, 3, 5])
+            with self.subTest(seed=SEED, case=case):
+                best, = run(model, [study], "--threads", "1", "--report", "none")
+                whole, = run(model, [study | {"recommendations": 60, "search": {"max_evaluations": 10**8}}], "--report", "none")
+                self.assertEqual(best["status"], whole["status"])
+                got, all_of = ([r["score"] for r in result["recommendations"] if r["feasible"]] for result in (best, whole))
+                self.assertEqual(len(got), min(len(all_of), study["recommendations"]))
+                for a, b in zip(got, all_of):
+                    self.assertLessEqual(a, b * (1 + SAME))
+                evaluations[0] += best["run"]["evaluations"]
+                evaluations[1] += whole["run"]["evaluations"]
+                for told in (c for c in best["certificates"] if c["kind"] == "least_objective"):
+                    found = re.match(r"No design of the (?:other (\d+) combinations|one other combination) meets all goals"
+                                     r"(?: and has a (?:change|first objective) below ([\d.e+]+))?: proven by ", told["text"])
+                    others, left_out = int(found[1] or 1), left_out + 1
+                    self.assertTrue(told["proven"])
+                    self.assertLess(others, combinations(study))
+                    bound = float(found[2] or "inf")
+                    self.assertLessEqual(sum(f < bound * (1 - SAME) for f in all_of), combinations(study) - others)
+                    if math.isfinite(bound):
+                        self.assertGreaterEqual(bound * (1 + 1e-3), got[-1])
+                    else:
+                        self.assertLessEqual(len(all_of), combinations(study) - others)
+                if case < 3:
+                    again, = run(model, [study], "--threads", "3", "--report", "none")
+                    self.assertEqual(again["recommendations"], best["recommendations"])
+                    self.assertEqual(again["run"]["evaluations"], best["run"]["evaluations"])
+        self.assertGreater(left_out, 1)
+        self.assertLess(evaluations[0], evaluations[1] / 2)
 
     def test_the_best_of_all_is_found(self):
         self.check_all(range(COUNT) or QUICK[0], False)

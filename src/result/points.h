@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef IO_RESULT_POINTS_H
-#define IO_RESULT_POINTS_H
+#ifndef RESULT_POINTS_H
+#define RESULT_POINTS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "io/result_points.h"
+#include "result/points.h"
 
 #include <limits.h>
 #include <stdlib.h>
