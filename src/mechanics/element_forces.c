@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* The slope of a beam element's chord: coordinates over its length. */
 static bool is_chord(const mt_measure_def *def)
@@ -63,23 +64,46 @@ double mt_piece_work(const mt_piece *p, const double *way)
     return sum;
 }
 
+void mt_piece_relative(const mt_piece *p, const double *way, double relative[MT_RELATIVE])
+{
+    double local[MT_LOCAL];
+    mt_piece_motion(p, way, local);
+    for (int k = 0; k < 3; k++) {
+        relative[k] = local[6 + k] - local[k];
+        relative[3 + k] = local[3 + k];
+        relative[6 + k] = local[9 + k];
+    }
+}
+
+void mt_piece_product(const mt_relative_list *filled, const double *h, const double *x,
+                      double *out)
+{
+    memset(out, 0, MT_RELATIVE * sizeof *out);
+    for (int ii = 0; ii < filled->n; ii++) {
+        const int i = filled->at[ii];
+        const double *const row = h + mt_relative_row(i);
+        double sum = row[i] * x[i];
+        for (int kk = 0; kk < ii; kk++) {
+            const int k = filled->at[kk];
+            sum += row[k] * x[k];
+            out[k] += row[k] * x[i];
+        }
+        out[i] += sum;
+    }
+}
+
 double mt_piece_bend(const mt_piece *p, const double *phi, double *out)
 {
-    double way[MT_LOCAL];
-    double bent[MT_LOCAL] = {0.0};
+    double way[MT_RELATIVE];
+    double bent[MT_RELATIVE];
     double energy = 0.0;
-    mt_piece_motion(p, phi, way);
-    for (int c = 0; c < MT_LOCAL; c++) {
-        const double *const h = p->h + ((ptrdiff_t)MT_LOCAL * c);
-        if (way[c] != 0.0) {
-            for (int r = 0; r < MT_LOCAL; r++) {
-                bent[r] += h[r] * way[c];
-            }
-        }
+    mt_piece_relative(p, phi, way);
+    mt_piece_product(p->filled, p->h, way, bent);
+    for (int k = 0; k < MT_RELATIVE; k++) {
+        energy += way[k] * bent[k];
     }
-    for (int r = 0; r < MT_LOCAL; r++) {
-        energy += way[r] * bent[r];
-        out[r] = bent[r];
+    for (int k = 0; k < MT_LOCAL; k++) {
+        out[k] = mt_relative_sign(k) * bent[mt_relative_of(k)];
     }
     return energy;
 }
@@ -93,8 +117,38 @@ void mt_piece_add(const mt_piece *p, double c, const double *local, double *to)
     }
 }
 
+static void add_entry(ptrdiff_t nq, const mt_piece *p, int r, int c, double add, double *terms)
+{
+    const ptrdiff_t i = p->dof[r];
+    const ptrdiff_t j = p->dof[c];
+    if (i >= 0 && j >= 0) {
+        terms[i + (j * nq)] += add;
+        terms[j + (i * nq)] += r == c ? 0.0 : add;
+    }
+}
+
+/* terms += size |h|, and `turns` between rotations. */
+static void add_piece_terms(ptrdiff_t nq, double size, double turns, const mt_piece *p,
+                            double *terms)
+{
+    for (int c = 0; c < MT_LOCAL && size > 0.0; c++) {
+        for (int r = c; r < MT_LOCAL; r++) {
+            const double h = p->h[mt_relative_pair(r, c)];
+            if (h != 0.0) {
+                add_entry(nq, p, r, c, size * fabs(h), terms);
+            }
+        }
+    }
+    for (int c = 3; c < MT_LOCAL && turns > 0.0; c += c == 5 ? 4 : 1) {
+        for (int r = c; r < MT_LOCAL; r += r == 5 ? 4 : 1) {
+            add_entry(nq, p, r, c, turns, terms);
+        }
+    }
+}
+
 void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                   const mt_jet *jet, const double size_force[2], double *terms, mt_piece *out)
+                   const mt_relative_jet *jet, const double size_force[2], double *terms,
+                   mt_piece *out)
 {
     double extent = mt_piece_is_angle(def) ? 0.0 : extent_of(poses, def->body);
     *out = (mt_piece){.size = size_force[0],
@@ -109,19 +163,17 @@ void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *p
     }
     for (int k = 0; k < MT_LOCAL; k++) {
         out->dof[k] = mt_local_dof(d->sys, def->body, k);
-        out->g[k] = creal(jet->g[k]);
+        out->g[k] = mt_relative_sign(k) * creal(jet->g[mt_relative_of(k)]);
     }
-    for (int c = 0; c < MT_LOCAL; c++) {
-        for (int r = 0; r < MT_LOCAL; r++) {
-            const double entry = creal(jet->h[r + (MT_LOCAL * c)]);
-            const bool turns = r % 6 >= 3 && c % 6 >= 3;
-            out->h[r + (MT_LOCAL * c)] = entry;
-            if (out->dof[r] >= 0 && out->dof[c] >= 0) {
-                terms[out->dof[r] + ((ptrdiff_t)out->dof[c] * d->sys->nq)] +=
-                    (size_force[0] * fabs(entry)) + (turns ? size_force[1] * extent : 0.0);
-            }
+    out->filled = mt_relative_filled(jet->second, jet->span);
+    for (int ii = 0; ii < out->filled->n; ii++) {
+        const int row = mt_relative_row(out->filled->at[ii]);
+        for (int kk = 0; kk <= ii; kk++) {
+            const int at = row + out->filled->at[kk];
+            out->h[at] = creal(jet->h[at]);
         }
     }
+    add_piece_terms(d->sys->nq, size_force[0], size_force[1] * extent, out, terms);
 }
 
 static bool is_pose(const mt_pose *a, const mt_pose *b)

@@ -11,7 +11,8 @@
 typedef struct mt_piece {
     int dof[MT_LOCAL];
     double g[MT_LOCAL];
-    double h[MT_LOCAL * MT_LOCAL];
+    double h[MT_RELATIVE_PAIRS]; /* of relative motions, as in mt_relative_jet */
+    const mt_relative_list *filled;
     double force; /* Kg is the sum of force h */
     double size;  /* magnitude of the terms of the force, for its rounding */
     /* of a spring: derivative of its force by the measure of the piece at offset `partner` (0:
@@ -55,6 +56,16 @@ static inline void mt_piece_motion(const mt_piece *p, const double *way, double 
         local[k] = p->dof[k] >= 0 ? way[p->dof[k]] : 0.0;
     }
 }
+/* The same as a relative motion. */
+void mt_piece_relative(const mt_piece *p, const double *way, double relative[MT_RELATIVE]);
+/* out[MT_RELATIVE] = H x of such motions; h: packed, of which `filled` is not 0. */
+void mt_piece_product(const mt_relative_list *filled, const double *h, const double *x,
+                      double *out);
+/* Entry of H for two local freedoms. */
+static inline double mt_piece_entry(const mt_piece *p, int r, int c)
+{
+    return mt_relative_sign(r) * mt_relative_sign(c) * p->h[mt_relative_pair(r, c)];
+}
 /* g . way. */
 double mt_piece_work(const mt_piece *p, const double *way);
 /* out[MT_LOCAL] = H phi, of which what belongs to no state is for nobody; returns
@@ -66,6 +77,7 @@ void mt_piece_add(const mt_piece *p, double c, const double *local, double *to);
  * |jet.h|, and force times the coordinates' size: lengths that cancel in an entry between
  * rotations are differences of coordinates. */
 void mt_piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
-                   const mt_jet *jet, const double size_force[2], double *terms, mt_piece *out);
+                   const mt_relative_jet *jet, const double size_force[2], double *terms,
+                   mt_piece *out);
 
 #endif

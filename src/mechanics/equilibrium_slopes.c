@@ -30,8 +30,9 @@ typedef struct section_slope {
     int piece;
     int input;
     double stretch;
-    double g[MT_LOCAL];
-    double h[MT_LOCAL * MT_LOCAL];
+    double g[MT_RELATIVE]; /* of relative motions */
+    double h[MT_RELATIVE_PAIRS];
+    const mt_relative_list *filled;
 } section_slope;
 
 struct mt_section_slopes {
@@ -118,27 +119,29 @@ static void piece_jet(const mt_data *d, const mt_piece *p, const mt_placement *a
     mt_measure_relative_point(d->vec[load->point], f, &at->pose[load->body], true, out);
 }
 
+/* h: packed derivatives of the jet's Hessian; returns what of it is filled. */
+static const mt_relative_list *hessian_slope(const mt_relative_jet *jet, double *h)
+{
+    const mt_relative_list *const l = mt_relative_filled(jet->second, jet->span);
+    for (int ii = 0; ii < l->n; ii++) {
+        const int row = mt_relative_row(l->at[ii]);
+        for (int kk = 0; kk <= ii; kk++) {
+            h[row + l->at[kk]] = cx_derivative(jet->h[row + l->at[kk]]);
+        }
+    }
+    return l;
+}
+
 /* out[MT_LOCAL] = D: the derivative along phi of H phi. */
 static void third_along(const mt_piece *p, const mt_relative_jet *jet, const double *phi,
                         double *out)
 {
-    const mt_relative_list *const l = mt_relative_filled(jet->second, jet->span);
-    double way[MT_LOCAL];
-    double relative[MT_RELATIVE] = {0.0};
-    double bent[MT_RELATIVE] = {0.0};
-    mt_piece_motion(p, phi, way);
-    for (int k = 0; k < MT_LOCAL; k++) {
-        relative[mt_relative_of(k)] += mt_relative_sign(k) * way[k];
-    }
-    for (int ii = 0; ii < l->n; ii++) {
-        const int i = l->at[ii];
-        for (int kk = 0; kk <= ii; kk++) {
-            const int k = l->at[kk];
-            const double h = cx_derivative(jet->h[mt_relative_row(i) + k]);
-            bent[i] += h * relative[k];
-            bent[k] += i == k ? 0.0 : h * relative[i];
-        }
-    }
+    double h[MT_RELATIVE_PAIRS];
+    double way[MT_RELATIVE];
+    double bent[MT_RELATIVE];
+    const mt_relative_list *const filled = hessian_slope(jet, h);
+    mt_piece_relative(p, phi, way);
+    mt_piece_product(filled, h, way, bent);
     for (int k = 0; k < MT_LOCAL; k++) {
         out[k] = mt_relative_sign(k) * bent[mt_relative_of(k)];
     }
@@ -242,10 +245,8 @@ static void fill_section(const mt_linear *lin, int piece, mt_beam_parts *parts,
     const mt_piece *const p = &lin->pieces[piece];
     const mt_spring_def *const spring = &lin->sys->springs[p->spring];
     mt_relative_jet jet;
-    mt_jet local;
     *out = (section_slope){.piece = piece, .input = lin->dual.input};
     mt_data_relative(&lin->dual, p->def, &lin->position.at, true, parts, &jet);
-    mt_relative_expand(&jet, &local);
     out->stretch = cx_derivative(jet.value);
     if (spring->free == MT_NO_NODE) {
         const mt_measure_data m = mt_data_measure(&lin->dual, p->def);
@@ -253,12 +254,10 @@ static void fill_section(const mt_linear *lin, int piece, mt_beam_parts *parts,
         out->stretch -= cx_derivative(mt_measure_value(
             &m, mt_pose_of(rest, p->def->body[0]), mt_pose_of(rest, p->def->body[1]), NULL));
     }
-    for (int k = 0; k < MT_LOCAL; k++) {
-        out->g[k] = cx_derivative(local.g[k]);
+    for (int k = 0; k < MT_RELATIVE; k++) {
+        out->g[k] = cx_derivative(jet.g[k]);
     }
-    for (int k = 0; k < MT_LOCAL * MT_LOCAL; k++) {
-        out->h[k] = cx_derivative(local.h[k]);
-    }
+    out->filled = hessian_slope(&jet, out->h);
 }
 
 /* Fill `all` by the inputs that are forced, or count where it is NULL. */
@@ -305,19 +304,19 @@ static void add_sections(const work *w, double *slope)
         const mt_piece *const p = &lin->pieces[s->piece];
         const int at = s->piece + p->partner;
         const mt_piece *const other = &lin->pieces[at];
-        double way[MT_LOCAL];
-        double x[MT_LOCAL];
+        double way[MT_RELATIVE];
+        double x[MT_RELATIVE];
+        double bent[MT_RELATIVE];
         double along = 0.0;
         double work_of_x = 0.0;
         double energy = 0.0;
-        mt_piece_motion(p, w->phi, way);
-        mt_piece_motion(p, w->x, x);
-        for (int c = 0; c < MT_LOCAL; c++) {
-            along += s->g[c] * way[c];
-            work_of_x += s->g[c] * x[c];
-            for (int r = 0; r < MT_LOCAL; r++) {
-                energy += way[r] * s->h[r + (MT_LOCAL * c)] * way[c];
-            }
+        mt_piece_relative(p, w->phi, way);
+        mt_piece_relative(p, w->x, x);
+        mt_piece_product(s->filled, s->h, way, bent);
+        for (int k = 0; k < MT_RELATIVE; k++) {
+            along += s->g[k] * way[k];
+            work_of_x += s->g[k] * x[k];
+            energy += way[k] * bent[k];
         }
         slope[s->input] += p->force * (energy - work_of_x);
         if (w->row[s->piece] >= 0) {

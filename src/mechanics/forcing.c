@@ -36,7 +36,7 @@ static bool add_geometric(const mt_linear *lin, int joint, int dof, double sign,
         }
         for (int r = 0; r < MT_LOCAL; r++) {
             for (int c = 0; c < MT_LOCAL && piece->dof[r] == dof; c++) {
-                const double add = sign * piece->force * piece->h[r + (MT_LOCAL * c)];
+                const double add = sign * piece->force * mt_piece_entry(piece, r, c);
                 if (piece->dof[c] >= 0 && add != 0.0) {
                     out[piece->dof[c]] += add;
                     any = true;

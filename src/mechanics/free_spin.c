@@ -233,7 +233,8 @@ static mt_status take_load(search *s, mt_err *err)
         most = fmax(most, fabs(e->dc[i % nq] * lin->kg[i] * e->dc[i / nq]));
     }
     for (int z = 0; z < e->n && most > 0.0; z++) {
-        mt_gemv(false, (int)nq, (int)nq, 1.0, lin->kg, (int)nq, e->z + (z * nq), 0.0, kz);
+        memset(kz, 0, (size_t)nq * sizeof *kz);
+        mt_linear_add_load(lin, 1.0, e->z + (z * nq), kz);
         for (int c = 0; c < s->n; c++) {
             s->row[c] = rotation_about_axis(s, c, kz, 1) / (lin->sys->length_m * most);
         }

@@ -55,8 +55,15 @@ mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_ar
 {
     l->terms = mt_arena_f64(mem, (size_t)sys->nq, (size_t)sys->nq);
     l->push = mt_arena_f64(mem, (size_t)sys->n_bodies, 1);
-    const size_t most = 2 * ((size_t)sys->n_springs + (size_t)sys->n_constraints);
-    l->pieces = mt_arena_alloc(mem, most + (size_t)sys->n_loads, sizeof *l->pieces);
+    size_t most = (size_t)sys->n_loads;
+    for (int i = 0; i < sys->n_springs; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        most += s->damper ? 0 : (s->measure[0] == s->measure[1] ? 1 : 2);
+    }
+    for (int i = 0; i < sys->n_constraints; i++) {
+        most += (size_t)sys->constraints[i].terms;
+    }
+    l->pieces = mt_arena_alloc(mem, most, sizeof *l->pieces);
     return mt_arena_check(mem, err);
 }
 
@@ -92,9 +99,7 @@ static mt_piece *note_terms(const mt_data *d, const mt_measure_def *def, const m
         return NULL;
     }
     mt_piece *const piece = &out->pieces[out->n_pieces++];
-    mt_jet local;
-    mt_relative_expand(jet, &local);
-    mt_piece_fill(d, def, poses, &local, size_force, out->terms, piece);
+    mt_piece_fill(d, def, poses, jet, size_force, out->terms, piece);
     return piece;
 }
 
@@ -339,10 +344,11 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
     for (int i = 0; i < sys->n_loads; i++) {
         int body[2];
         mt_cx size = 0.0;
-        load_jet(d, &sys->loads[i], at, hessian, body, &size, &jet);
+        const bool bends = hessian && (sys->loads[i].measure >= 0 || sys->loads[i].point >= 0);
+        load_jet(d, &sys->loads[i], at, bends, body, &size, &jet);
         add_gradient(sys, body, &jet, -size, out, out->g);
         note_force(sys, out, body, &jet, size);
-        if (hessian) {
+        if (bends) { /* a force at a centre does not */
             mt_curvature_add(&sum, body, &jet, NULL, -size, 0.0);
             note_load(d, &sys->loads[i], at->pose, &jet, size, out);
         }

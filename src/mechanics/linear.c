@@ -70,6 +70,28 @@ mt_status mt_linear_new(const mt_system *sys, mt_linear **out, mt_err *err)
     return MT_OK;
 }
 
+/* Rows of K are gradients, which forces that are told one by one have already. */
+static void stiffness_rows(const mt_linear *lin, mt_cx *rows)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    int at = 0;
+    for (int i = 0; i < list->n_terms; i++) {
+        const mt_term *const t = &list->terms[i];
+        mt_cx *const own = rows + ((ptrdiff_t)t->first * MT_LOCAL);
+        while (at < lin->n_pieces && lin->pieces[at].spring >= 0 &&
+               lin->pieces[at].spring < t->source) {
+            at++;
+        }
+        if (at == lin->n_pieces || lin->pieces[at].spring != t->source) {
+            mt_term_rows(&lin->data, MT_TERM_STIFFNESS, t, lin->position.at.pose, own);
+            continue;
+        }
+        for (int k = 0; k < t->count * MT_LOCAL; k++) {
+            own[k] = lin->pieces[at + (k / MT_LOCAL)].g[k % MT_LOCAL];
+        }
+    }
+}
+
 static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
 {
     for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
@@ -80,7 +102,11 @@ static mt_status evaluate_rows(mt_linear *lin, mt_err *err)
         mt_cx *const rows = mt_arena_alloc(&lin->scratch, size, sizeof *rows);
         MT_TRY(mt_arena_check(&lin->geometry->mem, err));
         MT_TRY(mt_arena_check(&lin->scratch, err));
-        mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.at.pose, rows);
+        if (kind == MT_TERM_STIFFNESS && lin->pieces != NULL) {
+            stiffness_rows(lin, rows);
+        } else {
+            mt_rows_eval(&lin->data, (mt_term_kind)kind, list, lin->position.at.pose, rows);
+        }
         for (size_t i = 0; i < size; i++) {
             lin->rows[kind][i] = creal(rows[i]);
         }
@@ -143,6 +169,8 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
         lin->kg = mt_arena_f64(&lin->geometry->mem, (size_t)nq, (size_t)nq);
         MT_TRY(mt_arena_check(&lin->geometry->mem, err));
         memcpy(lin->kg, l.h, (size_t)(nq * nq) * sizeof *lin->kg);
+        mt_rows_of_columns((int)nq, (int)nq, lin->kg, &lin->geometry->mem, &lin->kg_rows);
+        MT_TRY(mt_arena_check(&lin->geometry->mem, err));
     }
     mt_arena_rewind(&lin->scratch, mark);
     MT_TRY(mt_eliminate_factor(sys, lin->m, lin->a, &lin->geometry->mem, &lin->e, err));
@@ -215,10 +243,39 @@ static void add_couplings(const mt_linear *lin, double *k)
     }
 }
 
+void mt_linear_add_load(const mt_linear *lin, double scale, const double *phi, double *out)
+{
+    for (int j = 0; j < lin->sys->nq && lin->kg != NULL; j++) {
+        if (phi[j] != 0.0) {
+            mt_rows_axpy(&lin->kg_rows, j, scale * phi[j], out);
+        }
+    }
+}
+
+/* lin->g_fixed := Z^T Kg Z, of which both are sparse. */
+static mt_status reduce_load(mt_linear *lin, mt_err *err)
+{
+    const int nq = lin->sys->nq;
+    const ptrdiff_t n = lin->n;
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    double *const kz = mt_arena_f64(&lin->scratch, (size_t)nq, 1);
+    mt_rows z;
+    mt_rows_of_columns(nq, lin->n, lin->e.z, &lin->scratch, &z);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    for (ptrdiff_t c = 0; c < n; c++) {
+        memset(kz, 0, (size_t)nq * sizeof *kz);
+        mt_linear_add_load(lin, 1.0, lin->e.z + (c * nq), kz);
+        for (int r = 0; r < lin->n; r++) {
+            lin->g_fixed[r + (c * n)] = mt_rows_dot(&z, r, kz);
+        }
+    }
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
+
 static mt_status fixed_parts(mt_linear *lin, mt_err *err)
 {
     const size_t n = (size_t)lin->n;
-    const ptrdiff_t nq = lin->sys->nq;
     lin->k = mt_arena_f64(&lin->reduced_mem, n, n);
     lin->m_r = mt_arena_f64(&lin->reduced_mem, n, n);
     lin->k_fixed = mt_arena_f64(&lin->reduced_mem, n, n);
@@ -231,15 +288,8 @@ static mt_status fixed_parts(mt_linear *lin, mt_err *err)
     lin->g_fixed = mt_arena_f64(&lin->reduced_mem, n, n);
     MT_TRY(mt_arena_check(&lin->reduced_mem, err));
     if (lin->kg != NULL) {
-        const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
-        double *const kz = mt_arena_f64(&lin->scratch, (size_t)nq, n);
-        MT_TRY(mt_arena_check(&lin->scratch, err));
-        mt_gemm(false, false, (int)nq, lin->n, (int)nq, 1.0, lin->kg, (int)nq, lin->e.z,
-                (int)nq, 0.0, kz, (int)nq);
-        mt_gemm(true, false, lin->n, lin->n, (int)nq, 1.0, lin->e.z, (int)nq, kz, (int)nq, 0.0,
-                lin->g_fixed, lin->n);
+        MT_TRY(reduce_load(lin, err));
         memcpy(lin->k_fixed, lin->g_fixed, n * n * sizeof *lin->k_fixed);
-        mt_arena_rewind(&lin->scratch, mark);
     }
     add_terms(lin, MT_TERM_STIFFNESS, 0, lin->k_fixed);
     add_terms(lin, MT_TERM_MASS, 0, lin->m_fixed);

@@ -43,6 +43,7 @@ struct mt_linear {
     mt_rows entries[MT_TERM_KINDS];    /* nonzero entries of reduced; none in a blocked row */
     double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
     double *kg;       /* nq x nq geometric stiffness; NULL without loads */
+    mt_rows kg_rows;  /* the same, its entries that are not 0 */
     mt_piece *pieces; /* [n_pieces] the forces; NULL without loads */
     double *push;     /* [bodies] magnitudes of all forces on each */
     double *kg_terms; /* nq x nq: sums of magnitudes of the terms of kg */
@@ -80,6 +81,8 @@ struct mt_linear {
 /* out (n x n) += c times the term's rows, lower triangle. */
 void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double c,
                         double *out);
+/* out[nq] += scale Kg phi; nothing without loads. */
+void mt_linear_add_load(const mt_linear *lin, double scale, const double *phi, double *out);
 /* Contribution of a term to H: loss * coefficient; 0 without a loss factor. */
 double mt_linear_loss(const mt_linear *lin, const mt_term *t);
 

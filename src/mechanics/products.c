@@ -218,8 +218,8 @@ static mt_status moving_product(mt_linear *lin, sum s, int p, moving *v, double 
         full_product(lin, s, 1.0, v->phi, v->kphi);
         full_product(lin, s, 1.0, v->z, v->w);
         if (geometric) {
-            mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->kphi);
-            mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->z, 1.0, v->w);
+            mt_linear_add_load(lin, 1.0, v->phi, v->kphi);
+            mt_linear_add_load(lin, 1.0, v->z, v->w);
         }
         MT_TRY(mt_eliminate_multipliers(&lin->e, v->kphi, v->lambda, &lin->scratch, err));
         mt_gemv(true, lin->m, nq, -1.0, t->a, lin->m, v->lambda, 1.0, v->w);
@@ -296,11 +296,8 @@ void mt_linear_rows_product(const mt_linear *lin, double lambda, const double *p
 /* v->lambda := mu, A^T mu = (K - lambda M) phi: joint forces of the mode. */
 static mt_status joint_forces(mt_linear *lin, double lambda, moving *v, mt_err *err)
 {
-    const int nq = lin->sys->nq;
     mt_linear_rows_product(lin, lambda, v->phi, v->w);
-    if (lin->kg != NULL) {
-        mt_gemv(false, nq, nq, 1.0, lin->kg, nq, v->phi, 1.0, v->w);
-    }
+    mt_linear_add_load(lin, 1.0, v->phi, v->w);
     return mt_eliminate_multipliers(&lin->e, v->w, v->lambda, &lin->scratch, err);
 }
 
@@ -427,10 +424,9 @@ static sum sum_of(mt_matrix matrix)
 void mt_linear_states_product(const mt_linear *lin, mt_matrix matrix, double scale,
                               const double *phi, double *out)
 {
-    const int nq = lin->sys->nq;
     full_product(lin, sum_of(matrix), scale, phi, out);
-    if (matrix == MT_MATRIX_STIFFNESS && lin->kg != NULL) {
-        mt_gemv(false, nq, nq, scale, lin->kg, nq, phi, 1.0, out);
+    if (matrix == MT_MATRIX_STIFFNESS) {
+        mt_linear_add_load(lin, scale, phi, out);
     }
 }
 
