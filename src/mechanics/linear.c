@@ -42,6 +42,8 @@ static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
     lin->dual.value = lin->value;
     lin->dual.grad = lin->grad;
     MT_TRY(mt_placement_init(&lin->last, sys, &lin->base, err));
+    MT_TRY(mt_placement_init(&lin->home, sys, &lin->base, err));
+    lin->home_at = mt_arena_f64(&lin->base, (size_t)sys->n_inputs, 1);
     MT_TRY(mt_terms_new(sys, &lin->base, lin->list, err));
     const size_t terms = (size_t)lin->list[MT_TERM_STIFFNESS].n_terms;
     lin->coupling = mt_arena_alloc(&lin->base, terms, sizeof *lin->coupling);
@@ -341,14 +343,17 @@ static void assemble_stiffness(mt_linear *lin)
     lin->stiffness_version++;
 }
 
-static mt_status find_position(mt_linear *lin, mt_err *err)
+static mt_status find_position(mt_linear *lin, const double *inputs, mt_err *err)
 {
+    const bool again = !lin->follow && lin->has_home &&
+                       mt_stages_same(&lin->stages, lin->sys->places, lin->home_at, inputs);
+    const mt_placement *const last = lin->follow && lin->has_last ? &lin->last : NULL;
     mt_geometry_renew(lin);
     mt_arena_clear(&lin->scratch); /* of what a failure left */
     mt_data_vecs(&lin->data);
-    return mt_position_solve(lin->sys, &lin->data,
-                             lin->follow && lin->has_last ? &lin->last : NULL,
-                             MT_POSITION_QUICK, &lin->geometry->mem, &lin->position, err);
+    return mt_position_solve(lin->sys, &lin->data, again ? &lin->home : last,
+                             again ? MT_POSITION_AGAIN : MT_POSITION_QUICK, &lin->geometry->mem,
+                             &lin->position, err);
 }
 
 static void keep_last(mt_linear *lin)
@@ -359,11 +364,26 @@ static void keep_last(mt_linear *lin)
     }
 }
 
-static mt_status find_position_and_rows(mt_linear *lin, mt_err *err)
+/* Of the first update alone: what later ones give depends on no others. */
+static void keep_home(mt_linear *lin, const double *inputs)
 {
-    MT_TRY(find_position(lin, err));
+    lin->has_home = !lin->follow && lin->sys->driven && lin->position.direct;
+    if (lin->has_home) {
+        mt_placement_copy(lin->sys, &lin->position.driven, &lin->home);
+        memcpy(lin->home_at, inputs, (size_t)lin->sys->n_inputs * sizeof *inputs);
+    }
+}
+
+static mt_status find_position_and_rows(mt_linear *lin, const double *inputs, mt_err *err)
+{
+    const bool first = !lin->had_first;
+    lin->had_first = true;
+    MT_TRY(find_position(lin, inputs, err));
     MT_TRY(constrain(lin, err));
     keep_last(lin); /* not from a dead centre: which way led on would be open */
+    if (first) {
+        keep_home(lin, inputs);
+    }
     MT_TRY(mt_interrupt_check(lin->sys->run->interrupt, err));
     MT_TRY(evaluate_rows(lin, err));
     return mt_interrupt_check(lin->sys->run->interrupt, err);
@@ -444,7 +464,7 @@ static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
         mt_stages_shared(st, MT_STAGE_GEOMETRY, inputs);
         return MT_OK;
     }
-    MT_TRY(find_position_and_rows(lin, err));
+    MT_TRY(find_position_and_rows(lin, inputs, err));
     mt_geometry_made(lin, inputs);
     mt_stages_done(st, MT_STAGE_GEOMETRY, inputs);
     return MT_OK;
@@ -516,7 +536,7 @@ mt_status mt_linear_set_inputs(mt_linear *lin, const double *inputs, mt_err *err
     lin->stages.valid[MT_STAGE_GEOMETRY] = false;
     lin->stages.valid[MT_STAGE_TANGENT] = false;
     lin->stages.valid[MT_STAGE_REDUCTION] = false;
-    MT_TRY(find_position(lin, err));
+    MT_TRY(find_position(lin, inputs, err));
     keep_last(lin);
     return MT_OK;
 }

@@ -16,7 +16,8 @@
  * A stage (base/run.h) is computed again only where an input that it depends on has other
  * bits than at its last computation, or where an earlier stage was computed (stages.h).
  * Skipping does not change results: they depend on the inputs alone, and on the first update,
- * whose masses choose the basis of a geometry that no input moves.
+ * whose masses choose the basis of a geometry that no input moves, and from whose driven
+ * position those begin that differ in neither drawing nor drive (MT_POSITION_AGAIN).
  */
 typedef struct mt_linear mt_linear;
 

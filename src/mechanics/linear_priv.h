@@ -26,12 +26,18 @@ struct mt_linear {
     mt_data dual;          /* with derivative */
     mt_state position;
     mt_placement last; /* position of the driven joint at the last update */
-    int first_input;   /* derivatives are wanted from this input on; 0: for all */
-    mt_elimination e;  /* at the final position, constraints of the linearised system */
-    double *z_error;   /* nq x n: bounds of the errors of e.z */
-    int m;             /* constraints in force */
-    double *a;         /* m x nq */
-    int n;             /* freedoms */
+    /* position of the driven joint at the first update, of inputs home_at, where it was
+     * direct */
+    mt_placement home;
+    double *home_at;
+    bool has_home;
+    bool had_first;   /* there was an update */
+    int first_input;  /* derivatives are wanted from this input on; 0: for all */
+    mt_elimination e; /* at the final position, constraints of the linearised system */
+    double *z_error;  /* nq x n: bounds of the errors of e.z */
+    int m;            /* constraints in force */
+    double *a;        /* m x nq */
+    int n;            /* freedoms */
     /* spins without inertia, stiffness or joint, left out of the freedoms (free_spin.h) */
     int n_free_spins;
     bool *free_spins;                  /* [bodies] takes part in one */

@@ -201,6 +201,33 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
                                             : MT_OK;
 }
 
+/* An equilibrium further than this from where another design was driven to is looked for from
+ * its own way there [model lengths, rad]. */
+static const double AGAIN = 0.03;
+
+/* *near: the equilibrium is direct from `home`, and next to it. Else nothing has changed. */
+static mt_status drive_again(mt_state *p, const mt_data *data, const mt_placement *home,
+                             bool *near, mt_arena *mem, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(mem);
+    const mt_state before = *p;
+    mt_err own = {0};
+    bool anchored = false;
+    mt_status rc = drive(p, data, home, true, &anchored, mem, &own);
+    rc = rc == MT_OK && !anchored ? is_direct(p, false, near, mem, &own) : rc;
+    if (rc == MT_E_INTERRUPTED || mt_is_final(rc)) {
+        return mt_fail(err, rc, "%s", own.text);
+    }
+    *near = *near && rc == MT_OK && p->equilibrium.null_freedoms == 0 &&
+            mt_poses_distance(p->sys, p->driven.pose, p->at.pose) <= AGAIN;
+    if (!*near) {
+        mt_arena_rewind(mem, mark);
+        *p = before;
+    }
+    p->direct = *near;
+    return MT_OK;
+}
+
 /*
  * The brief path is sufficient where the equilibrium is direct: it is then the same from any
  * start next to it on the same branch. All other results (saddles, freedoms without stiffness
@@ -218,6 +245,7 @@ static mt_status drive_from(mt_state *p, const mt_data *data, const mt_placement
     mt_status rc = drive(p, data, from, true, &anchored, mem, &own);
     rc = rc == MT_OK ? is_direct(p, anchored, &direct, mem, &own) : rc;
     if (rc == MT_OK && direct) {
+        p->direct = true;
         return MT_OK;
     }
     if (rc == MT_E_INTERRUPTED || mt_is_final(rc)) {
@@ -291,10 +319,17 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
     mt_data_rest(data, out->reference.pose);
     mt_placement_copy(sys, &out->reference, &out->at);
     if (sys->driven) {
-        const mt_placement *const from = start != NULL ? start : &out->reference;
+        const bool again = way == MT_POSITION_AGAIN;
+        const mt_placement *const from = start != NULL && !again ? start : &out->reference;
         bool anchored = false;
-        MT_TRY(way == MT_POSITION_EXACT ? drive(out, data, from, false, &anchored, mem, err)
-                                        : drive_from(out, data, from, mem, err));
+        bool near = false;
+        if (again) {
+            MT_TRY(drive_again(out, data, start, &near, mem, err));
+        }
+        if (!near) {
+            MT_TRY(way == MT_POSITION_EXACT ? drive(out, data, from, false, &anchored, mem, err)
+                                            : drive_from(out, data, from, mem, err));
+        }
     } else if (sys->loaded) {
         MT_TRY(find_equilibrium(out, data, mem, err));
     }

@@ -20,6 +20,8 @@
  * drawing selects one of several equilibria, and another start may lead to another one (beyond
  * a fold, across a saddle). Where it leads to the same, the last bits would depend on which
  * designs were evaluated before, and by which worker. It would save one or two of five steps.
+ * Only the way of a driven joint, where nothing that it goes by has changed, need not be gone
+ * again (MT_POSITION_AGAIN).
  */
 typedef struct mt_state {
     const mt_system *sys;
@@ -31,6 +33,8 @@ typedef struct mt_state {
     mt_stage closure;
     mt_stage anchored; /* the driven stage, where freedoms without stiffness need it */
     mt_stage equilibrium;
+    /* driven: the equilibrium is a minimum that any start next to it leads to */
+    bool direct;
     int iterations; /* of Newton's method, in all stages */
     double gap_m;   /* largest violation of a constraint at the final position */
     /* largest motions of bodies from the drawing, or from the driven position, to `at` */
@@ -46,11 +50,14 @@ typedef struct mt_state {
 /* QUICK: closure by the smallest steps where they converge. EXACT: without it, the slow
  * reference method for QUICK. SPARSE: not driven, in O(bodies) for a chain, or at the cost of
  * the fill-in of a factor; fails with MT_E_EQUILIBRIUM where sparse matrices are not
- * sufficient. */
+ * sufficient. AGAIN: `start` is where a design with the same drawing and drive was driven to:
+ * from there, where the equilibrium is next to it, else as QUICK from the reference
+ * position. */
 typedef enum mt_position_method {
     MT_POSITION_QUICK,
     MT_POSITION_EXACT,
-    MT_POSITION_SPARSE
+    MT_POSITION_SPARSE,
+    MT_POSITION_AGAIN
 } mt_position_method;
 
 /* data holds values (input -1) with vectors computed; targets and rest values are filled here.
