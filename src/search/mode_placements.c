@@ -252,9 +252,13 @@ static mt_status end_full(mt_mode_placement_job *first, double last, double rest
 {
     const mt_mode_placement_candidates *const c = first->candidates;
     note_proof(all, out);
-    out->n_searched = first->searched;
-    out->n_candidates = all->proven ? all->n : first->searched;
-    out->rest = first->searched < c->n ? fmin(c->least[first->searched], rest) : rest;
+    out->rest = rest;
+    for (int k = 0; k < c->n; k++) {
+        const bool left_out = mt_mode_placement_is_left_out(first, k);
+        out->rest = left_out ? fmin(out->rest, c->least[k]) : out->rest;
+        out->n_searched += left_out ? 0 : 1;
+    }
+    out->n_candidates = all->proven ? all->n : out->n_searched;
     out->bounded = out->rest >= last;
     out->ended = true;
     return collect_placement_result(first->p, first, mem, out, err);
@@ -341,7 +345,7 @@ static mt_status search_and_prove(mt_mode_placement_job *first, mt_mode_placemen
     if (listed->n > asked) {
         first->candidates = listed;
         MT_TRY(claim_slots(first, mem, err));
-        MT_TRY(mt_mode_placement_search_best(first, n_workers, asked, mem, &last, err));
+        MT_TRY(mt_mode_placement_search_best(first, n_workers, asked, rest, mem, &last, err));
         if (last < HUGE_VAL || mt_interrupted(j->p->run->interrupt)) {
             MT_TRY(all->proven ? MT_OK
                                : mt_mode_placement_candidates_settle(w, proof, mem, all, err));

@@ -129,6 +129,9 @@ typedef struct mt_mode_placement_candidates {
     /* [n] lower bound of the first objective of its designs (mode_placements_bounds.h); NULL:
      * not known */
     double *least;
+    /* [n] estimate of the first objective of its best design (mode_placements_estimates.h);
+     * NULL: not known */
+    double *estimate;
     int n_proven; /* number of leading rows with a known design */
     double possible;
     /* every unlisted placement is proven infeasible */

@@ -9,7 +9,9 @@
  */
 #include "search/mode_placements_priv.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "nlp/merit.h"
@@ -17,11 +19,22 @@
 /* Searches between two looks at what is left to do. */
 enum { BATCH = 16 };
 /* Starts of all those that may be listed and have no design so far, together, and of each at
- * least; of each that has one that is nearly listed. */
-enum { STARTS_TOGETHER = 72, STARTS_LEAST = 3, STARTS_LISTED = 24 };
+ * least; no more of these than MISSED_MOST, those of the least estimates. Starts of each that
+ * is listed, and of all those that are nearly listed together. */
+enum {
+    STARTS_TOGETHER = 72,
+    STARTS_LEAST = 3,
+    MISSED_MOST = 48,
+    STARTS_LISTED = 24,
+    STARTS_NEAR = 240
+};
 /* A design beyond this multiple of the last one's objective has hardly a better one beside it
  * in its assignment: the change is a root of it. */
 static const double NEAR_LAST = 1.5;
+/* Where bounds cannot close the list, a placement whose estimate is beyond this multiple of the
+ * last one's objective (twice the change) is left out: estimates are seldom above half as much
+ * again as what is found. */
+static const double FAR_FROM_LAST = 4.0;
 
 /* First objective of a feasible slot. */
 static double first_of(const mt_mode_placement_slot *s)
@@ -174,34 +187,134 @@ static mt_status search_again(mt_mode_placement_job *j, again *a, int starts, in
     for (int i = 0; i < a->n; i++) {
         if (rc == MT_OK) {
             merge_candidate_searches(j, &j->slots[a->place[i]], &later.slots[i]);
+            j->slots[a->place[i]].carried = false;
         }
         mt_arena_free(&later.slots[i].mem);
     }
     return rc;
 }
 
-/* Searches the candidates that may be listed, feasible or not, with that many starts. */
-static mt_status search_listed(mt_mode_placement_job *j, bool met, double last, int n_workers,
+/* Starts of each of n, of so many together. */
+static int share_starts(int together, int n)
+{
+    const int share = n > 0 ? together / n : 0;
+    return share < STARTS_LEAST ? STARTS_LEAST : share < STARTS_LISTED ? share : STARTS_LISTED;
+}
+
+static int compare_estimates(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return x < y ? -1 : x > y ? 1 : 0;
+}
+
+/* True where candidate k has no design and may be listed. */
+static bool is_missed(const mt_mode_placement_job *j, int k, double last)
+{
+    return j->candidates->least[k] <= last && !mt_mode_placement_is_met(&j->slots[k]) &&
+           !j->slots[k].carried;
+}
+
+/* The estimate up to which those without a design are searched again. */
+static mt_status find_missed_limit(const mt_mode_placement_job *j, double last, mt_arena *mem,
+                                   double *limit, mt_err *err)
+{
+    double *const list = mt_arena_f64(mem, (size_t)j->searched, 1);
+    int n = 0;
+    MT_TRY(mt_arena_check(mem, err));
+    for (int k = 0; k < j->searched; k++) {
+        if (is_missed(j, k, last)) {
+            list[n++] = j->candidates->estimate[k];
+        }
+    }
+    *limit = HUGE_VAL;
+    if (n > MISSED_MOST) {
+        qsort(list, (size_t)n, sizeof *list, compare_estimates);
+        *limit = list[MISSED_MOST - 1];
+    }
+    return MT_OK;
+}
+
+/* Searches once more those that may be listed and have no design. */
+static mt_status search_missed(mt_mode_placement_job *j, double last, int n_workers,
                                mt_arena *mem, mt_err *err)
+{
+    again a;
+    double limit = HUGE_VAL;
+    MT_TRY(allocate_repeated_searches(j, mem, &a, err));
+    MT_TRY(find_missed_limit(j, last, mem, &limit, err));
+    for (int k = 0; k < j->searched; k++) {
+        if (is_missed(j, k, last) && j->candidates->estimate[k] <= limit) {
+            add_candidate(j, k, nearest(j, k), &a);
+        }
+    }
+    a.skip = 1;
+    return search_again(j, &a, share_starts(STARTS_TOGETHER, a.n), n_workers, mem, err);
+}
+
+/* Searches once more those whose first objective is up to `most`; `skip` starts they had.
+ * together: starts of all; *starts: those that each has had now. */
+static mt_status search_near(mt_mode_placement_job *j, double most, int skip, int together,
+                             int n_workers, mt_arena *mem, int *starts, mt_err *err)
 {
     again a;
     MT_TRY(allocate_repeated_searches(j, mem, &a, err));
     for (int k = 0; k < j->searched; k++) {
         const mt_mode_placement_slot *const s = &j->slots[k];
-        if (j->candidates->least[k] <= last && mt_mode_placement_is_met(s) == met &&
-            (!met || first_of(s) <= NEAR_LAST * last)) {
+        if (mt_mode_placement_is_met(s) && first_of(s) <= most) {
             add_candidate(j, k, nearest(j, k), &a);
         }
     }
-    a.skip = 1;
-    const int share = a.n > 0 ? STARTS_TOGETHER / a.n : 0;
-    const int least = share > STARTS_LEAST ? share : STARTS_LEAST;
-    const int starts = met ? STARTS_LISTED : least;
-    return search_again(j, &a, starts, n_workers, mem, err);
+    a.skip = skip;
+    *starts = share_starts(together, a.n);
+    return search_again(j, &a, *starts, n_workers, mem, err);
+}
+
+/* Searches once more what may be listed, where each has had one start. */
+static mt_status search_listed(mt_mode_placement_job *j, int asked, int n_workers,
+                               mt_arena *mem, double *last, mt_err *err)
+{
+    int starts = 0;
+    MT_TRY(search_missed(j, *last, n_workers, mem, err));
+    *last = last_of(j, asked);
+    MT_TRY(search_near(j, NEAR_LAST * *last, 1, STARTS_NEAR, n_workers, mem, &starts, err));
+    *last = last_of(j, asked);
+    if (starts < STARTS_LISTED) {
+        MT_TRY(search_near(j, *last, starts, INT_MAX, n_workers, mem, &starts, err));
+        *last = last_of(j, asked);
+    }
+    return MT_OK;
+}
+
+/* Leaves those of the next n out whose estimate is above `most`. */
+static void leave_out(mt_mode_placement_job *j, int n, double most)
+{
+    for (int k = j->from; k < j->from + n; k++) {
+        j->slots[k].carried = j->candidates->estimate[k] > most;
+    }
+}
+
+bool mt_mode_placement_is_left_out(const mt_mode_placement_job *j, int k)
+{
+    return k >= j->searched || j->slots[k].carried;
+}
+
+/* Searches what was left out and may be listed, where that is all that may be. */
+static mt_status search_left_out(mt_mode_placement_job *j, double last, int n_workers,
+                                 mt_arena *mem, mt_err *err)
+{
+    again a;
+    MT_TRY(allocate_repeated_searches(j, mem, &a, err));
+    for (int k = 0; k < j->searched; k++) {
+        if (mt_mode_placement_is_left_out(j, k) && j->candidates->least[k] <= last) {
+            add_candidate(j, k, NULL, &a);
+        }
+    }
+    return search_again(j, &a, 1, n_workers, mem, err);
 }
 
 mt_status mt_mode_placement_search_best(mt_mode_placement_job *j, int n_workers, int asked,
-                                        mt_arena *mem, double *last, mt_err *err)
+                                        double rest, mt_arena *mem, double *last, mt_err *err)
 {
     const int starts = j->options.starts;
     const int n = j->candidates->n;
@@ -216,9 +329,11 @@ mt_status mt_mode_placement_search_best(mt_mode_placement_job *j, int n_workers,
     while (rc == MT_OK && j->searched < n && !mt_interrupted(interrupt) &&
            j->candidates->least[j->searched] <= *last) {
         const int left = n - j->searched;
+        const int batch = left < BATCH ? left : BATCH;
         j->from = j->searched;
-        rc = search_candidates(j, left < BATCH ? left : BATCH, n_workers, err);
-        j->searched += left < BATCH ? left : BATCH;
+        leave_out(j, batch, rest <= *last ? FAR_FROM_LAST * *last : HUGE_VAL);
+        rc = search_candidates(j, batch, n_workers, err);
+        j->searched += batch;
         *last = last_of(j, asked);
     }
     j->options.starts = starts;
@@ -226,11 +341,11 @@ mt_status mt_mode_placement_search_best(mt_mode_placement_job *j, int n_workers,
     j->few = false;
     j->from = 0;
     MT_TRY(rc);
-    for (int met = 0; met < 2 && few && *last < HUGE_VAL; met++) {
-        MT_TRY(search_listed(j, met == 1, *last, n_workers, mem, err));
+    if (rest > *last) {
+        MT_TRY(search_left_out(j, *last, n_workers, mem, err));
         *last = last_of(j, asked);
     }
-    return MT_OK;
+    return few && *last < HUGE_VAL ? search_listed(j, asked, n_workers, mem, last, err) : MT_OK;
 }
 
 mt_status mt_mode_placement_search_known(mt_mode_placement_job *j, int n_workers,

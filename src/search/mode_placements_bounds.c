@@ -211,6 +211,7 @@ mt_status mt_mode_placement_bounds_make(const mt_subproblem *c, const mt_proof *
         out->any[i] = out->n_levels;
     }
     MT_TRY(find_levels(proof, whole, mem, out, err));
+    MT_TRY(mt_mode_placement_estimates_make(c, proof, mem, &out->estimates, err));
     *known = !mt_interrupted(p->run->interrupt);
     return MT_OK;
 }
@@ -230,17 +231,6 @@ static int level_of_first(const mt_mode_placement_bounds *b, const int *below, i
             const int own = level_of(b, box, i, below[i]);
             level = own > level ? own : level;
         }
-        least = level < least ? level : least;
-    }
-    return least;
-}
-
-/* The level of one band alone. */
-static int alone(const mt_mode_placement_bounds *b, int band, int below)
-{
-    int least = b->n_levels;
-    for (int box = 0; box < b->n_boxes; box++) {
-        const int level = level_of(b, box, band, below);
         least = level < least ? level : least;
     }
     return least;
@@ -400,7 +390,7 @@ static int find_cap(walk *w)
 
 typedef struct ranked {
     double least;
-    double estimate; /* sum of squares of what each band asks for alone: for the order only */
+    double estimate;
     int place;
 } ranked;
 
@@ -429,20 +419,19 @@ mt_status mt_mode_placement_bounds_sort(const mt_mode_placement_bounds *b,
     int *const below = mt_arena_int(mem, n * row);
     double *const at = mt_arena_f64(mem, width, n);
     double *const least = mt_arena_f64(mem, n, 1);
+    double *const estimate = mt_arena_f64(mem, n, 1);
     MT_TRY(mt_arena_check(mem, err));
     for (size_t k = 0; k < n; k++) {
         const int *const own = c->below + (k * row);
         order[k] =
             (ranked){.least = b->least[level_of_first(b, own, p->n_bands)], .place = (int)k};
-        for (int i = 0; i < p->n_bands && isfinite(order[k].least); i++) {
-            const int level = alone(b, i, own[i]);
-            order[k].estimate += p->tie[i] == i ? b->least[level] : 0.0;
-        }
+        order[k].estimate = mt_mode_placement_estimate(&b->estimates, own);
     }
     qsort(order, n, sizeof *order, by_least);
     for (size_t k = 0; k < n; k++) {
         const size_t from = (size_t)order[k].place;
         least[k] = order[k].least;
+        estimate[k] = order[k].estimate;
         memcpy(below + (k * row), c->below + (from * row), row * sizeof *below);
         for (size_t i = 0; i < width; i++) {
             at[(k * width) + i] = c->at == NULL ? nan("") : c->at[(from * width) + i];
@@ -451,6 +440,7 @@ mt_status mt_mode_placement_bounds_sort(const mt_mode_placement_bounds *b,
     c->below = below;
     c->at = at;
     c->least = least;
+    c->estimate = estimate;
     return MT_OK;
 }
 

@@ -3,6 +3,7 @@
 #define SEARCH_MODE_PLACEMENTS_BOUNDS_H
 
 #include "search/mode_placements.h"
+#include "search/mode_placements_estimates.h"
 
 /*
  * Lower bounds of the total change that a mode placement needs. Of the coordinates of a design
@@ -28,6 +29,7 @@ typedef struct mt_mode_placement_bounds {
     /* [n_boxes x n_bands x (most + 1)] first level for each band (the first of tied ones) and
      * number of modes below it; n_levels: proven infeasible */
     int *level;
+    mt_mode_placement_estimates estimates;
 } mt_mode_placement_bounds;
 
 /* Computes the bounds, in mem. *known false: not available (no enclosures, another first
@@ -46,7 +48,8 @@ mt_status mt_mode_placement_bounds_make(const mt_subproblem *c, const mt_proof *
 mt_status mt_mode_placement_bounds_list(const mt_mode_placement_bounds *b, int most,
                                         mt_arena *mem, mt_mode_placement_candidates *out,
                                         double *rest, mt_err *err);
-/* Sort candidates by that bound, which becomes c->least; `at` and n_proven follow. */
+/* Sort candidates by that bound, which becomes c->least, equal ones by c->estimate; `at` and
+ * n_proven follow. */
 mt_status mt_mode_placement_bounds_sort(const mt_mode_placement_bounds *b,
                                         mt_mode_placement_candidates *c, mt_arena *mem,
                                         mt_err *err);

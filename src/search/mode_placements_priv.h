@@ -23,7 +23,7 @@ typedef struct mt_mode_placement_slot {
     mt_cut *cuts; /* owned during the search */
     mt_at_position_cuts at_position;
     mt_tolerance_cuts corners;
-    bool carried; /* searched before the proof */
+    bool carried; /* searched before the proof, or left out */
 } mt_mode_placement_slot;
 
 /* Searches of candidates, one task each. */
@@ -52,12 +52,15 @@ bool mt_mode_placement_is_met(const mt_mode_placement_slot *s);
 /*
  * mode_placements_best.c: search the candidates, sorted by ascending lower bound, while one of
  * them may still be among the `asked` best designs: each from one start first, those that may
- * be listed from more. Sets job->searched and fills the job's slots; *last: the objective
+ * be listed from more. Where others, of lower bound `rest`, may be listed too, those of large
+ * estimates are left out. Sets job->searched and fills the job's slots; *last: the objective
  * (change) below which a design would be listed, HUGE_VAL where the list is not full. Fails: as
  * the searches.
  */
 mt_status mt_mode_placement_search_best(mt_mode_placement_job *job, int n_workers, int asked,
-                                        mt_arena *mem, double *last, mt_err *err);
+                                        double rest, mt_arena *mem, double *last, mt_err *err);
+/* True where candidate k was not searched. */
+bool mt_mode_placement_is_left_out(const mt_mode_placement_job *job, int k);
 /* Search again, from the designs in `known` (its first n_proven rows), those candidates that
  * have no feasible design yet. */
 mt_status mt_mode_placement_search_known(mt_mode_placement_job *job, int n_workers,

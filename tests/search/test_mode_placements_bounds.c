@@ -4,7 +4,10 @@
  * assignment is said to take, and what is said to have no design has none. Designs drawn at
  * random about the original of a row of three masses, near and far, with springs and masses as
  * variables, weights, a linear measure, bounds that leave the original out, and a limit. The
- * list holds whatever the bounds allow, the least first.
+ * list holds whatever the bounds allow, the least first. Estimates have a closed form where all
+ * modes move alike: the product of the eigenvalues of a row is that of its springs over its
+ * masses, so that slopes of all modes add up to 1/2 for each spring, and the least change that
+ * raises all by the same part is that of all springs alike.
  */
 #include "prove/certify.h"
 #include "search/mode_placements_bounds.h"
@@ -180,5 +183,53 @@ static void short_list__says_what_the_rest_takes(mt_test *t)
     close_bounded(&s);
 }
 
-MT_TEST_MAIN(MT_TEST(least_changes__are_below_those_of_designs),
+#define SPRINGS                                                       \
+    "'variables': [{'parameter': 'k1', 'lower': 300, 'upper': 2700}," \
+    "{'parameter': 'k2', 'lower': 200, 'upper': 1500},"               \
+    "{'parameter': 'k3', 'lower': 200, 'upper': 2000}],"
+
+static void estimate__of_all_modes_alike_has_a_closed_form(mt_test *t)
+{
+    static const double PART = 0.01;        /* of the frequencies, by which they have to rise */
+    static const double DIFFERENCES = 2e-3; /* slopes by differences, thirty sweeps */
+    double hz[3] = {0.0};
+    bounded s;
+    if (open_bounded(t, SPRINGS "'goals': [{'type': 'avoid', 'bands_hz': [[1.9, 2.1]]}]", &s)) {
+        int below[1];
+        double violation = 0.0;
+        CHECK_INT(
+            t,
+            mt_mode_placement_assignment(s.w, s.p->whole.origin_t, below, &violation, &s.c.err),
+            MT_OK);
+        for (int j = 0; j < 3; j++) {
+            hz[j] = study_hz(s.w->views[0].analysis->modes.lambda[j]);
+        }
+    }
+    close_bounded(&s);
+    char members[1024];
+    (void)snprintf(members, sizeof members,
+                   SPRINGS "'goals': [{'type': 'avoid', 'bands_hz': [[%.17g, %.17g],"
+                           "[%.17g, %.17g], [%.17g, %.17g]]}]",
+                   hz[0] * (1.0 - PART), hz[0] * exp(PART), hz[1] * (1.0 - PART),
+                   hz[1] * exp(PART), hz[2] * (1.0 - PART), hz[2] * exp(PART));
+    if (CHECK(t, hz[0] > 0.0) && open_bounded(t, members, &s)) {
+        static const struct {
+            const char *name;
+            int below[3];
+        } rows[] = {{"all above", {0, 1, 2}}, {"all below", {1, 2, 3}}};
+        for (int k = 0; k < MT_COUNT(rows); k++) {
+            const double rise = 2.0 * PART;
+            const double down = 2.0 * log(1.0 - PART);
+            const double each = k == 0 ? rise * rise : down * down;
+            const double want = 0.5 * 3.0 * each;
+            const double got = mt_mode_placement_estimate(&s.b.estimates, rows[k].below);
+            mt_test_row(t, "%s", rows[k].name);
+            CHECK(t, fabs(got - want) <= DIFFERENCES * want);
+        }
+    }
+    close_bounded(&s);
+}
+
+MT_TEST_MAIN(MT_TEST(estimate__of_all_modes_alike_has_a_closed_form),
+             MT_TEST(least_changes__are_below_those_of_designs),
              MT_TEST(short_list__says_what_the_rest_takes))
