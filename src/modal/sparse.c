@@ -22,8 +22,11 @@
 #include "linalg/dense.h"
 
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
- * iterations (of loops of thousands with the second), and eps gamma cond K is well below 1. */
-static const double STIFFER[] = {1e6, 1e8};
+ * iterations (of loops of thousands with the second), and eps gamma cond K is well below 1. The
+ * third is for what is so much larger than its parts that stiffnesses against turns, over the
+ * square of the whole length, are nothing: a ring of 20,000 hinged bars. */
+static const double STIFFER[] = {1e6, 1e8, 1e12};
+enum { OF_LOADED = 2 /* of them, where gamma may have to outweigh G */ };
 /* The same of a count that says more than was found, in that. */
 static const double COUNTED[] = {1e3, 1e6};
 /* Below this the factor's rounding is refined away in each product. */
@@ -325,15 +328,15 @@ static mt_status refine_shapes(mt_sparse *s, mt_arena *mem, const mt_lowest_mode
 /* Without constraints, or stiffnesses, all of STIFFER are one. */
 int mt_sparse_tries(const mt_sparse_problem *p)
 {
-    return p->a.n_rows == 0 ? 1 : p->g == NULL ? MT_COUNT(STIFFER) : 2 * MT_COUNT(STIFFER);
+    return p->a.n_rows == 0 ? 1 : p->g == NULL ? MT_COUNT(STIFFER) : 2 * OF_LOADED;
 }
 
 mt_sparse mt_sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem)
 {
     return (mt_sparse){.p = p,
                        .mem = mem,
-                       .stiffer = STIFFER[i % MT_COUNT(STIFFER)],
-                       .outweigh = i >= MT_COUNT(STIFFER)};
+                       .stiffer = STIFFER[p->g == NULL ? i : i % OF_LOADED],
+                       .outweigh = p->g != NULL && i >= OF_LOADED};
 }
 
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,

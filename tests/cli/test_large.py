@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Large models are read, checked and, where they are trees or bear no load, answered in time in proportion to their size. No time is measured: a million elements take hours where
-time goes with the square of the size. MT_EVERY=1: a frame that nothing holds, a ring of 6000 bars, else of 1000, and trees of 20000 bodies, else of 6000."""
+time goes with the square of the size. MT_EVERY=1: a frame that nothing holds, rings of up to 20000 bars, else of 1000, and trees of 20000 bodies, else of 6000."""
 import json
 import math
 import sys
@@ -140,14 +140,14 @@ class Large(CliTest):
     def test_rings_of_any_size_are_rings(self):
         """Bending of an inextensible ring, EI = 1000 N m^2, 1 kg/m (Love, section 293): omega_j^2 = EI j^2 (j^2 - 1)^2 / (j^2 + 1), each twice. Bars
         are off by some 1/n^2. A loop of thousands passes its force on through all of them."""
-        for n in (150, 6000 if EVERY else 1000 if FEW else 2000):
+        for n in (150, 6000, 20000) if EVERY else (150, 1000 if FEW else 2000):
             lowest = self.modes(self.model_of("ring", n), "--count", "6")
             self.assertEqual((lowest["method"], lowest["rigid_body_modes"]), ("sparse", 3))
             for i, mode in enumerate(lowest["modes"][3:]):
                 j = 2 + i // 2
                 closed = math.sqrt(1000 / (j**2 + 1)) * j * (j**2 - 1) / (2 * math.pi)
                 self.assertAlmostEqual(mode["frequency_hz"] / closed, 1, delta=10 / n**2)
-                self.assertLess(mode["frequency_error_hz"], 1e-8 * closed)
+                self.assertLess(mode["frequency_error_hz"], max(1e-8, 1e-16 * n**2) * closed)  # strains round with n^2
 
     def test_frames_have_slopes_and_shapes(self):
         model = large.frame(3, 3, 3, 2)
