@@ -21,7 +21,7 @@
     X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true)
 enum { ROOT_KEYS(KEY_ENUM) ROOT_KEY_COUNT };
 static const mt_key ROOT[] = {ROOT_KEYS(KEY)};
-static const mt_key_table ROOT_TABLE = {"", ROOT, ROOT_KEY_COUNT};
+static const mt_key_table ROOT_TABLE = {.what = "", .keys = ROOT, .n = ROOT_KEY_COUNT};
 
 #define AIRCRAFT_KEYS(X)                                       \
     X(AIRCRAFT_NAME, "name", MT_KEY_TEXT, true)                \
@@ -31,7 +31,7 @@ static const mt_key_table ROOT_TABLE = {"", ROOT, ROOT_KEY_COUNT};
     X(AIRCRAFT_TAIL, "tail", MT_KEY_OBJECT, false)
 enum { AIRCRAFT_KEYS(KEY_ENUM) AIRCRAFT_KEY_COUNT };
 static const mt_key AIRCRAFT[] = {AIRCRAFT_KEYS(KEY)};
-static const mt_key_table AIRCRAFT_TABLE = {"aircraft", AIRCRAFT, AIRCRAFT_KEY_COUNT};
+static const mt_key_table AIRCRAFT_TABLE = {.what = "aircraft", .keys = AIRCRAFT, .n = AIRCRAFT_KEY_COUNT};
 
 #define ROTOR_KEYS(X)                                     \
     X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_OBJECT, false)   \
@@ -40,7 +40,7 @@ static const mt_key_table AIRCRAFT_TABLE = {"aircraft", AIRCRAFT, AIRCRAFT_KEY_C
     X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false)
 enum { ROTOR_KEYS(KEY_ENUM) ROTOR_KEY_COUNT };
 static const mt_key ROTOR[] = {ROTOR_KEYS(KEY)};
-static const mt_key_table ROTOR_TABLE = {"rotor", ROTOR, ROTOR_KEY_COUNT};
+static const mt_key_table ROTOR_TABLE = {.what = "rotor", .keys = ROTOR, .n = ROTOR_KEY_COUNT};
 
 #define VALUE_KEYS(X, type, row)                       \
     X(VALUE_VALUE, "value", type, true, row)           \
@@ -49,9 +49,9 @@ static const mt_key_table ROTOR_TABLE = {"rotor", ROTOR, ROTOR_KEY_COUNT};
     X(VALUE_DESCRIPTION, "description", MT_KEY_TEXT, false)
 enum { VALUE_KEYS(KEY_ENUM, , ) VALUE_KEY_COUNT };
 static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE, SPEED)};
-static const mt_key_table SPEED_TABLE = {"speed", SPEED, VALUE_KEY_COUNT};
+static const mt_key_table SPEED_TABLE = {.what = "speed", .keys = SPEED, .n = VALUE_KEY_COUNT};
 static const mt_key BLADES[] = {VALUE_KEYS(KEY, MT_KEY_COUNT, WHOLE)};
-static const mt_key_table BLADES_TABLE = {"blades", BLADES, VALUE_KEY_COUNT};
+static const mt_key_table BLADES_TABLE = {.what = "blades", .keys = BLADES, .n = VALUE_KEY_COUNT};
 
 const mt_key_table *const *mt_aircraft_key_tables(int *n)
 {

@@ -17,9 +17,10 @@ typedef struct mt_read_profile {
 #define MT_PROFILE_ENUM(id, ...) id,
 #define MT_PROFILE_KEY(id, label, kind, ...) \
     {.name = (label), .type = MT_KEY_##kind, MT_KEY_REST(__VA_ARGS__)},
-#define MT_PROFILE_TABLE(id, what, KEYS)                      \
+#define MT_PROFILE_TABLE(id, object, KEYS)                    \
     static const mt_key id##_LIST[] = {KEYS(MT_PROFILE_KEY)}; \
-    static const mt_key_table id##_TABLE = {(what), id##_LIST, MT_COUNT(id##_LIST)}
+    static const mt_key_table id##_TABLE = {                  \
+        .what = (object), .keys = id##_LIST, .n = MT_COUNT(id##_LIST)}
 
 extern const mt_key_table mt_profile_rotor_keys;
 extern const mt_key_table mt_profile_tail_keys;

@@ -2,6 +2,8 @@
 #ifndef IO_READER_H
 #define IO_READER_H
 
+#include <stddef.h>
+
 #include "base/diagnostics.h"
 #include "base/document.h"
 #include "base/possible.h"
@@ -66,12 +68,34 @@ typedef struct mt_reader {
 typedef enum mt_key_type { MT_KEY_TYPE_LIST(MT_KEY_TYPE_ENUM) MT_KEY_TYPE_COUNT } mt_key_type;
 #undef MT_KEY_TYPE_ENUM
 
-typedef struct mt_key {
+typedef struct mt_key mt_key;
+typedef struct mt_key_table mt_key_table;
+/* Read a member's value into the struct, where its row says. */
+typedef void (*mt_key_read)(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+
+/* A row of a table of members (io/members.h has the macros that write them). */
+struct mt_key {
     const char *name;
     mt_key_type type;
     bool required;
     mt_possible_id possible; /* row of its numbers; MT_POSSIBLE_NONE: no numbers */
-} mt_key;
+    mt_key_read read;        /* NULL: by the object's own reader, or by nobody */
+    size_t at;               /* where its value goes in the struct */
+    size_t other;            /* where what belongs to it is: the count of a list */
+    int least;               /* of a whole number; of the items of a list */
+    int most;
+    const char *what; /* of a choice, or a list that must not be empty, in messages */
+    const char *const *choices;
+    int n_choices;
+    const mt_key_table *of; /* of an object, or of the items of a list */
+    /* for the JSON Schema: the sentence; default, examples and the type itself as JSON, where
+     * the columns above do not say it; the form of a string */
+    const char *says;
+    const char *otherwise;
+    const char *examples;
+    const char *schema;
+    const char *pattern;
+};
 
 /* The last columns of a key table: required, and for members with numbers their row of
  * base/possible.h. */
@@ -79,13 +103,28 @@ typedef struct mt_key {
 #define MT_KEY_REST_OF(given, numbers, ...) \
     .required = (given), .possible = MT_POSSIBLE_##numbers
 
+/* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a
+ * wrong type). */
+typedef struct mt_object mt_object;
+
 /* The members of one kind of object. `what` names its definition in the JSON Schema; "" for the
  * root. Messages use the JSON pointer instead. */
-typedef struct mt_key_table {
+struct mt_key_table {
     const char *what;
     const mt_key *keys;
     int n;
-} mt_key_table;
+    int one_of;  /* the first so many members exclude each other, and one is there; 0: none */
+    size_t size; /* of the struct */
+    /* Fill a new struct; which: of the members that exclude each other, MT_ABSENT: none */
+    void (*defaults)(void *item, mt_addr addr, int which);
+    /* Read what rows cannot say, after them */
+    void (*finish)(mt_reader *r, const mt_object *o, int which, void *item);
+    /* for the JSON Schema: the sentence, examples, and what holds of members together, as
+     * JSON */
+    const char *says;
+    const char *examples;
+    const char *rules;
+};
 
 enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
 

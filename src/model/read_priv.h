@@ -17,9 +17,10 @@ typedef struct mt_model_reader {
 #define MT_READ_ENUM(id, ...) id,
 #define MT_READ_KEY(id, label, kind, ...) \
     {.name = (label), .type = MT_KEY_##kind, MT_KEY_REST(__VA_ARGS__)},
-#define MT_READ_TABLE(table, what, KEYS)                      \
+#define MT_READ_TABLE(table, object, KEYS)                    \
     static const mt_key table##_keys[] = {KEYS(MT_READ_KEY)}; \
-    const mt_key_table table = {(what), table##_keys, MT_COUNT(table##_keys)}
+    const mt_key_table table = {                              \
+        .what = (object), .keys = table##_keys, .n = MT_COUNT(table##_keys)}
 
 extern const mt_key_table mt_model_keys;
 extern const mt_key_table mt_parameter_keys;

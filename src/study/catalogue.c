@@ -24,15 +24,9 @@ static const double BOUND_SLACK = 1e-12;
 static const double STEP_SLACK = 1e-9;
 
 #define SERIES_NAME(n) "E" #n,
-static const char *const NAMES[] = {MT_SERIES_LIST(SERIES_NAME)};
+const char *const mt_series_names[] = {MT_SERIES_LIST(SERIES_NAME)};
 #define SERIES_SIZE(n) n,
 static const int SIZES[] = {MT_SERIES_LIST(SERIES_SIZE)};
-
-const char *const *mt_series_names(int *n)
-{
-    *n = MT_COUNT(NAMES);
-    return NAMES;
-}
 
 /* The i-th value of a decade, in hundredths: 100 to 999. */
 static int digits(int per_decade, int i)

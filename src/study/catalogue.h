@@ -17,8 +17,11 @@ enum { MT_MAX_CATALOGUE = 10000 };
     X(96)                 \
     X(192)
 
-/* "E3" ... "E192"; *n is their number. */
-const char *const *mt_series_names(int *n);
+#define MT_SERIES_ONE(n) +1
+enum { MT_SERIES_COUNT = 0 MT_SERIES_LIST(MT_SERIES_ONE) };
+#undef MT_SERIES_ONE
+/* "E3" ... "E192" */
+extern const char *const mt_series_names[MT_SERIES_COUNT];
 
 /**
  * The values of an E series from lower to upper, both included, ascending. Bounds that miss a

@@ -13,56 +13,136 @@
 #include "io/read_units.h"
 #include "model/values.h"
 
-#define STUDY_KEYS(X)                                                       \
-    X(STUDY_SCHEMA, "$schema", MT_KEY_TEXT, false)                          \
-    X(STUDY_FORMAT, "format", MT_KEY_TEXT, true)                            \
-    X(STUDY_NAME, "name", MT_KEY_TEXT, false)                               \
-    X(STUDY_DESCRIPTION, "description", MT_KEY_TEXT, false)                 \
-    X(STUDY_SOURCE, "source", MT_KEY_TEXT, false)                           \
-    X(STUDY_AUTHOR, "author", MT_KEY_TEXT, false)                           \
-    X(STUDY_REVISION, "revision", MT_KEY_TEXT, false)                       \
-    X(STUDY_DATE, "date", MT_KEY_TEXT, false)                               \
-    X(STUDY_ACCEPTED, "accepted", MT_KEY_LIST, false)                       \
-    X(STUDY_MODEL, "model", MT_KEY_TEXT, true)                              \
-    X(STUDY_UNITS, "units", MT_KEY_OBJECT, false)                           \
-    X(STUDY_VARIABLES, "variables", MT_KEY_LIST, false)                     \
-    X(STUDY_GOALS, "goals", MT_KEY_LIST, false)                             \
-    X(STUDY_OBJECTIVE, "objective", MT_KEY_OBJECT_OR_LIST, false)           \
-    X(STUDY_REFERENCES, "references", MT_KEY_OBJECT, false)                 \
-    X(STUDY_MEASUREMENTS, "measurements", MT_KEY_OBJECT, false)             \
-    X(STUDY_RECOMMENDATIONS, "recommendations", MT_KEY_COUNT, false, WHOLE) \
-    X(STUDY_SEARCH, "search", MT_KEY_OBJECT, false)                         \
-    X(STUDY_WEIGHT_SENSITIVITY, "spread", MT_KEY_OBJECT, false)             \
-    X(STUDY_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)                       \
-    X(STUDY_TRADE, "trade", MT_KEY_OBJECT, false)                           \
-    X(STUDY_RESPONSES, "responses", MT_KEY_LIST, false)                     \
-    X(STUDY_PUBLISHED, "published", MT_KEY_LIST, false)
-enum { STUDY_KEYS(MT_STUDY_KEY_ENUM) STUDY_KEY_COUNT };
-static const mt_key KEYS[] = {STUDY_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_keys = {"", KEYS, STUDY_KEY_COUNT};
-
-#define SEARCH_KEYS(X)                                                         \
-    X(SEARCH_SEED, "seed", MT_KEY_COUNT, false, WHOLE)                         \
-    X(SEARCH_STARTS, "starts", MT_KEY_COUNT, false, WHOLE)                     \
-    X(SEARCH_MAX_EVALUATIONS, "max_evaluations", MT_KEY_COUNT, false, WHOLE)   \
-    X(SEARCH_MAX_SOLUTIONS, "max_modal_solutions", MT_KEY_COUNT, false, WHOLE) \
-    X(SEARCH_PROOF, "proof_s", MT_KEY_NUMBER, false, PROOF)                    \
-    X(SEARCH_DESCRIPTION, "description", MT_KEY_TEXT, false)                   \
-    X(SEARCH_SOURCE, "source", MT_KEY_TEXT, false)
-enum { SEARCH_KEYS(MT_STUDY_KEY_ENUM) SEARCH_KEY_COUNT };
-static const mt_key SEARCH[] = {SEARCH_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_search_keys = {"search", SEARCH, SEARCH_KEY_COUNT};
-
-#define WEIGHT_SENSITIVITY_KEYS(X)                                                  \
-    X(WEIGHT_SENSITIVITY_FACTOR, "factor", MT_KEY_NUMBER, true, WEIGHT_SENSITIVITY) \
-    X(WEIGHT_SENSITIVITY_DESCRIPTION, "description", MT_KEY_TEXT, false)            \
-    X(WEIGHT_SENSITIVITY_SOURCE, "source", MT_KEY_TEXT, false)
-enum { WEIGHT_SENSITIVITY_KEYS(MT_STUDY_KEY_ENUM) WEIGHT_SENSITIVITY_KEY_COUNT };
-static const mt_key WEIGHT_SENSITIVITY[] = {WEIGHT_SENSITIVITY_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_weight_sensitivity_keys = {"spread", WEIGHT_SENSITIVITY,
-                                                       WEIGHT_SENSITIVITY_KEY_COUNT};
-
 enum { MAX_RECOMMENDATIONS = 1000 };
+
+#define THIS mt_search
+static const mt_key SEARCH[] = {
+    MT_M_ULONG("seed", seed, 0, INT_MAX,
+               "Seed of the starting points: the same seed gives the same answer, to the byte.",
+               .otherwise = "1"),
+    MT_M_COUNT("starts", false, starts, 1, MT_STARTS_MOST,
+               "Local searches from different starting points. Absent: chosen by the number of "
+               "variables."),
+    MT_M_LONG("max_evaluations", false, max_evaluations, 1, INT_MAX,
+              "Most evaluations of the model for the whole answer (of a trade study: for each "
+              "point, and for the study itself): searches, positions of drives, the repeated "
+              "analyses of the original design and of at least one other, other weights, "
+              "relaxations. Absent: as many as it takes."),
+    MT_M_LONG("max_modal_solutions", false, max_modal_solutions, 1, INT_MAX,
+              "Most modal solutions for the whole answer, beside or instead of "
+              "max_evaluations: an evaluation takes one for each configuration, each position "
+              "of a drive and each corner of the tolerances that it is held at, judging a "
+              "design over its tolerances some hundred more. What has begun when they are "
+              "spent is finished: a judgement may go beyond. Absent: as many as it takes."),
+    MT_S_NUMBER("proof_s", false, proof_s, PROOF,
+                "Most work of each proof, in nominal seconds of 1e9 multiplications, about one "
+                "of a core: counted, not timed, so that the same is proven on any machine with "
+                "any number of workers. What a proof leaves open when it ends is said, never "
+                "claimed. 0: no proof; from 0 to 1e6. Proofs are: of the mode placements, of "
+                "what no combination of catalogues exceeds, that no design meets the limits, "
+                "of each design's tolerance box. Absent: 5.",
+                .examples = "[30]"),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_search_keys = {
+    .what = "search", .keys = SEARCH, .n = MT_COUNT(SEARCH), .says = "How the search runs."};
+
+#define THIS mt_weight_sensitivity
+static const mt_key WEIGHT_SENSITIVITY[] = {
+    MT_S_NUMBER("factor", true, factor, WEIGHT_SENSITIVITY, "Above 1.", .examples = "[4]"),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_weight_sensitivity_keys = {
+    .what = "spread",
+    .keys = WEIGHT_SENSITIVITY,
+    .n = MT_COUNT(WEIGHT_SENSITIVITY),
+    .says = "How far the best design of a misfit moves under other weights: each weighted "
+            "goal's weight is multiplied and divided by the factor in turn and the misfit "
+            "minimised again. It is a sensitivity to the weights, not an uncertainty: repeated "
+            "noisy tests may scatter many times more."};
+
+static const char *const FORMATS[] = {"modetune-study/1"};
+
+/* Rows without a place are read by read_study_root, in the order in which files are loaded. */
+#define THIS mt_study
+static const mt_key STUDY[] = {
+    MT_M_FREE("$schema", "This schema, for the editor."),
+    {.name = "format",
+     .type = MT_KEY_TEXT,
+     .required = true,
+     .choices = FORMATS,
+     .n_choices = MT_COUNT(FORMATS),
+     .says = "Kind and version of this file."},
+    MT_M_TEXT("name", name, "What the study is called. Absent: the file's name."),
+    MT_M_TEXT("description", description, "Free text for people."),
+    MT_M_FREE("source", "Where it comes from: a table, a page, a test report."),
+    MT_M_TEXT("author", author, "Who asks: stands in the report's title block.",
+              .examples = "[\"A. Engineer, Dynamics\"]"),
+    MT_M_TEXT("revision", revision,
+              "Issue of the question: stands in the report's title block.",
+              .examples = "[\"B\"]"),
+    MT_M_TEXT("date", date,
+              "Date of the question, as it is to be read: stands in the report's title block.",
+              .examples = "[\"2026-03-02\"]"),
+    {.name = "accepted",
+     .type = MT_KEY_LIST,
+     .choices = mt_warning_names,
+     .n_choices = MT_COUNT(mt_warning_names),
+     .says = "Names of warnings that you know and accept, those of the model included: they "
+             "become notes.",
+     .examples = "[[\"density\"]]"},
+    MT_M_JUST("model", TEXT, true, NONE, "Model file, relative to this file.",
+              .examples = "[\"../problems/inceptor.json\"]"),
+    MT_M_OBJECT("units", mt_units_keys),
+    MT_M_LIST_OF("variables", mt_study_variable_keys,
+                 "What may change. Without variables the study only verifies."),
+    MT_M_JUST("goals", LIST, false, NONE, "The goals.",
+              .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/goal\"}"),
+    MT_M_JUST("objective", OBJECT_OR_LIST, false, NONE,
+              "What decides between designs that meet the goals: one objective, or a list in "
+              "order of priority, each of which is made best while the earlier ones are held. "
+              "Among designs that are equal in all of them the one of least change is "
+              "reported. Absent: the least change.",
+              .schema = "\"if\": {\"type\": \"array\"}, \"then\": {\"minItems\": 1, \"items\": "
+                        "{\"$ref\": \"#/definitions/objective\"}}, \"else\": {\"$ref\": "
+                        "\"#/definitions/objective\"}, \"type\": [\"object\", \"array\"]"),
+    MT_M_JUST("references", OBJECT, false, NONE, "Modes to compare with, by name.",
+              .schema = "\"type\": \"object\", \"propertyNames\": {\"pattern\": "
+                        "\"^[A-Za-z_][A-Za-z0-9_+-]*$\"}, \"additionalProperties\": {\"$ref\": "
+                        "\"#/definitions/reference\"}"),
+    MT_M_JUST("measurements", OBJECT, false, NONE,
+              "Measured frequency responses to compare with, by name.",
+              .schema = "\"type\": \"object\", \"propertyNames\": {\"pattern\": "
+                        "\"^[A-Za-z_][A-Za-z0-9_+-]*$\"}, \"additionalProperties\": {\"$ref\": "
+                        "\"#/definitions/measurement\"}"),
+    MT_M_COUNT("recommendations", false, recommendations, 1, MAX_RECOMMENDATIONS,
+               "Most designs to recommend.", .otherwise = "5"),
+    MT_M_OBJECT("search", mt_study_search_keys),
+    MT_M_OBJECT("spread", mt_study_weight_sensitivity_keys),
+    MT_M_JUST("aircraft", TEXT, false, NONE,
+              "Catalogue of aircraft that rotors are looked up in, relative to this file. "
+              "Absent: aircraft.json beside the model, or else the one that is part of the "
+              "program, where a rotor names an aircraft.",
+              .examples = "[\"../problems/aircraft.json\"]"),
+    MT_M_OBJECT("trade", mt_study_trade_keys),
+    MT_M_LIST_OF(
+        "responses", mt_study_response_keys,
+        "Frequency responses that the result shows of the original design and of every design "
+        "recommended: their curves, peaks and antiresonances. They are shown, not judged."),
+    MT_M_LIST_OF("published", mt_study_published_keys,
+                 "Published values that `modetune run --verify` and `modetune compare` judge."),
+};
+#undef THIS
+const mt_key_table mt_study_keys = {
+    .what = "",
+    .keys = STUDY,
+    .n = MT_COUNT(STUDY),
+    .says = "A question asked of a mechanism: which parameters may change, which natural "
+            "frequencies and shapes are wanted, what is known already."};
 
 const mt_key_table *const *mt_study_key_tables(int *n)
 {
@@ -278,67 +358,55 @@ static void ask_search(mt_study_reader *s)
     }
 }
 
-static void read_search(mt_study_reader *s, mt_addr value)
+/* A list of the root: structs of a table, and their number. */
+static void *read_list(mt_study_reader *s, const mt_object *o, const char *member,
+                       const mt_key_table *of, int *n)
 {
-    mt_search *const search = &s->study->search;
-    mt_study_object o;
-    if (value == MT_NO_ADDR || !mt_read_study_object(s, value, &mt_study_search_keys, &o)) {
-        return;
+    void *list = NULL;
+    const mt_addr value = mt_object_value(o, member);
+    if (value != MT_NO_ADDR) {
+        list = mt_members_list(&s->r, value, NULL, of, n);
     }
-    search->seed = (unsigned long)mt_reader_count(&s->r, o.found[SEARCH_SEED], 0, INT_MAX,
-                                                  (int)search->seed);
-    search->starts = mt_reader_count(&s->r, o.found[SEARCH_STARTS], 1, MT_STARTS_MOST, 0);
-    search->max_evaluations =
-        mt_reader_count(&s->r, o.found[SEARCH_MAX_EVALUATIONS], 1, INT_MAX, 0);
-    search->max_modal_solutions =
-        mt_reader_count(&s->r, o.found[SEARCH_MAX_SOLUTIONS], 1, INT_MAX, 0);
-    search->proof_s = mt_read_study_number(s, o.found[SEARCH_PROOF]);
-}
-
-static void read_weight_sensitivity(mt_study_reader *s, mt_addr value)
-{
-    mt_study_object o;
-    if (value != MT_NO_ADDR &&
-        mt_read_study_object(s, value, &mt_study_weight_sensitivity_keys, &o)) {
-        mt_weight_sensitivity *const weight_sensitivity = &s->study->weight_sensitivity;
-        weight_sensitivity->factor =
-            mt_read_study_number(s, o.found[WEIGHT_SENSITIVITY_FACTOR]);
-        weight_sensitivity->addr = value;
-    }
+    return list;
 }
 
 static void read_study_root(mt_study_reader *s)
 {
     mt_study *const study = s->study;
-    mt_study_object o;
+    mt_object o;
     if (!mt_reader_format(&s->r, "modetune-study/1", "study file") ||
-        !mt_read_study_object(s, MT_JSON_ROOT, &mt_study_keys, &o)) {
+        !mt_object_match(&s->r, MT_JSON_ROOT, &mt_study_keys, &o)) {
         return;
     }
-    study->name = mt_reader_text(&s->r, o.found[STUDY_NAME]);
-    study->description = mt_reader_text(&s->r, o.found[STUDY_DESCRIPTION]);
-    study->author = mt_reader_text(&s->r, o.found[STUDY_AUTHOR]);
-    study->revision = mt_reader_text(&s->r, o.found[STUDY_REVISION]);
-    study->date = mt_reader_text(&s->r, o.found[STUDY_DATE]);
-    study->accepted = mt_reader_accepted(&s->r, o.found[STUDY_ACCEPTED]);
-    study->recommendations = mt_reader_count(&s->r, o.found[STUDY_RECOMMENDATIONS], 1,
-                                             MAX_RECOMMENDATIONS, study->recommendations);
-    study->alternatives = o.found[STUDY_RECOMMENDATIONS] != MT_NO_ADDR;
-    read_model(s, o.found[STUDY_MODEL]);
-    mt_read_units(&s->r, o.found[STUDY_UNITS], study->units);
+    const mt_addr spread = mt_object_value(&o, "spread");
+    const mt_addr search = mt_object_value(&o, "search");
+    mt_object_read(&s->r, &o, study);
+    study->accepted = mt_reader_accepted(&s->r, mt_object_value(&o, "accepted"));
+    study->alternatives = mt_object_value(&o, "recommendations") != MT_NO_ADDR;
+    read_model(s, mt_object_value(&o, "model"));
+    mt_read_units(&s->r, mt_object_value(&o, "units"), study->units);
     note_settings(s);
-    read_search(s, o.found[STUDY_SEARCH]);
+    if (search != MT_NO_ADDR) {
+        (void)mt_members_read(&s->r, search, &mt_study_search_keys, &study->search);
+    }
     ask_search(s);
-    mt_read_study_variables(s, o.found[STUDY_VARIABLES]);
-    mt_read_study_references(s, o.found[STUDY_REFERENCES]);
-    mt_read_study_measurements(s, o.found[STUDY_MEASUREMENTS]);
-    mt_read_study_goals(s, o.found[STUDY_GOALS]);
-    mt_read_study_aircraft(s, o.found[STUDY_AIRCRAFT]);
-    mt_read_study_objectives(s, o.found[STUDY_OBJECTIVE]);
-    read_weight_sensitivity(s, o.found[STUDY_WEIGHT_SENSITIVITY]);
-    mt_read_study_trade(s, o.found[STUDY_TRADE], o.found[STUDY_GOALS]);
-    mt_read_study_responses(s, o.found[STUDY_RESPONSES]);
-    mt_read_study_published(s, o.found[STUDY_PUBLISHED]);
+    study->variables =
+        read_list(s, &o, "variables", &mt_study_variable_keys, &study->n_variables);
+    mt_read_study_references(s, mt_object_value(&o, "references"));
+    mt_read_study_measurements(s, mt_object_value(&o, "measurements"));
+    mt_read_study_goals(s, mt_object_value(&o, "goals"));
+    mt_read_study_aircraft(s, mt_object_value(&o, "aircraft"));
+    mt_read_study_objectives(s, mt_object_value(&o, "objective"));
+    if (spread != MT_NO_ADDR &&
+        mt_members_read(&s->r, spread, &mt_study_weight_sensitivity_keys,
+                        &study->weight_sensitivity)) {
+        study->weight_sensitivity.addr = spread;
+    }
+    mt_read_study_trade(s, mt_object_value(&o, "trade"), mt_object_value(&o, "goals"));
+    study->responses =
+        read_list(s, &o, "responses", &mt_study_response_keys, &study->n_responses);
+    study->published =
+        read_list(s, &o, "published", &mt_study_published_keys, &study->n_published);
 }
 
 static mt_status read_document(mt_study_reader *s, mt_err *err)

@@ -13,14 +13,15 @@
 #define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
 MT_GOAL_LIST(KEYS)
 
-#define TABLE(id, name, ...) {"goal_" #name, id##_KEYS, MT_COUNT(id##_KEYS)},
+#define TABLE(id, name, ...) \
+    {.what = "goal_" #name, .keys = id##_KEYS, .n = MT_COUNT(id##_KEYS)},
 const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT] = {MT_GOAL_LIST(TABLE)};
 
 /* A goal being read. */
 typedef struct reading {
     mt_study_reader *s;
     const mt_goal_kind *kind;
-    mt_study_object o;
+    mt_object o;
     mt_goal *goal;
 } reading;
 
@@ -33,20 +34,20 @@ static mt_addr found(const reading *g, mt_goal_slot slot)
 static bool has_goal_member(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
-    return at >= 0 && mt_read_study_has(g->s, &g->o, at);
+    return at >= 0 && mt_object_has(&g->s->r, &g->o, g->kind->members[at].name);
 }
 
 /* Address of the member; that of the goal where it is absent. */
 static mt_addr goal_member_addr(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
-    return at < 0 ? g->o.addr : mt_read_study_place(g->s, &g->o, at);
+    return at < 0 ? g->o.addr : mt_object_place(&g->s->r, &g->o, g->kind->members[at].name);
 }
 
 /* One of n members that follow each other from `first` on: none or several are noted. */
 static void one_of(const reading *g, mt_goal_slot first, int n)
 {
-    (void)mt_read_study_one_of(g->s, &g->o, mt_goal_member_at(g->kind, first), n);
+    (void)mt_object_one_of(&g->s->r, &g->o, mt_goal_member_name(g->kind, first), n);
 }
 
 static void read_configurations(const reading *g)
@@ -116,7 +117,8 @@ static void read_rotors(const reading *g, mt_bands_source *source)
     source->rotors = mt_reader_room(r, &items, sizeof *source->rotors);
     while (mt_items_next(&items)) {
         if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
-            mt_read_study_rotor(g->s, items.at, &source->rotors[source->n_rotors++]);
+            (void)mt_members_read(r, items.at, &mt_study_rotor_keys,
+                                  &source->rotors[source->n_rotors++]);
         }
     }
 }
@@ -129,7 +131,8 @@ static void read_machines(const reading *g, mt_bands_source *source)
     source->machines = mt_reader_room(r, &items, sizeof *source->machines);
     while (mt_items_next(&items)) {
         if (mt_reader_type(r, items.at, MT_KEY_OBJECT)) {
-            mt_read_study_machine(g->s, items.at, &source->machines[source->n_machines++]);
+            (void)mt_members_read(r, items.at, &mt_study_machine_keys,
+                                  &source->machines[source->n_machines++]);
         }
     }
 }
@@ -194,7 +197,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
 {
     reading g = {.s = s, .goal = goal};
     const mt_key_table *const table = table_of(s, value);
-    if (table == NULL || !mt_read_study_object(s, value, table, &g.o)) {
+    if (table == NULL || !mt_object_match(&s->r, value, table, &g.o)) {
         return false;
     }
     *goal = mt_goal_default((mt_goal_type)(table - mt_study_goal_keys), value);
@@ -208,7 +211,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
         } else if (slot == MT_SLOT_CONFIGURATION) {
             read_configurations(&g);
         } else if (slot == MT_SLOT_MODE) {
-            goal->mode = mt_read_study_mode(s, &g.o, i);
+            goal->mode = mt_read_study_mode(s, &g.o, g.kind->members[i].name);
         } else if (slot == MT_SLOT_REFERENCE) {
             read_reference(&g);
         } else if (slot == MT_SLOT_EXPRESSION) {

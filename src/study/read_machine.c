@@ -5,32 +5,6 @@
 #include "environment/read_harmonics.h"
 #include "environment/rotor.h"
 
-#define MACHINE_KEYS(X)                                               \
-    X(MACHINE_SPEED, "speed_hz", MT_KEY_NUMBER, false, MACHINE)       \
-    X(MACHINE_SPEEDS, "speed_range_hz", MT_KEY_LIST, false, MACHINE)  \
-    X(MACHINE_RANGE, "speed_range", MT_KEY_LIST, false, FACTORS)      \
-    X(MACHINE_NAME, "name", MT_KEY_TEXT, false)                       \
-    X(MACHINE_ORDERS, "orders", MT_KEY_LIST, false)                   \
-    X(MACHINE_GEARS, "gears", MT_KEY_LIST, false)                     \
-    X(MACHINE_MARGIN, "margin_percent", MT_KEY_NUMBER, false, MARGIN) \
-    X(MACHINE_DESCRIPTION, "description", MT_KEY_TEXT, false)         \
-    X(MACHINE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { MACHINE_KEYS(MT_STUDY_KEY_ENUM) MACHINE_KEY_COUNT };
-static const mt_key MACHINE[] = {MACHINE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_machine_keys = {"machine", MACHINE, MACHINE_KEY_COUNT};
-
-#define GEAR_KEYS(X)                                           \
-    X(GEAR_TEETH, "teeth", MT_KEY_COUNT, true, WHOLE)          \
-    X(GEAR_RATIO, "ratio", MT_KEY_NUMBER, false, POSITIVE)     \
-    X(GEAR_ORDERS, "orders", MT_KEY_LIST, false)               \
-    X(GEAR_SIDEBANDS, "sidebands", MT_KEY_COUNT, false, WHOLE) \
-    X(GEAR_NAME, "name", MT_KEY_TEXT, false)                   \
-    X(GEAR_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
-    X(GEAR_SOURCE, "source", MT_KEY_TEXT, false)
-enum { GEAR_KEYS(MT_STUDY_KEY_ENUM) GEAR_KEY_COUNT };
-static const mt_key GEAR[] = {GEAR_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_gear_keys = {"gear", GEAR, GEAR_KEY_COUNT};
-
 /* A bare number: times per turn, or of the mesh. */
 static void refuse_number(mt_study_reader *s, mt_addr at, char letter)
 {
@@ -72,69 +46,116 @@ static mt_order *read_orders(mt_study_reader *s, mt_addr list, char letter, int 
     return orders;
 }
 
-static void read_gear(mt_study_reader *s, mt_addr value, mt_gear *gear)
+static void gear_defaults(void *item, mt_addr addr, int which)
 {
-    mt_study_object o;
-    *gear = mt_gear_default(value);
-    if (!mt_read_study_object(s, value, &mt_study_gear_keys, &o)) {
-        return;
-    }
-    gear->name = mt_reader_text(&s->r, o.found[GEAR_NAME]);
-    gear->teeth = mt_reader_count(&s->r, o.found[GEAR_TEETH], 1, MT_MAX_TEETH, 0);
-    if (o.found[GEAR_RATIO] != MT_NO_ADDR) {
-        gear->ratio = mt_read_study_number(s, o.found[GEAR_RATIO]);
-    }
-    gear->sidebands = mt_reader_count(&s->r, o.found[GEAR_SIDEBANDS], 0, MT_MAX_SIDEBANDS, 0);
-    gear->orders = read_orders(s, o.found[GEAR_ORDERS], 'G', &gear->n_orders);
+    (void)which;
+    *(mt_gear *)item = mt_gear_default(addr);
 }
 
-/* A nominal speed with factors, or the two speeds themselves. */
-static void read_speeds(mt_study_reader *s, const mt_study_object *o, mt_machine *machine)
+static void gear_finish(mt_reader *r, const mt_object *o, int which, void *item)
 {
-    double range[2];
-    (void)mt_read_study_one_of(s, o, MACHINE_SPEED, 2);
-    machine->speed_hz = mt_read_study_number(s, o->found[MACHINE_SPEED]);
-    if (o->found[MACHINE_SPEEDS] != MT_NO_ADDR) {
-        if (mt_read_study_pair(s, o->found[MACHINE_SPEEDS], o->found[MACHINE_SPEEDS], range)) {
-            machine->lower_hz = range[0];
-            machine->upper_hz = range[1];
-        }
-    }
-    if (!mt_read_study_has(s, o, MACHINE_RANGE)) {
-        return;
-    }
-    if (!mt_read_study_has(s, o, MACHINE_SPEED)) {
-        mt_diag_structure(s->r.diags, mt_read_study_place(s, o, MACHINE_RANGE),
+    mt_gear *const gear = item;
+    (void)which;
+    gear->orders =
+        read_orders(mt_study_reader_of(r), mt_object_value(o, "orders"), 'G', &gear->n_orders);
+}
+
+#define THIS mt_gear
+static const mt_key GEAR[] = {
+    MT_M_COUNT("teeth", true, teeth, 1, MT_MAX_TEETH, "Number of teeth."),
+    MT_S_NUMBER("ratio", false, ratio, POSITIVE,
+                "Turns of its shaft per turn of the machine's.", .otherwise = "1"),
+    {.name = "orders",
+     .type = MT_KEY_LIST,
+     .says = "Multiples of the mesh, up to three decimals: \"1G\", \"2G\".",
+     .otherwise = "[\"1G\"]",
+     .schema =
+         "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"string\", \"pattern\": "
+         "\"^(?!0(\\\\.0{1,3})?G)(0|[1-9][0-9]{0,2})(\\\\.[0-9]{1,3})?G$\"}"},
+    MT_M_COUNT("sidebands", false, sidebands, 0, MT_MAX_SIDEBANDS,
+               "Number of sidebands on each side of every multiple, spaced by the speed of its "
+               "own shaft.",
+               .otherwise = "0"),
+    MT_M_TEXT("name", name, "Its name in reports. Absent: the machine."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_gear_keys = {
+    .what = "gear",
+    .keys = GEAR,
+    .n = MT_COUNT(GEAR),
+    .size = sizeof(mt_gear),
+    .defaults = gear_defaults,
+    .finish = gear_finish,
+    .says = "A gear of a machine: it meshes teeth times ratio times per turn of the machine.",
+    .examples = "[{\"name\": \"pinion\", \"teeth\": 23, \"ratio\": 1.5, \"orders\": [\"1G\", "
+                "\"2G\"], \"sidebands\": 1}]"};
+
+static void machine_defaults(void *item, mt_addr addr, int which)
+{
+    (void)which;
+    *(mt_machine *)item = mt_machine_default(addr);
+}
+
+/* A nominal speed with factors, or the two speeds themselves; orders, or gears. */
+static void machine_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_machine *const machine = item;
+    const mt_addr range = mt_object_value(o, "speed_range");
+    (void)which;
+    if (mt_object_has(r, o, "speed_range") && !mt_object_has(r, o, "speed_hz")) {
+        mt_diag_structure(r->diags, mt_object_place(r, o, "speed_range"),
                           "\"speed_range\" multiplies \"speed_hz\", which is missing");
     }
-    if (o->found[MACHINE_RANGE] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o->found[MACHINE_RANGE], o->found[MACHINE_RANGE], range)) {
-        machine->range_lower = range[0];
-        machine->range_upper = range[1];
-        mt_read_warning_range(&s->r, range[0], range[1], MT_MACHINE_LEAST_SPEED, "machine's",
-                              o->found[MACHINE_RANGE]);
+    if (range != MT_NO_ADDR && MT_HAS(machine->range_lower)) {
+        mt_read_warning_range(r, machine->range_lower, machine->range_upper,
+                              MT_MACHINE_LEAST_SPEED, "machine's", range);
     }
+    if (!mt_object_has(r, o, "orders") && !mt_object_has(r, o, "gears")) {
+        (void)mt_object_one_of(r, o, "orders", 2);
+    }
+    machine->orders = read_orders(mt_study_reader_of(r), mt_object_value(o, "orders"), 'E',
+                                  &machine->n_orders);
 }
 
-void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine)
-{
-    mt_study_object o;
-    *machine = mt_machine_default(value);
-    if (!mt_read_study_object(s, value, &mt_study_machine_keys, &o)) {
-        return;
-    }
-    machine->name = mt_reader_text(&s->r, o.found[MACHINE_NAME]);
-    read_speeds(s, &o, machine);
-    if (!mt_read_study_has(s, &o, MACHINE_ORDERS) && !mt_read_study_has(s, &o, MACHINE_GEARS)) {
-        (void)mt_read_study_one_of(s, &o, MACHINE_ORDERS, 2);
-    }
-    machine->orders = read_orders(s, o.found[MACHINE_ORDERS], 'E', &machine->n_orders);
-    mt_items gears = mt_reader_some_items(&s->r, o.found[MACHINE_GEARS], "the list of gears");
-    machine->gears = mt_reader_room(&s->r, &gears, sizeof *machine->gears);
-    while (mt_items_next(&gears)) {
-        if (mt_reader_type(&s->r, gears.at, MT_KEY_OBJECT)) {
-            read_gear(s, gears.at, &machine->gears[machine->n_gears++]);
-        }
-    }
-    machine->margin_percent = mt_read_study_number(s, o.found[MACHINE_MARGIN]);
-}
+#define THIS mt_machine
+static const mt_key MACHINE[] = {
+    MT_S_NUMBER("speed_hz", false, speed_hz, MACHINE,
+                "Nominal speed [1/s]; \"1500*rpm\" is 25."),
+    MT_S_PAIR("speed_range_hz", false, lower_hz, upper_hz, MACHINE,
+              "Least and greatest speed [1/s]."),
+    MT_S_PAIR("speed_range", false, range_lower, range_upper, FACTORS,
+              "Least and greatest speed, as multiples of the nominal one.",
+              .otherwise = "[1, 1]", .examples = "[[0.95, 1.05]]"),
+    MT_M_TEXT("name", name, "Its name in reports. Absent: \"machine\"."),
+    {.name = "orders",
+     .type = MT_KEY_LIST,
+     .says = "Events per turn of its shaft, up to three decimals: \"1E\"; half orders of a "
+             "four-stroke engine \"0.5E\", \"1.5E\".",
+     .schema =
+         "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"string\", \"pattern\": "
+         "\"^(?!0(\\\\.0{1,3})?E)(0|[1-9][0-9]{0,2})(\\\\.[0-9]{1,3})?E$\"}"},
+    MT_M_ITEMS("gears", false, gears, n_gears, mt_gear, "the list of gears", mt_study_gear_keys,
+               "Gears whose meshes are forbidden too."),
+    MT_S_NUMBER("margin_percent", false, margin_percent, MARGIN,
+                "Separation margin on both sides of its bands, in percent of their edges. "
+                "Absent: the goal's."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_machine_keys = {
+    .what = "machine",
+    .keys = MACHINE,
+    .n = MT_COUNT(MACHINE),
+    .one_of = 2,
+    .size = sizeof(mt_machine),
+    .defaults = machine_defaults,
+    .finish = machine_finish,
+    .says = "A machine (engine, pump, gearbox) whose orders are forbidden over its range of "
+            "speeds: events per turn of its shaft, and gear meshes.",
+    .examples = "[{\"name\": \"engine\", \"speed_range_hz\": [\"700*rpm\", \"3000*rpm\"], "
+                "\"orders\": [\"0.5E\", \"1E\", \"2E\"], \"margin_percent\": 10}]",
+    .rules = "\"anyOf\": [{\"required\": [\"orders\"]}, {\"required\": [\"gears\"]}], "
+             "\"dependencies\": {\"speed_range\": [\"speed_hz\"]}"};

@@ -7,18 +7,6 @@
 
 #include "measurement/read.h"
 
-#define MEASUREMENT_KEYS(X)                                         \
-    X(MEASUREMENT_FILE, "file", MT_KEY_TEXT, true)                  \
-    X(MEASUREMENT_DATASET, "dataset", MT_KEY_COUNT, false, WHOLE)   \
-    X(MEASUREMENT_RESPONSE, "response_node", MT_KEY_TEXT, false)    \
-    X(MEASUREMENT_REFERENCE, "reference_node", MT_KEY_TEXT, false)  \
-    X(MEASUREMENT_FACTOR, "factor", MT_KEY_NUMBER, false, POSITIVE) \
-    X(MEASUREMENT_DESCRIPTION, "description", MT_KEY_TEXT, false)   \
-    X(MEASUREMENT_SOURCE, "source", MT_KEY_TEXT, false)
-enum { MEASUREMENT_KEYS(MT_STUDY_KEY_ENUM) MEASUREMENT_KEY_COUNT };
-static const mt_key KEYS[] = {MEASUREMENT_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_measurement_keys = {"measurement", KEYS, MEASUREMENT_KEY_COUNT};
-
 static void load_measurement(mt_study_reader *s, mt_measurement *m)
 {
     char sha256[MT_SHA256_TEXT];
@@ -40,35 +28,66 @@ static void load_measurement(mt_study_reader *s, mt_measurement *m)
     free(joined);
 }
 
-/* Read a freedom of the test; noted where invalid. */
-static mt_name read_freedom(mt_study_reader *s, mt_addr value)
+/* A freedom of the test; noted where invalid. */
+static void read_freedom(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     mt_measured_freedom f;
-    mt_name name = mt_reader_ref(&s->r, value);
-    if (name.s != NULL && !mt_measured_freedom_parse(name.s, &f)) {
-        mt_diag_structure(s->r.diags, value,
-                          "\"%s\" is not a node and direction (\"12+Z\", \"12-RX\")", name.s);
-        name.s = NULL;
+    mt_name *const name = (mt_name *)(void *)((char *)item + key->at);
+    *name = mt_reader_ref(r, value);
+    if (name->s != NULL && !mt_measured_freedom_parse(name->s, &f)) {
+        mt_diag_structure(r->diags, value,
+                          "\"%s\" is not a node and direction (\"12+Z\", \"12-RX\")", name->s);
+        name->s = NULL;
     }
-    return name;
 }
 
-static void read_measurement(mt_study_reader *s, mt_addr value, mt_measurement *m)
+static void measurement_finish(mt_reader *r, const mt_object *o, int which, void *item)
 {
-    mt_study_object o;
-    *m = mt_measurement_default(m->name, value);
-    if (!mt_read_study_object(s, value, &mt_study_measurement_keys, &o)) {
-        return;
-    }
-    m->path = mt_reader_ref(&s->r, o.found[MEASUREMENT_FILE]);
-    m->dataset = mt_reader_count(&s->r, o.found[MEASUREMENT_DATASET], 1, INT_MAX, 0);
-    m->response_name = read_freedom(s, o.found[MEASUREMENT_RESPONSE]);
-    m->reference_name = read_freedom(s, o.found[MEASUREMENT_REFERENCE]);
-    m->factor = mt_read_study_number(s, o.found[MEASUREMENT_FACTOR]);
+    mt_measurement *const m = item;
+    (void)o;
+    (void)which;
     if (m->path.s != NULL) {
-        load_measurement(s, m);
+        load_measurement(mt_study_reader_of(r), m);
     }
 }
+
+#define THIS mt_measurement
+#define FREEDOM(label, m, ...)                                                   \
+    {                                                                            \
+        .name = (label), .type = MT_KEY_TEXT, MT_M_TO(read_freedom, mt_name, m), \
+        .says = __VA_ARGS__                                                      \
+    }
+static const mt_key MEASUREMENT[] = {
+    MT_M_REF("file", true, path,
+             "The file, relative to this one. A table has columns frequency_hz, real and imag "
+             "or magnitude and phase_deg, and if need be coherence, configuration, input, "
+             "output and unit, as response --format csv writes it."),
+    MT_M_COUNT("dataset", false, dataset, 1, INT_MAX,
+               "Which of the datasets 58 of a universal file, from 1."),
+    FREEDOM("response_node", response_name,
+            "Node and direction of the response in a universal file: 12+Z, 12-RX; a node alone "
+            "means any direction. Directions' signs are taken into the values.",
+            .examples = "[\"12+Z\"]",
+            .pattern = "^[0-9]{1,9}([+-]?[Rr]?[XYZxyz]|[Rr]?[XYZxyz][+-])?$"),
+    FREEDOM("reference_node", reference_name,
+            "Node and direction of the excitation in a universal file: 1+Z.",
+            .examples = "[\"1+Z\"]",
+            .pattern = "^[0-9]{1,9}([+-]?[Rr]?[XYZxyz]|[Rr]?[XYZxyz][+-])?$"),
+    MT_S_NUMBER("factor", false, factor, POSITIVE,
+                "What the values of the file are multiplied by to be in SI, above 0. Absent: "
+                "the file says its units, or is in SI."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_measurement_keys = {
+    .what = "measurement",
+    .keys = MEASUREMENT,
+    .n = MT_COUNT(MEASUREMENT),
+    .size = sizeof(mt_measurement),
+    .finish = measurement_finish,
+    .says = "A file of measured frequency responses: a table (CSV), or a universal file with "
+            "datasets 58."};
 
 void mt_read_study_measurements(mt_study_reader *s, mt_addr object)
 {
@@ -79,13 +98,13 @@ void mt_read_study_measurements(mt_study_reader *s, mt_addr object)
         const mt_name name = mt_reader_member_name(&s->r, items.at, MT_NAME_ITEM);
         if (name.s != NULL) {
             mt_measurement *const m = &study->measurements[study->n_measurements++];
-            m->name = name;
-            read_measurement(s, items.at, m);
+            *m = mt_measurement_default(name, items.at);
+            (void)mt_members_read(&s->r, items.at, &mt_study_measurement_keys, m);
         }
     }
 }
 
-void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+void mt_read_study_measured(mt_study_reader *s, const mt_object *o, mt_goal *goal)
 {
     const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
     const int band = mt_goal_member_at(kind, MT_SLOT_BAND);

@@ -5,16 +5,6 @@
 
 #include "io/synonyms.h"
 
-#define OBJECTIVE_KEYS(X)                                       \
-    X(OBJECTIVE_MINIMISE, "minimise", MT_KEY_TEXT, false)       \
-    X(OBJECTIVE_MAXIMISE, "maximise", MT_KEY_TEXT, false)       \
-    X(OBJECTIVE_OF, "of", MT_KEY_LIST, false)                   \
-    X(OBJECTIVE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
-    X(OBJECTIVE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { OBJECTIVE_KEYS(MT_STUDY_KEY_ENUM) OBJECTIVE_KEY_COUNT };
-static const mt_key KEYS[] = {OBJECTIVE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_objective_keys = {"objective", KEYS, OBJECTIVE_KEY_COUNT};
-
 /* True where it is another word for one of the objectives ("weight"), and no parameter.
  * Noted. */
 static bool is_other_word(mt_study_reader *s, mt_addr value, const char *text)
@@ -67,27 +57,58 @@ static void read_maximise(mt_study_reader *s, mt_addr value, mt_objective *o)
     o->type = choice == MT_ABSENT ? MT_OBJECTIVE_NONE : types[choice];
 }
 
-static bool read_objective(mt_study_reader *s, mt_addr value, mt_objective *objective)
+static void objective_defaults(void *item, mt_addr addr, int which)
 {
-    mt_study_object o;
-    if (!mt_read_study_object(s, value, &mt_study_objective_keys, &o)) {
-        return false;
+    (void)which;
+    *(mt_objective *)item = (mt_objective){.addr = addr};
+}
+
+static void objective_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_objective *const objective = item;
+    if (which == 0) {
+        read_minimise(mt_study_reader_of(r), mt_object_value(o, "minimise"), objective);
+    } else if (which == 1) {
+        read_maximise(mt_study_reader_of(r), mt_object_value(o, "maximise"), objective);
     }
-    *objective = (mt_objective){.addr = value};
-    const int sense = mt_read_study_one_of(s, &o, OBJECTIVE_MINIMISE, 2);
-    if (sense == OBJECTIVE_MINIMISE) {
-        read_minimise(s, o.found[OBJECTIVE_MINIMISE], objective);
-    } else if (sense == OBJECTIVE_MAXIMISE) {
-        read_maximise(s, o.found[OBJECTIVE_MAXIMISE], objective);
-    }
-    objective->of = mt_reader_refs(&s->r, o.found[OBJECTIVE_OF]);
-    if (mt_read_study_has(s, &o, OBJECTIVE_OF) &&
-        !mt_objective_is(objective->type, MT_OF_ITEMS)) {
-        mt_diag_error(s->r.diags, mt_read_study_place(s, &o, OBJECTIVE_OF),
+    if (mt_object_has(r, o, "of") && !mt_objective_is(objective->type, MT_OF_ITEMS)) {
+        mt_diag_error(r->diags, mt_object_place(r, o, "of"),
                       "\"of\" goes with the objective \"mass\"");
     }
-    return sense != MT_ABSENT;
 }
+
+#define THIS mt_objective
+static const mt_key OBJECTIVE[] = {
+    MT_M_FREE(
+        "minimise",
+        "\"change\": the total change (no unit); \"mass\": of the items in \"of\", all where "
+        "it is not given, in the configuration that the first goal names, with its overrides "
+        "[kg]; \"misfit\": of the weighted goals (no unit); \"vibration\": the largest part of "
+        "its limit that any goal of type \"response\" or \"vibration\" with at_most (and no "
+        "at_least) takes [%]: these limits are the scale then, and no constraints; the first "
+        "objective; anything else is an expression of parameters.",
+        .examples = "[\"change\", \"mass\", \"misfit\", \"vibration\"]"),
+    {.name = "maximise",
+     .type = MT_KEY_TEXT,
+     .says = "\"clearance\": the least distance of a mode from a forbidden band with its "
+             "margin, the greater of the two frequencies over the smaller less 1 [%].",
+     .schema = "\"type\": \"string\", \"enum\": [\"clearance\"]"},
+    MT_M_REFS("of", of,
+              "Names of bodies, links and bars whose mass counts; * stands for any characters, "
+              "? for one. Absent: all."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_objective_keys = {
+    .what = "objective",
+    .keys = OBJECTIVE,
+    .n = MT_COUNT(OBJECTIVE),
+    .one_of = 2,
+    .size = sizeof(mt_objective),
+    .defaults = objective_defaults,
+    .finish = objective_finish,
+    .says = "What decides between designs that meet the goals."};
 
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value)
 {
@@ -99,6 +120,7 @@ void mt_read_study_objectives(mt_study_reader *s, mt_addr value)
     study->objectives = mt_reader_room(&s->r, &items, sizeof *study->objectives);
     while (mt_items_next(&items)) {
         mt_objective *const o = &study->objectives[study->n_objectives];
-        study->n_objectives += read_objective(s, items.at, o) ? 1 : 0;
+        study->n_objectives +=
+            mt_members_read(&s->r, items.at, &mt_study_objective_keys, o) ? 1 : 0;
     }
 }

@@ -7,65 +7,9 @@
 
 #include "model/values.h"
 
-bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table *table,
-                          mt_study_object *out)
+mt_study_reader *mt_study_reader_of(mt_reader *r)
 {
-    out->addr = value;
-    out->table = table;
-    return mt_reader_object(&s->r, value, table, out->found);
-}
-
-static mt_addr member(const mt_study_reader *s, const mt_study_object *o, int key)
-{
-    return mt_json_member(s->r.doc, o->addr, o->table->keys[key].name);
-}
-
-bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key)
-{
-    return member(s, o, key) != MT_NO_ADDR;
-}
-
-mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key)
-{
-    const mt_addr at = member(s, o, key);
-    return at == MT_NO_ADDR ? o->addr : at;
-}
-
-/* "a", "b" or "c" */
-static void list_keys(const mt_key *keys, int n, mt_text *out)
-{
-    for (int i = 0; i < n; i++) {
-        const char *const between = i == 0 ? "" : i == n - 1 ? " or " : ", ";
-        mt_text_addf(out, "%s\"%s\"", between, keys[i].name);
-    }
-}
-
-int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n)
-{
-    const mt_key *const keys = &o->table->keys[first];
-    int which = MT_ABSENT;
-    for (int k = 0; k < n; k++) {
-        if (!mt_read_study_has(s, o, first + k)) {
-            continue;
-        }
-        if (which != MT_ABSENT) {
-            mt_diag_structure(s->r.diags, mt_json_name_addr(s->r.doc, member(s, o, first + k)),
-                              "\"%s\" excludes \"%s\"", keys[k].name, keys[which].name);
-            return MT_ABSENT;
-        }
-        which = k;
-    }
-    if (which == MT_ABSENT) {
-        mt_text names = {0};
-        list_keys(keys, n, &names);
-        if (names.failed) {
-            mt_arena_fail(s->r.mem);
-        } else {
-            mt_diag_structure(s->r.diags, o->addr, "one of %s is missing", names.s);
-        }
-        mt_text_free(&names);
-    }
-    return which;
+    return (mt_study_reader *)(void *)r;
 }
 
 static double read_expr_number(mt_study_reader *s, mt_addr value)
@@ -133,10 +77,10 @@ int mt_read_study_index(mt_study_reader *s, mt_addr value)
     return mt_reader_count(&s->r, value, 1, MT_MAX_LIST, 0);
 }
 
-mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int key)
+mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_object *o, const char *member)
 {
-    const mt_addr value = o->found[key];
-    mt_mode_ref mode = {.named = MT_ABSENT, .addr = mt_read_study_place(s, o, key)};
+    const mt_addr value = mt_object_value(o, member);
+    mt_mode_ref mode = {.named = MT_ABSENT, .addr = mt_object_place(&s->r, o, member)};
     if (value == MT_NO_ADDR) {
         return mode;
     }
@@ -146,4 +90,40 @@ mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int
         mode.index = mt_read_study_index(s, value);
     }
     return mode;
+}
+
+/* A place in the struct. */
+static void *place(void *item, size_t at)
+{
+    return (char *)item + at;
+}
+
+void mt_study_number(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double *const at = place(item, key->at);
+    const double number = mt_read_study_number(mt_study_reader_of(r), value);
+    *at = MT_HAS(number) ? number : *at;
+}
+
+void mt_study_value(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double *const at = place(item, key->at);
+    const mt_name *const parameter = place(item, key->other);
+    const double number = mt_read_study_value(mt_study_reader_of(r), value, parameter->s);
+    *at = MT_HAS(number) ? number : *at;
+}
+
+void mt_study_pair(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double pair[2];
+    if (mt_read_study_pair(mt_study_reader_of(r), value, value, pair)) {
+        *(double *)place(item, key->at) = pair[0];
+        *(double *)place(item, key->other) = pair[1];
+    }
+}
+
+void mt_study_expr(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_read_study_expr(mt_study_reader_of(r), value, place(item, key->at),
+                       (const char **)place(item, key->other));
 }

@@ -3,8 +3,8 @@
 #define STUDY_READ_PRIV_H
 
 #include "environment/read_aircraft.h"
+#include "io/members.h"
 #include "io/options.h"
-#include "io/reader.h"
 #include "model/read.h"
 #include "study/study.h"
 
@@ -26,27 +26,45 @@ typedef struct mt_study_reader {
     MT_LIST_OF(mt_study_file, read);
 } mt_study_reader;
 
-/* One list of keys makes the enum of their places in `found` and the table. */
-#define MT_STUDY_KEY_ENUM(id, ...) id,
-#define MT_STUDY_KEY(id, label, kind, ...) \
-    {.name = (label), .type = (kind), MT_KEY_REST(__VA_ARGS__)},
+/* The reader of a study that this is the first part of. */
+mt_study_reader *mt_study_reader_of(mt_reader *r);
 
-/* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a
- * wrong type). */
-typedef struct mt_study_object {
-    mt_addr addr;
-    const mt_key_table *table;
-    mt_addr found[MT_MAX_KEYS];
-} mt_study_object;
-bool mt_read_study_object(mt_study_reader *s, mt_addr value, const mt_key_table *table,
-                          mt_study_object *out);
-/* mt_read_study_has: true where the member is present, also of a wrong type.
- * mt_read_study_place: its address, else the object's. */
-bool mt_read_study_has(const mt_study_reader *s, const mt_study_object *o, int key);
-mt_addr mt_read_study_place(const mt_study_reader *s, const mt_study_object *o, int key);
-/* The one of n members (neighbours in the table, from `first`) that is there; MT_ABSENT where
- * none or several are (noted). */
-int mt_read_study_one_of(mt_study_reader *s, const mt_study_object *o, int first, int n);
+/* Rows of tables (io/members.h). */
+/* NOLINTBEGIN(bugprone-macro-parentheses): types are not put into parentheses */
+/* double, at the original design */
+#define MT_S_NUMBER(label, must, m, row, ...)                                      \
+    {                                                                              \
+        .name = (label), .type = MT_KEY_NUMBER, .required = (must), MT_M_ROW(row), \
+        MT_M_TO(mt_study_number, double, m), .says = __VA_ARGS__                   \
+    }
+/* double, a value of the parameter that the member `by` (mt_name) names */
+#define MT_S_VALUE(label, must, m, by, row, ...)                                   \
+    {                                                                              \
+        .name = (label), .type = MT_KEY_NUMBER, .required = (must), MT_M_ROW(row), \
+        MT_M_TO(mt_study_value, double, m), .other = MT_M_PLACE(mt_name, by),      \
+        .says = __VA_ARGS__                                                        \
+    }
+/* two doubles, lower and upper */
+#define MT_S_PAIR(label, must, m, upper, row, ...)                               \
+    {                                                                            \
+        .name = (label), .type = MT_KEY_LIST, .required = (must), MT_M_ROW(row), \
+        MT_M_TO(mt_study_pair, double, m), .other = MT_M_PLACE(double, upper),   \
+        .says = __VA_ARGS__                                                      \
+    }
+/* mt_expr, and its text */
+#define MT_S_EXPR(label, must, m, text, ...)                                         \
+    {                                                                                \
+        .name = (label), .type = MT_KEY_TEXT, .required = (must),                    \
+        MT_M_TO(mt_study_expr, mt_expr, m), .other = MT_M_PLACE(const char *, text), \
+        .says = __VA_ARGS__                                                          \
+    }
+/* int, a mode by its index from 1 */
+#define MT_M_INDEX(label, m, ...) MT_M_COUNT(label, false, m, 1, MT_MAX_LIST, __VA_ARGS__)
+/* NOLINTEND(bugprone-macro-parentheses) */
+void mt_study_number(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_study_value(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_study_pair(mt_reader *r, const mt_key *key, mt_addr value, void *item);
+void mt_study_expr(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 
 /* A number; expressions are evaluated at the original design. NaN where absent or wrong
  * (noted). Values that are impossible or implausible by the row of its member are noted. */
@@ -62,7 +80,7 @@ void mt_read_study_check_requirement(mt_study_reader *s, const mt_expr *of, mt_a
 /* An expression that follows the design, and its text. */
 void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text);
 /* "mode": a name or an index from 1. */
-mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_study_object *o, int key);
+mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_object *o, const char *member);
 /* An index from 1; 0 where absent or wrong. */
 int mt_read_study_index(mt_study_reader *s, mt_addr value);
 /* Load a model that the study names, once; NULL where it cannot be read (noted). */
@@ -78,27 +96,22 @@ void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *
 void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *file,
                                 mt_status rc, const mt_err *why, bool told);
 
-void mt_read_study_variables(mt_study_reader *s, mt_addr list);
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
 /* Read the members of a goal on ports that is compared with a measurement. */
-void mt_read_study_measured(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
+void mt_read_study_measured(mt_study_reader *s, const mt_object *o, mt_goal *goal);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
 /* A profile of vibration that the study names, each read once; NULL: no name, or it could not
  * be read (noted). */
 const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name);
 /* Read the other members of a goal about ports. */
-void mt_read_study_response_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *goal);
-void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor);
-void mt_read_study_machine(mt_study_reader *s, mt_addr value, mt_machine *machine);
+void mt_read_study_response_limit(mt_study_reader *s, const mt_object *o, mt_goal *goal);
 /* Read the catalogue of aircraft: the one named, else, where a goal needs one, that in the
  * model's folder, else the one built into the program. Call it after the goals. */
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);
 /* Call it after variables and goals; goals: the list of goals, whose indices it uses. */
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
-void mt_read_study_responses(mt_study_reader *s, mt_addr list);
-void mt_read_study_published(mt_study_reader *s, mt_addr list);
 
 extern const mt_key_table mt_study_keys;
 extern const mt_key_table mt_study_search_keys;

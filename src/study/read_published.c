@@ -1,119 +1,112 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/read_priv.h"
 
+static void frequency_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    (void)which;
+    ((mt_published *)item)->mode = mt_read_study_mode(mt_study_reader_of(r), o, "mode");
+}
+
+#define THIS mt_published
+#define PUBLISHED_MODE_ROWS                                        \
+    MT_M_REF("configuration", false, configuration_name,           \
+             "Configuration of the model. Absent: its only one."), \
+        MT_M_JUST("mode", TEXT_OR_COUNT, true, WHOLE, "Which mode: index from 1 or name.")
+static const mt_key FREQUENCY[] = {PUBLISHED_MODE_ROWS};
+static const mt_key MAC[] = {
+    PUBLISHED_MODE_ROWS,
+    MT_M_REF("reference", true, reference_name, "Name of one of the study's references."),
+    MT_M_INDEX("reference_mode", reference_mode,
+               "Mode of the reference. Absent: the same index as \"mode\"."),
+};
+const mt_key_table mt_study_published_frequency_keys = {
+    .what = "published_frequency",
+    .keys = FREQUENCY,
+    .n = MT_COUNT(FREQUENCY),
+    .finish = frequency_finish,
+    .says = "Which natural frequency was published."};
+const mt_key_table mt_study_published_mac_keys = {.what = "published_mac",
+                                                  .keys = MAC,
+                                                  .n = MT_COUNT(MAC),
+                                                  .finish = frequency_finish,
+                                                  .says = "Which MAC was published."};
+
+static const char *const DESIGNS[] = {"recommended", "original"};
+static const char *const ROLES[] = {
+#define ROLE(id, name) name,
+    MT_ROLE_LIST(ROLE)
+#undef ROLE
+};
+
 /* The first five say what is published, in the order of mt_published_kind. */
-#define PUBLISHED_KEYS(X)                                                               \
-    X(PUBLISHED_PARAMETER, "parameter", MT_KEY_TEXT, false)                             \
-    X(PUBLISHED_QUANTITY, "quantity", MT_KEY_TEXT, false)                               \
-    X(PUBLISHED_FREQUENCY, "frequency", MT_KEY_OBJECT, false)                           \
-    X(PUBLISHED_MAC, "mac", MT_KEY_OBJECT, false)                                       \
-    X(PUBLISHED_STATUS, "status", MT_KEY_TEXT, false)                                   \
-    X(PUBLISHED_VALUE, "value", MT_KEY_NUMBER, false, ANY)                              \
-    X(PUBLISHED_AT_LEAST, "at_least", MT_KEY_NUMBER, false, LIMIT)                      \
-    X(PUBLISHED_AT_MOST, "at_most", MT_KEY_NUMBER, false, LIMIT)                        \
-    X(PUBLISHED_TOLERANCE, "tolerance", MT_KEY_NUMBER, false, POSITIVE)                 \
-    X(PUBLISHED_TOLERANCE_PERCENT, "tolerance_percent", MT_KEY_NUMBER, false, POSITIVE) \
-    X(PUBLISHED_DESIGN, "design", MT_KEY_TEXT, false)                                   \
-    X(PUBLISHED_ROLE, "role", MT_KEY_TEXT, false)                                       \
-    X(PUBLISHED_LABEL, "label", MT_KEY_TEXT, false)                                     \
-    X(PUBLISHED_DESCRIPTION, "description", MT_KEY_TEXT, false)                         \
-    X(PUBLISHED_SOURCE, "source", MT_KEY_TEXT, false)
-enum { PUBLISHED_KEYS(MT_STUDY_KEY_ENUM) PUBLISHED_KEY_COUNT };
-static const mt_key KEYS[] = {PUBLISHED_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_published_keys = {"published", KEYS, PUBLISHED_KEY_COUNT};
+static const mt_key PUBLISHED[] = {
+    MT_M_REF("parameter", false, parameter_name, "Name of a parameter."),
+    MT_S_EXPR("quantity", false, quantity, quantity_text,
+              "Expression of parameters, evaluated at the design.",
+              .examples = "[\"(K_T1+K_T8)/2\"]"),
+    MT_M_INNER("frequency", mt_study_published_frequency_keys),
+    MT_M_INNER("mac", mt_study_published_mac_keys),
+    {.name = "status",
+     .type = MT_KEY_TEXT,
+     .choices = mt_study_status_names,
+     .n_choices = MT_STUDY_STATUSES,
+     .says = "The status that the study must end with."},
+    MT_S_VALUE("value", false, value, parameter_name, ANY,
+               "The published value: the parameter's unit, Hz, or none for a MAC. Needs a "
+               "tolerance, or a limit, which then decides."),
+    MT_S_VALUE("at_least", false, at_least, parameter_name, LIMIT,
+               "The computed value must not be below this."),
+    MT_S_VALUE("at_most", false, at_most, parameter_name, LIMIT,
+               "The computed value must not be above this."),
+    MT_S_VALUE("tolerance", false, tolerance, parameter_name, POSITIVE,
+               "Greatest difference, in the unit of the value."),
+    MT_S_NUMBER("tolerance_percent", false, tolerance_percent, POSITIVE,
+                "Greatest difference, in percent of the value."),
+    {.name = "design",
+     .type = MT_KEY_TEXT,
+     .choices = DESIGNS,
+     .n_choices = MT_COUNT(DESIGNS),
+     .says = "The design that is judged.",
+     .otherwise = "\"recommended\""},
+    MT_M_CHOICE("role", false, role, mt_role, "role", ROLES,
+                "\"calibrates\": the model was adjusted to it; \"verifies\": held back; "
+                "\"not_comparable\": shown, not judged.",
+                .otherwise = "\"verifies\""),
+    MT_M_TEXT("label", label, "Its name in tables. Absent: made from the other members."),
+    MT_M_DESCRIPTION,
+    MT_M_TEXT("source", source, "Where it comes from: a table, a page, a test report."),
+};
+#undef THIS
 
-/* A published frequency's keys are the first ones of a MAC's. */
-#define MODE_KEYS(X)                                           \
-    X(MODE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
-    X(MODE_MODE, "mode", MT_KEY_TEXT_OR_COUNT, true, WHOLE)
-#define MAC_KEYS(X)                                  \
-    MODE_KEYS(X)                                     \
-    X(MAC_REFERENCE, "reference", MT_KEY_TEXT, true) \
-    X(MAC_REFERENCE_MODE, "reference_mode", MT_KEY_COUNT, false, WHOLE)
-enum { MAC_KEYS(MT_STUDY_KEY_ENUM) MAC_KEY_COUNT };
-static const mt_key MODE[] = {MODE_KEYS(MT_STUDY_KEY)};
-static const mt_key MAC[] = {MAC_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_published_frequency_keys = {"published_frequency", MODE,
-                                                        MT_COUNT(MODE)};
-const mt_key_table mt_study_published_mac_keys = {"published_mac", MAC, MT_COUNT(MAC)};
-
-static void read_mode(mt_study_reader *s, mt_addr value, bool mac, mt_published *p)
+static void published_defaults(void *item, mt_addr addr, int which)
 {
-    const mt_key_table *const table =
-        mac ? &mt_study_published_mac_keys : &mt_study_published_frequency_keys;
-    mt_study_object o;
-    if (value == MT_NO_ADDR || !mt_read_study_object(s, value, table, &o)) {
-        return;
-    }
-    p->configuration_name = mt_reader_ref(&s->r, o.found[MODE_CONFIGURATION]);
-    p->mode = mt_read_study_mode(s, &o, MODE_MODE);
-    if (mac) {
-        p->reference_name = mt_reader_ref(&s->r, o.found[MAC_REFERENCE]);
-        p->reference_mode = mt_read_study_index(s, o.found[MAC_REFERENCE_MODE]);
+    *(mt_published *)item = mt_published_default(
+        which == MT_ABSENT ? MT_PUBLISHED_STATUS : (mt_published_kind)which, addr);
+}
+
+static void published_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    static const char *const compared[] = {"value", "at_least", "at_most", "tolerance"};
+    mt_published *const p = item;
+    const int status = mt_reader_choice(r, mt_object_value(o, "status"), "status",
+                                        mt_study_status_names, MT_STUDY_STATUSES);
+    (void)which;
+    p->status = status == MT_ABSENT ? NULL : mt_study_status_names[status];
+    p->original = mt_reader_choice(r, mt_object_value(o, "design"), "design", DESIGNS,
+                                   MT_COUNT(DESIGNS)) == 1;
+    for (int i = 0; i < MT_COUNT(compared); i++) {
+        mt_read_study_check_requirement(mt_study_reader_of(r), &p->quantity,
+                                        mt_object_value(o, compared[i]));
     }
 }
 
-/* Read the published quantity. */
-static void read_subject(mt_study_reader *s, const mt_study_object *o, mt_published *p)
-{
-    int n = 0;
-    const char *const *const statuses = mt_study_statuses(&n);
-    p->parameter_name = mt_reader_ref(&s->r, o->found[PUBLISHED_PARAMETER]);
-    mt_read_study_expr(s, o->found[PUBLISHED_QUANTITY], &p->quantity, &p->quantity_text);
-    read_mode(s, o->found[PUBLISHED_FREQUENCY], false, p);
-    read_mode(s, o->found[PUBLISHED_MAC], true, p);
-    const int status =
-        mt_reader_choice(&s->r, o->found[PUBLISHED_STATUS], "status", statuses, n);
-    p->status = status == MT_ABSENT ? NULL : statuses[status];
-}
-
-/* The number published and how it is to be judged. */
-static void read_judgement(mt_study_reader *s, const mt_study_object *o, mt_published *p)
-{
-    static const char *const designs[] = {"recommended", "original"};
-    const char *roles[MT_ROLE_COUNT];
-    for (int i = 0; i < MT_ROLE_COUNT; i++) {
-        roles[i] = mt_role_name((mt_role)i);
-    }
-    const char *const name = p->parameter_name.s; /* NULL: of something else */
-    p->value = mt_read_study_value(s, o->found[PUBLISHED_VALUE], name);
-    p->at_least = mt_read_study_value(s, o->found[PUBLISHED_AT_LEAST], name);
-    p->at_most = mt_read_study_value(s, o->found[PUBLISHED_AT_MOST], name);
-    p->tolerance = mt_read_study_value(s, o->found[PUBLISHED_TOLERANCE], name);
-    for (int key = PUBLISHED_VALUE; key <= PUBLISHED_TOLERANCE; key++) {
-        mt_read_study_check_requirement(s, &p->quantity, o->found[key]);
-    }
-    p->tolerance_percent = mt_read_study_number(s, o->found[PUBLISHED_TOLERANCE_PERCENT]);
-    const int role =
-        mt_reader_choice(&s->r, o->found[PUBLISHED_ROLE], "role", roles, MT_ROLE_COUNT);
-    p->role = role == MT_ABSENT ? p->role : (mt_role)role;
-    p->original = mt_reader_choice(&s->r, o->found[PUBLISHED_DESIGN], "design", designs,
-                                   MT_COUNT(designs)) == 1;
-}
-
-static bool read_published(mt_study_reader *s, mt_addr value, mt_published *p)
-{
-    mt_study_object o;
-    if (!mt_read_study_object(s, value, &mt_study_published_keys, &o)) {
-        return false;
-    }
-    const int kind = mt_read_study_one_of(s, &o, PUBLISHED_PARAMETER, MT_PUBLISHED_KIND_COUNT);
-    *p = mt_published_default(kind == MT_ABSENT ? MT_PUBLISHED_STATUS : (mt_published_kind)kind,
-                              value);
-    read_subject(s, &o, p);
-    read_judgement(s, &o, p);
-    p->label = mt_reader_text(&s->r, o.found[PUBLISHED_LABEL]);
-    p->source = mt_reader_text(&s->r, o.found[PUBLISHED_SOURCE]);
-    return kind != MT_ABSENT;
-}
-
-void mt_read_study_published(mt_study_reader *s, mt_addr list)
-{
-    mt_study *const study = s->study;
-    mt_items items = mt_reader_items(&s->r, list);
-    study->published = mt_reader_room(&s->r, &items, sizeof *study->published);
-    while (mt_items_next(&items)) {
-        mt_published *const p = &study->published[study->n_published];
-        study->n_published += read_published(s, items.at, p) ? 1 : 0;
-    }
-}
+const mt_key_table mt_study_published_keys = {
+    .what = "published",
+    .keys = PUBLISHED,
+    .n = MT_COUNT(PUBLISHED),
+    .one_of = 5,
+    .size = sizeof(mt_published),
+    .defaults = published_defaults,
+    .finish = published_finish,
+    .says = "A published number to compare with: a parameter, a quantity, a frequency, a MAC, "
+            "or the study's status."};

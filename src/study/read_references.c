@@ -4,25 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#define REFERENCE_KEYS(X)                                           \
-    X(REFERENCE_MODEL, "model", MT_KEY_TEXT, false)                 \
-    X(REFERENCE_MODES, "modes", MT_KEY_LIST, false)                 \
-    X(REFERENCE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
-    X(REFERENCE_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
-    X(REFERENCE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { REFERENCE_KEYS(MT_STUDY_KEY_ENUM) REFERENCE_KEY_COUNT };
-static const mt_key KEYS[] = {REFERENCE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_reference_keys = {"reference", KEYS, REFERENCE_KEY_COUNT};
-
-#define MEASURED_KEYS(X)                                                  \
-    X(MEASURED_FREQUENCY, "frequency_hz", MT_KEY_NUMBER, false, MEASURED) \
-    X(MEASURED_SHAPE, "shape", MT_KEY_OBJECT, false, ANY)                 \
-    X(MEASURED_DESCRIPTION, "description", MT_KEY_TEXT, false)            \
-    X(MEASURED_SOURCE, "source", MT_KEY_TEXT, false)
-enum { MEASURED_KEYS(MT_STUDY_KEY_ENUM) MEASURED_KEY_COUNT };
-static const mt_key MODE_KEYS[] = {MEASURED_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_measured_keys = {"measured_mode", MODE_KEYS, MEASURED_KEY_COUNT};
-
 /* "sensor.direction" */
 static bool is_channel(const char *s)
 {
@@ -39,20 +20,19 @@ static bool is_channel(const char *s)
     return false;
 }
 
-static void read_shape(mt_study_reader *s, mt_addr object, mt_measured_mode *mode)
+static void read_shape(mt_reader *r, const mt_key *key, mt_addr object, void *item)
 {
-    if (object == MT_NO_ADDR) {
-        return;
-    }
-    mt_items items = mt_reader_some_items(&s->r, object, "the shape");
-    mode->channels = mt_reader_room(&s->r, &items, sizeof *mode->channels);
-    mode->values = mt_reader_room(&s->r, &items, sizeof *mode->values);
+    mt_measured_mode *const mode = item;
+    (void)key;
+    mt_items items = mt_reader_some_items(r, object, "the shape");
+    mode->channels = mt_reader_room(r, &items, sizeof *mode->channels);
+    mode->values = mt_reader_room(r, &items, sizeof *mode->values);
     bool zero = true;
     while (mt_items_next(&items)) {
-        const mt_name channel = mt_reader_member_name(&s->r, items.at, MT_NAME_TITLE);
-        const double value = mt_read_study_number(s, items.at);
+        const mt_name channel = mt_reader_member_name(r, items.at, MT_NAME_TITLE);
+        const double value = mt_read_study_number(mt_study_reader_of(r), items.at);
         if (channel.s != NULL && *channel.s != '\0' && !is_channel(channel.s)) {
-            mt_diag_structure(s->r.diags, channel.addr,
+            mt_diag_structure(r->diags, channel.addr,
                               "\"%s\" is not a sensor and direction (\"c1.y\")", channel.s);
         } else if (channel.s != NULL) {
             zero = zero && value == 0.0;
@@ -61,53 +41,102 @@ static void read_shape(mt_study_reader *s, mt_addr object, mt_measured_mode *mod
         }
     }
     if (zero && mode->n_values > 0) {
-        mt_diag_error(s->r.diags, object, "every value of the shape is 0");
+        mt_diag_error(r->diags, object, "every value of the shape is 0");
     }
 }
 
-static void read_measured(mt_study_reader *s, mt_addr value, mt_measured_mode *mode)
+static void measured_defaults(void *item, mt_addr addr, int which)
 {
-    mt_study_object o;
-    *mode = (mt_measured_mode){
-        .frequency_hz = nan(""),
-        .addr = value,
-    };
-    if (!mt_read_study_object(s, value, &mt_study_measured_keys, &o)) {
-        return;
-    }
-    if (!mt_read_study_has(s, &o, MEASURED_FREQUENCY) &&
-        !mt_read_study_has(s, &o, MEASURED_SHAPE)) {
-        mt_diag_structure(s->r.diags, value,
+    (void)which;
+    *(mt_measured_mode *)item = (mt_measured_mode){.frequency_hz = nan(""), .addr = addr};
+}
+
+static void measured_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    (void)which;
+    (void)item;
+    if (!mt_object_has(r, o, "frequency_hz") && !mt_object_has(r, o, "shape")) {
+        mt_diag_structure(r->diags, o->addr,
                           "a measured mode needs \"frequency_hz\" or \"shape\"");
     }
-    mode->frequency_hz = mt_read_study_number(s, o.found[MEASURED_FREQUENCY]);
-    read_shape(s, o.found[MEASURED_SHAPE], mode);
 }
 
-static void read_reference(mt_study_reader *s, mt_addr value, mt_reference *r)
+#define THIS mt_measured_mode
+static const mt_key MEASURED[] = {
+    MT_S_NUMBER("frequency_hz", false, frequency_hz, MEASURED, "Natural frequency [Hz]."),
+    {.name = "shape",
+     .type = MT_KEY_OBJECT,
+     .possible = MT_POSSIBLE_ANY,
+     .read = read_shape,
+     .says = "Values at \"sensor.direction\" in any common scale; directions x y z rx ry rz, "
+             "in the plane x y r.",
+     .examples = "[{\"c1.y\": 0.3, \"c2.y\": 0.1}]",
+     .schema = "\"type\": \"object\", \"minProperties\": 1, \"propertyNames\": {\"pattern\": "
+               "\"^[^.]+\\\\.(x|y|z|rx|ry|rz|r)$\"}, \"additionalProperties\": {\"$ref\": "
+               "\"#/definitions/number\"}"},
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_measured_keys = {
+    .what = "measured_mode",
+    .keys = MEASURED,
+    .n = MT_COUNT(MEASURED),
+    .size = sizeof(mt_measured_mode),
+    .defaults = measured_defaults,
+    .finish = measured_finish,
+    .says = "A measured mode: its frequency, its shape at sensors, or both.",
+    .rules = "\"anyOf\": [{\"required\": [\"frequency_hz\"]}, {\"required\": [\"shape\"]}]"};
+
+/* A wrong mode still counts: modes are numbered. */
+static void read_measured_modes(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    mt_study_object o;
-    r->addr = value;
-    r->configuration = MT_ABSENT;
-    if (!mt_read_study_object(s, value, &mt_study_reference_keys, &o)) {
-        return;
-    }
-    (void)mt_read_study_one_of(s, &o, REFERENCE_MODEL, 2);
-    if (mt_read_study_has(s, &o, REFERENCE_CONFIGURATION) &&
-        !mt_read_study_has(s, &o, REFERENCE_MODEL)) {
-        mt_diag_structure(s->r.diags, mt_read_study_place(s, &o, REFERENCE_CONFIGURATION),
-                          "\"configuration\" goes with \"model\"");
-    }
-    r->source = mt_reader_text(&s->r, o.found[REFERENCE_SOURCE]);
-    r->configuration_name = mt_reader_ref(&s->r, o.found[REFERENCE_CONFIGURATION]);
-    r->model_path = mt_reader_ref(&s->r, o.found[REFERENCE_MODEL]);
-    r->model = mt_read_study_model(s, r->model_path);
-    mt_items modes = mt_reader_some_items(&s->r, o.found[REFERENCE_MODES], "the list of modes");
-    r->modes = mt_reader_room(&s->r, &modes, sizeof *r->modes);
-    while (mt_items_next(&modes)) { /* a wrong one still counts: modes are numbered */
-        read_measured(s, modes.at, &r->modes[r->n_modes++]);
+    mt_reference *const reference = item;
+    mt_items modes = mt_reader_some_items(r, value, "the list of modes");
+    reference->modes = mt_reader_room(r, &modes, sizeof *reference->modes);
+    while (mt_items_next(&modes)) {
+        mt_measured_mode *const mode = &reference->modes[reference->n_modes++];
+        measured_defaults(mode, modes.at, 0);
+        (void)mt_members_read(r, modes.at, key->of, mode);
     }
 }
+
+static void reference_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_reference *const reference = item;
+    (void)which;
+    if (mt_object_has(r, o, "configuration") && !mt_object_has(r, o, "model")) {
+        mt_diag_structure(r->diags, mt_object_place(r, o, "configuration"),
+                          "\"configuration\" goes with \"model\"");
+    }
+    reference->model = mt_read_study_model(mt_study_reader_of(r), reference->model_path);
+}
+
+#define THIS mt_reference
+static const mt_key REFERENCE[] = {
+    MT_M_REF("model", false, model_path, "Model file, relative to this file."),
+    {.name = "modes",
+     .type = MT_KEY_LIST,
+     .read = read_measured_modes,
+     .what = "the list of modes",
+     .of = &mt_study_measured_keys,
+     .says = "Measured modes, in the order of their index, from 1."},
+    MT_M_REF("configuration", false, configuration_name,
+             "Configuration of that model. Absent: its only one."),
+    MT_M_DESCRIPTION,
+    MT_M_TEXT("source", source, "Where it comes from: a table, a page, a test report."),
+};
+#undef THIS
+const mt_key_table mt_study_reference_keys = {
+    .what = "reference",
+    .keys = REFERENCE,
+    .n = MT_COUNT(REFERENCE),
+    .one_of = 2,
+    .size = sizeof(mt_reference),
+    .finish = reference_finish,
+    .says =
+        "Modes to compare with: those of a configuration of another model, or measured ones.",
+    .rules = "\"dependencies\": {\"configuration\": [\"model\"]}"};
 
 void mt_read_study_references(mt_study_reader *s, mt_addr object)
 {
@@ -118,8 +147,8 @@ void mt_read_study_references(mt_study_reader *s, mt_addr object)
         const mt_name name = mt_reader_member_name(&s->r, items.at, MT_NAME_ITEM);
         if (name.s != NULL) {
             mt_reference *const r = &study->references[study->n_references++];
-            r->name = name;
-            read_reference(s, items.at, r);
+            *r = (mt_reference){.name = name, .configuration = MT_ABSENT, .addr = items.at};
+            (void)mt_members_read(&s->r, items.at, &mt_study_reference_keys, r);
         }
     }
 }

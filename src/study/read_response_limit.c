@@ -18,7 +18,7 @@ static const char AIRCRAFT[] = "problems/aircraft.json";
 typedef struct reading {
     mt_study_reader *s;
     const mt_goal_kind *kind;
-    const mt_study_object *o;
+    const mt_object *o;
 } reading;
 
 static mt_addr found(const reading *g, mt_goal_slot slot)
@@ -31,7 +31,7 @@ static mt_addr found(const reading *g, mt_goal_slot slot)
 static mt_addr limit_member_addr(const reading *g, mt_goal_slot slot)
 {
     const int at = mt_goal_member_at(g->kind, slot);
-    return at < 0 ? g->o->addr : mt_read_study_place(g->s, g->o, at);
+    return at < 0 ? g->o->addr : mt_object_place(&g->s->r, g->o, g->kind->members[at].name);
 }
 
 static mt_name name_at(const reading *g, mt_goal_slot slot)
@@ -189,9 +189,8 @@ const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name)
 /* A band, or one frequency. */
 static void read_frequencies(const reading *g, mt_response_limit *response_limit)
 {
-    const int band = mt_goal_member_at(g->kind, MT_SLOT_BAND);
     double edges[2];
-    (void)mt_read_study_one_of(g->s, g->o, band, 2);
+    (void)mt_object_one_of(&g->s->r, g->o, mt_goal_member_name(g->kind, MT_SLOT_BAND), 2);
     if (found(g, MT_SLOT_AT) != MT_NO_ADDR) {
         response_limit->lower_hz = mt_read_study_number(g->s, found(g, MT_SLOT_AT));
         response_limit->upper_hz = response_limit->lower_hz;
@@ -214,7 +213,7 @@ static void read_profile(const reading *g, mt_response_limit *response_limit)
     response_limit->profile = mt_read_study_profile(g->s, response_limit->profile_name);
 }
 
-void mt_read_study_response_limit(mt_study_reader *s, const mt_study_object *o, mt_goal *goal)
+void mt_read_study_response_limit(mt_study_reader *s, const mt_object *o, mt_goal *goal)
 {
     const reading g = {.s = s, .kind = mt_goal_kind_of(goal->type), .o = o};
     mt_response_limit *const response_limit =

@@ -1,48 +1,48 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/read_priv.h"
 
-#define RESPONSE_KEYS(X)                                           \
-    X(RESPONSE_CONFIGURATION, "configuration", MT_KEY_TEXT, false) \
-    X(RESPONSE_INPUT, "input", MT_KEY_TEXT, true)                  \
-    X(RESPONSE_OUTPUT, "output", MT_KEY_TEXT, true)                \
-    X(RESPONSE_BAND, "band_hz", MT_KEY_LIST, true, RANGE)          \
-    X(RESPONSE_PROFILE, "profile", MT_KEY_TEXT, false)             \
-    X(RESPONSE_DESCRIPTION, "description", MT_KEY_TEXT, false)     \
-    X(RESPONSE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { RESPONSE_KEYS(MT_STUDY_KEY_ENUM) RESPONSE_KEY_COUNT };
-static const mt_key KEYS[] = {RESPONSE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_response_keys = {"response", KEYS, RESPONSE_KEY_COUNT};
-
-static bool read_response(mt_study_reader *s, mt_addr value, mt_study_response *r)
+static void response_defaults(void *item, mt_addr addr, int which)
 {
-    mt_study_object o;
-    double band[2];
-    *r = mt_study_response_default(value);
-    if (!mt_read_study_object(s, value, &mt_study_response_keys, &o)) {
-        return false;
-    }
-    r->configuration_name = mt_reader_ref(&s->r, o.found[RESPONSE_CONFIGURATION]);
-    r->response_limit.input = mt_reader_ref(&s->r, o.found[RESPONSE_INPUT]);
-    r->response_limit.output = mt_reader_ref(&s->r, o.found[RESPONSE_OUTPUT]);
-    if (o.found[RESPONSE_BAND] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o.found[RESPONSE_BAND], o.found[RESPONSE_BAND], band)) {
-        r->response_limit.lower_hz = band[0];
-        r->response_limit.upper_hz = band[1];
-    }
-    r->response_limit.profile_name = mt_reader_ref(&s->r, o.found[RESPONSE_PROFILE]);
-    r->response_limit.profile = mt_read_study_profile(s, r->response_limit.profile_name);
-    r->description = mt_reader_text(&s->r, o.found[RESPONSE_DESCRIPTION]);
-    r->source = mt_reader_text(&s->r, o.found[RESPONSE_SOURCE]);
-    return true;
+    (void)which;
+    *(mt_study_response *)item = mt_study_response_default(addr);
 }
 
-void mt_read_study_responses(mt_study_reader *s, mt_addr list)
+static void response_finish(mt_reader *r, const mt_object *o, int which, void *item)
 {
-    mt_study *const study = s->study;
-    mt_items items = mt_reader_items(&s->r, list);
-    study->responses = mt_reader_room(&s->r, &items, sizeof *study->responses);
-    while (mt_items_next(&items)) {
-        mt_study_response *const r = &study->responses[study->n_responses];
-        study->n_responses += read_response(s, items.at, r) ? 1 : 0;
-    }
+    mt_response_limit *const limit = &((mt_study_response *)item)->response_limit;
+    (void)o;
+    (void)which;
+    limit->profile = mt_read_study_profile(mt_study_reader_of(r), limit->profile_name);
 }
+
+#define THIS mt_study_response
+static const mt_key RESPONSE[] = {
+    MT_M_REF("configuration", false, configuration_name,
+             "Name of a configuration of the model. Absent: its only one."),
+    MT_M_REF("input", true, response_limit.input,
+             "A port as `modetune response` has it: \"grip.y\", the force along a sensor's "
+             "direction; \"base.y\", the ground's acceleration, or \"base.y:displacement\".",
+             .examples = "[\"base.y\"]"),
+    MT_M_REF("output", true, response_limit.output,
+             "A port as `modetune response` has it: a sensor's motion (\"grip.y\", its "
+             "displacement, or \"grip.y:acceleration\"), a force (\"spring.NAME\", "
+             "\"damper.NAME\", \"joint.NAME.x\").",
+             .examples = "[\"grip.y:acceleration\"]"),
+    MT_S_PAIR("band_hz", true, response_limit.lower_hz, response_limit.upper_hz, RANGE,
+              "From where to where it is shown.", .examples = "[[5, 500]]"),
+    MT_M_REF("profile", false, response_limit.profile_name,
+             "The vibration profile that the ground follows: a file, relative to this one, or "
+             "the name of one that is part of the program (`modetune profile`). The input is "
+             "an acceleration of the ground."),
+    MT_M_TEXT("description", description, "Free text for people."),
+    MT_M_TEXT("source", source, "Where it comes from: a table, a page, a test report."),
+};
+#undef THIS
+const mt_key_table mt_study_response_keys = {
+    .what = "response",
+    .keys = RESPONSE,
+    .n = MT_COUNT(RESPONSE),
+    .size = sizeof(mt_study_response),
+    .defaults = response_defaults,
+    .finish = response_finish,
+    .says = "What a forced vibration is caused by, and what it is seen in."};

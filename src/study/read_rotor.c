@@ -11,32 +11,6 @@
 #include "environment/rotor.h"
 #include "io/file.h"
 
-#define ROTOR_KEYS(X)                                               \
-    X(ROTOR_AIRCRAFT, "aircraft", MT_KEY_TEXT, false)               \
-    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false, SPEED)      \
-    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false, RPM)      \
-    X(ROTOR_BLADES, "blades", MT_KEY_COUNT, false, WHOLE)           \
-    X(ROTOR_TAIL, "tail", MT_KEY_OBJECT, false)                     \
-    X(ROTOR_NAME, "name", MT_KEY_TEXT, false)                       \
-    X(ROTOR_HARMONICS, "harmonics", MT_KEY_LIST, true)              \
-    X(ROTOR_RANGE, "speed_range", MT_KEY_LIST, false, FACTORS)      \
-    X(ROTOR_MARGIN, "margin_percent", MT_KEY_NUMBER, false, MARGIN) \
-    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false)         \
-    X(ROTOR_SOURCE, "source", MT_KEY_TEXT, false)
-enum { ROTOR_KEYS(MT_STUDY_KEY_ENUM) ROTOR_KEY_COUNT };
-static const mt_key ROTOR[] = {ROTOR_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_rotor_keys = {"rotor", ROTOR, ROTOR_KEY_COUNT};
-
-#define TAIL_KEYS(X)                                          \
-    X(TAIL_SPEED_HZ, "speed_hz", MT_KEY_NUMBER, false, SPEED) \
-    X(TAIL_SPEED_RPM, "speed_rpm", MT_KEY_NUMBER, false, RPM) \
-    X(TAIL_BLADES, "blades", MT_KEY_COUNT, false, WHOLE)      \
-    X(TAIL_DESCRIPTION, "description", MT_KEY_TEXT, false)    \
-    X(TAIL_SOURCE, "source", MT_KEY_TEXT, false)
-enum { TAIL_KEYS(MT_STUDY_KEY_ENUM) TAIL_KEY_COUNT };
-static const mt_key TAIL[] = {TAIL_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_tail_keys = {"tail_rotor", TAIL, TAIL_KEY_COUNT};
-
 static const double RPM_PER_HZ = 60.0;
 
 /* True where the text multiplies by rpm, as speeds in Hz do ("258*rpm", or meant so: "258
@@ -60,82 +34,117 @@ static bool times_rpm(const char *text)
     return false;
 }
 
-/* Read a speed per minute, in Hz. An expression there that converts to Hz itself is refused:
- * the result would be a sixtieth of the intended speed. */
-static double read_rpm(mt_study_reader *s, const mt_study_object *o, int key)
+/* A speed per minute, in Hz. An expression there that converts to Hz itself is refused: the result
+ * would be a sixtieth of the intended speed. */
+static void read_rpm(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    const mt_addr at = o->found[key];
-    if (at != MT_NO_ADDR && mt_json_type_of(s->r.doc, at) == MT_JSON_STRING &&
-        times_rpm(mt_json_string(s->r.doc, at))) {
-        mt_diag_error(s->r.diags, at,
+    double *const hz = (double *)(void *)((char *)item + key->at);
+    if (mt_json_type_of(r->doc, value) == MT_JSON_STRING &&
+        times_rpm(mt_json_string(r->doc, value))) {
+        mt_diag_error(r->diags, value,
                       "is per minute as it is: leave out \"rpm\", or write it as \"speed_hz\"");
-        return mt_read_study_number(s, MT_NO_ADDR);
-    }
-    return mt_read_study_number(s, at) / RPM_PER_HZ;
-}
-
-/* One of two members, neighbours in the table: speed_hz or speed_rpm [Hz]. */
-static double read_speed(mt_study_reader *s, const mt_study_object *o, int hz)
-{
-    if (mt_read_study_has(s, o, hz)) {
-        return mt_read_study_number(s, o->found[hz]);
-    }
-    if (mt_read_study_has(s, o, hz + 1)) {
-        return read_rpm(s, o, hz + 1);
-    }
-    return mt_read_study_number(s, MT_NO_ADDR);
-}
-
-static void read_tail(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
-{
-    mt_study_object o;
-    if (value == MT_NO_ADDR || !mt_read_study_object(s, value, &mt_study_tail_keys, &o)) {
         return;
     }
-    (void)mt_read_study_one_of(s, &o, TAIL_SPEED_HZ, 2);
-    rotor->tail_speed_hz = read_speed(s, &o, TAIL_SPEED_HZ);
-    rotor->tail_blades = mt_reader_count(&s->r, o.found[TAIL_BLADES], 1, MT_MAX_BLADES, 0);
+    const double rpm = mt_read_study_number(mt_study_reader_of(r), value);
+    *hz = MT_HAS(*hz) ? *hz : rpm / RPM_PER_HZ; /* beside "speed_hz" it is refused */
+}
+
+#define THIS mt_rotor
+#define ROTOR_RPM(m, ...)                                          \
+    {                                                              \
+        .name = "speed_rpm", .type = MT_KEY_NUMBER, MT_M_ROW(RPM), \
+        MT_M_TO(read_rpm, double, m), .says = __VA_ARGS__          \
+    }
+static const mt_key TAIL[] = {
+    MT_S_NUMBER("speed_hz", false, tail_speed_hz, SPEED, "Nominal speed [1/s]."),
+    ROTOR_RPM(tail_speed_hz, "Nominal speed [rpm]."),
+    MT_M_COUNT("blades", false, tail_blades, 1, MT_MAX_BLADES, "Number of blades."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+const mt_key_table mt_study_tail_keys = {.what = "tail_rotor",
+                                         .keys = TAIL,
+                                         .n = MT_COUNT(TAIL),
+                                         .one_of = 2,
+                                         .says = "The tail rotor."};
+
+static void read_rotor_harmonics(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    (void)key;
+    mt_read_harmonics(r, value, item);
+}
+
+static const mt_key ROTOR[] = {
+    MT_M_REF("aircraft", false, aircraft, "Name in the catalogue of aircraft."),
+    MT_S_NUMBER("speed_hz", false, speed_hz, SPEED, "Nominal speed of the main rotor [1/s]."),
+    ROTOR_RPM(speed_hz, "Nominal speed of the main rotor [rpm]."),
+    MT_M_COUNT("blades", false, blades, 1, MT_MAX_BLADES,
+               "Number of blades of the main rotor."),
+    MT_M_INNER("tail", mt_study_tail_keys),
+    MT_M_TEXT("name", name, "Its name in reports. Absent: the aircraft."),
+    {.name = "harmonics",
+     .type = MT_KEY_LIST,
+     .required = true,
+     .read = read_rotor_harmonics,
+     .says = "Multiples of the rotor's speed: \"1P\", \"4P\" of the main rotor, \"1T\" of the "
+             "tail rotor; n is the number of blades: \"nP\", \"2nP\" (or \"2NP\"), \"nT\".",
+     .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"string\", "
+               "\"pattern\": \"^([1-9][0-9]{0,2}[nN]?|[nN])[PT]$\"}"},
+    MT_S_PAIR("speed_range", false, range_lower, range_upper, FACTORS,
+              "Least and greatest speed, as multiples of the nominal one.",
+              .otherwise = "[1, 1]", .examples = "[[0.95, 1.05]]"),
+    MT_S_NUMBER("margin_percent", false, margin_percent, MARGIN,
+                "Separation margin on both sides of its bands, in percent of their edges. "
+                "Absent: the goal's."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+
+static void rotor_defaults(void *item, mt_addr addr, int which)
+{
+    mt_rotor *const rotor = item;
+    (void)which;
+    *rotor = mt_rotor_default(addr);
+    rotor->aircraft.addr = addr;
 }
 
 /* An aircraft of the catalogue brings its own numbers. */
-static void exclude(mt_study_reader *s, const mt_study_object *o, int key)
+static void exclude(mt_reader *r, const mt_object *o, const char *member)
 {
-    if (mt_read_study_has(s, o, ROTOR_AIRCRAFT) && mt_read_study_has(s, o, key)) {
-        mt_diag_structure(s->r.diags,
-                          mt_json_name_addr(s->r.doc, mt_read_study_place(s, o, key)),
-                          "\"%s\" excludes \"aircraft\"", o->table->keys[key].name);
+    if (mt_object_has(r, o, "aircraft") && mt_object_has(r, o, member)) {
+        mt_diag_structure(r->diags, mt_json_name_addr(r->doc, mt_object_place(r, o, member)),
+                          "\"%s\" excludes \"aircraft\"", member);
     }
 }
 
-void mt_read_study_rotor(mt_study_reader *s, mt_addr value, mt_rotor *rotor)
+static void rotor_finish(mt_reader *r, const mt_object *o, int which, void *item)
 {
-    mt_study_object o;
-    double range[2];
-    *rotor = mt_rotor_default(value);
-    rotor->aircraft.addr = value;
-    if (!mt_read_study_object(s, value, &mt_study_rotor_keys, &o)) {
-        return;
+    mt_rotor *const rotor = item;
+    (void)which;
+    exclude(r, o, "blades");
+    exclude(r, o, "tail");
+    rotor->aircraft.addr = mt_object_place(r, o, "aircraft");
+    rotor->has_tail = mt_object_has(r, o, "tail");
+    if (mt_object_value(o, "speed_range") != MT_NO_ADDR) {
+        mt_read_warning_range(r, rotor->range_lower, rotor->range_upper, MT_ROTOR_LEAST_SPEED,
+                              "rotor's", mt_object_value(o, "speed_range"));
     }
-    (void)mt_read_study_one_of(s, &o, ROTOR_AIRCRAFT, 3);
-    exclude(s, &o, ROTOR_BLADES);
-    exclude(s, &o, ROTOR_TAIL);
-    rotor->aircraft = mt_reader_ref(&s->r, o.found[ROTOR_AIRCRAFT]);
-    rotor->aircraft.addr = mt_read_study_place(s, &o, ROTOR_AIRCRAFT);
-    rotor->name = mt_reader_text(&s->r, o.found[ROTOR_NAME]);
-    rotor->speed_hz = read_speed(s, &o, ROTOR_SPEED_HZ);
-    rotor->blades = mt_reader_count(&s->r, o.found[ROTOR_BLADES], 1, MT_MAX_BLADES, 0);
-    rotor->has_tail = mt_read_study_has(s, &o, ROTOR_TAIL);
-    read_tail(s, o.found[ROTOR_TAIL], rotor);
-    mt_read_harmonics(&s->r, o.found[ROTOR_HARMONICS], rotor);
-    if (o.found[ROTOR_RANGE] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o.found[ROTOR_RANGE], o.found[ROTOR_RANGE], range)) {
-        rotor->range_lower = range[0];
-        rotor->range_upper = range[1];
-        mt_read_warning_range(&s->r, range[0], range[1], MT_ROTOR_LEAST_SPEED, "rotor's",
-                              o.found[ROTOR_RANGE]);
-    }
-    rotor->margin_percent = mt_read_study_number(s, o.found[ROTOR_MARGIN]);
 }
+
+const mt_key_table mt_study_rotor_keys = {
+    .what = "rotor",
+    .keys = ROTOR,
+    .n = MT_COUNT(ROTOR),
+    .one_of = 3,
+    .size = sizeof(mt_rotor),
+    .defaults = rotor_defaults,
+    .finish = rotor_finish,
+    .says = "A rotor whose harmonics are forbidden: an aircraft of the catalogue, or a speed.",
+    .examples = "[{\"aircraft\": \"UH-60\", \"harmonics\": [\"1P\", \"nP\"], \"speed_range\": "
+                "[0.95, 1.05], \"margin_percent\": 10}]",
+    .rules = "\"not\": {\"anyOf\": [{\"required\": [\"aircraft\", \"blades\"]}, {\"required\": "
+             "[\"aircraft\", \"tail\"]}]}"};
 
 static bool needs_catalogue(const mt_study *study)
 {

@@ -4,35 +4,80 @@
 
 #include <string.h>
 
-#define TRADE_KEYS(X)                                       \
-    X(TRADE_VARY, "vary", MT_KEY_LIST, true)                \
-    X(TRADE_OBJECTIVES, "objectives", MT_KEY_LIST, false)   \
-    X(TRADE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
-    X(TRADE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { TRADE_KEYS(MT_STUDY_KEY_ENUM) TRADE_KEY_COUNT };
-static const mt_key TRADE[] = {TRADE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_trade_keys = {"trade", TRADE, TRADE_KEY_COUNT};
+static const mt_key SPAN[] = {
+    MT_M_JUST("from", NUMBER, true, VARIED, "The first."),
+    MT_M_JUST("to", NUMBER, true, VARIED, "The last."),
+    MT_M_JUST("count", COUNT, true, WHOLE, "How many, both included.",
+              .schema = "\"type\": \"integer\", \"minimum\": 2, \"maximum\": 10000"),
+};
+const mt_key_table mt_study_span_keys = {
+    .what = "span", .keys = SPAN, .n = MT_COUNT(SPAN), .says = "Values at equal distances."};
 
-#define VARY_KEYS(X)                                              \
-    X(VARY_VARIABLE, "variable", MT_KEY_TEXT, false)              \
-    X(VARY_GOAL, "goal", MT_KEY_COUNT, false, WHOLE)              \
-    X(VARY_PARAMETER, "parameter", MT_KEY_TEXT, false)            \
-    X(VARY_BOUND, "bound", MT_KEY_TEXT, false)                    \
-    X(VARY_MEMBER, "member", MT_KEY_TEXT, false)                  \
-    X(VARY_VALUES, "values", MT_KEY_LIST_OR_OBJECT, true, VARIED) \
-    X(VARY_DESCRIPTION, "description", MT_KEY_TEXT, false)        \
-    X(VARY_SOURCE, "source", MT_KEY_TEXT, false)
-enum { VARY_KEYS(MT_STUDY_KEY_ENUM) VARY_KEY_COUNT };
-static const mt_key VARY[] = {VARY_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_vary_keys = {"vary", VARY, VARY_KEY_COUNT};
+static const char *const BOUNDS[] = {"lower", "upper"};
 
-#define SPAN_KEYS(X)                                  \
-    X(SPAN_FROM, "from", MT_KEY_NUMBER, true, VARIED) \
-    X(SPAN_TO, "to", MT_KEY_NUMBER, true, VARIED)     \
-    X(SPAN_COUNT, "count", MT_KEY_COUNT, true, WHOLE)
-enum { SPAN_KEYS(MT_STUDY_KEY_ENUM) SPAN_KEY_COUNT };
-static const mt_key SPAN[] = {SPAN_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_span_keys = {"span", SPAN, SPAN_KEY_COUNT};
+/* The first three say what varies, in the order of mt_vary_kind. */
+static const mt_key VARY[] = {
+    MT_M_JUST("variable", TEXT, false, NONE, "A variable of the study; goes with \"bound\"."),
+    MT_M_JUST("goal", COUNT, false, WHOLE,
+              "A goal of the study, counted from 0; goes with \"member\".",
+              .schema = "\"type\": \"integer\", \"minimum\": 0, \"maximum\": 100000"),
+    MT_M_JUST("parameter", TEXT, false, NONE,
+              "A parameter of the model that is not a variable."),
+    {.name = "bound",
+     .type = MT_KEY_TEXT,
+     .choices = BOUNDS,
+     .n_choices = MT_COUNT(BOUNDS),
+     .says = "Which bound of the variable varies."},
+    MT_M_JUST(
+        "member", TEXT, false, NONE,
+        "Which number of the goal varies. \"margin_percent\" replaces every margin of the "
+        "goal, its rotors' too.",
+        .schema =
+            "\"type\": \"string\", \"enum\": [\"target_hz\", \"at_least_hz\", \"at_most_hz\", "
+            "\"at_least\", \"target\", \"at_most\", \"equals\", \"margin_percent\"]"),
+    MT_M_JUST("values", LIST_OR_OBJECT, true, VARIED,
+              "The values, in the unit of what varies: a list, or a span.",
+              .schema = "\"if\": {\"type\": \"array\"}, \"then\": {\"minItems\": 1, \"items\": "
+                        "{\"$ref\": \"#/definitions/number\"}}, \"else\": {\"$ref\": "
+                        "\"#/definitions/span\"}, \"type\": [\"array\", \"object\"]"),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+const mt_key_table mt_study_vary_keys = {
+    .what = "vary",
+    .keys = VARY,
+    .n = MT_COUNT(VARY),
+    .one_of = 3,
+    .says =
+        "A quantity that varies: a bound of a variable, a number of a goal, or a parameter.",
+    .examples = "[{\"variable\": \"M_SAU\", \"bound\": \"upper\", \"values\": {\"from\": 5, "
+                "\"to\": 10, \"count\": 11}}]",
+    .rules = "\"dependencies\": {\"variable\": [\"bound\"], \"bound\": [\"variable\"], "
+             "\"goal\": [\"member\"], \"member\": [\"goal\"]}"};
+
+static const mt_key TRADE[] = {
+    {.name = "vary",
+     .type = MT_KEY_LIST,
+     .required = true,
+     .of = &mt_study_vary_keys,
+     .least = 1,
+     .most = MT_MAX_VARY,
+     .says = "What varies: one quantity, or two in all pairs (at most 10000 points)."},
+    MT_M_JUST("objectives", LIST, false, NONE,
+              "Two objectives between which the Pareto front of all points is reported.",
+              .examples = "[[\"change\", \"clearance\"]]",
+              .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "
+                        "{\"type\": \"string\", \"enum\": [\"change\", \"mass\", \"misfit\", "
+                        "\"clearance\", \"vibration\"]}"),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+const mt_key_table mt_study_trade_keys = {
+    .what = "trade",
+    .keys = TRADE,
+    .n = MT_COUNT(TRADE),
+    .says = "A trade study: one or two quantities take each of their values, and every such "
+            "study is answered by its best design."};
 
 /* One value of what varies: of a parameter, in its unit, or of a goal, whose expression may be
  * held against it. */
@@ -47,13 +92,14 @@ static double read_value(mt_study_reader *s, mt_addr value, const mt_vary *v)
 
 static void read_span(mt_study_reader *s, mt_addr value, mt_vary *v)
 {
-    mt_study_object o;
-    if (!mt_read_study_object(s, value, &mt_study_span_keys, &o)) {
+    mt_object o;
+    if (!mt_object_match(&s->r, value, &mt_study_span_keys, &o)) {
         return;
     }
-    const double from = read_value(s, o.found[SPAN_FROM], v);
-    const double to = read_value(s, o.found[SPAN_TO], v);
-    const int n = mt_reader_count(&s->r, o.found[SPAN_COUNT], 2, MT_MAX_TRADE_POINTS, 0);
+    const double from = read_value(s, mt_object_value(&o, "from"), v);
+    const double to = read_value(s, mt_object_value(&o, "to"), v);
+    const int n =
+        mt_reader_count(&s->r, mt_object_value(&o, "count"), 2, MT_MAX_TRADE_POINTS, 0);
     if (n < 2 || !MT_HAS(from) || !MT_HAS(to)) {
         return;
     }
@@ -88,13 +134,10 @@ static void read_values(mt_study_reader *s, mt_addr value, mt_vary *v)
 }
 
 /* Two members that come together: a variable and its bound, a goal and its number. */
-static void pair(mt_study_reader *s, const mt_study_object *o, int first, int second)
+static void pair(mt_study_reader *s, const mt_object *o, const char *first, const char *second)
 {
-    const bool one = mt_read_study_has(s, o, first);
-    const bool other = mt_read_study_has(s, o, second);
-    if (one != other) {
-        mt_diag_structure(s->r.diags, o->addr, "\"%s\" and \"%s\" go together",
-                          o->table->keys[first].name, o->table->keys[second].name);
+    if (mt_object_has(&s->r, o, first) != mt_object_has(&s->r, o, second)) {
+        mt_diag_structure(s->r.diags, o->addr, "\"%s\" and \"%s\" go together", first, second);
     }
 }
 
@@ -144,30 +187,29 @@ static int varying_members(const char **names)
 
 static void read_vary(mt_study_reader *s, mt_addr value, mt_addr goals, mt_vary *v)
 {
-    static const char *const bounds[] = {"lower", "upper"};
     const char *members[MT_GOAL_TYPE_COUNT * MT_MAX_KEYS];
     const int n_members = varying_members(members);
-    mt_study_object o;
+    mt_object o;
     *v = mt_vary_default(MT_VARY_PARAMETER, value);
-    if (!mt_read_study_object(s, value, &mt_study_vary_keys, &o)) {
+    if (!mt_object_match(&s->r, value, &mt_study_vary_keys, &o)) {
         return;
     }
-    const int which = mt_read_study_one_of(s, &o, VARY_VARIABLE, 3);
-    pair(s, &o, VARY_VARIABLE, VARY_BOUND);
-    pair(s, &o, VARY_GOAL, VARY_MEMBER);
-    const int bound =
-        mt_reader_choice(&s->r, o.found[VARY_BOUND], "bound", bounds, MT_COUNT(bounds));
+    const int which = mt_object_one_of(&s->r, &o, "variable", 3);
+    pair(s, &o, "variable", "bound");
+    pair(s, &o, "goal", "member");
+    const int bound = mt_reader_choice(&s->r, mt_object_value(&o, "bound"), "bound", BOUNDS,
+                                       MT_COUNT(BOUNDS));
     const int member =
-        mt_reader_choice(&s->r, o.found[VARY_MEMBER], "member", members, n_members);
-    v->kind = which == VARY_VARIABLE ? MT_VARY_BOUND
-              : which == VARY_GOAL   ? MT_VARY_GOAL
-                                     : MT_VARY_PARAMETER;
-    v->name = mt_reader_ref(&s->r, which == VARY_VARIABLE ? o.found[VARY_VARIABLE]
-                                                          : o.found[VARY_PARAMETER]);
+        mt_reader_choice(&s->r, mt_object_value(&o, "member"), "member", members, n_members);
+    v->kind = which == MT_VARY_BOUND  ? MT_VARY_BOUND
+              : which == MT_VARY_GOAL ? MT_VARY_GOAL
+                                      : MT_VARY_PARAMETER;
+    v->name = mt_reader_ref(&s->r, which == MT_VARY_BOUND ? mt_object_value(&o, "variable")
+                                                          : mt_object_value(&o, "parameter"));
     v->upper = bound == 1;
     v->member = member == MT_ABSENT ? NULL : members[member];
-    v->goal = goal_of(s, o.found[VARY_GOAL], goals);
-    read_values(s, o.found[VARY_VALUES], v);
+    v->goal = goal_of(s, mt_object_value(&o, "goal"), goals);
+    read_values(s, mt_object_value(&o, "values"), v);
 }
 
 static void read_front(mt_study_reader *s, mt_addr list, mt_trade *trade)
@@ -194,13 +236,13 @@ static void read_front(mt_study_reader *s, mt_addr list, mt_trade *trade)
 void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals)
 {
     mt_trade *const trade = &s->study->trade;
-    mt_study_object o;
-    if (value == MT_NO_ADDR || !mt_read_study_object(s, value, &mt_study_trade_keys, &o)) {
+    mt_object o;
+    if (value == MT_NO_ADDR || !mt_object_match(&s->r, value, &mt_study_trade_keys, &o)) {
         return;
     }
     trade->addr = value;
-    read_front(s, o.found[TRADE_OBJECTIVES], trade);
-    const mt_addr list = o.found[TRADE_VARY];
+    read_front(s, mt_object_value(&o, "objectives"), trade);
+    const mt_addr list = mt_object_value(&o, "vary");
     mt_items items = mt_reader_items(&s->r, list);
     if (list != MT_NO_ADDR && (items.count < 1 || items.count > MT_MAX_VARY)) {
         mt_diag_structure(s->r.diags, list, "one or two quantities can vary, not %d",

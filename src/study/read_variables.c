@@ -3,30 +3,28 @@
 
 #include "study/catalogue.h"
 
-#define VARIABLE_KEYS(X)                                                        \
-    X(VARIABLE_PARAMETER, "parameter", MT_KEY_TEXT, true)                       \
-    X(VARIABLE_LOWER, "lower", MT_KEY_NUMBER, false, BOUND)                     \
-    X(VARIABLE_UPPER, "upper", MT_KEY_NUMBER, false, BOUND)                     \
-    X(VARIABLE_CATALOGUE, "catalogue", MT_KEY_LIST_OR_OBJECT, false, VALUES)    \
-    X(VARIABLE_WEIGHT, "weight", MT_KEY_NUMBER, false, POSITIVE)                \
-    X(VARIABLE_SCALE, "scale", MT_KEY_NUMBER, false, POSITIVE)                  \
-    X(VARIABLE_TOLERANCE, "tolerance_percent", MT_KEY_NUMBER, false, TOLERANCE) \
-    X(VARIABLE_DESCRIPTION, "description", MT_KEY_TEXT, false)                  \
-    X(VARIABLE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { VARIABLE_KEYS(MT_STUDY_KEY_ENUM) VARIABLE_KEY_COUNT };
-static const mt_key KEYS[] = {VARIABLE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_variable_keys = {"variable", KEYS, VARIABLE_KEY_COUNT};
-
-#define CATALOGUE_KEYS(X)                                       \
-    X(CATALOGUE_SERIES, "series", MT_KEY_TEXT, false)           \
-    X(CATALOGUE_STEP, "step", MT_KEY_NUMBER, false, POSITIVE)   \
-    X(CATALOGUE_LOWER, "lower", MT_KEY_NUMBER, true, RULE)      \
-    X(CATALOGUE_UPPER, "upper", MT_KEY_NUMBER, true, RULE)      \
-    X(CATALOGUE_DESCRIPTION, "description", MT_KEY_TEXT, false) \
-    X(CATALOGUE_SOURCE, "source", MT_KEY_TEXT, false)
-enum { CATALOGUE_KEYS(MT_STUDY_KEY_ENUM) CATALOGUE_KEY_COUNT };
-static const mt_key CATALOGUE[] = {CATALOGUE_KEYS(MT_STUDY_KEY)};
-const mt_key_table mt_study_catalogue_keys = {"catalogue", CATALOGUE, CATALOGUE_KEY_COUNT};
+static const mt_key CATALOGUE[] = {
+    {.name = "series",
+     .type = MT_KEY_TEXT,
+     .choices = mt_series_names,
+     .n_choices = MT_SERIES_COUNT,
+     .says = "Preferred numbers, so many per decade."},
+    MT_M_JUST("step", NUMBER, false, POSITIVE,
+              "Step between the values, in the unit of the parameter, above 0."),
+    MT_M_JUST("lower", NUMBER, true, RULE, "Least value, in the unit of the parameter."),
+    MT_M_JUST("upper", NUMBER, true, RULE, "Greatest value, in the unit of the parameter."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+const mt_key_table mt_study_catalogue_keys = {
+    .what = "catalogue",
+    .keys = CATALOGUE,
+    .n = MT_COUNT(CATALOGUE),
+    .one_of = 2,
+    .says = "The values of an E series of IEC 60063, or steps from the lower bound, between "
+            "two bounds (included); at most 10000.",
+    .examples = "[{\"series\": \"E24\", \"lower\": 1000, \"upper\": 100000}, {\"step\": 0.5, "
+                "\"lower\": 1, \"upper\": 10}]"};
 
 /* A series or steps between two bounds, in the unit of the catalogue's numbers: a series is one
  * of that unit's, and steps of 0.5 in are. */
@@ -45,8 +43,7 @@ static int list_catalogue_values(const rule *r, int most, double *values)
 }
 
 /* The values of a rule whose numbers are given, or what is wrong with them. */
-static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule *r,
-                        mt_variable *v)
+static void expand_rule(mt_study_reader *s, const mt_object *o, const rule *r, mt_variable *v)
 {
     const mt_unit *const unit = mt_read_study_unit(s, v->parameter_name.s);
     mt_diags *const diags = s->r.diags;
@@ -54,9 +51,10 @@ static void expand_rule(mt_study_reader *s, const mt_study_object *o, const rule
         return; /* noted, with its row */
     }
     if (r->series != MT_ABSENT && !(r->lower > 0.0)) {
-        mt_diag_error(diags, o->found[CATALOGUE_LOWER], "lower (%g) must be above 0", r->lower);
+        mt_diag_error(diags, mt_object_value(o, "lower"), "lower (%g) must be above 0",
+                      r->lower);
     } else if (r->lower > r->upper) {
-        mt_diag_error(diags, o->found[CATALOGUE_UPPER], "upper (%g) is below lower (%g)",
+        mt_diag_error(diags, mt_object_value(o, "upper"), "upper (%g) is below lower (%g)",
                       r->upper, r->lower);
     } else {
         const int n = list_catalogue_values(r, 0, NULL);
@@ -87,71 +85,92 @@ static double in_unit(mt_study_reader *s, mt_addr value, const char *parameter)
 
 static void read_rule(mt_study_reader *s, mt_addr value, mt_variable *v)
 {
-    mt_study_object o;
-    int n = 0;
-    const char *const *const names = mt_series_names(&n);
-    if (!mt_read_study_object(s, value, &mt_study_catalogue_keys, &o)) {
+    mt_object o;
+    if (!mt_object_match(&s->r, value, &mt_study_catalogue_keys, &o)) {
         return;
     }
-    const int which = mt_read_study_one_of(s, &o, CATALOGUE_SERIES, 2);
+    const int which = mt_object_one_of(&s->r, &o, "series", 2);
     const char *const name = v->parameter_name.s;
     const rule r = {
-        .series = mt_reader_choice(&s->r, o.found[CATALOGUE_SERIES], "series", names, n),
-        .step = in_unit(s, o.found[CATALOGUE_STEP], name),
-        .lower = in_unit(s, o.found[CATALOGUE_LOWER], name),
-        .upper = in_unit(s, o.found[CATALOGUE_UPPER], name),
+        .series = mt_reader_choice(&s->r, mt_object_value(&o, "series"), "series",
+                                   mt_series_names, MT_SERIES_COUNT),
+        .step = in_unit(s, mt_object_value(&o, "step"), name),
+        .lower = in_unit(s, mt_object_value(&o, "lower"), name),
+        .upper = in_unit(s, mt_object_value(&o, "upper"), name),
     };
-    const bool known = which == CATALOGUE_SERIES ? r.series != MT_ABSENT : MT_HAS(r.step);
+    const bool known = which == 0 ? r.series != MT_ABSENT : MT_HAS(r.step);
     if (which != MT_ABSENT && known && MT_HAS(r.lower) && MT_HAS(r.upper)) {
         expand_rule(s, &o, &r, v);
     }
 }
 
-static void read_catalogue(mt_study_reader *s, mt_addr list, mt_variable *v)
+/* A list of values, or a rule. */
+static void read_catalogue(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
-    if (list == MT_NO_ADDR) {
+    mt_study_reader *const s = mt_study_reader_of(r);
+    mt_variable *const v = item;
+    (void)key;
+    if (mt_json_type_of(r->doc, value) == MT_JSON_OBJECT) {
+        read_rule(s, value, v);
         return;
     }
-    if (mt_json_type_of(s->r.doc, list) == MT_JSON_OBJECT) {
-        read_rule(s, list, v);
-        return;
-    }
-    mt_items items = mt_reader_some_items(&s->r, list, "the catalogue");
-    v->catalogue = mt_reader_room(&s->r, &items, sizeof *v->catalogue);
+    mt_items items = mt_reader_some_items(r, value, "the catalogue");
+    v->catalogue = mt_reader_room(r, &items, sizeof *v->catalogue);
     while (mt_items_next(&items)) {
-        const double value = mt_read_study_value(s, items.at, v->parameter_name.s);
-        if (MT_HAS(value)) {
-            v->catalogue[v->n_catalogue++] = value;
+        const double number = mt_read_study_value(s, items.at, v->parameter_name.s);
+        if (MT_HAS(number)) {
+            v->catalogue[v->n_catalogue++] = number;
         }
     }
 }
 
-static void read_variable(mt_study_reader *s, mt_addr value, mt_variable *v)
+static void variable_defaults(void *item, mt_addr addr, int which)
 {
-    mt_study_object o;
-    *v = mt_variable_default(value);
-    if (!mt_read_study_object(s, value, &mt_study_variable_keys, &o)) {
-        return;
-    }
-    v->parameter_name = mt_reader_ref(&s->r, o.found[VARIABLE_PARAMETER]);
-    const char *const name = v->parameter_name.s;
-    v->lower = mt_read_study_value(s, o.found[VARIABLE_LOWER], name);
-    v->upper = mt_read_study_value(s, o.found[VARIABLE_UPPER], name);
-    read_catalogue(s, o.found[VARIABLE_CATALOGUE], v);
-    const double weight = mt_read_study_number(s, o.found[VARIABLE_WEIGHT]);
-    v->weight = MT_HAS(weight) ? weight : v->weight;
-    v->scale = mt_read_study_value(s, o.found[VARIABLE_SCALE], name);
-    v->tolerance_percent = mt_read_study_number(s, o.found[VARIABLE_TOLERANCE]);
+    (void)which;
+    *(mt_variable *)item = mt_variable_default(addr);
 }
 
-void mt_read_study_variables(mt_study_reader *s, mt_addr list)
-{
-    mt_study *const study = s->study;
-    mt_items items = mt_reader_items(&s->r, list);
-    study->variables = mt_reader_room(&s->r, &items, sizeof *study->variables);
-    while (mt_items_next(&items)) {
-        if (mt_reader_type(&s->r, items.at, MT_KEY_OBJECT)) {
-            read_variable(s, items.at, &study->variables[study->n_variables++]);
-        }
-    }
-}
+#define THIS mt_variable
+static const mt_key VARIABLE[] = {
+    MT_M_REF("parameter", true, parameter_name, "Name of a parameter of the model."),
+    MT_S_VALUE("lower", false, lower, parameter_name, BOUND,
+               "Lower bound, in the unit of the parameter. Goes with \"upper\"."),
+    MT_S_VALUE("upper", false, upper, parameter_name, BOUND,
+               "Upper bound, in the unit of the parameter. Goes with \"lower\"."),
+    {.name = "catalogue",
+     .type = MT_KEY_LIST_OR_OBJECT,
+     .possible = MT_POSSIBLE_VALUES,
+     .read = read_catalogue,
+     .says = "The values that can be had, in the unit of the parameter, instead of bounds: a "
+             "list, or a rule.",
+     .examples =
+         "[[5000, 8000, 10000], {\"series\": \"E24\", \"lower\": 1000, \"upper\": 100000}]",
+     .schema = "\"if\": {\"type\": \"array\"}, \"then\": {\"minItems\": 1, \"items\": "
+               "{\"$ref\": \"#/definitions/number\"}}, \"else\": {\"$ref\": "
+               "\"#/definitions/catalogue\"}, \"type\": [\"array\", \"object\"]"},
+    MT_S_NUMBER("weight", false, weight, POSITIVE,
+                "Weight of this variable in the size of a change (no unit), above 0.",
+                .otherwise = "1"),
+    MT_S_VALUE("scale", false, scale, parameter_name, POSITIVE,
+               "Change that counts as 1, in the parameter's unit: measures its change "
+               "linearly. Absent: ln(new/original) where original and bounds are positive or "
+               "0, else the range."),
+    MT_S_NUMBER("tolerance_percent", false, tolerance_percent, TOLERANCE,
+                "Manufacturing tolerance, in percent of the value either way: constraints must "
+                "hold everywhere within the tolerances of all variables. A target, or "
+                "\"equals\", is met by the design itself; with a tolerance_percent of its own "
+                "it is a range that is kept everywhere over the tolerances. Misfit and "
+                "objectives are those of the design itself."),
+    MT_M_DESCRIPTION,
+    MT_M_SOURCE,
+};
+#undef THIS
+const mt_key_table mt_study_variable_keys = {
+    .what = "variable",
+    .keys = VARIABLE,
+    .n = MT_COUNT(VARIABLE),
+    .size = sizeof(mt_variable),
+    .defaults = variable_defaults,
+    .says = "A parameter that the study may change: within two bounds, or to an entry of a "
+            "catalogue.",
+    .examples = "[{\"parameter\": \"K_T1\", \"lower\": 1000, \"upper\": 100000}]"};

@@ -308,15 +308,9 @@ bool mt_study_is_fit(const mt_study *study)
     return fit;
 }
 
-const char *const *mt_study_statuses(int *n)
-{
-    /* a study that was interrupted says nothing that could be published */
+/* a study that was interrupted says nothing that could be published */
 #define STATUS_NAME(id, name) name,
-    static const char *const names[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
-#undef STATUS_NAME
-    *n = MT_RESULT_INTERRUPTED;
-    return names;
-}
+const char *const mt_study_status_names[] = {MT_RESULT_STATUS_LIST(STATUS_NAME)};
 
 const char *mt_search_budget(const mt_search *s)
 {

@@ -386,7 +386,8 @@ const char *mt_role_name(mt_role role);
 const char *mt_published_kind_name(mt_published_kind kind);
 /* The possible values of a published `status`, in the order of mt_result_status; *n is their
  * number. */
-const char *const *mt_study_statuses(int *n);
+enum { MT_STUDY_STATUSES = MT_RESULT_INTERRUPTED };
+extern const char *const mt_study_status_names[];
 /* True where the objective is the misfit and every goal is a part of it: no goal then decides
  * whether a design is feasible. */
 bool mt_study_is_fit(const mt_study *study);

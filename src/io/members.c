@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/members.h"
+
+#include <string.h>
+
+#include "base/text.h"
+
+bool mt_object_match(mt_reader *r, mt_addr value, const mt_key_table *table, mt_object *out)
+{
+    out->addr = value;
+    out->table = table;
+    return mt_reader_object(r, value, table, out->found);
+}
+
+int mt_object_key(const mt_object *o, const char *member)
+{
+    int k = 0;
+    while (k + 1 < o->table->n && strcmp(o->table->keys[k].name, member) != 0) {
+        k++;
+    }
+    return k;
+}
+
+mt_addr mt_object_value(const mt_object *o, const char *member)
+{
+    return o->found[mt_object_key(o, member)];
+}
+
+bool mt_object_has(const mt_reader *r, const mt_object *o, const char *member)
+{
+    return mt_json_member(r->doc, o->addr, member) != MT_NO_ADDR;
+}
+
+mt_addr mt_object_place(const mt_reader *r, const mt_object *o, const char *member)
+{
+    return mt_diag_member(r->diags, o->addr, member);
+}
+
+/* "a", "b" or "c" */
+static void list_keys(const mt_key *keys, int n, mt_text *out)
+{
+    for (int i = 0; i < n; i++) {
+        const char *const between = i == 0 ? "" : i == n - 1 ? " or " : ", ";
+        mt_text_addf(out, "%s\"%s\"", between, keys[i].name);
+    }
+}
+
+int mt_object_one_of(mt_reader *r, const mt_object *o, const char *first, int n)
+{
+    const mt_key *const keys = &o->table->keys[mt_object_key(o, first)];
+    int which = MT_ABSENT;
+    for (int k = 0; k < n; k++) {
+        const mt_addr at = mt_json_member(r->doc, o->addr, keys[k].name);
+        if (at != MT_NO_ADDR && which != MT_ABSENT) {
+            mt_diag_structure(r->diags, mt_json_name_addr(r->doc, at), "\"%s\" excludes \"%s\"",
+                              keys[k].name, keys[which].name);
+            return MT_ABSENT;
+        }
+        which = at == MT_NO_ADDR ? which : k;
+    }
+    if (which == MT_ABSENT) {
+        mt_text names = {0};
+        list_keys(keys, n, &names);
+        if (names.failed) {
+            mt_arena_fail(r->mem);
+        } else {
+            mt_diag_structure(r->diags, o->addr, "one of %s is missing", names.s);
+        }
+        mt_text_free(&names);
+    }
+    return which;
+}
+
+void mt_object_read(mt_reader *r, const mt_object *o, void *item)
+{
+    for (int k = 0; k < o->table->n; k++) {
+        const mt_key *const key = &o->table->keys[k];
+        if (key->read != NULL && o->found[k] != MT_NO_ADDR) {
+            key->read(r, key, o->found[k], item);
+        }
+    }
+}
+
+bool mt_members_read(mt_reader *r, mt_addr value, const mt_key_table *table, void *item)
+{
+    mt_object o;
+    int which = 0;
+    if (!mt_object_match(r, value, table, &o)) {
+        return false;
+    }
+    if (table->one_of > 0) {
+        which = mt_object_one_of(r, &o, table->keys[0].name, table->one_of);
+    }
+    if (table->defaults != NULL) {
+        table->defaults(item, value, which);
+    }
+    mt_object_read(r, &o, item);
+    if (table->finish != NULL) {
+        table->finish(r, &o, which, item);
+    }
+    return which != MT_ABSENT;
+}
+
+/* Where the row's value goes. */
+static void *place(const mt_key *key, void *item)
+{
+    return (char *)item + key->at;
+}
+
+void mt_read_text(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    *(const char **)place(key, item) = mt_reader_text(r, value);
+}
+
+void mt_read_ref(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    *(mt_name *)place(key, item) = mt_reader_ref(r, value);
+}
+
+void mt_read_refs(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    *(mt_name_list *)place(key, item) = mt_reader_refs(r, value);
+}
+
+void mt_read_count(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    int *const at = place(key, item);
+    *at = mt_reader_count(r, value, key->least, key->most, *at);
+}
+
+void mt_read_long(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    long *const at = place(key, item);
+    *at = mt_reader_count(r, value, key->least, key->most, (int)*at);
+}
+
+void mt_read_ulong(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    unsigned long *const at = place(key, item);
+    *at = (unsigned long)mt_reader_count(r, value, key->least, key->most, (int)*at);
+}
+
+void mt_read_choice(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    const int which = mt_reader_choice(r, value, key->what, key->choices, key->n_choices);
+    if (which != MT_ABSENT) { /* the enums of C11 here are int or unsigned, of one size */
+        memcpy(place(key, item), &which, sizeof which);
+    }
+}
+
+void mt_read_inner(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    (void)mt_members_read(r, value, key->of, item);
+}
+
+void *mt_members_list(mt_reader *r, mt_addr list, const char *what, const mt_key_table *of,
+                      int *n)
+{
+    mt_items items =
+        what != NULL ? mt_reader_some_items(r, list, what) : mt_reader_items(r, list);
+    char *const room = mt_reader_room(r, &items, of->size);
+    while (mt_items_next(&items)) {
+        *n += mt_members_read(r, items.at, of, room + ((size_t)*n * of->size)) ? 1 : 0;
+    }
+    return room;
+}
+
+void mt_read_items(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    int *const n = (int *)(void *)((char *)item + key->other);
+    void *const list = mt_members_list(r, value, key->what, key->of, n);
+    memcpy(place(key, item), &list, sizeof list);
+}
