@@ -3,13 +3,8 @@
 #include "nlp_problem.h"
 
 /* eq_i = t_0 - target_i (i < n_eq), f = change; further variables are not seen. */
-static mt_status same_variable(void *context, const double *t, bool with_gradient,
-                               mt_nlp_values *out, mt_err *err)
+static void same_variable(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     change(c, t, out);
     for (int i = 0; i < c->nlp.n_eq; i++) {
         out->eq[i] = t[0] - c->target[i];
@@ -17,7 +12,6 @@ static mt_status same_variable(void *context, const double *t, bool with_gradien
             out->deq[i + j * c->nlp.n_eq] = j == 0;
         }
     }
-    return MT_OK;
 }
 
 static void nlp_compromise__contradicting_targets_are_averaged(mt_test *t)
@@ -31,8 +25,7 @@ static void nlp_compromise__contradicting_targets_are_averaged(mt_test *t)
         c.target[1] = 0.2;
         c.target[2] = 0.6;
         c.origin[3] = 0.5;
-        const mt_nlp_options opt = mt_nlp_options_default();
-        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        REQUIRE(t, case_solve(&c, NULL) == MT_OK);
         CHECK(t, c.result.compromise);
         CHECK_INT(t, c.result.n_solutions, 1);
         CHECK_INT(t, c.result.n_unidentifiable, n - 1);
@@ -54,8 +47,7 @@ static void nlp_compromise__bounds_are_respected(mt_test *t)
     case_begin(&c, 2, same_variable, -2, 2);
     c.nlp.n_eq = 1;
     c.target[0] = 3;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_solutions, 1);
     CHECK(t, c.result.solutions[0].t[0] == 2 && c.result.solutions[0].t[1] == 0);
@@ -65,19 +57,13 @@ static void nlp_compromise__bounds_are_respected(mt_test *t)
 
 /* Two local compromises: cos(t) = 1.5 has the nearest values at every multiple of 2 pi; with
  * the second equality t = 1 in weak form they differ, and are ranked by their squares. */
-static mt_status wave(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                      mt_err *err)
+static void wave(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     change(c, t, out);
     out->eq[0] = cos(t[0]) - 1.5;
     out->eq[1] = 0.01 * (t[0] - 1);
     out->deq[0] = -sin(t[0]);
     out->deq[1] = 0.01;
-    return MT_OK;
 }
 
 static void nlp_compromise__local_ones_are_kept_and_ranked_by_squares(mt_test *t)
@@ -86,8 +72,7 @@ static void nlp_compromise__local_ones_are_kept_and_ranked_by_squares(mt_test *t
     case_begin(&c, 1, wave, -8, 8);
     c.nlp.n_eq = 2;
     c.origin[0] = 6; /* near the worse one: rank does not follow the change */
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK(t, c.result.compromise);
     REQUIRE(t, c.result.n_solutions == 3);
     double previous = 0;
@@ -106,19 +91,13 @@ static void nlp_compromise__local_ones_are_kept_and_ranked_by_squares(mt_test *t
 }
 
 /* Inequalities that exclude each other: t0 >= 1 and t0 <= 0 (as 0 - t0 >= 0). */
-static mt_status apart(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void apart(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     change(c, t, out);
     out->in[0] = t[0] - 1;
     out->in[1] = -t[0];
     out->din[0] = 1;
     out->din[1] = -1;
-    return MT_OK;
 }
 
 static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
@@ -127,8 +106,7 @@ static void nlp_compromise__excluding_inequalities_meet_half_way(mt_test *t)
     case_begin(&c, 1, apart, -2, 2);
     c.nlp.n_in = 2;
     c.origin[0] = -1.5;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_solutions, 1);
     CHECK_NEAR(t, c.result.solutions[0].t[0], 0.5, 1e-10);
@@ -178,7 +156,8 @@ static mt_status prove(void *context, bool *none, mt_err *err)
 
 static mt_status ring_solve(ring *r, int lobes, bool none, int starts)
 {
-    case_begin(&r->c, 2, rings, -4, 4);
+    case_begin(&r->c, 2, NULL, -4, 4);
+    r->c.nlp.eval = rings;
     r->c.nlp.n_in = 2;
     r->c.nlp.context = r;
     r->c.origin[0] = 2.0;
@@ -244,20 +223,14 @@ static void nlp_compromise__least_squares_end_where_nothing_is_left(mt_test *t)
 
 /* One requirement is out of reach (t0 <= 2 < 3), the other, t1 + 2 t2 = 1, leaves a line: of
  * all equal compromises the one of least change, t = (2, 1/5, 2/5), and only that. */
-static mt_status line(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                      mt_err *err)
+static void line(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     change(c, t, out);
     out->eq[0] = t[0] - 3;
     out->eq[1] = sinh(t[1] + 2 * t[2] - 1);
     const double slope = cosh(t[1] + 2 * t[2] - 1);
     const double jacobian[6] = {1, 0, 0, slope, 0, 2 * slope};
     memcpy(out->deq, jacobian, sizeof jacobian);
-    return MT_OK;
 }
 
 static void nlp_compromise__of_equal_ones_the_least_change_is_taken(mt_test *t)
@@ -265,8 +238,7 @@ static void nlp_compromise__of_equal_ones_the_least_change_is_taken(mt_test *t)
     nlp_case c = {0};
     case_begin(&c, 3, line, -2, 2);
     c.nlp.n_eq = 2;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_solutions, 1);
     CHECK_INT(t, c.result.n_unidentifiable, 1); /* (0, 2, -1)/sqrt 5 */
@@ -279,19 +251,13 @@ static void nlp_compromise__of_equal_ones_the_least_change_is_taken(mt_test *t)
 }
 
 /* The same on a circle, where no straight direction is undetermined. */
-static mt_status circle(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                        mt_err *err)
+static void circle(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     change(c, t, out);
     out->eq[0] = t[0] - 3;
     out->eq[1] = 0.5 * (t[1] * t[1] + t[2] * t[2] - 1);
     const double jacobian[6] = {1, 0, 0, t[1], 0, t[2]};
     memcpy(out->deq, jacobian, sizeof jacobian);
-    return MT_OK;
 }
 
 static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
@@ -301,8 +267,7 @@ static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
     c.nlp.n_eq = 2;
     c.origin[1] = 0.3;
     c.origin[2] = 0.4;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_solutions, 1);
     CHECK_INT(t, c.result.n_unidentifiable, 0);
@@ -313,14 +278,9 @@ static void nlp_compromise__least_change_also_on_a_curve(mt_test *t)
 
 /* t_0 = 0 and t_0 = 0.1 - 1e-4 t_1: t_1 at its bound would miss by 7e-5 less, which is less
  * than the requirements' tolerance of 1e-3. */
-static mt_status weakly_seen(void *context, const double *t, bool with_gradient,
-                             mt_nlp_values *out, mt_err *err)
+static void weakly_seen(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
     static const double weak = 1e-4;
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     change(c, t, out);
     out->eq[0] = t[0];
     out->eq[1] = t[0] - 0.1 + (weak * t[1]);
@@ -328,7 +288,6 @@ static mt_status weakly_seen(void *context, const double *t, bool with_gradient,
     out->deq[1] = 1;
     out->deq[2] = 0;
     out->deq[3] = weak;
-    return MT_OK;
 }
 
 static void nlp_compromise__what_requirements_do_not_see_stays_at_the_origin(mt_test *t)
@@ -339,8 +298,7 @@ static void nlp_compromise__what_requirements_do_not_see_stays_at_the_origin(mt_
     c.origin[1] = 0.3;
     c.eq_tol[0] = 1e-3;
     c.eq_tol[1] = 1e-3;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK(t, c.result.compromise);
     CHECK_INT(t, c.result.n_unidentifiable, 1);
     CHECK(t, c.result.solutions[0].t[1] == 0.3);

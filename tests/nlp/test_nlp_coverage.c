@@ -7,13 +7,9 @@
  * the bounds -1 to 1. */
 enum { PAIRS = 4, ROOTS = 16, FEW = 24 };
 
-static mt_status pairs(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void pairs(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
     const int n = c->nlp.n;
-    (void)with_gradient;
-    (void)err;
     out->f = 0;
     memset(out->deq, 0, (size_t)n * (size_t)n * sizeof *out->deq);
     for (int j = 0; j < n; j++) {
@@ -22,7 +18,6 @@ static mt_status pairs(void *context, const double *t, bool with_gradient, mt_nl
         out->eq[j] = (t[j] + 0.9) * (t[j] - 0.5);
         out->deq[j + j * n] = 2 * t[j] + 0.4;
     }
-    return MT_OK;
 }
 
 static void nlp_coverage__every_root_is_met_twice(mt_test *t)
@@ -30,8 +25,7 @@ static void nlp_coverage__every_root_is_met_twice(mt_test *t)
     nlp_case c = {0};
     case_begin(&c, PAIRS, pairs, -1, 1);
     c.nlp.n_eq = PAIRS;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK_INT(t, c.result.n_found, ROOTS);
     CHECK_INT(t, c.result.n_solutions, ROOTS);
     CHECK_INT(t, c.result.n_once, 0);
@@ -111,12 +105,9 @@ static void nlp_coverage__any_number_of_workers_finds_the_same(mt_test *t)
 
 /* t_0 = t_1, twice: a curve of roots, each met once by its start. No number of starts would
  * meet one twice. */
-static mt_status diagonal(void *context, const double *t, bool with_gradient,
-                          mt_nlp_values *out, mt_err *err)
+static void diagonal(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    (void)context;
-    (void)with_gradient;
-    (void)err;
+    (void)c;
     out->f = 0;
     for (int j = 0; j < 2; j++) {
         out->df[j] = 0;
@@ -124,7 +115,6 @@ static mt_status diagonal(void *context, const double *t, bool with_gradient,
         out->deq[j] = 1;
         out->deq[2 + j] = -1;
     }
-    return MT_OK;
 }
 
 static void nlp_coverage__a_curve_of_roots_is_not_counted(mt_test *t)
@@ -132,20 +122,15 @@ static void nlp_coverage__a_curve_of_roots_is_not_counted(mt_test *t)
     nlp_case c = {0};
     case_begin(&c, 2, diagonal, -1, 1);
     c.nlp.n_eq = 2;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK_INT(t, c.result.starts, 16);
     CHECK(t, !(c.result.missing >= 0));
     mt_arena_free(&c.mem);
 }
 
 /* In every variable two wells of unequal depth, or one: 2^n minima, or one. */
-static mt_status wells(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void wells(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
     out->f = 0;
     for (int j = 0; j < c->nlp.n; j++) {
         const double depth = c->target[0];
@@ -153,7 +138,6 @@ static mt_status wells(void *context, const double *t, bool with_gradient, mt_nl
         out->f += (p * p) + (0.01 * t[j]);
         out->df[j] = (4 * p * t[j]) + 0.01;
     }
-    return MT_OK;
 }
 
 /* Starts end with one place met eight times, with two met seventeen times; eight take more than

@@ -21,10 +21,8 @@ static double uniform(unsigned long *state)
 }
 
 /* t = c, x, y; u, v are x, y bent. target: slopes of f along x and y, bend. */
-static mt_status cone(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                      mt_err *err)
+static void cone(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
     const double bend = c->target[2];
     const double u = t[1] + bend * t[2] * t[2];
     const double v = t[2] + bend * t[0] * t[0];
@@ -32,9 +30,6 @@ static mt_status cone(void *context, const double *t, bool with_gradient, mt_nlp
     const double du = r > 0 ? u / r : 1;
     const double dv = r > 0 ? v / r : 0;
     const double dr[N] = {dv * 2 * bend * t[0], du, (du * 2 * bend * t[2]) + dv};
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     out->f = 1 + t[0] + (c->target[0] * t[1]) + (c->target[1] * t[2]);
     out->df[0] = 1;
     out->df[1] = c->target[0];
@@ -49,7 +44,6 @@ static mt_status cone(void *context, const double *t, bool with_gradient, mt_nlp
     if (out->next != NULL) {
         out->next[0] = t[0] + r;
     }
-    return MT_OK;
 }
 
 /* The tip is found, and is not sought again and again. */

@@ -6,17 +6,12 @@
 #include "nlp_problem.h"
 
 /* eq = (t0 - t1) at a corner: t0 + t1 is not settled, wherever solution and origin are. */
-static mt_status difference(void *context, const double *t, bool with_gradient,
-                            mt_nlp_values *out, mt_err *err)
+static void difference(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
     change(c, t, out);
     out->eq[0] = t[0] - t[1] - c->target[0];
     out->deq[0] = 1;
     out->deq[1] = -1;
-    return MT_OK;
 }
 
 static void nlp_directions__a_combination_through_a_corner_is_still_found(mt_test *t)
@@ -25,8 +20,7 @@ static void nlp_directions__a_combination_through_a_corner_is_still_found(mt_tes
     /* origin (0, 0): no room along (1, 1) in one direction */
     case_begin(&c, 2, difference, 0, 1);
     c.nlp.n_eq = 1;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     REQUIRE(t, c.result.n_solutions == 1 && c.result.n_unidentifiable == 1);
     CHECK_NEAR(t, fabs(c.result.unidentifiable[0]), sqrt(0.5), 1e-12);
     CHECK_NEAR(t, c.result.unidentifiable[0], c.result.unidentifiable[1], 1e-12);
@@ -46,8 +40,7 @@ static void nlp_directions__no_room_at_the_solution_is_no_direction(mt_test *t)
         c.eq_tol[0] = 1e-9;
         c.target[0] = 1 - SHORT[k];
         mt_test_row(t, "%g short of the corner", SHORT[k]);
-        const mt_nlp_options opt = mt_nlp_options_default();
-        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        REQUIRE(t, case_solve(&c, NULL) == MT_OK);
         REQUIRE(t, c.result.n_solutions == 1);
         CHECK_INT(t, c.result.n_unidentifiable, SHORT[k] > 1e-6);
         mt_arena_free(&c.mem);
@@ -55,17 +48,12 @@ static void nlp_directions__no_room_at_the_solution_is_no_direction(mt_test *t)
 }
 
 /* t0 is asked to be what a bound or the origin is to a few units of rounding. */
-static mt_status value_asked(void *context, const double *t, bool with_gradient,
-                             mt_nlp_values *out, mt_err *err)
+static void value_asked(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
     change(c, t, out);
     out->eq[0] = t[0] - c->target[0];
     out->deq[0] = 1;
     out->deq[1] = 0;
-    return MT_OK;
 }
 
 static void nlp_directions__what_is_on_a_bound_to_rounding_is_put_on_it(mt_test *t)
@@ -80,8 +68,7 @@ static void nlp_directions__what_is_on_a_bound_to_rounding_is_put_on_it(mt_test 
             c.nlp.n_eq = 1;
             c.target[0] = AT[k] + off * 0x1p-53;
             mt_test_row(t, "%g and %d", AT[k], off);
-            const mt_nlp_options opt = mt_nlp_options_default();
-            REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+            REQUIRE(t, case_solve(&c, NULL) == MT_OK);
             REQUIRE(t, c.result.n_solutions == 1);
             CHECK(t, c.result.solutions[0].t[0] == AT[k]);
             mt_arena_free(&c.mem);
@@ -91,13 +78,9 @@ static void nlp_directions__what_is_on_a_bound_to_rounding_is_put_on_it(mt_test 
 
 /* r_i = w_i (t0 + t1 + t2 - 0.5), its slopes as several processors have them. w: target[3 ...].
  */
-static mt_status plane(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void plane(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
     const int n_res = c->nlp.n_res;
-    (void)with_gradient;
-    (void)err;
     out->f = 0.0;
     for (int i = 0; i < n_res; i++) {
         const double w = c->target[3 + i];
@@ -109,7 +92,6 @@ static mt_status plane(void *context, const double *t, bool with_gradient, mt_nl
         }
         out->f += 0.5 * out->r[i] * out->r[i];
     }
-    return MT_OK;
 }
 
 /* Two directions are open, and any two that span the plane would do: the projections of the
@@ -142,16 +124,11 @@ static void nlp_directions__a_plane_has_one_basis(mt_test *t)
 }
 
 /* f = target[0] + t0 + target[1] t1, least at the lower bound of t0. */
-static mt_status slope_only(void *context, const double *t, bool with_gradient,
-                            mt_nlp_values *out, mt_err *err)
+static void slope_only(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
     out->f = c->target[0] + t[0] + (c->target[1] * t[1]);
     out->df[0] = 1.0;
     out->df[1] = c->target[1];
-    return MT_OK;
 }
 
 /* What an objective sees is told by its size, |f| and what it changes by across the bounds: 0
@@ -187,35 +164,25 @@ static void nlp_directions__an_objective_of_0_sees_what_it_changes_with(mt_test 
 
 /* f = 1 + 1/2 sum of k_j (t_j - middle_j)^2, k_j = target[j], middle_j = target[3 + j] or,
  * where that is 0, 0.5. */
-static mt_status bowls(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void bowls(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
     out->f = 1.0;
     for (int j = 0; j < c->nlp.n; j++) {
         const double d = t[j] - (c->target[3 + j] > 0.0 ? c->target[3 + j] : 0.5);
         out->f += 0.5 * c->target[j] * d * d;
         out->df[j] = c->target[j] * d;
     }
-    return MT_OK;
 }
 
 /* f = 1 + 1/2 (t0 + t1 - 1)^2 k0 + 1/2 k2 (t2 - 0.5)^2 */
-static mt_status trough(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                        mt_err *err)
+static void trough(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
     const double d = t[0] + t[1] - 1.0;
     const double d2 = t[2] - 0.5;
-    (void)with_gradient;
-    (void)err;
     out->f = 1.0 + (0.5 * c->target[0] * d * d) + (0.5 * c->target[2] * d2 * d2);
     out->df[0] = c->target[0] * d;
     out->df[1] = out->df[0];
     out->df[2] = c->target[2] * d2;
-    return MT_OK;
 }
 
 /* A solution is called flat for what is open beside single variables, which are put back to the
@@ -224,7 +191,7 @@ static void nlp_directions__flat_is_what_is_open_beside_single_variables(mt_test
 {
     static const struct {
         const char *name;
-        mt_nlp_eval eval;
+        nlp_rows at;
         double curvature[3];
         int n; /* directions */
         bool flat;
@@ -239,7 +206,7 @@ static void nlp_directions__flat_is_what_is_open_beside_single_variables(mt_test
         nlp_case c = {0};
         mt_nlp_options opt = mt_nlp_options_default();
         opt.least_change = false;
-        case_begin(&c, 3, rows[i].eval, 0.0, 1.0);
+        case_begin(&c, 3, rows[i].at, 0.0, 1.0);
         memcpy(c.target, rows[i].curvature, sizeof rows[i].curvature);
         c.origin[0] = 0.25;
         c.origin[1] = 0.375;
@@ -254,18 +221,15 @@ static void nlp_directions__flat_is_what_is_open_beside_single_variables(mt_test
 }
 
 /* The same bowls where rows bound t0 and t1 from below: in_i = t_i - 0.3. */
-static mt_status bowls_above(void *context, const double *t, bool with_gradient,
-                             mt_nlp_values *out, mt_err *err)
+static void bowls_above(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    MT_TRY(bowls(context, t, with_gradient, out, err));
+    bowls(c, t, out);
     for (int i = 0; i < c->nlp.n_in; i++) {
         out->in[i] = t[i] - 0.3;
         for (int j = 0; j < c->nlp.n; j++) {
             out->din[i + (j * c->nlp.n_in)] = i == j ? 1.0 : 0.0;
         }
     }
-    return MT_OK;
 }
 
 /* A row that holds the design and presses with nothing leaves the side beyond it open: t0, and
@@ -307,12 +271,8 @@ static void nlp_directions__a_row_without_a_multiplier_leaves_a_side_open(mt_tes
 }
 
 /* f = sum of k_j (exp(d_j) - d_j), d_j = t_j - 0.5 - j/10, a bowl that no parabola is. */
-static mt_status steep_bowl(void *context, const double *t, bool with_gradient,
-                            mt_nlp_values *out, mt_err *err)
+static void steep_bowl(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
     out->f = 0.0;
     for (int j = 0; j < c->nlp.n; j++) {
         const double d = t[j] - 0.5 - (0.1 * j);
@@ -323,7 +283,6 @@ static mt_status steep_bowl(void *context, const double *t, bool with_gradient,
         out->eq[0] = (t[0] * t[1] * t[2]) - 0.2;
         out->deq[j] = t[(j + 1) % 3] * t[(j + 2) % 3];
     }
-    return MT_OK;
 }
 
 /* A bowl is not flat, wherever the search for its bottom is cut off: what was not looked at is
@@ -383,7 +342,8 @@ static void nlp_directions__directions_are_the_best_solutions(mt_test *t)
     nlp_case c = {0};
     mt_nlp_options opt = mt_nlp_options_default();
     opt.least_change = false;
-    case_begin(&c, 2, valleys, 0.0, 1.0);
+    case_begin(&c, 2, NULL, 0.0, 1.0);
+    c.nlp.eval = valleys;
     c.origin[0] = 0.3;
     c.origin[1] = 0.75;
     REQUIRE(t, case_solve(&c, &opt) == MT_OK);

@@ -10,13 +10,8 @@ enum { LINEAR_N = 4 };
 static const double DIAGONAL[LINEAR_N] = {1, 2, 4, 0.5};
 static const double RHS[LINEAR_N] = {0.3, -0.2, 0.5, 0.1};
 
-static mt_status linear(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                        mt_err *err)
+static void linear(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     out->f = nan(""); /* must be ignored */
     if (c->nlp.n_eq > 0) {
         out->eq[0] = -1;
@@ -31,7 +26,6 @@ static mt_status linear(void *context, const double *t, bool with_gradient, mt_n
             out->deq[i] = 1;
         }
     }
-    return MT_OK;
 }
 
 static void nlp_identification__linear_matches_closed_form(mt_test *t)
@@ -40,8 +34,7 @@ static void nlp_identification__linear_matches_closed_form(mt_test *t)
     case_begin(&c, LINEAR_N, linear, -5, 5);
     c.nlp.n_eq = 1;
     c.nlp.n_res = LINEAR_N;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     REQUIRE(t, c.result.n_solutions == 1);
     double inverse = 0;
     double sum = 0;
@@ -67,8 +60,7 @@ static void nlp_identification__without_equalities_is_least_squares(mt_test *t)
     case_begin(&c, LINEAR_N, linear, -5, 5);
     c.nlp.n_res = LINEAR_N;
     c.upper[2] = 0.1; /* free optimum 0.125 */
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     REQUIRE(t, c.result.n_solutions == 1);
     for (int i = 0; i < LINEAR_N; i++) {
         const double want = i == 2 ? 0.1 : RHS[i] / DIAGONAL[i];
@@ -86,13 +78,9 @@ static void nlp_identification__without_equalities_is_least_squares(mt_test *t)
 static const double P = 1.0;
 static const double Q = 2.0;
 
-static mt_status parabola(void *context, const double *t, bool with_gradient,
-                          mt_nlp_values *out, mt_err *err)
+static void parabola(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
+    (void)c;
     out->r[0] = sinh(t[0]) - sinh(P);
     out->r[1] = t[1] - Q;
     out->dr[0] = cosh(t[0]);
@@ -102,7 +90,6 @@ static mt_status parabola(void *context, const double *t, bool with_gradient,
     out->eq[0] = t[1] - t[0] * t[0];
     out->deq[0] = -2 * t[0];
     out->deq[1] = 1;
-    return MT_OK;
 }
 
 static double parabola_slope(double x)
@@ -118,8 +105,7 @@ static void nlp_identification__nonlinear_converges_to_1e9(mt_test *t)
     c.nlp.n_res = 2;
     c.upper[0] = 3;
     c.origin[0] = 0.5;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     REQUIRE(t, c.result.n_solutions >= 1);
     double low = 1;
     double high = 1.5;
@@ -139,13 +125,9 @@ static void nlp_identification__nonlinear_converges_to_1e9(mt_test *t)
  * a, b in logarithms; the gradient of 1/2 |r|^2 at the end must vanish, by the callback
  * itself. */
 enum { SAMPLES = 12 };
-static mt_status decay(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void decay(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
+    (void)c;
     const double a = exp(t[0]);
     const double b = exp(t[1]);
     for (int k = 0; k < SAMPLES; k++) {
@@ -157,7 +139,6 @@ static mt_status decay(void *context, const double *t, bool with_gradient, mt_nl
         out->dr[k + SAMPLES] = -m * b * x;
         out->dr[k + 2 * SAMPLES] = 0; /* t2 is not seen */
     }
-    return MT_OK;
 }
 
 static void nlp_identification__misfit_with_an_unseen_parameter(mt_test *t)
@@ -166,8 +147,7 @@ static void nlp_identification__misfit_with_an_unseen_parameter(mt_test *t)
     case_begin(&c, 3, decay, -3, 3);
     c.nlp.n_res = SAMPLES;
     c.origin[2] = -0.25;
-    const mt_nlp_options opt = mt_nlp_options_default();
-    REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+    REQUIRE(t, case_solve(&c, NULL) == MT_OK);
     CHECK_INT(t, c.result.n_unidentifiable, 1);
     REQUIRE(t, c.result.n_solutions == 1);
     const mt_nlp_solution *const s = &c.result.solutions[0];
@@ -175,7 +155,7 @@ static void nlp_identification__misfit_with_an_unseen_parameter(mt_test *t)
     double r[SAMPLES];
     double dr[3 * SAMPLES];
     mt_nlp_values v = {.r = r, .dr = dr};
-    REQUIRE(t, decay(&c, s->t, true, &v, NULL) == MT_OK);
+    decay(&c, s->t, &v);
     for (int j = 0; j < 2; j++) {
         double g = 0;
         for (int k = 0; k < SAMPLES; k++) {
@@ -190,20 +170,14 @@ static void nlp_identification__misfit_with_an_unseen_parameter(mt_test *t)
 
 /* No residual is left, and only t0 + t1 is seen: all starts end at one design, the nearest to
  * the origin of those without misfit. */
-static mt_status product(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                         mt_err *err)
+static void product(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     out->r[0] = log(sqrt(exp(t[0]) * exp(t[1])) / c->target[0]); /* as of a frequency */
     out->r[1] = sinh(t[2]) - 0.7;
     memset(out->dr, 0, 6 * sizeof *out->dr);
     out->dr[0] = 0.5;
     out->dr[2] = 0.5;
     out->dr[5] = cosh(t[2]);
-    return MT_OK;
 }
 
 static void nlp_identification__what_an_exact_fit_does_not_see_stays_at_the_origin(mt_test *t)
@@ -216,8 +190,7 @@ static void nlp_identification__what_an_exact_fit_does_not_see_stays_at_the_orig
         c.target[0] = y;
         c.origin[0] = 0.3;
         c.origin[1] = -0.2;
-        const mt_nlp_options opt = mt_nlp_options_default();
-        REQUIRE(t, case_solve(&c, &opt) == MT_OK);
+        REQUIRE(t, case_solve(&c, NULL) == MT_OK);
         CHECK_INT(t, c.result.n_unidentifiable, 1);
         CHECK_INT(t, c.result.n_solutions, 1);
         CHECK_NEAR(t, c.result.solutions[0].t[0], log(y) + 0.25, 1e-12);

@@ -40,7 +40,8 @@ static void nlp_robust__tutorial_is_solved_from_every_start(mt_test *t)
     opt.starts = 1;
     opt.least_change = false;
     for (int k = 0; k < TUTORIAL_SIDE * TUTORIAL_SIDE; k++) {
-        case_begin(&c, 2, tutorial, -10, 10);
+        case_begin(&c, 2, NULL, -10, 10);
+        c.nlp.eval = tutorial;
         c.nlp.n_in = 2;
         c.origin[0] = -8 + 4 * (k % TUTORIAL_SIDE);
         c.origin[1] = 0.01 + 2.4 * (k - k % TUTORIAL_SIDE) / TUTORIAL_SIDE;
@@ -57,13 +58,8 @@ static void nlp_robust__tutorial_is_solved_from_every_start(mt_test *t)
 }
 
 /* Values only inside a ring around the circle that is asked for; the origin is inside it. */
-static mt_status ring(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                      mt_err *err)
+static void ring(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    nlp_case *const c = context;
-    (void)with_gradient;
-    (void)err;
-    c->calls++;
     const double rr = t[0] * t[0] + t[1] * t[1];
     change(c, t, out);
     out->eq[0] = log(rr - 0.5) - log(0.5); /* rr = 1; NaN inside rr < 1/2 */
@@ -72,7 +68,6 @@ static mt_status ring(void *context, const double *t, bool with_gradient, mt_nlp
     if (rr > 2) {
         out->f = nan("");
     }
-    return MT_OK;
 }
 
 static void nlp_robust__regions_without_values_are_left(mt_test *t)
@@ -109,7 +104,8 @@ static mt_status nowhere(void *context, const double *t, bool with_gradient, mt_
 static void nlp_robust__no_value_anywhere_is_the_callbacks_error(mt_test *t)
 {
     nlp_case c = {0};
-    case_begin(&c, 2, nowhere, -1, 1);
+    case_begin(&c, 2, NULL, -1, 1);
+    c.nlp.eval = nowhere;
     c.nlp.n_eq = 1;
     REQUIRE(t, mt_arena_init(&c.mem, 0, NULL) == MT_OK);
     const mt_nlp_options opt = mt_nlp_options_default();
@@ -144,7 +140,8 @@ static mt_status bumps(void *context, const double *t, bool with_gradient, mt_nl
 
 static void bumps_case(nlp_case *c, int n)
 {
-    case_begin(c, n, bumps, -3, 3);
+    case_begin(c, n, NULL, -3, 3);
+    c->nlp.eval = bumps;
     c->nlp.n_eq = 1;
     for (int j = 0; j < n; j++) {
         c->origin[j] = 0.1 * j;
@@ -231,18 +228,13 @@ static void nlp_robust__two_runs_are_bitwise_equal(mt_test *t)
 }
 
 /* Four minima of equal depth, (-1 or 1, -1 or 2), and as another processor would have it. */
-static mt_status wells(void *context, const double *t, bool with_gradient, mt_nlp_values *out,
-                       mt_err *err)
+static void wells(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    const nlp_case *const c = context;
     const double x = (t[0] * t[0]) - 1.0;
     const double y = (t[1] + 1.0) * (t[1] - 2.0);
-    (void)with_gradient;
-    (void)err;
     out->f = 1.0 + (x * x) + (y * y) + (c->target[0] * sin(1e6 * (t[0] + t[1])));
     out->df[0] = 4.0 * t[0] * x;
     out->df[1] = 2.0 * y * ((2.0 * t[1]) - 1.0);
-    return MT_OK;
 }
 
 /* By the change from the origin, with its weights, then by the first coordinate. */

@@ -94,7 +94,8 @@ static mt_status springs(void *context, const double *t, bool with_gradient, mt_
 static void make(springs_case *s, uint64_t *state)
 {
     double inside[SPRINGS];
-    case_begin(&s->c, draw(state) < 0.25 ? SPRINGS + 1 : SPRINGS, springs, 0, 1);
+    case_begin(&s->c, draw(state) < 0.25 ? SPRINGS + 1 : SPRINGS, NULL, 0, 1);
+    s->c.nlp.eval = springs;
     for (int j = 0; j <= SPRINGS; j++) {
         const double width = log(1.5 + 4.5 * draw(state));
         const double u = draw(state);

@@ -99,19 +99,15 @@ static void steps__come_back_from_tape_as_they_were(mt_test *t)
 }
 
 /* Least t0^2 + t1^2 with t0 t1 >= 1: f = 2 at (1, 1) and (-1, -1). */
-static mt_status hyperbola(void *context, const double *t, bool with_gradient,
-                           mt_nlp_values *out, mt_err *err)
+static void hyperbola(const nlp_case *c, const double *t, mt_nlp_values *out)
 {
-    (void)context;
-    (void)with_gradient;
-    (void)err;
+    (void)c;
     out->f = t[0] * t[0] + t[1] * t[1];
     out->df[0] = 2.0 * t[0];
     out->df[1] = 2.0 * t[1];
     out->in[0] = t[0] * t[1] - 1.0;
     out->din[0] = t[1];
     out->din[1] = t[0];
-    return MT_OK;
 }
 
 static void steps__of_a_search_lead_to_its_best_design(mt_test *t)
