@@ -11,16 +11,9 @@
 #include "mechanics/mech.h"
 #include "mt_quad.h"
 #include "mt_random.h"
+#include "mt_writer.h"
 
 enum { TEXT = 400000, COUNT = 6, LONGEST = 3000 };
-
-typedef struct writer {
-    char *text;
-    size_t used;
-} writer;
-
-#define ADD(w, ...) \
-    ((w)->used += (size_t)snprintf((w)->text + (w)->used, TEXT - (w)->used, __VA_ARGS__))
 
 /* A chain of rigid links on a line, clamped by the first spring, hanging along it where g is
  * not 0. */
@@ -92,13 +85,13 @@ static double exact(const chain *c, double lambda)
     return (double)b;
 }
 
-static void write_list(writer *w, const char *name, int n, const double *list)
+static void write_list(mt_writer *w, const char *name, int n, const double *list)
 {
-    ADD(w, ", \"%s\": [", name);
+    mt_write(w, ", \"%s\": [", name);
     for (int i = 0; i < n; i++) {
-        ADD(w, "%s%.17g", i == 0 ? "" : ",", list[i]);
+        mt_write(w, "%s%.17g", i == 0 ? "" : ",", list[i]);
     }
-    ADD(w, "]");
+    mt_write(w, "]");
 }
 
 static mt_lowest *lowest_of(mt_test *t, const char *text, int count, mt_model **model)
@@ -130,7 +123,7 @@ static void lowest__of_chains_are_those_of_their_transfer_matrix(mt_test *t)
         {"200, hanging, soft", 200, 0.5, 9.81, 0.1}, {"3000, hanging", 3000, 0.5, 9.81, 0.1},
     };
     static chain c;
-    writer w = {.text = malloc(TEXT)};
+    mt_writer w = {.text = malloc(TEXT), .room = TEXT};
     REQUIRE(t, w.text != NULL);
     for (int row = 0; row < MT_COUNT(rows); row++) {
         const int n = rows[row].n;
@@ -146,11 +139,12 @@ static void lowest__of_chains_are_those_of_their_transfer_matrix(mt_test *t)
             span += c.l[i];
         }
         w.used = 0;
-        ADD(&w, "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"points\": "
-                "{\"a\": [0, 0], ");
-        ADD(&w, c.g > 0.0 ? "\"b\": [0, %.17g]}, " : "\"b\": [%.17g, 0]}, ",
-            c.g > 0.0 ? -span : span);
-        ADD(&w,
+        mt_write(&w, "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"points\": "
+                     "{\"a\": [0, 0], ");
+        mt_write(&w, c.g > 0.0 ? "\"b\": [0, %.17g]}, " : "\"b\": [%.17g, 0]}, ",
+                 c.g > 0.0 ? -span : span);
+        mt_write(
+            &w,
             "\"gravity_m_per_s2\": [0, %.17g], \"joints\": [{\"name\": \"root\", \"type\": "
             "\"revolute\", \"bodies\": [\"ground\", \"l.start\"], \"at\": \"a\"}], "
             "\"springs\": [{\"name\": \"s\", \"type\": \"torsion\", \"joint\": \"root\", "
@@ -160,7 +154,7 @@ static void lowest__of_chains_are_those_of_their_transfer_matrix(mt_test *t)
         write_list(&w, "stiffness_n_m_per_rad", n - 1, c.k + 1);
         write_list(&w, "element_mass_kg", n, c.m);
         write_list(&w, "element_length_m", n, c.l);
-        ADD(&w, "}]}");
+        mt_write(&w, "}]}");
         mt_test_row(t, "%s", rows[row].name);
         mt_model *model = NULL;
         mt_lowest *const l = lowest_of(t, w.text, COUNT, &model);

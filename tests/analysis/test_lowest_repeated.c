@@ -6,37 +6,37 @@
  */
 #include "analysis/lowest.h"
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 
 enum { MASSES = 6, TEXT = 8192, AXES = 3 };
 
-static void write_model(char *text)
+static void write_model(mt_writer *w)
 {
-    int at = snprintf(text, TEXT,
-                      "{\"format\": \"modetune-model/1\", \"dimension\": 3, "
-                      "\"parameters\": {\"k\": 1.0}, \"bodies\": [");
+    mt_write(w, "{\"format\": \"modetune-model/1\", \"dimension\": 3, "
+                "\"parameters\": {\"k\": 1.0}, \"bodies\": [");
     for (int i = 0; i < MASSES; i++) {
-        at += snprintf(text + at, (size_t)(TEXT - at),
-                       "%s{\"name\": \"b%d\", \"mass_kg\": 1, \"centre\": [%d, 0, 0]}",
-                       i == 0 ? "" : ", ", i, i);
+        mt_write(w, "%s{\"name\": \"b%d\", \"mass_kg\": 1, \"centre\": [%d, 0, 0]}",
+                 i == 0 ? "" : ", ", i, i);
     }
-    at += snprintf(text + at, (size_t)(TEXT - at), "], \"springs\": [");
+    mt_write(w, "], \"springs\": [");
     for (int i = 0; i < AXES * MASSES; i++) {
         const int b = i / AXES;
         const int axis = i % AXES;
-        at += snprintf(text + at, (size_t)(TEXT - at),
-                       "%s{\"name\": \"s%d\", \"type\": \"axial\", \"bodies\": [\"ground\", "
-                       "\"b%d\"], \"at\": [[%g, %g, %g], [%d, 0, 0]], "
-                       "\"stiffness_n_per_m\": \"%d*k\"}",
-                       i == 0 ? "" : ", ", i, b, b + (axis == 0 ? 0.5 : 0.0),
-                       axis == 1 ? 0.5 : 0.0, axis == 2 ? 0.5 : 0.0, b, 1 + (b * b));
+        mt_write(w,
+                 "%s{\"name\": \"s%d\", \"type\": \"axial\", \"bodies\": [\"ground\", "
+                 "\"b%d\"], \"at\": [[%g, %g, %g], [%d, 0, 0]], "
+                 "\"stiffness_n_per_m\": \"%d*k\"}",
+                 i == 0 ? "" : ", ", i, b, b + (axis == 0 ? 0.5 : 0.0), axis == 1 ? 0.5 : 0.0,
+                 axis == 2 ? 0.5 : 0.0, b, 1 + (b * b));
     }
-    (void)snprintf(text + at, (size_t)(TEXT - at), "]}");
+    mt_write(w, "]}");
 }
 
 static void lowest__tells_all_of_a_repeated_mode_that_it_ends_with(mt_test *t)
 {
     char text[TEXT];
-    write_model(text);
+    mt_writer w = {text, sizeof text, 0};
+    write_model(&w);
     for (int count = 1; count <= AXES * (MASSES - 1); count++) {
         mech m;
         mt_lowest *l = NULL;

@@ -14,6 +14,7 @@
 #include "analysis/sensitivity.h"
 #include "mechanics/mech.h"
 #include "mt_random.h"
+#include "mt_writer.h"
 #include "stress/table.h"
 
 enum {
@@ -39,14 +40,6 @@ static const double SLOPE_TOL = 1e-8;
 /* and to the rounding of the dense way's shapes: of its stiffest mode, beside a soft one. */
 static const double SHAPE_ULPS = 4.0;
 
-typedef struct writer {
-    char *text;
-    size_t used;
-} writer;
-
-#define ADD(w, ...) \
-    ((w)->used += (size_t)snprintf((w)->text + (w)->used, TEXT - (w)->used, __VA_ARGS__))
-
 typedef struct tree {
     mt_random r;
     int dimension;
@@ -60,32 +53,34 @@ typedef struct tree {
     const char *joint[MOST_BODIES]; /* NULL: springs alone */
 } tree;
 
-static void add_direction(writer *w, const tree *m, const double *x)
+static void add_direction(mt_writer *w, const tree *m, const double *x)
 {
-    ADD(w, m->dimension == 2 ? "[%.17g, %.17g]" : "[%.17g, %.17g, %.17g]", x[0], x[1], x[2]);
+    mt_write(w, m->dimension == 2 ? "[%.17g, %.17g]" : "[%.17g, %.17g, %.17g]", x[0], x[1],
+             x[2]);
 }
 
 /* The last coordinate, which gravity lies along, by a parameter of its own; `more` on it. */
-static void add_place_and(writer *w, const tree *m, const double *x, const char *more)
+static void add_place_and(mt_writer *w, const tree *m, const double *x, const char *more)
 {
-    ADD(w, "[");
+    mt_write(w, "[");
     for (int k = 0; k < 3 && k < m->dimension; k++) {
         const bool last = k + 1 == m->dimension;
-        ADD(w, "\"%.17g*%s%s\"%s", x[k], last ? "L" : "W", last ? more : "", last ? "]" : ", ");
+        mt_write(w, "\"%.17g*%s%s\"%s", x[k], last ? "L" : "W", last ? more : "",
+                 last ? "]" : ", ");
     }
 }
 
-static void add_place(writer *w, const tree *m, const double *x)
+static void add_place(mt_writer *w, const tree *m, const double *x)
 {
     add_place_and(w, m, x, "");
 }
 
-static void add_name(writer *w, const tree *m, int body)
+static void add_name(mt_writer *w, const tree *m, int body)
 {
     if (body == m->n) {
-        ADD(w, "\"ground\"");
+        mt_write(w, "\"ground\"");
     } else {
-        ADD(w, "\"b%d\"", body);
+        mt_write(w, "\"b%d\"", body);
     }
 }
 
@@ -140,24 +135,23 @@ static void choose(tree *m, uint64_t seed, kind what)
     }
 }
 
-static void write_bodies(writer *w, tree *m)
+static void write_bodies(mt_writer *w, tree *m)
 {
-    ADD(w, "\"bodies\": [");
+    mt_write(w, "\"bodies\": [");
     for (int i = 0; i < m->n; i++) {
-        ADD(w,
-            "%s{\"name\": \"b%d\", \"mass_kg\": \"%.17g*m\", \"centre\": ", i == 0 ? "" : ", ",
-            i, mt_random_in(&m->r, 0.5, 3.0));
+        mt_write(w, "%s{\"name\": \"b%d\", \"mass_kg\": \"%.17g*m\", \"centre\": ",
+                 i == 0 ? "" : ", ", i, mt_random_in(&m->r, 0.5, 3.0));
         add_place(w, m, m->at[i]);
         if (!m->point[i] && m->dimension == 2) {
-            ADD(w, ", \"inertia_kg_m2\": \"%.17g*J\"", mt_random_in(&m->r, 0.01, 0.5));
+            mt_write(w, ", \"inertia_kg_m2\": \"%.17g*J\"", mt_random_in(&m->r, 0.01, 0.5));
         } else if (!m->point[i]) {
-            ADD(w, ", \"inertia_kg_m2\": [\"%.17g*J\", %.17g, %.17g, %.17g, 0, 0.01]",
-                mt_random_in(&m->r, 0.3, 0.5), mt_random_in(&m->r, 0.3, 0.5),
-                mt_random_in(&m->r, 0.3, 0.5), mt_random_in(&m->r, -0.05, 0.05));
+            mt_write(w, ", \"inertia_kg_m2\": [\"%.17g*J\", %.17g, %.17g, %.17g, 0, 0.01]",
+                     mt_random_in(&m->r, 0.3, 0.5), mt_random_in(&m->r, 0.3, 0.5),
+                     mt_random_in(&m->r, 0.3, 0.5), mt_random_in(&m->r, -0.05, 0.05));
         }
-        ADD(w, "}");
+        mt_write(w, "}");
     }
-    ADD(w, "]");
+    mt_write(w, "]");
 }
 
 /* One joint sits where a parameter has it. */
@@ -167,7 +161,7 @@ static const char *aside(int joint)
 }
 
 /* Joints between any two bodies, as drawn. */
-static void write_more_joints(writer *w, tree *m, const char *between)
+static void write_more_joints(mt_writer *w, tree *m, const char *between)
 {
     for (int i = m->looped ? mt_random_int(&m->r, 3) : 0; i > 0 && m->n > 1; i--) {
         const int a = mt_random_int(&m->r, m->n);
@@ -177,28 +171,52 @@ static void write_more_joints(writer *w, tree *m, const char *between)
         }
         const bool pin = mt_random_int(&m->r, 3) == 0;
         const double x[2][3] = {{0.3, -0.2 * i, 0.5}, {-0.7, 0.4, 0.1 * i}};
-        ADD(w, "%s{\"name\": \"x%d\", \"type\": \"%s\", \"bodies\": [", between, i,
-            !pin                ? "distance"
-            : m->dimension == 2 ? "revolute"
-                                : "spherical");
+        mt_write(w, "%s{\"name\": \"x%d\", \"type\": \"%s\", \"bodies\": [", between, i,
+                 !pin                ? "distance"
+                 : m->dimension == 2 ? "revolute"
+                                     : "spherical");
         add_name(w, m, a);
-        ADD(w, ", ");
+        mt_write(w, ", ");
         add_name(w, m, b);
-        ADD(w, pin ? "], \"at\": " : "], \"at\": [");
+        mt_write(w, pin ? "], \"at\": " : "], \"at\": [");
         add_place(w, m, x[0]);
         if (!pin) {
-            ADD(w, ", ");
+            mt_write(w, ", ");
             add_place(w, m, x[1]);
         }
-        ADD(w, pin ? "}" : "]}");
+        mt_write(w, pin ? "}" : "]}");
         between = ", ";
     }
 }
 
-static void write_joints(writer *w, tree *m)
+/* The axis of a joint that has one, and the other one of a universal joint. */
+static void write_axes(mt_writer *w, const tree *m, const char *type)
+{
+    const bool turns = strcmp(type, "revolute") == 0;
+    const bool axis = strcmp(type, "fixed") != 0 && strcmp(type, "spherical") != 0 &&
+                      strcmp(type, "distance") != 0 && strcmp(type, "orientation") != 0 &&
+                      !(turns && m->dimension == 2);
+    const bool normal = strcmp(type, "planar") == 0;
+    if (axis && m->hung) {
+        mt_write(w, ", \"axis\": %s",
+                 m->dimension == 2 ? "[1, 0]"
+                 : normal          ? "[0, 0, 1]"
+                                   : "[1, 0, 0]");
+    } else if (axis) {
+        mt_write(w, ", \"axis\": ");
+        add_direction(w, m,
+                      m->dimension == 2 ? (const double[3]){0.6, 0.8, 0.0}
+                                        : (const double[3]){0.6, 0.48, 0.64});
+    }
+    if (strcmp(type, "universal") == 0) {
+        mt_write(w, ", \"axis_b\": %s", m->hung ? "[0, 1, 0]" : "[0.8, -0.36, -0.48]");
+    }
+}
+
+static void write_joints(mt_writer *w, tree *m)
 {
     const char *between = "";
-    ADD(w, ", \"joints\": [");
+    mt_write(w, ", \"joints\": [");
     for (int i = 0; i < m->n; i++) {
         const char *const type = m->joint[i];
         double x[2][3] = {{0.0}};
@@ -210,104 +228,86 @@ static void write_joints(writer *w, tree *m)
             x[0][k] = off ? 0.0 : mt_random_in(&m->r, -1.0, 1.0);
             x[1][k] = off ? 0.0 : mt_random_in(&m->r, -1.0, 1.0);
         }
-        ADD(w, "%s{\"name\": \"j%d\", \"type\": \"%s\", \"bodies\": [", between, i, type);
+        mt_write(w, "%s{\"name\": \"j%d\", \"type\": \"%s\", \"bodies\": [", between, i, type);
         add_name(w, m, m->on[i]);
-        ADD(w, ", ");
+        mt_write(w, ", ");
         add_name(w, m, i);
-        ADD(w, "]");
+        mt_write(w, "]");
         if (strcmp(type, "distance") == 0) {
-            ADD(w, ", \"at\": [");
+            mt_write(w, ", \"at\": [");
             add_place(w, m, x[0]);
-            ADD(w, ", ");
+            mt_write(w, ", ");
             add_place(w, m, x[1]);
-            ADD(w, "]");
+            mt_write(w, "]");
         } else if (strcmp(type, "orientation") != 0) {
-            ADD(w, ", \"at\": ");
+            mt_write(w, ", \"at\": ");
             add_place_and(w, m, x[0], aside(i));
         }
-        const bool turns = strcmp(type, "revolute") == 0;
-        const bool axis = strcmp(type, "fixed") != 0 && strcmp(type, "spherical") != 0 &&
-                          strcmp(type, "distance") != 0 && strcmp(type, "orientation") != 0 &&
-                          !(turns && m->dimension == 2);
-        const bool normal = strcmp(type, "planar") == 0;
-        if (axis && m->hung) {
-            ADD(w, ", \"axis\": %s",
-                m->dimension == 2 ? "[1, 0]"
-                : normal          ? "[0, 0, 1]"
-                                  : "[1, 0, 0]");
-        } else if (axis) {
-            ADD(w, ", \"axis\": ");
-            add_direction(w, m,
-                          m->dimension == 2 ? (const double[3]){0.6, 0.8, 0.0}
-                                            : (const double[3]){0.6, 0.48, 0.64});
-        }
-        if (strcmp(type, "universal") == 0) {
-            ADD(w, ", \"axis_b\": %s", m->hung ? "[0, 1, 0]" : "[0.8, -0.36, -0.48]");
-        }
-        ADD(w, "}");
+        write_axes(w, m, type);
+        mt_write(w, "}");
         between = ", ";
     }
     write_more_joints(w, m, between);
-    ADD(w, "]");
+    mt_write(w, "]");
 }
 
 /* Between body i and what it hangs on; a point mass is held at its centre. */
-static void write_axial(writer *w, tree *m, int i, int k, const char *between)
+static void write_axial(mt_writer *w, tree *m, int i, int k, const char *between)
 {
     static const double far[3][3] = {{0.7, -0.4, 0.1}, {-0.5, -0.6, 0.3}, {0.2, 0.5, 0.8}};
     double from[3];
     for (int c = 0; c < 3; c++) {
         from[c] = m->point[m->on[i]] ? m->at[m->on[i]][c] : m->at[i][c] + far[k][c];
     }
-    ADD(w, "%s{\"name\": \"s%d_%d\", \"type\": \"axial\", \"bodies\": [", between, i, k);
+    mt_write(w, "%s{\"name\": \"s%d_%d\", \"type\": \"axial\", \"bodies\": [", between, i, k);
     add_name(w, m, m->on[i]);
-    ADD(w, ", ");
+    mt_write(w, ", ");
     add_name(w, m, i);
-    ADD(w, "], \"at\": [");
+    mt_write(w, "], \"at\": [");
     add_place(w, m, from);
-    ADD(w, ", ");
+    mt_write(w, ", ");
     add_place(w, m, m->at[i]);
-    ADD(w, "], \"stiffness_n_per_m\": \"%.17g*k\"}", stiffness(m));
+    mt_write(w, "], \"stiffness_n_per_m\": \"%.17g*k\"}", stiffness(m));
 }
 
-static void write_bushing(writer *w, tree *m, int i, const char *between)
+static void write_bushing(mt_writer *w, tree *m, int i, const char *between)
 {
-    ADD(w, "%s{\"name\": \"u%d\", \"type\": \"bushing\", \"bodies\": [", between, i);
+    mt_write(w, "%s{\"name\": \"u%d\", \"type\": \"bushing\", \"bodies\": [", between, i);
     add_name(w, m, m->on[i]);
-    ADD(w, ", ");
+    mt_write(w, ", ");
     add_name(w, m, i);
-    ADD(w, "], \"at\": ");
+    mt_write(w, "], \"at\": ");
     add_place(w, m, m->at[i]);
-    ADD(w,
-        ", \"stiffness_n_per_m\": [%.17g, \"%.17g*k\"%s], \"stiffness_n_m_per_rad\": "
-        "[%.17g%s]}",
-        stiffness(m), stiffness(m), m->dimension == 2 ? "" : ", 31.5", stiffness(m),
-        m->dimension == 2 ? "" : ", 70, 5.5");
+    mt_write(w,
+             ", \"stiffness_n_per_m\": [%.17g, \"%.17g*k\"%s], \"stiffness_n_m_per_rad\": "
+             "[%.17g%s]}",
+             stiffness(m), stiffness(m), m->dimension == 2 ? "" : ", 31.5", stiffness(m),
+             m->dimension == 2 ? "" : ", 70, 5.5");
 }
 
 /* Between any two of the bodies' centres. */
-static void write_more_springs(writer *w, tree *m, const char *between)
+static void write_more_springs(mt_writer *w, tree *m, const char *between)
 {
     for (int i = 1 + mt_random_int(&m->r, 4); i > 0 && m->n > 1; i--) {
         const int a = mt_random_int(&m->r, m->n);
         const int b = (a + 1 + mt_random_int(&m->r, m->n - 1)) % m->n;
-        ADD(w, "%s{\"name\": \"y%d\", \"type\": \"axial\", \"bodies\": [", between, i);
+        mt_write(w, "%s{\"name\": \"y%d\", \"type\": \"axial\", \"bodies\": [", between, i);
         add_name(w, m, a);
-        ADD(w, ", ");
+        mt_write(w, ", ");
         add_name(w, m, b);
-        ADD(w, "], \"at\": [");
+        mt_write(w, "], \"at\": [");
         add_place(w, m, m->at[a]);
-        ADD(w, ", ");
+        mt_write(w, ", ");
         add_place(w, m, m->at[b]);
-        ADD(w, "], \"stiffness_n_per_m\": %.17g}", stiffness(m));
+        mt_write(w, "], \"stiffness_n_per_m\": %.17g}", stiffness(m));
         between = ", ";
     }
 }
 
-static void write_springs(writer *w, tree *m)
+static void write_springs(mt_writer *w, tree *m)
 {
     const char *between = "";
-    ADD(w, ", \"springs\": [");
+    mt_write(w, ", \"springs\": [");
     for (int i = 0; i < m->n; i++) {
         if (m->on[i] < 0) {
             continue;
@@ -315,10 +315,10 @@ static void write_springs(writer *w, tree *m)
         const bool turns = m->joint[i] != NULL && strcmp(m->joint[i], "revolute") == 0;
         const bool point = m->point[i] || m->point[m->on[i]];
         if (turns && mt_random_int(&m->r, 5) != 0) {
-            ADD(w,
-                "%s{\"name\": \"t%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
-                "\"stiffness_n_m_per_rad\": %.17g}",
-                between, i, i, stiffness(m));
+            mt_write(w,
+                     "%s{\"name\": \"t%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
+                     "\"stiffness_n_m_per_rad\": %.17g}",
+                     between, i, i, stiffness(m));
             between = ", ";
         }
         for (int k = 0; k < (m->point[m->on[i]] ? 1 : m->dimension); k++) {
@@ -335,15 +335,29 @@ static void write_springs(writer *w, tree *m)
     if (m->looped) {
         write_more_springs(w, m, between);
     }
-    ADD(w, "]");
+    mt_write(w, "]");
+}
+
+static void write_force(mt_writer *w, int dimension, const double *x, const double *f, int end)
+{
+    mt_write(w, "\"at\": [");
+    for (int k = 0; k < dimension; k++) {
+        mt_write(w, "%s\"%.17g*%s - %.17g\"", k == 0 ? "" : ", ", x[k], k == 0 ? "W" : "L",
+                 0.3 * end * f[k]);
+    }
+    mt_write(w, "], \"force_n\": [");
+    for (int k = 0; k < dimension; k++) {
+        mt_write(w, "%s\"%.17g*g\"", k == 0 ? "" : ", ", end == 0 ? f[k] : -f[k]);
+    }
+    mt_write(w, "]}");
 }
 
 /* A force at one point of a body and its opposite at another, a lever away against it: whatever
  * lengths and gravity are, their sum and their moment are 0. */
-static void write_loads(writer *w, tree *m)
+static void write_loads(mt_writer *w, tree *m)
 {
     const char *between = "";
-    ADD(w, ", \"loads\": [");
+    mt_write(w, ", \"loads\": [");
     for (int i = 0; m->pulled && i < m->n; i++) {
         double f[3];
         double x[3];
@@ -352,20 +366,12 @@ static void write_loads(writer *w, tree *m)
             x[k] = mt_random_in(&m->r, -1.0, 1.0);
         }
         for (int end = 0; end < 2 && !m->point[i]; end++) {
-            ADD(w, "%s{\"name\": \"f%d_%d\", \"on\": \"b%d\", \"at\": [", between, i, end, i);
-            for (int k = 0; k < m->dimension; k++) {
-                ADD(w, "%s\"%.17g*%s - %.17g\"", k == 0 ? "" : ", ", x[k], k == 0 ? "W" : "L",
-                    0.3 * end * f[k]);
-            }
-            ADD(w, "], \"force_n\": [");
-            for (int k = 0; k < m->dimension; k++) {
-                ADD(w, "%s\"%.17g*g\"", k == 0 ? "" : ", ", end == 0 ? f[k] : -f[k]);
-            }
-            ADD(w, "]}");
+            mt_write(w, "%s{\"name\": \"f%d_%d\", \"on\": \"b%d\", ", between, i, end, i);
+            write_force(w, m->dimension, x, f, end);
             between = ", ";
         }
     }
-    ADD(w, "]");
+    mt_write(w, "]");
 }
 
 /* Every mode is where the dense way has it, within the sum of the errors that both state.
@@ -445,10 +451,31 @@ static bool is_adrift(kind what, const mech *dense)
     return what == PULLED && dense->a->modes.n_rigid > 0;
 }
 
+static void write_tree(mt_writer *w, tree *m, kind what)
+{
+    w->used = 0;
+    mt_write(w, "{\"format\": \"modetune-model/1\", \"dimension\": %d, ", m->dimension);
+    if (what == HUNG) {
+        mt_write(w, "\"gravity_m_per_s2\": [0, %s\"-3.7*g\"], ",
+                 m->dimension == 2 ? "" : "0, ");
+    }
+    mt_write(w, "\"parameters\": {");
+    for (int k = 0; k < INPUTS; k++) {
+        mt_write(w, "%s\"%s\": {\"value\": %g}", k == 0 ? "" : ", ", INPUT[k].name,
+                 INPUT[k].at);
+    }
+    mt_write(w, "}, ");
+    write_bodies(w, m);
+    write_joints(w, m);
+    write_springs(w, m);
+    write_loads(w, m);
+    mt_write(w, "}");
+}
+
 /* least: parts of a hundred that are answered. */
 static void check_trees(mt_test *t, kind what, int least)
 {
-    writer w = {.text = malloc(TEXT)};
+    mt_writer w = {.text = malloc(TEXT), .room = TEXT};
     static const int input[INPUTS] = {0, 1, 2, 3, 4, 5, 6};
     const int trees = number_of_trees(what);
     int found = 0;
@@ -462,22 +489,7 @@ static void check_trees(mt_test *t, kind what, int least)
         mt_err err = {.text = ""};
         mt_lowest *l = NULL;
         choose(&m, (uint64_t)i + 1, what);
-        w.used = 0;
-        ADD(&w, "{\"format\": \"modetune-model/1\", \"dimension\": %d, ", m.dimension);
-        if (what == HUNG) {
-            ADD(&w, "\"gravity_m_per_s2\": [0, %s\"-3.7*g\"], ", m.dimension == 2 ? "" : "0, ");
-        }
-        ADD(&w, "\"parameters\": {");
-        for (int k = 0; k < INPUTS; k++) {
-            ADD(&w, "%s\"%s\": {\"value\": %g}", k == 0 ? "" : ", ", INPUT[k].name,
-                INPUT[k].at);
-        }
-        ADD(&w, "}, ");
-        write_bodies(&w, &m);
-        write_joints(&w, &m);
-        write_springs(&w, &m);
-        write_loads(&w, &m);
-        ADD(&w, "}");
+        write_tree(&w, &m, what);
         mt_test_row(t, "seed %d", i + 1);
         if (!mech_open(t, mech_parse(t, w.text), NULL, "m J k L W a g", &dense) ||
             is_adrift(what, &dense)) {

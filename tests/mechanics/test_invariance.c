@@ -3,6 +3,7 @@
  * loop whose crank length is a variable. */
 #include "mechanics/info.h"
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 
 enum { TEXT = 4000, MODES = 8 };
 
@@ -33,34 +34,33 @@ static void invariance__turned_and_moved_four_bar(mt_test *t)
 static mt_model *chain(mt_test *t, const int order[4])
 {
     char text[TEXT];
-    size_t used = (size_t)snprintf(text, sizeof text,
-                                   "{\"format\": \"modetune-model/1\", \"dimension\": 2, "
-                                   "\"gravity_m_per_s2\": [0, -9.81], \"bodies\": [");
+    mt_writer w = {text, sizeof text, 0};
+    mt_write(&w, "{\"format\": \"modetune-model/1\", \"dimension\": 2, "
+                 "\"gravity_m_per_s2\": [0, -9.81], \"bodies\": [");
     for (int i = 0; i < 4; i++) {
         const int b = order[i];
-        used += (size_t)snprintf(text + used, sizeof text - used,
-                                 "%s{\"name\": \"b%d\", \"mass_kg\": %d, \"inertia_kg_m2\": "
-                                 "0.0%d, \"centre\": [%g, %g]}",
-                                 i == 0 ? "" : ", ", b, b + 1, b + 1, 0.1 + 0.2 * b, -0.1 * b);
+        mt_write(&w,
+                 "%s{\"name\": \"b%d\", \"mass_kg\": %d, \"inertia_kg_m2\": "
+                 "0.0%d, \"centre\": [%g, %g]}",
+                 i == 0 ? "" : ", ", b, b + 1, b + 1, 0.1 + 0.2 * b, -0.1 * b);
     }
-    used += (size_t)snprintf(text + used, sizeof text - used, "], \"joints\": [");
+    mt_write(&w, "], \"joints\": [");
     for (int i = 3; i >= 0; i--) {
         const int b = order[i];
         static const char *const carrier[4] = {"ground", "b0", "b1", "b2"};
-        used +=
-            (size_t)snprintf(text + used, sizeof text - used,
-                             "%s{\"name\": \"j%d\", \"type\": \"revolute\", \"bodies\": "
-                             "[\"%s\", \"b%d\"], \"at\": [%g, %g]}",
-                             i == 3 ? "" : ", ", b, carrier[b], b, 0.2 * b, -0.1 * b + 0.05);
+        mt_write(&w,
+                 "%s{\"name\": \"j%d\", \"type\": \"revolute\", \"bodies\": "
+                 "[\"%s\", \"b%d\"], \"at\": [%g, %g]}",
+                 i == 3 ? "" : ", ", b, carrier[b], b, 0.2 * b, -0.1 * b + 0.05);
     }
-    used += (size_t)snprintf(text + used, sizeof text - used, "], \"springs\": [");
+    mt_write(&w, "], \"springs\": [");
     for (int i = 0; i < 4; i++) {
-        used += (size_t)snprintf(text + used, sizeof text - used,
-                                 "%s{\"name\": \"k%d\", \"type\": \"torsion\", \"joint\": "
-                                 "\"j%d\", \"stiffness_n_m_per_rad\": %d}",
-                                 i == 0 ? "" : ", ", order[i], order[i], 100 + 20 * order[i]);
+        mt_write(&w,
+                 "%s{\"name\": \"k%d\", \"type\": \"torsion\", \"joint\": "
+                 "\"j%d\", \"stiffness_n_m_per_rad\": %d}",
+                 i == 0 ? "" : ", ", order[i], order[i], 100 + 20 * order[i]);
     }
-    (void)snprintf(text + used, sizeof text - used, "]}");
+    mt_write(&w, "]}");
     return mech_parse(t, text);
 }
 

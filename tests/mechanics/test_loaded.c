@@ -10,6 +10,7 @@
  *            elsewhere in the model
  */
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 #include "support/mt_quad.h"
 #include "support/mt_random.h"
 
@@ -216,8 +217,9 @@ static mt_model *links_model(mt_test *t, const links *s)
 {
     static char text[TEXT];
     double sum = 0.0;
-    int used = snprintf(
-        text, sizeof text,
+    mt_writer w = {text, sizeof text, 0};
+    mt_write(
+        &w,
         "{\"format\": \"modetune-model/1\", \"dimension\": 2, \"gravity_m_per_s2\": [0, "
         "-9.81], "
         "\"joints\": [{\"name\": \"pin\", \"type\": \"revolute\", \"bodies\": [\"ground\", "
@@ -232,19 +234,17 @@ static mt_model *links_model(mt_test *t, const links *s)
                  {"element_mass_kg", s->mass, s->n},
                  {"stiffness_n_m_per_rad", s->spring, s->n - 1}};
     for (int k = 0; k < MT_COUNT(lists); k++) {
-        used += snprintf(text + used, sizeof text - (size_t)used, ", \"%s\": [", lists[k].name);
+        mt_write(&w, ", \"%s\": [", lists[k].name);
         for (int i = 0; i < lists[k].n; i++) {
-            used += snprintf(text + used, sizeof text - (size_t)used, "%s%.17g",
-                             i > 0 ? ", " : "", lists[k].x[i]);
+            mt_write(&w, "%s%.17g", i > 0 ? ", " : "", lists[k].x[i]);
         }
-        used += snprintf(text + used, sizeof text - (size_t)used, "]");
+        mt_write(&w, "]");
     }
     for (int i = 0; i < s->n; i++) {
         sum += s->length[i];
     }
-    (void)snprintf(text + used, sizeof text - (size_t)used,
-                   "}], \"points\": {\"a\": [0, 0], \"b\": [0, %.17g]}}",
-                   s->gravity > 0.0 ? -sum : sum);
+    mt_write(&w, "}], \"points\": {\"a\": [0, 0], \"b\": [0, %.17g]}}",
+             s->gravity > 0.0 ? -sum : sum);
     return mech_parse(t, text);
 }
 
@@ -351,30 +351,30 @@ static mt_model *arm_model(mt_test *t, const arm *a)
             "\"preload_n\": 900}]",
             z, z, a->k, z, z, a->k);
     }
-    int used = snprintf(text, sizeof text,
-                        "{\"format\": \"modetune-model/1\", \"dimension\": %d, "
-                        "\"gravity_m_per_s2\": %s, \"bodies\": [",
-                        a->dimension, a->dimension == 2 ? "[0, -9.81]" : "[0, 0, -9.81]");
+    mt_writer w = {text, sizeof text, 0};
+    mt_write(&w,
+             "{\"format\": \"modetune-model/1\", \"dimension\": %d, "
+             "\"gravity_m_per_s2\": %s, \"bodies\": [",
+             a->dimension, a->dimension == 2 ? "[0, -9.81]" : "[0, 0, -9.81]");
     for (int i = 0; i < 2; i++) {
         char inertia[120];
         const double j = 0.1 * a->m[i] * a->r[i] * a->r[i];
         (void)snprintf(inertia, sizeof inertia,
                        a->dimension == 2 ? "%.17g" : "[%.17g, %.17g, %.17g]", j, j, j);
-        used += snprintf(text + used, sizeof text - (size_t)used,
-                         "{\"name\": \"b%d\", \"mass_kg\": %.17g, \"inertia_kg_m2\": %s, "
-                         "\"centre\": %s}%s",
-                         i, a->m[i], inertia, at[1 + i], i == 0 ? ", " : "");
+        mt_write(&w,
+                 "{\"name\": \"b%d\", \"mass_kg\": %.17g, \"inertia_kg_m2\": %s, "
+                 "\"centre\": %s}%s",
+                 i, a->m[i], inertia, at[1 + i], i == 0 ? ", " : "");
     }
     if (a->k > 0.0) {
-        used += snprintf(text + used, sizeof text - (size_t)used,
-                         ", {\"name\": \"bead\", \"mass_kg\": 0.2, \"centre\": %s}",
-                         a->dimension == 2 ? "[0, 0]" : "[0, 0, 0]");
+        mt_write(&w, ", {\"name\": \"bead\", \"mass_kg\": 0.2, \"centre\": %s}",
+                 a->dimension == 2 ? "[0, 0]" : "[0, 0, 0]");
     }
-    (void)snprintf(text + used, sizeof text - (size_t)used,
-                   "], \"joints\": [{\"name\": \"pivot\", \"type\": \"revolute\", \"bodies\": "
-                   "[\"ground\", \"b0\"], \"at\": %s%s}, {\"name\": \"glue\", \"type\": "
-                   "\"fixed\", \"bodies\": [\"b0\", \"b1\"], \"at\": %s}]%s}",
-                   at[0], axis, at[0], bead);
+    mt_write(&w,
+             "], \"joints\": [{\"name\": \"pivot\", \"type\": \"revolute\", \"bodies\": "
+             "[\"ground\", \"b0\"], \"at\": %s%s}, {\"name\": \"glue\", \"type\": "
+             "\"fixed\", \"bodies\": [\"b0\", \"b1\"], \"at\": %s}]%s}",
+             at[0], axis, at[0], bead);
     return mech_parse(t, text);
 }
 

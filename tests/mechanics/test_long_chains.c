@@ -3,6 +3,7 @@
 #include "analysis/sensitivity.h"
 #include "mechanics/linear.h"
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 #include "support/mt_alloc.h"
 
 enum { LINKS = 60, TEXT = 65536 };
@@ -24,28 +25,28 @@ static mt_model *hanging(mt_test *t, const char *drive)
     static char text[TEXT];
     const double x = X / LINKS;
     const double y = Y / LINKS;
-    int n = snprintf(text, TEXT,
-                     "{\"format\": \"modetune-model/1\", \"dimension\": 2,"
-                     "\"parameters\": {\"g\": {\"value\": %.17g}},"
-                     "\"gravity_m_per_s2\": [0, \"-g\"], \"bodies\": [",
-                     G_M_PER_S2);
+    mt_writer w = {text, TEXT, 0};
+    mt_write(&w,
+             "{\"format\": \"modetune-model/1\", \"dimension\": 2,"
+             "\"parameters\": {\"g\": {\"value\": %.17g}},"
+             "\"gravity_m_per_s2\": [0, \"-g\"], \"bodies\": [",
+             G_M_PER_S2);
     for (int i = 0; i < LINKS; i++) {
-        n += snprintf(text + n, (size_t)(TEXT - n),
-                      "%s{\"name\": \"b%d\", \"mass_kg\": 1, \"inertia_kg_m2\": 0,"
-                      "\"centre\": [%.17g, %.17g]}",
-                      i > 0 ? "," : "", i, x * (i + 1), y * (i + 1));
+        mt_write(&w,
+                 "%s{\"name\": \"b%d\", \"mass_kg\": 1, \"inertia_kg_m2\": 0,"
+                 "\"centre\": [%.17g, %.17g]}",
+                 i > 0 ? "," : "", i, x * (i + 1), y * (i + 1));
     }
-    n += snprintf(text + n, (size_t)(TEXT - n), "], \"joints\": [");
+    mt_write(&w, "], \"joints\": [");
     for (int i = 0; i < LINKS; i++) {
         char above[16] = "ground";
         (void)snprintf(above, sizeof above, i > 0 ? "b%d" : "ground", i - 1);
-        n += snprintf(text + n, (size_t)(TEXT - n),
-                      "%s{\"name\": \"j%d\", \"type\": \"revolute\","
-                      "\"bodies\": [\"%s\", \"b%d\"], \"at\": [%.17g, %.17g]}",
-                      i > 0 ? "," : "", i, above, i, x * i, y * i);
+        mt_write(&w,
+                 "%s{\"name\": \"j%d\", \"type\": \"revolute\","
+                 "\"bodies\": [\"%s\", \"b%d\"], \"at\": [%.17g, %.17g]}",
+                 i > 0 ? "," : "", i, above, i, x * i, y * i);
     }
-    (void)snprintf(text + n, (size_t)(TEXT - n), "], \"configurations\": {\"only\": {%s}}}",
-                   drive);
+    mt_write(&w, "], \"configurations\": {\"only\": {%s}}}", drive);
     return mech_parse(t, text);
 }
 

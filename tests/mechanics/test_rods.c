@@ -9,6 +9,7 @@
  * on its axis.
  */
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 
 /* Different elimination, the same mechanism: rounding of some 30 states, and what equilibrium
  * leaves of soft freedoms. */
@@ -23,15 +24,7 @@ static const double HIGH[RODS][3] = {
 
 typedef enum rod_kind { DISTANCE, DISTANCE_MASS, BODY, THIN_BODY, SOLID_BODY } rod_kind;
 
-typedef struct writer {
-    char text[TEXT];
-    size_t used;
-} writer;
-
-#define ADD(w, ...) \
-    ((w)->used += (size_t)snprintf((w)->text + (w)->used, TEXT - (w)->used, __VA_ARGS__))
-
-static void add_body(writer *w, rod_kind kind, int i)
+static void add_body(mt_writer *w, rod_kind kind, int i)
 {
     double d[3];
     double square = 0.0;
@@ -39,40 +32,41 @@ static void add_body(writer *w, rod_kind kind, int i)
         d[k] = HIGH[i][k] - LOW[i][k];
         square += d[k] * d[k];
     }
-    ADD(w, ", {\"name\": \"rod%d\", \"centre\": [%.17g, %.17g, %.17g], ", i,
-        0.5 * (HIGH[i][0] + LOW[i][0]), 0.5 * (HIGH[i][1] + LOW[i][1]),
-        0.5 * (HIGH[i][2] + LOW[i][2]));
+    mt_write(w, ", {\"name\": \"rod%d\", \"centre\": [%.17g, %.17g, %.17g], ", i,
+             0.5 * (HIGH[i][0] + LOW[i][0]), 0.5 * (HIGH[i][1] + LOW[i][1]),
+             0.5 * (HIGH[i][2] + LOW[i][2]));
     if (kind == BODY) {
-        ADD(w, "\"inertia_kg_m2\": [0, 0, 0]}");
+        mt_write(w, "\"inertia_kg_m2\": [0, 0, 0]}");
         return;
     }
     const double spin = kind == SOLID_BODY ? 1e-3 : 0.0; /* s a a^T */
-    ADD(w, "\"mass_kg\": \"m\", \"inertia_kg_m2\": [");
+    mt_write(w, "\"mass_kg\": \"m\", \"inertia_kg_m2\": [");
     for (int k = 0; k < 6; k++) {
         static const int AT[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
         const int p = AT[k][0];
         const int q = AT[k][1];
-        ADD(w, "%s\"m/12*%.17g + %.17g\"", k == 0 ? "" : ", ",
-            (p == q ? square : 0.0) - (d[p] * d[q]), spin * d[p] * d[q] / square);
+        mt_write(w, "%s\"m/12*%.17g + %.17g\"", k == 0 ? "" : ", ",
+                 (p == q ? square : 0.0) - (d[p] * d[q]), spin * d[p] * d[q] / square);
     }
-    ADD(w, "]}");
+    mt_write(w, "]}");
 }
 
-static void add_joint(writer *w, rod_kind kind, int i)
+static void add_joint(mt_writer *w, rod_kind kind, int i)
 {
     const double *const a = LOW[i];
     const double *const b = HIGH[i];
     const char *const comma = i == 0 ? "" : ", ";
     if (kind <= DISTANCE_MASS) {
-        ADD(w,
-            "%s{\"name\": \"r%d\", \"type\": \"distance\", \"bodies\": [\"plate\", "
-            "\"ground\"], "
-            "\"at\": [[%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g]]%s}",
-            comma, i, a[0], a[1], a[2], b[0], b[1], b[2],
-            kind == DISTANCE ? "" : ", \"mass_kg\": \"m\"");
+        mt_write(w,
+                 "%s{\"name\": \"r%d\", \"type\": \"distance\", \"bodies\": [\"plate\", "
+                 "\"ground\"], "
+                 "\"at\": [[%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g]]%s}",
+                 comma, i, a[0], a[1], a[2], b[0], b[1], b[2],
+                 kind == DISTANCE ? "" : ", \"mass_kg\": \"m\"");
         return;
     }
-    ADD(w,
+    mt_write(
+        w,
         "%s{\"name\": \"low%d\", \"type\": \"spherical\", \"bodies\": [\"plate\", \"rod%d\"], "
         "\"at\": [%.17g, "
         "%.17g, %.17g]}, {\"name\": \"high%d\", \"type\": \"spherical\", \"bodies\": "
@@ -83,9 +77,10 @@ static void add_joint(writer *w, rod_kind kind, int i)
 
 static mt_model *hung_plate(mt_test *t, rod_kind kind, double g)
 {
-    static writer w;
-    w.used = 0;
-    ADD(&w,
+    static char text[TEXT];
+    mt_writer w = {.text = text, .room = TEXT};
+    mt_write(
+        &w,
         "{\"format\": \"modetune-model/1\", \"dimension\": 3, \"gravity_m_per_s2\": [0, 0, "
         "%g], "
         "\"parameters\": {\"m\": 0.3}, \"bodies\": [{\"name\": \"plate\", \"mass_kg\": 5, "
@@ -94,14 +89,15 @@ static mt_model *hung_plate(mt_test *t, rod_kind kind, double g)
     for (int i = 0; i < RODS && kind >= BODY; i++) {
         add_body(&w, kind, i);
     }
-    ADD(&w, "], \"joints\": [");
+    mt_write(&w, "], \"joints\": [");
     for (int i = 0; i < RODS; i++) {
         add_joint(&w, kind, i);
     }
-    ADD(&w, "], \"springs\": [{\"name\": \"k\", \"type\": \"bushing\", \"bodies\": "
-            "[\"ground\", \"plate\"], \"at\": "
-            "[0, 0, 0], \"stiffness_n_per_m\": [300, 500, 2000], \"stiffness_n_m_per_rad\": "
-            "[0, 0, 20]}]}");
+    mt_write(&w,
+             "], \"springs\": [{\"name\": \"k\", \"type\": \"bushing\", \"bodies\": "
+             "[\"ground\", \"plate\"], \"at\": "
+             "[0, 0, 0], \"stiffness_n_per_m\": [300, 500, 2000], \"stiffness_n_m_per_rad\": "
+             "[0, 0, 20]}]}");
     return mech_parse(t, w.text);
 }
 

@@ -6,10 +6,10 @@
  * on the stick held by springs; in gravity.
  */
 #include <float.h>
-#include <stdarg.h>
 
 #include "mechanics/mech.h"
 #include "mechanics/redundant.h"
+#include "mt_writer.h"
 
 enum { TEXT = 8000, PARTS = 4, MODES = 4 };
 
@@ -30,19 +30,10 @@ static const setting PLAIN = {"plain", {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 1.
 
 typedef struct writer {
     const setting *s;
-    char text[TEXT];
-    size_t used;
+    mt_writer out;
 } writer;
 
-static void put(writer *w, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-static void put(writer *w, const char *fmt, ...)
-{
-    va_list args;
-    va_start(args, fmt);
-    const int n = vsnprintf(w->text + w->used, TEXT - w->used, fmt, args);
-    va_end(args);
-    w->used += n > 0 && (size_t)n < TEXT - w->used ? (size_t)n : 0;
-}
+#define put(w, ...) mt_write(&(w)->out, __VA_ARGS__)
 
 /* Rodrigues. */
 static void rotation(const double turn[3], double r[9])
@@ -131,7 +122,7 @@ static const struct {
 static void put_joint(writer *w, int i, int again)
 {
     put(w, "%s{ \"name\": \"%s%d\", \"type\": \"%s\", \"bodies\": [\"%s\", \"%s\"], \"at\": ",
-        w->text[w->used - 1] == '[' ? "" : ", ", JOINTS[i].name, again, JOINTS[i].type,
+        w->out.text[w->out.used - 1] == '[' ? "" : ", ", JOINTS[i].name, again, JOINTS[i].type,
         JOINTS[i].a, JOINTS[i].b);
     put_point(w, JOINTS[i].at);
     if (JOINTS[i].type[0] == 'r') {
@@ -167,8 +158,8 @@ static void put_springs(writer *w)
 
 static mt_model *make(mt_test *t, const setting *s)
 {
-    static writer w;
-    w = (writer){.s = s};
+    static char text[TEXT];
+    writer w = {.s = s, .out = {text, sizeof text, 0}};
     put(&w, "{ \"format\": \"modetune-model/1\", \"dimension\": 3, \"gravity_m_per_s2\": ");
     put_vector(&w, 0.0, 0.0, -9.81, s->length, false);
     put(&w, ", \"bodies\": [");
@@ -195,7 +186,7 @@ static mt_model *make(mt_test *t, const setting *s)
             "\"shaft0\", \"position_rad\": 0.3, \"hold\": \"lock\" } }, \"trimmed\": { "
             "\"drive\": { \"joint\": \"shaft0\", \"position_rad\": 0.3, \"hold\": { \"trim\": "
             "\"servo\" } } } } }");
-    return mech_parse(t, w.text);
+    return mech_parse(t, w.out.text);
 }
 
 static const setting SETTINGS[] = {

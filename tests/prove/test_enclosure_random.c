@@ -5,10 +5,10 @@
  * chains of masses (free or held, springs and masses by expressions of parameters, also such in
  * which one occurs twice), and trusses whose areas enter stiffness and mass.
  */
-#include <stdarg.h>
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 #include "prove/boxes.h"
 #include "prove/edges.h"
 #include "prove/tolerance.h"
@@ -27,22 +27,13 @@ enum {
 };
 
 typedef struct writer {
-    char text[TEXT];
-    size_t length;
+    mt_writer out;
     int n; /* parameters p0, p1, ... */
     double value[MECH_INPUTS];
     mt_random r;
 } writer;
 
-static void put(writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void put(writer *w, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    const int n = vsnprintf(w->text + w->length, sizeof w->text - w->length, format, args);
-    va_end(args);
-    w->length += n > 0 ? (size_t)n : 0;
-}
+#define put(w, ...) mt_write(&(w)->out, __VA_ARGS__)
 
 /* A new parameter; its number. Values are decided here, written at the end of the text. */
 static int parameter(writer *w, double value)
@@ -224,16 +215,17 @@ static void choose_bands(rig *g)
 
 static bool begin(mt_test *t, int seed, rig *g)
 {
+    static char text[TEXT];
     int inputs[MECH_INPUTS];
     mt_err err = {.text = ""};
     char reason[MT_REASON_SIZE] = "";
-    *g = (rig){.w = {.r = mt_random_seed((uint64_t)seed + 1)}};
+    *g = (rig){.w = {.out = {text, sizeof text, 0}, .r = mt_random_seed((uint64_t)seed + 1)}};
     if (seed % 3 == 2) {
         truss(&g->w);
     } else {
         chain(&g->w);
     }
-    g->model = mech_parse(t, g->w.text);
+    g->model = mech_parse(t, g->w.out.text);
     if (g->model == NULL || !CHECK(t, mt_arena_init(&g->mem, 0, &err) == MT_OK)) {
         return false;
     }

@@ -5,10 +5,10 @@
  * in space, links of rigid elements, random sections. No fresh analysis of a sampled design may
  * lie outside what is proven for its box.
  */
-#include <stdarg.h>
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 #include "prove/certify.h"
 #include "prove/tolerance.h"
 #include "support/mt_random.h"
@@ -16,22 +16,13 @@
 enum { TEXT = 16384, SYSTEMS = 40, SAMPLES = 30, MODES = 96, FAMILIES = 5 };
 
 typedef struct writer {
-    char text[TEXT];
-    size_t length;
+    mt_writer out;
     int n; /* parameters p0, p1, ... */
     double value[MECH_INPUTS];
     mt_random r;
 } writer;
 
-static void put(writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void put(writer *w, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    const int n = vsnprintf(w->text + w->length, sizeof w->text - w->length, format, args);
-    va_end(args);
-    w->length += n > 0 ? (size_t)n : 0;
-}
+#define put(w, ...) mt_write(&(w)->out, __VA_ARGS__)
 
 /* A number of the model: now and then a new parameter, else as it is. */
 static void number(writer *w, const char *member, double value)
@@ -322,19 +313,20 @@ static void end(rig *g)
 
 static bool begin(mt_test *t, int seed, rig *g)
 {
+    static char text[TEXT];
     static void (*const families[FAMILIES])(writer *) = {frame_2, frame_3, truss_3, links_2,
                                                          bodies};
     int inputs[MECH_INPUTS];
     mt_err err = {.text = ""};
     char reason[MT_REASON_SIZE] = "";
-    *g = (rig){.w = {.r = mt_random_seed((uint64_t)seed + 77)}};
+    *g = (rig){.w = {.out = {text, sizeof text, 0}, .r = mt_random_seed((uint64_t)seed + 77)}};
     families[seed % FAMILIES](&g->w);
     put(&g->w, "\"parameters\": {");
     for (int i = 0; i < g->w.n; i++) {
         put(&g->w, "%s\"p%d\": %.17g", i == 0 ? "" : ", ", i, g->w.value[i]);
     }
     put(&g->w, "}, \"configurations\": {\"a\": {}}}");
-    g->model = mech_parse(t, g->w.text);
+    g->model = mech_parse(t, g->w.out.text);
     if (g->model == NULL || !CHECK(t, mt_arena_init(&g->mem, 0, &err) == MT_OK)) {
         return false;
     }
@@ -356,7 +348,7 @@ static bool begin(mt_test *t, int seed, rig *g)
         return false;
     }
     if (!CHECK(t, ok && g->e != NULL)) { /* sizing never voids a certificate */
-        (void)fprintf(stderr, "%s %s\n%s\n", err.text, reason, g->w.text);
+        (void)fprintf(stderr, "%s %s\n%s\n", err.text, reason, g->w.out.text);
         return false;
     }
     return CHECK(t, g->e->n_modes > 0 && g->e->n_modes <= MODES);

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "mechanics/mech.h"
+#include "mt_writer.h"
 #include "response/response.h"
 #include "support/mt_random.h"
 
@@ -49,14 +50,6 @@ typedef enum kind {
     KINDS
 } kind;
 
-typedef struct writer {
-    char *text;
-    size_t used;
-} writer;
-
-#define ADD(w, ...) \
-    ((w)->used += (size_t)snprintf((w)->text + (w)->used, TEXT - (w)->used, __VA_ARGS__))
-
 typedef struct tree {
     mt_random g;
     int axes;
@@ -68,13 +61,13 @@ typedef struct tree {
     int before[BODIES];
 } tree;
 
-static void add_point(writer *w, const tree *r, const double *x)
+static void add_point(mt_writer *w, const tree *r, const double *x)
 {
-    ADD(w, "[%.17g, %.17g", x[0], x[1]);
+    mt_write(w, "[%.17g, %.17g", x[0], x[1]);
     if (r->axes == 3) {
-        ADD(w, ", %.17g", x[2]);
+        mt_write(w, ", %.17g", x[2]);
     }
-    ADD(w, "]");
+    mt_write(w, "]");
 }
 
 /* Body i and what it hangs on. */
@@ -89,59 +82,61 @@ static void place_body(tree *r, int i)
     }
 }
 
-static void add_bodies(writer *w, tree *r)
+static void add_bodies(mt_writer *w, tree *r)
 {
-    ADD(w, "\"bodies\": [");
+    mt_write(w, "\"bodies\": [");
     for (int i = 0; i < BODIES; i++) {
         place_body(r, i);
-        ADD(w, "%s{ \"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i > 0 ? ", " : "", i,
-            mt_random_in(&r->g, 0.5, 2.0));
+        mt_write(w,
+                 "%s{ \"name\": \"b%d\", \"mass_kg\": %.17g, \"centre\": ", i > 0 ? ", " : "",
+                 i, mt_random_in(&r->g, 0.5, 2.0));
         add_point(w, r, r->at[i]);
         if (r->axes == 2) {
-            ADD(w, ", \"inertia_kg_m2\": %.17g }", mt_random_in(&r->g, 0.01, 0.02));
+            mt_write(w, ", \"inertia_kg_m2\": %.17g }", mt_random_in(&r->g, 0.01, 0.02));
         } else {
-            ADD(w, ", \"inertia_kg_m2\": [%.17g, 0.014, 0.013, 0, 0, 0] }",
-                mt_random_in(&r->g, 0.01, 0.016));
+            mt_write(w, ", \"inertia_kg_m2\": [%.17g, 0.014, 0.013, 0, 0, 0] }",
+                     mt_random_in(&r->g, 0.01, 0.016));
         }
     }
-    ADD(w, "], ");
+    mt_write(w, "], ");
 }
 
-static void add_joints(writer *w, tree *r)
+static void add_joints(mt_writer *w, tree *r)
 {
     bool first = true;
-    ADD(w, "\"joints\": [");
+    mt_write(w, "\"joints\": [");
     for (int i = r->free ? 1 : 0; i < BODIES; i++) {
         double middle[3] = {0.0};
         for (int k = 0; k < 3; k++) {
             const double from = r->before[i] < 0 ? 0.0 : r->at[r->before[i]][k];
             middle[k] = 0.5 * (from + r->at[i][k]);
         }
-        ADD(w, "%s{ \"name\": \"j%d\", \"type\": \"revolute\", \"bodies\": [",
-            first ? "" : ", ", i);
+        mt_write(w, "%s{ \"name\": \"j%d\", \"type\": \"revolute\", \"bodies\": [",
+                 first ? "" : ", ", i);
         if (r->before[i] < 0) {
-            ADD(w, "\"ground\"");
+            mt_write(w, "\"ground\"");
         } else {
-            ADD(w, "\"b%d\"", r->before[i]);
+            mt_write(w, "\"b%d\"", r->before[i]);
         }
-        ADD(w, ", \"b%d\"], \"at\": ", i);
+        mt_write(w, ", \"b%d\"], \"at\": ", i);
         add_point(w, r, middle);
         if (r->axes == 3) {
-            ADD(w, ", \"axis\": [%.17g, %.17g, 1]", mt_random_in(&r->g, -1.0, 1.0),
-                mt_random_in(&r->g, -1.0, 1.0));
+            mt_write(w, ", \"axis\": [%.17g, %.17g, 1]", mt_random_in(&r->g, -1.0, 1.0),
+                     mt_random_in(&r->g, -1.0, 1.0));
         }
-        ADD(w, " }");
+        mt_write(w, " }");
         first = false;
     }
     if (r->looped && !r->hung) {
-        ADD(w, ", { \"name\": \"bar\", \"type\": \"distance\", \"bodies\": [\"b5\", \"b30\"], "
+        mt_write(
+            w, ", { \"name\": \"bar\", \"type\": \"distance\", \"bodies\": [\"b5\", \"b30\"], "
                "\"at\": [");
         add_point(w, r, r->at[5]);
-        ADD(w, ", ");
+        mt_write(w, ", ");
         add_point(w, r, r->at[30]);
-        ADD(w, "] }");
+        mt_write(w, "] }");
     }
-    ADD(w, "], ");
+    mt_write(w, "], ");
 }
 
 static bool is_damped(const tree *r)
@@ -149,73 +144,72 @@ static bool is_damped(const tree *r)
     return r->kind == DAMPERS || r->kind == DAMPERS_AND_LOSSES;
 }
 
-static void add_springs(writer *w, tree *r)
+static void add_springs(mt_writer *w, tree *r)
 {
     const bool some = r->kind == LOSSES || r->kind == DAMPERS_AND_LOSSES;
     const bool dampers = is_damped(r);
     bool first = true;
-    ADD(w, "\"springs\": [");
+    mt_write(w, "\"springs\": [");
     for (int i = r->free ? 1 : 0; i < BODIES; i++) {
-        ADD(w,
-            "%s{ \"name\": \"s%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
-            "\"stiffness_n_m_per_rad\": %.17g",
-            first ? "" : ", ", i, i, mt_random_in(&r->g, 500.0, 5000.0));
+        mt_write(w,
+                 "%s{ \"name\": \"s%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
+                 "\"stiffness_n_m_per_rad\": %.17g",
+                 first ? "" : ", ", i, i, mt_random_in(&r->g, 500.0, 5000.0));
         if (r->kind == LOSS || (some && i % 9 == 2)) {
-            ADD(w, ", \"loss_factor\": %.17g", r->kind == LOSS ? 0.04 : 0.1);
+            mt_write(w, ", \"loss_factor\": %.17g", r->kind == LOSS ? 0.04 : 0.1);
         }
-        ADD(w, " }");
+        mt_write(w, " }");
         first = false;
     }
     if (r->looped) {
         const double aside[] = {r->at[0][0] + 0.5, r->at[0][1], r->at[0][2]};
-        ADD(w,
-            ", { \"name\": \"tie\", \"type\": \"axial\", \"bodies\": [\"b0\", \"b%d\"], "
-            "\"stiffness_n_per_m\": 3000, \"at\": [",
-            BODIES - 1);
+        mt_write(w,
+                 ", { \"name\": \"tie\", \"type\": \"axial\", \"bodies\": [\"b0\", \"b%d\"], "
+                 "\"stiffness_n_per_m\": 3000, \"at\": [",
+                 BODIES - 1);
         add_point(w, r, aside);
-        ADD(w, ", ");
+        mt_write(w, ", ");
         add_point(w, r, r->at[BODIES - 1]);
-        ADD(w, "]%s }", r->kind == LOSS ? ", \"loss_factor\": 0.04" : "");
+        mt_write(w, "]%s }", r->kind == LOSS ? ", \"loss_factor\": 0.04" : "");
     }
-    ADD(w, "], ");
+    mt_write(w, "], ");
     first = true;
     for (int i = 1; i < BODIES && dampers; i += 8) {
-        ADD(w,
-            "%s{ \"name\": \"d%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
-            "\"damping_n_m_s_per_rad\": %.17g }",
-            first ? "\"dampers\": [" : ", ", i, i, mt_random_in(&r->g, 1.0, 20.0));
+        mt_write(w,
+                 "%s{ \"name\": \"d%d\", \"type\": \"torsion\", \"joint\": \"j%d\", "
+                 "\"damping_n_m_s_per_rad\": %.17g }",
+                 first ? "\"dampers\": [" : ", ", i, i, mt_random_in(&r->g, 1.0, 20.0));
         first = false;
     }
-    ADD(w, "%s", dampers ? "], " : "");
+    mt_write(w, "%s", dampers ? "], " : "");
 }
 
-static void write_tree(tree *r, char *text)
+static void write_tree(tree *r, mt_writer *w)
 {
     static const char *const DAMPING[KINDS] = {[PROPORTIONAL] =
                                                    "\"mass_per_s\": 0.3, \"stiffness_s\": 1e-4",
                                                [RATIOS] = "\"ratios\": [0.01, 0.03, 0.02]",
                                                [RATIO] = "\"ratio\": 0.02"};
-    writer w = {.used = 0};
-    w.text = text;
-    ADD(&w, "{ \"format\": \"modetune-model/1\", \"name\": \"t\", \"dimension\": %d, ",
-        r->axes);
-    add_bodies(&w, r);
-    add_joints(&w, r);
-    add_springs(&w, r);
+    mt_write(w, "{ \"format\": \"modetune-model/1\", \"name\": \"t\", \"dimension\": %d, ",
+             r->axes);
+    add_bodies(w, r);
+    add_joints(w, r);
+    add_springs(w, r);
     if (r->hung) {
-        ADD(&w, "\"gravity_m_per_s2\": [0, -9.81%s], ", r->axes == 3 ? ", 0" : "");
+        mt_write(w, "\"gravity_m_per_s2\": [0, -9.81%s], ", r->axes == 3 ? ", 0" : "");
     }
     if (DAMPING[r->kind] != NULL) {
-        ADD(&w, "\"damping\": { %s }, ", DAMPING[r->kind]);
+        mt_write(w, "\"damping\": { %s }, ", DAMPING[r->kind]);
     }
-    ADD(&w, "\"sensors\": [");
+    mt_write(w, "\"sensors\": [");
     for (int k = 0; k < 2; k++) {
         const int on = k == 0 ? BODIES - 1 : BODIES / 2;
-        ADD(&w, "%s{ \"name\": \"p%d\", \"on\": \"b%d\", \"at\": ", k > 0 ? ", " : "", k, on);
-        add_point(&w, r, r->at[on]);
-        ADD(&w, ", \"directions\": [\"x\", \"y\"] }");
+        mt_write(w, "%s{ \"name\": \"p%d\", \"on\": \"b%d\", \"at\": ", k > 0 ? ", " : "", k,
+                 on);
+        add_point(w, r, r->at[on]);
+        mt_write(w, ", \"directions\": [\"x\", \"y\"] }");
     }
-    ADD(&w, "], \"configurations\": { \"c\": {} } }");
+    mt_write(w, "], \"configurations\": { \"c\": {} } }");
 }
 
 /* Errors of a kind, of all its mechanisms. */
@@ -301,7 +295,8 @@ static void try_tree(mt_test *t, tree *r, char *text)
     mt_lowest *l = NULL;
     mt_response few = {.a = NULL};
     mt_response all = {.a = NULL};
-    write_tree(r, text);
+    mt_writer w = {text, TEXT, 0};
+    write_tree(r, &w);
     bool ok = mech_must(t, mech_parse(t, text), "c", "", &m) &&
               CHECK_INT(t, mt_analysis_solve(m.a, m.at, &opt, &m.err), MT_OK) &&
               CHECK_INT(t, mt_response_open(m.a, &request, &all, &m.err), MT_OK) &&

@@ -4,6 +4,7 @@
  * along the arm, k2 across the ground, has (2 pi f)^2 m = k1 + k2 cos(theta)^2, which is
  * highest at theta = 0.
  */
+#include "mt_writer.h"
 #include "problem/evaluate.h"
 #include "problem/problem.h"
 #include "problem/workspace.h"
@@ -22,10 +23,10 @@ static double hz_at(double theta)
     return study_hz((K1 + (K2 * cos(theta) * cos(theta))) / M);
 }
 
-static void put_model(const double *at, int n, char *text)
+static void put_model(const double *at, int n, mt_writer *w)
 {
-    int used = snprintf(
-        text, TEXT,
+    mt_write(
+        w,
         "{'format': 'modetune-model/1', 'dimension': 2, 'parameters': {'k1': 20000}, 'bodies': "
         "[{'name': 'arm', 'mass_kg': 1, 'inertia_kg_m2': 0.1, 'centre': [0.5, 0]}, {'name': "
         "'slider', 'mass_kg': 2, 'inertia_kg_m2': 0.01, 'centre': [1, 0]}], 'joints': "
@@ -37,12 +38,12 @@ static void put_model(const double *at, int n, char *text)
         "'across', 'type': 'bushing', 'bodies': ['ground', 'slider'], 'at': [1, 0], "
         "'stiffness_n_per_m': [5000, 0], 'stiffness_n_m_per_rad': 0}], 'configurations': {");
     for (int i = 0; i < n; i++) {
-        used += snprintf(text + used, (size_t)(TEXT - used),
-                         "%s'p%d': {'drive': {'joint': 'pivot', 'position_rad': %.17g, 'hold': "
-                         "'lock'}}",
-                         i == 0 ? "" : ", ", i, at[i]);
+        mt_write(w,
+                 "%s'p%d': {'drive': {'joint': 'pivot', 'position_rad': %.17g, 'hold': "
+                 "'lock'}}",
+                 i == 0 ? "" : ", ", i, at[i]);
     }
-    (void)snprintf(text + used, (size_t)(TEXT - used), "}}");
+    mt_write(w, "}}");
 }
 
 static const struct {
@@ -70,7 +71,8 @@ static void follow__goes_from_the_first_position_to_the_last(mt_test *t)
                                             "'p0', 'p1', 'p2', 'p3'"};
         char members[512];
         mt_test_row(t, "row %d", i);
-        put_model(rows[i].at, rows[i].n, model);
+        mt_writer text = {model, sizeof model, 0};
+        put_model(rows[i].at, rows[i].n, &text);
         (void)snprintf(members, sizeof members,
                        "'variables': [{'parameter': 'k1', 'lower': 1000, 'upper': 50000}], "
                        "'goals': [{'type': 'avoid', 'configurations': [%s], 'bands_hz': [[20, "
@@ -116,7 +118,8 @@ static void follow__bounds_move_by_what_the_whole_way_asks(mt_test *t)
     const double cosine = cos(0.9);
     const double above_hz = study_hz((above + (K2 * cosine * cosine)) / M);
     double to = nan("");
-    put_model(at, 2, model);
+    mt_writer w = {model, sizeof model, 0};
+    put_model(at, 2, &w);
     (void)snprintf(
         members, sizeof members,
         "'variables': [{'parameter': 'k1', 'lower': 19000, 'upper': 21000}], 'goals': "

@@ -4,6 +4,7 @@
  * random about the row of six masses, of which no sample may have a design where that is said,
  * and a requirement left out is none that counts.
  */
+#include "mt_writer.h"
 #include "nlp/merit.h"
 #include "nlp/starts.h"
 #include "problem/evaluate.h"
@@ -22,25 +23,24 @@ enum { ROWS = 60, SAMPLES = 400, BANDS_MOST = 8, LIMITS = 3 };
 static const double MODES_HZ[] = {4.3, 8.6, 17.2, 34.4};
 
 /* A window about a mode, near or far; every other row has a band to avoid. */
-static void draw(mt_random *r, int row, char *out, size_t size)
+static void draw(mt_random *r, int row, mt_writer *w)
 {
-    size_t n = (size_t)snprintf(out, size, "%s'goals': [", SPRINGS);
+    mt_write(w, "%s'goals': [", SPRINGS);
     for (int i = 0; i < LIMITS; i++) {
         const int mode = mt_random_int(r, MT_COUNT(MODES_HZ));
         const double at = MODES_HZ[mode] * mt_random_in(r, 0.55, 1.8);
         const double wide = mt_random_in(r, 1.05, 1.6);
-        n += (size_t)snprintf(out + n, size - n,
-                              "%s{'type': 'frequency', 'mode': %d, 'at_least_hz': %.6g, "
-                              "'at_most_hz': %.6g}",
-                              i == 0 ? "" : ", ", mode + 1, at / wide, at * wide);
+        mt_write(w,
+                 "%s{'type': 'frequency', 'mode': %d, 'at_least_hz': %.6g, "
+                 "'at_most_hz': %.6g}",
+                 i == 0 ? "" : ", ", mode + 1, at / wide, at * wide);
     }
     if (row % 2 == 1) {
         const double at = MODES_HZ[1] * mt_random_in(r, 0.8, 1.2);
-        n += (size_t)snprintf(out + n, size - n,
-                              ", {'type': 'avoid', 'bands_hz': [[%.6g, %.6g]]}", at,
-                              at * mt_random_in(r, 1.02, 1.5));
+        mt_write(w, ", {'type': 'avoid', 'bands_hz': [[%.6g, %.6g]]}", at,
+                 at * mt_random_in(r, 1.02, 1.5));
     }
-    (void)snprintf(out + n, size - n, "]");
+    mt_write(w, "]");
 }
 
 /* Is the design at t[n] one that meets limits and bands? */
@@ -108,7 +108,8 @@ static void hopeless__no_sample_is_a_design(mt_test *t)
         mt_arena mem;
         mt_problem *p = NULL;
         mt_workspace *w = NULL;
-        draw(&r, row, members, sizeof members);
+        mt_writer text = {members, sizeof members, 0};
+        draw(&r, row, &text);
         mt_test_row(t, "%s", members);
         CHECK_INT(t, mt_arena_init(&mem, 0, NULL), MT_OK);
         if (study_load(t, "six_masses", members, &c) &&

@@ -4,6 +4,7 @@
  * all found: levers between masses clear of bands drawn at random. Each that is listed comes
  * with a design that has it, and no design drawn at random at one of these lengths has another.
  */
+#include "mt_writer.h"
 #include "nlp/starts.h"
 #include "problem/evaluate.h"
 #include "search/mode_placements.h"
@@ -57,21 +58,19 @@ static void close_rig(rig *r)
     study_free(&r->c);
 }
 
-static void draw(mt_random *r, char *out, size_t size)
+static void draw(mt_random *r, mt_writer *w)
 {
     double at = mt_random_in(r, 3.0, 8.0);
-    size_t n = (size_t)snprintf(
-        out, size,
-        "'variables': [{'parameter': 'L', 'lower': 0.05, 'upper': 0.6}, {'parameter': 'k1', "
-        "'lower': 1000, 'upper': 16000}, {'parameter': 'm2', 'lower': 0.5, 'upper': 4}],"
-        "'goals': [{'type': 'avoid', 'bands_hz': [");
+    mt_write(
+        w, "'variables': [{'parameter': 'L', 'lower': 0.05, 'upper': 0.6}, {'parameter': 'k1', "
+           "'lower': 1000, 'upper': 16000}, {'parameter': 'm2', 'lower': 0.5, 'upper': 4}],"
+           "'goals': [{'type': 'avoid', 'bands_hz': [");
     for (int i = 0; i < BANDS; i++) {
         const double upper = at * mt_random_in(r, 1.1, 1.6);
-        n +=
-            (size_t)snprintf(out + n, size - n, "%s[%.4f, %.4f]", i > 0 ? ", " : "", at, upper);
+        mt_write(w, "%s[%.4f, %.4f]", i > 0 ? ", " : "", at, upper);
         at = upper * mt_random_in(r, 1.02, 1.5);
     }
-    (void)snprintf(out + n, size - n, "]}]");
+    mt_write(w, "]}]");
 }
 
 static bool is_listed(const mt_sampled_bounds *s, const int *below)
@@ -134,7 +133,8 @@ static void slices__list_what_designs_have_there(mt_test *t)
         rig r;
         mt_sampled_bounds s;
         mt_test_row(t, "row %d", i);
-        draw(&random, members, sizeof members);
+        mt_writer w = {members, sizeof members, 0};
+        draw(&random, &w);
         if (open_rig(t, "", members, &r) &&
             CHECK_INT(t, mt_sampled_bounds_search(r.w, &r.mem, &s, &r.c.err), MT_OK) &&
             CHECK_INT(t, s.n, SLICES) && CHECK_INT(t, s.n_settled, SLICES)) {

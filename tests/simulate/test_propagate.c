@@ -5,9 +5,9 @@
  * is not taken for it.
  */
 #include <complex.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
+#include "mt_writer.h"
 #include "simulate/motions.h"
 #include "support/mt_random.h"
 
@@ -15,20 +15,6 @@ enum { TEXT = 20000, SAMPLES = 60 };
 static const double TURN = 6.283185307179586477;
 static const double PERIOD = 0.05;
 static const double LONG = 3.0;
-
-typedef struct text {
-    char s[TEXT];
-    size_t n;
-} text;
-
-MT_PRINTF(2, 3) static void add(text *x, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    const int n = vsnprintf(x->s + x->n, sizeof x->s - x->n, format, args);
-    va_end(args);
-    x->n += n > 0 ? (size_t)n : 0;
-}
 
 static int only_time(const void *context, const char *name, size_t length)
 {
@@ -54,26 +40,30 @@ static mt_signal expression(mt_test *t, const char *source, mt_arena *mem)
 /* One mass on a spring and a damper to the ground, a metre away. */
 static mt_model *one_mass(mt_test *t, double m, double k, double c)
 {
-    text x = {.n = 0};
-    add(&x, "{\"format\": \"modetune-model/1\", \"name\": \"m\", \"dimension\": 2, \"bodies\": "
+    char text[TEXT];
+    mt_writer x = {text, sizeof text, 0};
+    mt_write(
+        &x, "{\"format\": \"modetune-model/1\", \"name\": \"m\", \"dimension\": 2, \"bodies\": "
             "[{\"name\": \"m\", ");
-    add(&x, "\"mass_kg\": %.17g, \"centre\": [1, 0]}],", m);
-    add(&x, "\"joints\": [{\"name\": \"g\", \"type\": \"pin-in-slot\", \"bodies\": "
-            "[\"ground\", \"m\"], \"at\": [1, 0], \"axis\": [1, 0]}],");
+    mt_write(&x, "\"mass_kg\": %.17g, \"centre\": [1, 0]}],", m);
+    mt_write(&x, "\"joints\": [{\"name\": \"g\", \"type\": \"pin-in-slot\", \"bodies\": "
+                 "[\"ground\", \"m\"], \"at\": [1, 0], \"axis\": [1, 0]}],");
     if (k > 0.0) {
-        add(&x,
+        mt_write(
+            &x,
             "\"springs\": [{\"name\": \"k\", \"type\": \"axial\", \"bodies\": [\"ground\", "
             "\"m\"], \"at\": [[0, 0], [1, 0]], \"stiffness_n_per_m\": %.17g}],",
             k);
     }
     if (c > 0.0) {
-        add(&x,
+        mt_write(
+            &x,
             "\"dampers\": [{\"name\": \"c\", \"type\": \"axial\", \"bodies\": [\"ground\", "
             "\"m\"], \"at\": [[0, 0], [1, 0]], \"damping_n_s_per_m\": %.17g}],",
             c);
     }
-    add(&x, "\"sensors\": [{\"name\": \"s\", \"on\": \"m\", \"directions\": [\"x\"]}]}");
-    return mech_parse(t, x.s);
+    mt_write(&x, "\"sensors\": [{\"name\": \"s\", \"on\": \"m\", \"directions\": [\"x\"]}]}");
+    return mech_parse(t, x.text);
 }
 
 typedef struct oscillator {
@@ -233,33 +223,34 @@ static void propagate__other_smooth_forces_are_fitted(mt_test *t)
 
 static const char *const comma[] = {"", ", "};
 
-static void add_row_bodies(text *x, mt_random *g, int n, bool space, const char *zero)
+static void add_row_bodies(mt_writer *x, mt_random *g, int n, bool space, const char *zero)
 {
     for (int i = 0; i < n; i++) {
         const double j = mt_random_in(g, 0.5, 2.0);
-        add(x, "%s{\"name\": \"m%d\", \"mass_kg\": %.17g, \"centre\": [%d, 0%s], ",
-            comma[i > 0], i, mt_random_in(g, 0.5, 3.0), i + 1, zero);
+        mt_write(x, "%s{\"name\": \"m%d\", \"mass_kg\": %.17g, \"centre\": [%d, 0%s], ",
+                 comma[i > 0], i, mt_random_in(g, 0.5, 3.0), i + 1, zero);
         if (space) {
-            add(x, "\"inertia_kg_m2\": [%.17g, %.17g, %.17g]}", j, j, j);
+            mt_write(x, "\"inertia_kg_m2\": [%.17g, %.17g, %.17g]}", j, j, j);
         } else {
-            add(x, "\"inertia_kg_m2\": %.17g}", j);
+            mt_write(x, "\"inertia_kg_m2\": %.17g}", j);
         }
     }
 }
 
-static void add_row_springs(text *x, mt_random *g, int n, bool discs, const char *zero)
+static void add_row_springs(mt_writer *x, mt_random *g, int n, bool discs, const char *zero)
 {
     for (int i = 0; i < n; i++) {
         const double k = pow(10.0, mt_random_in(g, 2.0, 4.0));
         if (discs) {
-            add(x,
-                "%s{\"name\": \"k%d\", \"type\": \"torsion\", \"joint\": \"g%d\", "
-                "\"stiffness_n_m_per_rad\": %.17g}",
-                comma[i > 0], i, i, k);
+            mt_write(x,
+                     "%s{\"name\": \"k%d\", \"type\": \"torsion\", \"joint\": \"g%d\", "
+                     "\"stiffness_n_m_per_rad\": %.17g}",
+                     comma[i > 0], i, i, k);
         } else {
             char from[16];
             (void)snprintf(from, sizeof from, i == 0 ? "ground" : "m%d", i - 1);
-            add(x,
+            mt_write(
+                x,
                 "%s{\"name\": \"k%d\", \"type\": \"axial\", \"bodies\": [\"%s\", \"m%d\"], "
                 "\"at\": [[%d, 0%s], [%d, 0%s]], \"stiffness_n_per_m\": %.17g}",
                 comma[i > 0], i, from, i, i, zero, i + 1, zero, k);
@@ -270,50 +261,51 @@ static void add_row_springs(text *x, mt_random *g, int n, bool discs, const char
 /* A row of masses on springs between each and the next, or of discs on a shaft. */
 static mt_model *random_row(mt_test *t, mt_random *g, int n, bool discs)
 {
-    text x = {.n = 0};
+    char text[TEXT];
+    mt_writer x = {text, sizeof text, 0};
     const bool space = mt_random_int(g, 2) == 1;
     const char *const zero = space ? ", 0" : "";
-    add(&x,
-        "{\"format\": \"modetune-model/1\", \"name\": \"row\", \"dimension\": %d, "
-        "\"bodies\": [",
-        space ? 3 : 2);
+    mt_write(&x,
+             "{\"format\": \"modetune-model/1\", \"name\": \"row\", \"dimension\": %d, "
+             "\"bodies\": [",
+             space ? 3 : 2);
     add_row_bodies(&x, g, n, space, zero);
-    add(&x, "], \"joints\": [");
+    mt_write(&x, "], \"joints\": [");
     for (int i = 0; i < n; i++) {
         const char *const axis = discs
                                      ? (space ? ", \"axis\": [0, 0, 1]" : "")
                                      : (space ? ", \"axis\": [1, 0, 0]" : ", \"axis\": [1, 0]");
-        add(&x,
-            "%s{\"name\": \"g%d\", \"type\": \"%s\", \"bodies\": [\"ground\", \"m%d\"], "
-            "\"at\": [%d, 0%s]%s}",
-            comma[i > 0], i, discs ? "revolute" : "prismatic", i, i + 1, zero, axis);
+        mt_write(&x,
+                 "%s{\"name\": \"g%d\", \"type\": \"%s\", \"bodies\": [\"ground\", \"m%d\"], "
+                 "\"at\": [%d, 0%s]%s}",
+                 comma[i > 0], i, discs ? "revolute" : "prismatic", i, i + 1, zero, axis);
     }
     /* discs turn with each other by gears, or stand for themselves: torsion acts on a joint */
     if (discs && n > 1) {
-        add(&x,
-            ", {\"name\": \"mesh\", \"type\": \"gear\", \"joints\": [\"g0\", \"g1\"], "
-            "\"ratio\": %.17g}",
-            mt_random_in(g, -3.0, -0.5));
+        mt_write(&x,
+                 ", {\"name\": \"mesh\", \"type\": \"gear\", \"joints\": [\"g0\", \"g1\"], "
+                 "\"ratio\": %.17g}",
+                 mt_random_in(g, -3.0, -0.5));
     }
-    add(&x, "], \"springs\": [");
+    mt_write(&x, "], \"springs\": [");
     add_row_springs(&x, g, n, discs, zero);
-    add(&x, "], \"dampers\": [");
+    mt_write(&x, "], \"dampers\": [");
     for (int i = 0; i < n; i++) {
         const double c = pow(10.0, mt_random_in(g, -2.0, 1.5));
-        add(&x,
-            discs ? "%s{\"name\": \"c%d\", \"type\": \"torsion\", \"joint\": \"g%d\", "
-                    "\"damping_n_m_s_per_rad\": %.17g}"
-                  : "%s{\"name\": \"c%d\", \"type\": \"axial\", \"joint\": \"g%d\", "
-                    "\"damping_n_s_per_m\": %.17g}",
-            comma[i > 0], i, i, c);
+        mt_write(&x,
+                 discs ? "%s{\"name\": \"c%d\", \"type\": \"torsion\", \"joint\": \"g%d\", "
+                         "\"damping_n_m_s_per_rad\": %.17g}"
+                       : "%s{\"name\": \"c%d\", \"type\": \"axial\", \"joint\": \"g%d\", "
+                         "\"damping_n_s_per_m\": %.17g}",
+                 comma[i > 0], i, i, c);
     }
-    add(&x, "], \"sensors\": [");
+    mt_write(&x, "], \"sensors\": [");
     for (int i = 0; i < n; i++) {
-        add(&x, "%s{\"name\": \"s%d\", \"on\": \"m%d\", \"directions\": [\"%s\"]}",
-            comma[i > 0], i, i, discs ? (space ? "rz" : "r") : "x");
+        mt_write(&x, "%s{\"name\": \"s%d\", \"on\": \"m%d\", \"directions\": [\"%s\"]}",
+                 comma[i > 0], i, i, discs ? (space ? "rz" : "r") : "x");
     }
-    add(&x, "]}");
-    return mech_parse(t, x.s);
+    mt_write(&x, "]}");
+    return mech_parse(t, x.text);
 }
 
 /* Largest difference of the two motions, as a part of the second. */
