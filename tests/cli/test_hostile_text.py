@@ -3,9 +3,9 @@
 
 Every shipped study and model is run as two twins that differ in their free texts only: harmless words in one, hostile ones in the other. What the program says of
 both must be the same but for these texts, which are shown escaped: no control character leaves the program, no line, no cell and no tag is made by a name.
-Each round takes every 48th file and half of the names and arguments, with MT_EVERY=1 every eighth, and shifts the hostile texts: MT_EVERY=1 and --rounds 8 --seed S take all.
+Each round takes every 48th file and half of the names and arguments, with MT_EVERY=1 every eighth, and shifts the hostile texts: MT_EVERY=1 and --count 8 take all.
+The command line is that of every campaign (tests/support/campaign.py).
 """
-import argparse
 import copy
 import csv
 import html.parser
@@ -21,7 +21,8 @@ import tempfile
 import unicodedata
 from pathlib import Path
 
-from common_cli import MODEL, PROGRAM, SOURCE, study as two_springs
+from common_cli import MODEL, PROGRAM, SOURCE, study as two_springs  # first: it says where campaign is
+import campaign
 from suite import EVERY, FEW
 
 HOSTILE = [
@@ -427,33 +428,42 @@ def forms_from(rng):
         yield rng.choice(["text", "json", "csv"])
 
 
-def main():
-    options = argparse.ArgumentParser()
-    options.add_argument("--rounds", type=int, default=1)
-    options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--spoilt", type=int, default=2, help="spoilt documents of each file")
-    given = options.parse_args()
-    problems, runs = self_test(), 0
-    for seed in range(given.seed, given.seed + given.rounds):
-        hunt, rng = Hunt(seed), random.Random(seed)
-        forms = forms_from(rng)
+class HostileTexts(campaign.Generator):
+    """Round I of seed S draws from seed S + I."""
+    script, cases, count, tallied = "tests/cli/test_hostile_text.py", "rounds", 1, ("runs",)
+
+    def __init__(self):
+        self.rounds, self.spoilt = 1, 2
+
+    def options(self, parser):
+        parser.add_argument("--spoilt", type=int, default=self.spoilt, help="spoilt documents of each file")
+
+    def asked(self, args):
+        self.rounds, self.spoilt = args.count, args.spoilt
+        return ["--count", str(args.count), "--spoilt", str(args.spoilt)]
+
+    def make(self, seed, kind, index):
+        number = int(seed) + index
+        return campaign.Case(kind, {"round": number}, random.Random(number), f"seed {number}: ")
+
+    def judge(self, case, folder, tally):
+        number, rng = case.document["round"], case.rng
+        hunt, forms = Hunt(number), forms_from(rng)
         hunt.arguments()
         hunt.file_names()
-        files = [p for folder in ("studies", "problems", "tests/models") for p in sorted((SOURCE / folder).glob("*.json"))]
-        for path in files[seed % SHARE::SHARE]:
+        files = [p for room in ("studies", "problems", "tests/models") for p in sorted((SOURCE / room).glob("*.json"))]
+        for path in files[number % SHARE::SHARE]:
             shift = rng.randrange(len(HOSTILE))
-            if path.parent.name == "studies" and (path.stem not in SLOW or given.rounds > 1):
+            if path.parent.name == "studies" and (path.stem not in SLOW or self.rounds > 1):
                 hunt.study(path, shift, forms)
             elif path.parent.name != "studies" and path.name != "aircraft.json":
                 hunt.model(path, shift, forms)
-            hunt.broken(path, rng, given.spoilt)
-        problems += [f"seed {seed}: {p}" for p in hunt.problems]
-        runs += hunt.runs
-    for problem in problems[:40]:
-        print(problem[:600], file=sys.stderr)
-    print(f"hostile text: {runs} runs, {len(problems)} problem(s), seeds {given.seed} to {given.seed + given.rounds - 1}")
-    sys.exit(1 if problems else 0)
+            hunt.broken(path, rng, self.spoilt)
+        tally["runs"] += hunt.runs
+        yield from (("text", problem[:600]) for problem in hunt.problems[:40])
 
 
 if __name__ == "__main__":
-    main()
+    wrong = self_test()
+    print("\n".join(wrong), end="\n" if wrong else "")
+    sys.exit(campaign.main(HostileTexts()) or bool(wrong))

@@ -2,10 +2,10 @@
 """No nan, no inf, no division by zero that is told as a number: not in words, tables, CSV, JSON, HTML or figures.
 
 Studies and models are generated at the edges of what has a number: unstable designs, targets and originals of zero, percents of zero, bands that nothing reaches, masses
-of zero, trades of one point, empty ranges, axes of any length, numbers at the ends of the range of doubles. --count N of each kind (default 1), --seed S. Without MT_EVERY=1 every fourth kind alone, another one with each seed.
+of zero, trades of one point, empty ranges, axes of any length, numbers at the ends of the range of doubles. The command line is that of
+every campaign (tests/support/campaign.py). Without MT_EVERY=1 every fourth kind alone, another one with each seed.
 With an instrumented program a division by zero ends it: that is a problem, too.
 """
-import argparse
 import copy
 import json
 import random
@@ -14,7 +14,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from common_cli import MODEL, PROGRAM, SOURCE
+from common_cli import MODEL, PROGRAM, SOURCE  # first: it says where campaign is
+import campaign
 from suite import EVERY
 from common_words import problems_of
 
@@ -183,33 +184,33 @@ def self_test():
            [f"self-test: {text} was refused" for text, form in good if list(problems_of(text, form))]
 
 
-def main():
-    options = argparse.ArgumentParser()
-    options.add_argument("--count", type=int, default=1)
-    options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--verbose", action="store_true")
-    given = options.parse_args()
-    hunt = Hunt()
-    hunt.problems += self_test()
-    files = [p for folder in ("problems", "tests/models") for p in sorted((SOURCE / folder).glob("*.json")) if p.name != "aircraft.json"]
-    for seed in range(given.seed, given.seed + given.count):
-        rng = random.Random(seed)
+class Words(campaign.Generator):
+    """Round I of seed S draws from seed S + I."""
+    script, cases, count, tallied = "tests/cli/test_words.py", "rounds", 1, ("runs",)
+
+    def make(self, seed, kind, index):
+        number = int(seed) + index
+        return campaign.Case(kind, {"round": number}, random.Random(number), f"seed {number}: ")
+
+    def judge(self, case, folder, tally):
+        hunt, number, rng = Hunt(), case.document["round"], case.rng
         hunt.directions(rng)
-        for number, (name, model, question) in enumerate(generated(rng)):
-            if not (EVERY or number % 4 == seed % 4):
-                continue
-            hunt.answer(f"seed {seed}: {name}", model, question, rng)
+        for place, (name, model, question) in enumerate(generated(rng)):
+            if EVERY or place % 4 == number % 4:
+                hunt.answer(name, model, question, rng)
+        files = [p for folder_ in ("problems", "tests/models") for p in sorted((SOURCE / folder_).glob("*.json")) if p.name != "aircraft.json"]
         for path in rng.sample(files, 4):
             document = json.loads(path.read_text(encoding="utf-8"))
             spoilt(rng, document)
-            with tempfile.TemporaryDirectory() as top:
-                (Path(top) / "model.json").write_text(json.dumps(document), encoding="utf-8")
-                hunt.look(f"seed {seed}: {path.name} spoilt", top, "model.json", rng, 7)
-    for problem in hunt.problems[:1000 if given.verbose else 40]:
-        print(problem[:700], file=sys.stderr)
-    print(f"words: {hunt.runs} runs, {len(hunt.problems)} problem(s), exit statuses {dict(sorted(hunt.codes.items()))}, seeds {given.seed} to {given.seed + given.count - 1}")
-    sys.exit(1 if hunt.problems else 0)
+            (folder / "model.json").write_text(json.dumps(document), encoding="utf-8")
+            hunt.look(f"{path.name} spoilt", folder, "model.json", rng, 7)
+        tally["runs"] += hunt.runs
+        for code, runs in hunt.codes.items():
+            tally[f"exit status {code}"] += runs
+        yield from (("words", problem[:700]) for problem in hunt.problems[:40])
 
 
 if __name__ == "__main__":
-    main()
+    wrong = self_test()
+    print("\n".join(wrong), end="\n" if wrong else "")
+    sys.exit(campaign.main(Words()) or bool(wrong))
