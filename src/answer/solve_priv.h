@@ -80,7 +80,7 @@ typedef struct mt_answer {
     int stage;                           /* stage of `found` */
     mt_err why;                          /* reason where no start of the search had a value */
     bool searched;                       /* there is something to search */
-    bool unsearched; /* no search was needed: the original is the answer (solve_original.c) */
+    bool unsearched; /* no search was needed: the original is the answer (solve_phases.c) */
     bool infeasible; /* proven infeasible, and no compromise is wanted */
     bool impossible; /* proven: no design meets all goals */
 } mt_answer;
@@ -90,11 +90,9 @@ typedef struct mt_answer {
 MT_PHASE_LIST(MT_PHASE_DECLARE)
 #undef MT_PHASE_DECLARE
 
-/* solve_original.c: true where the original meets all goals and no objective precedes the total
+/* solve_phases.c: true where the original meets all goals and no objective precedes the total
  * change. After the baseline. */
 bool mt_answer_original_is_best(const mt_answer *a);
-/* Sets a->found to the original, without a search. */
-mt_status mt_answer_take_original(mt_answer *a, mt_err *err);
 
 /* Sets a->found from a->placements. */
 mt_status mt_answer_take_placements(mt_answer *a, mt_err *err);

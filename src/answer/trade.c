@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The front of a trade study, and the objectives that it compares. */
 #include "answer/trade.h"
 
 #include "answer/solve_priv.h"
@@ -10,8 +11,356 @@
 #include "base/format.h"
 #include "base/workers.h"
 #include "describe/describe.h"
+#include "model/values.h"
 #include "nlp/merit.h"
+#include "problem/avoidance.h"
+#include "problem/drive_positions.h"
+#include "problem/evaluate.h"
+#include "problem/objective.h"
+#include "problem/tolerance.h"
 #include "search/catalogue_search.h"
+
+/* What the front compares, less is better; NaN: does not take part. */
+typedef struct pair {
+    double f[2];
+} pair;
+
+enum { POINTER_TEXT = 32 };
+static const double PERCENT = 100.0;
+
+/* The largest part that a design's forced vibrations have of the study's own limits, whichever
+ * the point has [%]; NaN where one is not known. */
+static double largest_part(const mt_study *study, const mt_recommendation *r)
+{
+    double most = 0.0;
+    for (int g = 0; g < study->n_goals; g++) {
+        char pointer[POINTER_TEXT];
+        (void)mt_snprintf(pointer, sizeof pointer, "/goals/%d", g);
+        for (int i = 0; i < r->n_responses && mt_goal_is_limit(&study->goals[g]); i++) {
+            const mt_result_response *const found = &r->responses[i];
+            const double part = PERCENT * found->value / study->goals[g].at_most;
+            const bool own = strcmp(found->pointer, pointer) == 0;
+            most = own && !(part <= most) ? part : most;
+        }
+    }
+    return most;
+}
+
+/* An objective of the front at a design, as people see it; NaN: not known. */
+static double shown_value(const mt_study *study, mt_objective_type type,
+                          const mt_recommendation *r)
+{
+    const bool is_first = study->n_objectives > 0 && study->objectives[0].type == type;
+    if (type == MT_OBJECTIVE_CHANGE) {
+        return r->change;
+    }
+    if (mt_objective_is(type, MT_RESIDUALS)) {
+        return r->misfit;
+    }
+    if (mt_objective_is(type, MT_BANDS)) {
+        return r->clearance_percent;
+    }
+    if (mt_objective_is(type, MT_SHAKES) && !is_first) {
+        return largest_part(study, r);
+    }
+    return is_first ? r->score : nan("");
+}
+
+/* The same, signed so that less is better; NaN where the design does not meet the goals. */
+static double front_value(const mt_study *study, mt_objective_type type,
+                          const mt_recommendation *r)
+{
+    if (r == NULL || !r->feasible) {
+        return nan("");
+    }
+    const double value = shown_value(study, type, r);
+    return mt_objective_is(type, MT_BANDS) ? -value : value;
+}
+
+/* a is as good as b in both and better in one, by more than the searches' rounding. */
+static bool dominates(const pair *p, const pair *q)
+{
+    const double *const a = p->f;
+    const double *const b = q->f;
+    const int first = mt_compare(a[0], b[0], MT_EQUAL_FOUND);
+    const int second = mt_compare(a[1], b[1], MT_EQUAL_FOUND);
+    return MT_HAS(a[0] + a[1]) && first <= 0 && second <= 0 && first + second < 0;
+}
+
+/* Two points have the same in both. */
+static bool ties(const pair *p, const pair *q)
+{
+    const double *const a = p->f;
+    const double *const b = q->f;
+    return MT_HAS(a[0] + a[1]) && MT_HAS(b[0] + b[1]) &&
+           mt_compare(a[0], b[0], MT_EQUAL_JUDGED) == 0 &&
+           mt_compare(a[1], b[1], MT_EQUAL_JUDGED) == 0;
+}
+
+/* Marks the points that no other dominates in both objectives. Values within search accuracy
+ * are equal, which is not transitive: of two equal points a third may dominate one alone; that
+ * one is then on the front too. */
+static void mark_pareto_points(int n, const pair *front, mt_trade_point *points)
+{
+    for (int k = 0; k < n; k++) {
+        bool beaten = !MT_HAS(front[k].f[0]) || !MT_HAS(front[k].f[1]);
+        for (int i = 0; i < n; i++) {
+            beaten = beaten || dominates(&front[i], &front[k]);
+        }
+        points[k].pareto = !beaten;
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < n && points[k].pareto; i++) {
+            points[i].pareto = points[i].pareto || ties(&front[k], &front[i]);
+        }
+    }
+}
+
+static bool has_objective(const mt_recommendation *r, const char *name)
+{
+    for (int i = 0; i < r->n_objectives; i++) {
+        if (strcmp(r->objectives[i].text, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Objectives of the front that are none of the study's stand behind these at every point. A
+ * clearance is a member of its own. */
+static mt_status add_objectives(const mt_study *study, const mt_recommendation *baseline,
+                                mt_recommendation *best, mt_arena *mem, mt_err *err)
+{
+    const mt_trade *const asked = &study->trade;
+    bool moved = false; /* each point has another original design */
+    const size_t n = (size_t)best->n_objectives;
+    mt_design_objective *const all =
+        mt_arena_alloc(mem, n + (size_t)asked->n_objectives, sizeof *all);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < asked->n_vary; i++) {
+        moved = moved || asked->vary[i].kind == MT_VARY_PARAMETER;
+    }
+    if (n > 0) {
+        memcpy(all, best->objectives, n * sizeof *all);
+    }
+    best->objectives = all;
+    for (int i = 0; i < asked->n_objectives; i++) {
+        const mt_objective_type type = asked->objectives[i];
+        const mt_objective_kind *const kind = mt_objective_kind_of(type);
+        if (mt_objective_is(type, MT_BANDS) || has_objective(best, kind->name)) {
+            continue;
+        }
+        all[best->n_objectives++] = (mt_design_objective){
+            .text = kind->name,
+            .unit = kind->unit,
+            .original = moved ? nan("") : shown_value(study, type, baseline),
+            .recommended = shown_value(study, type, best)};
+    }
+    return MT_OK;
+}
+
+/* trade.c: marks the points of out that no other dominates, and adds to every point the
+ * objectives of the front that the study does not have. best[n_points]: the best design of each
+ * (copied in out) or NULL; baseline: the original. Fails: MT_E_MEMORY. */
+static mt_status trade_front(const mt_study *study, const mt_recommendation *const *best,
+                             const mt_recommendation *baseline, mt_arena *mem,
+                             mt_trade_result *out, mt_err *err)
+{
+    const mt_trade *const asked = &study->trade;
+    pair *const front = mt_arena_alloc(mem, (size_t)out->n_points, sizeof *front);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int k = 0; k < out->n_points; k++) {
+        for (int i = 0; i < asked->n_objectives; i++) {
+            front[k].f[i] = front_value(study, asked->objectives[i], best[k]);
+        }
+        if (best[k] != NULL) {
+            MT_TRY(add_objectives(study, baseline, &out->points[k].best, mem, err));
+        }
+    }
+    if (asked->n_objectives == 2) {
+        mark_pareto_points(out->n_points, front, out->points);
+    }
+    return MT_OK;
+}
+
+/* The study of one point of a trade study: a shallow copy with its numbers put in. */
+
+static void *copied(mt_arena *mem, const void *items, int n, size_t size)
+{
+    void *const copy = mt_arena_alloc(mem, (size_t)n, size);
+    if (copy != NULL && n > 0) {
+        memcpy(copy, items, (size_t)n * size);
+    }
+    return copy;
+}
+
+/* A model with another value of a parameter; variables start from the values that follow. */
+static mt_status put_parameter(mt_study *s, int parameter, double value, mt_arena *mem,
+                               mt_err *err)
+{
+    mt_model *const model = copied(mem, s->model, 1, sizeof *model);
+    mt_number *const nums =
+        copied(mem, s->model->nums, s->model->n_nums, sizeof *s->model->nums);
+    s->original = mt_arena_f64(mem, (size_t)s->model->n_parameters, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_number *const number = &nums[model->parameters[parameter].value];
+    MT_TRY(mt_expr_number(value, mem, &number->expr, err));
+    model->nums = nums;
+    s->model = model;
+    MT_TRY(mt_model_original_values(model, mem, s->original, NULL, err));
+    for (int i = 0; i < s->n_variables; i++) {
+        s->variables[i].original = s->original[s->variables[i].parameter];
+    }
+    return MT_OK;
+}
+
+static mt_status set_varied_number(mt_study *s, const mt_vary *v, double value, mt_arena *mem,
+                                   mt_err *err)
+{
+    switch (v->kind) {
+    case MT_VARY_BOUND: {
+        mt_variable *const variable = &s->variables[v->variable];
+        *(v->upper ? &variable->upper : &variable->lower) = value;
+        return MT_OK;
+    }
+    case MT_VARY_GOAL: {
+        mt_goal *const g = &s->goals[v->goal];
+        if (v->slot != MT_SLOT_MARGIN) {
+            g->number[v->slot] = value;
+            return MT_OK;
+        }
+        mt_avoid *const avoid = copied(mem, g->avoid, 1, sizeof *avoid);
+        MT_TRY(mt_arena_check(mem, err));
+        g->avoid = avoid;
+        return mt_bands_make(&avoid->source, value, mem, &avoid->bands, err);
+    }
+    case MT_VARY_PARAMETER:
+        return put_parameter(s, v->parameter, value, mem, err);
+    }
+    return mt_fail(err, MT_E_INTERNAL, "a trade study varies nothing");
+}
+
+/* trade.c: the study of one point, with values[n_vary]. Unchanged parts are borrowed,
+ * changed ones are in mem. Fails: MT_E_MEMORY, MT_E_DOMAIN (a parameter without a value). */
+static mt_status trade_study(const mt_study *study, const double *values, mt_arena *mem,
+                             mt_study *out, mt_err *err)
+{
+    *out = *study;
+    out->trade.n_vary = 0;
+    out->n_published = 0;
+    out->n_warnings = 0;
+    out->examined = true;
+    out->weight_sensitivity.factor = nan("");
+    out->recommendations = 1;
+    out->search.settles = study->search.starts <= 0;
+    out->variables =
+        copied(mem, study->variables, study->n_variables, sizeof *study->variables);
+    out->goals = copied(mem, study->goals, study->n_goals, sizeof *study->goals);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int k = 0; k < study->trade.n_vary; k++) {
+        MT_TRY(set_varied_number(out, &study->trade.vary[k], values[k], mem, err));
+    }
+    return MT_OK;
+}
+
+/* Whether a neighbour's best design is a better start than all that a point was searched from.
+ * One local search tells, at a small part of the cost of the point. */
+
+enum { LOCAL_EVALUATIONS = 500 };
+
+static void to_t(const mt_subproblem *c, const double *x, double *t)
+{
+    for (int i = 0; i < c->p->n; i++) {
+        t[i] = fmin(fmax(mt_problem_t(c->p, i, x[i]), c->lower_t[i]), c->upper_t[i]);
+    }
+    t[c->p->n] = 0.0;
+}
+
+/* The first objective at t as the search sees it. */
+static mt_status objective_at(mt_workspace *w, const double *t, mt_arena *mem, double *f,
+                              mt_err *err)
+{
+    const mt_subproblem *const c = w->c;
+    mt_nlp_values v;
+    MT_TRY(mt_subproblem_values_init(c, mem, &v, err));
+    MT_TRY(mt_workspace_eval(w, t, false, &v, err));
+    *f = mt_objective_stage_value(w, 0, NULL);
+    if (mt_objective_is(c->stages[0].type, MT_BANDS)) {
+        *f = -mt_avoidances_margin(w);
+    }
+    return MT_OK;
+}
+
+/* Opens the subproblem with the mode placement of t. */
+static mt_status open_gap(mt_workspace *w, const double *t, mt_arena *mem, mt_subproblem *out,
+                          mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    int *const below = mt_arena_int(mem, (size_t)p->n_bands);
+    double f = 0.0;
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(objective_at(w, t, mem, &f, err));
+    for (int i = 0; i < p->n_avoidances; i++) {
+        const mt_avoidance *const c = &p->avoidances[i];
+        (void)mt_avoidance_find_modes(c, &w->views[c->view].analysis->modes, below + c->first);
+    }
+    if (!mt_ties_agree(p, below)) {
+        return mt_fail(err, MT_E_DOMAIN, "a mode crosses a band between two positions");
+    }
+    return mt_subproblem_in_placement(&p->whole, below, 0, NULL, w, mem, out, err);
+}
+
+static mt_status compare_designs(mt_workspace *w, const double *x, const double *best_x,
+                                 mt_arena *mem, bool *better, long most, mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    double *const t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
+    double *const best_t = mt_arena_f64(mem, (size_t)p->n + 1, 1);
+    double best_f = HUGE_VAL;
+    mt_nlp_options opt = mt_nlp_options_default();
+    mt_nlp_result found = {0};
+    mt_subproblem in_gap;
+    MT_TRY(mt_arena_check(mem, err));
+    to_t(&p->whole, x, t);
+    if (best_x != NULL) {
+        to_t(&p->whole, best_x, best_t);
+        MT_TRY(objective_at(w, best_t, mem, &best_f, err));
+    }
+    mt_status rc = p->n_avoidances > 0 ? open_gap(w, t, mem, &in_gap, err) : MT_OK;
+    if (rc == MT_OK) {
+        mt_nlp nlp = mt_workspace_nlp(w);
+        t[p->n] = w->c->origin_t[p->n]; /* of a clearance 0: on the edges */
+        nlp.origin = t;
+        opt.starts = 1;
+        opt.max_evals = most < LOCAL_EVALUATIONS ? most : LOCAL_EVALUATIONS;
+        rc = mt_workspace_solve(w, &nlp, &opt, mem, &found, err);
+    }
+    mt_workspace_back(w, &p->whole);
+    MT_TRY(rc);
+    if (found.n_solutions > 0 && found.solutions[0].feasible) {
+        *better =
+            best_x == NULL || mt_compare(found.solutions[0].f, best_f, MT_EQUAL_FOUND) < 0;
+    }
+    return MT_OK;
+}
+
+/* trade.c; *better: a local search from x[n_variables], with about `most` evaluations at
+ * most, finds a better design of w's point than best_x (NULL: any feasible one). w is set to
+ * the whole subproblem, and to it again afterwards. */
+static mt_status trade_improves(mt_workspace *w, const double *x, const double *best_x,
+                                bool *better, long most, mt_err *err)
+{
+    mt_arena mem;
+    mt_err why = {0};
+    *better = false;
+    MT_TRY(mt_arena_init(&mem, 0, err));
+    const mt_status rc = compare_designs(w, x, best_x, &mem, better, most, &why);
+    mt_arena_free(&mem);
+    /* a start without a value is no better start, and no failure */
+    return mt_pass_final(rc, &why, err);
+}
+
+/* Points in their order, on all workers; what is kept of each. */
 
 typedef struct point {
     double values[MT_MAX_VARY];
@@ -122,7 +471,7 @@ static mt_status compile_trade_point(const trade *t, point *p, mt_err *err)
     p->q = mt_arena_alloc(&p->mem, 1, sizeof *p->q);
     mt_study *const study = mt_arena_alloc(&p->mem, 1, sizeof *study);
     MT_TRY(mt_arena_check(&p->mem, err));
-    MT_TRY(mt_trade_study(t->study, p->values, &p->mem, study, err));
+    MT_TRY(trade_study(t->study, p->values, &p->mem, study, err));
     return mt_question_init(p->q, study, t->run, &opt, err);
 }
 
@@ -257,7 +606,7 @@ static mt_status try_neighbours(const trade *t, int k, mt_workspace *w, const mt
         tried[way] = x;
         mt_interrupt_enter(&p->q->interrupt, MT_PHASE_SEARCH, false);
         p->q->spent.phase = MT_PHASE_SEARCH;
-        MT_TRY(mt_trade_improves(w, x, best_x, &gain, left, err));
+        MT_TRY(trade_improves(w, x, best_x, &gain, left, err));
         if (!gain || mt_question_left(p->q) < WARM_LEAST) {
             continue;
         }
@@ -500,7 +849,7 @@ static mt_status report_trade(trade *t, mt_result *result, mt_err *err)
         result->run.modal_solutions += p->solutions;
     }
     result->trade = t->out;
-    return mt_trade_front(t->study, t->best, &result->baseline, t->kept, t->out, err);
+    return trade_front(t->study, t->best, &result->baseline, t->kept, t->out, err);
 }
 
 /* Answers all points, then again each whose neighbours are known, except for other parts of the

@@ -25,16 +25,6 @@ mt_status mt_warnings_of_analysis(mt_analysis *a, int n_inputs, const int *input
 mt_status mt_warnings_of_lowest(const mt_lowest *l, int n_inputs, const int *inputs,
                                 const double *at, mt_warning_list *out, mt_err *err);
 
-/* Free motions that indicate no missing joint: rods that spin between their ball joints, and
- * one other free motion. Fails: MT_E_MEMORY, MT_E_NO_CONVERGENCE. */
-typedef struct mt_warnings_rods {
-    int n;
-    const char *names; /* one body of each, quoted, separated by commas */
-    double *other;     /* shape y of a free motion other than a spin; NULL: none */
-} mt_warnings_rods;
-mt_status mt_warnings_spins(const mt_analysis *a, mt_arena *mem, mt_warnings_rods *out,
-                            mt_err *err);
-
 /* True for the warning that the equilibrium is more than ten degrees, or a tenth of the model,
  * from the reference position. It is the first line of any answer. */
 bool mt_warnings_settles_far(const mt_warning *d);

@@ -8,6 +8,7 @@
 
 #include "describe/describe.h"
 #include "problem/configuration.h"
+#include "prove/certify.h"
 #include "prove/reach.h"
 #include "search/proof.h"
 

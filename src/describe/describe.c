@@ -140,7 +140,7 @@ static mt_status check_fresh_objective(const mt_workspace *fresh, const mt_desig
 }
 
 /* Warn of a design at which a fresh analysis disagrees; it does not count as meeting any goal,
- * see describe_verify.c. */
+ * see describe_run.c. */
 static mt_status warn_disagreement(const mt_design *design, mt_result *result,
                                    mt_recommendation *rec, mt_err *err)
 {

@@ -10,7 +10,7 @@
  * The description of a design in the result. Every number is recomputed from scratch, in a new
  * workspace solved at that design only, and compared with the search's (a difference beyond
  * rounding becomes a warning); modes are also compared with those of systems built again at
- * that design (describe_verify.c).
+ * that design (describe_run.c).
  */
 
 /* The search's knowledge of a design; zeroed for the original one. */
@@ -66,7 +66,7 @@ mt_status mt_describe_motions(mt_workspace *fresh, mt_result *result, mt_recomme
  * clearance. Nothing for an unstable configuration. */
 mt_status mt_describe_clearances(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                  mt_err *err);
-/* describe_tolerance_box.c: ranges of modes and expressions over the tolerances of fresh's
+/* describe_tolerance.c: ranges of modes and expressions over the tolerances of fresh's
  * design, after its configurations are solved. Nothing without tolerances. */
 mt_status mt_describe_ranges(mt_workspace *fresh, mt_err *err);
 /* Judge a requirement by its worst value, which goes into g. *violation (relative) and *percent
@@ -83,7 +83,7 @@ const char *mt_describe_identity(const mt_configuration_work *view, int named, m
 /* True where the mode of the requirement is identified, or its frequency is that of all
  * candidates. */
 bool mt_describe_is_told(const mt_configuration_work *view, const mt_requirement *d);
-/* describe_responses.c: judge the goals of forced vibration. */
+/* describe_curves.c: judge the goals of forced vibration. */
 mt_status mt_describe_responses(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
 /* Phrases for these goals: "the acceleration of grip.x for base.z"; ", 45 % below its limit";
@@ -94,7 +94,7 @@ const char *mt_describe_response_kind(const mt_response_limit *s);
 /* The relative deviation of the value q of a requirement from its required value; violation: in
  * the measure of its kind. */
 double mt_describe_off_by(const mt_requirement *d, double q, double violation);
-/* describe_between.c: goals that limit a number, between the named positions of drives. */
+/* describe_motion.c: goals that limit a number, between the named positions of drives. */
 mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_result *result,
                               mt_recommendation *rec, mt_err *err);
 /* describe_frequencies.c: compare modes; after mt_describe_goals, which solves the
@@ -102,10 +102,6 @@ mt_status mt_describe_between(mt_workspace *fresh, const mt_design *design, mt_r
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,
                                   const mt_recommendation *baseline, mt_result *result,
                                   mt_recommendation *rec, mt_err *err);
-/* describe_mac.c: MAC of the first `listed` modes of a, the analysis of the configuration at
- * the design, with those of the references whose shapes goals compare. */
-mt_status mt_describe_mac(const mt_problem *p, int view, mt_analysis *a, int listed,
-                          mt_result *result, mt_recommendation *rec, mt_err *err);
 /*
  * describe_verify.c: the difference of the study's modes of a configuration at one design from
  * those of a fresh analysis (with its own number of rigid-body modes), beyond the error bounds
@@ -113,7 +109,7 @@ mt_status mt_describe_mac(const mt_problem *p, int view, mt_analysis *a, int lis
  */
 const char *mt_describe_disagreement(const mt_modes *study, const mt_modes *fresh,
                                      const char *configuration, mt_arena *mem);
-/* describe_withdraw.c: is_doubted is true where a fresh analysis disagrees at any design of the
+/* describe_run.c: is_doubted is true where a fresh analysis disagrees at any design of the
  * result; withdraw then removes its certificates and tolerance boxes, and grades such a design
  * "not verified". */
 bool mt_describe_is_doubted(const mt_result *result);
@@ -122,21 +118,21 @@ mt_status mt_describe_withdraw(mt_result *result, mt_err *err);
  * its tolerance box where the modes can be enclosed. After the clearances. */
 mt_status mt_describe_tolerance(mt_workspace *fresh, mt_result *result, mt_recommendation *rec,
                                 mt_err *err);
-/* describe_unidentifiable.c: directions that the goals do not identify. */
+/* describe_frequencies.c: directions that the goals do not identify. */
 mt_status mt_describe_unidentifiable(const mt_problem *p, const mt_nlp_result *found,
                                      mt_result *result, mt_err *err);
-/* describe_curves_asked.c: the list of responses shown, before any design; describe_curves.c:
+/* describe_curves.c: the list of responses shown, before any design; describe_curves.c:
  * each of them at fresh->x. None at points of a trade study. A missing response has its reason.
  * Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_describe_asked_curves(const mt_problem *p, mt_result *result, mt_err *err);
 mt_status mt_describe_curves(const mt_workspace *fresh, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
-/* describe_history.c: the improving designs of the search up to found->solutions[0], whose f
+/* describe_run.c: the improving designs of the search up to found->solutions[0], whose f
  * belongs to objective `stage`; call once. Fails: MT_E_MEMORY. */
 mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, int stage,
                               mt_result *result, mt_err *err);
-/* describe_slopes.c: derivatives of the values of goals at the design, the last use of `fresh`;
- * NULL where not available. Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
+/* describe_frequencies.c: derivatives of the values of goals at the design, the last use of
+ * `fresh`; NULL where not available. Fails: MT_E_MEMORY, MT_E_INTERRUPTED. */
 mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_result *result,
                              mt_recommendation *rec, mt_err *err);
 /* Add sentences about the unmet goals of the original design. */
@@ -152,7 +148,7 @@ mt_status mt_describe_published(mt_workspace *w, const double *x_original,
                                 const double *x_recommended, mt_result *result, mt_err *err);
 /* Fill in versions, seed, inputs, names of the variables (describe_run.c). */
 mt_status mt_describe_run(const mt_study *study, mt_result *result, mt_err *err);
-/* Fill in rotors and machines of the avoid goals (describe_excitations.c). */
+/* Fill in rotors and machines of the avoid goals (describe_curves.c). */
 mt_status mt_describe_excitations(const mt_study *study, mt_result *result, mt_err *err);
 /* Copy every borrowed text of study and problem into the result, which may outlive them
  * (describe_run.c). */

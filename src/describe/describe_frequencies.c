@@ -1,14 +1,252 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of frequencies of a design: for each view the modes that goals name, those between
- * bands, and the first few besides, from an analysis made anew at that design. */
+/*
+ * How much the modes of a configuration are those of a reference that goals compare one of them
+ * with: MAC_ij = (a_i . b_j)^2 / (|a_i|^2 |b_j|^2) at the sensors that both have. One mode that
+ * has become another, or two that have changed places, are seen beside the diagonal.
+ */
 #include <math.h>
 #include <string.h>
 
 #include "analysis/count.h"
 #include "describe/describe.h"
 #include "problem/configuration.h"
+#include "problem/evaluate.h"
+#include "problem/goals.h"
 #include "problem/requirement.h"
 #include "problem/tolerance.h"
+
+/* Modes of a reference that are compared at most: a table of more says nothing to anybody. */
+enum { REFERENCE_MODES = 24 };
+
+/* True where it is the first goal that compares shapes of this configuration with that
+ * reference. */
+static bool is_first(const mt_problem *p, int i)
+{
+    const mt_requirement *const d = &p->requirements[i];
+    for (int k = 0; k < i; k++) {
+        const mt_requirement *const e = &p->requirements[k];
+        if (e->shape.ns > 0 && e->view == d->view && e->goal->reference == d->goal->reference) {
+            return false;
+        }
+    }
+    return d->shape.ns > 0;
+}
+
+/* The modes of the reference that move at common sensors, as many as the configuration has
+ * listed, or was measured; shapes in mem. */
+static mt_status compared_with(const mt_problem *p, const mt_requirement *d, int listed,
+                               mt_arena *mem, mt_reference_shape *shapes, int *n, mt_err *err)
+{
+    const mt_reference *const r = &p->study->references[d->goal->reference];
+    const int most = r->model == NULL ? r->n_modes : listed;
+    *n = 0;
+    for (int k = 1; k <= most && k <= REFERENCE_MODES; k++) {
+        mt_err why = {.code = MT_OK};
+        const mt_status rc = mt_reference_shape_init(p->references, d->goal->reference, k,
+                                                     p->views[d->view].original->sys,
+                                                     d->goal->length, mem, &shapes[*n], &why);
+        MT_TRY(mt_pass_final(rc, &why, err));
+        *n += rc == MT_OK ? 1 : 0;
+    }
+    return MT_OK;
+}
+
+static mt_status describe_rows(mt_analysis *a, int listed, const mt_reference_shape *shapes,
+                               mt_arena *mem, mt_result_mac *m, mt_err *err)
+{
+    const int n = m->n_reference_modes;
+    m->rows = mt_arena_alloc(mem, (size_t)listed, sizeof *m->rows);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int mode = 1; mode <= listed; mode++) {
+        const int pos = mt_modal_flexible(&a->modes, mode);
+        mt_result_mac_row row = {.mode = mode, .n_values = n};
+        row.values = mt_arena_f64(mem, (size_t)n, 1);
+        MT_TRY(mt_arena_check(mem, err));
+        bool moves = pos >= 0;
+        for (int j = 0; j < n && moves; j++) {
+            MT_TRY(mt_reference_mac(a, pos, &shapes[j], &row.values[j], err));
+            moves = isfinite(row.values[j]);
+        }
+        if (moves) {
+            m->rows[m->n_rows++] = row;
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status describe_one(const mt_problem *p, const mt_requirement *d, mt_analysis *a,
+                              int listed, mt_arena *scratch, mt_result *result,
+                              mt_result_mac *m, mt_err *err)
+{
+    mt_arena *const mem = &result->mem;
+    mt_reference_shape *const shapes = mt_arena_alloc(scratch, REFERENCE_MODES, sizeof *shapes);
+    MT_TRY(mt_arena_check(scratch, err));
+    m->configuration = mt_analysis_configuration(a);
+    m->reference = p->study->references[d->goal->reference].name.s;
+    MT_TRY(compared_with(p, d, listed, scratch, shapes, &m->n_reference_modes, err));
+    m->reference_modes = mt_arena_f64(mem, (size_t)m->n_reference_modes, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int j = 0; j < m->n_reference_modes; j++) {
+        m->reference_modes[j] = (double)shapes[j].mode;
+    }
+    return describe_rows(a, listed, shapes, mem, m, err);
+}
+
+/* MAC of the first `listed` modes of a, the analysis of the configuration at the design,
+ * with those of the references whose shapes goals compare. */
+static mt_status describe_mac(const mt_problem *p, int view, mt_analysis *a, int listed,
+                              mt_result *result, mt_recommendation *rec, mt_err *err)
+{
+    mt_arena scratch;
+    if (rec->macs == NULL) {
+        rec->macs = mt_arena_alloc(&result->mem, (size_t)p->n_requirements, sizeof *rec->macs);
+    }
+    MT_TRY(mt_arena_check(&result->mem, err));
+    MT_TRY(mt_arena_init(&scratch, 0, err));
+    mt_status rc = MT_OK;
+    for (int i = 0; i < p->n_requirements && rc == MT_OK; i++) {
+        if (p->requirements[i].view == view && is_first(p, i)) {
+            mt_result_mac *const m = &rec->macs[rec->n_macs++];
+            *m = (mt_result_mac){.configuration = NULL};
+            rc = describe_one(p, &p->requirements[i], a, listed, &scratch, result, m, err);
+        }
+    }
+    mt_arena_free(&scratch);
+    return rc;
+}
+
+/* Slopes of the values of goals over the variables, at a design that has been described. */
+
+static bool is_same_name(const char *a, const char *b)
+{
+    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
+}
+
+/* Derivatives of a frequency, computed with it: NULL where its mode repeats. */
+static double *of_frequency(const mt_recommendation *rec, const mt_result_goal *g)
+{
+    for (int i = 0; i < rec->n_frequencies; i++) {
+        const mt_result_frequency *const f = &rec->frequencies[i];
+        const bool mode = g->name != NULL ? is_same_name(f->name, g->name) : f->mode == g->mode;
+        if (mode && is_same_name(f->configuration, g->configuration)) {
+            return f->repeated ? NULL : f->sensitivity;
+        }
+    }
+    return NULL;
+}
+
+/* Derivatives of another value, from its slope over t. */
+static mt_status of_value(mt_workspace *fresh, const mt_requirement *d, mt_result *result,
+                          mt_result_goal *g, mt_err *err)
+{
+    const int n = fresh->p->n;
+    int pos = -1;
+    double q = nan("");
+    const bool modal = mt_requirement_is_modal(d);
+    if (d->view >= 0) {
+        mt_configuration_work *const view = &fresh->views[d->view];
+        mt_configuration_query_all(view);
+        view->ask.vectors = true;
+        MT_TRY(mt_configuration_solve(fresh, view, true, err));
+        MT_TRY(modal ? mt_configuration_position(fresh, view, d->mode, d->named, &pos, err)
+                     : MT_OK);
+        if (modal && pos < 0) {
+            return MT_OK;
+        }
+    }
+    MT_TRY(d->ops->value(fresh, d, pos, &q, fresh->slope, err));
+    double *const slopes = mt_arena_f64(&result->mem, (size_t)n, 1);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    for (int i = 0; i < n; i++) {
+        /* slopes of logarithms are those of ln q */
+        slopes[i] = (d->measure == MT_MEASURE_RATIO ? q : 1.0) * fresh->slope[i] /
+                    mt_workspace_dx_dt(fresh, i);
+    }
+    g->sensitivity = slopes;
+    return MT_OK;
+}
+
+mt_status mt_describe_slopes(mt_workspace *fresh, const mt_design *design, mt_result *result,
+                             mt_recommendation *rec, mt_err *err)
+{
+    bool placed = false;
+    for (int i = 0; i < fresh->p->n_requirements; i++) {
+        const mt_requirement *const d = &fresh->p->requirements[i];
+        mt_result_goal *const g = &rec->goals[i];
+        mt_err own = {.code = MT_OK};
+        mt_status rc = MT_OK;
+        if (d->quantity == MT_QUANTITY_FREQUENCY) {
+            g->sensitivity = of_frequency(rec, g);
+        } else if (d->ops->value != NULL && isfinite(g->value)) {
+            rc = placed ? MT_OK : mt_workspace_place(fresh, design->t, true, &own);
+            placed = true;
+            rc = rc == MT_OK ? of_value(fresh, d, result, g, &own) : rc;
+        }
+        MT_TRY(mt_pass_final(rc, &own, err)); /* else it has none */
+    }
+    return MT_OK;
+}
+
+/* Entries of a direction below this part of the largest are rounding. */
+static const double PART_OF_DIRECTION = 1e-3;
+/* The search's own tolerance where no goal sets one: residuals count as unchanged below it
+ * (nlp.h). */
+static const double RESIDUAL_TOLERANCE = 1e-6;
+
+/* "K_T2", or "0.71 ln a - 0.71 ln b". */
+static const char *direction_text(const mt_problem *p, const double *v, mt_arena *mem)
+{
+    double largest = 0.0;
+    int parts = 0;
+    const char *text = "";
+    for (int i = 0; i < p->n; i++) {
+        largest = fmax(largest, fabs(v[i]));
+    }
+    for (int i = 0; i < p->n; i++) {
+        parts += fabs(v[i]) > PART_OF_DIRECTION * largest ? 1 : 0;
+    }
+    for (int i = 0; i < p->n && text != NULL; i++) {
+        const char *const name = p->study->variables[i].parameter_name.s;
+        if (!(fabs(v[i]) > PART_OF_DIRECTION * largest)) {
+            continue;
+        }
+        if (parts == 1) {
+            return name;
+        }
+        const bool first = text[0] == '\0';
+        const char *const plus = first ? "" : " + ";
+        const char *const minus = first ? "-" : " - ";
+        text = mt_arena_printf(mem, "%s%s%.2g %s%s", text, v[i] < 0.0 ? minus : plus,
+                               fabs(v[i]), MT_HAS(p->scale[i]) ? "" : "ln ", name);
+    }
+    return text;
+}
+
+mt_status mt_describe_unidentifiable(const mt_problem *p, const mt_nlp_result *found,
+                                     mt_result *result, mt_err *err)
+{
+    double tolerance = RESIDUAL_TOLERANCE;
+    for (int i = 0; i < p->n_requirements; i++) {
+        tolerance = fmax(tolerance, p->requirements[i].tolerance);
+    }
+    result->unidentifiable = mt_arena_alloc(&result->mem, (size_t)found->n_unidentifiable,
+                                            sizeof *result->unidentifiable);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    for (int k = 0; k < found->n_unidentifiable; k++) {
+        const double *const v = found->unidentifiable + ((ptrdiff_t)k * p->n);
+        mt_unidentifiable_direction *const u = &result->unidentifiable[k];
+        u->direction = mt_arena_f64(&result->mem, (size_t)p->n, 1);
+        u->text = direction_text(p, v, &result->mem);
+        u->effect_percent = 100.0 * tolerance * found->unidentifiable_effect[k];
+        MT_TRY(mt_arena_check(&result->mem, err));
+        memcpy(u->direction, v, (size_t)p->n * sizeof *v);
+        result->n_unidentifiable++;
+    }
+    return MT_OK;
+}
+
+/* The table of frequencies of a design: for each view the modes that goals name, those between
+ * bands, and the first few besides, from an analysis made anew at that design. */
 
 /* Modes listed of a configuration beyond those that goals name. */
 enum { LISTED_MODES = 4, SLACK_TEXT = 200 };
@@ -233,7 +471,7 @@ static mt_status list_view(listing *l, int v, int count, mt_err *err)
             MT_TRY(warn_lost(l, &fresh->p->requirements[i], err));
         }
     }
-    return mt_describe_mac(fresh->p, v, l->scratch, count, l->result, l->rec, err);
+    return describe_mac(fresh->p, v, l->scratch, count, l->result, l->rec, err);
 }
 
 mt_status mt_describe_frequencies(mt_workspace *fresh, const mt_design *design,

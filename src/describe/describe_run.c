@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a result says of its own making, and the texts that it must own: it may outlive study
- * and problem. */
+/* How the search came to its designs. */
 #include "modetune/version.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/base.h"
@@ -10,6 +10,91 @@
 #include "describe/describe.h"
 #include "linalg/dense.h"
 #include "nlp/libraries.h"
+#include "nlp/merit.h"
+#include "problem/objective.h"
+
+static double finite_or_none(double x)
+{
+    return isfinite(x) ? x : nan("");
+}
+
+mt_status mt_describe_history(const mt_problem *p, const mt_nlp_result *found, int stage,
+                              mt_result *result, mt_err *err)
+{
+    mt_result_run *const run = &result->run;
+    mt_steps steps = found->steps;
+    if (found->n_solutions > 0) {
+        const mt_nlp_solution *const s = &found->solutions[0];
+        const mt_step end = {found->evals, stage, 0, s->f, s->violation, s->squares};
+        mt_steps_settle(&steps, &end);
+    }
+    run->history = mt_arena_alloc(&result->mem, (size_t)steps.n, sizeof *run->history);
+    MT_TRY(mt_arena_check(&result->mem, err));
+    for (int i = 0; i < steps.n; i++) {
+        const mt_step *const s = &steps.at[i];
+        const bool none = p->n_stages == 0;
+        run->history[run->n_history++] = (mt_result_step){
+            .objective = s->stage + 1,
+            .round = s->round + 1,
+            .evaluations = s->evals,
+            .value = none
+                         ? nan("")
+                         : finite_or_none(mt_objective_stage_shown(&p->stages[s->stage], s->f)),
+            .violation = finite_or_none(s->violation),
+            .feasible = mt_is_held(s->violation),
+        };
+    }
+    return MT_OK;
+}
+
+/* What a fresh analysis that disagrees makes of a result. */
+
+static bool doubted(const mt_recommendation *rec)
+{
+    return rec->disagreement != NULL;
+}
+
+bool mt_describe_is_doubted(const mt_result *result)
+{
+    bool any = doubted(&result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        any = any || doubted(&result->recommendations[i]);
+    }
+    return any;
+}
+
+/* Withdraw the proven grade of a design: its proof rests on results that disagree, at any
+ * design of the study. */
+static void disgrade(mt_recommendation *rec)
+{
+    rec->tolerance_box = NULL;
+    rec->worst_case = rec->worst_case == NULL ? NULL : "sampled";
+    if (doubted(rec)) {
+        rec->grade = "not verified";
+    } else if (rec->feasible && rec->grade != NULL &&
+               strcmp(rec->grade, "feasible and proven") == 0) {
+        rec->grade = "feasible";
+    }
+}
+
+mt_status mt_describe_withdraw(mt_result *result, mt_err *err)
+{
+    disgrade(&result->baseline);
+    for (int i = 0; i < result->n_recommendations; i++) {
+        disgrade(&result->recommendations[i]);
+    }
+    for (int i = 0; i < result->n_certificates; i++) {
+        mt_certificate *const c = &result->certificates[i];
+        c->proven = false;
+        c->text = mt_arena_printf(
+            &result->mem,
+            "Withdrawn, because recomputed values differ from those it rests on: %s", c->text);
+    }
+    return mt_arena_check(&result->mem, err);
+}
+
+/* What a result says of its own making, and the texts that it must own: it may outlive study
+ * and problem. */
 
 enum { VERSION_SIZE = 16 };
 

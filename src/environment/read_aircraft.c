@@ -31,7 +31,8 @@ static const mt_key_table ROOT_TABLE = {.what = "", .keys = ROOT, .n = ROOT_KEY_
     X(AIRCRAFT_TAIL, "tail", MT_KEY_OBJECT, false)
 enum { AIRCRAFT_KEYS(KEY_ENUM) AIRCRAFT_KEY_COUNT };
 static const mt_key AIRCRAFT[] = {AIRCRAFT_KEYS(KEY)};
-static const mt_key_table AIRCRAFT_TABLE = {.what = "aircraft", .keys = AIRCRAFT, .n = AIRCRAFT_KEY_COUNT};
+static const mt_key_table AIRCRAFT_TABLE = {
+    .what = "aircraft", .keys = AIRCRAFT, .n = AIRCRAFT_KEY_COUNT};
 
 #define ROTOR_KEYS(X)                                     \
     X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_OBJECT, false)   \
@@ -51,7 +52,8 @@ enum { VALUE_KEYS(KEY_ENUM, , ) VALUE_KEY_COUNT };
 static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE, SPEED)};
 static const mt_key_table SPEED_TABLE = {.what = "speed", .keys = SPEED, .n = VALUE_KEY_COUNT};
 static const mt_key BLADES[] = {VALUE_KEYS(KEY, MT_KEY_COUNT, WHOLE)};
-static const mt_key_table BLADES_TABLE = {.what = "blades", .keys = BLADES, .n = VALUE_KEY_COUNT};
+static const mt_key_table BLADES_TABLE = {
+    .what = "blades", .keys = BLADES, .n = VALUE_KEY_COUNT};
 
 const mt_key_table *const *mt_aircraft_key_tables(int *n)
 {

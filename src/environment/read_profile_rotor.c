@@ -23,7 +23,8 @@
     X(ROTOR_SOURCE, "source", TEXT, false)
 enum { ROTOR_KEYS(MT_PROFILE_ENUM) ROTOR_COUNT };
 static const mt_key ROTOR_LIST[] = {ROTOR_KEYS(MT_PROFILE_KEY)};
-const mt_key_table mt_profile_rotor_keys = {.what = "rotor", .keys = ROTOR_LIST, .n = ROTOR_COUNT};
+const mt_key_table mt_profile_rotor_keys = {
+    .what = "rotor", .keys = ROTOR_LIST, .n = ROTOR_COUNT};
 
 #define TAIL_KEYS(X)                                  \
     X(TAIL_SPEED_HZ, "speed_hz", VALUE, false, SPEED) \
@@ -33,7 +34,8 @@ const mt_key_table mt_profile_rotor_keys = {.what = "rotor", .keys = ROTOR_LIST,
     X(TAIL_SOURCE, "source", TEXT, false)
 enum { TAIL_KEYS(MT_PROFILE_ENUM) TAIL_COUNT };
 static const mt_key TAIL_LIST[] = {TAIL_KEYS(MT_PROFILE_KEY)};
-const mt_key_table mt_profile_tail_keys = {.what = "tail_rotor", .keys = TAIL_LIST, .n = TAIL_COUNT};
+const mt_key_table mt_profile_tail_keys = {
+    .what = "tail_rotor", .keys = TAIL_LIST, .n = TAIL_COUNT};
 
 static const double RPM_PER_HZ = 60.0;
 

@@ -109,8 +109,6 @@ struct mt_object {
 
 /* As mt_reader_object. */
 bool mt_object_match(mt_reader *r, mt_addr value, const mt_key_table *table, mt_object *out);
-/* The index of a member in the table, which has it. */
-int mt_object_key(const mt_object *o, const char *member);
 /* The value of a member; MT_NO_ADDR where it is absent or of a wrong type. */
 mt_addr mt_object_value(const mt_object *o, const char *member);
 /* True where the member is present, also of a wrong type. */

@@ -21,7 +21,7 @@
 #include <string.h>
 
 #include "linalg/dense.h"
-#include "prove/coefficients.h"
+#include "prove/enclosure.h"
 
 /* A shift of lambda by this share moves a frequency by half of it: far below the 1e-6 within
  * which goals are met, and room for the growth of a factorisation without pivoting in all but

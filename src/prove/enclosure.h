@@ -39,7 +39,7 @@ typedef struct mt_enclosure_part {
 } mt_enclosure_part;
 
 /* The sign required of a coefficient over the bounds. A coupling of two rows has two
- * coefficients of any sign: its own and its negative (terms.c). */
+ * coefficients of any sign: its own and its negative. */
 typedef enum mt_sign { MT_SIGN_POSITIVE, MT_SIGN_ANY, MT_SIGN_NEGATED } mt_sign;
 
 typedef struct mt_enclosure_coefficient {
@@ -155,5 +155,11 @@ void mt_enclosure_effects(mt_enclosure *e, const double *lo, const double *hi, i
  * tight). depends: true where it enters K or M. */
 bool mt_enclosure_loose(const mt_enclosure *e, int i);
 bool mt_enclosure_depends(const mt_enclosure *e, int i);
+
+/* found[n_inputs]: true for inputs that shape the geometry of stiffness and mass. */
+void mt_enclosure_shaping(const mt_analysis *a, bool *found);
+
+/* Bounds of all coefficients over the box into value[2]. */
+void mt_enclosure_bounds(mt_enclosure *e, const double *lo, const double *hi);
 
 #endif

@@ -7,7 +7,7 @@
 #include "base/run.h"
 #include "problem/configuration.h"
 #include "problem/requirement.h"
-#include "prove/shaping.h"
+#include "prove/enclosure.h"
 
 /* Spent with the first box. 0 would be the default of certify.h. */
 static const double LEAST_WORK = 1.0;

@@ -378,7 +378,7 @@ static void read_study_root(mt_study_reader *s)
         !mt_object_match(&s->r, MT_JSON_ROOT, &mt_study_keys, &o)) {
         return;
     }
-    const mt_addr spread = mt_object_value(&o, "spread");
+    const mt_addr weights = mt_object_value(&o, "spread");
     const mt_addr search = mt_object_value(&o, "search");
     mt_object_read(&s->r, &o, study);
     study->accepted = mt_reader_accepted(&s->r, mt_object_value(&o, "accepted"));
@@ -397,10 +397,10 @@ static void read_study_root(mt_study_reader *s)
     mt_read_study_goals(s, mt_object_value(&o, "goals"));
     mt_read_study_aircraft(s, mt_object_value(&o, "aircraft"));
     mt_read_study_objectives(s, mt_object_value(&o, "objective"));
-    if (spread != MT_NO_ADDR &&
-        mt_members_read(&s->r, spread, &mt_study_weight_sensitivity_keys,
+    if (weights != MT_NO_ADDR &&
+        mt_members_read(&s->r, weights, &mt_study_weight_sensitivity_keys,
                         &study->weight_sensitivity)) {
-        study->weight_sensitivity.addr = spread;
+        study->weight_sensitivity.addr = weights;
     }
     mt_read_study_trade(s, mt_object_value(&o, "trade"), mt_object_value(&o, "goals"));
     study->responses =

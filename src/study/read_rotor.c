@@ -34,8 +34,8 @@ static bool times_rpm(const char *text)
     return false;
 }
 
-/* A speed per minute, in Hz. An expression there that converts to Hz itself is refused: the result
- * would be a sixtieth of the intended speed. */
+/* A speed per minute, in Hz. An expression there that converts to Hz itself is refused: the
+ * result would be a sixtieth of the intended speed. */
 static void read_rpm(mt_reader *r, const mt_key *key, mt_addr value, void *item)
 {
     double *const hz = (double *)(void *)((char *)item + key->at);

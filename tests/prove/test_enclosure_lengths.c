@@ -6,7 +6,7 @@
  */
 #include "mechanics/mech.h"
 #include "prove/box.h"
-#include "prove/shaping.h"
+#include "prove/enclosure.h"
 
 static const char *const LEVER =
     "{\"format\": \"modetune-model/1\", \"name\": \"lever\", \"dimension\": 2,"

@@ -41,7 +41,7 @@ ALLOWED = {
 OPEN = {
     "nlp": {"nlp.h", "starts.h", "cone.h", "merit.h", "libraries.h"},
     "scene": {"scene.h", "write.h"},
-    "prove": {"enclosure.h", "shaping.h", "box.h", "certify.h", "reach.h", "tolerance.h", "band_count.h"},
+    "prove": {"enclosure.h", "box.h", "certify.h", "reach.h", "tolerance.h", "band_count.h"},
 }
 # public headers stand in include/modetune and belong to a room: the one of the same name, or
 PUBLIC = {"export": "base", "read": "base", "version": "base", "status": "base", "dynamics": "mechanics", "study": "study", "profile": "environment", "mechanism": "library", "motion": "library", "deprecated": "library"}
