@@ -49,7 +49,7 @@ mt_status mt_result_points_find(const char *text, size_t length, int least,
     const char *const first = list == NULL ? NULL : list + strlen(LIST);
     const char *end = first;
     const int n = first == NULL ? -1 : count_points(&end);
-    if (n < least) {
+    if (n < least || end == NULL) {
         return MT_OK;
     }
     const size_t before = (size_t)(first - text);
