@@ -9,6 +9,7 @@
 #include "answer/solve_priv.h"
 
 #include <math.h>
+#include <stdatomic.h>
 
 #include "answer/examine.h"
 #include "answer/trade.h"
@@ -240,16 +241,6 @@ static mt_status describe_recommendation(const mt_answer *a, int i, mt_result *i
     return mt_describe_reasons(a->p, &design, &a->found, into, rec, err);
 }
 
-/* The best one. */
-static mt_status recommend_first(mt_answer *a, mt_err *err)
-{
-    mt_result *const result = a->result;
-    a->mark = mt_result_get_mark(result);
-    MT_TRY(describe_recommendation(a, 0, result, &result->recommendations[0], err));
-    result->n_recommendations += is_cut(a, MT_PHASE_RECOMMENDATIONS) ? 0 : 1;
-    return MT_OK;
-}
-
 /* A design that is described beside others. */
 typedef struct part {
     mt_result *into; /* owned */
@@ -259,19 +250,15 @@ typedef struct part {
 
 typedef struct others {
     const mt_answer *a;
-    part *parts; /* of the second best and all behind it */
+    part *parts; /* of the best and all behind it */
     mt_progress *progress;
     bool told;
 } others;
 
-static mt_status describe_other(void *context, int worker, int task, mt_task_path *own,
-                                mt_err *err)
+static mt_status describe_part(const others *o, int task, mt_err *err)
 {
-    const others *const o = context;
     const mt_result *const result = o->a->result;
     part *const p = &o->parts[task];
-    (void)worker;
-    (void)own;
     if (is_cut(o->a, MT_PHASE_RECOMMENDATIONS)) {
         return MT_OK;
     }
@@ -282,10 +269,24 @@ static mt_status describe_other(void *context, int worker, int task, mt_task_pat
     p->into->n_curves = result->n_curves;
     p->into->unidentifiable = result->unidentifiable;
     p->into->n_unidentifiable = result->n_unidentifiable;
-    MT_TRY(describe_recommendation(o->a, 1 + task, p->into, &p->rec, err));
+    MT_TRY(describe_recommendation(o->a, task, p->into, &p->rec, err));
     p->whole = !is_cut(o->a, MT_PHASE_RECOMMENDATIONS);
     mt_progress_done(o->progress, o->told);
     return MT_OK;
+}
+
+/* Without the best one there is no answer: a limit of time waits for it, and no longer. */
+static mt_status describe_other(void *context, int worker, int task, mt_task_path *own,
+                                mt_err *err)
+{
+    const others *const o = context;
+    (void)worker;
+    (void)own;
+    const mt_status rc = describe_part(o, task, err);
+    if (task == 0) {
+        atomic_store(&o->a->interrupt->needed, false);
+    }
+    return rc;
 }
 
 /* Adds a description to the result as if it had been made there. */
@@ -301,8 +302,8 @@ static mt_status take_other(mt_answer *a, const part *p, mt_err *err)
     return MT_OK;
 }
 
-/* n others, as many as were described before a cut. */
-static mt_status recommend_others(mt_answer *a, int n, bool told, mt_err *err)
+/* n designs side by side, as many as were described before a cut. */
+static mt_status recommend_designs(mt_answer *a, int n, bool told, mt_err *err)
 {
     others o = {.a = a,
                 .parts = mt_arena_alloc(&a->mem, (size_t)n, sizeof *o.parts),
@@ -311,7 +312,9 @@ static mt_status recommend_others(mt_answer *a, int n, bool told, mt_err *err)
     MT_TRY(mt_arena_check(&a->mem, err));
     const mt_tasks tasks = {n, describe_other, NULL, &o, "designs"};
     a->mark = mt_result_get_mark(a->result);
+    atomic_store(&a->interrupt->needed, true);
     const mt_status rc = mt_workers_run(a->n_workers, NULL, &tasks, err);
+    atomic_store(&a->interrupt->needed, false);
     mt_status taken = MT_OK; /* of a cut is an error, too: what came before it counts */
     for (int i = 0; i < n && !mt_is_final(rc) && taken == MT_OK && o.parts[i].whole; i++) {
         taken = take_other(a, &o.parts[i], err);
@@ -338,13 +341,7 @@ mt_status mt_answer_recommend(mt_answer *a, mt_err *err)
     const bool told = mt_progress_begin(progress, "designs", n);
     mt_status rc = MT_OK;
     if (n > 0 && !is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
-        a->interrupt->needed = true; /* without the best one there is no answer */
-        rc = recommend_first(a, err);
-        a->interrupt->needed = false;
-        mt_progress_done(progress, told);
-    }
-    if (n > 1 && rc == MT_OK && !is_cut(a, MT_PHASE_RECOMMENDATIONS)) {
-        rc = recommend_others(a, n - 1, told, err);
+        rc = recommend_designs(a, n, told, err);
     }
     mt_progress_end(progress, told);
     if (rc != MT_OK || is_cut(a, MT_PHASE_RECOMMENDATIONS)) {

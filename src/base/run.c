@@ -19,7 +19,7 @@ void mt_interrupt_init(mt_interrupt *i, int (*request)(void *context), void *con
     i->whole = whole;
     i->phase = 0;
     i->makes_ready = false;
-    i->needed = false;
+    atomic_init(&i->needed, false);
     atomic_init(&i->level, MT_STOP_REQUEST_NONE);
     atomic_init(&i->cut, 0U);
 }
@@ -50,7 +50,7 @@ bool mt_interrupted(mt_interrupt *i)
 {
     if (i == NULL ||
         request_of(i) < (i->makes_ready ? MT_STOP_REQUEST_END : MT_STOP_REQUEST_FINISH) ||
-        (i->needed && mt_interrupt_reason(i) == MT_STOP_REASON_TIME_LIMIT)) {
+        (atomic_load(&i->needed) && mt_interrupt_reason(i) == MT_STOP_REASON_TIME_LIMIT)) {
         return false;
     }
     mt_interrupt_cut(i, i->phase);

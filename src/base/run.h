@@ -33,9 +33,9 @@ typedef struct mt_interrupt {
     /* current phase, below MT_INTERRUPT_PHASES; changed while no worker runs */
     int phase;
     bool makes_ready; /* this phase continues until MT_STOP_REQUEST_END */
-    /* the current part of the phase outlasts a time limit and ends only at an interrupt;
-     * changed while no worker runs */
-    bool needed;
+    /* the current part of the phase outlasts a time limit and ends only at an interrupt; set
+     * while no worker runs */
+    atomic_bool needed;
     atomic_int level; /* the strongest request so far */
     atomic_uint cut;  /* bit k: phase k is not complete */
 } mt_interrupt;
