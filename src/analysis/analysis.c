@@ -377,34 +377,18 @@ mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err)
     return MT_OK;
 }
 
-/* Slopes of the mode at pos by all inputs, kept until the next solve. */
-static mt_status find_slopes(mt_analysis *a, int pos, const double **slope, mt_err *err)
+mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
 {
+    const size_t np = (size_t)a->sys->n_inputs;
     MT_TRY(has_slopes(a, pos, err));
-    double *const own = a->slopes + ((size_t)pos * (size_t)a->sys->n_inputs);
+    double *const slope = a->slopes + ((size_t)pos * np);
     if (!a->sloped[pos]) {
         MT_TRY(mt_interrupt_check(a->sys->run->interrupt, err));
         MT_TRY(mt_linear_slopes(a->lin, a->modes.lambda[pos], mt_modal_shape(&a->modes, pos),
-                                own, err));
+                                slope, err));
     }
     a->sloped[pos] = true;
-    *slope = own;
-    return MT_OK;
-}
-
-mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err)
-{
-    const double *slope = NULL;
-    MT_TRY(find_slopes(a, pos, &slope, err));
-    memcpy(dlambda, slope, (size_t)a->sys->n_inputs * sizeof *dlambda);
-    return MT_OK;
-}
-
-mt_status mt_analysis_dlambda_of(mt_analysis *a, int pos, int p, double *dlambda, mt_err *err)
-{
-    const double *slope = NULL;
-    MT_TRY(find_slopes(a, pos, &slope, err));
-    *dlambda = slope[p];
+    memcpy(dlambda, slope, np * sizeof *dlambda);
     return MT_OK;
 }
 

@@ -125,8 +125,6 @@ mt_status mt_analysis_dlambda(mt_analysis *a, int pos, double *dlambda, bool *re
 /* y^T (dK - lambda dM) y for any mode: not a derivative where the mode is repeated, but its
  * mean over a cluster is the derivative of the cluster's mean. */
 mt_status mt_analysis_dlambda_raw(mt_analysis *a, int pos, double *dlambda, mt_err *err);
-/* The same by input p alone, *dlambda. */
-mt_status mt_analysis_dlambda_of(mt_analysis *a, int pos, int p, double *dlambda, mt_err *err);
 /* After a solve with gradient: a->dky, a->dmy := dK y, dM y for every input, y the mode at
  * pos. */
 mt_status mt_analysis_products(mt_analysis *a, int pos, mt_err *err);

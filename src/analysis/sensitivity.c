@@ -20,10 +20,15 @@ static mt_status cluster_values(mt_analysis *a, int p, int first, int size, doub
 {
     const size_t n = (size_t)mt_linear_freedoms(a->lin);
     const size_t r = (size_t)size;
-    if (size == 1) { /* by all inputs at once, and kept */
-        return mt_analysis_dlambda_of(a, first, p, dlambda, err);
-    }
     const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    if (size == 1) { /* by all inputs at once, and kept */
+        double *const all = mt_arena_f64(&a->mem, (size_t)a->sys->n_inputs, 1);
+        MT_TRY(mt_arena_check(&a->mem, err));
+        MT_TRY(mt_analysis_dlambda_raw(a, first, all, err));
+        *dlambda = all[p];
+        mt_arena_rewind(&a->mem, mark);
+        return MT_OK;
+    }
     double *const dky = mt_arena_f64(&a->mem, n, r);
     double *const dmy = mt_arena_f64(&a->mem, n, r);
     double *const matrix = mt_arena_f64(&a->mem, r, r);

@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 /* The slope of a beam element's chord: coordinates over its length. */
 static bool is_chord(const mt_measure_def *def)
@@ -62,34 +61,6 @@ double mt_piece_work(const mt_piece *p, const double *way)
         sum += p->g[k] * local[k];
     }
     return sum;
-}
-
-void mt_piece_relative(const mt_piece *p, const double *way, double relative[MT_RELATIVE])
-{
-    double local[MT_LOCAL];
-    mt_piece_motion(p, way, local);
-    for (int k = 0; k < 3; k++) {
-        relative[k] = local[6 + k] - local[k];
-        relative[3 + k] = local[3 + k];
-        relative[6 + k] = local[9 + k];
-    }
-}
-
-void mt_piece_product(const mt_relative_list *filled, const double *h, const double *x,
-                      double *out)
-{
-    memset(out, 0, MT_RELATIVE * sizeof *out);
-    for (int ii = 0; ii < filled->n; ii++) {
-        const int i = filled->at[ii];
-        const double *const row = h + mt_relative_row(i);
-        double sum = row[i] * x[i];
-        for (int kk = 0; kk < ii; kk++) {
-            const int k = filled->at[kk];
-            sum += row[k] * x[k];
-            out[k] += row[k] * x[i];
-        }
-        out[i] += sum;
-    }
 }
 
 double mt_piece_bend(const mt_piece *p, const double *phi, double *out)

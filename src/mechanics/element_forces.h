@@ -57,10 +57,36 @@ static inline void mt_piece_motion(const mt_piece *p, const double *way, double 
     }
 }
 /* The same as a relative motion. */
-void mt_piece_relative(const mt_piece *p, const double *way, double relative[MT_RELATIVE]);
+static inline void mt_piece_relative(const mt_piece *p, const double *way,
+                                     double relative[MT_RELATIVE])
+{
+    double local[MT_LOCAL];
+    mt_piece_motion(p, way, local);
+    for (int k = 0; k < 3; k++) {
+        relative[k] = local[6 + k] - local[k];
+        relative[3 + k] = local[3 + k];
+        relative[6 + k] = local[9 + k];
+    }
+}
 /* out[MT_RELATIVE] = H x of such motions; h: packed, of which `filled` is not 0. */
-void mt_piece_product(const mt_relative_list *filled, const double *h, const double *x,
-                      double *out);
+static inline void mt_piece_product(const mt_relative_list *filled, const double *h,
+                                    const double *x, double *out)
+{
+    for (int i = 0; i < MT_RELATIVE; i++) {
+        out[i] = 0.0;
+    }
+    for (int ii = 0; ii < filled->n; ii++) {
+        const int i = filled->at[ii];
+        const double *const row = h + mt_relative_row(i);
+        double sum = row[i] * x[i];
+        for (int kk = 0; kk < ii; kk++) {
+            const int k = filled->at[kk];
+            sum += row[k] * x[k];
+            out[k] += row[k] * x[i];
+        }
+        out[i] += sum;
+    }
+}
 /* Entry of H for two local freedoms. */
 static inline double mt_piece_entry(const mt_piece *p, int r, int c)
 {

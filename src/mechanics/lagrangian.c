@@ -230,6 +230,12 @@ static bool may_push(const mt_system *sys, int i)
     return varies;
 }
 
+static bool is_left_out(const mt_data *d, int i, const mt_lagrangian *out)
+{
+    const bool told = out->terms != NULL && may_push(d->sys, i);
+    return d->sys->springs[i].damper || (is_forceless(d, i) && !told);
+}
+
 /* Change of a measure along the remaining step. */
 static double along_left(const mt_system *sys, const int body[2], const mt_relative_jet *jet,
                          const double *left)
@@ -259,7 +265,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
         const bool coupling = s->measure[0] != s->measure[1];
         mt_cx stretch[2] = {0.0, 0.0};
         double way[2] = {0.0, 0.0};
-        if (s->damper || (is_forceless(d, i) && (out->terms == NULL || !may_push(sys, i)))) {
+        if (is_left_out(d, i, out)) {
             continue;
         }
         for (int side = 0; side < (coupling ? 2 : 1); side++) {
