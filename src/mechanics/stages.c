@@ -61,11 +61,6 @@ bool mt_stages_has(const uint64_t *set, int input)
     return (set[input / WORD] >> (unsigned)(input % WORD) & 1U) != 0;
 }
 
-void mt_stages_put(uint64_t *set, int input)
-{
-    set[input / WORD] |= (uint64_t)1 << (unsigned)(input % WORD);
-}
-
 static uint64_t bits_of(double x)
 {
     uint64_t bits = 0;

@@ -39,7 +39,6 @@ void mt_stages_shared(mt_stages *s, mt_stage_id stage, const double *inputs);
 bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
                     const double *inputs);
 bool mt_stages_has(const uint64_t *set, int input);
-void mt_stages_put(uint64_t *set, int input);
 /* True where the set is empty. */
 bool mt_stages_empty(const mt_stages *s, const uint64_t *set);
 

@@ -125,6 +125,8 @@ static mt_status make_tangent(mt_linear *lin, int p, mt_placement *at, mt_err *e
 /* From so many inputs on that act through forces alone, a slope takes less without their
  * tangents: what it needs instead costs as much as one of them. */
 enum { ADJOINT_INPUTS = 2 };
+/* Inputs in a word of a set of the program. */
+enum { SET_WORD = 64 };
 
 /* The inputs of `moves` that act through forces alone. */
 static void find_forced(mt_linear *lin, const uint64_t *moves)
@@ -134,7 +136,7 @@ static void find_forced(mt_linear *lin, const uint64_t *moves)
     memset(lin->forced, 0, size);
     for (int p = lin->first_input; p < lin->sys->n_inputs && lin->kg != NULL; p++) {
         if (mt_stages_has(moves, p) && !mt_stages_has(lin->sys->places, p)) {
-            mt_stages_put(lin->forced, p);
+            lin->forced[p / SET_WORD] |= (uint64_t)1 << (unsigned)(p % SET_WORD);
             count++;
         }
     }
