@@ -54,7 +54,7 @@
     }
 /* "description" and "source", which every object may have */
 #define MT_M_DESCRIPTION MT_M_FREE("description", "Free text for people.")
-#define MT_M_SOURCE      MT_M_FREE("source", "Where it comes from: a table, a page, a test report.")
+#define MT_M_SOURCE      MT_M_FREE("source", "Where it comes from: a table, a page, a report.")
 /* mt_name_list */
 #define MT_M_REFS(label, m, ...)                                                      \
     {                                                                                 \
