@@ -12,7 +12,7 @@
  * where there are bands).
  *
  * Few combinations are enumerated, best first, until no other can be among the designs asked
- * for (catalogue_search_enumerate.c). Beyond
+ * for. Beyond
  * MT_CATALOGUE_SEARCH_MOST combinations (MT_CATALOGUE_SEARCH_MOST_MIXED where continuous
  * variables remain) the search is a heuristic: the relaxed problem (every catalogue as the
  * interval that it spans), roundings of its designs, then steps to neighbouring values while
@@ -67,7 +67,7 @@ typedef struct mt_combination {
     double *f;          /* [n_stages] objectives there */
     const double *from; /* [n + 1] a design t to start from; NULL: none */
     double change;      /* half of the squared change due to pick alone */
-    double least;       /* lower bound of the first objective (catalogue_search_enumerate.c) */
+    double least;       /* lower bound of the first objective (catalogue_search.c) */
     mt_missed missed;
     double kkt;
     bool judged;
@@ -151,23 +151,6 @@ mt_status mt_catalogue_search_alloc(const mt_catalogue_search *d, int n, mt_comb
 mt_status mt_catalogue_search_close(const mt_subproblem *whole, const double *x,
                                     mt_workspace *w, mt_arena *mem, mt_subproblem *out,
                                     mt_err *err);
-/* The best of some combinations. */
-typedef struct mt_combination_ranking {
-    int most;
-    int n;
-    mt_combination **best; /* [most] */
-} mt_combination_ranking;
-/* Ranks list[n] among those of r. What would be among them is followed over its motion first.
- * Fails: as mt_catalogue_search_follow. */
-mt_status mt_catalogue_search_rank(mt_catalogue_search *d, mt_combination *const *list, int n,
-                                   mt_combination_ranking *r, mt_err *err);
-/* catalogue_search_enumerate.c: judges the n combinations, best first, until no other can be
- * among the designs asked for. (*all)[n]: all of them, in the order in which equal ones are
- * listed; sets all, excluded and beyond of the report. */
-mt_status mt_catalogue_search_enumerate(mt_catalogue_search *d, int n,
-                                        mt_combination_ranking *ranking,
-                                        mt_catalogue_search_report *report,
-                                        mt_combination ***all, mt_err *err);
 /* Sets the coordinates and the unavoidable change of c from its pick. */
 void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c);
 /* catalogue_search_prove.c: results of branch and bound with proofs, into the report;

@@ -11,8 +11,12 @@
 #include <string.h>
 
 #include "base/workers.h"
+#include "nlp/merit.h"
 #include "problem/drive_positions.h"
+#include "problem/tolerance_cut.h"
+#include "search/drive_path.h"
 #include "search/mode_placements_bounds.h"
+#include "search/search.h"
 
 enum { STARTS_PER_CANDIDATE = 24, SOLUTIONS_PER_CANDIDATE = 4, NEAREST = 6 };
 /* Of the evaluations that are left, one in so many for what is searched before the proof. */
@@ -22,6 +26,57 @@ enum { FIRST_PART = 4 };
 enum { LISTED_MOST = 512 };
 static const double BOUND_WORK = 5e7;
 static const double BOUND_SHARE = 0.1; /* of the proof's budget */
+
+static bool is_ranked_before(const mt_subproblem *c, const mt_mode_placement_solution *a,
+                             const mt_mode_placement_solution *b)
+{
+    const mt_merit x = {a->found->feasible, a->found->squares, a->n_stages, a->stages};
+    const mt_merit y = {b->found->feasible, b->found->squares, b->n_stages, b->stages};
+    if (mt_merit_before(&x, &y, MT_EQUAL_FOUND) || mt_merit_before(&y, &x, MT_EQUAL_FOUND)) {
+        return mt_merit_before(&x, &y, MT_EQUAL_FOUND);
+    }
+    const int order = mt_compare(a->found->f, b->found->f, MT_EQUAL_FOUND);
+    return order < 0 || (order == 0 && mt_search_nearer(c, a->found->t, b->found->t));
+}
+
+/* Sorts, best first. Stable: equal ones keep the order of the placements. */
+static void rank_placements(const mt_subproblem *c, mt_mode_placement_result *r)
+{
+    for (int i = 1; i < r->n_solutions; i++) {
+        const mt_mode_placement_solution s = r->solutions[i];
+        int k = i;
+        for (; k > 0 && is_ranked_before(c, &s, &r->solutions[k - 1]); k--) {
+            r->solutions[k] = r->solutions[k - 1];
+        }
+        r->solutions[k] = s;
+    }
+}
+
+/*
+ * A budget is shared out evenly, and before anything is begun: parts of a run agree on it,
+ * whatever each of them takes. A candidate has a search and at least one judgement of what that
+ * finds; where there is not that much for all, the first ones have it.
+ */
+long mt_mode_placement_verdict(const mt_subproblem *c)
+{
+    return (c->n_stages > 1 ? 1 : 0) + (mt_search_has_positions(c) ? 1 : 0) +
+           (c->clearance || mt_drive_positions_any(c->p) ? 1 : 0) +
+           (mt_tolerance_is_sampled(c) ? 1 + c->search.judged_as : 0) + mt_drive_path_most(c);
+}
+
+/* Number of n candidates to search: at least one; all without a budget. */
+static int count_affordable(const mt_subproblem *c, int n, long left)
+{
+    const long most = left / (mt_mode_placement_verdict(c) + MT_GAP_SEARCH_LEAST);
+    return c->search.max_evaluations <= 0 || most >= n ? n : most > 1 ? (int)most : 1;
+}
+
+/* Evaluations for each of n candidates; 0: no limit. */
+static long share_evaluations(const mt_subproblem *c, int n, long left)
+{
+    const long share = left / (n > 0 ? n : 1);
+    return c->search.max_evaluations <= 0 ? 0 : share > 1 ? share : 1;
+}
 
 /* One design for each placement, its best; its other local optima follow (see rank). */
 static mt_status keep_solutions(const mt_problem *p, const mt_mode_placement_job *j,
@@ -98,7 +153,7 @@ static mt_status collect_placement_result(const mt_problem *p, const mt_mode_pla
                                           mt_err *err)
 {
     MT_TRY(keep_solutions(p, j, mem, out, err));
-    mt_mode_placement_rank(j->c, out);
+    rank_placements(j->c, out);
     MT_TRY(keep_steps(j, mem, out, err));
     if (out->n_solutions > 0) {
         MT_TRY(keep_unidentifiable(p, &j->slots[out->solutions[0].candidate], mem, out, err));
@@ -134,8 +189,8 @@ static bool is_settled(const mt_mode_placement_job *j)
 static void share_out(mt_mode_placement_job *j, long spent, int part)
 {
     const long left = (j->c->search.max_evaluations - spent) / part;
-    j->most = mt_mode_placement_affordable(j->c, j->candidates->n, left);
-    j->options.max_evals = mt_mode_placement_share(j->c, j->most, left);
+    j->most = count_affordable(j->c, j->candidates->n, left);
+    j->options.max_evals = share_evaluations(j->c, j->most, left);
 }
 
 static mt_status claim_slots(mt_mode_placement_job *j, mt_arena *mem, mt_err *err)

@@ -99,10 +99,6 @@ mt_status mt_mode_placement_hold(const mt_subproblem *c, const struct mt_cut *cu
                                  const mt_nlp_solution *s, mt_arena *mem,
                                  mt_mode_placement_solution *out, mt_err *err);
 
-/* mode_placements_rank.c: sort, best first. Stable: equal ones keep the order of the
- * placements. */
-void mt_mode_placement_rank(const mt_subproblem *c, mt_mode_placement_result *r);
-
 /* mode_placements_clearance.c: add a violation of `short_of` to a design. */
 void mt_mode_placement_refuse(mt_nlp_solution *best, double short_of, double tolerance);
 /* Where the objective is the least clearance: designs met by a search, and those it ended at,
@@ -110,15 +106,10 @@ void mt_mode_placement_refuse(mt_nlp_solution *best, double short_of, double tol
 void mt_mode_placement_refuse_step(const mt_subproblem *c, mt_step *s);
 void mt_mode_placement_verify_clearance(const mt_subproblem *c, mt_nlp_result *found);
 
-/* mode_placements_budget.c: share of an evaluation budget, of which `left` remain, for
- * candidates. A search with fewer than MT_GAP_SEARCH_LEAST is not begun. */
+/* A search with fewer than MT_GAP_SEARCH_LEAST is not begun. */
 enum { MT_GAP_SEARCH_LEAST = 10 };
 /* Maximum number of evaluations for verifying one design, with its objectives. */
 long mt_mode_placement_verdict(const mt_subproblem *c);
-/* Number of n candidates to search: at least one; all without a budget. */
-int mt_mode_placement_affordable(const mt_subproblem *c, int n, long left);
-/* Evaluations for each of n candidates; 0: no limit. */
-long mt_mode_placement_share(const mt_subproblem *c, int n, long left);
 
 enum { MT_GAP_SAMPLES_NEAR = 512 };
 /* mode_placements_candidates.c: placements to search, n rows of n_bands. */
@@ -129,7 +120,7 @@ typedef struct mt_mode_placement_candidates {
     /* [n] lower bound of the first objective of its designs (mode_placements_bounds.h); NULL:
      * not known */
     double *least;
-    /* [n] estimate of the first objective of its best design (mode_placements_estimates.h);
+    /* [n] estimate of the first objective of its best design (mode_placements_bounds.h);
      * NULL: not known */
     double *estimate;
     int n_proven; /* number of leading rows with a known design */

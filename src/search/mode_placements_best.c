@@ -294,11 +294,6 @@ static void leave_out(mt_mode_placement_job *j, int n, double most)
     }
 }
 
-bool mt_mode_placement_is_left_out(const mt_mode_placement_job *j, int k)
-{
-    return k >= j->searched || j->slots[k].carried;
-}
-
 /* Searches what was left out and may be listed, where that is all that may be. */
 static mt_status search_left_out(mt_mode_placement_job *j, double last, int n_workers,
                                  mt_arena *mem, mt_err *err)

@@ -3,7 +3,23 @@
 #define SEARCH_MODE_PLACEMENTS_BOUNDS_H
 
 #include "search/mode_placements.h"
-#include "search/mode_placements_estimates.h"
+
+/*
+ * Estimates of the change that mode placements take, of first order at the original: an order
+ * to search in, and no bound. f_j: frequencies of all configurations one after the other.
+ */
+typedef struct mt_mode_placement_estimates {
+    const mt_subproblem *c;
+    const mt_proof *proof;
+    int n_modes;
+    double *ln_f;     /* [n_modes] at the original, brought within the bounds; NaN: not known */
+    double *gradient; /* [n_modes x n] of ln f_j in u_i = sqrt(w_i) (t_i - t_i(original)) */
+    /* work */
+    double *u;     /* [n] */
+    double *least; /* [n_modes] what a placement asks of ln f_j */
+    double *most;
+    double *multiplier; /* [2 n_modes] */
+} mt_mode_placement_estimates;
 
 /*
  * Lower bounds of the total change that a mode placement needs. Of the coordinates of a design

@@ -60,7 +60,10 @@ bool mt_mode_placement_is_met(const mt_mode_placement_slot *s);
 mt_status mt_mode_placement_search_best(mt_mode_placement_job *job, int n_workers, int asked,
                                         double rest, mt_arena *mem, double *last, mt_err *err);
 /* True where candidate k was not searched. */
-bool mt_mode_placement_is_left_out(const mt_mode_placement_job *job, int k);
+static inline bool mt_mode_placement_is_left_out(const mt_mode_placement_job *job, int k)
+{
+    return k >= job->searched || job->slots[k].carried;
+}
 /* Search again, from the designs in `known` (its first n_proven rows), those candidates that
  * have no feasible design yet. */
 mt_status mt_mode_placement_search_known(mt_mode_placement_job *job, int n_workers,
