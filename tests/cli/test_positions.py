@@ -8,16 +8,13 @@ moves along the arm alone, makes it move along x by
 for every theta, stretched or not: with x = cos(theta)^2 between two positions at which it is smaller.
 MT_EVERY=1: a search with bands beside it, bands that cut, and every budget.
 """
-import json
 import math
 import re
-import tempfile
 import unittest
-from pathlib import Path
 
 from common_cli import main
-from suite import EVERY
-from test_motion import FEW, K2, M, TWO_PI, arm, avoid, k1_for, run, study
+from suite import EVERY, FEW
+from test_motion import K2, M, TWO_PI, ArmTest, arm, avoid, k1_for, study
 
 HZ = 12.0
 NAMED = {"down": 0.2, "up": 1.2}
@@ -52,22 +49,11 @@ C = [{"parameter": "c", "lower": 1, "upper": 1000}]
 K1 = k1_for(HZ, 0.7)
 
 
-class Positions(unittest.TestCase):
-    def answer(self, model, question, *options):
-        with tempfile.TemporaryDirectory() as folder:
-            here = Path(folder)
-            (here / "model.json").write_text(json.dumps(model))
-            (here / "study.json").write_text(json.dumps(question))
-            done = run("run", "study.json", "-o", "out", "--quiet", *options, cwd=folder)
-            self.assertIn(done.returncode, (0, 1), done.stderr)
-            self.assertTrue((here / "out/study/result.json").exists(), done.stderr)
-            self.text = done.stdout
-            return json.loads((here / "out/study/result.json").read_text())
-
+class Positions(ArmTest):
     def test_the_worst_position_is_found(self):
         value, at = largest(K1, 20.0)
         for limit in (value / 1.2, value * 1.2):
-            design = self.answer(damped(K1, 20.0), study([goal(limit)], C))["baseline"]
+            design = self.ask(damped(K1, 20.0), study([goal(limit)], C))["baseline"]
             row = design["responses_between"][0]
             self.assertLess(max(response(K1, 20.0, t) for t in NAMED.values()), 0.95 * value)
             self.assertAlmostEqual(row["value"] / value, 1, delta=1e-6)
@@ -80,7 +66,7 @@ class Positions(unittest.TestCase):
 
     def test_positions_are_told_in_the_model_s_unit(self):
         value, at = largest(K1, 20.0)
-        row = self.answer(dict(damped(K1, 20.0), units={"angle": "deg"}), study([goal(value * 1.2)], C))["baseline"]["responses_between"][0]
+        row = self.ask(dict(damped(K1, 20.0), units={"angle": "deg"}), study([goal(value * 1.2)], C))["baseline"]["responses_between"][0]
         self.assertEqual((row["unit"], row["from"]), ("rad", 0.2))
         self.assertRegex(row["text"], r" over pivot from 11\.4592 to 68\.7549 deg \(")
         told = re.search(r" is worst at ([0-9.]+) deg: ", row["text"])
@@ -90,7 +76,7 @@ class Positions(unittest.TestCase):
     def test_the_search_keeps_the_limit_between_the_positions(self):
         """More damping than the named positions ask for: what the worst between them does, whoever works at it."""
         limit = largest(K1, 25.0)[0]
-        answers = [self.answer(damped(K1, 20.0), study([goal(limit)], C), "--threads", n) for n in ("1", "3")]
+        answers = [self.ask(damped(K1, 20.0), study([goal(limit)], C), "--threads", n) for n in ("1", "3")]
         self.assertEqual(answers[0], answers[1])
         design = answers[0]["recommendations"][0]
         self.assertTrue(design["feasible"])
@@ -112,7 +98,7 @@ class Positions(unittest.TestCase):
         limit = 0.5 * max(peak(20.0, t) for t in grid)
         asked = study([goal(limit, configurations=["a", "b", "c"]) | {"band_hz": [8, 16]}], C)
         del asked["goals"][0]["at_hz"]
-        design = self.answer(model, asked)["recommendations"][0]
+        design = self.ask(model, asked)["recommendations"][0]
         row = design["responses_between"][0]
         c = design["parameters"][0]["recommended"]
         self.assertTrue(row["holds"])
@@ -125,7 +111,7 @@ class Positions(unittest.TestCase):
         limit = largest(K1, 25.0)[0]
         named = max(response(K1, 24.5, t) for t in NAMED.values())
         self.assertLess(named, limit)
-        result = self.answer(damped(K1, 20.0), study([goal(limit)], [C[0] | {"upper": 24.5}]))
+        result = self.ask(damped(K1, 20.0), study([goal(limit)], [C[0] | {"upper": 24.5}]))
         design = result["recommendations"][0]
         self.assertTrue(design["feasible"])
         self.assertFalse(design["responses_between"][0]["holds"])
@@ -138,39 +124,39 @@ class Positions(unittest.TestCase):
         positions = {"down": -0.5, "up": 0.65}
         asked = study([goal(None, at_least=response(k1, 20.0, 0.0) * 1.1)], C)
         del asked["goals"][0]["at_most"]
-        row = self.answer(damped(k1, 20.0, positions), asked)["baseline"]["responses_between"][0]
+        row = self.ask(damped(k1, 20.0, positions), asked)["baseline"]["responses_between"][0]
         self.assertAlmostEqual(row["at"], 0, delta=2e-3)
         self.assertAlmostEqual(row["value"] / response(k1, 20.0, 0.0), 1, delta=1e-6)
         self.assertFalse(row["holds"])
 
     def test_what_is_no_range_has_none(self):
-        same = self.answer(damped(K1, 20.0, {"down": 0.2, "up": 0.2}), study([goal(1.0)], C))
+        same = self.ask(damped(K1, 20.0, {"down": 0.2, "up": 0.2}), study([goal(1.0)], C))
         self.assertEqual(same["baseline"]["responses_between"], [])
-        one = self.answer(damped(K1, 20.0), study([goal(1.0) | {"configurations": ["down"]}], C))
+        one = self.ask(damped(K1, 20.0), study([goal(1.0) | {"configurations": ["down"]}], C))
         self.assertEqual(one["baseline"]["responses_between"], [])
         target = goal(None, target=1e-4) | {"configurations": ["down", "up"]}
         del target["at_most"]
         weighted = study([target | {"weight": 1}], C)
         weighted["objective"] = {"minimise": "misfit"}
-        self.assertEqual(self.answer(damped(K1, 20.0), weighted)["baseline"]["responses_between"], [])
+        self.assertEqual(self.ask(damped(K1, 20.0), weighted)["baseline"]["responses_between"], [])
 
     def test_a_position_where_nothing_moves(self):
         """At a right angle the response is 0, and its logarithm none."""
         value, at = largest(K1, 20.0)
-        row = self.answer(damped(K1, 20.0, {"down": 0.1, "up": math.pi / 2}), study([goal(value / 2)], C))["baseline"]["responses_between"][0]
+        row = self.ask(damped(K1, 20.0, {"down": 0.1, "up": math.pi / 2}), study([goal(value / 2)], C))["baseline"]["responses_between"][0]
         self.assertAlmostEqual(row["value"] / value, 1, delta=1e-6)
         self.assertAlmostEqual(row["at"], at, delta=2e-3)
 
     def test_the_objective_vibration_is_told_too(self):
         asked = study([goal(largest(K1, 25.0)[0])], C)
         asked["objective"] = {"minimise": "vibration"}
-        design = self.answer(damped(K1, 20.0), asked)["recommendations"][0]
+        design = self.ask(damped(K1, 20.0), asked)["recommendations"][0]
         self.assertEqual(len(design["responses_between"]), 1)
         self.assertLessEqual(response(K1, design["parameters"][0]["recommended"], 0.2), design["responses_between"][0]["value"] * (1 + 1e-9))
 
     def test_a_resonance_that_nothing_damps(self):
         """It is met somewhere between the positions, as the frequency passes through: the value has no bound worth a number."""
-        row = self.answer(damped(K1, 1e-6), study([goal(1e-3)], C))["baseline"]["responses_between"][0]
+        row = self.ask(damped(K1, 1e-6), study([goal(1e-3)], C))["baseline"]["responses_between"][0]
         self.assertAlmostEqual(row["at"], 0.7, delta=1e-3)
         self.assertFalse(row["holds"])
         self.assertGreater(row["violation_percent"], 1e4)
@@ -178,7 +164,7 @@ class Positions(unittest.TestCase):
     def test_a_budget_is_kept(self):
         limit = largest(K1, 25.0)[0]
         for most in (20, 60, 200) if FEW else (20, 33, 60, 120, 200):
-            result = self.answer(damped(K1, 20.0), study([goal(limit)], C), "--max-evaluations", str(most))
+            result = self.ask(damped(K1, 20.0), study([goal(limit)], C), "--max-evaluations", str(most))
             self.assertLessEqual(result["run"]["evaluations"], most)
             rows = [d["responses_between"][0] for d in [result["baseline"], *result["recommendations"]]]
             self.assertTrue(all(r["positions"] <= max(3, most // 10) for r in rows))
@@ -186,7 +172,7 @@ class Positions(unittest.TestCase):
     def test_bands_beside_it(self):
         limit = largest(K1, 25.0)[0]
         among = [{"parameter": "c", "catalogue": [25 * (1 + 1e-7), 26]}] if FEW else C
-        result = self.answer(damped(K1, 20.0), study([goal(limit), avoid(["down", "up"], [[30, 40]])], among))
+        result = self.ask(damped(K1, 20.0), study([goal(limit), avoid(["down", "up"], [[30, 40]])], among))
         design = result["recommendations"][0]
         self.assertTrue(design["responses_between"][0]["holds"])
         self.assertAlmostEqual(design["parameters"][0]["recommended"] / 25.0, 1, delta=1e-5)
@@ -198,7 +184,7 @@ class Positions(unittest.TestCase):
         positions = {"down": -1.1, "up": 0.9}
         asked = study([goal(1.0), avoid(["down", "up"], [[11, 12.5]])], [C[0], {"parameter": "k1", "lower": 1000, "upper": k1_for(12.0, 0.0)}])
         asked["goals"][0]["at_most"] = limit = 0.5 * response(k1_for(11, 0.0), 20.0, 0.0)
-        design = self.answer(damped(k1_for(12.0, 0.0), 20.0, positions), asked)["recommendations"][0]
+        design = self.ask(damped(k1_for(12.0, 0.0), 20.0, positions), asked)["recommendations"][0]
         c, k1 = (next(p["recommended"] for p in design["parameters"] if p["name"] == n) for n in ("c", "k1"))
         self.assertTrue(design["responses_between"][0]["holds"])
         self.assertFalse(design["motion"][0]["crosses"])
@@ -208,21 +194,21 @@ class Positions(unittest.TestCase):
     def test_a_catalogue_beside_it(self):
         limit = largest(K1, 25.0)[0]
         mixed = C + [{"parameter": "spare", "catalogue": [1, 2]}]
-        design = self.answer(damped(K1, 20.0), study([goal(limit)], mixed))["recommendations"][0]
+        design = self.ask(damped(K1, 20.0), study([goal(limit)], mixed))["recommendations"][0]
         self.assertTrue(design["responses_between"][0]["holds"])
         alone = [{"parameter": "c", "catalogue": [20, 24.6, 26]}]
-        result = self.answer(damped(K1, 20.0), study([goal(limit)], alone))
+        result = self.ask(damped(K1, 20.0), study([goal(limit)], alone))
         holds = [(d["parameters"][0]["recommended"], d["responses_between"][0]["holds"]) for d in result["recommendations"]]
         self.assertEqual(holds, [(26, True)])  # 24.6 keeps the limit at the positions alone
         self.assertEqual(result["warnings"], [])
         named = max(response(K1, 24.6, t) for t in NAMED.values())
         self.assertLess(named, limit)
-        none = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [20, 24.6]}]))
+        none = self.ask(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [20, 24.6]}]))
         self.assertEqual((none["status"], [d["parameters"][0]["recommended"] for d in none["recommendations"]]), ("solved", [24.6]))
         self.assertFalse(none["recommendations"][0]["responses_between"][0]["holds"])
         self.assertIn("only at the named positions", " ".join(none["warnings"]))
         self.assertIn("1 of them meets all goals at the named positions, and not between them.", self.text)
-        poor = self.answer(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [10, 12]}]))
+        poor = self.ask(damped(K1, 20.0), study([goal(limit)], [{"parameter": "c", "catalogue": [10, 12]}]))
         self.assertEqual(poor["status"], "infeasible")
 
 

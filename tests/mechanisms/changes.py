@@ -124,7 +124,12 @@ def units(rng, model):
     def scaled(dims):
         factor = Decimal(10) ** sum(d * p for d, p in zip(dims, powers))
         return lambda x: short(number(x) * factor)
+    rescale(model, scaled)
+    return model, Decimal(10) ** -powers[2]
 
+
+def rescale(model, scaled):
+    """Every number by the change that `scaled` gives for its dimensions: powers of length, mass and time."""
     for item in items(model):
         for member, unit in MEMBERS.items():
             if member in item:
@@ -136,7 +141,6 @@ def units(rng, model):
             item["stiffness_matrix"] = [[each(x, scaled(((r > 2) + (c > 2), 1, -2))) for c, x in enumerate(row)] for r, row in enumerate(item["stiffness_matrix"])]
     for parameter in model.get("parameters", {}).values():
         parameter["value"] = each(parameter["value"], scaled(UNITS[parameter["unit"]]))
-    return model, Decimal(10) ** -powers[2]
 
 
 LENGTHS = {"mm": Decimal("0.001"), "cm": Decimal("0.01"), "in": Decimal("0.0254"), "ft": Decimal("0.3048")}

@@ -3,7 +3,7 @@
 import math
 import random
 
-from changes import MEMBERS, OTHERS, UNITS, each, items
+from changes import rescale
 import hanging
 from families import four_bar
 from makers import KINDS, Maker
@@ -312,18 +312,7 @@ def levers(rng, far):
 def resized(model, power):
     """Every length times 2^power, masses as the cube of it, times as the length: materials stay, frequencies are 2^-power times as high."""
     size = 2.0 ** power
-    scaled = lambda dims: (lambda x: x * size ** (dims[0] + 3 * dims[1] + dims[2]))
-    for item in items(model):
-        for member, unit in MEMBERS.items():
-            if member in item:
-                item[member] = each(item[member], scaled(UNITS[unit]))
-        for member, dims in OTHERS.items():
-            if member in item:
-                item[member] = each(item[member], scaled(dims))
-        if "stiffness_matrix" in item:
-            item["stiffness_matrix"] = [[each(x, scaled(((r > 2) + (c > 2), 1, -2))) for c, x in enumerate(row)] for r, row in enumerate(item["stiffness_matrix"])]
-    for parameter in model.get("parameters", {}).values():
-        parameter["value"] = each(parameter["value"], scaled(UNITS[parameter["unit"]]))
+    rescale(model, lambda dims: (lambda x: x * size ** (dims[0] + 3 * dims[1] + dims[2])))
     return model
 
 
