@@ -5,8 +5,7 @@
 
 #include "environment/read_profile.h"
 #include "io/options.h"
-#include "mt_alloc.h"
-#include "mt_test.h"
+#include "mt_refusals.h"
 
 #define GOOD MT_TEST_SOURCE_DIR "/tests/documents/good/profile.json"
 #define G    MT_STANDARD_GRAVITY
@@ -127,23 +126,21 @@ static void profile__compares_with_the_published_rms(mt_test *t)
     }
 }
 
+static mt_status load_once(mt_test *t, const void *context)
+{
+    mt_diagnostics said = {.count = 0};
+    mt_vibration *v = NULL;
+    const mt_status rc = mt_vibration_load(GOOD, NULL, &v, &said, NULL);
+    (void)context;
+    CHECK(t, (rc == MT_OK) == (v != NULL));
+    mt_vibration_delete(v);
+    mt_diagnostics_free(&said);
+    return rc;
+}
+
 static void profile__every_failing_allocation_is_survived(mt_test *t)
 {
-    mt_status rc = MT_E_MEMORY;
-    for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
-        const long before = mt_alloc_live();
-        mt_diagnostics said = {.count = 0};
-        mt_vibration *v = NULL;
-        mt_test_row(t, "allocation %ld", nth);
-        mt_alloc_fail_after(nth);
-        rc = mt_vibration_load(GOOD, NULL, &v, &said, NULL);
-        mt_alloc_fail_after(-1);
-        CHECK(t, rc == MT_OK || (rc == MT_E_MEMORY && v == NULL));
-        mt_vibration_delete(v);
-        mt_diagnostics_free(&said);
-        CHECK_INT(t, mt_alloc_live(), before);
-    }
-    CHECK(t, rc == MT_OK || !mt_alloc_works());
+    mt_refuse_each(t, "load_once", load_once, NULL, MT_OK);
 }
 
 MT_TEST_MAIN(MT_TEST(profile__says_what_the_file_says),

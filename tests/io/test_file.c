@@ -6,8 +6,7 @@
 #include <unistd.h>
 
 #include "io/file.h"
-#include "mt_alloc.h"
-#include "mt_test.h"
+#include "mt_refusals.h"
 
 enum { LIMIT = 1000 };
 
@@ -145,23 +144,22 @@ static void file__only_regular_files_beneath_the_root_are_read(mt_test *t)
     CHECK(t, rmdir(folder) == 0);
 }
 
+static mt_status read_once(mt_test *t, const void *context)
+{
+    mt_file f = {0};
+    const mt_status rc = mt_file_read("a", ".", LIMIT, &f, NULL);
+    (void)t;
+    (void)context;
+    mt_file_free(&f);
+    return rc;
+}
+
 static void file__every_failing_allocation_is_survived(mt_test *t)
 {
     char folder[] = "/tmp/modetune_test_XXXXXX";
-    mt_status rc = MT_E_MEMORY;
     REQUIRE(t, enter(folder));
     CHECK(t, write_file("a", "text"));
-    for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
-        const long before = mt_alloc_live();
-        mt_file f = {0};
-        mt_test_row(t, "allocation %ld", nth);
-        mt_alloc_fail_after(nth);
-        rc = mt_file_read("a", ".", LIMIT, &f, NULL);
-        mt_alloc_fail_after(-1);
-        mt_file_free(&f);
-        CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
-        CHECK_INT(t, mt_alloc_live(), before);
-    }
+    mt_refuse_each(t, "read_once", read_once, NULL, MT_OK);
     (void)remove("a");
     CHECK(t, rmdir(folder) == 0);
 }

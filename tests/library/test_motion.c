@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "library/refusals.h"
+#include "mt_refusals.h"
 #include "mt_test.h"
 
 static const mt_file_text FILES[] = {
@@ -182,8 +182,10 @@ static void motion__wrong_options_are_refused(mt_test *t)
     rig_free(&r);
 }
 
-static mt_status move_once(void)
+static mt_status move_once(mt_test *t, const void *context)
 {
+    (void)t;
+    (void)context;
     const mt_motion_joint start = {"j", 0.1};
     const mt_motion_sine sine = {"a.x", 1.0, 1.0, 0.0};
     double values[ROOM];
@@ -206,7 +208,8 @@ static mt_status move_once(void)
 static void motion__every_failing_allocation_is_survived(mt_test *t)
 {
     gsl_error_handler_t *const theirs = gsl_set_error_handler_off();
-    bears_refusals(t, move_once);
+    CHECK_INT(t, move_once(t, NULL), MT_OK); /* libraries claim what they keep */
+    CHECK(t, mt_refuse_each(t, "move_once", move_once, NULL, MT_OK) > 10 || !mt_alloc_works());
     (void)gsl_set_error_handler(theirs);
 }
 

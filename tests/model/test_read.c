@@ -7,8 +7,7 @@
 
 #include "io/json.h"
 #include "model/read.h"
-#include "mt_alloc.h"
-#include "mt_test.h"
+#include "mt_refusals.h"
 
 static const char plane[] = MT_TEST_SOURCE_DIR "/tests/schema/plane.json";
 static const char space[] = MT_TEST_SOURCE_DIR "/tests/schema/space.json";
@@ -192,25 +191,22 @@ static void model__a_long_chain_of_parameters_is_no_problem(mt_test *t)
     mt_text_free(&text);
 }
 
+static mt_status load_once(mt_test *t, const void *path)
+{
+    mt_model *m = NULL;
+    mt_diagnostics said = {.count = 0};
+    const mt_status rc = mt_model_load(path, NULL, &m, &said, NULL);
+    CHECK(t, (rc == MT_OK) == (m != NULL));
+    mt_model_delete(m);
+    mt_diagnostics_free(&said);
+    return rc;
+}
+
 static void model__every_failing_allocation_is_survived(mt_test *t)
 {
     static const char *const paths[] = {plane, space};
     for (int i = 0; i < MT_COUNT(paths); i++) {
-        mt_status rc = MT_E_MEMORY;
-        for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
-            const long before = mt_alloc_live();
-            mt_model *m = NULL;
-            mt_diagnostics said = {.count = 0};
-            mt_test_row(t, "%s, allocation %ld", paths[i], nth);
-            mt_alloc_fail_after(nth);
-            rc = mt_model_load(paths[i], NULL, &m, &said, NULL);
-            mt_alloc_fail_after(-1);
-            CHECK(t, (rc == MT_OK) == (m != NULL));
-            mt_model_delete(m);
-            mt_diagnostics_free(&said);
-            CHECK_INT(t, mt_alloc_live(), before);
-        }
-        CHECK(t, rc == MT_OK || !mt_alloc_works());
+        mt_refuse_each(t, paths[i], load_once, paths[i], MT_OK);
     }
 }
 

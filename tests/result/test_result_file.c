@@ -8,8 +8,7 @@
 
 #include "io/file.h"
 #include "io/json.h"
-#include "mt_alloc.h"
-#include "mt_test.h"
+#include "mt_refusals.h"
 #include "result/folder.h"
 #include "result/read.h"
 #include "result/result_sample.h"
@@ -332,6 +331,24 @@ static void result_file__no_file_is_a_system_failure(mt_test *t)
     CHECK(t, strstr(err.text, "/nonexistent/result.json") != NULL);
 }
 
+static mt_status read_and_write_once(mt_test *t, const void *path)
+{
+    mt_result *r = NULL;
+    mt_text again = {0};
+    mt_diagnostics said = {.count = 0};
+    sample s = {.result = NULL};
+    mt_status rc = mt_result_load(path, NULL, &r, &said, NULL);
+    if (rc == MT_OK) {
+        rc = make_sample(&s) ? mt_result_write(s.result, &again, NULL) : MT_E_MEMORY;
+    }
+    (void)t;
+    mt_result_delete(r);
+    mt_result_delete(s.result);
+    mt_text_free(&again);
+    mt_diagnostics_free(&said);
+    return rc;
+}
+
 static void result_file__every_failing_allocation_is_survived(mt_test *t)
 {
     char path[64];
@@ -339,29 +356,7 @@ static void result_file__every_failing_allocation_is_survived(mt_test *t)
     REQUIRE(t, text.s != NULL);
     write_file(text.s, path);
     CHECK(t, path[0] != '\0');
-    for (long nth = 0; mt_alloc_works(); nth++) {
-        mt_result *r = NULL;
-        mt_text again = {0};
-        mt_diagnostics said = {.count = 0};
-        sample s = {.result = NULL};
-        const long before = mt_alloc_live();
-        mt_test_row(t, "allocation %ld", nth);
-        mt_alloc_fail_after(nth);
-        mt_status rc = mt_result_load(path, NULL, &r, &said, NULL);
-        if (rc == MT_OK) {
-            rc = make_sample(&s) ? mt_result_write(s.result, &again, NULL) : MT_E_MEMORY;
-        }
-        mt_alloc_fail_after(-1);
-        CHECK(t, rc == MT_OK || rc == MT_E_MEMORY);
-        mt_result_delete(r);
-        mt_result_delete(s.result);
-        mt_text_free(&again);
-        mt_diagnostics_free(&said);
-        CHECK_INT(t, mt_alloc_live(), before);
-        if (rc != MT_E_MEMORY) {
-            break;
-        }
-    }
+    mt_refuse_each(t, "read_and_write_once", read_and_write_once, path, MT_OK);
     (void)unlink(path);
     mt_text_free(&text);
 }

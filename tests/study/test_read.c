@@ -9,8 +9,7 @@
 
 #include "base/text.h"
 #include "io/options.h"
-#include "mt_alloc.h"
-#include "mt_test.h"
+#include "mt_refusals.h"
 #include "study/read.h"
 
 #define FULL  MT_TEST_SOURCE_DIR "/tests/documents/good/study_full.json"
@@ -366,23 +365,21 @@ static void study__no_file_is_a_system_failure(mt_test *t)
     CHECK(t, strstr(err.text, "/nonexistent/study.json") != NULL);
 }
 
+static mt_status load_once(mt_test *t, const void *context)
+{
+    mt_study *s = NULL;
+    mt_diagnostics messages = {.count = 0};
+    const mt_status rc = mt_study_load(FULL, NULL, &s, &messages, NULL);
+    (void)context;
+    CHECK(t, (rc == MT_OK) == (s != NULL));
+    mt_study_delete(s);
+    mt_diagnostics_free(&messages);
+    return rc;
+}
+
 static void study__every_failing_allocation_is_survived(mt_test *t)
 {
-    mt_status rc = MT_E_MEMORY;
-    for (long nth = 0; rc == MT_E_MEMORY && mt_alloc_works(); nth++) {
-        const long before = mt_alloc_live();
-        mt_study *s = NULL;
-        mt_diagnostics messages = {.count = 0};
-        mt_test_row(t, "allocation %ld", nth);
-        mt_alloc_fail_after(nth);
-        rc = mt_study_load(FULL, NULL, &s, &messages, NULL);
-        mt_alloc_fail_after(-1);
-        CHECK(t, (rc == MT_OK) == (s != NULL));
-        mt_study_delete(s);
-        mt_diagnostics_free(&messages);
-        CHECK_INT(t, mt_alloc_live(), before);
-    }
-    CHECK(t, rc == MT_OK || !mt_alloc_works());
+    mt_refuse_each(t, "load_once", load_once, NULL, MT_OK);
 }
 
 MT_TEST_MAIN(MT_TEST(study__every_member_arrives),
