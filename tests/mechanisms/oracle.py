@@ -89,6 +89,8 @@ def plain(quad):
 
 def distance(quad):
     def outer(p):
+        if not p[0]:  # where Newton's method may go from a rest that is neutral
+            raise Refused("the ends of a length coincide")
         length = exact.root(p[0])
         return length, [1 / (2 * length)], {(0, 0): -1 / (4 * length * p[0])}
     return Measure([quad], outer)
