@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names, titles, units, sources, arguments and file names that a terminal obeys, a browser runs or a spreadsheet computes.
 

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """No nan, no inf, no division by zero that is told as a number: not in words, tables, CSV, JSON, HTML or figures.
 
