@@ -1,9 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The harness must be able to fail: an inner, quiet record is given what has to be refused. */
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "mt_test.h"
+#include "mt_refusals.h"
+#include "mt_writer.h"
 
 static mt_test quiet_record(void)
 {
@@ -105,10 +112,75 @@ static void harness__tolerance_scale_zero_wants_exactness(mt_test *t)
     CHECK(t, !CHECK_NEAR(&inner, 1.0 + 1e-12, 1.0, 1e-9));
 }
 
+/* How a process ends that writes two pieces into eight bytes. */
+static int written(const char *first, const char *second)
+{
+    int status = 0;
+    (void)fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0) {
+        char text[8];
+        mt_writer w = {text, sizeof text, 0};
+        (void)dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+        mt_write(&w, "%s", first);
+        mt_write(&w, "%s", second);
+        _exit(strcmp(text + strlen(first), second) == 0 && w.used == strlen(text) ? 0 : 1);
+    }
+    return waitpid(child, &status, 0) == child ? status : -1;
+}
+
+static void harness__a_text_that_does_not_fit_ends_the_program(mt_test *t)
+{
+    CHECK_INT(t, written("1234", "567"), 0);
+    CHECK_INT(t, written("1234567", ""), 0);
+    int status = written("1234", "5678");
+    CHECK(t, WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT);
+    status = written("12345678", "");
+    CHECK(t, WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT);
+}
+
+static void *kept;
+
+/* Two allocations; the second one, where it is refused, is hidden or the first one kept. */
+static mt_status allocate_badly(mt_test *t, const void *context)
+{
+    void *const one = malloc(16);
+    void *const two = one != NULL ? malloc(16) : NULL;
+    const bool hides = *(const char *)context == 'h';
+    const bool keeps = *(const char *)context == 'k';
+    const mt_status rc = two == NULL && !(one != NULL && hides) ? MT_E_MEMORY : MT_OK;
+    (void)t;
+    free(two);
+    if (one != NULL && two == NULL && keeps) {
+        kept = one;
+    } else {
+        free(one);
+    }
+    return rc;
+}
+
+static void harness__refused_allocations_are_counted_and_told(mt_test *t)
+{
+    mt_test inner = quiet_record();
+    if (mt_alloc_works()) {
+        CHECK_INT(t, mt_refuse_each(&inner, "right", allocate_badly, "", MT_OK), 2);
+        CHECK_INT(t, inner.failures, 0);
+        CHECK_INT(t, mt_refuse_each(&inner, "hidden", allocate_badly, "h", MT_OK), 1);
+        (void)mt_refuse_each(&inner, "kept", allocate_badly, "k", MT_OK);
+        CHECK_INT(t, inner.failures, 1);
+        free(kept);
+    }
+    inner.failures = 0;
+    (void)mt_refuse_each(&inner, "unexpected", allocate_badly, "", MT_E_INPUT);
+    CHECK(t, inner.failures > 0);
+}
+
 MT_TEST_MAIN(MT_TEST(harness__near_fails_on_nan_and_infinity),
              MT_TEST(harness__near_is_relative_to_the_wanted_value),
              MT_TEST(harness__a_failure_does_not_stop_the_rows),
              MT_TEST(harness__no_check_is_no_pass),
              MT_TEST(harness__text_and_integers_can_differ),
              MT_TEST(harness__require_ends_the_function),
-             MT_TEST(harness__tolerance_scale_zero_wants_exactness))
+             MT_TEST(harness__tolerance_scale_zero_wants_exactness),
+             MT_TEST(harness__a_text_that_does_not_fit_ends_the_program),
+             MT_TEST(harness__refused_allocations_are_counted_and_told))
