@@ -115,7 +115,8 @@ class Generator:
 
     def saved(self, name, document, number=0):
         """A saved case, with the random numbers of draw `number`."""
-        return Case(document.get("kind", ""), document, draw(name, *([number] if number else [])))
+        own = {key: value for key, value in document.items() if key not in ("holds", "kind")}
+        return Case(document.get("kind", ""), own, draw(name, *([number] if number else [])))
 
     def alike(self, case):
         """Cases of the same document, of which the first that has the finding still is made small."""
@@ -139,8 +140,9 @@ class Generator:
         return re.sub(r"[-\d.e+]+", "#", text)[:20]
 
     def write(self, case, folder):
-        """The files of a case, for who looks at it."""
-        (folder / "case.json").write_text(json.dumps(case.document, indent=1) + "\n", encoding="utf-8")
+        """The files of a case, for who looks at it; case.json is a saved one, once it says what holds."""
+        text = json.dumps({"holds": "", "kind": case.kind, **case.document}, indent=1)
+        (folder / "case.json").write_text(text + "\n", encoding="utf-8")
 
 
 def name_of(kind, index):
@@ -285,10 +287,14 @@ def smaller(tree, form=sys.modules[__name__]):
 def shrink(generator, case, check, text, seconds=None):
     """The case with less and less in it, as long as it has the finding still, until nothing can go or the time is up; None: once more it has it not."""
     like, end = generator.likeness(text), None if seconds is None else time.monotonic() + seconds
+    checks = None  # that the case itself fails: one that fails others, too, is another case
 
     def fails(of):
-        return any(c == check and generator.likeness(t) == like for c, t in generator.repeated(of))
+        found = list(generator.repeated(of))
+        return any(c == check and generator.likeness(t) == like for c, t in found) and (checks is None or {c for c, _ in found} <= checks)
     case = next((c for c in generator.alike(case) if fails(c)), None)
+    if case is not None:
+        checks = {c for c, _ in generator.repeated(case)}
     place, before = 0, case
     while case is not None and (end is None or time.monotonic() < end):
         # on from where something went: what could not go before seldom can now, and is tried again at the end

@@ -45,6 +45,15 @@ class Lists(campaign.Generator):
                 yield "large", f"{value} in {case.kind}"
 
 
+class Whole(Lists):
+    """Of fewer than four numbers another check fails."""
+
+    def judge(self, case, folder, tally):
+        yield from super().judge(case, folder, tally)
+        if len(case.document["values"]) < 4:
+            yield "short", "too few"
+
+
 class Pairs(Lists):
     """Judged three at a time; the number of the batch is told."""
     batch = 3
@@ -157,7 +166,7 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(code, 1)
             path = Path(folder) / "small/case.json"
             small = json.loads(path.read_text(encoding="utf-8"))
-            self.assertEqual((list(small), len(small["values"])), (["values"], 1))
+            self.assertEqual((list(small), small["kind"], len(small["values"])), (["holds", "kind", "values"], "long", 1))
             self.assertRegex(lines[-1], r"^\d+ bytes in ")
             found = re.match(r"large: (\d+)", lines[0])
             self.assertGreaterEqual(small["values"][0], LARGE)
@@ -165,6 +174,12 @@ class CommandLine(unittest.TestCase):
             again, lines = said(Lists(), "--case", str(path), "--shrink", f"{folder}/smaller")
             self.assertEqual((again, lines[0].split(" ")[1]), (1, str(small["values"][0])))
             self.assertEqual(json.loads((Path(folder) / "smaller/case.json").read_text(encoding="utf-8")), small)
+
+
+    def test_a_small_one_fails_nothing_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            said(Whole(), "--seed", "s", "--count", "20", "--only", "long", "--shrink", folder)
+            self.assertEqual(len(json.loads((Path(folder) / "case.json").read_text(encoding="utf-8"))["values"]), 4)
 
 
 class Suites(unittest.TestCase):
