@@ -13,8 +13,8 @@
 #include "base/format.h"
 #include "base/run.h"
 #include "linalg/dense.h"
-#include "modal/balance.h"
-#include "modal/sign.h"
+#include "modal/modes.h"
+#include "modal/sparse.h"
 
 double mt_lowest_bodies(const mt_model *model, int configuration)
 {

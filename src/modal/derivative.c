@@ -1,5 +1,126 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
+ * Lee and Jung's bordered system for one eigenvector. Scaled first, so that neither units nor
+ * stiffness decide how regular it is: with D = diag(m_ii)^-1/2 (a coordinate without mass takes
+ * |k_ii|/s), s the largest k_ii/m_ii or |lambda|, g = D M y, f = (Kdot - lambda Mdot) y,
+ *     [D (K - lambda M) D / s   -g] [D^-1 ydot    ]   [-D f / s       ]
+ *     [-g^T                      0] [lambdadot / s] = [1/2 y^T Mdot y ]
+ * has a reciprocal condition of about (gap to the next eigenvalue) / s. Below 16 n eps that gap
+ * is rounding: the mode is repeated.
+ */
+#include "modal/derivative.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "linalg/dense.h"
+#include "modal/mass.h"
+#include "modal/modes.h"
+
+typedef struct bordered {
+    int n;
+    double lambda;
+    const double *y;
+    double s;
+    double *d;   /* [n] */
+    double *my;  /* [n] M y */
+    double *a;   /* (n + 1)^2 */
+    double *rhs; /* (n + 1) x np */
+} bordered;
+
+static void choose_scales(const mt_pencil *p, bordered *b)
+{
+    double s = 0.0;
+    for (int i = 0; i < p->n; i++) {
+        const ptrdiff_t ii = i + (ptrdiff_t)i * p->n;
+        s = p->m[ii] > 0.0 ? fmax(s, fabs(p->k[ii]) / p->m[ii]) : s;
+    }
+    s = fmax(s, fabs(b->lambda));
+    b->s = s > 0.0 ? s : 1.0;
+    for (int i = 0; i < p->n; i++) {
+        const ptrdiff_t ii = i + (ptrdiff_t)i * p->n;
+        const double mass = p->m[ii] > 0.0 ? p->m[ii] : fabs(p->k[ii]) / b->s;
+        b->d[i] = mass > 0.0 ? 1.0 / sqrt(mass) : 1.0;
+    }
+}
+
+static void fill_matrix(const mt_pencil *p, const bordered *b)
+{
+    const int n = p->n;
+    const int ld = n + 1;
+    for (int j = 0; j < n; j++) {
+        for (int i = j; i < n; i++) {
+            const ptrdiff_t ij = i + (ptrdiff_t)j * n;
+            const double e = p->k[ij] - b->lambda * p->m[ij];
+            b->a[i + (ptrdiff_t)j * ld] = b->d[i] * e * b->d[j] / b->s;
+        }
+        b->a[n + (ptrdiff_t)j * ld] = -b->d[j] * b->my[j];
+    }
+    b->a[n + (ptrdiff_t)n * ld] = 0.0;
+    mt_symmetrise_lower(ld, b->a);
+}
+
+static void fill_rhs(const bordered *b, const mt_directions *dir)
+{
+    const int n = b->n;
+    for (int p = 0; p < dir->np; p++) {
+        double *const r = b->rhs + (ptrdiff_t)p * (n + 1);
+        const double *const dky = dir->dky + (ptrdiff_t)p * n;
+        const double *const dmy = dir->dmy == NULL ? NULL : dir->dmy + (ptrdiff_t)p * n;
+        for (int i = 0; i < n; i++) {
+            const double f = dky[i] - (dmy == NULL ? 0.0 : b->lambda * dmy[i]);
+            r[i] = -b->d[i] * f / b->s;
+        }
+        r[n] = dmy == NULL ? 0.0 : 0.5 * mt_dot(n, b->y, dmy);
+    }
+}
+
+static mt_status solve_bordered_system(const mt_pencil *p, bordered *b,
+                                       const mt_directions *dir, mt_arena *scratch, mt_err *err)
+{
+    const size_t n = (size_t)p->n;
+    b->d = mt_arena_f64(scratch, n, 1);
+    b->my = mt_arena_f64(scratch, n, 1);
+    b->a = mt_arena_f64(scratch, n + 1, n + 1);
+    b->rhs = mt_arena_f64(scratch, n + 1, (size_t)dir->np);
+    MT_TRY(mt_arena_check(scratch, err));
+    choose_scales(p, b);
+    mt_symm(p->n, 1, p->m, b->y, b->my);
+    fill_matrix(p, b);
+    fill_rhs(b, dir);
+    double rcond = 0.0;
+    const mt_status rc = mt_lu_solve(p->n + 1, b->a, dir->np, b->rhs, &rcond, scratch, err);
+    if (rc != MT_OK && rc != MT_E_SINGULAR) {
+        return rc;
+    }
+    if (rc == MT_E_SINGULAR || !(rcond > mt_modal_tolerance(p->n))) {
+        return mt_fail(err, MT_E_SINGULAR, "a repeated mode has no derivative of its own");
+    }
+    return MT_OK;
+}
+
+mt_status mt_modal_dvector(const mt_pencil *p, double lambda, const double *y,
+                           const mt_directions *dir, double *dy, double *dlambda,
+                           mt_arena *scratch, mt_err *err)
+{
+    bordered b = {.n = p->n, .lambda = lambda, .y = y};
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    const mt_status rc = solve_bordered_system(p, &b, dir, scratch, err);
+    for (int k = 0; k < dir->np; k++) {
+        const ptrdiff_t at = (ptrdiff_t)k * (p->n + 1);
+        for (int i = 0; i < p->n; i++) {
+            dy[i + (ptrdiff_t)k * p->n] = rc == MT_OK ? b.d[i] * b.rhs[at + i] : nan("");
+        }
+        if (dlambda != NULL) {
+            dlambda[k] = rc == MT_OK ? b.s * b.rhs[at + p->n] : nan("");
+        }
+    }
+    mt_arena_rewind(scratch, mark);
+    return rc;
+}
+
+/*
  * Differentiate K y = lambda M y and y^T M y = 1 along a parameter (a dot is d/dp), with
  * f = (Kdot - lambda Mdot) y:
  *     (K - lambda M) ydot - lambdadot M y = -f,
@@ -7,15 +128,6 @@
  * From the left with y^T:                   lambdadot = y^T f.
  * From the left with another mode's y_j^T:  y_j^T M ydot = y_j^T f / (lambda - lambda_j).
  */
-#include "modal/derivative.h"
-
-#include "modal/modal_priv.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
-#include "linalg/dense.h"
 
 /* f := dky - lambda dmy, entries count. */
 static void mode_derivative_force(ptrdiff_t count, double lambda, const double *dky,

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "modal/lowest.h"
 
-#include "modal/modal_priv.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "linalg/dense.h"
 #include "linalg/lanczos.h"
+#include "modal/modes.h"
 
 /* More are sought than are wanted: one for the gap behind the last, one if that is small. */
 enum { MORE = 2, ROUNDS = 12 };

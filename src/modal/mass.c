@@ -15,13 +15,12 @@
  */
 #include "modal/mass.h"
 
-#include "modal/modal_priv.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "linalg/dense.h"
+#include "modal/modes.h"
 
 /* See mt_modal_relative: twice what was met. */
 static const double ASSEMBLY_ULPS = 64.0;

@@ -29,4 +29,17 @@ mt_status mt_modal_factor_mass(int n, const double *m, mt_arena *mem, mt_mass_fa
 /* M = I. Costs nothing and makes each solve cheaper. */
 mt_status mt_modal_identity_mass(int n, mt_arena *mem, mt_mass_factor *out, mt_err *err);
 
+/* 16 n eps. */
+double mt_modal_tolerance(int n);
+
+/* Relative error of an eigenvalue due to the entries of the matrices: an entry of K or M is a
+ * sum of rounded products (a spring's elongation through a loop of joints has a few dozen
+ * roundings), for any n. Measured: 33 eps, a four-bar of one freedom, among 1500 random
+ * mechanisms. */
+double mt_modal_relative(int n);
+
+/* Y := T1 Q: from the coordinates in which M is the identity to the caller's. q, y n x count;
+ * the same array only where mass->t is NULL. Regular M only. */
+void mt_modal_back(const mt_mass_factor *mass, int count, const double *q, double *y);
+
 #endif

@@ -2,14 +2,10 @@
 #ifndef MODAL_MODAL_H
 #define MODAL_MODAL_H
 
-#include "modal/bordered.h"
+#include "modal/damped.h"
 #include "modal/derivative.h"
-#include "modal/growth.h"
-#include "modal/judge.h"
-#include "modal/mac.h"
 #include "modal/mass.h"
 #include "modal/modes.h"
-#include "modal/sign.h"
 #include "modal/solve.h"
 
 /*
@@ -24,7 +20,7 @@
  * MT_E_MASSLESS with the direction.
  *
  * Kinds (never take the absolute value of an eigenvalue): with the stiffness scale s and noise
- * = 16 n eps s (see modal_priv.h), |lambda| <= noise is a rigid-body mode (lambda set to
+ * = 16 n eps s (see modes.h), |lambda| <= noise is a rigid-body mode (lambda set to
  * exactly 0), below -noise unstable, above noise flexible. Where n_rigid >= 0 is given
  * (constant for a family of designs), exactly the n_rigid eigenvalues of smallest magnitude are
  * rigid-body modes; of the others those below -noise are unstable, and those in [-noise, 0) are

@@ -10,7 +10,7 @@
  * rows). With it the lowest modes keep their relative accuracy however much the stiffnesses c
  * differ; without G, rigid-body modes are the null space of B, for any c. G is the part that is
  * not a sum of squares, such as the geometric stiffness of loads: the accuracy is then that of
- * G, independent of the stiffnesses c (loaded.c). Ignored where M is singular. */
+ * G, independent of the stiffnesses c. Ignored where M is singular. */
 typedef struct mt_stiffness_factor {
     int rows;
     const double *b; /* rows x n */

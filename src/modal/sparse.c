@@ -1,5 +1,617 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
+ * Every state held by a spring of one stiffness, K = D^-2 with D the units: then K x + A^T mu =
+ * f, A x = 0 has one x, what of f the constraints do not hold, in units, is least, and it is 0
+ * where they hold it all. What a second solution, with f - A^T mu for f, makes of mu tells what
+ * the first one left open of it, by the condition of A as this f feels it.
+ */
+#include "modal/sparse.h"
+
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/format.h"
+#include "linalg/dense.h"
+
+/* Right-hand sides per solve: ten modes and two beyond the last. */
+enum { SPARSE_COLUMNS = 12 };
+
+/* H = K + s M + A^T Gamma A of a sparse problem, factored, and work arrays of its solves. */
+typedef struct sparse {
+    const mt_sparse_problem *p;
+    double shift;
+    double *gamma;    /* [rows of A] */
+    double stiffer;   /* a factor of STIFFER */
+    bool outweigh;    /* gamma outweighs G in each constrained state */
+    double stiffest;  /* `stiffer` times the largest stiffness */
+    mt_rows by_state; /* transpose of A: by state, (row, value) */
+    mt_lower k;       /* K + A^T Gamma A, with places for M */
+    mt_lower m;
+    mt_factor factor; /* of H, or of the last matrix counted: there is room for one */
+    bool holds;       /* `factor` is that of H */
+    double least;     /* of the factor of H */
+    int freedoms;     /* states less independent rows of A */
+    bool refined;     /* products are refined iteratively */
+    bool sound;       /* the last steps of a solution were small relative to it */
+    double *x, *w;    /* [n] */
+    double *f, *r;    /* n x SPARSE_COLUMNS: right-hand sides, residuals */
+    double *s;        /* as r: the step */
+    double *mu;       /* rows of A x SPARSE_COLUMNS */
+    double *gap;      /* the same: A x + A dx */
+    mt_arena *mem;
+} sparse;
+
+/* Below this part of the terms whose difference it is, the sign of a pivot is uncertain. */
+static const double SPARSE_CERTAIN = 64.0 * DBL_EPSILON;
+/* `close` of sparse_solve: to rounding. */
+static const double SPARSE_SOLVED = 1e-16;
+
+static mt_status sparse_prepare(sparse *s, mt_err *err);
+static mt_status sparse_factor(sparse *s, double shift, bool *sound, mt_err *err);
+static mt_status sparse_hold(sparse *s, mt_err *err);
+static mt_status sparse_solve(sparse *s, int count, const double *f, double close, double *x,
+                              mt_err *err);
+
+/* A constraint's stiffness over that of a state: forces that add up along some hundred thousand
+ * joints converge still, and eps times this is well below 1. */
+static const double BALANCE_STIFFER = 1e12;
+
+/* D^-2. */
+static mt_status springs(const mt_sparse_problem *of, mt_arena *mem, mt_squares *out,
+                         mt_err *err)
+{
+    const size_t n = (size_t)of->n;
+    double *const c = mt_arena_f64(mem, n, 1);
+    mt_rows_begin(&out->row, of->n, n, mem);
+    MT_TRY(mt_arena_check(mem, err));
+    out->c = c;
+    for (int j = 0; j < of->n; j++) {
+        c[j] = 1.0;
+        mt_rows_push(&out->row, j, j, 1.0 / of->unit[j]);
+        mt_rows_end(&out->row, j);
+    }
+    return MT_OK;
+}
+
+static mt_status find_balancing_multipliers(const mt_sparse_problem *of, const double *f,
+                                            double *mu, double *open, bool *found,
+                                            mt_arena *mem, mt_err *err)
+{
+    const int rows = of->a.n_rows;
+    mt_sparse_problem p = {.n = of->n,
+                           .a = of->a,
+                           .part = of->part,
+                           .unit = of->unit,
+                           .check = of->check,
+                           .context = of->context};
+    double *const left = mt_arena_f64(mem, (size_t)of->n, 1);
+    MT_TRY(springs(of, mem, &p.k, err));
+    p.m = p.k;
+    sparse s = {.p = &p, .mem = mem, .stiffer = BALANCE_STIFFER};
+    MT_TRY(sparse_prepare(&s, err));
+    /* where the constraints leave no motion x is rounding, and this no matter */
+    bool sound = false;
+    MT_TRY(sparse_factor(&s, 0.0, &sound, err));
+    *found = s.factor.negative == 0 && s.least > 0.0;
+    if (!*found) {
+        return MT_OK;
+    }
+    memcpy(left, f, (size_t)of->n * sizeof *left);
+    MT_TRY(sparse_solve(&s, 1, left, SPARSE_SOLVED, s.x, err));
+    memcpy(mu, s.mu, (size_t)rows * sizeof *mu);
+    for (int r = 0; r < rows; r++) {
+        mt_rows_axpy(&of->a, r, -mu[r], left);
+    }
+    MT_TRY(sparse_solve(&s, 1, left, SPARSE_SOLVED, s.x, err));
+    for (int r = 0; r < rows; r++) {
+        mu[r] += s.mu[r];
+        open[r] = fabs(s.mu[r]);
+    }
+    return MT_OK;
+}
+
+mt_status mt_modal_balance(const mt_sparse_problem *p, const double *f, double *mu,
+                           double *open, bool *found, mt_err *err)
+{
+    mt_arena work = {.first = NULL};
+    *found = false;
+    mt_status rc = mt_arena_init(&work, 0, err);
+    rc = rc == MT_OK ? find_balancing_multipliers(p, f, mu, open, found, &work, err) : rc;
+    mt_arena_free(&work);
+    return rc;
+}
+
+/* Assembles and factors H, and solves with it: the iteration is derived in sparse.c. */
+
+/* Relative pivots: below this a matrix is singular. */
+static const double REGULAR = 1e-15;
+/* Steps of a solution, at most. */
+enum { MOST_STEPS = 30 };
+/* A factor that leaves more than this of a solution is not that of its matrix: where that is
+ * singular but for rounding, no step comes nearer. */
+static const double SOUND = 1e-6;
+static const double GOLDEN = 0.61803398874989485;
+/* Squares of singular values of A, in scaled rows, are 0 below what rounding makes of 0: so
+ * many roundings of the largest, more by RAISED each time that a pivot's sign may be chance, up
+ * to DEPENDENT. */
+static const double RANK_ULPS = 64.0;
+static const double RAISED = 8.0;
+static const double DEPENDENT = 1e-9;
+
+/* One column of a lower triangle that is being summed. */
+typedef struct column {
+    int n;
+    int *list; /* [n] rows that were met */
+    int *mark; /* of each row: last column that met it, and 1 */
+    double *sum;
+} column;
+
+static mt_status column_init(column *c, int n, mt_arena *mem, mt_err *err)
+{
+    *c = (column){.list = mt_arena_int(mem, (size_t)n), .mark = mt_arena_int(mem, (size_t)n)};
+    c->sum = mt_arena_f64(mem, (size_t)n, 1);
+    return mt_arena_check(mem, err);
+}
+
+static void clear_column(column *c)
+{
+    c->n = 0;
+}
+
+static void add_to_column(column *c, int i, int j, double value)
+{
+    if (c->mark[i] != j + 1) {
+        c->mark[i] = j + 1;
+        c->list[c->n++] = i;
+        c->sum[i] = 0.0;
+    }
+    c->sum[i] += value;
+}
+
+static void add_squares(column *c, const mt_rows *rows, const double *weight,
+                        const mt_rows *columns, int j, double scale)
+{
+    for (int t = columns->start[j]; t < columns->start[j + 1]; t++) {
+        const int r = columns->index[t];
+        const double part = scale * weight[r] * columns->value[t];
+        for (int q = rows->start[r]; q < rows->start[r + 1]; q++) {
+            const int i = rows->index[q];
+            if (i >= j) {
+                add_to_column(c, i, j, part * rows->value[q]);
+            }
+        }
+    }
+}
+
+/* What is summed, by states. */
+typedef struct sums {
+    const sparse *s;
+    mt_rows k;
+    mt_rows m;
+    double part; /* of Gamma */
+} sums;
+
+static void sum_mass(const sums *from, int j, column *c)
+{
+    clear_column(c);
+    add_to_column(c, j, j, 0.0);
+    add_squares(c, &from->s->p->m.row, from->s->p->m.c, &from->m, j, 1.0);
+}
+
+/* Places of M are there, too. */
+static void sum_stiffness(const sums *from, int j, column *c)
+{
+    const sparse *const s = from->s;
+    const mt_sparse_problem *const p = s->p;
+    const mt_lower *const g = p->g;
+    clear_column(c);
+    for (int q = s->m.start[j]; q < s->m.start[j + 1]; q++) {
+        add_to_column(c, s->m.row[q], j, 0.0);
+    }
+    add_squares(c, &p->k.row, p->k.c, &from->k, j, 1.0);
+    add_squares(c, &p->a, s->gamma, &s->by_state, j, from->part);
+    for (int q = g != NULL ? g->start[j] : 0; g != NULL && q < g->start[j + 1]; q++) {
+        add_to_column(c, g->row[q], j, g->value[q]);
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const int x = *(const int *)a;
+    const int y = *(const int *)b;
+    return (x > y) - (x < y);
+}
+
+/* Column by column, once for the pattern. */
+static mt_status assemble_lower(const sums *from, void (*sum)(const sums *, int, column *),
+                                column *c, mt_lower *out, mt_err *err)
+{
+    const int n = from->s->p->n;
+    mt_arena *const mem = from->s->mem;
+    double size = 0.0;
+    *out = (mt_lower){.n = n, .start = mt_arena_int(mem, (size_t)n + 1)};
+    MT_TRY(mt_arena_check(mem, err));
+    memset(c->mark, 0, (size_t)n * sizeof *c->mark);
+    for (int j = 0; j < n; j++) {
+        sum(from, j, c);
+        size += c->n;
+        if (size > INT_MAX) {
+            return mt_fail_memory(err);
+        }
+        out->start[j + 1] = out->start[j] + c->n;
+    }
+    out->row = mt_arena_int(mem, (size_t)out->start[n]);
+    out->value = mt_arena_f64(mem, (size_t)out->start[n], 1);
+    MT_TRY(mt_arena_check(mem, err));
+    memset(c->mark, 0, (size_t)n * sizeof *c->mark);
+    for (int j = 0; j < n; j++) {
+        const int first = out->start[j];
+        sum(from, j, c);
+        qsort(c->list, (size_t)c->n, sizeof *c->list, ascending);
+        for (int q = 0; q < c->n; q++) {
+            out->row[first + q] = c->list[q];
+            out->value[first + q] = c->sum[c->list[q]];
+        }
+    }
+    return MT_OK;
+}
+
+/* M, and K + A^T Gamma A. */
+static mt_status assemble_both(sparse *s, mt_arena *scratch, mt_err *err)
+{
+    const mt_sparse_problem *const p = s->p;
+    sums from = {.s = s, .part = 1.0};
+    column c;
+    mt_rows_transpose(&p->k.row, p->n, scratch, &from.k);
+    mt_rows_transpose(&p->m.row, p->n, scratch, &from.m);
+    MT_TRY(column_init(&c, p->n, scratch, err));
+    MT_TRY(assemble_lower(&from, sum_mass, &c, &s->m, err));
+    return assemble_lower(&from, sum_stiffness, &c, &s->k, err);
+}
+
+/* y := M x. */
+/* y := M x. */
+static void sparse_metric(void *context, const double *x, double *y)
+{
+    const mt_lower *const m = &((const sparse *)context)->m;
+    memset(y, 0, (size_t)m->n * sizeof *y);
+    for (int j = 0; j < m->n; j++) {
+        const int first = m->start[j];
+        double sum = m->value[first] * x[j]; /* the diagonal comes first */
+        for (int q = first + 1; q < m->start[j + 1]; q++) {
+            y[m->row[q]] += m->value[q] * x[j];
+            sum += m->value[q] * x[m->row[q]];
+        }
+        y[j] += sum;
+    }
+}
+
+/* y -= K x, strain by strain. */
+static void sparse_subtract(const sparse *s, const double *x, double *y)
+{
+    const mt_sparse_problem *const p = s->p;
+    for (int r = 0; r < p->k.row.n_rows; r++) {
+        mt_rows_axpy(&p->k.row, r, -p->k.c[r] * mt_rows_dot(&p->k.row, r, x), y);
+    }
+    for (int j = 0; p->g != NULL && j < p->n; j++) {
+        for (int q = p->g->start[j]; q < p->g->start[j + 1]; q++) {
+            const int i = p->g->row[q];
+            y[i] -= p->g->value[q] * x[j];
+            y[j] -= i == j ? 0.0 : p->g->value[q] * x[i];
+        }
+    }
+}
+
+/* r := f - (K + s M) x - A^T (mu + Gamma A x), gap := A x; of x = 0 at the first step. */
+static void leave(sparse *s, bool first, const double *f, const double *x, const double *mu,
+                  double *r, double *gap)
+{
+    const mt_sparse_problem *const p = s->p;
+    memcpy(r, f, (size_t)p->n * sizeof *r);
+    if (!first) {
+        sparse_metric(s, x, s->w);
+        mt_axpy(p->n, -s->shift, s->w, r);
+        sparse_subtract(s, x, r);
+    }
+    for (int i = 0; i < p->a.n_rows; i++) {
+        gap[i] = first ? 0.0 : mt_rows_dot(&p->a, i, x);
+        mt_rows_axpy(&p->a, i, -mu[i] - (s->gamma[i] * gap[i]), r);
+    }
+}
+
+/* x += dx, mu += Gamma A (x + dx). */
+static void advance(const sparse *s, const double *dx, const double *gap, double *x, double *mu)
+{
+    const mt_rows *const a = &s->p->a;
+    mt_axpy(s->p->n, 1.0, dx, x);
+    for (int i = 0; i < a->n_rows; i++) {
+        mu[i] += s->gamma[i] * (gap[i] + mt_rows_dot(a, i, dx));
+    }
+}
+
+/* What of the columns is not done yet. */
+typedef struct pending {
+    int n;
+    int column[SPARSE_COLUMNS];
+    double before[SPARSE_COLUMNS]; /* last step, in the energy's norm */
+    bool sound[SPARSE_COLUMNS];
+} pending;
+
+/* Take the step s->s in the open columns; converged columns are removed from o. */
+static void step_all(sparse *s, int step, const double *f, double close, double *x, pending *o)
+{
+    const ptrdiff_t n = s->p->n;
+    const ptrdiff_t rows = s->p->a.n_rows;
+    int left = 0;
+    for (int i = 0; i < o->n; i++) {
+        const int c = o->column[i];
+        const double *const dx = s->s + (n * i);
+        double *const to = x + (n * c);
+        const double change = sqrt(fmax(mt_dot((int)n, dx, s->r + (n * i)), 0.0));
+        const double whole = sqrt(fmax(mt_dot((int)n, to, f + (n * c)), 0.0));
+        o->sound[c] = step > 0 && change <= SOUND * whole;
+        if (step > 1 && !(change < 0.5 * o->before[c])) {
+            continue; /* what is left is rounding */
+        }
+        o->before[c] = change;
+        advance(s, dx, s->gap + (rows * i), to, s->mu + (rows * c));
+        if (!((step > 0 && change <= close * whole) || !isfinite(change))) {
+            o->column[left++] = c;
+        }
+    }
+    o->n = left;
+}
+
+/* X, s->mu with (K + s M) X + A^T mu = F, A X = 0, n x count, at most SPARSE_COLUMNS
+ * columns, each to a fraction `close` of its energy, or as accurately as rounding allows. F
+ * must not be s->r. */
+static mt_status sparse_solve(sparse *s, int count, const double *f, double close, double *x,
+                              mt_err *err)
+{
+    const mt_sparse_problem *const p = s->p;
+    const ptrdiff_t n = p->n;
+    const ptrdiff_t rows = p->a.n_rows;
+    pending o = {.n = count};
+    MT_TRY(sparse_hold(s, err));
+    memset(x, 0, (size_t)(n * count) * sizeof *x);
+    memset(s->mu, 0, (size_t)(rows * count) * sizeof *s->mu);
+    for (int c = 0; c < count; c++) {
+        o.column[c] = c;
+        o.before[c] = HUGE_VAL;
+    }
+    for (int step = 0; step < MOST_STEPS && o.n > 0; step++) {
+        MT_TRY(p->check != NULL ? p->check(p->context, err) : MT_OK);
+        for (int i = 0; i < o.n; i++) {
+            const int c = o.column[i];
+            leave(s, step == 0, f + (n * c), x + (n * c), s->mu + (rows * c), s->r + (n * i),
+                  s->gap + (rows * i));
+        }
+        memcpy(s->s, s->r, (size_t)(n * o.n) * sizeof *s->s);
+        mt_factor_solve(&s->factor, o.n, s->s);
+        step_all(s, step, f, close, x, &o);
+    }
+    s->sound = true;
+    for (int c = 0; c < count; c++) {
+        s->sound = s->sound && o.sound[c];
+    }
+    return MT_OK;
+}
+
+/* *regular: no pivot is 0. */
+static mt_status make_factor(sparse *s, const mt_lower *h, double c, const mt_lower *m,
+                             bool *regular, mt_err *err)
+{
+    const mt_status rc = mt_factor_make(&s->factor, h, c, m, s->mem, NULL);
+    s->holds = false;
+    *regular = rc == MT_OK;
+    return rc == MT_OK || rc == MT_E_DOMAIN ? MT_OK : mt_fail(err, rc, "factor");
+}
+
+/* Factor H with its shift again if another matrix was factored since. */
+static mt_status sparse_hold(sparse *s, mt_err *err)
+{
+    if (!s->holds) {
+        MT_TRY(make_factor(s, &s->k, s->shift, &s->m, &s->holds, err));
+    }
+    return MT_OK;
+}
+
+/* The values of K + part A^T Gamma A, in the places of H. */
+static mt_status stiffen(const sparse *s, double part, mt_arena *scratch, mt_lower *h,
+                         mt_err *err)
+{
+    sums from = {.s = s, .part = part};
+    column c;
+    *h = s->k;
+    h->value = mt_arena_f64(scratch, (size_t)h->start[h->n], 1);
+    MT_TRY(column_init(&c, h->n, scratch, err));
+    mt_rows_transpose(&s->p->k.row, h->n, scratch, &from.k);
+    MT_TRY(mt_arena_check(scratch, err));
+    for (int j = 0; j < h->n; j++) {
+        sum_stiffness(&from, j, &c);
+        for (int q = h->start[j]; q < h->start[j + 1]; q++) {
+            h->value[q] = c.sum[h->row[q]];
+        }
+    }
+    return MT_OK;
+}
+
+/* Factor K + part A^T Gamma A + c M; `factor` is then not that of H. */
+static mt_status sparse_inertia(sparse *s, double part, double c, int *negative, double *least,
+                                mt_err *err)
+{
+    mt_arena scratch = {.first = NULL};
+    mt_lower h = s->k;
+    bool regular = false;
+    mt_status rc = part == 1.0 ? MT_OK : mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK && part != 1.0 ? stiffen(s, part, &scratch, &h, err) : rc;
+    rc = rc == MT_OK ? make_factor(s, &h, c, &s->m, &regular, err) : rc;
+    mt_arena_free(&scratch);
+    MT_TRY(rc);
+    *negative = s->factor.negative;
+    *least = regular ? s->factor.least : 0.0;
+    return MT_OK;
+}
+
+/* Factor H with this shift; *sound: positive definite, and its solutions are accurate. */
+static mt_status sparse_factor(sparse *s, double shift, bool *sound, mt_err *err)
+{
+    bool regular = false;
+    s->shift = shift;
+    MT_TRY(make_factor(s, &s->k, shift, &s->m, &regular, err));
+    s->holds = true;
+    s->least = s->factor.least;
+    *sound = regular && s->factor.negative == 0 && s->least > REGULAR;
+    if (*sound) { /* some motion of everything */
+        for (int j = 0; j < s->p->n; j++) {
+            s->x[j] = (1.0 + fmod(GOLDEN * (j + 1), 1.0)) * s->p->unit[j];
+        }
+        sparse_metric(s, s->x, s->f);
+        MT_TRY(sparse_solve(s, 1, s->f, SPARSE_SOLVED, s->x, err));
+        *sound = s->sound;
+    }
+    return MT_OK;
+}
+
+/* Constraints in units of the largest stiffness: gamma[rows of A]. */
+static void scale_constraints(sparse *s)
+{
+    const mt_sparse_problem *const p = s->p;
+    double most = 0.0;
+    memset(s->x, 0, (size_t)p->n * sizeof *s->x);
+    for (int r = 0; r < p->k.row.n_rows; r++) {
+        for (int q = p->k.row.start[r]; q < p->k.row.start[r + 1]; q++) {
+            s->x[p->k.row.index[q]] += fabs(p->k.c[r]) * p->k.row.value[q] * p->k.row.value[q];
+        }
+    }
+    /* what may be negative the constraints have to outweigh in each state that they hold */
+    for (int r = 0; r < p->a.n_rows; r++) {
+        double square = 0.0;
+        for (int q = p->a.start[r]; q < p->a.start[r + 1]; q++) {
+            const double part = p->a.value[q] * p->unit[p->a.index[q]];
+            square += part * part;
+        }
+        s->gamma[r] = square;
+        for (int q = p->a.start[r]; q < p->a.start[r + 1] && square > 0.0; q++) {
+            s->f[p->a.index[q]] += p->a.value[q] * p->a.value[q] / square;
+        }
+    }
+    for (int j = 0; p->g != NULL && j < p->n; j++) {
+        for (int q = p->g->start[j]; q < p->g->start[j + 1]; q++) {
+            const double here = p->g->row[q] == j ? fabs(p->g->value[q]) : 0.0;
+            s->x[j] += here;
+            most = s->outweigh && s->f[j] > 0.0 ? fmax(most, here / s->f[j]) : most;
+        }
+    }
+    for (int j = 0; j < p->n; j++) {
+        most = fmax(most, s->x[j] * p->unit[j] * p->unit[j]);
+    }
+    s->stiffest = s->stiffer * most;
+    for (int r = 0; r < p->a.n_rows; r++) {
+        s->gamma[r] = s->gamma[r] > 0.0 ? s->stiffest / s->gamma[r] : 0.0;
+    }
+}
+
+/* D A^T A D in the places of H, *norm a bound of its largest eigenvalue: the largest sum of
+ * magnitudes in a row. */
+static mt_status square_constraints(sparse *s, mt_arena *scratch, mt_lower *h, double *norm,
+                                    mt_err *err)
+{
+    const mt_sparse_problem *const p = s->p;
+    column c;
+    *h = s->k;
+    h->value = mt_arena_f64(scratch, (size_t)h->start[h->n], 1);
+    double *const sum = mt_arena_f64(scratch, (size_t)p->n, 1);
+    MT_TRY(column_init(&c, p->n, scratch, err));
+    for (int j = 0; j < p->n; j++) {
+        clear_column(&c);
+        add_squares(&c, &p->a, s->gamma, &s->by_state, j, 1.0);
+        for (int q = h->start[j]; q < h->start[j + 1]; q++) {
+            const int i = h->row[q];
+            const double here = c.mark[i] == j + 1 ? c.sum[i] : 0.0;
+            h->value[q] = here * p->unit[i] * p->unit[j] / s->stiffest;
+            sum[i] += fabs(h->value[q]);
+            sum[j] += i == j ? 0.0 : fabs(h->value[q]);
+        }
+    }
+    *norm = mt_max_abs(p->n, sum);
+    return MT_OK;
+}
+
+/*
+ * D A^T A D - c I has one positive eigenvalue for each independent row. The unpivoted factor of
+ * what is semidefinite but for c does not grow: it is that of a matrix which is off by some
+ * roundings of the norm, so that c need be no more than these. The joints of a chain of n
+ * bodies are 1/n from dependent, their square some 2/n^2.
+ */
+static mt_status rank_of_constraints(sparse *s, mt_arena *scratch, mt_err *err)
+{
+    mt_lower h;
+    double norm = 0.0;
+    bool certain = false;
+    MT_TRY(square_constraints(s, scratch, &h, &norm, err));
+    double c = RANK_ULPS * DBL_EPSILON * norm;
+    double was = 0.0;
+    while (!certain) {
+        bool regular = false;
+        for (int j = 0; j < h.n; j++) { /* the diagonal comes first */
+            h.value[h.start[j]] -= c - was;
+        }
+        MT_TRY(make_factor(s, &h, 0.0, NULL, &regular, err));
+        s->freedoms = s->factor.negative;
+        certain = (regular && s->factor.least > SPARSE_CERTAIN) || !(c < DEPENDENT);
+        was = c;
+        c *= RAISED;
+    }
+    return MT_OK;
+}
+
+/* Set s->freedoms: states less independent rows of A. `factor` is then not that of H. */
+static mt_status sparse_freedoms(sparse *s, mt_err *err)
+{
+    mt_arena scratch = {.first = NULL};
+    s->freedoms = s->p->n;
+    if (s->p->a.n_rows == 0) {
+        return MT_OK;
+    }
+    mt_status rc = mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK ? rank_of_constraints(s, &scratch, err) : rc;
+    mt_arena_free(&scratch);
+    return rc;
+}
+
+/* Prepare everything but the values of the factor; s is zeroed except for p, mem, stiffer and
+ * outweigh. */
+static mt_status sparse_prepare(sparse *s, mt_err *err)
+{
+    const size_t n = (size_t)s->p->n;
+    const size_t m = (size_t)s->p->a.n_rows;
+    mt_arena scratch = {.first = NULL};
+    s->x = mt_arena_f64(s->mem, n, 1);
+    s->w = mt_arena_f64(s->mem, n, 1);
+    s->f = mt_arena_f64(s->mem, n, SPARSE_COLUMNS);
+    s->r = mt_arena_f64(s->mem, n, SPARSE_COLUMNS);
+    s->s = mt_arena_f64(s->mem, n, SPARSE_COLUMNS);
+    s->gamma = mt_arena_f64(s->mem, m, 1);
+    s->mu = mt_arena_f64(s->mem, m, SPARSE_COLUMNS);
+    s->gap = mt_arena_f64(s->mem, m, SPARSE_COLUMNS);
+    mt_rows_transpose(&s->p->a, s->p->n, s->mem, &s->by_state);
+    MT_TRY(mt_arena_check(s->mem, err));
+    scale_constraints(s);
+    mt_status rc = mt_arena_init(&scratch, 0, err);
+    rc = rc == MT_OK ? assemble_both(s, &scratch, err) : rc;
+    mt_arena_free(&scratch);
+    mt_factor_pattern *pattern = NULL;
+    MT_TRY(rc);
+    MT_TRY(mt_factor_analyse(&s->k, s->p->part, s->mem, &pattern, err));
+    mt_factor_init(pattern, SPARSE_COLUMNS, s->mem, &s->factor);
+    return mt_arena_check(s->mem, err);
+}
+
+/*
  * One matrix is factored, H = K + s M + A^T Gamma A, Gamma = diag(gamma): that is what becomes
  * of [K + s M, A^T; A, -Gamma^-1] when its last rows are eliminated, and the iteration
  *     dx = H^-1 (f - (K + s M) x - A^T mu - A^T Gamma A x),   dmu = Gamma A (x + dx)
@@ -12,14 +624,6 @@
  *     H - (tau + s) M has no fewer negative eigenvalues than there are modes below tau: if it
  * has as many as were found, none is missing.
  */
-#include "modal/sparse_priv.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
-#include "base/format.h"
-#include "linalg/dense.h"
 
 /* gamma over the largest stiffness: a constraint's own flexibility is gone after two or three
  * iterations (of loops of thousands with the second), and eps gamma cond K is well below 1. The
@@ -50,22 +654,23 @@ static const double OTHER_ULPS = 64.0;
 static mt_status apply_inverse_iteration(void *context, int count, const double *x, double *y,
                                          mt_err *err)
 {
-    mt_sparse *const s = context;
+    sparse *const s = context;
     const ptrdiff_t n = s->p->n;
     double *const to = s->refined ? s->f : y;
     for (int c = 0; c < count; c++) {
-        mt_sparse_metric(s, x + (n * c), to + (n * c));
+        sparse_metric(s, x + (n * c), to + (n * c));
     }
     if (s->refined) {
-        return mt_sparse_solve(s, count, s->f, MT_SPARSE_SOLVED, y, err);
+        return sparse_solve(s, count, s->f, SPARSE_SOLVED, y, err);
     }
     MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
-    MT_TRY(mt_sparse_hold(s, err));
+    MT_TRY(sparse_hold(s, err));
     mt_factor_solve(&s->factor, count, y);
     return MT_OK;
 }
 
-double mt_sparse_energy(const mt_squares *of, const double *x, double *noise)
+/* A sum of squares at x, and of the squares of its strains' roundings. */
+static double sparse_energy(const mt_squares *of, const double *x, double *noise)
 {
     double sum = 0.0;
     *noise = 0.0;
@@ -93,7 +698,8 @@ static void add_load(const mt_sparse_problem *p, const double *x, double *k, dou
     }
 }
 
-double mt_sparse_load_noise(const mt_sparse *s, const double *x)
+/* Rounding of x^T G x, including errors of G. */
+static double sparse_load_noise(const sparse *s, const double *x)
 {
     double k = 0.0;
     double noise = 0.0;
@@ -102,14 +708,14 @@ double mt_sparse_load_noise(const mt_sparse *s, const double *x)
 }
 
 /* The quotient of y, whose constraints' forces are mu. */
-static void quotient_of_vector(const mt_sparse *s, const double *y, const double *mu,
+static void quotient_of_vector(const sparse *s, const double *y, const double *mu,
                                mt_lowest_quotient *q)
 {
     const mt_sparse_problem *const p = s->p;
     double k_noise = 0.0;
     double m_noise = 0.0;
-    double k = mt_sparse_energy(&p->k, y, &k_noise);
-    const double m = mt_sparse_energy(&p->m, y, &m_noise);
+    double k = sparse_energy(&p->k, y, &k_noise);
+    const double m = sparse_energy(&p->m, y, &m_noise);
     double other = 0.0;
     add_load(p, y, &k, &other);
     /* what y leaves open of the constraints, their forces pay for */
@@ -130,22 +736,22 @@ static void quotient_of_vector(const mt_sparse *s, const double *y, const double
 /* Columns from first on that are solved for together. */
 static int some(int first, int count)
 {
-    return count - first < MT_SPARSE_COLUMNS ? count - first : MT_SPARSE_COLUMNS;
+    return count - first < SPARSE_COLUMNS ? count - first : SPARSE_COLUMNS;
 }
 
 static mt_status refine_vectors(void *context, int count, const double *x, double *y,
                                 mt_lowest_quotient *q, mt_err *err)
 {
-    mt_sparse *const s = context;
+    sparse *const s = context;
     const ptrdiff_t n = s->p->n;
     const ptrdiff_t rows = s->p->a.n_rows;
-    for (int first = 0; first < count; first += MT_SPARSE_COLUMNS) {
+    for (int first = 0; first < count; first += SPARSE_COLUMNS) {
         const int here = some(first, count);
         double *const to = y + (n * first);
         for (int c = 0; c < here; c++) {
-            mt_sparse_metric(s, x + (n * (first + c)), s->f + (n * c));
+            sparse_metric(s, x + (n * (first + c)), s->f + (n * c));
         }
-        MT_TRY(mt_sparse_solve(s, here, s->f, MT_SPARSE_SOLVED, to, err));
+        MT_TRY(sparse_solve(s, here, s->f, SPARSE_SOLVED, to, err));
         for (int c = 0; c < here; c++) {
             quotient_of_vector(s, to + (n * c), s->mu + (rows * c), q + first + c);
         }
@@ -158,7 +764,7 @@ static mt_status refine_vectors(void *context, int count, const double *x, doubl
 static mt_status count_modes_below(void *context, double tau, int known, int *n, bool *certain,
                                    mt_err *err)
 {
-    mt_sparse *const s = context;
+    sparse *const s = context;
     double least = 0.0;
     *certain = false;
     for (int i = 0; i <= MT_COUNT(COUNTED) && !(*certain && *n <= known); i++) {
@@ -167,8 +773,8 @@ static mt_status count_modes_below(void *context, double tau, int known, int *n,
             break;
         }
         MT_TRY(s->p->check != NULL ? s->p->check(s->p->context, err) : MT_OK);
-        MT_TRY(mt_sparse_inertia(s, i == 0 ? 1.0 : COUNTED[i - 1], -tau, &here, &least, err));
-        if (least > MT_SPARSE_CERTAIN && (!*certain || here < *n)) {
+        MT_TRY(sparse_inertia(s, i == 0 ? 1.0 : COUNTED[i - 1], -tau, &here, &least, err));
+        if (least > SPARSE_CERTAIN && (!*certain || here < *n)) {
             *n = here;
             *certain = true;
         }
@@ -177,7 +783,7 @@ static mt_status count_modes_below(void *context, double tau, int known, int *n,
 }
 
 /* The largest K_ii/M_ii. */
-static double highest(const mt_sparse *s)
+static double highest(const sparse *s)
 {
     double most = 0.0;
     for (int j = 0; j < s->p->n; j++) {
@@ -188,7 +794,7 @@ static double highest(const mt_sparse *s)
 }
 
 /* H, with a shift where K alone may be singular. */
-static mt_status factor_stiffness(mt_sparse *s, bool *held, char *why, mt_err *err)
+static mt_status factor_stiffness(sparse *s, bool *held, char *why, mt_err *err)
 {
     double shift = FIRST_SHIFT * highest(s);
     *held = s->stiffest > 0.0;
@@ -196,10 +802,10 @@ static mt_status factor_stiffness(mt_sparse *s, bool *held, char *why, mt_err *e
         (void)mt_snprintf(why, MT_SPARSE_WHY, "nothing in it has a stiffness");
         return MT_OK;
     }
-    MT_TRY(mt_sparse_freedoms(s, err));
-    MT_TRY(mt_sparse_factor(s, 0.0, held, err));
+    MT_TRY(sparse_freedoms(s, err));
+    MT_TRY(sparse_factor(s, 0.0, held, err));
     for (int i = 0; i < SHIFTS && !*held && shift > 0.0; i++) {
-        MT_TRY(mt_sparse_factor(s, shift, held, err));
+        MT_TRY(sparse_factor(s, shift, held, err));
         shift *= 100.0;
     }
     if (!*held) {
@@ -221,8 +827,8 @@ static double lowest_lambda(const mt_modes *m)
     return lowest < HUGE_VAL ? lowest : 0.0;
 }
 
-static mt_status find_sparse_modes(mt_sparse *s, mt_arena *mem, mt_lowest_modes *out,
-                                   bool *stable, mt_err *err)
+static mt_status find_sparse_modes(sparse *s, mt_arena *mem, mt_lowest_modes *out, bool *stable,
+                                   mt_err *err)
 {
     const mt_sparse_problem *const p = s->p;
     for (int round = 0;; round++) {
@@ -234,7 +840,7 @@ static mt_status find_sparse_modes(mt_sparse *s, mt_arena *mem, mt_lowest_modes 
                                            .shift = s->shift,
                                            .shapes = p->shapes,
                                            .apply = apply_inverse_iteration,
-                                           .metric = mt_sparse_metric,
+                                           .metric = sparse_metric,
                                            .refine = refine_vectors,
                                            .below = count_modes_below,
                                            .context = s};
@@ -248,9 +854,9 @@ static mt_status find_sparse_modes(mt_sparse *s, mt_arena *mem, mt_lowest_modes 
         }
         const double was = s->shift;
         bool sound = false;
-        MT_TRY(mt_sparse_factor(s, first, &sound, err));
+        MT_TRY(sparse_factor(s, first, &sound, err));
         if (!sound) {
-            return mt_sparse_factor(s, was, &sound, err);
+            return sparse_factor(s, was, &sound, err);
         }
         mt_arena_rewind(mem, mark);
     }
@@ -259,12 +865,12 @@ static mt_status find_sparse_modes(mt_sparse *s, mt_arena *mem, mt_lowest_modes 
 /* y := y - X X^T M y with the first i columns, and its forces nu with theirs (rigid-body modes
  * have none): inverse iteration has made the rounding of M y larger by the quotient of their
  * eigenvalues. */
-static void clear_of_softer(mt_sparse *s, int i, const double *x, const double *forces,
-                            double *y, double *nu)
+static void clear_of_softer(sparse *s, int i, const double *x, const double *forces, double *y,
+                            double *nu)
 {
     const int n = s->p->n;
     const int rows = s->p->a.n_rows;
-    mt_sparse_metric(s, y, s->f);
+    sparse_metric(s, y, s->f);
     for (int j = 0; j < i; j++) {
         const double *const softer = x + ((ptrdiff_t)n * j);
         const double part = -mt_dot(n, softer, s->f);
@@ -276,7 +882,7 @@ static void clear_of_softer(mt_sparse *s, int i, const double *x, const double *
 /* One more step of inverse iteration, (K + s M) Y + A^T N = M X, and among the vibration modes
  * the Ritz vectors: of X^T M Y, X being orthonormal. x := y, mu := nu, both over the size of
  * y. */
-static mt_status refine_shapes(mt_sparse *s, mt_arena *mem, const mt_lowest_modes *out,
+static mt_status refine_shapes(sparse *s, mt_arena *mem, const mt_lowest_modes *out,
                                double **mu, mt_err *err)
 {
     const int n = s->p->n;
@@ -291,17 +897,17 @@ static mt_status refine_shapes(mt_sparse *s, mt_arena *mem, const mt_lowest_mode
     double *const force = *mu + ((ptrdiff_t)rows * first);
     MT_TRY(mt_arena_check(mem, err));
     MT_TRY(mt_arena_check(s->mem, err));
-    for (int i = 0; i < count; i += MT_SPARSE_COLUMNS) {
+    for (int i = 0; i < count; i += SPARSE_COLUMNS) {
         const int here = some(i, count);
         for (int c = 0; c < here; c++) {
-            mt_sparse_metric(s, x + ((ptrdiff_t)n * (i + c)), s->f + ((ptrdiff_t)n * c));
+            sparse_metric(s, x + ((ptrdiff_t)n * (i + c)), s->f + ((ptrdiff_t)n * c));
         }
-        MT_TRY(mt_sparse_solve(s, here, s->f, MT_SPARSE_SOLVED, y + ((ptrdiff_t)n * i), err));
+        MT_TRY(sparse_solve(s, here, s->f, SPARSE_SOLVED, y + ((ptrdiff_t)n * i), err));
         memcpy(force + ((ptrdiff_t)rows * i), s->mu,
                (size_t)rows * (size_t)here * sizeof *force);
     }
     for (int i = 0; i < count; i++) {
-        mt_sparse_metric(s, y + ((ptrdiff_t)n * i), s->f);
+        sparse_metric(s, y + ((ptrdiff_t)n * i), s->f);
         for (int k = 0; k <= i; k++) { /* the smaller image: its rounding is the smaller one */
             h[i + ((ptrdiff_t)count * k)] = mt_dot(n, x + ((ptrdiff_t)n * k), s->f);
         }
@@ -313,7 +919,7 @@ static mt_status refine_shapes(mt_sparse *s, mt_arena *mem, const mt_lowest_mode
         double *const to = y + ((ptrdiff_t)n * i);
         double *const nu = force + ((ptrdiff_t)rows * i);
         clear_of_softer(s, first + i, out->x, *mu, to, nu);
-        mt_sparse_metric(s, to, s->f);
+        sparse_metric(s, to, s->f);
         const double size = sqrt(mt_dot(n, to, s->f));
         for (int j = 0; j < n; j++) {
             x[j + ((ptrdiff_t)n * i)] = to[j] / size;
@@ -325,34 +931,35 @@ static mt_status refine_shapes(mt_sparse *s, mt_arena *mem, const mt_lowest_mode
     return MT_OK;
 }
 
+/* Number of constraint stiffnesses to try, and try i of them, ready to be prepared. */
 /* Without constraints, or stiffnesses, all of STIFFER are one. */
-int mt_sparse_tries(const mt_sparse_problem *p)
+static int sparse_tries(const mt_sparse_problem *p)
 {
     return p->a.n_rows == 0 ? 1 : p->g == NULL ? MT_COUNT(STIFFER) : 2 * OF_LOADED;
 }
 
-mt_sparse mt_sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem)
+static sparse sparse_try(const mt_sparse_problem *p, int i, mt_arena *mem)
 {
-    return (mt_sparse){.p = p,
-                       .mem = mem,
-                       .stiffer = STIFFER[p->g == NULL ? i : i % OF_LOADED],
-                       .outweigh = p->g != NULL && i >= OF_LOADED};
+    return (sparse){.p = p,
+                    .mem = mem,
+                    .stiffer = STIFFER[p->g == NULL ? i : i % OF_LOADED],
+                    .outweigh = p->g != NULL && i >= OF_LOADED};
 }
 
 mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_modes *out,
                           double **mu, bool *answered, char why[MT_SPARSE_WHY], mt_err *err)
 {
     mt_arena work = {.first = NULL};
-    mt_sparse s = {.p = p};
+    sparse s = {.p = p};
     *answered = false;
     *mu = NULL;
     *out = (mt_lowest_modes){.below = 0};
     mt_status rc = mt_arena_init(&work, 0, err);
     bool more = true;
-    for (int i = 0; i < mt_sparse_tries(p) && rc == MT_OK && more; i++) {
+    for (int i = 0; i < sparse_tries(p) && rc == MT_OK && more; i++) {
         mt_arena_clear(&work);
-        s = mt_sparse_try(p, i, &work);
-        rc = mt_sparse_prepare(&s, err);
+        s = sparse_try(p, i, &work);
+        rc = sparse_prepare(&s, err);
         rc = rc == MT_OK ? factor_stiffness(&s, answered, why, err) : rc;
         more = !*answered && s.stiffest > 0.0;
     }
@@ -365,4 +972,96 @@ mt_status mt_modal_sparse(const mt_sparse_problem *p, mt_arena *mem, mt_lowest_m
     }
     mt_arena_free(&work);
     return rc;
+}
+
+/*
+ * With E = x^T (K + s M) x, what the roundings delta of the strains of x make of it is at most
+ * (sum k delta^2)^(1/2) in the norm E^(1/2) (sparse.c); what x leaves open of the constraints
+ * their forces pay for.
+ */
+
+struct mt_sparse_solver {
+    mt_sparse_problem p;
+    sparse s;
+    mt_arena *mem;
+};
+
+/* The factor with a shift, from the least stiffness of constraints on. */
+static mt_status factor_with_shift(mt_sparse_solver *o, double shift, bool *sound, mt_err *err)
+{
+    const int tries = sparse_tries(&o->p);
+    *sound = false;
+    for (int i = 0; i < tries && !*sound; i++) {
+        const mt_arena_mark mark = mt_arena_get_mark(o->mem);
+        o->s = sparse_try(&o->p, i, o->mem);
+        MT_TRY(sparse_prepare(&o->s, err));
+        MT_TRY(sparse_factor(&o->s, shift, sound, err));
+        if (!*sound) {
+            mt_arena_rewind(o->mem, mark);
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_sparse_solver_new(const mt_sparse_problem *p, bool held, double lambda,
+                               mt_arena *mem, mt_sparse_solver **out, mt_err *err)
+{
+    mt_sparse_solver *const o = mt_arena_alloc(mem, 1, sizeof *o);
+    bool sound = false;
+    *out = NULL;
+    MT_TRY(mt_arena_check(mem, err));
+    *o = (mt_sparse_solver){.p = *p, .mem = mem};
+    if (held) {
+        MT_TRY(factor_with_shift(o, 0.0, &sound, err));
+    }
+    if (!sound) {
+        MT_TRY(factor_with_shift(o, lambda, &sound, err));
+    }
+    *out = sound ? o : NULL;
+    return MT_OK;
+}
+
+double mt_sparse_solver_shift(const mt_sparse_solver *o)
+{
+    return o->s.shift;
+}
+
+void mt_sparse_solver_mass(mt_sparse_solver *o, const double *x, double *y)
+{
+    sparse_metric(&o->s, x, y);
+}
+
+void mt_sparse_solver_stiffness(mt_sparse_solver *o, const double *x, double *y)
+{
+    sparse_metric(&o->s, x, y);
+    for (int j = 0; j < o->p.n; j++) {
+        y[j] *= -o->s.shift;
+    }
+    sparse_subtract(&o->s, x, y);
+    for (int j = 0; j < o->p.n; j++) {
+        y[j] = -y[j];
+    }
+}
+
+mt_status mt_sparse_solver_solve(mt_sparse_solver *o, const double *f, double *x, double *noise,
+                                 mt_err *err)
+{
+    sparse *const s = &o->s;
+    const mt_sparse_problem *const p = &o->p;
+    double k_noise = 0.0;
+    double m_noise = 0.0;
+    MT_TRY(sparse_solve(s, 1, f, SPARSE_SOLVED, x, err));
+    if (noise == NULL) {
+        return MT_OK;
+    }
+    const double size = sqrt(fmax(mt_dot(p->n, x, f), 0.0));
+    double other = sparse_load_noise(s, x);
+    (void)sparse_energy(&p->k, x, &k_noise);
+    (void)sparse_energy(&p->m, x, &m_noise);
+    for (int r = 0; r < p->a.n_rows; r++) {
+        other += fabs(s->mu[r] * mt_rows_dot(&p->a, r, x));
+    }
+    *noise = sqrt(k_noise + (s->shift * m_noise)) + (OTHER_ULPS * DBL_EPSILON * size) +
+             (size > 0.0 ? other / size : 0.0);
+    return MT_OK;
 }

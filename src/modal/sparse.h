@@ -2,6 +2,8 @@
 #ifndef MODAL_SPARSE_H
 #define MODAL_SPARSE_H
 
+#include <float.h>
+
 #include "linalg/sparse.h"
 #include "modal/lowest.h"
 
@@ -60,5 +62,15 @@ mt_status mt_sparse_solver_solve(mt_sparse_solver *o, const double *f, double *x
 /* y := M x; y := (K + shift M) x. */
 void mt_sparse_solver_mass(mt_sparse_solver *o, const double *x, double *y);
 void mt_sparse_solver_stiffness(mt_sparse_solver *o, const double *x, double *y);
+
+/**
+ * Constraint forces that balance a load: mu[rows of A] with A^T mu = f[n], of least norm where
+ * there are many, least-squares where there are none. Uses n, a, unit and check of p.
+ * @param[out] open   [rows of A] about the rounding error of each
+ * @param[out] found  false: double precision is not enough
+ * Fails: as mt_factor_make, MT_E_MEMORY, as `check`.
+ */
+mt_status mt_modal_balance(const mt_sparse_problem *p, const double *f, double *mu,
+                           double *open, bool *found, mt_err *err);
 
 #endif

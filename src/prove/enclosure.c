@@ -990,7 +990,7 @@ static bool all_squares(const mt_linear *lin)
  * Slack of an eigenvalue relative to the trace of K (or of lambda M): ROUNDING_ULPS (n + terms)
  * eps, times the condition of the basis, for the rounding of the rows in the basis (n eps each,
  * amplified by the condition), of sums of `terms` parts, and of the model's own evaluation. 16
- * as the modal room counts (modal_priv.h).
+ * as the modal room counts (modal/modes.h).
  */
 static const double ROUNDING_ULPS = 16.0;
 

@@ -10,7 +10,7 @@
 
 #include "linalg/dense.h"
 #include "linalg/ldl.h"
-#include "modal/growth.h"
+#include "modal/damped.h"
 
 /* Work of mt_response_poles. */
 typedef struct poles {

@@ -44,7 +44,7 @@ mt_status mt_response_poles(const mt_basis *basis, mt_arena *mem, mt_pole_sum *o
 mt_status mt_response_pole_list(const mt_basis *basis, mt_arena *mem, int *n,
                                 double complex **s, mt_err *err);
 
-/* Index of the pole that grows by itself, by the rule of modal/growth.h; -1: none. */
+/* Index of the pole that grows by itself, by the rule of modal/damped.h; -1: none. */
 int mt_pole_sum_growing(const mt_pole_sum *p);
 /* Value of the sum at w [rad/s]. */
 double complex mt_pole_sum_at(const mt_pole_sum *p, double w);

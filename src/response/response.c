@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "response/response.h"
 
-#include "modal/growth.h"
+#include "modal/damped.h"
 #include "response/large.h"
 #include "response/slopes_weighted.h"
 

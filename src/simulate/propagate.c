@@ -112,7 +112,7 @@ static void oscillators_position(oscillators *o, const double *e, const double *
 
 /*
  * Coordinates of modes, because frequencies may lie far apart: lambda then has the digits that
- * the springs have (modal/graded.c), which sums of their matrices lose.
+ * the springs have (modal/solve.c), which sums of their matrices lose.
  *     A check puts a state into the whole equations, with positions, angles and velocity terms:
  * along phi, which the forces of joints do no work on,
  *     r = phi^T (M q'' - f(g, v) - inputs)

@@ -2,7 +2,7 @@
 /* What grows by itself: poles against the axis, and matrices that can push nothing on. */
 #include <math.h>
 
-#include "modal/growth.h"
+#include "modal/damped.h"
 #include "support/mt_test.h"
 
 static const double EPS = 2.220446049250313e-16;
