@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The modes of one configuration as functions of inputs, with the channels that read them. */
 #include "analysis/analysis.h"
 
 #include <math.h>
@@ -9,9 +10,58 @@
 #include "analysis/lowest.h"
 #include "analysis/tracking.h"
 #include "base/run.h"
+#include "linalg/dense.h"
 #include "mechanics/energy.h"
 #include "mechanics/products.h"
 #include "mechanics/redundant.h"
+
+/* Channels. */
+
+mt_status mt_channels_scale(const mt_system *sys, int n, const int *channels, double length,
+                            mt_arena *mem, double **scale, mt_err *err)
+{
+    int turns = 0;
+    *scale = NULL;
+    for (int i = 0; i < n; i++) {
+        turns += mt_channel_turns(sys->channels[channels[i]].kind) ? 1 : 0;
+    }
+    if (turns == 0 || turns == n) {
+        return MT_OK;
+    }
+    *scale = mt_arena_f64(mem, (size_t)n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n; i++) {
+        (*scale)[i] = mt_channel_turns(sys->channels[channels[i]].kind) ? length : 1.0;
+    }
+    return MT_OK;
+}
+
+void mt_channels_weigh(int n, const double *scale, int columns, double *shapes)
+{
+    for (int k = 0; k < columns && scale != NULL; k++) {
+        for (int i = 0; i < n; i++) {
+            shapes[i + ((ptrdiff_t)k * n)] *= scale[i];
+        }
+    }
+}
+
+mt_status mt_analysis_common_channels(const mt_analysis *a, const mt_analysis *b, mt_arena *mem,
+                                      mt_common_channels *out, mt_err *err)
+{
+    const size_t most = (size_t)a->sys->n_channels;
+    *out = (mt_common_channels){.a = mt_arena_int(mem, most), .b = mt_arena_int(mem, most)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < a->sys->n_channels; i++) {
+        const int other = mt_system_find_channel(b->sys, a->sys->channels[i].name);
+        if (other >= 0) {
+            out->a[out->n] = i;
+            out->b[out->n++] = other;
+        }
+    }
+    return MT_OK;
+}
+
+/* Analysis. */
 
 enum { DIRECTION_TEXT = 300 };
 static const char NO_GRADIENT[] = "derivatives asked for after a solve without gradient";
@@ -438,5 +488,66 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
                                           ds + ((ptrdiff_t)p * ns), err));
     }
     mt_arena_rewind(&a->mem, mark);
+    return MT_OK;
+}
+
+/*
+ *     dlambda/dp = y^T (dK - lambda dM) y,   f = sqrt(lambda) / (2 pi),
+ *     df/dp = (dlambda/dp) / (8 pi^2 f).
+ *
+ * Where joints are redundant at the present value of a parameter only, frequencies jump there:
+ * no derivative (mt_linear_independence).
+ */
+
+/* Derivatives of the cluster that begins at position first: its directional values,
+ * ascending. */
+static mt_status cluster_values(mt_analysis *a, int p, int first, int size, double *dlambda,
+                                mt_err *err)
+{
+    const size_t n = (size_t)mt_linear_freedoms(a->lin);
+    const size_t r = (size_t)size;
+    const mt_arena_mark mark = mt_arena_get_mark(&a->mem);
+    if (size == 1) { /* by all inputs at once, and kept */
+        double *const all = mt_arena_f64(&a->mem, (size_t)a->sys->n_inputs, 1);
+        MT_TRY(mt_arena_check(&a->mem, err));
+        MT_TRY(mt_analysis_dlambda_raw(a, first, all, err));
+        *dlambda = all[p];
+        mt_arena_rewind(&a->mem, mark);
+        return MT_OK;
+    }
+    double *const dky = mt_arena_f64(&a->mem, n, r);
+    double *const dmy = mt_arena_f64(&a->mem, n, r);
+    double *const matrix = mt_arena_f64(&a->mem, r, r);
+    MT_TRY(mt_arena_check(&a->mem, err));
+    MT_TRY(
+        mt_linear_products(a->lin, p, size, mt_modal_shape(&a->modes, first), dky, dmy, err));
+    MT_TRY(mt_modal_dcluster(&a->modes, first, size, dky, dmy, matrix, &a->mem, err));
+    MT_TRY(mt_eig_sym(size, matrix, dlambda, false, &a->mem, err));
+    mt_arena_rewind(&a->mem, mark);
+    return MT_OK;
+}
+
+mt_status mt_analysis_sensitivity(mt_analysis *a, int p, int n, const int *position,
+                                  mt_arena *mem, double *hz_per_unit, mt_independence *why,
+                                  mt_err *err)
+{
+    const mt_modes *const modes = &a->modes;
+    double *const values = mt_arena_f64(mem, (size_t)modes->count, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_linear_independence(a->lin, p, mem, why, err));
+    /* where a mode is blocked, those above it are counted again */
+    bool gone = why->opens;
+    for (int i = 0; i < n;) {
+        int size = 1;
+        const int first = mt_modal_cluster(modes, position[i], &size);
+        MT_TRY(cluster_values(a, p, first, size, values, err));
+        for (int j = first; j < first + size && why->blocks && !gone; j++) {
+            MT_TRY(mt_linear_blocked(a->lin, p, 1, mt_modal_shape(modes, j), &gone, err));
+        }
+        for (int j = 0; j < size && i < n; j++, i++) {
+            const double hz = mt_modal_hz(modes, position[i]);
+            hz_per_unit[i] = gone ? nan("") : mt_modal_hz_slope(values[j], hz);
+        }
+    }
     return MT_OK;
 }

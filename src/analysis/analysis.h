@@ -2,6 +2,7 @@
 #ifndef ANALYSIS_ANALYSIS_H
 #define ANALYSIS_ANALYSIS_H
 
+#include "mechanics/independence.h"
 #include "mechanics/linear.h"
 #include "modal/modal.h"
 
@@ -138,5 +139,36 @@ mt_status mt_analysis_shape(mt_analysis *a, int pos, int ns, const int *channel,
                             double *ds, mt_err *err);
 /* The configuration's name, valid while the model exists. */
 const char *mt_analysis_configuration(const mt_analysis *a);
+
+/* Channels whose names two analyses share: their indices in each, in the order of a. */
+typedef struct mt_common_channels {
+    int n;
+    int *a; /* [n] */
+    int *b; /* [n] */
+} mt_common_channels;
+
+/* O(channels of a times those of b). Fails: MT_E_MEMORY. */
+mt_status mt_analysis_common_channels(const mt_analysis *a, const mt_analysis *b, mt_arena *mem,
+                                      mt_common_channels *out, mt_err *err);
+
+/* Weights of channels with displacements and angles: 1, or the length [m] that turns an angle
+ * into an arc, in mem; *scale is NULL where all are of one kind. Fails: MT_E_MEMORY. */
+mt_status mt_channels_scale(const mt_system *sys, int n, const int *channels, double length,
+                            mt_arena *mem, double **scale, mt_err *err);
+/* Multiply the rows of shapes[n x columns] by scale; NULL: unchanged. */
+void mt_channels_weigh(int n, const double *scale, int columns, double *shapes);
+
+/**
+ * Derivatives of the frequencies of vibration modes by input p, after a solve with gradient.
+ * @param[in]  position  [n] of the first n flexible modes, ascending
+ * @param[out] hz_per_unit [n] Hz per unit of the input. Repeated modes have no derivatives:
+ *   directional values (eigenvalues of Y^T (dK - lambda dM) Y over the
+ *   cluster), ascending. NaN where there is none: at 0 Hz, and by mt_linear_independence
+ * @param[out] why  the joints that cause it; names are in mem
+ * Scratch from mem. Fails: as mt_linear_products and mt_linear_independence, MT_E_MEMORY.
+ */
+mt_status mt_analysis_sensitivity(mt_analysis *a, int p, int n, const int *position,
+                                  mt_arena *mem, double *hz_per_unit, mt_independence *why,
+                                  mt_err *err);
 
 #endif

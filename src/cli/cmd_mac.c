@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/channels.h"
+#include "analysis/analysis.h"
 #include "base/format.h"
 #include "cli/cli.h"
 #include "cli/cmd_modes.h"

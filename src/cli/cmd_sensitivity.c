@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "analysis/sensitivity.h"
+#include "analysis/analysis.h"
 #include "base/format.h"
 #include "base/number.h"
 #include "cli/cli.h"

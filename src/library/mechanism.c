@@ -10,8 +10,6 @@
 #include <string.h>
 
 #include "analysis/analysis.h"
-#include "analysis/channels.h"
-#include "analysis/sensitivity.h"
 #include "base/base.h"
 #include "base/text.h"
 #include "model/lint.h"

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "analysis/channels.h"
+#include "analysis/analysis.h"
 
 static mt_status no_common(const mt_reference *r, mt_err *err)
 {

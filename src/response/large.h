@@ -7,7 +7,7 @@
 /*
  * The forced problem of a large mechanism in few coordinates: its rigid-body modes, its lowest
  * modes, and for each input, output and local damper with force shape g the shapes g, A g, A^2
- * g ... of the part of g that these modes leave (lowest_forced.h), the terms of a series in
+ * g ... of the part of g that these modes leave (analysis/lowest.h), the terms of a series in
  * w^2. (Modal synthesis with static correction of all orders: a Krylov space; Galerkin's error
  * in it is at most that of the series.)
  */

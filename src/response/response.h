@@ -2,7 +2,7 @@
 #ifndef RESPONSE_RESPONSE_H
 #define RESPONSE_RESPONSE_H
 
-#include "analysis/lowest_forced.h"
+#include "analysis/lowest.h"
 #include "response/curve.h"
 #include "response/poles.h"
 #include "response/problem.h"

@@ -10,8 +10,8 @@
 #include <float.h>
 #include <stdlib.h>
 
+#include "analysis/analysis.h"
 #include "analysis/lowest.h"
-#include "analysis/sensitivity.h"
 #include "mechanics/mech.h"
 #include "mt_random.h"
 #include "mt_writer.h"

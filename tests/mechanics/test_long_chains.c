@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Long loaded mechanisms: what their equilibria cost, counted, and what comes out. */
-#include "analysis/sensitivity.h"
+#include "analysis/analysis.h"
 #include "mechanics/linear.h"
 #include "mechanics/mech.h"
 #include "mt_writer.h"
