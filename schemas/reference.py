@@ -80,7 +80,7 @@ UNITS = (("_n_m_s_per_rad", "N m s/rad"), ("_n_m_per_rad", "N m/rad"), ("_n_s_pe
          ("_deg", "degrees"), ("_rpm", "rpm"), ("_hz", "Hz"), ("_kg", "kg"), ("_pa", "Pa"), ("_m2", "m^2"), ("_m4", "m^4"), ("mass_per_s", "1/s"),
          ("_n", "N"), ("_s", "s"), ("_m", "m"), ("_g", "g"))
 # What says something of the members of an object together, or of a value; all else has an entry of its own.
-KNOWN = {"$schema", "title", "description", "type", "properties", "definitions", "required", "additionalProperties", "enum", "const", "items",
+KNOWN = {"$schema", "$comment", "title", "description", "type", "properties", "definitions", "required", "additionalProperties", "enum", "const", "items",
          "$ref", "allOf", "anyOf", "oneOf", "not", "if", "then", "else", "minimum", "maximum", "minItems", "maxItems", "minLength",
          "minProperties", "pattern", "propertyNames", "examples", "default", "dependencies"}
 

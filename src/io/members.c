@@ -13,7 +13,7 @@ bool mt_object_match(mt_reader *r, mt_addr value, const mt_key_table *table, mt_
 }
 
 /* The index of a member in the table, which has it. */
-static int object_key(const mt_object *o, const char *member)
+static int key_index(const mt_object *o, const char *member)
 {
     int k = 0;
     while (k + 1 < o->table->n && strcmp(o->table->keys[k].name, member) != 0) {
@@ -24,7 +24,7 @@ static int object_key(const mt_object *o, const char *member)
 
 mt_addr mt_object_value(const mt_object *o, const char *member)
 {
-    return o->found[object_key(o, member)];
+    return o->found[key_index(o, member)];
 }
 
 bool mt_object_has(const mt_reader *r, const mt_object *o, const char *member)
@@ -48,7 +48,7 @@ static void list_keys(const mt_key *keys, int n, mt_text *out)
 
 int mt_object_one_of(mt_reader *r, const mt_object *o, const char *first, int n)
 {
-    const mt_key *const keys = &o->table->keys[object_key(o, first)];
+    const mt_key *const keys = &o->table->keys[key_index(o, first)];
     int which = MT_ABSENT;
     for (int k = 0; k < n; k++) {
         const mt_addr at = mt_json_member(r->doc, o->addr, keys[k].name);

@@ -54,8 +54,8 @@
     }
 /* "description" and "source", which every object may have */
 #define MT_M_DESCRIPTION MT_M_FREE("description", "Free text for people.")
-#define MT_M_SOURCE      MT_M_FREE("source", MT_M_SAYS_SOURCE)
-#define MT_M_SAYS_SOURCE "Where it comes from: a table, a page, a test report."
+#define MT_M_ORIGIN      "Where it comes from: a table, a page, a test report."
+#define MT_M_SOURCE      MT_M_FREE("source", MT_M_ORIGIN)
 /* mt_name_list */
 #define MT_M_REFS(label, m, ...)                                                      \
     {                                                                                 \

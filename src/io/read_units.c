@@ -43,10 +43,11 @@ static const mt_unit *read_unit(mt_reader *r, mt_addr value, mt_dimension dimens
     return which == MT_ABSENT ? NULL : mt_unit_find(names[which]);
 }
 
-void mt_read_units(mt_reader *r, mt_addr value, const mt_unit *units[MT_DIMENSION_COUNT])
+void mt_read_units(mt_reader *r, mt_addr value, const mt_key_table *table,
+                   const mt_unit *units[MT_DIMENSION_COUNT])
 {
     mt_addr at[MT_DIMENSION_COUNT];
-    (void)mt_reader_object(r, value, &mt_units_keys, at);
+    (void)mt_reader_object(r, value, table, at);
     for (int d = 0; d < MT_DIMENSION_COUNT; d++) {
         units[d] = read_unit(r, at[d], (mt_dimension)d);
     }

@@ -11,8 +11,10 @@
  */
 extern const mt_key_table mt_units_keys;
 
-/* Read "units" of a model or a study: the unit of each dimension, NULL where none is given. */
-void mt_read_units(mt_reader *r, mt_addr value, const mt_unit *units[MT_DIMENSION_COUNT]);
+/* Read "units" of a model or a study by its table, in the order of mt_dimension: the unit of
+ * each dimension, NULL where none is given. */
+void mt_read_units(mt_reader *r, mt_addr value, const mt_key_table *table,
+                   const mt_unit *units[MT_DIMENSION_COUNT]);
 /* As mt_reader_expr, with a bare number in this unit (NULL: SI). */
 bool mt_reader_expr_in(mt_reader *r, mt_addr value, const mt_unit *unit, mt_expr *out);
 /* Compare the dimension of an expression, given as text at the value, with that of this unit,

@@ -126,6 +126,14 @@ struct mt_key_table {
     const char *rules;
 };
 
+/* A type that members of a document share, in its JSON Schema: the sentence, and the rest as
+ * JSON. */
+typedef struct mt_schema_type {
+    const char *name;
+    const char *says;
+    const char *schema;
+} mt_schema_type;
+
 enum { MT_MAX_KEYS = 40 }; /* a table has at most as many */
 
 /**

@@ -221,7 +221,7 @@ static void read_model_root(mt_model_reader *mr, const mt_addr *at)
     m->accepted = mt_reader_accepted(&mr->r, at[MODEL_ACCEPTED]);
     m->dimension = mt_reader_count(&mr->r, at[MODEL_DIMENSION], 2, 3, 0);
     m->dimension_addr = at[MODEL_DIMENSION];
-    mt_read_units(&mr->r, at[MODEL_UNITS], m->units);
+    mt_read_units(&mr->r, at[MODEL_UNITS], &mt_units_keys, m->units);
     read_parameters(mr, at[MODEL_PARAMETERS]);
     if (mt_arena_failed(&m->mem)) {
         return;

@@ -4,13 +4,13 @@
 #include <math.h>
 #include <stddef.h>
 
-#define MEMBER(slot, name, type, required, row) \
+#define MEMBER(slot, name, type, required, row, ...) \
     {MT_SLOT_##slot, name, required, MT_POSSIBLE_##row},
 #define MEMBERS(id, ...) \
     static const mt_goal_member id##_MEMBERS[] = {MT_GOAL_##id##_MEMBERS(MEMBER)};
 MT_GOAL_LIST(MEMBERS)
 
-#define KIND(id, name, unit, measure)                                                        \
+#define KIND(id, name, unit, measure, ...)                                                   \
     {#name, unit, MT_MEASURE_##measure, (int)(sizeof id##_MEMBERS / sizeof id##_MEMBERS[0]), \
      id##_MEMBERS},
 static const mt_goal_kind KINDS[] = {MT_GOAL_LIST(KIND)};

@@ -65,6 +65,37 @@ const mt_key_table mt_study_weight_sensitivity_keys = {
             "minimised again. It is a sensitivity to the weights, not an uncertainty: repeated "
             "noisy tests may scatter many times more."};
 
+static const char *const LENGTHS[] = {"m", "mm", "cm", "in", "ft"};
+static const char *const ANGLES[] = {"rad", "deg"};
+static const char *const SPEEDS[] = {"Hz", "rpm"};
+/* In the order of mt_dimension. */
+static const mt_key UNITS[] = {
+    {.name = "length",
+     .type = MT_KEY_TEXT,
+     .choices = LENGTHS,
+     .n_choices = MT_COUNT(LENGTHS),
+     .says = "Unit of parameters that are lengths. Absent: each in its own."},
+    {.name = "angle",
+     .type = MT_KEY_TEXT,
+     .choices = ANGLES,
+     .n_choices = MT_COUNT(ANGLES),
+     .says = "Unit of parameters that are angles. Absent: each in its own."},
+    {.name = "speed",
+     .type = MT_KEY_TEXT,
+     .choices = SPEEDS,
+     .n_choices = MT_COUNT(SPEEDS),
+     .says = "Unit of parameters in Hz, such as speeds of rotors. Absent: each in its own."},
+};
+const mt_key_table mt_study_units_keys = {
+    .what = "units",
+    .keys = UNITS,
+    .n = MT_COUNT(UNITS),
+    .says =
+        "Units of numbers that are values of parameters (bounds, catalogues, scales, values of "
+        "a trade study, published values) and that people are shown them in. Absent: of each "
+        "parameter's own unit in the model. Members that end in a unit stay in that. "
+        "Expressions (strings) are always in SI units: \"150*mm\", \"10*deg\" say otherwise."};
+
 static const char *const FORMATS[] = {"modetune-study/1"};
 
 /* Rows without a place are read by read_study_root, in the order in which files are loaded. */
@@ -97,7 +128,7 @@ static const mt_key STUDY[] = {
      .examples = "[[\"density\"]]"},
     MT_M_JUST("model", TEXT, true, NONE, "Model file, relative to this file.",
               .examples = "[\"../problems/inceptor.json\"]"),
-    MT_M_OBJECT("units", mt_units_keys),
+    MT_M_OBJECT("units", mt_study_units_keys),
     MT_M_LIST_OF("variables", mt_study_variable_keys,
                  "What may change. Without variables the study only verifies."),
     MT_M_JUST("goals", LIST, false, NONE, "The goals.",
@@ -148,7 +179,7 @@ const mt_key_table *const *mt_study_key_tables(int *n)
 {
 #define GOAL_KEYS(id, ...) &mt_study_goal_keys[MT_GOAL_##id],
     static const mt_key_table *const tables[] = {&mt_study_keys,
-                                                 &mt_units_keys,
+                                                 &mt_study_units_keys,
                                                  &mt_study_search_keys,
                                                  &mt_study_weight_sensitivity_keys,
                                                  &mt_study_variable_keys,
@@ -172,6 +203,35 @@ const mt_key_table *const *mt_study_key_tables(int *n)
 #undef GOAL_KEYS
     *n = MT_COUNT(tables);
     return tables;
+}
+
+const mt_schema_type *mt_study_types(int *n)
+{
+    static const mt_schema_type types[] = {
+        {.name = "number",
+         .says = "A number in the unit that the member names, of a parameter in the study's "
+                 "units or its own, else SI; or an expression of the model's parameters as a "
+                 "string, in SI units (\"2*m\", \"10*deg\", \"150*mm\", \"258*rpm\"), "
+                 "evaluated at the original design.",
+         .schema = "\"type\": [\"number\", \"string\"]"},
+        {.name = "index",
+         .says =
+             "A vibration mode, counted from 1 by ascending frequency; rigid-body modes have "
+             "no index. All designs of a study are counted alike: where a stiffness that the "
+             "variables can raise is 0, the mode that it lets go is a vibration of 0 Hz.",
+         .schema = "\"type\": \"integer\", \"minimum\": 1, \"maximum\": 100000"},
+        {.name = "mode",
+         .says = "A vibration mode: its index, counted from 1 by ascending frequency without "
+                 "the rigid-body modes, or the name of one of the model's named modes, which "
+                 "is tracked by its shape.",
+         .schema = "\"type\": [\"integer\", \"string\"], \"minimum\": 1, \"maximum\": 100000"},
+        {.name = "pair",
+         .says = "Lower and upper bound.",
+         .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "
+                   "{\"$ref\": \"#/definitions/number\"}"},
+    };
+    *n = MT_COUNT(types);
+    return types;
 }
 
 void mt_read_study_note_input(mt_study_reader *s, const char *name, const char *sha256)
@@ -378,13 +438,13 @@ static void read_study_root(mt_study_reader *s)
         !mt_object_match(&s->r, MT_JSON_ROOT, &mt_study_keys, &o)) {
         return;
     }
-    const mt_addr weights = mt_object_value(&o, "spread");
+    const mt_addr sensitivity = mt_object_value(&o, "spread");
     const mt_addr search = mt_object_value(&o, "search");
     mt_object_read(&s->r, &o, study);
     study->accepted = mt_reader_accepted(&s->r, mt_object_value(&o, "accepted"));
     study->alternatives = mt_object_value(&o, "recommendations") != MT_NO_ADDR;
     read_model(s, mt_object_value(&o, "model"));
-    mt_read_units(&s->r, mt_object_value(&o, "units"), study->units);
+    mt_read_units(&s->r, mt_object_value(&o, "units"), &mt_study_units_keys, study->units);
     note_settings(s);
     if (search != MT_NO_ADDR) {
         (void)mt_members_read(&s->r, search, &mt_study_search_keys, &study->search);
@@ -397,10 +457,10 @@ static void read_study_root(mt_study_reader *s)
     mt_read_study_goals(s, mt_object_value(&o, "goals"));
     mt_read_study_aircraft(s, mt_object_value(&o, "aircraft"));
     mt_read_study_objectives(s, mt_object_value(&o, "objective"));
-    if (weights != MT_NO_ADDR &&
-        mt_members_read(&s->r, weights, &mt_study_weight_sensitivity_keys,
+    if (sensitivity != MT_NO_ADDR &&
+        mt_members_read(&s->r, sensitivity, &mt_study_weight_sensitivity_keys,
                         &study->weight_sensitivity)) {
-        study->weight_sensitivity.addr = weights;
+        study->weight_sensitivity.addr = sensitivity;
     }
     mt_read_study_trade(s, mt_object_value(&o, "trade"), mt_object_value(&o, "goals"));
     study->responses =

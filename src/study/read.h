@@ -25,5 +25,7 @@ mt_status mt_study_load(const char *path, const mt_io_options *opt, mt_study **o
 /* The key tables of a study file, for the test that compares them with the JSON Schema; *n is
  * their number. `what` is the name of the schema's definition, "" the root. */
 const mt_key_table *const *mt_study_key_tables(int *n);
+/* The types that members of a study share; *n is their number. */
+const mt_schema_type *mt_study_types(int *n);
 
 #endif

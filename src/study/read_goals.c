@@ -4,17 +4,22 @@
 #include <string.h>
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
-#define KEY(slot, label, kind, given, row) \
-    {.name = (label),                      \
-     .type = MT_KEY_##kind,                \
-     .required = (given),                  \
-     .possible = MT_POSSIBLE_##row},
+#define KEY(slot, label, kind, given, row, ...) \
+    {.name = (label),                           \
+     .type = MT_KEY_##kind,                     \
+     .required = (given),                       \
+     .possible = MT_POSSIBLE_##row,             \
+     .says = __VA_ARGS__},
 
 #define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
 MT_GOAL_LIST(KEYS)
 
-#define TABLE(id, name, ...) \
-    {.what = "goal_" #name, .keys = id##_KEYS, .n = MT_COUNT(id##_KEYS)},
+#define TABLE(id, name, unit, measure, sentence, together) \
+    {.what = "goal_" #name,                                \
+     .keys = id##_KEYS,                                    \
+     .n = MT_COUNT(id##_KEYS),                             \
+     .says = (sentence),                                   \
+     .rules = (together)},
 const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT] = {MT_GOAL_LIST(TABLE)};
 
 /* A goal being read. */

@@ -45,11 +45,11 @@ mt_study_reader *mt_study_reader_of(mt_reader *r);
         .says = __VA_ARGS__                                                        \
     }
 /* two doubles, lower and upper */
-#define MT_S_PAIR(label, must, m, upper, row, ...)                               \
-    {                                                                            \
-        .name = (label), .type = MT_KEY_LIST, .required = (must), MT_M_ROW(row), \
-        MT_M_TO(mt_study_pair, double, m), .other = MT_M_PLACE(double, upper),   \
-        .says = __VA_ARGS__                                                      \
+#define MT_S_PAIR(label, must, m, upper, row, ...)                                  \
+    {                                                                               \
+        .name = (label), .type = MT_KEY_NUMBERS, .required = (must), MT_M_ROW(row), \
+        MT_M_TO(mt_study_pair, double, m), .other = MT_M_PLACE(double, upper),      \
+        .says = __VA_ARGS__                                                         \
     }
 /* mt_expr, and its text */
 #define MT_S_EXPR(label, must, m, text, ...)                                         \
@@ -59,7 +59,8 @@ mt_study_reader *mt_study_reader_of(mt_reader *r);
         .says = __VA_ARGS__                                                          \
     }
 /* int, a mode by its index from 1 */
-#define MT_M_INDEX(label, m, ...) MT_M_COUNT(label, false, m, 1, MT_MAX_LIST, __VA_ARGS__)
+#define MT_M_INDEX(label, m, ...) \
+    MT_M_COUNT(label, false, m, 1, MT_MAX_LIST, __VA_ARGS__, .schema = MT_GOAL_INDEX)
 /* NOLINTEND(bugprone-macro-parentheses) */
 void mt_study_number(mt_reader *r, const mt_key *key, mt_addr value, void *item);
 void mt_study_value(mt_reader *r, const mt_key *key, mt_addr value, void *item);
@@ -114,6 +115,7 @@ void mt_read_study_trade(mt_study_reader *s, mt_addr value, mt_addr goals);
 void mt_read_study_objectives(mt_study_reader *s, mt_addr value);
 
 extern const mt_key_table mt_study_keys;
+extern const mt_key_table mt_study_units_keys;
 extern const mt_key_table mt_study_search_keys;
 extern const mt_key_table mt_study_weight_sensitivity_keys;
 extern const mt_key_table mt_study_variable_keys;
