@@ -7,36 +7,18 @@ from pathlib import Path
 
 from common import ROOMS, ROOT, c_files, verdict
 
-ENGINE = {"base", "linalg", "expr", "model", "mechanics", "modal"}
-# room: rooms whose headers it may include, besides its own
-ALLOWED = {
-    "base": set(),
-    "linalg": {"base"},
-    "expr": {"base"},
-    "io": {"base", "expr"},
-    "model": {"base", "expr", "io"},
-    "environment": {"base", "expr", "io"},
-    "measurement": {"base", "expr", "io"},
-    "mechanics": {"base", "linalg", "model", "expr"},
-    "tree": {"base", "linalg", "expr", "model", "mechanics"},
-    "modal": {"base", "linalg"},
-    "analysis": ENGINE | {"tree"},
-    "response": ENGINE | {"analysis"},
-    "nlp": {"base", "linalg"},
-    "study": {"base", "expr", "io", "model", "environment", "measurement", "mechanics"},
-    "vibration": {"base", "response", "environment"},
-    "result": {"base", "io", "study"},
-    "prove": ENGINE | {"analysis"},
-    "scene": ENGINE | {"tree", "analysis", "io"},
-    "simulate": {"base", "linalg", "expr", "environment", "model", "mechanics", "modal"},
-    "problem": ENGINE | {"environment", "measurement", "analysis", "response", "vibration", "nlp", "study", "result", "prove"},
-    "search": ENGINE | {"environment", "analysis", "nlp", "study", "result", "prove", "problem"},
-    "describe": ENGINE | {"environment", "analysis", "response", "vibration", "nlp", "study", "result", "prove", "problem", "search"},
-    "answer": ENGINE | {"environment", "tree", "analysis", "nlp", "study", "result", "prove", "problem", "search", "describe"},
-    "library": set(ROOMS) - {"library", "cli"},
-    "report": {"base", "result"},
-    "cli": set(ROOMS),
-}
+MAP = "src/README.md"
+
+
+def arrows(text):
+    """The tables of the map: {room: rooms whose headers it may include, besides its own}."""
+    table = {}
+    for room, allowed in re.findall(r"^\| \[?`(\w+)`[^|]*\|[^|]*\|([^|]*)\|[^|]*\|$", text, re.M):
+        table[room] = set(ROOMS) - {room} if "everything" in allowed else set(re.findall(r"\w+", allowed)) & set(ROOMS)
+    return table
+
+
+ALLOWED = arrows((ROOT / MAP).read_text(encoding="utf-8"))
 # rooms that say which headers others may read; elsewhere all but *_priv.h
 OPEN = {
     "nlp": {"nlp.h", "starts.h", "cone.h", "merit.h", "libraries.h"},
@@ -71,7 +53,7 @@ def quoted_problem(room, name):
         folder = owner
     if folder not in ROOMS:
         return "names no room"
-    if folder != room and folder not in ALLOWED[room]:
+    if folder != room and folder not in ALLOWED.get(room, ()):
         return f"is not allowed in {room}"
     if folder != room and (rest.endswith("_priv.h") or rest not in OPEN.get(folder, {rest})):
         return f"is private to {folder}"
@@ -119,18 +101,13 @@ def check(root):
     return files, problems
 
 
-def documented(text):
-    """The table of CONTRIBUTING.md: {room: rooms it may include}."""
-    table = {}
-    for room, allowed in re.findall(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|[^|]*\|$", text, re.M):
-        table[room] = set(ROOMS) if "everything" in allowed else set(re.findall(r"\w+", allowed)) & set(ROOMS)
-    return table
-
-
-def guide_problems(text):
-    table = documented(text)
-    return [f"CONTRIBUTING.md: room {room} may include {sorted(table.get(room, []))}, here {sorted(ALLOWED[room])}"
-            for room in ROOMS if table.get(room) != ALLOWED[room]]
+def map_problems(table):
+    """Rooms that the map has not, and circles: rooms that are left when those that need none of the others are taken away."""
+    problems = [f"{MAP}: has no room {room}" for room in ROOMS if room not in table]
+    left = {room: set(needs) for room, needs in table.items()}
+    while any(not needs & set(left) for needs in left.values()):
+        left = {room: needs for room, needs in left.items() if needs & set(left)}
+    return problems + [f"{MAP}: {' and '.join(sorted(left))} need each other"] * bool(left)
 
 
 def self_test():
@@ -174,8 +151,8 @@ def self_test():
         (copy / "src/base/zz_planted.c").write_text('#include "cli/cli.h"\n')
         if len(check(copy)[1]) != len(before) + 1:
             problems.append("self-test: a fault planted in a copy of this tree was not found")
-        if len(guide_problems("| `base` | promise | linalg | |")) != len(ROOMS):
-            problems.append("self-test: a guide that differs from the table was accepted")
+        if len(map_problems(arrows("| `base` | promise | linalg | |\n| `linalg` | promise | base | |"))) != len(ROOMS) - 1:
+            problems.append("self-test: rooms that are missing, or a circle, were accepted")
         if check(Path(folder, "nothing"))[0] != 0:
             problems.append("self-test: an empty tree has files")
     return problems
@@ -183,5 +160,5 @@ def self_test():
 
 if __name__ == "__main__":
     count, faults = check(ROOT)
-    faults += guide_problems((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+    faults += map_problems(ALLOWED)
     verdict("includes", count, faults + self_test())

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """
 What `./bootstrap test` leaves out is known: the tests with the label "long" (tests/CMakeLists.txt: long_tests, and every_tests with
-".every" behind their names, which alone stand for those in both) are the rows of the table in CONTRIBUTING, each with the defect that only it would find.
+".every" behind their names, which alone stand for those in both) are the rows of the table in tests/README.md, each with the defect that only it would find.
 """
 import os
 import re
@@ -24,7 +24,7 @@ class Long(unittest.TestCase):
         cmake = (TREE / "tests/CMakeLists.txt").read_text(encoding="utf-8")
         cls.whole = listed(cmake, "long_tests")
         cls.every = listed(cmake, "every_tests")
-        cls.rows = ROW.findall((TREE / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+        cls.rows = ROW.findall((TREE / "tests/README.md").read_text(encoding="utf-8"))
 
     def test_the_table_has_all_that_is_left_out(self):
         self.assertGreater(len(self.whole) + len(self.every), 0)
