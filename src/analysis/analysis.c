@@ -12,8 +12,8 @@
 #include "base/run.h"
 #include "linalg/dense.h"
 #include "mechanics/energy.h"
+#include "mechanics/linear.h"
 #include "mechanics/products.h"
-#include "mechanics/redundant.h"
 
 /* Channels. */
 

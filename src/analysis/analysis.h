@@ -2,8 +2,8 @@
 #ifndef ANALYSIS_ANALYSIS_H
 #define ANALYSIS_ANALYSIS_H
 
-#include "mechanics/independence.h"
 #include "mechanics/linear.h"
+#include "mechanics/products.h"
 #include "modal/modal.h"
 
 /*

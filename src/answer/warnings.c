@@ -16,7 +16,7 @@
 #include "base/format.h"
 #include "linalg/dense.h"
 #include "mechanics/info.h"
-#include "mechanics/redundant.h"
+#include "mechanics/linear.h"
 #include "model/lint.h"
 #include "model/values.h"
 

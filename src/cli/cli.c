@@ -12,7 +12,7 @@
 #include "cli/args.h"
 #include "cli/limits.h"
 #include "cli/manual.h"
-#include "mechanics/redundant.h"
+#include "mechanics/linear.h"
 #include "report/table.h"
 #include "result/folder.h"
 #include "result/model.h"

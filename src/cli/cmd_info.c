@@ -11,7 +11,7 @@
 #include "cli/cli.h"
 #include "io/write_json.h"
 #include "mechanics/info.h"
-#include "mechanics/redundant.h"
+#include "mechanics/linear.h"
 #include "model/joint.h"
 #include "model/model.h"
 #include "model/values.h"

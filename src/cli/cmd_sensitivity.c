@@ -9,7 +9,7 @@
 #include "base/format.h"
 #include "base/number.h"
 #include "cli/cli.h"
-#include "mechanics/independence.h"
+#include "mechanics/products.h"
 #include "model/values.h"
 #include "report/table.h"
 

@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "cli/vibrated.h"
 #include "environment/vibration.h"
-#include "mechanics/drive.h"
+#include "mechanics/position.h"
 #include "model/values.h"
 #include "report/table.h"
 #include "response/ports.h"

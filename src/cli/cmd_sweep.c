@@ -7,7 +7,7 @@
 
 #include "base/format.h"
 #include "cli/cli.h"
-#include "mechanics/drive.h"
+#include "mechanics/position.h"
 #include "mechanics/sweep.h"
 #include "model/joint.h"
 #include "model/setting.h"

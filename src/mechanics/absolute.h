@@ -44,12 +44,6 @@ mt_status mt_absolute_new(const mt_system *sys, const double *inputs, const mt_s
  * MT_E_MEMORY. */
 mt_status mt_absolute_stand(const mt_system *sys, const mt_state *settled, const double *inputs,
                             mt_data *data, mt_placement *at, mt_arena *mem, mt_err *err);
-
-/* True where these bodies (n, or MT_GROUND) are in one group. */
-bool mt_absolute_together(const mt_absolute *o, const int *body, int n);
-/* True where the bodies of constraint i of the system are in one group; it then has no rows in
- * a. */
-bool mt_absolute_holds_already(const mt_absolute *o, int i);
 /* phi[nq] := x[n] by states. */
 void mt_absolute_shape(const mt_absolute *o, const double *x, double *phi);
 /* The transpose: f[n] := the coordinates' generalised forces of force[nq] on all states. */

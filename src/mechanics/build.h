@@ -39,10 +39,6 @@ void mt_build_constraint(mt_builder *b, int measure, mt_node target, bool drawn)
 void mt_build_inertia(mt_builder *b, const mt_inertia_def *def);
 void mt_build_load(mt_builder *b, const mt_load_def *def);
 void mt_build_gravity_at(mt_builder *b, int body, int point, mt_node mass);
-/* A uniform thin rod between two points: its velocity is linear along it, so the consistent
- * mass m/6 [2 I, I; I, 2 I] is exact, elastic or rigid, and so is half its weight at each
- * end. */
-void mt_build_rod(mt_builder *b, const int body[2], const int arm[2], mt_node mass, int item);
 int mt_build_item(mt_builder *b, const char *name, mt_node mass);
 const char *mt_build_name(mt_builder *b, const char *fmt, ...) MT_PRINTF(2, 3);
 /* State body of an attachment, MT_GROUND for the ground; false where it is absent in this
@@ -63,13 +59,6 @@ mt_status mt_build_links(mt_builder *b);
 void mt_build_link_node(mt_builder *b, int link, int node, mt_node out[3]);
 mt_status mt_build_joints(mt_builder *b);
 mt_status mt_build_springs(mt_builder *b);
-mt_status mt_build_loads(mt_builder *b);
-mt_status mt_build_sensors(mt_builder *b, const double *original);
-mt_status mt_build_drive(mt_builder *b);
-void mt_build_damping(mt_builder *b);
-/* Fill shape, forces and geometry_fixed of a system whose program is finished (build_inputs.c).
- * A failure is the arena's. */
-void mt_build_inputs(mt_system *sys);
 /* Equations of one joint between bodies at arms; for joints and hinges. */
 void mt_build_joint_equations(mt_builder *b, mt_joint_type type, const int body[2],
                               const int arm[2], const int axis[2], mt_node length);

@@ -4,7 +4,7 @@
  * (paper, Fig. 4); default stiffness EI over the distance of the two element centres (EI/L_e
  * for equal elements).
  *
- * Beam element: the springs of its six generalised strains (measure_beam.c), EA/l, GJ/l, EI/l
+ * Beam element: the springs of its six generalised strains (measure.c), EA/l, GJ/l, EI/l
  * and 3 EI/(l (1 + Phi)); about the straight element that is the Euler-Bernoulli or Timoshenko
  * stiffness exactly, and its springs' forces make the consistent geometric stiffness.
  */

@@ -1,12 +1,173 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Energies of modes, term by term, and what rounding leaves open of them. */
 #include "mechanics/energy.h"
 
 #include "mechanics/linear_priv.h"
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
-#include "mechanics/equilibrium_rounding.h"
+#include "mechanics/position.h"
+#include "mechanics/products.h"
+
+/*
+ * Error of the eigenvalue of a shape phi from rounding of the balancing forces; phi has mass 1,
+ * and its joint forces mu satisfy A^T mu = (K - lambda M) phi. The eigenvalue depends on the
+ * position through the rows of springs and joints, and on the forces: with the gradient g_t and
+ * the Hessian H_t of a measure,
+ *     d lambda = sum_t [2 k_t (g_t . phi) - 2 mu_t] phi^T H_t dq + sum_t e_t df_t,
+ *         e_t = phi^T H_t phi.
+ * Position and forces are those of an equilibrium: where rounding n_t of a measure makes f_t =
+ * k_t (d_t + n_t), they change by dq, df_t = k_t (n_t + g_t . dq) and the joints' dlambda, such
+ * that the forces balance again. By the adjoint (x, y) of those equations (position.h)
+ * for
+ *     pull = sum_t [2 k_t (g_t . phi) - 2 mu_t] H_t phi + sum of springs e_t k_t g_t,
+ *     across = e of the joints,
+ * this is
+ *     |d lambda| <= sum of springs |e_t - g_t . x| (k_t n_t + eps |f_t|)
+ *                   + sum of joints |y_i| n_i + sum of bodies eps |forces| |x|,
+ * the last for the sum of forces on each body. Stiff springs count as far as they can move
+ * something: a spring of stiffness k with a lever r short against the size l of its bodies
+ * holds them to eps l / r, and so its lever, on which r^2 k depends.
+ */
+typedef struct equilibrium_rounding equilibrium_rounding;
+
+/* Rounding of an equilibrium. */
+
+/* Roundings in a measure, and in the sum of the forces on a body. */
+static const double ULPS = 4.0;
+
+struct equilibrium_rounding {
+    mt_linear *lin;
+    int m;             /* equations of the equilibrium; of the linearised system lin->m */
+    double *pull;      /* [nq] */
+    double *across;    /* [m] */
+    double *mu;        /* [m] */
+    double *x;         /* [nq] */
+    double *y;         /* [m] */
+    double *energy;    /* [n_pieces] e = phi^T H phi */
+    double *bent;      /* [n_pieces][MT_LOCAL] H phi */
+    double *roundness; /* [m] n of the joints */
+};
+
+/* *out is NULL without loads. In the scratch of lin. */
+static mt_status equilibrium_rounding_new(mt_linear *lin, equilibrium_rounding **out,
+                                          mt_err *err)
+{
+    mt_arena *const mem = &lin->scratch;
+    *out = NULL;
+    if (lin->pieces == NULL) {
+        return MT_OK;
+    }
+    const size_t nq = (size_t)lin->sys->nq;
+    const size_t m = (size_t)lin->sys->n_constraints;
+    equilibrium_rounding *const r = mt_arena_alloc(mem, 1, sizeof *r);
+    MT_TRY(mt_arena_check(mem, err));
+    r->lin = lin;
+    r->m = lin->sys->n_constraints;
+    r->pull = mt_arena_f64(mem, nq, 1);
+    r->across = mt_arena_f64(mem, m, 1);
+    r->mu = mt_arena_f64(mem, m, 1);
+    r->x = mt_arena_f64(mem, nq, 1);
+    r->y = mt_arena_f64(mem, m, 1);
+    r->energy = mt_arena_f64(mem, (size_t)lin->n_pieces, 1);
+    r->bent = mt_arena_f64(mem, (size_t)lin->n_pieces, MT_LOCAL);
+    r->roundness = mt_arena_f64(mem, m, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < lin->n_pieces; i++) {
+        const mt_piece *const p = &lin->pieces[i];
+        if (p->equation >= 0) {
+            r->roundness[p->equation] += fabs(p->factor) * p->roundness;
+        }
+    }
+    *out = r;
+    return MT_OK;
+}
+
+/* bent, energies and mu, A^T mu = (K - lambda M) phi; the sparse equations of the equilibrium,
+ * where they are factored, have it with x = 0. */
+static mt_status joint_forces(equilibrium_rounding *r, double lambda, const double *phi,
+                              mt_err *err)
+{
+    mt_linear *const lin = r->lin;
+    const mt_newton_solver *const solver = &lin->position.equilibrium.solver;
+    memset(r->pull, 0, (size_t)lin->sys->nq * sizeof *r->pull);
+    mt_linear_rows_product(lin, lambda, phi, r->pull);
+    for (int i = 0; i < lin->n_pieces; i++) {
+        const mt_piece *const p = &lin->pieces[i];
+        double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
+        r->energy[i] = mt_piece_bend(p, phi, bent);
+        mt_piece_add(p, lin->kg != NULL ? p->force : 0.0, bent, r->pull);
+    }
+    return solver->sparse
+               ? mt_saddle_solve(&solver->saddle, r->pull, NULL, NULL, r->mu, &lin->scratch,
+                                 err)
+               : mt_eliminate_multipliers(&lin->e, r->pull, r->mu, &lin->scratch, err);
+}
+
+/* Compute pull and across; returns the coefficient of the trimmed spring's force. */
+static double sum_piece_forces(equilibrium_rounding *r, const double *phi)
+{
+    const mt_linear *const lin = r->lin;
+    double trim = 0.0;
+    memset(r->pull, 0, (size_t)lin->sys->nq * sizeof *r->pull);
+    memset(r->across, 0, (size_t)r->m * sizeof *r->across);
+    for (int i = 0; i < lin->n_pieces; i++) {
+        const mt_piece *const p = &lin->pieces[i];
+        const mt_piece *const other = p + p->partner;
+        const double *const bent = r->bent + ((ptrdiff_t)i * MT_LOCAL);
+        if (p->equation >= 0) {
+            r->across[p->equation] += p->factor * r->energy[i];
+            mt_piece_add(p, p->equation < lin->m ? -2.0 * p->factor * r->mu[p->equation] : 0.0,
+                         bent, r->pull);
+            continue;
+        }
+        mt_piece_add(p, 2.0 * p->stiffness * mt_piece_work(other, phi), bent, r->pull);
+        if (p->trimmed) {
+            trim += r->energy[i];
+        } else {
+            mt_piece_add(other, p->stiffness * r->energy[i], other->g, r->pull);
+        }
+    }
+    return trim;
+}
+
+/* The bound above [rad^2/s^2 kg m^2, as phi is normalised]; phi [nq]. O(nq) where the
+ * equilibrium was found sparse, otherwise O(nq^2). */
+static mt_status equilibrium_rounding_of(equilibrium_rounding *r, double lambda,
+                                         const double *phi, double *noise, mt_err *err)
+{
+    mt_linear *const lin = r->lin;
+    const mt_system *const sys = lin->sys;
+    double sum = 0.0;
+    MT_TRY(joint_forces(r, lambda, phi, err));
+    const double trim = sum_piece_forces(r, phi);
+    MT_TRY(mt_newton_adjoint(&lin->position.equilibrium, r->pull, r->across, trim, r->x, r->y,
+                             &lin->scratch, err));
+    for (int i = 0; i < lin->n_pieces; i++) {
+        const mt_piece *const p = &lin->pieces[i];
+        const double way = fabs(r->energy[i] - mt_piece_work(p, r->x));
+        if (p->equation < 0 && !p->trimmed) {
+            sum += way *
+                   ((fabs(p->stiffness) * p[p->partner].roundness) + (DBL_EPSILON * p->size));
+        }
+    }
+    for (int i = 0; i < r->m; i++) {
+        sum += fabs(r->y[i]) * r->roundness[i];
+    }
+    for (int b = 0; b < sys->n_bodies; b++) {
+        for (int k = 0; k < 6; k++) {
+            const int dof = sys->bodies[b].dof[k];
+            const double arm = k < 3 ? 1.0 : sys->length_m;
+            sum += dof >= 0 ? DBL_EPSILON * lin->push[b] * arm * fabs(r->x[dof]) : 0.0;
+        }
+    }
+    *noise = ULPS * sum;
+    return MT_OK;
+}
+
+/* Energies. */
 
 /* p of the header: what the elimination, the eigensolution and Z y may do to an entry of a
  * shape, in eps of what is typical. */
@@ -29,7 +190,7 @@ typedef struct worker {
     entry *load;     /* lower triangle of Kg where it is not empty */
     int n_load;
     double shape; /* p eps of the header */
-    mt_equilibrium_rounding *rest;
+    equilibrium_rounding *rest;
 } worker;
 
 static mt_status list_entries(worker *k, mt_arena *mem, mt_err *err)
@@ -197,7 +358,7 @@ static mt_status energies_of_mode(const worker *k, int col, const double *y,
     const double lambda = mass.energy > 0.0 ? stiffness.energy / mass.energy : 0.0;
     double rest = 0.0;
     if (k->rest != NULL) {
-        MT_TRY(mt_equilibrium_rounding_of(k->rest, lambda, phi, &rest, err));
+        MT_TRY(equilibrium_rounding_of(k->rest, lambda, phi, &rest, err));
     }
     const double loads = (k->shape * load) + rest;
     out->stiffness[col] = stiffness.energy;
@@ -221,7 +382,7 @@ mt_status mt_linear_energies(mt_linear *lin, int cols, const double *y, const mt
     k.dz = mt_arena_f64(&lin->scratch, nq, 1);
     mt_status rc = mt_arena_check(&lin->scratch, err);
     rc = rc == MT_OK ? list_entries(&k, &lin->scratch, err) : rc;
-    rc = rc == MT_OK ? mt_equilibrium_rounding_new(lin, &k.rest, err) : rc;
+    rc = rc == MT_OK ? equilibrium_rounding_new(lin, &k.rest, err) : rc;
     mt_rows_of_columns((int)nq, lin->n, lin->z_error, &lin->scratch, &k.z_error);
     rc = rc == MT_OK ? mt_arena_check(&lin->scratch, err) : rc;
     if (rc == MT_OK) {

@@ -19,7 +19,7 @@
  * eps; by the least pivot kept of their Jacobian, positions and shapes are known to eps / kept.
  *
  * Errors of the reduced rows Z^T f are in every solution with K_r and M_r: by bounds dz of the
- * basis and df of the rows (reduce.h) an elongation f . phi is known to
+ * basis and df of the rows (linear.h) an elongation f . phi is known to
  *     D = |f| . (dz |y|) + df . |phi|,   an energy to c (2 |f . phi| D + D^2),
  * which matters where constraints are almost dependent, or a spring acts almost across the
  * remaining motion.
@@ -27,7 +27,7 @@
  * At an equilibrium, Newton's last step q is below the rounding of positions and is not taken,
  * but it changes the force of a stiff spring: forces are those at its end, which differ by k g
  * . q (springs) and lambda' = -(A^T)^+ (r + H q) (joints, r the unbalanced force) from those at
- * the position. For the rounding of equilibrium position and forces see equilibrium_rounding.h.
+ * the position. For the rounding of equilibrium position and forces see below.
  *
  * A spring is strained where its energy is more than 16 nq eps c (|f| . w)^2, the rounding of
  * its own terms.

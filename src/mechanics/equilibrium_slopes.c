@@ -8,7 +8,7 @@
  * equilibrium q with the joints' forces nu and the force tau of a trimmed spring is where all
  * f g balance. With x and y of
  *     H x + A^T y = F_q,   A x = F_nu,   t . x = F_tau
- * (newton_tangent.h) an input p that moves nothing but forces changes lambda by
+ * (position.h) an input p that moves nothing but forces changes lambda by
  *     F_p - x . (sum of f_p g + f g_p).
  *
  * F_q has third derivatives of the measures. With X_a f the derivative of f along the motion a
@@ -20,11 +20,10 @@
  */
 #include "mechanics/equilibrium_slopes.h"
 
-#include "mechanics/rows_priv.h"
-
 #include <string.h>
 
-#include "mechanics/newton_tangent.h"
+#include "mechanics/position.h"
+#include "mechanics/rows.h"
 
 /* What a piece changes by as an input changes the section of its beam; bodies stay. */
 typedef struct section_slope {
@@ -460,7 +459,7 @@ static void add_loads(const work *w, double *slope)
 
 /*
  * A row r of M is made of vectors that turn with something: of a body its axes, of a bar the
- * arms of its ends, of a beam element its frame e and its length L (rows_beam.c). As that turns
+ * arms of its ends, of a beam element its frame e and its length L (rows.c). As that turns
  * by omega, a block b of r (displacement or rotation of one body) changes by omega x b, and
  *     (r . phi)' = omega . sum b x phi_b;
  * an arm s of a block s x e by omega x s, and (r . phi)' = omega . (s x (e x phi_theta)). In

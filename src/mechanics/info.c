@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-#include "mechanics/redundant.h"
+#include "mechanics/linear.h"
 
 enum { MOTIONS = 6 };
 

@@ -1,12 +1,412 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Energy, constraints and their derivatives at a position. */
 #include "mechanics/lagrangian.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "mechanics/constraint.h"
-#include "mechanics/curvature.h"
+#include "mechanics/singular.h"
+
+/*
+ * Sum of the Hessians of consecutive measures between the same two bodies (a joint's equations,
+ * a bushing's directions, a beam element's strains), by relative position; it is added to the
+ * Hessian of all states when the bodies change, and finally by curvature_flush.
+ */
+typedef struct curvature_sum {
+    mt_lagrangian *out;
+    const mt_system *sys;
+    int body[2];
+    bool empty;
+    mt_second second;
+    mt_cx h[MT_RELATIVE_PAIRS];
+} curvature_sum;
+
+/* Sums of Hessians. */
+
+static void curvature_begin(curvature_sum *s, const mt_system *sys, mt_lagrangian *out)
+{
+    s->out = out;
+    s->sys = sys;
+    s->empty = true;
+    s->second = sys->dimension == 2 ? MT_SECOND_PLANE : MT_SECOND_ALL;
+}
+
+/* Entry of the Hessian of all states += value; of a sparse one, the lower triangle only. */
+static void curvature_add_entry(mt_lagrangian *out, int nq, int r, int c, double value)
+{
+    if (out->layout == NULL) {
+        out->h[r + ((ptrdiff_t)c * nq)] += value;
+        return;
+    }
+    const int i = out->layout->state[r];
+    const int j = out->layout->state[c];
+    if (i >= j) {
+        out->h[out->layout->envelope.row[i] + j] += value;
+    }
+}
+
+static void curvature_flush(curvature_sum *s)
+{
+    mt_lagrangian *const out = s->out;
+    const int nq = s->sys->nq;
+    int dof[MT_LOCAL];
+    if (s->empty) {
+        return;
+    }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        dof[k] = mt_local_dof(s->sys, s->body, k);
+    }
+    for (int c = 0; c < MT_LOCAL; c++) {
+        for (int r = c; r < MT_LOCAL && dof[c] >= 0; r++) {
+            const mt_cx h = s->h[mt_relative_pair(r, c)];
+            const double part = out->slope ? cx_derivative(h) : creal(h);
+            const double v = mt_relative_sign(r) * mt_relative_sign(c) * part;
+            if (dof[r] < 0 || v == 0.0) {
+                continue;
+            }
+            curvature_add_entry(out, nq, dof[r], dof[c], v);
+            if (r != c) {
+                curvature_add_entry(out, nq, dof[c], dof[r], v);
+            }
+        }
+    }
+    s->empty = true;
+}
+
+static void open_pair(curvature_sum *s, const int body[2])
+{
+    if (!s->empty && s->body[0] == body[0] && s->body[1] == body[1]) {
+        return;
+    }
+    curvature_flush(s);
+    s->body[0] = body[0];
+    s->body[1] = body[1];
+    s->empty = false;
+    memset(s->h, 0, sizeof s->h);
+}
+
+/* h += scale a.h + outer (a.g b.g^T + b.g a.g^T)/2; a needs its h where scale is not 0, b may
+ * be NULL where outer is 0. */
+static void curvature_add(curvature_sum *s, const int body[2], const mt_relative_jet *a,
+                          const mt_relative_jet *b, mt_cx scale, mt_cx outer)
+{
+    const bool slope = s->out->slope;
+    const bool curved = creal(scale) != 0.0 || cimag(scale) != 0.0;
+    const bool squares = b != NULL && (creal(outer) != 0.0 || cimag(outer) != 0.0);
+    const mt_relative_list *l = NULL;
+    open_pair(s, body);
+    if (curved) {
+        l = mt_relative_filled(s->second, a->span);
+    }
+    for (int ii = 0; curved && ii < l->n; ii++) {
+        const int row = mt_relative_row(l->at[ii]);
+        for (int kk = 0; kk <= ii; kk++) {
+            const int at = row + l->at[kk];
+            s->h[at] += slope ? cx_mul(scale, a->h[at]) : creal(scale) * creal(a->h[at]);
+        }
+    }
+    if (squares) {
+        l = mt_relative_filled(s->second, a->span | b->span);
+    }
+    for (int ii = 0; squares && ii < l->n; ii++) {
+        const int i = l->at[ii];
+        const mt_cx x = cx_mul(0.5 * outer, a->g[i]);
+        const mt_cx y = cx_mul(0.5 * outer, b->g[i]);
+        mt_cx *const row = s->h + mt_relative_row(i);
+        for (int kk = 0; kk <= ii; kk++) {
+            const int k = l->at[kk];
+            row[k] += slope ? cx_mul(x, b->g[k]) + cx_mul(y, a->g[k])
+                            : (creal(x) * creal(b->g[k])) + (creal(y) * creal(a->g[k]));
+        }
+    }
+}
+
+/* Forces one by one. */
+
+/* The slope of a beam element's chord: coordinates over its length. */
+static bool is_chord(const mt_measure_def *def)
+{
+    return def->kind == MT_MEASURE_BEAM && def->component >= MT_BEAM_SWAY_2;
+}
+
+/* True for an angle or a cosine, false for a length. */
+static bool piece_is_angle(const mt_measure_def *def)
+{
+    return def->kind == MT_MEASURE_ANGLE || def->kind == MT_MEASURE_ROTATION ||
+           def->kind == MT_MEASURE_DOT ||
+           (def->kind == MT_MEASURE_BEAM && def->component != MT_BEAM_STRETCH &&
+            !is_chord(def));
+}
+
+/* Largest coordinate of the two bodies, the scale of the rounding of their positions. */
+static double extent_of(const mt_pose *poses, const int body[2])
+{
+    double extent = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const mt_pose *const pose = mt_pose_of(poses, body[side]);
+        for (int k = 0; k < 3; k++) {
+            extent = fmax(extent, fabs(creal(pose->x[k])));
+        }
+    }
+    return extent;
+}
+
+double mt_jet_along(const mt_system *sys, const int body[2], const mt_jet *jet,
+                    const double *motion)
+{
+    double sum = 0.0;
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const int dof = mt_local_dof(sys, body, k);
+        sum += dof >= 0 ? creal(jet->g[k]) * motion[dof] : 0.0;
+    }
+    return sum;
+}
+
+/* Rounding error of a measure: positions are known to eps of the coordinates that they are the
+ * difference of, angles to eps, the slope of a beam element's chord to eps of the coordinates
+ * over its length. */
+static double piece_roundness(const mt_data *d, const mt_measure_def *def, const mt_pose *poses)
+{
+    double extent =
+        piece_is_angle(def) ? 1.0 : fmax(d->sys->length_m, extent_of(poses, def->body));
+    if (is_chord(def)) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
+    }
+    return DBL_EPSILON * extent;
+}
+
+double mt_piece_work(const mt_piece *p, const double *way)
+{
+    double local[MT_LOCAL];
+    double sum = 0.0;
+    mt_piece_motion(p, way, local);
+    for (int k = 0; k < MT_LOCAL; k++) {
+        sum += p->g[k] * local[k];
+    }
+    return sum;
+}
+
+double mt_piece_bend(const mt_piece *p, const double *phi, double *out)
+{
+    double way[MT_RELATIVE];
+    double bent[MT_RELATIVE];
+    double energy = 0.0;
+    mt_piece_relative(p, phi, way);
+    mt_piece_product(p->filled, p->h, way, bent);
+    for (int k = 0; k < MT_RELATIVE; k++) {
+        energy += way[k] * bent[k];
+    }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        out[k] = mt_relative_sign(k) * bent[mt_relative_of(k)];
+    }
+    return energy;
+}
+
+void mt_piece_add(const mt_piece *p, double c, const double *local, double *to)
+{
+    for (int k = 0; k < MT_LOCAL && c != 0.0; k++) {
+        if (p->dof[k] >= 0) {
+            to[p->dof[k]] += c * local[k];
+        }
+    }
+}
+
+static void add_entry(ptrdiff_t nq, const mt_piece *p, int r, int c, double add, double *terms)
+{
+    const ptrdiff_t i = p->dof[r];
+    const ptrdiff_t j = p->dof[c];
+    if (i >= 0 && j >= 0) {
+        terms[i + (j * nq)] += add;
+        terms[j + (i * nq)] += r == c ? 0.0 : add;
+    }
+}
+
+/* terms += size |h|, and `turns` between rotations. */
+static void add_piece_terms(ptrdiff_t nq, double size, double turns, const mt_piece *p,
+                            double *terms)
+{
+    for (int c = 0; c < MT_LOCAL && size > 0.0; c++) {
+        for (int r = c; r < MT_LOCAL; r++) {
+            const double h = p->h[mt_relative_pair(r, c)];
+            if (h != 0.0) {
+                add_entry(nq, p, r, c, size * fabs(h), terms);
+            }
+        }
+    }
+    for (int c = 3; c < MT_LOCAL && turns > 0.0; c += c == 5 ? 4 : 1) {
+        for (int r = c; r < MT_LOCAL; r += r == 5 ? 4 : 1) {
+            add_entry(nq, p, r, c, turns, terms);
+        }
+    }
+}
+
+/* Fill a piece with this jet; spring and equation are set later. terms (nq x nq) += size
+ * |jet.h|, and force times the coordinates' size: lengths that cancel in an entry between
+ * rotations are differences of coordinates. */
+static void piece_fill(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
+                       const mt_relative_jet *jet, const double size_force[2], double *terms,
+                       mt_piece *out)
+{
+    double extent = piece_is_angle(def) ? 0.0 : extent_of(poses, def->body);
+    *out = (mt_piece){.size = size_force[0],
+                      .equation = -1,
+                      .factor = 1.0,
+                      .def = def,
+                      .spring = -1,
+                      .load = -1,
+                      .roundness = piece_roundness(d, def, poses)};
+    if (is_chord(def)) {
+        extent /= creal(mt_data_scalar(d, def->beam[MT_BEAM_LENGTH], 1.0));
+    }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        out->dof[k] = mt_local_dof(d->sys, def->body, k);
+        out->g[k] = mt_relative_sign(k) * creal(jet->g[mt_relative_of(k)]);
+    }
+    out->filled = mt_relative_filled(jet->second, jet->span);
+    for (int ii = 0; ii < out->filled->n; ii++) {
+        const int row = mt_relative_row(out->filled->at[ii]);
+        for (int kk = 0; kk <= ii; kk++) {
+            const int at = row + out->filled->at[kk];
+            out->h[at] = creal(jet->h[at]);
+        }
+    }
+    add_piece_terms(d->sys->nq, size_force[0], size_force[1] * extent, out, terms);
+}
+
+static bool is_pose(const mt_pose *a, const mt_pose *b)
+{
+    bool same = true;
+    for (int k = 0; k < 3; k++) {
+        same = same && a->x[k] == b->x[k];
+    }
+    for (int k = 0; k < 9; k++) {
+        same = same && a->r[k] == b->r[k];
+    }
+    return same;
+}
+
+/* True where the bodies of a measure have the same poses as in `rest`, to the bit. */
+static bool piece_is_still(const mt_measure_def *def, const mt_pose *poses, const mt_pose *rest)
+{
+    bool still = true;
+    for (int side = 0; side < 2; side++) {
+        const int b = def->body[side];
+        still = still && (b == MT_GROUND || is_pose(&poses[b], &rest[b]));
+    }
+    return still;
+}
+
+/* Forces on bodies. */
+
+/* Of a correction that is known by its size alone. */
+static const double TWICE = 2.0;
+/* Roundings of a force. */
+static const double ULPS = 8.0;
+
+/* A measure with the force c; that of a spring from how far it is stretched. */
+static bool visit_measure(const mt_data *d, const mt_pose *pose, const mt_measure_def *def,
+                          const mt_spring_def *spring, double c, mt_force_visit visit,
+                          void *context)
+{
+    const mt_measure_data measure = mt_data_measure(d, def);
+    mt_jet jet;
+    mt_measure_eval(&measure, mt_pose_of(pose, def->body[0]), mt_pose_of(pose, def->body[1]),
+                    true, NULL, &jet);
+    if (spring != NULL && spring->free != MT_NO_NODE) {
+        c += d->value[spring->stiffness] * (creal(jet.value) - d->value[spring->free]);
+    }
+    return c == 0.0 || visit(context, def->body, c, 0.0, &jet);
+}
+
+/* A force on a point. */
+static bool visit_point(const mt_data *d, const mt_pose *pose, const mt_load_def *load,
+                        mt_force_visit visit, void *context)
+{
+    const int body[2] = {load->body, MT_GROUND};
+    mt_cx f[3];
+    mt_jet jet;
+    for (int k = 0; k < 3; k++) {
+        f[k] = mt_data_scalar(d, load->force[k], 0.0);
+    }
+    mt_measure_point(load->point < 0 ? NULL : d->vec[load->point], f,
+                     mt_pose_of(pose, load->body), true, &jet);
+    return visit(context, body, -1.0, 0.0, &jet);
+}
+
+bool mt_forces_each(const mt_data *d, const mt_pose *pose, mt_force_visit visit, void *context)
+{
+    const mt_system *const sys = d->sys;
+    bool more = true;
+    for (int i = 0; i < sys->n_loads && more; i++) {
+        const mt_load_def *const load = &sys->loads[i];
+        more = load->measure < 0 ? visit_point(d, pose, load, visit, context)
+                                 : visit_measure(d, pose, &sys->measures[load->measure], NULL,
+                                                 -d->value[load->size], visit, context);
+    }
+    for (int i = 0; i < sys->n_springs && more; i++) {
+        const mt_spring_def *const s = &sys->springs[i];
+        if (!s->damper && (s->free != MT_NO_NODE || s->preload != MT_NO_NODE)) {
+            const double preload = s->preload == MT_NO_NODE ? 0.0 : d->value[s->preload];
+            more = visit_measure(d, pose, &sys->measures[s->measure[0]], s, preload, visit,
+                                 context);
+        }
+    }
+    return more;
+}
+
+/* V = 1/2 k d_a d_b + p d_a, of two measures that are the same or not. */
+static bool visit_spring(const mt_data *d, const mt_placement *at, const double *left,
+                         const double *open, int i, mt_force_visit visit, void *context)
+{
+    const mt_system *const sys = d->sys;
+    const mt_spring_def *const s = &sys->springs[i];
+    const bool coupling = s->measure[0] != s->measure[1];
+    const double k = coupling ? 0.5 * d->value[s->stiffness] : d->value[s->stiffness];
+    const double preload = s->preload == MT_NO_NODE ? 0.0 : d->value[s->preload];
+    mt_jet jet[2];
+    double stretch[2] = {0.0, 0.0};
+    double noise[2] = {0.0, 0.0};
+    bool more = true;
+    for (int side = 0; side < (coupling ? 2 : 1); side++) {
+        const mt_measure_def *const def = &sys->measures[s->measure[side]];
+        mt_data_eval(d, def, at, true, NULL, &jet[side]);
+        stretch[side] = creal(jet[side].value) - creal(d->rest[i][side]);
+        stretch[side] += mt_jet_along(sys, def->body, &jet[side], left);
+        noise[side] = TWICE * fabs(mt_jet_along(sys, def->body, &jet[side], open));
+    }
+    for (int side = 0; side < (coupling ? 2 : 1) && more; side++) {
+        const int other = coupling ? 1 - side : 0;
+        const double c = (k * stretch[other]) + (coupling ? 0.0 : preload);
+        more = visit(context, sys->measures[s->measure[side]].body, c,
+                     (fabs(k) * noise[other]) + (ULPS * DBL_EPSILON * fabs(c)), &jet[side]);
+    }
+    return more;
+}
+
+bool mt_forces_at(const mt_data *d, const mt_placement *at, const double *left,
+                  const double *open, mt_force_visit visit, void *context)
+{
+    const mt_system *const sys = d->sys;
+    bool more = true;
+    for (int i = 0; i < sys->n_loads && more; i++) {
+        const mt_load_def *const load = &sys->loads[i];
+        mt_jet jet;
+        if (load->measure < 0) {
+            more = visit_point(d, at->pose, load, visit, context);
+        } else {
+            const mt_measure_def *const def = &sys->measures[load->measure];
+            mt_data_eval(d, def, at, true, NULL, &jet);
+            more = visit(context, def->body, -d->value[load->size], 0.0, &jet);
+        }
+    }
+    for (int i = 0; i < sys->n_springs && more; i++) {
+        more = sys->springs[i].damper || visit_spring(d, at, left, open, i, visit, context);
+    }
+    return more;
+}
+
+/* The sums. */
 
 mt_status mt_lagrangian_init(mt_lagrangian *l, const mt_system *sys, bool hessian,
                              mt_arena *mem, mt_err *err)
@@ -99,7 +499,7 @@ static mt_piece *note_terms(const mt_data *d, const mt_measure_def *def, const m
         return NULL;
     }
     mt_piece *const piece = &out->pieces[out->n_pieces++];
-    mt_piece_fill(d, def, poses, jet, size_force, out->terms, piece);
+    piece_fill(d, def, poses, jet, size_force, out->terms, piece);
     return piece;
 }
 
@@ -135,23 +535,23 @@ static void note_noise(const mt_data *d, const mt_measure_def *def, const mt_pos
                        const mt_relative_jet *jet, double stiffness, mt_lagrangian *out)
 {
     const double noise =
-        mt_piece_roundness(d, def, poses) * fabs(stiffness) * largest_push(d->sys, jet);
+        piece_roundness(d, def, poses) * fabs(stiffness) * largest_push(d->sys, jet);
     out->force_noise = fmax(out->force_noise, noise);
 }
 
 /* V = 1/2 k d_a d_b. */
 static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
                          const mt_cx stretch[2], const mt_relative_jet jet[2],
-                         mt_curvature curvature, mt_curvature_sum *sum, mt_lagrangian *out)
+                         mt_curvature curvature, curvature_sum *sum, mt_lagrangian *out)
 {
     for (int side = 0; side < 2; side++) {
         const mt_cx force = 0.5 * cx_mul(k, stretch[1 - side]);
         add_gradient(sys, body, &jet[side], force, out, out->g);
         note_force(sys, out, body, &jet[side], force);
         if (curvature != MT_CURVATURE_NONE) {
-            mt_curvature_add(sum, body, &jet[side], &jet[1 - side],
-                             curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
-                             curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k);
+            curvature_add(sum, body, &jet[side], &jet[1 - side],
+                          curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
+                          curvature == MT_CURVATURE_GEOMETRIC ? 0.0 : 0.5 * k);
         }
     }
 }
@@ -160,7 +560,7 @@ static void add_coupling(const mt_system *sys, const int body[2], mt_cx k,
  * because it would be lost to rounding in a large stretch that the preload almost cancels. */
 static mt_cx add_spring_force(const mt_data *d, int i, mt_cx stretch, double way,
                               const mt_relative_jet *jet, mt_curvature curvature,
-                              mt_curvature_sum *sum, mt_lagrangian *out)
+                              curvature_sum *sum, mt_lagrangian *out)
 {
     const mt_system *const sys = d->sys;
     const mt_spring_def *const s = &sys->springs[i];
@@ -178,8 +578,8 @@ static mt_cx add_spring_force(const mt_data *d, int i, mt_cx stretch, double way
         /* while the force of the trimmed spring is an unknown its stiffness does not act; in
          * the linearised system it does, there as a row (rows.h) */
         const bool geometric = curvature == MT_CURVATURE_GEOMETRIC || trimmed;
-        mt_curvature_add(sum, body, jet, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
-                         geometric ? 0.0 : k);
+        curvature_add(sum, body, jet, jet, curvature == MT_CURVATURE_ELASTIC ? 0.0 : force,
+                      geometric ? 0.0 : k);
     }
     return force;
 }
@@ -204,7 +604,7 @@ static void note_spring(const mt_data *d, int i, int side, const mt_pose *poses,
         piece->partner = other - side;
         piece->trimmed = i == d->sys->trim_spring;
         piece->roundness *=
-            s->free == MT_NO_NODE && mt_piece_is_still(def, poses, out->rest) ? 0.0 : 1.0;
+            s->free == MT_NO_NODE && piece_is_still(def, poses, out->rest) ? 0.0 : 1.0;
     }
 }
 
@@ -256,9 +656,9 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
     const bool bends = curvature == MT_CURVATURE_FULL || curvature == MT_CURVATURE_GEOMETRIC;
     mt_relative_jet jet[2];
     mt_beam_parts parts;
-    mt_curvature_sum sum;
+    curvature_sum sum;
     parts.dir = NULL;
-    mt_curvature_begin(&sum, sys, out);
+    curvature_begin(&sum, sys, out);
     for (int i = 0; i < sys->n_springs; i++) {
         const mt_spring_def *const s = &sys->springs[i];
         const mt_measure_def *const first = &sys->measures[s->measure[0]];
@@ -294,7 +694,7 @@ static void add_springs(const mt_data *d, const mt_placement *at, mt_curvature c
             note_spring(d, i, side, at->pose, &jet[side], state, out);
         }
     }
-    mt_curvature_flush(&sum);
+    curvature_flush(&sum);
 }
 
 /* Jet of the measure of a load, F . x or its own measure; *size: its factor. */
@@ -345,8 +745,8 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
 {
     const mt_system *const sys = d->sys;
     mt_relative_jet jet;
-    mt_curvature_sum sum;
-    mt_curvature_begin(&sum, sys, out);
+    curvature_sum sum;
+    curvature_begin(&sum, sys, out);
     for (int i = 0; i < sys->n_loads; i++) {
         int body[2];
         mt_cx size = 0.0;
@@ -355,11 +755,11 @@ static void add_loads(const mt_data *d, const mt_placement *at, bool hessian,
         add_gradient(sys, body, &jet, -size, out, out->g);
         note_force(sys, out, body, &jet, size);
         if (bends) { /* a force at a centre does not */
-            mt_curvature_add(&sum, body, &jet, NULL, -size, 0.0);
+            curvature_add(&sum, body, &jet, NULL, -size, 0.0);
             note_load(d, &sys->loads[i], at->pose, &jet, size, out);
         }
     }
-    mt_curvature_flush(&sum);
+    curvature_flush(&sum);
 }
 
 /*
@@ -398,8 +798,8 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
     const mt_system *const sys = d->sys;
     const mt_cx l2 = anchor_square(d);
     mt_relative_jet jet;
-    mt_curvature_sum sum;
-    mt_curvature_begin(&sum, sys, out);
+    curvature_sum sum;
+    curvature_begin(&sum, sys, out);
     for (int i = 0; i < sys->n_bodies; i++) {
         const int body[2] = {MT_GROUND, i};
         const mt_pose *const anchor = &drawn[i];
@@ -408,8 +808,8 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             if (dof[k] >= 0) {
                 out->g[dof[k]] += value_or_derivative(out, poses[i].x[k] - drawn[i].x[k]);
                 if (hessian) {
-                    mt_curvature_add_entry(out, sys->nq, dof[k], dof[k],
-                                           value_or_derivative(out, 1.0));
+                    curvature_add_entry(out, sys->nq, dof[k], dof[k],
+                                        value_or_derivative(out, 1.0));
                 }
             }
             /* -l^2/2 tr(R0^T R) */
@@ -420,11 +820,11 @@ static void add_anchor(const mt_data *d, const mt_pose *drawn, const mt_pose *po
             mt_measure_relative(&m, anchor, &poses[i], hessian, NULL, &jet);
             add_gradient(sys, body, &jet, -0.5 * l2, out, out->g);
             if (hessian) {
-                mt_curvature_add(&sum, body, &jet, NULL, -0.5 * l2, 0.0);
+                curvature_add(&sum, body, &jet, NULL, -0.5 * l2, 0.0);
             }
         }
     }
-    mt_curvature_flush(&sum);
+    curvature_flush(&sum);
 }
 
 /* All multipliers, before the first of them is used. */
@@ -435,7 +835,7 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
         for (int t = 0; t < sys->constraints[i].terms; t++) {
             const mt_measure_def *const def = &sys->measures[sys->constraints[i].measure[t]];
             const mt_cx factor = mt_data_scalar(d, sys->constraints[i].coefficient[t], 1.0);
-            const double arm = mt_piece_is_angle(def) ? sys->length_m : 1.0;
+            const double arm = piece_is_angle(def) ? sys->length_m : 1.0;
             note_push(def->body, fabs(creal(factor) * creal(lambda[i])) / arm, out);
         }
     }
@@ -446,7 +846,7 @@ static void push_joints(const mt_data *d, int m, const mt_cx *lambda, mt_lagrang
 static mt_piece *note_joint(const mt_data *d, const mt_measure_def *def, const mt_pose *poses,
                             const mt_relative_jet *jet, mt_cx force, mt_lagrangian *out)
 {
-    const double arm = mt_piece_is_angle(def) ? d->sys->length_m : 1.0;
+    const double arm = piece_is_angle(def) ? d->sys->length_m : 1.0;
     double push = 0.0;
     for (int side = 0; side < 2 && out->terms != NULL; side++) {
         const int body = def->body[side];
@@ -504,8 +904,8 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
 {
     const mt_system *const sys = d->sys;
     mt_relative_jet jet;
-    mt_curvature_sum sum;
-    mt_curvature_begin(&sum, sys, out);
+    curvature_sum sum;
+    curvature_begin(&sum, sys, out);
     push_joints(d, m, lambda, out);
     for (int i = 0; i < m; i++) {
         const mt_constraint_def *const c = &sys->constraints[i];
@@ -514,19 +914,18 @@ void mt_lagrangian_curve(const mt_data *d, const mt_placement *at, int m, const 
             const mt_cx factor = mt_data_scalar(d, c->coefficient[t], 1.0);
             const mt_cx force = cx_mul(factor, lambda[i]);
             mt_data_relative(d, def, at, true, NULL, &jet);
-            mt_curvature_add(&sum, def->body, &jet, NULL, force, 0.0);
+            curvature_add(&sum, def->body, &jet, NULL, force, 0.0);
             mt_piece *const piece = note_joint(d, def, at->pose, &jet, force, out);
             if (piece != NULL) {
                 piece->force = creal(force);
                 piece->equation = i;
                 piece->roundness *=
-                    sys->drawn_closed && mt_piece_is_still(def, at->pose, out->rest) ? 0.0
-                                                                                     : 1.0;
+                    sys->drawn_closed && piece_is_still(def, at->pose, out->rest) ? 0.0 : 1.0;
                 piece->factor = creal(factor);
             }
         }
     }
-    mt_curvature_flush(&sum);
+    curvature_flush(&sum);
 }
 
 void mt_lagrangian_eval(const mt_data *d, mt_energy energy, const mt_pose *drawn,

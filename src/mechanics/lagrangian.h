@@ -3,8 +3,99 @@
 #define MECHANICS_LAGRANGIAN_H
 
 #include "mechanics/data.h"
-#include "mechanics/element_forces.h"
-#include "mechanics/layout.h"
+#include "mechanics/system.h"
+
+/* The forces at a position, one by one, and the rounding errors of their measures. */
+
+/* One force and the curvature of its work: gradient and Hessian of its measure over the
+ * freedoms dof (-1: none). */
+typedef struct mt_piece {
+    int dof[MT_LOCAL];
+    double g[MT_LOCAL];
+    double h[MT_RELATIVE_PAIRS]; /* of relative motions, as in mt_relative_jet */
+    const mt_relative_list *filled;
+    double force; /* Kg is the sum of force h */
+    double size;  /* magnitude of the terms of the force, for its rounding */
+    /* of a spring: derivative of its force by the measure of the piece at offset `partner` (0:
+     * its own; half of the spring's stiffness where it couples two); otherwise 0 */
+    double stiffness;
+    int partner;
+    bool trimmed;              /* the force is an unknown, whatever its stiffness */
+    int equation;              /* equation whose multiplier the force is; -1: none */
+    double factor;             /* coefficient of the measure in it */
+    const mt_measure_def *def; /* the measure; NULL: of the load of a point */
+    int spring;                /* whose force it is, with its measure number `side`; -1: none */
+    int side;
+    int load;       /* -1: none */
+    double stretch; /* of a spring: the measure less its rest value */
+    /* rounding error of the measure less its rest value, from rounded positions; both are
+     * rounded alike where nothing has moved */
+    double roundness;
+} mt_piece;
+
+/* Column of q for local freedom k (0..11) of a pair of bodies; -1: none. */
+static inline int mt_local_dof(const mt_system *sys, const int body[2], int k)
+{
+    const int b = body[k / 6];
+    return b == MT_GROUND ? -1 : sys->bodies[b].dof[k % 6];
+}
+/* Change of a measure with this jet along a motion of the states. */
+double mt_jet_along(const mt_system *sys, const int body[2], const mt_jet *jet,
+                    const double *motion);
+
+/* What a motion of the states is to a piece, 0 where it has none. */
+static inline void mt_piece_motion(const mt_piece *p, const double *way, double local[MT_LOCAL])
+{
+    for (int k = 0; k < MT_LOCAL; k++) {
+        local[k] = p->dof[k] >= 0 ? way[p->dof[k]] : 0.0;
+    }
+}
+
+/* The same as a relative motion. */
+static inline void mt_piece_relative(const mt_piece *p, const double *way,
+                                     double relative[MT_RELATIVE])
+{
+    double local[MT_LOCAL];
+    mt_piece_motion(p, way, local);
+    for (int k = 0; k < 3; k++) {
+        relative[k] = local[6 + k] - local[k];
+        relative[3 + k] = local[3 + k];
+        relative[6 + k] = local[9 + k];
+    }
+}
+
+/* out[MT_RELATIVE] = H x of such motions; h: packed, of which `filled` is not 0. */
+static inline void mt_piece_product(const mt_relative_list *filled, const double *h,
+                                    const double *x, double *out)
+{
+    for (int i = 0; i < MT_RELATIVE; i++) {
+        out[i] = 0.0;
+    }
+    for (int ii = 0; ii < filled->n; ii++) {
+        const int i = filled->at[ii];
+        const double *const row = h + mt_relative_row(i);
+        double sum = row[i] * x[i];
+        for (int kk = 0; kk < ii; kk++) {
+            const int k = filled->at[kk];
+            sum += row[k] * x[k];
+            out[k] += row[k] * x[i];
+        }
+        out[i] += sum;
+    }
+}
+
+/* Entry of H for two local freedoms. */
+static inline double mt_piece_entry(const mt_piece *p, int r, int c)
+{
+    return mt_relative_sign(r) * mt_relative_sign(c) * p->h[mt_relative_pair(r, c)];
+}
+/* g . way. */
+double mt_piece_work(const mt_piece *p, const double *way);
+/* out[MT_LOCAL] = H phi, of which what belongs to no state is for nobody; returns
+ * phi^T H phi. */
+double mt_piece_bend(const mt_piece *p, const double *phi, double *out);
+/* to[nq] += c local. */
+void mt_piece_add(const mt_piece *p, double c, const double *local, double *to);
 
 /*
  * L = V + sum lambda_i c_i at given positions: gradient of V, constraints with their Jacobian,
@@ -98,5 +189,19 @@ mt_status mt_lagrangian_want_terms(mt_lagrangian *l, const mt_system *sys, mt_ar
                                    mt_err *err);
 /* Energy alone. */
 double mt_energy_value(const mt_data *d, const mt_placement *at, double trim_force);
+
+/* Visit one force: c times the gradient of a measure of these bodies is its contribution to the
+ * gradient of the potential, c times the Hessian that to the geometric stiffness; noise:
+ * rounding error of c. False ends the visits. */
+typedef bool (*mt_force_visit)(void *context, const int body[2], double c, double noise,
+                               const mt_jet *jet);
+
+/* Visit every load, and every spring with a free length or preload, at the given poses; needs
+ * the rest values. True where all were visited. O(loads + springs). */
+bool mt_forces_each(const mt_data *d, const mt_pose *pose, mt_force_visit visit, void *context);
+/* Visit every load and spring at an equilibrium: the forces are those after the motion left[nq]
+ * from the rounded position to the balance, known to within open[nq]. */
+bool mt_forces_at(const mt_data *d, const mt_placement *at, const double *left,
+                  const double *open, mt_force_visit visit, void *context);
 
 #endif

@@ -1,17 +1,298 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The mechanism linearised: stages that have not moved are skipped. */
+#include "mechanics/linear.h"
+
 #include "mechanics/linear_priv.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/run.h"
+#include "linalg/dense.h"
 #include "mechanics/couplings.h"
+#include "mechanics/eliminate.h"
 #include "mechanics/free_spin.h"
-#include "mechanics/reduce.h"
 #include "mechanics/singular.h"
 #include "mechanics/tangent.h"
+
+/* Stages. */
+
+enum { WORD = 64 };
+
+static void include_terms(const mt_program *p, const mt_term_list *list, uint64_t *set)
+{
+    for (int i = 0; i < list->n_terms; i++) {
+        if (list->terms[i].varies) {
+            mt_program_include_inputs(p, list->terms[i].coefficient, set);
+        }
+    }
+}
+
+static uint64_t *new_set(mt_arena *mem, int words)
+{
+    return mt_arena_alloc(mem, (size_t)words + 1, sizeof(uint64_t));
+}
+
+/* lists[MT_TERM_KINDS]. In mem; a failure is the arena's. */
+static void stages_init(mt_stages *s, const mt_system *sys, const mt_term_list *lists,
+                        mt_arena *mem)
+{
+    const mt_program *const p = &sys->program;
+    s->n_inputs = sys->n_inputs;
+    s->words = p->words;
+    s->loaded = new_set(mem, p->words);
+    s->stiffness = new_set(mem, p->words);
+    s->mass = new_set(mem, p->words);
+    s->all = new_set(mem, p->words);
+    s->none = new_set(mem, p->words);
+    for (int i = 0; i < MT_STAGES; i++) {
+        s->at[i] = mt_arena_f64(mem, (size_t)s->n_inputs, 1);
+    }
+    if (mt_arena_failed(mem)) {
+        return;
+    }
+    for (int w = 0; w < p->words; w++) {
+        s->loaded[w] = sys->shape[w] | sys->forces[w];
+    }
+    include_terms(p, &lists[MT_TERM_STIFFNESS], s->stiffness);
+    include_terms(p, &lists[MT_TERM_MASS], s->mass);
+    for (int i = 0; i < s->n_inputs; i++) {
+        s->all[i / WORD] |= (uint64_t)1 << (unsigned)(i % WORD);
+    }
+}
+
+/* True where the set is empty. */
+static bool stages_empty(const mt_stages *s, const uint64_t *set)
+{
+    for (int w = 0; w < s->words; w++) {
+        if (set[w] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool mt_stages_has(const uint64_t *set, int input)
+{
+    return (set[input / WORD] >> (unsigned)(input % WORD) & 1U) != 0;
+}
+
+static uint64_t bits_of(double x)
+{
+    uint64_t bits = 0;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
+                    const double *inputs)
+{
+    for (int i = 0; i < s->n_inputs; i++) {
+        if (mt_stages_has(set, i) && bits_of(at[i]) != bits_of(inputs[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set, const double *inputs)
+{
+    if (s->valid[stage] && mt_stages_same(s, set, s->at[stage], inputs)) {
+        s->counts.skipped[stage]++;
+        return false;
+    }
+    s->valid[stage] = false;
+    s->started_s = mt_profile_now(s->profile);
+    return true;
+}
+
+static void mark_stage_valid(mt_stages *s, mt_stage_id stage, const double *inputs)
+{
+    for (int i = 0; i < s->n_inputs; i++) {
+        s->at[stage][i] = inputs[i];
+    }
+    s->valid[stage] = true;
+}
+
+/* Instead of done: the results were taken from another system. */
+static void stages_shared(mt_stages *s, mt_stage_id stage, const double *inputs)
+{
+    mark_stage_valid(s, stage, inputs);
+    s->counts.shared[stage]++;
+}
+
+void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs)
+{
+    mark_stage_valid(s, stage, inputs);
+    s->counts.done[stage]++;
+    s->counts.seconds[stage] += mt_profile_now(s->profile) - s->started_s;
+}
+
+/*
+ * Reduced rows r = Z^T f, and which of their entries are nothing but rounding.
+ *
+ * A spring that acts against what the joints block has r = 0. What is computed instead is
+ * rounding, and no size of r by itself can tell: a short r may be a real, small lever. The
+ * error is known, though: with bounds dz of the basis (carried through its elimination) and df
+ * of the row,
+ *     |dr_c| <= sum_k |f_k| dz_kc + df_k |z_kc|.
+ * An entry below that is exactly 0: each is judged against the terms that it is the sum of,
+ * before they cancel.
+ */
+
+/* Relative rounding of an entry of a row; coordinates far from the origin lose as many digits
+ * more in the arms. */
+static const double ROW_ULPS = 4.0;
+
+/* The largest coordinate, at least the model length [m]. */
+static double extent_of(const mt_linear *lin)
+{
+    double extent = lin->sys->length_m;
+    for (int b = 0; b < lin->sys->n_bodies; b++) {
+        for (int k = 0; k < 3; k++) {
+            extent = fmax(extent, fabs(creal(lin->position.at.pose[b].x[k])));
+        }
+    }
+    return extent;
+}
+
+/* Diagonal of M over all states. */
+static void diagonal_mass(const mt_linear *lin, double *mass)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_MASS];
+    for (int i = 0; i < list->n_rows; i++) {
+        const mt_term *const t = &list->terms[list->row_term[i]];
+        const int other = t->pair ? (2 * t->first) + 1 - i : i;
+        const double *const a = lin->rows[MT_TERM_MASS] + ((ptrdiff_t)i * MT_LOCAL);
+        const double *const b = lin->rows[MT_TERM_MASS] + ((ptrdiff_t)other * MT_LOCAL);
+        const double c = lin->value[t->coefficient] * (t->pair ? 0.5 : 1.0);
+        for (int k = 0; k < MT_LOCAL; k++) {
+            const int dof = mt_local_dof(lin->sys, t->body, k);
+            if (dof >= 0) {
+                mass[dof] += c * a[k] * b[k];
+            }
+        }
+    }
+}
+
+/* Replace the basis of the elimination by one local to the bodies, with bounds of its
+ * errors. After the elimination and the rows. */
+static mt_status reduce_basis(mt_linear *lin, mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    double *const mass = mt_arena_f64(&lin->scratch, (size_t)lin->sys->nq, 1);
+    lin->e.n = lin->sys->nq - lin->e.qr.rank; /* idle spins may have been left out of it */
+    lin->n = lin->e.n;
+    lin->e.z = mt_arena_f64(&lin->reduced_mem, (size_t)lin->sys->nq, (size_t)lin->n);
+    lin->z_error = mt_arena_f64(&lin->reduced_mem, (size_t)lin->sys->nq, (size_t)lin->n);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
+    diagonal_mass(lin, mass);
+    MT_TRY(mt_eliminate_local(lin->a, mass, extent_of(lin), &lin->scratch, &lin->e,
+                              lin->z_error, err));
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
+
+/* Rounding errors of the entries of a row over local freedoms. */
+static void row_error(const double row[MT_LOCAL], double extent, double error[MT_LOCAL])
+{
+    double most = 0.0; /* of the translations: what an arm stands on */
+    for (int k = 0; k < MT_LOCAL; k++) {
+        most = k % 6 < 3 && fabs(row[k]) > most ? fabs(row[k]) : most;
+    }
+    for (int k = 0; k < MT_LOCAL; k++) {
+        const double arm = k % 6 < 3 ? 0.0 : most * extent;
+        error[k] = ROW_ULPS * DBL_EPSILON * (fabs(row[k]) + arm);
+    }
+}
+
+/* Rounding errors of the entries of the rows over the states. */
+static mt_status row_errors(mt_linear *lin, int kind, double extent, mt_err *err)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    double *at =
+        mt_arena_f64(&lin->reduced_mem, (size_t)lin->full[kind].start[list->n_rows], 1);
+    lin->full_error[kind] = at;
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
+    for (int i = 0; i < list->n_rows; i++) {
+        const int *const body = list->terms[list->row_term[i]].body;
+        const double *const row = lin->rows[kind] + ((ptrdiff_t)i * MT_LOCAL);
+        double error[MT_LOCAL];
+        row_error(row, extent, error);
+        for (int k = 0; k < MT_LOCAL; k++) {
+            if (row[k] != 0.0 && mt_local_dof(lin->sys, body, k) >= 0) {
+                *at++ = error[k];
+            }
+        }
+    }
+    return MT_OK;
+}
+
+/* out[n] = Z^T row, error[n] its bound. */
+static void project_row(const mt_linear *lin, int kind, size_t row, double *out, double *error)
+{
+    const mt_rows *const rows = &lin->full[kind];
+    const ptrdiff_t nq = lin->sys->nq;
+    for (int k = rows->start[row]; k < rows->start[row + 1]; k++) {
+        const double value = rows->value[k];
+        const double df = lin->full_error[kind][k];
+        for (int c = 0; c < lin->n; c++) {
+            const ptrdiff_t at = rows->index[k] + (c * nq);
+            out[c] += value * lin->e.z[at];
+            error[c] += (fabs(value) * lin->z_error[at]) + (df * fabs(lin->e.z[at]));
+        }
+    }
+}
+
+static mt_status reduce_rows(mt_linear *lin, int kind, mt_err *err)
+{
+    const mt_term_list *const list = &lin->list[kind];
+    const size_t n = (size_t)lin->n;
+    const size_t rows = (size_t)list->n_rows;
+    const bool kept = kind == MT_TERM_STIFFNESS;
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    double *const error =
+        mt_arena_f64(kept ? &lin->reduced_mem : &lin->scratch, n, kept ? rows : 1);
+    lin->reduced[kind] = mt_arena_f64(&lin->reduced_mem, n, rows);
+    MT_TRY(mt_arena_check(kept ? &lin->reduced_mem : &lin->scratch, err));
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
+    for (size_t i = 0; i < rows; i++) {
+        double *const out = lin->reduced[kind] + (i * n);
+        double *const bound = error + (kept ? i * n : 0);
+        memset(bound, 0, n * sizeof *bound);
+        project_row(lin, kind, i, out, bound);
+        for (size_t c = 0; c < n; c++) {
+            out[c] = fabs(out[c]) <= bound[c] ? 0.0 : out[c];
+        }
+    }
+    mt_rows_of_columns(lin->n, list->n_rows, lin->reduced[kind], &lin->reduced_mem,
+                       &lin->entries[kind]);
+    MT_TRY(mt_arena_check(&lin->reduced_mem, err));
+    if (kept) {
+        lin->noise = error;
+    }
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
+
+/* reduced = Z^T row for all rows of all kinds at the present position; entries that are
+ * rounding are set to 0, and rows without others are blocked. After the basis; in the memory of
+ * the geometry. O(rows n). */
+static mt_status reduce_all_rows(mt_linear *lin, mt_err *err)
+{
+    const double extent = extent_of(lin);
+    for (int kind = 0; kind < MT_TERM_KINDS; kind++) {
+        MT_TRY(row_errors(lin, kind, extent, err));
+        MT_TRY(reduce_rows(lin, kind, err));
+    }
+    return MT_OK;
+}
+
+/* Linearisation. */
 
 void mt_linear_delete(mt_linear *lin)
 {
@@ -50,7 +331,7 @@ static mt_status init_linear(mt_linear *lin, const mt_system *sys, mt_err *err)
     lin->squared = mt_arena_alloc(&lin->base, terms, sizeof *lin->squared);
     MT_TRY(mt_arena_check(&lin->base, err));
     mt_couplings_find(lin, lin->coupling);
-    mt_stages_init(&lin->stages, sys, lin->list, &lin->base);
+    stages_init(&lin->stages, sys, lin->list, &lin->base);
     lin->forced = mt_arena_alloc(&lin->base, (size_t)lin->stages.words, sizeof *lin->forced);
     lin->stages.profile = sys->run->profile;
     return mt_arena_check(&lin->base, err);
@@ -179,7 +460,9 @@ static mt_status constrain(mt_linear *lin, mt_err *err)
     return mt_singular_refuse(&lin->data, &lin->position.at, &lin->e, &lin->scratch, err);
 }
 
-void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double c, double *out)
+/* out (n x n) += c times the term's rows, lower triangle. */
+static void add_term_square(const mt_linear *lin, int kind, const mt_term *t, double c,
+                            double *out)
 {
     const mt_rows *const rows = &lin->entries[kind];
     if (t->pair) {
@@ -211,7 +494,7 @@ static void add_terms(const mt_linear *lin, int kind, int which, double *out)
             return;
         }
         if ((which == 2 || t->varies == (which == 1)) && c != 0.0 && !apart) {
-            mt_linear_add_term(lin, kind, t, c, out);
+            add_term_square(lin, kind, t, c, out);
         }
     }
 }
@@ -240,7 +523,7 @@ static void add_couplings(const mt_linear *lin, double *k)
         if (lin->coupling[i] == MT_COUPLING_WHOLE && lin->squared[i]) {
             mt_couplings_add(lin, t, k);
         } else if (lin->coupling[i] == MT_COUPLING_WHOLE) {
-            mt_linear_add_term(lin, MT_TERM_STIFFNESS, t, lin->value[t->coefficient], k);
+            add_term_square(lin, MT_TERM_STIFFNESS, t, lin->value[t->coefficient], k);
         }
     }
 }
@@ -336,7 +619,7 @@ static void assemble_stiffness(mt_linear *lin)
             lin->factor_c[t->first + r] = square ? c : 0.0;
         }
         if (!square) {
-            mt_linear_add_term(lin, MT_TERM_STIFFNESS, t, c, lin->factor_g);
+            add_term_square(lin, MT_TERM_STIFFNESS, t, c, lin->factor_g);
             lin->has_factor_g = true;
         }
     }
@@ -395,9 +678,9 @@ static mt_status reduce_matrices(mt_linear *lin, mt_err *err)
     lin->stages.valid[MT_STAGE_MASS] = false;
     mt_arena_clear(&lin->reduced_mem);
     mt_arena_clear(&lin->scratch);
-    MT_TRY(mt_reduce_basis(lin, err));
+    MT_TRY(reduce_basis(lin, err));
     MT_TRY(mt_free_spin_remove(lin, err));
-    MT_TRY(mt_reduce_rows(lin, err));
+    MT_TRY(reduce_all_rows(lin, err));
     MT_TRY(mt_interrupt_check(lin->sys->run->interrupt, err));
     MT_TRY(fixed_parts(lin, err));
     return mt_interrupt_check(lin->sys->run->interrupt, err);
@@ -461,7 +744,7 @@ static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
     st->valid[MT_STAGE_TANGENT] = false;
     st->valid[MT_STAGE_REDUCTION] = false;
     if (mt_geometry_take(lin, moves, inputs)) {
-        mt_stages_shared(st, MT_STAGE_GEOMETRY, inputs);
+        stages_shared(st, MT_STAGE_GEOMETRY, inputs);
         return MT_OK;
     }
     MT_TRY(find_position_and_rows(lin, inputs, err));
@@ -474,7 +757,7 @@ static mt_status run_geometry(mt_linear *lin, const double *inputs, mt_err *err)
  * masses. */
 static const uint64_t *reduces_with(const mt_linear *lin)
 {
-    const bool once = mt_stages_empty(&lin->stages, moves_with(lin));
+    const bool once = stages_empty(&lin->stages, moves_with(lin));
     return lin->free_spin_varies ? lin->stages.all
                                  : (once ? lin->stages.none : lin->stages.mass);
 }
@@ -483,7 +766,7 @@ static mt_status run_tangent(mt_linear *lin, const double *inputs, mt_err *err)
 {
     mt_stages *const st = &lin->stages;
     const uint64_t *const moves = moves_with(lin);
-    if (mt_stages_empty(st, moves)) {
+    if (stages_empty(st, moves)) {
         lin->tangent = NULL;
         return MT_OK;
     }
@@ -491,7 +774,7 @@ static mt_status run_tangent(mt_linear *lin, const double *inputs, mt_err *err)
     if (mt_stages_begin(st, MT_STAGE_TANGENT, moves, inputs)) {
         if (g->sloped && lin->pool->n > 1) {
             lin->tangent = g->tangent;
-            mt_stages_shared(st, MT_STAGE_TANGENT, inputs);
+            stages_shared(st, MT_STAGE_TANGENT, inputs);
             return MT_OK;
         }
         mt_arena_rewind(&g->mem, g->before_tangent);
@@ -633,4 +916,98 @@ void mt_linear_expand(const mt_linear *lin, int cols, const double *y, double *p
 {
     mt_gemm(false, false, lin->sys->nq, cols, lin->n, 1.0, lin->e.z, lin->sys->nq, y, lin->n,
             0.0, phi, lin->sys->nq);
+}
+
+/* Stages shared with another evaluator. */
+
+/* Only geometry that an input moves is worth sharing; loaded or driven systems depend on more
+ * than their shape. */
+static mt_status can_share(const mt_system *a, const mt_system *b, bool *can, mt_err *err)
+{
+    *can = false;
+    const bool plain = !a->loaded && !a->driven && !b->loaded && !b->driven;
+    return plain && !a->geometry_fixed ? mt_system_same_shape(a, b, can, err) : MT_OK;
+}
+
+mt_status mt_linear_share(mt_linear *lin, mt_linear *with, bool *shared, mt_err *err)
+{
+    *shared = false;
+    if (lin->pool->n > 1 || lin->first_input != with->first_input) {
+        return MT_OK;
+    }
+    MT_TRY(can_share(lin->sys, with->sys, shared, err));
+    const mt_status rc = *shared ? mt_geometry_join(lin, with, err) : MT_OK;
+    *shared = *shared && rc == MT_OK;
+    return rc;
+}
+
+/* Dampers and loss factors as matrices: sums of the same rows as those of the springs. */
+
+double mt_linear_loss(const mt_linear *lin, const mt_term *t)
+{
+    return t->loss == MT_NO_NODE ? 0.0 : lin->value[t->loss] * lin->value[t->coefficient];
+}
+
+void mt_linear_damping(const mt_linear *lin, double *c)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_DAMPING];
+    memset(c, 0, (size_t)lin->n * (size_t)lin->n * sizeof *c);
+    for (int i = 0; i < list->n_terms; i++) {
+        const double value = lin->value[list->terms[i].coefficient];
+        if (value != 0.0) {
+            add_term_square(lin, MT_TERM_DAMPING, &list->terms[i], value, c);
+        }
+    }
+    mt_symmetrise_lower(lin->n, c);
+}
+
+bool mt_linear_structural(const mt_linear *lin, double *h)
+{
+    const mt_term_list *const list = &lin->list[MT_TERM_STIFFNESS];
+    bool any = false;
+    if (h != NULL) {
+        memset(h, 0, (size_t)lin->n * (size_t)lin->n * sizeof *h);
+    }
+    for (int i = 0; i < list->n_terms; i++) {
+        const double value = mt_linear_loss(lin, &list->terms[i]);
+        any = any || value != 0.0;
+        if (value != 0.0 && h != NULL) {
+            add_term_square(lin, MT_TERM_STIFFNESS, &list->terms[i], value, h);
+        }
+    }
+    if (h != NULL) {
+        mt_symmetrise_lower(lin->n, h);
+    }
+    return any;
+}
+
+/* What the elimination found, in the user's words: redundant joints, directions named by
+ * body. */
+
+int mt_linear_redundant(const mt_linear *lin)
+{
+    return lin->m - lin->e.qr.rank;
+}
+
+mt_status mt_linear_redundant_set(mt_linear *lin, int k, mt_arena *mem, mt_joint_names *out,
+                                  mt_err *err)
+{
+    const mt_arena_mark mark = mt_arena_get_mark(&lin->scratch);
+    double *const null = mt_arena_f64(&lin->scratch, (size_t)lin->m, 1);
+    MT_TRY(mt_arena_check(&lin->scratch, err));
+    MT_TRY(mt_eliminate_left_null(&lin->e, k, null, &lin->scratch, err));
+    MT_TRY(mt_name_joints(lin->sys, lin->m, null, mem, out, err));
+    mt_arena_rewind(&lin->scratch, mark);
+    return MT_OK;
+}
+
+mt_status mt_linear_nearness(mt_linear *lin, mt_arena *mem, mt_nearness *out, mt_err *err)
+{
+    return mt_singular_nearness(&lin->data, &lin->position.at, &lin->e, &lin->scratch, mem, out,
+                                err);
+}
+
+void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size)
+{
+    mt_name_motion(lin->sys, &lin->e, y, text, size);
 }

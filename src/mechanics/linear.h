@@ -2,9 +2,39 @@
 #ifndef MECHANICS_LINEAR_H
 #define MECHANICS_LINEAR_H
 
+#include "base/run.h"
 #include "mechanics/position.h"
 #include "mechanics/rows.h"
-#include "mechanics/stages.h"
+#include "mechanics/singular.h"
+
+/*
+ * Inputs that each stage of a linearised system depends on, by the structure of its program,
+ * and their values at its last computation. Sets of inputs are bit sets, as in the program.
+ */
+typedef struct mt_stages {
+    int n_inputs;
+    int words;
+    uint64_t *loaded;    /* `shape` and `forces` of the system (system.h) */
+    uint64_t *stiffness; /* coefficients of K */
+    uint64_t *mass;      /* coefficients of M */
+    uint64_t *all;
+    uint64_t *none;
+    double *at[MT_STAGES]; /* [n_inputs] */
+    bool valid[MT_STAGES]; /* the results of the stage are valid for the inputs `at` */
+    mt_stage_counts counts;
+    double started_s;    /* start of the current stage */
+    mt_profile *profile; /* NULL: not reported; not owned */
+} mt_stages;
+/* True where the stage has to be computed, if it depends on the inputs of `set` only. Bits are
+ * compared. A stage to be computed is not valid until mt_stages_done; another one is counted as
+ * skipped. */
+bool mt_stages_begin(mt_stages *s, mt_stage_id stage, const uint64_t *set,
+                     const double *inputs);
+void mt_stages_done(mt_stages *s, mt_stage_id stage, const double *inputs);
+/* True where the inputs of the set have the same bits. */
+bool mt_stages_same(const mt_stages *s, const uint64_t *set, const double *at,
+                    const double *inputs);
+bool mt_stages_has(const uint64_t *set, int input);
 
 /*
  * A system linearised at one design: positions, reduced stiffness and mass, exact derivatives
@@ -14,7 +44,7 @@
  *         (n x n, column-major, both triangles filled)
  *
  * A stage (base/run.h) is computed again only where an input that it depends on has other
- * bits than at its last computation, or where an earlier stage was computed (stages.h).
+ * bits than at its last computation, or where an earlier stage was computed.
  * Skipping does not change results: they depend on the inputs alone, and on the first update,
  * whose masses choose the basis of a geometry that no input moves, and from whose driven
  * position those begin that differ in neither drawing nor drive (MT_POSITION_AGAIN).
@@ -90,5 +120,19 @@ void mt_linear_damping(const mt_linear *lin, double *c);
  * dynamic stiffness is K + i H for motions with e^{i w t}. Loads and preload, whose geometric
  * stiffness belongs to no spring, do not contribute. True where any term is not 0. */
 bool mt_linear_structural(const mt_linear *lin, double *h);
+
+/* Results of the elimination at the linearised position, in names of the model. After an
+ * update. */
+
+/* Number of redundant equations (m - rank); names of the joints of set k, in mem. */
+int mt_linear_redundant(const mt_linear *lin);
+mt_status mt_linear_redundant_set(mt_linear *lin, int k, mt_arena *mem, mt_joint_names *out,
+                                  mt_err *err);
+/* Distance to a position where equations are dependent there only (singular.h). Names are in
+ * mem. */
+mt_status mt_linear_nearness(mt_linear *lin, mt_arena *mem, mt_nearness *out, mt_err *err);
+/* Names of the bodies and directions that dominate a direction y in the freedoms, "bob
+ * (rotation)", for messages, in text[size]. */
+void mt_linear_name_direction(const mt_linear *lin, const double *y, char *text, size_t size);
 
 #endif

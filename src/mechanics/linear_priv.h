@@ -45,7 +45,7 @@ struct mt_linear {
     double *rows[MT_TERM_KINDS];       /* 12 x n_rows, local freedoms */
     mt_rows full[MT_TERM_KINDS];       /* the same over the states, by local freedom */
     double *full_error[MT_TERM_KINDS]; /* bounds of the errors of their entries */
-    double *reduced[MT_TERM_KINDS];    /* n x n_rows: Z^T row, rounding made 0 (reduce.h) */
+    double *reduced[MT_TERM_KINDS];    /* n x n_rows: Z^T row, rounding made 0 (linear.h) */
     mt_rows entries[MT_TERM_KINDS];    /* nonzero entries of reduced; none in a blocked row */
     double *noise;    /* n x n_rows: bounds of the errors of reduced[MT_TERM_STIFFNESS] */
     double *kg;       /* nq x nq geometric stiffness; NULL without loads */
@@ -84,9 +84,6 @@ struct mt_linear {
     mt_section_slopes *sections; /* NULL: not yet */
 };
 
-/* out (n x n) += c times the term's rows, lower triangle. */
-void mt_linear_add_term(const mt_linear *lin, int kind, const mt_term *t, double c,
-                        double *out);
 /* out[nq] += scale Kg phi; nothing without loads. */
 void mt_linear_add_load(const mt_linear *lin, double scale, const double *phi, double *out);
 /* Contribution of a term to H: loss * coefficient; 0 without a loss factor. */

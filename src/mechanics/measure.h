@@ -24,7 +24,7 @@
  *             plus the whole turns that bring it nearest to `near`
  *   ROTATION  component k of the rotation vector that takes the triad of a to that of b, in the
  *             triad of a
- *   BEAM      one of the generalised strains of a beam element (measure_beam.c)
+ *   BEAM      one of the generalised strains of a beam element
  */
 typedef enum mt_measure_kind {
     MT_MEASURE_PLANE,
@@ -135,10 +135,8 @@ typedef struct mt_relative_list {
     int at[MT_RELATIVE];
 } mt_relative_list;
 const mt_relative_list *mt_relative_filled(mt_second second, unsigned span);
-/* Expand to the twelve local freedoms. */
-void mt_relative_expand(const mt_relative_jet *j, mt_jet *out);
 
-/* Intermediate results shared by all strains of a beam element (measure_beam.c), kept between
+/* Intermediate results shared by all strains of a beam element, kept between
  * evaluations. In the plane only phi[2], s[1] and length. Some 6 kB, of which only `dir` must
  * be initialised. */
 typedef struct mt_beam_parts {

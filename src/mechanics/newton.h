@@ -2,8 +2,8 @@
 #ifndef MECHANICS_NEWTON_H
 #define MECHANICS_NEWTON_H
 
-#include "mechanics/border.h"
 #include "mechanics/eliminate.h"
+#include "mechanics/saddle.h"
 
 /* One stage of the position analysis: a stationary point of an energy under the first m
  * constraints. */
@@ -49,7 +49,7 @@ typedef struct mt_stage {
     double residual;         /* largest unbalanced force / largest force */
     mt_newton_residual left; /* with the physical energy */
     int null_freedoms;       /* freedoms without stiffness at the solution */
-    /* derivatives by one input, for the physical energy (newton_tangent.h) */
+    /* derivatives by one input, for the physical energy (position.h) */
     double *d_lambda; /* [m] */
     double d_trim_force;
 } mt_stage;
@@ -62,11 +62,72 @@ mt_status mt_newton_gap(const mt_newton_problem *problem, const mt_placement *at
  * MT_E_INTERRUPTED. */
 mt_status mt_newton_solve(const mt_newton_problem *problem, mt_placement *at, mt_arena *mem,
                           mt_stage *stage, mt_err *err);
-/* Close the first m constraints by the smallest steps from `at`, which is moved, to a gap of
- * `enough` model lengths; 0: to rounding. *closed false: the steps do not converge as at a
- * regular position, or joints contradict each other; `at` is then arbitrary. Adds to
- * *iterations. (newton_close.c) Fails: MT_E_MEMORY. */
-mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_placement *at,
-                          int *iterations, bool *closed, mt_arena *mem, mt_err *err);
+
+/* Shared by the files newton*.c: one linearisation of a stage at the present position. All
+ * arrays are in the arena given to mt_newton_work_init. */
+typedef struct mt_newton_work {
+    const mt_newton_problem *p;
+    const mt_system *sys;
+    mt_lagrangian l;      /* dense, at the present position: g, c, trim, a, h */
+    mt_lagrangian sparse; /* g, c, trim, rows and a sparse Hessian; where that is cheaper */
+    /* entries of the sparse least-squares system; NULL: dense is cheaper */
+    double *least;
+    mt_cx *lambda_cx;
+    double *lambda;  /* [m] */
+    double *g;       /* [nq] gradient of the energy */
+    double *c;       /* [m] */
+    double *a;       /* m x nq; NULL until mt_newton_dense */
+    double *h;       /* nq x nq; NULL until mt_newton_dense */
+    double *trim;    /* [nq] gradient of the trimmed spring's measure */
+    double *v;       /* [nq] step back to the constraints */
+    double *step;    /* [nq] */
+    double *turn;    /* [m] change of the multipliers by the step, where it was found sparse */
+    double *reduced; /* [nq + 1] Z^T g, and the drive's equation with trim */
+    double tau;      /* force of the trimmed spring */
+    double residual; /* unbalanced force / force scale */
+    double noise;    /* its rounding error */
+    double gap;      /* model lengths */
+    double moved;    /* model lengths */
+    int null_freedoms;
+    int factors; /* factorisations so far */
+    /* leave plain Newton at once where the Hessian is indefinite and the start is not an
+     * equilibrium */
+    bool watch;
+    /* sparse: w->lambda and w->turn belong to a full, short step */
+    bool followed;
+    /* leave the geometric part out of the Hessian */
+    bool elastic;
+} mt_newton_work;
+
+/* Converged: the step is below this fraction of the model length (the error is its square, by
+ * quadratic convergence)... */
+static const double MT_STEP_DONE = 1e-10;
+/* Largest motion of one step in model lengths: beyond it the quadratic model is not valid. */
+static const double MT_STEP_LIMIT = 0.3;
+
+mt_status mt_newton_work_init(mt_newton_work *w, const mt_newton_problem *p, mt_arena *mem,
+                              mt_err *err);
+/* Allocate dense matrices, once: required by all evaluations except mt_newton_linearise_sparse
+ * and mt_newton_gap_at. */
+mt_status mt_newton_dense(mt_newton_work *w, mt_arena *mem, mt_err *err);
+/* Lagrangian at a position with w->lambda and w->tau. */
+void mt_newton_evaluate(mt_newton_work *w, const mt_placement *at, bool hessian);
+/* *firm: the sparse Z^T H Z is safely invertible. Checked before a solution is reported. */
+mt_status mt_newton_is_firm(const mt_saddle *saddle, mt_arena *scratch, bool *firm,
+                            mt_err *err);
+/* Least squares for the w->sparse last evaluated. *sure: the equations are independent; with
+ * `apart` also everywhere next to this position. */
+mt_status mt_newton_least_squares(mt_newton_work *w, bool apart, mt_arena *mem,
+                                  mt_saddle *least, bool *sure, mt_err *err);
+/* Pseudo-inverse (order n, with trim n + 1) of the (bordered) reduced w->h; sets the number of
+ * freedoms without stiffness in w. */
+mt_status mt_newton_invert(mt_newton_work *w, const mt_elimination *e, mt_arena *mem,
+                           double **inverse, mt_err *err);
+/* Move the position along w->step, at most `limit` model lengths. */
+void mt_newton_take_step(mt_newton_work *w, mt_placement *at, double limit);
+/* Largest motion of dq in model lengths, rotations unscaled. */
+double mt_newton_scaled_norm(const mt_newton_work *w, const double *dq);
+/* Largest violation of the constraints last evaluated, in model lengths. */
+double mt_newton_gap_of(const mt_newton_work *w);
 
 #endif

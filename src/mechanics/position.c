@@ -1,14 +1,857 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reference, driven position and equilibrium, and their derivatives. */
 #include "mechanics/position.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/format.h"
 #include "base/number.h"
+#include "base/run.h"
 #include "base/text.h"
-#include "mechanics/drive.h"
-#include "mechanics/newton_tangent.h"
+#include "linalg/dense.h"
+#include "mechanics/newton.h"
+#include "mechanics/singular.h"
+
+/*
+ * Derivative of a stage's solution (q, lambda, tau) with respect to one input, by the implicit
+ * function theorem. With d the motion that the input causes already (drawn positions, earlier
+ * stages) and a dot the derivative along (input, d) at fixed lambda and tau:
+ *     v = -A^+ c.,   K eta = -Z^T ((grad L). + H v),   q' = d + v + Z eta,
+ *         A^T lambda' = -(grad L). - H (v + Z eta) - t tau',
+ * K the reduced Hessian of newton.c with the border of the trimmed spring. The chart moves
+ * with the position; that adds nothing, because grad L = 0 there.
+ */
+
+/* (grad L). into w->g and -c. into w->c. */
+static mt_status differentiate(mt_newton_work *w, const mt_placement *at, const mt_stage *stage,
+                               const double *d, mt_arena *scratch, mt_err *err)
+{
+    const int m = w->p->m;
+    mt_lagrangian *const l = stage->solver.sparse ? &w->sparse : &w->l;
+    mt_placement moved = *at;
+    moved.pose = mt_arena_alloc(scratch, (size_t)w->sys->n_bodies, sizeof *moved.pose);
+    MT_TRY(mt_arena_check(scratch, err));
+    mt_poses_tangent(w->sys, at->pose, d, moved.pose);
+    l->slope = true;
+    l->trim_force = stage->trim_force;
+    mt_lagrangian_eval(w->p->data, w->p->energy, w->p->drawn, &moved, m, NULL,
+                       MT_CURVATURE_NONE, l);
+    for (int i = 0; i < m && l->row != NULL; i++) {
+        for (int k = 0; k < l->row[i].n; k++) {
+            w->g[l->row[i].dof[k]] += l->row[i].a[k] * stage->lambda[i];
+        }
+    }
+    if (l->a != NULL) {
+        mt_gemv(true, m, w->sys->nq, 1.0, l->a, m, stage->lambda, 1.0, w->g);
+    }
+    for (int i = 0; i < m; i++) {
+        w->c[i] = -w->c[i];
+    }
+    return MT_OK;
+}
+
+/* d += v + Z eta; d_lambda [m] and *d_trim follow. */
+static mt_status respond(mt_newton_work *w, const mt_stage *stage, double *d, double *d_lambda,
+                         double *d_trim, mt_arena *scratch, mt_err *err)
+{
+    const int nq = w->sys->nq;
+    const int m = w->p->m;
+    const mt_elimination *const e = &stage->solver.e;
+    const int order = e->n + (w->p->trim ? 1 : 0);
+    double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_eliminate_particular(e, w->c, w->v, scratch, err));
+    mt_gemv(false, nq, nq, 1.0, stage->h, nq, w->v, 1.0, w->g);
+    mt_eliminate_project(e, w->g, w->reduced);
+    for (int i = 0; i < e->n; i++) {
+        w->reduced[i] = -w->reduced[i];
+    }
+    if (w->p->trim) {
+        double row = w->c[m - 1];
+        for (int j = 0; j < nq; j++) {
+            row -= stage->a[(m - 1) + ((ptrdiff_t)j * m)] * w->v[j];
+        }
+        w->reduced[e->n] = row;
+    }
+    mt_gemv(false, order, order, 1.0, stage->solver.inverse, order, w->reduced, 0.0, eta);
+    mt_eliminate_expand(e, eta, w->step);
+    mt_gemv(false, nq, nq, 1.0, stage->h, nq, w->step, 1.0, w->g);
+    if (w->p->trim) {
+        mt_axpy(nq, eta[e->n], stage->trim, w->g);
+    }
+    for (int j = 0; j < nq; j++) {
+        w->g[j] = -w->g[j];
+    }
+    mt_axpy(nq, 1.0, w->v, d);
+    mt_axpy(nq, 1.0, w->step, d);
+    *d_trim = w->p->trim ? eta[e->n] : 0.0;
+    return mt_eliminate_multipliers(e, w->g, d_lambda, scratch, err);
+}
+
+/* The same at once: H x + A^T lambda' + t tau' = -(grad L)., A x = -c. */
+static mt_status respond_sparse(mt_newton_work *w, const mt_stage *stage, double *d,
+                                double *d_lambda, double *d_trim, mt_arena *scratch,
+                                mt_err *err)
+{
+    const int nq = w->sys->nq;
+    const mt_newton_solver *const solver = &stage->solver;
+    for (int j = 0; j < nq; j++) {
+        w->g[j] = -w->g[j];
+    }
+    MT_TRY(w->p->trim
+               ? mt_border_solve(&solver->border, w->g, w->c, w->step, d_lambda, d_trim,
+                                 scratch, err)
+               : mt_saddle_solve(&solver->saddle, w->g, w->c, w->step, d_lambda, scratch, err));
+    mt_axpy(nq, 1.0, w->step, d);
+    return MT_OK;
+}
+
+/* Derivative of a solved stage by data->input: d[nq] (in: the motion of earlier stages, out: of
+ * the solution); sets d_lambda and d_trim_force for the physical energy. No effect where the
+ * stage did not run. */
+static mt_status newton_tangent(const mt_newton_problem *problem, const mt_placement *at,
+                                mt_stage *stage, double *d, mt_arena *scratch, mt_err *err)
+{
+    if (!stage->active) {
+        return MT_OK;
+    }
+    mt_newton_work w;
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    MT_TRY(mt_newton_work_init(&w, problem, scratch, err));
+    double *const d_lambda = mt_arena_f64(scratch, (size_t)problem->m, 1);
+    double d_trim = 0.0;
+    if (!stage->solver.sparse) {
+        MT_TRY(mt_newton_dense(&w, scratch, err));
+    }
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(differentiate(&w, at, stage, d, scratch, err));
+    MT_TRY(stage->solver.sparse ? respond_sparse(&w, stage, d, d_lambda, &d_trim, scratch, err)
+                                : respond(&w, stage, d, d_lambda, &d_trim, scratch, err));
+    if (problem->energy == MT_ENERGY_PHYSICAL) {
+        memcpy(stage->d_lambda, d_lambda, (size_t)problem->m * sizeof *d_lambda);
+        stage->d_trim_force = d_trim;
+    }
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
+mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
+                            double pull_trim, double *x, double *y, mt_arena *scratch,
+                            mt_err *err)
+{
+    const mt_newton_solver *const solver = &stage->solver;
+    if (solver->sparse) {
+        return solver->border.along != NULL
+                   ? mt_border_adjoint(&solver->border, pull, across, pull_trim, x, y, scratch,
+                                       err)
+                   : mt_saddle_solve(&solver->saddle, pull, across, x, y, scratch, err);
+    }
+    const mt_elimination *const e = &stage->solver.e;
+    const ptrdiff_t nq = e->nq;
+    const int m = stage->m;
+    const int order = e->n + (m - e->m);
+    const mt_arena_mark mark = mt_arena_get_mark(scratch);
+    double *const r = mt_arena_f64(scratch, (size_t)nq, 1);
+    double *const eta = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    double *const b = mt_arena_f64(scratch, (size_t)order + 1, 1);
+    double *const way = mt_arena_f64(scratch, (size_t)nq, 1);
+    MT_TRY(mt_arena_check(scratch, err));
+    MT_TRY(mt_eliminate_particular(e, across, x, scratch, err));
+    memcpy(r, pull, (size_t)nq * sizeof *r);
+    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, x, 1.0, r);
+    mt_eliminate_project(e, r, b);
+    b[e->n] = pull_trim - mt_dot(e->nq, stage->trim, x);
+    mt_gemv(true, order, order, 1.0, stage->solver.inverse, order, b, 0.0, eta);
+    mt_eliminate_expand(e, eta, way);
+    mt_axpy(e->nq, 1.0, way, x);
+    mt_gemv(true, e->nq, e->nq, -1.0, stage->h, e->nq, way, 1.0, r);
+    for (int i = e->m; i < m; i++) { /* the drive's */
+        y[i] = eta[e->n];
+        for (ptrdiff_t j = 0; j < nq; j++) {
+            r[j] -= stage->a[i + (j * m)] * y[i];
+        }
+    }
+    MT_TRY(mt_eliminate_multipliers(e, r, y, scratch, err));
+    mt_arena_rewind(scratch, mark);
+    return MT_OK;
+}
+
+/*
+ * Back to the constraints by the smallest steps, and nothing else: with c and A at q
+ *     v = -A^+ c,      q <- q (+) v,
+ * which converges quadratically where A has full rank. The end is next to the start to first
+ * order, and no multiplier, no curvature and no second factor is needed: a third of the work of
+ * a step of newton.c.
+ */
+
+/* Beside a regular position the second step is rounding already. */
+enum { CLOSE_LIMIT = 8 };
+/* Each step leaves at most this part of the gap: towards a dead centre it leaves a quarter. */
+static const double CONTRACTION = 0.1;
+/* A gap of that many eps is none, model lengths. */
+static const double NO_GAP = 8.0;
+
+/* Evaluate w->c and the Jacobian for a step. */
+static mt_status evaluate_constraints(mt_newton_work *w, const mt_placement *at, bool dense,
+                                      mt_arena *mem, mt_err *err)
+{
+    if (dense) {
+        MT_TRY(mt_newton_dense(w, mem, err));
+    }
+    mt_lagrangian_eval(w->p->data, MT_ENERGY_NONE, NULL, at, w->p->m, NULL, MT_CURVATURE_NONE,
+                       dense ? &w->l : &w->sparse);
+    return MT_OK;
+}
+
+/* w->step := -A^+ c. Sparse, *sure: no equation depends on others; dense, where some do: the
+ * step of the independent ones, which closes all where they agree. */
+static mt_status step_back(mt_newton_work *w, bool dense, mt_arena *mem, bool *sure,
+                           mt_err *err)
+{
+    for (int i = 0; i < w->p->m; i++) {
+        w->turn[i] = -w->c[i];
+    }
+    if (dense) {
+        mt_elimination e;
+        *sure = true;
+        MT_TRY(mt_eliminate_factor(w->sys, w->p->m, w->a, mem, &e, err));
+        return mt_eliminate_particular(&e, w->turn, w->step, mem, err);
+    }
+    mt_saddle least;
+    MT_TRY(mt_newton_least_squares(w, false, mem, &least, sure, err));
+    return *sure ? mt_saddle_solve(&least, NULL, w->turn, w->step, NULL, mem, err) : MT_OK;
+}
+
+mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_placement *at,
+                          int *iterations, bool *closed, mt_arena *mem, mt_err *err)
+{
+    mt_newton_work w;
+    double before = HUGE_VAL;
+    *closed = false;
+    MT_TRY(mt_newton_work_init(&w, problem, mem, err));
+    bool dense = w.least == NULL;
+    w.turn = mt_arena_f64(mem, (size_t)problem->m, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(evaluate_constraints(&w, at, dense, mem, err));
+    for (int it = 0; it < CLOSE_LIMIT; it++) {
+        const double gap = mt_newton_gap_of(&w);
+        const bool shrinks = gap <= CONTRACTION * before;
+        *closed = gap <= fmax(enough, NO_GAP * DBL_EPSILON) ||
+                  (gap <= MT_STEP_DONE && before <= MT_STEP_DONE && !shrinks);
+        if (*closed || !(shrinks || gap <= MT_STEP_DONE)) {
+            return MT_OK;
+        }
+        const mt_arena_mark mark = mt_arena_get_mark(mem);
+        bool sure = false;
+        MT_TRY(step_back(&w, dense, mem, &sure, err));
+        mt_arena_rewind(mem, mark);
+        if (!sure) {
+            dense = true;
+            MT_TRY(evaluate_constraints(&w, at, dense, mem, err));
+            MT_TRY(step_back(&w, dense, mem, &sure, err));
+        }
+        ++*iterations;
+        w.moved = mt_newton_scaled_norm(&w, w.step);
+        if (!(w.moved <= MT_STEP_LIMIT)) {
+            return MT_OK;
+        }
+        mt_newton_take_step(&w, at, MT_STEP_LIMIT);
+        MT_TRY(evaluate_constraints(&w, at, dense, mem, err));
+        before = gap;
+    }
+    return MT_OK;
+}
+
+/*
+ * With A the gradients of independent equations (all that the joints hold, the walk's own
+ * included), the set of positions that they allow is smooth where A has full rank, and on a
+ * short step within one branch
+ *     det(A_1 C^2 A_0^T) > 0,      C: rotations as arcs of the model length,
+ * as it is at A_1 = A_0 and changes sign only where A_1 loses rank beside A_0. A step that
+ * jumps over a position where branches meet, or nearly meet (links of a loop in line), ends in
+ * the other assembly with the other sign, and its correction may be as small as that of a good
+ * one: both branches look like the one straight line across.
+ */
+
+/* O(n^3) for each step of a walk: below a millisecond. */
+enum { EQUATIONS_MOST = 150 };
+
+mt_status mt_branch_init(mt_branch *b, const mt_system *sys, int m, mt_arena *mem, mt_err *err)
+{
+    *b = (mt_branch){.sys = sys, .most = m <= EQUATIONS_MOST ? m : 0};
+    const size_t n = (size_t)b->most;
+    b->row = mt_arena_alloc(mem, n, sizeof *b->row);
+    b->a = mt_arena_f64(mem, n, (size_t)sys->nq);
+    b->to = mt_arena_f64(mem, n, (size_t)sys->nq);
+    b->b = mt_arena_f64(mem, n, n);
+    return mt_arena_check(mem, err);
+}
+
+/* The rows of `a` that count, rotations as arcs, each of length 1. */
+static void take_rows(const mt_branch *b, int m, const double *a, double *out)
+{
+    for (int body = 0; body < b->sys->n_bodies; body++) {
+        for (int k = 0; k < 6; k++) {
+            const ptrdiff_t j = b->sys->bodies[body].dof[k];
+            const double arc = k < 3 ? 1.0 : 1.0 / b->sys->length_m;
+            for (ptrdiff_t i = 0; j >= 0 && i < b->n; i++) {
+                out[i + (j * b->n)] = a[b->row[i] + (j * m)] * arc;
+            }
+        }
+    }
+    for (ptrdiff_t i = 0; i < b->n; i++) {
+        double square = 0.0;
+        for (ptrdiff_t j = 0; j < b->sys->nq; j++) {
+            square += out[i + (j * b->n)] * out[i + (j * b->n)];
+        }
+        for (ptrdiff_t j = 0; j < b->sys->nq && square > 0.0; j++) {
+            out[i + (j * b->n)] /= sqrt(square);
+        }
+    }
+}
+
+void mt_branch_stand(mt_branch *b, int m, const double *a, const mt_elimination *e)
+{
+    b->n = b->most == 0 ? 0 : e == NULL ? m : e->qr.rank;
+    for (int i = 0; i < b->n; i++) {
+        b->row[i] = e == NULL ? i : e->qr.perm[i];
+    }
+    take_rows(b, m, a, b->a);
+}
+
+mt_status mt_branch_kept(mt_branch *b, int m, const double *a, bool *kept, mt_arena *scratch,
+                         mt_err *err)
+{
+    int sign = 1;
+    take_rows(b, m, a, b->to);
+    mt_gemm(false, true, b->n, b->n, b->sys->nq, 1.0, b->to, b->n, b->a, b->n, 0.0, b->b, b->n);
+    MT_TRY(mt_lu_sign(b->n, b->b, &sign, scratch, err));
+    *kept = sign > 0;
+    return MT_OK;
+}
+
+/*
+ * Continuation in the position s of the driven joint. At a closed position, with A the Jacobian
+ * of all constraints and e_d the drive's row,
+ *     v     = A^+ e_d                            the smallest motion that drives the joint
+ *     dq/ds = v - Z (Z^T K Z)^+ Z^T K v          the one that strains the springs least (K:
+ *                                                their elastic stiffness), so that what hangs
+ *                                                on springs comes along, by
+ *     [K A^T; A 0] [dq/ds; .] = [0; e_d]         where that is regular beyond doubt;
+ * a step h goes to q (+) h dq/ds and is closed again by Newton from there (briefly: by the
+ * smallest steps, where they converge as they should). The correction is of
+ * order h^2 on a smooth branch; where it is not small beside the step, or Newton does not
+ * close the mechanism, or the equations turn over, the step is halved, so that the
+ * way never leaves its branch. Towards a
+ * limit position (a toggle) s -> s*, |dq/ds| grows as (s* - s)^-1/2: no step closes beyond it,
+ * and halving closes in on it geometrically.
+ */
+
+/* Longest step of the driven joint's coordinate [rad or model lengths], and of any body. */
+static const double DRIVE_STEP = 0.1;
+static const double BODY_STEP = 0.3;
+/* A brief walk's steps grow from there as long as corrections stay below this part of them, and
+ * it is seen that the equations do not turn over: a rotor behind gears turns far, and straight
+ * along dq/ds. The most keeps the angle between two bodies below half a turn. */
+static const double STRAIGHT = 0.02;
+static const double DRIVE_STEP_MOST = 0.4;
+static const double BODY_STEP_MOST = 1.2;
+static const double GROWTH = 4.0;
+/* A step is taken where the way back to the constraints is at most this part of it: on one
+ * branch it is about h |q''| / (2 |q'|) of it, beside what a closure leaves to rounding. */
+static const double CORRECTION = 0.3;
+/* Links that miss being in line by so little [rad, model lengths] are in line: a drawing has
+ * six digits of their lengths, whose square root this is. The way goes straight on there. */
+static const double MEETING = 1e-3;
+/* Gap [model lengths] that may be left where the walk only passes: far below the corrections
+ * that tell a branch, and the next closure takes it away. */
+static const double PASSING = 1e-6;
+/* Steps shorter than this part of DRIVE_STEP are not tried, and none is left for the last: the
+ * limit is then known to 1e-8 rad. */
+static const double SHORTEST = 1e-7;
+/* Rows of A dq/ds = e_d that fail by more than this say that the other joints hold the driven
+ * one; at the shortest step before a limit the ratio is still below 1/this. */
+static const double HELD = 1e-6;
+/* Bodies that move this many times further than the driven joint (model lengths, rad): a limit
+ * position is near. */
+static const double LIMIT_RATIO = 100.0;
+
+/* Steps of one walk: MT_DRIVE_REACH takes half of them, where no body moves three times as far
+ * as the joint. */
+enum { MOST_STEPS = 20000 };
+
+typedef struct walk {
+    const mt_system *sys;
+    const mt_data *data;
+    mt_placement *at; /* where it stands */
+    bool brief;       /* closures by the smallest steps */
+    double growth;    /* of the longest step */
+    int iterations;
+    mt_arena *mem;
+    int row;        /* of the drive */
+    double unit;    /* of the joint's coordinate: 1 rad, or the model length [m] */
+    double goal;    /* position of the joint that is asked for */
+    mt_pose *trial; /* [bodies] */
+    mt_pose *guess; /* [bodies] */
+    double *rate;   /* [nq] dq/ds */
+    double *motion; /* [nq] */
+    bool held;      /* by the other joints, where the walk stands */
+    mt_branch branch;
+    /* over a position where branches meet or nearly do: the first step that turned the
+     * equations over, and where the last one that did ended */
+    struct {
+        bool known;
+        double to;
+        double turned;
+        mt_pose *pose; /* [bodies] */
+    } beyond;
+    mt_lagrangian equations; /* of their gradients alone, where few enough are held */
+    mt_err why;              /* what the last closure that failed said */
+} walk;
+
+static mt_status walk_init(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const size_t n = (size_t)sys->n_bodies;
+    w->row = sys->drive_constraint;
+    w->unit = sys->joints[sys->drive_joint].angle ? 1.0 : sys->length_m;
+    w->goal = creal(mt_data_scalar(w->data, sys->drive, 0.0));
+    w->trial = mt_arena_alloc(w->mem, n, sizeof *w->trial);
+    w->guess = mt_arena_alloc(w->mem, n, sizeof *w->guess);
+    w->beyond.pose = mt_arena_alloc(w->mem, n, sizeof *w->beyond.pose);
+    w->rate = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
+    w->motion = mt_arena_f64(w->mem, (size_t)sys->nq, 1);
+    MT_TRY(mt_branch_init(&w->branch, sys, sys->n_constraints, w->mem, err));
+    if (w->branch.most > 0) {
+        MT_TRY(mt_lagrangian_init(&w->equations, sys, false, w->mem, err));
+    }
+    return mt_arena_check(w->mem, err);
+}
+
+/* Largest |A rate - e_d| in rows scaled as the elimination does. */
+static double misfit(const mt_elimination *e, const double *a, int row, const double *rate)
+{
+    double worst = 0.0;
+    for (int i = 0; i < e->m; i++) {
+        double s = i == row ? -1.0 : 0.0;
+        for (ptrdiff_t j = 0; j < e->nq; j++) {
+            s += a[i + (j * e->m)] * rate[j];
+        }
+        worst = fmax(worst, fabs(s) * (i == row ? 1.0 : e->dr[i] / e->dr[row]));
+    }
+    return worst;
+}
+
+/* work->v := v - Z (Z^T K Z)^+ Z^T K v. */
+static mt_status relax(walk *w, mt_newton_work *work, const mt_elimination *e, mt_err *err)
+{
+    const int nq = e->nq;
+    double *inverse = NULL;
+    double *const eta = mt_arena_f64(w->mem, (size_t)e->n, 1);
+    MT_TRY(mt_arena_check(w->mem, err));
+    mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, work->p->m, NULL,
+                       MT_CURVATURE_ELASTIC, &work->l);
+    MT_TRY(mt_newton_invert(work, e, w->mem, &inverse, err));
+    mt_gemv(false, nq, nq, -1.0, work->h, nq, work->v, 0.0, work->g);
+    mt_eliminate_project(e, work->g, work->reduced);
+    mt_gemv(false, e->n, e->n, 1.0, inverse, e->n, work->reduced, 0.0, eta);
+    mt_eliminate_expand(e, eta, work->step);
+    mt_axpy(nq, 1.0, work->step, work->v);
+    return MT_OK;
+}
+
+/* The first m equations at the current position. */
+static mt_newton_problem problem_here(const walk *w, int m)
+{
+    return (mt_newton_problem){
+        .data = w->data, .energy = MT_ENERGY_NONE, .m = m, .trim = false};
+}
+
+/* work->v := dq/ds, sparse; *sure: it is that. */
+static mt_status relax_sparse(walk *w, mt_newton_work *work, bool *sure, mt_err *err)
+{
+    const int m = work->p->m;
+    mt_saddle saddle;
+    mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, m, NULL,
+                       MT_CURVATURE_ELASTIC, &work->sparse);
+    MT_TRY(mt_saddle_factor(w->sys, m, &work->sparse, MT_SADDLE_REGULAR, work->sparse.h, w->mem,
+                            &saddle, err));
+    *sure = saddle.whole;
+    if (*sure) {
+        MT_TRY(mt_newton_is_firm(&saddle, w->mem, sure, err));
+    }
+    memset(work->c, 0, (size_t)m * sizeof *work->c);
+    work->c[w->row] = 1.0;
+    return *sure ? mt_saddle_solve(&saddle, NULL, work->c, work->v, NULL, w->mem, err) : MT_OK;
+}
+
+/* The gradients of all equations at a place. */
+static const double *gradients(walk *w, const mt_placement *at)
+{
+    mt_lagrangian_eval(w->data, MT_ENERGY_NONE, NULL, at, w->sys->n_constraints, NULL,
+                       MT_CURVATURE_NONE, &w->equations);
+    return w->equations.a;
+}
+
+/* Set the branch to the current position. e: its elimination; NULL: the equations are
+ * independent. */
+static void stand(walk *w, const mt_elimination *e)
+{
+    if (w->branch.most > 0) {
+        mt_branch_stand(&w->branch, w->sys->n_constraints, gradients(w, w->at), e);
+    }
+}
+
+/* work->v := dq/ds in a basis of the freedoms, unless the other joints hold the driven one. */
+static mt_status relax_dense(walk *w, mt_newton_work *work, mt_err *err)
+{
+    mt_elimination e;
+    MT_TRY(mt_newton_dense(work, w->mem, err));
+    mt_newton_evaluate(work, w->at, false);
+    MT_TRY(mt_eliminate(w->sys, work->p->m, work->a, w->mem, &e, err));
+    memset(work->c, 0, (size_t)work->p->m * sizeof *work->c);
+    work->c[w->row] = 1.0;
+    MT_TRY(mt_eliminate_particular(&e, work->c, work->v, w->mem, err));
+    w->held = !(misfit(&e, work->a, w->row, work->v) <= HELD);
+    stand(w, &e);
+    return w->held ? MT_OK : relax(w, work, &e, err);
+}
+
+/* dq/ds at the current position, and its size in model lengths per unit of the coordinate.
+ * Held: the old rate is kept. */
+static mt_status find_rate(walk *w, double *size, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    const mt_newton_problem problem = problem_here(w, sys->n_constraints);
+    mt_newton_work work;
+    bool sure = false;
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    if (work.least != NULL) {
+        MT_TRY(relax_sparse(w, &work, &sure, err));
+    }
+    w->held = false;
+    if (sure) {
+        stand(w, NULL);
+    } else {
+        MT_TRY(relax_dense(w, &work, err));
+    }
+    if (!w->held) {
+        memcpy(w->rate, work.v, (size_t)sys->nq * sizeof *w->rate);
+    }
+    *size = mt_newton_scaled_norm(&work, w->rate) * w->unit;
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
+/* Close the mechanism with the joint at `to`, from the guess; *good: closed, and still on the
+ * branch; *turned: closed, but the equations have turned over. */
+static mt_status try_step(walk *w, double to, double length, bool *good, bool *turned,
+                          mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    mt_stage stage = {.active = false};
+    mt_placement trial = {.pose = w->trial, .turn = w->at->turn, .drive = to};
+    memcpy(w->trial, w->guess, (size_t)sys->n_bodies * sizeof *w->trial);
+    const mt_newton_problem problem = {.data = w->data,
+                                       .energy = MT_ENERGY_ANCHOR,
+                                       .drawn = w->guess,
+                                       .m = sys->n_constraints,
+                                       .trim = false};
+    bool closed = false;
+    mt_status rc = MT_OK;
+    if (w->brief) {
+        rc = mt_newton_close(&problem, to == w->goal ? 0.0 : PASSING, &trial, &w->iterations,
+                             &closed, w->mem, &w->why);
+    }
+    if (!closed && !mt_is_final(rc)) {
+        memcpy(w->trial, w->guess, (size_t)sys->n_bodies * sizeof *w->trial);
+        rc = mt_newton_solve(&problem, &trial, w->mem, &stage, &w->why);
+    }
+    w->iterations += stage.iterations;
+    mt_arena_rewind(w->mem, mark);
+    if (mt_is_final(rc)) {
+        return mt_fail(err, rc, "%s", w->why.text);
+    }
+    *good = rc == MT_OK &&
+            mt_poses_distance(sys, w->trial, w->guess) <= (CORRECTION * length) + MT_STEP_DONE;
+    *turned = false;
+    if (*good && w->branch.most > 0) {
+        MT_TRY(mt_branch_kept(&w->branch, sys->n_constraints, gradients(w, &trial), good,
+                              w->mem, err));
+        *turned = !*good;
+    }
+    return MT_OK;
+}
+
+/* End of a step towards the goal, without a tiny last step. */
+static double step_end(const walk *w, double step)
+{
+    const double way = w->goal - w->at->drive;
+    const bool last = step >= fabs(way) - (SHORTEST * DRIVE_STEP * w->unit);
+    return last ? w->goal : w->at->drive + copysign(step, way);
+}
+
+static void take_drive_position(walk *w, const mt_pose *poses, double to)
+{
+    memcpy(w->at->pose, poses, (size_t)w->sys->n_bodies * sizeof *poses);
+    mt_data_turns(w->data, w->at);
+    w->at->drive = to;
+    if (fabs(w->goal - to) <= fabs(w->goal - w->beyond.to)) {
+        w->beyond.known = false; /* passed on the branch */
+    }
+}
+
+/* The step to `to` has turned the equations over, w->trial is where it ended. */
+static void note_turned(walk *w, double to)
+{
+    w->beyond.turned = to;
+    if (!w->beyond.known) {
+        w->beyond.known = true;
+        w->beyond.to = to;
+        memcpy(w->beyond.pose, w->trial, (size_t)w->sys->n_bodies * sizeof *w->trial);
+    }
+}
+
+/* Where branches meet only a long step passes, and both sides look like one straight line: the
+ * first step that passed is taken. */
+static void go_straight(walk *w)
+{
+    take_drive_position(w, w->beyond.pose, w->beyond.to);
+}
+
+/* After a step whose correction was this part of it. */
+static double next_growth(const walk *w, double part)
+{
+    const double most = DRIVE_STEP_MOST / DRIVE_STEP;
+    const bool straight = w->brief && w->branch.most > 0 && part <= STRAIGHT;
+    const double by = part > 0.0 ? fmin(STRAIGHT / part, GROWTH) : GROWTH;
+    return straight ? fmin(w->growth * by, most) : 1.0;
+}
+
+/* One step of at most *h towards the goal, halved until it succeeds. *h: the next step to try;
+ * 0: no step succeeds. */
+static mt_status advance(walk *w, double *h, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const double way = w->goal - w->at->drive;
+    double size = 0.0;
+    bool good = false;
+    MT_TRY(find_rate(w, &size, err));
+    if (!(size > 0.0)) { /* held from the start: there is no way to go */
+        *h = 0.0;
+        return MT_OK;
+    }
+    const double body = fmin(w->growth * BODY_STEP, BODY_STEP_MOST);
+    double step = fmin(fmin(*h, fabs(way)), body * w->unit / size);
+    *h = 0.0; /* also where bodies move so far that no step is long enough to be tried */
+    while (!good && step >= fmin(SHORTEST * DRIVE_STEP * w->unit, fabs(way))) {
+        bool turned = false;
+        const double to = step_end(w, step);
+        for (int j = 0; j < sys->nq; j++) {
+            w->motion[j] = (to - w->at->drive) * w->rate[j];
+        }
+        memcpy(w->guess, w->at->pose, (size_t)sys->n_bodies * sizeof *w->guess);
+        mt_poses_move(sys, w->guess, w->motion);
+        MT_TRY(try_step(w, to, step * size / w->unit, &good, &turned, err));
+        if (turned) {
+            note_turned(w, to);
+        }
+        if (!good && w->beyond.known &&
+            fabs(w->beyond.turned - w->at->drive) <= 2.0 * MEETING * w->unit) {
+            go_straight(w);
+            *h = step;
+            break;
+        }
+        const double part =
+            mt_poses_distance(sys, w->trial, w->guess) * w->unit / (step * size);
+        w->growth = good ? next_growth(w, part) : 1.0;
+        *h = good ? fmax(2.0, w->growth) * step : 0.0;
+        step = good ? step : 0.5 * step;
+        if (good) {
+            take_drive_position(w, w->trial, to);
+        }
+    }
+    *h = fmin(*h, fmin(w->growth * DRIVE_STEP, DRIVE_STEP_MOST) * w->unit);
+    return MT_OK;
+}
+
+/* The joint that turns or slides furthest along dq/ds, other than the driven one; -1: none. */
+static int fastest_joint(const walk *w, double *ratio)
+{
+    const mt_system *const sys = w->sys;
+    int best = -1;
+    double most = 0.0;
+    for (int i = 0; i < sys->n_joints; i++) {
+        const mt_system_joint *const joint = &sys->joints[i];
+        if (joint->coordinate < 0 || i == sys->drive_joint) {
+            continue;
+        }
+        const double rate = mt_drive_rate(w->data, joint->coordinate, w->at->pose, w->rate);
+        const double scaled = fabs(rate) / (joint->angle ? 1.0 : sys->length_m);
+        if (scaled > most) {
+            most = scaled;
+            best = i;
+            *ratio = rate;
+        }
+    }
+    return best;
+}
+
+static mt_status refuse_drive_position(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    const char *const unit = joint->angle ? "rad" : "m";
+    double size = 0.0;
+    double ratio = 0.0;
+    MT_TRY(find_rate(w, &size, err));
+    if (!(size > 0.0)) {
+        return mt_fail(err, MT_E_ASSEMBLY,
+                       "joint \"%s\" cannot be driven: the other joints hold it where it is "
+                       "(or it stands at a limit position)",
+                       joint->name);
+    }
+    const int fast = fastest_joint(w, &ratio);
+    if (w->held || size >= LIMIT_RATIO) {
+        return fast < 0 ? mt_fail(err, MT_E_ASSEMBLY,
+                                  "joint \"%s\" cannot be driven beyond %.6g %s: limit "
+                                  "position, where the mechanism moves without it",
+                                  joint->name, w->at->drive, unit)
+                        : mt_fail(err, MT_E_ASSEMBLY,
+                                  "joint \"%s\" cannot be driven beyond %.6g %s: limit "
+                                  "position, where joint \"%s\" moves without it (%.2g %s per "
+                                  "%s just before)",
+                                  joint->name, w->at->drive, unit, sys->joints[fast].name,
+                                  ratio, sys->joints[fast].angle ? "rad" : "m", unit);
+    }
+    return mt_fail(err, MT_E_ASSEMBLY, "joint \"%s\" cannot be driven beyond %.6g %s: %s",
+                   joint->name, w->at->drive, unit,
+                   w->why.text[0] != '\0' ? w->why.text
+                                          : "singular position, where the motion can branch");
+}
+
+/* From a dead centre of the other joints several ways lead on. */
+static mt_status refuse_dead_centre(walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_arena_mark mark = mt_arena_get_mark(w->mem);
+    const mt_newton_problem problem = problem_here(w, sys->n_constraints - 1);
+    mt_newton_work work;
+    mt_elimination e;
+    mt_saddle least;
+    bool apart = false;
+    MT_TRY(mt_newton_work_init(&work, &problem, w->mem, err));
+    if (work.least != NULL) {
+        mt_lagrangian_eval(w->data, MT_ENERGY_PHYSICAL, w->at->pose, w->at, problem.m, NULL,
+                           MT_CURVATURE_NONE, &work.sparse);
+        MT_TRY(mt_newton_least_squares(&work, true, w->mem, &least, &apart, err));
+    }
+    if (apart) {
+        mt_arena_rewind(w->mem, mark);
+        return MT_OK;
+    }
+    MT_TRY(mt_newton_dense(&work, w->mem, err));
+    mt_newton_evaluate(&work, w->at, false);
+    MT_TRY(mt_eliminate(w->sys, problem.m, work.a, w->mem, &e, err));
+    const mt_status rc = mt_singular_refuse(w->data, w->at, &e, w->mem, err);
+    MT_TRY(mt_err_in(err, rc, "the position that it is driven from"));
+    mt_arena_rewind(w->mem, mark);
+    return MT_OK;
+}
+
+double mt_drive_reach(const mt_system *sys, int joint)
+{
+    return MT_DRIVE_REACH * (sys->joints[joint].angle ? 1.0 : sys->length_m);
+}
+
+/* Bodies that move much further than the joint make steps short. */
+static mt_status refuse_steps(const walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    return mt_fail(err, MT_E_ASSEMBLY,
+                   "joint \"%s\" reached %g %s in %d steps, not %g %s: other parts would have "
+                   "to move too far",
+                   joint->name, w->at->drive, joint->angle ? "rad" : "m", (int)MOST_STEPS,
+                   w->goal, joint->angle ? "rad" : "m");
+}
+
+static mt_status refuse_far(const walk *w, mt_err *err)
+{
+    const mt_system *const sys = w->sys;
+    const mt_system_joint *const joint = &sys->joints[sys->drive_joint];
+    return mt_fail(err, MT_E_ASSEMBLY,
+                   "joint \"%s\" cannot be driven to %g %s: at most %g %s from the reference "
+                   "position",
+                   joint->name, w->goal, joint->angle ? "rad" : "m",
+                   mt_drive_reach(sys, sys->drive_joint), joint->angle ? "rad" : "m");
+}
+
+/*
+ * Move the driven joint from its position in `at` to its target, by continuation on the present
+ * branch; at: in, out. The result is closed, with the springs strained about as little as
+ * possible. Angles are followed over whole turns. On failure at->drive is the position reached;
+ * Newton iterations are added to *iterations. Fails: MT_E_ASSEMBLY beyond mt_drive_reach, where
+ * MOST_STEPS are not enough, at a limit position, in a position that the other joints
+ * hold, and where they do not stay closed; MT_E_DEAD_CENTRE where the drawn position is
+ * one; MT_E_MEMORY.
+ *
+ * brief: the mechanism is closed by the smallest steps, not nearest to the predicted position:
+ * a different position to second order, on the same branch, for a quarter of the work.
+ */
+static mt_status drive_solve(const mt_data *data, bool brief, mt_placement *at, int *iterations,
+                             mt_arena *mem, mt_err *err)
+{
+    walk w = {
+        .sys = data->sys, .data = data, .at = at, .brief = brief, .growth = 1.0, .mem = mem};
+    MT_TRY(walk_init(&w, err));
+    if (!(fabs(w.goal) <= mt_drive_reach(w.sys, w.sys->drive_joint))) {
+        return refuse_far(&w, err);
+    }
+    if (at->drive != w.goal && at->drive == 0.0) {
+        MT_TRY(refuse_dead_centre(&w, err));
+    }
+    double h = DRIVE_STEP * w.unit;
+    int steps = 0;
+    for (; at->drive != w.goal && h > 0.0 && steps < MOST_STEPS; steps++) {
+        MT_TRY(mt_interrupt_check(w.sys->run->interrupt, err));
+        MT_TRY(advance(&w, &h, err));
+    }
+    *iterations += w.iterations;
+    return at->drive == w.goal ? MT_OK
+           : h > 0.0           ? refuse_steps(&w, err)
+                               : refuse_drive_position(&w, err);
+}
+
+/* The motion dq/ds of the driven joint at `at`: rate[nq]; *size: how far it moves bodies [model
+ * lengths, rad] per rad or model length of the joint; *held: there is none, because the other
+ * joints hold it. Fails: as Newton's steps, MT_E_MEMORY. */
+static mt_status drive_motion(const mt_data *data, mt_placement *at, double *rate, double *size,
+                              bool *held, mt_arena *mem, mt_err *err)
+{
+    walk w = {.sys = data->sys, .data = data, .at = at, .growth = 1.0, .mem = mem};
+    MT_TRY(walk_init(&w, err));
+    MT_TRY(find_rate(&w, size, err));
+    memcpy(rate, w.rate, (size_t)w.sys->nq * sizeof *rate);
+    *held = w.held;
+    return MT_OK;
+}
+
+double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses, const double *rate)
+{
+    const mt_measure_def *const def = &data->sys->measures[measure];
+    const mt_measure_data m = mt_data_measure(data, def);
+    mt_jet jet;
+    mt_measure_eval(&m, mt_pose_of(poses, def->body[0]), mt_pose_of(poses, def->body[1]), false,
+                    NULL, &jet);
+    return mt_jet_along(data->sys, def->body, &jet, rate);
+}
+
+/* Reference and equilibrium. */
 
 /* Constraints of the plain assembly: all but the drive's. */
 static int assembly_constraints(const mt_system *sys)
@@ -159,7 +1002,7 @@ static mt_status explain_trim(mt_state *p, const mt_data *data, mt_status rc, mt
     double size = 0.0;
     bool held = false;
     MT_TRY(mt_arena_check(mem, err));
-    mt_status own = mt_drive_motion(data, &p->driven, rate, &size, &held, mem, NULL);
+    mt_status own = drive_motion(data, &p->driven, rate, &size, &held, mem, NULL);
     if (own != MT_OK || held || !(size > 0.0) ||
         !(fabs(mt_drive_rate(data, measure, p->driven.pose, rate)) * unit / stretch <=
           TRIM_LEAST * size)) {
@@ -190,7 +1033,7 @@ static mt_status drive(mt_state *p, const mt_data *data, const mt_placement *fro
 {
     *anchored = false;
     mt_placement_copy(p->sys, from, &p->driven);
-    MT_TRY(mt_drive_solve(data, brief, &p->driven, &p->iterations, mem, err));
+    MT_TRY(drive_solve(data, brief, &p->driven, &p->iterations, mem, err));
     mt_placement_copy(p->sys, &p->driven, &p->at);
     const mt_status rc = find_equilibrium(p, data, mem, err);
     if (rc != MT_OK) {
@@ -379,20 +1222,19 @@ mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_
                                  .drawn = drawn,
                                  .m = assembly_constraints(sys),
                                  .trim = false};
-    MT_TRY(
-        mt_newton_tangent(&problem, &p->reference, &p->closure, p->d_reference, scratch, err));
+    MT_TRY(newton_tangent(&problem, &p->reference, &p->closure, p->d_reference, scratch, err));
     mt_poses_tangent(sys, p->reference.pose, p->d_reference, work);
     mt_data_rest(data, work);
     memcpy(p->d_pose, p->d_reference, (size_t)sys->nq * sizeof *p->d_pose);
     if (sys->driven) {
         problem.m = sys->n_constraints;
-        MT_TRY(mt_newton_tangent(&problem, &p->at, &p->anchored, p->d_pose, scratch, err));
+        MT_TRY(newton_tangent(&problem, &p->at, &p->anchored, p->d_pose, scratch, err));
     }
     if (p->equilibrium.active) {
         problem.energy = MT_ENERGY_PHYSICAL;
         problem.m = sys->n_constraints;
         problem.trim = sys->trim;
-        MT_TRY(mt_newton_tangent(&problem, &p->at, &p->equilibrium, p->d_pose, scratch, err));
+        MT_TRY(newton_tangent(&problem, &p->at, &p->equilibrium, p->d_pose, scratch, err));
     }
     mt_arena_rewind(scratch, mark);
     return MT_OK;

@@ -2,7 +2,48 @@
 #ifndef MECHANICS_POSITION_H
 #define MECHANICS_POSITION_H
 
+#include "mechanics/eliminate.h"
 #include "mechanics/newton.h"
+
+/*
+ * Adjoint: with x and y from the transposed equations of such a stage,
+ *     H x + A^T y = pull,  A x = across,  t . x = pull_trim
+ * (the last with a trimmed spring, where x has no equation of the drive's row), additional
+ * forces f and gaps c change pull . q + across . lambda + pull_trim tau by -(x . f + y . c).
+ * pull [nq], across [m], x [nq], y [m].
+ */
+mt_status mt_newton_adjoint(const mt_stage *stage, const double *pull, const double *across,
+                            double pull_trim, double *x, double *y, mt_arena *scratch,
+                            mt_err *err);
+
+/* Assembly of a closed loop during a continuation: the orientation of the independent
+ * constraint equations. */
+typedef struct mt_branch {
+    const mt_system *sys;
+    int n;      /* independent equations at the current position */
+    int most;   /* room for that many; 0: too many equations to check */
+    int *row;   /* [n] their indices */
+    double *a;  /* n x nq, their gradients there, scaled as in mt_eliminate but for lengths */
+    double *to; /* n x nq, gradients at the end of the step */
+    double *b;  /* n x n */
+} mt_branch;
+
+/* For m equations; more than 150 are not checked. Fails: MT_E_MEMORY. */
+mt_status mt_branch_init(mt_branch *b, const mt_system *sys, int m, mt_arena *mem, mt_err *err);
+/* Set the current position, where the equations have the gradients a (m x nq, column-major). e:
+ * their elimination; NULL: they are independent. */
+void mt_branch_stand(mt_branch *b, int m, const double *a, const mt_elimination *e);
+/* *kept: a short step to a position with gradients `a` stays on its branch. O(n^2 nq + n^3).
+ * Fails: MT_E_MEMORY. */
+mt_status mt_branch_kept(mt_branch *b, int m, const double *a, bool *kept, mt_arena *scratch,
+                         mt_err *err);
+
+/* The greatest position of a joint (of sys->joints): MT_DRIVE_REACH rad, or model lengths
+ * [m]. */
+double mt_drive_reach(const mt_system *sys, int joint);
+/* d(measure)/ds along the motion rate[nq] at poses. */
+double mt_drive_rate(const mt_data *data, int measure, const mt_pose *poses,
+                     const double *rate);
 
 /*
  * Positions of a system at one design, each the minimiser of an energy under constraints:
@@ -70,5 +111,12 @@ mt_status mt_position_solve(const mt_system *sys, mt_data *data, const mt_placem
 /* Derivative by data->input (vectors and targets are computed with derivatives here). Fills
  * d_*, and data's rest values with their derivative. */
 mt_status mt_position_tangent(mt_state *p, mt_data *data, mt_arena *scratch, mt_err *err);
+
+/* Close the first m constraints by the smallest steps from `at`, which is moved, to a gap of
+ * `enough` model lengths; 0: to rounding. *closed false: the steps do not converge as at a
+ * regular position, or joints contradict each other; `at` is then arbitrary. Adds to
+ * *iterations. Fails: MT_E_MEMORY. */
+mt_status mt_newton_close(const mt_newton_problem *problem, double enough, mt_placement *at,
+                          int *iterations, bool *closed, mt_arena *mem, mt_err *err);
 
 #endif

@@ -54,4 +54,19 @@ void mt_rows_eval(const mt_data *d, mt_term_kind kind, const mt_term_list *list,
 void mt_rows_over_states(const mt_system *sys, const mt_term_list *list, const double *rows,
                          mt_arena *mem, mt_rows *out);
 
+/* Shared by the files rows*.c. */
+enum { MT_BAR_ROWS = 2, MT_DEFLECTION_ROWS = 4, MT_ROTARY_ROWS = 3 };
+
+/* A beam element at its present position: frame of its chord, distance of its nodes, 1/(1 +
+ * Phi) for bending about e2, e3. */
+typedef struct mt_beam_geometry {
+    mt_cx e[3][3];
+    mt_cx length;
+    mt_cx shape[2];
+} mt_beam_geometry;
+
+/* shape is set to 1. */
+void mt_beam_frame(const mt_data *d, const int body[2], const int dir[3], const mt_pose *poses,
+                   mt_beam_geometry *out);
+
 #endif

@@ -2,9 +2,9 @@
 #ifndef MECHANICS_SINGULAR_H
 #define MECHANICS_SINGULAR_H
 
+#include "mechanics/data.h"
 #include "mechanics/eliminate.h"
 #include "mechanics/lagrangian.h"
-#include "mechanics/names.h"
 
 /* Distance of a position to one where equations of joints are dependent there only. */
 typedef struct mt_nearness {
@@ -36,5 +36,14 @@ mt_status mt_singular_refuse(const mt_data *d, const mt_placement *at, const mt_
 mt_status mt_singular_nearness(const mt_data *d, const mt_placement *at,
                                const mt_elimination *e, mt_arena *scratch, mt_arena *mem,
                                mt_nearness *out, mt_err *err);
+
+/* Values and curvature of the equations of joints, without anything else. */
+
+/* Part to subtract from `value` of constraint i: whole turns of an angle, so that it is nearest
+ * to its target; of a gear's two angles the one without a ratio (term 0) may turn on, the other
+ * stays within half a turn. */
+double mt_constraint_turns(const mt_data *d, int i, double value);
+/* c[m]: values of the constraints. */
+void mt_constraint_values(const mt_data *d, const mt_placement *at, int m, double *c);
 
 #endif

@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "mechanics/drive.h"
-#include "mechanics/redundant.h"
+#include "mechanics/linear.h"
+#include "mechanics/position.h"
 
 void mt_sweep_range(double from, double to, int steps, double *positions)
 {

@@ -4,6 +4,7 @@
 
 #include "base/run.h"
 #include "expr/program.h"
+#include "linalg/ldl.h"
 #include "mechanics/measure.h"
 #include "model/model.h"
 
@@ -130,6 +131,7 @@ typedef enum mt_channel_kind {
     MT_CHANNEL_BEAM_POINT,
     MT_CHANNEL_BEAM_ROTATION
 } mt_channel_kind;
+
 static inline bool mt_channel_turns(mt_channel_kind kind)
 {
     return kind == MT_CHANNEL_ROTATION || kind == MT_CHANNEL_BEAM_ROTATION;
@@ -179,7 +181,7 @@ typedef struct mt_system {
     mt_node *parameters; /* [model parameters] node of each parameter in this configuration */
     mt_program program;
     int nq; /* states */
-    /* model length at the original design (system_length.c); scales rotations */
+    /* model length at the original design; scales rotations */
     double length_m;
     MT_LIST_OF(mt_vec_def, vecs);
     MT_LIST_OF(mt_measure_def, measures);
@@ -210,7 +212,7 @@ typedef struct mt_system {
     /* the joints are closed in the drawn position for all inputs: each has one point and no
      * length */
     bool drawn_closed;
-    const mt_layout *layout; /* of states and equations (layout.h) */
+    const mt_layout *layout; /* of states and equations */
 } mt_system;
 
 /*
@@ -244,34 +246,21 @@ typedef struct mt_system_def {
  * fixed drive adds none. Fails as mt_system_new; MT_E_INPUT: no such joint or spring. */
 mt_status mt_system_new_of(const mt_system_def *def, mt_system **out, mt_err *err);
 void mt_system_delete(mt_system *sys);
-/*
- * *same: two configurations of one model are the same mechanism except for the position of one
- * driven joint. Bodies, joints, springs, inertias and loads are the same, number by number as
- * expressions of the same inputs (system_same.c); both drive the same joint and hold it the
- * same way, or one of them has no drive and no loads, and a trimmed spring holds the other: it
- * then is that mechanism in its reference position. False for two configurations without a
- * drive. Fails: MT_E_MEMORY.
- */
-mt_status mt_system_same_drive(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
-
-/*
- * *same: two configurations of one model have the same geometry at every design, and rows of K,
- * C, M and the sensors in the same positions. As mt_system_same_drive, but coefficients of
- * springs, dampers and inertias, preload and free lengths may differ; without drive and loads.
- * Fails: MT_E_MEMORY.
- */
-mt_status mt_system_same_shape(const mt_system *a, const mt_system *b, bool *same, mt_err *err);
-
-/* True where the numbers of the beams' strains affect the geometry of stiffness. They do not in
- * an unloaded system that is closed in the drawn position: a straight beam without force
- * has strains that do not depend on them. */
-bool mt_system_beams_shape(const mt_system *sys);
-
-/* Model length, the reference length of displacements (system_length.c), from the values v of
- * all nodes; above 0. */
-double mt_system_length(const mt_system *sys, const double *v);
 
 int mt_system_find_channel(const mt_system *sys, const char *name);
 int mt_system_find_joint(const mt_system *sys, const char *name);
+
+/*
+ * Order of states and equations along the mechanism, in which
+ *     [H A^T; A 0],    H the Hessian of the Lagrangian, A the Jacobian of the constraints,
+ * has its entries near the diagonal: bodies breadth first from one end of the mechanism along
+ * joints and springs; each equation after the last of its bodies.
+ */
+struct mt_layout {
+    int *state;    /* [nq] row of a state */
+    int *equation; /* [n_constraints] row of an equation */
+    mt_envelope envelope;
+    double work; /* multiplications of a factorisation */
+};
 
 #endif

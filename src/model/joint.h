@@ -21,7 +21,7 @@ typedef enum mt_closes {
     MT_CLOSES_LENGTH
 } mt_closes;
 
-/* Properties of a type of joint; its equations are in mechanics/build_joints.c. */
+/* Properties of a type of joint; its equations are in mechanics/build.c. */
 typedef struct mt_joint_kind {
     bool in[2]; /* exists in two, in three dimensions */
     mt_coordinate coordinate;

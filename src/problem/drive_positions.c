@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mechanics/geometry.h"
 #include "problem/configuration.h"
 #include "problem/frequency.h"
 #include "problem/goals.h"

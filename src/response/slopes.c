@@ -8,7 +8,6 @@
 
 #include "analysis/damping.h"
 #include "linalg/dense.h"
-#include "mechanics/independence.h"
 #include "mechanics/products.h"
 
 mt_status mt_solutions_open(const mt_basis *basis, int out, int in, mt_arena *mem,
@@ -295,7 +294,7 @@ static mt_status subtract_d(work *k, const pair *x, pair *to, mt_err *err)
     for (int m = 0; m < MATRICES; m++) {
         for (int part = 0; part < 2; part++) {
             memset(product, 0, (size_t)k->nq * sizeof *product);
-            mt_linear_states_product(k->lin, (mt_matrix)m, 1.0, x->part[part], product);
+            mt_linear_states_product(k->lin, (mt_linear_matrix)m, 1.0, x->part[part], product);
             add_real(k->nq, -k->factor[m] * mt_complex(1 - part, part), product, to);
         }
     }
@@ -506,7 +505,7 @@ double mt_slope_node(const mt_analysis *a, int p, mt_node node)
 }
 
 /* e . (matrix or its derivative) q. */
-static double complex between_one(const work *k, int p, mt_matrix m, const pair *e,
+static double complex between_one(const work *k, int p, mt_linear_matrix m, const pair *e,
                                   const pair *q)
 {
     double part[2][2];
@@ -518,7 +517,7 @@ static double complex between_one(const work *k, int p, mt_matrix m, const pair 
 }
 
 /* e . M q. */
-static mt_status product_with(work *k, mt_matrix m, const pair *e, const pair *q,
+static mt_status product_with(work *k, mt_linear_matrix m, const pair *e, const pair *q,
                               double complex *out, mt_err *err)
 {
     const mt_arena_mark mark = mt_arena_get_mark(k->mem);
@@ -573,7 +572,7 @@ static mt_status slope_between_states(work *k, int p, int o, int i, double compl
     double complex sum = 0.0;
     double complex part = 0.0;
     for (int m = 0; m < MATRICES; m++) {
-        sum += k->factor[m] * between_one(k, p, (mt_matrix)m, e, q);
+        sum += k->factor[m] * between_one(k, p, (mt_linear_matrix)m, e, q);
     }
     if (mt_slope_node(k->p->a, p, d->mass) != 0.0) {
         MT_TRY(product_with(k, MT_MATRIX_MASS, e, q, &part, err));

@@ -17,7 +17,7 @@
 #include "analysis/damping.h"
 #include "base/run.h"
 #include "linalg/dense.h"
-#include "mechanics/independence.h"
+#include "mechanics/products.h"
 #include "response/slopes.h"
 
 enum {
@@ -124,7 +124,7 @@ static mt_status pull_matrices(work *k, mt_err *err)
 {
     for (int j = 0; j < MATRICES; j++) {
         for (ptrdiff_t c = 0; c < k->ny; c++) {
-            mt_linear_states_product(k->lin, (mt_matrix)j, 1.0, k->e + (c * k->nq),
+            mt_linear_states_product(k->lin, (mt_linear_matrix)j, 1.0, k->e + (c * k->nq),
                                      k->product[j] + (c * k->nq));
         }
         MT_TRY(multipliers(k, k->ny, k->product[j], k->carried[j], err));
@@ -203,7 +203,7 @@ static void add_to(const work *k, int rows, int cols, double scale, const double
 }
 
 /* k->half := dA_j times columns of x. */
-static bool matrix_slope(work *k, int p, mt_matrix j, const double *x)
+static bool matrix_slope(work *k, int p, mt_linear_matrix j, const double *x)
 {
     const ptrdiff_t size = (ptrdiff_t)k->nq * k->ny;
     memset(k->half, 0, (size_t)size * sizeof *k->half);
@@ -220,7 +220,7 @@ static void add_matrix_forms(work *k, int p, double *const t[PARTS])
     const double mass = mt_slope_node(k->p->a, p, d->mass);
     const double stiffness = mt_slope_node(k->p->a, p, d->stiffness);
     for (int j = 0; j < MATRICES; j++) {
-        const bool moves = matrix_slope(k, p, (mt_matrix)j, k->e);
+        const bool moves = matrix_slope(k, p, (mt_linear_matrix)j, k->e);
         for (int c = 0; c < PARTS && moves; c++) {
             if (part_of_factor(k->d[j], c) != 0.0) {
                 add_to(k, k->nq, k->n, -part_of_factor(k->d[j], c), k->e, k->half, t[c]);

@@ -18,7 +18,7 @@
 #include "analysis/damping.h"
 #include "base/run.h"
 #include "linalg/dense.h"
-#include "mechanics/independence.h"
+#include "mechanics/products.h"
 #include "response/slopes.h"
 
 enum {
@@ -226,7 +226,7 @@ static void add_matrix(work *k, int j, mt_slope_factor factor, const balance *b)
     const int ny = k->ny;
     memset(b->product, 0, (size_t)nq * (size_t)ny * sizeof *b->product);
     for (ptrdiff_t c = 0; c < ny; c++) {
-        mt_linear_states_product(k->lin, (mt_matrix)j, 1.0, k->e + (c * nq),
+        mt_linear_states_product(k->lin, (mt_linear_matrix)j, 1.0, k->e + (c * nq),
                                  b->product + (c * nq));
     }
     weigh_by_factor(k, factor, b->g);
@@ -369,7 +369,7 @@ static mt_status weighted_matrix_slope(work *k, int p, double *out, mt_err *err)
     double sum = (mt_slope_node(k->p->a, p, d->mass) * k->of_mass) +
                  (mt_slope_node(k->p->a, p, d->stiffness) * k->of_stiffness);
     for (int j = 0; j < MATRICES; j++) {
-        sum += mt_linear_contract_slope(k->lin, p, (mt_matrix)j, k->g[j]);
+        sum += mt_linear_contract_slope(k->lin, p, (mt_linear_matrix)j, k->g[j]);
     }
     if (k->ratio.r > 0) {
         MT_TRY(mt_analysis_ratio_slope(k->p->a, p, k->q, err));

@@ -7,14 +7,14 @@
  * Each position is found from the one before it. Modes cost many times what a position does
  * and are found where somebody asks for them.
  */
-#include "mechanics/drive.h"
-
 #include "scene/scene_priv.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
+#include "mechanics/geometry.h"
+#include "mechanics/position.h"
 #include "mechanics/sweep.h"
 #include "model/values.h"
 

@@ -14,7 +14,7 @@
 #include <stddef.h>
 
 #include "mechanics/data.h"
-#include "mechanics/element_forces.h"
+#include "mechanics/lagrangian.h"
 #include "mechanics/rows.h"
 
 struct mt_scene_energy {

@@ -9,7 +9,7 @@ static const double ROUNDING = 1e-13;
 #include <math.h>
 #include <stddef.h>
 
-#include "mechanics/pose.h"
+#include "mechanics/data.h"
 #include "model/values.h"
 
 /* Bodies of the system come from bodies of the model, then from links, both in the order of the

@@ -63,7 +63,7 @@ static void on_hinge(const mt_scene_frame *f, int link, int hinge, mt_scene_spri
 }
 
 /* Springs of the system from `first` on that are those of this spring of the model: they stand
- * in its order (mechanics/build_springs.c), each with its very name. They become `index` of the
+ * in its order (mechanics/build.c), each with its very name. They become `index` of the
  * view. Returns how many. */
 static int assign_view_spring(mt_scene_frame *f, int first, const char *name, int index)
 {

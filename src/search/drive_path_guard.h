@@ -2,14 +2,14 @@
 #ifndef SEARCH_DRIVE_PATH_GUARD_H
 #define SEARCH_DRIVE_PATH_GUARD_H
 
-#include "mechanics/directions.h"
+#include "mechanics/forcing.h"
 #include "problem/requirement.h"
 
 /*
  * Signs, at two positions of a drive, that a goal's value may differ between them: c = ln f of
  * modes relative to the frequencies where the value has its steps (the ends of a goal's range,
  * a limit, the mode next in order), with dc/ds, and the directions of the mechanism
- * (mechanics/directions.h). The value alone is not enough: a response is flat on both sides of
+ * (mechanics/forcing.h). The value alone is not enough: a response is flat on both sides of
  * a resonance that passes through its range.
  */
 typedef struct mt_guard {

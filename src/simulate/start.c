@@ -4,7 +4,7 @@
  *     [A; G] dq = -[c; s - s_given],
  * solved by least-norm steps until they hold; and the velocities of least energy,
  *     min 1/2 v^T M v   under   [A; G] v = [drive; rates].
- * A walk takes short steps and stays on its branch (mechanics/branch.h).
+ * A walk takes short steps and stays on its branch (mechanics/position.h).
  *     An equilibrium may be in another assembly of the loops than the drawing, where loads have
  * pulled links through a line. Joints are moved from the drawing, then; what they leave free
  * goes to where it stands when they are moved from the equilibrium, if with them held there a
@@ -16,14 +16,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "mechanics/branch.h"
+#include "mechanics/position.h"
 #include "simulate/accelerate.h"
 
 /* A walk goes so far in one step [rad, model lengths]. */
 static const double STRIDE = 0.05;
 enum { STRIDES_MOST = 100000, NEWTON_STEPS = 30 };
 /* Strides shorter than this are not tried; links that miss being in line by less are in line
- * (mechanics/drive.c) [rad, model lengths]. */
+ * (mechanics/position.c) [rad, model lengths]. */
 static const double SHORTEST = 1e-3;
 /* Places are the same below this, and a way on which a stride gains less than this part of it
  * leads elsewhere. */

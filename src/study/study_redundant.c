@@ -7,9 +7,8 @@
  */
 #include "study/study_priv.h"
 
-#include "mechanics/independence.h"
 #include "mechanics/linear.h"
-#include "mechanics/redundant.h"
+#include "mechanics/products.h"
 
 /* Names configuration c's variables that break a redundancy; each variable once over all
  * configurations. */

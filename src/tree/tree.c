@@ -10,7 +10,7 @@
 #include "base/run.h"
 #include "linalg/dense.h"
 #include "mechanics/data.h"
-#include "mechanics/forces.h"
+#include "mechanics/lagrangian.h"
 #include "mechanics/rows.h"
 
 typedef struct tree_maker {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "mechanics/linear.h"
 #include "mechanics/mech.h"
-#include "mechanics/redundant.h"
 
 /* Eigenvalues of a few well-scaled freedoms: rounding is 1e-14, the printed references have ten
  * digits. */

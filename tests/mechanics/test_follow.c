@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "mechanics/follow.h"
+#include "mechanics/eliminate.h"
 #include "support/mt_test.h"
 
 enum { STEPS = 200, SIZE = 2 * (STEPS + 1), RANK = 2 * STEPS };

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/base.h"
-#include "mechanics/pose.h"
+#include "mechanics/data.h"
 #include "support/mt_random.h"
 #include "support/mt_slope.h"
 #include "support/mt_test.h"

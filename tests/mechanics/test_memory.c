@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Memory: every allocation may fail, and once warm an update takes none. */
-#include "mechanics/displaced.h"
 #include "mechanics/mech.h"
+#include "mechanics/motion.h"
 #include "support/mt_alloc.h"
 
 static const struct {

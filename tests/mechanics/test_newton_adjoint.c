@@ -10,7 +10,7 @@
  * holds, likewise.
  */
 #include "mechanics/mech.h"
-#include "mechanics/newton_tangent.h"
+#include "mechanics/position.h"
 #include "support/mt_random.h"
 #include "support/mt_slope.h"
 

@@ -15,9 +15,9 @@
 #include <stdlib.h>
 
 #include "linalg/dense.h"
-#include "mechanics/displaced.h"
+#include "mechanics/linear.h"
 #include "mechanics/mech.h"
-#include "mechanics/redundant.h"
+#include "mechanics/motion.h"
 
 static const double STEP = 3e-4; /* model lengths, rad */
 static const double TOL = 1e-6;

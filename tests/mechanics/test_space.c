@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Three dimensions: closed forms of one body, planar mechanisms in space. */
 #include "linalg/dense.h"
+#include "mechanics/linear.h"
 #include "mechanics/mech.h"
-#include "mechanics/redundant.h"
 
 enum { TEXT = 4000 };
 

@@ -7,8 +7,8 @@
  */
 #include <float.h>
 
+#include "mechanics/linear.h"
 #include "mechanics/mech.h"
-#include "mechanics/redundant.h"
 #include "mt_writer.h"
 
 enum { TEXT = 8000, PARTS = 4, MODES = 4 };
