@@ -16,10 +16,6 @@
 /* The most vibration modes of a configuration, also the most rigid-body and unstable ones; and
  * the number of positions of a driven joint. */
 enum { MT_SCENE_MODES = 12, MT_SCENE_POSITIONS = 21 };
-/* Capacity of a page: items (bodies, and four joints, springs, sensors or the like as one) of
- * one configuration; items of all configurations and designs; bodies times the positions of
- * their drives. What exceeds it is left out with a message. */
-enum { MT_SCENE_ITEMS = 3000, MT_SCENE_ALL_ITEMS = 9000, MT_SCENE_POSES = 40000 };
 /* The content shown along the ranges of driven joints. */
 typedef enum mt_scene_travel {
     MT_TRAVEL_NONE,

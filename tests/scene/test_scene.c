@@ -6,7 +6,7 @@
  */
 #include "mechanics/mech.h"
 #include "model/values.h"
-#include "scene/distance.h"
+#include "scene/items.h"
 #include "scene/scene.h"
 
 static const double TOL = 1e-9;
