@@ -15,7 +15,6 @@
 #include "model/joint.h"
 #include "model/model.h"
 #include "model/values.h"
-#include "report/number.h"
 #include "report/table.h"
 
 /* The interpretation of a sign, an axis or an order of bodies. */

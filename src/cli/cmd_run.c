@@ -17,7 +17,7 @@
 #include "io/journal.h"
 #include "library/scene_designs.h"
 #include "linalg/dense.h"
-#include "report/index.h"
+#include "report/page.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "result/result.h"

@@ -15,12 +15,10 @@
 #include "cli/cli.h"
 #include "io/file.h"
 #include "io/folder.h"
-#include "report/curves.h"
-#include "report/html.h"
 #include "report/page.h"
 #include "report/result_tables.h"
+#include "report/ruler.h"
 #include "report/summary.h"
-#include "report/trade.h"
 
 static const char DEFAULT_FOLDER[] = "results";
 const char *const mt_index_names[MT_INDEX_FILES] = {"index.html", "index.json"};

@@ -15,7 +15,7 @@
 #include "environment/read_profile.h"
 #include "io/options.h"
 #include "library/scene_designs.h"
-#include "report/html.h"
+#include "report/page.h"
 #include "result/model.h"
 #include "result/read.h"
 #include "result/write.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
-#include "report/number.h"
+#include "report/table.h"
 
 enum { VALUE_DIGITS = 6, SHORT_DIGITS = 3, INDENT = 2 };
 static const double PERCENT = 0.01;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Results as tables. */
 #include "report/result_tables.h"
 
 #include <math.h>
@@ -6,18 +7,138 @@
 
 #include "base/format.h"
 #include "base/number.h"
-#include "report/number.h"
+#include "report/table.h"
+
+/* Values of parameters, which people see in the units that they gave them in. */
+
+/* As a drawing would give them; percentages need no more than 3. */
+enum { VALUE_DIGITS = 6, PERCENT_DIGITS = 3, HEADING_TEXT = 160, WEIGHT_TEXT = 240 };
+
+mt_table mt_report_parameters(const mt_recommendation *r)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "parameter", "name", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "before", "original", MT_ALIGN_POINT);
+    mt_table_column(&t, "after", "recommended", MT_ALIGN_POINT);
+    mt_table_column(&t, "change [%]", "change_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "at bound", "at_bound", MT_ALIGN_LEFT);
+    for (int i = 0; i < r->n_parameters; i++) {
+        const mt_result_parameter *const p = &r->parameters[i];
+        mt_table_text(&t, p->name);
+        mt_table_unit(&t, p->unit, p->display_unit);
+        mt_table_shown(&t, p->original, p->display_factor, VALUE_DIGITS);
+        mt_table_shown(&t, p->recommended, p->display_factor, VALUE_DIGITS);
+        mt_table_percent(&t, p->change_percent, PERCENT_DIGITS);
+        mt_table_text(&t, p->at_bound);
+    }
+    return t;
+}
+
+bool mt_report_measure(const mt_result_parameter *p, mt_text *out)
+{
+    char number[MT_NUMBER_TEXT];
+    const char *const name = p->display_unit != NULL ? p->display_unit : p->unit;
+    const char *const space = name == NULL ? "" : " ";
+    const char *const unit = name == NULL ? "" : name;
+    const double factor = p->display_factor;
+    if (p->measure_floor > 0.0) {
+        mt_text_addf(
+            out, "The change of %s counts as ln(new/original), below %s%s%s linearly.", p->name,
+            mt_report_number(mt_result_shown(p->measure_floor, factor), VALUE_DIGITS, number),
+            space, unit);
+        return true;
+    }
+    if (p->measure_scale > 0.0) {
+        mt_text_addf(
+            out, "The change of %s counts linearly, %s%s%s as 1.", p->name,
+            mt_report_number(mt_result_shown(p->measure_scale, factor), VALUE_DIGITS, number),
+            space, unit);
+        return true;
+    }
+    return false;
+}
+
+/* A column for each variable in its displayed unit (as of design `of`, the same for all; NULL:
+ * no design), which the heading gives for machines always and for people where it is not SI;
+ * and their cells for one design. */
+static void report_variable_columns(mt_table *t, const mt_result *result,
+                                    const mt_recommendation *of)
+{
+    for (int k = 0; k < result->n_variables; k++) {
+        const mt_result_parameter *const p =
+            of != NULL && k < of->n_parameters ? &of->parameters[k] : NULL;
+        const char *const shown = p == NULL ? NULL : p->display_unit;
+        const char *const unit = p == NULL || shown != NULL ? shown : p->unit;
+        char heading[HEADING_TEXT];
+        (void)mt_snprintf(heading, sizeof heading, "%.120s [%.20s]", result->variables[k],
+                          unit == NULL ? "" : unit);
+        mt_table_column(t, shown == NULL ? result->variables[k] : heading,
+                        unit == NULL ? result->variables[k] : heading, MT_ALIGN_POINT);
+    }
+}
+
+static void report_variable_cells(mt_table *t, const mt_result *result,
+                                  const mt_recommendation *r)
+{
+    for (int k = 0; k < result->n_variables; k++) {
+        if (k < r->n_parameters) {
+            const mt_result_parameter *const p = &r->parameters[k];
+            mt_table_in_unit(t, p->recommended, p->display_factor, VALUE_DIGITS);
+        } else {
+            mt_table_number(t, nan(""), VALUE_DIGITS);
+        }
+    }
+}
+
+/* "4 x installed mode 1 at 18 Hz": a goal by its words, which are the first requirement's where
+ * it has several. */
+static void weight_cell(mt_table *t, const mt_result *result, const char *goal, double factor)
+{
+    char text[WEIGHT_TEXT];
+    const char *words = goal;
+    for (int i = result->baseline.n_goals - 1; i >= 0 && goal != NULL; i--) {
+        const mt_result_goal *const g = &result->baseline.goals[i];
+        words = g->pointer != NULL && strcmp(g->pointer, goal) == 0 ? g->text : words;
+    }
+    if (words != NULL) {
+        (void)mt_snprintf(text, sizeof text, "%g x %s", factor, words);
+    }
+    mt_table_text(t, words == NULL ? NULL : text);
+}
+
+mt_table mt_report_weight_sensitivity(const mt_result *result)
+{
+    mt_table t = mt_table_default();
+    mt_table_column(&t, "parameter", "parameter", MT_ALIGN_LEFT);
+    mt_table_column(&t, "unit", "unit", MT_ALIGN_LEFT);
+    mt_table_column(&t, "value", "value", MT_ALIGN_POINT);
+    mt_table_column(&t, "low", "low", MT_ALIGN_POINT);
+    mt_table_column(&t, "[%]", "low_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "by weight", "low_goal", MT_ALIGN_LEFT);
+    mt_table_column(&t, "high", "high", MT_ALIGN_POINT);
+    mt_table_column(&t, "[%]", "high_percent", MT_ALIGN_POINT);
+    mt_table_column(&t, "by weight", "high_goal", MT_ALIGN_LEFT);
+    for (int i = 0; i < result->n_weight_sensitivity; i++) {
+        const mt_result_weight_sensitivity *const s = &result->weight_sensitivity[i];
+        mt_table_text(&t, s->parameter);
+        mt_table_unit(&t, s->unit, s->display_unit);
+        mt_table_shown(&t, s->value, s->display_factor, VALUE_DIGITS);
+        mt_table_shown(&t, s->low, s->display_factor, VALUE_DIGITS);
+        mt_table_percent(&t, s->low_percent, PERCENT_DIGITS);
+        weight_cell(&t, result, s->low_goal, s->low_factor);
+        mt_table_shown(&t, s->high, s->display_factor, VALUE_DIGITS);
+        mt_table_percent(&t, s->high_percent, PERCENT_DIGITS);
+        weight_cell(&t, result, s->high_goal, s->high_factor);
+    }
+    return t;
+}
+
+/* Designs, goals and modes. */
 
 /* Frequencies to 6 digits show changes of 1e-5; percentages and sizes of changes need no more
  * than 3; parameters 6, as a drawing would. */
-enum {
-    HZ_DIGITS = 6,
-    VALUE_DIGITS = 6,
-    PERCENT_DIGITS = 3,
-    MAC_DIGITS = 5,
-    REQUIREMENT_TEXT = 120,
-    WEIGHT_TEXT = 240
-};
+enum { HZ_DIGITS = 6, MAC_DIGITS = 5, REQUIREMENT_TEXT = 120 };
 
 /* "18.0000", "at least 7.00000", "7.00000 to 9.00000", NULL where nothing is asked */
 static const char *requirement_of(const mt_result_frequency *f, char *s, size_t size)
@@ -98,7 +219,8 @@ double mt_report_objective_value(const char *unit, double value)
     return is_ratio(unit) ? mt_without_noise(value, MT_RATIO_NOISE) : value;
 }
 
-void mt_report_objective_cell(mt_table *t, const char *unit, double value)
+/* A cell of an objective's column. */
+static void report_objective_cell(mt_table *t, const char *unit, double value)
 {
     if (is_ratio(unit)) {
         mt_table_ratio(t, value, VALUE_DIGITS);
@@ -118,8 +240,8 @@ mt_table mt_report_objectives(const mt_recommendation *r)
         const mt_design_objective *const o = &r->objectives[k];
         mt_table_text(&t, o->text);
         mt_table_text(&t, o->unit == NULL || o->unit[0] == '\0' ? NULL : o->unit);
-        mt_report_objective_cell(&t, o->unit, o->original);
-        mt_report_objective_cell(&t, o->unit, o->recommended);
+        report_objective_cell(&t, o->unit, o->original);
+        report_objective_cell(&t, o->unit, o->recommended);
     }
     return t;
 }
@@ -128,7 +250,8 @@ mt_table mt_report_objectives(const mt_recommendation *r)
  * least. */
 static const char CHANGE[] = "change";
 
-bool mt_report_has_objective(const mt_result *result, const char *text)
+/* True where the text is one of the result's objectives. */
+static bool report_has_objective(const mt_result *result, const char *text)
 {
     for (int k = 0; k < result->n_objectives; k++) {
         if (strcmp(result->objectives[k].text, text) == 0) {
@@ -138,15 +261,19 @@ bool mt_report_has_objective(const mt_result *result, const char *text)
     return false;
 }
 
-void mt_report_clearance_column(mt_table *t, const mt_result *result)
+/* The column of the least clearance from the bands without their margin, named so as to differ
+ * from the objective "clearance". */
+static void report_clearance_column(mt_table *t, const mt_result *result)
 {
-    mt_table_column(t,
-                    mt_report_has_objective(result, "clearance") ? "without margin [%]"
-                                                                 : "clearance [%]",
-                    "clearance_percent", MT_ALIGN_POINT);
+    mt_table_column(
+        t, report_has_objective(result, "clearance") ? "without margin [%]" : "clearance [%]",
+        "clearance_percent", MT_ALIGN_POINT);
 }
 
-void mt_report_objective_columns(mt_table *t, const mt_result *result)
+/* In tables of designs: a column for each objective of the result ("mass [kg]", for machines
+ * "objective mass [kg]") and for the total change ("change"), where it is not an objective; and
+ * their cells for one design. */
+static void report_objective_columns(mt_table *t, const mt_result *result)
 {
     static const char machine[] = "objective ";
     for (int k = 0; k < result->n_objectives; k++) {
@@ -159,18 +286,19 @@ void mt_report_objective_columns(mt_table *t, const mt_result *result)
         mt_table_column(t, heading, strcmp(heading, CHANGE) == 0 ? CHANGE : member,
                         MT_ALIGN_POINT);
     }
-    if (!mt_report_has_objective(result, CHANGE)) {
+    if (!report_has_objective(result, CHANGE)) {
         mt_table_column(t, CHANGE, CHANGE, MT_ALIGN_POINT);
     }
 }
 
-void mt_report_objective_cells(mt_table *t, const mt_result *result, const mt_recommendation *r)
+static void report_objective_cells(mt_table *t, const mt_result *result,
+                                   const mt_recommendation *r)
 {
     for (int k = 0; k < result->n_objectives; k++) {
-        mt_report_objective_cell(t, result->objectives[k].unit,
-                                 k < r->n_objectives ? r->objectives[k].recommended : nan(""));
+        report_objective_cell(t, result->objectives[k].unit,
+                              k < r->n_objectives ? r->objectives[k].recommended : nan(""));
     }
-    if (!mt_report_has_objective(result, CHANGE)) {
+    if (!report_has_objective(result, CHANGE)) {
         mt_table_ratio(t, r->change, VALUE_DIGITS);
     }
 }
@@ -312,14 +440,14 @@ static void alternative_cells(mt_table *t, const mt_result *result, const mt_rec
         mt_table_text(t, "original");
     }
     mt_table_text(t, r->rank > 0 ? r->grade : NULL);
-    mt_report_objective_cells(t, result, r);
+    report_objective_cells(t, result, r);
     mt_table_off_by(t, r->violation_percent, r->feasible, PERCENT_DIGITS);
     if (result->baseline.n_placements > 0) {
         char text[REQUIREMENT_TEXT];
         mt_table_number(t, r->clearance_percent, PERCENT_DIGITS);
         mt_table_text(t, assignment(r, text, sizeof text));
     }
-    mt_report_variable_cells(t, result, r);
+    report_variable_cells(t, result, r);
 }
 
 mt_table mt_report_alternatives(const mt_result *result)
@@ -327,15 +455,15 @@ mt_table mt_report_alternatives(const mt_result *result)
     mt_table t = mt_table_default();
     mt_table_column(&t, "rank", "rank", MT_ALIGN_RIGHT);
     mt_table_column(&t, "grade", "grade", MT_ALIGN_LEFT);
-    mt_report_objective_columns(&t, result);
+    report_objective_columns(&t, result);
     mt_table_column(&t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
     if (result->baseline.n_placements > 0) {
-        mt_report_clearance_column(&t, result);
+        report_clearance_column(&t, result);
         mt_table_column(&t, "modes below bands", "gap_assignment", MT_ALIGN_LEFT);
     }
     const mt_recommendation *const first =
         result->n_recommendations > 0 ? &result->recommendations[0] : NULL;
-    mt_report_variable_columns(&t, result, first);
+    report_variable_columns(&t, result, first);
     if (result->baseline.n_parameters == result->n_variables) {
         alternative_cells(&t, result, &result->baseline);
     }
@@ -421,7 +549,7 @@ static void design_row(mt_table *t, const mt_result *result, const mt_recommenda
     mt_table_text(t, r->feasible ? "true" : "false");
     mt_table_text(t, r->grade);
     mt_table_number(t, r->score, VALUE_DIGITS);
-    mt_report_objective_cells(t, result, r);
+    report_objective_cells(t, result, r);
     mt_table_number(t, r->misfit, VALUE_DIGITS);
     mt_table_number(t, r->violation_percent, VALUE_DIGITS);
     if (baseline->n_placements > 0) {
@@ -474,7 +602,7 @@ mt_table mt_report_designs(const mt_result *result)
     for (int i = 0; i < MT_COUNT(judged); i++) {
         mt_table_column(&t, judged[i], judged[i], MT_ALIGN_RIGHT);
     }
-    mt_report_objective_columns(&t, result);
+    report_objective_columns(&t, result);
     for (int i = 0; i < MT_COUNT(sizes); i++) {
         mt_table_column(&t, sizes[i], sizes[i], MT_ALIGN_RIGHT);
     }
@@ -499,4 +627,159 @@ mt_table mt_report_designs(const mt_result *result)
         design_row(&t, result, &result->recommendations[i]);
     }
     return t;
+}
+
+/* Trade studies: one line per point. */
+
+/* True for objectives of the front that are not among the study's, and so need a column. */
+static bool has_column(const mt_result *result, int k)
+{
+    static const char *const own[] = {"change", "clearance"};
+    const char *const name = result->trade->objectives[k];
+    bool known = report_has_objective(result, name);
+    for (int i = 0; i < MT_COUNT(own); i++) {
+        known = known || strcmp(own[i], name) == 0;
+    }
+    return !known;
+}
+
+/* An objective at a design; NULL: it has none. */
+static const mt_design_objective *objective_at(const mt_recommendation *r, const char *name)
+{
+    for (int i = 0; i < r->n_objectives; i++) {
+        if (strcmp(r->objectives[i].text, name) == 0) {
+            return &r->objectives[i];
+        }
+    }
+    return NULL;
+}
+
+static const char *front_unit(const mt_trade_result *trade, int k)
+{
+    for (int i = 0; i < trade->n_points; i++) {
+        const mt_design_objective *const o =
+            objective_at(&trade->points[i].best, trade->objectives[k]);
+        if (o != NULL && o->unit != NULL) {
+            return o->unit;
+        }
+    }
+    return "";
+}
+
+static void front_columns(mt_table *t, const mt_result *result)
+{
+    for (int k = 0; k < result->trade->n_objectives; k++) {
+        const char *const unit = front_unit(result->trade, k);
+        const bool bare = unit[0] == '\0';
+        char member[HEADING_TEXT];
+        (void)mt_snprintf(member, sizeof member, "objective %.60s%s%.20s%s",
+                          result->trade->objectives[k], bare ? "" : " [", unit,
+                          bare ? "" : "]");
+        if (has_column(result, k)) {
+            mt_table_column(t, strchr(member, ' ') + 1, member, MT_ALIGN_POINT);
+        }
+    }
+}
+
+static void front_cells(mt_table *t, const mt_result *result, const mt_trade_point *p)
+{
+    for (int k = 0; k < result->trade->n_objectives; k++) {
+        const mt_design_objective *const o =
+            objective_at(&p->best, result->trade->objectives[k]);
+        if (has_column(result, k)) {
+            report_objective_cell(t, o == NULL ? "" : o->unit,
+                                  o == NULL ? nan("") : o->recommended);
+        }
+    }
+}
+
+static void point_row(mt_table *t, const mt_result *result, const mt_trade_point *p)
+{
+    for (int i = 0; i < result->trade->n_vary; i++) {
+        mt_table_in_unit(t, p->values[i], result->trade->vary[i].display_factor, VALUE_DIGITS);
+    }
+    mt_table_text(t, mt_result_status_name(p->status));
+    report_objective_cells(t, result, &p->best);
+    front_cells(t, result, p);
+    mt_table_number(t, p->best.clearance_percent, PERCENT_DIGITS);
+    mt_table_off_by(t, p->best.violation_percent, p->best.feasible, PERCENT_DIGITS);
+    if (result->trade->n_objectives == 2) {
+        mt_table_text(t, p->pareto ? "yes" : "no");
+    }
+    report_variable_cells(t, result, &p->best);
+}
+
+/* A design with parameters; NULL: none. */
+static const mt_recommendation *any_design(const mt_trade_result *trade)
+{
+    for (int i = 0; i < trade->n_points; i++) {
+        if (trade->points[i].best.n_parameters > 0) {
+            return &trade->points[i].best;
+        }
+    }
+    return NULL;
+}
+
+static void add_vary_columns(mt_table *t, const mt_result *result)
+{
+    for (int i = 0; i < result->trade->n_vary; i++) {
+        const mt_trade_vary *const v = &result->trade->vary[i];
+        const char *const unit = v->display_unit != NULL ? v->display_unit : v->unit;
+        const bool bare = unit == NULL;
+        char heading[HEADING_TEXT];
+        (void)mt_snprintf(heading, sizeof heading, "%.120s%s%.20s%s", v->text, bare ? "" : " [",
+                          bare ? "" : unit, bare ? "" : "]");
+        mt_table_column(t, heading, heading, MT_ALIGN_POINT);
+    }
+    mt_table_column(t, "status", "status", MT_ALIGN_LEFT);
+    report_objective_columns(t, result);
+    front_columns(t, result);
+    report_clearance_column(t, result);
+    mt_table_column(t, "deviation [%]", "violation_percent", MT_ALIGN_POINT);
+    if (result->trade->n_objectives == 2) {
+        mt_table_column(t, "front", "pareto", MT_ALIGN_LEFT);
+    }
+    report_variable_columns(t, result, any_design(result->trade));
+}
+
+static mt_table points(const mt_result *result, bool all)
+{
+    mt_table t = mt_table_default();
+    if (result->trade != NULL) {
+        mt_trade_selection s = mt_trade_select(result->trade);
+        add_vary_columns(&t, result);
+        for (int i = 0; i < result->trade->n_points; i++) {
+            if (mt_trade_is_selected(&s, i) || all) {
+                point_row(&t, result, &result->trade->points[i]);
+            }
+        }
+    }
+    return t;
+}
+
+mt_table mt_report_trade(const mt_result *result)
+{
+    return points(result, true);
+}
+
+mt_table mt_report_trade_selected(const mt_result *result)
+{
+    return points(result, false);
+}
+
+void mt_report_trade_left(const mt_result *result, mt_text *line)
+{
+    const mt_trade_result *const trade = result->trade;
+    int n = 0;
+    mt_trade_selection s = mt_trade_select(trade);
+    for (int k = 0; k < trade->n_points; k++) {
+        n += mt_trade_is_selected(&s, k) ? 1 : 0;
+    }
+    if (n < trade->n_points) {
+        mt_text_addf(line, "%d of %d points, %s%s; all are in trade.csv and result.json.", n,
+                     trade->n_points, s.each > 1 ? "spread evenly over " : "",
+                     s.front   ? (s.each > 1 ? "the front" : "all on the front")
+                     : s.found ? (s.each > 1 ? "those with a design" : "all with a design")
+                               : "the grid");
+    }
 }

@@ -13,28 +13,9 @@
 mt_table mt_report_frequencies(const mt_recommendation *r);
 /* text, unit, original, recommended of every objective. */
 mt_table mt_report_objectives(const mt_recommendation *r);
-/* In tables of designs: a column for each objective of the result ("mass [kg]", for machines
- * "objective mass [kg]") and for the total change ("change"), where it is not an objective; and
- * their cells for one design. */
-void mt_report_objective_columns(mt_table *t, const mt_result *result);
-void mt_report_objective_cells(mt_table *t, const mt_result *result,
-                               const mt_recommendation *r);
-/* True where the text is one of the result's objectives. */
-bool mt_report_has_objective(const mt_result *result, const char *text);
 /* An objective's value with rounding noise set to 0 where its size is known: for objectives
  * without a unit, and percentages. */
 double mt_report_objective_value(const char *unit, double value);
-/* A cell of an objective's column. */
-void mt_report_objective_cell(mt_table *t, const char *unit, double value);
-/* The column of the least clearance from the bands without their margin, named so as to differ
- * from the objective "clearance". */
-void mt_report_clearance_column(mt_table *t, const mt_result *result);
-/* A column for each variable in its displayed unit (as of design `of`, the same for all; NULL:
- * no design), which the heading gives for machines always and for people where it is not SI;
- * and their cells for one design. */
-void mt_report_variable_columns(mt_table *t, const mt_result *result,
-                                const mt_recommendation *of);
-void mt_report_variable_cells(mt_table *t, const mt_result *result, const mt_recommendation *r);
 /* name, unit, original, recommended, change, bound. */
 mt_table mt_report_parameters(const mt_recommendation *r);
 /* The measure of a parameter's change as a sentence; false (and no text) where it is the plain
@@ -61,5 +42,13 @@ mt_table mt_report_designs(const mt_result *result);
 /* True where every comparable published entry holds. *judged (may be NULL): the number of
  * these. */
 bool mt_report_verified(const mt_result *result, int *judged);
+
+/* One row per point of the trade study: varied quantities, status, objectives, change,
+ * clearance, parameters; the caller frees it. No columns without a trade study. */
+mt_table mt_report_trade(const mt_result *result);
+/* The rows of the selected points of a large grid (mt_trade_select), and a sentence about their
+ * number; of any other grid all rows, and no sentence. The result must have a trade study. */
+mt_table mt_report_trade_selected(const mt_result *result);
+void mt_report_trade_left(const mt_result *result, mt_text *line);
 
 #endif

@@ -39,4 +39,9 @@ void mt_write_uncertainty(const mt_summary_writer *to, const mt_result *result);
 /* A warning in one line without its end: "stick.json:12:9: /goals/0: installed: ..." */
 void mt_report_warning(const mt_warning *d, bool with_place, mt_text *out);
 
+/* The abstract of a page: the status, then in a few lines the changes of the best design, how
+ * it meets the goals, what is proven, and alternatives. out->failed remembers a shortage of
+ * memory. */
+void mt_report_abstract(const mt_result *result, mt_text *out);
+
 #endif

@@ -2,6 +2,8 @@
 #ifndef REPORT_TABLE_H
 #define REPORT_TABLE_H
 
+#include <stddef.h>
+
 #include "base/arena.h"
 #include "base/text.h"
 
@@ -93,5 +95,18 @@ void mt_csv_field(const char *s, mt_text *out);
 /* Escape text for HTML or a quoted attribute: & < > " ' become references, control characters
  * except tab and line feed are made visible. */
 void mt_html_escape(const char *s, mt_text *out);
+
+enum { MT_NUMBER_TEXT = 40 };
+
+/* A number for people: `digits` significant ones (1..17) with trailing zeros, which show the
+ * precision ("18.0000"), 0 as "0", NaN ("not applicable") as "-", infinities as a word
+ * (base/format.h). Exponents only where |x| >= 10^digits or < 1e-4 ("2.1e+11"). Returns
+ * buffer. */
+const char *mt_report_number(double x, int digits, char buffer[MT_NUMBER_TEXT]);
+/* The same, always with a sign ("+3.20"): for changes. */
+const char *mt_report_change(double x, int digits, char buffer[MT_NUMBER_TEXT]);
+/* A number for machines: 17 significant digits, empty where not finite (null in JSON). Returns
+ * buffer. */
+const char *mt_report_exact(double x, char buffer[MT_NUMBER_TEXT]);
 
 #endif

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The data of a page, as a browser has them (report/dedupe_json.h, and base.js of its pages)."""
+"""The data of a page, as a browser has them (report/page.h, and base.js of its pages)."""
 import json
 import re
 

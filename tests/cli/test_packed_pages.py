@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data in pages are packed (report/dedupe_json.h) and say the same: read back they are the result, and what `show` draws. What is drawn of an inceptor
+"""Data in pages are packed (report/page.h) and say the same: read back they are the result, and what `show` draws. What is drawn of an inceptor
 takes seconds: MT_EVERY=1 looks at these, too."""
 import json
 import subprocess

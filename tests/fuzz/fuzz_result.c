@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 #include "common/fuzz.h"
 #include "io/json.h"
-#include "report/html.h"
+#include "report/page.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
 #include "result/read.h"

@@ -6,7 +6,7 @@
 
 #include "mt_alloc.h"
 #include "mt_test.h"
-#include "report/dedupe_json.h"
+#include "report/page.h"
 
 static void pack__says_once_what_is_said_twice(mt_test *t)
 {

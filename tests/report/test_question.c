@@ -4,8 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "report/question.h"
-#include "report/title.h"
+#include "report/page.h"
 #include "support/mt_test.h"
 
 static mt_result_goal goal(const char *pointer, const char *type, const char *configuration,

@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "report/html.h"
+#include "report/page.h"
 #include "report/result_tables.h"
 #include "report/summary.h"
-#include "report/trade.h"
 
 static mt_result_parameter parameters[2];
 static mt_result_frequency frequencies[2];

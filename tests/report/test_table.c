@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "mt_test.h"
-#include "report/number.h"
 #include "report/table.h"
 
 static void number__shows_significant_digits(mt_test *t)

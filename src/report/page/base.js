@@ -20,7 +20,7 @@
     });
   }
 
-  // What report/dedupe_json.h has packed, as it was: nothing is shared, all may be changed.
+  // What report/page.h has packed, as it was: nothing is shared, all may be changed.
   function unpack([keys, shared, root]) {
     const open = (v) => {
       if (Array.isArray(v)) {
