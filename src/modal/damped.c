@@ -10,8 +10,8 @@
 #include "linalg/dense.h"
 #include "modal/modes.h"
 
-/* Matrices of damped.c. r modes with mass, z directions without, of which zd are damped and zu
- * are not. */
+/* Matrices of the states. r modes with mass, z directions without, of which zd are damped and
+ * zu are not. */
 typedef struct damped_parts {
     const mt_damped_problem *p;
     mt_arena *mem;
@@ -251,8 +251,8 @@ static mt_status damped_check(const mt_damped_problem *p, mt_damped_modes *out, 
 }
 
 /*
- * Structural damping. In the coordinates of damped.c, y = Y a + B b_D + T_U b_U, the directions
- * U without mass and damping follow statically, now with H:
+ * Structural damping. In the coordinates of the states below, y = Y a + B b_D + T_U b_U,
+ * the directions U without mass and damping follow statically, now with H:
  *     b_U = -i W (a, b_D),    W = (K_UU + i H_UU)^-1 [H_Ua H_UD]        (K_Ua = K_UD = 0)
  * What is left has the complex symmetric stiffness of w = (a, b_D)
  *     G = diag(Lambda, K_D) + i [Y B]^T H [Y B] + [H_Ua H_UD]^T W

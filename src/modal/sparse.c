@@ -124,7 +124,7 @@ mt_status mt_modal_balance(const mt_sparse_problem *p, const double *f, double *
     return rc;
 }
 
-/* Assembles and factors H, and solves with it: the iteration is derived in sparse.c. */
+/* Assembles and factors H, and solves with it: the iteration is derived below. */
 
 /* Relative pivots: below this a matrix is singular. */
 static const double REGULAR = 1e-15;
@@ -272,7 +272,6 @@ static mt_status assemble_both(sparse *s, mt_arena *scratch, mt_err *err)
     return assemble_lower(&from, sum_stiffness, &c, &s->k, err);
 }
 
-/* y := M x. */
 /* y := M x. */
 static void sparse_metric(void *context, const double *x, double *y)
 {

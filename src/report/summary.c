@@ -12,11 +12,6 @@
 #include "report/ruler.h"
 #include "report/table.h"
 
-/*
- * The requirements compared with a design, as a compliance table: one row per requirement, or
- * per band where they are few; margins in hertz where the result has percentages.
- */
-
 /* The abstract. */
 
 enum { LISTED = 4, DIGITS = 3, VALUE_DIGITS = 4 };
@@ -239,7 +234,10 @@ void mt_report_abstract(const mt_result *result, mt_text *out)
     mt_text_add(out, "</ul>\n");
 }
 
-/* Compliance. */
+/*
+ * The requirements compared with a design, as a compliance table: one row per requirement, or
+ * per band where they are few; margins in hertz where the result has percentages.
+ */
 
 enum {
     HZ_DIGITS = 6,
