@@ -9,51 +9,96 @@
 #include "io/json_print.h"
 #include "io/shipped.h"
 
-#define KEY_ENUM(id, ...)         id,
-#define KEY(id, label, kind, ...) {.name = (label), .type = (kind), MT_KEY_REST(__VA_ARGS__)},
+#define KEY_ENUM(id, ...) id,
+#define KEY(id, label, kind, must, row, ...) \
+    {.name = (label),                        \
+     .type = (kind),                         \
+     .required = (must),                     \
+     .possible = MT_POSSIBLE_##row,          \
+     .says = __VA_ARGS__},
 
-#define ROOT_KEYS(X)                                       \
-    X(ROOT_SCHEMA, "$schema", MT_KEY_TEXT, false)          \
-    X(ROOT_FORMAT, "format", MT_KEY_TEXT, true)            \
-    X(ROOT_DESCRIPTION, "description", MT_KEY_TEXT, false) \
-    X(ROOT_SOURCE, "source", MT_KEY_TEXT, false)           \
-    X(ROOT_ACCEPTED, "accepted", MT_KEY_LIST, false)       \
-    X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true)
+#define ROOT_KEYS(X)                                                                         \
+    X(ROOT_SCHEMA, "$schema", MT_KEY_TEXT, false, NONE, "This schema, for the editor.")      \
+    X(ROOT_FORMAT, "format", MT_KEY_TEXT, true, NONE, "Kind and version of this file.",      \
+      .schema = "\"type\": \"string\", \"enum\": [\"modetune-aircraft/1\"]")                 \
+    X(ROOT_DESCRIPTION, "description", MT_KEY_TEXT, false, NONE, "Free text for people.")    \
+    X(ROOT_SOURCE, "source", MT_KEY_TEXT, false, NONE, "Where it comes from.")               \
+    X(ROOT_ACCEPTED, "accepted", MT_KEY_LIST, false, NONE,                                   \
+      "Names of warnings that you know and accept: they are not printed.",                   \
+      .examples = "[[\"level\"]]",                                                           \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\", \"enum\": "          \
+                "[\"angle\", \"band\", \"bounds\", \"bushing\", \"damping\", \"density\", "  \
+                "\"drive\", \"dropped\", \"frequency\", \"gap\", \"gravity\", \"inertia\", " \
+                "\"level\", \"margin\", \"mass\", \"modulus\", \"no_effect\", \"off\", "     \
+                "\"reference\", \"section\", \"size\", \"speed\", \"speed_range\", "         \
+                "\"spread\", \"spring\", \"target\", \"tolerance\", \"unit\", \"weight\"]}") \
+    X(ROOT_AIRCRAFT, "aircraft", MT_KEY_LIST, true, NONE, "The aircraft.",                   \
+      .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "               \
+                "\"#/definitions/aircraft\"}")
 enum { ROOT_KEYS(KEY_ENUM) ROOT_KEY_COUNT };
 static const mt_key ROOT[] = {ROOT_KEYS(KEY)};
-static const mt_key_table ROOT_TABLE = {.what = "", .keys = ROOT, .n = ROOT_KEY_COUNT};
+static const mt_key_table ROOT_TABLE = {
+    .what = "",
+    .keys = ROOT,
+    .n = ROOT_KEY_COUNT,
+    .says = "A catalogue of aircraft for studies that avoid the harmonics of rotors: speeds "
+            "and numbers of blades, each with its source."};
 
-#define AIRCRAFT_KEYS(X)                                       \
-    X(AIRCRAFT_NAME, "name", MT_KEY_TEXT, true)                \
-    X(AIRCRAFT_DESCRIPTION, "description", MT_KEY_TEXT, false) \
-    X(AIRCRAFT_SOURCE, "source", MT_KEY_TEXT, false)           \
-    X(AIRCRAFT_MAIN, "main", MT_KEY_OBJECT, true)              \
-    X(AIRCRAFT_TAIL, "tail", MT_KEY_OBJECT, false)
+#define AIRCRAFT_KEYS(X)                                                                      \
+    X(AIRCRAFT_NAME, "name", MT_KEY_TEXT, true, NONE,                                         \
+      "What studies call it; every name once.",                                               \
+      .schema = "\"type\": \"string\", \"minLength\": 1")                                     \
+    X(AIRCRAFT_DESCRIPTION, "description", MT_KEY_TEXT, false, NONE, "Free text for people.") \
+    X(AIRCRAFT_SOURCE, "source", MT_KEY_TEXT, false, NONE, "Where it comes from.")            \
+    X(AIRCRAFT_MAIN, "main", MT_KEY_OBJECT, true, NONE, "The main rotor.",                    \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/rotor\"}]")                           \
+    X(AIRCRAFT_TAIL, "tail", MT_KEY_OBJECT, false, NONE,                                      \
+      "The tail rotor. Absent: there is none, or nothing is known of it.",                    \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/rotor\"}]")
 enum { AIRCRAFT_KEYS(KEY_ENUM) AIRCRAFT_KEY_COUNT };
 static const mt_key AIRCRAFT[] = {AIRCRAFT_KEYS(KEY)};
 static const mt_key_table AIRCRAFT_TABLE = {
-    .what = "aircraft", .keys = AIRCRAFT, .n = AIRCRAFT_KEY_COUNT};
+    .what = "aircraft",
+    .keys = AIRCRAFT,
+    .n = AIRCRAFT_KEY_COUNT,
+    .says =
+        "An aircraft: its main rotor (rotors, where several turn alike) and its tail rotor."};
 
-#define ROTOR_KEYS(X)                                     \
-    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_OBJECT, false)   \
-    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_OBJECT, false) \
-    X(ROTOR_BLADES, "blades", MT_KEY_OBJECT, true)        \
-    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false)
+#define ROTOR_KEYS(X)                                                                   \
+    X(ROTOR_SPEED_HZ, "speed_hz", MT_KEY_OBJECT, false, NONE, "Nominal speed [1/s].",   \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/speed\"}]")                     \
+    X(ROTOR_SPEED_RPM, "speed_rpm", MT_KEY_OBJECT, false, NONE, "Nominal speed [rpm].", \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/speed\"}]")                     \
+    X(ROTOR_BLADES, "blades", MT_KEY_OBJECT, true, NONE, "Its blades.",                 \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/blades\"}]")                    \
+    X(ROTOR_DESCRIPTION, "description", MT_KEY_TEXT, false, NONE, "Free text for people.")
 enum { ROTOR_KEYS(KEY_ENUM) ROTOR_KEY_COUNT };
 static const mt_key ROTOR[] = {ROTOR_KEYS(KEY)};
-static const mt_key_table ROTOR_TABLE = {.what = "rotor", .keys = ROTOR, .n = ROTOR_KEY_COUNT};
+static const mt_key_table ROTOR_TABLE = {
+    .what = "rotor",
+    .keys = ROTOR,
+    .n = ROTOR_KEY_COUNT,
+    .says = "A rotor: its nominal speed and its blades.",
+    .rules = "\"oneOf\": [{\"required\": [\"speed_hz\"]}, {\"required\": [\"speed_rpm\"]}]"};
 
-#define VALUE_KEYS(X, type, row)                       \
-    X(VALUE_VALUE, "value", type, true, row)           \
-    X(VALUE_SOURCE, "source", MT_KEY_TEXT, true)       \
-    X(VALUE_CONFIRMED, "confirmed", MT_KEY_BOOL, true) \
-    X(VALUE_DESCRIPTION, "description", MT_KEY_TEXT, false)
-enum { VALUE_KEYS(KEY_ENUM, , ) VALUE_KEY_COUNT };
-static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE, SPEED)};
-static const mt_key_table SPEED_TABLE = {.what = "speed", .keys = SPEED, .n = VALUE_KEY_COUNT};
-static const mt_key BLADES[] = {VALUE_KEYS(KEY, MT_KEY_COUNT, WHOLE)};
-static const mt_key_table BLADES_TABLE = {
-    .what = "blades", .keys = BLADES, .n = VALUE_KEY_COUNT};
+#define VALUE_KEYS(X, ...)                                                                 \
+    X(VALUE_VALUE, "value", __VA_ARGS__)                                                   \
+    X(VALUE_SOURCE, "source", MT_KEY_TEXT, true, NONE,                                     \
+      "The document that says so, or, unconfirmed, where the value is said to come from.") \
+    X(VALUE_CONFIRMED, "confirmed", MT_KEY_BOOL, true, NONE,                               \
+      "true: read in that public document. false: not; studies that use the value warn.")  \
+    X(VALUE_DESCRIPTION, "description", MT_KEY_TEXT, false, NONE, "Free text for people.")
+enum { VALUE_KEYS(KEY_ENUM, ) VALUE_KEY_COUNT };
+static const mt_key SPEED[] = {VALUE_KEYS(KEY, MT_KEY_VALUE, true, SPEED,
+                                          "The speed, above 0, in the unit of the member.")};
+static const mt_key_table SPEED_TABLE = {
+    .what = "speed", .keys = SPEED, .n = VALUE_KEY_COUNT, .says = "A speed, and who says so."};
+static const mt_key BLADES[] = {
+    VALUE_KEYS(KEY, MT_KEY_COUNT, true, WHOLE, "How many.", .least = 1, .most = 20)};
+static const mt_key_table BLADES_TABLE = {.what = "blades",
+                                          .keys = BLADES,
+                                          .n = VALUE_KEY_COUNT,
+                                          .says = "A number of blades, and who says so."};
 
 const mt_key_table *const *mt_aircraft_key_tables(int *n)
 {

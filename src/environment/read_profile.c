@@ -9,54 +9,137 @@
 #include "io/file.h"
 #include "io/json_print.h"
 
-#define ROOT_KEYS(X)                                \
-    X(ROOT_SCHEMA, "$schema", TEXT, false)          \
-    X(ROOT_FORMAT, "format", TEXT, true)            \
-    X(ROOT_NAME, "name", TEXT, false)               \
-    X(ROOT_DESCRIPTION, "description", TEXT, false) \
-    X(ROOT_SOURCE, "source", TEXT, false)           \
-    X(ROOT_ACCEPTED, "accepted", LIST, false)       \
-    X(ROOT_AIRCRAFT, "aircraft", TEXT, false)       \
-    X(ROOT_AXIS, "axis", TEXT, false)               \
-    X(ROOT_RANDOM, "random", OBJECT_OR_LIST, false) \
-    X(ROOT_TONES, "tones", LIST, false)             \
-    X(ROOT_COMBINE, "combine", OBJECT, false)
+#define ROOT_KEYS(X)                                                                         \
+    X(ROOT_SCHEMA, "$schema", TEXT, false, NONE, "This schema, for the editor.")             \
+    X(ROOT_FORMAT, "format", TEXT, true, NONE, "Kind and version of this file.",             \
+      .schema = "\"type\": \"string\", \"enum\": [\"modetune-profile/1\"]")                  \
+    X(ROOT_NAME, "name", TEXT, false, NONE, "What tables call it.")                          \
+    X(ROOT_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")           \
+    X(ROOT_SOURCE, "source", TEXT, false, NONE,                                              \
+      "Where it comes from: a standard, a test report.")                                     \
+    X(ROOT_ACCEPTED, "accepted", LIST, false, NONE,                                          \
+      "Names of warnings that you know and accept: they are not printed.",                   \
+      .examples = "[[\"level\"]]",                                                           \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\", \"enum\": "          \
+                "[\"angle\", \"band\", \"bounds\", \"bushing\", \"damping\", \"density\", "  \
+                "\"drive\", \"dropped\", \"frequency\", \"gap\", \"gravity\", \"inertia\", " \
+                "\"level\", \"margin\", \"mass\", \"modulus\", \"no_effect\", \"off\", "     \
+                "\"reference\", \"section\", \"size\", \"speed\", \"speed_range\", "         \
+                "\"spread\", \"spring\", \"target\", \"tolerance\", \"unit\", \"weight\"]}") \
+    X(ROOT_AIRCRAFT, "aircraft", TEXT, false, NONE,                                          \
+      "Catalogue of aircraft, relative to this file. Absent: aircraft.json beside it, else " \
+      "the one that is part of the program.",                                                \
+      .examples = "[\"../aircraft.json\"]")                                                  \
+    X(ROOT_AXIS, "axis", TEXT, false, NONE,                                                  \
+      "The direction that it is meant for. Absent: any.",                                    \
+      .schema = "\"type\": \"string\", \"enum\": [\"x\", \"y\", \"z\"]")                     \
+    X(ROOT_RANDOM, "random", OBJECT_OR_LIST, false, NONE,                                    \
+      "A random part, or several whose densities add up.",                                   \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/random\"}, {\"type\": \"array\", "   \
+                "\"minItems\": 1, \"items\": {\"$ref\": \"#/definitions/random\"}}]")        \
+    X(ROOT_TONES, "tones", LIST, false, NONE, "Sines.",                                      \
+      .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "               \
+                "\"#/definitions/tone\"}")                                                   \
+    X(ROOT_COMBINE, "combine", OBJECT, false, NONE,                                          \
+      "How random parts and tones make one peak.",                                           \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/combine\"}]")
 enum { ROOT_KEYS(MT_PROFILE_ENUM) ROOT_COUNT };
-MT_PROFILE_TABLE(ROOT, "", ROOT_KEYS);
+MT_PROFILE_TABLE(
+    ROOT, "", ROOT_KEYS,
+    .says = "A vibration profile: the acceleration of a base, as random parts, tones, or both "
+            "(sine on random). Numbers are plain; expressions are not allowed.",
+    .rules = "\"anyOf\": [{\"required\": [\"random\"]}, {\"required\": [\"tones\"]}]");
 
-#define RANDOM_KEYS(X)                                        \
-    X(RANDOM_G2, "psd_g2_per_hz", LIST, false, PSD_G)         \
-    X(RANDOM_SI, "psd_m2_per_s3", LIST, false, PSD)           \
-    X(RANDOM_RMS_G, "published_rms_g", VALUE, false, LEVEL_G) \
-    X(RANDOM_ORIGIN, "origin", TEXT, false)                   \
-    X(RANDOM_SOURCE, "source", TEXT, false)                   \
-    X(RANDOM_DESCRIPTION, "description", TEXT, false)
+#define RANDOM_KEYS(X)                                                                      \
+    X(RANDOM_G2, "psd_g2_per_hz", LIST, false, PSD_G,                                       \
+      "Breakpoints [frequency in Hz, density in g^2/Hz], in ascending order; two at one "   \
+      "frequency are a step. 1 g = 9.80665 m/s^2.",                                         \
+      .examples = "[[[20, 0.026], [50, 0.16], [800, 0.16], {\"frequency_hz\": 2000, "       \
+                  "\"slope_db_per_octave\": -6}]]",                                         \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/breakpoints\"}]")                   \
+    X(RANDOM_SI, "psd_m2_per_s3", LIST, false, PSD,                                         \
+      "The same with the density in (m/s^2)^2/Hz.",                                         \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/breakpoints\"}]")                   \
+    X(RANDOM_RMS_G, "published_rms_g", VALUE, false, LEVEL_G,                               \
+      "The overall RMS that the source prints [g]: where the breakpoints have another (by " \
+      "more than 1 %), a warning says so.")                                                 \
+    X(RANDOM_ORIGIN, "origin", TEXT, false, NONE, NULL,                                     \
+      .schema = "\"$ref\": \"#/definitions/origin\"")                                       \
+    X(RANDOM_SOURCE, "source", TEXT, false, NONE, "Where the breakpoints come from.")       \
+    X(RANDOM_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")
 enum { RANDOM_KEYS(MT_PROFILE_ENUM) RANDOM_COUNT };
-MT_PROFILE_TABLE(RANDOM, "random", RANDOM_KEYS);
+MT_PROFILE_TABLE(RANDOM, "random", RANDOM_KEYS,
+                 .says = "Stationary random acceleration by the breakpoints of its one-sided "
+                         "density: straight lines in log-log scales, 0 outside.",
+                 .rules = "\"oneOf\": [{\"required\": [\"psd_g2_per_hz\"]}, {\"required\": "
+                          "[\"psd_m2_per_s3\"]}]");
 
-#define POINT_KEYS(X)                            \
-    X(POINT_HZ, "frequency_hz", VALUE, true, HZ) \
-    X(POINT_SLOPE, "slope_db_per_octave", VALUE, true, SLOPE)
+#define POINT_KEYS(X)                                               \
+    X(POINT_HZ, "frequency_hz", VALUE, true, HZ, "Frequency [Hz].") \
+    X(POINT_SLOPE, "slope_db_per_octave", VALUE, true, SLOPE,       \
+      "Slope of the segment between the two, for rising frequency [dB/octave].")
 enum { POINT_KEYS(MT_PROFILE_ENUM) POINT_COUNT };
-MT_PROFILE_TABLE(POINT, "slope", POINT_KEYS);
+MT_PROFILE_TABLE(POINT, "slope", POINT_KEYS,
+                 .says = "A breakpoint whose density follows from a slope: from the breakpoint "
+                         "before it or, in front of the first density, from the one after it.");
 
-#define TONE_KEYS(X)                                         \
-    X(TONE_RANGE, "frequency_hz", LIST, false, HZ)           \
-    X(TONE_ROTOR, "rotor", OBJECT, false)                    \
-    X(TONE_G, "acceleration_g", VALUE, false, LEVEL_G)       \
-    X(TONE_SI, "acceleration_m_per_s2", VALUE, false, LEVEL) \
-    X(TONE_ORIGIN, "origin", TEXT, false)                    \
-    X(TONE_SOURCE, "source", TEXT, false)                    \
-    X(TONE_DESCRIPTION, "description", TEXT, false)
+#define TONE_KEYS(X)                                                                      \
+    X(TONE_RANGE, "frequency_hz", LIST, false, HZ,                                        \
+      "Range [lower, upper] [Hz]; both may be the same.",                                 \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/pair\"}]")                        \
+    X(TONE_ROTOR, "rotor", OBJECT, false, NONE, NULL,                                     \
+      .schema = "\"$ref\": \"#/definitions/rotor\"")                                      \
+    X(TONE_G, "acceleration_g", VALUE, false, LEVEL_G, "Amplitude (peak) [g].")           \
+    X(TONE_SI, "acceleration_m_per_s2", VALUE, false, LEVEL, "Amplitude (peak) [m/s^2].") \
+    X(TONE_ORIGIN, "origin", TEXT, false, NONE, NULL,                                     \
+      .schema = "\"$ref\": \"#/definitions/origin\"")                                     \
+    X(TONE_SOURCE, "source", TEXT, false, NONE, "Where the level comes from.")            \
+    X(TONE_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")
 enum { TONE_KEYS(MT_PROFILE_ENUM) TONE_COUNT };
-MT_PROFILE_TABLE(TONE, "tone", TONE_KEYS);
+MT_PROFILE_TABLE(
+    TONE, "tone", TONE_KEYS,
+    .says = "A sine whose frequency may lie anywhere within a range, or one for each harmonic "
+            "of a rotor.",
+    .examples = "[{\"rotor\": {\"aircraft\": \"UH-60\", \"harmonics\": [\"4P\"], "
+                "\"speed_range\": [0.95, 1.05]}, \"acceleration_g\": 1.72}]",
+    .rules = "\"allOf\": [{\"oneOf\": [{\"required\": [\"frequency_hz\"]}, {\"required\": "
+             "[\"rotor\"]}]}, {\"oneOf\": [{\"required\": [\"acceleration_g\"]}, "
+             "{\"required\": [\"acceleration_m_per_s2\"]}]}]");
 
-#define COMBINE_KEYS(X)                            \
-    X(COMBINE_SIGMA, "sigma", VALUE, false, SIGMA) \
-    X(COMBINE_TONES, "tones", TEXT, false)         \
-    X(COMBINE_DESCRIPTION, "description", TEXT, false)
+#define COMBINE_KEYS(X)                                                                        \
+    X(COMBINE_SIGMA, "sigma", VALUE, false, SIGMA,                                             \
+      "How many standard deviations count as the peak of the random response.",                \
+      .otherwise = "3")                                                                        \
+    X(COMBINE_TONES, "tones", TEXT, false, NONE,                                               \
+      "\"sum\": all tones peak at once; \"largest\": one at a time; \"root_sum_square\": as "  \
+      "if they were independent.",                                                             \
+      .otherwise = "\"sum\"",                                                                  \
+      .schema = "\"type\": \"string\", \"enum\": [\"sum\", \"largest\", \"root_sum_square\"]") \
+    X(COMBINE_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")
 enum { COMBINE_KEYS(MT_PROFILE_ENUM) COMBINE_COUNT };
-MT_PROFILE_TABLE(COMBINE, "combine", COMBINE_KEYS);
+MT_PROFILE_TABLE(COMBINE, "combine", COMBINE_KEYS,
+                 .says = "The combined peak is sigma times the RMS of the random response, and "
+                         "the peaks of the tones by a rule.");
+
+const mt_schema_type *mt_profile_types(int *n)
+{
+    static const mt_schema_type types[] = {
+        {.name = "breakpoints",
+         .says = "Breakpoints of a density.",
+         .schema = "\"type\": \"array\", \"minItems\": 2, \"items\": {\"anyOf\": [{\"$ref\": "
+                   "\"#/definitions/pair\"}, {\"$ref\": \"#/definitions/slope\"}]}"},
+        {.name = "origin",
+         .says = "Where the numbers come from; whatever uses assumed ones says so.",
+         .schema =
+             "\"type\": \"string\", \"enum\": [\"published\", \"identified\", \"assumed\"]"},
+        {.name = "pair",
+         .says = "Two numbers.",
+         .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "
+                   "{\"type\": \"number\"}"},
+    };
+    *n = MT_COUNT(types);
+    return types;
+}
 
 const mt_key_table *const *mt_profile_key_tables(int *n)
 {

@@ -23,5 +23,7 @@ mt_status mt_vibration_load_within(const char *path, const mt_io_options *opt,
 /* The key tables of a profile, for the test that compares them with the JSON Schema; *n is
  * their number. */
 const mt_key_table *const *mt_profile_key_tables(int *n);
+/* The types that members of a profile share; *n is their number. */
+const mt_schema_type *mt_profile_types(int *n);
 
 #endif

@@ -15,12 +15,16 @@ typedef struct mt_read_profile {
 } mt_read_profile;
 
 #define MT_PROFILE_ENUM(id, ...) id,
-#define MT_PROFILE_KEY(id, label, kind, ...) \
-    {.name = (label), .type = MT_KEY_##kind, MT_KEY_REST(__VA_ARGS__)},
-#define MT_PROFILE_TABLE(id, object, KEYS)                    \
+#define MT_PROFILE_KEY(id, label, kind, must, row, ...) \
+    {.name = (label),                                   \
+     .type = MT_KEY_##kind,                             \
+     .required = (must),                                \
+     .possible = MT_POSSIBLE_##row,                     \
+     .says = __VA_ARGS__},
+#define MT_PROFILE_TABLE(id, object, KEYS, ...)               \
     static const mt_key id##_LIST[] = {KEYS(MT_PROFILE_KEY)}; \
     static const mt_key_table id##_TABLE = {                  \
-        .what = (object), .keys = id##_LIST, .n = MT_COUNT(id##_LIST)}
+        .what = (object), .keys = id##_LIST, .n = MT_COUNT(id##_LIST), __VA_ARGS__}
 
 extern const mt_key_table mt_profile_rotor_keys;
 extern const mt_key_table mt_profile_tail_keys;

@@ -10,32 +10,53 @@
 #include "environment/rotor.h"
 #include "io/file.h"
 
-#define ROTOR_KEYS(X)                                   \
-    X(ROTOR_AIRCRAFT, "aircraft", TEXT, false)          \
-    X(ROTOR_SPEED_HZ, "speed_hz", VALUE, false, SPEED)  \
-    X(ROTOR_SPEED_RPM, "speed_rpm", VALUE, false, RPM)  \
-    X(ROTOR_BLADES, "blades", COUNT, false, WHOLE)      \
-    X(ROTOR_TAIL, "tail", OBJECT, false)                \
-    X(ROTOR_NAME, "name", TEXT, false)                  \
-    X(ROTOR_HARMONICS, "harmonics", LIST, true)         \
-    X(ROTOR_RANGE, "speed_range", LIST, false, FACTORS) \
-    X(ROTOR_DESCRIPTION, "description", TEXT, false)    \
-    X(ROTOR_SOURCE, "source", TEXT, false)
+#define ROTOR_KEYS(X)                                                                      \
+    X(ROTOR_AIRCRAFT, "aircraft", TEXT, false, NONE, "Name in the catalogue of aircraft.") \
+    X(ROTOR_SPEED_HZ, "speed_hz", VALUE, false, SPEED,                                     \
+      "Nominal speed of the main rotor [1/s].")                                            \
+    X(ROTOR_SPEED_RPM, "speed_rpm", VALUE, false, RPM,                                     \
+      "Nominal speed of the main rotor [rpm].")                                            \
+    X(ROTOR_BLADES, "blades", COUNT, false, WHOLE, "Number of blades of the main rotor.",  \
+      .least = 1, .most = 20)                                                              \
+    X(ROTOR_TAIL, "tail", OBJECT, false, NONE, NULL,                                       \
+      .schema = "\"$ref\": \"#/definitions/tail_rotor\"")                                  \
+    X(ROTOR_NAME, "name", TEXT, false, NONE,                                               \
+      "What labels call it. Absent: the aircraft's name, else \"rotor\".")                 \
+    X(ROTOR_HARMONICS, "harmonics", LIST, true, NONE,                                      \
+      "Harmonics: \"1P\", \"4P\", \"nP\" (n: the number of blades) of the main rotor, "    \
+      "\"1T\", \"nT\" of the tail rotor.",                                                 \
+      .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"string\", " \
+                "\"pattern\": \"^([1-9][0-9]{0,2}[nN]?|[nN])[PT]$\"}")                     \
+    X(ROTOR_RANGE, "speed_range", LIST, false, FACTORS,                                    \
+      "Least and greatest speed as factors of the nominal one. Absent: 1 and 1.",          \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/pair\"}]")                         \
+    X(ROTOR_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")        \
+    X(ROTOR_SOURCE, "source", TEXT, false, NONE, "Where it comes from.")
 enum { ROTOR_KEYS(MT_PROFILE_ENUM) ROTOR_COUNT };
 static const mt_key ROTOR_LIST[] = {ROTOR_KEYS(MT_PROFILE_KEY)};
 const mt_key_table mt_profile_rotor_keys = {
-    .what = "rotor", .keys = ROTOR_LIST, .n = ROTOR_COUNT};
+    .what = "rotor",
+    .keys = ROTOR_LIST,
+    .n = ROTOR_COUNT,
+    .says = "A rotor that excites at its harmonics: an aircraft of the catalogue, or a speed.",
+    .rules = "\"oneOf\": [{\"required\": [\"aircraft\"]}, {\"required\": [\"speed_hz\"]}, "
+             "{\"required\": [\"speed_rpm\"]}], \"not\": {\"anyOf\": [{\"required\": "
+             "[\"aircraft\", \"blades\"]}, {\"required\": [\"aircraft\", \"tail\"]}]}"};
 
-#define TAIL_KEYS(X)                                  \
-    X(TAIL_SPEED_HZ, "speed_hz", VALUE, false, SPEED) \
-    X(TAIL_SPEED_RPM, "speed_rpm", VALUE, false, RPM) \
-    X(TAIL_BLADES, "blades", COUNT, false, WHOLE)     \
-    X(TAIL_DESCRIPTION, "description", TEXT, false)   \
-    X(TAIL_SOURCE, "source", TEXT, false)
+#define TAIL_KEYS(X)                                                                           \
+    X(TAIL_SPEED_HZ, "speed_hz", VALUE, false, SPEED, "Nominal speed [1/s].")                  \
+    X(TAIL_SPEED_RPM, "speed_rpm", VALUE, false, RPM, "Nominal speed [rpm].")                  \
+    X(TAIL_BLADES, "blades", COUNT, false, WHOLE, "Number of blades.", .least = 1, .most = 20) \
+    X(TAIL_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")             \
+    X(TAIL_SOURCE, "source", TEXT, false, NONE, "Where it comes from.")
 enum { TAIL_KEYS(MT_PROFILE_ENUM) TAIL_COUNT };
 static const mt_key TAIL_LIST[] = {TAIL_KEYS(MT_PROFILE_KEY)};
 const mt_key_table mt_profile_tail_keys = {
-    .what = "tail_rotor", .keys = TAIL_LIST, .n = TAIL_COUNT};
+    .what = "tail_rotor",
+    .keys = TAIL_LIST,
+    .n = TAIL_COUNT,
+    .says = "The tail rotor.",
+    .rules = "\"oneOf\": [{\"required\": [\"speed_hz\"]}, {\"required\": [\"speed_rpm\"]}]"};
 
 static const double RPM_PER_HZ = 60.0;
 

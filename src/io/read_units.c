@@ -3,12 +3,6 @@
 
 #include "base/format.h"
 
-/* In the order of mt_dimension. */
-#define UNITS_KEY(id, label, text, si) \
-    {.name = (label), .type = MT_KEY_TEXT, .required = false},
-static const mt_key KEYS[] = {MT_DIMENSION_LIST(UNITS_KEY)};
-const mt_key_table mt_units_keys = {.what = "units", .keys = KEYS, .n = MT_DIMENSION_COUNT};
-
 /* The unit of a dimension that the text names; NULL where absent or wrong (noted). */
 static const mt_unit *read_unit(mt_reader *r, mt_addr value, mt_dimension dimension)
 {

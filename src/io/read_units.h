@@ -9,8 +9,6 @@
  * place; an expression (a string) is in SI, so an expression there that looks like a bare
  * number, or has one among its terms, is refused with the correct form.
  */
-extern const mt_key_table mt_units_keys;
-
 /* Read "units" of a model or a study by its table, in the order of mt_dimension: the unit of
  * each dimension, NULL where none is given. */
 void mt_read_units(mt_reader *r, mt_addr value, const mt_key_table *table,

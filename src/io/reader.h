@@ -97,12 +97,6 @@ struct mt_key {
     const char *pattern;
 };
 
-/* The last columns of a key table: required, and for members with numbers their row of
- * base/possible.h. */
-#define MT_KEY_REST(...) MT_KEY_REST_OF(__VA_ARGS__, NONE, )
-#define MT_KEY_REST_OF(given, numbers, ...) \
-    .required = (given), .possible = MT_POSSIBLE_##numbers
-
 /* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a
  * wrong type). */
 typedef struct mt_object mt_object;

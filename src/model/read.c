@@ -18,51 +18,218 @@
 #include "model/setting.h"
 #include "model/values.h"
 
-#define MODEL_KEYS(X)                                          \
-    X(MODEL_SCHEMA, "$schema", TEXT, false)                    \
-    X(MODEL_FORMAT, "format", TEXT, true)                      \
-    X(MODEL_NAME, "name", TEXT, false)                         \
-    X(MODEL_DESCRIPTION, "description", TEXT, false)           \
-    X(MODEL_SOURCE, "source", TEXT, false)                     \
-    X(MODEL_ACCEPTED, "accepted", LIST, false)                 \
-    X(MODEL_UNITS, "units", OBJECT, false)                     \
-    X(MODEL_DIMENSION, "dimension", COUNT, true, WHOLE)        \
-    X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false, GRAVITY) \
-    X(MODEL_PARAMETERS, "parameters", OBJECT, false, ANY)      \
-    X(MODEL_POINTS, "points", OBJECT, false, POINT)            \
-    X(MODEL_BODIES, "bodies", LIST, false)                     \
-    X(MODEL_LINKS, "links", LIST, false)                       \
-    X(MODEL_JOINTS, "joints", LIST, false)                     \
-    X(MODEL_SPRINGS, "springs", LIST, false)                   \
-    X(MODEL_DAMPERS, "dampers", LIST, false)                   \
-    X(MODEL_LOADS, "loads", LIST, false)                       \
-    X(MODEL_DAMPING, "damping", OBJECT, false)                 \
-    X(MODEL_SENSORS, "sensors", LIST, false)                   \
-    X(MODEL_MODES, "modes", OBJECT, false)                     \
-    X(MODEL_CONFIGURATIONS, "configurations", OBJECT, false)
+#define MODEL_KEYS(X)                                                                         \
+    X(MODEL_SCHEMA, "$schema", TEXT, false, NONE, "This schema, for the editor.")             \
+    X(MODEL_FORMAT, "format", TEXT, true, NONE, "Kind and version of this file.",             \
+      .schema = "\"type\": \"string\", \"enum\": [\"modetune-model/1\"]")                     \
+    X(MODEL_NAME, "name", TEXT, false, NONE, "What the model is called.")                     \
+    X(MODEL_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")           \
+    X(MODEL_SOURCE, "source", TEXT, false, NONE,                                              \
+      "Where it comes from: a table, a page, a test report.")                                 \
+    X(MODEL_ACCEPTED, "accepted", LIST, false, NONE,                                          \
+      "Names of warnings that you know and accept: they become notes.",                       \
+      .examples = "[[\"density\"]]",                                                          \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\", \"enum\": "           \
+                "[\"angle\", \"band\", \"bounds\", \"bushing\", \"damping\", \"density\", "   \
+                "\"drive\", \"dropped\", \"frequency\", \"gap\", \"gravity\", \"inertia\", "  \
+                "\"level\", \"margin\", \"mass\", \"modulus\", \"no_effect\", \"off\", "      \
+                "\"reference\", \"section\", \"size\", \"speed\", \"speed_range\", "          \
+                "\"spread\", \"spring\", \"target\", \"tolerance\", \"unit\", \"weight\"]}")  \
+    X(MODEL_UNITS, "units", OBJECT, false, NONE, NULL,                                        \
+      .schema = "\"$ref\": \"#/definitions/units\"")                                          \
+    X(MODEL_DIMENSION, "dimension", COUNT, true, WHOLE,                                       \
+      "2: plane, coordinates x and y; 3: space.",                                             \
+      .schema = "\"type\": \"integer\", \"enum\": [2, 3]")                                    \
+    X(MODEL_GRAVITY, "gravity_m_per_s2", LIST, false, GRAVITY,                                \
+      "Acceleration of gravity in all configurations that do not give their own [m/s^2]. "    \
+      "Absent: none.",                                                                        \
+      .examples = "[[0, -9.81]]",                                                             \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/vector\"}]")                          \
+    X(MODEL_PARAMETERS, "parameters", OBJECT, false, ANY,                                     \
+      "Named numbers that expressions may use and studies may change.",                       \
+      .schema =                                                                               \
+          "\"type\": \"object\", \"propertyNames\": {\"pattern\": "                           \
+          "\"^[A-Za-z_][A-Za-z0-9_]*$\"}, \"additionalProperties\": {\"anyOf\": [{\"$ref\": " \
+          "\"#/definitions/number\"}, {\"$ref\": \"#/definitions/parameter\"}]}")             \
+    X(MODEL_POINTS, "points", OBJECT, false, POINT,                                           \
+      "Named points in the reference position, in the file's units of length (m where it "    \
+      "says none).",                                                                          \
+      .schema = "\"type\": \"object\", \"propertyNames\": {\"pattern\": "                     \
+                "\"^[A-Za-z_][A-Za-z0-9_+-]*$\"}, \"additionalProperties\": {\"$ref\": "      \
+                "\"#/definitions/vector\"}")                                                  \
+    X(MODEL_BODIES, "bodies", LIST, false, NONE, "Rigid bodies and point masses.",            \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/body\"}")         \
+    X(MODEL_LINKS, "links", LIST, false, NONE, "Flexible links.",                             \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/link\"}")         \
+    X(MODEL_JOINTS, "joints", LIST, false, NONE,                                              \
+      "Joints between bodies, links and the ground.",                                         \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/joint\"}")        \
+    X(MODEL_SPRINGS, "springs", LIST, false, NONE,                                            \
+      "Springs; unstressed in the reference position unless they say otherwise.",             \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/spring\"}")       \
+    X(MODEL_DAMPERS, "dampers", LIST, false, NONE, "Viscous dampers.",                        \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/damper\"}")       \
+    X(MODEL_LOADS, "loads", LIST, false, NONE,                                                \
+      "Dead loads: forces and moments of constant size and direction. Equilibrium is found "  \
+      "under them, and their geometric stiffness counts.",                                    \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/load\"}")         \
+    X(MODEL_DAMPING, "damping", OBJECT, false, NONE, NULL,                                    \
+      .schema = "\"$ref\": \"#/definitions/damping\"")                                        \
+    X(MODEL_SENSORS, "sensors", LIST, false, NONE,                                            \
+      "Where shapes are compared: MAC and pairing use the sensors whose names both sides "    \
+      "have.",                                                                                \
+      .schema = "\"type\": \"array\", \"items\": {\"$ref\": \"#/definitions/sensor\"}")       \
+    X(MODEL_MODES, "modes", OBJECT, false, NONE,                                              \
+      "Names for vibration modes, which are then tracked by their shape.",                    \
+      .schema = "\"type\": \"object\", \"propertyNames\": {\"minLength\": 1}, "               \
+                "\"additionalProperties\": {\"$ref\": \"#/definitions/mode\"}")               \
+    X(MODEL_CONFIGURATIONS, "configurations", OBJECT, false, NONE,                            \
+      "Named states of the mechanism. Absent or empty: one, called \"default\", that "        \
+      "contains everything.",                                                                 \
+      .schema = "\"type\": \"object\", \"propertyNames\": {\"pattern\": "                     \
+                "\"^[A-Za-z_][A-Za-z0-9_+-]*$\"}, \"additionalProperties\": {\"$ref\": "      \
+                "\"#/definitions/configuration\"}")
 enum { MODEL_KEYS(MT_READ_ENUM) MODEL_COUNT };
-MT_READ_TABLE(mt_model_keys, "", MODEL_KEYS);
+MT_READ_TABLE(
+    mt_model_keys, "", MODEL_KEYS,
+    .says = "One mechanism: bodies, flexible links, joints and springs in their reference "
+            "position, and its configurations. SI units, global coordinates.");
 
-#define PARAMETER_KEYS(X)                                \
-    X(PARAMETER_VALUE, "value", NUMBER, true, ANY)       \
-    X(PARAMETER_UNIT, "unit", TEXT, false)               \
-    X(PARAMETER_DESCRIPTION, "description", TEXT, false) \
-    X(PARAMETER_SOURCE, "source", TEXT, false)           \
-    X(PARAMETER_ORIGIN, "origin", TEXT, false)
+#define PARAMETER_KEYS(X)                                                                      \
+    X(PARAMETER_VALUE, "value", NUMBER, true, ANY,                                             \
+      "Its value: a number in its unit, or an expression, which is in SI units and may "       \
+      "depend on other parameters.")                                                           \
+    X(PARAMETER_UNIT, "unit", TEXT, false, NONE,                                               \
+      "Unit of the number, which wins over the file's; of SI, for people and tables, or one "  \
+      "that is converted: mm, N/mm, GPa, g, lb, ... Numbers that override it (in "             \
+      "configurations, --set) are in it, too. \"g\" is a gram, or 9.80665 m/s^2 of a "         \
+      "parameter that gravity is made of.",                                                    \
+      .schema =                                                                                \
+          "\"type\": \"string\", \"enum\": [\"1\", \"m\", \"m^2\", \"m^3\", \"m^4\", \"kg\", " \
+          "\"kg/m\", \"kg/m^2\", \"kg/m^3\", \"kg m\", \"kg m^2\", \"s\", \"1/s\", \"Hz\", "   \
+          "\"rad\", \"rad/s\", \"m/s\", \"m/s^2\", \"N\", \"N/m\", \"N/m^2\", \"Pa\", \"N "    \
+          "m\", \"N m^2\", \"N m/rad\", \"N s/m\", \"N m s/rad\", \"m/rad\", \"rad/m\", "      \
+          "\"J\", \"W\", \"mm\", \"cm\", \"in\", \"ft\", \"deg\", \"rpm\", \"mg\", \"g\", "    \
+          "\"t\", \"oz\", \"lb\", \"slug\", \"lbf s^2/in\", \"g/mm\", \"g/m\", \"kg/mm\", "    \
+          "\"lb/in\", \"lb/ft\", \"g/m^2\", \"g/cm^2\", \"kg/mm^2\", \"lb/ft^2\", "            \
+          "\"g/cm^3\", \"kg/dm^3\", \"t/m^3\", \"g/mm^3\", \"kg/cm^3\", \"kg/mm^3\", "         \
+          "\"t/mm^3\", \"lb/in^3\", \"lb/ft^3\", \"slug/ft^3\", \"g mm\", \"g cm\", \"g m\", " \
+          "\"kg mm\", \"kg cm\", \"lb in\", \"lb ft\", \"g mm^2\", \"g cm^2\", \"kg mm^2\", "  \
+          "\"kg cm^2\", \"t mm^2\", \"t m^2\", \"lb in^2\", \"lb ft^2\", \"slug ft^2\", "      \
+          "\"lbf in s^2\", \"um\", \"km\", \"mm^2\", \"cm^2\", \"in^2\", \"ft^2\", \"mm^3\", " \
+          "\"cm^3\", \"in^3\", \"ft^3\", \"mm^4\", \"cm^4\", \"in^4\", \"ft^4\", \"ms\", "     \
+          "\"min\", \"kHz\", \"mrad\", \"mm/s\", \"in/s\", \"ft/s\", \"km/h\", \"mm/s^2\", "   \
+          "\"in/s^2\", \"ft/s^2\", \"mN\", \"daN\", \"kN\", \"MN\", \"lbf\", \"kip\", "        \
+          "\"kgf\", \"N/cm\", \"N/mm\", \"N/um\", \"kN/m\", \"kN/mm\", \"MN/m\", \"lbf/in\", " \
+          "\"lbf/ft\", \"kip/in\", \"kip/ft\", \"kPa\", \"MPa\", \"GPa\", \"bar\", \"psi\", "  \
+          "\"ksi\", \"Msi\", \"N/mm^2\", \"kN/mm^2\", \"kN/m^2\", \"lbf/in^2\", "              \
+          "\"lbf/ft^2\", \"N mm\", \"N cm\", \"kN m\", \"kN mm\", \"lbf in\", \"lbf ft\", "    \
+          "\"N mm^2\", \"kN m^2\", \"kN mm^2\", \"N mm/rad\", \"N cm/rad\", \"kN m/rad\", "    \
+          "\"kN mm/rad\", \"MN m/rad\", \"N m/mrad\", \"lbf in/rad\", \"lbf ft/rad\", \"N "    \
+          "m/deg\", \"N mm/deg\", \"kN m/deg\", \"lbf in/deg\", \"lbf ft/deg\", \"N s/mm\", "  \
+          "\"kN s/m\", \"kN s/mm\", \"lbf s/in\", \"lbf s/ft\", \"N mm s/rad\", \"kN m "       \
+          "s/rad\", \"lbf in s/rad\", \"lbf ft s/rad\", \"N m s/deg\", \"N mm s/deg\", "       \
+          "\"deg/s\", \"mm/rad\", \"cm/rad\", \"in/rad\", \"mm/deg\", \"rad/mm\", \"deg/m\", " \
+          "\"deg/mm\", \"mJ\", \"kJ\", \"kW\", \"%\"]")                                        \
+    X(PARAMETER_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")        \
+    X(PARAMETER_SOURCE, "source", TEXT, false, NONE,                                           \
+      "Where it comes from: a table, a page, a test report.")                                  \
+    X(PARAMETER_ORIGIN, "origin", TEXT, false, NONE, NULL,                                     \
+      .schema = "\"$ref\": \"#/definitions/origin\"")
 enum { PARAMETER_KEYS(MT_READ_ENUM) PARAMETER_COUNT };
-MT_READ_TABLE(mt_parameter_keys, "parameter", PARAMETER_KEYS);
+MT_READ_TABLE(mt_parameter_keys, "parameter", PARAMETER_KEYS,
+              .says = "A parameter with its documentation.");
 
-#define BODY_KEYS(X)                                                 \
-    X(BODY_NAME, "name", TEXT, true)                                 \
-    X(BODY_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE)             \
-    X(BODY_INERTIA, "inertia_kg_m2", NUMBER_OR_LIST, false, INERTIA) \
-    X(BODY_CENTRE, "centre", TEXT_OR_LIST, true, POINT)              \
-    X(BODY_IN, "in", LIST, false)                                    \
-    X(BODY_DESCRIPTION, "description", TEXT, false)                  \
-    X(BODY_SOURCE, "source", TEXT, false)                            \
-    X(BODY_ORIGIN, "origin", TEXT, false)
+#define BODY_KEYS(X)                                                                           \
+    X(BODY_NAME, "name", TEXT, true, NONE,                                                     \
+      "Name of the body: a letter or _, then letters, digits, _, + and -.",                    \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                 \
+    X(BODY_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE, "Mass [kg]. Absent: 0.")              \
+    X(BODY_INERTIA, "inertia_kg_m2", NUMBER_OR_LIST, false, INERTIA,                           \
+      "About the centre of mass, global axes [kg m^2]. Two dimensions: a number. Three: [xx, " \
+      "yy, zz] or [xx, yy, zz, xy, xz, yz], elements of the tensor: xy is minus the integral " \
+      "of x y over the mass, so that products of inertia that a CAD system gives as positive " \
+      "integrals change sign. None of the principal moments is more than the other two "       \
+      "together. Absent: a point mass, which has no orientation.",                             \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 3, \"maxItems\": 6, \"items\": {\"$ref\": "                     \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(BODY_CENTRE, "centre", TEXT_OR_LIST, true, POINT, "Centre of mass [m].",                 \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/position\"}]")                         \
+    X(BODY_IN, "in", LIST, false, NONE,                                                        \
+      "Names of the configurations that contain this item; absent: all of them. "              \
+      "Configurations that are `like` one of them contain it as well.",                        \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                      \
+    X(BODY_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")             \
+    X(BODY_SOURCE, "source", TEXT, false, NONE,                                                \
+      "Where it comes from: a table, a page, a test report.")                                  \
+    X(BODY_ORIGIN, "origin", TEXT, false, NONE, NULL,                                          \
+      .schema = "\"$ref\": \"#/definitions/origin\"")
 enum { BODY_KEYS(MT_READ_ENUM) BODY_COUNT };
-MT_READ_TABLE(mt_body_keys, "body", BODY_KEYS);
+MT_READ_TABLE(mt_body_keys, "body", BODY_KEYS,
+              .says = "A rigid body, or without inertia_kg_m2 a point mass.");
+
+static const char *const LENGTHS[] = {"m", "mm", "cm", "in", "ft"};
+static const char *const ANGLES[] = {"rad", "deg"};
+static const char *const SPEEDS[] = {"Hz", "rpm"};
+/* In the order of mt_dimension. */
+static const mt_key UNITS[] = {
+    {.name = "length",
+     .type = MT_KEY_TEXT,
+     .choices = LENGTHS,
+     .n_choices = MT_COUNT(LENGTHS),
+     .says = "Unit of coordinates: points, at, centre, from, to. Absent: m."},
+    {.name = "angle",
+     .type = MT_KEY_TEXT,
+     .choices = ANGLES,
+     .n_choices = MT_COUNT(ANGLES),
+     .says =
+         "Unit of angles. Every angle of a model names its unit; with this member, expressions "
+         "of parameters that are angles are checked for bare numbers. Absent: rad."},
+    {.name = "speed",
+     .type = MT_KEY_TEXT,
+     .choices = SPEEDS,
+     .n_choices = MT_COUNT(SPEEDS),
+     .says = "Unit of speeds. Absent: Hz."},
+};
+static const mt_key_table units_keys = {
+    .what = "units",
+    .keys = UNITS,
+    .n = MT_COUNT(UNITS),
+    .says = "Units of numbers whose member names none. Members that end in a unit (_m, _rad, "
+            "_hz) and parameters that have one stay in that. Expressions (strings) are always "
+            "in SI units: \"150*mm\", \"10*deg\" say otherwise."};
+
+const mt_schema_type *mt_model_types(int *n)
+{
+    static const mt_schema_type types[] = {
+        {.name = "number",
+         .says = "A number in the unit that the member names, else the file's or the "
+                 "parameter's, else SI; or an expression of the parameters as a string, in SI "
+                 "units: + - * / ^, sqrt, sin, min ..., pi, deg, rpm, mm, cm, inch, ft.",
+         .schema = "\"type\": [\"number\", \"string\"], \"examples\": [0.25, \"2*m\", "
+                   "\"10*deg\", \"150*mm\"]"},
+        {.name = "vector",
+         .says = "x, y, and in three dimensions z; each a number or an expression.",
+         .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 3, \"items\": "
+                   "{\"$ref\": \"#/definitions/number\"}"},
+        {.name = "position",
+         .says = "The name of a point, or coordinates, in the file's units of length.",
+         .schema = "\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/definitions/vector\"}]"},
+        {.name = "at",
+         .says = "One position, or the pair of positions on the first and the second body as "
+                 "drawn; then the loop is closed first.",
+         .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/position\"}, {\"type\": \"array\", "
+                   "\"minItems\": 2, \"maxItems\": 2, \"items\": {\"$ref\": "
+                   "\"#/definitions/position\"}}]"},
+        {.name = "origin",
+         .says = "Where the value comes from.",
+         .schema =
+             "\"type\": \"string\", \"enum\": [\"published\", \"identified\", \"assumed\"]"},
+    };
+    *n = MT_COUNT(types);
+    return types;
+}
 
 const mt_key_table *const *mt_model_key_tables(int *n)
 {
@@ -70,7 +237,7 @@ const mt_key_table *const *mt_model_key_tables(int *n)
         &mt_model_keys,   &mt_parameter_keys, &mt_body_keys,  &mt_link_keys,
         &mt_section_keys, &mt_shear_keys,     &mt_joint_keys, &mt_spring_keys,
         &mt_damper_keys,  &mt_sensor_keys,    &mt_mode_keys,  &mt_configuration_keys,
-        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,  &mt_units_keys,
+        &mt_drive_keys,   &mt_hold_keys,      &mt_load_keys,  &units_keys,
         &mt_damping_keys,
     };
     *n = MT_COUNT(tables);
@@ -221,7 +388,7 @@ static void read_model_root(mt_model_reader *mr, const mt_addr *at)
     m->accepted = mt_reader_accepted(&mr->r, at[MODEL_ACCEPTED]);
     m->dimension = mt_reader_count(&mr->r, at[MODEL_DIMENSION], 2, 3, 0);
     m->dimension_addr = at[MODEL_DIMENSION];
-    mt_read_units(&mr->r, at[MODEL_UNITS], &mt_units_keys, m->units);
+    mt_read_units(&mr->r, at[MODEL_UNITS], &units_keys, m->units);
     read_parameters(mr, at[MODEL_PARAMETERS]);
     if (mt_arena_failed(&m->mem)) {
         return;

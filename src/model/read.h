@@ -24,5 +24,7 @@ mt_status mt_model_from_json(mt_json *doc, const char *file, mt_model **out, mt_
 /* All key tables of a model file, `what` being the name of the definition in the schema; *n is
  * their number. */
 const mt_key_table *const *mt_model_key_tables(int *n);
+/* The types that members of a model share; *n is their number. */
+const mt_schema_type *mt_model_types(int *n);
 
 #endif

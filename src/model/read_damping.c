@@ -2,16 +2,31 @@
 /* Damping of a model and of its configurations. */
 #include "model/read_priv.h"
 
-#define DAMPING_KEYS(X)                                              \
-    X(DAMPING_RATIO, "ratio", NUMBER, false, RATIO)                  \
-    X(DAMPING_RATIOS, "ratios", LIST, false, RATIO)                  \
-    X(DAMPING_MODES, "modes", OBJECT, false, RATIO)                  \
-    X(DAMPING_MASS, "mass_per_s", NUMBER, false, NOT_NEGATIVE)       \
-    X(DAMPING_STIFFNESS, "stiffness_s", NUMBER, false, NOT_NEGATIVE) \
-    X(DAMPING_DESCRIPTION, "description", TEXT, false)               \
-    X(DAMPING_SOURCE, "source", TEXT, false)
+#define DAMPING_KEYS(X)                                                                       \
+    X(DAMPING_RATIO, "ratio", NUMBER, false, RATIO,                                           \
+      "Damping ratio of every vibration mode that ratios and modes leave out; not negative.", \
+      .examples = "[0.02]")                                                                   \
+    X(DAMPING_RATIOS, "ratios", LIST, false, RATIO,                                           \
+      "Damping ratios of vibration modes 1, 2, ...; not negative.",                           \
+      .schema = "\"type\": \"array\", \"minItems\": 1, \"maxItems\": 100000, \"items\": "     \
+                "{\"$ref\": \"#/definitions/number\"}")                                       \
+    X(DAMPING_MODES, "modes", OBJECT, false, RATIO,                                           \
+      "Damping ratios of modes that the model names; not negative.",                          \
+      .schema = "\"type\": \"object\", \"additionalProperties\": {\"$ref\": "                 \
+                "\"#/definitions/number\"}")                                                  \
+    X(DAMPING_MASS, "mass_per_s", NUMBER, false, NOT_NEGATIVE,                                \
+      "Proportional damping: C has so many times the mass matrix [1/s]; not negative.")       \
+    X(DAMPING_STIFFNESS, "stiffness_s", NUMBER, false, NOT_NEGATIVE,                          \
+      "Proportional damping: C has so many times the stiffness matrix [s], the tangent "      \
+      "stiffness with all loads and preload; not negative.")                                  \
+    X(DAMPING_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")         \
+    X(DAMPING_SOURCE, "source", TEXT, false, NONE,                                            \
+      "Where it comes from: a table, a page, a test report.")
 enum { DAMPING_KEYS(MT_READ_ENUM) DAMPING_COUNT };
-MT_READ_TABLE(mt_damping_keys, "damping", DAMPING_KEYS);
+MT_READ_TABLE(mt_damping_keys, "damping", DAMPING_KEYS,
+              .says = "Damping besides dampers and loss factors: C = mass_per_s M + "
+                      "stiffness_s K + M Phi diag(2 ratio_j omega_j) Phi^T M. That of a "
+                      "configuration takes the place of all of the one that it would inherit.");
 
 /* name -> ratio of the named modes. */
 static void read_named(mt_model_reader *mr, mt_addr object, mt_damping *d)

@@ -2,67 +2,175 @@
 /* Joints, springs and dampers. */
 #include "model/read_priv.h"
 
-#define JOINT_KEYS(X)                                           \
-    X(JOINT_NAME, "name", TEXT, true)                           \
-    X(JOINT_TYPE, "type", TEXT, true)                           \
-    X(JOINT_BODIES, "bodies", LIST, false)                      \
-    X(JOINT_AT, "at", TEXT_OR_LIST, false, POINT)               \
-    X(JOINT_AXIS, "axis", LIST, false, AXIS)                    \
-    X(JOINT_AXIS_B, "axis_b", LIST, false, AXIS)                \
-    X(JOINT_LENGTH, "length_m", NUMBER, false, POSITIVE)        \
-    X(JOINT_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE)       \
-    X(JOINT_JOINTS, "joints", LIST, false)                      \
-    X(JOINT_RATIO, "ratio", NUMBER, false, NONZERO)             \
-    X(JOINT_RATIO_M, "ratio_m_per_rad", NUMBER, false, NONZERO) \
-    X(JOINT_IN, "in", LIST, false)                              \
-    X(JOINT_DESCRIPTION, "description", TEXT, false)            \
-    X(JOINT_SOURCE, "source", TEXT, false)
-enum { JOINT_KEYS(MT_READ_ENUM) JOINT_COUNT };
-MT_READ_TABLE(mt_joint_keys, "joint", JOINT_KEYS);
-
-#define SPRING_KEYS(X)                                                    \
-    X(SPRING_NAME, "name", TEXT, true)                                    \
-    X(SPRING_TYPE, "type", TEXT, true)                                    \
-    X(SPRING_BODIES, "bodies", LIST, false)                               \
-    X(SPRING_JOINT, "joint", TEXT, false)                                 \
-    X(SPRING_AT, "at", TEXT_OR_LIST, false, POINT)                        \
-    X(SPRING_FORCE, "stiffness_n_per_m", NUMBER_OR_LIST, false, ANY)      \
-    X(SPRING_TORQUE, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false, ANY) \
-    X(SPRING_IN, "in", LIST, false)                                       \
-    X(SPRING_DESCRIPTION, "description", TEXT, false)                     \
-    X(SPRING_SOURCE, "source", TEXT, false)                               \
-    X(SPRING_FREE_LENGTH, "free_length_m", NUMBER, false, NOT_NEGATIVE)   \
-    X(SPRING_FREE_ANGLE, "free_angle_rad", NUMBER, false, ANY)            \
-    X(SPRING_PRELOAD_N, "preload_n", NUMBER, false, ANY)                  \
-    X(SPRING_PRELOAD_N_M, "preload_n_m", NUMBER, false, ANY)              \
-    X(SPRING_YOUNG, "youngs_modulus_pa", NUMBER, false, MODULUS)          \
-    X(SPRING_AREA, "area_m2", NUMBER, false, NOT_NEGATIVE)                \
-    X(SPRING_DENSITY, "density_kg_per_m3", NUMBER, false, DENSITY)        \
-    X(SPRING_LOSS, "loss_factor", NUMBER, false, LOSS)                    \
-    X(SPRING_MATRIX, "stiffness_matrix", LIST, false, MATRIX)
-enum { SPRING_KEYS(MT_READ_ENUM) SPRING_COUNT };
-MT_READ_TABLE(mt_spring_keys, "spring", SPRING_KEYS);
-
-/* The first ten of a spring's keys, in their order, so that one reader serves both. */
-#define DAMPER_KEYS(X)                                                    \
-    X(DAMPER_NAME, "name", TEXT, true)                                    \
-    X(DAMPER_TYPE, "type", TEXT, true)                                    \
-    X(DAMPER_BODIES, "bodies", LIST, false)                               \
-    X(DAMPER_JOINT, "joint", TEXT, false)                                 \
-    X(DAMPER_AT, "at", TEXT_OR_LIST, false, POINT)                        \
-    X(DAMPER_FORCE, "damping_n_s_per_m", NUMBER_OR_LIST, false, ANY)      \
-    X(DAMPER_TORQUE, "damping_n_m_s_per_rad", NUMBER_OR_LIST, false, ANY) \
-    X(DAMPER_IN, "in", LIST, false)                                       \
-    X(DAMPER_DESCRIPTION, "description", TEXT, false)                     \
-    X(DAMPER_SOURCE, "source", TEXT, false)
-enum { DAMPER_KEYS(MT_READ_ENUM) DAMPER_COUNT };
-_Static_assert((int)DAMPER_COUNT == (int)SPRING_SOURCE + 1,
-               "a damper's keys are a spring's first");
-MT_READ_TABLE(mt_damper_keys, "damper", DAMPER_KEYS);
-
 #define NAME_OF(id, name) name,
 static const char *const JOINT_NAMES[] = {MT_JOINT_LIST(NAME_OF)};
 static const char *const SPRING_NAMES[] = {MT_SPRING_LIST(NAME_OF)};
+
+#define JOINT_KEYS(X)                                                                          \
+    X(JOINT_NAME, "name", TEXT, true, NONE,                                                    \
+      "Name of the joint: a letter or _, then letters, digits, _, + and -.",                   \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                 \
+    X(JOINT_TYPE, "type", TEXT, true, NONE,                                                    \
+      "Two dimensions: fixed, revolute, prismatic, pin-in-slot, distance, orientation (the "   \
+      "bodies turn together, translations are free), gear, rack. Three: all but pin-in-slot; " \
+      "point-on-plane keeps a point of the second body on a plane of the first.",              \
+      .choices = JOINT_NAMES, .n_choices = MT_COUNT(JOINT_NAMES))                              \
+    X(JOINT_BODIES, "bodies", LIST, false, NONE,                                               \
+      "The two bodies or parts that it connects: its coordinate is how far the second stands " \
+      "against the first, about the axis (right-handed; in two dimensions counter-clockwise) " \
+      "or along it. Each \"ground\", a body, or a part of a link: \"L.start\", \"L.end\", "    \
+      "the rigid element \"L.3\", or the node \"L.node3\" (of beam elements, or where rigid "  \
+      "elements meet; \"L.node0\" is the start).",                                             \
+      .examples = "[[\"ground\", \"beam.start\"]]",                                            \
+      .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "           \
+                "{\"type\": \"string\"}")                                                      \
+    X(JOINT_AT, "at", TEXT_OR_LIST, false, POINT, NULL,                                        \
+      .schema = "\"$ref\": \"#/definitions/at\"")                                              \
+    X(JOINT_AXIS, "axis", LIST, false, AXIS,                                                   \
+      "Direction: of turning, of sliding, or the normal of a plane; fixed to the first body.", \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/vector\"}]")                           \
+    X(JOINT_AXIS_B, "axis_b", LIST, false, AXIS,                                               \
+      "Universal joint: the second axis, fixed to the second body.",                           \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/vector\"}]")                           \
+    X(JOINT_LENGTH, "length_m", NUMBER, false, POSITIVE,                                       \
+      "Distance joint: its length [m]. Absent: as drawn.")                                     \
+    X(JOINT_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE,                                      \
+      "Distance joint: mass of a uniform thin rod between its points, with a ball joint at "   \
+      "each end [kg]. Absent: a rod without mass.")                                            \
+    X(JOINT_JOINTS, "joints", LIST, false, NONE,                                               \
+      "Gear: the two revolute joints that it couples. Rack: a revolute joint (the pinion), "   \
+      "then a prismatic one, a slot or a line.",                                               \
+      .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "           \
+                "{\"type\": \"string\"}")                                                      \
+    X(JOINT_RATIO, "ratio", NUMBER, false, NONZERO,                                            \
+      "Gear: angle of the second joint divided by that of the first [1], each of its second "  \
+      "body against its first, about its own axis; not 0; negative for wheels that mesh "      \
+      "outside: minus the teeth of the first by those of the second.")                         \
+    X(JOINT_RATIO_M, "ratio_m_per_rad", NUMBER, false, NONZERO,                                \
+      "Rack: displacement of the second joint divided by the angle of the first [m/rad]: the " \
+      "pitch radius, with a sign; not 0.")                                                     \
+    X(JOINT_IN, "in", LIST, false, NONE,                                                       \
+      "Names of the configurations that contain this item; absent: all of them. "              \
+      "Configurations that are `like` one of them contain it as well.",                        \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                      \
+    X(JOINT_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")            \
+    X(JOINT_SOURCE, "source", TEXT, false, NONE,                                               \
+      "Where it comes from: a table, a page, a test report.")
+enum { JOINT_KEYS(MT_READ_ENUM) JOINT_COUNT };
+MT_READ_TABLE(mt_joint_keys, "joint", JOINT_KEYS, .says = "A joint between two bodies.");
+
+#define SPRING_KEYS(X)                                                                         \
+    X(SPRING_NAME, "name", TEXT, true, NONE,                                                   \
+      "Name of the spring: a letter or _, then letters, digits, _, + and -.",                  \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                 \
+    X(SPRING_TYPE, "type", TEXT, true, NONE,                                                   \
+      "torsion: about a joint or between two bodies; axial: along the line between two "       \
+      "points; bar: an axial spring made of material, with mass; bushing: in all directions, " \
+      "along axes of the drawing that the first body carries; its forces act at the point of " \
+      "the second body.",                                                                      \
+      .choices = SPRING_NAMES, .n_choices = MT_COUNT(SPRING_NAMES))                            \
+    X(SPRING_BODIES, "bodies", LIST, false, NONE,                                              \
+      "The two bodies or parts that it connects, each \"ground\", a body, or a part of a "     \
+      "link: \"L.start\", \"L.end\", the rigid element \"L.3\", or the node \"L.node3\" (of "  \
+      "beam elements, or where rigid elements meet; \"L.node0\" is the start).",               \
+      .examples = "[[\"ground\", \"beam.start\"]]",                                            \
+      .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "           \
+                "{\"type\": \"string\"}")                                                      \
+    X(SPRING_JOINT, "joint", TEXT, false, NONE,                                                \
+      "Torsion: the joint (or hinge of a link, \"L.h3\") whose angle it acts on. Axial: the "  \
+      "joint that slides along whose axis it acts.")                                           \
+    X(SPRING_AT, "at", TEXT_OR_LIST, false, POINT, NULL,                                       \
+      .schema = "\"$ref\": \"#/definitions/at\"")                                              \
+    X(SPRING_FORCE, "stiffness_n_per_m", NUMBER_OR_LIST, false, ANY,                           \
+      "Axial: stiffness [N/m]. Bushing: a list along x, y (and z). A negative one is "         \
+      "allowed: a spring over its dead centre, a magnet.",                                     \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                     \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(SPRING_TORQUE, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false, ANY,                      \
+      "Torsion: stiffness [N m/rad]. Bushing: about z, or a list about x, y, z. A negative "   \
+      "one is allowed.",                                                                       \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                     \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(SPRING_IN, "in", LIST, false, NONE,                                                      \
+      "Names of the configurations that contain this item; absent: all of them. "              \
+      "Configurations that are `like` one of them contain it as well.",                        \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                      \
+    X(SPRING_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")           \
+    X(SPRING_SOURCE, "source", TEXT, false, NONE,                                              \
+      "Where it comes from: a table, a page, a test report.")                                  \
+    X(SPRING_FREE_LENGTH, "free_length_m", NUMBER, false, NOT_NEGATIVE,                        \
+      "Axial: length without force [m].")                                                      \
+    X(SPRING_FREE_ANGLE, "free_angle_rad", NUMBER, false, ANY,                                 \
+      "Torsion: where the spring has no torque [rad]: how far the second body is turned "      \
+      "there against the first, about the joint's axis (in two dimensions "                    \
+      "counter-clockwise), from the reference position.")                                      \
+    X(SPRING_PRELOAD_N, "preload_n", NUMBER, false, ANY,                                       \
+      "Axial, bar: tension in the reference position [N]: above 0 it draws the two points "    \
+      "together; along a joint: the force that draws its second body back against the axis.")  \
+    X(SPRING_PRELOAD_N_M, "preload_n_m", NUMBER, false, ANY,                                   \
+      "Torsion: torque in the reference position [N m]: above 0 it turns the second body "     \
+      "back, against the joint's axis (in two dimensions clockwise), and the first the other " \
+      "way.")                                                                                  \
+    X(SPRING_YOUNG, "youngs_modulus_pa", NUMBER, false, MODULUS, "Bar: Young's modulus [Pa].") \
+    X(SPRING_AREA, "area_m2", NUMBER, false, NOT_NEGATIVE, "Bar: area [m^2].")                 \
+    X(SPRING_DENSITY, "density_kg_per_m3", NUMBER, false, DENSITY,                             \
+      "Bar: density [kg/m^3]. Absent: without mass.")                                          \
+    X(SPRING_LOSS, "loss_factor", NUMBER, false, LOSS,                                         \
+      "Structural damping: the spring is k (1 + i loss_factor) in steady vibrations; not "     \
+      "negative. Absent: 0.")                                                                  \
+    X(SPRING_MATRIX, "stiffness_matrix", LIST, false, MATRIX,                                  \
+      "Bushing, three dimensions: 6 rows of 6, symmetric (to six digits; anything else has "   \
+      "no energy and is an error); x, y, z [N/m], rotations [N m/rad], in between [N/rad]; "   \
+      "about the point at which the bushing acts, that of the second body (absent: its "       \
+      "centre), for displacements and rotations of the second body against the first.",        \
+      .schema = "\"type\": \"array\", \"minItems\": 6, \"maxItems\": 6, \"items\": "           \
+                "{\"type\": \"array\", \"minItems\": 6, \"maxItems\": 6, \"items\": "          \
+                "{\"$ref\": \"#/definitions/number\"}}")
+enum { SPRING_KEYS(MT_READ_ENUM) SPRING_COUNT };
+MT_READ_TABLE(mt_spring_keys, "spring", SPRING_KEYS, .says = "A spring.");
+
+/* The first ten of a spring's keys, in their order, so that one reader serves both. */
+#define DAMPER_KEYS(X)                                                                        \
+    X(DAMPER_NAME, "name", TEXT, true, NONE,                                                  \
+      "Name of the damper: a letter or _, then letters, digits, _, + and -.",                 \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                \
+    X(DAMPER_TYPE, "type", TEXT, true, NONE, "As for springs.",                               \
+      .schema = "\"type\": \"string\", \"enum\": [\"torsion\", \"axial\", \"bushing\"]")      \
+    X(DAMPER_BODIES, "bodies", LIST, false, NONE,                                             \
+      "The two bodies or parts that it connects, each \"ground\", a body, or a part of a "    \
+      "link: \"L.start\", \"L.end\", the rigid element \"L.3\", or the node \"L.node3\" (of " \
+      "beam elements, or where rigid elements meet; \"L.node0\" is the start).",              \
+      .examples = "[[\"ground\", \"beam.start\"]]",                                           \
+      .schema = "\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, \"items\": "          \
+                "{\"type\": \"string\"}")                                                     \
+    X(DAMPER_JOINT, "joint", TEXT, false, NONE,                                               \
+      "Torsion: the joint (or hinge of a link, \"L.h3\") whose rate it acts on. Axial: the "  \
+      "joint that slides along whose axis it acts.")                                          \
+    X(DAMPER_AT, "at", TEXT_OR_LIST, false, POINT, NULL,                                      \
+      .schema = "\"$ref\": \"#/definitions/at\"")                                             \
+    X(DAMPER_FORCE, "damping_n_s_per_m", NUMBER_OR_LIST, false, ANY,                          \
+      "Axial: coefficient [N s/m]. Bushing: a list along x, y (and z).",                      \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "    \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                    \
+                "\"#/definitions/number\"}}]")                                                \
+    X(DAMPER_TORQUE, "damping_n_m_s_per_rad", NUMBER_OR_LIST, false, ANY,                     \
+      "Torsion: coefficient [N m s/rad]. Bushing: about z, or a list about x, y, z.",         \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "    \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                    \
+                "\"#/definitions/number\"}}]")                                                \
+    X(DAMPER_IN, "in", LIST, false, NONE,                                                     \
+      "Names of the configurations that contain this item; absent: all of them. "             \
+      "Configurations that are `like` one of them contain it as well.",                       \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                     \
+    X(DAMPER_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")          \
+    X(DAMPER_SOURCE, "source", TEXT, false, NONE,                                             \
+      "Where it comes from: a table, a page, a test report.")
+enum { DAMPER_KEYS(MT_READ_ENUM) DAMPER_COUNT };
+_Static_assert((int)DAMPER_COUNT == (int)SPRING_SOURCE + 1,
+               "a damper's keys are a spring's first");
+MT_READ_TABLE(mt_damper_keys, "damper", DAMPER_KEYS, .says = "A viscous damper.");
 
 static void read_joint(mt_model_reader *mr, mt_addr value, mt_joint *j)
 {

@@ -4,56 +4,121 @@
 
 #include <limits.h>
 
-#define LINK_KEYS(X)                                                                \
-    X(LINK_NAME, "name", TEXT, true)                                                \
-    X(LINK_KIND, "kind", TEXT, false)                                               \
-    X(LINK_FROM, "from", TEXT_OR_LIST, true, POINT)                                 \
-    X(LINK_TO, "to", TEXT_OR_LIST, true, POINT)                                     \
-    X(LINK_ELEMENTS, "elements", COUNT, true, WHOLE)                                \
-    X(LINK_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE)                            \
-    X(LINK_DENSITY, "density_kg_per_m3", NUMBER, false, DENSITY)                    \
-    X(LINK_YOUNG, "youngs_modulus_pa", NUMBER, false, MODULUS)                      \
-    X(LINK_SHEAR, "shear_modulus_pa", NUMBER, false, MODULUS)                       \
-    X(LINK_SHEAR_DATA, "shear", OBJECT, false)                                      \
-    X(LINK_ROTARY, "rotary_inertia", BOOL, false)                                   \
-    X(LINK_SECTION, "section", OBJECT, false)                                       \
-    X(LINK_STIFFNESS, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false, NOT_NEGATIVE) \
-    X(LINK_LENGTH, "element_length_m", NUMBER_OR_LIST, false, POSITIVE)             \
-    X(LINK_ELEMENT_MASS, "element_mass_kg", NUMBER_OR_LIST, false, NOT_NEGATIVE)    \
-    X(LINK_INERTIA, "element_inertia_kg_m2", NUMBER_OR_LIST, false, NOT_NEGATIVE)   \
-    X(LINK_HINGE_AXIS, "hinge_axis", LIST, false, AXIS)                             \
-    X(LINK_GYRATION, "radius_of_gyration_m", NUMBER, false, NOT_NEGATIVE)           \
-    X(LINK_LOSS, "loss_factor", NUMBER, false, LOSS)                                \
-    X(LINK_IN, "in", LIST, false)                                                   \
-    X(LINK_DESCRIPTION, "description", TEXT, false)                                 \
-    X(LINK_SOURCE, "source", TEXT, false)
+#define LINK_KEYS(X)                                                                           \
+    X(LINK_NAME, "name", TEXT, true, NONE,                                                     \
+      "Name of the link: a letter or _, then letters, digits, _, + and -.",                    \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                 \
+    X(LINK_KIND, "kind", TEXT, false, NONE,                                                    \
+      "\"rigid_elements\": elements L.1, L.2 ..., hinges L.h1 ..., springs L.k1 ...; "         \
+      "\"beam\": beam elements with consistent mass and consistent geometric stiffness.",      \
+      .otherwise = "\"rigid_elements\"",                                                       \
+      .schema = "\"type\": \"string\", \"enum\": [\"rigid_elements\", \"beam\"]")              \
+    X(LINK_FROM, "from", TEXT_OR_LIST, true, POINT, "Start [m].",                              \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/position\"}]")                         \
+    X(LINK_TO, "to", TEXT_OR_LIST, true, POINT, "End [m].",                                    \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/position\"}]")                         \
+    X(LINK_ELEMENTS, "elements", COUNT, true, WHOLE, "Number of elements.", .least = 1,        \
+      .most = 1000000)                                                                         \
+    X(LINK_MASS, "mass_kg", NUMBER, false, NOT_NEGATIVE,                                       \
+      "Mass of the whole link [kg], not negative; or density, or element masses.")             \
+    X(LINK_DENSITY, "density_kg_per_m3", NUMBER, false, DENSITY,                               \
+      "Density [kg/m^3], above 0; needs a section.")                                           \
+    X(LINK_YOUNG, "youngs_modulus_pa", NUMBER, false, MODULUS,                                 \
+      "Young's modulus [Pa], above 0.")                                                        \
+    X(LINK_SHEAR, "shear_modulus_pa", NUMBER, false, MODULUS,                                  \
+      "Beams in three dimensions, and beams with `shear`: shear modulus [Pa], above 0.")       \
+    X(LINK_SHEAR_DATA, "shear", OBJECT, false, NONE, NULL,                                     \
+      .schema = "\"$ref\": \"#/definitions/shear\"")                                           \
+    X(LINK_ROTARY, "rotary_inertia", BOOL, false, NONE,                                        \
+      "Beams: whether the rotation of the sections in bending has inertia. Absent: true "      \
+      "where `shear` is given.")                                                               \
+    X(LINK_SECTION, "section", OBJECT, false, NONE, NULL,                                      \
+      .schema = "\"$ref\": \"#/definitions/section\"")                                         \
+    X(LINK_STIFFNESS, "stiffness_n_m_per_rad", NUMBER_OR_LIST, false, NOT_NEGATIVE,            \
+      "Stiffness of the hinges [N m/rad], not negative: one for all, or a list with one "      \
+      "each. Absent: E I / distance of the element centres.",                                  \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 1000000, \"items\": {\"$ref\": "               \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(LINK_LENGTH, "element_length_m", NUMBER_OR_LIST, false, POSITIVE,                        \
+      "Lengths of the rigid elements [m]: one for all, or a list. Absent: equal.",             \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 1000000, \"items\": {\"$ref\": "               \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(LINK_ELEMENT_MASS, "element_mass_kg", NUMBER_OR_LIST, false, NOT_NEGATIVE,               \
+      "Masses of the rigid elements [kg]: one for all, or a list.",                            \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 1000000, \"items\": {\"$ref\": "               \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(LINK_INERTIA, "element_inertia_kg_m2", NUMBER_OR_LIST, false, NOT_NEGATIVE,              \
+      "Moments of inertia of the rigid elements about their centres and the hinge axis [kg "   \
+      "m^2]. Absent: m l^2 / 12.",                                                             \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 1000000, \"items\": {\"$ref\": "               \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(LINK_HINGE_AXIS, "hinge_axis", LIST, false, AXIS,                                        \
+      "Three dimensions: direction of the hinges, across the link. Rigid elements bend about " \
+      "it only; a beam has its section's axes by it, and bends about both.",                   \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/vector\"}]")                           \
+    X(LINK_GYRATION, "radius_of_gyration_m", NUMBER, false, NOT_NEGATIVE,                      \
+      "Three dimensions, rigid elements: about the link's own axis [m]. Absent: 0.")           \
+    X(LINK_LOSS, "loss_factor", NUMBER, false, LOSS,                                           \
+      "Structural damping of its hinges or beam elements, as of springs; not negative. "       \
+      "Absent: 0.")                                                                            \
+    X(LINK_IN, "in", LIST, false, NONE,                                                        \
+      "Names of the configurations that contain this item; absent: all of them. "              \
+      "Configurations that are `like` one of them contain it as well.",                        \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                      \
+    X(LINK_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")             \
+    X(LINK_SOURCE, "source", TEXT, false, NONE,                                                \
+      "Where it comes from: a table, a page, a test report.")
 enum { LINK_KEYS(MT_READ_ENUM) LINK_COUNT };
-MT_READ_TABLE(mt_link_keys, "link", LINK_KEYS);
+MT_READ_TABLE(mt_link_keys, "link", LINK_KEYS,
+              .says =
+                  "A flexible link from one point to another: rigid elements with hinges and "
+                  "torsional springs, or beam elements, Euler-Bernoulli's or Timoshenko's.");
 
-#define SECTION_KEYS(X)                                                        \
-    X(SECTION_SHAPE, "shape", TEXT, true)                                      \
-    X(SECTION_WIDTH, "width_m", NUMBER, false, THICKNESS)                      \
-    X(SECTION_HEIGHT, "height_m", NUMBER, false, THICKNESS)                    \
-    X(SECTION_DIAMETER, "diameter_m", NUMBER, false, THICKNESS)                \
-    X(SECTION_OUTER, "outer_diameter_m", NUMBER, false, THICKNESS)             \
-    X(SECTION_INNER, "inner_diameter_m", NUMBER, false, INNER)                 \
-    X(SECTION_AREA, "area_m2", NUMBER, false, POSITIVE)                        \
-    X(SECTION_MOMENT, "second_moment_m4", NUMBER, false, POSITIVE)             \
-    X(SECTION_MOMENT_OTHER, "second_moment_other_m4", NUMBER, false, POSITIVE) \
-    X(SECTION_TORSION, "torsion_constant_m4", NUMBER, false, NOT_NEGATIVE)     \
-    X(SECTION_DESCRIPTION, "description", TEXT, false)                         \
-    X(SECTION_SOURCE, "source", TEXT, false)
+#define SECTION_KEYS(X)                                                                        \
+    X(SECTION_SHAPE, "shape", TEXT, true, NONE,                                                \
+      "rectangle: width_m, height_m; circle: diameter_m; tube: outer_diameter_m, "             \
+      "inner_diameter_m; general: area_m2, second_moment_m4.",                                 \
+      .schema = "\"type\": \"string\", \"enum\": [\"rectangle\", \"circle\", \"tube\", "       \
+                "\"general\"]")                                                                \
+    X(SECTION_WIDTH, "width_m", NUMBER, false, THICKNESS,                                      \
+      "Rectangle: across the plane of bending; in three dimensions along the hinge axis [m].") \
+    X(SECTION_HEIGHT, "height_m", NUMBER, false, THICKNESS,                                    \
+      "Rectangle: in the plane of bending [m].")                                               \
+    X(SECTION_DIAMETER, "diameter_m", NUMBER, false, THICKNESS, "Circle [m].")                 \
+    X(SECTION_OUTER, "outer_diameter_m", NUMBER, false, THICKNESS, "Tube [m].")                \
+    X(SECTION_INNER, "inner_diameter_m", NUMBER, false, INNER, "Tube [m].")                    \
+    X(SECTION_AREA, "area_m2", NUMBER, false, POSITIVE, "General: area [m^2].")                \
+    X(SECTION_MOMENT, "second_moment_m4", NUMBER, false, POSITIVE,                             \
+      "General: second moment of area for bending about the hinge axis [m^4].")                \
+    X(SECTION_MOMENT_OTHER, "second_moment_other_m4", NUMBER, false, POSITIVE,                 \
+      "General, three dimensions: for bending about the other axis [m^4].")                    \
+    X(SECTION_TORSION, "torsion_constant_m4", NUMBER, false, NOT_NEGATIVE,                     \
+      "General, three dimensions: torsion constant [m^4].")                                    \
+    X(SECTION_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")          \
+    X(SECTION_SOURCE, "source", TEXT, false, NONE,                                             \
+      "Where it comes from: a table, a page, a test report.")
 enum { SECTION_KEYS(MT_READ_ENUM) SECTION_COUNT };
-MT_READ_TABLE(mt_section_keys, "section", SECTION_KEYS);
+MT_READ_TABLE(mt_section_keys, "section", SECTION_KEYS, .says = "Cross-section of a link.");
 
-#define SHEAR_KEYS(X)                                            \
-    X(SHEAR_COEFFICIENT, "coefficient", NUMBER, true, POSITIVE)  \
-    X(SHEAR_OTHER, "coefficient_other", NUMBER, false, POSITIVE) \
-    X(SHEAR_POISSON, "poissons_ratio", NUMBER, false, POISSON)   \
-    X(SHEAR_DESCRIPTION, "description", TEXT, false)             \
-    X(SHEAR_SOURCE, "source", TEXT, false)
+#define SHEAR_KEYS(X)                                                                          \
+    X(SHEAR_COEFFICIENT, "coefficient", NUMBER, true, POSITIVE,                                \
+      "Shear area over area, above 0, for bending about the hinge axis: 5/6 for a rectangle, " \
+      "9/10 for a circle, about 1/2 for a thin tube.")                                         \
+    X(SHEAR_OTHER, "coefficient_other", NUMBER, false, POSITIVE,                               \
+      "Three dimensions: for bending about the other axis. Absent: the same.")                 \
+    X(SHEAR_POISSON, "poissons_ratio", NUMBER, false, POISSON,                                 \
+      "Instead of shear_modulus_pa: G = E / (2 (1 + nu)), in torsion too.")                    \
+    X(SHEAR_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")            \
+    X(SHEAR_SOURCE, "source", TEXT, false, NONE,                                               \
+      "Where it comes from: a table, a page, a test report.")
 enum { SHEAR_KEYS(MT_READ_ENUM) SHEAR_COUNT };
-MT_READ_TABLE(mt_shear_keys, "shear", SHEAR_KEYS);
+MT_READ_TABLE(mt_shear_keys, "shear", SHEAR_KEYS,
+              .says = "Beams: Timoshenko's elements, which deform in shear. The shear modulus "
+                      "is the link's, or follows from Poisson's ratio.");
 
 static mt_shear read_shear(mt_model_reader *mr, mt_addr value)
 {

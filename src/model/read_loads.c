@@ -2,18 +2,43 @@
 /* Dead loads. */
 #include "model/read_priv.h"
 
-#define LOAD_KEYS(X)                                         \
-    X(LOAD_NAME, "name", TEXT, true)                         \
-    X(LOAD_ON, "on", TEXT, false)                            \
-    X(LOAD_JOINT, "joint", TEXT, false)                      \
-    X(LOAD_AT, "at", TEXT_OR_LIST, false, POINT)             \
-    X(LOAD_FORCE, "force_n", NUMBER_OR_LIST, false, ANY)     \
-    X(LOAD_MOMENT, "moment_n_m", NUMBER_OR_LIST, false, ANY) \
-    X(LOAD_IN, "in", LIST, false)                            \
-    X(LOAD_DESCRIPTION, "description", TEXT, false)          \
-    X(LOAD_SOURCE, "source", TEXT, false)
+#define LOAD_KEYS(X)                                                                           \
+    X(LOAD_NAME, "name", TEXT, true, NONE,                                                     \
+      "Name of the load: a letter or _, then letters, digits, _, + and -.",                    \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                 \
+    X(LOAD_ON, "on", TEXT, false, NONE,                                                        \
+      "What it acts on: a body, or a part of a link: \"L.start\", \"L.end\", the rigid "       \
+      "element \"L.3\", or the node \"L.node3\" (of beam elements, or where rigid elements "   \
+      "meet; \"L.node0\" is the start).")                                                      \
+    X(LOAD_JOINT, "joint", TEXT, false, NONE,                                                  \
+      "Instead of on: the joint (or hinge of a link, \"L.h3\") whose coordinate it acts "      \
+      "along or about: on the second body, with the reaction on the first.")                   \
+    X(LOAD_AT, "at", TEXT_OR_LIST, false, POINT,                                               \
+      "Point of application, in the reference position [m]. Absent: the centre of the body "   \
+      "or element, the end of the link.",                                                      \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/position\"}]")                         \
+    X(LOAD_FORCE, "force_n", NUMBER_OR_LIST, false, ANY,                                       \
+      "Force along x, y (and z) [N], whatever the body does; on a joint that slides: one "     \
+      "number, above 0 along the axis on the second body, against it on the first.",           \
+      .examples = "[[0, -50]]",                                                                \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"$ref\": "                \
+                "\"#/definitions/vector\"}]")                                                  \
+    X(LOAD_MOMENT, "moment_n_m", NUMBER_OR_LIST, false, ANY,                                   \
+      "Moment [N m]: on a body in two dimensions, above 0 counter-clockwise; on a joint that " \
+      "turns, above 0 it turns the second body about the axis, and the first the other way. "  \
+      "A moment of constant direction in space has no potential and is refused.",              \
+      .schema = "\"anyOf\": [{\"$ref\": \"#/definitions/number\"}, {\"type\": \"array\", "     \
+                "\"minItems\": 1, \"maxItems\": 3, \"items\": {\"$ref\": "                     \
+                "\"#/definitions/number\"}}]")                                                 \
+    X(LOAD_IN, "in", LIST, false, NONE,                                                        \
+      "Names of the configurations that contain this item; absent: all of them. "              \
+      "Configurations that are `like` one of them contain it as well.",                        \
+      .schema = "\"type\": \"array\", \"items\": {\"type\": \"string\"}")                      \
+    X(LOAD_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")             \
+    X(LOAD_SOURCE, "source", TEXT, false, NONE,                                                \
+      "Where it comes from: a table, a page, a test report.")
 enum { LOAD_KEYS(MT_READ_ENUM) LOAD_COUNT };
-MT_READ_TABLE(mt_load_keys, "load", LOAD_KEYS);
+MT_READ_TABLE(mt_load_keys, "load", LOAD_KEYS, .says = "A dead load on a body, or on a joint.");
 
 static bool is_list(const mt_model_reader *mr, mt_addr value)
 {

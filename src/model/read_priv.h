@@ -12,15 +12,19 @@ typedef struct mt_model_reader {
 } mt_model_reader;
 
 /* One list of keys makes the enum of their places and the table:
- *     #define POINT_KEYS(X) X(POINT_X, "x", NUMBER, true) ...
+ *     #define POINT_KEYS(X) X(POINT_X, "x", NUMBER, true, ANY, "Its x.") ...
  *     enum { POINT_KEYS(MT_READ_ENUM) POINT_COUNT }; */
 #define MT_READ_ENUM(id, ...) id,
-#define MT_READ_KEY(id, label, kind, ...) \
-    {.name = (label), .type = MT_KEY_##kind, MT_KEY_REST(__VA_ARGS__)},
-#define MT_READ_TABLE(table, object, KEYS)                    \
+#define MT_READ_KEY(id, label, kind, must, row, ...) \
+    {.name = (label),                                \
+     .type = MT_KEY_##kind,                          \
+     .required = (must),                             \
+     .possible = MT_POSSIBLE_##row,                  \
+     .says = __VA_ARGS__},
+#define MT_READ_TABLE(table, object, KEYS, ...)               \
     static const mt_key table##_keys[] = {KEYS(MT_READ_KEY)}; \
     const mt_key_table table = {                              \
-        .what = (object), .keys = table##_keys, .n = MT_COUNT(table##_keys)}
+        .what = (object), .keys = table##_keys, .n = MT_COUNT(table##_keys), __VA_ARGS__}
 
 extern const mt_key_table mt_model_keys;
 extern const mt_key_table mt_parameter_keys;

@@ -7,52 +7,92 @@
 
 #include "io/read_units.h"
 
-#define SENSOR_KEYS(X)                                  \
-    X(SENSOR_NAME, "name", TEXT, true)                  \
-    X(SENSOR_ON, "on", TEXT, true)                      \
-    X(SENSOR_AT, "at", TEXT_OR_LIST, false, POINT)      \
-    X(SENSOR_FRACTION, "fraction", NUMBER, false, PART) \
-    X(SENSOR_DIRECTIONS, "directions", LIST, false)     \
-    X(SENSOR_DESCRIPTION, "description", TEXT, false)   \
-    X(SENSOR_SOURCE, "source", TEXT, false)
+#define SENSOR_KEYS(X)                                                                         \
+    X(SENSOR_NAME, "name", TEXT, true, NONE,                                                   \
+      "Name of the sensor: a letter or _, then letters, digits, _, + and -.",                  \
+      .pattern = "^[A-Za-z_][A-Za-z0-9_+-]*$")                                                 \
+    X(SENSOR_ON, "on", TEXT, true, NONE,                                                       \
+      "A body, a link (then with fraction), or a rigid element of a link (\"L.3\").")          \
+    X(SENSOR_AT, "at", TEXT_OR_LIST, false, POINT,                                             \
+      "Position on a body [m]. Absent: its centre of mass.",                                   \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/position\"}]")                         \
+    X(SENSOR_FRACTION, "fraction", NUMBER, false, PART,                                        \
+      "Position on a link: 0 at its start, 1 at its end [1].", .examples = "[\"1/18\"]")       \
+    X(SENSOR_DIRECTIONS, "directions", LIST, false, NONE,                                      \
+      "What it measures: translations x, y, z and rotations rx, ry, rz; in two dimensions x, " \
+      "y, r. Absent: all translations.",                                                       \
+      .schema = "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"string\", "     \
+                "\"enum\": [\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\", \"r\"]}")             \
+    X(SENSOR_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")           \
+    X(SENSOR_SOURCE, "source", TEXT, false, NONE,                                              \
+      "Where it comes from: a table, a page, a test report.")
 enum { SENSOR_KEYS(MT_READ_ENUM) SENSOR_COUNT };
-MT_READ_TABLE(mt_sensor_keys, "sensor", SENSOR_KEYS);
+MT_READ_TABLE(mt_sensor_keys, "sensor", SENSOR_KEYS, .says = "A sensor.");
 
-#define MODE_KEYS(X)                                   \
-    X(MODE_CONFIGURATION, "configuration", TEXT, true) \
-    X(MODE_INDEX, "index", COUNT, true, WHOLE)         \
-    X(MODE_DESCRIPTION, "description", TEXT, false)    \
-    X(MODE_SOURCE, "source", TEXT, false)
+#define MODE_KEYS(X)                                                                        \
+    X(MODE_CONFIGURATION, "configuration", TEXT, true, NONE,                                \
+      "The configuration in which it is counted.")                                          \
+    X(MODE_INDEX, "index", COUNT, true, WHOLE,                                              \
+      "Counted from 1 by ascending frequency; rigid-body modes have no index.", .least = 1, \
+      .most = 2147483647)                                                                   \
+    X(MODE_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")          \
+    X(MODE_SOURCE, "source", TEXT, false, NONE,                                             \
+      "Where it comes from: a table, a page, a test report.")
 enum { MODE_KEYS(MT_READ_ENUM) MODE_COUNT };
-MT_READ_TABLE(mt_mode_keys, "mode", MODE_KEYS);
+MT_READ_TABLE(mt_mode_keys, "mode", MODE_KEYS,
+              .says = "A vibration mode of the original design.");
 
-#define CONFIGURATION_KEYS(X)                                          \
-    X(CONFIGURATION_LIKE, "like", TEXT, false)                         \
-    X(CONFIGURATION_PARAMETERS, "parameters", OBJECT, false, ANY)      \
-    X(CONFIGURATION_GRAVITY, "gravity_m_per_s2", LIST, false, GRAVITY) \
-    X(CONFIGURATION_DRIVE, "drive", OBJECT, false)                     \
-    X(CONFIGURATION_DAMPING, "damping", OBJECT, false)                 \
-    X(CONFIGURATION_DESCRIPTION, "description", TEXT, false)           \
-    X(CONFIGURATION_SOURCE, "source", TEXT, false)
+#define CONFIGURATION_KEYS(X)                                                                \
+    X(CONFIGURATION_LIKE, "like", TEXT, false, NONE,                                         \
+      "Configuration whose items and settings are taken over; parameters given here are "    \
+      "replaced one by one, gravity, drive and damping as a whole. An own drive must be of " \
+      "the joint that the inherited one drives.")                                            \
+    X(CONFIGURATION_PARAMETERS, "parameters", OBJECT, false, ANY,                            \
+      "Parameters with another value in this configuration.",                                \
+      .schema = "\"type\": \"object\", \"propertyNames\": {\"pattern\": "                    \
+                "\"^[A-Za-z_][A-Za-z0-9_]*$\"}, \"additionalProperties\": {\"$ref\": "       \
+                "\"#/definitions/number\"}")                                                 \
+    X(CONFIGURATION_GRAVITY, "gravity_m_per_s2", LIST, false, GRAVITY,                       \
+      "Acceleration of gravity in this configuration [m/s^2].",                              \
+      .schema = "\"allOf\": [{\"$ref\": \"#/definitions/vector\"}]")                         \
+    X(CONFIGURATION_DRIVE, "drive", OBJECT, false, NONE, NULL,                               \
+      .schema = "\"$ref\": \"#/definitions/drive\"")                                         \
+    X(CONFIGURATION_DAMPING, "damping", OBJECT, false, NONE, NULL,                           \
+      .schema = "\"$ref\": \"#/definitions/damping\"")                                       \
+    X(CONFIGURATION_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")  \
+    X(CONFIGURATION_SOURCE, "source", TEXT, false, NONE,                                     \
+      "Where it comes from: a table, a page, a test report.")
 enum { CONFIGURATION_KEYS(MT_READ_ENUM) CONFIGURATION_COUNT };
-MT_READ_TABLE(mt_configuration_keys, "configuration", CONFIGURATION_KEYS);
+MT_READ_TABLE(mt_configuration_keys, "configuration", CONFIGURATION_KEYS,
+              .says = "A state of the mechanism.");
 
-#define DRIVE_KEYS(X)                                  \
-    X(DRIVE_JOINT, "joint", TEXT, true)                \
-    X(DRIVE_RAD, "position_rad", NUMBER, false, ANGLE) \
-    X(DRIVE_M, "position_m", NUMBER, false, STROKE)    \
-    X(DRIVE_HOLD, "hold", TEXT_OR_OBJECT, false)       \
-    X(DRIVE_DESCRIPTION, "description", TEXT, false)   \
-    X(DRIVE_SOURCE, "source", TEXT, false)
+#define DRIVE_KEYS(X)                                                                         \
+    X(DRIVE_JOINT, "joint", TEXT, true, NONE, "The joint.")                                   \
+    X(DRIVE_RAD, "position_rad", NUMBER, false, ANGLE,                                        \
+      "Angle from the reference position [rad], at most 1000 either way; joints that turn.",  \
+      .examples = "[\"10*deg\"]")                                                             \
+    X(DRIVE_M, "position_m", NUMBER, false, STROKE,                                           \
+      "Displacement from the reference position [m], at most 1000 times the size of the "     \
+      "drawing either way; joints that slide.")                                               \
+    X(DRIVE_HOLD, "hold", TEXT_OR_OBJECT, false, NONE,                                        \
+      "\"lock\": it is locked there; {\"trim\": S}: spring S is re-trimmed so that it holds " \
+      "the position.",                                                                        \
+      .otherwise = "\"lock\"",                                                                \
+      .schema = "\"anyOf\": [{\"type\": \"string\", \"enum\": [\"lock\"]}, {\"$ref\": "       \
+                "\"#/definitions/hold\"}]")                                                   \
+    X(DRIVE_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")           \
+    X(DRIVE_SOURCE, "source", TEXT, false, NONE,                                              \
+      "Where it comes from: a table, a page, a test report.")
 enum { DRIVE_KEYS(MT_READ_ENUM) DRIVE_COUNT };
-MT_READ_TABLE(mt_drive_keys, "drive", DRIVE_KEYS);
+MT_READ_TABLE(mt_drive_keys, "drive", DRIVE_KEYS, .says = "A joint that is put to a position.");
 
-#define HOLD_KEYS(X)                                \
-    X(HOLD_TRIM, "trim", TEXT, true)                \
-    X(HOLD_DESCRIPTION, "description", TEXT, false) \
-    X(HOLD_SOURCE, "source", TEXT, false)
+#define HOLD_KEYS(X)                                                                   \
+    X(HOLD_TRIM, "trim", TEXT, true, NONE, "The spring whose rest position is moved.") \
+    X(HOLD_DESCRIPTION, "description", TEXT, false, NONE, "Free text for people.")     \
+    X(HOLD_SOURCE, "source", TEXT, false, NONE,                                        \
+      "Where it comes from: a table, a page, a test report.")
 enum { HOLD_KEYS(MT_READ_ENUM) HOLD_COUNT };
-MT_READ_TABLE(mt_hold_keys, "hold", HOLD_KEYS);
+MT_READ_TABLE(mt_hold_keys, "hold", HOLD_KEYS, .says = "A spring holds the position.");
 
 static unsigned read_directions(mt_model_reader *mr, mt_addr value)
 {

@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The JSON Schema of a study is written from the tables that its reader goes by: here its text
- * is made, and held against schemas/study.schema.json. MT_SCHEMAS_UPDATE=1 writes it there (the
- * target "schemas").
+ * The JSON Schemas of models, studies, profiles and catalogues of aircraft are written from the
+ * tables that their readers go by: here their texts are made, and held against those of
+ * schemas/. MT_SCHEMAS_UPDATE=1 writes them there (the target "schemas").
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "environment/read_aircraft.h"
+#include "environment/read_profile.h"
 #include "io/file.h"
 #include "io/json.h"
+#include "model/read.h"
 #include "mt_test.h"
 #include "study/read.h"
 
@@ -94,6 +97,8 @@ static void add_type(mt_test *t, mt_text *out, const mt_key *key)
         mt_text_add(out, "\"type\": \"boolean\"");
     } else if (key->type == MT_KEY_LIST) {
         add_list(out, key);
+    } else if (key->type == MT_KEY_VALUE) {
+        mt_text_add(out, "\"type\": \"number\"");
     } else if (key->type == MT_KEY_NUMBER) {
         add_reference(out, "number");
     } else if (key->type == MT_KEY_NUMBERS) {
@@ -114,11 +119,10 @@ static void add_member(mt_test *t, mt_text *out, const mt_key_table *table, cons
         return;
     }
     mt_test_row(t, "definition \"%s\", member \"%s\"", table->what, key->name);
-    if (!CHECK(t, key->says != NULL)) {
-        return;
+    if (CHECK(t, key->says != NULL || key->schema != NULL)) {
+        add_text(out, "description", key->says);
+        mt_text_add(out, key->says == NULL ? "" : ", ");
     }
-    add_text(out, "description", key->says);
-    mt_text_add(out, ", ");
     if (strncmp(table->what, "goal_", 5) == 0 && strcmp(key->name, "type") == 0) {
         add_text(out, "const", table->what + 5);
     } else if (key->schema != NULL) {
@@ -195,15 +199,27 @@ static void add_goal(mt_text *out, int n, const mt_key_table *const *tables)
     mt_text_add(out, "]}");
 }
 
-static void add_study(mt_test *t, mt_text *out)
+/* A document: the tables of its reader, the types that members share, and whether one of the
+ * definitions is a goal. */
+typedef struct document {
+    const char *name;
+    const char *room;
+    const mt_key_table *const *(*tables)(int *n);
+    const mt_schema_type *(*types)(int *n);
+    bool goals;
+} document;
+
+static void add_document(mt_test *t, mt_text *out, const document *d)
 {
     int n = 0;
     int n_types = 0;
-    const mt_key_table *const *const tables = mt_study_key_tables(&n);
-    const mt_schema_type *const types = mt_study_types(&n_types);
-    mt_text_add(out, "{\"$schema\": \"http://json-schema.org/draft-07/schema#\", \"$comment\": "
-                     "\"Written from the tables of src/study by the target schemas.\", "
-                     "\"title\": \"modetune study\", ");
+    const mt_key_table *const *const tables = d->tables(&n);
+    const mt_schema_type *const types = d->types == NULL ? NULL : d->types(&n_types);
+    mt_text_addf(out,
+                 "{\"$schema\": \"http://json-schema.org/draft-07/schema#\", \"$comment\": "
+                 "\"Written from the tables of src/%s by the target schemas.\", \"title\": "
+                 "\"modetune %s\", ",
+                 d->room, d->name);
     add_object(t, out, tables[0]);
     mt_text_add(out, ", \"definitions\": {");
     for (int i = 0; i < n_types; i++) {
@@ -214,9 +230,11 @@ static void add_study(mt_test *t, mt_text *out)
     for (int i = 1; i < n; i++) {
         mt_text_addf(out, "\"%s\": {", tables[i]->what);
         add_object(t, out, tables[i]);
-        mt_text_add(out, "}, ");
+        mt_text_add(out, i + 1 < n || d->goals ? "}, " : "}");
     }
-    add_goal(out, n, tables);
+    if (d->goals) {
+        add_goal(out, n, tables);
+    }
     mt_text_add(out, "}}");
 }
 
@@ -274,15 +292,16 @@ static void add_lines(mt_text *out, const mt_json *doc, const char *source, mt_a
     mt_text_addf(out, "\n%*s%s", indent, "", type == MT_JSON_ARRAY ? "]" : "}");
 }
 
-static void schema__of_a_study_is_what_its_tables_say(mt_test *t)
+static void check_document(mt_test *t, const document *d)
 {
-    static const char path[] = MT_TEST_SOURCE_DIR "/schemas/study.schema.json";
+    char path[256];
     mt_text compact = {.s = NULL};
     mt_text want = {.s = NULL};
     mt_file file = {0};
     mt_json *doc = NULL;
     mt_err err = {.text = ""};
-    add_study(t, &compact);
+    (void)snprintf(path, sizeof path, MT_TEST_SOURCE_DIR "/schemas/%s.schema.json", d->name);
+    add_document(t, &compact, d);
     REQUIRE(t, compact.s != NULL && !compact.failed);
     CHECK_INT(t, mt_json_parse(compact.s, compact.length, &doc, &err), MT_OK);
     if (CHECK(t, doc != NULL) && CHECK_STR(t, err.text, "")) {
@@ -296,12 +315,11 @@ static void schema__of_a_study_is_what_its_tables_say(mt_test *t)
             CHECK_INT(t, fclose(f), 0);
         }
     }
+    mt_test_row(t, "%s: differs from what cmake --build build/release --target schemas writes",
+                path);
     if (CHECK_INT(t, mt_file_read(path, NULL, SCHEMA_LIMIT, &file, NULL), MT_OK)) {
-        const bool same = want.length == file.length &&
-                          memcmp(want.s == NULL ? "" : want.s, file.bytes, file.length) == 0;
-        mt_test_row(t,
-                    "schemas/study.schema.json: cmake --build build/release --target schemas");
-        CHECK(t, same);
+        CHECK(t, want.length == file.length &&
+                     memcmp(want.s == NULL ? "" : want.s, file.bytes, file.length) == 0);
     }
     mt_file_free(&file);
     mt_json_delete(doc);
@@ -309,4 +327,16 @@ static void schema__of_a_study_is_what_its_tables_say(mt_test *t)
     mt_text_free(&compact);
 }
 
-MT_TEST_MAIN(MT_TEST(schema__of_a_study_is_what_its_tables_say))
+static void schema__of_a_document_is_what_its_tables_say(mt_test *t)
+{
+    static const document documents[] = {
+        {"model", "model", mt_model_key_tables, mt_model_types, false},
+        {"study", "study", mt_study_key_tables, mt_study_types, true},
+        {"profile", "environment", mt_profile_key_tables, mt_profile_types, false},
+        {"aircraft", "environment", mt_aircraft_key_tables, NULL, false}};
+    for (int i = 0; i < MT_COUNT(documents); i++) {
+        check_document(t, &documents[i]);
+    }
+}
+
+MT_TEST_MAIN(MT_TEST(schema__of_a_document_is_what_its_tables_say))
