@@ -76,25 +76,25 @@ typedef void (*mt_key_read)(mt_reader *r, const mt_key *key, mt_addr value, void
 /* A row of a table of members (io/members.h has the macros that write them). */
 struct mt_key {
     const char *name;
-    mt_key_type type;
-    bool required;
-    mt_possible_id possible; /* row of its numbers; MT_POSSIBLE_NONE: no numbers */
-    mt_key_read read;        /* NULL: by the object's own reader, or by nobody */
-    size_t at;               /* where its value goes in the struct */
-    size_t other;            /* where what belongs to it is: the count of a list */
-    int least;               /* of a whole number; of the items of a list */
-    int most;
+    mt_key_read read; /* NULL: by the object's own reader, or by nobody */
+    size_t at;        /* where its value goes in the struct */
+    size_t other;     /* where what belongs to it is: the count of a list */
     const char *what; /* of a choice, or a list that must not be empty, in messages */
     const char *const *choices;
-    int n_choices;
     const mt_key_table *of; /* of an object, or of the items of a list */
     /* for the JSON Schema: the sentence; default, examples and the type itself as JSON, where
-     * the columns above do not say it; the form of a string */
+     * the columns do not say it; the form of a string */
     const char *says;
     const char *otherwise;
     const char *examples;
     const char *schema;
     const char *pattern;
+    mt_key_type type;
+    mt_possible_id possible; /* row of its numbers; MT_POSSIBLE_NONE: no numbers */
+    int least;               /* of a whole number; of the items of a list */
+    int most;
+    int n_choices;
+    bool required;
 };
 
 /* An object matched with its table: the address of every member (MT_NO_ADDR: absent or of a

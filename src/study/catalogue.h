@@ -17,9 +17,9 @@ enum { MT_MAX_CATALOGUE = 10000 };
     X(96)                 \
     X(192)
 
-#define MT_SERIES_ONE(n) +1
-enum { MT_SERIES_COUNT = 0 MT_SERIES_LIST(MT_SERIES_ONE) };
-#undef MT_SERIES_ONE
+#define MT_SERIES_ENUM(n) MT_SERIES_E##n,
+enum { MT_SERIES_LIST(MT_SERIES_ENUM) MT_SERIES_COUNT };
+#undef MT_SERIES_ENUM
 /* "E3" ... "E192" */
 extern const char *const mt_series_names[MT_SERIES_COUNT];
 

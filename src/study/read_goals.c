@@ -1,7 +1,305 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Goals, and the responses that results show: ports, frequencies, and the profile, which is a
+ * file beside the study or one that is part of the program. */
 #include "study/read_priv.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/text.h"
+#include "environment/read_profile.h"
+#include "io/shipped.h"
+
+static const char SHIPPED[] = "problems/profiles/";
+static const char ENDING[] = ".json";
+static const char AIRCRAFT[] = "problems/aircraft.json";
+
+/* A goal about ports being read. */
+typedef struct limit_reading {
+    mt_study_reader *s;
+    const mt_goal_kind *kind;
+    const mt_object *o;
+} limit_reading;
+
+static mt_addr limit_member(const limit_reading *g, mt_goal_slot slot)
+{
+    const int at = mt_goal_member_at(g->kind, slot);
+    return at < 0 ? MT_NO_ADDR : g->o->found[at];
+}
+
+/* Address of the member; that of the goal where it is absent. */
+static mt_addr limit_member_addr(const limit_reading *g, mt_goal_slot slot)
+{
+    const int at = mt_goal_member_at(g->kind, slot);
+    return at < 0 ? g->o->addr : mt_object_place(&g->s->r, g->o, g->kind->members[at].name);
+}
+
+static mt_name name_at(const limit_reading *g, mt_goal_slot slot)
+{
+    mt_name name = mt_reader_ref(&g->s->r, limit_member(g, slot));
+    name.addr = limit_member_addr(g, slot);
+    return name;
+}
+
+/* True where the text is a name, not a path, of a profile built into the program, and no such
+ * file exists. */
+static bool is_shipped(const mt_study_reader *s, const char *name, const char *file)
+{
+    return strpbrk(name, "/.") == NULL && mt_files_lack(&s->files.files, file);
+}
+
+/* The built-in profile of that name; NULL: none (noted, with the nearest). */
+static const mt_shipped *shipped(mt_study_reader *s, mt_name name)
+{
+    const char *const path = mt_arena_printf(s->r.mem, "%s%s%s", SHIPPED, name.s, ENDING);
+    const mt_shipped *const own = path == NULL ? NULL : mt_shipped_find(path);
+    int n = 0;
+    int n_names = 0;
+    const mt_shipped *const all = mt_shipped_all(&n);
+    const char **const names = mt_arena_alloc(s->r.mem, (size_t)n, sizeof *names);
+    if (own != NULL) {
+        return own;
+    }
+    for (int i = 0; i < n && names != NULL; i++) {
+        if (strncmp(all[i].path, SHIPPED, strlen(SHIPPED)) == 0) {
+            const char *const file = all[i].path + strlen(SHIPPED);
+            names[n_names++] = mt_arena_strndup(s->r.mem, file, strlen(file) - strlen(ENDING));
+        }
+    }
+    if (names == NULL || mt_arena_failed(s->r.mem)) {
+        return NULL;
+    }
+    const char *const near = mt_text_nearest(name.s, names, n_names);
+    if (near == NULL) {
+        mt_diag_error(s->r.diags, name.addr,
+                      "there is no file \"%s\", and no profile of the program is called so: "
+                      "\"modetune profile\" lists them",
+                      name.s);
+    } else {
+        mt_diag_error(
+            s->r.diags, name.addr,
+            "there is no file \"%s\", and no profile of the program is called so; did "
+            "you mean \"%s\"?",
+            name.s, near);
+    }
+    return NULL;
+}
+
+static void note_input(mt_study_reader *s, const char *name, const char *sha256)
+{
+    for (int i = 0; i < s->study->n_inputs; i++) {
+        if (strcmp(s->study->inputs[i].name, name) == 0) {
+            return; /* the catalogue of several profiles */
+        }
+    }
+    mt_read_study_note_input(s, name, sha256);
+}
+
+/* The profile, and the catalogue of aircraft that its rotors are in; `own`: both are part of
+ * the program. */
+static void note_inputs(mt_study_reader *s, const char *profile, bool own,
+                        const mt_vibration *v)
+{
+    const char *const catalogue = own ? mt_aircraft_own_name : v->aircraft_name;
+    char *const file = own ? mt_arena_printf(s->r.mem, "profile %s of modetune", profile)
+                           : mt_arena_strdup(s->r.mem, profile);
+    if (file == NULL) {
+        return;
+    }
+    note_input(s, file, v->sha256);
+    if (v->aircraft_name == NULL) {
+        return;
+    }
+    if (catalogue == mt_aircraft_own_name) {
+        note_input(s, catalogue, v->aircraft.sha256);
+        return;
+    }
+    char *const joined = mt_file_join(profile, catalogue);
+    if (joined == NULL) {
+        mt_arena_fail(s->r.mem);
+        return;
+    }
+    note_input(s, joined, v->aircraft.sha256);
+    free(joined);
+}
+
+/* From a file, or from the texts that are given in opt. */
+static mt_vibration *load_from(mt_study_reader *s, mt_name name, const char *path, bool own,
+                               const mt_io_options *opt)
+{
+    const int told = s->model_messages->count;
+    mt_vibration *v = NULL;
+    mt_err why = {.code = MT_OK};
+    const mt_status rc = mt_vibration_load_within(path, opt, &v, s->model_messages, &why);
+    if (rc == MT_OK) {
+        note_inputs(s, name.s, own, v);
+    } else {
+        mt_read_study_note_failure(s, name, path, rc, &why, s->model_messages->count > told);
+    }
+    return v;
+}
+
+static mt_vibration *load_limit_profile(mt_study_reader *s, mt_name name)
+{
+    char *const joined = mt_file_join(s->study->path, name.s);
+    mt_vibration *v = NULL;
+    if (joined == NULL) {
+        mt_arena_fail(s->r.mem);
+        return NULL;
+    }
+    if (!is_shipped(s, name.s, joined)) {
+        v = load_from(s, name, joined, false, &s->files);
+    } else {
+        const mt_shipped *const own = shipped(s, name);
+        const mt_shipped *const aircraft = mt_shipped_find(AIRCRAFT);
+        mt_io_options opt = s->files;
+        if (own != NULL) {
+            const mt_file_text texts[] = {{.path = own->path, .text = own->bytes},
+                                          {.path = aircraft->path, .text = aircraft->bytes}};
+            opt.files = (mt_files){.given = texts, .n = MT_COUNT(texts), .only = true};
+            v = load_from(s, name, own->path, true, &opt);
+        }
+    }
+    free(joined);
+    return v;
+}
+
+/* A profile of vibration that the study names, each read once; NULL: no name, or it could not
+ * be read (noted). */
+static const mt_vibration *limit_profile(mt_study_reader *s, mt_name name)
+{
+    mt_study *const study = s->study;
+    if (name.s == NULL) {
+        return NULL;
+    }
+    for (int i = 0; i < study->n_profiles; i++) {
+        if (strcmp(study->profiles[i].name.s, name.s) == 0) {
+            return study->profiles[i].profile;
+        }
+    }
+    mt_study_profile *const all = mt_arena_grow(&study->mem, study->profiles, study->n_profiles,
+                                                &study->cap_profiles, sizeof *all);
+    if (all == NULL) {
+        return NULL;
+    }
+    study->profiles = all;
+    all[study->n_profiles] =
+        (mt_study_profile){.name = name, .profile = load_limit_profile(s, name)};
+    return all[study->n_profiles++].profile;
+}
+
+/* A band, or one frequency. */
+static void read_frequencies(const limit_reading *g, mt_response_limit *response_limit)
+{
+    double edges[2];
+    (void)mt_object_one_of(&g->s->r, g->o, mt_goal_member_name(g->kind, MT_SLOT_BAND), 2);
+    if (limit_member(g, MT_SLOT_AT) != MT_NO_ADDR) {
+        response_limit->lower_hz = mt_read_study_number(g->s, limit_member(g, MT_SLOT_AT));
+        response_limit->upper_hz = response_limit->lower_hz;
+    } else if (limit_member(g, MT_SLOT_BAND) != MT_NO_ADDR &&
+               mt_read_study_pair(g->s, limit_member(g, MT_SLOT_BAND),
+                                  limit_member(g, MT_SLOT_BAND), edges)) {
+        response_limit->lower_hz = edges[0];
+        response_limit->upper_hz = edges[1];
+    }
+}
+
+static void read_profile(const limit_reading *g, mt_response_limit *response_limit)
+{
+    const int which = mt_reader_choice(&g->s->r, limit_member(g, MT_SLOT_QUANTITY), "quantity",
+                                       &mt_response_limit_names[MT_RESPONSE_LIMIT_RMS],
+                                       MT_RESPONSE_LIMIT_QUANTITIES - MT_RESPONSE_LIMIT_RMS);
+    response_limit->quantity =
+        (mt_response_limit_quantity)(MT_RESPONSE_LIMIT_RMS + (which == MT_ABSENT ? 0 : which));
+    response_limit->profile_name = name_at(g, MT_SLOT_PROFILE);
+    response_limit->profile = limit_profile(g->s, response_limit->profile_name);
+}
+
+/* The members of a goal on ports that is compared with a measurement. */
+static void read_measured_response(mt_study_reader *s, const mt_object *o, mt_goal *goal)
+{
+    const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
+    const int band = mt_goal_member_at(kind, MT_SLOT_BAND);
+    const int named = mt_goal_member_at(kind, MT_SLOT_MEASUREMENT);
+    const int coherence = mt_goal_member_at(kind, MT_SLOT_COHERENCE);
+    mt_response_limit *const response_limit = goal->response_limit;
+    double edges[2];
+    response_limit->measurement_name = mt_reader_ref(&s->r, o->found[named]);
+    response_limit->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
+    if (o->found[band] != MT_NO_ADDR &&
+        mt_read_study_pair(s, o->found[band], o->found[band], edges)) {
+        response_limit->lower_hz = edges[0];
+        response_limit->upper_hz = edges[1];
+    }
+}
+
+/* The members of a goal about ports. */
+static void read_response_limit(mt_study_reader *s, const mt_object *o, mt_goal *goal)
+{
+    const limit_reading g = {.s = s, .kind = mt_goal_kind_of(goal->type), .o = o};
+    mt_response_limit *const response_limit =
+        mt_arena_alloc(&s->study->mem, 1, sizeof *response_limit);
+    if (response_limit == NULL) {
+        return;
+    }
+    *response_limit = mt_response_limit_default();
+    goal->response_limit = response_limit;
+    response_limit->input = name_at(&g, MT_SLOT_INPUT);
+    response_limit->output = name_at(&g, MT_SLOT_OUTPUT);
+    if (mt_goal_member_at(g.kind, MT_SLOT_PROFILE) >= 0) {
+        read_profile(&g, response_limit);
+    } else if (mt_goal_member_at(g.kind, MT_SLOT_MEASUREMENT) >= 0) {
+        read_measured_response(s, o, goal);
+    } else {
+        read_frequencies(&g, response_limit);
+    }
+}
+
+static void response_defaults(void *item, mt_addr addr, int which)
+{
+    (void)which;
+    *(mt_study_response *)item = mt_study_response_default(addr);
+}
+
+static void response_finish(mt_reader *r, const mt_object *o, int which, void *item)
+{
+    mt_response_limit *const limit = &((mt_study_response *)item)->response_limit;
+    (void)o;
+    (void)which;
+    limit->profile = limit_profile(mt_study_reader_of(r), limit->profile_name);
+}
+
+#define THIS mt_study_response
+static const mt_key RESPONSE[] = {
+    MT_M_REF("configuration", false, configuration_name,
+             "Name of a configuration of the model. Absent: its only one."),
+    MT_M_REF("input", true, response_limit.input,
+             "A port as `modetune response` has it: \"grip.y\", the force along a sensor's "
+             "direction; \"base.y\", the ground's acceleration, or \"base.y:displacement\".",
+             .examples = "[\"base.y\"]"),
+    MT_M_REF("output", true, response_limit.output,
+             "A port as `modetune response` has it: a sensor's motion (\"grip.y\", its "
+             "displacement, or \"grip.y:acceleration\"), a force (\"spring.NAME\", "
+             "\"damper.NAME\", \"joint.NAME.x\").",
+             .examples = "[\"grip.y:acceleration\"]"),
+    MT_S_PAIR("band_hz", true, response_limit.lower_hz, response_limit.upper_hz, RANGE,
+              "From where to where it is shown.", .examples = "[[5, 500]]"),
+    MT_M_REF("profile", false, response_limit.profile_name,
+             "The vibration profile that the ground follows: a file, relative to this one, or "
+             "the name of one that is part of the program (`modetune profile`). The input is "
+             "an acceleration of the ground."),
+    MT_M_TEXT("description", description, "Free text for people."),
+    MT_M_TEXT("source", source, "Where it comes from: a table, a page, a test report."),
+};
+#undef THIS
+const mt_key_table mt_study_response_keys = {
+    .what = "response",
+    .keys = RESPONSE,
+    .n = MT_COUNT(RESPONSE),
+    .size = sizeof(mt_study_response),
+    .defaults = response_defaults,
+    .finish = response_finish,
+    .says = "What a forced vibration is caused by, and what it is seen in."};
 
 /* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
 #define KEY(slot, label, kind, given, row, ...) \
@@ -224,7 +522,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
         } else if (slot == MT_SLOT_BANDS) {
             read_avoid(&g);
         } else if (slot == MT_SLOT_OUTPUT) {
-            mt_read_study_response_limit(s, &g.o, goal);
+            read_response_limit(s, &g.o, goal);
         }
     }
     goal->tolerance_given = has_goal_member(&g, MT_SLOT_TOLERANCE);

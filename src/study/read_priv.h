@@ -99,14 +99,7 @@ void mt_read_study_note_failure(mt_study_reader *s, mt_name path, const char *fi
 
 void mt_read_study_references(mt_study_reader *s, mt_addr object);
 void mt_read_study_measurements(mt_study_reader *s, mt_addr object);
-/* Read the members of a goal on ports that is compared with a measurement. */
-void mt_read_study_measured(mt_study_reader *s, const mt_object *o, mt_goal *goal);
 void mt_read_study_goals(mt_study_reader *s, mt_addr list);
-/* A profile of vibration that the study names, each read once; NULL: no name, or it could not
- * be read (noted). */
-const mt_vibration *mt_read_study_profile(mt_study_reader *s, mt_name name);
-/* Read the other members of a goal about ports. */
-void mt_read_study_response_limit(mt_study_reader *s, const mt_object *o, mt_goal *goal);
 /* Read the catalogue of aircraft: the one named, else, where a goal needs one, that in the
  * model's folder, else the one built into the program. Call it after the goals. */
 void mt_read_study_aircraft(mt_study_reader *s, mt_addr value);

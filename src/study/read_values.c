@@ -1,11 +1,134 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers of a study that are values of the model's parameters, or are held against
- * expressions of them: in which unit they are. */
+/* Values of members, and the units they are in: numbers of a study are values of the model's
+ * parameters, or are held against expressions of them. */
 #include "study/read_priv.h"
 
+#include <limits.h>
 #include <math.h>
 
 #include "io/read_units.h"
+#include "model/values.h"
+
+mt_study_reader *mt_study_reader_of(mt_reader *r)
+{
+    return (mt_study_reader *)(void *)r;
+}
+
+static double read_expr_number(mt_study_reader *s, mt_addr value)
+{
+    if (value == MT_NO_ADDR || !mt_reader_type(&s->r, value, MT_KEY_NUMBER)) {
+        return nan("");
+    }
+    if (mt_json_type_of(s->r.doc, value) == MT_JSON_NUMBER) {
+        return mt_json_number(s->r.doc, value);
+    }
+    const mt_model *const model = s->study->model;
+    mt_expr e = {0};
+    if (model == NULL || s->study->original == NULL || !mt_reader_expr(&s->r, value, &e)) {
+        return nan(""); /* without a model nothing can be said about its parameters */
+    }
+    double number = nan("");
+    const mt_status rc =
+        mt_model_expr_value(model, s->study->original, &e, &s->study->mem, &number, NULL);
+    if (rc == MT_E_MEMORY) {
+        mt_arena_fail(s->r.mem); /* it was told, and rewound */
+    } else if (rc != MT_OK) {
+        mt_diag_error(s->r.diags, value, "\"%s\" has no finite value at the original design",
+                      mt_json_string(s->r.doc, value));
+    }
+    return rc == MT_OK ? number : nan("");
+}
+
+double mt_read_study_number(mt_study_reader *s, mt_addr value)
+{
+    const double number = read_expr_number(s, value);
+    mt_reader_check_range(&s->r, value, value, number);
+    return number;
+}
+
+bool mt_read_study_pair(mt_study_reader *s, mt_addr member, mt_addr value, double out[2])
+{
+    out[0] = nan("");
+    out[1] = nan("");
+    if (!mt_reader_type(&s->r, value, MT_KEY_LIST)) {
+        return false;
+    }
+    mt_addr ends[2];
+    if (mt_reader_pair(&s->r, value, &ends[0], &ends[1]) != 2) {
+        mt_diag_structure(s->r.diags, value, "must be two numbers: [lower, upper]");
+        return false;
+    }
+    for (int i = 0; i < 2; i++) {
+        out[i] = read_expr_number(s, ends[i]);
+        mt_reader_check_range(&s->r, member, ends[i], out[i]);
+    }
+    return true;
+}
+
+void mt_read_study_expr(mt_study_reader *s, mt_addr value, mt_expr *out, const char **text)
+{
+    *out = (mt_expr){0};
+    *text = mt_reader_text(&s->r, value);
+    if (*text != NULL && s->study->model != NULL) {
+        (void)mt_reader_expr_text(&s->r, value, *text, out);
+    }
+}
+
+int mt_read_study_index(mt_study_reader *s, mt_addr value)
+{
+    return mt_reader_count(&s->r, value, 1, MT_MAX_LIST, 0);
+}
+
+mt_mode_ref mt_read_study_mode(mt_study_reader *s, const mt_object *o, const char *member)
+{
+    const mt_addr value = mt_object_value(o, member);
+    mt_mode_ref mode = {.named = MT_ABSENT, .addr = mt_object_place(&s->r, o, member)};
+    if (value == MT_NO_ADDR) {
+        return mode;
+    }
+    if (mt_json_type_of(s->r.doc, value) == MT_JSON_STRING) {
+        mode.mode_name = mt_reader_ref(&s->r, value);
+    } else {
+        mode.index = mt_read_study_index(s, value);
+    }
+    return mode;
+}
+
+/* A place in the struct. */
+static void *place(void *item, size_t at)
+{
+    return (char *)item + at;
+}
+
+void mt_study_number(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double *const at = place(item, key->at);
+    const double number = mt_read_study_number(mt_study_reader_of(r), value);
+    *at = MT_HAS(number) ? number : *at;
+}
+
+void mt_study_value(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double *const at = place(item, key->at);
+    const mt_name *const parameter = place(item, key->other);
+    const double number = mt_read_study_value(mt_study_reader_of(r), value, parameter->s);
+    *at = MT_HAS(number) ? number : *at;
+}
+
+void mt_study_pair(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    double pair[2];
+    if (mt_read_study_pair(mt_study_reader_of(r), value, value, pair)) {
+        *(double *)place(item, key->at) = pair[0];
+        *(double *)place(item, key->other) = pair[1];
+    }
+}
+
+void mt_study_expr(mt_reader *r, const mt_key *key, mt_addr value, void *item)
+{
+    mt_read_study_expr(mt_study_reader_of(r), value, place(item, key->at),
+                       (const char **)place(item, key->other));
+}
 
 static int parameter_of(const mt_study_reader *s, const char *name)
 {
