@@ -19,7 +19,7 @@
 #include "describe/describe_search.h"
 #include "problem/tolerance_cut.h"
 #include "search/drive_path.h"
-#include "search/infeasible_presolve.h"
+#include "search/proof.h"
 #include "search/search.h"
 
 /* True where x is within the bounds of variable v and, where it has a catalogue, one of its

@@ -8,7 +8,6 @@
 #include "problem/forced_response.h"
 #include "problem/goals.h"
 #include "search/drive_path.h"
-#include "search/drive_path_limit.h"
 
 static const double PERCENT = 100.0;
 

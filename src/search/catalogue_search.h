@@ -17,7 +17,7 @@
  * variables remain) the search is a heuristic: the relaxed problem (every catalogue as the
  * interval that it spans), roundings of its designs, then steps to neighbouring values while
  * these improve. Where continuous variables remain, branch and bound follows
- * (catalogue_search_branch.c): it excludes combinations, many at once, or searches them, until
+ * (catalogue_search_prove.c): it excludes combinations, many at once, or searches them, until
  * none is left or its budget is spent (not for objectives that boxes do not bound). What
  * remains open is left to a proof where the modes can be enclosed (catalogue_search_prove.c):
  * which mode placements some combination has, that no combination meets all goals, that none is
@@ -28,7 +28,7 @@ enum { MT_CATALOGUE_SEARCH_MOST = 200000, MT_CATALOGUE_SEARCH_MOST_MIXED = 400 }
 typedef struct mt_catalogue_search_report {
     bool mixed;    /* continuous variables remain */
     bool all;      /* every combination was evaluated, or shown not to rank */
-    bool branched; /* branch and bound ran (catalogue_search_branch.c) */
+    bool branched; /* branch and bound ran (catalogue_search_prove.c) */
     /* a drive has several positions: only combinations that might rank were followed between
      * them */
     bool driven;
@@ -114,31 +114,14 @@ mt_status mt_catalogue_search_solve(mt_workspace *const *workers, int n_workers,
                                     mt_nlp_result *out, mt_catalogue_search_report *report,
                                     mt_err *err);
 
-/* catalogue_search_verify.c: evaluate list[n], on workers, with at most `budget` evaluations
+/* Evaluate list[n], on workers, with at most `budget` evaluations
  * for each where mixed (0: no limit). Adds to the search's counters. */
 mt_status mt_catalogue_search_verify(mt_catalogue_search *d, int n, mt_combination *list,
                                      long budget, mt_err *err);
-/* catalogue_search_verify.c: search those of best[n] that are flat once more for the design
- * nearest to the original; before, any of the equally good designs was enough and takes less
- * time. Only where mixed. */
-mt_status mt_catalogue_search_settle(mt_catalogue_search *d, int n, mt_combination *const *best,
-                                     mt_err *err);
-/* catalogue_search_unidentifiable.c: unidentifiable directions at the best combination, into
- * out: single catalogues of which any value serves, and directions of the continuous variables
- * with the catalogues fixed. Searches that combination once more where mixed. */
-mt_status mt_catalogue_search_unidentifiable(mt_catalogue_search *d, const mt_combination *best,
-                                             mt_nlp_result *out, mt_err *err);
-/* catalogue_search_verify.c: search the continuous variables of c once more for their
- * unidentifiable directions (c is unchanged); out->unidentifiable in mem. */
-mt_status mt_catalogue_search_directions(mt_catalogue_search *d, const mt_combination *c,
-                                         mt_arena *mem, mt_nlp_result *out, mt_err *err);
-/* Evaluate a feasible combination over the range of motion (drive_path.h, drive_path_limit.h)
+/* Evaluate a feasible combination over the range of motion (drive_path.h)
  * and over its tolerances (problem/tolerance_cut.h), once; no effect where mixed (its own
  * search includes this). It may become infeasible. */
 mt_status mt_catalogue_search_follow(mt_catalogue_search *d, mt_combination *c, mt_err *err);
-/* Largest number of evaluations of mt_catalogue_search_follow for one combination; 0: none, or
- * no limit. */
-long mt_catalogue_search_verdict(const mt_catalogue_search *d);
 /* True where a ranks before b: feasible ones first, by the objectives; infeasible ones by
  * squares. */
 bool mt_catalogue_search_before(const mt_catalogue_search *d, const mt_combination *a,
@@ -157,7 +140,7 @@ void mt_catalogue_search_set(const mt_catalogue_search *d, mt_combination *c);
  * combinations that it finds are appended to (*all)[*n], evaluated. */
 mt_status mt_catalogue_search_prove(mt_catalogue_search *d, mt_combination ***all, int *n,
                                     mt_catalogue_search_report *report, mt_err *err);
-/* catalogue_search_branch.c: search or exclude all combinations within the budget, where
+/* catalogue_search_prove.c: search or exclude all combinations within the budget, where
  * continuous variables remain, after the heuristic. Combinations searched are appended to
  * (*all)[*n], those evaluated so far. Sets branched, open and all of the report. Cost: at most
  * 1000 searches, and proofs up to their budget. */

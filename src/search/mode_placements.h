@@ -83,28 +83,14 @@ typedef struct mt_mode_placement_incumbent {
 mt_status mt_mode_placements_solve(mt_workspace *const *workers, int n_workers,
                                    const mt_mode_placement_incumbent *incumbent, mt_arena *mem,
                                    mt_mode_placement_result *out, mt_err *err);
-
-/* mode_placements_copy.c: a copy in mem of a solution with placement below[n_bands],
- * independent of its search's memory. Fails: MT_E_MEMORY. */
-mt_status mt_mode_placement_copy(const mt_subproblem *c, const int *below,
-                                 const mt_nlp_solution *from, mt_arena *mem,
-                                 const mt_nlp_solution **out, mt_err *err);
-
-/* Copies s->held to mem. Fails: MT_E_MEMORY. */
-mt_status mt_mode_placement_copy_held(mt_arena *mem, mt_mode_placement_solution *s,
-                                      mt_err *err);
 /* out->held: the rows with a nonzero multiplier, in a solution of subproblem c, of cuts that
  * its problem does not have. In mem. Fails: MT_E_MEMORY. */
 mt_status mt_mode_placement_hold(const mt_subproblem *c, const struct mt_cut *cuts,
                                  const mt_nlp_solution *s, mt_arena *mem,
                                  mt_mode_placement_solution *out, mt_err *err);
-
-/* mode_placements_clearance.c: add a violation of `short_of` to a design. */
-void mt_mode_placement_refuse(mt_nlp_solution *best, double short_of, double tolerance);
 /* Where the objective is the least clearance: designs met by a search, and those it ended at,
  * count a negative clearance as a violation. */
 void mt_mode_placement_refuse_step(const mt_subproblem *c, mt_step *s);
-void mt_mode_placement_verify_clearance(const mt_subproblem *c, mt_nlp_result *found);
 
 /* A search with fewer than MT_GAP_SEARCH_LEAST is not begun. */
 enum { MT_GAP_SEARCH_LEAST = 10 };
@@ -112,7 +98,7 @@ enum { MT_GAP_SEARCH_LEAST = 10 };
 long mt_mode_placement_verdict(const mt_subproblem *c);
 
 enum { MT_GAP_SAMPLES_NEAR = 512 };
-/* mode_placements_candidates.c: placements to search, n rows of n_bands. */
+/* Placements to search, n rows of n_bands. */
 typedef struct mt_mode_placement_candidates {
     int n;
     int *below;
@@ -141,26 +127,6 @@ double mt_mode_placement_count_possible(const mt_problem *p);
  * be evaluated. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
 mt_status mt_mode_placement_assignment(mt_workspace *w, const double *t, int *below,
                                        double *violation, mt_err *err);
-/*
- * Candidates to search before a proof. Where a small part of the proof's work settles the
- * question, the result is `all` (proven) and `first` is empty; else `first` has the placements
- * met, or the one that a few samples come nearest to. A quarter of that part where candidates
- * come best first. proof: of w's subproblem.
- */
-mt_status mt_mode_placement_candidates_first(mt_workspace *w, mt_proof *proof, bool best_first,
-                                             mt_arena *mem, mt_mode_placement_candidates *all,
-                                             mt_mode_placement_candidates *first, mt_err *err);
-/* Continue the proof a little where it is nearly settled, once the requested designs are
- * known. */
-mt_status mt_mode_placement_candidates_settle(mt_workspace *w, mt_proof *proof, mt_arena *mem,
-                                              mt_mode_placement_candidates *all, mt_err *err);
-/* Use the designs that `met` has for rows of c as starts of their searches. */
-void mt_mode_placement_candidates_start(const mt_mode_placement_candidates *met,
-                                        const mt_problem *p, mt_mode_placement_candidates *c);
-/* Candidates with the subproblem's whole proof budget; spent: evaluations so far. */
-mt_status mt_mode_placement_candidates_find(mt_workspace *w, mt_proof *proof, long spent,
-                                            mt_arena *mem, mt_mode_placement_candidates *out,
-                                            mt_err *err);
 /* The at most `most` placements that samples over the bounds come nearest to. */
 mt_status mt_mode_placement_candidates_near(mt_workspace *w, int most, long spent,
                                             mt_arena *mem, mt_mode_placement_candidates *out,

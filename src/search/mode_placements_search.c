@@ -1,4 +1,67 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The search of one gap assignment: what its clearance says, then rounds of cuts. */
+#include "search/mode_placements_search.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "nlp/merit.h"
+#include "problem/avoidance.h"
+#include "problem/evaluate.h"
+#include "problem/objective.h"
+#include "problem/tolerance.h"
+#include "search/drive_path.h"
+#include "search/mode_placements.h"
+
+/*
+ * The least clearance z is free to be negative, so that a search can start anywhere; a design
+ * that ends with z < 0 has a mode on the wrong side of an edge: it is not of this kind, and
+ * misses the bands by -z, which is f.
+ */
+
+/* Add a violation of `short_of` to a design. */
+static void mode_placement_refuse(mt_nlp_solution *best, double short_of, double tolerance)
+{
+    mt_missed m = {best->violation, best->squares};
+    mt_miss(&m, short_of, tolerance);
+    best->feasible = false;
+    best->squares = m.squares;
+    best->violation = m.violation;
+}
+
+static double least_tolerance(const mt_subproblem *c)
+{
+    double tolerance = HUGE_VAL;
+    for (int i = 0; i < c->n_avoidances; i++) {
+        tolerance = fmin(tolerance, c->avoidances[i].tolerance);
+    }
+    return tolerance;
+}
+
+void mt_mode_placement_refuse_step(const mt_subproblem *c, mt_step *s)
+{
+    const double tolerance = least_tolerance(c);
+    if (s->f > tolerance) {
+        mt_missed m = {s->violation, s->squares};
+        mt_miss(&m, s->f, tolerance);
+        s->violation = m.violation;
+        s->squares = m.squares;
+    }
+}
+
+static void mode_placement_verify_clearance(const mt_subproblem *c, mt_nlp_result *found)
+{
+    const double tolerance = least_tolerance(c);
+    for (int i = 0; i < found->n_solutions && c->clearance; i++) {
+        mt_nlp_solution *const s = &found->solutions[i];
+        const double z = s->t[c->p->n];
+        if (z < -tolerance) {
+            mode_placement_refuse(s, -z, tolerance);
+        }
+    }
+    found->compromise = found->n_solutions > 0 && !found->solutions[0].feasible;
+}
+
 /*
  * The search of one gap assignment. Where configurations are positions of one drive, its best
  * design is followed from position to position (motion.h); where a mode crosses an edge on the
@@ -7,16 +70,6 @@
  * crosses). A few rounds end it, as each begins next to its answer; a design that still crosses
  * then is no design of that assignment.
  */
-#include "search/mode_placements_priv.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "problem/avoidance.h"
-#include "problem/evaluate.h"
-#include "problem/objective.h"
-#include "problem/tolerance.h"
-#include "search/drive_path.h"
 
 /* Rounds of cuts, and starts of the later ones, which begin next to their answer. */
 enum { CUT_ROUNDS = 12, CUTS_MOST = 32, CUT_STARTS = 6 };
@@ -100,7 +153,7 @@ static mt_status follow_best(mt_mode_placement_slot *s, mt_workspace *w, bool la
         }
     }
     if (*added == 0 && short_of > 0.0) {
-        mt_mode_placement_refuse(best, short_of, tolerance);
+        mode_placement_refuse(best, short_of, tolerance);
     }
     return MT_OK;
 }
@@ -203,7 +256,7 @@ static mt_status search_round(const mt_mode_placement_job *j, mt_workspace *w,
         rc = mt_search_repeated_eigenvalues(w, options.max_evals, &s->mem, &s->found, why);
     }
     if (rc == MT_OK) {
-        mt_mode_placement_verify_clearance(&c, &s->found);
+        mode_placement_verify_clearance(&c, &s->found);
     }
     if (rc == MT_OK && c.n_stages == 1) {
         rc = mt_search_nearest(w, options.max_evals, NULL, NULL, &s->mem, &s->found, why);

@@ -1,13 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is proven of a study by enclosures: least values of the objective, questions over
+ * boxes, that nothing meets the goals, and placements at sampled geometries. */
 #include "search/proof.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/format.h"
 #include "base/run.h"
+#include "nlp/starts.h"
 #include "problem/configuration.h"
+#include "problem/evaluate.h"
+#include "problem/objective.h"
 #include "problem/requirement.h"
 #include "prove/enclosure.h"
+#include "prove/reach.h"
+
+/* Least values of the first objective over boxes. */
+
+static double least_cap_value(void *context, const double *lo, const double *hi)
+{
+    const mt_proof_cap *const c = context;
+    const mt_objective_stage *const a = &c->p->stages[0];
+    return c->known ? a->ops->least(c->p, a, lo, hi, c->low, c->high) / a->size : -HUGE_VAL;
+}
+
+mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem, mt_err *err)
+{
+    const int own = p->program.count;
+    const int system = p->n_views > 0 ? p->views[0].original->sys->program.count : 0;
+    const size_t count = (size_t)(own > system ? own : system);
+    *c = (mt_proof_cap){.p = p,
+                        .known = p->stages[0].ops->least != NULL,
+                        .low = mt_arena_f64(mem, count, 1),
+                        .high = mt_arena_f64(mem, count, 1),
+                        .cap = {.least = least_cap_value, .context = c}};
+    return mt_arena_check(mem, err);
+}
+
+/* Questions over boxes. */
 
 /* Spent with the first box. 0 would be the default of certify.h. */
 static const double LEAST_WORK = 1.0;
@@ -215,4 +246,159 @@ mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena
     proof->question.n_catalogue = count;
     proof->question.catalogue = values;
     return MT_OK;
+}
+
+/* That no design meets the goals. */
+
+/* Multiplications of branch and bound: a millisecond, or a box. */
+static const double LITTLE = 1e6;
+
+/* A limit on an expression is not known by its requirement: where one is left out, all are. */
+static void leave_out_requirement(mt_proof *proof, int requirement)
+{
+    mt_certify *const c = &proof->question;
+    int n = 0;
+    for (int i = 0; i < c->n_limits; i++) {
+        if (proof->limit_requirement[i] != requirement) {
+            proof->limits[n++] = proof->limits[i];
+        }
+    }
+    c->n_limits = n;
+    c->n_bounds = requirement >= 0 ? 0 : c->n_bounds;
+}
+
+static mt_status prove_infeasible(const mt_infeasible_presolve_question *q, mt_proof *proof,
+                                  mt_arena *mem, bool *out, mt_err *err)
+{
+    const mt_certify *const c = &proof->question;
+    mt_certify_search found = {0};
+    MT_TRY(mt_certify_out_of_reach(c, mem, out, err));
+    if (*out || c->n_bands + c->n_limits + c->n_bounds == 0) {
+        return MT_OK;
+    }
+    MT_TRY(mt_proof_query(proof, q->most > 0.0 ? q->most : LITTLE, mem, &found, err));
+    *out = found.proven && found.n_found == 0;
+    if (*out && q->boxes != NULL) {
+        *q->boxes = found.boxes;
+    }
+    return MT_OK;
+}
+
+mt_status mt_infeasible_presolve(const mt_infeasible_presolve_question *q, mt_arena *mem,
+                                 bool *out, mt_err *err)
+{
+    mt_proof proof;
+    *out = false;
+    mt_status rc = mt_proof_init(&proof, q->c, mem, err);
+    if (rc == MT_OK && proof.possible) {
+        leave_out_requirement(&proof, q->but);
+        proof.question.n_bands = q->bands ? proof.question.n_bands : 0;
+        proof.question.progress = NULL; /* not the answer's own */
+        proof.spent = q->counted ? proof.spent : NULL;
+        rc = prove_infeasible(q, &proof, mem, out, err);
+    }
+    mt_proof_free(&proof);
+    return rc;
+}
+
+/* Placements at sampled geometries. */
+
+/* Slices for each variable that shapes the geometry, and in all. */
+enum { SAMPLED_BOUNDS_PER_SHAPE = 16, SAMPLED_BOUNDS_MOST = 32 };
+/* Multiplications of one: tens of milliseconds. */
+static const double SLICE_WORK = 5e7;
+
+/* Adds the new placements of one sampled geometry to the list. */
+static mt_status add_sampled_placements(const mt_problem *p, const mt_certify_search *slice,
+                                        mt_arena *mem, mt_sampled_bounds *out, mt_err *err)
+{
+    const size_t row = (size_t)p->n_bands;
+    const size_t had = (size_t)out->n_found;
+    const size_t n = had + (size_t)slice->n_found;
+    if (slice->n_found == 0) {
+        return MT_OK;
+    }
+    int *const found = mt_arena_int(mem, n * row);
+    double *const at = mt_arena_f64(mem, n, (size_t)p->n);
+    MT_TRY(mt_arena_check(mem, err));
+    if (had > 0) {
+        memcpy(found, out->found, had * row * sizeof *found);
+        memcpy(at, out->at, had * (size_t)p->n * sizeof *at);
+    }
+    memcpy(found + (had * row), slice->found, (n - had) * row * sizeof *found);
+    for (size_t k = 0; k < n - had; k++) {
+        for (int i = 0; i < p->n; i++) {
+            const size_t own = (k * (size_t)p->n) + (size_t)i;
+            at[(had * (size_t)p->n) + own] = mt_problem_t(p, i, slice->at[own]);
+        }
+    }
+    out->found = found;
+    out->at = at;
+    out->n_found = (int)n;
+    return MT_OK;
+}
+
+/* *possible: the others can be enclosed there. */
+static mt_status prove_sampled_geometry(const mt_subproblem *c, mt_arena *mem,
+                                        mt_sampled_bounds *out, bool *possible, mt_err *err)
+{
+    mt_proof proof;
+    mt_certify_search found = {0};
+    mt_status rc = mt_proof_init(&proof, c, mem, err);
+    *possible = rc == MT_OK && proof.possible;
+    if (*possible) {
+        proof.question.max_work = c->proof_work;
+        rc =
+            mt_certify_assignments(&proof.question, out->n_found, out->found, mem, &found, err);
+        rc = rc == MT_OK ? add_sampled_placements(c->p, &found, mem, out, err) : rc;
+        out->n_settled += rc == MT_OK && found.proven ? 1 : 0;
+    }
+    mt_proof_free(&proof);
+    return rc;
+}
+
+static mt_status prove_sampled_shapes(const mt_workspace *w, const bool *shapes,
+                                      const double *t, mt_arena *mem, mt_sampled_bounds *out,
+                                      mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    mt_subproblem c;
+    double *const x = mt_arena_f64(mem, (size_t)p->n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_subproblem_copy(w->c, mem, &c, err));
+    c.proof_work = fmin(SLICE_WORK, w->c->proof_work / (double)out->n);
+    for (int k = 0; k < out->n && !mt_interrupted(p->run->interrupt); k++) {
+        bool possible = false;
+        mt_subproblem_x(w->c, t + ((ptrdiff_t)k * p->n), x);
+        for (int i = 0; i < p->n; i++) {
+            if (shapes[i]) {
+                mt_subproblem_bound(&c, i, x[i], x[i]);
+            }
+        }
+        MT_TRY(prove_sampled_geometry(&c, mem, out, &possible, err));
+        if (k == 0 && !possible) { /* the original geometry: more is in the way */
+            out->n = 0;
+        }
+    }
+    return MT_OK;
+}
+
+mt_status mt_sampled_bounds_search(mt_workspace *w, mt_arena *mem, mt_sampled_bounds *out,
+                                   mt_err *err)
+{
+    const mt_problem *const p = w->p;
+    bool *shapes = NULL;
+    int m = 0;
+    *out = (mt_sampled_bounds){.n = 0};
+    MT_TRY(mt_proof_shaping(w->c, mem, &shapes, &m, err));
+    if (m == 0 || !(w->c->proof_work > 0.0)) {
+        return MT_OK;
+    }
+    mt_nlp nlp = mt_workspace_nlp(w);
+    nlp.n = p->n;
+    out->n = m * SAMPLED_BOUNDS_PER_SHAPE < SAMPLED_BOUNDS_MOST ? m * SAMPLED_BOUNDS_PER_SHAPE
+                                                                : SAMPLED_BOUNDS_MOST;
+    const double *const t = mt_nlp_starts(&nlp, w->c->search.seed, out->n, mem);
+    MT_TRY(mt_arena_check(mem, err));
+    return prove_sampled_shapes(w, shapes, t, mem, out, err);
 }

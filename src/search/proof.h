@@ -2,6 +2,7 @@
 #ifndef SEARCH_PROOF_H
 #define SEARCH_PROOF_H
 
+#include "problem/subproblem.h"
 #include "problem/workspace.h"
 #include "prove/certify.h"
 
@@ -46,7 +47,7 @@ void mt_proof_free(mt_proof *proof);
 mt_status mt_proof_use_catalogues(mt_proof *proof, const mt_problem *p, mt_arena *mem,
                                   mt_err *err);
 
-/* proof_cap.c: the first objective as a cap for proofs; `known` false where it has no bounds (a
+/* The first objective as a cap for proofs; `known` false where it has no bounds (a
  * misfit, a clearance). p must outlive it. */
 typedef struct mt_proof_cap {
     const mt_problem *p;
@@ -56,5 +57,48 @@ typedef struct mt_proof_cap {
     mt_certify_cap cap; /* `below` is set by the caller */
 } mt_proof_cap;
 mt_status mt_proof_cap_init(mt_proof_cap *c, const mt_problem *p, mt_arena *mem, mt_err *err);
+
+typedef struct mt_infeasible_presolve_question {
+    const mt_subproblem *c;
+    int but;      /* a requirement left out; -1: none */
+    bool bands;   /* include the bands of the subproblem */
+    bool counted; /* count its multiplications in the answer's work */
+    double most;  /* work of branch and bound; 0: a small default */
+    /* boxes of branch and bound where those gave the proof; NULL: not wanted */
+    long *boxes;
+} mt_infeasible_presolve_question;
+
+/**
+ * *out: proven that no design within the bounds of a subproblem meets its limits, targets and
+ * bands; a cheap test before a search of thousands of evaluations. Method: frequencies at the
+ * soft and the stiff corner of its enclosures (two eigensolves for each configuration with
+ * limits), then a few boxes of branch and bound. False proves nothing (a box that cannot be
+ * enclosed, no proof requested). Tolerances of variables are ignored: the nominal design meets
+ * the limits. Fails: MT_E_MEMORY, numerical failures of LAPACK.
+ */
+mt_status mt_infeasible_presolve(const mt_infeasible_presolve_question *q, mt_arena *mem,
+                                 bool *out, mt_err *err);
+
+/*
+ * Mode placements at sampled geometries. Modes cannot be enclosed over variables that shape the
+ * geometry, but with these fixed they can over the others (prove/enclosure.h). At each sample
+ * of the former, the placements that the others allow, with the limits, are proven, each with a
+ * design. This finds placements that are feasible only in a narrow range of the other
+ * variables, which samples over all variables miss. Nothing is known between the samples.
+ */
+typedef struct mt_sampled_bounds {
+    /* samples of the geometry; 0: no variable shapes it, or enclosures are not possible for
+     * another reason */
+    int n;
+    int n_settled; /* samples at which every unlisted placement is proven infeasible */
+    int n_found;
+    int *found; /* [n_found x n_bands] */
+    double *at; /* [n_found x n] design t with that placement */
+} mt_sampled_bounds;
+
+/* Search w's subproblem with its proof_work at most. Results in mem. Fails: MT_E_MEMORY,
+ * MT_E_INTERNAL, numerical failures of LAPACK. */
+mt_status mt_sampled_bounds_search(mt_workspace *w, mt_arena *mem, mt_sampled_bounds *out,
+                                   mt_err *err);
 
 #endif

@@ -1,4 +1,398 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The least move of one number that makes a study without designs possible. */
+#include "search/relaxation.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/workers.h"
+#include "nlp/merit.h"
+#include "problem/avoidance.h"
+#include "problem/evaluate.h"
+#include "problem/frequency.h"
+#include "problem/objective.h"
+#include "problem/requirement.h"
+#include "problem/tolerance.h"
+#include "problem/tolerance_cut.h"
+#include "search/catalogue_search.h"
+#include "search/drive_path.h"
+#include "search/mode_placements.h"
+#include "search/proof.h"
+
+/* The design that misses one mode placement by the least, as far as
+ * known. */
+typedef struct near_miss {
+    const int *below;
+    const double *t;
+    /* [moves] the move's row is active at t; where not, the move changes nothing there */
+    bool *presses;
+} near_miss;
+
+typedef struct near_misses {
+    int n_bands;
+    int n;
+    near_miss *items;
+} near_misses;
+/* Largest useful move: a factor of ten (ln 10), or 2.3 times the limit itself where it has no
+ * logarithm. */
+static const double RELAXATION_MOST = 2.302585092994046;
+
+/* What can be moved, which rows that concerns, and how far it has to go at a design. */
+
+static void append_move(mt_moves *out, mt_move move)
+{
+    out->items[out->n++] = move;
+}
+
+static void add_goal_moves(const mt_problem *p, mt_moves *out)
+{
+    for (int i = 0; i < p->n_requirements; i++) {
+        const mt_requirement *const d = &p->requirements[i];
+        const mt_goal *const g = d->goal;
+        mt_move m = {.kind = MT_MOVE_GOAL, .requirement = i};
+        if (d->role != MT_ROLE_LIMIT && d->role != MT_ROLE_TARGET) { /* no constraint */
+            continue;
+        }
+        if (d->role == MT_ROLE_TARGET) {
+            m.target = true;
+            m.from = d->equals;
+            append_move(out, m);
+            continue;
+        }
+        if (MT_HAS(g->at_least)) {
+            m.from = g->at_least;
+            append_move(out, m);
+        }
+        if (MT_HAS(g->at_most)) {
+            m.upper = true;
+            m.from = g->at_most;
+            append_move(out, m);
+        }
+    }
+}
+
+static void add_edge_moves(const mt_problem *p, mt_moves *out)
+{
+    for (int i = 0; i < p->n_avoidances; i++) {
+        for (int b = 0; b < p->avoidances[i].bands.n; b++) {
+            const mt_band *const band = &p->avoidances[i].bands.items[b];
+            mt_move m = {
+                .kind = MT_MOVE_EDGE, .avoidance = i, .band = b, .from = band->lower_hz};
+            if (band->lower_hz > 0.0) {
+                append_move(out, m);
+            }
+            m.upper = true;
+            m.from = band->upper_hz;
+            append_move(out, m);
+        }
+    }
+}
+
+/* All possible moves of the study, none tried yet. Fails: MT_E_MEMORY. */
+static mt_status relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_moves *out,
+                                  mt_err *err)
+{
+    const mt_problem *const p = c->p;
+    const size_t most = 2 * ((size_t)p->n + (size_t)p->n_bands + (size_t)p->n_requirements);
+    *out = (mt_moves){.items = mt_arena_alloc(mem, most, sizeof *out->items)};
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < p->n; i++) {
+        const bool open = p->study->variables[i].n_catalogue == 0;
+        for (int side = 0; side < 2 && open; side++) {
+            append_move(out, (mt_move){.kind = MT_MOVE_BOUND,
+                                       .variable = i,
+                                       .upper = side == 1,
+                                       .from = side == 1 ? c->upper[i] : c->lower[i]});
+        }
+    }
+    add_edge_moves(p, out);
+    add_goal_moves(p, out);
+    for (int i = 0; i < out->n; i++) {
+        out->items[i].order = i;
+        out->items[i].x = mt_arena_f64(mem, (size_t)p->n, 1);
+        MT_TRY(mt_arena_check(mem, err));
+    }
+    return MT_OK;
+}
+
+/* A bound moves by a factor of ten at most, or by the range where its sign may change; a bound
+ * of 0 stays, since values beyond it have another meaning. */
+static double far_bound(const mt_subproblem *c, int i, bool upper)
+{
+    static const double FACTOR = 10.0;
+    const double range = c->upper[i] - c->lower[i];
+    const double from = upper ? c->upper[i] : c->lower[i];
+    if (upper) {
+        return from > 0.0 ? FACTOR * from : from < 0.0 ? from + range : 0.0;
+    }
+    return from > 0.0 ? from / FACTOR : from < 0.0 ? from - range : 0.0;
+}
+
+/* The subproblem in which the move's bound is removed and the objective is the total change; w
+ * is set to it. *useful false, and nothing laid out: no possible move. */
+static mt_status relaxation_subproblem(const mt_subproblem *from, const mt_move *m,
+                                       mt_workspace *w, mt_arena *mem, mt_subproblem *out,
+                                       bool *useful, mt_err *err)
+{
+    static const mt_objective_stage CHANGE = {.type = MT_OBJECTIVE_CHANGE,
+                                              .ops = &mt_objective_change,
+                                              .size = 1.0,
+                                              .node = MT_NO_NODE};
+    *useful = true;
+    MT_TRY(mt_subproblem_copy(from, mem, out, err));
+    out->n_stages = 1;
+    out->stages = &CHANGE;
+    if (m->kind == MT_MOVE_BOUND) {
+        const int i = m->variable;
+        const double to = far_bound(from, i, m->upper);
+        *useful = m->upper ? to > from->upper[i] : to < from->lower[i];
+        mt_subproblem_bound(out, i, m->upper ? from->lower[i] : to,
+                            m->upper ? to : from->upper[i]);
+    }
+    return *useful ? mt_subproblem_lay_out(out, NULL, 0, NULL, w, mem, err) : MT_OK;
+}
+
+/* True where this row of `in` (of the equalities, where eq) is the move's. */
+/* Modes above a band are held by its upper edge. */
+static bool relaxation_is_row(const mt_move *m, const mt_row *row)
+{
+    if (m->kind == MT_MOVE_GOAL) {
+        const mt_row_sense sense = m->target ? MT_EQUAL : m->upper ? MT_AT_MOST : MT_AT_LEAST;
+        return row->requirement == m->requirement && row->sense == sense;
+    }
+    return m->kind == MT_MOVE_EDGE && row->avoidance == m->avoidance && row->band == m->band &&
+           (row->sense == MT_AT_LEAST) == m->upper;
+}
+
+/* How the number that moves is measured: edges of bands as frequencies are. */
+static mt_goal_measure measure_of(const mt_problem *p, const mt_move *m)
+{
+    return m->kind == MT_MOVE_GOAL ? p->requirements[m->requirement].measure : MT_MEASURE_RATIO;
+}
+
+/* Where the number must be for a row of value `row` (relaxed: what is missing is made up for)
+ * to be 0. */
+/* Divisor of a difference from the moved number. */
+static double unit_of(const mt_problem *p, const mt_move *m)
+{
+    return m->kind == MT_MOVE_GOAL
+               ? mt_requirement_unit(&p->requirements[m->requirement], m->from)
+               : 1.0;
+}
+
+static double moved(const mt_problem *p, const mt_move *m, double row)
+{
+    const mt_goal_measure measure = measure_of(p, m);
+    const bool lower_edge = m->kind == MT_MOVE_EDGE && !m->upper;
+    const bool at_most = m->kind == MT_MOVE_GOAL && m->upper;
+    const double sign = lower_edge || at_most ? -1.0 : 1.0;
+    return measure == MT_MEASURE_RATIO ? m->from * exp(sign * row)
+                                       : m->from + (sign * row * unit_of(p, m));
+}
+
+double mt_relaxation_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v)
+{
+    const mt_row_table *const rows = &w->c->rows;
+    double worst = m->target ? 0.0 : HUGE_VAL;
+    for (int i = 0; i < rows->eq.n; i++) {
+        if (relaxation_is_row(m, &rows->eq.rows[i])) {
+            worst = v->eq[i];
+        } else if (!mt_is_met(fabs(v->eq[i]), rows->eq.tol[i])) {
+            return nan("");
+        }
+    }
+    for (int i = 0; i < rows->in.n; i++) {
+        if (relaxation_is_row(m, &rows->in.rows[i])) {
+            worst = fmin(worst, v->in[i]);
+        } else if (!mt_is_met(-v->in[i], rows->in.tol[i])) {
+            return nan("");
+        }
+    }
+    return m->kind == MT_MOVE_BOUND ? w->x[m->variable] : moved(w->p, m, worst);
+}
+
+double mt_relaxation_size(const mt_problem *p, const mt_move *m, double to)
+{
+    const bool goal = m->kind == MT_MOVE_GOAL;
+    const mt_goal_measure measure = measure_of(p, m);
+    const double s =
+        measure == MT_MEASURE_RATIO ? log(to / m->from) : (to - m->from) / unit_of(p, m);
+    /* a lower limit gives way downwards, an upper edge too */
+    const bool down = goal ? !m->upper : m->upper;
+    const bool right = m->target ? fabs(s) > 0.0 : (down ? -s : s) > 0.0;
+    return right && fabs(s) <= RELAXATION_MOST ? fabs(s) : nan("");
+}
+
+/* True where a move of this size and total change precedes the one found for m: by size or,
+ * where sizes are equal, by total change. */
+static bool relaxation_is_less(const mt_move *m, double size, double change)
+{
+    if (!m->found) {
+        return true;
+    }
+    const int order = mt_compare(size, m->size, MT_EQUAL_FOUND);
+    return order < 0 || (order == 0 && mt_compare(change, m->change, MT_EQUAL_FOUND) < 0);
+}
+
+/* Stores the move to `to` with the design x[n] in m where it precedes the one found. */
+static void relaxation_keep(mt_move *m, double size, double change, double to, const double *x,
+                            int n)
+{
+    /* of equal sizes the least stays what others are compared with */
+    const bool equal = m->found && mt_compare(size, m->size, MT_EQUAL_FOUND) == 0;
+    m->size = equal ? fmin(size, m->size) : size;
+    m->change = change;
+    m->to = to;
+    m->found = true;
+    memcpy(m->x, x, (size_t)n * sizeof *m->x);
+}
+
+void mt_relaxation_merge(mt_moves *to, const mt_moves *from, int n)
+{
+    for (int i = 0; i < from->n; i++) {
+        const mt_move *const m = &from->items[i];
+        for (int k = 0; k < to->n && m->found; k++) {
+            mt_move *const own = &to->items[k];
+            if (own->order == m->order && relaxation_is_less(own, m->size, m->change)) {
+                relaxation_keep(own, m->size, m->change, m->to, m->x, n);
+            }
+        }
+    }
+}
+
+/* True where a precedes b: by size, equal sizes in the order of the study. */
+static bool is_before(const mt_move *a, const mt_move *b, bool equal)
+{
+    return equal ? a->order < b->order : a->size < b->size;
+}
+
+/* By insertion, stable. */
+static void sort(mt_move *items, int n, bool equal)
+{
+    for (int i = 1; i < n; i++) {
+        const mt_move m = items[i];
+        int at = i;
+        for (; at > 0 && is_before(&m, &items[at - 1], equal); at--) {
+            items[at] = items[at - 1];
+        }
+        items[at] = m;
+    }
+}
+
+/* Keeps found moves only, smallest first, ties in the order of the study. */
+static void relaxation_rank(mt_moves *moves)
+{
+    int kept = 0;
+    for (int i = 0; i < moves->n; i++) {
+        if (moves->items[i].found) {
+            moves->items[kept++] = moves->items[i];
+        }
+    }
+    moves->n = kept;
+    sort(moves->items, kept, false);
+    for (int first = 0, end = 0; first < kept; first = end) {
+        const double size = moves->items[first].size;
+        while (end < kept && mt_compare(moves->items[end].size, size, MT_EQUAL_FOUND) == 0) {
+            end++;
+        }
+        sort(moves->items + first, end - first, true);
+    }
+}
+
+/*
+ * Which moves can help, from the nearest misses. A miss is a stationary point of what the goals
+ * fall short by; a row that it does not press against has no multiplier there, and the same
+ * point stays stationary, and short of the same goals, however far that row is moved. So a move
+ * is worth a search in an assignment only where the miss that is known there presses against
+ * its number.
+ */
+
+/* A row this far from its limit (0.1 %, as misfits are measured) is not pressed against. */
+static const double SLACK = 1e-3;
+
+static bool presses_row(const mt_subproblem *c, const mt_move *m, const mt_nlp_values *v)
+{
+    for (int i = 0; i < c->rows.eq.n; i++) {
+        if (relaxation_is_row(m, &c->rows.eq.rows[i])) {
+            return true;
+        }
+    }
+    for (int i = 0; i < c->rows.in.n; i++) {
+        if (relaxation_is_row(m, &c->rows.in.rows[i]) && !(v->in[i] > SLACK)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool presses(const mt_subproblem *c, const mt_move *m, const double *t,
+                    const mt_nlp_values *v)
+{
+    if (m->kind != MT_MOVE_BOUND) {
+        return presses_row(c, m, v);
+    }
+    const int i = m->variable;
+    return m->upper ? c->upper_t[i] - t[i] <= SLACK : t[i] - c->lower_t[i] <= SLACK;
+}
+
+/* At one miss; all moves are worth it where nothing can be said. */
+static mt_status find_pressing_moves(mt_workspace *w, const mt_mode_placement_solution *s,
+                                     const mt_moves *moves, mt_arena *mem, near_miss *out,
+                                     mt_err *err)
+{
+    const mt_subproblem *const plain = w->c;
+    mt_subproblem c;
+    mt_nlp_values v;
+    mt_err own = {0};
+    out->below = s->below;
+    out->t = s->found->t;
+    out->presses = mt_arena_alloc(mem, (size_t)moves->n, sizeof *out->presses);
+    MT_TRY(mt_arena_check(mem, err));
+    MT_TRY(mt_subproblem_in_placement(plain, s->below, 0, NULL, w, mem, &c, err));
+    mt_status rc = mt_subproblem_values_init(&c, mem, &v, &own);
+    rc = rc == MT_OK ? mt_workspace_eval(w, out->t, false, &v, &own) : rc;
+    for (int k = 0; k < moves->n; k++) {
+        out->presses[k] = rc != MT_OK || presses(&c, &moves->items[k], out->t, &v);
+    }
+    mt_workspace_back(w, plain);
+    return mt_pass_final(rc, &own, err);
+}
+
+/* Nearest misses; w: set to a subproblem without a placement. placements may be NULL: none. One
+ * evaluation each. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
+static mt_status relaxation_misses(mt_workspace *w, const mt_mode_placement_result *placements,
+                                   const mt_moves *moves, mt_arena *mem, near_misses *out,
+                                   mt_err *err)
+{
+    *out = (near_misses){.n_bands = w->c->n_bands};
+    /* of an interrupted search they may be anywhere; of worst corners the rows are not here */
+    if (placements == NULL || placements->stop != MT_STOP_DONE ||
+        mt_tolerance_is_sampled(w->c)) {
+        return MT_OK;
+    }
+    out->items = mt_arena_alloc(mem, (size_t)placements->n_solutions, sizeof *out->items);
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < placements->n_solutions; i++) {
+        MT_TRY(find_pressing_moves(w, &placements->solutions[i], moves, mem,
+                                   &out->items[out->n], err));
+        out->n++;
+    }
+    return MT_OK;
+}
+
+/* The miss of placement below[n_bands]; NULL: none is known. */
+static const near_miss *relaxation_miss(const near_misses *misses, const int *below)
+{
+    const size_t row = (size_t)misses->n_bands * sizeof *below;
+    for (int i = 0; i < misses->n; i++) {
+        if (memcmp(misses->items[i].below, below, row) == 0) {
+            return &misses->items[i];
+        }
+    }
+    return NULL;
+}
+
 /*
  * The search for one move. In the coordinates t of the study, with one more, s:
  *     minimise 1/2 s^2   subject to   in_i(t) + s >= 0 (i: rows of the moved number),
@@ -12,18 +406,6 @@
  * where the slack gives the designs that are left an interior, and their least change one
  * place.
  */
-#include "search/relaxation.h"
-
-#include <limits.h>
-#include <math.h>
-#include <string.h>
-
-#include "base/workers.h"
-#include "problem/evaluate.h"
-#include "problem/tolerance_cut.h"
-#include "search/drive_path.h"
-#include "search/infeasible_presolve.h"
-#include "search/mode_placements.h"
 
 /* Local searches of one move in one assignment, those that are enough where they end at one
  * design (from the original, from what came nearest, and from afar), and what each may cost. */
@@ -41,7 +423,7 @@ static const double ENOUGH = MT_DEFAULT_TOLERANCE_PERCENT / 100.0;
 enum { STARTS_CHANGE = 2, PART_CHANGE = 4 };
 /* Far above what a move is known to (its square root is by how much a design that is the only
  * one moves), and below a digit that is shown of a number, and what rows are kept to. */
-static const double SLACK = 1e-7;
+static const double RELAXATION_SLACK = 1e-7;
 
 typedef struct relaxed {
     mt_workspace *w;
@@ -62,7 +444,7 @@ typedef struct job {
     const mt_subproblem *c;
     mt_moves *moves;
     const double *near;
-    mt_near_misses misses;
+    near_misses misses;
     mt_mode_placement_candidates assignments; /* to look into for moves of no bound */
     long budget;                              /* evaluations of each move */
     task_result *results;
@@ -100,7 +482,7 @@ static void relaxation_rows(const relaxed *r, double s, bool with_gradient, mt_n
         memset(out->deq + (n * n_eq), 0, (size_t)n_eq * sizeof *out->deq);
     }
     for (int i = 0; i < n_in; i++) {
-        if (mt_relaxation_is_row(r->move, &rows->in.rows[i])) {
+        if (relaxation_is_row(r->move, &rows->in.rows[i])) {
             out->in[i] += s;
             if (with_gradient) {
                 out->din[i + (n * n_in)] = 1.0;
@@ -108,7 +490,7 @@ static void relaxation_rows(const relaxed *r, double s, bool with_gradient, mt_n
         }
     }
     for (int i = 0; i < n_eq; i++) {
-        if (mt_relaxation_is_row(r->move, &rows->eq.rows[i])) {
+        if (relaxation_is_row(r->move, &rows->eq.rows[i])) {
             out->eq[i] -= s;
             if (with_gradient) {
                 out->deq[i + (n * n_eq)] = -1.0;
@@ -177,7 +559,7 @@ static mt_status keep_confirmed_move(const mt_subproblem *c, mt_move *m, double 
     a->value = nan("");
     a->cuts.added = 0;
     *again = false;
-    if (!mt_relaxation_is_less(m, size, change)) {
+    if (!relaxation_is_less(m, size, change)) {
         return MT_OK;
     }
     MT_TRY(mt_workspace_new(c->p, &fresh, err));
@@ -189,10 +571,10 @@ static mt_status keep_confirmed_move(const mt_subproblem *c, mt_move *m, double 
         const double needed =
             MT_HAS(a->value) ? mt_relaxation_size(c->p, m, a->value) : HUGE_VAL;
         *again = a->cuts.added > 0 && !(needed <= size + ENOUGH);
-        size = needed > size + SLACK ? needed : size;
+        size = needed > size + RELAXATION_SLACK ? needed : size;
     }
-    if (MT_HAS(a->value) && mt_relaxation_is_less(m, size, change)) {
-        mt_relaxation_keep(m, size, change, a->value, a->x, c->p->n);
+    if (MT_HAS(a->value) && relaxation_is_less(m, size, change)) {
+        relaxation_keep(m, size, change, a->value, a->x, c->p->n);
     }
     return MT_OK;
 }
@@ -216,10 +598,10 @@ static mt_nlp nlp_of(relaxed *r, mt_subproblem *c, const double *near, double *h
     }
     /* a case keeps room for one more coordinate */
     nlp.n = n + 1;
-    c->lower_t[n] = m->target ? -MT_RELAXATION_MOST : 0.0;
-    c->upper_t[n] = MT_RELAXATION_MOST;
+    c->lower_t[n] = m->target ? -RELAXATION_MOST : 0.0;
+    c->upper_t[n] = RELAXATION_MOST;
     c->origin_t[n] = 0.0;
-    hint[n] = 0.5 * MT_RELAXATION_MOST;
+    hint[n] = 0.5 * RELAXATION_MOST;
     return nlp;
 }
 
@@ -254,7 +636,7 @@ static mt_status search_least_change(mt_nlp nlp, mt_nlp_options opt, const doubl
     relaxed *const r = nlp.context;
     const int k = r->move->kind == MT_MOVE_BOUND ? r->move->variable : nlp.n - 1;
     const bool down = r->move->kind == MT_MOVE_BOUND ? !r->move->upper : found[k] < 0.0;
-    const double most = found[k] + (down ? -SLACK : SLACK);
+    const double most = found[k] + (down ? -RELAXATION_SLACK : RELAXATION_SLACK);
     const size_t size = (size_t)nlp.n * sizeof *found;
     double *const lower = mt_arena_f64(&out->mem, (size_t)nlp.n, 1);
     double *const upper = mt_arena_f64(&out->mem, (size_t)nlp.n, 1);
@@ -311,7 +693,7 @@ static mt_status search_once(const job *j, mt_subproblem *c, mt_workspace *w, mt
     }
     const mt_nlp_solution *const s = &found.solutions[0];
     const double size = sqrt(2.0 * s->f);
-    if (!(size > LEAST) || !s->feasible || !mt_relaxation_is_less(m, size, 0.0)) {
+    if (!(size > LEAST) || !s->feasible || !relaxation_is_less(m, size, 0.0)) {
         return MT_OK;
     }
     const double *least = NULL;
@@ -362,7 +744,7 @@ static mt_status search_placements(const job *j, const mt_subproblem *plain, mt_
     for (int k = 0; k < near.n && rc == MT_OK && !out->stopped; k++) {
         mt_subproblem c;
         const int *const below = near.below + ((ptrdiff_t)k * plain->n_bands);
-        const mt_near_miss *const miss = mt_relaxation_miss(&j->misses, below);
+        const near_miss *const miss = relaxation_miss(&j->misses, below);
         if (miss != NULL && !miss->presses[move] && m->kind != MT_MOVE_BOUND) {
             continue;
         }
@@ -405,7 +787,7 @@ static mt_status search_move(void *context, int worker, int k, mt_task_path *own
     bool useful = false;
     MT_TRY(mt_arena_init(&out->mem, 0, err));
     w->task_path = own;
-    mt_status rc = mt_relaxation_subproblem(j->c, m, w, &out->mem, &c, &useful, err);
+    mt_status rc = relaxation_subproblem(j->c, m, w, &out->mem, &c, &useful, err);
     if (rc == MT_OK && useful) {
         bool useless = false;
         rc = is_useless(j, &c, m, &out->mem, &useless, err);
@@ -425,7 +807,7 @@ static mt_status look_around(job *j, const mt_mode_placement_result *placements,
                              mt_moves *out, mt_err *err)
 {
     mt_workspace *const w = j->workers[0];
-    MT_TRY(mt_relaxation_misses(w, placements, out, mem, &j->misses, err));
+    MT_TRY(relaxation_misses(w, placements, out, mem, &j->misses, err));
     MT_TRY(mt_mode_placement_candidates_near(w, ASSIGNMENTS, 0, mem, &j->assignments, err));
     out->evals += j->misses.n + j->assignments.evals;
     return MT_OK;
@@ -437,7 +819,7 @@ mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
                               mt_moves *out, mt_err *err)
 {
     const mt_subproblem *const c = workers[0]->c;
-    MT_TRY(mt_relaxation_moves(c, mem, out, err));
+    MT_TRY(relaxation_moves(c, mem, out, err));
     const long most = c->search.max_evaluations; /* if the study sets one: an equal share */
     const long left = most - search->evals;
     job j = {.workers = workers,
@@ -466,6 +848,230 @@ mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
         out->stopped = out->stopped || j.results[k].stopped;
         mt_arena_free(&j.results[k].mem);
     }
-    mt_relaxation_rank(out);
+    relaxation_rank(out);
     return rc;
+}
+
+/*
+ * The same question where variables come from catalogues. Without continuous variables every
+ * combination is a design, and all are looked at: a move is possible where its rows, and
+ * nothing else, are in the way, and it has to go as far as they say. That is exact. With
+ * continuous variables the combinations that came nearest are closed on their values and
+ * searched as in relaxation.c.
+ */
+
+/* Combinations in one task; combinations that came nearest which are looked at where there are
+ * continuous variables. */
+enum { PER_TASK = 256, NEAREST = 4 };
+
+typedef struct enumeration {
+    mt_workspace *const *workers;
+    mt_nlp_values *values; /* [n_workers] */
+    int total;
+    mt_moves *tasks; /* [n_tasks] the least of each among a task's combinations */
+    bool *stopped;   /* [n_tasks] */
+} enumeration;
+
+/* Coordinates of combination k: the last catalogue varies fastest. */
+static void set_combination(const mt_problem *p, int k, double *t)
+{
+    int left = k;
+    for (int i = p->n - 1; i >= 0; i--) {
+        const mt_variable *const v = &p->study->variables[i];
+        t[i] = mt_problem_t(p, i, v->catalogue[left % v->n_catalogue]);
+        left /= v->n_catalogue;
+    }
+}
+
+/* Frequency to which the edge of a band must move for the modes inside it to be outside; 0
+ * where none is inside. NaN: unstable, or undecided. */
+static double let_through(const mt_band *band, const mt_modes *modes, bool upper)
+{
+    double hz = mt_modal_indexed(modes) ? 0.0 : nan("");
+    for (int i = 0; i < modes->count; i++) {
+        const double f = modes->kind[i] == MT_MODE_FLEXIBLE ? mt_modal_hz(modes, i) : 0.0;
+        if (f > band->lower_hz && f < band->upper_hz && MT_HAS(hz)) {
+            /* the modes inside then lie above the upper edge, or below the lower one */
+            hz = upper ? (hz > 0.0 ? fmin(hz, f) : f) : fmax(hz, f);
+        }
+    }
+    return hz;
+}
+
+static const mt_modes *modes_of(const mt_workspace *w, int avoidance)
+{
+    return &w->views[w->c->avoidances[avoidance].view].analysis->modes;
+}
+
+/* Bands with a mode inside (beyond the tolerance), but the move's own. */
+static bool other_bands_hold(const mt_workspace *w, const mt_move *m)
+{
+    for (int i = 0; i < w->c->n_avoidances; i++) {
+        const mt_avoidance *const c = &w->c->avoidances[i];
+        const int own = m->kind == MT_MOVE_EDGE && m->avoidance == i ? m->band : -1;
+        mt_mode_band_pair p = mt_mode_band_pairs_all(modes_of(w, i), &c->bands);
+        while (mt_mode_band_pairs_next(&p)) {
+            if (p.b != own && mt_band_margin(p.band, p.hz, p.hz) < -c->tolerance) {
+                return false;
+            }
+        }
+        if (!mt_modal_indexed(p.modes)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Where the move's number has to be at the design just evaluated; NaN where that is not
+ * enough. */
+static double needed(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v)
+{
+    const double rows = mt_relaxation_value(w, m, v);
+    if (!MT_HAS(rows) || !other_bands_hold(w, m)) {
+        return nan("");
+    }
+    if (m->kind != MT_MOVE_EDGE) {
+        return rows;
+    }
+    if (w->c->tolerance_box != NULL) {
+        return nan(""); /* the modes at hand are not those of the worst corner */
+    }
+    const mt_band *const band = &w->c->avoidances[m->avoidance].bands.items[m->band];
+    const double f = let_through(band, modes_of(w, m->avoidance), m->upper);
+    return f > 0.0 ? f : nan("");
+}
+
+static void record_needed_moves(const mt_workspace *w, const mt_nlp_values *v, mt_moves *moves)
+{
+    const double change = mt_subproblem_change(w->c, w->t);
+    for (int k = 0; k < moves->n; k++) {
+        mt_move *const m = &moves->items[k];
+        const double to = needed(w, m, v);
+        const double size = mt_relaxation_size(w->p, m, to);
+        if (size > 0.0 && relaxation_is_less(m, size, change)) {
+            relaxation_keep(m, size, change, to, w->x, w->p->n);
+        }
+    }
+}
+
+static mt_status look_at_some(void *context, int worker, int task, mt_task_path *place,
+                              mt_err *err)
+{
+    (void)place;
+    const enumeration *const e = context;
+    mt_workspace *const w = e->workers[worker];
+    const int end = (task + 1) * PER_TASK < e->total ? (task + 1) * PER_TASK : e->total;
+    mt_nlp_values *const v = &e->values[worker];
+    for (int k = task * PER_TASK; k < end && !e->stopped[task]; k++) {
+        mt_err own = {0};
+        set_combination(w->p, k, w->work);
+        const mt_status rc = mt_workspace_eval(w, w->work, false, v, &own);
+        if (mt_is_final(rc)) {
+            return mt_fail(err, rc, "%s", own.text);
+        }
+        e->stopped[task] = rc == MT_E_INTERRUPTED;
+        if (rc == MT_OK) {
+            record_needed_moves(w, v, &e->tasks[task]);
+        }
+    }
+    return MT_OK;
+}
+
+static mt_status enumerate(mt_workspace *const *workers, int n_workers, int total,
+                           mt_arena *mem, mt_moves *out, mt_err *err)
+{
+    const int n_tasks = (total + PER_TASK - 1) / PER_TASK;
+    enumeration e = {.workers = workers, .total = total};
+    const size_t n = (size_t)workers[0]->p->n;
+    const size_t n_moves = (size_t)out->n;
+    e.values = mt_arena_alloc(mem, (size_t)n_workers, sizeof *e.values);
+    e.tasks = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e.tasks);
+    e.stopped = mt_arena_alloc(mem, (size_t)n_tasks, sizeof *e.stopped);
+    double *const x = mt_arena_f64(mem, n * n_moves, (size_t)n_tasks); /* the tasks' designs */
+    MT_TRY(mt_arena_check(mem, err));
+    for (int i = 0; i < n_workers; i++) {
+        MT_TRY(mt_subproblem_values_init(workers[i]->c, mem, &e.values[i], err));
+    }
+    /* each task's own list of moves */
+    for (int i = 0; i < n_tasks; i++) {
+        mt_moves *const own = &e.tasks[i];
+        *own = *out;
+        own->items = mt_arena_alloc(mem, n_moves, sizeof *own->items);
+        MT_TRY(mt_arena_check(mem, err));
+        memcpy(own->items, out->items, n_moves * sizeof *own->items);
+        for (size_t k = 0; k < n_moves; k++) {
+            own->items[k].x = x + ((((size_t)i * n_moves) + k) * n);
+        }
+    }
+    const mt_tasks tasks = {n_tasks, look_at_some, NULL, &e, "lots of combinations"};
+    MT_TRY(mt_workers_run(n_workers, workers[0]->task_path, &tasks, err));
+    for (int i = 0; i < n_tasks; i++) {
+        out->stopped = out->stopped || e.stopped[i];
+        mt_relaxation_merge(out, &e.tasks[i], workers[0]->p->n);
+    }
+    out->evals += total;
+    return MT_OK;
+}
+
+/* With the catalogues closed on the values of design s. */
+static mt_status relaxation_near(mt_workspace *const *workers, int n_workers,
+                                 const mt_nlp_solution *s, long spent, mt_arena *mem,
+                                 mt_moves *out, mt_err *err)
+{
+    const mt_subproblem *const whole = workers[0]->c;
+    mt_subproblem closed;
+    mt_moves found = {0};
+    mt_nlp_solution near = *s;
+    const mt_nlp_result from = {.n_solutions = 1, .solutions = &near, .evals = spent};
+    double *const x = mt_arena_f64(mem, (size_t)whole->p->n, 1);
+    MT_TRY(mt_arena_check(mem, err));
+    mt_subproblem_x(whole, s->t, x);
+    mt_status rc = mt_catalogue_search_close(whole, x, workers[0], mem, &closed, err);
+    for (int i = 1; i < n_workers && rc == MT_OK; i++) {
+        rc = mt_workspace_use(workers[i], &closed, err);
+    }
+    rc = rc == MT_OK ? mt_relaxation_solve(workers, n_workers, &from, NULL, mem, &found, err)
+                     : rc;
+    for (int i = 0; i < n_workers; i++) {
+        mt_workspace_back(workers[i], whole);
+    }
+    if (rc == MT_OK) {
+        mt_relaxation_merge(out, &found, whole->p->n);
+        out->evals += found.evals;
+        out->starts += found.starts;
+        out->stopped = out->stopped || found.stopped;
+        out->short_of_budget = out->short_of_budget || found.short_of_budget;
+    }
+    return rc;
+}
+
+mt_status mt_relaxation_catalogue(mt_workspace *const *workers, int n_workers,
+                                  const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
+                                  mt_err *err)
+{
+    const mt_problem *const p = workers[0]->p;
+    const long most = workers[0]->c->search.max_evaluations;
+    double total = 1.0;
+    bool mixed = false;
+    for (int i = 0; i < p->n; i++) {
+        const int n = p->study->variables[i].n_catalogue;
+        mixed = mixed || n == 0;
+        total *= n > 0 ? (double)n : 1.0;
+    }
+    MT_TRY(relaxation_moves(workers[0]->c, mem, out, err));
+    if (mixed) {
+        const int n = search->n_solutions < NEAREST ? search->n_solutions : NEAREST;
+        for (int i = 0; i < n && !out->stopped; i++) {
+            MT_TRY(relaxation_near(workers, n_workers, &search->solutions[i],
+                                   search->evals + out->evals, mem, out, err));
+        }
+    } else {
+        out->short_of_budget = total > (double)MT_CATALOGUE_SEARCH_MOST ||
+                               (most > 0 && total > (double)(most - search->evals));
+        if (!out->short_of_budget) {
+            MT_TRY(enumerate(workers, n_workers, (int)total, mem, out, err));
+        }
+    }
+    relaxation_rank(out);
+    return MT_OK;
 }

@@ -15,7 +15,7 @@
  *         all bounds and rows of the study, those of the moved number relaxed by s,
  * s being the logarithm of the move (relative to the limit where that has no logarithm), by
  * local searches from several starts; with bands in the nearest mode placements, for bounds and
- * for the rows that are active at the miss found there (relaxation_near.c). A reported move
+ * for the rows that are active at the miss found there. A reported move
  * comes with a design, so it certainly suffices; that a smaller one does not is sampled, not
  * proven.
  *
@@ -73,63 +73,18 @@ mt_status mt_relaxation_solve(mt_workspace *const *workers, int n_workers,
                               const mt_mode_placement_result *placements, mt_arena *mem,
                               mt_moves *out, mt_err *err);
 
-/* relaxation_near.c: the design that misses one mode placement by the least, as far as
- * known. */
-typedef struct mt_near_miss {
-    const int *below;
-    const double *t;
-    /* [moves] the move's row is active at t; where not, the move changes nothing there */
-    bool *presses;
-} mt_near_miss;
-
-typedef struct mt_near_misses {
-    int n_bands;
-    int n;
-    mt_near_miss *items;
-} mt_near_misses;
-
-/* Nearest misses; w: set to a subproblem without a placement. placements may be NULL: none. One
- * evaluation each. Fails: MT_E_MEMORY, MT_E_INTERNAL. */
-mt_status mt_relaxation_misses(mt_workspace *w, const mt_mode_placement_result *placements,
-                               const mt_moves *moves, mt_arena *mem, mt_near_misses *out,
-                               mt_err *err);
-/* The miss of placement below[n_bands]; NULL: none is known. */
-const mt_near_miss *mt_relaxation_miss(const mt_near_misses *misses, const int *below);
-
-/* relaxation_catalogue.c: mt_relaxation_solve for a study with catalogues. Without continuous
+/* mt_relaxation_solve for a study with catalogues. Without continuous
  * variables all combinations are evaluated (short_of_budget where these are too many). */
 mt_status mt_relaxation_catalogue(mt_workspace *const *workers, int n_workers,
                                   const mt_nlp_result *search, mt_arena *mem, mt_moves *out,
                                   mt_err *err);
-
-/* relaxation_moves.c: all possible moves of the study, none tried yet. Fails: MT_E_MEMORY. */
-mt_status mt_relaxation_moves(const mt_subproblem *c, mt_arena *mem, mt_moves *out,
-                              mt_err *err);
-/* The subproblem in which the move's bound is removed and the objective is the total change; w
- * is set to it. *useful false, and nothing laid out: no possible move. */
-mt_status mt_relaxation_subproblem(const mt_subproblem *from, const mt_move *m, mt_workspace *w,
-                                   mt_arena *mem, mt_subproblem *out, bool *useful,
-                                   mt_err *err);
 /* The value of the move's number at which the rows of w, just evaluated into v, hold; NaN where
  * other rows do not hold. */
 double mt_relaxation_value(const mt_workspace *w, const mt_move *m, const mt_nlp_values *v);
-/* Largest useful move: a factor of ten (ln 10), or 2.3 times the limit itself where it has no
- * logarithm. */
-static const double MT_RELAXATION_MOST = 2.302585092994046;
 /* |s| of the move to `to`; NaN where it is none, is in the wrong direction, or exceeds
  * MT_RELAXATION_MOST. */
 double mt_relaxation_size(const mt_problem *p, const mt_move *m, double to);
-/* True where a move of this size and total change precedes the one found for m: by size or,
- * where sizes are equal, by total change. */
-bool mt_relaxation_is_less(const mt_move *m, double size, double change);
-/* Stores the move to `to` with the design x[n] in m where it precedes the one found. */
-void mt_relaxation_keep(mt_move *m, double size, double change, double to, const double *x,
-                        int n);
 /* Merges found moves of `from` into `to`, which lists all, where they precede; n: variables. */
 void mt_relaxation_merge(mt_moves *to, const mt_moves *from, int n);
-/* Keeps found moves only, smallest first, ties in the order of the study. */
-void mt_relaxation_rank(mt_moves *moves);
-/* True where this row of `in` (of the equalities, where eq) is the move's. */
-bool mt_relaxation_is_row(const mt_move *m, const mt_row *row);
 
 #endif

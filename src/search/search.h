@@ -49,7 +49,7 @@ mt_status mt_search_over_tolerances(mt_workspace *const *workers, int n_workers,
 mt_status mt_search_verify(mt_workspace *w, bool last, mt_arena *mem,
                            struct mt_tolerance_cuts *cuts, mt_nlp_solution *s, bool *again,
                            mt_err *err);
-/* search_positions.c: limits between the positions of a drive, added by verification. */
+/* search_tolerances.c: limits between the positions of a drive, added by verification. */
 typedef struct mt_at_position_cuts {
     int n;
     struct mt_cut *items; /* owned */
@@ -70,7 +70,7 @@ mt_status mt_at_position_cuts_used(const mt_at_position_cuts *cuts, int n,
                                    const struct mt_cut *first, mt_arena *mem,
                                    struct mt_cut **out, mt_err *err);
 void mt_at_position_cuts_free(mt_at_position_cuts *cuts);
-/* search.c: all stages of one search of ws's subproblem from the design `from` alone.
+/* All stages of one search of ws's subproblem from the design `from` alone.
  * out->solutions[0] is its result, if any. */
 mt_status mt_search_from(mt_workspace *ws, const double *from, mt_arena *mem,
                          mt_nlp_result *out, int *stage, mt_err *err);
@@ -81,7 +81,7 @@ mt_status mt_search_rank(mt_workspace *ws, int stage, mt_arena *mem, mt_nlp_resu
 
 /* True where designs a[n] and b[n] are one, by the rule of the search. */
 bool mt_search_same(int n, const double *a, const double *b);
-/* search_continuum.c: mt_is_nearer (nlp/merit.h) from the original of the subproblem. */
+/* mt_is_nearer (nlp/merit.h) from the original of the subproblem. */
 bool mt_search_nearer(const mt_subproblem *c, const double *s, const double *t);
 
 /*
@@ -107,12 +107,5 @@ mt_status mt_search_nearest(mt_workspace *ws, long most, double *f, const double
  * to `most` (0: some thousands more). Fails: MT_E_MEMORY, MT_E_INTERNAL, MT_E_USAGE. */
 mt_status mt_search_repeated_eigenvalues(mt_workspace *ws, long most, mt_arena *mem,
                                          mt_nlp_result *out, mt_err *err);
-
-/* search_continuum.c: of solutions connected by designs that are feasible and have the same
- * objectives, keep one (solution->continuum); n_found and n_once are adjusted. At most 3
- * evaluations for each pair with equal objectives. In place; compromises are unchanged. Fails:
- * MT_E_MEMORY. */
-mt_status mt_search_join_continua(mt_workspace *ws, mt_arena *mem, mt_nlp_result *out,
-                                  mt_err *err);
 
 #endif

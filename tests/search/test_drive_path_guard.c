@@ -9,7 +9,7 @@
 #include <math.h>
 
 #include "mechanics/system.h"
-#include "search/drive_path_guard.h"
+#include "search/drive_path.h"
 #include "support/mt_test.h"
 
 static const mt_system NOTHING; /* no body and no spring that could turn */

@@ -8,8 +8,8 @@
 #include "nlp/merit.h"
 #include "nlp/starts.h"
 #include "problem/evaluate.h"
-#include "search/infeasible_presolve.h"
 #include "search/mode_placements.h"
+#include "search/proof.h"
 #include "study_fixture.h"
 #include "support/mt_random.h"
 

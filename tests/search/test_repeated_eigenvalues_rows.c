@@ -14,7 +14,7 @@
  */
 #include "problem/problem.h"
 #include "problem/workspace.h"
-#include "search/repeated_eigenvalues.h"
+#include "search/search_repeated_eigenvalues.h"
 #include "study_fixture.h"
 
 enum { SPRINGS = 3, TEXT = 1024 };

@@ -8,7 +8,7 @@
 #include "nlp/starts.h"
 #include "problem/evaluate.h"
 #include "search/mode_placements.h"
-#include "search/sampled_bounds.h"
+#include "search/proof.h"
 #include "study_fixture.h"
 #include "support/mt_random.h"
 

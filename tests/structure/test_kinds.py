@@ -13,7 +13,7 @@ MEANT = {
     "MT_OBJECTIVE_EXPRESSION": ("src/study/read_objectives.c",),  # what is no word is an expression
     "MT_OBJECTIVE_CHANGE": (  # the distance from the original design itself
         "src/study/study_objectives.c",  # the objective where none is given
-        "src/search/relaxation_moves.c",  # the nearest design
+        "src/search/relaxation.c",  # the nearest design
         "src/search/search_nearest.c",  # of optima that are as good
         "src/search/search.c", "src/search/mode_placements.c",  # what no goal settles stays at the original
         "src/search/mode_placements_bounds.c",  # how far a box is from the original

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SEARCH_MODE_PLACEMENTS_PRIV_H
-#define SEARCH_MODE_PLACEMENTS_PRIV_H
+#ifndef SEARCH_MODE_PLACEMENTS_SEARCH_H
+#define SEARCH_MODE_PLACEMENTS_SEARCH_H
 
 #include "base/workers.h"
 #include "problem/tolerance_cut.h"
@@ -42,32 +42,17 @@ typedef struct mt_mode_placement_job {
     bool few; /* options have fewer starts than the study allows: add one for a hint */
 } mt_mode_placement_job;
 
-/* mode_placements_search.c: search candidate job->from + k (a task of mt_tasks). A candidate
+/* Search candidate job->from + k (a task of mt_tasks). A candidate
  * without any value is no failure: it has no solution. */
 mt_status mt_mode_placement_search_candidate(void *context, int worker, int k,
                                              mt_task_path *own, mt_err *err);
 /* True where its best design meets all goals. */
 bool mt_mode_placement_is_met(const mt_mode_placement_slot *s);
 
-/*
- * mode_placements_best.c: search the candidates, sorted by ascending lower bound, while one of
- * them may still be among the `asked` best designs: each from one start first, those that may
- * be listed from more. Where others, of lower bound `rest`, may be listed too, those of large
- * estimates are left out. Sets job->searched and fills the job's slots; *last: the objective
- * (change) below which a design would be listed, HUGE_VAL where the list is not full. Fails: as
- * the searches.
- */
-mt_status mt_mode_placement_search_best(mt_mode_placement_job *job, int n_workers, int asked,
-                                        double rest, mt_arena *mem, double *last, mt_err *err);
 /* True where candidate k was not searched. */
 static inline bool mt_mode_placement_is_left_out(const mt_mode_placement_job *job, int k)
 {
     return k >= job->searched || job->slots[k].carried;
 }
-/* Search again, from the designs in `known` (its first n_proven rows), those candidates that
- * have no feasible design yet. */
-mt_status mt_mode_placement_search_known(mt_mode_placement_job *job, int n_workers,
-                                         const mt_mode_placement_candidates *known,
-                                         mt_arena *mem, mt_err *err);
 
 #endif

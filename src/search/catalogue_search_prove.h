@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SEARCH_CATALOGUE_SEARCH_PROOFS_H
-#define SEARCH_CATALOGUE_SEARCH_PROOFS_H
+#ifndef SEARCH_CATALOGUE_SEARCH_PROVE_H
+#define SEARCH_CATALOGUE_SEARCH_PROVE_H
 
 #include "base/workers.h"
 #include "search/proof.h"
@@ -27,17 +27,6 @@ mt_status mt_catalogue_search_proofs_init(mt_catalogue_search_proofs *s, const m
                                           mt_arena *mem, mt_err *err);
 /* Accepts a zeroed set. */
 void mt_catalogue_search_proofs_free(mt_catalogue_search_proofs *s);
-/* True where variable i is a catalogue that shapes the geometry. */
-bool mt_catalogue_search_shapes(const mt_catalogue_search_proofs *s, int i);
-/* Number of geometries that the catalogues give. mt_catalogue_search_geometry: bounds of the
- * relaxed problem for geometry `which`: lower[n], upper[n]. */
-double mt_catalogue_search_geometries(const mt_catalogue_search_proofs *s);
-void mt_catalogue_search_geometry(const mt_catalogue_search_proofs *s, int which, double *lower,
-                                  double *upper);
-/* The proof with its bounds set to lower <= x <= upper [n], valid until the next call; NULL:
- * not possible. Fails: as mt_proof_init. */
-mt_status mt_catalogue_search_proof_of(mt_catalogue_search_proofs *s, const double *lower,
-                                       const double *upper, mt_proof **out, mt_err *err);
 
 /* What a short certificate says of a box of combinations. */
 typedef struct mt_catalogue_search_look {

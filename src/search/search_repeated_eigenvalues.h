@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef SEARCH_REPEATED_EIGENVALUES_H
-#define SEARCH_REPEATED_EIGENVALUES_H
+#ifndef SEARCH_SEARCH_REPEATED_EIGENVALUES_H
+#define SEARCH_SEARCH_REPEATED_EIGENVALUES_H
 
-#include "nlp/cone.h"
 #include "problem/workspace.h"
 
 /*
@@ -21,15 +20,6 @@ typedef struct mt_repeated_eigenvalues_side {
     int row;     /* row of the problem: equalities first, then inequalities */
     int pos;     /* position of the mode at the last evaluation */
 } mt_repeated_eigenvalues_side;
-
-/* repeated_eigenvalues_sides.c: all such rows at the problem's last evaluation. In mem. Fails:
- * MT_E_MEMORY. */
-mt_status mt_repeated_eigenvalues_sides(mt_workspace *ws, mt_arena *mem,
-                                        mt_repeated_eigenvalues_side **out, int *n,
-                                        mt_err *err);
-/* sign ln(f / limit) of the mode at pos, at the last evaluation. */
-double mt_repeated_eigenvalues_margin(const mt_workspace *ws,
-                                      const mt_repeated_eigenvalues_side *s, int pos);
 
 /*
  * Limits on modes that (nearly) coincide. A single mode of a cluster has no derivative there,
@@ -83,9 +73,6 @@ typedef struct mt_repeated_eigenvalues {
 mt_status mt_repeated_eigenvalues_find(mt_workspace *ws, const double *t, double near,
                                        mt_arena *mem, mt_repeated_eigenvalues *out,
                                        mt_err *err);
-/* True where a and b, of one problem at one design, have the same modes at the same limits. */
-bool mt_repeated_eigenvalues_same(const mt_repeated_eigenvalues *a,
-                                  const mt_repeated_eigenvalues *b);
 /* The problem with B = 0 in place of the replaced rows; its context is m. */
 mt_nlp mt_repeated_eigenvalues_nlp(mt_repeated_eigenvalues *m);
 
