@@ -50,7 +50,7 @@ ELSEWHERE = {
 def formats():
     found = []
     for path in sorted((SOURCE / "src/describe").glob("*.c")):
-        for m in re.finditer(r'mt_add_sentence\(\s*(?:s|&s),\s*((?:"(?:\\.|[^"\\])*"\s*)+)', path.read_text(encoding="utf-8")):
+        for m in re.finditer(r'(?:mt_)?add_sentence\(\s*(?:s|&s),\s*((?:"(?:\\.|[^"\\])*"\s*)+)', path.read_text(encoding="utf-8")):
             found.append("".join(re.findall(r'"((?:\\.|[^"\\])*)"', m[1])))
     return [f for f in dict.fromkeys(found) if f != "%s"]  # of catalogues: search/discrete's own sentence
 
