@@ -9,8 +9,8 @@
 #include "base/text.h"
 #include "describe/describe.h"
 #include "linalg/dense.h"
-#include "nlp/libraries.h"
 #include "nlp/merit.h"
+#include "nlp/nlp.h"
 #include "problem/objective.h"
 
 static double finite_or_none(double x)

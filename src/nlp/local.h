@@ -32,7 +32,7 @@ void mt_nlp_local_approach(mt_nlp_engine *e, mt_nlp_local *s);
 void mt_nlp_local_finish(mt_nlp_engine *e, mt_nlp_local *s);
 /* Both, for the objective under the constraints, with rows[n_rows] as the equalities. */
 void mt_nlp_minimise(mt_nlp_engine *e, mt_nlp_local *s);
-/* Write or read the state of a search (local_serialize.c). Values and slopes are evaluated
+/* Write or read the state of a search. Values and slopes are evaluated
  * again at the designs that are read, and the record is accepted only where they equal those it
  * was written with. False: refused, and s is unchanged. */
 bool mt_nlp_local_serialize(mt_nlp_engine *e, mt_nlp_local *s, mt_serializer *serializer);

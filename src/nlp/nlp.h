@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "base/arena.h"
-#include "nlp/steps.h"
+#include "nlp/merit.h"
 
 /*
  * A smooth search problem in scaled variables t (ln of positive parameters, linear otherwise;
@@ -152,7 +152,7 @@ typedef struct mt_nlp_result {
     mt_steps steps; /* improvements in order */
     /* at the best solution: orthonormal directions in t along which crossing the whole bounds
      * changes every residual and constraint by less than its tolerance; the basis depends on
-     * their space alone (unidentifiable_directions.c) */
+     * their space alone (solution_pool.c) */
     int n_unidentifiable;
     double *unidentifiable; /* n x n_unidentifiable */
     /* [n_unidentifiable] greatest change / tolerance found when crossing */
@@ -175,5 +175,19 @@ typedef struct mt_nlp_result {
  */
 mt_status mt_nlp_solve(const mt_nlp *nlp, const mt_nlp_options *opt, mt_arena *mem,
                        mt_nlp_result *out, mt_err *err);
+
+/*
+ * Starting points of `starts` local searches: t, column-major n x starts, in mem. Start 0 is
+ * the origin clamped to the bounds, the next the hint where given; the others fill the bounds
+ * evenly for any number of starts. seed 0 and 1: the sequence without a shift. NULL: out of
+ * memory.
+ */
+double *mt_nlp_starts(const mt_nlp *nlp, unsigned long seed, int starts, mt_arena *mem);
+
+/* Versions of the search libraries, for `run` of a result. */
+/* Writes the version, such as "2.7.1". */
+void mt_nlopt_version(char text[16]);
+/* A static text. */
+const char *mt_gsl_version(void);
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef NLP_SOLUTION_POOL_H
 #define NLP_SOLUTION_POOL_H
 
+#include "nlp/engine.h"
 #include "nlp/local.h"
 
 typedef struct mt_nlp_solution_pool {
@@ -31,9 +32,12 @@ int mt_nlp_solution_pool_choose(mt_nlp_engine *e, mt_nlp_solution_pool *all,
                                 const mt_nlp_result *directions, mt_nlp_local **chosen);
 /* True where Newton's method converged there. */
 bool mt_nlp_came_to_rest(const mt_nlp_local *s);
-/* Distance below which two ends are one. mt_nlp_seeks_roots: true where the problem asks for
- * isolated roots. */
-double mt_nlp_same_distance(const mt_nlp_engine *e);
-bool mt_nlp_seeks_roots(const mt_nlp_engine *e);
+
+bool mt_nlp_unidentifiable(mt_nlp_engine *e, const mt_nlp_point *p, mt_arena *mem,
+                           mt_nlp_result *out);
+
+/* Ranks, merges and verifies the ends: *out in mem (nlp.h). */
+void mt_nlp_verify_kkt(mt_nlp_engine *e, mt_nlp_solution_pool *all, mt_arena *mem,
+                       mt_nlp_result *out);
 
 #endif

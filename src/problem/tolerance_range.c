@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "problem/configuration.h"
 #include "problem/tolerance.h"
 #include "prove/enclosure.h"

@@ -11,7 +11,7 @@
 #include "base/run.h"
 #include "base/workers.h"
 #include "nlp/merit.h"
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "problem/avoidance.h"
 #include "problem/configuration.h"
 #include "problem/drive_positions.h"

@@ -8,7 +8,7 @@
 
 #include "base/format.h"
 #include "base/run.h"
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "problem/configuration.h"
 #include "problem/evaluate.h"
 #include "problem/objective.h"

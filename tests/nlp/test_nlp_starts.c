@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Starting points: the origin, then a sequence that fills the bounds in any dimension; and when
  * there are enough of them. */
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "nlp_problem.h"
 
 enum { D_MOST = 1300, STARTS = 33 };

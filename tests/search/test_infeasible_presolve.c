@@ -6,7 +6,7 @@
  */
 #include "mt_writer.h"
 #include "nlp/merit.h"
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "problem/evaluate.h"
 #include "search/mode_placements.h"
 #include "search/proof.h"

@@ -5,7 +5,7 @@
  * random, for proofs that end and proofs that do not, for one worker and for several; and who
  * interrupts the proof has a design.
  */
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "problem/evaluate.h"
 #include "prove/certify.h"
 #include "search/mode_placements.h"

@@ -5,7 +5,7 @@
  * with a design that has it, and no design drawn at random at one of these lengths has another.
  */
 #include "mt_writer.h"
-#include "nlp/starts.h"
+#include "nlp/nlp.h"
 #include "problem/evaluate.h"
 #include "search/mode_placements.h"
 #include "search/proof.h"

@@ -141,7 +141,7 @@ PLAIN static bool from_blas(const void *caller)
 }
 
 /* NLopt (2.7.1) ends the process where it has no memory for a sentence. That there is some is
- * seen to before (slsqp.c), which a shortage of one moment cannot know. */
+ * seen to before (local.c), which a shortage of one moment cannot know. */
 extern char *nlopt_vsprintf(char *text, const char *format, va_list args) __attribute__((weak));
 
 PLAIN static bool from_nlopt_message(const void *caller)
