@@ -27,7 +27,7 @@ from _tables import COLUMNS  # noqa: E402: where it is, is known now
 
 # Pages and how many commands and blocks of JSON each runs at least.
 PAGES = {"README.md": (1, 1), "problems/README.md": (4, 15), "studies/README.md": (5, 20), "tests/reference/README.md": (8, 0)}
-LINKED = [*PAGES, "studies/tutorial/README.md", "include/README.md", "src/library/python/README.md", "tests/bench/README.md", "CONTRIBUTING.md", "tests/README.md"]
+LINKED = [*PAGES, "studies/tutorial/README.md", "include/README.md", "src/library/python/README.md", "tests/bench/README.md", "CONTRIBUTING.md", "src/README.md", "tests/README.md"]
 FIRST_PAGE = 220  # lines
 # A file that is named, or the head of a table.
 HEADS = re.compile(r"^\| (.*) \|\n\|(?: -+ \|)+$", re.M)
