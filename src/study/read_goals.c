@@ -10,34 +10,60 @@
 #include "environment/read_profile.h"
 #include "io/shipped.h"
 
+/* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
+#define KEY(slot, label, kind, given, row, ...) \
+    {.name = (label),                           \
+     .type = MT_KEY_##kind,                     \
+     .required = (given),                       \
+     .possible = MT_POSSIBLE_##row,             \
+     .says = __VA_ARGS__},
+
+#define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
+MT_GOAL_LIST(KEYS)
+
+#define TABLE(id, name, unit, measure, sentence, together) \
+    {.what = "goal_" #name,                                \
+     .keys = id##_KEYS,                                    \
+     .n = MT_COUNT(id##_KEYS),                             \
+     .says = (sentence),                                   \
+     .rules = (together)},
+const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT] = {MT_GOAL_LIST(TABLE)};
+
+/* A goal being read. */
+typedef struct reading {
+    mt_study_reader *s;
+    const mt_goal_kind *kind;
+    mt_object o;
+    mt_goal *goal;
+} reading;
+
+static mt_addr found(const reading *g, mt_goal_slot slot)
+{
+    const int at = mt_goal_member_at(g->kind, slot);
+    return at < 0 ? MT_NO_ADDR : g->o.found[at];
+}
+
+static bool has_goal_member(const reading *g, mt_goal_slot slot)
+{
+    const int at = mt_goal_member_at(g->kind, slot);
+    return at >= 0 && mt_object_has(&g->s->r, &g->o, g->kind->members[at].name);
+}
+
+/* Address of the member; that of the goal where it is absent. */
+static mt_addr goal_member_addr(const reading *g, mt_goal_slot slot)
+{
+    const int at = mt_goal_member_at(g->kind, slot);
+    return at < 0 ? g->o.addr : mt_object_place(&g->s->r, &g->o, g->kind->members[at].name);
+}
+
 static const char SHIPPED[] = "problems/profiles/";
 static const char ENDING[] = ".json";
 static const char AIRCRAFT[] = "problems/aircraft.json";
 
-/* A goal about ports being read. */
-typedef struct limit_reading {
-    mt_study_reader *s;
-    const mt_goal_kind *kind;
-    const mt_object *o;
-} limit_reading;
-
-static mt_addr limit_member(const limit_reading *g, mt_goal_slot slot)
+static mt_name name_at(const reading *g, mt_goal_slot slot)
 {
-    const int at = mt_goal_member_at(g->kind, slot);
-    return at < 0 ? MT_NO_ADDR : g->o->found[at];
-}
-
-/* Address of the member; that of the goal where it is absent. */
-static mt_addr limit_member_addr(const limit_reading *g, mt_goal_slot slot)
-{
-    const int at = mt_goal_member_at(g->kind, slot);
-    return at < 0 ? g->o->addr : mt_object_place(&g->s->r, g->o, g->kind->members[at].name);
-}
-
-static mt_name name_at(const limit_reading *g, mt_goal_slot slot)
-{
-    mt_name name = mt_reader_ref(&g->s->r, limit_member(g, slot));
-    name.addr = limit_member_addr(g, slot);
+    mt_name name = mt_reader_ref(&g->s->r, found(g, slot));
+    name.addr = goal_member_addr(g, slot);
     return name;
 }
 
@@ -189,24 +215,24 @@ static const mt_vibration *limit_profile(mt_study_reader *s, mt_name name)
 }
 
 /* A band, or one frequency. */
-static void read_frequencies(const limit_reading *g, mt_response_limit *response_limit)
+static void read_frequencies(const reading *g, mt_response_limit *response_limit)
 {
     double edges[2];
-    (void)mt_object_one_of(&g->s->r, g->o, mt_goal_member_name(g->kind, MT_SLOT_BAND), 2);
-    if (limit_member(g, MT_SLOT_AT) != MT_NO_ADDR) {
-        response_limit->lower_hz = mt_read_study_number(g->s, limit_member(g, MT_SLOT_AT));
+    (void)mt_object_one_of(&g->s->r, &g->o, mt_goal_member_name(g->kind, MT_SLOT_BAND), 2);
+    if (found(g, MT_SLOT_AT) != MT_NO_ADDR) {
+        response_limit->lower_hz = mt_read_study_number(g->s, found(g, MT_SLOT_AT));
         response_limit->upper_hz = response_limit->lower_hz;
-    } else if (limit_member(g, MT_SLOT_BAND) != MT_NO_ADDR &&
-               mt_read_study_pair(g->s, limit_member(g, MT_SLOT_BAND),
-                                  limit_member(g, MT_SLOT_BAND), edges)) {
+    } else if (found(g, MT_SLOT_BAND) != MT_NO_ADDR &&
+               mt_read_study_pair(g->s, found(g, MT_SLOT_BAND), found(g, MT_SLOT_BAND),
+                                  edges)) {
         response_limit->lower_hz = edges[0];
         response_limit->upper_hz = edges[1];
     }
 }
 
-static void read_profile(const limit_reading *g, mt_response_limit *response_limit)
+static void read_profile(const reading *g, mt_response_limit *response_limit)
 {
-    const int which = mt_reader_choice(&g->s->r, limit_member(g, MT_SLOT_QUANTITY), "quantity",
+    const int which = mt_reader_choice(&g->s->r, found(g, MT_SLOT_QUANTITY), "quantity",
                                        &mt_response_limit_names[MT_RESPONSE_LIMIT_RMS],
                                        MT_RESPONSE_LIMIT_QUANTITIES - MT_RESPONSE_LIMIT_RMS);
     response_limit->quantity =
@@ -216,42 +242,37 @@ static void read_profile(const limit_reading *g, mt_response_limit *response_lim
 }
 
 /* The members of a goal on ports that is compared with a measurement. */
-static void read_measured_response(mt_study_reader *s, const mt_object *o, mt_goal *goal)
+static void read_measured_response(const reading *g, mt_response_limit *response_limit)
 {
-    const mt_goal_kind *const kind = mt_goal_kind_of(goal->type);
-    const int band = mt_goal_member_at(kind, MT_SLOT_BAND);
-    const int named = mt_goal_member_at(kind, MT_SLOT_MEASUREMENT);
-    const int coherence = mt_goal_member_at(kind, MT_SLOT_COHERENCE);
-    mt_response_limit *const response_limit = goal->response_limit;
+    mt_reader *const r = &g->s->r;
+    const mt_addr band = found(g, MT_SLOT_BAND);
     double edges[2];
-    response_limit->measurement_name = mt_reader_ref(&s->r, o->found[named]);
-    response_limit->coherence = mt_reader_flag(&s->r, o->found[coherence], false);
-    if (o->found[band] != MT_NO_ADDR &&
-        mt_read_study_pair(s, o->found[band], o->found[band], edges)) {
+    response_limit->measurement_name = mt_reader_ref(r, found(g, MT_SLOT_MEASUREMENT));
+    response_limit->coherence = mt_reader_flag(r, found(g, MT_SLOT_COHERENCE), false);
+    if (band != MT_NO_ADDR && mt_read_study_pair(g->s, band, band, edges)) {
         response_limit->lower_hz = edges[0];
         response_limit->upper_hz = edges[1];
     }
 }
 
 /* The members of a goal about ports. */
-static void read_response_limit(mt_study_reader *s, const mt_object *o, mt_goal *goal)
+static void read_response_limit(const reading *g)
 {
-    const limit_reading g = {.s = s, .kind = mt_goal_kind_of(goal->type), .o = o};
     mt_response_limit *const response_limit =
-        mt_arena_alloc(&s->study->mem, 1, sizeof *response_limit);
+        mt_arena_alloc(&g->s->study->mem, 1, sizeof *response_limit);
     if (response_limit == NULL) {
         return;
     }
     *response_limit = mt_response_limit_default();
-    goal->response_limit = response_limit;
-    response_limit->input = name_at(&g, MT_SLOT_INPUT);
-    response_limit->output = name_at(&g, MT_SLOT_OUTPUT);
-    if (mt_goal_member_at(g.kind, MT_SLOT_PROFILE) >= 0) {
-        read_profile(&g, response_limit);
-    } else if (mt_goal_member_at(g.kind, MT_SLOT_MEASUREMENT) >= 0) {
-        read_measured_response(s, o, goal);
+    g->goal->response_limit = response_limit;
+    response_limit->input = name_at(g, MT_SLOT_INPUT);
+    response_limit->output = name_at(g, MT_SLOT_OUTPUT);
+    if (mt_goal_member_at(g->kind, MT_SLOT_PROFILE) >= 0) {
+        read_profile(g, response_limit);
+    } else if (mt_goal_member_at(g->kind, MT_SLOT_MEASUREMENT) >= 0) {
+        read_measured_response(g, response_limit);
     } else {
-        read_frequencies(&g, response_limit);
+        read_frequencies(g, response_limit);
     }
 }
 
@@ -300,52 +321,6 @@ const mt_key_table mt_study_response_keys = {
     .defaults = response_defaults,
     .finish = response_finish,
     .says = "What a forced vibration is caused by, and what it is seen in."};
-
-/* The table of keys of each kind of goal, of the list that goal_kinds.h has of its members. */
-#define KEY(slot, label, kind, given, row, ...) \
-    {.name = (label),                           \
-     .type = MT_KEY_##kind,                     \
-     .required = (given),                       \
-     .possible = MT_POSSIBLE_##row,             \
-     .says = __VA_ARGS__},
-
-#define KEYS(id, ...) static const mt_key id##_KEYS[] = {MT_GOAL_##id##_MEMBERS(KEY)};
-MT_GOAL_LIST(KEYS)
-
-#define TABLE(id, name, unit, measure, sentence, together) \
-    {.what = "goal_" #name,                                \
-     .keys = id##_KEYS,                                    \
-     .n = MT_COUNT(id##_KEYS),                             \
-     .says = (sentence),                                   \
-     .rules = (together)},
-const mt_key_table mt_study_goal_keys[MT_GOAL_TYPE_COUNT] = {MT_GOAL_LIST(TABLE)};
-
-/* A goal being read. */
-typedef struct reading {
-    mt_study_reader *s;
-    const mt_goal_kind *kind;
-    mt_object o;
-    mt_goal *goal;
-} reading;
-
-static mt_addr found(const reading *g, mt_goal_slot slot)
-{
-    const int at = mt_goal_member_at(g->kind, slot);
-    return at < 0 ? MT_NO_ADDR : g->o.found[at];
-}
-
-static bool has_goal_member(const reading *g, mt_goal_slot slot)
-{
-    const int at = mt_goal_member_at(g->kind, slot);
-    return at >= 0 && mt_object_has(&g->s->r, &g->o, g->kind->members[at].name);
-}
-
-/* Address of the member; that of the goal where it is absent. */
-static mt_addr goal_member_addr(const reading *g, mt_goal_slot slot)
-{
-    const int at = mt_goal_member_at(g->kind, slot);
-    return at < 0 ? g->o.addr : mt_object_place(&g->s->r, &g->o, g->kind->members[at].name);
-}
 
 /* One of n members that follow each other from `first` on: none or several are noted. */
 static void one_of(const reading *g, mt_goal_slot first, int n)
@@ -522,7 +497,7 @@ static bool read_goal(mt_study_reader *s, mt_addr value, mt_goal *goal)
         } else if (slot == MT_SLOT_BANDS) {
             read_avoid(&g);
         } else if (slot == MT_SLOT_OUTPUT) {
-            read_response_limit(s, &g.o, goal);
+            read_response_limit(&g);
         }
     }
     goal->tolerance_given = has_goal_member(&g, MT_SLOT_TOLERANCE);
